@@ -1,0 +1,35 @@
+# ag_shaders(module header)
+#
+# Compiles every *.comp, *.vert and *.frag below the current folder to SPIR-V and embeds it in ag_<module>:
+# `#include "<header>"` declares `extern const struct gpu_shader shader_<name>_<stage>` for each.
+# The .spv files also land in <build>/shaders, the folder to give as AFTERGLOW_SHADER_DIR for reloading.
+function(ag_shaders module header)
+  file(GLOB_RECURSE shaders CONFIGURE_DEPENDS
+    ${CMAKE_CURRENT_SOURCE_DIR}/*.comp ${CMAKE_CURRENT_SOURCE_DIR}/*.vert ${CMAKE_CURRENT_SOURCE_DIR}/*.frag)
+  set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
+  set(declarations "#pragma once\n#include \"gpu/gpu.h\"\n")
+  set(definitions "#include \"${header}\"\n")
+  set(words "")
+  foreach(shader ${shaders})
+    get_filename_component(name ${shader} NAME)
+    string(REPLACE "." "_" symbol ${name})
+    set(inc ${generated}/${name}.inc)
+    set(spv ${CMAKE_BINARY_DIR}/shaders/${name}.spv)
+    add_custom_command(OUTPUT ${inc} ${spv}
+      COMMAND ${GLSLC} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 -I${CMAKE_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc}
+              -mfmt=c -o ${inc} ${shader}
+      COMMAND ${GLSLC} --target-env=vulkan1.3 -DAG_GLSL=1 -I${CMAKE_SOURCE_DIR}/src -o ${spv} ${shader}
+      DEPENDS ${shader} DEPFILE ${inc}.d COMMENT "GLSL ${name}" VERBATIM)
+    list(APPEND words ${inc})
+    string(APPEND declarations "extern const struct gpu_shader shader_${symbol};\n")
+    string(APPEND definitions
+      "static const uint32_t ${symbol}_words[] =\n#include \"${name}.inc\"\n;\n"
+      "const struct gpu_shader shader_${symbol} = { \"${name}\", ${symbol}_words, sizeof ${symbol}_words / 4 };\n")
+  endforeach()
+  file(MAKE_DIRECTORY ${generated} ${CMAKE_BINARY_DIR}/shaders)
+  file(CONFIGURE OUTPUT ${generated}/${header} CONTENT "${declarations}" @ONLY)
+  file(CONFIGURE OUTPUT ${generated}/${module}_shaders.c CONTENT "${definitions}" @ONLY)
+  set_source_files_properties(${generated}/${module}_shaders.c PROPERTIES OBJECT_DEPENDS "${words}")
+  target_sources(ag_${module} PRIVATE ${generated}/${module}_shaders.c)
+  target_include_directories(ag_${module} PUBLIC ${generated})
+endfunction()

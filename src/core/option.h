@@ -1,0 +1,71 @@
+// Options from one X-macro table. A module writes X_options.def with lines
+//
+//     OPTION(type, name, default, min, max, "unit or choices", EFFECT, "help")
+//
+// type is int32, float32, bool8 or choice (an int32 that indexes the '|'-separated names in the unit column).
+// From the table come the struct, the defaults, parsing, printing, documentation and the range tests:
+//
+//     struct lpv_options {
+//     #define OPTION OPTION_FIELD
+//     #include "lpv_options.def"
+//     #undef OPTION
+//     };
+//     #define OPTION(...) OPTION_ROW(struct lpv_options, __VA_ARGS__)
+//     static const struct option_row rows[] = {
+//     #include "lpv_options.def"
+//     };
+#pragma once
+
+#include "core/host.h"
+
+#include <jansson.h>
+#include <stdint.h>
+
+typedef int32_t option_int32;
+typedef float option_float32;
+typedef bool option_bool8;
+typedef int32_t option_choice;
+
+enum option_type { OPTION_TYPE_int32, OPTION_TYPE_float32, OPTION_TYPE_bool8, OPTION_TYPE_choice };
+
+// What a change of the option asks of a running technique, mildest first.
+enum option_effect { LIVE, INVALIDATE, RESIZE, RECREATE, REBAKE };
+
+struct option_row {
+    enum option_type type;
+    const char *name;
+    double initial, min, max;
+    const char *unit; // for choice: "first|second|…"
+    enum option_effect effect;
+    const char *help;
+    size_t offset;
+};
+
+struct option_table {
+    const struct option_row *rows;
+    size_t count;
+    size_t size; // of the options struct
+};
+
+#define OPTION_FIELD(type, name, ...) option_##type name;
+#define OPTION_ROW(struct_type, type_, name_, initial_, min_, max_, unit_, effect_, help_)         \
+    { .type = OPTION_TYPE_##type_, .name = #name_, .initial = (initial_), .min = (min_),           \
+      .max = (max_), .unit = (unit_), .effect = (effect_), .help = (help_),                        \
+      .offset = offsetof(struct_type, name_) },
+
+void option_defaults(const struct option_table *table, void *options);
+
+// Sets what "key=value,key=value" says on top of what is there; "" sets nothing. `owner` is named in errors.
+// An unknown key names the nearest known one; a value out of range names the range. On failure *options
+// is unchanged.
+bool option_parse(struct host *host, const struct option_table *table, const char *owner,
+                  const char *text, void *options);
+// The value as text, as option_parse would read it.
+void option_print(const struct option_row *row, const void *options, char *out, size_t out_size);
+// {"name": value, …}; a new reference, NULL when out of memory. Choices are strings.
+json_t *option_json(const struct option_table *table, const void *options);
+// The strongest effect among the options that differ; -1 when all are equal.
+int option_difference(const struct option_table *table, const void *a, const void *b);
+
+// The known name nearest to `name` by edit distance, NULL when none is near enough to suggest.
+const char *nearest_name(const char *name, const char *const *known, size_t count);

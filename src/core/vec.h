@@ -1,0 +1,60 @@
+// Vectors and matrices by value: cglm's struct API, column-major, depth 0…1.
+// Everything in the project includes this file and never cglm itself, so that the alignment
+// and clip-space settings are the same everywhere. Transforms are named `to_from`.
+#pragma once
+
+#define CGLM_ALL_UNALIGNED
+#define CGLM_FORCE_DEPTH_ZERO_TO_ONE
+#include <cglm/struct.h>
+
+#include <stdbool.h>
+
+static inline vec3s vec3_of(float x, float y, float z)
+{
+    return (vec3s){ { x, y, z } };
+}
+
+static inline vec3s vec3_xyz(vec4s v)
+{
+    return (vec3s){ { v.x, v.y, v.z } };
+}
+
+static inline vec4s vec4_of(vec3s v, float w)
+{
+    return (vec4s){ { v.x, v.y, v.z, w } };
+}
+
+// A point through an affine transform (w = 1, no division).
+static inline vec3s mat4_point(mat4s to_from, vec3s p)
+{
+    return glms_mat4_mulv3(to_from, p, 1.0f);
+}
+
+// A direction through an affine transform (w = 0).
+static inline vec3s mat4_direction(mat4s to_from, vec3s d)
+{
+    return glms_mat4_mulv3(to_from, d, 0.0f);
+}
+
+// Luminance of linear Rec. 709.
+static inline float luminance(vec3s rgb)
+{
+    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
+}
+
+// An axis-aligned box; empty while min > max.
+struct box3 {
+    vec3s min, max;
+};
+
+struct box3 box3_empty(void);
+struct box3 box3_add_point(struct box3 box, vec3s p);
+struct box3 box3_union(struct box3 a, struct box3 b);
+struct box3 box3_transform(mat4s to_from, struct box3 box);
+bool box3_is_empty(struct box3 box);
+vec3s box3_centre(struct box3 box);
+vec3s box3_size(struct box3 box);
+
+// Any two unit vectors that make a right-handed frame (tangent, bitangent, n) with the unit vector n
+// (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent);

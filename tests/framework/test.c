@@ -1,0 +1,117 @@
+#include "framework/test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MAX_TESTS = 512, MAX_PATHS = 16 };
+
+static struct CMUnitTest tests[MAX_TESTS];
+static size_t test_count;
+static char folder[256];
+static char last_message[1024];
+
+void test_register(const char *name, test_function function)
+{
+    if (test_count == MAX_TESTS) {
+        fprintf(stderr, "more than %d tests in one program\n", MAX_TESTS);
+        abort();
+    }
+    tests[test_count++] = (struct CMUnitTest){ .name = name, .test_func = function };
+}
+
+void test_near(double a, double b, double tolerance, const char *a_text, const char *b_text,
+               const char *file, int line)
+{
+    if (fabs(a - b) <= tolerance || a == b) return;
+    print_error("%s:%d: %s = %.9g, %s = %.9g, difference %.3g > %.3g\n", file, line, a_text, a,
+                b_text, b, fabs(a - b), tolerance);
+    _fail(file, line);
+}
+
+void test_relative(double a, double b, double tolerance, const char *a_text, const char *b_text,
+                   const char *file, int line)
+{
+    test_near(a, b, tolerance * fmax(fabs(a), fabs(b)), a_text, b_text, file, line);
+}
+
+void test_check(bool condition, const char *text, const char *file, int line)
+{
+    if (condition) return;
+    print_error("%s:%d: not so: %s (last message: %s)\n", file, line, text, last_message);
+    _fail(file, line);
+}
+
+static void remember(void *user, enum log_level level, const char *message)
+{
+    (void)user;
+    if (level <= LOG_WARNING) snprintf(last_message, sizeof last_message, "%s", message);
+    if (getenv("AFTERGLOW_TEST_VERBOSE")) fprintf(stderr, "[log %d] %s\n", (int)level, message);
+}
+
+struct host *test_host(void)
+{
+    static struct host host;
+    if (!host.log) {
+        host = host_default();
+        host.log = remember;
+        host.log_up_to = getenv("AFTERGLOW_TEST_VERBOSE") ? LOG_DEBUG : LOG_WARNING;
+    }
+    return &host;
+}
+
+const char *test_last_message(void)
+{
+    return last_message;
+}
+
+void test_forget_messages(void)
+{
+    last_message[0] = 0;
+}
+
+static void remove_folder(void)
+{
+    char command[300];
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    if (system(command) != 0) fprintf(stderr, "could not remove %s\n", folder);
+}
+
+const char *test_path(const char *name)
+{
+    static char paths[MAX_PATHS][512];
+    static int next;
+    if (!folder[0]) {
+        const char *base = getenv("TMPDIR");
+        snprintf(folder, sizeof folder, "%s/afterglow-test-XXXXXX", base ? base : "/tmp");
+        if (!mkdtemp(folder)) fail_msg("cannot make %s", folder);
+        atexit(remove_folder);
+    }
+    char *path = paths[next++ % MAX_PATHS];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+const char *test_scene_path(const char *name)
+{
+    static char paths[MAX_PATHS][512];
+    static int next;
+    const char *base = getenv("AFTERGLOW_SCENES");
+    if (!base) base = AFTERGLOW_SCENES_DEFAULT;
+    char *path = paths[next++ % MAX_PATHS];
+    snprintf(path, sizeof paths[0], "%s/%s", base, name);
+    if (access(path, R_OK) != 0) {
+        print_message("skipped: no %s (AFTERGLOW_SCENES names the folder of test scenes)\n", path);
+        skip();
+    }
+    return path;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    return _cmocka_run_group_tests("tests", tests, test_count, NULL, NULL);
+}
