@@ -1,0 +1,64 @@
+// Copies of a mesh with other vertices, and its bounds.
+#include "scene/mesh_geometry.h"
+
+#include <string.h>
+
+// NULL for a NULL array; *ok turns false when memory runs out.
+static void *gather(struct arena *arena, const void *old, size_t size, const uint32_t *source,
+                    uint32_t count, bool *ok)
+{
+    if (!old || !*ok) return NULL;
+    unsigned char *array = arena_alloc(arena, count, size);
+    if (!array) {
+        *ok = false;
+        return NULL;
+    }
+    const unsigned char *from = old;
+    for (uint32_t i = 0; i < count; i++) memcpy(array + i * size, from + source[i] * size, size);
+    return array;
+}
+
+static void gather_morphs(struct arena *arena, struct mesh *mesh, const uint32_t *source,
+                          uint32_t count, bool *ok)
+{
+    const struct morph_target *old = mesh->morphs;
+    if (!old || mesh->morph_count == 0 || !*ok) return;
+    mesh->morphs = arena_alloc(arena, (size_t)mesh->morph_count, sizeof *mesh->morphs);
+    *ok = mesh->morphs != NULL;
+    for (int i = 0; *ok && i < mesh->morph_count; i++) {
+        const struct morph_target *from = &old[i];
+        struct morph_target *to = &mesh->morphs[i];
+        to->positions = gather(arena, from->positions, sizeof *from->positions, source, count, ok);
+        to->normals = gather(arena, from->normals, sizeof *from->normals, source, count, ok);
+    }
+}
+
+bool mesh_gather(struct arena *arena, struct mesh *mesh, const uint32_t *source, uint32_t count)
+{
+    bool ok = true;
+    struct mesh made = *mesh;
+    made.vertex_count = count;
+#define GATHER(array)                                                                              \
+    made.array = gather(arena, mesh->array, sizeof *mesh->array, source, count, &ok)
+    GATHER(positions);
+    GATHER(normals);
+    GATHER(tangents);
+    GATHER(uv[0]);
+    GATHER(uv[1]);
+    GATHER(colors);
+    GATHER(joints);
+    GATHER(weights);
+#undef GATHER
+    gather_morphs(arena, &made, source, count, &ok);
+    if (ok) *mesh = made;
+    return ok;
+}
+
+struct box3 mesh_bounds(const struct mesh *mesh)
+{
+    struct box3 box = box3_empty();
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        box = box3_add_point(box, mesh->positions[i]);
+    }
+    return box;
+}

@@ -1,0 +1,36 @@
+// Flat normals for meshes without (glTF 2.0, section 3.7.2.1: "client implementations MUST
+// calculate flat normals").
+#include "scene/mesh_geometry.h"
+
+// The cross product is taken in double: the squares of a triangle of 1e-20 m still count.
+static vec3s plane_normal(const vec3s p[3])
+{
+    double a[3], b[3];
+    for (int k = 0; k < 3; k++) {
+        a[k] = (double)p[1].raw[k] - (double)p[0].raw[k];
+        b[k] = (double)p[2].raw[k] - (double)p[0].raw[k];
+    }
+    double n[3] = { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                    a[0] * b[1] - a[1] * b[0] };
+    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(length > 0.0)) return vec3_of(0.0f, 1.0f, 0.0f);
+    return vec3_of((float)(n[0] / length), (float)(n[1] / length), (float)(n[2] / length));
+}
+
+bool mesh_make_normals(struct arena *arena, struct mesh *mesh)
+{
+    struct mesh made = *mesh;
+    // Given normals and tangents would no longer fit.
+    made.normals = NULL;
+    made.tangents = NULL;
+    if (!mesh_gather(arena, &made, mesh->indices, mesh->index_count)) return false;
+    made.normals = arena_alloc(arena, made.vertex_count, sizeof *made.normals);
+    made.indices = arena_alloc(arena, made.index_count, sizeof *made.indices);
+    if (!made.normals || !made.indices) return false;
+    for (uint32_t i = 0; i < made.index_count; i++) {
+        made.indices[i] = i;
+        made.normals[i] = i % 3 == 0 ? plane_normal(&made.positions[i]) : made.normals[i - 1];
+    }
+    *mesh = made;
+    return true;
+}
