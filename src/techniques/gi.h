@@ -1,0 +1,33 @@
+// A running sum of techniques from its spelling: "lpv:steps=8,dim=32+vo". It is the frame's indirect hook.
+#pragma once
+
+#include "techniques/technique.h"
+
+#define GI_MAX_TERMS 3
+
+// A parsed and checked spec: at most one technique of each role, in the order source, delta, visibility.
+struct gi_spec {
+    struct host *host;
+    int count;
+    const struct technique *technique[GI_MAX_TERMS];
+    void *options[GI_MAX_TERMS];
+};
+// "" is "none". Errors name the unknown technique or option and the nearest known one.
+bool gi_spec_parse(struct gi_spec *spec, struct host *host, const char *text);
+void gi_spec_finish(struct gi_spec *spec);  // accepts zero
+// The spec with all options written out, owned by the caller.
+char *gi_spec_print(const struct gi_spec *spec);
+
+struct gi;
+// Checks, creates (and later bakes or loads) each technique. The spec is copied.
+struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec, const struct scene_pose *pose,
+                     uint32_t width, uint32_t height);
+void gi_destroy(struct gi *gi);
+bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
+void gi_invalidate(struct gi *gi, uint32_t changes);
+struct frame_indirect gi_hook(struct gi *gi); // refers to gi
+// The debug view shown instead of colour from the next frame on; NULL: none. false: no technique has it (names those known).
+bool gi_set_debug_view(struct gi *gi, const char *name);
+// The image it draws into, none where no view is set.
+gpu_image gi_debug_image(const struct gi *gi);
+uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height);

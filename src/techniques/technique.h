@@ -1,0 +1,78 @@
+// The interface of a technique: one const struct, data first, functions second, in the order of life.
+// A frame is lit by a sum written as "source+delta+visibility", for example "lpv" or "mrt+dnrt+vo".
+#pragma once
+
+#include "core/option.h"
+#include "frame/frame.h"
+#include "gpu/gpu.h"
+#include "scene/pose.h"
+
+enum technique_role { ROLE_SOURCE, ROLE_DELTA, ROLE_VISIBILITY };
+
+enum technique_capability {
+    CAN_MOVE_GEOMETRY = 1,
+    CAN_MOVE_LIGHTS = 2,
+    NEEDS_BAKE = 4,
+    MAKES_SPECULAR = 8,
+    PUBLISHES_PROBES = 16,
+};
+
+// What changed, for `invalidate`.
+enum technique_change {
+    CHANGED_GEOMETRY = 1,
+    CHANGED_MATERIAL = 2,
+    CHANGED_LIGHT = 4,
+    CHANGED_CAMERA = 8, // a cut
+    CHANGED_OPTIONS = 16,
+};
+
+struct technique_debug_view {
+    const char *name, *help;
+};
+
+struct technique_create {
+    struct host *host;
+    struct gpu *gpu;
+    const struct scene_pose *pose;
+    const void *options;
+    uint32_t width, height;
+};
+
+struct technique_bake {
+    struct host *host;
+    const struct scene_pose *pose;
+    const void *options;
+    uint64_t seed;
+    const char *path; // the bake file to write
+    bool (*progress)(void *user, double fraction, const char *stage); // false cancels
+    void *user;
+};
+
+struct technique {
+    const char *name;  // stable, [a-z0-9]+
+    const char *title; // a few words
+    const char *paper; // one-line citation
+    enum technique_role role;
+    uint32_t capabilities; // technique_capability bits
+    uint32_t needs;        // frame_need bits
+    int bake_version;      // 0: no bake
+    struct option_table options;
+    const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
+    size_t state_size;     // of the private state, allocated zeroed by the host
+
+    // All but create, record and destroy may be NULL. `state` is the private state.
+    // Can it run here? If not, a sentence why goes to host_fail.
+    bool (*check)(const struct technique_create *how);
+    bool (*bake)(const struct technique_bake *how); // CPU only, deterministic for a seed
+    bool (*create)(void *state, const struct technique_create *how);
+    bool (*load)(void *state, const char *bake_path); // untrusted
+    bool (*resize)(void *state, uint32_t width, uint32_t height);
+    void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
+    void (*invalidate)(void *state, uint32_t changes);     // technique_change bits
+    void (*record)(void *state, struct gpu_cmd *cmd, const struct frame_view *view); // no allocation, no wait, no failure
+    void (*debug_view)(void *state, struct gpu_cmd *cmd, const struct frame_view *view, const char *name,
+                       gpu_image out); // RGBA16F of the frame's size, scaled radiance
+    void (*destroy)(void *state); // accepts any half-built state
+    // Bytes of GPU memory for these options at this size, before anything is created.
+    uint64_t (*memory_estimate)(const void *options, uint32_t width, uint32_t height);
+};
