@@ -1,0 +1,13 @@
+/// Everything: real-time global illumination on any Vulkan 1.3 device. See examples/minimal.c for a first program.
+#ifndef AFTERGLOW_H
+#define AFTERGLOW_H
+
+#include <afterglow/catalogue.h>
+#include <afterglow/context.h>
+#include <afterglow/device.h>
+#include <afterglow/image.h>
+#include <afterglow/renderer.h>
+#include <afterglow/scene.h>
+#include <afterglow/types.h>
+
+#endif

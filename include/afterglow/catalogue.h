@@ -1,0 +1,41 @@
+/// What the library offers: techniques, their options and debug views, built-in scenes.
+#ifndef AFTERGLOW_CATALOGUE_H
+#define AFTERGLOW_CATALOGUE_H
+
+#include <afterglow/types.h>
+
+AG_BEGIN
+
+struct ag_option_info {
+    const char *name;
+    const char *type; ///< "int", "float", "bool" or "choice"
+    double initial, min, max;
+    const char *unit;   ///< for choices: the names, separated by '|'
+    const char *effect; ///< "live", "invalidate", "resize", "recreate" or "rebake"
+    const char *help;
+};
+
+struct ag_technique_info {
+    const char *name, *title, *paper;
+    const char *role; ///< "source", "delta" or "visibility"
+    bool moving_geometry, moving_lights, needs_bake, makes_specular, publishes_probes;
+    int option_count, debug_view_count;
+};
+
+/// Each returns false past the end. Strings live for ever.
+AG_API bool ag_technique_get(int index, struct ag_technique_info *out);
+AG_API bool ag_technique_option_get(int technique, int index, struct ag_option_info *out);
+AG_API bool ag_technique_debug_view_get(int technique, int index, const char **name,
+                                        const char **help);
+AG_API bool ag_frame_option_get(int index, struct ag_option_info *out);
+
+struct ag_builtin_scene_info {
+    const char *name, *title; ///< name without the @
+    int option_count;
+};
+AG_API bool ag_builtin_scene_get(int index, struct ag_builtin_scene_info *out);
+AG_API bool ag_builtin_scene_option_get(int scene, int index, struct ag_option_info *out);
+
+AG_END
+
+#endif

@@ -1,0 +1,65 @@
+/// Images in memory and in files, tone mapping and error metrics.
+#ifndef AFTERGLOW_IMAGE_H
+#define AFTERGLOW_IMAGE_H
+
+#include <afterglow/context.h>
+
+AG_BEGIN
+
+/// 32-bit floats, interleaved, top row first, linear Rec. 709. Created and destroyed by the library; the pixels may be
+/// changed freely.
+struct ag_image {
+    int width, height, channels;
+    float *pixels; ///< [height][width][channels]
+};
+
+/// 1 ≤ width, height ≤ 16384, 1 ≤ channels ≤ 4; pixels are zero.
+AG_API enum ag_result ag_image_create(struct ag_context *context, int width, int height,
+                                      int channels, struct ag_image **out);
+AG_API void ag_image_destroy(struct ag_context *context, struct ag_image *image);
+
+struct ag_image_layer {
+    const char *name;
+    const struct ag_image *image;
+};
+struct ag_attribute {
+    const char *name, *value;
+};
+
+/// Multi-layer OpenEXR, 32-bit float. All layers have one size. The file appears whole or not at all.
+AG_API enum ag_result ag_image_write_exr(struct ag_context *context, const char *path,
+                                         const struct ag_image_layer *layers, int layer_count,
+                                         const struct ag_attribute *attributes, int attribute_count);
+/// 8-bit sRGB PNG of a display-linear image (see ag_image_tonemap).
+AG_API enum ag_result ag_image_write_png(struct ag_context *context, const char *path,
+                                         const struct ag_image *image);
+/// Reads .exr (layer NULL: "color") or .png (decoded to linear), by the file's extension.
+AG_API enum ag_result ag_image_read(struct ag_context *context, const char *path, const char *layer,
+                                    struct ag_image **out);
+
+/// Radiance (cd/m²) to display values 0…1: exposure for `ev` at ISO 100, then the Khronos PBR Neutral tone mapper.
+AG_API enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
+                                       float ev, struct ag_image **out);
+/// EV that puts the log-average luminance of a radiance image at middle grey.
+AG_API float ag_image_auto_exposure(const struct ag_image *radiance);
+/// Two images of equal height next to each other, `gap` black columns between.
+AG_API enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,
+                                            const struct ag_image *b, int gap,
+                                            struct ag_image **out);
+
+struct ag_metrics {
+    double mse, mae, relmse;
+    double psnr; ///< dB, for values in 0…1; infinite for equal images
+    double mean_a[3], mean_b[3];
+};
+/// Error of `a` against the reference `b`: equal sizes, finite values.
+AG_API enum ag_result ag_image_metrics(struct ag_context *context, const struct ag_image *a,
+                                       const struct ag_image *b, struct ag_metrics *out);
+/// |a − b| per pixel through a dark-to-bright scale that saturates at `full` (≤ 0: the 99th percentile).
+AG_API enum ag_result ag_image_error_map(struct ag_context *context, const struct ag_image *a,
+                                         const struct ag_image *b, float full,
+                                         struct ag_image **out);
+
+AG_END
+
+#endif
