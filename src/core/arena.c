@@ -1,0 +1,83 @@
+// Bump allocation from a list of blocks. Memory is handed out once and never reused, so that the
+// zeros of host_alloc are still there when a caller gets it.
+#include "core/arena.h"
+
+#include <stdint.h>
+#include <string.h>
+
+enum { ARENA_ALIGNMENT = 16, ARENA_BLOCK_BYTES = 64 * 1024 };
+
+struct arena_block {
+    struct arena_block *next;
+    size_t used, capacity; // bytes of data
+    unsigned char data[];
+};
+
+void arena_init(struct arena *arena, struct host *host)
+{
+    *arena = (struct arena){ .host = host };
+}
+
+void arena_finish(struct arena *arena)
+{
+    for (struct arena_block *block = arena->blocks, *next; block; block = next) {
+        next = block->next;
+        host_free(arena->host, block);
+    }
+    *arena = (struct arena){ .host = arena->host };
+}
+
+// The address is aligned, not the offset: the host's allocator may align to less than we do.
+static void *block_take(struct arena_block *block, size_t bytes)
+{
+    if (!block) return NULL;
+    uintptr_t at = (uintptr_t)(block->data + block->used);
+    size_t padding = (size_t)(-at & (ARENA_ALIGNMENT - 1));
+    size_t room = block->capacity - block->used;
+    if (padding > room || bytes > room - padding) return NULL;
+    void *taken = block->data + block->used + padding;
+    block->used += padding + bytes;
+    return taken;
+}
+
+static struct arena_block *block_create(struct host *host, size_t capacity)
+{
+    size_t bytes;
+    if (!size_add(capacity, sizeof(struct arena_block), &bytes)) bytes = SIZE_MAX; // is refused
+    struct arena_block *block = host_alloc(host, bytes, 1);
+    if (block) block->capacity = capacity;
+    return block;
+}
+
+void *arena_alloc(struct arena *arena, size_t count, size_t size)
+{
+    size_t bytes, padded;
+    if (!size_mul(count, size, &bytes) || !size_add(bytes, ARENA_ALIGNMENT, &padded)) {
+        host_fail(arena->host, FAIL_MEMORY, "cannot allocate %zu x %zu bytes: too large", count,
+                  size);
+        return NULL;
+    }
+    if (bytes == 0) bytes = 1;
+    void *taken = block_take(arena->blocks, bytes);
+    if (!taken) {
+        bool large = padded > ARENA_BLOCK_BYTES / 4;
+        struct arena_block *block =
+            block_create(arena->host, large ? padded : (size_t)ARENA_BLOCK_BYTES);
+        if (!block) return NULL;
+        // A large request has a block to itself, behind the current one, which still has room.
+        struct arena_block **link = large && arena->blocks ? &arena->blocks->next : &arena->blocks;
+        block->next = *link;
+        *link = block;
+        taken = block_take(block, bytes);
+    }
+    arena->bytes += bytes;
+    return taken;
+}
+
+char *arena_strdup(struct arena *arena, const char *text)
+{
+    size_t size = strlen(text) + 1;
+    char *copy = arena_alloc(arena, size, 1);
+    if (copy) memcpy(copy, text, size);
+    return copy;
+}

@@ -1,0 +1,408 @@
+// Options by table: defaults, text in and out, JSON, and what a change asks for.
+#include "core/option.h"
+
+#include <errno.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { VALUE_SIZE = 64, LIST_SIZE = 512, NAME_MAX_LENGTH = 63, MAX_KNOWN = 128 };
+
+// Numbers are written with a dot, whatever language the program speaks. The locale of this thread
+// only.
+struct c_locale {
+    locale_t c, before;
+};
+
+static struct c_locale c_locale_enter(void)
+{
+    struct c_locale scope = { .c = newlocale(LC_ALL_MASK, "C", (locale_t)0) };
+    if (scope.c) scope.before = uselocale(scope.c);
+    return scope;
+}
+
+static void c_locale_leave(struct c_locale scope)
+{
+    if (!scope.c) return;
+    uselocale(scope.before);
+    freelocale(scope.c);
+}
+
+static void *field_of(const struct option_row *row, void *options)
+{
+    return (char *)options + row->offset;
+}
+
+static const void *const_field_of(const struct option_row *row, const void *options)
+{
+    return (const char *)options + row->offset;
+}
+
+// The value as a number; exact for all types.
+static double value_of(const struct option_row *row, const void *options)
+{
+    const void *field = const_field_of(row, options);
+    switch (row->type) {
+    case OPTION_TYPE_float32:
+        return (double)*(const float *)field;
+    case OPTION_TYPE_bool8:
+        return *(const bool *)field ? 1.0 : 0.0;
+    case OPTION_TYPE_int32:
+    case OPTION_TYPE_choice:
+        break;
+    }
+    return (double)*(const int32_t *)field;
+}
+
+static void set_value(const struct option_row *row, void *options, double value)
+{
+    void *field = field_of(row, options);
+    switch (row->type) {
+    case OPTION_TYPE_float32:
+        *(float *)field = (float)value;
+        break;
+    case OPTION_TYPE_bool8:
+        *(bool *)field = value != 0.0;
+        break;
+    case OPTION_TYPE_int32:
+    case OPTION_TYPE_choice:
+        *(int32_t *)field = (int32_t)value;
+        break;
+    }
+}
+
+void option_defaults(const struct option_table *table, void *options)
+{
+    memset(options, 0, table->size);
+    for (size_t i = 0; i < table->count; i++)
+        set_value(&table->rows[i], options, table->rows[i].initial);
+}
+
+// ---- choices: "first|second|…"
+
+// The i-th name and its length; NULL past the last.
+static const char *choice_name(const char *choices, int32_t i, size_t *length)
+{
+    if (i < 0) return NULL;
+    for (;; i--) {
+        *length = strcspn(choices, "|");
+        if (i == 0) return choices;
+        if (!choices[*length]) return NULL;
+        choices += *length + 1;
+    }
+}
+
+static int32_t choice_index(const char *choices, const char *name)
+{
+    size_t length;
+    const char *choice;
+    for (int32_t i = 0; (choice = choice_name(choices, i, &length)); i++)
+        if (strlen(name) == length && memcmp(choice, name, length) == 0) return i;
+    return -1;
+}
+
+// ---- printing
+
+// The shortest decimal that reads back as the same float: nine digits always do.
+static void print_float(float value, char *out, size_t out_size)
+{
+    for (int digits = 1; digits <= 9; digits++) {
+        snprintf(out, out_size, "%.*g", digits, (double)value);
+        if (strtof(out, NULL) == value) return;
+    }
+}
+
+static void print_value(const struct option_row *row, double value, char *out, size_t out_size)
+{
+    size_t length = 0;
+    switch (row->type) {
+    case OPTION_TYPE_int32:
+        snprintf(out, out_size, "%.0f", value);
+        break;
+    case OPTION_TYPE_float32:
+        print_float((float)value, out, out_size);
+        break;
+    case OPTION_TYPE_bool8:
+        snprintf(out, out_size, "%s", value != 0.0 ? "true" : "false");
+        break;
+    case OPTION_TYPE_choice: {
+        const char *name = choice_name(row->unit, (int32_t)value, &length);
+        snprintf(out, out_size, "%.*s", (int)length, name ? name : "");
+        break;
+    }
+    }
+}
+
+void option_print(const struct option_row *row, const void *options, char *out, size_t out_size)
+{
+    struct c_locale scope = c_locale_enter();
+    print_value(row, value_of(row, options), out, out_size);
+    c_locale_leave(scope);
+}
+
+static json_t *value_json(const struct option_row *row, const void *options)
+{
+    double value = value_of(row, options);
+    char text[VALUE_SIZE];
+    switch (row->type) {
+    case OPTION_TYPE_int32:
+        return json_integer((json_int_t)value);
+    case OPTION_TYPE_bool8:
+        return json_boolean(value != 0.0);
+    case OPTION_TYPE_float32: // 0.1, not 0.10000000149011612
+        print_float((float)value, text, sizeof text);
+        return json_real(strtod(text, NULL));
+    case OPTION_TYPE_choice:
+        break;
+    }
+    size_t length = 0;
+    const char *name = choice_name(row->unit, (int32_t)value, &length);
+    return json_stringn(name ? name : "", length);
+}
+
+json_t *option_json(const struct option_table *table, const void *options)
+{
+    json_t *object = json_object();
+    if (!object) return NULL;
+    struct c_locale scope = c_locale_enter();
+    for (size_t i = 0; object && i < table->count; i++) {
+        const struct option_row *row = &table->rows[i];
+        if (json_object_set_new(object, row->name, value_json(row, options)) != 0) {
+            json_decref(object);
+            object = NULL;
+        }
+    }
+    c_locale_leave(scope);
+    return object;
+}
+
+// ---- parsing
+
+struct parse {
+    struct host *host;
+    const struct option_table *table;
+    const char *owner;
+    void *options; // a copy, until all is well
+};
+
+static bool fail_value(const struct parse *parse, const struct option_row *row, const char *text,
+                       const char *why)
+{
+    return host_fail(parse->host, FAIL_ARGUMENT, "cannot set %s:%s to \"%s\": %s", parse->owner,
+                     row->name, text, why);
+}
+
+static bool fail_range(const struct parse *parse, const struct option_row *row, const char *text)
+{
+    char low[VALUE_SIZE], high[VALUE_SIZE], why[3 * VALUE_SIZE];
+    print_value(row, row->min, low, sizeof low);
+    print_value(row, row->max, high, sizeof high);
+    snprintf(why, sizeof why, "it must be from %s to %s%s%.40s", low, high, row->unit[0] ? " " : "",
+             row->unit);
+    return fail_value(parse, row, text, why);
+}
+
+static bool parse_int(const struct parse *parse, const struct option_row *row, const char *text)
+{
+    char *end;
+    errno = 0;
+    long long value = strtoll(text, &end, 10);
+    if (end == text || *end) return fail_value(parse, row, text, "it must be a whole number");
+    if (errno || (double)value < row->min || (double)value > row->max)
+        return fail_range(parse, row, text);
+    set_value(row, parse->options, (double)value);
+    return true;
+}
+
+// The range is compared in single precision: 0.1 is in 0…0.1 although 0.1f > 0.1.
+static bool parse_float(const struct parse *parse, const struct option_row *row, const char *text)
+{
+    char *end;
+    float value = strtof(text, &end);
+    if (end == text || *end) return fail_value(parse, row, text, "it must be a number");
+    if (!isfinite(value) || value < (float)row->min || value > (float)row->max)
+        return fail_range(parse, row, text);
+    set_value(row, parse->options, (double)value);
+    return true;
+}
+
+static bool parse_bool(const struct parse *parse, const struct option_row *row, const char *text)
+{
+    static const char *const yes[] = { "true", "1", "on", "yes" };
+    static const char *const no[] = { "false", "0", "off", "no" };
+    for (size_t i = 0; i < sizeof yes / sizeof *yes; i++) {
+        bool is_yes = strcmp(text, yes[i]) == 0;
+        if (!is_yes && strcmp(text, no[i]) != 0) continue;
+        set_value(row, parse->options, is_yes ? 1.0 : 0.0);
+        return true;
+    }
+    return fail_value(parse, row, text, "it must be true or false");
+}
+
+static bool fail_choice(const struct parse *parse, const struct option_row *row, const char *text)
+{
+    static const size_t capacity = MAX_KNOWN;
+    char names[MAX_KNOWN][VALUE_SIZE], why[LIST_SIZE];
+    const char *known[MAX_KNOWN];
+    const char *choice;
+    size_t length, count = 0;
+    while (count < capacity && (choice = choice_name(row->unit, (int32_t)count, &length))) {
+        snprintf(names[count], VALUE_SIZE, "%.*s", (int)length, choice);
+        known[count] = names[count];
+        count++;
+    }
+    const char *nearest = nearest_name(text, known, count);
+    if (nearest)
+        snprintf(why, sizeof why, "did you mean %s? (one of %s)", nearest, row->unit);
+    else
+        snprintf(why, sizeof why, "it must be one of %s", row->unit);
+    return fail_value(parse, row, text, why);
+}
+
+static bool parse_value(const struct parse *parse, const struct option_row *row, const char *text)
+{
+    switch (row->type) {
+    case OPTION_TYPE_int32:
+        return parse_int(parse, row, text);
+    case OPTION_TYPE_float32:
+        return parse_float(parse, row, text);
+    case OPTION_TYPE_bool8:
+        return parse_bool(parse, row, text);
+    case OPTION_TYPE_choice:
+        break;
+    }
+    int32_t index = choice_index(row->unit, text);
+    if (index < 0) return fail_choice(parse, row, text);
+    set_value(row, parse->options, index);
+    return true;
+}
+
+static bool fail_unknown(const struct parse *parse, const char *key)
+{
+    const char *known[MAX_KNOWN];
+    char list[LIST_SIZE] = "";
+    size_t count = 0, used = 0;
+    for (; count < parse->table->count && count < MAX_KNOWN; count++) {
+        known[count] = parse->table->rows[count].name;
+        if (used >= sizeof list) continue;
+        int wrote =
+            snprintf(list + used, sizeof list - used, "%s%s", count ? ", " : "", known[count]);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+    const char *nearest = nearest_name(key, known, count);
+    if (nearest)
+        return host_fail(parse->host, FAIL_ARGUMENT, "unknown option %s:%s: did you mean %s?",
+                         parse->owner, key, nearest);
+    if (count == 0)
+        return host_fail(parse->host, FAIL_ARGUMENT, "unknown option %s:%s: it has no options",
+                         parse->owner, key);
+    return host_fail(parse->host, FAIL_ARGUMENT, "unknown option %s:%s: known are %s", parse->owner,
+                     key, list);
+}
+
+// One "key=value".
+static bool parse_item(const struct parse *parse, char *item)
+{
+    char *equals = strchr(item, '=');
+    if (equals) *equals = 0;
+    if (!item[0])
+        return host_fail(parse->host, FAIL_ARGUMENT,
+                         "cannot read the options of %s: a name is missing (key=value,key=value)",
+                         parse->owner);
+    for (size_t i = 0; i < parse->table->count; i++) {
+        const struct option_row *row = &parse->table->rows[i];
+        if (strcmp(row->name, item) != 0) continue;
+        if (equals && equals[1]) return parse_value(parse, row, equals + 1);
+        return host_fail(parse->host, FAIL_ARGUMENT, "cannot set %s:%s: no value is given",
+                         parse->owner, item);
+    }
+    return fail_unknown(parse, item);
+}
+
+bool option_parse(struct host *host, const struct option_table *table, const char *owner,
+                  const char *text, void *options)
+{
+    if (!text[0]) return true;
+    char *words = host_strdup(host, text);
+    void *copy = host_alloc(host, table->size, 1);
+    bool ok = words && copy;
+    if (ok) {
+        memcpy(copy, options, table->size);
+        struct parse parse = { host, table, owner, copy };
+        struct c_locale scope = c_locale_enter();
+        char *rest = words;
+        while (ok && rest) ok = parse_item(&parse, strsep(&rest, ","));
+        c_locale_leave(scope);
+    }
+    if (ok) memcpy(options, copy, table->size);
+    host_free(host, words);
+    host_free(host, copy);
+    return ok;
+}
+
+int option_difference(const struct option_table *table, const void *a, const void *b)
+{
+    int strongest = -1;
+    for (size_t i = 0; i < table->count; i++) {
+        const struct option_row *row = &table->rows[i];
+        if (value_of(row, a) != value_of(row, b) && (int)row->effect > strongest)
+            strongest = (int)row->effect;
+    }
+    return strongest;
+}
+
+// ---- the nearest name
+
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+// Edit distance with insertion, deletion, substitution and exchange of neighbours (optimal string
+// alignment, after Damerau 1964), of at most NAME_MAX_LENGTH characters each, letters of either
+// case being equal.
+static size_t edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
+{
+    size_t rows[3][NAME_MAX_LENGTH + 1];
+    size_t *before = rows[0], *last = rows[1], *now = rows[2];
+    for (size_t j = 0; j <= b_length; j++) last[j] = j;
+    for (size_t i = 1; i <= a_length; i++) {
+        now[0] = i;
+        for (size_t j = 1; j <= b_length; j++) {
+            char ca = lower(a[i - 1]), cb = lower(b[j - 1]);
+            now[j] = least(last[j - 1] + (ca != cb), 1 + least(last[j], now[j - 1]));
+            bool exchanged = i > 1 && j > 1 && ca == lower(b[j - 2]) && cb == lower(a[i - 2]);
+            if (exchanged) now[j] = least(now[j], before[j - 2] + 1);
+        }
+        size_t *recycled = before;
+        before = last;
+        last = now;
+        now = recycled;
+    }
+    return last[b_length];
+}
+
+const char *nearest_name(const char *name, const char *const *known, size_t count)
+{
+    size_t length = strlen(name);
+    if (length > NAME_MAX_LENGTH) return NULL;
+    const char *nearest = NULL;
+    size_t nearest_distance = 2 + length / 4; // one slip, and one more for each four letters
+    for (size_t i = 0; i < count; i++) {
+        size_t known_length = strlen(known[i]);
+        if (known_length > NAME_MAX_LENGTH) continue;
+        size_t distance = edit_distance(name, length, known[i], known_length);
+        // Two names that share nothing are not near, however short.
+        if (distance >= nearest_distance || distance >= known_length) continue;
+        nearest = known[i];
+        nearest_distance = distance;
+    }
+    return nearest;
+}

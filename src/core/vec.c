@@ -1,0 +1,62 @@
+// Boxes and frames.
+#include "core/vec.h"
+
+#include <float.h>
+#include <math.h>
+
+struct box3 box3_empty(void)
+{
+    return (struct box3){ vec3_of(FLT_MAX, FLT_MAX, FLT_MAX),
+                          vec3_of(-FLT_MAX, -FLT_MAX, -FLT_MAX) };
+}
+
+struct box3 box3_add_point(struct box3 box, vec3s p)
+{
+    return (struct box3){ glms_vec3_minv(box.min, p), glms_vec3_maxv(box.max, p) };
+}
+
+struct box3 box3_union(struct box3 a, struct box3 b)
+{
+    return (struct box3){ glms_vec3_minv(a.min, b.min), glms_vec3_maxv(a.max, b.max) };
+}
+
+// Arvo 1990, "Transforming Axis-Aligned Bounding Boxes": each row's extremes separately.
+struct box3 box3_transform(mat4s to_from, struct box3 box)
+{
+    if (box3_is_empty(box)) return box3_empty();
+    struct box3 out = { vec3_xyz(to_from.col[3]), vec3_xyz(to_from.col[3]) };
+    for (int column = 0; column < 3; column++) {
+        for (int row = 0; row < 3; row++) {
+            float low = to_from.raw[column][row] * box.min.raw[column];
+            float high = to_from.raw[column][row] * box.max.raw[column];
+            out.min.raw[row] += fminf(low, high);
+            out.max.raw[row] += fmaxf(low, high);
+        }
+    }
+    return out;
+}
+
+bool box3_is_empty(struct box3 box)
+{
+    return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
+}
+
+vec3s box3_centre(struct box3 box)
+{
+    return glms_vec3_scale(glms_vec3_add(box.min, box.max), 0.5f);
+}
+
+vec3s box3_size(struct box3 box)
+{
+    if (box3_is_empty(box)) return vec3_of(0.0f, 0.0f, 0.0f);
+    return glms_vec3_sub(box.max, box.min);
+}
+
+void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent)
+{
+    float sign = copysignf(1.0f, n.z);
+    float a = -1.0f / (sign + n.z);
+    float b = n.x * n.y * a;
+    *tangent = vec3_of(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    *bitangent = vec3_of(b, sign + n.y * n.y * a, -n.y);
+}
