@@ -18,6 +18,7 @@ struct scene_pose {
     size_t *morph_offset;           // [instance_count]
     struct deformed_mesh *deformed; // [instance_count]
     struct box3 bounds;             // of all instances, world space; empty for an empty scene
+    struct pose_workspace *workspace; // owns all of the above; pose.c's own
 };
 
 // `animation`: index, or -1 for the rest pose. Time wraps around the animation's duration. pose_finish accepts zero.

@@ -125,9 +125,16 @@ struct animation {
     int channel_count;
 };
 
+// Room in the scene's arrays, kept by scene_add_*. Whoever sets an array itself may leave its room at 0:
+// the array is then copied before anything is appended.
+struct scene_room {
+    int images, materials, meshes, nodes, instances, lights, cameras;
+};
+
 struct scene {
     struct host *host;
     struct arena arena;
+    struct scene_room room;
     const char *name; // file name or "@builtin:…"
     struct scene_image *images;       int image_count;
     struct material *materials;       int material_count;

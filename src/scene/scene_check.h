@@ -1,0 +1,47 @@
+// What scene_add_* refuses: numbers that are not finite, indices that lead nowhere. Shared by the files that
+// fill a scene.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <math.h>
+
+static inline bool vec2_is_finite(vec2s v)
+{
+    return isfinite(v.x) && isfinite(v.y);
+}
+
+static inline bool vec3_is_finite(vec3s v)
+{
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static inline bool vec4_is_finite(vec4s v)
+{
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z) && isfinite(v.w);
+}
+
+static inline bool floats_are_finite(const float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(values[i])) return false;
+    }
+    return true;
+}
+
+static inline bool index_is_valid(int index, int count)
+{
+    return index >= 0 && index < count;
+}
+
+// A name for messages and for keeping: never NULL.
+static inline const char *name_or_empty(const char *name)
+{
+    return name ? name : "";
+}
+
+// A copy of count × size bytes in the scene's arena; NULL when out of memory.
+void *scene_copy(struct scene *scene, const void *source, size_t count, size_t size);
+
+// Makes room for one more element in an array of `count`. False when out of memory or full; then nothing changed.
+bool scene_reserve(struct scene *scene, void **array, int count, int *room, size_t size);

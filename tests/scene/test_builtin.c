@@ -1,0 +1,287 @@
+// Laws that every built-in scene keeps, and the published facts of single ones.
+#include "framework/test.h"
+
+#include "scene/builtin.h"
+#include "scene/pose.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct scene *load(const char *spec)
+{
+    struct scene *scene = builtin_load(test_host(), spec);
+    CHECK(scene);
+    return scene;
+}
+
+static vec3s corner_of(const struct mesh *mesh, uint32_t index)
+{
+    return mesh->positions[mesh->indices[index]];
+}
+
+// Twice the area along the normal of triangle t.
+static vec3s area_normal(const struct mesh *mesh, uint32_t t)
+{
+    vec3s a = corner_of(mesh, 3 * t), b = corner_of(mesh, 3 * t + 1),
+          c = corner_of(mesh, 3 * t + 2);
+    return glms_vec3_cross(glms_vec3_sub(b, a), glms_vec3_sub(c, a));
+}
+
+static double mesh_area(const struct mesh *mesh)
+{
+    double area = 0;
+    for (uint32_t t = 0; t < mesh->index_count / 3; t++) {
+        area += 0.5 * (double)glms_vec3_norm(area_normal(mesh, t));
+    }
+    return area;
+}
+
+static const struct mesh *mesh_named(const struct scene *scene, const char *name)
+{
+    for (int i = 0; i < scene->mesh_count; i++) {
+        if (strcmp(scene->meshes[i].name, name) == 0) return &scene->meshes[i];
+    }
+    fail_msg("no mesh \"%s\" in %s", name, scene->name);
+    return NULL;
+}
+
+static void check_triangles(const struct mesh *mesh)
+{
+    vec3s size = box3_size(mesh->bounds);
+    float extent = fmaxf(size.x, fmaxf(size.y, size.z));
+    for (uint32_t t = 0; t < mesh->index_count / 3; t++) {
+        vec3s normal = area_normal(mesh, t);
+        float doubled_area = glms_vec3_norm(normal);
+        if (doubled_area <= 1e-9f * extent * extent) {
+            fail_msg("triangle %u of \"%s\" has no area", t, mesh->name);
+        }
+        for (uint32_t k = 0; k < 3; k++) {
+            vec3s vertex_normal = mesh->normals[mesh->indices[3 * t + k]];
+            if (glms_vec3_dot(normal, vertex_normal) <= 0.2f * doubled_area) {
+                fail_msg("triangle %u of \"%s\" winds against its normal", t, mesh->name);
+            }
+        }
+    }
+}
+
+static void check_mesh(const struct scene *scene, const struct mesh *mesh)
+{
+    CHECK(mesh->index_count > 0 && mesh->index_count % 3 == 0);
+    CHECK(mesh->material >= 0 && mesh->material < scene->material_count);
+    for (uint32_t i = 0; i < mesh->index_count; i++) CHECK(mesh->indices[i] < mesh->vertex_count);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        CHECK_NEAR(glms_vec3_norm(mesh->normals[v]), 1, 1e-4);
+        if (!mesh->tangents) continue;
+        vec3s tangent = vec3_xyz(mesh->tangents[v]);
+        CHECK_NEAR(glms_vec3_norm(tangent), 1, 1e-3);
+        CHECK_NEAR(fabsf(mesh->tangents[v].w), 1, 0);
+    }
+    check_triangles(mesh);
+}
+
+static void check_scene(const struct scene *scene)
+{
+    CHECK(scene->mesh_count > 0 && scene->instance_count == scene->mesh_count);
+    for (int i = 0; i < scene->mesh_count; i++) check_mesh(scene, &scene->meshes[i]);
+    CHECK(scene->camera_count >= 1);
+    CHECK_STRING(scene->cameras[0].name, "main");
+    CHECK(scene->light_count > 0 || scene_has_emission(scene));
+}
+
+TEST(every_builtin_is_well_formed)
+{
+    for (int i = 0; builtin_scenes[i]; i++) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "@%s", builtin_scenes[i]->name);
+        struct scene *scene = load(spec);
+        CHECK_STRING(scene->name, spec);
+        check_scene(scene);
+        scene_destroy(scene);
+    }
+}
+
+TEST(every_builtin_is_the_same_for_the_same_options)
+{
+    for (int i = 0; builtin_scenes[i]; i++) {
+        struct scene *a = load(builtin_scenes[i]->name), *b = load(builtin_scenes[i]->name);
+        CHECK(a->content_hash == b->content_hash && a->content_hash != 0);
+        CHECK(a->mesh_count == b->mesh_count && a->image_count == b->image_count);
+        for (int m = 0; m < a->mesh_count; m++) {
+            const struct mesh *p = &a->meshes[m], *q = &b->meshes[m];
+            CHECK(p->vertex_count == q->vertex_count && p->index_count == q->index_count);
+            CHECK(memcmp(p->positions, q->positions, p->vertex_count * sizeof(vec3s)) == 0);
+            CHECK(memcmp(p->normals, q->normals, p->vertex_count * sizeof(vec3s)) == 0);
+            CHECK(memcmp(p->indices, q->indices, p->index_count * sizeof(uint32_t)) == 0);
+        }
+        scene_destroy(a);
+        scene_destroy(b);
+    }
+}
+
+// "name=value" of an option at one of its ends.
+static void write_end(const struct option_row *row, int end, char *out, size_t size)
+{
+    double value = end ? row->max : row->min;
+    if (row->type == OPTION_TYPE_choice) {
+        const char *choice = row->unit;
+        for (int skip = (int)value; skip > 0; skip--) choice = strchr(choice, '|') + 1;
+        snprintf(out, size, "%s=%.*s", row->name, (int)strcspn(choice, "|"), choice);
+    } else {
+        snprintf(out, size, "%s=%.9g", row->name, value);
+    }
+}
+
+TEST(every_option_builds_at_both_its_ends)
+{
+    for (int i = 0; builtin_scenes[i]; i++) {
+        const struct option_table *table = &builtin_scenes[i]->options;
+        for (size_t r = 0; r < 2 * table->count; r++) {
+            char option[64], spec[128];
+            write_end(&table->rows[r / 2], (int)(r % 2), option, sizeof option);
+            snprintf(spec, sizeof spec, "@%s:%s", builtin_scenes[i]->name, option);
+            struct scene *scene = load(spec);
+            for (int m = 0; m < scene->mesh_count; m++) check_mesh(scene, &scene->meshes[m]);
+            scene_destroy(scene);
+        }
+    }
+}
+
+TEST(an_unknown_name_is_refused_and_the_nearest_named)
+{
+    CHECK(!builtin_load(test_host(), "@cornel"));
+    CHECK(strstr(test_last_message(), "@cornell"));
+    CHECK(!builtin_load(test_host(), "@cornell:ligth=point"));
+    CHECK(strstr(test_last_message(), "light"));
+    CHECK(!builtin_load(test_host(), "@cornell:light=candle"));
+    CHECK(!builtin_load(test_host(), "@"));
+    CHECK(!builtin_load(test_host(), "@a_name_that_is_very_much_longer_than_any_that_there_is"));
+}
+
+// A directed edge between welded points.
+struct edge {
+    vec3s from, to;
+};
+
+static int compare_points(vec3s a, vec3s b)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        if (a.raw[axis] != b.raw[axis]) return a.raw[axis] < b.raw[axis] ? -1 : 1;
+    }
+    return 0;
+}
+
+static int compare_edges(const void *a, const void *b)
+{
+    const struct edge *p = a, *q = b;
+    int order = compare_points(p->from, q->from);
+    return order ? order : compare_points(p->to, q->to);
+}
+
+// How many edges of the meshes first…last run one way more often than the other: 0 for closed
+// surfaces.
+static size_t count_open_edges(const struct scene *scene, int first, int last)
+{
+    size_t count = 0, open = 0;
+    for (int m = first; m <= last; m++) count += scene->meshes[m].index_count;
+    struct edge *edges = malloc(2 * count * sizeof *edges), *reversed = edges + count;
+    CHECK(edges);
+    size_t e = 0;
+    for (int m = first; m <= last; m++) {
+        const struct mesh *mesh = &scene->meshes[m];
+        for (uint32_t i = 0; i < mesh->index_count; i++) {
+            uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+            edges[e] = (struct edge){ corner_of(mesh, i), corner_of(mesh, next) };
+            reversed[e] = (struct edge){ edges[e].to, edges[e].from };
+            e++;
+        }
+    }
+    qsort(edges, count, sizeof *edges, compare_edges);
+    qsort(reversed, count, sizeof *reversed, compare_edges);
+    for (size_t a = 0, b = 0; a < count || b < count;) {
+        int order = a == count ? 1 : b == count ? -1 : compare_edges(&edges[a], &reversed[b]);
+        open += order != 0;
+        a += order <= 0;
+        b += order >= 0;
+    }
+    free(edges);
+    return open;
+}
+
+TEST(cornell_has_the_published_dimensions)
+{
+    struct scene *scene = load("@cornell");
+    const struct mesh *floor = mesh_named(scene, "floor"), *back = mesh_named(scene, "back wall");
+    struct box3 ceiling = mesh_named(scene, "ceiling")->bounds;
+    CHECK_NEAR(box3_size(ceiling).x, 5.56, 1e-5);
+    CHECK_NEAR(box3_size(ceiling).z, 5.592, 1e-5);
+    CHECK_NEAR(ceiling.min.y, 5.488, 1e-5);
+    // Trapezia: the floor is 552.8 wide in front and 549.6 at the back, the back wall 549.6 and
+    // 556.
+    CHECK_RELATIVE(mesh_area(floor), 0.5 * (5.528 + 5.496) * 5.592, 1e-6);
+    CHECK_RELATIVE(mesh_area(back), 0.5 * (5.496 + 5.56) * 5.488, 1e-6);
+    CHECK_RELATIVE(mesh_area(mesh_named(scene, "green wall")), 5.592 * 5.488, 1e-6);
+    CHECK_RELATIVE(mesh_area(mesh_named(scene, "light")), 1.30 * 1.05, 1e-6);
+    CHECK_RELATIVE(mesh_area(mesh_named(scene, "ceiling")), 5.56 * 5.592 - 1.30 * 1.05, 1e-6);
+    CHECK_NEAR(mesh_named(scene, "tall block")->bounds.max.y, 3.30, 1e-6);
+    CHECK_NEAR(mesh_named(scene, "short block")->bounds.max.y, 1.65, 1e-6);
+    scene_destroy(scene);
+}
+
+TEST(cornell_opens_towards_plus_z_with_red_to_the_left)
+{
+    struct scene *scene = load("@cornell");
+    struct scene_pose pose;
+    CHECK(pose_init(&pose, scene, -1, 0));
+    struct world_camera camera = pose_camera(&pose, 0);
+    CHECK_NEAR(camera.eye.z, 8.0 + 2.796, 1e-5);
+    CHECK_NEAR(camera.forward.z, -1, 1e-6);
+    CHECK_NEAR(camera.vertical_fov_rad, 39.3077 * GLM_PI / 180, 1e-5);
+    CHECK(mesh_named(scene, "red wall")->bounds.max.x < -2.7f);
+    CHECK(mesh_named(scene, "green wall")->bounds.min.x > 2.7f);
+    CHECK(mesh_named(scene, "back wall")->bounds.max.z < -2.7f);
+    // The surfaces look inwards.
+    CHECK(mesh_named(scene, "floor")->normals[0].y > 0.99f);
+    CHECK(mesh_named(scene, "ceiling")->normals[0].y < -0.99f);
+    CHECK(mesh_named(scene, "light")->normals[0].y < -0.99f);
+    CHECK(mesh_named(scene, "back wall")->normals[0].z > 0.99f);
+    CHECK(mesh_named(scene, "red wall")->normals[0].x > 0.99f);
+    CHECK(mesh_named(scene, "green wall")->normals[0].x < -0.99f);
+    pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+TEST(cornell_point_light_has_the_power_of_the_quad)
+{
+    struct scene *quad = load("@cornell:power=2"), *point = load("@cornell:light=point,power=2");
+    CHECK(quad->light_count == 0 && scene_has_emission(quad));
+    CHECK(point->light_count == 1 && !scene_has_emission(point));
+    const struct mesh *light = mesh_named(quad, "light");
+    for (int c = 0; c < 3; c++) {
+        double quad_lumens =
+            GLM_PI * mesh_area(light) * (double)quad->materials[light->material].emissive.raw[c];
+        CHECK_RELATIVE(4 * GLM_PI * (double)point->lights[0].intensity.raw[c], quad_lumens, 1e-5);
+    }
+    // Without the light the ceiling is whole.
+    CHECK_RELATIVE(mesh_area(mesh_named(point, "ceiling")), 5.56 * 5.592, 1e-6);
+    scene_destroy(quad);
+    scene_destroy(point);
+}
+
+TEST(cornell_is_closed_where_it_should_be)
+{
+    struct scene *scene = load("@cornell:walls=0.2");
+    int blocks = 0;
+    for (int m = 0; m < scene->mesh_count; m++) {
+        if (!strstr(scene->meshes[m].name, "block")) continue;
+        CHECK(count_open_edges(scene, m, m) == 0);
+        blocks++;
+    }
+    CHECK(blocks == 2);
+    CHECK(count_open_edges(scene, 0, scene->mesh_count - 1) == 0);
+    scene_destroy(scene);
+    scene = load("@cornell:walls=0,blocks=0"); // open at the front only
+    CHECK(count_open_edges(scene, 0, scene->mesh_count - 1) == 8);
+    scene_destroy(scene);
+}
