@@ -1,0 +1,109 @@
+// Random numbers from their arguments alone, and two low-discrepancy sequences in fixed point.
+#include "core/rng.h"
+
+static const uint64_t PCG_MULTIPLIER = UINT64_C(6364136223846793005);
+static const float UNIT_24 =
+    0x1p-24f; // 24 bits are what a float in [0, 1) holds without rounding up to 1
+
+static float unit_float(uint32_t bits)
+{
+    return (float)(bits >> 8) * UNIT_24;
+}
+
+// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): every input bit reaches every output bit.
+static uint64_t mix(uint64_t x)
+{
+    x ^= x >> 30;
+    x *= UINT64_C(0xbf58476d1ce4e5b9);
+    x ^= x >> 27;
+    x *= UINT64_C(0x94d049bb133111eb);
+    return x ^ (x >> 31);
+}
+
+struct rng rng_for(uint32_t pixel, uint32_t sample, uint32_t dimension)
+{
+    static const uint64_t golden = UINT64_C(0x9e3779b97f4a7c15);
+    uint64_t key = mix(((uint64_t)pixel << 32 | sample) + golden);
+    key = mix(key ^ mix(dimension + golden * 2));
+    struct rng rng = { .state = key, .increment = mix(key + golden) | 1 };
+    rng_u32(&rng);
+    return rng;
+}
+
+uint32_t rng_u32(struct rng *rng)
+{
+    uint64_t old = rng->state;
+    rng->state = old * PCG_MULTIPLIER + rng->increment;
+    uint32_t shifted = (uint32_t)(((old >> 18) ^ old) >> 27); // PCG-XSH-RR
+    uint32_t turn = (uint32_t)(old >> 59);
+    return (shifted >> turn) | (shifted << (-turn & 31));
+}
+
+float rng_float(struct rng *rng)
+{
+    return unit_float(rng_u32(rng));
+}
+
+vec2s rng_vec2(struct rng *rng)
+{
+    float x = rng_float(rng); // named, since the order of evaluation in a list is not fixed
+    float y = rng_float(rng);
+    return (vec2s){ { x, y } };
+}
+
+uint32_t pcg_hash(uint32_t word)
+{
+    uint32_t state = word * 747796405u + 2891336453u;
+    uint32_t mixed = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+    return (mixed >> 22) ^ mixed;
+}
+
+// frac(½ + i/g) and frac(½ + i/g²), g the plastic number (g³ = g + 1), in units of 2⁻³²: wrapping
+// is exact for every i, where floats would run out of digits.
+vec2s r2_sequence(uint32_t i)
+{
+    static const uint32_t half = 0x80000000u, inverse_g = 3242174889u, inverse_g2 = 2447445414u;
+    return (vec2s){ { unit_float(half + i * inverse_g), unit_float(half + i * inverse_g2) } };
+}
+
+static uint32_t reverse_bits(uint32_t x)
+{
+    x = x << 16 | x >> 16;
+    x = (x & 0x00ff00ffu) << 8 | (x & 0xff00ff00u) >> 8;
+    x = (x & 0x0f0f0f0fu) << 4 | (x & 0xf0f0f0f0u) >> 4;
+    x = (x & 0x33333333u) << 2 | (x & 0xccccccccu) >> 2;
+    return (x & 0x55555555u) << 1 | (x & 0xaaaaaaaau) >> 1;
+}
+
+// Second dimension of Sobol 1967: direction numbers v₁ = ½, v_{k+1} = v_k ⊕ v_k/2 (primitive
+// polynomial x + 1).
+static uint32_t sobol_second(uint32_t i)
+{
+    uint32_t x = 0;
+    for (uint32_t v = 0x80000000u; i; i >>= 1, v ^= v >> 1)
+        if (i & 1) x ^= v;
+    return x;
+}
+
+// Owen scrambling by a hash in which each bit depends on the bits below it only (Laine & Karras
+// 2011, with the constants of Burley 2020, "Practical Hash-based Owen Scrambling"), applied to the
+// reversed word.
+static uint32_t owen_scramble(uint32_t x, uint32_t seed)
+{
+    x = reverse_bits(x) + seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    x ^= x * 0x8d22f6e6u;
+    return reverse_bits(x);
+}
+
+vec2s sobol_2d(uint32_t i, uint32_t seed)
+{
+    uint32_t x = reverse_bits(i), y = sobol_second(i);
+    if (seed) {
+        x = owen_scramble(x, pcg_hash(seed));
+        y = owen_scramble(y, pcg_hash(seed ^ 0x9e3779b9u));
+    }
+    return (vec2s){ { unit_float(x), unit_float(y) } };
+}

@@ -1,0 +1,1 @@
+ag_test(core/sh USES core)
