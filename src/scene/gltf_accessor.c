@@ -270,6 +270,7 @@ float *gltf_floats_of(struct gltf *gltf, int index, int width)
         return NULL;
     }
     float *out = import_alloc(gltf->import, accessor.count, (size_t)width * sizeof *out);
+    if (!out) gltf->failed = true;
     if (!out) return NULL;
     if (data) convert_floats(&accessor, data, stride, NULL, accessor.count, out);
     if (!apply_sparse(gltf, &accessor, out)) return NULL;
@@ -294,6 +295,7 @@ uint32_t *gltf_integers_of(struct gltf *gltf, int index, int width)
         return NULL;
     }
     uint32_t *out = import_alloc(gltf->import, accessor.count, (size_t)width * sizeof *out);
+    if (!out) gltf->failed = true;
     for (size_t i = 0; out && i < accessor.count * (size_t)width; i++) {
         const uint8_t *from = data + i / (size_t)width * stride + i % (size_t)width * size;
         out[i] = component_as_integer(from, accessor.component);

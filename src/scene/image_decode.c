@@ -28,10 +28,9 @@ static void *limited_realloc(void *old, size_t bytes)
 #define STBI_NO_LINEAR
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
-#pragma GCC diagnostic push
+// For the rest of this file: the compiler looks for unused functions at its end.
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_image.h>
-#pragma GCC diagnostic pop
 
 // Largest block per pixel: 16-bit RGBA beside its filter bytes, twice for a buffer that grows by
 // doubling.
