@@ -129,9 +129,6 @@ static bool mark_scene_roots(struct gltf *gltf, const uint32_t *parent)
     {
         int node = gltf_index_value(scene, "nodes", value, gltf->nodes);
         if (node < 0) return false;
-        if (parent[node] != UINT32_MAX) {
-            return gltf_wrong(scene, "its node %d is not a root", node);
-        }
         gltf->in_scene[node] = 1;
     }
     return !gltf->failed;
@@ -153,7 +150,7 @@ static uint32_t number_nodes(struct gltf *gltf, const uint32_t *parent, uint32_t
             json_t *children = json_object_get(json_array_get(gltf->nodes, node), "children");
             for (size_t k = json_array_size(children); k-- > 0;) {
                 json_int_t child = json_integer_value(json_array_get(children, k));
-                gltf->in_scene[child] = gltf->in_scene[node];
+                gltf->in_scene[child] |= gltf->in_scene[node];
                 stack[depth++] = (uint32_t)child;
             }
         }

@@ -197,7 +197,6 @@ static bool check_compression(struct primitive *p)
 static bool load_vertices(struct primitive *p, int position_accessor)
 {
     struct mesh *mesh = p->mesh;
-    mesh->vertex_count = (uint32_t)gltf_accessor_count(p->gltf, position_accessor);
     mesh->positions = (vec3s *)gltf_floats_of(p->gltf, position_accessor, 3);
     if (!mesh->positions) return false;
     mesh->normals = (vec3s *)floats(p, p->attributes, "NORMAL", 3);
@@ -233,8 +232,12 @@ static bool load_primitive(struct gltf *gltf, const char *name, json_t *primitiv
     if (mesh.material < 0) mesh.material = gltf_material_default(gltf);
     if (mesh.material < 0 || !check_compression(&p)) return false;
     note_attributes(&p);
-    if (!load_vertices(&p, position) || !load_indices(&p, mode)) return false;
+    uint32_t low, high;
+    mesh.vertex_count = (uint32_t)gltf_accessor_count(gltf, position);
+    if (gltf->failed || !load_indices(&p, mode)) return false;
     if (mesh.index_count < 3) return true;
+    if (!import_check_indices(gltf->import, &mesh, &low, &high)) return false;
+    if (!load_vertices(&p, position)) return false;
     if (!import_finish_mesh(gltf->import, &mesh)) return false;
     scene->meshes[scene->mesh_count++] = mesh;
     *added = true;

@@ -1,3 +1,4 @@
+// The one file that contains stb_image.
 #include "scene/image_decode.h"
 
 #include "scene/scene.h"
@@ -30,6 +31,7 @@ static void *limited_realloc(void *old, size_t bytes)
 #define STB_IMAGE_IMPLEMENTATION
 // For the rest of this file: the compiler looks for unused functions at its end.
 #pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <stb_image.h>
 
 // Largest block per pixel: 16-bit RGBA beside its filter bytes, twice for a buffer that grows by

@@ -1,21 +1,17 @@
 // Scene files.
 //
-// glTF 2.0 is read here, straight from its JSON and accessors (gltf_*.c); OBJ, PLY, FBX and X go
-// through Assimp's C API (assimp_*.c). Assimp would read glTF too, but loses what this library
-// measures light with, and a second reading of the JSON could not be matched to its result
-// reliably:
-// - node order, meshes and instances are rebuilt (one node per primitive, bones and skins merged by
-// *name*, and glTF
-//   names need be neither present nor unique), so that lights, cameras, skins and animation
-//   channels of the JSON have no index to refer to;
-// - animation is turned into linear keys of whole transforms: step and cubic interpolation and the
-// times of the
-//   single channels are gone; weights are tied to mesh names;
-// - light intensities come without the file's units and ranges, emissive strength and texture
-// transforms only partly;
-// - it trusts what we must not: index values, node loops, lengths of sparse accessors.
-// Reading accessors with our own bounds checks is less code than the repair would be, and all of it
-// can be tested with hostile files.
+// glTF 2.0 is read here, from its JSON and accessors (gltf_*.c); OBJ, PLY, FBX and X go through
+// Assimp's C API (import_assimp*.c). Assimp reads glTF too, but what its scene structure cannot hold
+// is what this library needs, and a second reading of the JSON could not be matched to its result:
+//
+// - its bones and animation channels refer to nodes by name, which glTF requires to be neither
+//   present nor unique, and its order of nodes and meshes is its own;
+// - its animation keys are linear: step and cubic interpolation are lost;
+// - its lights have no range, and no way to tell candela from lux;
+// - it trusts its input more than we may: index values, node loops, sparse accessors.
+//
+// Accessors with our own bounds checks are less code than that repair, and all of it is tested with
+// hostile files.
 #include "scene/import.h"
 
 #include "scene/import_context.h"
@@ -177,12 +173,6 @@ static bool dispatch(struct import *import, const struct file_bytes *bytes)
     file_extension(import->path, extension);
     if (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0) {
         return import_gltf(import, bytes);
-    }
-    static const char *const through_assimp[] = { "obj", "ply", "fbx", "x" };
-    for (size_t i = 0; i < sizeof through_assimp / sizeof *through_assimp; i++) {
-        if (strcmp(extension, through_assimp[i]) == 0) {
-            return import_assimp(import, bytes, extension);
-        }
     }
     return host_fail(import->host, FAIL_UNSUPPORTED,
                      "%s: unknown kind of scene file; glTF, GLB, OBJ, PLY, FBX and X are read",

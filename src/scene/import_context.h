@@ -45,6 +45,10 @@ const char *import_name(struct import *import, const char *text, const char *fal
 bool import_gltf(struct import *import, const struct file_bytes *bytes);
 bool import_assimp(struct import *import, const struct file_bytes *bytes, const char *extension);
 
+// The least and greatest index; false where one lies beyond vertex_count. The mesh has triangles.
+bool import_check_indices(struct import *import, const struct mesh *mesh, uint32_t *low,
+                          uint32_t *high);
+
 // Bounds, flat normals where there are none, tangents where the material's normal map asks for them; drops the
 // vertices that no triangle uses and tangents that nobody needs. Checks that every attribute is finite.
 bool import_finish_mesh(struct import *import, struct mesh *mesh);

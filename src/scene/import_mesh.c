@@ -13,7 +13,7 @@ static size_t vertex_bytes(const struct mesh *mesh)
            sizeof(uint32_t) + (size_t)mesh->morph_count * 2 * sizeof(vec3s);
 }
 
-static bool check_indices(struct import *import, const struct mesh *mesh, uint32_t *low,
+bool import_check_indices(struct import *import, const struct mesh *mesh, uint32_t *low,
                           uint32_t *high)
 {
     *low = UINT32_MAX;
@@ -35,7 +35,7 @@ static bool check_indices(struct import *import, const struct mesh *mesh, uint32
 static bool drop_unused_vertices(struct import *import, struct mesh *mesh)
 {
     uint32_t low, high, used = 0;
-    if (!check_indices(import, mesh, &low, &high)) return false;
+    if (!import_check_indices(import, mesh, &low, &high)) return false;
     uint32_t range = high - low + 1;
     if (!import_charge(import, range, sizeof(uint32_t))) return false;
     uint32_t *number = host_alloc(import->host, range, sizeof *number);

@@ -1,1 +1,1 @@
-
+ag_test(scene/import_scenes USES scene)
