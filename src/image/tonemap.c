@@ -1,0 +1,103 @@
+// Exposure, the Khronos PBR Neutral tone mapper (Khronos 2024, "PBR Neutral Tone Mapper
+// Specification") and the automatic choice of exposure. tonemap.glsl does the first two on the GPU;
+// keep both the same.
+#include "image/tonemap.h"
+
+#include <math.h>
+
+static const float FRESNEL_OFFSET = 0.04f;    // what a dielectric reflects; it is taken out again
+static const float COMPRESSION_START = 0.76f; // 0.8 − 0.04: up to here nothing is compressed
+static const float DESATURATION = 0.15f;      // how fast compressed colours go to white
+static const float TOE_END = 0.08f;           // below it the offset shrinks so that 0 stays 0
+static const float EXPOSED_MAX = 1e30f;       // stands for infinity, so that no product overflows
+
+static const double MIDDLE_GREY = 0.18;
+static const double DARK_SHARE = 0.05; // a pixel counts as at least this share of the lit mean
+static const double EV_LIMIT = 100.0;  // exposure_scale stays a normal float within it
+
+float exposure_scale(float ev)
+{
+    return exp2f(-ev) / 1.2f;
+}
+
+// Negative values and NaN become 0.
+static float tonemap_clean(float value)
+{
+    return value > 0.0f ? fminf(value, EXPOSED_MAX) : 0.0f;
+}
+
+vec3s tonemap_pbr_neutral(vec3s exposed)
+{
+    vec3s c = vec3_of(tonemap_clean(exposed.x), tonemap_clean(exposed.y), tonemap_clean(exposed.z));
+    float lowest = fminf(c.x, fminf(c.y, c.z));
+    // x − 6.25 x² reaches 0.04 with slope 0 at 0.08.
+    float offset = lowest < TOE_END ? lowest - 6.25f * lowest * lowest : FRESNEL_OFFSET;
+    c = glms_vec3_subs(c, offset);
+    float peak = fmaxf(c.x, fmaxf(c.y, c.z));
+    if (peak < COMPRESSION_START) return c;
+
+    float room = 1.0f - COMPRESSION_START;
+    float new_peak = 1.0f - room * room / (peak + room - COMPRESSION_START);
+    c = glms_vec3_scale(c, new_peak / peak);
+    float to_white = 1.0f - 1.0f / (DESATURATION * (peak - new_peak) + 1.0f);
+    return glms_vec3_add(glms_vec3_scale(c, 1.0f - to_white),
+                         vec3_of(new_peak * to_white, new_peak * to_white, new_peak * to_white));
+}
+
+bool image_tonemap(struct image *out, struct host *host, const struct image *in, float ev)
+{
+    *out = (struct image){ 0 };
+    if (in->channels < 3)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot tonemap an image of %d channels: 3 or 4 are needed", in->channels);
+    if (!isfinite(ev))
+        return host_fail(host, FAIL_ARGUMENT, "cannot tonemap at EV %g: not a finite value",
+                         (double)ev);
+    if (!image_init(out, host, in->width, in->height, 3)) return false;
+    float scale = exposure_scale(ev);
+    for (int y = 0; y < in->height; y++) {
+        for (int x = 0; x < in->width; x++) {
+            const float *l = image_at(in, x, y);
+            vec3s shown = tonemap_pbr_neutral(glms_vec3_scale(vec3_of(l[0], l[1], l[2]), scale));
+            float *o = image_at(out, x, y);
+            o[0] = shown.x, o[1] = shown.y, o[2] = shown.z;
+        }
+    }
+    return true;
+}
+
+// Luminance of a pixel, 0 where it is negative, NaN or infinite.
+static double lit_luminance(const struct image *image, int x, int y)
+{
+    const float *p = image_at(image, x, y);
+    float value = image->channels >= 3 ? luminance(vec3_of(p[0], p[1], p[2])) : p[0];
+    return value > 0.0f && isfinite(value) ? (double)value : 0.0;
+}
+
+// exp of the mean log luminance of the lit pixels; 0 when none is lit.
+static double lit_mean(const struct image *image)
+{
+    double sum = 0.0;
+    size_t lit = 0;
+    for (int y = 0; y < image->height; y++) {
+        for (int x = 0; x < image->width; x++) {
+            double value = lit_luminance(image, x, y);
+            if (value > 0.0) sum += log2(value), lit++;
+        }
+    }
+    return lit ? exp2(sum / (double)lit) : 0.0;
+}
+
+float auto_exposure(const struct image *radiance)
+{
+    double floor_value = DARK_SHARE * lit_mean(radiance);
+    if (!(floor_value > 0.0)) return 0.0f;
+    double sum = 0.0;
+    for (int y = 0; y < radiance->height; y++)
+        for (int x = 0; x < radiance->width; x++)
+            sum += log2(fmax(lit_luminance(radiance, x, y), floor_value));
+    double mean_log2 = sum / ((double)radiance->width * (double)radiance->height);
+    // exposure_scale(EV) · mean = middle grey, solved for EV.
+    double ev = mean_log2 - log2(1.2 * MIDDLE_GREY);
+    return (float)fmax(-EV_LIMIT, fmin(EV_LIMIT, ev));
+}

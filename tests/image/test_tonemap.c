@@ -1,0 +1,224 @@
+#include "pictures.h"
+
+#include "image/tonemap.h"
+
+#include <math.h>
+#include <string.h>
+
+static const float START = 0.76f; // where compression starts, after the offset
+
+static float max3(vec3s v)
+{
+    return fmaxf(v.x, fmaxf(v.y, v.z));
+}
+
+static vec3s grey(float v)
+{
+    return vec3_of(v, v, v);
+}
+
+TEST(exposure_halves_with_each_stop)
+{
+    CHECK_RELATIVE((double)exposure_scale(0.0f), 1 / 1.2, 1e-6);
+    for (int ev = -20; ev <= 20; ev++)
+        CHECK_RELATIVE((double)exposure_scale((float)ev + 1.0f),
+                       0.5 * (double)exposure_scale((float)ev), 1e-6);
+    // A sensor saturates at 1.2 · 2^EV cd/m².
+    CHECK_RELATIVE((double)(exposure_scale(10.0f) * 1.2f * 1024.0f), 1.0, 1e-6);
+}
+
+TEST(below_the_compression_only_the_fresnel_offset_is_taken_away)
+{
+    for (int i = 0; i < 500; i++) {
+        float r = 0.08f + 0.0014f * (float)((i * 37) % 500), g = 0.08f + 0.0014f * (float)i,
+              b = 0.08f + 0.0014f * (float)((i * 91) % 500);
+        vec3s out = tonemap_pbr_neutral(vec3_of(r, g, b));
+        if (fmaxf(r, fmaxf(g, b)) - 0.04f >= START) continue;
+        CHECK_NEAR((double)out.x, (double)r - 0.04, 1e-6);
+        CHECK_NEAR((double)out.y, (double)g - 0.04, 1e-6);
+        CHECK_NEAR((double)out.z, (double)b - 0.04, 1e-6);
+    }
+}
+
+TEST(the_toe_takes_black_to_black_and_joins_smoothly)
+{
+    CHECK(tonemap_pbr_neutral(grey(0.0f)).x == 0.0f);
+    for (int i = 1; i < 80; i++) {
+        double x = 0.001 * i;
+        CHECK_NEAR((double)tonemap_pbr_neutral(grey((float)x)).y, 6.25 * x * x, 1e-6);
+    }
+    // value and slope on both sides of 0.08
+    double h = 1e-3;
+    double left = (0.04 - (double)tonemap_pbr_neutral(grey(0.08f - (float)h)).x) / h;
+    double right = ((double)tonemap_pbr_neutral(grey(0.08f + (float)h)).x - 0.04) / h;
+    CHECK_NEAR(left, right, 0.01);
+}
+
+TEST(differences_between_channels_survive_where_nothing_is_compressed)
+{
+    // Hue: r − g and g − b, and so their ratio, are kept in the toe too.
+    for (int i = 0; i < 100; i++) {
+        vec3s in = vec3_of(0.3f, 0.001f * (float)i, 0.1f + 0.003f * (float)i);
+        vec3s out = tonemap_pbr_neutral(in);
+        CHECK_NEAR((double)(out.x - out.y), (double)(in.x - in.y), 1e-6);
+        CHECK_NEAR((double)(out.z - out.y), (double)(in.z - in.y), 1e-6);
+    }
+}
+
+TEST(more_light_never_gives_a_darker_peak)
+{
+    static const float tints[][3] = {
+        { 1, 1, 1 }, { 1, 0, 0 }, { 0, 1, 0.2f }, { 0.1f, 0.3f, 1 }, { 1, 0.9f, 0.05f },
+    };
+    for (size_t t = 0; t < sizeof tints / sizeof tints[0]; t++) {
+        vec3s tint = vec3_of(tints[t][0], tints[t][1], tints[t][2]);
+        float before = -1.0f;
+        for (int i = -200; i <= 300; i++) {
+            vec3s out = tonemap_pbr_neutral(glms_vec3_scale(tint, exp2f((float)i / 20.0f)));
+            CHECK(max3(out) >= before - 1e-6f);
+            before = max3(out);
+        }
+    }
+}
+
+TEST(white_is_approached_and_never_passed)
+{
+    for (int i = 0; i <= 60; i++) {
+        float v = exp2f((float)i / 4.0f);
+        float out = tonemap_pbr_neutral(grey(v)).x;
+        CHECK(out < 1.0f);
+        // 1 − 0.24² / (peak + 0.24 − 0.76), peak = v − 0.04
+        CHECK_NEAR((double)out, 1.0 - 0.0576 / ((double)v - 0.56), 1e-5);
+    }
+    CHECK(tonemap_pbr_neutral(grey(1e6f)).x > 0.99f);
+    CHECK(tonemap_pbr_neutral(vec3_of(INFINITY, 1.0f, 0.0f)).x <= 1.0f);
+}
+
+TEST(bright_colours_lose_saturation_the_more_the_brighter_they_are)
+{
+    float before = 1.0f;
+    for (int i = 0; i < 12; i++) {
+        vec3s out = tonemap_pbr_neutral(vec3_of(exp2f((float)i), 0.0f, 0.0f));
+        float saturation = 1.0f - out.y / out.x;
+        CHECK(saturation < before && saturation > 0.0f);
+        CHECK(out.y == out.z);
+        before = saturation;
+    }
+    CHECK(before < 0.01f);
+}
+
+TEST(compression_joins_without_a_step_in_value_or_slope)
+{
+    double at = 0.8, h = 1e-3;
+    double a = (double)tonemap_pbr_neutral(grey((float)(at - h))).x,
+           b = (double)tonemap_pbr_neutral(grey((float)at)).x,
+           c = (double)tonemap_pbr_neutral(grey((float)(at + h))).x;
+    CHECK_NEAR(b, 0.76, 1e-6);
+    CHECK_NEAR((b - a) / h, 1.0, 0.01);
+    CHECK_NEAR((c - b) / h, 1.0, 0.01);
+}
+
+TEST(negative_values_and_nan_count_as_black)
+{
+    vec3s out = tonemap_pbr_neutral(vec3_of(-5.0f, NAN, 0.5f));
+    CHECK(out.x == 0.0f && out.y == 0.0f);
+    CHECK_NEAR((double)out.z, 0.5, 1e-6);
+}
+
+TEST(a_picture_is_exposed_and_tonemapped_pixel_by_pixel)
+{
+    struct image in, out;
+    noise_picture(&in, 8, 5, 4);
+    CHECK(image_tonemap(&out, test_host(), &in, 9.0f));
+    CHECK(out.width == 8 && out.height == 5 && out.channels == 3);
+    for (int y = 0; y < 5; y++) {
+        for (int x = 0; x < 8; x++) {
+            const float *l = image_at(&in, x, y);
+            vec3s expected = tonemap_pbr_neutral(
+                glms_vec3_scale(vec3_of(l[0], l[1], l[2]), exposure_scale(9.0f)));
+            for (int c = 0; c < 3; c++) CHECK(image_at(&out, x, y)[c] == expected.raw[c]);
+        }
+    }
+    image_finish(&out, test_host());
+    CHECK(!image_tonemap(&out, test_host(), &in, NAN));
+    image_finish(&in, test_host());
+    flat_picture(&in, 2, 2, 1, 1.0f);
+    CHECK(!image_tonemap(&out, test_host(), &in, 0.0f));
+    image_finish(&in, test_host());
+}
+
+TEST(automatic_exposure_puts_a_grey_card_at_middle_grey)
+{
+    for (int i = -8; i <= 8; i++) {
+        struct image image;
+        float radiance = exp2f((float)i * 2.5f);
+        flat_picture(&image, 6, 4, 3, radiance);
+        float exposed = radiance * exposure_scale(auto_exposure(&image));
+        CHECK_RELATIVE((double)exposed, 0.18, 1e-5);
+        image_finish(&image, test_host());
+    }
+}
+
+TEST(automatic_exposure_follows_the_light)
+{
+    struct image image;
+    noise_picture(&image, 16, 9, 3);
+    float ev = auto_exposure(&image);
+    for (int i = 0; i < 16 * 9 * 3; i++) image.pixels[i] *= 8.0f;
+    CHECK_NEAR((double)auto_exposure(&image), (double)ev + 3.0, 1e-5);
+    image_finish(&image, test_host());
+}
+
+TEST(automatic_exposure_of_two_greys_is_their_geometric_mean)
+{
+    struct image image;
+    flat_picture(&image, 4, 4, 3, 2.0f);
+    for (int x = 0; x < 4; x++)
+        for (int y = 0; y < 2; y++)
+            for (int c = 0; c < 3; c++) image_at(&image, x, y)[c] = 8.0f;
+    CHECK_RELATIVE(4.0 * (double)exposure_scale(auto_exposure(&image)), 0.18, 1e-5);
+    image_finish(&image, test_host());
+}
+
+// A sunlit share f of radiance 1000 among black pixels: the log-average is 1000 · 0.05^(1−f).
+TEST(a_small_sun_patch_is_not_blown_out)
+{
+    struct image image;
+    CHECK(image_init(&image, test_host(), 100, 1, 3));
+    for (int lit = 1; lit <= 100; lit++) {
+        for (int c = 0; c < 3; c++) image_at(&image, lit - 1, 0)[c] = 1000.0f;
+        double ev = (double)auto_exposure(&image);
+        double expected = log2(1000.0 * pow(0.05, 1.0 - lit / 100.0) / (1.2 * 0.18));
+        CHECK_NEAR(ev, expected, 1e-4);
+        CHECK(1000.0 * (double)exposure_scale((float)ev) <= 0.18 * 20.0 * 1.0001);
+    }
+    image_finish(&image, test_host());
+}
+
+// A pixel that is nearly black weighs as much as a black one, so that noise in the dark changes
+// little.
+TEST(a_pixel_counts_as_at_least_a_twentieth_of_the_lit_mean)
+{
+    struct image image;
+    flat_picture(&image, 100, 1, 3, 100.0f);
+    float lit = auto_exposure(&image);
+    for (int c = 0; c < 3; c++) image_at(&image, 50, 0)[c] = 0.0f;
+    float black = auto_exposure(&image);
+    for (int c = 0; c < 3; c++) image_at(&image, 50, 0)[c] = 1e-3f;
+    float dark = auto_exposure(&image);
+    CHECK(black < lit && dark < lit);
+    CHECK_NEAR((double)black, (double)lit + 0.01 * log2(0.05), 1e-4);
+    CHECK_NEAR((double)black, (double)dark, 0.01);
+    image_finish(&image, test_host());
+}
+
+TEST(automatic_exposure_of_black_is_zero)
+{
+    struct image image;
+    flat_picture(&image, 5, 5, 3, 0.0f);
+    CHECK(auto_exposure(&image) == 0.0f);
+    image_at(&image, 2, 2)[1] = -1.0f;
+    image_at(&image, 3, 2)[1] = NAN; // counts as black
+    CHECK(auto_exposure(&image) == 0.0f);
+    image_finish(&image, test_host());
+}
