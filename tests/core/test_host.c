@@ -1,0 +1,170 @@
+// The host's memory, messages and failures, and checked sizes.
+#include "framework/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// A host that counts its blocks and gives no more after `allowed` of them; each block begins dirty.
+struct ledger {
+    int live, allowed;
+    char message[2048];
+    int messages;
+    enum log_level level;
+};
+
+static void *ledger_reallocate(void *user, void *old, size_t bytes)
+{
+    struct ledger *ledger = user;
+    if (bytes == 0) {
+        ledger->live -= old != NULL;
+        free(old);
+        return NULL;
+    }
+    if (ledger->allowed-- <= 0) return NULL;
+    void *block = realloc(old, bytes);
+    if (!old) memset(block, 0xcd, bytes);
+    ledger->live += !old;
+    return block;
+}
+
+static void ledger_log(void *user, enum log_level level, const char *message)
+{
+    struct ledger *ledger = user;
+    strncpy(ledger->message, message, sizeof ledger->message - 1);
+    ledger->level = level;
+    ledger->messages++;
+}
+
+static struct host ledger_host(struct ledger *ledger)
+{
+    return (struct host){ ledger_log, ledger_reallocate, ledger, LOG_WARNING, FAIL_NONE };
+}
+
+TEST(sizes_multiply_and_add_unless_they_overflow)
+{
+    size_t out = 7;
+    CHECK(size_mul(0, SIZE_MAX, &out) && out == 0);
+    CHECK(size_mul(SIZE_MAX, 1, &out) && out == SIZE_MAX);
+    CHECK(size_mul(SIZE_MAX / 2, 2, &out) && out == SIZE_MAX - 1);
+    CHECK(size_add(SIZE_MAX - 1, 1, &out) && out == SIZE_MAX);
+    out = 7;
+    CHECK(!size_mul(SIZE_MAX / 2 + 1, 2, &out) && out == 7);
+    CHECK(!size_mul((size_t)1 << 32, (size_t)1 << 32, &out) && out == 7);
+    CHECK(!size_add(SIZE_MAX, 1, &out) && out == 7);
+}
+
+static void check_all_zero(const unsigned char *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; i++) CHECK(bytes[i] == 0);
+}
+
+TEST(memory_is_zeroed_wherever_it_comes_from)
+{
+    struct ledger ledger = { .allowed = 1 };
+    struct host ours = ledger_host(&ledger), libc = host_default();
+    unsigned char *a = host_alloc(&ours, 10, 100), *b = host_alloc(&libc, 10, 100);
+    check_all_zero(a, 1000);
+    check_all_zero(b, 1000);
+    host_free(&ours, a);
+    host_free(&libc, b);
+    assert_int_equal(ledger.live, 0);
+}
+
+TEST(empty_requests_give_distinct_pointers)
+{
+    struct host host = host_default();
+    void *a = host_alloc(&host, 0, 8), *b = host_alloc(&host, 8, 0);
+    assert_non_null(a);
+    assert_non_null(b);
+    assert_ptr_not_equal(a, b);
+    host_free(&host, a);
+    host_free(&host, b);
+    host_free(&host, NULL);
+}
+
+TEST(sizes_that_overflow_are_refused_before_the_allocator_sees_them)
+{
+    struct ledger ledger = { .allowed = 100 };
+    struct host host = ledger_host(&ledger);
+    assert_null(host_alloc(&host, SIZE_MAX / 2 + 1, 2));
+    assert_int_equal(host.failure, FAIL_MEMORY);
+    assert_null(host_alloc(&host, SIZE_MAX, 1));
+    assert_null(host_realloc(&host, NULL, SIZE_MAX / 4, 8));
+    assert_int_equal(ledger.allowed, 100);
+    assert_int_equal(ledger.messages, 3);
+    assert_int_equal(ledger.level, LOG_ERROR);
+}
+
+TEST(failing_allocator_gives_null_and_a_sentence)
+{
+    struct ledger ledger = { .allowed = 0 };
+    struct host host = ledger_host(&ledger);
+    assert_null(host_alloc(&host, 3, 4));
+    CHECK_STRING(ledger.message, "cannot allocate 12 bytes: out of memory");
+    assert_int_equal(host.failure, FAIL_MEMORY);
+    assert_null(host_strdup(&host, "text"));
+    assert_null(host_sprintf(&host, "%d", 5));
+    assert_int_equal(ledger.live, 0);
+}
+
+TEST(block_that_cannot_grow_stays_as_it_was)
+{
+    struct ledger ledger = { .allowed = 2 };
+    struct host host = ledger_host(&ledger);
+    char *block = host_alloc(&host, 4, 1);
+    memcpy(block, "abc", 4);
+    char *grown = host_realloc(&host, block, 1000, 1);
+    CHECK_STRING(grown, "abc");
+    assert_null(host_realloc(&host, grown, 2000, 1));
+    CHECK_STRING(grown, "abc");
+    host_free(&host, grown);
+    assert_int_equal(ledger.live, 0);
+}
+
+TEST(strings_are_copied_and_formatted_at_any_length)
+{
+    struct host host = host_default();
+    char *copy = host_strdup(&host, "a copy");
+    CHECK_STRING(copy, "a copy");
+    char *text = host_sprintf(&host, "%05000d|%s", 7, copy);
+    assert_int_equal(strlen(text), 5007);
+    CHECK_STRING(text + 4999, "7|a copy");
+    host_free(&host, text);
+    host_free(&host, copy);
+}
+
+TEST(failure_is_false_and_says_its_kind_and_sentence)
+{
+    struct ledger ledger = { 0 };
+    struct host host = ledger_host(&ledger);
+    CHECK(!host_fail(&host, FAIL_FORMAT, "cannot read %s: %d of %d", "a.b", 1, 2));
+    assert_int_equal(host.failure, FAIL_FORMAT);
+    CHECK_STRING(ledger.message, "cannot read a.b: 1 of 2");
+    assert_int_equal(ledger.level, LOG_ERROR);
+}
+
+TEST(messages_above_the_level_are_not_sent)
+{
+    struct ledger ledger = { 0 };
+    struct host host = ledger_host(&ledger);
+    host_log(&host, LOG_INFO, "not heard");
+    assert_int_equal(ledger.messages, 0);
+    host_log(&host, LOG_WARNING, "heard");
+    assert_int_equal(ledger.messages, 1);
+    assert_int_equal(host.failure, FAIL_NONE);
+}
+
+TEST(long_messages_are_cut_not_lost)
+{
+    struct ledger ledger = { 0 };
+    struct host host = ledger_host(&ledger);
+    host_fail(&host, FAIL_FILE, "%05000d", 0);
+    CHECK(strlen(ledger.message) > 500 && strlen(ledger.message) < 5000);
+}
+
+TEST(silent_host_takes_failures)
+{
+    struct host host = { 0 };
+    CHECK(!host_fail(&host, FAIL_DEVICE, "nobody hears this"));
+    assert_int_equal(host.failure, FAIL_DEVICE);
+}

@@ -1,0 +1,304 @@
+// Options from a table: defaults, text in and out, errors that help, and what a change asks for.
+#include "framework/test.h"
+
+#include "core/option.h"
+#include "core/rng.h"
+
+#include <float.h>
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+#define OPTION OPTION_FIELD
+#include "core/options.def"
+#undef OPTION
+};
+
+#define OPTION(...) OPTION_ROW(struct options, __VA_ARGS__)
+static const struct option_row rows[] = {
+#include "core/options.def"
+};
+#undef OPTION
+
+static const struct option_table table = { rows, sizeof rows / sizeof *rows,
+                                           sizeof(struct options) };
+
+static struct options defaults(void)
+{
+    struct options options;
+    option_defaults(&table, &options);
+    return options;
+}
+
+static bool parse(const char *text, struct options *options)
+{
+    test_forget_messages();
+    return option_parse(test_host(), &table, "lpv", text, options);
+}
+
+// Parsing `text` fails with this sentence and leaves the options alone.
+static void check_refused(const char *text, const char *message)
+{
+    struct options options = defaults(), before;
+    CHECK(parse("steps=5,gain=2", &options));
+    memcpy(&before, &options, sizeof before);
+    CHECK(!parse(text, &options));
+    CHECK_STRING(test_last_message(), message);
+    assert_int_equal(test_host()->failure, FAIL_ARGUMENT);
+    assert_memory_equal(&options, &before, sizeof before);
+}
+
+TEST(defaults_are_the_table)
+{
+    struct options options = defaults();
+    assert_int_equal(options.steps, 8);
+    CHECK(options.gain == 0.1f);
+    CHECK(options.blur);
+    assert_int_equal(options.quality, 1);
+    assert_int_equal(options.dim, -5);
+}
+
+TEST(text_sets_what_it_names_and_nothing_else)
+{
+    struct options options = defaults();
+    CHECK(parse("gain=2.5,quality=high", &options));
+    CHECK(options.gain == 2.5f);
+    assert_int_equal(options.quality, 2);
+    assert_int_equal(options.steps, 8);
+    CHECK(parse("", &options));
+    CHECK(options.gain == 2.5f);
+    CHECK(parse("steps=3,blur=off,steps=4", &options)); // the last one counts
+    assert_int_equal(options.steps, 4);
+    CHECK(!options.blur);
+}
+
+TEST(ends_of_each_range_are_in_it)
+{
+    struct options options = defaults();
+    CHECK(parse("steps=1,gain=0.1,dim=-2147483648", &options));
+    CHECK(options.gain == 0.1f);
+    assert_int_equal(options.dim, INT32_MIN);
+    CHECK(parse("steps=32,gain=4,dim=2147483647", &options));
+    assert_int_equal(options.dim, INT32_MAX);
+}
+
+TEST(truth_has_its_usual_names)
+{
+    static const char *const yes[] = { "blur=true", "blur=1", "blur=on", "blur=yes" };
+    static const char *const no[] = { "blur=false", "blur=0", "blur=off", "blur=no" };
+    for (int i = 0; i < 4; i++) {
+        struct options options = defaults();
+        CHECK(parse(no[i], &options) && !options.blur);
+        CHECK(parse(yes[i], &options) && options.blur);
+    }
+}
+
+TEST(unknown_option_names_the_nearest)
+{
+    check_refused("step=3", "unknown option lpv:step: did you mean steps?");
+    check_refused("GIAN=3", "unknown option lpv:GIAN: did you mean gain?");
+    check_refused("zebra=3", "unknown option lpv:zebra: known are steps, gain, blur, quality, dim");
+}
+
+TEST(value_out_of_range_names_the_range)
+{
+    check_refused("steps=33", "cannot set lpv:steps to \"33\": it must be from 1 to 32 steps");
+    check_refused("steps=0", "cannot set lpv:steps to \"0\": it must be from 1 to 32 steps");
+    check_refused("gain=4.001", "cannot set lpv:gain to \"4.001\": it must be from 0.1 to 4");
+    check_refused("gain=nan", "cannot set lpv:gain to \"nan\": it must be from 0.1 to 4");
+    check_refused("gain=1e999", "cannot set lpv:gain to \"1e999\": it must be from 0.1 to 4");
+    check_refused("dim=99999999999999999999",
+                  "cannot set lpv:dim to \"99999999999999999999\": it must be from -2147483648 to "
+                  "2147483647 cells");
+}
+
+TEST(value_of_the_wrong_kind_says_which_kind)
+{
+    check_refused("steps=2.5", "cannot set lpv:steps to \"2.5\": it must be a whole number");
+    check_refused("steps=0x10", "cannot set lpv:steps to \"0x10\": it must be a whole number");
+    check_refused("gain=much", "cannot set lpv:gain to \"much\": it must be a number");
+    check_refused("blur=maybe", "cannot set lpv:blur to \"maybe\": it must be true or false");
+    check_refused("quality=hihg", "cannot set lpv:quality to \"hihg\": did you mean high? "
+                                  "(one of low|middle|high)");
+    check_refused("quality=hi",
+                  "cannot set lpv:quality to \"hi\": it must be one of low|middle|high");
+    check_refused("quality=1",
+                  "cannot set lpv:quality to \"1\": it must be one of low|middle|high");
+}
+
+TEST(incomplete_text_is_refused_whole)
+{
+    check_refused("steps", "cannot set lpv:steps: no value is given");
+    check_refused("steps=", "cannot set lpv:steps: no value is given");
+    const char *nameless =
+        "cannot read the options of lpv: a name is missing (key=value,key=value)";
+    check_refused("=3", nameless);
+    check_refused("steps=3,", nameless);
+    check_refused(",steps=3", nameless);
+    check_refused("steps=3,,gain=1", nameless);
+}
+
+TEST(error_after_good_values_leaves_all_unchanged)
+{
+    check_refused("steps=9,gain=3,blur=0,quality=low,dim=7,steps=99",
+                  "cannot set lpv:steps to \"99\": it must be from 1 to 32 steps");
+}
+
+TEST(very_long_text_fails_with_a_sentence)
+{
+    enum { LONG = 100000 };
+    char *text = malloc(LONG + 1);
+    assert_non_null(text);
+    memset(text, 'x', LONG);
+    text[LONG] = 0;
+    struct options options = defaults();
+    CHECK(!parse(text, &options));
+    memcpy(text, "steps=", 6);
+    CHECK(!parse(text, &options));
+    free(text);
+}
+
+TEST(cut_text_never_changes_the_options_by_halves)
+{
+    const char *whole = "steps=9,gain=3.25,blur=no,quality=high,dim=-12";
+    for (size_t length = 0; length <= strlen(whole); length++) {
+        char text[64];
+        snprintf(text, sizeof text, "%.*s", (int)length, whole);
+        struct options options = defaults(), before = defaults();
+        if (!parse(text, &options)) assert_memory_equal(&options, &before, sizeof before);
+    }
+}
+
+TEST(failing_memory_fails_the_parse)
+{
+    struct options options = defaults();
+    struct host host = host_default();
+    struct option_table huge = { rows, table.count, SIZE_MAX };
+    CHECK(!option_parse(&host, &huge, "lpv", "steps=9", &options));
+    assert_int_equal(host.failure, FAIL_MEMORY);
+    assert_int_equal(options.steps, 8);
+}
+
+static struct options random_options(struct rng *rng)
+{
+    struct options options = defaults();
+    options.steps = 1 + (int32_t)(rng_u32(rng) % 32);
+    options.gain = 0.1f + 3.9f * rng_float(rng);
+    options.blur = rng_u32(rng) & 1;
+    options.quality = (int32_t)(rng_u32(rng) % 3);
+    options.dim = (int32_t)rng_u32(rng);
+    return options;
+}
+
+static void print_all(const struct options *options, char *out, size_t size)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < table.count; i++) {
+        char value[64];
+        option_print(&rows[i], options, value, sizeof value);
+        used +=
+            (size_t)snprintf(out + used, size - used, "%s%s=%s", i ? "," : "", rows[i].name, value);
+    }
+}
+
+TEST(printed_options_read_back_the_same)
+{
+    struct rng rng = rng_for(1, 0, 0);
+    for (int k = 0; k < 1000; k++) {
+        struct options options = random_options(&rng), again = defaults();
+        char text[256];
+        print_all(&options, text, sizeof text);
+        CHECK(parse(text, &again));
+        assert_int_equal(option_difference(&table, &options, &again), -1);
+    }
+}
+
+TEST(printed_numbers_are_the_shortest)
+{
+    struct options options = defaults();
+    char text[64];
+    option_print(&rows[1], &options, text, sizeof text);
+    CHECK_STRING(text, "0.1");
+    options.gain = 1.0f / 3.0f;
+    option_print(&rows[1], &options, text, sizeof text);
+    CHECK_STRING(text, "0.33333334");
+    option_print(&rows[3], &options, text, 4);
+    CHECK_STRING(text, "mid");
+}
+
+TEST(numbers_have_a_dot_whatever_the_locale)
+{
+    static const char *const names[] = { "de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE" };
+    bool found = false;
+    for (size_t i = 0; !found && i < sizeof names / sizeof *names; i++)
+        found = setlocale(LC_ALL, names[i]) != NULL;
+    struct options options = defaults();
+    char text[64];
+    CHECK(parse("gain=2.5", &options));
+    option_print(&rows[1], &options, text, sizeof text);
+    CHECK(options.gain == 2.5f);
+    CHECK_STRING(text, "2.5");
+    setlocale(LC_ALL, "C");
+    if (!found) print_message("no locale with a decimal comma is installed here\n");
+}
+
+TEST(json_has_each_value_in_its_own_type)
+{
+    struct options options = defaults();
+    json_t *json = option_json(&table, &options);
+    assert_non_null(json);
+    assert_int_equal(json_object_size(json), table.count);
+    assert_int_equal(json_integer_value(json_object_get(json, "steps")), 8);
+    CHECK(json_real_value(json_object_get(json, "gain")) == 0.1);
+    CHECK(json_is_true(json_object_get(json, "blur")));
+    CHECK_STRING(json_string_value(json_object_get(json, "quality")), "middle");
+    json_decref(json);
+}
+
+TEST(difference_is_the_strongest_effect_of_what_changed)
+{
+    struct options a = defaults(), b = a;
+    assert_int_equal(option_difference(&table, &a, &b), -1);
+    b.gain = 1.0f;
+    assert_int_equal(option_difference(&table, &a, &b), LIVE);
+    b.steps = 2;
+    assert_int_equal(option_difference(&table, &a, &b), INVALIDATE);
+    b.dim = 2;
+    assert_int_equal(option_difference(&table, &a, &b), RESIZE);
+    b.quality = 0;
+    assert_int_equal(option_difference(&table, &a, &b), RECREATE);
+    b.dim = a.dim;
+    b.blur = false;
+    assert_int_equal(option_difference(&table, &b, &a), RECREATE);
+}
+
+TEST(nearest_name_forgives_slips_and_no_more)
+{
+    static const char *const known[] = { "lpv", "vct", "mrt", "iterations", "interleave" };
+    struct {
+        const char *name, *nearest;
+    } cases[] = {
+        { "vct", "vct" },
+        { "vtc", "vct" },
+        { "LPV", "lpv" },
+        { "mrtt", "mrt" },
+        { "mr", "mrt" },
+        { "iteratoin", "iterations" },
+        { "interlieve", "interleave" },
+        { "xyz", NULL },
+        { "", NULL },
+        { "v", NULL },
+        { "interval", NULL },
+        { "vctvctvct", NULL },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *nearest = nearest_name(cases[i].name, known, 5);
+        if (!cases[i].nearest)
+            assert_null(nearest);
+        else
+            CHECK_STRING(nearest ? nearest : "(none)", cases[i].nearest);
+    }
+    assert_null(nearest_name("vct", known, 0));
+}
