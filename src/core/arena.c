@@ -42,7 +42,7 @@ static void *block_take(struct arena_block *block, size_t bytes)
 
 static struct arena_block *block_create(struct host *host, size_t capacity)
 {
-    size_t bytes;
+    size_t bytes = 0;
     if (!size_add(capacity, sizeof(struct arena_block), &bytes)) bytes = SIZE_MAX; // is refused
     struct arena_block *block = host_alloc(host, bytes, 1);
     if (block) block->capacity = capacity;
@@ -51,7 +51,7 @@ static struct arena_block *block_create(struct host *host, size_t capacity)
 
 void *arena_alloc(struct arena *arena, size_t count, size_t size)
 {
-    size_t bytes, padded;
+    size_t bytes = 0, padded = 0;
     if (!size_mul(count, size, &bytes) || !size_add(bytes, ARENA_ALIGNMENT, &padded)) {
         host_fail(arena->host, FAIL_MEMORY, "cannot allocate %zu x %zu bytes: too large", count,
                   size);

@@ -47,8 +47,8 @@ static bool open_regular(struct host *host, const char *path, uint64_t max_bytes
 bool file_read(struct host *host, const char *path, size_t max_bytes, struct file_bytes *out)
 {
     *out = (struct file_bytes){ 0 };
-    int fd;
-    size_t size, padded;
+    int fd = -1;
+    size_t size = 0, padded = 0;
     if (!open_regular(host, path, max_bytes ? max_bytes : MAX_BYTES_DEFAULT, &fd, &size))
         return false;
     if (!size_add(size, 1, &padded)) padded = SIZE_MAX; // is refused

@@ -58,7 +58,7 @@ static bool fail_memory(struct host *host, size_t bytes)
 
 void *host_alloc(struct host *host, size_t count, size_t size)
 {
-    size_t bytes;
+    size_t bytes = 0;
     if (!block_size(host, count, size, &bytes)) return NULL;
     void *block = host->reallocate ? host->reallocate(host->user, NULL, bytes) : calloc(1, bytes);
     if (block && host->reallocate) memset(block, 0, bytes);
@@ -68,7 +68,7 @@ void *host_alloc(struct host *host, size_t count, size_t size)
 
 void *host_realloc(struct host *host, void *old, size_t count, size_t size)
 {
-    size_t bytes;
+    size_t bytes = 0;
     if (!block_size(host, count, size, &bytes)) return NULL;
     void *block = host->reallocate ? host->reallocate(host->user, old, bytes) : realloc(old, bytes);
     if (!block) fail_memory(host, bytes);

@@ -245,7 +245,7 @@ static bool fail_choice(const struct parse *parse, const struct option_row *row,
 {
     static const size_t capacity = MAX_KNOWN;
     char names[MAX_KNOWN][VALUE_SIZE], why[LIST_SIZE];
-    const char *known[MAX_KNOWN];
+    const char *known[MAX_KNOWN] = { NULL };
     const char *choice;
     size_t length, count = 0;
     while (count < capacity && (choice = choice_name(row->unit, (int32_t)count, &length))) {
@@ -281,7 +281,7 @@ static bool parse_value(const struct parse *parse, const struct option_row *row,
 
 static bool fail_unknown(const struct parse *parse, const char *key)
 {
-    const char *known[MAX_KNOWN];
+    const char *known[MAX_KNOWN] = { NULL };
     char list[LIST_SIZE] = "";
     size_t count = 0, used = 0;
     for (; count < parse->table->count && count < MAX_KNOWN; count++) {

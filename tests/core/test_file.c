@@ -30,7 +30,7 @@ static const char *read_text(const char *path)
 }
 
 // An empty folder of its own.
-static const char *fresh_folder(const char *name)
+__attribute__((returns_nonnull)) static const char *fresh_folder(const char *name)
 {
     const char *path = test_path(name);
     assert_int_equal(mkdir(path, 0777), 0);
