@@ -1,0 +1,42 @@
+// The frame's uniform block and what every pass computes from it. Include this instead of frame_shared.h: GLSL lets
+// no struct bear the name of a block, so the struct is renamed here.
+//
+// Binding number: FRAME_CONSTANTS_BINDING, 0 unless defined before the inclusion. Needs GL_EXT_scalar_block_layout.
+#ifndef AG_FRAME_GLSL
+#define AG_FRAME_GLSL
+
+#define frame_constants frame_constants_data
+#include "frame/frame_shared.h"
+#undef frame_constants
+
+#ifndef FRAME_CONSTANTS_BINDING
+#define FRAME_CONSTANTS_BINDING 0
+#endif
+
+layout(set = 0, binding = FRAME_CONSTANTS_BINDING, scalar) uniform frame_constants
+{
+    frame_constants_data frame;
+};
+
+const float HALF_MAX = 65504.0; // largest value of the frame's 16-bit images
+
+// Centre of a pixel in 0…1, +y down.
+vec2 frame_uv(uvec2 pixel)
+{
+    return (vec2(pixel) + 0.5) / vec2(frame.width, frame.height);
+}
+
+// World position at a screen position (0…1, +y down) and a depth > 0.
+vec3 frame_world_position(vec2 uv, float depth)
+{
+    vec4 h = frame.world_from_clip * vec4(uv * 2.0 - 1.0, depth, 1.0);
+    return h.xyz / h.w;
+}
+
+// Metres along the view axis of a depth > 0.
+float frame_view_distance(float depth)
+{
+    return frame.near_m / depth;
+}
+
+#endif
