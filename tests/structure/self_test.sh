@@ -1,0 +1,94 @@
+#!/bin/sh
+# self_test.sh CC CXX: the structure tests see what they are there to see. Each case makes a small tree that is right but
+# for one thing, and the test must fail and name it.
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+cc=$1 cxx=$2
+tree=$(mktemp -d) || exit 1
+trap 'rm -rf "$tree"' EXIT
+bad=0
+
+# A tree that keeps every rule.
+fresh() {
+    rm -rf "$tree/src" "$tree/include" "$tree/app" "$tree/examples"
+    mkdir -p "$tree/src/core" "$tree/src/scene" "$tree/src/gpu" "$tree/src/trace" "$tree/src/frame/gbuffer" "$tree/src/frame/rsm" \
+        "$tree/src/techniques/lpv" "$tree/src/techniques/vct" "$tree/src/new" "$tree/include/afterglow" "$tree/app" "$tree/examples"
+    printf '#include "core/host.h"\n#include <stdio.h>\n' >"$tree/src/scene/scene.c"
+    printf '#include "gpu/gpu.h"\n#include <vulkan/vulkan.h>\nvoid f(void) { vkCmdDraw(); }\n' >"$tree/src/gpu/gpu.c"
+    printf 'OPTION(x)\n' >"$tree/src/techniques/lpv/lpv_options.def"
+    printf '#include "frame/frame.h"\n#include "lpv_options.def"\n// as vkCmdDraw does\n/* and\n   rtcIntersect1 */\nconst char *s = "vkCmdDraw \\" //";\n' \
+        >"$tree/src/techniques/lpv/lpv.c"
+    printf '#include <afterglow/afterglow.h>\n' >"$tree/examples/first.c"
+    printf '#ifndef X_H\n#define X_H\n#include <stdint.h>\nstruct ag_x { uint32_t v; };\n#endif\n' >"$tree/include/afterglow/x.h"
+}
+
+# fails NAME PATTERN COMMAND…: the command must fail and print the pattern.
+fails() {
+    name=$1 pattern=$2
+    shift 2
+    if output=$("$@" 2>&1); then
+        echo "$name: not seen"
+        bad=1
+    elif ! printf '%s\n' "$output" | grep -q "$pattern"; then
+        echo "$name: failed for another reason: $output"
+        bad=1
+    fi
+}
+
+passes() {
+    name=$1
+    shift
+    if ! output=$("$@" 2>&1); then
+        echo "$name: refused: $output"
+        bad=1
+    fi
+}
+
+# include_case FILE PATTERN TEXT: a file with this text in the good tree.
+include_case() {
+    fresh
+    printf "$3\n" >"$tree/$1"
+    fails "$1 with $3" "$2" "$here/include_table.sh" "$tree"
+}
+
+fresh
+passes "a tree that keeps the rules" "$here/include_table.sh" "$tree"
+include_case src/core/bad.c 'may not include scene/scene.h' '#include "scene/scene.h"'
+include_case src/core/bad.c 'may not include jansson.h' '#include <jansson.h>'
+include_case src/scene/bad.h 'may not include vulkan/vulkan.h' '#  include  <vulkan/vulkan.h>'
+include_case src/scene/bad.c 'not written from src' '#include "../core/host.h"'
+include_case src/scene/bad.c 'does not lie in src/scene' '#include "host.h"'
+include_case src/gpu/bad.c 'may not include frame/frame.h' '#include "frame/frame.h"'
+include_case src/frame/rsm/bad.c 'may not include frame/gbuffer' '#include "frame/gbuffer/gbuffer.h"'
+include_case src/frame/bad.c 'may not include techniques' '#include "techniques/technique.h"'
+include_case src/techniques/lpv/bad.c 'may not include techniques/vct' '#include "techniques/vct/vct.h"'
+include_case src/techniques/lpv/bad.comp 'may not include techniques/vct' '#include "techniques/vct/vct.glsl"'
+include_case src/techniques/lpv/bad.c 'may not include image/image.h' '#include "image/image.h"'
+include_case src/frame/bad.c 'Vulkan function outside' 'void f(void) { int a; /* x */ vkCmdDraw(a); }'
+include_case src/trace/bad.c 'Vulkan function outside' 'void f(void) { g("\\"", vkCmdDraw); }'
+include_case src/gpu/bad.c 'Embree function outside' 'void f(void) { rtcNewDevice(0); }'
+include_case src/new/bad.c 'no row' 'int x;'
+include_case examples/bad.c 'may not include core/host.h' '#include "core/host.h"'
+include_case app/bad.c 'may not include scene/scene.h' '#include "scene/scene.h"'
+include_case include/afterglow/bad.h 'may not include vulkan' '#include <vulkan/vulkan.h>'
+
+fresh
+passes "clean text" "$here/source_text.sh" "$tree"
+printf 'int x; \n' >"$tree/src/core/bad.c"
+fails "a blank at the end of a line" 'src/core/bad.c:1' "$here/source_text.sh" "$tree"
+printf 'int x;\t\n' >"$tree/src/core/bad.c"
+fails "a tabulator at the end of a line" 'src/core/bad.c:1' "$here/source_text.sh" "$tree"
+fresh
+printf 'later: TO''DO\n' >"$tree/notes.md"
+fails "work left for later" 'notes.md:1' "$here/source_text.sh" "$tree"
+rm "$tree/notes.md"
+
+fresh
+passes "a header that stands alone" "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
+printf 'uint32_t ag_missing;\n' >"$tree/include/afterglow/bad.h"
+fails "a header that needs another" 'bad.h: not C17 alone' "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
+printf '#ifndef B\n#define B\nstatic inline int ag_new(int class) { return class; }\n#endif\n' >"$tree/include/afterglow/bad.h"
+fails "a header that is no C++" 'bad.h: not C++17 alone' "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
+printf 'struct ag_twice { int x; };\n' >"$tree/include/afterglow/bad.h"
+fails "a header without a guard" 'bad.h: not C17 alone' "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
+exit $bad

@@ -1,0 +1,25 @@
+# What holds for the sources themselves. Plain shell and awk, so that they run wherever the project builds.
+set(structure ${CMAKE_CURRENT_SOURCE_DIR}/structure)
+add_test(NAME structure.include_table COMMAND sh ${structure}/include_table.sh ${CMAKE_SOURCE_DIR})
+add_test(NAME structure.source_text COMMAND sh ${structure}/source_text.sh ${CMAKE_SOURCE_DIR})
+add_test(NAME structure.headers_alone
+  COMMAND sh ${structure}/headers_alone.sh ${CMAKE_SOURCE_DIR}/include ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
+add_test(NAME structure.self_test COMMAND sh ${structure}/self_test.sh ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
+set_tests_properties(structure.include_table structure.source_text structure.headers_alone structure.self_test
+  PROPERTIES TIMEOUT 120 LABELS structure)
+
+# The public headers are part of the build too, so that a broken one is seen at once.
+file(GLOB public_headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/include ${CMAKE_SOURCE_DIR}/include/afterglow/*.h)
+foreach(header ${public_headers})
+  get_filename_component(name ${header} NAME_WE)
+  set(sources "")
+  foreach(extension c cpp)
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.${extension})
+    file(CONFIGURE OUTPUT ${source} CONTENT "#include <${header}>\n" @ONLY)
+    list(APPEND sources ${source})
+  endforeach()
+  add_library(header_${name} OBJECT ${sources})
+  target_include_directories(header_${name} PRIVATE ${CMAKE_SOURCE_DIR}/include)
+  target_compile_options(header_${name} PRIVATE -Wall -Wextra -Wpedantic -Werror)
+  set_target_properties(header_${name} PROPERTIES C_EXTENSIONS OFF CXX_EXTENSIONS OFF)
+endforeach()
