@@ -4,8 +4,12 @@
 # `#include "<header>"` declares `extern const struct gpu_shader shader_<name>_<stage>` for each.
 # The .spv files also land in <build>/shaders, the folder to give as AFTERGLOW_SHADER_DIR for reloading.
 function(ag_shaders module header)
-  file(GLOB_RECURSE shaders CONFIGURE_DEPENDS
-    ${CMAKE_CURRENT_SOURCE_DIR}/*.comp ${CMAKE_CURRENT_SOURCE_DIR}/*.vert ${CMAKE_CURRENT_SOURCE_DIR}/*.frag)
+  ag_shaders_for(ag_${module} ${header} ${CMAKE_CURRENT_SOURCE_DIR})
+endfunction()
+
+# ag_shaders_for(target header folder): the same for any target and folder.
+function(ag_shaders_for target header folder)
+  file(GLOB_RECURSE shaders CONFIGURE_DEPENDS ${folder}/*.comp ${folder}/*.vert ${folder}/*.frag)
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(declarations "#pragma once\n#include \"gpu/gpu.h\"\n")
   set(definitions "#include \"${header}\"\n")
@@ -28,8 +32,8 @@ function(ag_shaders module header)
   endforeach()
   file(MAKE_DIRECTORY ${generated} ${CMAKE_BINARY_DIR}/shaders)
   file(CONFIGURE OUTPUT ${generated}/${header} CONTENT "${declarations}" @ONLY)
-  file(CONFIGURE OUTPUT ${generated}/${module}_shaders.c CONTENT "${definitions}" @ONLY)
-  set_source_files_properties(${generated}/${module}_shaders.c PROPERTIES OBJECT_DEPENDS "${words}")
-  target_sources(ag_${module} PRIVATE ${generated}/${module}_shaders.c)
-  target_include_directories(ag_${module} PUBLIC ${generated})
+  file(CONFIGURE OUTPUT ${generated}/${target}_shaders.c CONTENT "${definitions}" @ONLY)
+  set_source_files_properties(${generated}/${target}_shaders.c PROPERTIES OBJECT_DEPENDS "${words}")
+  target_sources(${target} PRIVATE ${generated}/${target}_shaders.c)
+  target_include_directories(${target} PUBLIC ${generated})
 endfunction()

@@ -1,0 +1,255 @@
+// Frames and transfers: recording, submission and waiting. Two frames are in flight; one timeline
+// semaphore counts all submissions. Each recording has a serial, by which things are freed once the
+// GPU is done with it.
+#include "gpu/vk.h"
+
+#include <stdio.h>
+#include <string.h>
+
+bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted)
+{
+    cmd->gpu = gpu;
+    cmd->adopted = adopted;
+    char name[32];
+    snprintf(name, sizeof name, "gpu.commands %d", (int)(cmd - gpu->cmds));
+    if (cmd != &gpu->cmds[CMD_TRANSFER] && !scopes_init(gpu, &cmd->scopes, name)) return false;
+    if (adopted) return true;
+    if (!VK_CHECK(gpu, vkCreateCommandPool(gpu->device,
+                                           &(VkCommandPoolCreateInfo){
+                                               .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                               .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                               .queueFamilyIndex = gpu->queue_family },
+                                           NULL, &cmd->pool))) {
+        cmd->pool = VK_NULL_HANDLE;
+        return false;
+    }
+    if (!VK_CHECK(gpu, vkAllocateCommandBuffers(
+                           gpu->device,
+                           &(VkCommandBufferAllocateInfo){
+                               .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                               .commandPool = cmd->pool,
+                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                               .commandBufferCount = 1 },
+                           &cmd->buffer))) {
+        return false;
+    }
+    VK_NAME(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, cmd->buffer, name);
+    return true;
+}
+
+void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd)
+{
+    vkDestroyQueryPool(gpu->device, cmd->scopes.queries, NULL);
+    vkDestroyCommandPool(gpu->device, cmd->pool, NULL);
+    if (cmd->ring.buffer.id) {
+        buffer_free(gpu, table_remove(&gpu->buffers, cmd->ring.buffer.id));
+        gpu->internal_buffers--;
+    }
+    *cmd = (struct gpu_cmd){ 0 };
+}
+
+static bool wait_for(struct gpu *gpu, uint64_t value)
+{
+    if (gpu->lost || !gpu->timeline) return false;
+    return VK_CHECK(gpu, vkWaitSemaphores(
+                             gpu->device,
+                             &(VkSemaphoreWaitInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                                     .semaphoreCount = 1,
+                                                     .pSemaphores = &gpu->timeline,
+                                                     .pValues = &value },
+                             UINT64_MAX));
+}
+
+// Images that others may have used since our last recording.
+static void forget_shared(struct gpu *gpu)
+{
+    for (uint32_t i = 0; i < gpu->images.count; i++) {
+        struct image *image = gpu->images.objects[i];
+        if (image && image->shared && !image->zero_pending)
+            hazard_forget(image, image->hazards[0].layout);
+    }
+}
+
+// Others are to find such an image in one layout.
+static void unite_shared(struct gpu_cmd *cmd)
+{
+    struct gpu *gpu = cmd->gpu;
+    hazard_next_op(cmd);
+    for (uint32_t i = 0; i < gpu->images.count; i++) {
+        struct image *image = gpu->images.objects[i];
+        if (!image || !image->shared || image->whole) continue;
+        struct range range = image_whole(image);
+        hazard_image(cmd, image, &range,
+                     &(struct access){ .stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                       .layout = hazard_resting_layout(image) });
+    }
+    hazard_flush(cmd);
+}
+
+static void start(struct gpu_cmd *cmd)
+{
+    struct gpu *gpu = cmd->gpu;
+    cmd->state = CMD_RECORDING;
+    cmd->serial = ++gpu->serial;
+    cmd->broken = false;
+    cmd->batch = (struct batch){ 0 };
+    cmd->rendering = (struct rendering){ 0 };
+    memset(cmd->bound, 0, sizeof cmd->bound);
+    gpu->recording = cmd;
+    forget_shared(gpu);
+}
+
+static bool start_own(struct gpu_cmd *cmd)
+{
+    struct gpu *gpu = cmd->gpu;
+    if (!VK_CHECK(gpu, vkResetCommandPool(gpu->device, cmd->pool, 0)) ||
+        !VK_CHECK(gpu,
+                  vkBeginCommandBuffer(
+                      cmd->buffer, &(VkCommandBufferBeginInfo){
+                                       .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT }))) {
+        return false;
+    }
+    start(cmd);
+    return true;
+}
+
+static VkResult submit_locked(struct gpu *gpu, const VkSubmitInfo2 *info)
+{
+    if (gpu->adopt.lock_queue) gpu->adopt.lock_queue(gpu->adopt.user);
+    VkResult result = vkQueueSubmit2(gpu->queue, 1, info, VK_NULL_HANDLE);
+    if (gpu->adopt.unlock_queue) gpu->adopt.unlock_queue(gpu->adopt.user);
+    return result;
+}
+
+static bool submit(struct gpu_cmd *cmd)
+{
+    struct gpu *gpu = cmd->gpu;
+    gpu->recording = NULL;
+    cmd->state = CMD_FREE;
+    if (!VK_CHECK(gpu, vkEndCommandBuffer(cmd->buffer))) return false;
+    VkSubmitInfo2 info = {
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+        .commandBufferInfoCount = 1,
+        .pCommandBufferInfos =
+            &(VkCommandBufferSubmitInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                          .commandBuffer = cmd->buffer },
+        .signalSemaphoreInfoCount = 1,
+        .pSignalSemaphoreInfos =
+            &(VkSemaphoreSubmitInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                      .semaphore = gpu->timeline,
+                                      .value = gpu->submitted + 1,
+                                      .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT },
+    };
+    if (!VK_CHECK(gpu, submit_locked(gpu, &info))) return false;
+    cmd->timeline = ++gpu->submitted;
+    cmd->state = CMD_PENDING;
+    return true;
+}
+
+static bool may_record(struct gpu *gpu, const char *what)
+{
+    if (gpu->lost) return host_fail(gpu->host, FAIL_DEVICE, "gpu %s: the device was lost", what);
+    if (!gpu->recording) return true;
+    return host_fail(gpu->host, FAIL_ARGUMENT, "gpu %s: a frame is being recorded", what);
+}
+
+struct gpu_cmd *gpu_frame_begin(struct gpu *gpu)
+{
+    if (!may_record(gpu, "frame")) return NULL;
+    struct gpu_cmd *cmd = &gpu->cmds[gpu->next_frame];
+    if (cmd->state == CMD_PENDING && !wait_for(gpu, cmd->timeline)) return NULL;
+    trash_collect(gpu);
+    if (!start_own(cmd)) return NULL;
+    gpu->next_frame = (gpu->next_frame + 1) % FRAMES_IN_FLIGHT;
+    ring_start(cmd);
+    scopes_start(cmd);
+    return cmd;
+}
+
+static void close_recording(struct gpu_cmd *cmd)
+{
+    if (cmd->rendering.open) {
+        gpu_misuse(cmd->gpu, "frame: a rendering is still open at its end");
+        gpu_render_end(cmd);
+    }
+    unite_shared(cmd);
+    scopes_stop(cmd);
+}
+
+bool gpu_frame_end(struct gpu *gpu, struct gpu_cmd *cmd)
+{
+    if (!cmd || cmd != gpu->recording) return gpu_misuse(gpu, "frame: it is not being recorded");
+    close_recording(cmd);
+    bool broken = cmd->broken;
+    if (cmd->adopted) {
+        cmd->state = CMD_PENDING; // until gpu_frame_adopted_done
+        gpu->recording = NULL;
+    } else if (!submit(cmd)) {
+        return false;
+    }
+    return !broken && !gpu->lost;
+}
+
+struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer)
+{
+    if (!may_record(gpu, "adopted frame")) return NULL;
+    trash_collect(gpu);
+    for (int i = CMD_TRANSFER + 1; i < CMD_COUNT; i++) {
+        struct gpu_cmd *cmd = &gpu->cmds[i];
+        if (cmd->state != CMD_FREE) continue;
+        cmd->buffer = vk_command_buffer;
+        start(cmd);
+        ring_start(cmd);
+        scopes_start(cmd);
+        return cmd;
+    }
+    host_fail(gpu->host, FAIL_ARGUMENT,
+              "gpu adopted frame: %d are unfinished (gpu_frame_adopted_done)", ADOPTED_IN_FLIGHT);
+    return NULL;
+}
+
+void gpu_frame_adopted_done(struct gpu *gpu, struct gpu_cmd *cmd)
+{
+    if (!cmd || !cmd->adopted || cmd->state == CMD_FREE) {
+        gpu_misuse(gpu, "adopted frame: it is none, or done already");
+        return;
+    }
+    if (cmd == gpu->recording) {
+        gpu_misuse(gpu, "adopted frame: gpu_frame_end comes before its submission");
+        gpu->recording = NULL;
+    } else {
+        scopes_collect(cmd);
+    }
+    cmd->state = CMD_FREE;
+    cmd->buffer = VK_NULL_HANDLE;
+    trash_collect(gpu);
+}
+
+bool gpu_wait(struct gpu *gpu)
+{
+    bool done = gpu->submitted == 0 || wait_for(gpu, gpu->submitted);
+    trash_collect(gpu);
+    return done && !gpu->lost;
+}
+
+struct gpu *gpu_of(struct gpu_cmd *cmd)
+{
+    return cmd->gpu;
+}
+
+struct gpu_cmd *transfer_begin(struct gpu *gpu)
+{
+    struct gpu_cmd *cmd = &gpu->cmds[CMD_TRANSFER];
+    if (!may_record(gpu, "transfer") || !start_own(cmd)) return NULL;
+    hazard_next_op(cmd);
+    return cmd;
+}
+
+bool transfer_end(struct gpu *gpu, struct gpu_cmd *cmd)
+{
+    unite_shared(cmd);
+    bool done = submit(cmd) && wait_for(gpu, cmd->timeline);
+    trash_collect(gpu);
+    return done;
+}

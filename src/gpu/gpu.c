@@ -1,0 +1,233 @@
+// The device as a whole: its creation, its end, and what is freed only once the GPU no longer uses
+// it.
+#include "gpu/vk.h"
+
+#include <string.h>
+
+static bool load_functions(struct gpu *gpu)
+{
+    gpu->push_descriptors = (PFN_vkCmdPushDescriptorSetKHR)vkGetDeviceProcAddr(
+        gpu->device, "vkCmdPushDescriptorSetKHR");
+    gpu->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetInstanceProcAddr(
+        gpu->instance, "vkSetDebugUtilsObjectNameEXT");
+    gpu->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetInstanceProcAddr(
+        gpu->instance, "vkCmdBeginDebugUtilsLabelEXT");
+    gpu->end_label = (PFN_vkCmdEndDebugUtilsLabelEXT)vkGetInstanceProcAddr(
+        gpu->instance, "vkCmdEndDebugUtilsLabelEXT");
+    if (gpu->push_descriptors) return true;
+    return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu device %s: it was created without %s",
+                     gpu->info.name, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+}
+
+static bool adopt_device(struct gpu *gpu, const struct gpu_adopt *adopt)
+{
+    if (!adopt->instance || !adopt->physical_device || !adopt->device || !adopt->queue) {
+        return host_fail(
+            gpu->host, FAIL_ARGUMENT,
+            "gpu adopted device: instance, physical_device, device and queue must be there");
+    }
+    if (!adopt->lock_queue != !adopt->unlock_queue) {
+        return host_fail(
+            gpu->host, FAIL_ARGUMENT,
+            "gpu adopted device: lock_queue and unlock_queue come together or not at all");
+    }
+    gpu->adopted = true;
+    gpu->adopt = *adopt;
+    gpu->instance = adopt->instance;
+    gpu->physical = adopt->physical_device;
+    gpu->device = adopt->device;
+    gpu->queue = adopt->queue;
+    gpu->queue_family = adopt->queue_family;
+    device_describe(gpu->physical, &gpu->info);
+    if (gpu->info.usable) return true;
+    return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu device %s: it lacks %s", gpu->info.name,
+                     gpu->info.missing);
+}
+
+static bool open_device(struct gpu *gpu, const struct gpu_desc *desc)
+{
+    if (desc->adopt) {
+        if (!adopt_device(gpu, desc->adopt)) return false;
+        return !desc->validation || instance_watch(gpu);
+    }
+    if (!instance_create(gpu->host, desc->validation, &gpu->instance)) return false;
+    if (desc->validation && !instance_watch(gpu)) return false;
+    gpu->physical = device_choose(gpu->host, gpu->instance, desc->device);
+    if (!gpu->physical) return false;
+    device_describe(gpu->physical, &gpu->info);
+    return device_create(gpu);
+}
+
+static bool create_shared(struct gpu *gpu)
+{
+    VkSemaphoreTypeCreateInfo timeline = {
+        .sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+        .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE,
+    };
+    if (!VK_CHECK(gpu, vkCreateSemaphore(gpu->device,
+                                         &(VkSemaphoreCreateInfo){
+                                             .sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                             .pNext = &timeline },
+                                         NULL, &gpu->timeline))) {
+        return false;
+    }
+    VK_NAME(gpu, VK_OBJECT_TYPE_SEMAPHORE, gpu->timeline, "gpu.timeline");
+    if (!VK_CHECK(gpu,
+                  vkCreatePipelineCache(gpu->device,
+                                        &(VkPipelineCacheCreateInfo){
+                                            .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO },
+                                        NULL, &gpu->pipeline_cache))) {
+        return false;
+    }
+    for (int i = 0; i < CMD_COUNT; i++) {
+        if (!cmd_init(gpu, &gpu->cmds[i], i > CMD_TRANSFER)) return false;
+    }
+    return gpu_sampler_get(
+        gpu,
+        &(struct gpu_sampler_desc){
+            .name = "gpu.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP },
+        &gpu->default_sampler);
+}
+
+struct gpu *gpu_create(struct host *host, const struct gpu_desc *desc)
+{
+    struct gpu *gpu = host_alloc(host, 1, sizeof *gpu);
+    if (!gpu) return NULL;
+    gpu->host = host;
+    if (!open_device(gpu, desc)) goto fail;
+    device_read_limits(gpu);
+    if (!load_functions(gpu)) goto fail;
+    if (desc->shader_dir && desc->shader_dir[0]) {
+        gpu->shader_dir = host_strdup(host, desc->shader_dir);
+        if (!gpu->shader_dir) goto fail;
+    }
+    if (!create_shared(gpu)) goto fail;
+    host_log(host, LOG_INFO, "gpu device %s (%s)%s", gpu->info.name, gpu->info.driver,
+             desc->validation ? ", with validation" : "");
+    return gpu;
+fail:
+    gpu_destroy(gpu);
+    return NULL;
+}
+
+void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), void *object)
+{
+    if (!object) return;
+    if (gpu->trash_count == gpu->trash_capacity) {
+        size_t capacity = gpu->trash_capacity ? 2 * gpu->trash_capacity : 64;
+        struct trash *bigger = host_realloc(gpu->host, gpu->trash, capacity, sizeof *bigger);
+        if (!bigger) {
+            // Only the adopted and the recording frame could still use it then, and a leak is the
+            // lesser evil.
+            if (gpu_wait(gpu) && !gpu->recording) free(gpu, object);
+            return;
+        }
+        gpu->trash = bigger;
+        gpu->trash_capacity = capacity;
+    }
+    gpu->trash[gpu->trash_count++] = (struct trash){ gpu->serial, free, object };
+}
+
+static uint64_t finished_serial(struct gpu *gpu)
+{
+    uint64_t value = 0;
+    if (!gpu->timeline ||
+        vkGetSemaphoreCounterValue(gpu->device, gpu->timeline, &value) != VK_SUCCESS) {
+        value = gpu->lost ? UINT64_MAX : 0;
+    }
+    uint64_t finished = gpu->serial;
+    for (int i = 0; i < CMD_COUNT; i++) {
+        struct gpu_cmd *cmd = &gpu->cmds[i];
+        if (cmd->state == CMD_PENDING && !cmd->adopted && cmd->timeline <= value) {
+            cmd->state = CMD_FREE;
+            scopes_collect(cmd);
+        }
+        if (cmd->state != CMD_FREE && cmd->serial <= finished) finished = cmd->serial - 1;
+    }
+    return finished;
+}
+
+void trash_collect(struct gpu *gpu)
+{
+    uint64_t finished = finished_serial(gpu);
+    size_t kept = 0;
+    for (size_t i = 0; i < gpu->trash_count; i++) {
+        struct trash *trash = &gpu->trash[i];
+        if (trash->serial <= finished) {
+            trash->free(gpu, trash->object);
+        } else {
+            gpu->trash[kept++] = *trash;
+        }
+    }
+    gpu->trash_count = kept;
+}
+
+// Reports and frees what the caller forgot. name_offset: where an object of this table keeps its
+// name.
+static void free_table(struct gpu *gpu, struct table *table, const char *kind, size_t name_offset,
+                       void (*free)(struct gpu *gpu, void *object))
+{
+    for (uint32_t i = 0; i < table->count; i++) {
+        if (!table->objects[i]) continue;
+        host_log(gpu->host, LOG_ERROR, "gpu %s %s: it was never destroyed", kind,
+                 (const char *)table->objects[i] + name_offset);
+        free(gpu, table->objects[i]);
+    }
+    table_finish(gpu->host, table);
+}
+
+static void free_objects(struct gpu *gpu)
+{
+    for (int i = 0; i < CMD_COUNT; i++) cmd_finish(gpu, &gpu->cmds[i]);
+    for (size_t i = 0; i < gpu->trash_count; i++) gpu->trash[i].free(gpu, gpu->trash[i].object);
+    gpu->trash_count = 0;
+    free_table(gpu, &gpu->pipelines, "pipeline", offsetof(struct pipeline, name), pipeline_free);
+    free_table(gpu, &gpu->images, "image", offsetof(struct image, name), image_free);
+    free_table(gpu, &gpu->buffers, "buffer", offsetof(struct buffer, name), buffer_free);
+    samplers_finish(gpu);
+    for (int i = 0; i < 2; i++) buffer_free(gpu, gpu->staging[i]);
+    vkDestroySemaphore(gpu->device, gpu->timeline, NULL);
+    vkDestroyPipelineCache(gpu->device, gpu->pipeline_cache, NULL);
+}
+
+void gpu_destroy(struct gpu *gpu)
+{
+    if (!gpu) return;
+    if (gpu->device) {
+        gpu_wait(gpu);
+        free_objects(gpu);
+        memory_finish(gpu);
+        if (!gpu->adopted) vkDestroyDevice(gpu->device, NULL);
+    }
+    if (gpu->messenger) {
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy =
+            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+                gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
+        if (destroy) destroy(gpu->instance, gpu->messenger, NULL);
+    }
+    if (gpu->instance && !gpu->adopted) vkDestroyInstance(gpu->instance, NULL);
+    host_free(gpu->host, gpu->trash);
+    host_free(gpu->host, gpu->shader_dir);
+    host_free(gpu->host, gpu);
+}
+
+const struct gpu_device_info *gpu_info(const struct gpu *gpu)
+{
+    return &gpu->info;
+}
+
+int gpu_validation_messages(const struct gpu *gpu)
+{
+    return gpu->validation_messages;
+}
+
+int gpu_live_objects(const struct gpu *gpu)
+{
+    return (int)(gpu->images.live + gpu->buffers.live + gpu->pipelines.live -
+                 gpu->internal_buffers);
+}
+
+const struct gpu_limits *gpu_limits(const struct gpu *gpu)
+{
+    return &gpu->limits;
+}

@@ -1,0 +1,288 @@
+// Device memory: large blocks cut into pieces, and the bytes of each owner.
+//
+// A block belongs to one memory type and to either buffers or images, so that
+// bufferImageGranularity never matters. Free pieces are kept sorted by offset; the first that fits
+// is taken. What is large gets a block of its own.
+#include "gpu/vk.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const VkDeviceSize BLOCK_BYTES = 64u << 20;
+static const VkDeviceSize LARGE_BYTES = 16u << 20;
+
+struct piece {
+    VkDeviceSize offset, bytes;
+};
+
+struct memory_block {
+    struct memory_block *next;
+    VkDeviceMemory memory;
+    VkDeviceSize bytes;
+    uint32_t type;
+    bool linear, single; // single: holds one allocation only
+    void *mapped;
+    struct piece *free;
+    uint32_t free_count, free_capacity;
+};
+
+static uint32_t owner_index(struct gpu *gpu, const char *name)
+{
+    struct memory *m = &gpu->memory;
+    char owner[sizeof m->owners->name];
+    size_t length = strcspn(name, ".");
+    snprintf(owner, sizeof owner, "%.*s", (int)length, name);
+    for (uint32_t i = 0; i < m->owner_count; i++) {
+        if (strcmp(m->owners[i].name, owner) == 0) return i;
+    }
+    struct memory_owner *owners =
+        host_realloc(gpu->host, m->owners, m->owner_count + 1, sizeof *owners);
+    if (!owners) return UINT32_MAX;
+    m->owners = owners;
+    owners[m->owner_count] = (struct memory_owner){ .bytes = 0 };
+    memcpy(owners[m->owner_count].name, owner, sizeof owner);
+    return m->owner_count++;
+}
+
+// How well a memory type serves; negative: not at all.
+static int score(VkMemoryPropertyFlags flags, enum memory_kind kind)
+{
+    const VkMemoryPropertyFlags mapped =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    bool local = flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    bool cached = flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    if (flags & (VK_MEMORY_PROPERTY_PROTECTED_BIT | VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT))
+        return -1;
+    if (kind != MEMORY_DEVICE && (flags & mapped) != mapped) return -1;
+    switch (kind) {
+    case MEMORY_DEVICE: // leave the small window that the CPU can see to those who need it
+        return (local ? 4 : 0) + (flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT ? 0 : 1);
+    case MEMORY_UPLOAD:
+        return (local ? 0 : 2) + (cached ? 0 : 1);
+    case MEMORY_DOWNLOAD:
+        return (cached ? 2 : 0) + (local ? 0 : 1);
+    default:
+        return (local ? 2 : 0) + (cached ? 0 : 1);
+    }
+}
+
+static bool add_piece(struct gpu *gpu, struct memory_block *block, uint32_t at, struct piece piece)
+{
+    if (block->free_count == block->free_capacity) {
+        uint32_t capacity = block->free_capacity ? 2 * block->free_capacity : 16;
+        struct piece *bigger = host_realloc(gpu->host, block->free, capacity, sizeof *bigger);
+        if (!bigger) return false;
+        block->free = bigger;
+        block->free_capacity = capacity;
+    }
+    memmove(block->free + at + 1, block->free + at, (block->free_count - at) * sizeof *block->free);
+    block->free[at] = piece;
+    block->free_count++;
+    return true;
+}
+
+static void remove_piece(struct memory_block *block, uint32_t at)
+{
+    block->free_count--;
+    memmove(block->free + at, block->free + at + 1, (block->free_count - at) * sizeof *block->free);
+}
+
+static void block_free(struct gpu *gpu, struct memory_block *block)
+{
+    vkFreeMemory(gpu->device, block->memory, NULL); // unmaps
+    host_free(gpu->host, block->free);
+    host_free(gpu->host, block);
+}
+
+// NULL without a message when this type has no memory left: another may.
+static struct memory_block *block_new(struct gpu *gpu, uint32_t type, VkDeviceSize bytes,
+                                      bool linear, bool mapped)
+{
+    struct memory_block *block = host_alloc(gpu->host, 1, sizeof *block);
+    if (!block) return NULL;
+    *block = (struct memory_block){ .bytes = bytes, .type = type, .linear = linear };
+    VkMemoryAllocateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+        .allocationSize = bytes,
+        .memoryTypeIndex = type,
+    };
+    if (vkAllocateMemory(gpu->device, &info, NULL, &block->memory) != VK_SUCCESS) {
+        host_free(gpu->host, block);
+        return NULL;
+    }
+    VK_NAME(gpu, VK_OBJECT_TYPE_DEVICE_MEMORY, block->memory,
+            linear ? "gpu.buffers" : "gpu.images");
+    if ((mapped && vkMapMemory(gpu->device, block->memory, 0, VK_WHOLE_SIZE, 0, &block->mapped) !=
+                       VK_SUCCESS) ||
+        !add_piece(gpu, block, 0, (struct piece){ 0, bytes })) {
+        block_free(gpu, block);
+        return NULL;
+    }
+    block->next = gpu->memory.blocks;
+    gpu->memory.blocks = block;
+    return block;
+}
+
+// Takes the needed bytes out of the first free piece that holds them.
+static bool block_take(struct gpu *gpu, struct memory_block *block,
+                       const VkMemoryRequirements *needs, VkDeviceSize *offset)
+{
+    for (uint32_t i = 0; i < block->free_count; i++) {
+        struct piece piece = block->free[i];
+        VkDeviceSize start = (piece.offset + needs->alignment - 1) & ~(needs->alignment - 1);
+        VkDeviceSize before = start - piece.offset;
+        if (before > piece.bytes || piece.bytes - before < needs->size) continue;
+        VkDeviceSize after = piece.bytes - before - needs->size;
+        if (before && after &&
+            !add_piece(gpu, block, i + 1, (struct piece){ start + needs->size, after })) {
+            return false;
+        }
+        if (before) {
+            block->free[i].bytes = before;
+        } else if (after) {
+            block->free[i] = (struct piece){ start + needs->size, after };
+        } else {
+            remove_piece(block, i);
+        }
+        *offset = start;
+        return true;
+    }
+    return false;
+}
+
+static struct memory_block *find_block(struct gpu *gpu, const VkMemoryRequirements *needs,
+                                       uint32_t type, bool linear, bool mapped,
+                                       VkDeviceSize *offset)
+{
+    bool single = needs->size >= LARGE_BYTES;
+    struct memory_block *block;
+    for (block = gpu->memory.blocks; block && !single; block = block->next) {
+        if (block->type != type || block->linear != linear || block->single) continue;
+        if ((mapped && !block->mapped) || (!mapped && block->mapped)) continue;
+        if (block_take(gpu, block, needs, offset)) return block;
+    }
+    // A small heap is not to be eaten by one block.
+    const VkPhysicalDeviceMemoryProperties *p = &gpu->memory.properties;
+    VkDeviceSize heap = p->memoryHeaps[p->memoryTypes[type].heapIndex].size;
+    VkDeviceSize bytes = single ? needs->size : BLOCK_BYTES;
+    if (!single && bytes > heap / 8) bytes = heap / 8 > needs->size ? heap / 8 : needs->size;
+    block = block_new(gpu, type, bytes, linear, mapped);
+    if (!block && bytes > needs->size) block = block_new(gpu, type, needs->size, linear, mapped);
+    if (!block) return NULL;
+    block->single = single;
+    return block_take(gpu, block, needs, offset) ? block : NULL;
+}
+
+bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum memory_kind kind,
+                     bool linear, const char *name, struct allocation *out)
+{
+    const VkPhysicalDeviceMemoryProperties *p = &gpu->memory.properties;
+    *out = (struct allocation){ .bytes = needs->size };
+    if (needs->size > gpu->memory.max_allocation) {
+        return host_fail(
+            gpu->host, FAIL_MEMORY, "gpu memory of %s: %llu bytes, the device gives at most %llu",
+            name, (unsigned long long)needs->size, (unsigned long long)gpu->memory.max_allocation);
+    }
+    uint32_t owner = owner_index(gpu, name);
+    if (owner == UINT32_MAX) return false;
+    uint32_t left = needs->memoryTypeBits;
+    while (left) { // the best type first, then the others
+        uint32_t best = UINT32_MAX;
+        int best_score = -1;
+        for (uint32_t i = 0; i < p->memoryTypeCount; i++) {
+            int s = left & 1u << i ? score(p->memoryTypes[i].propertyFlags, kind) : -1;
+            if (s > best_score) best_score = s, best = i;
+        }
+        if (best == UINT32_MAX) break;
+        left &= ~(1u << best);
+        struct memory_block *block =
+            find_block(gpu, needs, best, linear, kind != MEMORY_DEVICE, &out->offset);
+        if (!block) continue;
+        out->block = block;
+        out->memory = block->memory;
+        out->mapped = block->mapped ? (char *)block->mapped + out->offset : NULL;
+        out->owner = owner;
+        gpu->memory.owners[owner].bytes += needs->size;
+        return true;
+    }
+    return host_fail(gpu->host, FAIL_MEMORY, "gpu memory of %s: no %llu bytes left", name,
+                     (unsigned long long)needs->size);
+}
+
+static void block_give(struct gpu *gpu, struct memory_block *block, struct piece piece)
+{
+    uint32_t i = 0;
+    while (i < block->free_count && block->free[i].offset < piece.offset) i++;
+    bool joins_last = i > 0 && block->free[i - 1].offset + block->free[i - 1].bytes == piece.offset;
+    bool joins_next = i < block->free_count && piece.offset + piece.bytes == block->free[i].offset;
+    if (joins_last && joins_next) {
+        block->free[i - 1].bytes += piece.bytes + block->free[i].bytes;
+        remove_piece(block, i);
+    } else if (joins_last) {
+        block->free[i - 1].bytes += piece.bytes;
+    } else if (joins_next) {
+        block->free[i].offset = piece.offset;
+        block->free[i].bytes += piece.bytes;
+    } else {
+        (void)add_piece(gpu, block, i,
+                        piece); // out of memory: the piece is lost until the block goes
+    }
+}
+
+void memory_free(struct gpu *gpu, struct allocation *allocation)
+{
+    struct memory_block *block = allocation->block;
+    if (!block) return;
+    gpu->memory.owners[allocation->owner].bytes -= allocation->bytes;
+    block_give(gpu, block, (struct piece){ allocation->offset, allocation->bytes });
+    *allocation = (struct allocation){ 0 };
+    bool empty = block->free_count == 1 && block->free[0].bytes == block->bytes;
+    if (!block->single || !empty) return;
+    for (struct memory_block **at = &gpu->memory.blocks; *at; at = &(*at)->next) {
+        if (*at != block) continue;
+        *at = block->next;
+        block_free(gpu, block);
+        return;
+    }
+}
+
+void memory_finish(struct gpu *gpu)
+{
+    while (gpu->memory.blocks) {
+        struct memory_block *block = gpu->memory.blocks;
+        gpu->memory.blocks = block->next;
+        block_free(gpu, block);
+    }
+    host_free(gpu->host, gpu->memory.owners);
+    gpu->memory.owners = NULL;
+    gpu->memory.owner_count = 0;
+}
+
+static int larger_first(const void *a, const void *b)
+{
+    const struct gpu_memory *x = a, *y = b;
+    if (x->bytes != y->bytes) return x->bytes < y->bytes ? 1 : -1;
+    return strcmp(x->owner, y->owner);
+}
+
+int gpu_memory_by_owner(const struct gpu *gpu, struct gpu_memory *out, int capacity)
+{
+    int count = 0;
+    for (uint32_t i = 0; i < gpu->memory.owner_count; i++) {
+        struct gpu_memory entry = { .bytes = gpu->memory.owners[i].bytes };
+        if (!entry.bytes) continue;
+        memcpy(entry.owner, gpu->memory.owners[i].name, sizeof entry.owner);
+        if (count < capacity) {
+            out[count++] = entry;
+            continue;
+        }
+        int least = 0; // full: the largest ones stay
+        for (int k = 1; k < count; k++) {
+            if (larger_first(&out[k], &out[least]) > 0) least = k;
+        }
+        if (count && larger_first(&entry, &out[least]) < 0) out[least] = entry;
+    }
+    if (count) qsort(out, (size_t)count, sizeof *out, larger_first);
+    return count;
+}

@@ -1,0 +1,299 @@
+// Renderings: targets, draws. vkCmdBeginRendering is put off until the first draw, so that what the
+// draws need can be waited for even where it was not announced; a later draw that must wait
+// interrupts the rendering and takes it up again.
+#include "gpu/vk.h"
+
+#include <stddef.h>
+
+static bool check_target(struct gpu *gpu, const struct gpu_target *target,
+                         const struct gpu_render_desc *desc, bool depth)
+{
+    struct image *image = image_get(gpu, target->image);
+    if (!image) return gpu_misuse(gpu, "rendering: a target is no image");
+    bool volume = image->desc.dimension == GPU_3D;
+    if (!(image->desc.usage & GPU_ATTACHMENT) || (image->desc.format == GPU_D32F) != depth) {
+        return gpu_misuse(gpu, "rendering: image %s is no %s target", image->name,
+                          depth ? "depth" : "colour");
+    }
+    if (target->mip >= image->desc.mips) {
+        return gpu_misuse(gpu, "rendering: image %s has no mip %u", image->name, target->mip);
+    }
+    VkExtent3D extent = image_extent(image, target->mip);
+    if (target->layer >= (volume ? extent.depth : image->layers) || !desc->width || !desc->height ||
+        desc->width > extent.width || desc->height > extent.height) {
+        return gpu_misuse(gpu, "rendering: %u x %u at layer %u does not fit mip %u of image %s",
+                          desc->width, desc->height, target->layer, target->mip, image->name);
+    }
+    return true;
+}
+
+static bool check_desc(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
+{
+    if (desc->color_count < 0 || desc->color_count > MAX_COLORS ||
+        (uint32_t)desc->color_count > cmd->gpu->vk_limits.maxColorAttachments) {
+        return gpu_misuse(cmd->gpu, "rendering: %d colour targets", desc->color_count);
+    }
+    for (int i = 0; i < desc->color_count; i++) {
+        if (!check_target(cmd->gpu, &desc->color[i], desc, false)) return false;
+    }
+    return !desc->depth.image.id || check_target(cmd->gpu, &desc->depth, desc, true);
+}
+
+// 3D images have slices in place of layers, and one state for all of them.
+static struct range target_range(const struct image *image, const struct gpu_target *target)
+{
+    uint32_t layer = image->desc.dimension == GPU_3D ? 0 : target->layer;
+    return (struct range){ target->mip, 1, layer, 1 };
+}
+
+static bool is_target(const struct gpu_cmd *cmd, const struct gpu_target *target,
+                      const struct image *image, const struct range *range)
+{
+    if (!target->image.id || image_get(cmd->gpu, target->image) != image) return false;
+    struct range r = target_range(image, target);
+    return r.mip >= range->mip && r.mip < range->mip + range->mip_count &&
+           r.layer >= range->layer && r.layer < range->layer + range->layer_count;
+}
+
+bool render_has_target(const struct gpu_cmd *cmd, const struct image *image,
+                       const struct range *range)
+{
+    const struct rendering *r = &cmd->rendering;
+    if (!r->open || !(image->desc.usage & GPU_ATTACHMENT)) return false;
+    for (int i = 0; i < r->color_count; i++) {
+        if (is_target(cmd, &r->colors[i], image, range)) return true;
+    }
+    return is_target(cmd, &r->depth, image, range);
+}
+
+static struct access target_access(const struct image *image)
+{
+    if (image->desc.format == GPU_D32F) {
+        return (struct access){ VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
+                                    VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                                true, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL };
+    }
+    return (struct access){ VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, true,
+                            VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL };
+}
+
+static bool attach(struct gpu_cmd *cmd, const struct gpu_target *target,
+                   VkRenderingAttachmentInfo *out)
+{
+    struct image *image = image_get(cmd->gpu, target->image);
+    if (!image)
+        return gpu_misuse(cmd->gpu, "rendering: a target was destroyed before its first draw");
+    struct range range = target_range(image, target);
+    struct access access = target_access(image);
+    VkExtent3D extent = image_extent(image, target->mip);
+    bool load = target->load || cmd->rendering.begun;
+    if (!load && image->desc.mips == 1 && image->layers == 1 && extent.depth == 1 &&
+        cmd->rendering.width == extent.width && cmd->rendering.height == extent.height) {
+        hazard_overwrite_image(image);
+    }
+    hazard_image(cmd, image, &range, &access);
+    *out = (VkRenderingAttachmentInfo){
+        .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+        .imageView = image_view(cmd->gpu, image, VK_IMAGE_VIEW_TYPE_2D,
+                                &(struct range){ target->mip, 1, target->layer, 1 }),
+        .imageLayout = access.layout,
+        .loadOp = load ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR,
+        .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+    };
+    if (image->desc.format == GPU_D32F) {
+        out->clearValue.depthStencil.depth = target->clear[0];
+    } else {
+        out->clearValue.color = format_clear(image->desc.format, target->clear);
+    }
+    return out->imageView != VK_NULL_HANDLE;
+}
+
+static bool resume(struct gpu_cmd *cmd)
+{
+    struct rendering *r = &cmd->rendering;
+    if (r->active) return true;
+    VkRenderingAttachmentInfo colors[MAX_COLORS], depth;
+    hazard_next_op(
+        cmd); // the targets are used anew, whatever an earlier part of this rendering did
+    bool ok = true;
+    for (int i = 0; i < r->color_count; i++) ok = ok && attach(cmd, &r->colors[i], &colors[i]);
+    if (r->depth.image.id) ok = ok && attach(cmd, &r->depth, &depth);
+    cmd->op = r->op;
+    if (!ok) {
+        cmd->broken = true;
+        return false;
+    }
+    hazard_flush(cmd);
+    vkCmdBeginRendering(cmd->buffer, &(VkRenderingInfo){
+                                         .sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                         .renderArea.extent = { r->width, r->height },
+                                         .layerCount = 1,
+                                         .colorAttachmentCount = (uint32_t)r->color_count,
+                                         .pColorAttachments = colors,
+                                         .pDepthAttachment = r->depth.image.id ? &depth : NULL,
+                                     });
+    r->active = r->begun = true;
+    vkCmdSetViewport(cmd->buffer, 0, 1, &r->viewport);
+    vkCmdSetScissor(cmd->buffer, 0, 1, &r->scissor);
+    return true;
+}
+
+void render_suspend(struct gpu_cmd *cmd)
+{
+    if (!cmd->rendering.active) return;
+    vkCmdEndRendering(cmd->buffer);
+    cmd->rendering.active = false;
+}
+
+// What the draws will read, as shaders find it.
+static void announce(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
+{
+    const VkPipelineStageFlags2 stages =
+        VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    for (int i = 0; i < desc->read_count; i++) {
+        const struct gpu_binding *read = &desc->reads[i];
+        struct image *image = image_get(cmd->gpu, read->image);
+        struct buffer *buffer = buffer_get(cmd->gpu, read->buffer);
+        if (image && read->mip < image->desc.mips &&
+            (!read->one_layer || read->layer < image->layers)) {
+            struct range range = bind_sampled_range(
+                image, read, read->one_layer ? VK_IMAGE_VIEW_TYPE_2D : VK_IMAGE_VIEW_TYPE_2D_ARRAY);
+            if (render_has_target(cmd, image, &range)) continue;
+            hazard_image(
+                cmd, image, &range,
+                &(struct access){ .stages = stages, .layout = hazard_resting_layout(image) });
+        } else if (buffer) {
+            hazard_buffer(
+                cmd, buffer,
+                &(struct access){ .stages = stages | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT });
+        }
+    }
+}
+
+void gpu_render_begin(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
+{
+    struct rendering *r = &cmd->rendering;
+    if (r->open) {
+        gpu_misuse(cmd->gpu, "rendering: another is still open");
+        gpu_render_end(cmd);
+    }
+    *r = (struct rendering){ .open = true };
+    if (cmd->gpu->lost || cmd->broken || !check_desc(cmd, desc)) {
+        r->wrong = true;
+        return;
+    }
+    for (int i = 0; i < desc->color_count; i++) r->colors[i] = desc->color[i];
+    r->color_count = desc->color_count;
+    r->depth = desc->depth;
+    r->width = desc->width;
+    r->height = desc->height;
+    gpu_render_viewport(cmd, 0, 0, desc->width, desc->height);
+    hazard_next_op(cmd);
+    announce(cmd, desc);
+    hazard_next_op(cmd);
+    r->op = cmd->op;
+}
+
+void gpu_render_viewport(struct gpu_cmd *cmd, uint32_t x, uint32_t y, uint32_t width,
+                         uint32_t height)
+{
+    struct rendering *r = &cmd->rendering;
+    if (!r->open || r->wrong) return;
+    if (x > r->width || y > r->height || width > r->width - x || height > r->height - y) {
+        gpu_misuse(cmd->gpu, "viewport: %u x %u at %u, %u is outside of %u x %u", width, height, x,
+                   y, r->width, r->height);
+        return;
+    }
+    r->viewport = (VkViewport){ (float)x, (float)y, (float)width, (float)height, 0, 1 };
+    r->scissor = (VkRect2D){ { (int32_t)x, (int32_t)y }, { width, height } };
+    if (!r->active) return;
+    vkCmdSetViewport(cmd->buffer, 0, 1, &r->viewport);
+    vkCmdSetScissor(cmd->buffer, 0, 1, &r->scissor);
+}
+
+static bool formats_match(struct gpu_cmd *cmd, const struct pipeline *pipeline)
+{
+    const struct rendering *r = &cmd->rendering;
+    bool same = pipeline->color_count == r->color_count &&
+                (pipeline->desc.depth_format != GPU_FORMAT_NONE) == (r->depth.image.id != 0);
+    for (int i = 0; same && i < r->color_count; i++) {
+        struct image *image = image_get(cmd->gpu, r->colors[i].image);
+        same = image && image->desc.format == pipeline->desc.color_formats[i];
+    }
+    return same ||
+           gpu_misuse(cmd->gpu, "draw with %s: the targets are not of its formats", pipeline->name);
+}
+
+// The index buffer of an indexed draw, ready to be read; NULL where something is wrong.
+static struct buffer *prepare_indices(struct gpu_cmd *cmd, const struct pipeline *pipeline,
+                                      const struct gpu_draw_desc *draw)
+{
+    struct buffer *indices = buffer_get(cmd->gpu, draw->indices);
+    if (!indices || draw->index_offset % 4 || draw->index_offset > indices->bytes ||
+        draw->count > (indices->bytes - draw->index_offset) / 4) {
+        gpu_misuse(cmd->gpu, "draw with %s: %u indices at byte %zu are not in the buffer",
+                   pipeline->name, draw->count, draw->index_offset);
+        return NULL;
+    }
+    hazard_buffer(cmd, indices, &(struct access){ .stages = VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT });
+    return indices;
+}
+
+static void record_draw(struct gpu_cmd *cmd, const struct gpu_draw_desc *draw,
+                        struct buffer *indices)
+{
+    static const VkCullModeFlags culls[] = { VK_CULL_MODE_NONE, VK_CULL_MODE_BACK_BIT,
+                                             VK_CULL_MODE_FRONT_BIT };
+    uint32_t instances = draw->instances ? draw->instances : 1;
+    vkCmdSetCullMode(cmd->buffer, culls[draw->cull]);
+    vkCmdSetFrontFace(cmd->buffer,
+                      draw->flip_front ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    if (indices) {
+        vkCmdBindIndexBuffer(cmd->buffer, indices->handle, draw->index_offset,
+                             VK_INDEX_TYPE_UINT32);
+        vkCmdDrawIndexed(cmd->buffer, draw->count, instances, 0, draw->vertex_offset, 0);
+    } else {
+        vkCmdDraw(cmd->buffer, draw->count, instances, (uint32_t)draw->vertex_offset, 0);
+    }
+}
+
+void gpu_draw(struct gpu_cmd *cmd, const struct gpu_draw_desc *draw)
+{
+    struct gpu *gpu = cmd->gpu;
+    struct rendering *r = &cmd->rendering;
+    if (gpu->lost || cmd->broken || r->wrong || !draw->count) return;
+    struct pipeline *pipeline = pipeline_get(gpu, draw->pipeline);
+    if (!r->open || !pipeline || !pipeline->graphics || (unsigned)draw->cull > GPU_CULL_FRONT) {
+        gpu_misuse(gpu, "draw: %s",
+                   r->open ? "no graphics pipeline, or no such culling" : "no rendering is open");
+        return;
+    }
+    struct bound_set set;
+    cmd->op = r->op;
+    if (!formats_match(cmd, pipeline) ||
+        !bind_prepare(cmd, pipeline, draw->bindings, draw->binding_count, draw->push_bytes, &set)) {
+        return;
+    }
+    struct buffer *indices = NULL;
+    if (draw->indices.id) {
+        indices = prepare_indices(cmd, pipeline, draw);
+        if (!indices) return;
+    }
+    hazard_flush(cmd);
+    if (!resume(cmd)) return;
+    bind_record(cmd, pipeline, &set, draw->push);
+    record_draw(cmd, draw, indices);
+}
+
+void gpu_render_end(struct gpu_cmd *cmd)
+{
+    struct rendering *r = &cmd->rendering;
+    if (!r->open) {
+        gpu_misuse(cmd->gpu, "rendering: none is open");
+        return;
+    }
+    // Without a draw there may still be targets to clear.
+    if (!r->wrong && !r->begun && !cmd->broken && !cmd->gpu->lost) resume(cmd);
+    render_suspend(cmd);
+    *r = (struct rendering){ 0 };
+}

@@ -1,0 +1,138 @@
+// Scopes: a debug label and a pair of timestamps. The whole frame is the outermost one.
+#include "gpu/vk.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { STACK = sizeof(((struct scopes *)0)->stack) / sizeof(uint32_t) };
+static const uint32_t NOT_TIMED = UINT32_MAX;
+
+bool scopes_init(struct gpu *gpu, struct scopes *scopes, const char *name)
+{
+    if (!gpu->limits.timestamps) return true;
+    if (!VK_CHECK(gpu, vkCreateQueryPool(gpu->device,
+                                         &(VkQueryPoolCreateInfo){
+                                             .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                             .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                             .queryCount = 2 * MAX_SCOPES },
+                                         NULL, &scopes->queries))) {
+        return false;
+    }
+    VK_NAME(gpu, VK_OBJECT_TYPE_QUERY_POOL, scopes->queries, name);
+    return true;
+}
+
+// The time when all before it is done.
+static uint32_t stamp(struct gpu_cmd *cmd)
+{
+    if (!cmd->scopes.queries) return NOT_TIMED;
+    uint32_t query = cmd->scopes.query_count++;
+    vkCmdWriteTimestamp2(cmd->buffer, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, cmd->scopes.queries,
+                         query);
+    return query;
+}
+
+static void push(struct gpu_cmd *cmd, const char *name)
+{
+    struct scopes *s = &cmd->scopes;
+    uint32_t index = NOT_TIMED;
+    if (s->count < MAX_SCOPES) {
+        index = s->count++;
+        struct scope *scope = &s->list[index];
+        *scope = (struct scope){ .last_query = NOT_TIMED };
+        snprintf(scope->name, sizeof scope->name, "%s", name);
+        scope->first_query = stamp(cmd);
+    } else if (s->count == MAX_SCOPES) {
+        s->count++;
+        host_log(cmd->gpu->host, LOG_WARNING, "gpu scope %s: only %d are timed in a frame", name,
+                 MAX_SCOPES);
+    }
+    if (s->depth > 0 && s->depth <= STACK && s->stack[s->depth - 1] != NOT_TIMED) {
+        s->list[s->stack[s->depth - 1]].outer = true;
+    }
+    if (s->depth < STACK) s->stack[s->depth] = index;
+    s->depth++;
+}
+
+static void pop(struct gpu_cmd *cmd)
+{
+    struct scopes *s = &cmd->scopes;
+    s->depth--;
+    if (s->depth >= STACK || s->stack[s->depth] == NOT_TIMED) return;
+    s->list[s->stack[s->depth]].last_query = stamp(cmd);
+}
+
+void scopes_start(struct gpu_cmd *cmd)
+{
+    struct scopes *s = &cmd->scopes;
+    s->count = s->query_count = s->depth = 0;
+    if (s->queries) vkResetQueryPool(cmd->gpu->device, s->queries, 0, 2 * MAX_SCOPES);
+    push(cmd, "frame");
+}
+
+void scopes_stop(struct gpu_cmd *cmd)
+{
+    if (cmd->scopes.depth > 1)
+        gpu_misuse(cmd->gpu, "scope: %u are still open at the frame's end", cmd->scopes.depth - 1);
+    while (cmd->scopes.depth > 1) gpu_scope_end(cmd);
+    pop(cmd);
+}
+
+void gpu_scope_begin(struct gpu_cmd *cmd, const char *name)
+{
+    if (cmd->gpu->begin_label) {
+        cmd->gpu->begin_label(
+            cmd->buffer, &(VkDebugUtilsLabelEXT){ .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                                  .pLabelName = name });
+    }
+    push(cmd, name);
+}
+
+void gpu_scope_end(struct gpu_cmd *cmd)
+{
+    if (cmd->scopes.depth < 2) {
+        gpu_misuse(cmd->gpu, "scope: none is open");
+        return;
+    }
+    pop(cmd);
+    if (cmd->gpu->end_label) cmd->gpu->end_label(cmd->buffer);
+}
+
+static struct gpu_timing *timing_of(struct gpu *gpu, const char *name)
+{
+    for (int i = 0; i < gpu->timing_count; i++) {
+        if (strcmp(gpu->timings[i].name, name) == 0) return &gpu->timings[i];
+    }
+    struct gpu_timing *timing = &gpu->timings[gpu->timing_count++];
+    *timing = (struct gpu_timing){ .ms = 0 };
+    snprintf(timing->name, sizeof timing->name, "%s", name);
+    return timing;
+}
+
+void scopes_collect(struct gpu_cmd *cmd)
+{
+    struct gpu *gpu = cmd->gpu;
+    struct scopes *s = &cmd->scopes;
+    uint64_t ticks[2 * MAX_SCOPES];
+    if (!s->queries || !s->query_count || cmd->serial <= gpu->timings_serial) return;
+    if (vkGetQueryPoolResults(gpu->device, s->queries, 0, s->query_count, sizeof ticks, ticks,
+                              sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS) {
+        return;
+    }
+    gpu->timings_serial = cmd->serial;
+    gpu->timing_count = 0;
+    uint32_t count = s->count < MAX_SCOPES ? s->count : MAX_SCOPES;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct scope *scope = &s->list[i];
+        if ((scope->outer && i > 0) || scope->last_query == NOT_TIMED) continue;
+        uint64_t passed = (ticks[scope->last_query] - ticks[scope->first_query]) & gpu->tick_mask;
+        timing_of(gpu, scope->name)->ms += (double)passed * gpu->ns_per_tick * 1e-6;
+    }
+}
+
+int gpu_frame_timings(const struct gpu *gpu, struct gpu_timing *out, int capacity)
+{
+    int count = gpu->timing_count < capacity ? gpu->timing_count : capacity;
+    if (count > 0) memcpy(out, gpu->timings, (size_t)count * sizeof *out);
+    return count > 0 ? count : 0;
+}

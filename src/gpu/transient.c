@@ -1,0 +1,72 @@
+// Small data for one frame: a mapped buffer for each frame in flight, filled from its start and
+// used anew when the GPU is done with the frame. The CPU's writes come before the submission, which
+// makes them visible.
+#include "gpu/vk.h"
+
+#include <string.h>
+
+static const size_t RING_BYTES = 64u << 10;
+
+void ring_start(struct gpu_cmd *cmd)
+{
+    cmd->ring.used = 0;
+}
+
+static void ring_drop(struct gpu *gpu, struct ring *ring)
+{
+    if (!ring->buffer.id) return;
+    gpu_buffer_destroy(gpu, &ring->buffer);
+    gpu->internal_buffers--;
+}
+
+static bool ring_grow(struct gpu_cmd *cmd, size_t bytes)
+{
+    struct gpu *gpu = cmd->gpu;
+    size_t size = gpu_buffer_bytes(gpu, cmd->ring.buffer);
+    size = size ? 2 * size : RING_BYTES;
+    while (size < bytes && size < SIZE_MAX / 2) size *= 2;
+    const uint32_t usage =
+        GPU_BUFFER_STORAGE | GPU_BUFFER_UNIFORM | GPU_BUFFER_INDEX | GPU_BUFFER_INDIRECT;
+    struct buffer *buffer = buffer_new(gpu, "gpu.transient", size, usage, MEMORY_RING);
+    if (!buffer) return false;
+    buffer->constant = true;
+    uint32_t id = table_add(gpu->host, &gpu->buffers, buffer);
+    if (!id) {
+        buffer_free(gpu, buffer);
+        return false;
+    }
+    ring_drop(gpu, &cmd->ring);
+    gpu->internal_buffers++;
+    cmd->ring = (struct ring){ .buffer = { id } };
+    return true;
+}
+
+struct gpu_binding gpu_transient(struct gpu_cmd *cmd, const char *name, const void *data,
+                                 size_t bytes)
+{
+    static const char nothing[16];
+    const VkPhysicalDeviceLimits *l = &cmd->gpu->vk_limits;
+    struct gpu_binding binding = { .name = name };
+    if (!bytes) data = nothing, bytes = sizeof nothing; // an empty block still needs a buffer
+    size_t alignment = l->minUniformBufferOffsetAlignment;
+    if (alignment < l->minStorageBufferOffsetAlignment)
+        alignment = l->minStorageBufferOffsetAlignment;
+    if (alignment < 16) alignment = 16;
+    size_t start = (cmd->ring.used + alignment - 1) / alignment * alignment;
+    size_t end, capacity = gpu_buffer_bytes(cmd->gpu, cmd->ring.buffer);
+    if (!size_add(start, bytes, &end) || end > capacity) {
+        if (!ring_grow(cmd, bytes)) {
+            cmd->broken = true; // the rest of the frame is not recorded, and its end fails
+            return binding;
+        }
+        start = 0;
+        end = bytes;
+    }
+    struct buffer *buffer = buffer_get(cmd->gpu, cmd->ring.buffer);
+    memcpy((char *)buffer->memory.mapped + start, data, bytes);
+    cmd->ring.used = end;
+    binding.buffer = cmd->ring.buffer;
+    binding.offset = start;
+    binding.bytes = bytes;
+    return binding;
+}

@@ -1,0 +1,412 @@
+// Private to src/gpu: the device and its objects as Vulkan sees them. Each .c file says what it
+// does; this header says only what they share.
+#pragma once
+
+#include "gpu/gpu.h"
+
+#include <vulkan/vulkan.h>
+
+enum {
+    FRAMES_IN_FLIGHT = 2,
+    ADOPTED_IN_FLIGHT = 4,
+    CMD_COUNT = FRAMES_IN_FLIGHT + 1 + ADOPTED_IN_FLIGHT, // frames, one for transfers, adopted ones
+    CMD_TRANSFER = FRAMES_IN_FLIGHT,
+    MAX_BINDINGS = 32, // the least maxPushDescriptors that VK_KHR_push_descriptor allows
+    MAX_COLORS = 8,
+    MAX_STAGES = 2,
+    MAX_SCOPES = 128,
+    NAME_SIZE = 64,
+    BATCH_IMAGES = 16,
+};
+
+// ---- Failure (vk.c)
+// -----------------------------------------------------------------------------------------
+
+// True where `call` gave VK_SUCCESS; else logs the call's text and the result. A lost device stays
+// lost.
+#define VK_CHECK(gpu, call) vk_check((gpu), (call), #call)
+bool vk_check(struct gpu *gpu, VkResult result, const char *call);
+const char *vk_result_name(VkResult result);
+// A programmer's mistake that a release build survives: logged, asserted in debug builds. Returns
+// false.
+bool gpu_misuse(struct gpu *gpu, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void vk_name(struct gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
+// Vulkan's handles are pointers or 64-bit numbers, by platform.
+#define VK_NAME(gpu, type, handle, name) vk_name((gpu), (type), (uint64_t)(handle), (name))
+
+// ---- Handles (table.c)
+// --------------------------------------------------------------------------------------
+
+// Objects by id: index + 1 in the low 20 bits, a generation above, so that a stale id is found out.
+struct table {
+    void **objects;
+    uint32_t *generations;
+    uint32_t count, capacity, live;
+};
+uint32_t table_add(struct host *host, struct table *table, void *object); // 0: no memory
+void *table_get(const struct table *table, uint32_t id); // NULL: none, or destroyed
+void *table_remove(struct table *table, uint32_t id);
+void table_finish(struct host *host, struct table *table);
+
+// ---- Memory (memory.c)
+// --------------------------------------------------------------------------------------
+
+enum memory_kind {
+    MEMORY_DEVICE,   // where the GPU is fastest
+    MEMORY_UPLOAD,   // mapped, coherent
+    MEMORY_DOWNLOAD, // mapped, coherent, cached where there is such
+    MEMORY_RING,     // mapped, coherent, device-local where there is such
+};
+
+struct memory_block;
+struct allocation {
+    struct memory_block *block; // NULL: none
+    VkDeviceMemory memory;
+    VkDeviceSize offset, bytes;
+    void *mapped; // at offset; NULL for MEMORY_DEVICE
+    uint32_t owner;
+};
+
+struct memory_owner {
+    char name[32];
+    uint64_t bytes;
+};
+
+struct memory {
+    VkPhysicalDeviceMemoryProperties properties;
+    VkDeviceSize max_allocation;
+    struct memory_block *blocks;
+    struct memory_owner *owners;
+    uint32_t owner_count;
+};
+
+// `linear`: for buffers; images live in blocks of their own (bufferImageGranularity). The owner is
+// name's first part.
+bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum memory_kind kind,
+                     bool linear, const char *name, struct allocation *out);
+void memory_free(struct gpu *gpu, struct allocation *allocation);
+void memory_finish(struct gpu *gpu);
+
+// ---- Hazards (hazard.c)
+// -------------------------------------------------------------------------------------
+
+// What the queue has done to a buffer or to one subresource of an image.
+struct hazard {
+    VkPipelineStageFlags2 write_stages; // of the last write, or of the last layout transition
+    VkAccessFlags2 write_access;
+    VkPipelineStageFlags2 visible;     // stages that see that write
+    VkPipelineStageFlags2 read_stages; // that read since
+    VkImageLayout layout;
+    bool op_wrote; // the operation `op` wrote it
+    uint64_t op;   // the last operation that used it
+};
+
+struct access {
+    VkPipelineStageFlags2 stages;
+    bool write;
+    VkImageLayout layout; // images only
+};
+
+// Barriers waiting for the next command: one for all memory, and one for each change of layout.
+struct batch {
+    VkMemoryBarrier2 memory;
+    VkImageMemoryBarrier2 images[BATCH_IMAGES];
+    uint32_t image_count;
+};
+
+struct range { // of subresources
+    uint32_t mip, mip_count, layer, layer_count;
+};
+
+// ---- Resources
+// ----------------------------------------------------------------------------------------------
+
+struct image_view {
+    VkImageViewType type;
+    struct range range;
+    VkImageView handle;
+};
+
+struct image {
+    struct gpu_image_desc desc; // with its zeros filled in; desc.name is `name`
+    char name[NAME_SIZE];
+    VkImage handle;
+    VkImageAspectFlags aspect;
+    uint32_t layers;   // 1 for 3D images
+    bool wrapped;      // the caller's VkImage
+    bool shared;       // others use it between our frames: wrapped, or its handle was given away
+    bool zero_pending; // not yet cleared
+    bool whole;        // all subresources are in the state hazards[0]
+    struct hazard *hazards; // [layer × mips + mip]
+    struct image_view *views;
+    uint32_t view_count;
+    struct allocation memory;
+};
+
+struct buffer {
+    char name[NAME_SIZE];
+    VkBuffer handle;
+    size_t bytes;    // as asked
+    size_t capacity; // rounded up to whole words, for fills
+    bool zero_pending;
+    bool constant; // the GPU only reads it: no hazards
+    struct hazard hazard;
+    struct allocation memory;
+};
+
+struct sampler {
+    struct gpu_sampler_desc desc; // without the name
+    VkSampler handle;
+};
+
+struct image *image_get(const struct gpu *gpu, gpu_image image);
+VkImageView image_view(struct gpu *gpu, struct image *image, VkImageViewType type,
+                       const struct range *range);
+struct range image_whole(const struct image *image);
+// Width, height and depth of a mip.
+VkExtent3D image_extent(const struct image *image, uint32_t mip);
+bool image_check_part(struct gpu *gpu, const struct image *image, uint32_t mip, uint32_t layer);
+size_t image_part_bytes(const struct image *image, uint32_t mip);
+void image_free(struct gpu *gpu, void *image);
+
+struct buffer *buffer_get(const struct gpu *gpu, gpu_buffer buffer);
+// Mapped buffers of the layer itself are `constant` or staging, and not zeroed. Live objects do not
+// count them.
+struct buffer *buffer_new(struct gpu *gpu, const char *name, size_t bytes, uint32_t usage,
+                          enum memory_kind kind);
+void buffer_free(struct gpu *gpu, void *buffer);
+
+VkSampler sampler_handle(struct gpu *gpu,
+                         gpu_sampler sampler); // none: nearest, clamped; NULL where stale
+void samplers_finish(struct gpu *gpu);
+
+struct format {
+    VkFormat vk;
+    uint8_t bytes, channels;
+    const char *name;
+};
+const struct format *format_of(enum gpu_format format);
+void format_to_float(enum gpu_format format, const void *texel, float out[4]);
+VkClearColorValue format_clear(enum gpu_format format, const float value[4]);
+
+// ---- Shaders and pipelines
+// ----------------------------------------------------------------------------------
+
+struct shader_binding {
+    char name[NAME_SIZE];
+    uint32_t binding;
+    VkDescriptorType type;
+    VkImageViewType view; // images
+    VkShaderStageFlags shader_stages;
+    VkPipelineStageFlags2 stages;
+    bool writes;
+};
+
+struct reflection {
+    struct shader_binding bindings[MAX_BINDINGS];
+    int binding_count;
+    uint32_t push_bytes;
+    VkShaderStageFlags push_stages;
+    uint32_t constant_ids[64];
+    int constant_count;
+};
+// Adds what one stage declares to what is there. `what` names the shader in failures.
+bool reflect_stage(struct gpu *gpu, const uint32_t *words, size_t word_count, const char *what,
+                   VkShaderStageFlagBits stage, struct reflection *out);
+
+struct shader_stage {
+    VkShaderStageFlagBits stage;
+    struct gpu_shader embedded; // words of static storage
+    char name[NAME_SIZE];
+    int64_t stamp; // of the file in shader_dir when last read; 0: there was none
+};
+
+struct pipeline {
+    char name[NAME_SIZE];
+    bool graphics;
+    struct shader_stage stages[MAX_STAGES];
+    int stage_count;
+    struct gpu_constant *constants;
+    int constant_count;
+    struct gpu_graphics_desc desc; // graphics only; its pointers are not used
+    int color_count;
+
+    struct reflection reflection;
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    VkPipeline handle;
+};
+struct pipeline *pipeline_get(const struct gpu *gpu, gpu_pipeline pipeline);
+void pipeline_free(struct gpu *gpu, void *pipeline);
+VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *pipeline,
+                                  const VkPipelineShaderStageCreateInfo *stages);
+
+// ---- Commands
+// -----------------------------------------------------------------------------------------------
+
+struct rendering {
+    bool open;   // between gpu_render_begin and gpu_render_end
+    bool active; // between vkCmdBeginRendering and vkCmdEndRendering
+    bool begun;  // was active before: load from now on
+    bool wrong;  // misused: draws nothing
+    struct gpu_target colors[MAX_COLORS], depth;
+    int color_count;
+    uint32_t width, height;
+    VkViewport viewport;
+    VkRect2D scissor;
+    uint64_t op;
+};
+
+struct ring { // transient data
+    gpu_buffer buffer;
+    size_t used;
+};
+
+struct scope {
+    char name[48];
+    uint32_t first_query, last_query; // UINT32_MAX: not timed
+    bool outer;                       // others are inside
+};
+
+struct scopes {
+    VkQueryPool queries;
+    struct scope list[MAX_SCOPES];
+    uint32_t count; // begun, timed or not
+    uint32_t query_count;
+    uint32_t stack[16], depth;
+};
+
+enum cmd_state { CMD_FREE, CMD_RECORDING, CMD_PENDING };
+
+struct gpu_cmd {
+    struct gpu *gpu;
+    enum cmd_state state;
+    bool adopted;
+    bool broken;       // something could not be recorded: the frame's end fails
+    uint64_t serial;   // frames and transfers in the order of their recording
+    uint64_t timeline; // the value that our own submission signals
+    VkCommandPool pool;
+    VkCommandBuffer buffer;
+    uint64_t op; // see hazard.op
+    struct batch batch;
+    struct rendering rendering;
+    struct ring ring;
+    struct scopes scopes;
+    VkPipeline bound[2]; // compute, graphics
+};
+
+// The next command is an operation of its own as regards hazards.
+void hazard_next_op(struct gpu_cmd *cmd);
+// Queues the barriers that `access` needs and remembers it. Clears what was never used before.
+void hazard_image(struct gpu_cmd *cmd, struct image *image, const struct range *range,
+                  const struct access *access);
+void hazard_buffer(struct gpu_cmd *cmd, struct buffer *buffer, const struct access *access);
+// The image or buffer will be overwritten entirely: no need to zero it.
+void hazard_overwrite_image(struct image *image);
+void hazard_overwrite_buffer(struct buffer *buffer);
+void hazard_flush(struct gpu_cmd *cmd); // records the queued barriers, outside of any rendering
+// Others may have used the image in any way, and left it in `layout`.
+void hazard_forget(struct image *image, VkImageLayout layout);
+VkImageLayout hazard_transfer_layout(const struct image *image, bool write);
+VkImageLayout hazard_resting_layout(const struct image *image); // where shaders find it
+
+// Matches the bindings with the shader's, queues their barriers and fills `writes` with one entry
+// per shader binding.
+struct bound_set {
+    VkWriteDescriptorSet writes[MAX_BINDINGS];
+    VkDescriptorImageInfo images[MAX_BINDINGS];
+    VkDescriptorBufferInfo buffers[MAX_BINDINGS];
+};
+bool bind_prepare(struct gpu_cmd *cmd, const struct pipeline *pipeline,
+                  const struct gpu_binding *bindings, int binding_count, size_t push_bytes,
+                  struct bound_set *set);
+void bind_record(struct gpu_cmd *cmd, const struct pipeline *pipeline, const struct bound_set *set,
+                 const void *push);
+// What a sampled binding covers.
+struct range bind_sampled_range(const struct image *image, const struct gpu_binding *binding,
+                                VkImageViewType view);
+
+bool render_has_target(const struct gpu_cmd *cmd, const struct image *image,
+                       const struct range *range);
+void render_suspend(
+    struct gpu_cmd *cmd); // ends the active rendering, if any; the next draw takes it up again
+
+bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted);
+void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd);
+struct gpu_cmd *
+transfer_begin(struct gpu *gpu); // NULL: a frame is being recorded, or the device is lost
+bool transfer_end(struct gpu *gpu, struct gpu_cmd *cmd); // submits and waits
+
+bool scopes_init(struct gpu *gpu, struct scopes *scopes, const char *name);
+void scopes_start(struct gpu_cmd *cmd);
+void scopes_stop(struct gpu_cmd *cmd);
+void scopes_collect(struct gpu_cmd *cmd); // the GPU is done with it
+void ring_start(struct gpu_cmd *cmd);
+
+// ---- The device
+// ---------------------------------------------------------------------------------------------
+
+// Work for when the GPU is done with all that was recorded before it.
+struct trash {
+    uint64_t serial;
+    void (*free)(struct gpu *gpu, void *object);
+    void *object;
+};
+void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), void *object);
+void trash_collect(struct gpu *gpu); // asks the GPU how far it is, and frees
+
+struct gpu {
+    struct host *host;
+    struct gpu_device_info info;
+    struct gpu_limits limits;
+    VkPhysicalDeviceLimits vk_limits;
+    uint32_t max_push_descriptors;
+    double ns_per_tick;
+    uint64_t tick_mask;
+    char *shader_dir;
+
+    bool adopted;
+    struct gpu_adopt adopt;
+    VkInstance instance;
+    VkDebugUtilsMessengerEXT messenger;
+    int validation_messages;
+    VkPhysicalDevice physical;
+    VkDevice device;
+    VkQueue queue;
+    uint32_t queue_family;
+    bool lost;
+    PFN_vkCmdPushDescriptorSetKHR push_descriptors;
+    PFN_vkSetDebugUtilsObjectNameEXT set_name; // these three may be NULL
+    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
+    PFN_vkCmdEndDebugUtilsLabelEXT end_label;
+
+    VkPipelineCache pipeline_cache;
+    struct memory memory;
+    struct table images, buffers, samplers, pipelines;
+    uint32_t internal_buffers; // rings: not the caller's
+    gpu_sampler default_sampler;
+    struct buffer *staging[2]; // upload, download
+
+    VkSemaphore timeline;
+    uint64_t submitted; // the newest value that a submission signals
+    uint64_t serial;    // of the newest recording
+    uint64_t ops;
+    struct gpu_cmd cmds[CMD_COUNT];
+    uint32_t next_frame;
+    struct gpu_cmd *recording; // NULL: none
+
+    struct trash *trash;
+    size_t trash_count, trash_capacity;
+    struct gpu_timing timings[MAX_SCOPES + 1];
+    int timing_count;
+    uint64_t timings_serial;
+};
+
+// instance.c. messages: where the debug messenger counts; NULL: no messenger. false: logged.
+bool instance_create(struct host *host, bool validation, VkInstance *out);
+bool instance_watch(struct gpu *gpu); // counts validation messages from now on
+// device.c
+VkPhysicalDevice device_choose(struct host *host, VkInstance instance, const char *wanted);
+void device_describe(VkPhysicalDevice physical, struct gpu_device_info *out);
+bool device_create(struct gpu *gpu);
+void device_read_limits(struct gpu *gpu);
