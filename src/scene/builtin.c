@@ -7,8 +7,8 @@
 #include <string.h>
 
 const struct builtin_scene *const builtin_scenes[] = {
-    &builtin_cornell,
-    NULL,
+    &builtin_cornell, &builtin_corridor, &builtin_maze, &builtin_tunnel,
+    &builtin_spheres, &builtin_diagonal, NULL,
 };
 
 enum { MAX_NAME = 32, MAX_BUILTINS = 32 };
@@ -130,4 +130,25 @@ bool builtin_sun(struct scene *scene, const char *name, vec3s over, vec3s direct
     struct light light = { .name = name, .type = LIGHT_SUN, .intensity = lux };
     light.node = scene_add_node_looking(scene, name, over, direction);
     return light.node >= 0 && scene_add_light(scene, &light) >= 0;
+}
+
+bool builtin_ball(struct scene *scene, vec3s centre, bool as_point, float lumens)
+{
+    static const float RADIUS = 0.12f;
+    // Of luminance 1, so that lumens are photometric.
+    vec3s white = vec3_of(1.13f, 0.98f, 0.815f);
+    white = glms_vec3_scale(white, 1.0f / luminance(white));
+    if (as_point) {
+        return builtin_point_light(scene, "light", centre,
+                                   glms_vec3_scale(white, lumens / (4.0f * GLM_PIf)));
+    }
+    // A diffuse surface of radiance L and area A shines π L A lumens.
+    float area_m2 = 4.0f * GLM_PIf * RADIUS * RADIUS;
+    int material =
+        builtin_emitter(scene, "light", glms_vec3_scale(white, lumens / (GLM_PIf * area_m2)));
+    if (material < 0) return false;
+    struct shape_builder builder;
+    shape_begin(&builder, scene);
+    shape_sphere(&builder, centre, RADIUS, 24);
+    return shape_emit(&builder, "light", material) >= 0;
 }

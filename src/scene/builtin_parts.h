@@ -4,7 +4,8 @@
 #include "scene/builtin.h"
 #include "scene/builtin_shapes.h"
 
-extern const struct builtin_scene builtin_cornell;
+extern const struct builtin_scene builtin_cornell, builtin_corridor, builtin_maze, builtin_tunnel, builtin_spheres,
+    builtin_diagonal;
 
 // A diffuse material without textures; -1 on failure.
 int builtin_diffuse(struct scene *scene, const char *name, vec3s reflectance);
@@ -16,3 +17,6 @@ bool builtin_camera(struct scene *scene, vec3s eye, vec3s target, float vertical
 bool builtin_point_light(struct scene *scene, const char *name, vec3s position, vec3s candela);
 // A node above `over` and a sun (lux) that shines along `direction`.
 bool builtin_sun(struct scene *scene, const char *name, vec3s over, vec3s direction, vec3s lux);
+// A small light in a room: a shining ball of 12 cm radius, or a point light in its stead, warm white. Lumens are those
+// of the whole sphere of directions.
+bool builtin_ball(struct scene *scene, vec3s centre, bool as_point, float lumens);

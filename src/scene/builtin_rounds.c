@@ -174,6 +174,72 @@ void shape_arch(struct shape_builder *builder, vec3s min, vec3s max, float radiu
     arch_foot(builder, front, back, min.y, min.x, left);
 }
 
+// A vertex of a pipe's ring; the last one is the first again.
+static void pipe_vertex(struct shape_builder *builder, const struct shape_pipe *pipe, mat4s frame,
+                        int i, float along_m)
+{
+    float turn = (float)i / (float)pipe->segments;
+    float angle = i == pipe->segments ? 0.0f : 2.0f * GLM_PIf * turn;
+    vec3s outwards = vec3_of(cosf(angle), sinf(angle), 0);
+    vec3s position = mat4_point(frame, glms_vec3_scale(outwards, pipe->radius));
+    vec3s normal = mat4_direction(frame, outwards);
+    if (pipe->inside_out) normal = glms_vec3_negate(normal);
+    float around_m = 2.0f * GLM_PIf * pipe->radius * turn;
+    shape_vertex(builder, position, normal, (vec2s){ { around_m, along_m } });
+}
+
+// A quad or triangle is turned over for a pipe that is seen from inside.
+static void pipe_triangle(struct shape_builder *builder, bool inside_out, uint32_t a, uint32_t b,
+                          uint32_t c)
+{
+    if (inside_out) {
+        shape_triangle(builder, a, c, b);
+    } else {
+        shape_triangle(builder, a, b, c);
+    }
+}
+
+static void pipe_cap(struct shape_builder *builder, const struct shape_pipe *pipe, mat4s frame,
+                     bool end)
+{
+    vec3s normal = glms_vec3_scale(vec3_xyz(frame.col[2]), end != pipe->inside_out ? 1.0f : -1.0f);
+    uint32_t centre = builder->vertex_count;
+    shape_vertex(builder, vec3_xyz(frame.col[3]), normal, (vec2s){ { 0, 0 } });
+    for (int i = 0; i <= pipe->segments; i++) {
+        float angle =
+            i == pipe->segments ? 0.0f : 2.0f * GLM_PIf * (float)i / (float)pipe->segments;
+        vec3s at = vec3_of(pipe->radius * cosf(angle), pipe->radius * sinf(angle), 0);
+        shape_vertex(builder, mat4_point(frame, at), normal, (vec2s){ { at.x, at.y } });
+    }
+    for (uint32_t i = 1; i <= (uint32_t)pipe->segments; i++) {
+        pipe_triangle(builder, end == pipe->inside_out, centre, centre + i, centre + i + 1);
+    }
+}
+
+void shape_sweep(struct shape_builder *builder, const struct shape_pipe *pipe)
+{
+    uint32_t first = builder->vertex_count, stride = (uint32_t)pipe->segments + 1;
+    float along_m = 0.0f;
+    for (int f = 0; f < pipe->count; f++) {
+        if (f > 0) {
+            along_m += glms_vec3_norm(glms_vec3_sub(vec3_xyz(pipe->frames[f].col[3]),
+                                                    vec3_xyz(pipe->frames[f - 1].col[3])));
+        }
+        for (int i = 0; i <= pipe->segments; i++) {
+            pipe_vertex(builder, pipe, pipe->frames[f], i, along_m);
+        }
+    }
+    for (uint32_t f = 0; f + 1 < (uint32_t)pipe->count; f++) {
+        for (uint32_t i = 0; i < (uint32_t)pipe->segments; i++) {
+            uint32_t a = first + f * stride + i, b = a + 1, c = b + stride, d = a + stride;
+            pipe_triangle(builder, pipe->inside_out, a, b, c);
+            pipe_triangle(builder, pipe->inside_out, a, c, d);
+        }
+    }
+    if (pipe->start_cap) pipe_cap(builder, pipe, pipe->frames[0], false);
+    if (pipe->end_cap) pipe_cap(builder, pipe, pipe->frames[pipe->count - 1], true);
+}
+
 // The middle surface and its normal by central differences.
 struct sheet_point {
     vec3s middle, normal;

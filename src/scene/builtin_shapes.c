@@ -171,11 +171,11 @@ void shape_box(struct shape_builder *builder, vec3s min, vec3s max)
     }
 }
 
-static bool grid_solid(const struct shape_grid *grid, const int cell[3])
+static int grid_part(const struct shape_grid *grid, const int cell[3])
 {
-    if (cell[0] < 0 || cell[1] < 0 || cell[2] < 0) return false;
-    if (cell[0] >= grid->nx || cell[1] >= grid->ny || cell[2] >= grid->nz) return false;
-    return grid->solid(grid->user, cell[0], cell[1], cell[2]);
+    if (cell[0] < 0 || cell[1] < 0 || cell[2] < 0) return 0;
+    if (cell[0] >= grid->nx || cell[1] >= grid->ny || cell[2] >= grid->nz) return 0;
+    return grid->part(grid->user, cell[0], cell[1], cell[2]);
 }
 
 static void block_sides(struct shape_builder *builder, const struct shape_grid *grid,
@@ -191,18 +191,18 @@ static void block_sides(struct shape_builder *builder, const struct shape_grid *
         for (int positive = 0; positive < 2; positive++) {
             int beside[3] = { cell[0], cell[1], cell[2] };
             beside[axis] += positive ? 1 : -1;
-            if (!grid_solid(grid, beside)) box_side(builder, bounds, axis, positive);
+            if (grid_part(grid, beside) == 0) box_side(builder, bounds, axis, positive);
         }
     }
 }
 
-void shape_blocks(struct shape_builder *builder, const struct shape_grid *grid)
+void shape_blocks(struct shape_builder *builder, const struct shape_grid *grid, int part)
 {
     for (int k = 0; k < grid->nz; k++) {
         for (int j = 0; j < grid->ny; j++) {
             for (int i = 0; i < grid->nx; i++) {
                 const int cell[3] = { i, j, k };
-                if (grid_solid(grid, cell)) block_sides(builder, grid, cell);
+                if (grid_part(grid, cell) == part) block_sides(builder, grid, cell);
             }
         }
     }

@@ -48,20 +48,32 @@ void shape_cylinder(struct shape_builder *builder, vec3s base, float radius, flo
 // ending on the axis; edges sharper than 40 degrees stay sharp.
 void shape_lathe(struct shape_builder *builder, vec3s base, const vec2s *profile, int count, int segments);
 
-// The solid cells of a grid with planes at x[0…nx], y[0…ny], z[0…nz]: closed towards everything that is not solid.
-// solid(user, i, j, k) is asked for cells inside the grid only; all outside is empty.
+// A grid with planes at x[0…nx], y[0…ny], z[0…nz] whose cells are solid or empty. part(user, i, j, k) is 0 for an
+// empty cell and says which part a solid one belongs to; it is asked for cells inside the grid only, all outside is
+// empty. shape_blocks adds the faces of one part's cells towards empty ones: all parts together are closed.
 struct shape_grid {
     const float *x, *y, *z;
     int nx, ny, nz; // cells
-    bool (*solid)(const void *user, int i, int j, int k);
+    int (*part)(const void *user, int i, int j, int k);
     const void *user;
 };
-void shape_blocks(struct shape_builder *builder, const struct shape_grid *grid);
+void shape_blocks(struct shape_builder *builder, const struct shape_grid *grid, int part);
 
 // A wall panel with a round arch: a box from min to max, extruded along z, with an opening of half-width `radius`
 // whose vertical sides rise to `spring` and whose top is a half circle around the middle of x. The opening reaches
 // down to min.y. The arch must fit: spring + radius < max.y.
 void shape_arch(struct shape_builder *builder, vec3s min, vec3s max, float radius, float spring, int segments);
+
+// A closed pipe along a path: rings of `radius` around each frame's origin, in the plane of its x and y axes, walked
+// along its z axis. Outside is outwards, or inwards when `inside_out`. Ends get caps where asked for.
+struct shape_pipe {
+    const mat4s *frames;
+    int count; // frames, at least 2
+    float radius;
+    int segments;
+    bool inside_out, start_cap, end_cap;
+};
+void shape_sweep(struct shape_builder *builder, const struct shape_pipe *pipe);
 
 // Cloth of `thickness` hung between two heights: at (s, t) in 0…1 the middle surface lies where `at` says, s along
 // the width, t downwards. Front towards (d/dt × d/ds). uv = (s, t) times `uv_size`.

@@ -285,3 +285,68 @@ TEST(cornell_is_closed_where_it_should_be)
     CHECK(count_open_edges(scene, 0, scene->mesh_count - 1) == 8);
     scene_destroy(scene);
 }
+
+// Everything but the light of a scene whose light is a bare quad.
+static void check_closed(const char *spec)
+{
+    struct scene *scene = load(spec);
+    int last = scene->mesh_count - 1;
+    if (strcmp(scene->meshes[last].name, "light") == 0 && scene->meshes[last].index_count == 6) {
+        last--;
+    }
+    size_t open = count_open_edges(scene, 0, last);
+    if (open > 0) fail_msg("%s has %zu open edges", spec, open);
+    scene_destroy(scene);
+}
+
+TEST(rooms_are_closed_so_that_no_light_leaks)
+{
+    static const char *const specs[] = {
+        "@corridor",         "@corridor:width=3,length=12", "@maze",    "@maze:blocks=1",
+        "@maze:blocks=64",   "@maze:blocks=20,seed=7",      "@tunnel",  "@tunnel:pieces=1",
+        "@tunnel:pieces=64", "@tunnel:pieces=20,seed=9",    "@spheres", "@spheres:furnace=1",
+        "@diagonal",
+    };
+    for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) check_closed(specs[i]);
+}
+
+TEST(a_maze_has_the_blocks_that_were_asked_for)
+{
+    for (int blocks = 1; blocks <= 64; blocks += 9) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "@maze:blocks=%d,size=2", blocks);
+        struct scene *scene = load(spec);
+        // A tree of blocks has one passage less than blocks; each is open over the wall's
+        // thickness, 0.16 m.
+        const struct mesh *floor = mesh_named(scene, "floor");
+        double area = 0;
+        for (uint32_t t = 0; t < floor->index_count / 3; t++) {
+            vec3s normal = area_normal(floor, t);
+            if (normal.y > 0) area += 0.5 * (double)normal.y;
+        }
+        CHECK_RELATIVE(area, blocks * 1.84 * 1.84 + (blocks - 1) * 1.84 * 0.16, 1e-5);
+        scene_destroy(scene);
+    }
+}
+
+TEST(a_ball_and_a_point_light_have_the_same_lumens)
+{
+    struct scene *ball = load("@maze:lumens=5000");
+    struct scene *point = load("@maze:lumens=5000,light=point");
+    const struct mesh *light = mesh_named(ball, "light");
+    double radiance = (double)luminance(ball->materials[light->material].emissive);
+    CHECK_RELATIVE(GLM_PI * radiance * 4 * GLM_PI * 0.12 * 0.12, 5000, 1e-4);
+    CHECK_RELATIVE(4 * GLM_PI * (double)luminance(point->lights[0].intensity), 5000, 1e-4);
+    scene_destroy(ball);
+    scene_destroy(point);
+}
+
+TEST(the_furnace_is_one_material_that_shines_everywhere)
+{
+    struct scene *scene = load("@spheres:furnace=1,albedo=0.25,radiance=10");
+    CHECK(scene->mesh_count == 1 && scene->light_count == 0);
+    CHECK_NEAR(scene->materials[0].emissive.y, 10, 0);
+    CHECK_NEAR(scene->materials[0].base_color.y, 0.25, 0);
+    CHECK_RELATIVE(mesh_area(&scene->meshes[0]), 6 * 4.0 * 4.0 + 6 * 4.4 * 4.4, 1e-5);
+    scene_destroy(scene);
+}

