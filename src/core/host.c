@@ -44,10 +44,12 @@ void host_log(struct host *host, enum log_level level, const char *format, ...)
 // Objects above PTRDIFF_MAX break pointer subtraction, so that no allocator gives them.
 static bool block_size(struct host *host, size_t count, size_t size, size_t *out)
 {
-    if (!size_mul(count, size, out) || *out > PTRDIFF_MAX)
-        return host_fail(host, FAIL_MEMORY, "cannot allocate %zu x %zu bytes: too large", count,
-                         size);
-    if (*out == 0) *out = 1;
+    size_t bytes;
+    if (!size_mul(count, size, &bytes) || bytes > PTRDIFF_MAX) {
+        host_fail(host, FAIL_MEMORY, "cannot allocate %zu x %zu bytes: too large", count, size);
+        return false;
+    }
+    *out = bytes ? bytes : 1;
     return true;
 }
 

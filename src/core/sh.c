@@ -2,7 +2,7 @@
 // sh_product.c.
 #include "core/sh_basis.h"
 
-#include <math.h>
+#include <assert.h>
 
 // K_lm = √((2 − δ_m0) (2l+1)/4π · (l−m)!/(l+m)!): row l, column m.
 static const double NORM[SH_MAX_BANDS][SH_MAX_BANDS] = {
@@ -26,6 +26,7 @@ static const double KERNEL[SH_MAX_BANDS] = { 3.5449077018110318, 2.0466534158929
 // recurrence in l.
 void sh_eval_double(int bands, const double direction[3], double *out)
 {
+    assert(bands >= 1 && bands <= SH_MAX_BANDS);
     double x = direction[0], y = direction[1], z = direction[2];
     double cosine = 1.0, sine = 0.0, diagonal = 1.0; // (x + iy)^m, P_mm
     for (int m = 0; m < bands; m++) {

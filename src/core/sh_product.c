@@ -3,6 +3,7 @@
 // once, by a quadrature that is exact for them.
 #include "core/sh_basis.h"
 
+#include <assert.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdint.h>
@@ -89,6 +90,7 @@ static void make_table(void)
 
 void sh_product(int bands, const float *a, const float *b, float *out)
 {
+    assert(bands >= 1 && bands <= SH_MAX_BANDS);
     pthread_once(&table_once, make_table);
     double sum[SH_MAX_COUNT] = { 0.0 };
     for (int t = 0; t < table.count[bands]; t++) {

@@ -82,7 +82,7 @@ static void apply(const struct band *band, const float *in, float *out)
 
 void sh_rotate(int bands, mat3s to_from, const float *in, float *out)
 {
-    assert(in != out);
+    assert(in != out && bands >= 1 && bands <= SH_MAX_BANDS);
     out[0] = in[0];
     if (bands < 2) return;
     struct band one = band_one(to_from), band = one;

@@ -85,7 +85,8 @@ static void *misaligned_reallocate(void *user, void *old, size_t bytes)
     if (source->fail) return NULL;
     assert_null(old);
     source->live++;
-    return (char *)malloc(bytes + 8) + 8;
+    char *block = malloc(bytes + 8);
+    return block + 8;
 }
 
 TEST(pieces_are_aligned_whatever_the_allocator_aligns_to)

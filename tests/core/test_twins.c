@@ -1,0 +1,126 @@
+// sh.glsl and rng.glsl, run on the GPU, give what sh.c and rng.c give.
+#include "framework/gpu_test.h"
+
+#include "core/rng.h"
+#include "core/sampling.h"
+#include "core/sh.h"
+
+#include "core_test_shaders.h"
+
+enum { COUNT = 200 };
+
+struct twin { // as in core_twins.comp, scalar layout
+    float basis[9], lobe[9];
+    float value, irradiance;
+    vec3s value_rgb, irradiance_rgb;
+    vec4s basis4, lobe4;
+    float value4, irradiance4;
+    vec2s r2, pair;
+    float number;
+    uint32_t hash;
+};
+_Static_assert(sizeof(struct twin) == 42 * 4, "scalar layout has no padding");
+
+static vec3s directions[COUNT];
+static float coefficients[9];
+static struct twin twins[COUNT];
+
+static void fill_inputs(void)
+{
+    struct rng rng = rng_for(1, 0, 0);
+    for (int i = 0; i < COUNT; i++) directions[i] = sample_sphere(rng_vec2(&rng));
+    for (int i = 0; i < 9; i++) coefficients[i] = 2.0f * rng_float(&rng) - 1.0f;
+}
+
+static gpu_buffer make_buffer(struct gpu *gpu, const char *name, const void *data, size_t bytes)
+{
+    gpu_buffer buffer = { 0 };
+    struct gpu_buffer_desc desc = { name, bytes, GPU_BUFFER_STORAGE };
+    CHECK(gpu_buffer_create(gpu, &desc, &buffer));
+    CHECK(gpu_buffer_upload(gpu, buffer, 0, data, bytes));
+    return buffer;
+}
+
+// Once for the whole program; what it gave is kept.
+static void run_shader(struct gpu *gpu)
+{
+    static bool ran;
+    if (ran) return;
+    fill_inputs();
+    gpu_buffer in = make_buffer(gpu, "test.directions", directions, sizeof directions);
+    gpu_buffer c = make_buffer(gpu, "test.coefficients", coefficients, sizeof coefficients);
+    gpu_buffer out = make_buffer(gpu, "test.twins", twins, sizeof twins);
+    gpu_pipeline pipeline = { 0 };
+    CHECK(gpu_compute_pipeline_create(gpu, "test.twins", &shader_core_twins_comp, NULL, 0,
+                                      &pipeline));
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    CHECK(cmd != NULL);
+    gpu_dispatch(cmd, pipeline,
+                 GPU_BIND({ .name = "Directions", .buffer = in },
+                          { .name = "Coefficients", .buffer = c },
+                          { .name = "Twins", .buffer = out }),
+                 NULL, 0, gpu_groups(COUNT, 64), 1, 1);
+    CHECK(gpu_frame_end(gpu, cmd));
+    CHECK(gpu_buffer_download(gpu, out, 0, twins, sizeof twins));
+    gpu_buffer_destroy(gpu, &in);
+    gpu_buffer_destroy(gpu, &c);
+    gpu_buffer_destroy(gpu, &out);
+    gpu_pipeline_destroy(gpu, &pipeline);
+    ran = true;
+}
+
+static void check_floats(const float *a, const float *b, int count)
+{
+    for (int i = 0; i < count; i++) CHECK_NEAR(a[i], b[i], 3e-6);
+}
+
+TEST_GPU(basis_and_clamped_cosine_of_glsl_are_those_of_c)
+{
+    run_shader(gpu);
+    float zonal[3];
+    zh_clamped_cosine(3, zonal);
+    for (int i = 0; i < COUNT; i++) {
+        float basis[9], lobe[9];
+        sh_eval(3, directions[i], basis);
+        zh_rotate(3, zonal, directions[i], lobe);
+        check_floats(twins[i].basis, basis, 9);
+        check_floats(twins[i].lobe, lobe, 9);
+        check_floats(twins[i].basis4.raw, basis, 4);
+        check_floats(twins[i].lobe4.raw, lobe, 4);
+    }
+}
+
+TEST_GPU(evaluation_and_irradiance_of_glsl_are_those_of_c)
+{
+    run_shader(gpu);
+    float irradiance[9];
+    sh_irradiance(3, coefficients, irradiance);
+    for (int i = 0; i < COUNT; i++) {
+        static const float rgb[3] = { 1.0f, 2.0f, -3.0f };
+        float value = sh_dot(3, coefficients, directions[i]);
+        float e = sh_dot(3, irradiance, directions[i]);
+        CHECK_NEAR(twins[i].value, value, 3e-6);
+        CHECK_NEAR(twins[i].irradiance, e, 1e-5);
+        for (int k = 0; k < 3; k++) {
+            CHECK_NEAR(twins[i].value_rgb.raw[k], rgb[k] * value, 1e-5);
+            CHECK_NEAR(twins[i].irradiance_rgb.raw[k], rgb[k] * e, 3e-5);
+        }
+        CHECK_NEAR(twins[i].value4, sh_dot(2, coefficients, directions[i]), 3e-6);
+        CHECK_NEAR(twins[i].irradiance4, sh_dot(2, irradiance, directions[i]), 1e-5);
+    }
+}
+
+TEST_GPU(hash_and_sequence_of_glsl_have_the_bits_of_c)
+{
+    run_shader(gpu);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        assert_int_equal(twins[i].hash, pcg_hash(i * 2654435761u));
+        vec2s r2 = r2_sequence(i * 1000003u);
+        CHECK(twins[i].r2.x == r2.x && twins[i].r2.y == r2.y);
+        uint32_t bits[2];
+        for (uint32_t k = 0; k < 2; k++) bits[k] = pcg_hash(i + pcg_hash(i * 3 + pcg_hash(5 + k)));
+        CHECK(twins[i].number == (float)(bits[0] >> 8) * 0x1p-24f);
+        CHECK(twins[i].pair.x == twins[i].number);
+        CHECK(twins[i].pair.y == (float)(bits[1] >> 8) * 0x1p-24f);
+    }
+}
