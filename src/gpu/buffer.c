@@ -35,6 +35,7 @@ static bool create_handle(struct gpu *gpu, struct buffer *buffer, uint32_t usage
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(gpu->device, buffer->handle, &needs);
     if (!memory_allocate(gpu, &needs, kind, true, buffer->name, &buffer->memory)) return false;
+    if (buffer->memory.recycled) buffer->hazard = hazard_recycled();
     return VK_CHECK(gpu, vkBindBufferMemory(gpu->device, buffer->handle, buffer->memory.memory,
                                             buffer->memory.offset));
 }

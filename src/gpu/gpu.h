@@ -47,7 +47,7 @@ struct gpu_adopt {
 struct gpu_desc {
     const char *device;     // a number from gpu_list_devices, a part of a name, or NULL for the best
     bool validation;        // validation and synchronization validation; fails when the layer is missing
-    const char *shader_dir; // reload X.spv from here when it changes; NULL: embedded shaders only
+    const char *shader_dir; // X.spv from here, where there is one, stands for the embedded X; NULL: embedded ones only
     const struct gpu_adopt *adopt; // NULL: our own device
 };
 
@@ -102,10 +102,13 @@ struct gpu_image_desc {
 bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_image *out);
 void gpu_image_destroy(struct gpu *gpu, gpu_image *image); // sets *image to none
 const struct gpu_image_desc *gpu_image_info(const struct gpu *gpu, gpu_image image);
-// Wraps a caller's VkImage (not owned). `layout` is its VkImageLayout now; see gpu_image_layout for later.
+// Wraps a caller's VkImage (not owned). `layout` is its VkImageLayout now; see gpu_image_handle for later.
 bool gpu_image_wrap(struct gpu *gpu, const struct gpu_image_desc *desc, void *vk_image, uint32_t layout,
                     gpu_image *out);
-void *gpu_image_handle(const struct gpu *gpu, gpu_image image, uint32_t *layout); // VkImage
+// The VkImage, and its VkImageLayout at the end of the newest frame, in which it must be again when the next one begins.
+// From then on each frame waits for all that was submitted before, as others may have used the image; they wait for the
+// frame themselves. NULL: no such image.
+void *gpu_image_handle(const struct gpu *gpu, gpu_image image, uint32_t *layout);
 
 enum gpu_buffer_usage {
     GPU_BUFFER_STORAGE = 1,
@@ -179,7 +182,8 @@ struct gpu_graphics_desc {
     bool depth_write, depth_clamp;
     float depth_bias, depth_bias_slope;         // in the sense of Vulkan; reversed Z wants negative values
     enum gpu_blend blend;
-    // Triangle lists, no vertex input (vertex pulling), counter-clockwise front, cull mode set per draw.
+    // Triangle lists, no vertex input (vertex pulling), cull mode set per draw. Clip space is Vulkan's (y down, so that
+    // row 0 is at y = -1); what is counter-clockwise in the image, row 0 on top, is a front.
 };
 bool gpu_graphics_pipeline_create(struct gpu *gpu, const struct gpu_graphics_desc *desc, gpu_pipeline *out);
 void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *pipeline);
@@ -191,8 +195,9 @@ int gpu_reload_shaders(struct gpu *gpu);
 // One frame at a time: begin, record, end (submits, does not wait). Two frames are in flight at most. NULL: device lost.
 struct gpu_cmd *gpu_frame_begin(struct gpu *gpu);
 bool gpu_frame_end(struct gpu *gpu, struct gpu_cmd *cmd);
-// Records into a caller's VkCommandBuffer instead (in the recording state, outside of a rendering); the caller submits it
-// and says with gpu_frame_adopted_done when the GPU has finished it.
+// Records into a caller's VkCommandBuffer instead (in the recording state, outside of a rendering). gpu_frame_end then
+// ends our part and submits nothing: the caller submits it before any other call that submits, and says with
+// gpu_frame_adopted_done when the GPU has finished it. Four may be unfinished.
 struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer);
 void gpu_frame_adopted_done(struct gpu *gpu, struct gpu_cmd *cmd);
 bool gpu_wait(struct gpu *gpu); // until all submitted work is done; false: device lost
@@ -203,7 +208,7 @@ struct gpu_binding {
     const char *name; // of the variable in GLSL; of the block for buffers
     gpu_image image;
     gpu_buffer buffer;
-    gpu_sampler sampler;
+    gpu_sampler sampler; // none: nearest, clamped (for texelFetch)
     uint32_t mip;      // storage images: which mip. Sampled: the first mip seen
     bool one_mip;      // sampled: only that mip
     uint32_t layer;    // with one_layer: which layer of an array (seen as 2D)

@@ -180,6 +180,7 @@ static bool create_handle(struct gpu *gpu, struct image *image)
     vkGetImageMemoryRequirements(gpu->device, image->handle, &needs);
     if (!memory_allocate(gpu, &needs, MEMORY_DEVICE, false, image->name, &image->memory))
         return false;
+    if (image->memory.recycled) image->hazards[0] = hazard_recycled();
     return VK_CHECK(gpu, vkBindImageMemory(gpu->device, image->handle, image->memory.memory,
                                            image->memory.offset));
 }

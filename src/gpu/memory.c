@@ -22,6 +22,7 @@ struct memory_block {
     VkDeviceSize bytes;
     uint32_t type;
     bool linear, single; // single: holds one allocation only
+    bool recycled;       // some of it was in use before
     void *mapped;
     struct piece *free;
     uint32_t free_count, free_capacity;
@@ -203,6 +204,7 @@ bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum me
         out->memory = block->memory;
         out->mapped = block->mapped ? (char *)block->mapped + out->offset : NULL;
         out->owner = owner;
+        out->recycled = block->recycled;
         gpu->memory.owners[owner].bytes += needs->size;
         return true;
     }
@@ -235,6 +237,7 @@ void memory_free(struct gpu *gpu, struct allocation *allocation)
     struct memory_block *block = allocation->block;
     if (!block) return;
     gpu->memory.owners[allocation->owner].bytes -= allocation->bytes;
+    block->recycled = true;
     block_give(gpu, block, (struct piece){ allocation->offset, allocation->bytes });
     *allocation = (struct allocation){ 0 };
     bool empty = block->free_count == 1 && block->free[0].bytes == block->bytes;

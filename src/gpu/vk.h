@@ -19,8 +19,7 @@ enum {
     BATCH_IMAGES = 16,
 };
 
-// ---- Failure (vk.c)
-// -----------------------------------------------------------------------------------------
+// ---- Failure (vk.c) -----------------------------------------------------------------------------
 
 // True where `call` gave VK_SUCCESS; else logs the call's text and the result. A lost device stays
 // lost.
@@ -34,8 +33,7 @@ void vk_name(struct gpu *gpu, VkObjectType type, uint64_t handle, const char *na
 // Vulkan's handles are pointers or 64-bit numbers, by platform.
 #define VK_NAME(gpu, type, handle, name) vk_name((gpu), (type), (uint64_t)(handle), (name))
 
-// ---- Handles (table.c)
-// --------------------------------------------------------------------------------------
+// ---- Handles (table.c) --------------------------------------------------------------------------
 
 // Objects by id: index + 1 in the low 20 bits, a generation above, so that a stale id is found out.
 struct table {
@@ -48,8 +46,7 @@ void *table_get(const struct table *table, uint32_t id); // NULL: none, or destr
 void *table_remove(struct table *table, uint32_t id);
 void table_finish(struct host *host, struct table *table);
 
-// ---- Memory (memory.c)
-// --------------------------------------------------------------------------------------
+// ---- Memory (memory.c) --------------------------------------------------------------------------
 
 enum memory_kind {
     MEMORY_DEVICE,   // where the GPU is fastest
@@ -65,6 +62,7 @@ struct allocation {
     VkDeviceSize offset, bytes;
     void *mapped; // at offset; NULL for MEMORY_DEVICE
     uint32_t owner;
+    bool recycled; // may hold what another object left
 };
 
 struct memory_owner {
@@ -87,8 +85,7 @@ bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum me
 void memory_free(struct gpu *gpu, struct allocation *allocation);
 void memory_finish(struct gpu *gpu);
 
-// ---- Hazards (hazard.c)
-// -------------------------------------------------------------------------------------
+// ---- Hazards (hazard.c) -------------------------------------------------------------------------
 
 // What the queue has done to a buffer or to one subresource of an image.
 struct hazard {
@@ -118,8 +115,7 @@ struct range { // of subresources
     uint32_t mip, mip_count, layer, layer_count;
 };
 
-// ---- Resources
-// ----------------------------------------------------------------------------------------------
+// ---- Resources ----------------------------------------------------------------------------------
 
 struct image_view {
     VkImageViewType type;
@@ -189,8 +185,7 @@ const struct format *format_of(enum gpu_format format);
 void format_to_float(enum gpu_format format, const void *texel, float out[4]);
 VkClearColorValue format_clear(enum gpu_format format, const float value[4]);
 
-// ---- Shaders and pipelines
-// ----------------------------------------------------------------------------------
+// ---- Shaders and pipelines ----------------------------------------------------------------------
 
 struct shader_binding {
     char name[NAME_SIZE];
@@ -241,8 +236,7 @@ void pipeline_free(struct gpu *gpu, void *pipeline);
 VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *pipeline,
                                   const VkPipelineShaderStageCreateInfo *stages);
 
-// ---- Commands
-// -----------------------------------------------------------------------------------------------
+// ---- Commands -----------------------------------------------------------------------------------
 
 struct rendering {
     bool open;   // between gpu_render_begin and gpu_render_end
@@ -307,6 +301,8 @@ void hazard_overwrite_buffer(struct buffer *buffer);
 void hazard_flush(struct gpu_cmd *cmd); // records the queued barriers, outside of any rendering
 // Others may have used the image in any way, and left it in `layout`.
 void hazard_forget(struct image *image, VkImageLayout layout);
+// A new object in memory that another one had.
+struct hazard hazard_recycled(void);
 VkImageLayout hazard_transfer_layout(const struct image *image, bool write);
 VkImageLayout hazard_resting_layout(const struct image *image); // where shaders find it
 
@@ -343,8 +339,7 @@ void scopes_stop(struct gpu_cmd *cmd);
 void scopes_collect(struct gpu_cmd *cmd); // the GPU is done with it
 void ring_start(struct gpu_cmd *cmd);
 
-// ---- The device
-// ---------------------------------------------------------------------------------------------
+// ---- The device ---------------------------------------------------------------------------------
 
 // Work for when the GPU is done with all that was recorded before it.
 struct trash {

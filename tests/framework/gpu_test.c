@@ -67,3 +67,33 @@ void test_gpu_run(void (*body)(struct gpu *gpu))
     body(gpu);
     test_gpu_finish(gpu);
 }
+
+gpu_image test_gpu_image(struct gpu *gpu, enum gpu_dimension dimension, enum gpu_format format,
+                         uint32_t width, uint32_t height, uint32_t depth, uint32_t mips,
+                         uint32_t usage)
+{
+    gpu_image image;
+    struct gpu_image_desc desc = { "test.image", dimension, format, width,
+                                   height,       depth,     mips,   usage };
+    if (!gpu_image_create(gpu, &desc, &image)) fail_msg("no image: %s", test_last_message());
+    return image;
+}
+
+gpu_buffer test_gpu_buffer(struct gpu *gpu, size_t bytes)
+{
+    gpu_buffer buffer;
+    struct gpu_buffer_desc desc = { "test.buffer", bytes,
+                                    GPU_BUFFER_STORAGE | GPU_BUFFER_UNIFORM | GPU_BUFFER_INDEX |
+                                        GPU_BUFFER_INDIRECT };
+    if (!gpu_buffer_create(gpu, &desc, &buffer)) fail_msg("no buffer: %s", test_last_message());
+    return buffer;
+}
+
+gpu_pipeline test_gpu_compute(struct gpu *gpu, const struct gpu_shader *shader)
+{
+    gpu_pipeline pipeline;
+    if (!gpu_compute_pipeline_create(gpu, "test.pipeline", shader, NULL, 0, &pipeline)) {
+        fail_msg("no pipeline: %s", test_last_message());
+    }
+    return pipeline;
+}

@@ -26,3 +26,9 @@ struct gpu *test_gpu(void);
 void test_gpu_finish(struct gpu *gpu);
 // Skips the running test, visibly, where there is no Vulkan device.
 void test_gpu_require(void);
+
+// Objects that must be creatable, or the test fails. mips and depth as in gpu_image_desc.
+gpu_image test_gpu_image(struct gpu *gpu, enum gpu_dimension dimension, enum gpu_format format, uint32_t width,
+                         uint32_t height, uint32_t depth, uint32_t mips, uint32_t usage);
+gpu_buffer test_gpu_buffer(struct gpu *gpu, size_t bytes); // for storage and all else
+gpu_pipeline test_gpu_compute(struct gpu *gpu, const struct gpu_shader *shader);
