@@ -222,3 +222,26 @@ TEST(automatic_exposure_of_black_is_zero)
     CHECK(auto_exposure(&image) == 0.0f);
     image_finish(&image, test_host());
 }
+
+// tonemap_twin.cpp
+float glsl_exposure_scale(float ev);
+void glsl_tonemap_pbr_neutral(const float exposed[3], float out[3]);
+
+TEST(the_glsl_twin_agrees)
+{
+    struct image image;
+    for (int ev = -30; ev <= 30; ev++)
+        CHECK_RELATIVE((double)glsl_exposure_scale((float)ev), (double)exposure_scale((float)ev),
+                       1e-6);
+    noise_picture(&image, 64, 64, 3);
+    for (int i = 0; i < 64 * 64; i++) {
+        float *p = image.pixels + 3 * i, shown[3];
+        float scale = exp2f((float)(i % 24 - 16)); // from deep in the toe to far above white
+        for (int c = 0; c < 3; c++) p[c] *= scale;
+        if (i % 100 == 7) p[i % 3] = i % 200 == 7 ? INFINITY : NAN;
+        glsl_tonemap_pbr_neutral(p, shown);
+        vec3s expected = tonemap_pbr_neutral(vec3_of(p[0], p[1], p[2]));
+        for (int c = 0; c < 3; c++) CHECK_NEAR((double)shown[c], (double)expected.raw[c], 2e-6);
+    }
+    image_finish(&image, test_host());
+}
