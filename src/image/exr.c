@@ -123,10 +123,15 @@ static void exr_file_finish(struct exr_file *file)
 
 // ---- layers and channels
 
-// The channels of one layer, as indices into the file's list, in the image's order.
+// The channels of one layer, in the image's order, and where their values lie in an unpacked line
+// of the file: all channels one after the other, each with all its values of that line,
+// little-endian.
 struct layer_channels {
     int count;
-    int index[4];
+    int index[4]; // into the file's list
+    exr_pixel_type_t type[4];
+    size_t offset[4];
+    size_t line_bytes;
 };
 
 // Suffixes that make a layer, the first complete set counts. The first five are ours; the others
@@ -300,17 +305,32 @@ static bool fail_missing_layer(struct exr_file *file, const exr_attr_chlist_t *l
                      file->path, wanted, present[0] ? present : "none that can be shown");
 }
 
-static bool choose_layer(struct exr_file *file, const char *layer, struct layer_channels *out)
+// All channels stand in a line, also those of other layers.
+static bool lay_out_line(struct exr_file *file, const exr_attr_chlist_t *list, int width,
+                         struct layer_channels *layer)
+{
+    layer->line_bytes = 0;
+    for (int i = 0; i < list->num_channels; i++) {
+        const exr_attr_chlist_entry_t *entry = &list->entries[i];
+        if (entry->x_sampling != 1 || entry->y_sampling != 1)
+            return refuse(file, "a channel has fewer samples than pixels");
+        for (int c = 0; c < layer->count; c++) {
+            if (layer->index[c] != i) continue;
+            layer->type[c] = entry->pixel_type;
+            layer->offset[c] = layer->line_bytes;
+        }
+        layer->line_bytes += (size_t)width * (entry->pixel_type == EXR_PIXEL_HALF ? 2 : 4);
+    }
+    return true;
+}
+
+static bool choose_layer(struct exr_file *file, const char *name, int width,
+                         struct layer_channels *out)
 {
     const exr_attr_chlist_t *list;
     if (!get_channels(file, &list)) return false;
-    if (!find_layer(list, layer, out)) return fail_missing_layer(file, list, layer);
-    for (int c = 0; c < out->count; c++) {
-        const exr_attr_chlist_entry_t *entry = &list->entries[out->index[c]];
-        if (entry->x_sampling != 1 || entry->y_sampling != 1)
-            return refuse(file, "a channel of the layer has fewer samples than pixels");
-    }
-    return true;
+    if (!find_layer(list, name, out)) return fail_missing_layer(file, list, name);
+    return lay_out_line(file, list, width, out);
 }
 
 static bool get_window(struct exr_file *file, exr_attr_box2i_t *out)
@@ -326,34 +346,51 @@ static bool get_window(struct exr_file *file, exr_attr_box2i_t *out)
     return true;
 }
 
-// Sends the layer's channels to their places in the image, as floats, and no other channel
-// anywhere.
-static bool aim_channels(struct exr_file *file, exr_decode_pipeline_t *decode,
-                         const struct layer_channels *layer, const struct image *out, int row)
+static float float_of_half(uint32_t half)
 {
-    for (int i = 0; i < decode->channel_count; i++) decode->channels[i].decode_to_ptr = NULL;
+    uint32_t sign = (half & 0x8000u) << 16, exponent = half >> 10 & 31u, mantissa = half & 1023u;
+    if (exponent == 0) return (sign ? -1.0f : 1.0f) * (float)mantissa * 0x1p-24f;
+    uint32_t bits = sign | (exponent == 31 ? 255u : exponent + 112u) << 23 | mantissa << 13;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static float float_at(const uint8_t *bytes, exr_pixel_type_t type)
+{
+    uint32_t word = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8;
+    if (type == EXR_PIXEL_HALF) return float_of_half(word);
+    word |= (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+    if (type == EXR_PIXEL_UINT) return (float)word;
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+static void copy_line(const struct image *out, int row, const uint8_t *line,
+                      const struct layer_channels *layer)
+{
     for (int c = 0; c < layer->count; c++) {
-        if (layer->index[c] >= decode->channel_count) return refuse(file, "its channels change");
-        exr_coding_channel_info_t *channel = &decode->channels[layer->index[c]];
-        channel->decode_to_ptr = (uint8_t *)(image_at(out, 0, row) + c);
-        channel->user_data_type = EXR_PIXEL_FLOAT;
-        channel->user_bytes_per_element = sizeof(float);
-        channel->user_pixel_stride = out->channels * (int32_t)sizeof(float);
-        channel->user_line_stride = out->width * channel->user_pixel_stride;
+        const uint8_t *from = line + layer->offset[c];
+        size_t step = layer->type[c] == EXR_PIXEL_HALF ? 2 : 4;
+        for (int x = 0; x < out->width; x++, from += step)
+            image_at(out, x, row)[c] = float_at(from, layer->type[c]);
     }
-    return true;
 }
 
 static bool check_chunk(struct exr_file *file, const exr_chunk_info_t *chunk, int row,
-                        const struct image *out)
+                        const struct layer_channels *layer, const struct image *out)
 {
-    if (chunk->width == out->width && chunk->height >= 1 && chunk->height <= out->height - row &&
-        chunk->packed_size <= file->bytes.size && chunk->unpacked_size <= EXR_CHUNK_BYTES_MAX)
-        return true;
+    bool fits = chunk->width == out->width && chunk->height >= 1 &&
+                chunk->height <= out->height - row && chunk->packed_size <= file->bytes.size;
+    uint64_t expected = fits ? (uint64_t)layer->line_bytes * (uint64_t)chunk->height : 0;
+    if (fits && chunk->unpacked_size == expected && expected <= EXR_CHUNK_BYTES_MAX) return true;
     return host_fail(file->host, FAIL_FORMAT, "cannot read %s: a damaged chunk at row %d",
                      file->path, row);
 }
 
+// The library unpacks; the values are taken from its buffer here and not by its own conversion,
+// which in some versions writes through the null pointers that stand for unwanted channels.
 static bool read_chunk(struct exr_file *file, exr_decode_pipeline_t *decode, int first_y, int row,
                        const struct layer_channels *layer, const struct image *out)
 {
@@ -361,14 +398,22 @@ static bool read_chunk(struct exr_file *file, exr_decode_pipeline_t *decode, int
     exr_const_context_t context = file->context;
     exr_result_t code = exr_read_scanline_chunk_info(context, 0, first_y + row, &chunk);
     if (code != EXR_ERR_SUCCESS) return fail_reading(file, code);
-    if (!check_chunk(file, &chunk, row, out)) return false;
+    if (!check_chunk(file, &chunk, row, layer, out)) return false;
     code = row == 0 ? exr_decoding_initialize(context, 0, &chunk, decode)
                     : exr_decoding_update(context, 0, &chunk, decode);
-    if (code != EXR_ERR_SUCCESS) return fail_reading(file, code);
-    if (!aim_channels(file, decode, layer, out, row)) return false;
-    if (row == 0) code = exr_decoding_choose_default_routines(context, 0, decode);
+    if (code == EXR_ERR_SUCCESS && row == 0)
+        code = exr_decoding_choose_default_routines(context, 0, decode);
+    decode->unpack_and_convert_fn = NULL;
     if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(context, 0, decode);
-    return code == EXR_ERR_SUCCESS || fail_reading(file, code);
+    if (code != EXR_ERR_SUCCESS) return fail_reading(file, code);
+    bool is_raw = chunk.packed_size == chunk.unpacked_size; // so stored where packing does not help
+    const uint8_t *lines = is_raw ? decode->packed_buffer : decode->unpacked_buffer;
+    size_t held = is_raw ? decode->packed_alloc_size : decode->unpacked_alloc_size;
+    if (!lines || held < layer->line_bytes * (size_t)chunk.height)
+        return fail_reading(file, EXR_ERR_CORRUPT_CHUNK);
+    for (int i = 0; i < chunk.height; i++)
+        copy_line(out, row + i, lines + (size_t)i * layer->line_bytes, layer);
+    return true;
 }
 
 static bool read_chunks(struct exr_file *file, int first_y, const struct layer_channels *layer,
@@ -391,12 +436,12 @@ bool exr_read(struct host *host, const char *path, const char *layer, struct ima
     struct exr_file file;
     struct layer_channels channels;
     exr_attr_box2i_t window;
+    int width;
     if (!exr_file_open(&file, host, path)) goto fail;
-    if (!choose_layer(&file, layer ? layer : "color", &channels)) goto fail;
     if (!get_window(&file, &window)) goto fail;
-    if (!image_init(out, host, window.max.x - window.min.x + 1, window.max.y - window.min.y + 1,
-                    channels.count))
-        goto fail;
+    width = window.max.x - window.min.x + 1;
+    if (!choose_layer(&file, layer ? layer : "color", width, &channels)) goto fail;
+    if (!image_init(out, host, width, window.max.y - window.min.y + 1, channels.count)) goto fail;
     if (!read_chunks(&file, window.min.y, &channels, out)) goto fail;
     exr_file_finish(&file);
     return true;

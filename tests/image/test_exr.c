@@ -220,6 +220,7 @@ struct foreign {
     int channels;
     exr_attr_box2i_t window;
     int sampling;
+    bool raw_halves; // the value of pixel i is the half with the bits i
 };
 
 // Value of channel c at (x, y), the same in all three types.
@@ -292,7 +293,9 @@ static void write_foreign(const char *path, const struct foreign *f)
     size_t plane_bytes = (size_t)width * (size_t)height * (size_t)size;
     uint8_t *planes = calloc((size_t)f->channels, plane_bytes);
     CHECK(planes);
-    for (int c = 0; c < f->channels; c++)
+    for (int i = 0; f->raw_halves && i < width * height; i++)
+        memcpy(planes + 2 * i, &(uint16_t){ (uint16_t)i }, 2);
+    for (int c = 0; !f->raw_halves && c < f->channels; c++)
         for (int y = 0; y < height; y++)
             for (int x = 0; x < width; x++)
                 put_value(planes + (size_t)c * plane_bytes + (size_t)((y * width + x) * size),
@@ -374,6 +377,57 @@ TEST(vectors_and_depths_of_other_programs_are_layers_too)
     struct image back;
     CHECK(!exr_read(test_host(), path, "color", &back));
     CHECK(strstr(test_last_message(), "View.Depth View.Mist"));
+}
+
+// One channel of four, and three of four: nothing is written for the others.
+TEST(one_layer_is_read_from_among_others)
+{
+    static const exr_pixel_type_t types[] = { EXR_PIXEL_HALF, EXR_PIXEL_FLOAT, EXR_PIXEL_UINT };
+    for (size_t t = 0; t < 3; t++) {
+        for (int compression = EXR_COMPRESSION_NONE; compression <= EXR_COMPRESSION_PIZ;
+             compression++) {
+            struct foreign f = foreign_rgb(types[t], (exr_compression_t)compression);
+            f.names[3] = "Z";
+            f.channels = 4;
+            const char *path = test_path("among.exr");
+            write_foreign(path, &f);
+            check_foreign(path, "color", 3);
+            struct image depth;
+            CHECK(exr_read(test_host(), path, "depth", &depth));
+            CHECK(depth.channels == 1);
+            for (int y = 0; y < 8; y++)
+                for (int x = 0; x < 7; x++)
+                    CHECK(*image_at(&depth, x, y) == (float)foreign_value(3, x, y));
+            image_finish(&depth, test_host());
+        }
+    }
+}
+
+// Every half: the decoder is ours.
+TEST(all_halves_are_read_as_the_floats_that_they_are)
+{
+    struct foreign f = foreign_rgb(EXR_PIXEL_HALF, EXR_COMPRESSION_NONE);
+    f.names[0] = "Y";
+    f.channels = 1;
+    f.window.max = (exr_attr_v2i_t){ .x = 255, .y = 255 };
+    f.raw_halves = true;
+    const char *path = test_path("halves.exr");
+    write_foreign(path, &f);
+    struct image back;
+    CHECK(exr_read(test_host(), path, "color", &back));
+    for (int i = 0; i < 65536; i++) {
+        int exponent = i >> 10 & 31, mantissa = i & 1023;
+        double size = exponent ? ldexp(1024 + mantissa, exponent - 25) : ldexp(mantissa, -24);
+        double expected = i & 0x8000 ? -size : size;
+        double value = (double)back.pixels[i];
+        if (exponent < 31)
+            CHECK(value == expected && signbit(value) == signbit(expected));
+        else if (mantissa)
+            CHECK(isnan(value));
+        else
+            CHECK(isinf(value) && (value < 0) == (i >= 0x8000));
+    }
+    image_finish(&back, test_host());
 }
 
 TEST(subsampled_channels_are_refused)
