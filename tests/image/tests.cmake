@@ -5,6 +5,7 @@ ag_test(image/tonemap USES image)
 target_sources(test_image_tonemap PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/image/tonemap_twin.cpp)
 ag_test(image/metrics USES image)
 ag_test(image/damaged USES image)
+ag_test(image/scarce USES image)
 
 # The GLSL twin compiles, also when it is included twice.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/image/tonemap_twice.comp @ONLY CONTENT [[
