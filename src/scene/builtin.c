@@ -7,8 +7,8 @@
 #include <string.h>
 
 const struct builtin_scene *const builtin_scenes[] = {
-    &builtin_cornell, &builtin_corridor, &builtin_maze, &builtin_tunnel,
-    &builtin_spheres, &builtin_diagonal, NULL,
+    &builtin_cornell, &builtin_atrium,  &builtin_corridor, &builtin_maze,
+    &builtin_tunnel,  &builtin_spheres, &builtin_diagonal, NULL,
 };
 
 enum { MAX_NAME = 32, MAX_BUILTINS = 32 };

@@ -5,7 +5,7 @@
 #include "scene/builtin_shapes.h"
 
 extern const struct builtin_scene builtin_cornell, builtin_corridor, builtin_maze, builtin_tunnel, builtin_spheres,
-    builtin_diagonal;
+    builtin_diagonal, builtin_atrium;
 
 // A diffuse material without textures; -1 on failure.
 int builtin_diffuse(struct scene *scene, const char *name, vec3s reflectance);

@@ -3,6 +3,9 @@
 
 #include "scene/builtin.h"
 #include "scene/pose.h"
+#include "scene/raycast.h"
+
+#include "core/rng.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -302,10 +305,20 @@ static void check_closed(const char *spec)
 TEST(rooms_are_closed_so_that_no_light_leaks)
 {
     static const char *const specs[] = {
-        "@corridor",         "@corridor:width=3,length=12", "@maze",    "@maze:blocks=1",
-        "@maze:blocks=64",   "@maze:blocks=20,seed=7",      "@tunnel",  "@tunnel:pieces=1",
-        "@tunnel:pieces=64", "@tunnel:pieces=20,seed=9",    "@spheres", "@spheres:furnace=1",
+        "@corridor",
+        "@corridor:width=3,length=12",
+        "@maze",
+        "@maze:blocks=1",
+        "@maze:blocks=64",
+        "@maze:blocks=20,seed=7",
+        "@tunnel",
+        "@tunnel:pieces=1",
+        "@tunnel:pieces=64",
+        "@tunnel:pieces=20,seed=9",
+        "@spheres",
+        "@spheres:furnace=1",
         "@diagonal",
+        "@atrium",
     };
     for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) check_closed(specs[i]);
 }
@@ -348,5 +361,37 @@ TEST(the_furnace_is_one_material_that_shines_everywhere)
     CHECK_NEAR(scene->materials[0].emissive.y, 10, 0);
     CHECK_NEAR(scene->materials[0].base_color.y, 0.25, 0);
     CHECK_RELATIVE(mesh_area(&scene->meshes[0]), 6 * 4.0 * 4.0 + 6 * 4.4 * 4.4, 1e-5);
+    scene_destroy(scene);
+}
+
+TEST(the_atriums_sun_lights_floor_wall_and_cloth_through_the_roof)
+{
+    struct scene *scene = load("@atrium");
+    size_t triangles = scene_triangle_count(scene);
+    CHECK(triangles >= 16000 && triangles <= 40000);
+    struct scene_pose pose;
+    CHECK(pose_init(&pose, scene, -1, 0));
+    CHECK_NEAR(mesh_named(scene, "floor")->bounds.max.x - mesh_named(scene, "floor")->bounds.min.x,
+               25, 1e-4);
+    vec3s towards = glms_vec3_negate(pose_light(&pose, 0).direction);
+    struct raycast raycast;
+    CHECK(raycast_init(&raycast, test_host(), &pose));
+    // The court's floor is lit in part, its far half in most places; the aisles' is not.
+    int court = 0, aisle = 0;
+    for (int i = 0; i < 400; i++) {
+        float x = -11.5f + 23.0f * (float)i / 399.0f;
+        vec3s far_half = vec3_of(x, 0.01f, -1.5f), in_aisle = vec3_of(x, 0.01f, 5.5f);
+        court += !raycast_blocked(&raycast, far_half, towards, INFINITY);
+        aisle += !raycast_blocked(&raycast, in_aisle, towards, INFINITY);
+    }
+    CHECK(court > 200 && court < 400 && aisle == 0);
+    // A ray downwards from high above the court meets something everywhere: no hole in the floor.
+    for (int i = 0; i < 2000; i++) {
+        vec2s u = r2_sequence((uint32_t)i);
+        vec3s above = vec3_of(-12 + 24 * u.x, 30, -7 + 14 * u.y);
+        CHECK(raycast_blocked(&raycast, above, vec3_of(0.01f, -1, 0.02f), 31));
+    }
+    raycast_finish(&raycast);
+    pose_finish(&pose);
     scene_destroy(scene);
 }
