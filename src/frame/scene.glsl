@@ -1,0 +1,114 @@
+// Vertex pulling: the scene's buffers and maps. Bindings 1…7 are the buffers, 8…11 the maps; 0 is frame_constants,
+// 12 and up are the pass's own. A pass declares its push block, `push`, with a scene_push named `draw` in it.
+#ifndef AG_FRAME_SCENE_GLSL
+#define AG_FRAME_SCENE_GLSL
+
+#include "frame/scene_gpu_shared.h"
+
+#ifdef SCENE_VERTEX
+
+// Scalar arrays: a vec3 stride of 12 bytes.
+layout(set = 0, binding = 1, scalar) readonly buffer scene_positions { vec3 scene_position_table[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer scene_instances { scene_instance scene_instance_table[]; };
+
+vec3 scene_position(uint vertex)
+{
+    return scene_position_table[push.draw.vertex_base + vertex];
+}
+
+mat4 scene_world_from_instance()
+{
+    return scene_instance_table[push.draw.instance].world_from_instance;
+}
+
+#ifdef SCENE_VERTEX_SURFACE
+layout(set = 0, binding = 3, scalar) readonly buffer scene_surfaces { scene_surface scene_surface_table[]; };
+
+scene_surface scene_surface_of(uint vertex)
+{
+    return scene_surface_table[push.draw.surface_base + vertex];
+}
+#endif
+
+#ifdef SCENE_VERTEX_FRAME
+#include "frame/octahedral.glsl"
+// x: octahedral normal; y: octahedral tangent, its lowest bit set where the bitangent is −cross(normal, tangent).
+layout(set = 0, binding = 2, scalar) readonly buffer scene_frames { uvec2 scene_frame_table[]; };
+
+struct scene_frame
+{
+    vec3 normal;
+    vec4 tangent; // w = ±1, for world space: mirrored transforms included
+};
+
+// World-space normal and tangent. Normals go through the cofactor matrix: the inverse transpose but for a factor.
+scene_frame scene_frame_of(uint vertex, mat4 world_from_instance)
+{
+    uvec2 bits = scene_frame_table[push.draw.vertex_base + vertex];
+    mat3 m = mat3(world_from_instance);
+    mat3 cofactor = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+    float side = dot(m[0], cofactor[0]) < 0.0 ? -1.0 : 1.0;
+    scene_frame f;
+    f.normal = normalize(cofactor * octahedral_decode(unpackSnorm2x16(bits.x))) * side;
+    vec3 tangent = m * octahedral_decode(unpackSnorm2x16(bits.y & ~1u));
+    float length2 = dot(tangent, tangent);
+    f.tangent.xyz = length2 > 0.0 ? tangent * inversesqrt(length2) : vec3(0.0);
+    f.tangent.w = (bits.y & 1u) != 0u ? -side : side;
+    return f;
+}
+#endif
+
+#ifdef SCENE_VERTEX_MOTION
+layout(set = 0, binding = 5, scalar) readonly buffer scene_previous_positions { vec3 scene_previous_table[]; };
+
+vec3 scene_previous_world_position(uint vertex)
+{
+    vec3 p = scene_previous_table[push.draw.vertex_base + vertex];
+    return (scene_instance_table[push.draw.instance].previous_world_from_instance * vec4(p, 1.0)).xyz;
+}
+#endif
+
+#endif // SCENE_VERTEX
+
+#ifdef SCENE_FRAGMENT
+
+// Variants of a pipeline, so that a material pays only for the maps that it has.
+layout(constant_id = 0) const bool HAS_BASE_COLOR_MAP = false;
+layout(constant_id = 1) const bool HAS_METALLIC_ROUGHNESS_MAP = false;
+layout(constant_id = 2) const bool HAS_NORMAL_MAP = false;
+layout(constant_id = 3) const bool HAS_EMISSIVE_MAP = false;
+layout(constant_id = 4) const bool IS_MASKED = false;
+
+layout(set = 0, binding = 6, scalar) readonly buffer scene_materials { scene_material scene_material_table[]; };
+layout(set = 0, binding = 8) uniform sampler2D base_color_map;
+layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
+
+vec2 scene_map_uv(uint map, vec2 uv0, vec2 uv1)
+{
+    uint m = push.draw.material;
+    vec3 uv = vec3((scene_material_table[m].flags >> map & 1u) != 0u ? uv1 : uv0, 1.0);
+    return vec2(dot(scene_material_table[m].map_u[map], uv), dot(scene_material_table[m].map_v[map], uv));
+}
+
+// Factor × vertex colour × map; discards what the mask cuts away.
+vec4 scene_base_color(vec2 uv0, vec2 uv1, vec4 color)
+{
+    vec4 base = scene_material_table[push.draw.material].base_color * color;
+    if (HAS_BASE_COLOR_MAP) base *= texture(base_color_map, scene_map_uv(SCENE_MAP_BASE_COLOR, uv0, uv1));
+    if (IS_MASKED && base.a < scene_material_table[push.draw.material].alpha_cutoff) discard;
+    return base;
+}
+
+// x: roughness, y: metallic. Unlit materials: see gbuffer_fragment.glsl.
+vec2 scene_roughness_metallic(vec2 uv0, vec2 uv1)
+{
+    uint m = push.draw.material;
+    vec2 value = vec2(scene_material_table[m].roughness, scene_material_table[m].metallic);
+    if (HAS_METALLIC_ROUGHNESS_MAP)
+        value *= texture(metallic_roughness_map, scene_map_uv(SCENE_MAP_METALLIC_ROUGHNESS, uv0, uv1)).gb;
+    return (scene_material_table[m].flags & SCENE_UNLIT) != 0u ? vec2(1.0, 0.0) : value;
+}
+
+#endif // SCENE_FRAGMENT
+
+#endif

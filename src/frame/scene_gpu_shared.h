@@ -1,0 +1,52 @@
+// The scene as the rasterising passes read it. Scalar layout.
+#ifndef AG_FRAME_SCENE_GPU_SHARED_H
+#define AG_FRAME_SCENE_GPU_SHARED_H
+
+#include "core/shared.h"
+
+// What a vertex has besides position, normal and tangent.
+struct scene_surface {
+    vec2s uv0, uv1;
+    uint32_t color; // linear RGBA, 8 bits each, red lowest
+};
+
+#define SCENE_MAP_BASE_COLOR 0
+#define SCENE_MAP_METALLIC_ROUGHNESS 1
+#define SCENE_MAP_NORMAL 2
+#define SCENE_MAP_EMISSIVE 3
+#define SCENE_MAP_COUNT 4
+
+// Bits of scene_material.flags; bit m (m < SCENE_MAP_COUNT): map m reads the second texture coordinates.
+#define SCENE_DOUBLE_SIDED 16
+#define SCENE_UNLIT 32
+
+struct scene_material {
+    vec4s base_color;
+    vec3s emissive; // cd/m²
+    float alpha_cutoff;
+    float metallic, roughness, normal_scale;
+    uint32_t flags;
+    // For each map, uv' = (row_u · (u, v, 1), row_v · (u, v, 1)): KHR_texture_transform.
+    vec3s map_u[4], map_v[4];
+};
+
+struct scene_instance {
+    mat4s world_from_instance;
+    mat4s previous_world_from_instance; // last frame's
+};
+
+// Push constants of every draw; passes append their own.
+struct scene_push {
+    uint32_t instance, material;
+    uint32_t vertex_base;  // into positions, previous positions and tangent frames
+    uint32_t surface_base; // into surfaces
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct scene_surface) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct scene_material) == 48 + 4 * 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct scene_instance) == 128, "layout is shared with GLSL");
+_Static_assert(sizeof(struct scene_push) == 16, "layout is shared with GLSL");
+#endif
+
+#endif

@@ -1,0 +1,153 @@
+// Textures of a scene: each image as colours (sRGB) or as data or both, as its materials use it,
+// with full mip chains made on the GPU. An alpha mask is averaged in the smaller mips like any
+// other channel.
+#include "frame/scene_gpu.h"
+
+static bool is_color(int map)
+{
+    return map == SCENE_MAP_BASE_COLOR || map == SCENE_MAP_EMISSIVE;
+}
+
+static const struct texture_use *use_of(const struct material *m, int map)
+{
+    switch (map) {
+    case SCENE_MAP_BASE_COLOR:
+        return &m->base_color_map;
+    case SCENE_MAP_METALLIC_ROUGHNESS:
+        return &m->metallic_roughness_map;
+    case SCENE_MAP_NORMAL:
+        return &m->normal_map;
+    default:
+        return &m->emissive_map;
+    }
+}
+
+static uint32_t mip_count(int width, int height)
+{
+    uint32_t count = 1;
+    for (int size = width > height ? width : height; size > 1; size /= 2) count++;
+    return count;
+}
+
+static bool make_texture(struct scene_gpu *s, const char *name, enum gpu_format format, int width,
+                         int height, const void *texels, gpu_image *out)
+{
+    struct gpu_image_desc desc = {
+        .name = name,
+        .dimension = GPU_2D,
+        .format = format,
+        .width = (uint32_t)width,
+        .height = (uint32_t)height,
+        .mips = mip_count(width, height),
+        .usage = GPU_SAMPLED,
+    };
+    return gpu_image_create(s->gpu, &desc, out) &&
+           gpu_image_upload(s->gpu, *out, 0, 0, texels, (size_t)width * (size_t)height * 4) &&
+           (desc.mips == 1 || gpu_image_generate_mips(s->gpu, *out));
+}
+
+static bool make_image(struct scene_gpu *s, int index, bool color)
+{
+    gpu_image *out = color ? &s->color_textures[index] : &s->data_textures[index];
+    if (out->id) return true;
+    const struct scene_image *image = &s->scene->images[index];
+    char *name = host_sprintf(s->host, "scene.%s", image->name ? image->name : "texture");
+    if (!name) return false;
+    bool ok = make_texture(s, name, color ? GPU_RGBA8_SRGB : GPU_RGBA8, image->width, image->height,
+                           image->rgba, out);
+    host_free(s->host, name);
+    return ok;
+}
+
+static enum gpu_wrap wrap_of(enum texture_wrap wrap)
+{
+    switch (wrap) {
+    case WRAP_MIRROR:
+        return GPU_MIRROR;
+    case WRAP_CLAMP:
+        return GPU_CLAMP;
+    default:
+        return GPU_REPEAT;
+    }
+}
+
+static bool make_map(struct scene_gpu *s, const struct material *material, int map,
+                     struct gpu_binding *out)
+{
+    static const char *const names[SCENE_MAP_COUNT] = {
+        [SCENE_MAP_BASE_COLOR] = "base_color_map",
+        [SCENE_MAP_METALLIC_ROUGHNESS] = "metallic_roughness_map",
+        [SCENE_MAP_NORMAL] = "normal_map",
+        [SCENE_MAP_EMISSIVE] = "emissive_map",
+    };
+    const struct texture_use *use = use_of(material, map);
+    enum gpu_filter filter = use->image >= 0 && use->nearest ? GPU_NEAREST : GPU_LINEAR;
+    struct gpu_sampler_desc sampler = {
+        .name = "scene.sampler",
+        .filter = filter,
+        .mip_filter = filter,
+        .wrap_u = wrap_of(use->wrap_u),
+        .wrap_v = wrap_of(use->wrap_v),
+        .wrap_w = GPU_CLAMP,
+    };
+    *out = (struct gpu_binding){ .name = names[map] };
+    if (!gpu_sampler_get(s->gpu, &sampler, &out->sampler)) return false;
+    if (use->image < 0) {
+        out->image = map == SCENE_MAP_NORMAL ? s->flat_normal : s->white;
+        return true;
+    }
+    if (!make_image(s, use->image, is_color(map))) return false;
+    out->image = is_color(map) ? s->color_textures[use->image] : s->data_textures[use->image];
+    return true;
+}
+
+static bool list_reads(struct scene_gpu *s)
+{
+    size_t images = (size_t)s->scene->image_count;
+    s->reads = host_alloc(s->host, 2 * images + 2, sizeof *s->reads);
+    if (!s->reads) return false;
+    s->reads[s->read_count++] = (struct gpu_binding){ .name = "white", .image = s->white };
+    s->reads[s->read_count++] = (struct gpu_binding){ .name = "flat", .image = s->flat_normal };
+    for (size_t i = 0; i < images; i++) {
+        const gpu_image both[2] = { s->color_textures[i], s->data_textures[i] };
+        for (int k = 0; k < 2; k++) {
+            if (!both[k].id) continue;
+            s->reads[s->read_count++] = (struct gpu_binding){ .name = "texture", .image = both[k] };
+        }
+    }
+    return true;
+}
+
+bool scene_gpu_make_textures(struct scene_gpu *s)
+{
+    static const uint8_t white[4] = { 255, 255, 255, 255 }, flat[4] = { 128, 128, 255, 255 };
+    size_t images = (size_t)s->scene->image_count, materials = (size_t)s->scene->material_count;
+    s->color_textures = host_alloc(s->host, images, sizeof *s->color_textures);
+    s->data_textures = host_alloc(s->host, images, sizeof *s->data_textures);
+    s->maps = host_alloc(s->host, materials, sizeof *s->maps);
+    if (!s->color_textures || !s->data_textures || !s->maps) return false;
+    if (!make_texture(s, "scene.white", GPU_RGBA8, 1, 1, white, &s->white) ||
+        !make_texture(s, "scene.flat_normal", GPU_RGBA8, 1, 1, flat, &s->flat_normal)) {
+        return false;
+    }
+    for (size_t m = 0; m < materials; m++) {
+        for (int map = 0; map < SCENE_MAP_COUNT; map++) {
+            if (!make_map(s, &s->scene->materials[m], map, &s->maps[m][map])) return false;
+        }
+    }
+    return list_reads(s);
+}
+
+void scene_gpu_destroy_textures(struct scene_gpu *s)
+{
+    for (int i = 0; i < s->scene->image_count; i++) {
+        if (s->color_textures) gpu_image_destroy(s->gpu, &s->color_textures[i]);
+        if (s->data_textures) gpu_image_destroy(s->gpu, &s->data_textures[i]);
+    }
+    gpu_image_destroy(s->gpu, &s->white);
+    gpu_image_destroy(s->gpu, &s->flat_normal);
+    host_free(s->host, s->color_textures);
+    host_free(s->host, s->data_textures);
+    host_free(s->host, s->maps);
+    host_free(s->host, s->reads);
+}

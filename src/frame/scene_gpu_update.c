@@ -1,0 +1,131 @@
+// The scene at a moment: what changes from frame to frame, and the recording of draws.
+#include "frame/scene_gpu.h"
+
+#include "frame/octahedral.h"
+
+#include <string.h>
+
+static bool turns_over(mat4s m)
+{
+    return glms_mat4_det(m) < 0.0f;
+}
+
+// Whether an instance's triangles are turned over by its transform; of a skin, the first joint
+// decides.
+static bool is_mirrored(const struct scene_pose *pose, int instance)
+{
+    const struct instance *i = &pose->scene->instances[instance];
+    if (i->skin < 0) return turns_over(pose->world_from_node[i->node]);
+    const struct skin *skin = &pose->scene->skins[i->skin];
+    if (skin->joint_count == 0) return false;
+    return turns_over(
+        glms_mat4_mul(pose->world_from_node[skin->joints[0]], skin->joint_from_mesh[0]));
+}
+
+// Copies a deformed instance's vertices behind those before it; grows the draw's bounds.
+static void copy_deformed(struct scene_gpu *s, const struct deformed_mesh *from,
+                          const struct mesh *mesh, struct scene_draw *draw)
+{
+    uint32_t base = draw->push.vertex_base;
+    draw->bounds = box3_empty();
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        vec3s p = from->positions[v];
+        if (memcmp(&s->deformed_positions[base + v], &p, sizeof p) != 0) s->moved = true;
+        s->deformed_positions[base + v] = p;
+        draw->bounds = box3_add_point(draw->bounds, p);
+        uint32_t *frame = s->deformed_frames[base + v];
+        frame[0] = octahedral_pack(from->normals[v]);
+        frame[1] = from->tangents ? octahedral_pack(vec3_xyz(from->tangents[v])) & ~1u : 0;
+        // World space: what is mirrored has its bitangent on the other side.
+        if (from->tangents && (from->tangents[v].w < 0.0f) != draw->mirrored) frame[1] |= 1u;
+    }
+}
+
+static void update_draw(struct scene_gpu *s, const struct scene_pose *pose, struct scene_draw *draw)
+{
+    const struct mesh *mesh = &s->scene->meshes[draw->mesh];
+    const struct deformed_mesh *deformed = &pose->deformed[draw->instance];
+    draw->mirrored = is_mirrored(pose, draw->instance);
+    if (draw->deformed) {
+        copy_deformed(s, deformed, mesh, draw);
+        s->instances[draw->instance].world_from_instance = glms_mat4_identity();
+        return;
+    }
+    mat4s m = pose_world_from_instance(pose, draw->instance);
+    struct scene_instance *instance = &s->instances[draw->instance];
+    if (memcmp(&instance->world_from_instance, &m, sizeof m) != 0) s->moved = true;
+    instance->world_from_instance = m;
+    draw->bounds = box3_transform(m, mesh->bounds);
+}
+
+static void upload_deformed(struct scene_gpu *s, struct gpu_cmd *cmd)
+{
+    size_t n = s->deformed_vertex_count;
+    if (n == 0) return;
+    s->deformed_positions_binding = gpu_transient(cmd, "scene_positions", s->deformed_positions,
+                                                  n * sizeof *s->deformed_positions);
+    s->deformed_previous_binding = gpu_transient(
+        cmd, "scene_previous_positions", s->deformed_previous, n * sizeof *s->deformed_previous);
+    s->deformed_frames_binding =
+        gpu_transient(cmd, "scene_frames", s->deformed_frames, n * sizeof *s->deformed_frames);
+}
+
+void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct scene_pose *pose,
+                      bool forget)
+{
+    size_t n = (size_t)s->scene->instance_count, v = s->deformed_vertex_count;
+    memcpy(s->deformed_previous, s->deformed_positions, v * sizeof *s->deformed_previous);
+    for (size_t i = 0; i < n; i++)
+        s->instances[i].previous_world_from_instance = s->instances[i].world_from_instance;
+    s->moved = false;
+    for (int i = 0; i < s->draw_count; i++) update_draw(s, pose, &s->draws[i]);
+    if (forget || !s->has_previous) {
+        s->moved = s->moved || !s->has_previous;
+        memcpy(s->deformed_previous, s->deformed_positions, v * sizeof *s->deformed_previous);
+        for (size_t i = 0; i < n; i++)
+            s->instances[i].previous_world_from_instance = s->instances[i].world_from_instance;
+    }
+    s->has_previous = true;
+    if (n)
+        s->instances_binding =
+            gpu_transient(cmd, "scene_instances", s->instances, n * sizeof *s->instances);
+    upload_deformed(s, cmd);
+}
+
+void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
+                    const struct scene_draw_call *call)
+{
+    const struct scene_draw *draw = call->draw;
+    const struct gpu_binding *maps = s->maps[draw->material];
+    struct gpu_binding bindings[16] = {
+        draw->deformed ? s->deformed_positions_binding
+                       : (struct gpu_binding){ .name = "scene_positions", .buffer = s->positions },
+        draw->deformed ? s->deformed_frames_binding
+                       : (struct gpu_binding){ .name = "scene_frames", .buffer = s->frames },
+        { .name = "scene_surfaces", .buffer = s->surfaces },
+        s->instances_binding,
+        draw->deformed
+            ? s->deformed_previous_binding
+            : (struct gpu_binding){ .name = "scene_previous_positions", .buffer = s->positions },
+        { .name = "scene_materials", .buffer = s->materials },
+        maps[0],
+        maps[1],
+        maps[2],
+        maps[3],
+    };
+    int count = 10;
+    for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
+    memcpy(call->push, &draw->push, sizeof draw->push);
+    gpu_draw(cmd, &(struct gpu_draw_desc){
+                      .pipeline = call->pipeline,
+                      .bindings = bindings,
+                      .binding_count = count,
+                      .push = call->push,
+                      .push_bytes = call->push_bytes,
+                      .indices = s->indices,
+                      .index_offset = s->index_offset[draw->mesh],
+                      .count = s->scene->meshes[draw->mesh].index_count,
+                      .cull = call->cull,
+                      .flip_front = draw->mirrored,
+                  });
+}
