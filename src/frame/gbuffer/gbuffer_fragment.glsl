@@ -1,0 +1,57 @@
+// Fragments of the G-buffer. Formats: frame.h.
+//
+// Unlit materials (KHR_materials_unlit) are diffuse surfaces of their base colour, without gloss or metal: they neither
+// glow, which would add light that the scene does not have, nor stay dark to the light around them.
+#define GBUFFER_FRAGMENT
+#define SCENE_FRAGMENT
+#include "frame/frame.glsl"
+#include "frame/gbuffer/gbuffer_varyings.glsl"
+#include "frame/octahedral.glsl"
+#include "frame/scene.glsl"
+
+layout(set = 0, binding = 10) uniform sampler2D normal_map;
+layout(set = 0, binding = 11) uniform sampler2D emissive_map;
+
+layout(location = 0) out vec2 out_normal;
+layout(location = 1) out vec4 out_albedo;
+layout(location = 2) out vec2 out_material;
+layout(location = 3) out vec4 out_emissive;
+#ifdef GBUFFER_MOTION
+layout(location = 4) out vec2 out_motion;
+#endif
+
+// glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w; the back of a double-sided surface has the
+// normal reversed, that of the map included.
+vec3 shading_normal()
+{
+    vec3 n = vary_normal;
+    if (HAS_NORMAL_MAP) {
+        vec3 local = texture(normal_map, scene_map_uv(SCENE_MAP_NORMAL, vary_uv0, vary_uv1)).xyz * 2.0 - 1.0;
+        local.xy *= scene_material_table[push.draw.material].normal_scale;
+        n = vary_tangent.xyz * local.x + cross(n, vary_tangent.xyz) * (vary_tangent.w * local.y) + n * local.z;
+    }
+    float length2 = dot(n, n);
+    n = length2 > 1e-12 ? n * inversesqrt(length2) : vec3(0.0, 1.0, 0.0);
+    return gl_FrontFacing ? n : -n;
+}
+
+vec3 emitted_radiance()
+{
+    vec3 radiance = scene_material_table[push.draw.material].emissive;
+    if (HAS_EMISSIVE_MAP) radiance *= texture(emissive_map, scene_map_uv(SCENE_MAP_EMISSIVE, vary_uv0, vary_uv1)).rgb;
+    return min(radiance * frame.radiance_scale, vec3(HALF_MAX));
+}
+
+void main()
+{
+    out_albedo = vec4(scene_base_color(vary_uv0, vary_uv1, vary_color).rgb, 1.0);
+    out_normal = octahedral_encode(shading_normal());
+    out_material = scene_roughness_metallic(vary_uv0, vary_uv1);
+    out_emissive = vec4(emitted_radiance(), 0.0);
+#ifdef GBUFFER_MOTION
+    vec2 now = gl_FragCoord.xy / vec2(frame.width, frame.height);
+    // Behind the last frame's eye there is no position to come from: as far outside as the format can say.
+    vec2 before = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z * 0.5 + 0.5 : vec2(-HALF_MAX);
+    out_motion = clamp(now - before, -HALF_MAX, HALF_MAX);
+#endif
+}

@@ -1,0 +1,20 @@
+// What G-buffer vertices hand to fragments. VARY: in or out.
+#ifdef GBUFFER_FRAGMENT
+#define VARY in
+#else
+#define VARY out
+#endif
+
+layout(location = 0) VARY vec3 vary_normal;
+layout(location = 1) VARY vec4 vary_tangent;
+layout(location = 2) VARY vec2 vary_uv0;
+layout(location = 3) VARY vec2 vary_uv1;
+layout(location = 4) VARY vec4 vary_color;
+#ifdef GBUFFER_MOTION
+layout(location = 5) VARY vec3 vary_previous; // last frame's clip position, x y w
+#endif
+
+layout(push_constant, scalar) uniform push_block
+{
+    scene_push draw;
+} push;

@@ -1,0 +1,27 @@
+// Vertices of the G-buffer; with GBUFFER_MOTION also where they were in the last frame.
+#define SCENE_VERTEX
+#define SCENE_VERTEX_SURFACE
+#define SCENE_VERTEX_FRAME
+#include "frame/frame.glsl"
+#include "frame/gbuffer/gbuffer_varyings.glsl"
+#include "frame/scene.glsl"
+
+void main()
+{
+    uint vertex = uint(gl_VertexIndex);
+    mat4 world_from_instance = scene_world_from_instance();
+    vec3 world = (world_from_instance * vec4(scene_position(vertex), 1.0)).xyz;
+    gl_Position = frame.clip_from_world * vec4(world, 1.0);
+
+    scene_frame f = scene_frame_of(vertex, world_from_instance);
+    vary_normal = f.normal;
+    vary_tangent = f.tangent;
+    scene_surface surface = scene_surface_of(vertex);
+    vary_uv0 = surface.uv0;
+    vary_uv1 = surface.uv1;
+    vary_color = unpackUnorm4x8(surface.color);
+#ifdef GBUFFER_MOTION
+    vec4 previous = frame.previous_clip_from_world * vec4(scene_previous_world_position(vertex), 1.0);
+    vary_previous = previous.xyw;
+#endif
+}
