@@ -1,0 +1,185 @@
+// Shadow maps: suns have cascades, spots one perspective map, points six. Both sides of every
+// triangle cast.
+#include "frame/shadow/shadow.h"
+
+#include "frame/light_fit.h"
+#include "frame/projection.h"
+
+#include "frame_shaders.h"
+
+#include <math.h>
+
+static const float CONSTANT_BIAS = 0.1f; // texels
+static const float SLOPE_BIAS =
+    -1.0f; // texels' worth of slope, away from the light (reversed depth)
+
+struct push {
+    struct scene_push draw;
+    mat4s clip_from_world;
+};
+
+static bool make_pipelines(struct shadow *s)
+{
+    struct gpu_graphics_desc desc = {
+        .name = "frame.shadow",
+        .vertex = &shader_shadow_vert,
+        .depth_format = GPU_D32F,
+        .depth_compare = GPU_GREATER,
+        .depth_write = true,
+        .depth_clamp = true,
+        .depth_bias_slope = SLOPE_BIAS,
+    };
+    if (!gpu_graphics_pipeline_create(s->gpu, &desc, &s->opaque)) return false;
+    desc.name = "frame.shadow_masked";
+    desc.vertex = &shader_shadow_masked_vert;
+    desc.fragment = &shader_shadow_masked_frag;
+    for (uint32_t map = 0; map < 2; map++) {
+        struct gpu_constant constants[] = { { 0, map }, { 4, 1 } }; // HAS_BASE_COLOR_MAP, IS_MASKED
+        desc.constants = constants;
+        desc.constant_count = 2;
+        if (!gpu_graphics_pipeline_create(s->gpu, &desc, &s->masked[map])) return false;
+    }
+    return true;
+}
+
+bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t size,
+                 uint32_t cascades)
+{
+    *s = (struct shadow){
+        .host = host, .gpu = gpu, .size = size, .cascades = cascades, .capacity = -1
+    };
+    struct gpu_sampler_desc sampler = {
+        .name = "frame.shadow_sampler",
+        .filter = GPU_LINEAR,
+        .mip_filter = GPU_NEAREST,
+        .wrap_u = GPU_CLAMP,
+        .wrap_v = GPU_CLAMP,
+        .wrap_w = GPU_CLAMP,
+        .compare_greater = true,
+    };
+    return gpu_sampler_get(gpu, &sampler, &s->sampler) && make_pipelines(s) && shadow_prepare(s, 0);
+}
+
+void shadow_finish(struct shadow *s)
+{
+    if (!s->gpu) return;
+    gpu_pipeline_destroy(s->gpu, &s->opaque);
+    for (int i = 0; i < 2; i++) gpu_pipeline_destroy(s->gpu, &s->masked[i]);
+    gpu_image_destroy(s->gpu, &s->maps);
+    host_free(s->host, s->faces);
+    *s = (struct shadow){ 0 };
+}
+
+int shadow_faces_of(const struct shadow *s, uint32_t light_type)
+{
+    if (light_type == FRAME_LIGHT_SUN) return (int)s->cascades;
+    return light_type == FRAME_LIGHT_POINT ? 6 : 1;
+}
+
+bool shadow_prepare(struct shadow *s, int face_count)
+{
+    if (face_count == s->capacity) return true;
+    if ((uint32_t)face_count > gpu_limits(s->gpu)->max_layers) {
+        return host_fail(s->host, FAIL_UNSUPPORTED,
+                         "frame shadows: %d maps, device %s has room for %u", face_count,
+                         gpu_info(s->gpu)->name, gpu_limits(s->gpu)->max_layers);
+    }
+    gpu_image_destroy(s->gpu, &s->maps);
+    host_free(s->host, s->faces);
+    s->capacity = -1;
+    s->faces = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->faces);
+    struct gpu_image_desc desc = {
+        .name = "frame.shadow_maps",
+        .dimension = GPU_2D_ARRAY,
+        .format = GPU_D32F,
+        .width = face_count ? s->size : 8,
+        .height = face_count ? s->size : 8,
+        .depth = face_count ? (uint32_t)face_count : 1,
+        .usage = GPU_SAMPLED | GPU_ATTACHMENT,
+    };
+    if (!s->faces || !gpu_image_create(s->gpu, &desc, &s->maps)) return false;
+    s->capacity = face_count;
+    return true;
+}
+
+// A face of a point or spot, widened so that the filter finds texels beyond its border.
+static void place_perspective(const struct shadow *s, struct shadow_face *face, int index,
+                              const struct frame_light *light, const struct shadow_view *view)
+{
+    bool point = light->type == FRAME_LIGHT_POINT;
+    float rim = 4.0f * ((float)view->filter_radius + 2.0f);
+    float tan_half = point ? 1.0f : light_spot_tan(light->cos_outer);
+    tan_half /= fmaxf(1.0f - rim / (float)s->size, 0.25f);
+    float near_m = light_near(view->bounds);
+    *face = (struct shadow_face){
+        .clip_from_world =
+            point ? light_cube_face(light->position, index, tan_half, near_m)
+                  : light_spot_face(light->position, light->direction, tan_half, near_m),
+        .texel_m = 2.0f * tan_half / (float)s->size,
+    };
+    face->depth_scale = 1.0f + CONSTANT_BIAS * face->texel_m; // depth = near / distance
+}
+
+void shadow_place(struct shadow *s, struct frame_light *lights, int light_count,
+                  const struct shadow_view *view)
+{
+    s->face_count = 0;
+    for (int i = 0; i < light_count; i++) {
+        struct frame_light *light = &lights[i];
+        int count = shadow_faces_of(s, light->type);
+        light->shadow_first = -1;
+        light->shadow_count = 0;
+        if (count > s->capacity - s->face_count) continue;
+        struct shadow_face *faces = &s->faces[s->face_count];
+        if (light->type == FRAME_LIGHT_SUN) {
+            shadow_place_sun(s, faces, count, light->direction, view);
+        } else {
+            for (int k = 0; k < count; k++) place_perspective(s, &faces[k], k, light, view);
+        }
+        light->shadow_first = s->face_count;
+        light->shadow_count = count;
+        s->face_count += count;
+    }
+}
+
+static void record_face(const struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                        int layer)
+{
+    struct push push = { .clip_from_world = s->faces[layer].clip_from_world };
+    gpu_render_begin(cmd, &(struct gpu_render_desc){
+                              .depth = { .image = s->maps, .layer = (uint32_t)layer },
+                              .width = s->size,
+                              .height = s->size,
+                              .reads = scene->reads,
+                              .read_count = scene->read_count,
+                          });
+    for (int i = 0; i < scene->draw_count; i++) {
+        const struct scene_draw *draw = &scene->draws[i];
+        if (!projection_may_see(push.clip_from_world, draw->bounds)) continue;
+        gpu_pipeline pipeline = draw->variant & VARIANT_MASKED
+                                    ? s->masked[draw->variant & VARIANT_BASE_COLOR_MAP]
+                                    : s->opaque;
+        scene_gpu_draw(scene, cmd,
+                       &(struct scene_draw_call){
+                           .pipeline = pipeline,
+                           .draw = draw,
+                           .push = &push,
+                           .push_bytes = sizeof push,
+                           .cull = GPU_CULL_NONE,
+                       });
+    }
+    gpu_render_end(cmd);
+}
+
+void shadow_record(const struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                   const struct frame_light *lights, int light_count)
+{
+    static const char *const scopes[] = { "shadow.sun", "shadow.point", "shadow.spot" };
+    for (int i = 0; i < light_count; i++) {
+        if (lights[i].shadow_count == 0) continue;
+        gpu_scope_begin(cmd, scopes[lights[i].type]);
+        for (int k = 0; k < lights[i].shadow_count; k++)
+            record_face(s, cmd, scene, lights[i].shadow_first + k);
+        gpu_scope_end(cmd);
+    }
+}

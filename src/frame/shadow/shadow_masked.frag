@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// Cuts the holes of alpha-masked shadow casters.
+#define SCENE_FRAGMENT
+#include "frame/scene_gpu_shared.h"
+
+layout(push_constant, scalar) uniform push_block
+{
+    scene_push draw;
+    mat4 clip_from_world;
+} push;
+
+#include "frame/scene.glsl"
+
+layout(location = 0) in vec2 vary_uv0;
+layout(location = 1) in vec2 vary_uv1;
+layout(location = 2) in vec4 vary_color;
+
+void main()
+{
+    scene_base_color(vary_uv0, vary_uv1, vary_color);
+}
