@@ -1,0 +1,72 @@
+// The sum of all light.
+#include "frame/composite/composite.h"
+
+#include "frame_shaders.h"
+
+static bool make_stand_in(struct composite *c, const char *name, enum gpu_format format,
+                          gpu_image *out)
+{
+    struct gpu_image_desc desc = { .name = name,
+                                   .dimension = GPU_2D,
+                                   .format = format,
+                                   .width = 1,
+                                   .height = 1,
+                                   .usage = GPU_SAMPLED | GPU_STORAGE };
+    return gpu_image_create(c->gpu, &desc, out);
+}
+
+bool composite_init(struct composite *c, struct gpu *gpu)
+{
+    *c = (struct composite){ .gpu = gpu };
+    struct gpu_sampler_desc nearest = {
+        .name = "frame.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
+    };
+    return gpu_sampler_get(gpu, &nearest, &c->nearest) &&
+           make_stand_in(c, "frame.no_radiance", GPU_RGBA16F, &c->no_radiance) &&
+           make_stand_in(c, "frame.no_display", GPU_RGBA8, &c->no_display);
+}
+
+void composite_finish(struct composite *c)
+{
+    if (!c->gpu) return;
+    for (int i = 0; i < COMPOSITE_VARIANT_COUNT; i++)
+        gpu_pipeline_destroy(c->gpu, &c->pipelines[i]);
+    gpu_image_destroy(c->gpu, &c->no_radiance);
+    gpu_image_destroy(c->gpu, &c->no_display);
+    *c = (struct composite){ 0 };
+}
+
+bool composite_prepare(struct composite *c, uint32_t variant)
+{
+    if (c->pipelines[variant].id) return true;
+    struct gpu_constant constants[5];
+    for (uint32_t i = 0; i < 5; i++) constants[i] = (struct gpu_constant){ i, variant >> i & 1u };
+    return gpu_compute_pipeline_create(c->gpu, "frame.composite", &shader_composite_comp, constants,
+                                       5, &c->pipelines[variant]);
+}
+
+void composite_record(const struct composite *c, struct gpu_cmd *cmd, uint32_t variant,
+                      const struct composite_images *images, struct gpu_binding constants,
+                      struct gpu_binding exposure, uint32_t width, uint32_t height)
+{
+    // What is not read must still be bound: the direct image is always there.
+    gpu_image irradiance = variant & COMPOSITE_IRRADIANCE ? images->irradiance : images->direct;
+    gpu_image specular = variant & COMPOSITE_SPECULAR ? images->specular : images->direct;
+    gpu_image visibility = variant & COMPOSITE_VISIBILITY ? images->visibility : images->direct;
+    gpu_image indirect = variant & COMPOSITE_INDIRECT ? images->indirect : c->no_radiance;
+    gpu_image display = variant & COMPOSITE_DISPLAY ? images->display : c->no_display;
+    gpu_scope_begin(cmd, "composite");
+    gpu_dispatch(cmd, c->pipelines[variant],
+                 GPU_BIND(constants, exposure,
+                          { "direct_layer", .image = images->direct, .sampler = c->nearest },
+                          { "albedo_layer", .image = images->albedo, .sampler = c->nearest },
+                          { "material_layer", .image = images->material, .sampler = c->nearest },
+                          { "irradiance_layer", .image = irradiance, .sampler = c->nearest },
+                          { "specular_layer", .image = specular, .sampler = c->nearest },
+                          { "visibility_layer", .image = visibility, .sampler = c->nearest },
+                          { "color_layer", .image = images->color },
+                          { "indirect_layer", .image = indirect },
+                          { "display_layer", .image = display }),
+                 NULL, 0, gpu_groups(width, 8), gpu_groups(height, 8), 1);
+    gpu_scope_end(cmd);
+}

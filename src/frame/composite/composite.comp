@@ -1,0 +1,64 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// The contract's sum: L = direct (with emission and sky) + albedo·(1−metallic)/π · E · visibility + specular; and what
+// a screen shows of it.
+#include "frame/frame.glsl"
+#include "frame/brdf.glsl"
+#include "frame/composite/exposure_shared.h"
+#include "image/tonemap.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const bool HAS_IRRADIANCE = false;
+layout(constant_id = 1) const bool HAS_SPECULAR = false;
+layout(constant_id = 2) const bool HAS_VISIBILITY = false;
+layout(constant_id = 3) const bool WRITES_INDIRECT = false;
+layout(constant_id = 4) const bool WRITES_DISPLAY = false;
+
+layout(set = 0, binding = 1) uniform sampler2D direct_layer;
+layout(set = 0, binding = 2) uniform sampler2D albedo_layer;
+layout(set = 0, binding = 3) uniform sampler2D material_layer;
+layout(set = 0, binding = 4) uniform sampler2D irradiance_layer;
+layout(set = 0, binding = 5) uniform sampler2D specular_layer;
+layout(set = 0, binding = 6) uniform sampler2D visibility_layer;
+layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D color_layer;
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D indirect_layer;
+layout(set = 0, binding = 9, rgba8) uniform writeonly image2D display_layer;
+layout(set = 0, binding = 10, scalar) readonly buffer exposure_state { exposure_values state; };
+
+vec3 indirect_light(ivec2 pixel)
+{
+    vec3 light = vec3(0.0);
+    vec4 albedo = texelFetch(albedo_layer, pixel, 0); // alpha: is there a surface
+    if (HAS_IRRADIANCE) {
+        light = brdf_diffuse(albedo.rgb, texelFetch(material_layer, pixel, 0).g) *
+                texelFetch(irradiance_layer, pixel, 0).rgb;
+        if (HAS_VISIBILITY) light *= texelFetch(visibility_layer, pixel, 0).r;
+    }
+    if (HAS_SPECULAR) light += texelFetch(specular_layer, pixel, 0).rgb;
+    return albedo.a > 0.0 ? min(light, vec3(HALF_MAX)) : vec3(0.0);
+}
+
+// IEC 61966-2-1.
+vec3 srgb_encoded(vec3 linear)
+{
+    return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
+    vec3 radiance = texelFetch(direct_layer, pixel, 0).rgb;
+    vec3 indirect = vec3(0.0);
+    if (HAS_IRRADIANCE || HAS_SPECULAR) indirect = indirect_light(pixel);
+    radiance = min(radiance + indirect, vec3(HALF_MAX));
+    imageStore(color_layer, pixel, vec4(radiance, 1.0));
+    if (WRITES_INDIRECT) imageStore(indirect_layer, pixel, vec4(indirect, 1.0));
+    if (WRITES_DISPLAY) {
+        vec3 shown = tonemap_pbr_neutral(radiance * (exposure_scale(state.ev) / frame.radiance_scale));
+        imageStore(display_layer, pixel, vec4(srgb_encoded(clamp(shown, 0.0, 1.0)), 1.0));
+    }
+}

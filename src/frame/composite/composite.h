@@ -1,0 +1,35 @@
+// The sum of all light, and what a screen shows of it.
+#pragma once
+
+#include "gpu/gpu.h"
+
+// What a frame's composite reads and writes besides the direct image; the bits are the constant_id's in composite.comp.
+enum composite_variant {
+    COMPOSITE_IRRADIANCE = 1,
+    COMPOSITE_SPECULAR = 2,
+    COMPOSITE_VISIBILITY = 4,
+    COMPOSITE_INDIRECT = 8,
+    COMPOSITE_DISPLAY = 16,
+    COMPOSITE_VARIANT_COUNT = 32,
+};
+
+struct composite {
+    struct gpu *gpu;
+    gpu_pipeline pipelines[COMPOSITE_VARIANT_COUNT];
+    gpu_sampler nearest;
+    gpu_image no_radiance, no_display; // stand for outputs that nobody wants
+};
+
+// Images that the variant does not name may be none.
+struct composite_images {
+    gpu_image direct, albedo, material, irradiance, specular, visibility;
+    gpu_image color, indirect, display;
+};
+
+bool composite_init(struct composite *composite, struct gpu *gpu);
+void composite_finish(struct composite *composite); // accepts zero
+bool composite_prepare(struct composite *composite, uint32_t variant);
+// exposure: binding "exposure_state".
+void composite_record(const struct composite *composite, struct gpu_cmd *cmd, uint32_t variant,
+                      const struct composite_images *images, struct gpu_binding constants,
+                      struct gpu_binding exposure, uint32_t width, uint32_t height);

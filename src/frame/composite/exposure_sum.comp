@@ -1,0 +1,42 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// A sum of log2 luminances for each group of threads. The order of additions depends on the image's size alone, so equal
+// images give equal bits.
+#include "frame/frame.glsl"
+#include "frame/composite/exposure_shared.h"
+#include "frame/composite/exposure_reduce.glsl"
+
+layout(local_size_x = EXPOSURE_THREADS) in;
+
+layout(set = 0, binding = 1, scalar) readonly buffer exposure_state { exposure_values state; };
+layout(set = 0, binding = 2, scalar) writeonly buffer exposure_sums { vec2 sums[]; };
+layout(set = 0, binding = 3) uniform sampler2D direct_layer;
+
+layout(push_constant, scalar) uniform push_block
+{
+    exposure_push push;
+};
+
+// x: log2 of what the pixel counts as; y: 1 where it counts.
+vec2 pixel_term(uint index)
+{
+    uint y = index / frame.width;
+    vec3 radiance = texelFetch(direct_layer, ivec2(index - y * frame.width, y), 0).rgb;
+    float l = dot(radiance, vec3(0.2126, 0.7152, 0.0722));
+    bool lit = l > 0.0 && !isinf(l);
+    float value = lit ? log2(l) : 0.0;
+    if (push.round_index == 0) return vec2(value, lit ? 1.0 : 0.0);
+    return vec2(lit ? max(value, state.floor_log2) : state.floor_log2, 1.0);
+}
+
+void main()
+{
+    uint count = frame.width * frame.height;
+    uint stride = push.groups * EXPOSURE_THREADS;
+    vec2 sum = vec2(0.0);
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) sum += pixel_term(i);
+    sum = sum_of_group(sum);
+    if (gl_LocalInvocationID.x == 0) sums[gl_WorkGroupID.x] = sum;
+}

@@ -1,0 +1,42 @@
+// Direct light.
+#include "frame/direct/direct.h"
+
+#include "frame/direct/direct_shared.h"
+
+#include "frame_shaders.h"
+
+bool direct_init(struct direct *d, struct gpu *gpu)
+{
+    *d = (struct direct){ .gpu = gpu };
+    struct gpu_sampler_desc nearest = {
+        .name = "frame.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
+    };
+    return gpu_sampler_get(gpu, &nearest, &d->nearest) &&
+           gpu_compute_pipeline_create(gpu, "frame.direct", &shader_direct_comp, NULL, 0,
+                                       &d->pipeline);
+}
+
+void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct direct_input *in,
+                   gpu_image out)
+{
+    struct direct_push push = { (float)in->shadow_size, in->shadow_radius };
+    gpu_scope_begin(cmd, "direct");
+    gpu_dispatch(
+        cmd, d->pipeline,
+        GPU_BIND(in->constants, in->lights, in->shadow_faces,
+                 { "shadow_maps", .image = in->shadow_maps, .sampler = in->shadow_sampler },
+                 { "depth_layer", .image = in->depth, .sampler = d->nearest },
+                 { "normal_layer", .image = in->normal, .sampler = d->nearest },
+                 { "albedo_layer", .image = in->albedo, .sampler = d->nearest },
+                 { "material_layer", .image = in->material, .sampler = d->nearest },
+                 { "emissive_layer", .image = in->emissive, .sampler = d->nearest },
+                 { "direct_layer", .image = out }),
+        &push, sizeof push, gpu_groups(in->width, 8), gpu_groups(in->height, 8), 1);
+    gpu_scope_end(cmd);
+}
+
+void direct_finish(struct direct *d)
+{
+    if (d->gpu) gpu_pipeline_destroy(d->gpu, &d->pipeline);
+    *d = (struct direct){ 0 };
+}
