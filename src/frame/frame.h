@@ -60,8 +60,14 @@ struct frame_view {
     struct gpu_binding rsm_faces_binding; // named "rsm_faces"
     gpu_image rsm_depth;  // D32F array, reversed Z; 0 where there is nothing
     gpu_image rsm_normal; // RG16F array: octahedral, faces the light
-    gpu_image rsm_flux;   // RGBA8 array: reflectance ρ of the texel (albedo × (1−metallic) × spot and range fall-off);
-                          // reflected flux in scaled lumen = ρ × flux through the texel, see frame/rsm/rsm.glsl
+    gpu_image rsm_flux;   // RGBA8_SRGB array: reflectance ρ of the texel (albedo × (1−metallic) × spot and range
+                          // fall-off); reflected flux in scaled lumen = ρ × flux through the texel, see frame/rsm/rsm.glsl
+    // Shadow maps of all lights, to be read through frame/shadow/shadow.glsl.
+    gpu_image shadow_maps; // D32F array, reversed Z
+    gpu_sampler shadow_sampler; // compares
+    uint32_t shadow_size;
+    int shadow_radius; // of the filter, texels
+    struct gpu_binding shadow_faces_binding; // named "shadow_faces"
 };
 
 // What the hook reads and writes; the frame makes and fills only what is needed.

@@ -1,0 +1,282 @@
+// One frame, front to back. frame_record is the order of passes; each pass lies in its own folder
+// and is handed what the ones before it made. Nothing flows back up.
+#include "frame/frame_state.h"
+
+static const struct option_row option_rows[] = {
+#define OPTION(...) OPTION_ROW(struct frame_options, __VA_ARGS__)
+#include "frame/frame_options.def"
+#undef OPTION
+};
+const struct option_table frame_option_table = {
+    option_rows,
+    sizeof option_rows / sizeof *option_rows,
+    sizeof(struct frame_options),
+};
+
+static const uint32_t MAX_SIZE = 16384;
+
+struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options)
+{
+    struct frame *f = host_alloc(host, 1, sizeof *f);
+    if (!f) return NULL;
+    f->host = host;
+    f->gpu = gpu;
+    f->options = *options;
+    if (shadow_init(&f->shadow, host, gpu, (uint32_t)options->shadow_size,
+                    (uint32_t)options->cascades) &&
+        rsm_init(&f->rsm, host, gpu, (uint32_t)options->rsm_size) && direct_init(&f->direct, gpu) &&
+        exposure_init(&f->exposure, gpu) && composite_init(&f->composite, gpu)) {
+        return f;
+    }
+    frame_destroy(f);
+    return NULL;
+}
+
+void frame_destroy(struct frame *f)
+{
+    if (!f) return;
+    frame_destroy_layers(f);
+    composite_finish(&f->composite);
+    exposure_finish(&f->exposure);
+    direct_finish(&f->direct);
+    rsm_finish(&f->rsm);
+    shadow_finish(&f->shadow);
+    gbuffer_finish(&f->gbuffer);
+    scene_gpu_finish(&f->scene);
+    host_free(f->host, f);
+}
+
+bool frame_set_scene(struct frame *f, const struct scene *scene)
+{
+    scene_gpu_finish(&f->scene);
+    f->has_scene = f->prepared = false;
+    f->index = 0;
+    if (!scene_gpu_init(&f->scene, f->host, f->gpu, scene)) {
+        scene_gpu_finish(&f->scene);
+        return false;
+    }
+    f->has_scene = true;
+    return true;
+}
+
+bool frame_resize(struct frame *f, uint32_t width, uint32_t height)
+{
+    if (width < 1 || height < 1 || width > MAX_SIZE || height > MAX_SIZE) {
+        return host_fail(f->host, FAIL_ARGUMENT, "frame size %ux%u: must be 1x1 to %ux%u", width,
+                         height, MAX_SIZE, MAX_SIZE);
+    }
+    frame_destroy_layers(f);
+    f->width = width;
+    f->height = height;
+    f->index = 0;
+    f->prepared = false;
+    return true;
+}
+
+// ---- Preparation --------------------------------------------------------------------------------
+
+static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs)
+{
+    uint32_t wanted = 1u << FRAME_DEPTH | 1u << FRAME_NORMAL | 1u << FRAME_ALBEDO |
+                      1u << FRAME_MATERIAL | 1u << FRAME_EMISSIVE | 1u << FRAME_DIRECT |
+                      1u << FRAME_COLOR;
+    if (needs & FRAME_NEEDS_MOTION) wanted |= 1u << FRAME_MOTION;
+    if (needs & FRAME_WRITES_IRRADIANCE) wanted |= 1u << FRAME_IRRADIANCE;
+    if (needs & FRAME_WRITES_SPECULAR) wanted |= 1u << FRAME_SPECULAR;
+    if (needs & FRAME_WRITES_VISIBILITY) wanted |= 1u << FRAME_VISIBILITY;
+    if (input->want_indirect_layer) wanted |= 1u << FRAME_INDIRECT;
+    if (input->want_display) wanted |= 1u << FRAME_DISPLAY;
+    return wanted;
+}
+
+static uint32_t composite_variant_of(const struct frame_input *input, uint32_t needs)
+{
+    return (needs & FRAME_WRITES_IRRADIANCE ? COMPOSITE_IRRADIANCE : 0) |
+           (needs & FRAME_WRITES_SPECULAR ? COMPOSITE_SPECULAR : 0) |
+           (needs & FRAME_WRITES_VISIBILITY ? COMPOSITE_VISIBILITY : 0) |
+           (input->want_indirect_layer ? COMPOSITE_INDIRECT : 0) |
+           (input->want_display ? COMPOSITE_DISPLAY : 0);
+}
+
+static bool prepare_lights(struct frame *f, const struct frame_input *input)
+{
+    static const uint32_t types[] = { FRAME_LIGHT_SUN, FRAME_LIGHT_POINT, FRAME_LIGHT_SPOT };
+    int shadow_faces = 0, rsm_faces = 0;
+    for (int i = 0; i < input->light_count; i++) {
+        shadow_faces += shadow_faces_of(&f->shadow, types[input->lights[i].type]);
+        rsm_faces += rsm_faces_of(types[input->lights[i].type]);
+    }
+    if (!(f->needs & FRAME_NEEDS_RSM)) rsm_faces = 0;
+    return shadow_prepare(&f->shadow, shadow_faces) &&
+           rsm_prepare(&f->rsm, rsm_faces, f->scene.variants_used);
+}
+
+bool frame_prepare(struct frame *f, const struct frame_input *input,
+                   const struct frame_indirect *indirect)
+{
+    f->prepared = false;
+    if (!f->has_scene || f->width == 0) {
+        return host_fail(f->host, FAIL_ARGUMENT, "frame: it has no %s yet",
+                         f->has_scene ? "size" : "scene");
+    }
+    if (input->light_count < 0 || input->light_count > FRAME_MAX_LIGHTS) {
+        return host_fail(f->host, FAIL_ARGUMENT, "frame: %d lights, at most %d", input->light_count,
+                         FRAME_MAX_LIGHTS);
+    }
+    if (input->pose->scene != f->scene.scene)
+        return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose is of another scene");
+    f->needs = indirect ? indirect->needs : 0;
+    f->composite_variant = composite_variant_of(input, f->needs);
+    f->prepared = frame_make_layers(f, wanted_layers(input, f->needs)) &&
+                  prepare_lights(f, input) &&
+                  gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used,
+                                  (f->needs & FRAME_NEEDS_MOTION) != 0) &&
+                  composite_prepare(&f->composite, f->composite_variant);
+    return f->prepared;
+}
+
+// ---- Passes -------------------------------------------------------------------------------------
+
+static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
+{
+    struct gbuffer_targets targets = {
+        .depth = f->layers[FRAME_DEPTH],
+        .normal = f->layers[FRAME_NORMAL],
+        .albedo = f->layers[FRAME_ALBEDO],
+        .material = f->layers[FRAME_MATERIAL],
+        .emissive = f->layers[FRAME_EMISSIVE],
+        .motion = f->layers[FRAME_MOTION],
+        .width = f->width,
+        .height = f->height,
+    };
+    gbuffer_record(&f->gbuffer, cmd, &f->scene, &targets, f->constants.clip_from_world,
+                   f->constants_binding);
+}
+
+static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
+{
+    struct frame_view *view = &f->view;
+    size_t faces = f->shadow.face_count ? (size_t)f->shadow.face_count : 1; // a block is never empty
+    view->shadow_maps = f->shadow.maps;
+    view->shadow_sampler = f->shadow.sampler;
+    view->shadow_size = f->shadow.size;
+    view->shadow_radius = f->options.shadow_filter;
+    view->shadow_faces_binding =
+        gpu_transient(cmd, "shadow_faces", f->shadow.faces, faces * sizeof *f->shadow.faces);
+    shadow_record(&f->shadow, cmd, &f->scene, f->lights, f->light_count);
+}
+
+static void record_direct(struct frame *f, struct gpu_cmd *cmd)
+{
+    struct direct_input in = {
+        .depth = f->layers[FRAME_DEPTH],
+        .normal = f->layers[FRAME_NORMAL],
+        .albedo = f->layers[FRAME_ALBEDO],
+        .material = f->layers[FRAME_MATERIAL],
+        .emissive = f->layers[FRAME_EMISSIVE],
+        .shadow_maps = f->shadow.maps,
+        .shadow_sampler = f->shadow.sampler,
+        .shadow_size = f->shadow.size,
+        .shadow_radius = f->options.shadow_filter,
+        .constants = f->constants_binding,
+        .lights = f->lights_binding,
+        .shadow_faces = f->view.shadow_faces_binding,
+        .width = f->width,
+        .height = f->height,
+    };
+    direct_record(&f->direct, cmd, &in, f->layers[FRAME_DIRECT]);
+}
+
+static void record_rsm(struct frame *f, struct gpu_cmd *cmd)
+{
+    struct frame_view *view = &f->view;
+    view->rsm_size = f->rsm.size;
+    view->rsm_face_count = f->rsm.face_count;
+    if (f->rsm.face_count == 0) return;
+    view->rsm_faces = f->rsm.faces;
+    view->rsm_depth = f->rsm.depth;
+    view->rsm_normal = f->rsm.normal;
+    view->rsm_flux = f->rsm.flux;
+    view->rsm_faces_binding = gpu_transient(cmd, "rsm_faces", f->rsm.faces,
+                                            (size_t)f->rsm.face_count * sizeof *f->rsm.faces);
+    const struct gpu_binding bindings[3] = { f->constants_binding, f->lights_binding,
+                                             view->rsm_faces_binding };
+    rsm_record(&f->rsm, cmd, &f->scene, bindings);
+}
+
+static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                            const struct frame_indirect *indirect)
+{
+    struct frame_view *view = &f->view;
+    view->width = f->width;
+    view->height = f->height;
+    view->index = f->index;
+    view->constants = &f->constants;
+    view->constants_binding = f->constants_binding;
+    view->lights_binding = f->lights_binding;
+    view->lights = f->lights;
+    view->light_count = f->light_count;
+    view->pose = input->pose;
+    view->camera = input->camera;
+    view->bounds = input->pose->bounds;
+    view->camera_cut = f->camera_cut;
+    view->geometry_moved = f->scene.moved;
+    view->lights_changed = f->lights_changed;
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++) view->layers[l] = f->layers[l];
+    if (indirect && indirect->record) indirect->record(indirect->user, cmd, view);
+}
+
+static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
+{
+    if (!input->auto_exposure) {
+        exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);
+        return;
+    }
+    exposure_record_auto(&f->exposure, cmd, f->constants_binding, f->layers[FRAME_DIRECT], f->width,
+                         f->height);
+}
+
+static void record_composite(struct frame *f, struct gpu_cmd *cmd)
+{
+    struct composite_images images = {
+        .direct = f->layers[FRAME_DIRECT],
+        .albedo = f->layers[FRAME_ALBEDO],
+        .material = f->layers[FRAME_MATERIAL],
+        .irradiance = f->layers[FRAME_IRRADIANCE],
+        .specular = f->layers[FRAME_SPECULAR],
+        .visibility = f->layers[FRAME_VISIBILITY],
+        .color = f->layers[FRAME_COLOR],
+        .indirect = f->layers[FRAME_INDIRECT],
+        .display = f->layers[FRAME_DISPLAY],
+    };
+    struct gpu_binding exposure = { "exposure_state", .buffer = f->exposure.state };
+    composite_record(&f->composite, cmd, f->composite_variant, &images, f->constants_binding,
+                     exposure, f->width, f->height);
+}
+
+void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                  const struct frame_indirect *indirect)
+{
+    if (!f->prepared) return;
+    f->view = (struct frame_view){ 0 };
+    frame_begin(f, cmd, input);
+    scene_gpu_update(&f->scene, cmd, input->pose, f->camera_cut);
+    record_gbuffer(f, cmd);
+    record_shadows(f, cmd);
+    record_direct(f, cmd);
+    record_rsm(f, cmd);
+    record_indirect(f, cmd, input, indirect);
+    record_exposure(f, cmd, input);
+    record_composite(f, cmd);
+    f->index++;
+}
+
+float frame_radiance_scale(const struct frame *f)
+{
+    return f->index ? f->constants.radiance_scale : 1.0f;
+}
+
+bool frame_exposure(struct frame *f, float *ev)
+{
+    return exposure_read(&f->exposure, ev);
+}

@@ -1,0 +1,96 @@
+// The beginning of a frame: from physical units and world space to what shaders read, and what has
+// changed.
+#include "frame/frame_state.h"
+
+#include "frame/frame_scale.h"
+#include "frame/projection.h"
+
+#include <string.h>
+
+static struct frame_light scaled_light(const struct world_light *light, float scale)
+{
+    static const uint32_t types[] = {
+        [LIGHT_SUN] = FRAME_LIGHT_SUN,
+        [LIGHT_POINT] = FRAME_LIGHT_POINT,
+        [LIGHT_SPOT] = FRAME_LIGHT_SPOT,
+    };
+    return (struct frame_light){
+        .position = light->position,
+        .type = types[light->type],
+        .direction = light->direction,
+        .range_m = light->range_m,
+        .intensity = glms_vec3_scale(light->intensity, scale),
+        .cos_inner = light->cos_inner,
+        .cos_outer = light->cos_outer,
+        .shadow_first = -1,
+    };
+}
+
+// Field by field: the bytes between fields mean nothing.
+static bool same_light(const struct world_light *a, const struct world_light *b)
+{
+    return a->type == b->type && memcmp(&a->position, &b->position, sizeof a->position) == 0 &&
+           memcmp(&a->direction, &b->direction, sizeof a->direction) == 0 &&
+           memcmp(&a->intensity, &b->intensity, sizeof a->intensity) == 0 &&
+           a->cos_inner == b->cos_inner && a->cos_outer == b->cos_outer && a->range_m == b->range_m;
+}
+
+static void begin_lights(struct frame *f, const struct frame_input *input, float scale)
+{
+    int count = input->light_count < FRAME_MAX_LIGHTS ? input->light_count : FRAME_MAX_LIGHTS;
+    f->lights_changed = f->index == 0 || count != f->light_count;
+    for (int i = 0; i < count; i++) {
+        if (!same_light(&f->world_lights[i], &input->lights[i])) f->lights_changed = true;
+        f->world_lights[i] = input->lights[i];
+        f->lights[i] = scaled_light(&input->lights[i], scale);
+    }
+    f->light_count = count;
+}
+
+static void begin_camera(struct frame *f, const struct frame_input *input)
+{
+    struct frame_constants *c = &f->constants;
+    mat4s previous = c->clip_from_world;
+    f->camera = input->camera;
+    f->camera_cut = input->camera_cut || f->index == 0;
+    c->clip_from_world = projection_of_camera(&input->camera, f->width, f->height);
+    c->world_from_clip = projection_inverse(c->clip_from_world);
+    c->previous_clip_from_world = f->camera_cut ? c->clip_from_world : previous;
+    c->view_from_world =
+        projection_view_from_world(input->camera.eye, input->camera.forward, input->camera.up);
+    c->eye = input->camera.eye;
+    c->near_m = input->camera.near_m;
+}
+
+void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
+{
+    struct frame_constants *c = &f->constants;
+    float previous_scale = c->radiance_scale;
+    begin_camera(f, input);
+    c->radiance_scale = frame_scale(&(struct scale_input){
+        .lights = input->lights,
+        .light_count = input->light_count,
+        .sky = input->sky,
+        .max_emissive = f->scene.max_emissive,
+        .bounds = input->pose->bounds,
+    });
+    c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
+    c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
+    c->width = f->width;
+    c->height = f->height;
+    c->frame_index = (uint32_t)f->index;
+    begin_lights(f, input, c->radiance_scale);
+    c->light_count = (uint32_t)f->light_count;
+    shadow_place(&f->shadow, f->lights, f->light_count,
+                 &(struct shadow_view){
+                     .camera = input->camera,
+                     .aspect = (float)f->width / (float)f->height,
+                     .bounds = input->pose->bounds,
+                     .cascade_blend = f->options.cascade_blend,
+                     .filter_radius = f->options.shadow_filter,
+                 });
+    rsm_place(&f->rsm, f->lights, f->light_count, input->pose->bounds);
+    f->constants_binding = gpu_transient(cmd, "frame_constants", c, sizeof *c);
+    size_t lights = f->light_count ? (size_t)f->light_count : 1; // a block is never empty
+    f->lights_binding = gpu_transient(cmd, "frame_lights", f->lights, lights * sizeof *f->lights);
+}

@@ -1,0 +1,71 @@
+// The images of a frame: formats, making and freeing, and what they will cost.
+#include "frame/frame_state.h"
+
+struct layer {
+    const char *name;
+    enum gpu_format format;
+    uint32_t usage;
+};
+
+static const struct layer table[FRAME_LAYER_COUNT] = {
+    [FRAME_DEPTH] = { "frame.depth", GPU_D32F, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_NORMAL] = { "frame.normal", GPU_RG16F, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_ALBEDO] = { "frame.albedo", GPU_RGBA8_SRGB, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_MATERIAL] = { "frame.material", GPU_RG8, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_EMISSIVE] = { "frame.emissive", GPU_RGBA16F, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_MOTION] = { "frame.motion", GPU_RG16F, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_DIRECT] = { "frame.direct", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_IRRADIANCE] = { "frame.irradiance", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_SPECULAR] = { "frame.specular", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_VISIBILITY] = { "frame.visibility", GPU_R8, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_INDIRECT] = { "frame.indirect", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_COLOR] = { "frame.color", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
+    [FRAME_DISPLAY] = { "frame.display", GPU_RGBA8, GPU_SAMPLED | GPU_STORAGE },
+};
+
+bool frame_make_layers(struct frame *frame, uint32_t wanted)
+{
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
+        if (!(wanted >> l & 1u)) {
+            gpu_image_destroy(frame->gpu, &frame->layers[l]);
+            continue;
+        }
+        if (frame->layers[l].id) continue;
+        struct gpu_image_desc desc = {
+            .name = table[l].name,
+            .dimension = GPU_2D,
+            .format = table[l].format,
+            .width = frame->width,
+            .height = frame->height,
+            .usage = table[l].usage,
+        };
+        if (!gpu_image_create(frame->gpu, &desc, &frame->layers[l])) return false;
+    }
+    return true;
+}
+
+void frame_destroy_layers(struct frame *frame)
+{
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++) gpu_image_destroy(frame->gpu, &frame->layers[l]);
+}
+
+gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer)
+{
+    if ((unsigned)layer >= FRAME_LAYER_COUNT) return (gpu_image){ 0 };
+    return frame->layers[layer];
+}
+
+// An upper bound: all layers, and every light as the kind that needs most maps.
+uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t width, uint32_t height,
+                               int light_count)
+{
+    uint64_t texel_bytes = 0;
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++)
+        texel_bytes += (uint64_t)gpu_format_bytes(table[l].format);
+    uint64_t faces = 6 * (uint64_t)(light_count > 0 ? light_count : 0);
+    uint64_t shadow = (uint64_t)options->shadow_size, rsm = (uint64_t)options->rsm_size;
+    uint64_t rsm_texel = (uint64_t)(gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) +
+                                    gpu_format_bytes(GPU_RGBA8_SRGB));
+    return texel_bytes * width * height +
+           faces * (shadow * shadow * (uint64_t)gpu_format_bytes(GPU_D32F) + rsm * rsm * rsm_texel);
+}

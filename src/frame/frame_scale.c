@@ -1,0 +1,41 @@
+// The scale of a frame's radiometric images: scaled = physical × scale.
+//
+// Half floats hold 6·10⁻⁵ … 65504 with full precision. The strongest irradiance that some source
+// alone brings to a typical place, of all sources, is scaled to 8 … 16: a highlight or a lamp
+// nearby has three and a half decades above it, faint indirect light five below. A source's measure
+// is proportional to its strength and the scale is a power of two, so twice the light gives the
+// same images, bit for bit, under half the scale.
+#include "frame/frame_scale.h"
+
+#include "frame/light_fit.h"
+
+#include <math.h>
+
+static const int TARGET_EXPONENT = 4;     // 2⁴: strongest scaled irradiance is below it
+static const float TYPICAL_SHARE = 0.25f; // distance to a lamp, as a share of the scene's diagonal
+static const float LEAST_DISTANCE_M = 0.01f;
+static const int EXPONENT_LIMIT = 96; // the scale and its inverse stay normal floats
+
+static float strongest(vec3s v)
+{
+    return fmaxf(v.x, fmaxf(v.y, v.z));
+}
+
+float frame_scale(const struct scale_input *in)
+{
+    float distance = fmaxf(TYPICAL_SHARE * light_diagonal(in->bounds), LEAST_DISTANCE_M);
+    // π radiance is the irradiance under a sky, or right before an emitter.
+    float most = fmaxf(strongest(in->sky), in->max_emissive) * GLM_PIf;
+    for (int i = 0; i < in->light_count; i++) {
+        float strength = strongest(in->lights[i].intensity);
+        if (in->lights[i].type != LIGHT_SUN) strength /= distance * distance;
+        most = fmaxf(most, strength);
+    }
+    if (!(most > 0.0f) || !isfinite(most)) return 1.0f;
+    int exponent;
+    frexpf(most, &exponent); // most = m · 2^exponent, ½ ≤ m < 1
+    exponent = TARGET_EXPONENT - exponent;
+    if (exponent > EXPONENT_LIMIT) exponent = EXPONENT_LIMIT;
+    if (exponent < -EXPONENT_LIMIT) exponent = -EXPONENT_LIMIT;
+    return ldexpf(1.0f, exponent);
+}

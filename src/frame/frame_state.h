@@ -1,0 +1,52 @@
+// What a frame holds. Only the files of this folder that make up the frame itself include it; passes do not.
+#pragma once
+
+#include "frame/frame.h"
+
+#include "frame/composite/composite.h"
+#include "frame/composite/exposure.h"
+#include "frame/direct/direct.h"
+#include "frame/gbuffer/gbuffer.h"
+#include "frame/rsm/rsm.h"
+#include "frame/scene_gpu.h"
+#include "frame/shadow/shadow.h"
+
+struct frame {
+    struct host *host;
+    struct gpu *gpu;
+    struct frame_options options;
+    uint32_t width, height; // 0 before the first resize
+
+    struct scene_gpu scene;
+    bool has_scene;
+    struct gbuffer gbuffer;
+    struct shadow shadow;
+    struct rsm rsm;
+    struct direct direct;
+    struct exposure exposure;
+    struct composite composite;
+    gpu_image layers[FRAME_LAYER_COUNT];
+
+    // Decided by frame_prepare.
+    uint32_t needs;             // frame_need bits
+    uint32_t composite_variant; // composite_variant bits
+    bool prepared;
+
+    // Of the newest recorded frame.
+    uint64_t index;    // of the next one
+    struct frame_constants constants;
+    struct frame_light lights[FRAME_MAX_LIGHTS];
+    int light_count;
+    struct world_light world_lights[FRAME_MAX_LIGHTS]; // to see what changed
+    struct world_camera camera;
+    bool camera_cut, lights_changed;
+    struct gpu_binding constants_binding, lights_binding;
+    struct frame_view view;
+};
+
+// frame_layers.c
+bool frame_make_layers(struct frame *frame, uint32_t wanted); // bit l: layer l; frees the others
+void frame_destroy_layers(struct frame *frame);
+
+// frame_begin.c: constants, lights and change flags of a new frame.
+void frame_begin(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);
