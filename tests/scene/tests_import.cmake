@@ -1,1 +1,2 @@
 ag_test(scene/import_scenes USES scene)
+ag_test(scene/import_cut USES scene)
