@@ -171,7 +171,7 @@ static bool read_external(struct gltf *gltf, size_t index, const char *uri)
 {
     struct import *import = gltf->import;
     struct gltf_buffer *buffer = &gltf->buffers[index];
-    buffer->path = import_resolve(import, uri, true);
+    buffer->path = import_resolve(import, uri);
     if (!buffer->path) return false;
     for (size_t i = 0; i < index; i++) {
         const struct gltf_buffer *other = &gltf->buffers[i];

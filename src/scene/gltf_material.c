@@ -144,7 +144,7 @@ static bool find_image(struct gltf *gltf, size_t i, struct image_source *source,
         source->data = *owned;
         return source->data ? true : gltf_wrong(object, "its data URI is no base64");
     }
-    char *path = import_resolve(import, uri, true);
+    char *path = import_resolve(import, uri);
     if (!path) return false;
     struct file_bytes bytes = { 0 };
     bool there = access(path, R_OK) == 0;

@@ -1,8 +1,9 @@
 // Scene files.
 //
-// glTF 2.0 is read here, from its JSON and accessors (gltf_*.c); OBJ, PLY, FBX and X go through
-// Assimp's C API (import_assimp*.c). Assimp reads glTF too, but what its scene structure cannot hold
-// is what this library needs, and a second reading of the JSON could not be matched to its result:
+// glTF 2.0 is read here, from its JSON and accessors (gltf_*.c), PLY too (import_ply.c); OBJ, FBX
+// and X go through Assimp's C API (import_assimp*.c). Assimp reads glTF too, but what its scene
+// structure cannot hold is what this library needs, and a second reading of the JSON could not be
+// matched to its result:
 //
 // - its bones and animation channels refer to nodes by name, which glTF requires to be neither
 //   present nor unique, and its order of nodes and meshes is its own;
@@ -145,7 +146,7 @@ static bool append_segments(char *out, const char *uri)
     return length > start;
 }
 
-char *import_resolve(struct import *import, const char *uri, bool decode_percent)
+char *import_resolve_quietly(struct import *import, const char *uri, bool decode_percent)
 {
     const char *slash = strrchr(import->path, '/');
     size_t folder_length = slash ? (size_t)(slash - import->path) + 1 : 0;
@@ -153,12 +154,8 @@ char *import_resolve(struct import *import, const char *uri, bool decode_percent
     char *resolved = host_alloc(import->host, folder_length + strlen(uri) + 1, 1);
     if (!decoded || !resolved) goto fail;
     memcpy(resolved, import->path, folder_length);
-    if ((decode_percent && !percent_decode(decoded)) || !append_segments(resolved, decoded)) {
-        host_fail(import->host, FAIL_FORMAT,
-                  "%s: refers to \"%s\": only relative paths without \"..\" are read", import->path,
-                  import_printable(uri).s);
-        goto fail;
-    }
+    if (decode_percent && !percent_decode(decoded)) goto fail;
+    if (!append_segments(resolved, decoded)) goto fail;
     host_free(import->host, decoded);
     return resolved;
 fail:
@@ -167,12 +164,30 @@ fail:
     return NULL;
 }
 
+char *import_resolve(struct import *import, const char *uri)
+{
+    char *path = import_resolve_quietly(import, uri, true);
+    if (!path) {
+        host_fail(import->host, FAIL_FORMAT,
+                  "%s: refers to \"%s\": only relative paths without \"..\" are read", import->path,
+                  import_printable(uri).s);
+    }
+    return path;
+}
+
 static bool dispatch(struct import *import, const struct file_bytes *bytes)
 {
     char extension[16];
     file_extension(import->path, extension);
     if (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0) {
         return import_gltf(import, bytes);
+    }
+    if (strcmp(extension, "ply") == 0) return import_ply(import, bytes);
+    static const char *const through_assimp[] = { "obj", "fbx", "x" };
+    for (size_t i = 0; i < sizeof through_assimp / sizeof *through_assimp; i++) {
+        if (strcmp(extension, through_assimp[i]) == 0) {
+            return import_assimp(import, bytes, extension);
+        }
     }
     return host_fail(import->host, FAIL_UNSUPPORTED,
                      "%s: unknown kind of scene file; glTF, GLB, OBJ, PLY, FBX and X are read",

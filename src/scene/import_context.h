@@ -30,7 +30,9 @@ void import_log_notes(struct import *import);
 // The path of a file that the imported one refers to: relative to its folder, percent escapes decoded, "." and empty
 // segments dropped. Absolute paths, schemes and ".." are refused: a scene reads in its own folder and below.
 // Owned by the caller.
-char *import_resolve(struct import *import, const char *uri, bool decode_percent);
+char *import_resolve(struct import *import, const char *uri);
+// The same without a failure on record, for what a scene can do without.
+char *import_resolve_quietly(struct import *import, const char *uri, bool decode_percent);
 
 // Text from a file, cut and made printable for a message.
 struct import_text {
@@ -43,6 +45,7 @@ const char *import_name(struct import *import, const char *text, const char *fal
 
 // Importers: fill import->scene from the file's bytes.
 bool import_gltf(struct import *import, const struct file_bytes *bytes);
+bool import_ply(struct import *import, const struct file_bytes *bytes);
 bool import_assimp(struct import *import, const struct file_bytes *bytes, const char *extension);
 
 // The least and greatest index; false where one lies beyond vertex_count. The mesh has triangles.

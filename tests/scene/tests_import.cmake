@@ -1,2 +1,3 @@
 ag_test(scene/import_scenes USES scene)
 ag_test(scene/import_cut USES scene)
+ag_test(scene/import_assimp USES scene)

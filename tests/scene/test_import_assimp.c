@@ -1,0 +1,212 @@
+// OBJ, PLY, X and FBX files, written here as text.
+#include "scene/gltf_maker.h"
+
+#include "scene/pose.h"
+
+#include <math.h>
+
+static struct scene *load_text(const char *name, const char *text)
+{
+    write_bytes(name, text, strlen(text));
+    test_forget_messages();
+    return scene_load(test_host(), test_path(name));
+}
+
+static const char cube_corner[] = "mtllib made.mtl\n"
+                                  "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\n"
+                                  "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                  "usemtl red\n"
+                                  "f 1/1 2/2 3/3 4/4\n";
+
+TEST(obj_faces_become_triangles_with_their_material)
+{
+    const char mtl[] = "newmtl red\nKd 0.8 0.1 0.2\nKe 0 3 0\n";
+    write_bytes("made.mtl", mtl, sizeof mtl - 1);
+    struct scene *scene = load_text("made.obj", cube_corner);
+    CHECK(scene);
+    CHECK_STRING(test_last_message(), "");
+    CHECK(scene_triangle_count(scene) == 2 && scene->instance_count == 1);
+    const struct mesh *mesh = &scene->meshes[0];
+    const struct material *material = &scene->materials[mesh->material];
+    CHECK_NEAR(material->base_color.x, 0.8, 1e-6);
+    CHECK_NEAR(material->emissive.y, 3.0, 1e-6);
+    CHECK_NEAR(mesh->bounds.max.y, 3.0, 1e-6);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        CHECK_NEAR(mesh->normals[v].z, 1.0, 1e-6);
+        // v grows downwards: the vertex at the bottom has v = 1.
+        CHECK_NEAR(mesh->uv[0][v].y, 1.0 - (double)(mesh->positions[v].y / 3.0f), 1e-6);
+    }
+    scene_destroy(scene);
+}
+
+TEST(an_obj_without_its_materials_still_loads)
+{
+    remove(test_path("made.mtl"));
+    struct scene *scene = load_text("made.obj", cube_corner);
+    CHECK(scene && scene_triangle_count(scene) == 2);
+    scene_destroy(scene);
+}
+
+TEST(a_texture_that_is_not_there_is_named_and_left_out)
+{
+    const char mtl[] = "newmtl red\nmap_Kd nowhere.png\n";
+    write_bytes("made.mtl", mtl, sizeof mtl - 1);
+    struct scene *scene = load_text("made.obj", cube_corner);
+    CHECK(scene && scene->image_count == 0);
+    CHECK(strstr(test_last_message(), "nowhere.png"));
+    CHECK(scene->materials[scene->meshes[0].material].base_color_map.image == -1);
+    scene_destroy(scene);
+}
+
+TEST(files_outside_the_folder_of_an_obj_are_not_read)
+{
+    const char mtl[] = "newmtl red\nmap_Kd ../../../etc/hostname\n";
+    write_bytes("made.mtl", mtl, sizeof mtl - 1);
+    struct scene *scene = load_text("made.obj", cube_corner);
+    CHECK(scene && strstr(test_last_message(), "not in the file's folder"));
+    scene_destroy(scene);
+}
+
+static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                          "property float y\nproperty float z\nproperty uchar red\n"
+                          "property uchar green\nproperty uchar blue\nelement face 1\n"
+                          "property list uchar int vertex_indices\nend_header\n"
+                          "0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 188 0 0\n3 0 1 2\n";
+
+TEST(ply_colours_are_read_as_srgb)
+{
+    struct scene *scene = load_text("made.ply", ply);
+    CHECK(scene && scene_triangle_count(scene) == 1 && scene->meshes[0].colors);
+    for (uint32_t v = 0; v < 3; v++) {
+        bool top = scene->meshes[0].positions[v].y > 0.5f;
+        CHECK_NEAR(scene->meshes[0].colors[v].x, top ? 0.5 : 1.0, 5e-3);
+    }
+    scene_destroy(scene);
+}
+
+static const char x_file[] = "xof 0303txt 0032\n"
+                             "Frame Arm {\n"
+                             " FrameTransformMatrix {\n"
+                             "  1.0,0.0,0.0,0.0,\n"
+                             "  0.0,1.0,0.0,0.0,\n"
+                             "  0.0,0.0,1.0,0.0,\n"
+                             "  5.0,0.0,0.0,1.0;;\n"
+                             " }\n"
+                             " Mesh Plate {\n"
+                             "  3;\n"
+                             "  0.0;0.0;0.0;,\n"
+                             "  0.0;1.0;0.0;,\n"
+                             "  1.0;0.0;0.0;;\n"
+                             "  1;\n"
+                             "  3;0,1,2;;\n"
+                             " }\n"
+                             "}\n"
+                             "AnimTicksPerSecond {\n"
+                             " 10;\n"
+                             "}\n"
+                             "AnimationSet Wave {\n"
+                             " Animation {\n"
+                             "  {Arm}\n"
+                             "  AnimationKey {\n"
+                             "   2;\n"
+                             "   2;\n"
+                             "   0;3;5.0,0.0,0.0;;,\n"
+                             "   20;3;7.0,0.0,0.0;;;\n"
+                             "  }\n"
+                             " }\n"
+                             "}\n";
+
+TEST(x_frames_and_their_animation_are_read)
+{
+    struct scene *scene = load_text("made.x", x_file);
+    if (!scene) fail_msg("%s", test_last_message());
+    CHECK(scene_triangle_count(scene) == 1 && scene->animation_count == 1);
+    CHECK_NEAR(scene->animations[0].duration_s, 2.0, 1e-6);
+    struct scene_pose pose;
+    CHECK(pose_init(&pose, scene, 0, 1.0f));
+    CHECK_NEAR(pose.bounds.min.x, 6.0, 1e-5);
+    pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+TEST(blocks_nested_too_deep_are_refused)
+{
+    static char text[40000] = "xof 0303txt 0032\n";
+    for (int i = 0; i < 3000; i++) strcat(text, "Frame a {\n");
+    CHECK(!load_text("deep.x", text));
+    CHECK(strstr(test_last_message(), "nested"));
+}
+
+static const char fbx[] =
+    "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n FBXHeaderVersion: 1003\n"
+    " FBXVersion: 7400\n}\nGlobalSettings:  {\n Version: 1000\n Properties70:  {\n"
+    "  P: \"UpAxis\", \"int\", \"Integer\", \"\",1\n"
+    "  P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",1\n }\n}\n"
+    "Objects:  {\n Geometry: 1, \"Geometry::g\", \"Mesh\" {\n  Vertices: *9 {\n"
+    "   a: 0,0,0,100,0,0,0,200,0\n  }\n  PolygonVertexIndex: *3 {\n   a: 0,1,-3\n  }\n }\n"
+    " Model: 2, \"Model::m\", \"Mesh\" {\n  Version: 232\n }\n}\n"
+    "Connections:  {\n C: \"OO\",2,0\n C: \"OO\",1,2\n}\n";
+
+TEST(fbx_centimetres_become_metres)
+{
+    struct scene *scene = load_text("made.fbx", fbx);
+    if (!scene) fail_msg("%s", test_last_message());
+    CHECK(scene_triangle_count(scene) == 1);
+    struct scene_pose pose;
+    CHECK(pose_init(&pose, scene, -1, 0.0f));
+    CHECK_NEAR(box3_size(pose.bounds).x, 1.0, 1e-5);
+    CHECK_NEAR(box3_size(pose.bounds).y, 2.0, 1e-5);
+    pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+static void check_cuts(const char *name, const char *text)
+{
+    size_t length = strlen(text);
+    for (size_t cut = 0; cut < length; cut++) {
+        write_bytes(name, text, cut);
+        test_forget_messages();
+        struct scene *scene = scene_load(test_host(), test_path(name));
+        CHECK(scene || test_last_message()[0]);
+        scene_destroy(scene);
+    }
+}
+
+TEST(an_obj_cut_at_any_length_is_read_or_refused)
+{
+    check_cuts("cut.obj", cube_corner);
+}
+
+TEST(a_ply_cut_at_any_length_is_read_or_refused)
+{
+    check_cuts("cut.ply", ply);
+}
+
+TEST(an_x_file_cut_at_any_length_is_read_or_refused)
+{
+    check_cuts("cut.x", x_file);
+}
+
+TEST(an_fbx_cut_at_any_length_is_read_or_refused)
+{
+    check_cuts("cut.fbx", fbx);
+}
+
+TEST(a_damaged_binary_fbx_is_refused)
+{
+    uint8_t bytes[200] = "Kaydara FBX Binary  \0\x1a";
+    bytes[23] = 0xe8;
+    bytes[24] = 0x1c; // version 7400
+    bytes[27] = 0xff; // a record that ends beyond the file
+    bytes[28] = 0xff;
+    for (size_t size = 21; size < sizeof bytes; size++) {
+        write_bytes("bad.fbx", bytes, size);
+        CHECK(!scene_load(test_host(), test_path("bad.fbx")));
+    }
+}
+
+TEST(unknown_kinds_of_file_are_refused)
+{
+    CHECK(!load_text("made.blend", "anything"));
+    CHECK(strstr(test_last_message(), "unknown kind"));
+}
