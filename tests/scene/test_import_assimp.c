@@ -160,15 +160,29 @@ TEST(fbx_centimetres_become_metres)
     scene_destroy(scene);
 }
 
+static void *counting_reallocate(void *user, void *old, size_t bytes)
+{
+    int *blocks = user;
+    *blocks += (bytes != 0 && !old) - (bytes == 0 && old);
+    if (bytes > 0) return realloc(old, bytes);
+    free(old);
+    return NULL;
+}
+
+// Assimp leaks where its parsers throw; what we give it must still come back.
 static void check_cuts(const char *name, const char *text)
 {
-    size_t length = strlen(text);
-    for (size_t cut = 0; cut < length; cut++) {
+    int blocks = 0;
+    struct host host = host_default();
+    host.reallocate = counting_reallocate;
+    host.user = &blocks;
+    for (size_t cut = 0; cut <= strlen(text); cut++) {
         write_bytes(name, text, cut);
-        test_forget_messages();
-        struct scene *scene = scene_load(test_host(), test_path(name));
-        CHECK(scene || test_last_message()[0]);
+        host.failure = FAIL_NONE;
+        struct scene *scene = scene_load(&host, test_path(name));
+        CHECK(scene || host.failure != FAIL_NONE);
         scene_destroy(scene);
+        CHECK(blocks == 0);
     }
 }
 
