@@ -2,6 +2,10 @@ add_library(ag_test_gpu_shaders STATIC)
 target_link_libraries(ag_test_gpu_shaders PUBLIC ag_gpu)
 ag_shaders_for(ag_test_gpu_shaders gpu_test_shaders.h ${CMAKE_CURRENT_SOURCE_DIR}/gpu/shaders)
 
-foreach(name dispatch render transfer)
+foreach(name dispatch reload render scope transfer)
   ag_test(gpu/${name} USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders)
+endforeach()
+# These look inside, or make Vulkan objects of their own.
+foreach(name device hazard memory)
+  ag_test(gpu/${name} USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders Vulkan::Vulkan)
 endforeach()

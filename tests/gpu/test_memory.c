@@ -1,0 +1,144 @@
+// Device memory: pieces that never overlap, bytes by owner, and objects that outlive their handles
+// while in use.
+#include "framework/gpu_test.h"
+#include "gpu_test_shaders.h"
+
+#include "core/rng.h"
+#include "gpu/vk.h"
+
+#include <string.h>
+
+static uint64_t bytes_of(struct gpu *gpu, const char *owner)
+{
+    struct gpu_memory list[32];
+    int count = gpu_memory_by_owner(gpu, list, 32);
+    for (int i = 0; i < count; i++) {
+        if (strcmp(list[i].owner, owner) == 0) return list[i].bytes;
+    }
+    return 0;
+}
+
+TEST_GPU(pieces_of_memory_are_aligned_and_never_overlap)
+{
+    enum { SLOTS = 60, STEPS = 3000 };
+    struct allocation slots[SLOTS] = { 0 };
+    struct rng rng = rng_for(4, 5, 6);
+    for (int step = 0; step < STEPS; step++) {
+        struct allocation *slot = &slots[rng_u32(&rng) % SLOTS];
+        if (slot->block) {
+            memory_free(gpu, slot);
+            continue;
+        }
+        VkMemoryRequirements needs = { .size = 1 + rng_u32(&rng) % (1u << (4 + rng_u32(&rng) % 17)),
+                                       .alignment = 1u << rng_u32(&rng) % 13,
+                                       .memoryTypeBits = 1 };
+        bool linear = rng_u32(&rng) % 2;
+        CHECK(memory_allocate(gpu, &needs, MEMORY_DEVICE, linear, "pieces.any", slot));
+        assert_int_equal(slot->offset % needs.alignment, 0);
+        for (int i = 0; i < SLOTS; i++) {
+            if (&slots[i] == slot || !slots[i].block || slots[i].memory != slot->memory) continue;
+            assert_true(slots[i].offset + slots[i].bytes <= slot->offset ||
+                        slot->offset + slot->bytes <= slots[i].offset);
+        }
+    }
+    uint64_t sum = 0;
+    for (int i = 0; i < SLOTS; i++) sum += slots[i].bytes;
+    assert_int_equal(bytes_of(gpu, "pieces"), sum);
+    for (int i = 0; i < SLOTS; i++) memory_free(gpu, &slots[i]);
+    assert_int_equal(bytes_of(gpu, "pieces"), 0);
+    // Nothing is left in pieces: the whole block can be had again, where it was.
+    VkMemoryRequirements needs = { .size = 15u << 20, .alignment = 16, .memoryTypeBits = 1 };
+    struct allocation large[4];
+    for (int i = 0; i < 4; i++) {
+        CHECK(memory_allocate(gpu, &needs, MEMORY_DEVICE, true, "pieces.large", &large[i]));
+        assert_ptr_equal(large[i].memory, large[0].memory);
+    }
+    for (int i = 0; i < 4; i++) memory_free(gpu, &large[i]);
+}
+
+static gpu_image named_image(struct gpu *gpu, const char *name, uint32_t size)
+{
+    gpu_image image;
+    CHECK(gpu_image_create(gpu,
+                           &(struct gpu_image_desc){ .name = name,
+                                                     .format = GPU_RGBA16F,
+                                                     .width = size,
+                                                     .height = size,
+                                                     .usage = GPU_SAMPLED },
+                           &image));
+    return image;
+}
+
+static gpu_buffer named_buffer(struct gpu *gpu, const char *name, size_t bytes)
+{
+    gpu_buffer buffer;
+    CHECK(gpu_buffer_create(gpu, &(struct gpu_buffer_desc){ name, bytes, GPU_BUFFER_STORAGE },
+                            &buffer));
+    return buffer;
+}
+
+TEST_GPU(bytes_are_counted_by_owner_largest_first)
+{
+    gpu_image a = named_image(gpu, "grid.colour", 64), b = named_image(gpu, "grid.normal", 64);
+    gpu_image c = named_image(gpu, "huge.image", 2048); // in a block of its own
+    gpu_buffer d = named_buffer(gpu, "probes.sh", 1000);
+    assert_in_range(bytes_of(gpu, "grid"), 2 * 64 * 64 * 8, 3 * 64 * 64 * 8);
+    assert_in_range(bytes_of(gpu, "huge"), 2048 * 2048 * 8, 2 * 2048 * 2048 * 8);
+    assert_in_range(bytes_of(gpu, "probes"), 1000, 4096);
+    struct gpu_memory list[32];
+    int count = gpu_memory_by_owner(gpu, list, 32);
+    for (int i = 1; i < count; i++) assert_true(list[i - 1].bytes >= list[i].bytes);
+    assert_int_equal(gpu_memory_by_owner(gpu, list, 1), 1);
+    CHECK_STRING(list[0].owner, "huge");
+    gpu_image_destroy(gpu, &a);
+    gpu_image_destroy(gpu, &b);
+    gpu_image_destroy(gpu, &c);
+    gpu_buffer_destroy(gpu, &d);
+    CHECK(gpu_wait(gpu));
+    assert_int_equal(bytes_of(gpu, "grid") + bytes_of(gpu, "huge") + bytes_of(gpu, "probes"), 0);
+}
+
+TEST_GPU(what_a_frame_uses_lives_until_the_gpu_is_done)
+{
+    gpu_buffer used = named_buffer(gpu, "used.words", 4000), total = test_gpu_buffer(gpu, 4);
+    gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    gpu_fill_buffer(cmd, used, 0, 4000, 3);
+    gpu_dispatch(cmd, sum, GPU_BIND({ "Words", .buffer = used }, { "Total", .buffer = total }),
+                 NULL, 0, 1, 1, 1);
+    gpu_buffer_destroy(gpu, &used);
+    assert_int_equal(used.id, 0);
+    gpu_pipeline_destroy(gpu, &sum);
+    gpu_buffer other = named_buffer(gpu, "other.words", 4000); // must not get that memory
+    assert_true(bytes_of(gpu, "used") > 0);
+    CHECK(gpu_frame_end(gpu, cmd));
+    uint32_t got;
+    CHECK(gpu_buffer_download(gpu, total, 0, &got, 4));
+    assert_int_equal(got, 3000);
+    CHECK(gpu_wait(gpu));
+    assert_int_equal(bytes_of(gpu, "used"), 0);
+    gpu_buffer_destroy(gpu, &other);
+    gpu_buffer_destroy(gpu, &total);
+}
+
+TEST_GPU(objects_come_and_go_over_many_frames)
+{
+    uint32_t expected = 0, got;
+    gpu_buffer total = test_gpu_buffer(gpu, 4);
+    gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
+    for (uint32_t frame = 0; frame < 20; frame++) {
+        struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+        gpu_buffer words = named_buffer(gpu, "passing.words", 400 + 4 * frame);
+        gpu_fill_buffer(cmd, words, 0, 400, frame); // the rest is zero
+        gpu_dispatch(cmd, sum, GPU_BIND({ "Words", .buffer = words }, { "Total", .buffer = total }),
+                     NULL, 0, 1, 1, 1);
+        gpu_buffer_destroy(gpu, &words);
+        CHECK(gpu_frame_end(gpu, cmd));
+        expected += 100 * frame;
+    }
+    CHECK(gpu_buffer_download(gpu, total, 0, &got, 4));
+    assert_int_equal(got, expected);
+    assert_int_equal(bytes_of(gpu, "passing"), 0);
+    gpu_buffer_destroy(gpu, &total);
+    gpu_pipeline_destroy(gpu, &sum);
+}

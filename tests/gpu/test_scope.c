@@ -1,0 +1,101 @@
+// Scopes and their times.
+#include "framework/gpu_test.h"
+#include "gpu_test_shaders.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void work(struct gpu_cmd *cmd, gpu_pipeline sum, gpu_buffer words, gpu_buffer total)
+{
+    gpu_dispatch(cmd, sum, GPU_BIND({ "Words", .buffer = words }, { "Total", .buffer = total }),
+                 NULL, 0, 1, 1, 1);
+}
+
+TEST_GPU(scopes_nest_and_sum_in_the_order_first_begun)
+{
+    if (!gpu_limits(gpu)->timestamps) skip();
+    gpu_buffer words = test_gpu_buffer(gpu, 400000), total = test_gpu_buffer(gpu, 4);
+    gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    gpu_scope_begin(cmd, "b.once");
+    work(cmd, sum, words, total);
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "outer");
+    for (int i = 0; i < 3; i++) {
+        gpu_scope_begin(cmd, "a.thrice");
+        work(cmd, sum, words, total);
+        gpu_scope_end(cmd);
+        gpu_scope_begin(cmd, "c.nothing");
+        gpu_scope_end(cmd);
+    }
+    gpu_scope_end(cmd);
+    CHECK(gpu_frame_end(gpu, cmd));
+    CHECK(gpu_wait(gpu));
+    struct gpu_timing t[8];
+    assert_int_equal(gpu_frame_timings(gpu, t, 8), 4); // the outer one has others inside
+    CHECK_STRING(t[0].name, "frame");
+    CHECK_STRING(t[1].name, "b.once");
+    CHECK_STRING(t[2].name, "a.thrice");
+    CHECK_STRING(t[3].name, "c.nothing");
+    CHECK(t[1].ms > 0 && t[2].ms > 0 && t[3].ms >= 0);
+    CHECK(t[1].ms + t[2].ms + t[3].ms <= t[0].ms + 1e-9);
+    CHECK(t[3].ms < t[2].ms);
+    assert_int_equal(gpu_frame_timings(gpu, t, 2), 2);
+    gpu_buffer_destroy(gpu, &words);
+    gpu_buffer_destroy(gpu, &total);
+    gpu_pipeline_destroy(gpu, &sum);
+}
+
+TEST_GPU(timings_are_of_the_newest_finished_frame)
+{
+    if (!gpu_limits(gpu)->timestamps) skip();
+    for (int frame = 0; frame < 5; frame++) {
+        char name[16], expected[16];
+        struct gpu_timing t[4];
+        snprintf(name, sizeof name, "frame.%d", frame);
+        struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+        gpu_scope_begin(cmd, name);
+        gpu_scope_end(cmd);
+        CHECK(gpu_frame_end(gpu, cmd));
+        if (frame < 3) continue;
+        CHECK(gpu_wait(gpu));
+        snprintf(expected, sizeof expected, "frame.%d", frame);
+        assert_int_equal(gpu_frame_timings(gpu, t, 4), 2);
+        CHECK_STRING(t[1].name, expected);
+    }
+}
+
+TEST_GPU(more_scopes_than_are_timed_do_no_harm)
+{
+    struct gpu_timing t[300];
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    for (int i = 0; i < 200; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "s.%d", i);
+        gpu_scope_begin(cmd, name);
+        gpu_scope_end(cmd);
+    }
+    for (int i = 0; i < 40; i++) gpu_scope_begin(cmd, "deep");
+    for (int i = 0; i < 40; i++) gpu_scope_end(cmd);
+    CHECK(gpu_frame_end(gpu, cmd));
+    CHECK(gpu_wait(gpu));
+    assert_non_null(strstr(test_last_message(), "are timed"));
+    int count = gpu_frame_timings(gpu, t, 300);
+    if (gpu_limits(gpu)->timestamps) assert_in_range(count, 100, 199);
+}
+
+TEST_GPU(scopes_may_stand_inside_a_rendering)
+{
+    gpu_image color = test_gpu_image(gpu, GPU_2D, GPU_RGBA8, 8, 8, 1, 1, GPU_ATTACHMENT);
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    gpu_scope_begin(cmd, "around");
+    gpu_render_begin(
+        cmd, &(struct gpu_render_desc){
+                 .color = { { .image = color } }, .color_count = 1, .width = 8, .height = 8 });
+    gpu_scope_begin(cmd, "inside");
+    gpu_scope_end(cmd);
+    gpu_render_end(cmd);
+    gpu_scope_end(cmd);
+    CHECK(gpu_frame_end(gpu, cmd));
+    gpu_image_destroy(gpu, &color);
+}
