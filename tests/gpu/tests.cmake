@@ -6,6 +6,6 @@ foreach(name dispatch reload render scope transfer)
   ag_test(gpu/${name} USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders)
 endforeach()
 # These look inside, or make Vulkan objects of their own.
-foreach(name device hazard memory)
+foreach(name adopt device hazard memory)
   ag_test(gpu/${name} USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders Vulkan::Vulkan)
 endforeach()
