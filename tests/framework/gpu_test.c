@@ -4,7 +4,14 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <dlfcn.h>
+#include <link.h>
+#include <sanitizer/lsan_interface.h>
+#endif
+
 static struct gpu *device;
+static bool unfinished; // a test began and did not come to its end
 
 // Whatever ended a test, its messages and objects are seen here at the latest.
 static void at_exit(void)
@@ -21,9 +28,37 @@ static void at_exit(void)
     _exit(1);
 }
 
+#ifdef __SANITIZE_ADDRESS__
+static int pin(struct dl_phdr_info *info, size_t size, void *user)
+{
+    (void)size;
+    (void)user;
+    if (info->dlpi_name[0]) (void)dlopen(info->dlpi_name, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
+    return 0;
+}
+#endif
+
+// Drivers, layers and what they use stay loaded, so that a leak checker can name them at the end
+// (see lsan.supp). What they leave behind when they are loaded and unloaded for the first time has
+// no name any more, and is not looked at.
+static void pin_drivers(void)
+{
+#ifdef __SANITIZE_ADDRESS__
+    static bool done;
+    if (done) return;
+    done = true;
+    __lsan_disable();
+    struct gpu *gpu = gpu_create(test_host(), &(struct gpu_desc){ .validation = true });
+    dl_iterate_phdr(pin, NULL);
+    gpu_destroy(gpu);
+    __lsan_enable();
+#endif
+}
+
 void test_gpu_require(void)
 {
     int count;
+    pin_drivers();
     if (gpu_list_devices(test_host(), NULL, 0, &count) && count > 0) return;
     print_message("skipped: there is no Vulkan device\n");
     skip();
@@ -32,11 +67,13 @@ void test_gpu_require(void)
 struct gpu *test_gpu(void)
 {
     static bool registered;
-    // A test that failed half-way leaves objects behind; the next one is not to answer for them.
-    if (device && (gpu_live_objects(device) || gpu_validation_messages(device))) {
+    // A test that failed half-way leaves objects and an open frame; the next one is not to answer
+    // for them.
+    if (device && (unfinished || gpu_live_objects(device) || gpu_validation_messages(device))) {
         gpu_destroy(device);
         device = NULL;
     }
+    unfinished = false;
     if (device) return device;
     test_gpu_require();
     // Hazards between submissions, which this layer leaves out unless told otherwise.
@@ -64,8 +101,10 @@ void test_gpu_run(void (*body)(struct gpu *gpu))
 {
     struct gpu *gpu = test_gpu();
     test_forget_messages();
+    unfinished = true;
     body(gpu);
     test_gpu_finish(gpu);
+    unfinished = false;
 }
 
 gpu_image test_gpu_image(struct gpu *gpu, enum gpu_dimension dimension, enum gpu_format format,

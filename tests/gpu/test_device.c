@@ -43,7 +43,7 @@ TEST(a_device_is_found_by_number_and_by_part_of_its_name)
     int count;
     CHECK(gpu_list_devices(test_host(), infos, 16, &count));
     for (int i = 0; i < count; i++) {
-        char number[8];
+        char number[16];
         snprintf(number, sizeof number, "%d", i);
         struct gpu *numbered = open_device(number);
         assert_int_equal(numbered != NULL, infos[i].usable);
