@@ -49,9 +49,9 @@ void main()
     out_material = scene_roughness_metallic(vary_uv0, vary_uv1);
     out_emissive = vec4(emitted_radiance(), 0.0);
 #ifdef GBUFFER_MOTION
-    vec2 now = gl_FragCoord.xy / vec2(frame.width, frame.height);
+    vec2 now = vary_now.xy / vary_now.z;
     // Behind the last frame's eye there is no position to come from: as far outside as the format can say.
-    vec2 before = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z * 0.5 + 0.5 : vec2(-HALF_MAX);
-    out_motion = clamp(now - before, -HALF_MAX, HALF_MAX);
+    vec2 before = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z : vec2(-HALF_MAX);
+    out_motion = clamp((now - before) * 0.5, -HALF_MAX, HALF_MAX);
 #endif
 }

@@ -11,7 +11,10 @@ layout(location = 2) VARY vec2 vary_uv0;
 layout(location = 3) VARY vec2 vary_uv1;
 layout(location = 4) VARY vec4 vary_color;
 #ifdef GBUFFER_MOTION
-layout(location = 5) VARY vec3 vary_previous; // last frame's clip position, x y w
+// Clip positions, x y w, of this frame and the last. Both are interpolated, so that what stands still has a motion
+// of exactly 0.
+layout(location = 5) VARY vec3 vary_now;
+layout(location = 6) VARY vec3 vary_previous;
 #endif
 
 layout(push_constant, scalar) uniform push_block

@@ -11,7 +11,8 @@ void main()
     uint vertex = uint(gl_VertexIndex);
     mat4 world_from_instance = scene_world_from_instance();
     vec3 world = (world_from_instance * vec4(scene_position(vertex), 1.0)).xyz;
-    gl_Position = frame.clip_from_world * vec4(world, 1.0);
+    vec4 clip = frame.clip_from_world * vec4(world, 1.0);
+    gl_Position = clip;
 
     scene_frame f = scene_frame_of(vertex, world_from_instance);
     vary_normal = f.normal;
@@ -22,6 +23,7 @@ void main()
     vary_color = unpackUnorm4x8(surface.color);
 #ifdef GBUFFER_MOTION
     vec4 previous = frame.previous_clip_from_world * vec4(scene_previous_world_position(vertex), 1.0);
+    vary_now = clip.xyw;
     vary_previous = previous.xyw;
 #endif
 }
