@@ -156,7 +156,8 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
 static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
 {
     struct frame_view *view = &f->view;
-    size_t faces = f->shadow.face_count ? (size_t)f->shadow.face_count : 1; // a block is never empty
+    size_t faces =
+        f->shadow.face_count ? (size_t)f->shadow.face_count : 1; // a block is never empty
     view->shadow_maps = f->shadow.maps;
     view->shadow_sampler = f->shadow.sampler;
     view->shadow_size = f->shadow.size;

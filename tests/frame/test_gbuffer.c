@@ -1,0 +1,332 @@
+// What the camera sees, against rays.
+#include "frame/studio.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const vec3s UP = { { 0, 1, 0 } };
+
+TEST_GPU(depth_and_position_are_where_the_ray_meets_the_plane)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    studio_floor(&s, 50, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    studio_look(&s, vec3_of(1, 2, 3), vec3_of(0.3f, 0, 0));
+    s.width = 40, s.height = 24;
+    studio_open(&s);
+    studio_render(&s);
+    float *depth = studio_read(&s, READ_DEPTH), *position = studio_read(&s, READ_POSITION);
+    int seen = 0;
+    for (uint32_t y = 0; y < 24; y++) {
+        for (uint32_t x = 0; x < 40; x++) {
+            vec3s p = studio_ray_on_plane(&s, x, y, UP, 0);
+            vec3s to = glms_vec3_sub(p, s.input.camera.eye);
+            float along = glms_vec3_dot(to, s.input.camera.forward);
+            bool hit = along > 0 && fabsf(p.x) < 49 && fabsf(p.z) < 49;
+            size_t i = (size_t)y * 40 + x;
+            if (!hit) continue;
+            seen++;
+            CHECK_RELATIVE(depth[i], along, 1e-4);
+            for (size_t k = 0; k < 3; k++)
+                CHECK_NEAR(position[3 * i + k], p.raw[k], 2e-4 * (double)along);
+        }
+    }
+    CHECK(seen > 400);
+    free(depth);
+    free(position);
+    studio_finish(&s);
+}
+
+TEST_GPU(where_there_is_nothing_all_layers_are_zero)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    studio_open(&s);
+    studio_render(&s);
+    static const enum frame_readback layers[] = { READ_DEPTH, READ_POSITION, READ_NORMAL,
+                                                  READ_ALBEDO, READ_EMISSIVE };
+    for (size_t i = 0; i < sizeof layers / sizeof *layers; i++) {
+        vec3s v = studio_pixel(&s, layers[i], 3, 4);
+        CHECK(v.x == 0 && v.y == 0 && v.z == 0);
+    }
+    studio_finish(&s);
+}
+
+TEST_GPU(normals_point_out_of_a_turned_and_stretched_surface)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    int instance = studio_floor(&s, 1, studio_matte(&s, vec3_of(1, 1, 1)));
+    struct node node = node_default();
+    node.scale = vec3_of(3, 1, 0.5f);
+    node.rotation = glms_quatv(0.4f, vec3_of(0, 0, 1));
+    studio_instance(&s, s.scene->instances[instance].mesh, &node);
+    s.scene->instance_count = 2;
+    studio_look(&s, vec3_of(-0.8f, 3, 0.01f), vec3_of(-0.8f, 0, 0));
+    studio_open(&s);
+    studio_render(&s);
+    // Left of the middle the turned sheet is below the flat one, right of it above.
+    vec3s n = studio_pixel(&s, READ_NORMAL, 28, 15);
+    CHECK_NEAR(n.x, -sin(0.4), 2e-3);
+    CHECK_NEAR(n.y, cos(0.4), 2e-3);
+    CHECK_NEAR(n.z, 0, 2e-3);
+    studio_finish(&s);
+}
+
+static int image_of(struct studio *s, int width, int height, uint8_t *rgba, bool has_alpha)
+{
+    int index = scene_add_image(s->scene, &(struct scene_image){ .name = "test",
+                                                                 .width = width,
+                                                                 .height = height,
+                                                                 .rgba = rgba,
+                                                                 .has_alpha = has_alpha });
+    assert_true(index >= 0);
+    return index;
+}
+
+static struct texture_use use_of(int image)
+{
+    struct texture_use use = texture_use_none();
+    use.image = image;
+    use.wrap_u = use.wrap_v = WRAP_CLAMP;
+    use.nearest = true;
+    return use;
+}
+
+// A wall in the plane z = −1 that fills the view; u to the right, v downwards, seen from the
+// origin.
+static void wall(struct studio *s, int material)
+{
+    studio_quad(s, vec3_of(-1, -1, -1), vec3_of(1, -1, -1), vec3_of(1, 1, -1), vec3_of(-1, 1, -1),
+                material);
+    studio_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
+}
+
+TEST_GPU(normal_map_leans_along_u_and_against_v)
+{
+    // glTF: red leans along +u (the tangent), green along the bitangent, which is up the image: −v.
+    for (int axis = 0; axis < 2; axis++) {
+        struct studio s;
+        studio_init(&s, gpu);
+        uint8_t lean[4] = { axis == 0 ? 218 : 128, axis == 1 ? 218 : 128, 218, 255 };
+        struct material m = material_default();
+        m.normal_map = use_of(image_of(&s, 1, 1, lean, false));
+        wall(&s, studio_material(&s, &m));
+        studio_open(&s);
+        studio_render(&s);
+        vec3s n = studio_pixel(&s, READ_NORMAL, 16, 16);
+        CHECK_NEAR(n.x, axis == 0 ? sqrt(0.5) : 0, 0.01);
+        CHECK_NEAR(n.y, axis == 1 ? sqrt(0.5) : 0, 0.01);
+        CHECK_NEAR(n.z, sqrt(0.5), 0.01);
+        studio_finish(&s);
+    }
+}
+
+TEST_GPU(normal_map_of_a_mirrored_instance_is_mirrored_with_it)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    uint8_t lean[4] = { 218, 218, 218, 255 };
+    struct material m = material_default();
+    m.normal_map = use_of(image_of(&s, 1, 1, lean, false));
+    wall(&s, studio_material(&s, &m));
+    struct node mirror = node_default();
+    mirror.scale = vec3_of(-1, 1, 1);
+    mirror.translation = vec3_of(0, 0, 0.1f); // in front of the other
+    studio_instance(&s, 0, &mirror);
+    studio_open(&s);
+    studio_render(&s);
+    vec3s n = studio_pixel(&s, READ_NORMAL, 16, 16);
+    CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, 0.9, 1e-4);
+    CHECK_NEAR(n.x, -sqrt(1.0 / 3), 0.01);
+    CHECK_NEAR(n.y, sqrt(1.0 / 3), 0.01);
+    CHECK_NEAR(n.z, sqrt(1.0 / 3), 0.01);
+    studio_finish(&s);
+}
+
+TEST_GPU(mirrored_instance_is_lit_on_its_right_side)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    studio_floor(&s, 2, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    struct node mirror = node_default();
+    mirror.scale = vec3_of(-1, 1, 1);
+    mirror.translation = vec3_of(0, 0.1f, 0);
+    studio_instance(&s, 0, &mirror);
+    studio_add_sun(&s, vec3_of(0, -1, 0), vec3_of(100, 100, 100));
+    studio_look(&s, vec3_of(0, 2, 0.01f), vec3_of(0, 0, 0));
+    studio_open(&s);
+    studio_render(&s);
+    CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, 1.9, 1e-3);
+    CHECK(studio_pixel(&s, READ_DIRECT, 16, 16).x > 10);
+    studio_finish(&s);
+}
+
+TEST_GPU(back_faces_show_only_where_double_sided_and_face_the_viewer)
+{
+    for (int double_sided = 0; double_sided < 2; double_sided++) {
+        struct studio s;
+        studio_init(&s, gpu);
+        struct material m = material_default();
+        m.double_sided = double_sided == 1;
+        studio_floor(&s, 2, studio_material(&s, &m));
+        studio_look(&s, vec3_of(0, -1, 0.01f), vec3_of(0, 0, 0)); // from below
+        studio_open(&s);
+        studio_render(&s);
+        CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, double_sided ? 1 : 0, 1e-3);
+        CHECK_NEAR(studio_pixel(&s, READ_NORMAL, 16, 16).y, double_sided ? -1 : 0, 1e-3);
+        studio_finish(&s);
+    }
+}
+
+TEST_GPU(alpha_mask_cuts_a_hole)
+{
+    for (int mode = 0; mode < 3; mode++) { // opaque, mask at 0.8, blend
+        struct studio s;
+        studio_init(&s, gpu);
+        uint8_t rgba[16] = { 255, 0, 0, 255, 0, 255, 0, 180, 0, 0, 255, 100, 255, 255, 255, 255 };
+        struct material m = material_default();
+        m.base_color_map = use_of(image_of(&s, 2, 2, rgba, true));
+        m.alpha_mode = (enum alpha_mode[]){ ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND }[mode];
+        m.alpha_cutoff = 0.8f;
+        wall(&s, studio_material(&s, &m));
+        studio_open(&s);
+        studio_render(&s);
+        // 255/255 stays, 180/255 = 0.71 stays unless cut at 0.8, 100/255 goes unless opaque.
+        CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).x, 1, 1e-3);
+        CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 24, 8).y, mode == 1 ? 0 : 1, 1e-3);
+        CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 24).z, mode == 0 ? 1 : 0, 1e-3);
+        CHECK(studio_pixel(&s, READ_DEPTH, 8, 8).x > 0);
+        CHECK((studio_pixel(&s, READ_DEPTH, 8, 24).x > 0) == (mode == 0));
+        studio_finish(&s);
+    }
+}
+
+TEST_GPU(texture_transform_and_wrap_choose_the_texel)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    uint8_t rgba[16] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255 };
+    struct material m = material_default();
+    m.base_color_map = use_of(image_of(&s, 2, 2, rgba, false));
+    m.base_color_map.wrap_u = WRAP_REPEAT;
+    m.base_color_map.uv_offset[0] = 1.5f; // half the image to the left, once around
+    wall(&s, studio_material(&s, &m));
+    studio_open(&s);
+    studio_render(&s);
+    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).y, 1, 1e-3); // green is now on the left
+    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).x, 0, 1e-3);
+    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 24, 8).x, 1, 1e-3);
+    studio_finish(&s);
+}
+
+TEST_GPU(texture_rotation_is_counter_clockwise_in_the_image)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    uint8_t rgba[16] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255 };
+    struct material m = material_default();
+    m.base_color_map = use_of(image_of(&s, 2, 2, rgba, false));
+    m.base_color_map.wrap_u = m.base_color_map.wrap_v = WRAP_REPEAT;
+    m.base_color_map.uv_rotation_rad = 1.57079633f; // (u, v) → (v, −u)
+    wall(&s, studio_material(&s, &m));
+    studio_open(&s);
+    studio_render(&s);
+    // Top left, uv = (¼, ¼) → (¼, −¼) = (¼, ¾): the blue texel.
+    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).z, 1, 1e-3);
+    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).x, 0, 1e-3);
+    studio_finish(&s);
+}
+
+TEST_GPU(factors_and_vertex_colors_multiply)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    struct material m = material_default();
+    m.base_color = (vec4s){ { 0.5f, 1, 1, 1 } };
+    m.metallic = 0.6f;
+    m.roughness = 0.4f;
+    uint8_t data[4] = { 0, 128, 51, 255 }; // roughness ½, metallic 1/5
+    m.metallic_roughness_map = use_of(image_of(&s, 1, 1, data, false));
+    int material = studio_material(&s, &m);
+    vec3s positions[3] = { vec3_of(-4, -4, -1), vec3_of(4, -4, -1), vec3_of(0, 4, -1) };
+    vec4s colors[3];
+    for (int i = 0; i < 3; i++) colors[i] = (vec4s){ { 1, 0.5f, 0.25f, 1 } };
+    uint32_t indices[3] = { 0, 1, 2 };
+    vec2s uv[3] = { 0 };
+    int mesh = scene_add_mesh(s.scene, &(struct mesh){ .name = "triangle",
+                                                       .vertex_count = 3,
+                                                       .index_count = 3,
+                                                       .positions = positions,
+                                                       .uv = { uv },
+                                                       .colors = colors,
+                                                       .indices = indices,
+                                                       .material = material });
+    studio_instance(&s, mesh, NULL);
+    studio_open(&s);
+    studio_render(&s);
+    vec3s albedo = studio_pixel(&s, READ_ALBEDO, 16, 16);
+    CHECK_NEAR(albedo.x, 0.5, 0.005);
+    CHECK_NEAR(albedo.y, 0.5, 0.005);
+    CHECK_NEAR(albedo.z, 0.25, 0.005);
+    vec3s rm = studio_pixel(&s, READ_ROUGHNESS_METALLIC, 16, 16);
+    CHECK_NEAR(rm.x, 0.4 * 128 / 255, 0.005);
+    CHECK_NEAR(rm.y, 0.6 * 51 / 255, 0.005);
+    studio_finish(&s);
+}
+
+TEST_GPU(unlit_materials_are_matte)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    struct material m = material_default();
+    m.unlit = true;
+    wall(&s, studio_material(&s, &m));
+    studio_open(&s);
+    studio_render(&s);
+    vec3s rm = studio_pixel(&s, READ_ROUGHNESS_METALLIC, 16, 16);
+    CHECK(rm.x == 1 && rm.y == 0);
+    CHECK(studio_pixel(&s, READ_EMISSIVE, 16, 16).x == 0);
+    studio_finish(&s);
+}
+
+// Screen position (0…1) of a world point.
+static vec2s screen_of(const struct world_camera *c, uint32_t width, uint32_t height, vec3s p)
+{
+    float tan_y = tanf(0.5f * c->vertical_fov_rad), tan_x = tan_y * (float)width / (float)height;
+    vec3s to = glms_vec3_sub(p, c->eye), right = glms_vec3_cross(c->forward, c->up);
+    float along = glms_vec3_dot(to, c->forward);
+    return (vec2s){ { 0.5f + 0.5f * glms_vec3_dot(to, right) / (along * tan_x),
+                      0.5f - 0.5f * glms_vec3_dot(to, c->up) / (along * tan_y) } };
+}
+
+TEST_GPU(motion_leads_back_to_where_a_point_was)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    studio_floor(&s, 20, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    s.indirect.needs = FRAME_NEEDS_MOTION;
+    s.width = 40, s.height = 24;
+    studio_look(&s, vec3_of(0, 2, 4), vec3_of(0, 0, 0));
+    studio_open(&s);
+    studio_render(&s);
+    vec3s still = studio_pixel(&s, READ_MOTION, 20, 15);
+    CHECK(still.x == 0 && still.y == 0); // the first frame has no past
+    struct world_camera before = s.input.camera;
+    // The camera moves, and the floor shifts by half a metre at the same time.
+    studio_look(&s, vec3_of(0.2f, 2.1f, 3.9f), vec3_of(0.1f, 0, 0.1f));
+    s.pose.world_from_node[s.scene->instances[0].node].raw[3][0] += 0.5f;
+    studio_render(&s);
+    for (uint32_t y = 10; y < 24; y += 4) {
+        vec3s now = studio_ray_on_plane(&s, 7, y, UP, 0);
+        vec2s then = screen_of(&before, 40, 24, glms_vec3_sub(now, vec3_of(0.5f, 0, 0)));
+        vec3s motion = studio_pixel(&s, READ_MOTION, 7, y);
+        CHECK_NEAR(motion.x, 7.5f / 40 - then.x, 2e-4);
+        CHECK_NEAR(motion.y, ((float)y + 0.5f) / 24 - then.y, 2e-4);
+    }
+    studio_render(&s);
+    vec3s after = studio_pixel(&s, READ_MOTION, 20, 15);
+    CHECK_NEAR(after.x, 0, 1e-6);
+    CHECK_NEAR(after.y, 0, 1e-6);
+    studio_finish(&s);
+}
