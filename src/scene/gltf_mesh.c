@@ -1,7 +1,7 @@
 // Meshes of a glTF file (glTF 2.0, section 3.7.2): one scene mesh for each primitive of triangles.
 #include "scene/gltf.h"
 
-#include <limits.h>
+#include <stdio.h>
 #include <string.h>
 
 enum primitive_mode { MODE_TRIANGLES = 4, MODE_TRIANGLE_STRIP, MODE_TRIANGLE_FAN };
@@ -214,7 +214,9 @@ static bool load_primitive(struct gltf *gltf, const char *name, json_t *primitiv
     struct scene *scene = gltf->import->scene;
     struct mesh mesh = { .name = name };
     struct primitive p = { .gltf = gltf, .mesh = &mesh };
-    p.object = gltf_element(gltf, primitives, name, i);
+    char kind[96];
+    snprintf(kind, sizeof kind, "%s, primitive", import_printable(name).s);
+    p.object = gltf_element(gltf, primitives, kind, i);
     p.attributes = gltf_child(p.object, "attributes");
     size_t mode = gltf_size(p.object, "mode", MODE_TRIANGLES, 6);
     mesh.material = gltf_index(p.object, "material", gltf->materials);

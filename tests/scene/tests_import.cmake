@@ -1,3 +1,5 @@
 ag_test(scene/import_scenes USES scene)
 ag_test(scene/import_cut USES scene)
 ag_test(scene/import_assimp USES scene)
+ag_test(scene/import USES scene)
+ag_test(scene/mesh_geometry USES scene)
