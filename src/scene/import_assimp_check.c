@@ -104,7 +104,7 @@ static bool check_fbx_records(struct import *import, const struct file_bytes *by
     uint64_t ends[MAX_DEPTH];
     int depth = 0;
     while (c.at < c.size) {
-        uint64_t end;
+        uint64_t end = 0;
         while (depth > 0 && c.at == ends[depth - 1]) depth--;
         if (!fbx_record(&c, &end)) return false;
         if (end == 0) {
