@@ -170,14 +170,14 @@ static void *counting_reallocate(void *user, void *old, size_t bytes)
 }
 
 // Assimp leaks where its parsers throw; what we give it must still come back.
-static void check_cuts(const char *name, const char *text)
+static void check_cuts(const char *name, const void *bytes, size_t size)
 {
     int blocks = 0;
     struct host host = host_default();
     host.reallocate = counting_reallocate;
     host.user = &blocks;
-    for (size_t cut = 0; cut <= strlen(text); cut++) {
-        write_bytes(name, text, cut);
+    for (size_t cut = 0; cut <= size; cut++) {
+        write_bytes(name, bytes, cut);
         host.failure = FAIL_NONE;
         struct scene *scene = scene_load(&host, test_path(name));
         CHECK(scene || host.failure != FAIL_NONE);
@@ -188,35 +188,153 @@ static void check_cuts(const char *name, const char *text)
 
 TEST(an_obj_cut_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.obj", cube_corner);
+    check_cuts("cut.obj", cube_corner, strlen(cube_corner));
 }
 
 TEST(a_ply_cut_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.ply", ply);
+    check_cuts("cut.ply", ply, strlen(ply));
 }
 
 TEST(an_x_file_cut_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.x", x_file);
+    check_cuts("cut.x", x_file, strlen(x_file));
 }
 
 TEST(an_fbx_cut_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.fbx", fbx);
+    check_cuts("cut.fbx", fbx, strlen(fbx));
 }
 
-TEST(a_damaged_binary_fbx_is_refused)
+// --- Binary FBX, version 7400: records of end offset, property count, property bytes, name,
+// properties, nested records and a null record after those.
+struct fbx_writer {
+    uint8_t bytes[4096];
+    size_t size;
+};
+
+static void put(struct fbx_writer *w, const void *data, size_t size)
 {
-    uint8_t bytes[200] = "Kaydara FBX Binary  \0\x1a";
-    bytes[23] = 0xe8;
-    bytes[24] = 0x1c; // version 7400
-    bytes[27] = 0xff; // a record that ends beyond the file
-    bytes[28] = 0xff;
-    for (size_t size = 21; size < sizeof bytes; size++) {
-        write_bytes("bad.fbx", bytes, size);
-        CHECK(!scene_load(test_host(), test_path("bad.fbx")));
+    CHECK(w->size + size <= sizeof w->bytes);
+    memcpy(w->bytes + w->size, data, size);
+    w->size += size;
+}
+
+static void put_u32(struct fbx_writer *w, size_t value)
+{
+    uint32_t u32 = (uint32_t)value;
+    put(w, &u32, 4);
+}
+
+// "I" and "L" numbers of 32 and 64 bits, "S" a text, "d" and "i" arrays: one letter for each
+// argument.
+static size_t begin_record(struct fbx_writer *w, const char *name, const char *types, ...)
+{
+    size_t start = w->size, name_size = strlen(name);
+    put_u32(w, 0);
+    put_u32(w, strlen(types));
+    put_u32(w, 0);
+    uint8_t length = (uint8_t)name_size;
+    put(w, &length, 1);
+    put(w, name, name_size);
+    size_t properties = w->size;
+    va_list arguments;
+    va_start(arguments, types);
+    for (const char *t = types; *t; t++) {
+        put(w, t, 1);
+        if (*t == 'L') {
+            int64_t value = va_arg(arguments, int);
+            put(w, &value, 8);
+        } else if (*t == 'I') {
+            put_u32(w, (size_t)va_arg(arguments, int));
+        } else if (*t == 'S') {
+            const char *text = va_arg(arguments, const char *);
+            put_u32(w, strlen(text));
+            put(w, text, strlen(text));
+        } else {
+            size_t element = *t == 'd' ? 8 : 4;
+            const void *array = va_arg(arguments, const void *);
+            size_t count = (size_t)va_arg(arguments, int);
+            put_u32(w, count);
+            put_u32(w, 0); // not compressed
+            put_u32(w, count * element);
+            put(w, array, count * element);
+        }
     }
+    va_end(arguments);
+    uint32_t property_bytes = (uint32_t)(w->size - properties);
+    memcpy(w->bytes + start + 8, &property_bytes, 4);
+    return start;
+}
+
+static void end_record(struct fbx_writer *w, size_t start, bool nested)
+{
+    static const uint8_t null_record[13];
+    if (nested) put(w, null_record, sizeof null_record);
+    uint32_t end = (uint32_t)w->size;
+    memcpy(w->bytes + start, &end, 4);
+}
+
+static struct fbx_writer binary_fbx(void)
+{
+    static const double vertices[9] = { 0, 0, 0, 100, 0, 0, 0, 200, 0 };
+    static const int32_t corners[3] = { 0, 1, -3 };
+    static const uint8_t header[27] = "Kaydara FBX Binary  \0\x1a\0\xe8\x1c";
+    struct fbx_writer w = { .size = 0 };
+    put(&w, header, sizeof header);
+    size_t outer = begin_record(&w, "FBXHeaderExtension", "");
+    end_record(&w, begin_record(&w, "FBXVersion", "I", 7400), false);
+    end_record(&w, outer, true);
+    outer = begin_record(&w, "Objects", "");
+    size_t inner = begin_record(&w, "Geometry", "LSS", 1, "Geometry::g", "Mesh");
+    end_record(&w, begin_record(&w, "Vertices", "d", vertices, 9), false);
+    end_record(&w, begin_record(&w, "PolygonVertexIndex", "i", corners, 3), false);
+    end_record(&w, inner, true);
+    inner = begin_record(&w, "Model", "LSS", 2, "Model::m", "Mesh");
+    end_record(&w, begin_record(&w, "Version", "I", 232), false);
+    end_record(&w, inner, true);
+    end_record(&w, outer, true);
+    outer = begin_record(&w, "Connections", "");
+    end_record(&w, begin_record(&w, "C", "SLL", "OO", 2, 0), false);
+    end_record(&w, begin_record(&w, "C", "SLL", "OO", 1, 2), false);
+    end_record(&w, outer, true);
+    static const uint8_t null_record[13];
+    put(&w, null_record, sizeof null_record);
+    return w;
+}
+
+TEST(a_binary_fbx_is_read)
+{
+    struct fbx_writer w = binary_fbx();
+    write_bytes("binary.fbx", w.bytes, w.size);
+    struct scene *scene = scene_load(test_host(), test_path("binary.fbx"));
+    if (!scene) fail_msg("%s", test_last_message());
+    CHECK(scene_triangle_count(scene) == 1);
+    scene_destroy(scene);
+}
+
+TEST(a_binary_fbx_cut_at_any_length_is_read_or_refused)
+{
+    struct fbx_writer w = binary_fbx();
+    check_cuts("cut.fbx", w.bytes, w.size);
+}
+
+TEST(a_binary_fbx_that_states_huge_arrays_or_bad_ends_is_refused)
+{
+    struct fbx_writer w = binary_fbx();
+    const uint8_t *vertices = memmem(w.bytes, w.size, "Verticesd", 9);
+    CHECK(vertices);
+    uint32_t count = 4000000000u;
+    size_t at = (size_t)(vertices - w.bytes) + 9;
+    memcpy(w.bytes + at, &count, 4);
+    write_bytes("huge.fbx", w.bytes, w.size);
+    CHECK(!scene_load(test_host(), test_path("huge.fbx")));
+    CHECK(test_host()->failure == FAIL_MEMORY);
+    w = binary_fbx();
+    memcpy(w.bytes + 27, &count, 4); // the first record ends beyond the file
+    write_bytes("end.fbx", w.bytes, w.size);
+    CHECK(!scene_load(test_host(), test_path("end.fbx")));
+    CHECK(strstr(test_last_message(), "damaged"));
 }
 
 TEST(unknown_kinds_of_file_are_refused)
