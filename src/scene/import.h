@@ -1,4 +1,4 @@
-// Scene files through Assimp's C API, after our own checks of what it does not check.
+// Scene files: glTF 2.0 and PLY by our own readers, OBJ, FBX and X through Assimp's C API. Files are untrusted.
 #pragma once
 
 #include "scene/scene.h"
