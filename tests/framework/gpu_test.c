@@ -1,8 +1,6 @@
 #include "framework/gpu_test.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #ifdef __SANITIZE_ADDRESS__
 #include <dlfcn.h>
@@ -14,18 +12,17 @@ static struct gpu *device;
 static bool unfinished; // a test began and did not come to its end
 
 // Whatever ended a test, its messages and objects are seen here at the latest.
-static void at_exit(void)
+static bool check_end(void)
 {
-    if (!device) return;
+    if (!device) return true;
     gpu_wait(device);
     int messages = gpu_validation_messages(device), objects = gpu_live_objects(device);
     gpu_destroy(device);
     device = NULL;
-    if (!messages && !objects) return;
-    fprintf(stderr, "the GPU tests leave %d validation messages and %d live objects\n", messages,
-            objects);
-    fflush(NULL);
-    _exit(1);
+    if (!messages && !objects) return true;
+    print_error("the GPU tests leave %d validation messages and %d live objects\n", messages,
+                objects);
+    return false;
 }
 
 #ifdef __SANITIZE_ADDRESS__
@@ -82,7 +79,7 @@ struct gpu *test_gpu(void)
     device = gpu_create(test_host(), &(struct gpu_desc){ .device = getenv("AFTERGLOW_TEST_DEVICE"),
                                                          .validation = true });
     if (!device) fail_msg("no device: %s", test_last_message());
-    if (!registered) atexit(at_exit);
+    if (!registered) test_register_end(check_end);
     registered = true;
     return device;
 }

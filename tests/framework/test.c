@@ -7,10 +7,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_TESTS = 512, MAX_PATHS = 16 };
+enum { MAX_TESTS = 512, MAX_PATHS = 16, MAX_ENDS = 4 };
 
 static struct CMUnitTest tests[MAX_TESTS];
 static size_t test_count;
+static bool (*ends[MAX_ENDS])(void);
+static size_t end_count;
 static char folder[256];
 static char last_message[1024];
 
@@ -21,6 +23,12 @@ void test_register(const char *name, test_function function)
         abort();
     }
     tests[test_count++] = (struct CMUnitTest){ .name = name, .test_func = function };
+}
+
+void test_register_end(bool (*check)(void))
+{
+    if (end_count == MAX_ENDS) abort();
+    ends[end_count++] = check;
 }
 
 void test_near(double a, double b, double tolerance, const char *a_text, const char *b_text,
@@ -113,5 +121,7 @@ const char *test_scene_path(const char *name)
 int main(int argc, char **argv)
 {
     if (argc > 1) cmocka_set_test_filter(argv[1]);
-    return _cmocka_run_group_tests("tests", tests, test_count, NULL, NULL);
+    int failures = _cmocka_run_group_tests("tests", tests, test_count, NULL, NULL);
+    for (size_t i = 0; i < end_count; i++) failures += !ends[i]();
+    return failures;
 }

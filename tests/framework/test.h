@@ -17,6 +17,8 @@
 
 typedef void (*test_function)(void **state);
 void test_register(const char *name, test_function function);
+// A last check, run once after all tests, while every library is still whole (atexit may be too late for that).
+void test_register_end(bool (*check)(void));
 
 #define TEST(name)                                                                                 \
     static void test_##name(void **state);                                                         \
