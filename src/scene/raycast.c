@@ -200,6 +200,8 @@ static void add_instance(struct raycast *raycast, const struct scene_pose *pose,
     const struct mesh *mesh = &pose->scene->meshes[pose->scene->instances[instance].mesh];
     const vec3s *deformed = pose->deformed[instance].positions;
     mat4s world_from_mesh = pose_world_from_instance(pose, instance);
+    // A mirroring transform turns the winding over (glTF 2.0, 3.7.4).
+    bool mirrored = glms_mat4_det(world_from_mesh) < 0.0f;
     for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
         vec3s corner[3];
         for (uint32_t k = 0; k < 3; k++) {
@@ -208,6 +210,11 @@ static void add_instance(struct raycast *raycast, const struct scene_pose *pose,
         }
         struct raycast_triangle triangle = { corner[0], glms_vec3_sub(corner[1], corner[0]),
                                              glms_vec3_sub(corner[2], corner[0]) };
+        if (mirrored) {
+            vec3s swap = triangle.edge1;
+            triangle.edge1 = triangle.edge2;
+            triangle.edge2 = swap;
+        }
         vec3s normal = glms_vec3_cross(triangle.edge1, triangle.edge2);
         float area = glms_vec3_norm(normal);
         if (!isfinite(area) || !isfinite(glms_vec3_norm(corner[0]))) continue;
@@ -246,8 +253,7 @@ struct ray {
     vec3s origin, direction, inverse;
 };
 
-// Where the ray enters a node's box, INFINITY when it misses it or does so beyond `far`. Minima and
-// maxima are written so that the NaN of 0 · ∞ (a ray in a box's plane) counts as inside.
+// Where the ray enters a node's box, INFINITY when it misses it or does so beyond `far`.
 static float enter_box(const struct raycast_node *node, const struct ray *ray, float far)
 {
     float near = 0.0f;
@@ -304,9 +310,17 @@ static uint32_t traverse(const struct raycast *raycast, const struct ray *ray, f
     return met;
 }
 
+// A component of 0 is taken as a very small one: 0 · ∞ in the plane of a box's side would be NaN.
+static float inverse_of(float component)
+{
+    const float least = 1e-18f;
+    return 1.0f / (fabsf(component) > least ? component : copysignf(least, component));
+}
+
 static struct ray make_ray(vec3s origin, vec3s direction)
 {
-    vec3s inverse = vec3_of(1.0f / direction.x, 1.0f / direction.y, 1.0f / direction.z);
+    vec3s inverse =
+        vec3_of(inverse_of(direction.x), inverse_of(direction.y), inverse_of(direction.z));
     return (struct ray){ origin, direction, inverse };
 }
 
