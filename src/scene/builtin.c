@@ -23,8 +23,18 @@ static const struct builtin_scene *find_builtin(struct host *host, const char *s
         if (strcmp(name, known[count]) == 0) return builtin_scenes[count];
     }
     const char *nearest = nearest_name(name, known, count);
-    host_fail(host, FAIL_ARGUMENT, "scene \"%s\": there is no built-in \"%s\"%s%s%s", spec, name,
-              nearest ? "; did you mean \"@" : "", nearest ? nearest : "", nearest ? "\"?" : "");
+    if (nearest) {
+        host_fail(host, FAIL_ARGUMENT,
+                  "scene \"%s\": there is no built-in \"%s\"; did you mean \"@%s\"?", spec, name,
+                  nearest);
+        return NULL;
+    }
+    char list[MAX_NAME * MAX_BUILTINS] = "";
+    for (size_t i = 0, length = 0; i < count; i++) {
+        length += (size_t)snprintf(list + length, sizeof list - length, " @%s", known[i]);
+    }
+    host_fail(host, FAIL_ARGUMENT, "scene \"%s\": there is no built-in \"%s\"; there are%s", spec,
+              name, list);
     return NULL;
 }
 

@@ -125,7 +125,7 @@ static bool build_tunnel(struct scene *scene, const void *options)
     if (!tunnel) return false;
     lay_tunnel(tunnel, o->pieces, (uint32_t)o->seed);
     int lit = o->pieces > 1 ? STEPS + STEPS / 2 : STEPS / 2;
-    vec3s eye = mat4_point(tunnel->frames[0], vec3_of(0.4f, 0.2f, 0.3f));
+    vec3s eye = mat4_point(tunnel->frames[0], vec3_of(0.5f, 0.3f, 1.2f));
     vec3s target = mat4_point(tunnel->frames[STEPS], vec3_of(0, 0, 0));
     vec3s light = mat4_point(tunnel->frames[lit], vec3_of(0, 0.5f * RADIUS, 0));
     bool ok = build_inside(scene, tunnel) && build_outside(scene, tunnel) &&

@@ -159,6 +159,7 @@ TEST(an_unknown_name_is_refused_and_the_nearest_named)
     CHECK(strstr(test_last_message(), "light"));
     CHECK(!builtin_load(test_host(), "@cornell:light=candle"));
     CHECK(!builtin_load(test_host(), "@"));
+    CHECK(strstr(test_last_message(), "@cornell") && strstr(test_last_message(), "@diagonal"));
     CHECK(!builtin_load(test_host(), "@a_name_that_is_very_much_longer_than_any_that_there_is"));
 }
 
