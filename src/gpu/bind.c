@@ -95,6 +95,7 @@ static bool prepare_image(struct gpu_cmd *cmd, const struct pipeline *pipeline,
         return gpu_misuse(gpu, "pipeline %s: the sampler of \"%s\" is none of this device's",
                           pipeline->name, want->name);
     }
+    if (!out->imageView) cmd->broken = true; // no memory: the frame is not what was asked for
     return out->imageView != VK_NULL_HANDLE;
 }
 

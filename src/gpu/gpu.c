@@ -110,24 +110,6 @@ fail:
     return NULL;
 }
 
-void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), void *object)
-{
-    if (!object) return;
-    if (gpu->trash_count == gpu->trash_capacity) {
-        size_t capacity = gpu->trash_capacity ? 2 * gpu->trash_capacity : 64;
-        struct trash *bigger = host_realloc(gpu->host, gpu->trash, capacity, sizeof *bigger);
-        if (!bigger) {
-            // Only the adopted and the recording frame could still use it then, and a leak is the
-            // lesser evil.
-            if (gpu_wait(gpu) && !gpu->recording) free(gpu, object);
-            return;
-        }
-        gpu->trash = bigger;
-        gpu->trash_capacity = capacity;
-    }
-    gpu->trash[gpu->trash_count++] = (struct trash){ gpu->serial, free, object };
-}
-
 static uint64_t finished_serial(struct gpu *gpu)
 {
     uint64_t value = 0;
@@ -145,6 +127,25 @@ static uint64_t finished_serial(struct gpu *gpu)
         if (cmd->state != CMD_FREE && cmd->serial <= finished) finished = cmd->serial - 1;
     }
     return finished;
+}
+
+void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), void *object)
+{
+    if (!object) return;
+    if (gpu->trash_count == gpu->trash_capacity) {
+        size_t capacity = gpu->trash_capacity ? 2 * gpu->trash_capacity : 64;
+        struct trash *bigger = host_realloc(gpu->host, gpu->trash, capacity, sizeof *bigger);
+        if (!bigger) {
+            // No memory to remember it: free it now if nothing uses it, else a leak is the lesser
+            // evil.
+            gpu_wait(gpu);
+            if (finished_serial(gpu) >= gpu->serial) free(gpu, object);
+            return;
+        }
+        gpu->trash = bigger;
+        gpu->trash_capacity = capacity;
+    }
+    gpu->trash[gpu->trash_count++] = (struct trash){ gpu->serial, free, object };
 }
 
 void trash_collect(struct gpu *gpu)

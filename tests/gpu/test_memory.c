@@ -6,6 +6,7 @@
 #include "core/rng.h"
 #include "gpu/vk.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static uint64_t bytes_of(struct gpu *gpu, const char *owner)
@@ -141,4 +142,84 @@ TEST_GPU(objects_come_and_go_over_many_frames)
     assert_int_equal(bytes_of(gpu, "passing"), 0);
     gpu_buffer_destroy(gpu, &total);
     gpu_pipeline_destroy(gpu, &sum);
+}
+
+// A host whose n-th allocation fails, and which knows what is still out.
+struct poor {
+    int left, out;
+};
+
+static void *poor_reallocate(void *user, void *old, size_t bytes)
+{
+    struct poor *poor = user;
+    if (!bytes) {
+        if (old) poor->out--;
+        free(old);
+        return NULL;
+    }
+    if (poor->left-- <= 0) return NULL;
+    if (!old) poor->out++;
+    return realloc(old, bytes);
+}
+
+// A whole small life. Some failures are survived: what cannot be remembered to be freed later is
+// freed at once.
+static bool live(struct host *host)
+{
+    struct gpu *gpu = gpu_create(host, &(struct gpu_desc){ .device = NULL });
+    if (!gpu) return false;
+    const struct gpu_image_desc image_desc = {
+        "poor.image", GPU_2D, GPU_R32F, 16, 16, 1, 2, GPU_SAMPLED | GPU_STORAGE
+    };
+    const struct gpu_buffer_desc buffer_desc = { "poor.buffer", 4, GPU_BUFFER_STORAGE };
+    const uint32_t words[4] = { 1, 2, 3, 4 };
+    gpu_image image;
+    gpu_buffer total;
+    gpu_pipeline sum, reduce;
+    bool ok = gpu_image_create(gpu, &image_desc, &image);
+    ok = gpu_buffer_create(gpu, &buffer_desc, &total) && ok;
+    ok = gpu_compute_pipeline_create(gpu, "poor.sum", &shader_test_sum_comp, NULL, 0, &sum) && ok;
+    ok = gpu_compute_pipeline_create(gpu, "poor.reduce", &shader_test_reduce_comp, NULL, 0,
+                                     &reduce) &&
+         ok;
+    struct gpu_cmd *cmd = ok ? gpu_frame_begin(gpu) : NULL;
+    if (cmd) {
+        gpu_dispatch(cmd, sum,
+                     GPU_BIND(gpu_transient(cmd, "Words", words, sizeof words),
+                              { "Total", .buffer = total }),
+                     NULL, 0, 1, 1, 1);
+        gpu_dispatch(cmd, reduce,
+                     GPU_BIND({ "above", .image = image, .one_mip = true },
+                              { "below", .image = image, .mip = 1 }),
+                     NULL, 0, 1, 1, 1);
+        ok = gpu_frame_end(gpu, cmd);
+    }
+    uint32_t got = 0;
+    ok = ok && gpu_buffer_download(gpu, total, 0, &got, 4) && got == 10;
+    gpu_image_destroy(gpu, &image);
+    gpu_buffer_destroy(gpu, &total);
+    gpu_pipeline_destroy(gpu, &sum);
+    gpu_pipeline_destroy(gpu, &reduce);
+    assert_int_equal(gpu_live_objects(gpu), 0);
+    gpu_destroy(gpu);
+    return ok;
+}
+
+TEST(whichever_allocation_fails_nothing_is_lost)
+{
+    test_gpu_require();
+    struct host host = host_default();
+    struct poor poor = { 0 };
+    host.reallocate = poor_reallocate;
+    host.user = &poor;
+    int n = 0;
+    do {
+        assert_true(n < 200);
+        poor = (struct poor){ .left = n++ };
+        host.failure = FAIL_NONE;
+        bool done = live(&host);
+        assert_int_equal(poor.out, 0);
+        if (!done) assert_int_equal(host.failure, FAIL_MEMORY);
+    } while (poor.left < 0);
+    assert_true(n > 10);
 }
