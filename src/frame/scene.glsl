@@ -5,6 +5,13 @@
 
 #include "frame/scene_gpu_shared.h"
 
+// Variants of a pipeline, so that a material pays only for the maps that it has.
+layout(constant_id = 0) const bool HAS_BASE_COLOR_MAP = false;
+layout(constant_id = 1) const bool HAS_METALLIC_ROUGHNESS_MAP = false;
+layout(constant_id = 2) const bool HAS_NORMAL_MAP = false;
+layout(constant_id = 3) const bool HAS_EMISSIVE_MAP = false;
+layout(constant_id = 4) const bool IS_MASKED = false;
+
 #ifdef SCENE_VERTEX
 
 // Scalar arrays: a vec3 stride of 12 bytes.
@@ -27,6 +34,17 @@ layout(set = 0, binding = 3, scalar) readonly buffer scene_surfaces { scene_surf
 scene_surface scene_surface_of(uint vertex)
 {
     return scene_surface_table[push.draw.surface_base + vertex];
+}
+
+layout(set = 0, binding = 6, scalar) readonly buffer scene_materials { scene_material scene_material_table[]; };
+
+// Where a map is read. Done for vertices: where a fragment is derived from its neighbours outside of the triangle, their
+// loads from buffers may give 0 on some drivers, and with it a wrong mip.
+vec2 scene_map_uv(uint map, scene_surface surface)
+{
+    uint m = push.draw.material;
+    vec3 uv = vec3((scene_material_table[m].flags >> map & 1u) != 0u ? surface.uv1 : surface.uv0, 1.0);
+    return vec2(dot(scene_material_table[m].map_u[map], uv), dot(scene_material_table[m].map_v[map], uv));
 }
 #endif
 
@@ -72,40 +90,25 @@ vec3 scene_previous_world_position(uint vertex)
 
 #ifdef SCENE_FRAGMENT
 
-// Variants of a pipeline, so that a material pays only for the maps that it has.
-layout(constant_id = 0) const bool HAS_BASE_COLOR_MAP = false;
-layout(constant_id = 1) const bool HAS_METALLIC_ROUGHNESS_MAP = false;
-layout(constant_id = 2) const bool HAS_NORMAL_MAP = false;
-layout(constant_id = 3) const bool HAS_EMISSIVE_MAP = false;
-layout(constant_id = 4) const bool IS_MASKED = false;
-
 layout(set = 0, binding = 6, scalar) readonly buffer scene_materials { scene_material scene_material_table[]; };
 layout(set = 0, binding = 8) uniform sampler2D base_color_map;
 layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
 
-vec2 scene_map_uv(uint map, vec2 uv0, vec2 uv1)
-{
-    uint m = push.draw.material;
-    vec3 uv = vec3((scene_material_table[m].flags >> map & 1u) != 0u ? uv1 : uv0, 1.0);
-    return vec2(dot(scene_material_table[m].map_u[map], uv), dot(scene_material_table[m].map_v[map], uv));
-}
-
 // Factor × vertex colour × map; discards what the mask cuts away.
-vec4 scene_base_color(vec2 uv0, vec2 uv1, vec4 color)
+vec4 scene_base_color(vec2 uv, vec4 color)
 {
     vec4 base = scene_material_table[push.draw.material].base_color * color;
-    if (HAS_BASE_COLOR_MAP) base *= texture(base_color_map, scene_map_uv(SCENE_MAP_BASE_COLOR, uv0, uv1));
+    if (HAS_BASE_COLOR_MAP) base *= texture(base_color_map, uv);
     if (IS_MASKED && base.a < scene_material_table[push.draw.material].alpha_cutoff) discard;
     return base;
 }
 
 // x: roughness, y: metallic. Unlit materials: see gbuffer_fragment.glsl.
-vec2 scene_roughness_metallic(vec2 uv0, vec2 uv1)
+vec2 scene_roughness_metallic(vec2 uv)
 {
     uint m = push.draw.material;
     vec2 value = vec2(scene_material_table[m].roughness, scene_material_table[m].metallic);
-    if (HAS_METALLIC_ROUGHNESS_MAP)
-        value *= texture(metallic_roughness_map, scene_map_uv(SCENE_MAP_METALLIC_ROUGHNESS, uv0, uv1)).gb;
+    if (HAS_METALLIC_ROUGHNESS_MAP) value *= texture(metallic_roughness_map, uv).gb;
     return (scene_material_table[m].flags & SCENE_UNLIT) != 0u ? vec2(1.0, 0.0) : value;
 }
 

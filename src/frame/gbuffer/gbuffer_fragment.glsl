@@ -26,7 +26,7 @@ vec3 shading_normal()
 {
     vec3 n = vary_normal;
     if (HAS_NORMAL_MAP) {
-        vec3 local = texture(normal_map, scene_map_uv(SCENE_MAP_NORMAL, vary_uv0, vary_uv1)).xyz * 2.0 - 1.0;
+        vec3 local = texture(normal_map, vary_normal_uv).xyz * 2.0 - 1.0;
         local.xy *= scene_material_table[push.draw.material].normal_scale;
         n = vary_tangent.xyz * local.x + cross(n, vary_tangent.xyz) * (vary_tangent.w * local.y) + n * local.z;
     }
@@ -38,15 +38,15 @@ vec3 shading_normal()
 vec3 emitted_radiance()
 {
     vec3 radiance = scene_material_table[push.draw.material].emissive;
-    if (HAS_EMISSIVE_MAP) radiance *= texture(emissive_map, scene_map_uv(SCENE_MAP_EMISSIVE, vary_uv0, vary_uv1)).rgb;
+    if (HAS_EMISSIVE_MAP) radiance *= texture(emissive_map, vary_emissive_uv).rgb;
     return min(radiance * frame.radiance_scale, vec3(HALF_MAX));
 }
 
 void main()
 {
-    out_albedo = vec4(scene_base_color(vary_uv0, vary_uv1, vary_color).rgb, 1.0);
+    out_albedo = vec4(scene_base_color(vary_base_color_uv, vary_color).rgb, 1.0);
     out_normal = octahedral_encode(shading_normal());
-    out_material = scene_roughness_metallic(vary_uv0, vary_uv1);
+    out_material = scene_roughness_metallic(vary_metallic_roughness_uv);
     out_emissive = vec4(emitted_radiance(), 0.0);
 #ifdef GBUFFER_MOTION
     vec2 now = vary_now.xy / vary_now.z;

@@ -7,14 +7,16 @@
 
 layout(location = 0) VARY vec3 vary_normal;
 layout(location = 1) VARY vec4 vary_tangent;
-layout(location = 2) VARY vec2 vary_uv0;
-layout(location = 3) VARY vec2 vary_uv1;
-layout(location = 4) VARY vec4 vary_color;
+layout(location = 2) VARY vec4 vary_color;
+layout(location = 3) VARY vec2 vary_base_color_uv;
+layout(location = 4) VARY vec2 vary_metallic_roughness_uv;
+layout(location = 5) VARY vec2 vary_normal_uv;
+layout(location = 6) VARY vec2 vary_emissive_uv;
 #ifdef GBUFFER_MOTION
 // Clip positions, x y w, of this frame and the last. Both are interpolated, so that what stands still has a motion
 // of exactly 0.
-layout(location = 5) VARY vec3 vary_now;
-layout(location = 6) VARY vec3 vary_previous;
+layout(location = 7) VARY vec3 vary_now;
+layout(location = 8) VARY vec3 vary_previous;
 #endif
 
 layout(push_constant, scalar) uniform push_block

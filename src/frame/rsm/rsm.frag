@@ -19,8 +19,8 @@ layout(location = 1) out vec4 out_flux;
 
 void main()
 {
-    vec3 base = scene_base_color(vary_uv0, vary_uv1, vary_color).rgb;
-    float metallic = scene_roughness_metallic(vary_uv0, vary_uv1).y;
+    vec3 base = scene_base_color(vary_base_color_uv, vary_color).rgb;
+    float metallic = scene_roughness_metallic(vary_metallic_roughness_uv).y;
 
     frame_light light = frame_light_table[rsm_face_table[push.face].light];
     vec3 from_light = light.type == FRAME_LIGHT_SUN ? light.direction : vary_world - light.position;

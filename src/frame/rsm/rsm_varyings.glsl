@@ -9,8 +9,8 @@
 
 layout(location = 0) VARY vec3 vary_world;
 layout(location = 1) VARY vec3 vary_normal;
-layout(location = 2) VARY vec2 vary_uv0;
-layout(location = 3) VARY vec2 vary_uv1;
+layout(location = 2) VARY vec2 vary_base_color_uv;
+layout(location = 3) VARY vec2 vary_metallic_roughness_uv;
 layout(location = 4) VARY vec4 vary_color;
 
 layout(push_constant, scalar) uniform push_block

@@ -14,11 +14,10 @@ layout(push_constant, scalar) uniform push_block
 
 #include "frame/scene.glsl"
 
-layout(location = 0) in vec2 vary_uv0;
-layout(location = 1) in vec2 vary_uv1;
-layout(location = 2) in vec4 vary_color;
+layout(location = 0) in vec2 vary_base_color_uv;
+layout(location = 1) in vec4 vary_color;
 
 void main()
 {
-    scene_base_color(vary_uv0, vary_uv1, vary_color);
+    scene_base_color(vary_base_color_uv, vary_color);
 }

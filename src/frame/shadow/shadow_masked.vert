@@ -15,9 +15,8 @@ layout(push_constant, scalar) uniform push_block
 
 #include "frame/scene.glsl"
 
-layout(location = 0) out vec2 vary_uv0;
-layout(location = 1) out vec2 vary_uv1;
-layout(location = 2) out vec4 vary_color;
+layout(location = 0) out vec2 vary_base_color_uv;
+layout(location = 1) out vec4 vary_color;
 
 void main()
 {
@@ -25,7 +24,6 @@ void main()
     vec4 world = scene_world_from_instance() * vec4(scene_position(vertex), 1.0);
     gl_Position = push.clip_from_world * vec4(world.xyz, 1.0);
     scene_surface surface = scene_surface_of(vertex);
-    vary_uv0 = surface.uv0;
-    vary_uv1 = surface.uv1;
+    vary_base_color_uv = HAS_BASE_COLOR_MAP ? scene_map_uv(SCENE_MAP_BASE_COLOR, surface) : vec2(0.0);
     vary_color = unpackUnorm4x8(surface.color);
 }
