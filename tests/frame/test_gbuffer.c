@@ -238,6 +238,101 @@ TEST_GPU(texture_rotation_is_counter_clockwise_in_the_image)
     studio_finish(&s);
 }
 
+// A wall like `wall`, of n × n quads.
+static void tiled_wall(struct studio *s, int n, int material)
+{
+    vec3s positions[17 * 17];
+    vec2s uv[17 * 17];
+    uint32_t indices[16 * 16 * 6], count = 0;
+    for (int y = 0; y <= n; y++) {
+        for (int x = 0; x <= n; x++) {
+            float u = (float)x / (float)n, v = (float)y / (float)n;
+            positions[y * (n + 1) + x] = vec3_of(2 * u - 1, 1 - 2 * v, -1);
+            uv[y * (n + 1) + x] = (vec2s){ { u, v } };
+            uint32_t a = (uint32_t)(y * (n + 1) + x), below = a + (uint32_t)n + 1;
+            uint32_t quad[6] = { below, below + 1, a + 1, below, a + 1, a };
+            for (int i = 0; i < 6 && x < n && y < n; i++) indices[count++] = quad[i];
+        }
+    }
+    int mesh =
+        scene_add_mesh(s->scene, &(struct mesh){ .name = "tiles",
+                                                 .vertex_count = (uint32_t)((n + 1) * (n + 1)),
+                                                 .index_count = count,
+                                                 .positions = positions,
+                                                 .uv = { uv },
+                                                 .indices = indices,
+                                                 .material = material });
+    assert_true(mesh >= 0);
+    studio_instance(s, mesh, NULL);
+}
+
+TEST_GPU(textures_do_not_depend_on_how_a_surface_is_tiled)
+{
+    float *albedo[2];
+    uint8_t rgba[64 * 64 * 4];
+    for (int i = 0; i < 64 * 64; i++) {
+        bool white = ((i ^ i >> 6) & 1) != 0;
+        for (int k = 0; k < 4; k++) rgba[4 * i + k] = k == 3 || white ? 255 : 0;
+    }
+    for (int i = 0; i < 2; i++) {
+        struct studio s;
+        studio_init(&s, gpu);
+        s.width = s.height = 64;
+        struct material m = material_default();
+        m.base_color_map.image = image_of(&s, 64, 64, rgba, false);
+        tiled_wall(&s, i == 0 ? 1 : 16, studio_material(&s, &m));
+        studio_open(&s);
+        studio_render(&s);
+        albedo[i] = studio_read(&s, READ_ALBEDO);
+        studio_finish(&s);
+    }
+    float most = 0;
+    for (size_t i = 0; i < 64 * 64 * 3; i++) {
+        CHECK_NEAR(albedo[0][i], albedo[1][i], 0.03);
+        most = fmaxf(most, albedo[0][i]);
+    }
+    CHECK(most > 0.7f); // magnified: texels are told apart
+    free(albedo[0]), free(albedo[1]);
+}
+
+TEST_GPU(morphed_vertices_are_drawn_and_moved_where_the_pose_has_them)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    s.indirect.needs = FRAME_NEEDS_MOTION;
+    vec3s positions[3] = { vec3_of(-9, -9, -1), vec3_of(9, -9, -1), vec3_of(0, 9, -1) };
+    vec3s back[3] = { vec3_of(0, 0, -2), vec3_of(0, 0, -2), vec3_of(0, 0, -2) };
+    uint32_t indices[3] = { 0, 1, 2 };
+    struct morph_target morph = { .positions = back };
+    int mesh =
+        scene_add_mesh(s.scene, &(struct mesh){ .name = "morphing",
+                                                .vertex_count = 3,
+                                                .index_count = 3,
+                                                .positions = positions,
+                                                .indices = indices,
+                                                .morphs = &morph,
+                                                .morph_count = 1,
+                                                .material = studio_matte(&s, vec3_of(1, 1, 1)) });
+    float weight = 0.5f;
+    struct node node = node_default();
+    node.translation = vec3_of(0, 0, -1);
+    struct instance instance = {
+        .node = scene_add_node(s.scene, &node), .mesh = mesh, .skin = -1, .morph_weights = &weight
+    };
+    assert_true(scene_add_instance(s.scene, &instance) >= 0);
+    studio_open(&s);
+    studio_render(&s);
+    CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, 1 + 1 + 1, 1e-5);
+    CHECK_NEAR(studio_pixel(&s, READ_NORMAL, 16, 16).z, 1, 1e-3);
+    // What the vertices do from one pose to the next is motion: here, a tenth of a metre to the
+    // right.
+    for (int v = 0; v < 3; v++) s.pose.deformed[0].positions[v].x += 0.1f;
+    studio_render(&s);
+    CHECK_NEAR(studio_pixel(&s, READ_MOTION, 16, 16).x, 0.1 / (2 * tan(0.5) * 3), 1e-4);
+    CHECK_NEAR(studio_pixel(&s, READ_MOTION, 16, 16).y, 0, 1e-6);
+    studio_finish(&s);
+}
+
 TEST_GPU(factors_and_vertex_colors_multiply)
 {
     struct studio s;
