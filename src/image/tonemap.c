@@ -12,7 +12,7 @@ static const float TOE_END = 0.08f;           // below it the offset shrinks so 
 static const float EXPOSED_MAX = 1e30f;       // stands for infinity, so that no product overflows
 
 static const double MIDDLE_GREY = 0.18;
-static const double DARK_SHARE = 0.05; // a pixel counts as at least this share of the lit mean
+static const double DARK_SHARE = 0.25; // a pixel counts as at least this share of the lit mean
 static const double EV_LIMIT = 100.0;  // exposure_scale stays a normal float within it
 
 float exposure_scale(float ev)

@@ -180,7 +180,7 @@ TEST(automatic_exposure_of_two_greys_is_their_geometric_mean)
     image_finish(&image, test_host());
 }
 
-// A sunlit share f of radiance 1000 among black pixels: the log-average is 1000 · 0.05^(1−f).
+// A sunlit share f of radiance 1000 among black pixels: the log-average is 1000 · 0.25^(1−f).
 TEST(a_small_sun_patch_is_not_blown_out)
 {
     struct image image;
@@ -188,7 +188,7 @@ TEST(a_small_sun_patch_is_not_blown_out)
     for (int lit = 1; lit <= 100; lit++) {
         for (int c = 0; c < 3; c++) image_at(&image, lit - 1, 0)[c] = 1000.0f;
         double ev = (double)auto_exposure(&image);
-        double expected = log2(1000.0 * pow(0.05, 1.0 - lit / 100.0) / (1.2 * 0.18));
+        double expected = log2(1000.0 * pow(0.25, 1.0 - lit / 100.0) / (1.2 * 0.18));
         CHECK_NEAR(ev, expected, 1e-4);
         CHECK(1000.0 * (double)exposure_scale((float)ev) <= 0.18 * 20.0 * 1.0001);
     }
@@ -197,7 +197,7 @@ TEST(a_small_sun_patch_is_not_blown_out)
 
 // A pixel that is nearly black weighs as much as a black one, so that noise in the dark changes
 // little.
-TEST(a_pixel_counts_as_at_least_a_twentieth_of_the_lit_mean)
+TEST(a_pixel_counts_as_at_least_a_quarter_of_the_lit_mean)
 {
     struct image image;
     flat_picture(&image, 100, 1, 3, 100.0f);
@@ -207,7 +207,7 @@ TEST(a_pixel_counts_as_at_least_a_twentieth_of_the_lit_mean)
     for (int c = 0; c < 3; c++) image_at(&image, 50, 0)[c] = 1e-3f;
     float dark = auto_exposure(&image);
     CHECK(black < lit && dark < lit);
-    CHECK_NEAR((double)black, (double)lit + 0.01 * log2(0.05), 1e-4);
+    CHECK_NEAR((double)black, (double)lit + 0.01 * log2(0.25), 1e-4);
     CHECK_NEAR((double)black, (double)dark, 0.01);
     image_finish(&image, test_host());
 }

@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform push_block
     exposure_push push;
 };
 
-const float DARK_SHARE = 0.05;
+const float DARK_SHARE = 0.25;
 const float MIDDLE_GREY = 0.18;
 const float EV_LIMIT = 100.0;
 
