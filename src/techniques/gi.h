@@ -5,7 +5,8 @@
 
 #define GI_MAX_TERMS 3
 
-// A parsed and checked spec: at most one technique of each role, in the order source, delta, visibility.
+// A parsed and checked spec: at most one technique of each role, in the order source, delta, visibility, whatever the
+// order in which they were written. There is always a source: "vo" is "none+vo".
 struct gi_spec {
     struct host *host;
     int count;
@@ -25,6 +26,9 @@ struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *s
 void gi_destroy(struct gi *gi);
 bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
 void gi_invalidate(struct gi *gi, uint32_t changes);
+// Takes over another spec's options while running. false, and nothing changed: it names other techniques, or changes
+// options that need gi_create (their effect is stronger than INVALIDATE).
+bool gi_set_options(struct gi *gi, const struct gi_spec *spec);
 struct frame_indirect gi_hook(struct gi *gi); // refers to gi
 // The debug view shown instead of colour from the next frame on; NULL: none. false: no technique has it (names those known).
 bool gi_set_debug_view(struct gi *gi, const char *name);

@@ -1,0 +1,150 @@
+// Ambient light that knows how much light there is: E = (π·sky + Φ/A) · strength, the same at every
+// surface. Φ (lumen) is the flux that all reflective shadow maps see leaving the lit surfaces, A
+// (m²) the surface of the scene's bounding box, onto which it falls. README.md says when that is
+// exact.
+#include "techniques/ambient/ambient.h"
+
+#include "techniques/ambient/ambient_shared.h"
+
+#include "technique_shaders.h"
+
+struct ambient_options {
+#define OPTION OPTION_FIELD
+#include "techniques/ambient/ambient_options.def"
+#undef OPTION
+};
+
+static const struct option_row option_rows[] = {
+#define OPTION(...) OPTION_ROW(struct ambient_options, __VA_ARGS__)
+#include "techniques/ambient/ambient_options.def"
+#undef OPTION
+};
+
+struct ambient {
+    struct gpu *gpu;
+    struct ambient_options options;
+    gpu_sampler nearest;
+    gpu_pipeline sum, total, fill;
+    gpu_buffer partials; // vec3 each: scaled lumen
+    gpu_buffer result;   // vec3: scaled lux
+};
+
+enum { VEC3_BYTES = 12, LOCAL = 8 };
+
+static bool ambient_create(void *state, const struct technique_create *how)
+{
+    struct ambient *ambient = state;
+    struct gpu *gpu = how->gpu;
+    ambient->gpu = gpu;
+    ambient->options = *(const struct ambient_options *)how->options;
+    const struct gpu_sampler_desc nearest = {
+        .name = "ambient.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
+    };
+    const struct gpu_buffer_desc partials = { "ambient.partials", AMBIENT_GROUPS * VEC3_BYTES,
+                                              GPU_BUFFER_STORAGE };
+    const struct gpu_buffer_desc result = { "ambient.result", VEC3_BYTES, GPU_BUFFER_STORAGE };
+    return gpu_sampler_get(gpu, &nearest, &ambient->nearest) &&
+           gpu_buffer_create(gpu, &partials, &ambient->partials) &&
+           gpu_buffer_create(gpu, &result, &ambient->result) &&
+           gpu_compute_pipeline_create(gpu, "ambient.sum", &shader_ambient_sum_comp, NULL, 0,
+                                       &ambient->sum) &&
+           gpu_compute_pipeline_create(gpu, "ambient.total", &shader_ambient_total_comp, NULL, 0,
+                                       &ambient->total) &&
+           gpu_compute_pipeline_create(gpu, "ambient.fill", &shader_ambient_fill_comp, NULL, 0,
+                                       &ambient->fill);
+}
+
+static void ambient_set_options(void *state, const void *options)
+{
+    ((struct ambient *)state)->options = *(const struct ambient_options *)options;
+}
+
+// Surface of a box in m²; 0 for an empty one.
+static float surface_area(struct box3 box)
+{
+    if (box3_is_empty(box)) return 0.0f;
+    const vec3s size = box3_size(box);
+    return 2.0f * (size.x * size.y + size.y * size.z + size.z * size.x);
+}
+
+static struct ambient_push push_of(const struct ambient *ambient, const struct frame_view *view)
+{
+    const float area = surface_area(view->bounds);
+    const uint32_t across = gpu_groups(view->rsm_size, AMBIENT_TEXELS);
+    return (struct ambient_push){
+        .sky = glms_vec3_scale(view->constants->sky, GLM_PIf),
+        .per_area = area > 0.0f ? 1.0f / area : 0.0f,
+        .strength = ambient->options.strength,
+        .rsm_size = view->rsm_size,
+        .blocks_across = across,
+        .blocks = across * across * (uint32_t)view->rsm_face_count,
+        .width = view->width,
+        .height = view->height,
+    };
+}
+
+static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct ambient *ambient = state;
+    const struct ambient_push push = push_of(ambient, view);
+    const struct gpu_binding partials = { .name = "ambient_partials", .buffer = ambient->partials };
+    const struct gpu_binding result = { .name = "ambient_result", .buffer = ambient->result };
+    gpu_scope_begin(cmd, "ambient.sum");
+    if (push.blocks > 0) {
+        gpu_dispatch(
+            cmd, ambient->sum,
+            GPU_BIND(view->rsm_faces_binding,
+                     { .name = "rsm_depth", .image = view->rsm_depth, .sampler = ambient->nearest },
+                     { .name = "rsm_flux", .image = view->rsm_flux, .sampler = ambient->nearest },
+                     partials),
+            &push, sizeof push, AMBIENT_GROUPS, 1, 1);
+    }
+    gpu_dispatch(cmd, ambient->total, GPU_BIND(partials, result), &push, sizeof push, 1, 1, 1);
+    gpu_scope_end(cmd);
+
+    gpu_scope_begin(cmd, "ambient.fill");
+    gpu_dispatch(
+        cmd, ambient->fill,
+        GPU_BIND(
+            result,
+            { .name = "depth", .image = view->layers[FRAME_DEPTH], .sampler = ambient->nearest },
+            { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+        &push, sizeof push, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
+    gpu_scope_end(cmd);
+}
+
+static void ambient_destroy(void *state)
+{
+    struct ambient *ambient = state;
+    if (!ambient->gpu) return;
+    gpu_buffer_destroy(ambient->gpu, &ambient->partials);
+    gpu_buffer_destroy(ambient->gpu, &ambient->result);
+    gpu_pipeline_destroy(ambient->gpu, &ambient->sum);
+    gpu_pipeline_destroy(ambient->gpu, &ambient->total);
+    gpu_pipeline_destroy(ambient->gpu, &ambient->fill);
+}
+
+static uint64_t ambient_memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    (void)options;
+    (void)width;
+    (void)height;
+    return AMBIENT_GROUPS * VEC3_BYTES + VEC3_BYTES;
+}
+
+const struct technique technique_ambient = {
+    .name = "ambient",
+    .title = "reflected light, spread evenly",
+    .paper = "flux balance of a convex room; flux as in Martin 2012, sec. 3.1",
+    .role = ROLE_SOURCE,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
+    .needs = FRAME_NEEDS_RSM | FRAME_WRITES_IRRADIANCE,
+    .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
+                 sizeof(struct ambient_options) },
+    .state_size = sizeof(struct ambient),
+    .create = ambient_create,
+    .set_options = ambient_set_options,
+    .record = ambient_record,
+    .destroy = ambient_destroy,
+    .memory_estimate = ambient_memory_estimate,
+};

@@ -1,0 +1,53 @@
+// Reflected flux (scaled lumen) of all reflective shadow maps, as AMBIENT_GROUPS partial sums. Every sum has a fixed
+// order, so that a frame gives the same bits each time.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame/frame_shared.h"
+#include "frame/rsm/rsm.glsl"
+#include "techniques/ambient/ambient_tree.glsl"
+
+layout(local_size_x = AMBIENT_LOCAL) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    ambient_push push;
+};
+layout(set = 0, binding = 0, scalar) readonly buffer rsm_faces
+{
+    rsm_face faces[];
+};
+layout(set = 0, binding = 1) uniform sampler2DArray rsm_depth;
+layout(set = 0, binding = 2) uniform sampler2DArray rsm_flux;
+layout(set = 0, binding = 3, scalar) writeonly buffer ambient_partials
+{
+    vec3 partials[];
+};
+
+vec3 block_flux(uint block)
+{
+    uint per_face = push.blocks_across * push.blocks_across;
+    int layer = int(block / per_face);
+    uint within = block % per_face;
+    ivec2 first = ivec2(within % push.blocks_across, within / push.blocks_across) * AMBIENT_TEXELS;
+    ivec2 last = min(first + AMBIENT_TEXELS, ivec2(push.rsm_size));
+    rsm_face face = faces[layer];
+    vec3 sum = vec3(0.0);
+    for (int y = first.y; y < last.y; y++) {
+        for (int x = first.x; x < last.x; x++) {
+            ivec3 at = ivec3(x, y, layer);
+            if (texelFetch(rsm_depth, at, 0).r == 0.0) continue;
+            sum += texelFetch(rsm_flux, at, 0).rgb * rsm_flux_through(face, at.xy, push.rsm_size);
+        }
+    }
+    return sum;
+}
+
+void main()
+{
+    vec3 sum = vec3(0.0);
+    for (uint i = gl_GlobalInvocationID.x; i < push.blocks; i += AMBIENT_LOCAL * AMBIENT_GROUPS) sum += block_flux(i);
+    vec3 total = workgroup_sum(sum);
+    if (gl_LocalInvocationIndex == 0u) partials[gl_WorkGroupID.x] = total;
+}

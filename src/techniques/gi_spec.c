@@ -1,0 +1,202 @@
+// Reading and writing "source+delta+visibility".
+#include "techniques/gi.h"
+
+#include "techniques/gi_spec.h"
+#include "techniques/registry.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_KNOWN = 64, LIST_SIZE = 512, VALUE_SIZE = 64 };
+
+static const char *role_name(enum technique_role role)
+{
+    static const char *const names[] = { "source", "delta", "visibility" };
+    return names[role];
+}
+
+// A '+' between terms, not the one in a number like 1e+3.
+static bool is_separator(const char *text, size_t i)
+{
+    if (text[i] != '+') return false;
+    const bool exponent = i >= 2 && (text[i - 1] == 'e' || text[i - 1] == 'E') &&
+                          (isdigit((unsigned char)text[i - 2]) || text[i - 2] == '.') &&
+                          isdigit((unsigned char)text[i + 1]) && memchr(text, ':', i) != NULL;
+    return !exponent;
+}
+
+static size_t term_length(const char *text)
+{
+    size_t length = 0;
+    while (text[length] && !is_separator(text, length)) length++;
+    return length;
+}
+
+static bool fail_unknown(struct host *host, const char *name, const struct technique *const *known)
+{
+    const char *names[MAX_KNOWN];
+    char list[LIST_SIZE] = "";
+    size_t count = 0, used = 0;
+    for (; known[count] && count < MAX_KNOWN; count++) {
+        names[count] = known[count]->name;
+        const int written =
+            snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", names[count]);
+        if (written > 0)
+            used += (size_t)written < sizeof list - used ? (size_t)written : sizeof list - used - 1;
+    }
+    const char *nearest = nearest_name(name, names, count);
+    if (nearest)
+        return host_fail(host, FAIL_ARGUMENT, "unknown technique %s: did you mean %s?", name,
+                         nearest);
+    return host_fail(host, FAIL_ARGUMENT, "unknown technique %s: known are %s", name, list);
+}
+
+// Puts the technique at its role's place. `options` is owned by the spec from here on.
+static void insert_term(struct gi_spec *spec, const struct technique *technique, void *options)
+{
+    int at = spec->count++;
+    for (; at > 0 && spec->technique[at - 1]->role > technique->role; at--) {
+        spec->technique[at] = spec->technique[at - 1];
+        spec->options[at] = spec->options[at - 1];
+    }
+    spec->technique[at] = technique;
+    spec->options[at] = options;
+}
+
+static bool add_technique(struct gi_spec *spec, const struct technique *technique,
+                          const char *options)
+{
+    struct host *host = spec->host;
+    for (int i = 0; i < spec->count; i++)
+        if (spec->technique[i]->role == technique->role)
+            return host_fail(host, FAIL_ARGUMENT, "cannot add %s to %s: a sum has at most one %s",
+                             technique->name, spec->technique[i]->name, role_name(technique->role));
+    void *values = host_alloc(host, 1, technique->options.size);
+    if (!values) return false;
+    option_defaults(&technique->options, values);
+    if (!option_parse(host, &technique->options, technique->name, options, values)) {
+        host_free(host, values);
+        return false;
+    }
+    insert_term(spec, technique, values);
+    return true;
+}
+
+// One "name" or "name:options", cut out of the text and changed.
+static bool parse_term(struct gi_spec *spec, char *term, const struct technique *const *known)
+{
+    char *colon = strchr(term, ':');
+    if (colon) *colon = 0;
+    if (!term[0])
+        return host_fail(
+            spec->host, FAIL_ARGUMENT,
+            "cannot read the sum of techniques: a name is missing (source+delta+visibility)");
+    for (size_t i = 0; known[i]; i++)
+        if (strcmp(known[i]->name, term) == 0)
+            return add_technique(spec, known[i], colon ? colon + 1 : "");
+    return fail_unknown(spec->host, term, known);
+}
+
+static bool parse_terms(struct gi_spec *spec, const char *text,
+                        const struct technique *const *known)
+{
+    if (!text[0]) return true;
+    for (;;) {
+        const size_t length = term_length(text);
+        char *term = host_sprintf(spec->host, "%.*s", (int)length, text);
+        const bool ok = term && parse_term(spec, term, known);
+        host_free(spec->host, term);
+        if (!ok) return false;
+        if (!text[length]) return true;
+        text += length + 1;
+    }
+}
+
+bool gi_spec_parse_among(struct gi_spec *spec, struct host *host, const char *text,
+                         const struct technique *const *known)
+{
+    *spec = (struct gi_spec){ .host = host };
+    if (strlen(text) > GI_MAX_TEXT) {
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot read the sum of techniques: it is longer than %d characters",
+                         GI_MAX_TEXT);
+    }
+    if (!parse_terms(spec, text, known)) goto fail;
+    if (spec->count > 0 && spec->technique[0]->role == ROLE_SOURCE) return true;
+    if (spec->count > 0 && spec->technique[0]->role == ROLE_DELTA) {
+        host_fail(host, FAIL_ARGUMENT,
+                  "cannot use %s alone: it changes what a source gives, and there is none",
+                  spec->technique[0]->name);
+        goto fail;
+    }
+    if (add_technique(spec, known[0], "")) return true;
+fail:
+    gi_spec_finish(spec);
+    return false;
+}
+
+bool gi_spec_parse(struct gi_spec *spec, struct host *host, const char *text)
+{
+    return gi_spec_parse_among(spec, host, text, techniques);
+}
+
+void gi_spec_finish(struct gi_spec *spec)
+{
+    for (int i = 0; i < spec->count; i++) host_free(spec->host, spec->options[i]);
+    *spec = (struct gi_spec){ 0 };
+}
+
+bool gi_spec_copy(struct gi_spec *spec, const struct gi_spec *from)
+{
+    *spec = (struct gi_spec){ .host = from->host };
+    for (int i = 0; i < from->count; i++) {
+        const size_t size = from->technique[i]->options.size;
+        void *options = host_alloc(from->host, 1, size);
+        if (!options) {
+            gi_spec_finish(spec);
+            return false;
+        }
+        if (size > 0) memcpy(options, from->options[i], size);
+        insert_term(spec, from->technique[i], options);
+    }
+    return true;
+}
+
+// text + "separator name=value", freeing text. NULL in, NULL out.
+static char *append_option(struct host *host, char *text, char separator,
+                           const struct option_row *row, const void *options)
+{
+    if (!text) return NULL;
+    char value[VALUE_SIZE];
+    option_print(row, options, value, sizeof value);
+    char *longer = host_sprintf(host, "%s%c%s=%s", text, separator, row->name, value);
+    host_free(host, text);
+    return longer;
+}
+
+char *gi_spec_print(const struct gi_spec *spec)
+{
+    char *text = host_strdup(spec->host, "");
+    for (int i = 0; text && i < spec->count; i++) {
+        const struct technique *technique = spec->technique[i];
+        char *longer = host_sprintf(spec->host, "%s%s%s", text, i > 0 ? "+" : "", technique->name);
+        host_free(spec->host, text);
+        text = longer;
+        for (size_t k = 0; k < technique->options.count; k++)
+            text = append_option(spec->host, text, k == 0 ? ':' : ',', &technique->options.rows[k],
+                                 spec->options[i]);
+    }
+    return text;
+}
+
+uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height)
+{
+    uint64_t bytes = 0;
+    for (int i = 0; i < spec->count; i++) {
+        const struct technique *technique = spec->technique[i];
+        if (technique->memory_estimate)
+            bytes += technique->memory_estimate(spec->options[i], width, height);
+    }
+    return bytes;
+}

@@ -1,0 +1,61 @@
+// Debug views. The slices of the grid as tiles, from z = 0 at the top left, +y up; or the surfaces, coloured by cell.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#define FRAME_CONSTANTS_BINDING 1
+#include "core/sh.glsl"
+#include "frame/frame.glsl"
+#include "techniques/lpv/lpv_grid.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    lpv_view_push push;
+};
+layout(set = 0, binding = 2) uniform sampler2D depth;
+layout(set = 0, binding = 3) uniform sampler3D shown_red;
+layout(set = 0, binding = 4) uniform sampler3D shown_green;
+layout(set = 0, binding = 5) uniform sampler3D shown_blue;
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D picture;
+
+// Flux of a cell, ∫ I dω = c0 √(4π), as the mean radiance in it.
+vec3 shown(ivec3 cell)
+{
+    vec3 c0 = vec3(texelFetch(shown_red, cell, 0).x, texelFetch(shown_green, cell, 0).x,
+                   texelFetch(shown_blue, cell, 0).x);
+    return clamp(c0 / SH_Y0 * push.radiance_scale, 0.0, HALF_MAX);
+}
+
+vec3 slices(ivec2 pixel)
+{
+    ivec3 cells = lpv_cells();
+    int columns = int(ceil(sqrt(float(cells.z))));
+    int rows = (cells.z + columns - 1) / columns;
+    vec2 tiled = (vec2(pixel) + 0.5) / vec2(lpv.width, lpv.height) * vec2(columns, rows);
+    ivec2 tile = ivec2(tiled);
+    vec2 within = fract(tiled);
+    int z = tile.y * columns + tile.x;
+    if (z >= cells.z) return vec3(0.0);
+    return shown(ivec3(ivec2(vec2(within.x, 1.0 - within.y) * 0.9999 * vec2(cells.xy)), z));
+}
+
+// A colour for each cell, full where light was injected and dim where not.
+vec3 cells_on_surfaces(ivec2 pixel)
+{
+    float z = texelFetch(depth, pixel, 0).r;
+    if (z == 0.0) return vec3(0.0);
+    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
+    ivec3 cell = clamp(ivec3(floor(lpv_cells_from_world(position))), ivec3(0), lpv_cells() - 1);
+    vec3 colour = 0.25 + 0.5 * vec3(cell & 1);
+    return colour * (any(greaterThan(shown(cell), vec3(0.0))) ? 1.0 : 0.1);
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(lpv.width, lpv.height)))) return;
+    vec3 colour = push.view == LPV_VIEW_CELLS ? cells_on_surfaces(pixel) : slices(pixel);
+    imageStore(picture, pixel, vec4(colour, 1.0));
+}

@@ -1,0 +1,68 @@
+// Placement of the grid, and bounds on the flux that give the scales of the fixed-point sums and of
+// the grid.
+#include "techniques/lpv/lpv_grid.h"
+
+#include <math.h>
+
+bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *out)
+{
+    if (box3_is_empty(bounds)) return false;
+    const vec3s size = box3_size(bounds);
+    const double longest = (double)fmaxf(size.x, fmaxf(size.y, size.z));
+    if (!(longest > 0.0) || !isfinite(longest)) return false;
+    // Snapping outwards on both sides costs less than one cell more than the length itself.
+    const double least = longest / ((double)dim - 1.0 - 2.0 * (double)margin);
+    const double cell = exp2(ceil(16.0 * log2(least)) / 16.0);
+    out->cell_m = (float)cell;
+    for (int axis = 0; axis < 3; axis++) {
+        const double first = floor((double)bounds.min.raw[axis] / cell - (double)margin);
+        const double last = ceil((double)bounds.max.raw[axis] / cell + (double)margin);
+        out->origin_m.raw[axis] = (float)(first * cell);
+        out->cells[axis] = (int32_t)fmin(fmax(last - first, 1.0), (double)dim);
+    }
+    return isfinite(out->cell_m) && out->cell_m > 0.0f;
+}
+
+// Bounds in scaled lumen for a reflectance of 1: through the strongest texel of a face, and through
+// the face.
+static void face_flux(const struct rsm_face *face, double rsm_size, double *texel, double *total)
+{
+    const double strongest =
+        (double)fmaxf(face->intensity.x, fmaxf(face->intensity.y, face->intensity.z));
+    if (face->type == FRAME_LIGHT_SUN) {
+        *texel = strongest;
+        *total = strongest * rsm_size * rsm_size;
+        return;
+    }
+    // A texel at unit distance has the side 2 tan/size; its solid angle is at most its area. The
+    // face's is that of a square pyramid, 4 asin(sin² of the half-angle).
+    const double tangent = (double)face->tan_half;
+    const double side = 2.0 * tangent / rsm_size;
+    *texel = strongest * side * side;
+    *total = strongest * 4.0 * asin(tangent * tangent / (1.0 + tangent * tangent));
+}
+
+// The largest power of two that makes value · 2^n ≤ 2^limit; exponents that a float can hold.
+static float power_of_two_below(double value, int limit)
+{
+    int exponent = 0;
+    (void)frexp(value, &exponent); // value < 2^exponent
+    const int power = limit - exponent;
+    return ldexpf(1.0f, power < -100 ? -100 : power > 100 ? 100 : power);
+}
+
+bool lpv_scale_of(const struct rsm_face *faces, int count, uint32_t rsm_size, struct lpv_scale *out)
+{
+    double texel = 0.0, total = 0.0;
+    for (int i = 0; i < count; i++) {
+        double face_texel, face_total;
+        face_flux(&faces[i], (double)rsm_size, &face_texel, &face_total);
+        texel = fmax(texel, face_texel);
+        total += face_total;
+    }
+    if (!(total > 0.0) || !isfinite(total)) return false;
+    // The largest coefficient of a unit-flux lobe is below 1/2 (2/3 √(3/4π) = 0.326).
+    out->fixed_from_flux = power_of_two_below(texel * (LPV_TEXELS * LPV_TEXELS) * 0.5, 30);
+    out->grid_from_flux = power_of_two_below(total, 10);
+    return true;
+}

@@ -1,0 +1,30 @@
+// Where the grid lies in the scene, and the powers of two that keep its numbers in range. Pure functions, no state.
+#pragma once
+
+#include "core/vec.h"
+#include "frame/frame_shared.h"
+#include "techniques/lpv/lpv_shared.h"
+
+#include <stdint.h>
+
+// Cubic cells; cell (i, j, k) covers origin_m + cell_m · [i, i+1] × …. Every count is at least 1 and at most the dimension.
+struct lpv_grid {
+    vec3s origin_m;
+    float cell_m;
+    int32_t cells[3];
+};
+
+// Fits the bounds with `margin` (in cells) around them. The cell's size is a power of 2^(1/16) m and the origin a whole
+// number of cells, so that the grid stands still in the world while something moves the bounds a little. Larger scenes get larger
+// cells: nothing is ever left out. false: the bounds are empty, a point or not finite.
+bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *out);
+
+// Injection adds whole numbers, so that its order does not matter. A block of LPV_TEXELS² texels of a reflective shadow
+// map adds at most 2^30 to a coefficient; sums are 64 bits wide and cannot overflow.
+
+struct lpv_scale {
+    float fixed_from_flux; // integer per scaled lumen, a power of two
+    float grid_from_flux;  // the grid's unit per scaled lumen, a power of two: all light together is less than 1024
+};
+// false: there is no light (or its strength is not finite).
+bool lpv_scale_of(const struct rsm_face *faces, int count, uint32_t rsm_size, struct lpv_scale *out);

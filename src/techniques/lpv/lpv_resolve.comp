@@ -1,0 +1,44 @@
+// From whole numbers to coefficients: intensity in the grid's unit (scaled lumen/sr × a power of two).
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "techniques/lpv/lpv_grid.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 1, scalar) readonly buffer lpv_sums
+{
+    uint words[];
+};
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image3D injected_red;
+layout(set = 0, binding = 3, rgba32f) uniform writeonly image3D injected_green;
+layout(set = 0, binding = 4, rgba32f) uniform writeonly image3D injected_blue;
+
+// A 64-bit two's complement number. Negated first where negative: −1 as 2^32 · (2^32 − 1) + … would cancel to nothing.
+float number(int at)
+{
+    uint low = words[at], high = words[at + 1];
+    bool negative = (high & 0x80000000u) != 0u;
+    if (negative) {
+        low = ~low + 1u;
+        high = ~high + (low == 0u ? 1u : 0u);
+    }
+    float value = float(high) * 4294967296.0 + float(low);
+    return (negative ? -value : value) * lpv.grid_from_fixed;
+}
+
+vec4 lobe(int at)
+{
+    return vec4(number(at), number(at + 2), number(at + 4), number(at + 6));
+}
+
+void main()
+{
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    if (!lpv_inside(cell)) return;
+    int at = 24 * lpv_index(cell);
+    imageStore(injected_red, cell, lobe(at));
+    imageStore(injected_green, cell, lobe(at + 8));
+    imageStore(injected_blue, cell, lobe(at + 16));
+}

@@ -1,0 +1,35 @@
+// The source that gives nothing: irradiance 0 everywhere. What the others are measured against.
+#include "techniques/none/none.h"
+
+static bool none_create(void *state, const struct technique_create *how)
+{
+    (void)state;
+    (void)how;
+    return true;
+}
+
+static void none_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    (void)state;
+    gpu_scope_begin(cmd, "none.clear");
+    gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
+                    (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+    gpu_scope_end(cmd);
+}
+
+static void none_destroy(void *state)
+{
+    (void)state;
+}
+
+const struct technique technique_none = {
+    .name = "none",
+    .title = "no indirect light",
+    .paper = "none",
+    .role = ROLE_SOURCE,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
+    .needs = FRAME_WRITES_IRRADIANCE,
+    .create = none_create,
+    .record = none_record,
+    .destroy = none_destroy,
+};

@@ -1,0 +1,6 @@
+// No indirect light.
+#pragma once
+
+#include "techniques/technique.h"
+
+extern const struct technique technique_none;

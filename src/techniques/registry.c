@@ -1,0 +1,45 @@
+// The explicit array of all techniques, and the rules that each entry keeps.
+#include "techniques/registry.h"
+
+#include "techniques/ambient/ambient.h"
+#include "techniques/lpv/lpv.h"
+#include "techniques/none/none.h"
+
+#include <assert.h>
+#include <string.h>
+
+const struct technique *const techniques[] = { &technique_none, &technique_ambient, &technique_lpv,
+                                               NULL };
+
+bool technique_is_sound(const struct technique *technique)
+{
+    if (!technique->name || !technique->name[0] || !technique->title || !technique->paper)
+        return false;
+    if (strspn(technique->name, "abcdefghijklmnopqrstuvwxyz0123456789") != strlen(technique->name))
+        return false;
+    if (!technique->create || !technique->record || !technique->destroy) return false;
+    if (technique->debug_views && !technique->debug_view) return false;
+    if ((technique->bake_version != 0) != ((technique->capabilities & NEEDS_BAKE) != 0))
+        return false;
+    return technique->bake_version == 0 || (technique->bake && technique->load);
+}
+
+#ifndef NDEBUG
+static bool registry_is_sound(void)
+{
+    for (size_t i = 0; techniques[i]; i++) {
+        if (!technique_is_sound(techniques[i])) return false;
+        for (size_t k = 0; k < i; k++)
+            if (strcmp(techniques[i]->name, techniques[k]->name) == 0) return false;
+    }
+    return true;
+}
+#endif
+
+const struct technique *technique_find(const char *name)
+{
+    assert(registry_is_sound());
+    for (size_t i = 0; techniques[i]; i++)
+        if (strcmp(techniques[i]->name, name) == 0) return techniques[i];
+    return NULL;
+}
