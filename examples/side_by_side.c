@@ -79,7 +79,7 @@ int main(int argc, char **argv)
     if (result == AG_OK) result = ag_device_create(context, NULL, &device);
     if (result == AG_OK) result = ag_scene_load(context, argv[1], &scene);
     if (result == AG_OK) result = ag_scene_add_default_lighting(scene, NULL);
-    if (result == AG_OK) result = ag_scene_default_camera(scene, 0.0, &shot.frame.camera, NULL);
+    if (result == AG_OK) result = ag_scene_default_camera(scene, 0, 0.0, &shot.frame.camera, NULL);
     for (int i = 0; i < 2 && result == AG_OK; i++) {
         shot.gi = argv[2 + i];
         result = take(device, scene, &shot, &radiance[i]);

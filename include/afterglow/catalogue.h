@@ -36,6 +36,9 @@ struct ag_builtin_scene_info {
 AG_API bool ag_builtin_scene_get(int index, struct ag_builtin_scene_info *out);
 AG_API bool ag_builtin_scene_option_get(int scene, int index, struct ag_option_info *out);
 
+/// The known name that was probably meant, for "did you mean …?"; NULL when none is near.
+AG_API const char *ag_nearest_name(const char *name, const char *const *known, int count);
+
 AG_END
 
 #endif

@@ -16,6 +16,7 @@ struct ag_renderer_desc {
     const char *gi;            ///< "source+delta+visibility", default "none"; see ag_technique_get
     const char *frame_options; ///< "shadow_size=2048,…" or NULL; see ag_frame_option_get
     bool indirect_layer;       ///< keep indirect radiance as a layer; default false
+    bool display_layer;        ///< keep the tone-mapped picture as a layer; default true
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 /// Bytes of GPU memory that these settings take at most, before anything is created (scene excluded).
@@ -32,7 +33,7 @@ AG_API enum ag_result ag_renderer_resize(struct ag_renderer *renderer, int width
 struct ag_frame_desc {
     struct ag_camera camera;
     double time_s;      ///< animation time
-    int animation;      ///< index, -1: rest pose; default 0 (the first, if there is one)
+    int animation;      ///< see ag_scene_camera; default 0: the first, if there is one
     bool auto_exposure; ///< from the direct image's log-average; default true
     float exposure_ev;  ///< used where auto_exposure is false
     bool camera_cut;    ///< forget history; default false
@@ -54,11 +55,13 @@ AG_API enum ag_result ag_renderer_wait(struct ag_renderer *renderer);
 /// emissive motion display debug. NULL past the end.
 AG_API const char *ag_layer_name(int index);
 /// Reads a layer of the newest frame in physical units (cd/m², lux, metres): 3 channels, depth and visibility 1.
-/// Waits for the GPU. "indirect" needs indirect_layer, "debug" a debug view.
+/// Waits for the GPU. "indirect" needs indirect_layer, "display" display_layer, "debug" a debug view. A layer that the
+/// techniques in use do not write is zero (visibility: 1).
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
-/// The VkImage of a layer and its VkImageLayout, for programs that share the device. Values on the GPU are
-/// physical × *scale. "position" has none.
+/// The VkImage of a layer and its VkImageLayout, for programs that share the device. Radiance and irradiance on the GPU
+/// are physical × *scale, 1 for other layers: depth is reversed (near plane over distance), normals are octahedral,
+/// albedo and display sRGB-encoded. "position" has none.
 AG_API enum ag_result ag_renderer_layer_handle(struct ag_renderer *renderer, const char *layer,
                                                void **vk_image, uint32_t *vk_layout, float *scale);
 /// EV used for the newest frame. Waits for the GPU.

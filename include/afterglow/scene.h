@@ -17,7 +17,7 @@ AG_API enum ag_result ag_scene_create(struct ag_context *context, struct ag_scen
 AG_API void ag_scene_destroy(struct ag_scene *scene);
 
 struct ag_material_desc {
-    float base_color[4];       ///< linear; default 0.8 0.8 0.8 1
+    float base_color[4];       ///< linear, 0…1; default 0.8 0.8 0.8 1
     float metallic, roughness; ///< default 0, 1
     float emissive[3];         ///< cd/m², default 0
     bool double_sided;
@@ -42,9 +42,11 @@ struct ag_light_desc {
     float intensity[3];         ///< linear Rec. 709: lux for suns, candela for points and spots
     float inner_rad, outer_rad; ///< half-angles of a spot, inner < outer ≤ π/2
 };
+/// Downwards from the origin, intensity 1, a spot from 0 to π/4.
 AG_API void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type);
 
-/// Each sets *index (which may be NULL) to the new object's index.
+/// Each sets *index (which may be NULL) to the new object's index. While a renderer uses the scene, only lights can be
+/// added and removed.
 AG_API enum ag_result ag_scene_add_material(struct ag_scene *scene,
                                             const struct ag_material_desc *desc, int *index);
 AG_API enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_desc *desc,
@@ -70,12 +72,15 @@ AG_API enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye,
                                        float vertical_fov_rad, struct ag_camera *out);
 AG_API int ag_scene_camera_count(const struct ag_scene *scene);
 AG_API const char *ag_scene_camera_name(const struct ag_scene *scene, int index); ///< NULL out of range
-/// The named camera at an animation time in seconds; an unknown name is an error that names those present.
-AG_API enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, double time_s,
-                                      struct ag_camera *out);
+/// Questions about a moment name an animation and a time in seconds, which wraps around the animation's duration.
+/// Animations are numbered from 0; 0 is allowed where there is none, -1 is the rest pose.
+///
+/// The named camera at a moment; an unknown name is an error that names those present.
+AG_API enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int animation,
+                                      double time_s, struct ag_camera *out);
 /// The first camera of the scene or, where it has none, one that suits it: from outside where the scene is an object,
 /// from inside where geometry surrounds its middle. *made_up (may be NULL) says which.
-AG_API enum ag_result ag_scene_default_camera(struct ag_scene *scene, double time_s,
+AG_API enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animation, double time_s,
                                               struct ag_camera *out, bool *made_up);
 
 struct ag_default_lighting {
@@ -96,19 +101,19 @@ struct ag_scene_info {
     uint64_t triangles; ///< over instances
     uint64_t vertices;
     uint64_t memory_bytes;              ///< in main memory
-    float bounds_min[3], bounds_max[3]; ///< at the given time; min > max for an empty scene
+    float bounds_min[3], bounds_max[3]; ///< at the given moment; min > max for an empty scene
     float sky[3];                       ///< cd/m²
     bool emissive;                      ///< something glows
 };
-AG_API enum ag_result ag_scene_get_info(struct ag_scene *scene, double time_s,
+AG_API enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double time_s,
                                         struct ag_scene_info *out);
 
 struct ag_light_info {
     const char *name;           ///< valid while the scene lives
     struct ag_light_desc light; ///< in world space
 };
-AG_API enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, double time_s,
-                                         struct ag_light_info *out);
+AG_API enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int animation,
+                                         double time_s, struct ag_light_info *out);
 
 struct ag_animation_info {
     const char *name; ///< valid while the scene lives

@@ -1,0 +1,213 @@
+// Images, files and metrics: forwards to image/.
+#include "api/objects.h"
+
+#include "core/file.h"
+#include "image/exr.h"
+#include "image/image.h"
+#include "image/metrics.h"
+#include "image/png_file.h"
+#include "image/tonemap.h"
+
+#include <string.h>
+
+enum { MAX_LAYERS = 256, MAX_ATTRIBUTES = 256 };
+
+_Static_assert(IMAGE_MAX_SIZE == 16384, "afterglow/image.h promises it");
+
+// The same pixels, as the module sees them.
+static struct image view_of(const struct ag_image *image)
+{
+    return (struct image){ image->width, image->height, image->channels, image->pixels };
+}
+
+static bool is_whole(const struct ag_image *image)
+{
+    return image && image->pixels && image->width >= 1 && image->width <= IMAGE_MAX_SIZE &&
+           image->height >= 1 && image->height <= IMAGE_MAX_SIZE && image->channels >= 1 &&
+           image->channels <= 4;
+}
+
+// Hands a finished image over to the caller; takes *image in any case.
+static enum ag_result give(struct ag_context *context, bool ok, struct image *image,
+                           struct ag_image **out)
+{
+    struct ag_image *given = ok ? host_alloc(&context->host, 1, sizeof *given) : NULL;
+    if (!given) {
+        image_finish(image, &context->host);
+        return api_done(context, false);
+    }
+    *given = (struct ag_image){ image->width, image->height, image->channels, image->pixels };
+    *out = given;
+    return api_done(context, true);
+}
+
+enum ag_result ag_image_create(struct ag_context *context, int width, int height, int channels,
+                               struct ag_image **out)
+{
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, width >= 1 && width <= IMAGE_MAX_SIZE, "width %d is not 1 to %d", width,
+               IMAGE_MAX_SIZE);
+    AG_REQUIRE(context, height >= 1 && height <= IMAGE_MAX_SIZE, "height %d is not 1 to %d", height,
+               IMAGE_MAX_SIZE);
+    AG_REQUIRE(context, channels >= 1 && channels <= 4, "channels %d is not 1 to 4", channels);
+    struct image image = { 0 };
+    bool ok = image_init(&image, &context->host, width, height, channels);
+    return give(context, ok, &image, out);
+}
+
+void ag_image_destroy(struct ag_context *context, struct ag_image *image)
+{
+    if (!context || !image) return;
+    host_free(&context->host, image->pixels);
+    host_free(&context->host, image);
+}
+
+static bool layers_are_whole(const struct ag_image_layer *layers, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!layers[i].name || !layers[i].name[0] || !is_whole(layers[i].image)) return false;
+    return true;
+}
+
+static bool attributes_are_whole(const struct ag_attribute *attributes, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!attributes[i].name || !attributes[i].name[0] || !attributes[i].value) return false;
+    return true;
+}
+
+enum ag_result ag_image_write_exr(struct ag_context *context, const char *path,
+                                  const struct ag_image_layer *layers, int layer_count,
+                                  const struct ag_attribute *attributes, int attribute_count)
+{
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    AG_REQUIRE(context, layers && layer_count >= 1 && layer_count <= MAX_LAYERS,
+               "layer_count %d is not 1 to %d", layer_count, MAX_LAYERS);
+    AG_REQUIRE(context, layers_are_whole(layers, layer_count),
+               "a layer has no name or no valid image");
+    AG_REQUIRE(context, attribute_count >= 0 && attribute_count <= MAX_ATTRIBUTES,
+               "attribute_count %d is not 0 to %d", attribute_count, MAX_ATTRIBUTES);
+    AG_REQUIRE(context, attribute_count == 0 || attributes, "attributes is NULL");
+    AG_REQUIRE(context, attributes_are_whole(attributes, attribute_count),
+               "an attribute has no name or no value");
+
+    struct image images[MAX_LAYERS];
+    struct exr_layer exr_layers[MAX_LAYERS];
+    struct exr_attribute exr_attributes[MAX_ATTRIBUTES];
+    for (int i = 0; i < layer_count; i++) {
+        images[i] = view_of(layers[i].image);
+        exr_layers[i] = (struct exr_layer){ layers[i].name, &images[i] };
+    }
+    for (int i = 0; i < attribute_count; i++)
+        exr_attributes[i] = (struct exr_attribute){ attributes[i].name, attributes[i].value };
+    return api_done(context, exr_write(&context->host, path, exr_layers, layer_count,
+                                       exr_attributes, attribute_count));
+}
+
+enum ag_result ag_image_write_png(struct ag_context *context, const char *path,
+                                  const struct ag_image *image)
+{
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    AG_REQUIRE(context, is_whole(image), "image is NULL or not valid");
+    AG_REQUIRE(context, image->channels != 2, "a PNG has 1, 3 or 4 channels, not 2");
+    struct image view = view_of(image);
+    return api_done(context, png_write(&context->host, path, &view));
+}
+
+enum ag_result ag_image_read(struct ag_context *context, const char *path, const char *layer,
+                             struct ag_image **out)
+{
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    char extension[16];
+    file_extension(path, extension);
+    struct host *host = &context->host;
+    struct image image = { 0 };
+    bool ok;
+    if (strcmp(extension, "exr") == 0)
+        ok = exr_read(host, path, layer, &image);
+    else if (strcmp(extension, "png") != 0)
+        ok = host_fail(host, FAIL_UNSUPPORTED, "cannot read %s: images are .exr or .png", path);
+    else if (layer)
+        ok = host_fail(host, FAIL_ARGUMENT, "cannot read layer %s of %s: a PNG has no layers",
+                       layer, path);
+    else
+        ok = png_read(host, path, &image);
+    return give(context, ok, &image, out);
+}
+
+enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
+                                float ev, struct ag_image **out)
+{
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, is_whole(radiance) && radiance->channels >= 3,
+               "radiance is NULL or has not 3 channels");
+    AG_REQUIRE(context, isfinite(ev), "ev is not finite");
+    struct image view = view_of(radiance), image = { 0 };
+    bool ok = image_tonemap(&image, &context->host, &view, ev);
+    return give(context, ok, &image, out);
+}
+
+float ag_image_auto_exposure(const struct ag_image *radiance)
+{
+    if (!is_whole(radiance) || radiance->channels < 3) return 0.0f;
+    struct image view = view_of(radiance);
+    return auto_exposure(&view);
+}
+
+enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,
+                                     const struct ag_image *b, int gap, struct ag_image **out)
+{
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
+    AG_REQUIRE(context, a->height == b->height && a->channels == b->channels,
+               "heights %d and %d, channels %d and %d are not equal", a->height, b->height,
+               a->channels, b->channels);
+    AG_REQUIRE(context,
+               gap >= 0 && gap <= IMAGE_MAX_SIZE - a->width &&
+                   gap <= IMAGE_MAX_SIZE - a->width - b->width,
+               "%d + %d + %d columns are more than %d", a->width, gap, b->width, IMAGE_MAX_SIZE);
+    struct image view_a = view_of(a), view_b = view_of(b), image = { 0 };
+    bool ok = image_side_by_side(&image, &context->host, &view_a, &view_b, gap);
+    return give(context, ok, &image, out);
+}
+
+enum ag_result ag_image_metrics(struct ag_context *context, const struct ag_image *a,
+                                const struct ag_image *b, struct ag_metrics *out)
+{
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, out, "out is NULL");
+    AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
+    struct image view_a = view_of(a), view_b = view_of(b);
+    struct metrics metrics = { 0 };
+    bool ok = metrics_compute(&context->host, &view_a, &view_b, &metrics);
+    *out = (struct ag_metrics){
+        .mse = metrics.mse, .mae = metrics.mae, .relmse = metrics.relmse, .psnr = metrics.psnr
+    };
+    memcpy(out->mean_a, metrics.mean_a, sizeof out->mean_a);
+    memcpy(out->mean_b, metrics.mean_b, sizeof out->mean_b);
+    return api_done(context, ok);
+}
+
+enum ag_result ag_image_error_map(struct ag_context *context, const struct ag_image *a,
+                                  const struct ag_image *b, float full, struct ag_image **out)
+{
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
+    AG_REQUIRE(context, isfinite(full), "full is not finite");
+    struct image view_a = view_of(a), view_b = view_of(b), image = { 0 };
+    bool ok = metrics_error_map(&context->host, &view_a, &view_b, full, &image);
+    return give(context, ok, &image, out);
+}

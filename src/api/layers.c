@@ -1,0 +1,154 @@
+// The layers of a renderer's newest frame: read back, or handed out as the images that they are.
+#include "api/renderer_state.h"
+
+#include "image/image.h"
+
+#include <string.h>
+
+enum { NO_IMAGE = -1, NO_READBACK = -1 };
+
+struct layer {
+    const char *name;
+    int read;     // enum frame_readback; NO_READBACK: the techniques' debug image
+    int image;    // enum frame_layer; NO_IMAGE: computed while reading
+    int channels; // when read
+    bool scaled;  // radiance or irradiance
+};
+
+static const struct layer layers[] = {
+    { "color", READ_COLOR, FRAME_COLOR, 3, true },
+    { "direct", READ_DIRECT, FRAME_DIRECT, 3, true },
+    { "indirect", READ_INDIRECT, FRAME_INDIRECT, 3, true },
+    { "irradiance", READ_IRRADIANCE, FRAME_IRRADIANCE, 3, true },
+    { "visibility", READ_VISIBILITY, FRAME_VISIBILITY, 1, false },
+    { "specular", READ_SPECULAR, FRAME_SPECULAR, 3, true },
+    { "albedo", READ_ALBEDO, FRAME_ALBEDO, 3, false },
+    { "normal", READ_NORMAL, FRAME_NORMAL, 3, false },
+    { "depth", READ_DEPTH, FRAME_DEPTH, 1, false },
+    { "position", READ_POSITION, NO_IMAGE, 3, false },
+    { "emissive", READ_EMISSIVE, FRAME_EMISSIVE, 3, true },
+    { "motion", READ_MOTION, FRAME_MOTION, 3, false },
+    { "display", READ_DISPLAY, FRAME_DISPLAY, 3, false },
+    { "debug", NO_READBACK, NO_IMAGE, 3, true },
+};
+enum { LAYER_COUNT = sizeof layers / sizeof layers[0] };
+
+const char *ag_layer_name(int index)
+{
+    return index >= 0 && index < LAYER_COUNT ? layers[index].name : NULL;
+}
+
+static const struct layer *layer_find(const char *name)
+{
+    for (int i = 0; i < LAYER_COUNT; i++)
+        if (strcmp(layers[i].name, name) == 0) return &layers[i];
+    return NULL;
+}
+
+static bool fail_unknown(struct host *host, const char *name)
+{
+    const char *names[LAYER_COUNT];
+    for (int i = 0; i < LAYER_COUNT; i++) names[i] = layers[i].name;
+    const char *nearest = nearest_name(name, names, LAYER_COUNT);
+    if (nearest)
+        return host_fail(host, FAIL_ARGUMENT, "unknown layer %s: did you mean %s?", name, nearest);
+    return host_fail(host, FAIL_ARGUMENT, "unknown layer %s: see ag_layer_name", name);
+}
+
+// The layer of that name, if the renderer keeps it; else NULL and a failure.
+static const struct layer *layer_kept(const struct ag_renderer *r, const char *name)
+{
+    struct host *host = &r->device->context->host;
+    const struct layer *layer = layer_find(name);
+    const char *need = NULL;
+    if (!layer)
+        fail_unknown(host, name);
+    else if (layer->image == FRAME_INDIRECT && !r->indirect_layer)
+        need = "the renderer was made without indirect_layer";
+    else if (layer->image == FRAME_DISPLAY && !r->display_layer)
+        need = "the renderer was made without display_layer";
+    else if (layer->read == NO_READBACK && !r->debug_view)
+        need = "no debug view is set";
+    if (need) host_fail(host, FAIL_ARGUMENT, "cannot read layer %s: %s", name, need);
+    return layer && !need ? layer : NULL;
+}
+
+static gpu_image layer_image(const struct ag_renderer *r, const struct layer *layer)
+{
+    if (layer->read == NO_READBACK) return gi_debug_image(r->gi);
+    return frame_layer_image(r->frame, (enum frame_layer)layer->image);
+}
+
+static bool read_debug(struct ag_renderer *r, struct image *image)
+{
+    struct gpu *gpu = r->device->gpu;
+    gpu_image debug = gi_debug_image(r->gi);
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    float scale = frame_radiance_scale(r->frame);
+    if (!gpu_image_download_float(gpu, debug, 0, 0, image->pixels, image->channels, count))
+        return false;
+    for (size_t i = 0; i < count; i++) image->pixels[i] /= scale;
+    return true;
+}
+
+// A layer that no technique writes: no light, nothing occluded.
+static bool read_absent(const struct layer *layer, struct image *image)
+{
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    float value = layer->image == FRAME_VISIBILITY ? 1.0f : 0.0f;
+    for (size_t i = 0; i < count; i++) image->pixels[i] = value;
+    return true;
+}
+
+static bool read_layer(struct ag_renderer *r, const struct layer *layer, struct image *image)
+{
+    if (layer->read == NO_READBACK) return read_debug(r, image);
+    if (layer->image != NO_IMAGE && layer_image(r, layer).id == 0) return read_absent(layer, image);
+    return frame_read(r->frame, (enum frame_readback)layer->read, image->pixels, image->channels);
+}
+
+enum ag_result ag_renderer_read(struct ag_renderer *r, const char *name, struct ag_image **out)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, r, "renderer is NULL");
+    AG_REQUIRE(context, name, "layer is NULL");
+    AG_REQUIRE(context, r->rendered, "no frame has been rendered");
+    const struct layer *layer = layer_kept(r, name);
+    if (!layer) return api_done(context, false);
+    enum ag_result result = ag_renderer_wait(r);
+    if (result != AG_OK) return result;
+    const struct gpu_image_desc *size =
+        gpu_image_info(r->device->gpu, frame_layer_image(r->frame, FRAME_COLOR));
+    struct ag_image *image = NULL;
+    result = ag_image_create(context, (int)size->width, (int)size->height, layer->channels, &image);
+    if (result != AG_OK) return result;
+    struct image view = { image->width, image->height, image->channels, image->pixels };
+    result = api_done(context, read_layer(r, layer, &view));
+    if (result == AG_OK)
+        *out = image;
+    else
+        ag_image_destroy(context, image);
+    return result;
+}
+
+enum ag_result ag_renderer_layer_handle(struct ag_renderer *r, const char *name, void **vk_image,
+                                        uint32_t *vk_layout, float *scale)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE(context, r, "renderer is NULL");
+    AG_REQUIRE(context, name && vk_image && vk_layout && scale,
+               "layer, vk_image, vk_layout or scale is NULL");
+    AG_REQUIRE(context, r->rendered, "no frame has been rendered");
+    const struct layer *layer = layer_kept(r, name);
+    if (!layer) return api_done(context, false);
+    bool computed = layer->image == NO_IMAGE && layer->read != NO_READBACK;
+    gpu_image image = computed ? (gpu_image){ 0 } : layer_image(r, layer);
+    if (image.id == 0)
+        return api_done(context, host_fail(&context->host, FAIL_UNSUPPORTED,
+                                           "cannot hand out layer %s: it has no image here", name));
+    *vk_image = gpu_image_handle(r->device->gpu, image, vk_layout);
+    *scale = layer->scaled ? frame_radiance_scale(r->frame) : 1.0f;
+    return api_done(context, true);
+}
