@@ -1,0 +1,344 @@
+// The options of all commands, from one table.
+#include "arguments.h"
+#include "values.h"
+
+#include <afterglow/catalogue.h>
+
+#include <stdio.h>
+#include <string.h>
+
+enum { HELP_COLUMN = 24, HELP_WIDTH = 100, MAX_FRAMES = 1000000 };
+
+// A setter says itself what is wrong and returns false, or NULL for "see the help".
+typedef bool setter(struct arguments *a, const char *value, const char **why);
+
+static bool set_gi(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->gi = value;
+    return true;
+}
+
+static bool set_output(struct arguments *a, const char *value, const char **why)
+{
+    *why = "a picture is a .png or an .exr";
+    a->output = value;
+    return has_extension(value, "png") || has_extension(value, "exr");
+}
+
+static bool set_size(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be WxH, each 1 to 16384";
+    return value_size(value, &a->width, &a->height);
+}
+
+static bool set_camera(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->camera = value;
+    return true;
+}
+
+static bool set_eye(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be three numbers, x,y,z";
+    a->has_eye = true;
+    return value_floats(value, 3, a->eye);
+}
+
+static bool set_target(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be three numbers, x,y,z";
+    a->has_target = true;
+    return value_floats(value, 3, a->target);
+}
+
+static bool set_fov(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be more than 0 and less than 180 degrees";
+    a->has_fov = true;
+    return value_number(value, &a->fov_deg) && a->fov_deg >= 0.001 && a->fov_deg <= 179.999;
+}
+
+static bool set_time(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a number of seconds";
+    return value_number(value, &a->time_s);
+}
+
+static bool set_time_step(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a number of seconds";
+    return value_number(value, &a->time_step_s);
+}
+
+static bool set_animation(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->animation = value;
+    return true;
+}
+
+static bool set_frames(struct arguments *a, const char *value, const char **why)
+{
+    long frames = 0;
+    *why = "it must be 1 to 1000000";
+    bool ok = value_int(value, 1, MAX_FRAMES, &frames);
+    a->frames = (int)frames;
+    return ok;
+}
+
+static bool add_light(struct arguments *a, const char *value, const char **why)
+{
+    *why = "64 lights are the most";
+    if (a->light_count == MAX_LIGHTS) return false;
+    return value_light(value, &a->lights[a->light_count++], why);
+}
+
+static bool set_no_scene_lights(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->no_scene_lights = true;
+    return true;
+}
+
+static bool set_sky(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be three numbers from 0 on, r,g,b";
+    a->has_sky = true;
+    return value_floats(value, 3, a->sky) && a->sky[0] >= 0 && a->sky[1] >= 0 && a->sky[2] >= 0;
+}
+
+static bool set_exposure(struct arguments *a, const char *value, const char **why)
+{
+    double ev = 0.0;
+    *why = "it must be an EV from -100 to 100";
+    bool ok = value_number(value, &ev) && ev >= -100.0 && ev <= 100.0;
+    a->has_exposure = true;
+    a->exposure_ev = (float)ev;
+    return ok;
+}
+
+static bool set_aov(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->aov = value;
+    return true;
+}
+
+static bool set_debug_view(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->debug_view = value;
+    return true;
+}
+
+static bool set_frame_options(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->frame_options = value;
+    return true;
+}
+
+static bool set_stats(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->stats = value;
+    return true;
+}
+
+static bool set_device(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->device = value;
+    return true;
+}
+
+static bool set_seed(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be a whole number of at most 64 bits";
+    return value_seed(value, &a->seed);
+}
+
+static bool set_layer(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->layer = value;
+    return true;
+}
+
+static bool set_map(struct arguments *a, const char *value, const char **why)
+{
+    *why = "the map is a .png";
+    a->map = value;
+    return has_extension(value, "png");
+}
+
+static bool set_json(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->json = true;
+    return true;
+}
+
+static bool set_quiet(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->quiet = true;
+    return true;
+}
+
+static bool set_verbose(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->verbose = true;
+    return true;
+}
+
+static bool set_help(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->help = true;
+    return true;
+}
+
+struct option {
+    const char *name, *value;
+    unsigned commands; // command_bit
+    setter *set;
+    const char *help;
+};
+
+static const struct option options[] = {
+#define OPTION(name, value, commands, set, help) { name, value, commands, set, help },
+#include "options.def"
+#undef OPTION
+};
+enum { OPTION_COUNT = sizeof options / sizeof options[0] };
+
+// ---- parsing
+
+// The option that `word` (up to its '=') names; NULL: none.
+static const struct option *option_find(const struct command *command, const char *word)
+{
+    size_t length = strcspn(word, "=");
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if ((options[i].commands & command->bit) && strlen(options[i].name) == length &&
+            strncmp(options[i].name, word, length) == 0)
+            return &options[i];
+    return NULL;
+}
+
+static enum status unknown_option(const struct command *command, const char *word)
+{
+    const char *known[OPTION_COUNT];
+    char name[64];
+    int count = 0;
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if (options[i].commands & command->bit) known[count++] = options[i].name;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
+    const char *nearest = ag_nearest_name(name, known, count);
+    if (nearest) return wrong_usage("unknown option %s: did you mean %s?", name, nearest);
+    return wrong_usage("unknown option %s: see afterglow %s --help", name, command->name);
+}
+
+// Takes words[*at] and, where the value is a word of its own, the next one.
+static enum status parse_option(const struct command *command, int count, char **words, int *at,
+                                struct arguments *out)
+{
+    const char *word = words[*at], *equals = strchr(word, '=');
+    const struct option *option = option_find(command, word);
+    if (!option) return unknown_option(command, word);
+    const char *value = equals ? equals + 1 : NULL;
+    if (!option->value && value)
+        return wrong_usage("wrong option %s: %s takes no value", word, option->name);
+    if (option->value && !value) {
+        if (++*at >= count)
+            return wrong_usage("wrong option %s: its value %s is missing", word, option->value);
+        value = words[*at];
+    }
+    if (value && !value[0])
+        return wrong_usage("wrong option %s: its value %s is empty", option->name, option->value);
+    const char *why = NULL;
+    if (option->set(out, value, &why)) return DONE;
+    return wrong_usage("wrong value %s %s: %s", option->name, value, why);
+}
+
+static enum status check_together(const struct command *command, const struct arguments *a)
+{
+    static const char *const files[] = { "SCENE", "A", "B" };
+    if (a->positional_count < command->positional_count) {
+        const char *missing = files[command->positional_count == 1 ? 0 : 1 + a->positional_count];
+        return wrong_usage("cannot %s: %s is missing (afterglow %s %s)", command->name, missing,
+                           command->name, command->usage);
+    }
+    if (a->has_eye != a->has_target)
+        return wrong_usage("cannot use --%s: it goes with --%s", a->has_eye ? "eye" : "target",
+                           a->has_eye ? "target" : "eye");
+    if (a->camera && a->has_eye)
+        return wrong_usage("cannot use --camera %s: --eye and --target are a camera already",
+                           a->camera);
+    if (a->has_eye && memcmp(a->eye, a->target, sizeof a->eye) == 0)
+        return wrong_usage("cannot use --eye: it is the same point as --target");
+    return DONE;
+}
+
+enum status arguments_parse(const struct command *command, int count, char **words,
+                            struct arguments *out)
+{
+    *out = (struct arguments){
+        .gi = "none", .width = 1280, .height = 720, .frames = 1, .fov_deg = 60.0
+    };
+    bool only_files = false; // after "--"
+    for (int i = 0; i < count; i++) {
+        if (!only_files && strcmp(words[i], "--") == 0) {
+            only_files = true;
+        } else if (!only_files && words[i][0] == '-' && words[i][1]) {
+            enum status status = parse_option(command, count, words, &i, out);
+            if (status != DONE) return status;
+            if (out->help) return DONE;
+        } else if (out->positional_count == command->positional_count) {
+            return wrong_usage("unexpected argument %s: afterglow %s %s", words[i], command->name,
+                               command->usage);
+        } else if (!words[i][0]) {
+            return wrong_usage("cannot %s: a file name is empty", command->name);
+        } else {
+            out->positional[out->positional_count++] = words[i];
+        }
+    }
+    return check_together(command, out);
+}
+
+// ---- help
+
+// Words of `text` in lines from column HELP_COLUMN on; the cursor is there already.
+static void print_wrapped(const char *text)
+{
+    int column = HELP_COLUMN;
+    while (*text) {
+        int length = (int)strcspn(text, " ");
+        if (column > HELP_COLUMN && column + length > HELP_WIDTH) {
+            printf("\n%*s", HELP_COLUMN, "");
+            column = HELP_COLUMN;
+        }
+        printf("%.*s%s", length, text, text[length] ? " " : "");
+        column += length + 1;
+        text += length + (text[length] != 0);
+    }
+    printf("\n");
+}
+
+void arguments_help(const struct command *command)
+{
+    printf("afterglow %s%s%s\n\n%s\nOptions:\n", command->name, command->usage[0] ? " " : "",
+           command->usage, command->text);
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (!(options[i].commands & command->bit)) continue;
+        int wrote = printf("  %s%s%s", options[i].name, options[i].value ? " " : "",
+                           options[i].value ? options[i].value : "");
+        if (wrote >= HELP_COLUMN) wrote = printf("\n") - 1;
+        printf("%*s", HELP_COLUMN - wrote, "");
+        print_wrapped(options[i].help);
+    }
+    printf("\nExamples:\n%s", command->examples);
+}

@@ -1,0 +1,52 @@
+// The command line as values. One table (options.def) gives names, checks and help.
+#pragma once
+
+#include "messages.h"
+
+#include <afterglow/scene.h>
+
+enum command_bit { RENDER = 1, INFO = 2, LIST = 4, DIFF = 8 };
+enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 2 };
+
+struct arguments {
+    const char *positional[MAX_POSITIONAL]; // SCENE, or A and B
+    int positional_count;
+    bool help, json, quiet, verbose;
+    // picture
+    const char *gi, *frame_options;
+    int width, height, frames;
+    const char *output; // NULL: from the scene's name
+    const char *aov, *debug_view, *stats, *device;
+    uint64_t seed;
+    bool has_exposure;
+    float exposure_ev;
+    // moment and camera
+    const char *camera, *animation;
+    bool has_eye, has_target, has_fov;
+    float eye[3], target[3];
+    double fov_deg, time_s, time_step_s;
+    // light
+    struct ag_light_desc lights[MAX_LIGHTS];
+    int light_count;
+    bool no_scene_lights, has_sky;
+    float sky[3];
+    // diff
+    const char *layer, *map;
+};
+
+struct command {
+    const char *name;
+    enum command_bit bit;
+    int positional_count;
+    const char *usage;   // "SCENE [options]"
+    const char *summary; // one line
+    const char *text;    // what --help says before the options
+    const char *examples;
+    enum status (*run)(const struct arguments *arguments);
+};
+
+// Reads what follows the command's name. WRONG_USAGE has been explained on standard error.
+enum status arguments_parse(const struct command *command, int count, char **words,
+                            struct arguments *out);
+// --help of one command, on standard output.
+void arguments_help(const struct command *command);

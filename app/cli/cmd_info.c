@@ -1,0 +1,265 @@
+// afterglow info: what is in a scene, and what it would get where it brings no light or no camera.
+#include "commands.h"
+#include "json.h"
+#include "session.h"
+#include "values.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const light_types[] = {
+    [AG_LIGHT_SUN] = "sun", [AG_LIGHT_POINT] = "point", [AG_LIGHT_SPOT] = "spot"
+};
+
+struct facts {
+    const char *scene;
+    struct ag_scene_info info;
+    struct defaults defaults;
+};
+
+// ---- JSON
+
+static json_t *light_json(struct session *session, int index)
+{
+    struct ag_light_info light;
+    double time_s = session->arguments->time_s;
+    if (ag_scene_get_light(session->scene, index, session->animation, time_s, &light) != AG_OK)
+        return NULL;
+    const struct ag_light_desc *l = &light.light;
+    json_t *object =
+        json_pack("{s:s, s:s, s:s, s:o}", "name", light.name, "type", light_types[l->type], "unit",
+                  l->type == AG_LIGHT_SUN ? "lx" : "cd", "intensity", json_floats(l->intensity, 3));
+    if (l->type != AG_LIGHT_SUN)
+        json_object_set_new(object, "position", json_floats(l->position, 3));
+    if (l->type != AG_LIGHT_POINT)
+        json_object_set_new(object, "direction", json_floats(l->direction, 3));
+    if (l->type == AG_LIGHT_SPOT) {
+        json_object_set_new(object, "inner_deg", json_double(degrees(l->inner_rad)));
+        json_object_set_new(object, "outer_deg", json_double(degrees(l->outer_rad)));
+    }
+    return object;
+}
+
+static json_t *camera_json(struct session *session, int index)
+{
+    const char *name = ag_scene_camera_name(session->scene, index);
+    struct ag_camera camera;
+    double time_s = session->arguments->time_s;
+    if (!name ||
+        ag_scene_camera(session->scene, name, session->animation, time_s, &camera) != AG_OK)
+        return NULL;
+    return json_pack("{s:s, s:o, s:o, s:o, s:f, s:o}", "name", name, "eye",
+                     json_floats(camera.eye, 3), "target", json_floats(camera.target, 3), "up",
+                     json_floats(camera.up, 3), "fov_deg", degrees(camera.vertical_fov_rad),
+                     "near_m", json_float(camera.near_m));
+}
+
+static json_t *material_json(struct session *session, int index)
+{
+    struct ag_material_info m;
+    if (ag_scene_get_material(session->scene, index, &m) != AG_OK) return NULL;
+    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:b, s:s, s:b, s:b, s:b, s:b}", "name", m.name,
+                     "base_color", json_floats(m.material.base_color, 4), "metallic",
+                     json_float(m.material.metallic), "roughness", json_float(m.material.roughness),
+                     "emissive", json_floats(m.material.emissive, 3), "double_sided",
+                     m.material.double_sided, "alpha_mode", m.alpha_mode, "base_color_map",
+                     m.base_color_map, "metallic_roughness_map", m.metallic_roughness_map,
+                     "normal_map", m.normal_map, "emissive_map", m.emissive_map);
+}
+
+static json_t *animation_json(struct session *session, int index)
+{
+    struct ag_animation_info animation;
+    if (ag_scene_get_animation(session->scene, index, &animation) != AG_OK) return NULL;
+    return json_pack("{s:s, s:f}", "name", animation.name, "duration_s", animation.duration_s);
+}
+
+static json_t *list_of(struct session *session, int count,
+                       json_t *(*item)(struct session *session, int index))
+{
+    json_t *array = json_array();
+    for (int i = 0; array && i < count; i++) json_array_append_new(array, item(session, i));
+    return array;
+}
+
+// The options that would ask for what the scene gets by default; nulls where it needs none.
+static json_t *defaults_json(const struct defaults *d)
+{
+    json_t *light =
+        d->light[0] ? json_pack("{s:s, s:s}", "light", d->light, "sky", d->sky) : json_null();
+    json_t *camera =
+        d->eye[0] ? json_pack("{s:s, s:s, s:s}", "eye", d->eye, "target", d->target, "fov", d->fov)
+                  : json_null();
+    return json_pack("{s:o, s:o}", "light", light, "camera", camera);
+}
+
+// An empty scene has no bounds.
+static json_t *bounds_json(const struct ag_scene_info *info)
+{
+    if (info->bounds_min[0] > info->bounds_max[0]) return json_null();
+    return json_pack("{s:o, s:o}", "min", json_floats(info->bounds_min, 3), "max",
+                     json_floats(info->bounds_max, 3));
+}
+
+static enum status info_json(struct session *session, const struct facts *facts)
+{
+    const struct ag_scene_info *i = &facts->info;
+    return json_print(json_pack(
+        "{s:s, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, s:o, s:o, s:o, s:o}",
+        "scene", facts->scene, "triangles", (json_int_t)i->triangles, "vertices",
+        (json_int_t)i->vertices, "meshes", i->meshes, "instances", i->instances, "images",
+        i->images, "skins", i->skins, "nodes", i->nodes, "bounds", bounds_json(i), "sky",
+        json_floats(i->sky, 3), "emissive", i->emissive, "memory_bytes",
+        (json_int_t)i->memory_bytes, "lights", list_of(session, i->lights, light_json), "cameras",
+        list_of(session, i->cameras, camera_json), "materials",
+        list_of(session, i->materials, material_json), "animations",
+        list_of(session, i->animations, animation_json), "defaults",
+        defaults_json(&facts->defaults)));
+}
+
+// ---- text
+
+static void print_vector(const char *before, const float v[3], const char *after)
+{
+    printf("%s%.4g, %.4g, %.4g%s", before, (double)v[0], (double)v[1], (double)v[2], after);
+}
+
+static void print_counts(const struct ag_scene_info *i)
+{
+    printf("triangles    %llu\nvertices     %llu\n", (unsigned long long)i->triangles,
+           (unsigned long long)i->vertices);
+    printf("meshes       %d\ninstances    %d\nmaterials    %d\nimages       %d\n", i->meshes,
+           i->instances, i->materials, i->images);
+    printf("skins        %d\nnodes        %d\n", i->skins, i->nodes);
+    if (i->bounds_min[0] <= i->bounds_max[0]) {
+        float size[3];
+        for (int k = 0; k < 3; k++) size[k] = i->bounds_max[k] - i->bounds_min[k];
+        print_vector("bounds       ", i->bounds_min, " to ");
+        print_vector("", i->bounds_max, " m\n");
+        print_vector("size         ", size, " m\n");
+    }
+    printf("memory       %.1f MB\n", (double)i->memory_bytes * 1e-6);
+    print_vector("sky          ", i->sky, " cd/m2\n");
+    printf("glows        %s\n", i->emissive ? "yes" : "no");
+}
+
+static void print_lights(struct session *session, int count)
+{
+    printf("lights       %d\n", count);
+    for (int i = 0; i < count; i++) {
+        struct ag_light_info light;
+        if (ag_scene_get_light(session->scene, i, session->animation, session->arguments->time_s,
+                               &light) != AG_OK)
+            continue;
+        const struct ag_light_desc *l = &light.light;
+        printf("  %-10s %s", light.name, light_types[l->type]);
+        if (l->type != AG_LIGHT_SUN) print_vector(" at ", l->position, "");
+        if (l->type != AG_LIGHT_POINT) print_vector(" towards ", l->direction, "");
+        if (l->type == AG_LIGHT_SPOT)
+            printf(", %.4g to %.4g degrees", degrees(l->inner_rad), degrees(l->outer_rad));
+        print_vector(", ", l->intensity, l->type == AG_LIGHT_SUN ? " lx\n" : " cd\n");
+    }
+}
+
+static void print_cameras(struct session *session, int count)
+{
+    printf("cameras      %d\n", count);
+    for (int i = 0; i < count; i++) {
+        const char *name = ag_scene_camera_name(session->scene, i);
+        struct ag_camera camera;
+        if (!name || ag_scene_camera(session->scene, name, session->animation,
+                                     session->arguments->time_s, &camera) != AG_OK)
+            continue;
+        printf("  %-10s", name);
+        print_vector(" at ", camera.eye, "");
+        print_vector(" looking at ", camera.target, "");
+        printf(", %.4g degrees\n", degrees(camera.vertical_fov_rad));
+    }
+}
+
+static void print_materials(struct session *session, int count)
+{
+    printf("materials    %d\n", count);
+    for (int i = 0; i < count; i++) {
+        struct ag_material_info m;
+        if (ag_scene_get_material(session->scene, i, &m) != AG_OK) continue;
+        printf("  %-24s", m.name);
+        print_vector(" colour ", m.material.base_color, "");
+        printf(", metallic %.3g, roughness %.3g", (double)m.material.metallic,
+               (double)m.material.roughness);
+        const float *glow = m.material.emissive;
+        if (glow[0] > 0 || glow[1] > 0 || glow[2] > 0) print_vector(", glows ", glow, " cd/m2");
+        printf("%s%s%s%s%s\n", m.base_color_map ? ", colour map" : "",
+               m.metallic_roughness_map ? ", roughness map" : "",
+               m.normal_map ? ", normal map" : "", m.emissive_map ? ", emissive map" : "",
+               strcmp(m.alpha_mode, "opaque") != 0 ? ", cut out" : "");
+    }
+}
+
+static void print_animations(struct session *session, int count)
+{
+    printf("animations   %d\n", count);
+    for (int i = 0; i < count; i++) {
+        struct ag_animation_info animation;
+        if (ag_scene_get_animation(session->scene, i, &animation) == AG_OK)
+            printf("  %-2d %-20s %.4g s\n", i, animation.name, animation.duration_s);
+    }
+}
+
+static void print_defaults(const struct defaults *d)
+{
+    if (!d->light[0] && !d->eye[0]) return;
+    printf("by default, as with:\n");
+    if (d->light[0]) printf("  --light %s --sky %s\n", d->light, d->sky);
+    if (d->eye[0]) printf("  --eye %s --target %s --fov %s\n", d->eye, d->target, d->fov);
+}
+
+static void info_text(struct session *session, const struct facts *facts)
+{
+    printf("%s\n", facts->scene);
+    print_counts(&facts->info);
+    print_lights(session, facts->info.lights);
+    print_cameras(session, facts->info.cameras);
+    print_animations(session, facts->info.animations);
+    print_materials(session, facts->info.materials);
+    print_defaults(&facts->defaults);
+}
+
+static enum status info(const struct arguments *arguments)
+{
+    struct session session;
+    struct facts facts = { .scene = arguments->positional[0] };
+    enum status status = session_begin(&session, arguments);
+    if (status == DONE) status = session_load(&session, facts.scene);
+    if (status == DONE) status = defaults_light(&session, &facts.defaults);
+    if (status == DONE) status = defaults_camera(&session, arguments->time_s, &facts.defaults);
+    if (status == DONE) {
+        enum ag_result result =
+            ag_scene_get_info(session.scene, session.animation, arguments->time_s, &facts.info);
+        if (result != AG_OK) status = fail_library(session.context, result);
+    }
+    if (status == DONE && arguments->json)
+        status = info_json(&session, &facts);
+    else if (status == DONE)
+        info_text(&session, &facts);
+    session_end(&session);
+    return status;
+}
+
+const struct command command_info = {
+    .name = "info",
+    .bit = INFO,
+    .positional_count = 1,
+    .usage = "SCENE [options]",
+    .summary = "what is in a scene",
+    .text =
+        "Counts, size, lights, cameras, animations and materials of SCENE at a moment of its "
+        "animation, and\n"
+        "the light and the camera that it would get where it brings none, as the options of render "
+        "that\n"
+        "would ask for the same. Lengths are in metres, suns in lux, other lights in candela.\n",
+    .examples = "  afterglow info house.glb\n"
+                "  afterglow info @cornell:light=point --json\n"
+                "  afterglow info fox.glb --animation Run --time 0.5\n",
+    .run = info,
+};

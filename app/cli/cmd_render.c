@@ -1,0 +1,273 @@
+// afterglow render: frames of a scene, without a window.
+#include "commands.h"
+#include "output.h"
+#include "statistics.h"
+#include "values.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct job {
+    const struct arguments *arguments;
+    struct session session;
+    struct ag_device *device;
+    struct ag_renderer *renderer;
+    struct picture picture;
+    struct statistics statistics;
+    char pattern[PATH_SIZE]; // of -o
+    bool sequence;           // the pattern numbers the frames
+    bool measure;            // times are wanted
+    float exposure_ev;       // of the newest frame
+};
+
+// ---- what the command line alone decides
+
+// "shots/house.glb" and "@house:lit=1" give "house.png".
+static void default_output(const char *scene, char out[PATH_SIZE])
+{
+    const char *slash = strrchr(scene, '/');
+    const char *name = scene[0] == '@' ? scene + 1 : slash ? slash + 1 : scene;
+    const char *dot = strrchr(name, '.');
+    size_t length = scene[0] == '@'     ? strcspn(name, ":/")
+                    : dot && dot > name ? (size_t)(dot - name)
+                                        : strlen(name);
+    snprintf(out, PATH_SIZE, "%.*s.png", length < 255 ? (int)length : 255, name);
+}
+
+static enum status plan_output(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    if (a->output)
+        snprintf(job->pattern, sizeof job->pattern, "%s", a->output);
+    else
+        default_output(a->positional[0], job->pattern);
+    char first[PATH_SIZE];
+    if (a->output && strlen(a->output) >= sizeof job->pattern)
+        return wrong_usage("wrong value -o: the path is longer than %d", PATH_SIZE - 1);
+    if (!value_frame_path(job->pattern, 0, first, sizeof first, &job->sequence))
+        return wrong_usage("wrong value -o %s: one frame number (%%04d) is the most", job->pattern);
+    return picture_plan(a, job->pattern, &job->picture);
+}
+
+static enum status check_debug_view(const char *wanted)
+{
+    const char *known[256];
+    int count = 0;
+    struct ag_technique_info info;
+    for (int i = 0; ag_technique_get(i, &info); i++)
+        for (int k = 0; k < info.debug_view_count && count < 256; k++)
+            ag_technique_debug_view_get(i, k, &known[count++], NULL);
+    for (int i = 0; i < count; i++)
+        if (strcmp(known[i], wanted) == 0) return DONE;
+    const char *nearest = ag_nearest_name(wanted, known, count);
+    if (nearest) return wrong_usage("unknown debug view %s: did you mean %s?", wanted, nearest);
+    return wrong_usage("unknown debug view %s: see afterglow list", wanted);
+}
+
+static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
+{
+    const struct arguments *a = job->arguments;
+    ag_renderer_desc_default(desc);
+    desc->width = a->width;
+    desc->height = a->height;
+    desc->gi = a->gi;
+    desc->frame_options = a->frame_options;
+    desc->indirect_layer = picture_needs(&job->picture, "indirect");
+    desc->display_layer = picture_needs(&job->picture, "display");
+}
+
+// All wrong usage is found before a file is opened or a device is woken.
+static enum status check_usage(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    enum status status = plan_output(job);
+    if (status == DONE && a->debug_view) status = check_debug_view(a->debug_view);
+    if (status != DONE) return status;
+    struct ag_renderer_desc desc;
+    uint64_t bytes;
+    renderer_desc(job, &desc);
+    enum ag_result result =
+        ag_renderer_estimate_memory(job->session.context, &desc, a->light_count, &bytes);
+    if (result != AG_OK) return fail_library(job->session.context, result);
+    detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi, desc.width,
+           desc.height, (double)bytes * 1e-6);
+    return DONE;
+}
+
+static enum status check_outputs(const struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    char path[PATH_SIZE];
+    bool sequence;
+    value_frame_path(job->pattern, a->frames - 1, path, sizeof path, &sequence);
+    enum status status = output_check(path);
+    return status == DONE && a->stats ? output_check(a->stats) : status;
+}
+
+// ---- rendering
+
+static enum status prepare(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    struct ag_context *context = job->session.context;
+    enum status status = session_load(&job->session, a->positional[0]);
+    if (status == DONE) status = session_light(&job->session);
+    if (status != DONE) return status;
+
+    struct ag_device_desc device_desc;
+    ag_device_desc_default(&device_desc);
+    device_desc.device = a->device;
+    enum ag_result result = ag_device_create(context, &device_desc, &job->device);
+    if (result != AG_OK) {
+        fail_library(context, result);
+        return FAILED; // which devices there are is the machine's affair
+    }
+    struct ag_renderer_desc desc;
+    renderer_desc(job, &desc);
+    result = ag_renderer_create(job->device, job->session.scene, &desc, &job->renderer);
+    if (result == AG_OK && a->debug_view)
+        result = ag_renderer_set_debug_view(job->renderer, a->debug_view);
+    return result == AG_OK ? DONE : fail_library(context, result);
+}
+
+static enum status render_frame(struct job *job, int frame)
+{
+    const struct arguments *a = job->arguments;
+    struct ag_frame_desc desc;
+    ag_frame_desc_default(&desc);
+    desc.time_s = a->time_s + frame * a->time_step_s;
+    desc.animation = job->session.animation;
+    desc.auto_exposure = !a->has_exposure;
+    desc.exposure_ev = a->exposure_ev;
+    enum status status = session_camera(&job->session, desc.time_s, &desc.camera);
+    if (status != DONE) return status;
+    enum ag_result result = ag_renderer_render(job->renderer, &desc);
+    if (result != AG_OK) return fail_library(job->session.context, result);
+    // The first of several frames pays for what later ones find ready.
+    bool counts = job->measure && (frame > 0 || a->frames == 1);
+    if (counts && !statistics_add(&job->statistics, job->renderer))
+        return fail("cannot measure %s: out of memory", a->positional[0]);
+    return DONE;
+}
+
+static enum status write_frame(struct job *job, int frame, char path[PATH_SIZE])
+{
+    bool sequence;
+    value_frame_path(job->pattern, frame, path, PATH_SIZE, &sequence);
+    return picture_write(&job->session, job->renderer, &job->picture, path);
+}
+
+static enum status render_frames(struct job *job, char last_path[PATH_SIZE])
+{
+    int frames = job->arguments->frames;
+    enum status status = DONE;
+    for (int i = 0; i < frames && status == DONE; i++) {
+        progress("rendering", i, frames);
+        status = render_frame(job, i);
+        if (status == DONE && (job->sequence || i + 1 == frames))
+            status = write_frame(job, i, last_path);
+    }
+    progress_end();
+    return status;
+}
+
+// ---- what it says afterwards
+
+static json_t *result_json(struct job *job, const char *path)
+{
+    json_t *document = statistics_json(&job->statistics, &job->session, job->device, job->renderer);
+    if (!document) return NULL;
+    json_object_set_new(document, "scene", json_string(job->arguments->positional[0]));
+    json_object_set_new(document, "camera", json_string(job->session.camera_name));
+    json_object_set_new(document, "exposure_ev", json_float(job->exposure_ev));
+    json_object_set_new(document, "output", json_string(path));
+    return document;
+}
+
+static void describe_passes(struct job *job)
+{
+    for (int i = 0; i < job->statistics.pass_count; i++) {
+        struct pass_times *times = &job->statistics.passes[i];
+        json_t *summary = statistics_summary(times);
+        detail("%-24s %9.3f ms (95th percentile %9.3f)", times->name,
+               json_number_value(json_object_get(summary, "median")),
+               json_number_value(json_object_get(summary, "p95")));
+        json_decref(summary);
+    }
+}
+
+static enum status report(struct job *job, const char *path)
+{
+    const struct arguments *a = job->arguments;
+    enum status status = DONE;
+    enum ag_result result = ag_renderer_exposure(job->renderer, &job->exposure_ev);
+    if (result != AG_OK) return fail_library(job->session.context, result);
+    if (a->stats) {
+        json_t *document =
+            statistics_json(&job->statistics, &job->session, job->device, job->renderer);
+        status = json_write(document, a->stats);
+        json_decref(document);
+    }
+    if (a->verbose) describe_passes(job);
+    if (status == DONE && a->json) status = json_print(result_json(job, path));
+    return status;
+}
+
+static enum status render(const struct arguments *arguments)
+{
+    struct job *job = calloc(1, sizeof *job);
+    char path[PATH_SIZE] = "";
+    if (!job) return fail("cannot render %s: out of memory", arguments->positional[0]);
+    job->arguments = arguments;
+    job->measure = arguments->stats || arguments->json || arguments->verbose;
+    enum status status = session_begin(&job->session, arguments);
+    if (status == DONE) status = check_usage(job);
+    if (status == DONE) status = check_outputs(job);
+    if (status == DONE) status = prepare(job);
+    if (status == DONE) status = render_frames(job, path);
+    if (status == DONE) status = report(job, path);
+    if (status == DONE && !arguments->output) note("written: %s", path);
+
+    statistics_finish(&job->statistics);
+    ag_renderer_destroy(job->renderer);
+    if (job->device && ag_device_validation_messages(job->device) > 0 && status == DONE)
+        status = fail("cannot trust %s: Vulkan's validation has complaints (see --verbose)", path);
+    struct ag_device *device = job->device;
+    ag_scene_destroy(job->session.scene);
+    job->session.scene = NULL;
+    ag_device_destroy(device);
+    session_end(&job->session);
+    free(job);
+    return status;
+}
+
+const struct command command_render = {
+    .name = "render",
+    .bit = RENDER,
+    .positional_count = 1,
+    .usage = "SCENE [options]",
+    .summary = "renders a scene with real-time global illumination, headless",
+    .text = "Renders SCENE in real time on the GPU, without a window, and writes the picture. A "
+            "scene without\n"
+            "light gets a sun and a faint sky, one without a camera gets one; both are said on "
+            "standard error.\n"
+            "A .png is exposed, tone mapped and sRGB; an .exr holds linear, unexposed values: "
+            "radiance in cd/m2,\n"
+            "irradiance in lux, lengths in metres.\n",
+    .examples =
+        "  afterglow render @cornell\n"
+        "      direct light alone, into cornell.png\n"
+        "  afterglow render @cornell --gi lpv:steps=16 --size 640x360 -o lit.png\n"
+        "      with light propagation volumes of 16 steps (what else there is: afterglow list)\n"
+        "  afterglow render house.glb --gi lpv --no-scene-lights --light "
+        "sun:1,-2,0.5:100000,95000,90000\n"
+        "      in the light of a sun that shines downwards\n"
+        "  afterglow render @atrium --gi lpv --aov color,direct,indirect -o parts.exr\n"
+        "      the picture and its parts as layers; afterglow diff compares them\n"
+        "  afterglow render fox.glb --gi lpv --frames 48 --time-step 0.0416 -o fox-%04d.png\n"
+        "      two seconds of the first animation\n"
+        "  afterglow render @atrium --gi lpv --frames 21 --stats times.json\n"
+        "      medians over 20 frames: the first one warms up\n",
+    .run = render,
+};

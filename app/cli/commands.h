@@ -1,0 +1,6 @@
+// One command, one file.
+#pragma once
+
+#include "arguments.h"
+
+extern const struct command command_render, command_info, command_list, command_diff;

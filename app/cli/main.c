@@ -1,0 +1,77 @@
+// afterglow: finds the command and runs it. Exit status: 0 done, 1 it failed, 2 wrong usage.
+#include "commands.h"
+
+#include <afterglow/catalogue.h>
+
+#include <stdio.h>
+#include <string.h>
+
+static const struct command *const commands[] = { &command_render, &command_info, &command_list,
+                                                  &command_diff };
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static void print_usage(void)
+{
+    printf("afterglow COMMAND [arguments] [options]: real-time global illumination\n\n");
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        printf("  %-10s%s\n", commands[i]->name, commands[i]->summary);
+    printf(
+        "\nA SCENE is a file (glTF 2.0 first; OBJ, PLY, FBX, X) or a built-in one, as @cornell.\n"
+        "Each command explains itself:  afterglow render --help\n"
+        "Exit status: 0 done, 1 it failed, 2 wrong usage.\n");
+}
+
+static const struct command *command_find(const char *name)
+{
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(commands[i]->name, name) == 0) return commands[i];
+    return NULL;
+}
+
+static enum status unknown_command(const char *name)
+{
+    const char *known[COMMAND_COUNT];
+    for (int i = 0; i < COMMAND_COUNT; i++) known[i] = commands[i]->name;
+    const char *nearest = ag_nearest_name(name, known, COMMAND_COUNT);
+    if (nearest) return wrong_usage("unknown command %s: did you mean %s?", name, nearest);
+    return wrong_usage("unknown command %s: see afterglow --help", name);
+}
+
+// What stays in standard output's buffer must reach its reader too.
+static enum status flush_output(enum status status)
+{
+    bool failed = fflush(stdout) != 0 || ferror(stdout);
+    return failed && status == DONE ? fail("cannot write standard output: it is closed or full")
+                                    : status;
+}
+
+static enum status run(int count, char **words)
+{
+    if (count < 2) return wrong_usage("no command is given: see afterglow --help");
+    if (strcmp(words[1], "--help") == 0 || strcmp(words[1], "-h") == 0 ||
+        strcmp(words[1], "help") == 0) {
+        print_usage();
+        return DONE;
+    }
+    if (strcmp(words[1], "--version") == 0) {
+        int version = ag_version();
+        printf("afterglow %d.%d.%d\n", version / 10000, version / 100 % 100, version % 100);
+        return DONE;
+    }
+    const struct command *command = command_find(words[1]);
+    if (!command) return unknown_command(words[1]);
+    struct arguments arguments;
+    enum status status = arguments_parse(command, count - 2, words + 2, &arguments);
+    if (status != DONE) return status;
+    if (arguments.help) {
+        arguments_help(command);
+        return DONE;
+    }
+    messages_init(arguments.quiet, arguments.verbose);
+    return command->run(&arguments);
+}
+
+int main(int count, char **words)
+{
+    return flush_output(run(count, words));
+}

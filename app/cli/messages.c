@@ -1,0 +1,136 @@
+// Standard error. The only file of the program with state of its own: the terminal is one, too.
+#include "messages.h"
+
+#include <stdio.h>
+#include <stdarg.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { LINE_SIZE = 2048, BAR_WIDTH = 30 };
+static const double BAR_AFTER_S = 0.3;   // shorter work shows none
+static const double LINE_EVERY_S = 10.0; // where there is no terminal
+
+static struct {
+    bool quiet, verbose;
+    bool bar_shown;
+    int total;              // of the running work; 0: none
+    double begun_s, line_s; // when it began and when the last line was written
+} state;
+
+void messages_init(bool quiet, bool verbose)
+{
+    state.quiet = quiet;
+    state.verbose = verbose;
+}
+
+static void clear_bar(void)
+{
+    if (state.bar_shown) fputs("\r\033[K", stderr);
+    state.bar_shown = false;
+}
+
+__attribute__((format(printf, 1, 0))) static void line(const char *format, va_list arguments)
+{
+    char text[LINE_SIZE];
+    if (vsnprintf(text, sizeof text, format, arguments) < 0) return;
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
+    clear_bar();
+    fprintf(stderr, "afterglow: %s\n", text);
+}
+
+enum status fail(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    line(format, arguments);
+    va_end(arguments);
+    return FAILED;
+}
+
+enum status wrong_usage(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    line(format, arguments);
+    va_end(arguments);
+    return WRONG_USAGE;
+}
+
+enum status fail_library(const struct ag_context *context, enum ag_result result)
+{
+    const char *why = ag_context_last_error(context);
+    fail("%s", why[0] ? why : ag_result_string(result));
+    return result == AG_ERROR_ARGUMENT ? WRONG_USAGE : FAILED;
+}
+
+void note(const char *format, ...)
+{
+    if (state.quiet) return;
+    va_list arguments;
+    va_start(arguments, format);
+    line(format, arguments);
+    va_end(arguments);
+}
+
+void detail(const char *format, ...)
+{
+    if (!state.verbose) return;
+    va_list arguments;
+    va_start(arguments, format);
+    line(format, arguments);
+    va_end(arguments);
+}
+
+void log_message(void *user, enum ag_log_level level, const char *message)
+{
+    (void)user;
+    if (level == AG_LOG_WARNING)
+        note("warning: %s", message);
+    else if (level > AG_LOG_WARNING)
+        detail("%s", message);
+}
+
+static double now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void draw_bar(const char *what, int done, int total, double left_s)
+{
+    int filled = (int)((long long)BAR_WIDTH * done / total);
+    char bar[BAR_WIDTH + 1];
+    memset(bar, '.', BAR_WIDTH);
+    memset(bar, '#', (size_t)filled);
+    bar[BAR_WIDTH] = 0;
+    fprintf(stderr, "\r\033[K%s [%s] %d/%d, %.0f s left", what, bar, done, total, left_s);
+    fflush(stderr);
+    state.bar_shown = true;
+}
+
+void progress(const char *what, int done, int total)
+{
+    if (state.quiet || total <= 0) return;
+    double now = now_s();
+    if (state.total != total) {
+        state.total = total;
+        state.begun_s = state.line_s = now;
+    }
+    double passed = now - state.begun_s;
+    double left = done > 0 ? passed / done * (total - done) : 0.0;
+    if (isatty(STDERR_FILENO)) {
+        if (passed > BAR_AFTER_S && done < total) draw_bar(what, done, total, left);
+    } else if (now - state.line_s > LINE_EVERY_S && done > 0 && done < total) {
+        note("%s: %d of %d, %.0f s left", what, done, total, left);
+        state.line_s = now;
+    }
+}
+
+void progress_end(void)
+{
+    clear_bar();
+    state.total = 0;
+}

@@ -1,0 +1,251 @@
+// Pictures: which layers, how a layer looks in a PNG, what an EXR says about itself.
+#include "output.h"
+#include "values.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// ---- can it be written?
+
+enum status output_check(const char *path)
+{
+    char folder[PATH_SIZE];
+    if (strlen(path) >= sizeof folder) return fail("cannot write %s: the path is too long", path);
+    const char *slash = strrchr(path, '/');
+    size_t length = slash == path ? 1 : slash ? (size_t)(slash - path) : 0;
+    memcpy(folder, path, length);
+    folder[length] = 0;
+    struct stat info;
+    if (stat(length ? folder : ".", &info) != 0)
+        return fail("cannot write %s: there is no folder %s", path, folder);
+    if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is no folder", path, folder);
+    if (access(length ? folder : ".", W_OK | X_OK) != 0)
+        return fail("cannot write %s: %s", path, strerror(errno));
+    if (stat(path, &info) != 0) return DONE;
+    if (S_ISDIR(info.st_mode)) return fail("cannot write %s: it is a folder", path);
+    if (!S_ISREG(info.st_mode)) return fail("cannot write %s: it is no regular file", path);
+    return access(path, W_OK) == 0 ? DONE : fail("cannot write %s: %s", path, strerror(errno));
+}
+
+// ---- which layers
+
+static enum status unknown_layer(const char *name)
+{
+    const char *known[MAX_LAYERS];
+    int count = 0;
+    for (const char *layer; count < MAX_LAYERS && (layer = ag_layer_name(count));)
+        known[count++] = layer;
+    const char *nearest = ag_nearest_name(name, known, count);
+    if (nearest) return wrong_usage("unknown layer %s in --aov: did you mean %s?", name, nearest);
+    return wrong_usage("unknown layer %s in --aov: see afterglow render --help", name);
+}
+
+static bool layer_exists(const char *name)
+{
+    const char *layer;
+    for (int i = 0; (layer = ag_layer_name(i)); i++)
+        if (strcmp(layer, name) == 0) return true;
+    return false;
+}
+
+static enum status add_layer(struct picture *picture, const char *name)
+{
+    if (!layer_exists(name)) return unknown_layer(name);
+    for (int i = 0; i < picture->layer_count; i++)
+        if (strcmp(picture->layers[i], name) == 0)
+            return wrong_usage("wrong value --aov: layer %s is named twice", name);
+    picture->layers[picture->layer_count++] = name; // at most each of the library's once
+    return DONE;
+}
+
+enum status picture_plan(const struct arguments *a, const char *path, struct picture *out)
+{
+    *out = (struct picture){ .exr = has_extension(path, "exr") };
+    enum status status = DONE;
+    const char *fallback = a->debug_view ? out->exr ? "color,debug" : "debug" : "color";
+    int wrote = snprintf(out->names, sizeof out->names, "%s", a->aov ? a->aov : fallback);
+    if (wrote >= (int)sizeof out->names)
+        return wrong_usage("wrong value --aov: the list is too long");
+    char *rest = out->names;
+    while (rest && status == DONE) status = add_layer(out, strsep(&rest, ","));
+    if (status != DONE) return status;
+    if (!out->exr && out->layer_count > 1)
+        return wrong_usage("cannot write %d layers into %s: a PNG holds one, an .exr holds all",
+                           out->layer_count, path);
+    if (picture_needs(out, "debug") && !a->debug_view)
+        return wrong_usage("cannot write layer debug: it needs --debug-view");
+    return DONE;
+}
+
+bool picture_needs(const struct picture *picture, const char *layer)
+{
+    for (int i = 0; i < picture->layer_count; i++)
+        if (strcmp(picture->layers[i], layer) == 0) return true;
+    return false;
+}
+
+// ---- a layer as a PNG: display values 0…1
+
+static float srgb_to_linear(float encoded)
+{
+    return encoded <= 0.04045f ? encoded / 12.92f : powf((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+// −1…1 as bytes 0…255, the way normal maps are stored: the file's sRGB curve is undone beforehand.
+static void show_direction(struct ag_image *image)
+{
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    for (size_t i = 0; i < count; i++) {
+        float value = 0.5f + 0.5f * image->pixels[i];
+        image->pixels[i] = srgb_to_linear(fminf(fmaxf(value, 0.0f), 1.0f));
+    }
+}
+
+// Each channel from its least to its greatest finite value; `near_is_bright` turns that round. Not
+// finite: 0.
+static void show_range(struct ag_image *image, bool near_is_bright)
+{
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    int channels = image->channels;
+    for (int c = 0; c < channels; c++) {
+        float low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < pixels; i++) {
+            float value = image->pixels[i * (size_t)channels + (size_t)c];
+            if (!isfinite(value)) continue;
+            low = fminf(low, value);
+            high = fmaxf(high, value);
+        }
+        float scale = high > low ? 1.0f / (high - low) : 0.0f;
+        for (size_t i = 0; i < pixels; i++) {
+            float *value = &image->pixels[i * (size_t)channels + (size_t)c];
+            float at = (*value - low) * scale;
+            *value = isfinite(*value) ? near_is_bright ? 1.0f - at : at : 0.0f;
+        }
+    }
+}
+
+// Irradiance as a white, perfectly diffuse surface would show it.
+static void irradiance_to_radiance(struct ag_image *image)
+{
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    for (size_t i = 0; i < count; i++) image->pixels[i] *= 0.318309886f;
+}
+
+static enum ag_result tonemap(struct session *session, struct ag_renderer *renderer,
+                              struct ag_image **image)
+{
+    float ev = 0.0f;
+    struct ag_image *display = NULL;
+    enum ag_result result = ag_renderer_exposure(renderer, &ev);
+    if (result == AG_OK) result = ag_image_tonemap(session->context, *image, ev, &display);
+    if (result != AG_OK) return result;
+    ag_image_destroy(session->context, *image);
+    *image = display;
+    return AG_OK;
+}
+
+// How a layer becomes a picture; what is not named is radiance.
+enum look { RADIANCE, AS_IT_IS, DIRECTION, NEAR_IS_BRIGHT, RANGE, IRRADIANCE };
+
+static enum look look_of(const char *layer)
+{
+    static const struct {
+        const char *layer;
+        enum look look;
+    } looks[] = { { "albedo", AS_IT_IS },  { "visibility", AS_IT_IS },  { "display", AS_IT_IS },
+                  { "normal", DIRECTION }, { "motion", DIRECTION },     { "depth", NEAR_IS_BRIGHT },
+                  { "position", RANGE },   { "irradiance", IRRADIANCE } };
+    for (size_t i = 0; i < sizeof looks / sizeof looks[0]; i++)
+        if (strcmp(looks[i].layer, layer) == 0) return looks[i].look;
+    return RADIANCE;
+}
+
+static enum ag_result to_display(struct session *session, struct ag_renderer *renderer,
+                                 const char *layer, struct ag_image **image)
+{
+    switch (look_of(layer)) {
+    case AS_IT_IS:
+        return AG_OK;
+    case DIRECTION:
+        show_direction(*image);
+        return AG_OK;
+    case NEAR_IS_BRIGHT:
+        show_range(*image, true);
+        return AG_OK;
+    case RANGE:
+        show_range(*image, false);
+        return AG_OK;
+    case IRRADIANCE:
+        irradiance_to_radiance(*image);
+        break;
+    case RADIANCE:
+        break;
+    }
+    return tonemap(session, renderer, image);
+}
+
+static enum status write_png(struct session *session, struct ag_renderer *renderer,
+                             const char *layer, const char *path)
+{
+    struct ag_image *image = NULL;
+    enum ag_result result = ag_renderer_read(renderer, layer, &image);
+    if (result == AG_OK) result = to_display(session, renderer, layer, &image);
+    if (result == AG_OK) result = ag_image_write_png(session->context, path, image);
+    ag_image_destroy(session->context, image);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+// ---- EXR
+
+// Nothing here depends on the hour or the machine: equal commands give equal files.
+static enum ag_result write_exr_layers(struct session *session, struct ag_renderer *renderer,
+                                       const struct ag_image_layer *layers, int count,
+                                       const char *path)
+{
+    const struct arguments *a = session->arguments;
+    float ev = 0.0f;
+    enum ag_result result = ag_renderer_exposure(renderer, &ev);
+    if (result != AG_OK) return result;
+    char exposure[32], seed[32], version[32];
+    int v = ag_version();
+    snprintf(exposure, sizeof exposure, "%.9g", (double)ev);
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)a->seed);
+    snprintf(version, sizeof version, "%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
+    const struct ag_attribute attributes[] = {
+        { "afterglow.scene", a->positional[0] },
+        { "afterglow.camera", session->camera_name },
+        { "afterglow.gi", ag_renderer_gi(renderer) },
+        { "afterglow.exposure_ev", exposure },
+        { "afterglow.seed", seed },
+        { "afterglow.version", version },
+    };
+    return ag_image_write_exr(session->context, path, layers, count, attributes,
+                              sizeof attributes / sizeof attributes[0]);
+}
+
+static enum status write_exr(struct session *session, struct ag_renderer *renderer,
+                             const struct picture *picture, const char *path)
+{
+    struct ag_image *images[MAX_LAYERS] = { 0 };
+    struct ag_image_layer layers[MAX_LAYERS];
+    enum ag_result result = AG_OK;
+    for (int i = 0; i < picture->layer_count && result == AG_OK; i++) {
+        result = ag_renderer_read(renderer, picture->layers[i], &images[i]);
+        layers[i] = (struct ag_image_layer){ picture->layers[i], images[i] };
+    }
+    if (result == AG_OK)
+        result = write_exr_layers(session, renderer, layers, picture->layer_count, path);
+    for (int i = 0; i < picture->layer_count; i++) ag_image_destroy(session->context, images[i]);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+enum status picture_write(struct session *session, struct ag_renderer *renderer,
+                          const struct picture *picture, const char *path)
+{
+    if (picture->exr) return write_exr(session, renderer, picture, path);
+    return write_png(session, renderer, picture->layers[0], path);
+}

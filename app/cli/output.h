@@ -1,0 +1,24 @@
+// Files that come out: checked before the work begins, written whole or not at all.
+#pragma once
+
+#include "session.h"
+
+enum { MAX_LAYERS = 32, PATH_SIZE = 4096 };
+
+// Could a file be written there? Says why not.
+enum status output_check(const char *path);
+
+// What a picture holds, from --aov and --debug-view.
+struct picture {
+    const char *layers[MAX_LAYERS]; // names of the library's layers
+    int layer_count;
+    bool exr;
+    char names[256]; // what `layers` points into
+};
+
+// Unknown layers, and several layers of a PNG, are wrong usage.
+enum status picture_plan(const struct arguments *arguments, const char *path, struct picture *out);
+bool picture_needs(const struct picture *picture, const char *layer);
+// Reads the layers of the newest frame and writes them.
+enum status picture_write(struct session *session, struct ag_renderer *renderer,
+                          const struct picture *picture, const char *path);

@@ -1,0 +1,210 @@
+// A context, a scene, its light and its camera.
+#include "session.h"
+#include "values.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double FOV_DEG = 60.0;
+
+enum status session_begin(struct session *session, const struct arguments *arguments)
+{
+    *session = (struct session){ .arguments = arguments };
+    struct ag_context_desc desc;
+    ag_context_desc_default(&desc);
+    desc.log = log_message;
+    desc.log_up_to = arguments->verbose ? AG_LOG_DEBUG : AG_LOG_WARNING;
+    enum ag_result result = ag_context_create(&desc, &session->context);
+    return result == AG_OK ? DONE : fail("cannot begin: %s", ag_result_string(result));
+}
+
+void session_end(struct session *session)
+{
+    ag_scene_destroy(session->scene);
+    ag_context_destroy(session->context);
+    *session = (struct session){ 0 };
+}
+
+// ---- the scene and its animation
+
+static int animation_count(const struct session *session)
+{
+    struct ag_scene_info info = { 0 };
+    ag_scene_get_info(session->scene, -1, 0.0, &info);
+    return info.animations;
+}
+
+static enum status unknown_animation(struct session *session, int count)
+{
+    char list[SPEC_SIZE] = "none";
+    size_t used = 0;
+    for (int i = 0; i < count && used < sizeof list; i++) {
+        struct ag_animation_info info;
+        if (ag_scene_get_animation(session->scene, i, &info) != AG_OK) break;
+        int wrote =
+            snprintf(list + used, sizeof list - used, "%s%d %s", i ? ", " : "", i, info.name);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+    return fail("cannot find animation %s in %s: it has %s", session->arguments->animation,
+                session->arguments->positional[0], list);
+}
+
+static enum status find_animation(struct session *session)
+{
+    const char *wanted = session->arguments->animation;
+    session->animation = 0;
+    if (!wanted) return DONE;
+    session->animation = -1;
+    if (strcmp(wanted, "none") == 0) return DONE;
+    int count = animation_count(session);
+    for (int i = 0; i < count && session->animation < 0; i++) {
+        struct ag_animation_info info;
+        enum ag_result result = ag_scene_get_animation(session->scene, i, &info);
+        if (result != AG_OK) return fail_library(session->context, result);
+        if (strcmp(info.name, wanted) == 0) session->animation = i;
+    }
+    long number;
+    if (session->animation < 0 && value_int(wanted, 0, count - 1, &number))
+        session->animation = (int)number;
+    return session->animation >= 0 ? DONE : unknown_animation(session, count);
+}
+
+enum status session_load(struct session *session, const char *name)
+{
+    enum ag_result result = ag_scene_load(session->context, name, &session->scene);
+    if (result != AG_OK) return fail_library(session->context, result);
+    return find_animation(session);
+}
+
+// ---- what a scene gets that brings none
+
+static void print_floats(char out[SPEC_SIZE], const float v[3])
+{
+    snprintf(out, SPEC_SIZE, "%.6g,%.6g,%.6g", (double)v[0], (double)v[1], (double)v[2]);
+}
+
+enum status defaults_light(struct session *session, struct defaults *out)
+{
+    struct ag_default_lighting lighting;
+    out->light[0] = out->sky[0] = 0;
+    enum ag_result result = ag_scene_default_lighting(session->scene, &lighting);
+    if (result != AG_OK) return fail_library(session->context, result);
+    if (!lighting.needed) return DONE;
+    char direction[SPEC_SIZE], lux[SPEC_SIZE];
+    print_floats(direction, lighting.sun_direction);
+    print_floats(lux, lighting.sun_lux);
+    print_floats(out->sky, lighting.sky);
+    const char *why;
+    int wrote = snprintf(out->light, sizeof out->light, "sun:%s:%s", direction, lux);
+    if (wrote < (int)sizeof out->light && value_light(out->light, &out->light_desc, &why) &&
+        value_floats(out->sky, 3, out->sky_radiance))
+        return DONE;
+    return fail("cannot light %s: its default light %s is not finite",
+                session->arguments->positional[0], out->light);
+}
+
+enum status defaults_camera(struct session *session, double time_s, struct defaults *out)
+{
+    bool made_up = false;
+    out->eye[0] = out->target[0] = out->fov[0] = 0;
+    enum ag_result result =
+        ag_scene_default_camera(session->scene, session->animation, time_s, &out->camera, &made_up);
+    if (result != AG_OK) return fail_library(session->context, result);
+    if (!made_up) return DONE;
+    print_floats(out->eye, out->camera.eye);
+    print_floats(out->target, out->camera.target);
+    snprintf(out->fov, sizeof out->fov, "%.6g", degrees(out->camera.vertical_fov_rad));
+    float eye[3], target[3];
+    double fov_deg;
+    if (!value_floats(out->eye, 3, eye) || !value_floats(out->target, 3, target) ||
+        !value_number(out->fov, &fov_deg))
+        return fail("cannot look at %s: its default camera is not finite",
+                    session->arguments->positional[0]);
+    result = ag_scene_look_at(session->scene, eye, target, radians(fov_deg), &out->camera);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+// ---- light
+
+static enum status add_default_light(struct session *session)
+{
+    struct defaults defaults;
+    enum status status = defaults_light(session, &defaults);
+    if (status != DONE || !defaults.light[0]) return status;
+    enum ag_result result = ag_scene_add_light(session->scene, &defaults.light_desc, NULL);
+    if (result == AG_OK) result = ag_scene_set_sky(session->scene, defaults.sky_radiance);
+    if (result != AG_OK) return fail_library(session->context, result);
+    note("no light in %s: as with --light %s --sky %s", session->arguments->positional[0],
+         defaults.light, defaults.sky);
+    return DONE;
+}
+
+enum status session_light(struct session *session)
+{
+    const struct arguments *a = session->arguments;
+    if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky)
+        return add_default_light(session);
+    enum ag_result result = AG_OK;
+    if (a->no_scene_lights) result = ag_scene_remove_lights(session->scene);
+    for (int i = 0; i < a->light_count && result == AG_OK; i++)
+        result = ag_scene_add_light(session->scene, &a->lights[i], NULL);
+    if (result == AG_OK && a->has_sky) result = ag_scene_set_sky(session->scene, a->sky);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+// ---- camera
+
+static enum status camera_from_options(struct session *session, struct ag_camera *out)
+{
+    const struct arguments *a = session->arguments;
+    double fov_deg = a->has_fov ? a->fov_deg : FOV_DEG;
+    enum ag_result result =
+        ag_scene_look_at(session->scene, a->eye, a->target, radians(fov_deg), out);
+    if (result != AG_OK) return fail_library(session->context, result);
+    char eye[SPEC_SIZE], target[SPEC_SIZE];
+    print_floats(eye, a->eye);
+    print_floats(target, a->target);
+    snprintf(session->camera_name, sizeof session->camera_name, "--eye %.80s --target %.80s", eye,
+             target);
+    return DONE;
+}
+
+static enum status camera_from_scene(struct session *session, double time_s, struct ag_camera *out)
+{
+    const char *name = session->arguments->camera;
+    enum ag_result result = ag_scene_camera(session->scene, name, session->animation, time_s, out);
+    snprintf(session->camera_name, sizeof session->camera_name, "%s", name);
+    if (result == AG_OK) return DONE;
+    fail_library(session->context, result);
+    return FAILED; // which cameras there are is the file's affair, not the command line's
+}
+
+static enum status camera_default(struct session *session, double time_s, struct ag_camera *out)
+{
+    struct defaults defaults;
+    enum status status = defaults_camera(session, time_s, &defaults);
+    if (status != DONE) return status;
+    *out = defaults.camera;
+    if (!defaults.eye[0]) {
+        const char *name = ag_scene_camera_name(session->scene, 0);
+        snprintf(session->camera_name, sizeof session->camera_name, "%s", name ? name : "");
+        return DONE;
+    }
+    if (!session->camera_name[0])
+        note("no camera in %s: as with --eye %s --target %s --fov %s",
+             session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
+    snprintf(session->camera_name, sizeof session->camera_name, "--eye %.80s --target %.80s",
+             defaults.eye, defaults.target);
+    return DONE;
+}
+
+enum status session_camera(struct session *session, double time_s, struct ag_camera *out)
+{
+    const struct arguments *a = session->arguments;
+    if (a->has_eye) return camera_from_options(session, out);
+    enum status status =
+        a->camera ? camera_from_scene(session, time_s, out) : camera_default(session, time_s, out);
+    if (status == DONE && a->has_fov) out->vertical_fov_rad = radians(a->fov_deg);
+    return status;
+}

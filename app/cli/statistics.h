@@ -1,0 +1,28 @@
+// Times of the passes over the frames, and the JSON of --stats.
+#pragma once
+
+#include "json.h"
+#include "session.h"
+
+enum { MAX_PASSES = 128 };
+
+struct pass_times {
+    char name[48];
+    double *ms; // [count]
+    int count, capacity;
+};
+
+struct statistics {
+    struct pass_times passes[MAX_PASSES];
+    int pass_count;
+    int frames; // that were added
+};
+
+// Adds the newest frame's times; waits for the GPU. False: out of memory.
+bool statistics_add(struct statistics *statistics, struct ag_renderer *renderer);
+void statistics_finish(struct statistics *statistics); // accepts zero
+// {"median": …, "p95": …}: the middle, and the least that 95 % do not exceed. Sorts the times. No times: nulls.
+json_t *statistics_summary(struct pass_times *times);
+// The document of --stats; NULL when out of memory. `frames` counts all that were rendered.
+json_t *statistics_json(struct statistics *statistics, const struct session *session,
+                        struct ag_device *device, struct ag_renderer *renderer);

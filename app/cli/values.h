@@ -1,0 +1,28 @@
+// What stands behind an option's name, as numbers. Each function is false where the text is anything else, with *why
+// (a static string, or NULL) for the error. The program never leaves the "C" locale, so that a dot is a dot.
+#pragma once
+
+#include <afterglow/scene.h>
+
+bool value_int(const char *text, long low, long high, long *out);
+bool value_seed(const char *text, uint64_t *out);  // decimal or 0x…
+bool value_number(const char *text, double *out);  // finite
+bool value_floats(const char *text, int count, float *out); // "x,y,z", finite
+// "WxH", each 1…16384.
+bool value_size(const char *text, int *width, int *height);
+// "point:x,y,z:r,g,b", "sun:dx,dy,dz:r,g,b" or "spot:x,y,z:dx,dy,dz:innerDEG:outerDEG:r,g,b".
+bool value_light(const char *text, struct ag_light_desc *out, const char **why);
+// The lower-case part after the last dot of a path's last part: is it that?
+bool has_extension(const char *path, const char *extension);
+// "" where the path has none of "%d", "%4d", "%04d"; the path of that frame else. False: more than one, or too long.
+bool value_frame_path(const char *pattern, int frame, char *out, size_t size, bool *is_pattern);
+
+static inline float radians(double degrees)
+{
+    return (float)(degrees * (3.14159265358979324 / 180.0));
+}
+
+static inline double degrees(float radians)
+{
+    return (double)radians * (180.0 / 3.14159265358979324);
+}
