@@ -315,14 +315,15 @@ enum status arguments_parse(const struct command *command, int count, char **wor
 static void print_wrapped(const char *text)
 {
     int column = HELP_COLUMN;
-    while (*text) {
+    for (bool first = true; *text; first = false) {
         int length = (int)strcspn(text, " ");
-        if (column > HELP_COLUMN && column + length > HELP_WIDTH) {
+        if (!first && column + 1 + length > HELP_WIDTH) {
             printf("\n%*s", HELP_COLUMN, "");
             column = HELP_COLUMN;
+        } else if (!first) {
+            column += printf(" ");
         }
-        printf("%.*s%s", length, text, text[length] ? " " : "");
-        column += length + 1;
+        column += printf("%.*s", length, text);
         text += length + (text[length] != 0);
     }
     printf("\n");

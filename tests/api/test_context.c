@@ -1,0 +1,209 @@
+// Contexts: what they say and to whom, whose memory they use, and that they do not know each other.
+#include "framework/test.h"
+
+#include <afterglow/afterglow.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct ears {
+    int errors, others;
+    char last[512];
+};
+
+static void listen(void *user, enum ag_log_level level, const char *message)
+{
+    struct ears *ears = user;
+    if (level == AG_LOG_ERROR)
+        ears->errors++;
+    else
+        ears->others++;
+    snprintf(ears->last, sizeof ears->last, "%s", message);
+    CHECK(strchr(message, '\n') == NULL);
+}
+
+TEST(an_error_is_said_once_and_kept)
+{
+    struct ears ears = { 0 };
+    struct ag_context_desc desc;
+    ag_context_desc_default(&desc);
+    desc.log = listen;
+    desc.user = &ears;
+    struct ag_context *context = NULL;
+    struct ag_scene *scene = NULL;
+    assert_int_equal(ag_context_create(&desc, &context), AG_OK);
+    CHECK_STRING(ag_context_last_error(context), "");
+    assert_int_equal(ag_scene_load(context, test_path("none.glb"), &scene), AG_ERROR_FILE);
+    assert_int_equal(ears.errors, 1);
+    CHECK_STRING(ag_context_last_error(context), ears.last);
+    CHECK(strstr(ears.last, "none.glb"));
+    ag_context_destroy(context);
+}
+
+TEST(a_context_without_a_log_still_knows_its_last_error)
+{
+    struct ag_context *context = NULL;
+    struct ag_scene *scene = NULL;
+    assert_int_equal(ag_context_create(NULL, &context), AG_OK);
+    assert_int_equal(ag_scene_load(context, "@nowhere", &scene), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(context), "nowhere"));
+    ag_context_destroy(context);
+}
+
+TEST(two_contexts_do_not_hear_each_other)
+{
+    struct ears ears[2] = { 0 };
+    struct ag_context *contexts[2] = { NULL };
+    struct ag_scene *scenes[2] = { NULL };
+    for (int i = 0; i < 2; i++) {
+        struct ag_context_desc desc;
+        ag_context_desc_default(&desc);
+        desc.log = listen;
+        desc.user = &ears[i];
+        assert_int_equal(ag_context_create(&desc, &contexts[i]), AG_OK);
+        assert_int_equal(ag_scene_load(contexts[i], i ? "@maze:blocks=3" : "@cornell", &scenes[i]),
+                         AG_OK);
+    }
+    struct ag_scene *none = NULL;
+    assert_int_equal(ag_scene_load(contexts[0], "@nowhere", &none), AG_ERROR_ARGUMENT);
+    assert_int_equal(ears[0].errors, 1);
+    assert_int_equal(ears[1].errors, 0);
+    CHECK_STRING(ag_context_last_error(contexts[1]), "");
+    // Either can go first.
+    ag_scene_destroy(scenes[0]);
+    ag_context_destroy(contexts[0]);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scenes[1], 0, 0.0, &info), AG_OK);
+    assert_true(info.triangles > 0);
+    ag_scene_destroy(scenes[1]);
+    ag_context_destroy(contexts[1]);
+}
+
+// ---- memory
+
+// Each block carries its size, so that what is given back can be counted.
+struct purse {
+    long blocks;     // alive
+    long asked;      // allocations so far
+    long refuse_at;  // the allocation that fails; 0: none
+    bool refuse_all; // from refuse_at on
+};
+
+static void *purse_reallocate(void *user, void *old, size_t bytes)
+{
+    struct purse *purse = user;
+    if (bytes == 0) {
+        if (old) purse->blocks--;
+        free(old);
+        return NULL;
+    }
+    purse->asked++;
+    bool refused = purse->refuse_at && (purse->refuse_all ? purse->asked >= purse->refuse_at
+                                                          : purse->asked == purse->refuse_at);
+    if (refused) return NULL;
+    void *block = realloc(old, bytes);
+    if (block && !old) purse->blocks++;
+    return block;
+}
+
+static struct ag_context *purse_context(struct purse *purse)
+{
+    struct ag_context_desc desc;
+    struct ag_context *context = NULL;
+    ag_context_desc_default(&desc);
+    desc.reallocate = purse_reallocate;
+    desc.user = purse;
+    ag_context_create(&desc, &context);
+    return context;
+}
+
+// Every call that takes memory but needs no GPU: ends at the first failure, which must be one of
+// memory.
+static enum ag_result use_everything(struct ag_context *context, const char *scene_name,
+                                     const char *folder)
+{
+    struct ag_scene *scene = NULL, *built = NULL;
+    struct ag_image *image = NULL, *shown = NULL, *read = NULL, *pair = NULL, *map = NULL;
+    struct ag_scene_info info;
+    struct ag_camera camera;
+    struct ag_metrics metrics;
+    char png[512], exr[512];
+    snprintf(png, sizeof png, "%s.png", folder);
+    snprintf(exr, sizeof exr, "%s.exr", folder);
+    enum ag_result result = ag_scene_load(context, scene_name, &scene);
+    if (result == AG_OK) result = ag_scene_get_info(scene, 0, 0.5, &info);
+    if (result == AG_OK) result = ag_scene_default_camera(scene, 0, 0, &camera, NULL);
+    if (result == AG_OK) result = ag_scene_add_default_lighting(scene, NULL);
+    if (result == AG_OK) result = ag_scene_create(context, &built);
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    if (result == AG_OK) result = ag_scene_add_material(built, &material, NULL);
+    const float corners[9] = { 0, 0, 0, 1, 0, 0, 0, 1, 0 };
+    const uint32_t indices[3] = { 0, 1, 2 };
+    const struct ag_mesh_desc mesh = {
+        .positions = corners, .vertex_count = 3, .indices = indices, .index_count = 3
+    };
+    if (result == AG_OK) result = ag_scene_add_mesh(built, &mesh, NULL);
+    if (result == AG_OK) result = ag_scene_add_instance(built, 0, NULL, NULL);
+    if (result == AG_OK) result = ag_image_create(context, 8, 4, 3, &image);
+    if (result == AG_OK) result = ag_image_tonemap(context, image, 0, &shown);
+    if (result == AG_OK) result = ag_image_write_png(context, png, shown);
+    const struct ag_image_layer layer = { "color", image };
+    if (result == AG_OK) result = ag_image_write_exr(context, exr, &layer, 1, NULL, 0);
+    if (result == AG_OK) result = ag_image_read(context, exr, NULL, &read);
+    if (result == AG_OK) result = ag_image_side_by_side(context, image, read, 1, &pair);
+    if (result == AG_OK) result = ag_image_metrics(context, image, read, &metrics);
+    if (result == AG_OK) result = ag_image_error_map(context, image, read, 0, &map);
+    ag_image_destroy(context, map);
+    ag_image_destroy(context, pair);
+    ag_image_destroy(context, read);
+    ag_image_destroy(context, shown);
+    ag_image_destroy(context, image);
+    ag_scene_destroy(built);
+    ag_scene_destroy(scene);
+    return result;
+}
+
+static void check_every_refusal(const char *scene_name)
+{
+    struct purse purse = { 0 };
+    char folder[512];
+    snprintf(folder, sizeof folder, "%s", test_path("memory"));
+    struct ag_context *context = purse_context(&purse);
+    assert_non_null(context);
+    assert_int_equal(use_everything(context, scene_name, folder), AG_OK);
+    ag_context_destroy(context);
+    assert_true(purse.asked > 10);
+    assert_int_equal(purse.blocks, 0);
+    long calls = purse.asked;
+
+    for (int all = 0; all < 2; all++)
+        for (long k = 1; k <= calls; k++) {
+            purse = (struct purse){ .refuse_at = k, .refuse_all = all };
+            context = purse_context(&purse);
+            enum ag_result result =
+                context ? use_everything(context, scene_name, folder) : AG_ERROR_MEMORY;
+            ag_context_destroy(context);
+            if (purse.blocks != 0) fail_msg("refusal %ld leaks %ld blocks", k, purse.blocks);
+            if (result != AG_ERROR_MEMORY)
+                fail_msg("refusal %ld of %ld gives \"%s\"", k, calls, ag_result_string(result));
+        }
+}
+
+TEST(every_refused_allocation_is_a_memory_error_and_leaks_nothing)
+{
+    check_every_refusal("@cornell:light=point");
+}
+
+TEST(every_refused_allocation_of_a_file_is_a_memory_error_and_leaks_nothing)
+{
+    check_every_refusal(test_scene_path("box-animated.gltf"));
+}
+
+TEST(the_programs_allocator_is_the_only_one)
+{
+    struct purse purse = { .refuse_at = 1, .refuse_all = true };
+    assert_null(purse_context(&purse));
+    assert_true(purse.asked > 0);
+}

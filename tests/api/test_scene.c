@@ -1,0 +1,281 @@
+// Scenes through the public functions: what is put in comes out, and what is wrong does not get in.
+#include "framework/test.h"
+
+#include <afterglow/afterglow.h>
+
+#include <math.h>
+#include <string.h>
+
+static struct ag_context *context;
+static struct ag_scene *scene;
+
+static void begin(void)
+{
+    assert_int_equal(ag_context_create(NULL, &context), AG_OK);
+    assert_int_equal(ag_scene_create(context, &scene), AG_OK);
+}
+
+static void end(void)
+{
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
+
+static const float CORNERS[12] = { 0, 0, 0, 2, 0, 0, 2, 0, 2, 0, 0, 2 };
+static const uint32_t INDICES[6] = { 0, 2, 1, 0, 3, 2 };
+
+static struct ag_mesh_desc square(void)
+{
+    return (struct ag_mesh_desc){
+        .positions = CORNERS, .vertex_count = 4, .indices = INDICES, .index_count = 6
+    };
+}
+
+static int add_square(void)
+{
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    assert_int_equal(ag_scene_add_material(scene, &material, NULL), AG_OK);
+    int mesh = -1;
+    struct ag_mesh_desc desc = square();
+    assert_int_equal(ag_scene_add_mesh(scene, &desc, &mesh), AG_OK);
+    return mesh;
+}
+
+TEST(instances_are_where_their_transform_puts_them)
+{
+    begin();
+    int mesh = add_square();
+    float moved[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 20, 30, 1 };
+    int instance = -1;
+    assert_int_equal(ag_scene_add_instance(scene, mesh, NULL, NULL), AG_OK);
+    assert_int_equal(ag_scene_add_instance(scene, mesh, moved, &instance), AG_OK);
+    assert_int_equal(instance, 1);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+    assert_int_equal(info.instances, 2);
+    assert_true(info.triangles == 4);
+    const float low[3] = { 0, 0, 0 }, high[3] = { 12, 20, 32 };
+    for (int i = 0; i < 3; i++) {
+        CHECK_NEAR(info.bounds_min[i], low[i], 1e-6);
+        CHECK_NEAR(info.bounds_max[i], high[i], 1e-6);
+    }
+    end();
+}
+
+TEST(an_empty_scene_has_no_bounds)
+{
+    begin();
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+    CHECK(info.bounds_min[0] > info.bounds_max[0]);
+    assert_true(info.triangles == 0);
+    end();
+}
+
+TEST(wrong_meshes_stay_outside)
+{
+    begin();
+    struct ag_mesh_desc desc = square();
+    int index = 5;
+    assert_int_equal(ag_scene_add_mesh(scene, NULL, &index), AG_ERROR_ARGUMENT);
+    assert_int_equal(index, -1);
+    desc.material = 7;
+    assert_int_equal(ag_scene_add_mesh(scene, &desc, &index), AG_ERROR_ARGUMENT);
+    add_square();
+    desc = square();
+    desc.index_count = 5;
+    assert_int_equal(ag_scene_add_mesh(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    const uint32_t beyond[3] = { 0, 1, 4 };
+    desc = square();
+    desc.indices = beyond;
+    desc.index_count = 3;
+    assert_int_equal(ag_scene_add_mesh(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    float broken[12];
+    memcpy(broken, CORNERS, sizeof broken);
+    broken[4] = NAN;
+    desc = square();
+    desc.positions = broken;
+    assert_int_equal(ag_scene_add_mesh(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    desc.positions = NULL;
+    assert_int_equal(ag_scene_add_mesh(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+    assert_int_equal(info.meshes, 1);
+    end();
+}
+
+TEST(wrong_instances_stay_outside)
+{
+    begin();
+    int mesh = add_square();
+    float projective[16] = { 1, 0, 0, 0.5f, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+    assert_int_equal(ag_scene_add_instance(scene, mesh, projective, NULL), AG_ERROR_ARGUMENT);
+    projective[3] = INFINITY;
+    assert_int_equal(ag_scene_add_instance(scene, mesh, projective, NULL), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_instance(scene, mesh + 1, NULL, NULL), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_instance(scene, -1, NULL, NULL), AG_ERROR_ARGUMENT);
+    end();
+}
+
+TEST(wrong_materials_stay_outside)
+{
+    begin();
+    struct ag_material_desc desc;
+    ag_material_desc_default(&desc);
+    desc.base_color[1] = 1.5f;
+    assert_int_equal(ag_scene_add_material(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    ag_material_desc_default(&desc);
+    desc.emissive[2] = -1;
+    assert_int_equal(ag_scene_add_material(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    ag_material_desc_default(&desc);
+    desc.roughness = NAN;
+    assert_int_equal(ag_scene_add_material(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    end();
+}
+
+TEST(materials_come_out_as_they_went_in)
+{
+    begin();
+    struct ag_material_desc desc;
+    struct ag_material_info info;
+    ag_material_desc_default(&desc);
+    desc.base_color[0] = 0.25f;
+    desc.metallic = 0.5f;
+    desc.emissive[1] = 300;
+    desc.double_sided = true;
+    int index = -1;
+    assert_int_equal(ag_scene_add_material(scene, &desc, &index), AG_OK);
+    assert_int_equal(ag_scene_get_material(scene, index, &info), AG_OK);
+    assert_memory_equal(info.material.base_color, desc.base_color, sizeof desc.base_color);
+    assert_memory_equal(info.material.emissive, desc.emissive, sizeof desc.emissive);
+    assert_true(info.material.metallic == 0.5f && info.material.double_sided);
+    CHECK_STRING(info.alpha_mode, "opaque");
+    assert_false(info.base_color_map);
+    end();
+}
+
+TEST(lights_come_out_as_they_went_in)
+{
+    begin();
+    for (int type = AG_LIGHT_SUN; type <= AG_LIGHT_SPOT; type++) {
+        struct ag_light_desc desc;
+        struct ag_light_info info;
+        ag_light_desc_default(&desc, (enum ag_light_type)type);
+        memcpy(desc.position, (float[3]){ 1, 2, 3 }, sizeof desc.position);
+        memcpy(desc.direction, (float[3]){ 0, -3, 4 }, sizeof desc.direction);
+        memcpy(desc.intensity, (float[3]){ 10, 20, 30 }, sizeof desc.intensity);
+        int index = -1;
+        assert_int_equal(ag_scene_add_light(scene, &desc, &index), AG_OK);
+        assert_int_equal(index, type);
+        assert_int_equal(ag_scene_get_light(scene, index, 0, 0, &info), AG_OK);
+        assert_int_equal(info.light.type, type);
+        for (int i = 0; i < 3; i++) {
+            CHECK_NEAR(info.light.intensity[i], desc.intensity[i], 0);
+            if (type != AG_LIGHT_SUN) CHECK_NEAR(info.light.position[i], desc.position[i], 1e-6);
+            if (type != AG_LIGHT_POINT)
+                CHECK_NEAR(info.light.direction[i], desc.direction[i] / 5, 1e-6);
+        }
+    }
+    assert_int_equal(ag_scene_remove_lights(scene), AG_OK);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+    assert_int_equal(info.lights, 0);
+    end();
+}
+
+TEST(wrong_lights_stay_outside)
+{
+    begin();
+    struct ag_light_desc desc;
+    ag_light_desc_default(&desc, AG_LIGHT_SUN);
+    desc.intensity[0] = -1;
+    assert_int_equal(ag_scene_add_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    ag_light_desc_default(&desc, AG_LIGHT_SUN);
+    memset(desc.direction, 0, sizeof desc.direction);
+    assert_int_equal(ag_scene_add_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    ag_light_desc_default(&desc, AG_LIGHT_SPOT);
+    desc.inner_rad = desc.outer_rad;
+    assert_int_equal(ag_scene_add_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    ag_light_desc_default(&desc, AG_LIGHT_POINT);
+    desc.position[1] = INFINITY;
+    assert_int_equal(ag_scene_add_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    ag_light_desc_default(&desc, (enum ag_light_type)3);
+    assert_int_equal(ag_scene_add_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    const float negative[3] = { 0, -1, 0 };
+    assert_int_equal(ag_scene_set_sky(scene, negative), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_set_sky(scene, NULL), AG_ERROR_ARGUMENT);
+    end();
+}
+
+TEST(only_a_dark_scene_gets_the_default_light_and_only_once)
+{
+    begin();
+    assert_int_equal(ag_scene_add_instance(scene, add_square(), NULL, NULL), AG_OK);
+    struct ag_default_lighting lighting;
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_default_lighting(scene, &lighting), AG_OK);
+    assert_true(lighting.needed);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(ag_scene_add_default_lighting(scene, &lighting), AG_OK);
+        assert_int_equal(lighting.needed, i == 0);
+        assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+        assert_int_equal(info.lights, 1);
+    }
+    CHECK(info.sky[0] > 0 && info.sky[1] > 0 && info.sky[2] > 0);
+    end();
+}
+
+TEST(looking_from_a_point_at_itself_is_refused)
+{
+    begin();
+    const float here[3] = { 1, 2, 3 }, there[3] = { 1, 2, 2 }, nowhere[3] = { NAN, 0, 0 };
+    struct ag_camera camera;
+    assert_int_equal(ag_scene_look_at(scene, here, here, 1, &camera), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_look_at(scene, here, nowhere, 1, &camera), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_look_at(scene, here, there, 0, &camera), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_look_at(scene, here, there, 3.2f, &camera), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_look_at(scene, here, there, 1, &camera), AG_OK);
+    assert_memory_equal(camera.eye, here, sizeof here);
+    assert_memory_equal(camera.target, there, sizeof there);
+    CHECK(camera.near_m > 0);
+    end();
+}
+
+TEST(a_scene_without_a_camera_gets_one_that_is_said_to_be_made_up)
+{
+    begin();
+    assert_int_equal(ag_scene_add_instance(scene, add_square(), NULL, NULL), AG_OK);
+    struct ag_camera camera;
+    bool made_up = false;
+    assert_int_equal(ag_scene_camera_count(scene), 0);
+    assert_int_equal(ag_scene_default_camera(scene, 0, 0, &camera, &made_up), AG_OK);
+    assert_true(made_up);
+    end();
+    assert_int_equal(ag_context_create(NULL, &context), AG_OK);
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    assert_int_equal(ag_scene_default_camera(scene, 0, 0, &camera, &made_up), AG_OK);
+    assert_false(made_up);
+    CHECK_STRING(ag_scene_camera_name(scene, 0), "main");
+    end();
+}
+
+TEST(time_moves_what_an_animation_moves)
+{
+    assert_int_equal(ag_context_create(NULL, &context), AG_OK);
+    assert_int_equal(ag_scene_load(context, test_scene_path("box-animated.gltf"), &scene), AG_OK);
+    struct ag_animation_info animation;
+    struct ag_scene_info rest, start, later, wrapped;
+    assert_int_equal(ag_scene_get_animation(scene, 0, &animation), AG_OK);
+    double half = animation.duration_s / 2;
+    assert_int_equal(ag_scene_get_info(scene, -1, half, &rest), AG_OK);
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &start), AG_OK);
+    assert_int_equal(ag_scene_get_info(scene, 0, half, &later), AG_OK);
+    assert_int_equal(ag_scene_get_info(scene, 0, half + animation.duration_s, &wrapped), AG_OK);
+    CHECK(memcmp(start.bounds_max, later.bounds_max, sizeof later.bounds_max) != 0);
+    for (int i = 0; i < 3; i++) {
+        CHECK_NEAR(wrapped.bounds_max[i], later.bounds_max[i], 1e-4);
+        CHECK(isfinite(rest.bounds_max[i]));
+    }
+    end();
+}
