@@ -105,27 +105,36 @@ static void show_direction(struct ag_image *image)
     }
 }
 
-// Each channel from its least to its greatest finite value; `near_is_bright` turns that round. Not
-// finite: 0.
-static void show_range(struct ag_image *image, bool near_is_bright)
+// Each channel from its least to its greatest finite value. Not finite: 0.
+static void show_range(struct ag_image *image)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height;
-    int channels = image->channels;
-    for (int c = 0; c < channels; c++) {
+    size_t channels = (size_t)image->channels;
+    for (size_t c = 0; c < channels; c++) {
         float low = INFINITY, high = -INFINITY;
         for (size_t i = 0; i < pixels; i++) {
-            float value = image->pixels[i * (size_t)channels + (size_t)c];
+            float value = image->pixels[i * channels + c];
             if (!isfinite(value)) continue;
             low = fminf(low, value);
             high = fmaxf(high, value);
         }
         float scale = high > low ? 1.0f / (high - low) : 0.0f;
         for (size_t i = 0; i < pixels; i++) {
-            float *value = &image->pixels[i * (size_t)channels + (size_t)c];
-            float at = (*value - low) * scale;
-            *value = isfinite(*value) ? near_is_bright ? 1.0f - at : at : 0.0f;
+            float *value = &image->pixels[i * channels + c];
+            *value = isfinite(*value) ? (*value - low) * scale : 0.0f;
         }
     }
+}
+
+// The nearest surface white, twice as far half as bright, nothing (0) black.
+static void show_depth(struct ag_image *image)
+{
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    float nearest = INFINITY;
+    for (size_t i = 0; i < pixels; i++)
+        if (image->pixels[i] > 0.0f) nearest = fminf(nearest, image->pixels[i]);
+    for (size_t i = 0; i < pixels; i++)
+        image->pixels[i] = image->pixels[i] > 0.0f ? nearest / image->pixels[i] : 0.0f;
 }
 
 // Irradiance as a white, perfectly diffuse surface would show it.
@@ -149,7 +158,7 @@ static enum ag_result tonemap(struct session *session, struct ag_renderer *rende
 }
 
 // How a layer becomes a picture; what is not named is radiance.
-enum look { RADIANCE, AS_IT_IS, DIRECTION, NEAR_IS_BRIGHT, RANGE, IRRADIANCE };
+enum look { RADIANCE, AS_IT_IS, DIRECTION, DEPTH, RANGE, IRRADIANCE };
 
 static enum look look_of(const char *layer)
 {
@@ -157,7 +166,7 @@ static enum look look_of(const char *layer)
         const char *layer;
         enum look look;
     } looks[] = { { "albedo", AS_IT_IS },  { "visibility", AS_IT_IS },  { "display", AS_IT_IS },
-                  { "normal", DIRECTION }, { "motion", DIRECTION },     { "depth", NEAR_IS_BRIGHT },
+                  { "normal", DIRECTION }, { "motion", DIRECTION },     { "depth", DEPTH },
                   { "position", RANGE },   { "irradiance", IRRADIANCE } };
     for (size_t i = 0; i < sizeof looks / sizeof looks[0]; i++)
         if (strcmp(looks[i].layer, layer) == 0) return looks[i].look;
@@ -173,11 +182,11 @@ static enum ag_result to_display(struct session *session, struct ag_renderer *re
     case DIRECTION:
         show_direction(*image);
         return AG_OK;
-    case NEAR_IS_BRIGHT:
-        show_range(*image, true);
+    case DEPTH:
+        show_depth(*image);
         return AG_OK;
     case RANGE:
-        show_range(*image, false);
+        show_range(*image);
         return AG_OK;
     case IRRADIANCE:
         irradiance_to_radiance(*image);

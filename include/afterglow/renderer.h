@@ -55,8 +55,9 @@ AG_API enum ag_result ag_renderer_wait(struct ag_renderer *renderer);
 /// emissive motion display debug. NULL past the end.
 AG_API const char *ag_layer_name(int index);
 /// Reads a layer of the newest frame in physical units (cd/m², lux, metres): 3 channels, depth and visibility 1.
-/// Waits for the GPU. "indirect" needs indirect_layer, "display" display_layer, "debug" a debug view. A layer that the
-/// techniques in use do not write is zero (visibility: 1).
+/// Waits for the GPU. "indirect" needs indirect_layer, "display" display_layer, "debug" a debug view, "motion" a technique
+/// that asks for it. What no technique writes is neutral: no indirect light, visibility 1. Where there is no surface,
+/// normals, positions and depths are 0.
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
 /// The VkImage of a layer and its VkImageLayout, for programs that share the device. Radiance and irradiance on the GPU

@@ -91,15 +91,6 @@ static bool read_debug(struct ag_renderer *r, struct image *image)
     return true;
 }
 
-// A layer that no technique writes: no light, nothing occluded.
-static bool read_absent(const struct layer *layer, struct image *image)
-{
-    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    float value = layer->image == FRAME_VISIBILITY ? 1.0f : 0.0f;
-    for (size_t i = 0; i < count; i++) image->pixels[i] = value;
-    return true;
-}
-
 static bool read_layer(struct ag_renderer *r, const struct layer *layer, struct image *image)
 {
     if (layer->read == NO_READBACK) return read_debug(r, image);
