@@ -113,6 +113,8 @@ static enum status prepare(struct job *job)
     struct ag_context *context = job->session.context;
     enum status status = session_load(&job->session, a->positional[0]);
     if (status == DONE) status = session_light(&job->session);
+    struct ag_camera camera; // each frame asks again: what is wrong shows before a device is woken
+    if (status == DONE) status = session_camera(&job->session, a->time_s, &camera);
     if (status != DONE) return status;
 
     struct ag_device_desc device_desc;
@@ -256,9 +258,9 @@ const struct command command_render = {
             "radiance in cd/m2,\n"
             "irradiance in lux, lengths in metres.\n",
     .examples =
-        "  afterglow render @cornell\n"
+        "  afterglow render @cornell:light=point\n"
         "      direct light alone, into cornell.png\n"
-        "  afterglow render @cornell --gi lpv:steps=16 --size 640x360 -o lit.png\n"
+        "  afterglow render @atrium --gi lpv:steps=16 --size 640x360 -o lit.png\n"
         "      with light propagation volumes of 16 steps (what else there is: afterglow list)\n"
         "  afterglow render house.glb --gi lpv --no-scene-lights --light "
         "sun:1,-2,0.5:100000,95000,90000\n"

@@ -94,7 +94,6 @@ static bool read_debug(struct ag_renderer *r, struct image *image)
 static bool read_layer(struct ag_renderer *r, const struct layer *layer, struct image *image)
 {
     if (layer->read == NO_READBACK) return read_debug(r, image);
-    if (layer->image != NO_IMAGE && layer_image(r, layer).id == 0) return read_absent(layer, image);
     return frame_read(r->frame, (enum frame_readback)layer->read, image->pixels, image->channels);
 }
 

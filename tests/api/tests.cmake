@@ -2,3 +2,10 @@
 foreach(name arguments context scene catalogue)
   ag_test(api/${name} USES api)
 endforeach()
+
+# Only ag_… is to be seen from outside. (Sanitizers add names of their own.)
+if(NOT AFTERGLOW_SANITIZE)
+  add_test(NAME api.exports
+    COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/exports.sh $<TARGET_FILE:afterglow_shared> ${CMAKE_SOURCE_DIR}/include)
+  set_tests_properties(api.exports PROPERTIES LABELS api)
+endif()

@@ -1,0 +1,12 @@
+#!/bin/sh
+# exports.sh LIBRARY INCLUDE: the library exports exactly the functions that the headers declare with AG_API.
+set -eu
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+nm -D --defined-only "$1" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u >"$work/exported"
+# A declaration's name is the first ag_…( after AG_API, maybe on the next line.
+cat "$2"/afterglow/*.h | tr '\n' ' ' | sed 's/AG_API/\nAG_API/g' | grep '^AG_API ' | grep -v '__attribute__' |
+    grep -o '^[^(;]*(' | grep -o 'ag_[a-z_]*($' | tr -d '(' | sort -u >"$work/declared"
+[ -s "$work/declared" ] || { echo "no declarations found"; exit 1; }
+diff "$work/declared" "$work/exported" || { echo "< declared, > exported"; exit 1; }
+echo "$(wc -l <"$work/exported") functions"

@@ -1,0 +1,116 @@
+// diff: figures that can be worked out by hand, and files that cannot be compared.
+#include "cli/program.h"
+
+#include "image/exr.h"
+#include "image/png_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { WIDTH = 8, HEIGHT = 4 };
+
+// Every value `value`, but for the first pixel, which is `first`.
+static const char *write_exr(const char *name, int width, float value, float first)
+{
+    struct image color = { 0 }, depth = { 0 };
+    assert_true(image_init(&color, test_host(), width, HEIGHT, 3));
+    assert_true(image_init(&depth, test_host(), width, HEIGHT, 1));
+    for (int i = 0; i < 3 * width * HEIGHT; i++) color.pixels[i] = i < 3 ? first : value;
+    for (int i = 0; i < width * HEIGHT; i++) depth.pixels[i] = 2 * value;
+    const struct exr_layer layers[] = { { "color", &color }, { "depth", &depth } };
+    const char *path = test_path(name);
+    assert_true(exr_write(test_host(), path, layers, 2, NULL, 0));
+    image_finish(&color, test_host());
+    image_finish(&depth, test_host());
+    return path;
+}
+
+static double metric(const json_t *document, const char *key)
+{
+    const json_t *value = json_object_get(document, key);
+    if (!json_is_number(value)) fail_msg("no number %s", key);
+    return json_number_value(value);
+}
+
+TEST(a_constant_difference_has_the_errors_of_its_size)
+{
+    char a[300], b[300];
+    snprintf(a, sizeof a, "%s", write_exr("a.exr", WIDTH, 0.75f, 0.75f));
+    snprintf(b, sizeof b, "%s", write_exr("b.exr", WIDTH, 0.5f, 0.5f));
+    json_t *d = run_json(run_expect(0, "diff --json", a, b, NULL));
+    CHECK_NEAR(metric(d, "mse"), 0.0625, 1e-9);
+    CHECK_NEAR(metric(d, "mae"), 0.25, 1e-9);
+    CHECK_NEAR(metric(d, "psnr"), -10 * log10(0.0625), 1e-6);
+    CHECK_NEAR(metric(d, "relmse"), 0.0625 / (0.25 + 0.0001 * 0.25), 1e-6);
+    assert_int_equal((int)metric(d, "width"), WIDTH);
+    assert_int_equal((int)metric(d, "height"), HEIGHT);
+    CHECK_NEAR(json_number_value(json_array_get(json_object_get(d, "mean_a"), 2)), 0.75, 1e-9);
+    CHECK_NEAR(json_number_value(json_array_get(json_object_get(d, "mean_b"), 0)), 0.5, 1e-9);
+    json_decref(d);
+    // The table says the same.
+    const struct run *r = run_expect(0, "diff", a, b, NULL);
+    CHECK(strstr(r->out, "mse     0.0625\n") && strstr(r->out, "mae     0.25\n"));
+}
+
+TEST(equal_images_have_no_error_and_no_finite_psnr)
+{
+    const char *a = write_exr("same.exr", WIDTH, 3.0f, 1.0f);
+    json_t *d = run_json(run_expect(0, "diff --json", a, a, NULL));
+    assert_true(metric(d, "mse") == 0 && metric(d, "mae") == 0 && metric(d, "relmse") == 0);
+    CHECK(json_is_null(json_object_get(d, "psnr")));
+    json_decref(d);
+}
+
+TEST(a_layer_can_be_compared_by_its_name)
+{
+    char a[300], b[300];
+    snprintf(a, sizeof a, "%s", write_exr("la.exr", WIDTH, 1.0f, 1.0f));
+    snprintf(b, sizeof b, "%s", write_exr("lb.exr", WIDTH, 3.0f, 3.0f));
+    json_t *d = run_json(run_expect(0, "diff --json --layer depth", a, b, NULL));
+    CHECK_NEAR(metric(d, "mae"), 4.0, 1e-6);
+    json_decref(d);
+    const struct run *r = run_expect(1, "diff --layer indirect", a, b, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "indirect") && strstr(r->err, "color") && strstr(r->err, "depth"));
+}
+
+TEST(what_cannot_be_compared_is_named)
+{
+    char a[300], b[300], bad[300];
+    snprintf(a, sizeof a, "%s", write_exr("wide.exr", 2 * WIDTH, 1.0f, 1.0f));
+    snprintf(b, sizeof b, "%s", write_exr("narrow.exr", WIDTH, 1.0f, 1.0f));
+    snprintf(bad, sizeof bad, "%s", write_exr("nan.exr", WIDTH, 1.0f, NAN));
+    const struct run *r = run_expect(1, "diff", a, b, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "16x4") && strstr(r->err, "8x4"));
+    r = run_expect(1, "diff", b, bad, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "nan.exr") && strstr(r->err, "1 of its pixels"));
+}
+
+TEST(the_error_map_is_dark_where_images_agree)
+{
+    char a[300], b[300], map[300];
+    snprintf(a, sizeof a, "%s", write_exr("map-a.exr", WIDTH, 1.0f, 9.0f));
+    snprintf(b, sizeof b, "%s", write_exr("map-b.exr", WIDTH, 1.0f, 1.0f));
+    snprintf(map, sizeof map, "%s", test_path("map.png"));
+    run_expect(0, "diff --map", map, a, b, NULL);
+    struct image picture = { 0 };
+    assert_true(png_read(test_host(), map, &picture));
+    assert_int_equal(picture.width, WIDTH);
+    vec3s bright = vec3_of(picture.pixels[0], picture.pixels[1], picture.pixels[2]);
+    const float *last = image_at(&picture, WIDTH - 1, HEIGHT - 1);
+    CHECK(luminance(bright) > 2 * luminance(vec3_of(last[0], last[1], last[2])));
+    image_finish(&picture, test_host());
+}
+
+TEST(a_failed_comparison_writes_no_map)
+{
+    char a[300], b[300], map[300];
+    snprintf(a, sizeof a, "%s", write_exr("f-wide.exr", 2 * WIDTH, 1.0f, 1.0f));
+    snprintf(b, sizeof b, "%s", write_exr("f-narrow.exr", WIDTH, 1.0f, 1.0f));
+    snprintf(map, sizeof map, "%s/map.png", make_folder("maps"));
+    run_expect(1, "diff --map", map, a, b, NULL);
+    CHECK(!file_exists(map));
+}

@@ -1,0 +1,130 @@
+// info and list: what they say can be read by programs, and is so.
+#include "cli/program.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double number(const json_t *document, const char *key)
+{
+    const json_t *value = json_object_get(document, key);
+    if (!json_is_number(value)) fail_msg("no number %s", key);
+    return json_number_value(value);
+}
+
+static const char *text(const json_t *document, const char *key)
+{
+    const json_t *value = json_object_get(document, key);
+    if (!json_is_string(value)) fail_msg("no text %s", key);
+    return json_string_value(value);
+}
+
+TEST(info_of_the_cornell_box_is_its_published_size)
+{
+    json_t *info = run_json(run_expect(0, "info @cornell --json", NULL));
+    const json_t *low = json_object_get(json_object_get(info, "bounds"), "min");
+    const json_t *high = json_object_get(json_object_get(info, "bounds"), "max");
+    double width =
+        json_number_value(json_array_get(high, 0)) - json_number_value(json_array_get(low, 0));
+    CHECK_NEAR(width, 5.56, 1e-3);
+    CHECK(number(info, "triangles") >= 20);
+    CHECK(number(info, "memory_bytes") > 0);
+    CHECK(json_is_true(json_object_get(info, "emissive")));
+    assert_int_equal(json_array_size(json_object_get(info, "cameras")), 1);
+    CHECK_STRING(text(json_array_get(json_object_get(info, "cameras"), 0), "name"), "main");
+    const json_t *defaults = json_object_get(info, "defaults");
+    CHECK(json_is_null(json_object_get(defaults, "light")));
+    CHECK(json_is_null(json_object_get(defaults, "camera")));
+    json_decref(info);
+}
+
+TEST(info_lists_as_many_things_as_it_counts)
+{
+    const struct run *r = run_expect(0, "info @cornell:light=point --json", NULL);
+    json_t *info = run_json(r);
+    assert_int_equal(json_array_size(json_object_get(info, "lights")), 1);
+    const json_t *light = json_array_get(json_object_get(info, "lights"), 0);
+    CHECK_STRING(text(light, "type"), "point");
+    CHECK_STRING(text(light, "unit"), "cd");
+    assert_int_equal(json_array_size(json_object_get(light, "position")), 3);
+    CHECK(json_array_size(json_object_get(info, "materials")) >= 3);
+    assert_int_equal(json_array_size(json_object_get(info, "animations")), 0);
+    json_decref(info);
+    CHECK(strstr(run_expect(0, "info @cornell:light=point", NULL)->out, "lights       1\n"));
+}
+
+// A square floor and a wall, in a format without lights and cameras.
+static const char *write_dark_scene(void)
+{
+    static const char obj[] = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\n"
+                              "f 1 4 3\nf 1 3 2\nf 1 2 6\nf 1 6 5\n";
+    const char *path = test_path("dark.obj");
+    write_file(path, obj, sizeof obj - 1);
+    return path;
+}
+
+TEST(a_dark_scene_says_which_options_ask_for_its_defaults)
+{
+    json_t *info = run_json(run_expect(0, "info --json", write_dark_scene(), NULL));
+    const json_t *defaults = json_object_get(info, "defaults");
+    const json_t *light = json_object_get(defaults, "light");
+    const json_t *camera = json_object_get(defaults, "camera");
+    CHECK(strncmp(text(light, "light"), "sun:", 4) == 0);
+    float v[3];
+    CHECK(sscanf(text(light, "sky"), "%f,%f,%f", &v[0], &v[1], &v[2]) == 3 && v[0] > 0);
+    CHECK(sscanf(text(camera, "eye"), "%f,%f,%f", &v[0], &v[1], &v[2]) == 3 && isfinite(v[0]));
+    json_decref(info);
+    const struct run *r = run_expect(0, "info", test_path("dark.obj"), NULL);
+    CHECK(strstr(r->out, "--light sun:") && strstr(r->out, "--eye "));
+    CHECK_STRING(r->err, "");
+}
+
+TEST(time_moves_the_bounds_of_an_animated_scene)
+{
+    const char *scene = test_scene_path("box-animated.gltf");
+    char first[4096], bounds[2][256];
+    snprintf(first, sizeof first, "%s", run_expect(0, "info --animation 0", scene, NULL)->out);
+    const char *times[2] = { "0", "1.5" };
+    for (int i = 0; i < 2; i++) {
+        json_t *info = run_json(run_expect(0, "info --json --time", times[i], scene, NULL));
+        char *dump = json_dumps(json_object_get(info, "bounds"), JSON_COMPACT);
+        snprintf(bounds[i], sizeof bounds[i], "%s", dump);
+        free(dump);
+        json_decref(info);
+    }
+    assert_string_not_equal(bounds[0], bounds[1]);
+    CHECK(strstr(first, "animations   1\n"));
+    check_one_error_line(run_expect(1, "info --animation 7", scene, NULL));
+}
+
+TEST(list_names_every_technique_scene_and_layer)
+{
+    json_t *list = run_json(run_expect(0, "list --json --quiet", NULL));
+    bool has_none = false, has_cornell = false;
+    json_t *item, *option;
+    size_t i, k;
+    json_array_foreach(json_object_get(list, "techniques"), i, item)
+    {
+        has_none |= strcmp(text(item, "name"), "none") == 0;
+        json_array_foreach(json_object_get(item, "options"), k, option)
+        {
+            CHECK(text(option, "help")[0] && text(option, "name")[0]);
+            CHECK(json_object_get(option, "default"));
+            if (strcmp(text(option, "type"), "int") == 0 ||
+                strcmp(text(option, "type"), "float") == 0)
+                CHECK(number(option, "min") <= number(option, "max"));
+            if (strcmp(text(option, "type"), "choice") == 0)
+                CHECK(json_array_size(json_object_get(option, "choices")) >= 2);
+        }
+    }
+    json_array_foreach(json_object_get(list, "scenes"), i, item) has_cornell |=
+        strcmp(text(item, "name"), "@cornell") == 0;
+    CHECK(has_none && has_cornell);
+    CHECK(json_array_size(json_object_get(list, "layers")) >= 10);
+    CHECK(json_is_array(json_object_get(list, "devices")));
+    CHECK(json_array_size(json_object_get(list, "frame_options")) >= 1);
+    json_decref(list);
+    const char *out = run_expect(0, "list --quiet", NULL)->out;
+    CHECK(strstr(out, "Techniques") && strstr(out, "@cornell") && strstr(out, "lpv"));
+}

@@ -1,0 +1,300 @@
+// render: the same command gives the same bytes, the layers add up, options do what they say,
+// failure leaves nothing.
+#include "cli/program.h"
+
+#include "image/exr.h"
+#include "image/png_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char SMALL[] = "render @cornell:light=point --size 48x32 --quiet";
+
+static struct image read_layer(const char *path, const char *layer)
+{
+    struct image image = { 0 };
+    if (!exr_read(test_host(), path, layer, &image)) fail_msg("%s", test_last_message());
+    return image;
+}
+
+static double mean(const struct image *image)
+{
+    double sum = 0;
+    int count = image->width * image->height * image->channels;
+    for (int i = 0; i < count; i++) sum += (double)image->pixels[i];
+    return sum / count;
+}
+
+static double mean_of(const char *path, const char *layer)
+{
+    struct image image = read_layer(path, layer);
+    double value = mean(&image);
+    image_finish(&image, test_host());
+    return value;
+}
+
+TEST(equal_commands_write_equal_files)
+{
+    require_device();
+    static const char *const names[] = { "x.png", "x.exr" };
+    char a[300], b[300], words[300];
+    snprintf(words, sizeof words, "%s --gi lpv --frames 2 -o", SMALL);
+    for (int i = 0; i < 2; i++) {
+        snprintf(a, sizeof a, "%s", test_path(names[i]));
+        snprintf(b, sizeof b, "%s/%s", make_folder(i ? "second-exr" : "second-png"), names[i]);
+        const struct run *r = run_expect(0, words, a, NULL);
+        CHECK_STRING(r->err, "");
+        CHECK_STRING(r->out, "");
+        run_expect(0, words, b, NULL);
+        CHECK(files_are_equal(a, b));
+    }
+}
+
+TEST(direct_and_indirect_light_add_up_to_colour)
+{
+    require_device();
+    char path[300];
+    snprintf(path, sizeof path, "%s", test_path("layers.exr"));
+    run_expect(0, SMALL, "--gi", "lpv", "--aov", "color,direct,indirect,depth,visibility", "-o",
+               path, NULL);
+    struct image color = read_layer(path, NULL), direct = read_layer(path, "direct"),
+                 indirect = read_layer(path, "indirect"), depth = read_layer(path, "depth");
+    assert_int_equal(depth.channels, 1);
+    CHECK(mean(&indirect) > 0 && mean(&direct) > 0);
+    double scale = mean(&color);
+    for (int i = 0; i < color.width * color.height * 3; i++) {
+        double sum = (double)direct.pixels[i] + (double)indirect.pixels[i];
+        // Half floats on the GPU: 11 bits each.
+        CHECK_NEAR(sum, color.pixels[i], 2e-3 * fabs(sum) + 1e-4 * scale);
+    }
+    image_finish(&color, test_host());
+    image_finish(&direct, test_host());
+    image_finish(&indirect, test_host());
+    image_finish(&depth, test_host());
+}
+
+TEST(an_exr_says_how_it_was_made)
+{
+    require_device();
+    char path[300];
+    snprintf(path, sizeof path, "%s", test_path("attributes.exr"));
+    run_expect(0, SMALL, "--gi", "lpv:steps=3", "--exposure", "7.5", "--seed", "42", "-o", path,
+               NULL);
+    static const char *const expected[][2] = { { "afterglow.scene", "@cornell:light=point" },
+                                               { "afterglow.camera", "main" },
+                                               { "afterglow.exposure_ev", "7.5" },
+                                               { "afterglow.seed", "42" } };
+    for (size_t i = 0; i < 4; i++) {
+        char *value = exr_attribute_value(test_host(), path, expected[i][0]);
+        assert_non_null(value);
+        CHECK_STRING(value, expected[i][1]);
+        host_free(test_host(), value);
+    }
+    char *gi = exr_attribute_value(test_host(), path, "afterglow.gi");
+    assert_non_null(gi);
+    CHECK(strstr(gi, "lpv:") && strstr(gi, "steps=3"));
+    host_free(test_host(), gi);
+}
+
+TEST(light_options_add_and_remove_light)
+{
+    require_device();
+    char path[300];
+    snprintf(path, sizeof path, "%s", test_path("light.exr"));
+    run_expect(0, SMALL, "--no-scene-lights", "-o", path, NULL);
+    CHECK(mean_of(path, NULL) == 0.0);
+    run_expect(0, SMALL, "--no-scene-lights", "--light", "point:0,2.7,0:100,100,100", "-o", path,
+               NULL);
+    double once = mean_of(path, NULL);
+    run_expect(0, SMALL, "--no-scene-lights", "--light", "point:0,2.7,0:100,100,100", "--light",
+               "point:0,2.7,0:100,100,100", "-o", path, NULL);
+    CHECK(once > 0);
+    CHECK_RELATIVE(mean_of(path, NULL), 2 * once, 2e-3);
+}
+
+TEST(a_sky_is_seen_where_there_is_nothing)
+{
+    require_device();
+    char path[300];
+    snprintf(path, sizeof path, "%s", test_path("sky.exr"));
+    run_expect(0, SMALL, "--no-scene-lights", "--sky", "3,5,7", "--eye", "0,2,50", "--target",
+               "0,2,100", "-o", path, NULL);
+    struct image image = read_layer(path, NULL);
+    for (int c = 0; c < 3; c++) CHECK_RELATIVE(image.pixels[c], 3 + 2 * c, 2e-3);
+    image_finish(&image, test_host());
+}
+
+TEST(a_brighter_exposure_is_a_brighter_png_and_the_same_exr)
+{
+    require_device();
+    struct image pictures[2] = { 0 };
+    char path[300], exr[2][300];
+    snprintf(path, sizeof path, "%s", test_path("ev.png"));
+    for (int i = 0; i < 2; i++) {
+        const char *ev = i ? "4" : "6";
+        snprintf(exr[i], sizeof exr[i], "%s", test_path(i ? "ev4.exr" : "ev6.exr"));
+        run_expect(0, SMALL, "--exposure", ev, "-o", path, NULL);
+        run_expect(0, SMALL, "--exposure", ev, "-o", exr[i], NULL);
+        assert_true(png_read(test_host(), path, &pictures[i]));
+    }
+    CHECK(mean(&pictures[1]) > 1.2 * mean(&pictures[0]));
+    CHECK_NEAR(mean_of(exr[0], NULL), mean_of(exr[1], NULL), 0);
+    for (int i = 0; i < 2; i++) image_finish(&pictures[i], test_host());
+}
+
+// A scene without light and camera, and what the program says about it on standard error.
+TEST(the_defaults_that_are_said_give_the_same_picture)
+{
+    require_device();
+    static const char obj[] = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\n"
+                              "f 1 4 3\nf 1 3 2\nf 1 2 6\nf 1 6 5\n";
+    char scene[300], first[300], again[300], light[256], sky[128], eye[128], target[128], fov[64];
+    snprintf(scene, sizeof scene, "%s", test_path("dark.obj"));
+    snprintf(first, sizeof first, "%s", test_path("default.exr"));
+    snprintf(again, sizeof again, "%s", test_path("asked.exr"));
+    write_file(scene, obj, sizeof obj - 1);
+    const struct run *r = run_expect(0, "render --size 32x32 --gi lpv -o", first, scene, NULL);
+    const char *said_light = strstr(r->err, "--light "), *said_eye = strstr(r->err, "--eye ");
+    CHECK(said_light && said_eye);
+    assert_int_equal(sscanf(said_light, "--light %255s --sky %127s", light, sky), 2);
+    assert_int_equal(sscanf(said_eye, "--eye %127s --target %127s --fov %63s", eye, target, fov),
+                     3);
+    r = run_expect(0, "render --size 32x32 --gi lpv --light", light, "--sky", sky, "--eye", eye,
+                   "--target", target, "--fov", fov, "-o", again, scene, NULL);
+    CHECK_STRING(r->err, "");
+    CHECK(files_are_equal(first, again));
+    CHECK(mean_of(first, NULL) > 0);
+}
+
+TEST(a_number_in_the_name_writes_every_frame_and_time_moves)
+{
+    require_device();
+    const char *scene = test_scene_path("box-animated.gltf");
+    char pattern[300], frames[3][300];
+    snprintf(pattern, sizeof pattern, "%s", test_path("frame-%03d.exr"));
+    for (int i = 0; i < 3; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "frame-%03d.exr", i);
+        snprintf(frames[i], sizeof frames[i], "%s", test_path(name));
+    }
+    run_expect(0, "render --size 32x32 --quiet --frames 2 --time-step 0.75 -o", pattern, scene,
+               NULL);
+    CHECK(file_exists(frames[0]) && file_exists(frames[1]) && !file_exists(frames[2]));
+    CHECK(!files_are_equal(frames[0], frames[1]));
+    run_expect(0, "render --size 32x32 --quiet --frames 2 -o", pattern, scene, NULL);
+    CHECK_NEAR(mean_of(frames[0], NULL), mean_of(frames[1], NULL), 0);
+}
+
+TEST(statistics_have_the_keys_that_scripts_rely_on)
+{
+    require_device();
+    char path[300], picture[300];
+    snprintf(path, sizeof path, "%s", test_path("stats.json"));
+    snprintf(picture, sizeof picture, "%s", test_path("stats.png"));
+    run_expect(0, SMALL, "--gi", "lpv:steps=4", "--frames", "4", "--stats", path, "-o", picture,
+               NULL);
+    json_error_t error;
+    json_t *stats = json_load_file(path, 0, &error), *pass, *bytes;
+    assert_non_null(stats);
+    const char *device, *driver, *gi;
+    int width, height, frames, steps;
+    double median, p95, bake_seconds;
+    json_t *passes, *memory;
+    assert_int_equal(
+        json_unpack(
+            stats,
+            "{s:s, s:s, s:[ii], s:i, s:s, s:{s:{s:i}}, s:o, s:{s:F, s:F}, s:o, s:{s:F, s:i}}",
+            "device", &device, "driver", &driver, "size", &width, &height, "frames", &frames, "gi",
+            &gi, "options", "lpv", "steps", &steps, "passes", &passes, "frame_ms", "median",
+            &median, "p95", &p95, "memory_bytes", &memory, "bake", "seconds", &bake_seconds,
+            "bytes", &height),
+        0);
+    CHECK(width == 48 && frames == 4 && steps == 4);
+    CHECK(median > 0 && p95 >= median);
+    size_t i;
+    bool has_gbuffer = false, has_propagate = false;
+    json_array_foreach(passes, i, pass)
+    {
+        const char *name;
+        assert_int_equal(json_unpack(pass, "{s:s, s:{s:F, s:F}}", "name", &name, "gpu_ms", "median",
+                                     &median, "p95", &p95),
+                         0);
+        has_gbuffer |= strcmp(name, "gbuffer") == 0;
+        has_propagate |= strcmp(name, "lpv.propagate") == 0;
+        CHECK(strcmp(name, "frame") != 0);
+    }
+    CHECK(has_gbuffer && has_propagate);
+    const char *owner;
+    double total = 0;
+    json_object_foreach(memory, owner, bytes) total += json_number_value(bytes);
+    CHECK(total > 48 * 32 * 8);
+    json_decref(stats);
+}
+
+TEST(json_goes_to_standard_output_alone)
+{
+    require_device();
+    const char *path = test_path("json.png");
+    const struct run *r = run_expect(0, SMALL, "--json", "-o", path, NULL);
+    json_t *result = run_json(r);
+    CHECK_STRING(json_string_value(json_object_get(result, "scene")), "@cornell:light=point");
+    CHECK_STRING(json_string_value(json_object_get(result, "output")), path);
+    CHECK(json_is_number(json_object_get(result, "exposure_ev")));
+    CHECK_STRING(r->err, "");
+    json_decref(result);
+}
+
+TEST(every_layer_can_be_a_png)
+{
+    require_device();
+    static const char *const layers[] = { "color",      "direct",   "indirect", "irradiance",
+                                          "visibility", "specular", "albedo",   "normal",
+                                          "depth",      "position", "display" };
+    for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
+        char path[300];
+        struct image picture = { 0 };
+        snprintf(path, sizeof path, "%s", test_path("layer.png"));
+        run_expect(0, SMALL, "--aov", layers[i], "-o", path, NULL);
+        assert_true(png_read(test_host(), path, &picture));
+        assert_int_equal(picture.width, 48);
+        assert_int_equal(picture.height, 32);
+        image_finish(&picture, test_host());
+    }
+}
+
+TEST(validation_has_no_complaints_about_a_render)
+{
+    require_device();
+    const char *path = test_path("validated.exr");
+    setenv("AFTERGLOW_VALIDATION", "1", 1);
+    const struct run *r = run_expect(0, SMALL, "--gi", "lpv", "--frames", "3", "--aov",
+                                     "color,indirect,normal,position", "-o", path, NULL);
+    unsetenv("AFTERGLOW_VALIDATION");
+    CHECK_STRING(r->err, "");
+}
+
+TEST(a_wrong_device_fails_and_leaves_nothing)
+{
+    char folder[256], path[300];
+    snprintf(folder, sizeof folder, "%s", make_folder("device"));
+    snprintf(path, sizeof path, "%s/out.png", folder);
+    check_one_error_line(run_expect(1, SMALL, "--device", "no-such-gpu", "-o", path, NULL));
+    check_one_error_line(run_expect(1, SMALL, "--device", "4711", "-o", path, NULL));
+    assert_int_equal(count_files(folder), 0);
+}
+
+TEST(without_a_name_the_picture_is_called_like_the_scene)
+{
+    require_device();
+    char before[1024];
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(chdir(make_folder("here")), 0);
+    const struct run *r = run_expect(0, "render @cornell:light=point --size 16x16", NULL);
+    bool there = file_exists("cornell.png");
+    assert_int_equal(chdir(before), 0);
+    CHECK(there);
+    CHECK(strstr(r->err, "cornell.png"));
+}

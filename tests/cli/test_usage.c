@@ -1,0 +1,229 @@
+// Wrong input ends with its status and one line that names what is wrong, and leaves nothing
+// behind.
+#include "cli/program.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+struct wrong {
+    const char *words, *names; // what the line must name
+};
+
+static void check_wrong(const struct wrong *cases, size_t count, int status)
+{
+    char folder[256], picture[300];
+    static int number;
+    char name[32];
+    snprintf(name, sizeof name, "wrong-%d", number++);
+    snprintf(folder, sizeof folder, "%s", make_folder(name));
+    snprintf(picture, sizeof picture, "%s/out.exr", folder);
+    for (size_t i = 0; i < count; i++) {
+        bool renders =
+            strncmp(cases[i].words, "render @", 8) == 0 && !strstr(cases[i].words, " -o");
+        const struct run *r = renders ? run_expect(status, cases[i].words, "-o", picture, NULL)
+                                      : run_expect(status, cases[i].words, NULL);
+        check_one_error_line(r);
+        if (!strstr(r->err, cases[i].names))
+            fail_msg("%s: does not name \"%s\": %s", cases[i].words, cases[i].names, r->err);
+        assert_int_equal(count_files(folder), 0);
+    }
+}
+
+#define CHECK_WRONG(cases, status) check_wrong(cases, sizeof(cases) / sizeof((cases)[0]), status)
+
+TEST(wrong_commands_and_arguments_are_wrong_usage)
+{
+    static const struct wrong cases[] = {
+        { "", "--help" },
+        { "rendr @cornell", "render" },
+        { "view @cornell", "view" },
+        { "reference @cornell", "reference" },
+        { "render", "SCENE" },
+        { "render @cornell @cornell", "@cornell" },
+        { "info", "SCENE" },
+        { "list extra", "extra" },
+        { "diff a.png", "B" },
+        { "diff a.png b.exr", "b.exr" },
+        { "diff a.jpg b.png", "a.jpg" },
+        { "diff a.png b.png --layer color", "--layer" },
+        { "diff a.exr b.exr --map map.exr", "--map" },
+    };
+    CHECK_WRONG(cases, 2);
+}
+
+TEST(unknown_options_name_the_nearest)
+{
+    static const struct wrong cases[] = {
+        { "render @cornell --sise 3x3", "--size" },
+        { "render @cornell --exposur=3", "--exposure" },
+        { "info @cornell --jsn", "--json" },
+        { "info @cornell --size 3x3", "--size" }, // an option of another command
+        { "list --jason", "--json" },
+        { "diff a.png b.png --layr x", "--layer" },
+        { "render @cornell --no-such-thing-at-all", "--help" },
+    };
+    CHECK_WRONG(cases, 2);
+}
+
+TEST(wrong_values_are_wrong_usage)
+{
+    static const struct wrong cases[] = {
+        { "render @cornell --size 0x100", "--size" },
+        { "render @cornell --size 100x0", "--size" },
+        { "render @cornell --size 100000x100", "--size" },
+        { "render @cornell --size 100x16385", "--size" },
+        { "render @cornell --size 100", "--size" },
+        { "render @cornell --size 100x100x100", "--size" },
+        { "render @cornell --size -100x100", "--size" },
+        { "render @cornell --size 99999999999999999999x100", "--size" },
+        { "render @cornell --size", "--size" },
+        { "render @cornell --frames 0", "--frames" },
+        { "render @cornell --frames 1e3", "--frames" },
+        { "render @cornell --fov 180", "--fov" },
+        { "render @cornell --fov 0", "--fov" },
+        { "render @cornell --time nan", "--time" },
+        { "render @cornell --time 1,5", "--time" },
+        { "render @cornell --exposure bright", "--exposure" },
+        { "render @cornell --exposure inf", "--exposure" },
+        { "render @cornell --seed -1", "--seed" },
+        { "render @cornell --sky 1,2", "--sky" },
+        { "render @cornell --sky 1,2,-3", "--sky" },
+        { "render @cornell --eye 1,2,3", "--target" },
+        { "render @cornell --target 1,2,3", "--eye" },
+        { "render @cornell --eye 1,2,3 --target 1,2,3", "--eye" },
+        { "render @cornell --eye 1,2,x --target 1,2,3", "--eye" },
+        { "render @cornell --camera main --eye 0,0,0 --target 1,2,3", "--camera" },
+        { "render @cornell --quiet=yes", "--quiet" },
+    };
+    CHECK_WRONG(cases, 2);
+}
+
+TEST(wrong_lights_are_wrong_usage)
+{
+    static const struct wrong cases[] = {
+        { "render @cornell --light lamp:0,0,0:1,1,1", "lamp" },
+        { "render @cornell --light point:0,0:1,1,1", "point:x,y,z:r,g,b" },
+        { "render @cornell --light point:0,0,0:1,1,1:1", "point:x,y,z:r,g,b" },
+        { "render @cornell --light point:0,0,0:1,-1,1", "negative" },
+        { "render @cornell --light point:0,0,0:1,nan,1", "point:x,y,z:r,g,b" },
+        { "render @cornell --light sun:0,0,0:1,1,1", "direction" },
+        { "render @cornell --light sun:1,1,1", "sun:dx,dy,dz:r,g,b" },
+        { "render @cornell --light spot:0,0,0:0,-1,0:30:20:1,1,1", "half-angles" },
+        { "render @cornell --light spot:0,0,0:0,-1,0:20:91:1,1,1", "half-angles" },
+        { "render @cornell --light spot:0,0,0:0,-1,0:a:20:1,1,1", "spot:" },
+        { "render @cornell --light spot:0,0,0:0,-1,0:20:1,1,1", "spot:" },
+        { "render @cornell --light :", "sun:" },
+    };
+    CHECK_WRONG(cases, 2);
+}
+
+TEST(wrong_layers_techniques_and_scenes_name_the_nearest)
+{
+    static const struct wrong cases[] = {
+        { "render @cornell --aov color,irradianse", "irradiance" },
+        { "render @cornell --aov color,color", "twice" },
+        { "render @cornell --aov color,", "--aov" },
+        { "render @cornell --aov debug", "--debug-view" },
+        { "render @cornell --aov color,depth -o two.png", "two.png" },
+        { "render @cornell --gi lpw", "lpv" },
+        { "render @cornell --gi lpv:stepz=3", "steps" },
+        { "render @cornell --gi lpv:steps=-1", "steps" },
+        { "render @cornell --gi lpv+lpv", "lpv" },
+        { "render @cornell --frame-options shadow_sise=512", "shadow_size" },
+        { "render @cornell --debug-view no-such-view", "no-such-view" },
+        { "render @cornel", "cornell" },
+        { "render @cornell:lihgt=point", "light" },
+        { "render @cornell:light=candle", "point" },
+        { "info @nowhere", "nowhere" },
+    };
+    CHECK_WRONG(cases, 2);
+}
+
+TEST(wrong_output_names_are_wrong_usage)
+{
+    static const struct wrong cases[] = {
+        { "render @cornell -o picture.jpg", "picture.jpg" },
+        { "render @cornell -o picture", "picture" },
+        { "render @cornell -o .png", ".png" },
+        { "render @cornell -o %d-%d.png", "%d-%d.png" },
+    };
+    CHECK_WRONG(cases, 2);
+}
+
+TEST(what_cannot_be_read_or_written_fails)
+{
+    static const struct wrong cases[] = {
+        { "render no/such/file.glb -o out.png", "no/such/file.glb" },
+        { "info no/such/file.glb", "no/such/file.glb" },
+        { "render @cornell -o no/such/folder/out.png", "no/such/folder" },
+        { "render @cornell --stats no/such/folder/stats.json", "no/such/folder" },
+        { "render @cornell -o /dev/null/out.png", "/dev/null" },
+        { "render @cornell --camera nobody", "main" },
+        { "render @cornell --animation walk", "walk" },
+        { "diff no/such/a.exr no/such/b.exr", "no/such/a.exr" },
+        { "diff no/such/a.png no/such/b.png", "no/such/a.png" },
+        { "info /", "/" },
+    };
+    CHECK_WRONG(cases, 1);
+}
+
+TEST(a_folder_is_no_output)
+{
+    char folder[256], inside[300];
+    snprintf(folder, sizeof folder, "%s", make_folder("folders"));
+    snprintf(inside, sizeof inside, "%s/is-a-folder.png", folder);
+    assert_int_equal(mkdir(inside, 0700), 0);
+    check_one_error_line(run_expect(1, "render @cornell --size 8x8 -o", inside, NULL));
+    assert_int_equal(count_files(folder), 1);
+    assert_int_equal(count_files(inside), 0);
+}
+
+TEST(a_cut_off_glb_fails_and_leaves_nothing)
+{
+    // A header that promises 1000 bytes, and the beginning of its JSON.
+    static const char cut[] = "glTF\2\0\0\0\xe8\3\0\0\xd0\3\0\0JSON{\"asset\":{\"vers";
+    char folder[256], scene[300], picture[300];
+    snprintf(folder, sizeof folder, "%s", make_folder("cut"));
+    snprintf(scene, sizeof scene, "%s/cut.glb", folder);
+    snprintf(picture, sizeof picture, "%s/out.png", folder);
+    write_file(scene, cut, sizeof cut - 1);
+    const struct run *r = run_expect(1, "render", scene, "-o", picture, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "cut.glb"));
+    check_one_error_line(run_expect(1, "info", scene, NULL));
+    assert_int_equal(count_files(folder), 1);
+}
+
+TEST(a_line_break_in_a_name_does_not_break_the_line)
+{
+    check_one_error_line(run_expect(1, "info", "no\nsuch\nfile.glb", NULL));
+    check_one_error_line(run_expect(2, "info @cornell", "--no\nsuch", NULL));
+}
+
+TEST(a_full_standard_output_is_a_failure)
+{
+    if (!file_exists("/dev/full")) skip();
+    char command[600];
+    snprintf(command, sizeof command, "%s info @cornell >/dev/full 2>/dev/null", AFTERGLOW_PROGRAM);
+    int status = system(command);
+    assert_int_equal(WEXITSTATUS(status), 1);
+}
+
+TEST(help_teaches_with_examples)
+{
+    static const char *const commands[] = { "render", "info", "list", "diff" };
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        const struct run *r = run_expect(0, commands[i], "--help", NULL);
+        CHECK_STRING(r->err, "");
+        CHECK(strstr(r->out, "Examples:\n"));
+        char example[64];
+        snprintf(example, sizeof example, "  afterglow %s", commands[i]);
+        CHECK(strstr(strstr(r->out, "Examples:"), example));
+        CHECK(strstr(run_expect(0, "--help", NULL)->out, commands[i]));
+    }
+    CHECK(strncmp(run_expect(0, "--version", NULL)->out, "afterglow 0.", 12) == 0);
+}
