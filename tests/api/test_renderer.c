@@ -1,0 +1,460 @@
+// Renderers through the public functions: frames, layers, what may change while one lives, two side
+// by side, and a device and a command buffer that are the program's own.
+#include "api/own_device.h"
+#include "framework/test.h"
+
+#include <afterglow/afterglow.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 48, HEIGHT = 32 };
+
+struct stage {
+    struct ag_context *context;
+    struct ag_device *device;
+    struct ag_scene *scene;
+    struct ag_renderer *renderer;
+    struct ag_frame_desc frame;
+};
+
+static char last_warning[512];
+
+static void listen(void *user, enum ag_log_level level, const char *message)
+{
+    (void)user;
+    if (level <= AG_LOG_WARNING) snprintf(last_warning, sizeof last_warning, "%s", message);
+}
+
+static struct ag_context *open_context(void)
+{
+    struct ag_context_desc desc;
+    struct ag_context *context = NULL;
+    ag_context_desc_default(&desc);
+    desc.log = listen;
+    assert_int_equal(ag_context_create(&desc, &context), AG_OK);
+    return context;
+}
+
+static void require_device(struct ag_context *context)
+{
+    struct ag_device_info infos[16];
+    int count = 0;
+    bool usable = false;
+    if (ag_device_list(context, infos, 16, &count) == AG_OK)
+        for (int i = 0; i < count && i < 16; i++) usable |= infos[i].usable;
+    if (usable) return;
+    ag_context_destroy(context);
+    print_message("skipped: there is no usable Vulkan device\n");
+    skip();
+}
+
+static struct ag_renderer_desc renderer_desc(const char *gi)
+{
+    struct ag_renderer_desc desc;
+    ag_renderer_desc_default(&desc);
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    desc.gi = gi;
+    desc.frame_options = "shadow_size=256,rsm_size=64";
+    desc.indirect_layer = true;
+    return desc;
+}
+
+// A point light in the Cornell box, on a device of the library's or on a lent one.
+static struct stage open_stage(const char *gi, const struct ag_device_adopt *adopt)
+{
+    struct stage s = { .context = open_context() };
+    require_device(s.context);
+    // Hazards between submissions, which the layer leaves out unless told otherwise.
+    setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
+           0);
+    struct ag_device_desc device;
+    ag_device_desc_default(&device);
+    device.validation = !adopt; // a lent one is its owner's to validate
+    device.adopt = adopt;
+    assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
+    assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
+    struct ag_renderer_desc desc = renderer_desc(gi);
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
+    ag_frame_desc_default(&s.frame);
+    assert_int_equal(ag_scene_camera(s.scene, "main", 0, 0, &s.frame.camera), AG_OK);
+    return s;
+}
+
+static void close_stage(struct stage *s)
+{
+    ag_renderer_destroy(s->renderer);
+    if (ag_device_validation_messages(s->device)) fail_msg("validation says: %s", last_warning);
+    ag_scene_destroy(s->scene);
+    ag_device_destroy(s->device);
+    ag_context_destroy(s->context);
+}
+
+static struct ag_image *read_layer(struct stage *s, const char *layer)
+{
+    struct ag_image *image = NULL;
+    if (ag_renderer_read(s->renderer, layer, &image) != AG_OK)
+        fail_msg("%s: %s", layer, ag_context_last_error(s->context));
+    return image;
+}
+
+static double mean(const struct ag_image *image)
+{
+    double sum = 0;
+    int count = image->width * image->height * image->channels;
+    for (int i = 0; i < count; i++) sum += (double)image->pixels[i];
+    return sum / count;
+}
+
+static double mean_of(struct stage *s, const char *layer)
+{
+    struct ag_image *image = read_layer(s, layer);
+    double value = mean(image);
+    ag_image_destroy(s->context, image);
+    return value;
+}
+
+static bool equal(const struct ag_image *a, const struct ag_image *b)
+{
+    size_t count = (size_t)a->width * (size_t)a->height * (size_t)a->channels;
+    return a->width == b->width && a->height == b->height && a->channels == b->channels &&
+           memcmp(a->pixels, b->pixels, count * sizeof *a->pixels) == 0;
+}
+
+TEST(every_layer_is_finite_and_of_the_frames_size)
+{
+    struct stage s = open_stage("lpv", NULL);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    const char *name;
+    for (int i = 0; (name = ag_layer_name(i)); i++) {
+        if (strcmp(name, "debug") == 0 || strcmp(name, "motion") == 0) continue; // not asked for
+        struct ag_image *image = read_layer(&s, name);
+        bool single = strcmp(name, "depth") == 0 || strcmp(name, "visibility") == 0;
+        assert_int_equal(image->width, WIDTH);
+        assert_int_equal(image->height, HEIGHT);
+        assert_int_equal(image->channels, single ? 1 : 3);
+        for (int k = 0; k < WIDTH * HEIGHT * image->channels; k++)
+            CHECK(isfinite(image->pixels[k]));
+        ag_image_destroy(s.context, image);
+    }
+    CHECK(mean_of(&s, "direct") > 0 && mean_of(&s, "indirect") > 0);
+    CHECK(mean_of(&s, "visibility") == 1.0);
+    float ev = 0;
+    assert_int_equal(ag_renderer_exposure(s.renderer, &ev), AG_OK);
+    CHECK(isfinite(ev) && ev != 0);
+    close_stage(&s);
+}
+
+TEST(layers_that_are_not_kept_or_not_known_are_refused)
+{
+    struct stage s = open_stage("lpv", NULL);
+    struct ag_image *image = (struct ag_image *)1;
+    assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT); // no frame
+    assert_null(image);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_renderer_read(s.renderer, "colour", &image), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(s.context), "did you mean color?"));
+    assert_int_equal(ag_renderer_read(s.renderer, "debug", &image), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_read(s.renderer, NULL, &image), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_set_debug_view(s.renderer, "no-such-view"), AG_ERROR_ARGUMENT);
+    ag_renderer_destroy(s.renderer);
+    struct ag_renderer_desc desc = renderer_desc("none");
+    desc.indirect_layer = desc.display_layer = false;
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_renderer_read(s.renderer, "indirect", &image), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_read(s.renderer, "display", &image), AG_ERROR_ARGUMENT);
+    CHECK(mean_of(&s, "irradiance") == 0.0); // that nobody writes
+    close_stage(&s);
+}
+
+TEST(debug_views_fill_the_debug_layer_until_they_are_switched_off)
+{
+    struct stage s = open_stage("lpv", NULL);
+    struct ag_technique_info info;
+    const char *view = NULL;
+    for (int i = 0; ag_technique_get(i, &info); i++)
+        if (strcmp(info.name, "lpv") == 0) ag_technique_debug_view_get(i, 0, &view, NULL);
+    assert_non_null(view);
+    assert_int_equal(ag_renderer_set_debug_view(s.renderer, view), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    CHECK(mean_of(&s, "debug") > 0);
+    assert_int_equal(ag_renderer_set_debug_view(s.renderer, NULL), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    struct ag_image *image = NULL;
+    assert_int_equal(ag_renderer_read(s.renderer, "debug", &image), AG_ERROR_ARGUMENT);
+    close_stage(&s);
+}
+
+TEST(wrong_frames_are_refused)
+{
+    struct stage s = open_stage("none", NULL);
+    struct ag_frame_desc frame;
+    assert_int_equal(ag_renderer_render(s.renderer, NULL), AG_ERROR_ARGUMENT);
+    ag_frame_desc_default(&frame); // no camera yet
+    assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
+    frame = s.frame;
+    frame.animation = 1;
+    assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
+    frame = s.frame;
+    frame.time_s = (double)NAN;
+    assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
+    frame = s.frame;
+    frame.auto_exposure = false;
+    frame.exposure_ev = INFINITY;
+    assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
+    frame = s.frame;
+    frame.camera.near_m = 0;
+    assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
+    frame = s.frame;
+    frame.camera.vertical_fov_rad = 3.2f;
+    assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_record(s.renderer, &s.frame, &s), AG_ERROR_ARGUMENT); // not lent
+    close_stage(&s);
+}
+
+TEST(wrong_renderers_are_refused)
+{
+    struct stage s = open_stage("none", NULL);
+    struct ag_renderer *renderer = (struct ag_renderer *)1;
+    struct ag_renderer_desc desc = renderer_desc("lpv:stepz=4");
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
+    assert_null(renderer);
+    CHECK(strstr(ag_context_last_error(s.context), "steps"));
+    desc = renderer_desc("none");
+    desc.height = 0;
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
+    desc = renderer_desc("none");
+    desc.frame_options = "cascades=9";
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
+    struct ag_context *other = open_context();
+    struct ag_scene *stranger = NULL;
+    assert_int_equal(ag_scene_load(other, "@cornell", &stranger), AG_OK);
+    assert_int_equal(ag_renderer_create(s.device, stranger, NULL, &renderer), AG_ERROR_ARGUMENT);
+    ag_scene_destroy(stranger);
+    ag_context_destroy(other);
+    // The scene is free again after each refusal but for the stage's own renderer.
+    ag_renderer_destroy(s.renderer);
+    s.renderer = NULL;
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    assert_int_equal(ag_scene_add_material(s.scene, &material, NULL), AG_OK);
+    close_stage(&s);
+}
+
+TEST(lights_and_sky_may_change_while_a_renderer_lives_and_nothing_else)
+{
+    struct stage s = open_stage("lpv", NULL);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    double once = mean_of(&s, "color");
+    struct ag_light_info light;
+    assert_int_equal(ag_scene_get_light(s.scene, 0, 0, 0, &light), AG_OK);
+    assert_int_equal(ag_scene_add_light(s.scene, &light.light, NULL), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    CHECK_RELATIVE(mean_of(&s, "color"), 2 * once, 5e-3);
+    assert_int_equal(ag_scene_remove_lights(s.scene), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    CHECK(mean_of(&s, "color") == 0.0);
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    assert_int_equal(ag_scene_add_material(s.scene, &material, NULL), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_scene_add_instance(s.scene, 0, NULL, NULL), AG_ERROR_ARGUMENT);
+    close_stage(&s);
+}
+
+TEST(a_resize_changes_the_size_of_every_layer)
+{
+    struct stage s = open_stage("lpv", NULL);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_renderer_resize(s.renderer, 0, 10), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_resize(s.renderer, 10, 16385), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_resize(s.renderer, 17, 9), AG_OK);
+    struct ag_image *image = NULL;
+    assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT); // not yet
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    image = read_layer(&s, "color");
+    CHECK(image->width == 17 && image->height == 9);
+    CHECK(mean(image) > 0);
+    ag_image_destroy(s.context, image);
+    close_stage(&s);
+}
+
+TEST(times_and_memory_are_told_by_name)
+{
+    struct stage s = open_stage("lpv", NULL);
+    assert_int_equal(ag_renderer_timings(s.renderer, NULL, 0), 0); // no frame
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    struct ag_timing timings[64];
+    int count = ag_renderer_timings(s.renderer, timings, 64);
+    double whole = 0, parts = 0;
+    for (int i = 0; i < count; i++) {
+        CHECK(timings[i].ms >= 0);
+        if (strcmp(timings[i].name, "frame") == 0)
+            whole = timings[i].ms;
+        else
+            parts += timings[i].ms;
+    }
+    CHECK(count > 3 && whole > 0 && parts > 0 && parts <= 1.01 * whole);
+    // Fewer places than passes: the count is still whole, and nothing is written beyond.
+    timings[1].ms = -1;
+    assert_int_equal(ag_renderer_timings(s.renderer, timings, 1), count);
+    CHECK(timings[1].ms == -1);
+
+    struct ag_memory owners[64];
+    count = ag_renderer_memory(s.renderer, owners, 64);
+    uint64_t taken = 0, estimate = 0;
+    bool has_lpv = false;
+    for (int i = 0; i < count; i++) {
+        has_lpv |= strcmp(owners[i].owner, "lpv") == 0;
+        if (strcmp(owners[i].owner, "scene") != 0 && strcmp(owners[i].owner, "gpu") != 0)
+            taken += owners[i].bytes;
+    }
+    CHECK(has_lpv);
+    struct ag_renderer_desc desc = renderer_desc("lpv");
+    assert_int_equal(ag_renderer_estimate_memory(s.context, &desc, 1, &estimate), AG_OK);
+    if (taken > estimate)
+        fail_msg("%llu bytes are taken, %llu were estimated at most", (unsigned long long)taken,
+                 (unsigned long long)estimate);
+    CHECK(strncmp(ag_renderer_gi(s.renderer), "lpv:", 4) == 0);
+    close_stage(&s);
+}
+
+TEST(two_contexts_side_by_side_render_what_each_renders_alone)
+{
+    struct stage alone = open_stage("lpv", NULL);
+    assert_int_equal(ag_renderer_render(alone.renderer, &alone.frame), AG_OK);
+    struct ag_image *expected = read_layer(&alone, "color");
+    struct stage a = open_stage("lpv", NULL), b = open_stage("ambient", NULL);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(ag_renderer_render(a.renderer, &a.frame), AG_OK);
+        assert_int_equal(ag_renderer_render(b.renderer, &b.frame), AG_OK);
+    }
+    struct ag_image *of_a = read_layer(&a, "color"), *of_b = read_layer(&b, "color");
+    CHECK(equal(of_a, expected));
+    CHECK(!equal(of_b, expected));
+    ag_image_destroy(b.context, of_b);
+    close_stage(&b); // a goes on without b
+    assert_int_equal(ag_renderer_render(a.renderer, &a.frame), AG_OK);
+    ag_image_destroy(a.context, of_a);
+    close_stage(&a);
+    ag_image_destroy(alone.context, expected);
+    close_stage(&alone);
+}
+
+TEST(two_renderers_share_a_device_and_a_scene)
+{
+    struct stage s = open_stage("lpv", NULL);
+    struct ag_renderer_desc desc = renderer_desc("none");
+    struct ag_renderer *second = NULL;
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &second), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_renderer_render(second, &s.frame), AG_OK);
+    struct ag_image *with = read_layer(&s, "color"), *without = NULL;
+    assert_int_equal(ag_renderer_read(second, "color", &without), AG_OK);
+    CHECK(mean(with) > mean(without));
+    ag_image_destroy(s.context, with);
+    ag_image_destroy(s.context, without);
+    ag_renderer_destroy(second);
+    close_stage(&s);
+}
+
+// ---- the program's own device
+
+// What the library's own device gives; static storage.
+static const struct ag_image *expected_color(void)
+{
+    static float pixels[WIDTH * HEIGHT * 3];
+    static const struct ag_image copy = { WIDTH, HEIGHT, 3, pixels };
+    struct stage s = open_stage("lpv", NULL);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    struct ag_image *color = read_layer(&s, "color");
+    memcpy(pixels, color->pixels, sizeof pixels);
+    ag_image_destroy(s.context, color);
+    close_stage(&s);
+    return &copy;
+}
+
+TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
+{
+    const struct ag_image *expected = expected_color();
+    struct own_device own;
+    own_device_open(&own);
+    struct ag_device_adopt adopt = own_device_lend(&own);
+    struct stage s = open_stage("lpv", &adopt);
+    int before = own.locks;
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(own.locks, before + 1);
+    struct ag_image *color = read_layer(&s, "color");
+    CHECK(equal(color, expected));
+    assert_int_equal(own.held, 0);
+    void *image = NULL;
+    uint32_t layout = 0;
+    float scale = 0;
+    assert_int_equal(ag_renderer_layer_handle(s.renderer, "irradiance", &image, &layout, &scale),
+                     AG_OK);
+    CHECK(image != NULL && scale > 0);
+    assert_int_equal(ag_renderer_layer_handle(s.renderer, "position", &image, &layout, &scale),
+                     AG_ERROR_UNSUPPORTED);
+    ag_image_destroy(s.context, color);
+    close_stage(&s);
+    own_device_close(&own);
+}
+
+TEST(a_frame_goes_into_the_programs_command_buffer)
+{
+    const struct ag_image *expected = expected_color();
+    struct own_device own;
+    own_device_open(&own);
+    struct ag_device_adopt adopt = own_device_lend(&own);
+    struct stage s = open_stage("lpv", &adopt);
+    int before = own.locks;
+    for (int i = 0; i < 2; i++) {
+        VkCommandBuffer commands = own_device_begin(&own);
+        assert_int_equal(ag_renderer_record(s.renderer, &s.frame, NULL), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_renderer_record(s.renderer, &s.frame, commands), AG_OK);
+        // Until its end is reported nothing else may come in between.
+        struct ag_image *image = NULL;
+        assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_renderer_resize(s.renderer, 10, 10), AG_ERROR_ARGUMENT);
+        own_device_run(&own, commands);
+        assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_OK);
+    }
+    assert_int_equal(own.locks, before); // the program submitted
+    struct ag_image *color = read_layer(&s, "color");
+    CHECK(equal(color, expected));
+    ag_image_destroy(s.context, color);
+    close_stage(&s);
+    own_device_close(&own);
+}
+
+TEST(an_adopted_device_needs_all_its_handles)
+{
+    struct ag_context *context = open_context();
+    struct ag_device *device = NULL;
+    struct ag_device_adopt adopt = { .instance = context };
+    struct ag_device_desc desc;
+    ag_device_desc_default(&desc);
+    desc.adopt = &adopt;
+    assert_int_equal(ag_device_create(context, &desc, &device), AG_ERROR_ARGUMENT);
+    assert_null(device);
+    CHECK(strstr(ag_device_required_features(), "VK_KHR_push_descriptor"));
+    ag_context_destroy(context);
+}
+
+TEST(an_unknown_device_is_refused)
+{
+    struct ag_context *context = open_context();
+    struct ag_device *device = NULL;
+    struct ag_device_desc desc;
+    ag_device_desc_default(&desc);
+    desc.device = "no such device";
+    CHECK(ag_device_create(context, &desc, &device) != AG_OK);
+    assert_null(device);
+    CHECK(strstr(ag_context_last_error(context), "no such device"));
+    ag_context_destroy(context);
+}
