@@ -183,6 +183,8 @@ static enum status camera_from_scene(struct session *session, double time_s, str
 static enum status camera_default(struct session *session, double time_s, struct ag_camera *out)
 {
     struct defaults defaults;
+    *out = session->made_up_camera;
+    if (session->made_up) return DONE;
     enum status status = defaults_camera(session, time_s, &defaults);
     if (status != DONE) return status;
     *out = defaults.camera;
@@ -191,9 +193,10 @@ static enum status camera_default(struct session *session, double time_s, struct
         snprintf(session->camera_name, sizeof session->camera_name, "%s", name ? name : "");
         return DONE;
     }
-    if (!session->camera_name[0])
-        note("no camera in %s: as with --eye %s --target %s --fov %s",
-             session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
+    session->made_up = true;
+    session->made_up_camera = defaults.camera;
+    note("no camera in %s: as with --eye %s --target %s --fov %s",
+         session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
     snprintf(session->camera_name, sizeof session->camera_name, "--eye %.80s --target %.80s",
              defaults.eye, defaults.target);
     return DONE;

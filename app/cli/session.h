@@ -13,6 +13,8 @@ struct session {
     struct ag_scene *scene;
     int animation;             // for every call that asks for a moment
     char camera_name[SPEC_SIZE]; // as it is stored in results: a name, or the options that ask for it
+    bool made_up;                // the scene has no camera: this one stays, whatever moves
+    struct ag_camera made_up_camera;
 };
 
 // What a scene gets that brings no light or no camera, as the options that ask for the same. "" where not needed.

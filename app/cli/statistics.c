@@ -15,7 +15,7 @@ static struct pass_times *times_of(struct statistics *statistics, const char *na
         if (strcmp(statistics->passes[i].name, name) == 0) return &statistics->passes[i];
     if (statistics->pass_count == MAX_PASSES) return NULL;
     struct pass_times *times = &statistics->passes[statistics->pass_count++];
-    snprintf(times->name, sizeof times->name, "%s", name);
+    snprintf(times->name, sizeof times->name, "%.*s", (int)sizeof times->name - 1, name);
     return times;
 }
 
