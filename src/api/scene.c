@@ -371,7 +371,7 @@ enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animation, do
     struct world_camera camera = none ? default_camera(pose) : pose_camera(pose, 0);
     *out = camera_out(&camera);
     if (made_up) *made_up = none;
-    return api_done(context, true);
+    return api_done(context, context->host.failure == FAIL_NONE); // memory for the search
 }
 
 // ---- lighting that a dark scene gets
@@ -389,7 +389,7 @@ enum ag_result ag_scene_default_lighting(struct ag_scene *scene, struct ag_defau
     api_store(out->sun_direction, lighting.sun_direction);
     api_store(out->sun_lux, lighting.sun_lux);
     api_store(out->sky, lighting.sky);
-    return api_done(context, true);
+    return api_done(context, context->host.failure == FAIL_NONE); // memory for the search
 }
 
 enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,

@@ -68,8 +68,8 @@ const char *gltf_string(struct gltf_object object, const char *key); // NULL: ab
 bool gltf_open(struct gltf *gltf, struct import *import, const struct file_bytes *bytes);
 void gltf_close(struct gltf *gltf);
 bool gltf_load_buffers(struct gltf *gltf);
-// The bytes of a data URI's base64 payload, owned by the caller; NULL where `uri` is none or is broken.
-uint8_t *gltf_data_uri(struct gltf *gltf, const char *uri, size_t *size);
+// The bytes of the base64 payload of a data URI of `object`, owned by the caller; NULL after a failure.
+uint8_t *gltf_data_uri(struct gltf_object object, const char *uri, size_t *size);
 
 // --- gltf_check.c
 bool gltf_check_asset(struct gltf *gltf);   // version, extensions

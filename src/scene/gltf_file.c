@@ -133,19 +133,26 @@ static int base64_value(char c)
     return -1;
 }
 
-uint8_t *gltf_data_uri(struct gltf *gltf, const char *uri, size_t *size)
+static uint8_t *no_base64(struct gltf_object object)
 {
+    gltf_wrong(object, "its data URI is no base64");
+    return NULL;
+}
+
+uint8_t *gltf_data_uri(struct gltf_object object, const char *uri, size_t *size)
+{
+    struct host *host = object.gltf->import->host;
     const char *comma = strchr(uri, ',');
     static const char marker[] = ";base64";
     size_t marker_length = sizeof marker - 1;
     if (strncmp(uri, "data:", 5) != 0 || !comma || (size_t)(comma - uri) < 5 + marker_length ||
         memcmp(comma - marker_length, marker, marker_length) != 0) {
-        return NULL;
+        return no_base64(object);
     }
     const char *text = comma + 1;
     size_t length = strlen(text);
     while (length > 0 && text[length - 1] == '=') length--;
-    uint8_t *bytes = host_alloc(gltf->import->host, length / 4 * 3 + 3, 1);
+    uint8_t *bytes = host_alloc(host, length / 4 * 3 + 3, 1);
     if (!bytes) return NULL;
     size_t n = 0;
     uint32_t bits = 0;
@@ -153,8 +160,8 @@ uint8_t *gltf_data_uri(struct gltf *gltf, const char *uri, size_t *size)
     for (size_t i = 0; i < length; i++) {
         int value = base64_value(text[i]);
         if (value < 0) {
-            host_free(gltf->import->host, bytes);
-            return NULL;
+            host_free(host, bytes);
+            return no_base64(object);
         }
         bits = bits << 6 | (uint32_t)value;
         pending += 6;
@@ -197,9 +204,9 @@ static bool load_buffer(struct gltf *gltf, json_t *array, size_t index)
     size_t length = gltf_size(object, "byteLength", 0, SIZE_MAX / 2);
     if (gltf->failed) return false;
     if (uri && strncmp(uri, "data:", 5) == 0) {
-        buffer->owned = gltf_data_uri(gltf, uri, &buffer->size);
+        buffer->owned = gltf_data_uri(object, uri, &buffer->size);
         buffer->data = buffer->owned;
-        if (!buffer->data) return gltf_wrong(object, "its data URI is no base64");
+        if (!buffer->data) return false;
     } else if (uri) {
         if (!read_external(gltf, index, uri)) return false;
     } else if (gltf_has(gltf_extension(object, "EXT_meshopt_compression"), "fallback")) {

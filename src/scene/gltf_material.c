@@ -140,9 +140,9 @@ static bool find_image(struct gltf *gltf, size_t i, struct image_source *source,
     }
     if (!uri) return gltf_wrong(object, "has neither uri nor bufferView");
     if (is_data) {
-        *owned = gltf_data_uri(gltf, uri, &source->size);
+        *owned = gltf_data_uri(object, uri, &source->size);
         source->data = *owned;
-        return source->data ? true : gltf_wrong(object, "its data URI is no base64");
+        return source->data != NULL;
     }
     char *path = import_resolve(import, uri);
     if (!path) return false;
