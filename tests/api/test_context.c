@@ -201,6 +201,11 @@ TEST(every_refused_allocation_of_a_file_is_a_memory_error_and_leaks_nothing)
     check_every_refusal(test_scene_path("box-animated.gltf"));
 }
 
+TEST(every_refused_allocation_of_a_skin_or_a_texture_is_a_memory_error_and_leaks_nothing)
+{
+    check_every_refusal(test_scene_path("fox.glb"));
+}
+
 TEST(the_programs_allocator_is_the_only_one)
 {
     struct purse purse = { .refuse_at = 1, .refuse_all = true };
