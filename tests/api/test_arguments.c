@@ -222,6 +222,12 @@ TEST(wrong_option_texts_name_the_nearest)
     ag_context_destroy(context);
 }
 
+TEST(library_and_headers_have_one_version)
+{
+    assert_int_equal(ag_version(),
+                     AG_VERSION_MAJOR * 10000 + AG_VERSION_MINOR * 100 + AG_VERSION_PATCH);
+}
+
 TEST(every_result_has_its_own_words)
 {
     for (int a = AG_OK; a <= AG_ERROR_CANCELLED + 1; a++)

@@ -1,7 +1,7 @@
 // Renderers through the public functions: frames, layers, what may change while one lives, two side
 // by side, and a device and a command buffer that are the program's own.
 #include "api/own_device.h"
-#include "framework/test.h"
+#include "framework/gpu_test.h"
 
 #include <afterglow/afterglow.h>
 
@@ -38,19 +38,6 @@ static struct ag_context *open_context(void)
     return context;
 }
 
-static void require_device(struct ag_context *context)
-{
-    struct ag_device_info infos[16];
-    int count = 0;
-    bool usable = false;
-    if (ag_device_list(context, infos, 16, &count) == AG_OK)
-        for (int i = 0; i < count && i < 16; i++) usable |= infos[i].usable;
-    if (usable) return;
-    ag_context_destroy(context);
-    print_message("skipped: there is no usable Vulkan device\n");
-    skip();
-}
-
 static struct ag_renderer_desc renderer_desc(const char *gi)
 {
     struct ag_renderer_desc desc;
@@ -66,8 +53,8 @@ static struct ag_renderer_desc renderer_desc(const char *gi)
 // A point light in the Cornell box, on a device of the library's or on a lent one.
 static struct stage open_stage(const char *gi, const struct ag_device_adopt *adopt)
 {
+    test_gpu_require();
     struct stage s = { .context = open_context() };
-    require_device(s.context);
     // Hazards between submissions, which the layer leaves out unless told otherwise.
     setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
            0);
@@ -448,6 +435,7 @@ TEST(an_adopted_device_needs_all_its_handles)
 
 TEST(an_unknown_device_is_refused)
 {
+    test_gpu_require();
     struct ag_context *context = open_context();
     struct ag_device *device = NULL;
     struct ag_device_desc desc;

@@ -1,0 +1,115 @@
+// What each technique costs and changes: renders a scene with every source of indirect light,
+// prints milliseconds, bytes and the difference from direct light alone, and writes the last one's
+// layers.
+//
+//     measure SCENE OUT.exr
+#include <afterglow/afterglow.h>
+
+#include <stdio.h>
+#include <string.h>
+
+enum { WIDTH = 320, HEIGHT = 180, FRAMES = 3, MAX_ENTRIES = 64 };
+
+struct bench {
+    struct ag_context *context;
+    struct ag_device *device;
+    struct ag_scene *scene;
+    struct ag_frame_desc frame;
+    struct ag_image *direct; // of the first technique measured
+    const char *out;
+};
+
+static void print_costs(struct ag_renderer *renderer)
+{
+    struct ag_timing passes[MAX_ENTRIES];
+    struct ag_memory owners[MAX_ENTRIES];
+    int count = ag_renderer_timings(renderer, passes, MAX_ENTRIES);
+    for (int i = 0; i < count && i < MAX_ENTRIES; i++)
+        printf("    %-20s %8.2f ms\n", passes[i].name, passes[i].ms);
+    count = ag_renderer_memory(renderer, owners, MAX_ENTRIES);
+    for (int i = 0; i < count && i < MAX_ENTRIES; i++)
+        printf("    %-20s %8.2f MB\n", owners[i].owner, (double)owners[i].bytes * 1e-6);
+}
+
+// Colour and indirect light of the newest frame: the difference is printed, the layers are written.
+static enum ag_result compare(struct bench *bench, struct ag_renderer *renderer)
+{
+    struct ag_image *color = NULL, *indirect = NULL;
+    struct ag_metrics metrics = { 0 };
+    enum ag_result result = ag_renderer_read(renderer, "color", &color);
+    if (result == AG_OK) result = ag_renderer_read(renderer, "indirect", &indirect);
+    if (result == AG_OK && !bench->direct)
+        result = ag_renderer_read(renderer, "direct", &bench->direct);
+    if (result == AG_OK) result = ag_image_metrics(bench->context, color, bench->direct, &metrics);
+    if (result == AG_OK) {
+        const struct ag_image_layer layers[] = { { "color", color }, { "indirect", indirect } };
+        const struct ag_attribute how = { "afterglow.gi", ag_renderer_gi(renderer) };
+        printf("    mean absolute difference from direct light: %.4g cd/m2\n", metrics.mae);
+        result = ag_image_write_exr(bench->context, bench->out, layers, 2, &how, 1);
+    }
+    ag_image_destroy(bench->context, color);
+    ag_image_destroy(bench->context, indirect);
+    return result;
+}
+
+static enum ag_result measure(struct bench *bench, const char *gi)
+{
+    struct ag_renderer_desc desc;
+    struct ag_scene_info info;
+    ag_renderer_desc_default(&desc);
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    desc.gi = gi;
+    desc.indirect_layer = true;
+    uint64_t bytes = 0;
+    struct ag_renderer *renderer = NULL;
+    enum ag_result result = ag_scene_get_info(bench->scene, 0, 0.0, &info);
+    if (result == AG_OK)
+        result = ag_renderer_estimate_memory(bench->context, &desc, info.lights, &bytes);
+    if (result == AG_OK) printf("%s: at most %.1f MB\n", gi, (double)bytes * 1e-6);
+    if (result == AG_OK) result = ag_renderer_create(bench->device, bench->scene, &desc, &renderer);
+    for (int i = 0; i < FRAMES && result == AG_OK; i++)
+        result = ag_renderer_render(renderer, &bench->frame);
+    if (result == AG_OK) result = ag_renderer_wait(renderer);
+    if (result == AG_OK) print_costs(renderer);
+    if (result == AG_OK) result = compare(bench, renderer);
+    ag_renderer_destroy(renderer);
+    return result;
+}
+
+static enum ag_result run(struct bench *bench, const char *scene)
+{
+    struct ag_device_info device;
+    struct ag_technique_info technique;
+    ag_frame_desc_default(&bench->frame);
+    enum ag_result result = ag_device_create(bench->context, NULL, &bench->device);
+    if (result == AG_OK) result = ag_scene_load(bench->context, scene, &bench->scene);
+    if (result == AG_OK) result = ag_scene_add_default_lighting(bench->scene, NULL);
+    if (result == AG_OK)
+        result = ag_scene_default_camera(bench->scene, 0, 0.0, &bench->frame.camera, NULL);
+    if (result != AG_OK) return result;
+    ag_device_get_info(bench->device, &device);
+    printf("%s on %s, %dx%d\n", scene, device.name, WIDTH, HEIGHT);
+    for (int i = 0; ag_technique_get(i, &technique) && result == AG_OK; i++)
+        if (strcmp(technique.role, "source") == 0) result = measure(bench, technique.name);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 3) {
+        fprintf(stderr, "usage: measure SCENE OUT.exr\n");
+        return 2;
+    }
+    struct bench bench = { .out = argv[2] };
+    enum ag_result result = ag_context_create(NULL, &bench.context);
+    if (result == AG_OK) result = run(&bench, argv[1]);
+    if (result != AG_OK)
+        fprintf(stderr, "measure: %s (%s)\n", ag_context_last_error(bench.context),
+                ag_result_string(result));
+    ag_image_destroy(bench.context, bench.direct);
+    ag_scene_destroy(bench.scene);
+    ag_device_destroy(bench.device);
+    ag_context_destroy(bench.context);
+    return result == AG_OK ? 0 : 1;
+}

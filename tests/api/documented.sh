@@ -1,0 +1,17 @@
+#!/bin/sh
+# documented.sh ROOT: every public function is on docs/library.md's page, and called in a program that the tests run; every
+# option of the command line is on docs/cli.md's.
+set -eu
+cd "$1"
+bad=0
+functions=$(cat include/afterglow/*.h | tr '\n' ' ' | sed 's/AG_API/\nAG_API/g' | grep '^AG_API ' | grep -v '__attribute__' |
+    grep -o '^[^(;]*(' | grep -o 'ag_[a-z_]*($' | tr -d '(' | sort -u)
+[ -n "$functions" ] || { echo "no functions found"; exit 1; }
+for name in $functions; do
+    grep -q "\`$name\`" docs/library.md || { echo "$name is not on docs/library.md"; bad=1; }
+    cat examples/*.c tests/api/*.c | grep -q "$name(" || { echo "$name is called in no example and no test"; bad=1; }
+done
+for option in $(grep -o '^OPTION("[^"]*"' app/cli/options.def | cut -d'"' -f2 | grep -v -e --help); do
+    grep -q -e "\`$option[\` ]" docs/cli.md || { echo "$option is not on docs/cli.md"; bad=1; }
+done
+exit $bad
