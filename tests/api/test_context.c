@@ -1,10 +1,10 @@
 // Contexts: what they say and to whom, whose memory they use, and that they do not know each other.
+#include "api/purse.h"
 #include "framework/test.h"
 
 #include <afterglow/afterglow.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct ears {
@@ -81,31 +81,6 @@ TEST(two_contexts_do_not_hear_each_other)
 }
 
 // ---- memory
-
-// Each block carries its size, so that what is given back can be counted.
-struct purse {
-    long blocks;     // alive
-    long asked;      // allocations so far
-    long refuse_at;  // the allocation that fails; 0: none
-    bool refuse_all; // from refuse_at on
-};
-
-static void *purse_reallocate(void *user, void *old, size_t bytes)
-{
-    struct purse *purse = user;
-    if (bytes == 0) {
-        if (old) purse->blocks--;
-        free(old);
-        return NULL;
-    }
-    purse->asked++;
-    bool refused = purse->refuse_at && (purse->refuse_all ? purse->asked >= purse->refuse_at
-                                                          : purse->asked == purse->refuse_at);
-    if (refused) return NULL;
-    void *block = realloc(old, bytes);
-    if (block && !old) purse->blocks++;
-    return block;
-}
 
 static struct ag_context *purse_context(struct purse *purse)
 {

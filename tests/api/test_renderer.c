@@ -1,6 +1,7 @@
 // Renderers through the public functions: frames, layers, what may change while one lives, two side
 // by side, and a device and a command buffer that are the program's own.
 #include "api/own_device.h"
+#include "api/purse.h"
 #include "framework/gpu_test.h"
 
 #include <afterglow/afterglow.h>
@@ -330,6 +331,66 @@ TEST(two_contexts_side_by_side_render_what_each_renders_alone)
     close_stage(&a);
     ag_image_destroy(alone.context, expected);
     close_stage(&alone);
+}
+
+// A renderer, a frame and a picture, or the first failure; then nothing is refused any more.
+// *calls: allocations so far.
+static enum ag_result render_once(struct stage *s, struct purse *purse, struct ag_image **image,
+                                  long *calls)
+{
+    long begun = purse->asked;
+    struct ag_renderer_desc desc = renderer_desc("lpv");
+    struct ag_renderer *renderer = NULL;
+    enum ag_result result = ag_renderer_create(s->device, s->scene, &desc, &renderer);
+    if (result == AG_OK) result = ag_renderer_render(renderer, &s->frame);
+    if (result == AG_OK) result = ag_renderer_read(renderer, "color", image);
+    *calls = purse->asked - begun;
+    purse->refuse_at = 0;
+    ag_renderer_destroy(renderer);
+    return result;
+}
+
+TEST(a_refused_allocation_in_a_renderer_is_a_memory_error_and_the_next_one_works)
+{
+    enum { SAMPLES = 24 }; // of all allocations, evenly spread
+    test_gpu_require();
+    struct purse purse = { 0 };
+    struct stage s = { 0 };
+    struct ag_context_desc desc;
+    ag_context_desc_default(&desc);
+    desc.reallocate = purse_reallocate;
+    desc.user = &purse;
+    assert_int_equal(ag_context_create(&desc, &s.context), AG_OK);
+    assert_int_equal(ag_device_create(s.context, NULL, &s.device), AG_OK);
+    assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
+    ag_frame_desc_default(&s.frame);
+    assert_int_equal(ag_scene_camera(s.scene, "main", 0, 0, &s.frame.camera), AG_OK);
+
+    struct ag_image *expected = NULL, *image = NULL;
+    long calls, ignored;
+    assert_int_equal(render_once(&s, &purse, &expected, &calls), AG_OK); // makes what lasts, too
+    assert_int_equal(render_once(&s, &purse, &image, &calls), AG_OK);
+    CHECK(equal(image, expected));
+    ag_image_destroy(s.context, image);
+    assert_true(calls > SAMPLES);
+    for (long i = 0; i < SAMPLES; i++) {
+        long refused = 1 + i * (calls - 1) / (SAMPLES - 1);
+        purse.refuse_at = purse.asked + refused;
+        image = NULL;
+        long asked;
+        enum ag_result result = render_once(&s, &purse, &image, &asked);
+        if (asked < refused) { // lists that have grown already: there was nothing to refuse
+            CHECK(result == AG_OK && equal(image, expected));
+            ag_image_destroy(s.context, image);
+        } else if (result != AG_ERROR_MEMORY || image)
+            fail_msg("refusal %ld of %ld gives \"%s\"", refused, calls, ag_result_string(result));
+    }
+    assert_int_equal(render_once(&s, &purse, &image, &ignored), AG_OK);
+    CHECK(equal(image, expected));
+    ag_image_destroy(s.context, image);
+    ag_image_destroy(s.context, expected);
+    close_stage(&s);
+    assert_int_equal(purse.blocks, 0);
 }
 
 TEST(two_renderers_share_a_device_and_a_scene)
