@@ -121,7 +121,7 @@ static enum status info_json(struct session *session, const struct facts *facts)
 
 static void print_vector(const char *before, const float v[3], const char *after)
 {
-    printf("%s%.4g, %.4g, %.4g%s", before, (double)v[0], (double)v[1], (double)v[2], after);
+    printf("%s%.6g, %.6g, %.6g%s", before, (double)v[0], (double)v[1], (double)v[2], after);
 }
 
 static void print_counts(const struct ag_scene_info *i)
