@@ -17,6 +17,7 @@ struct lpv_params {
     float grid_from_fixed;  // the grid's unit per integer
     float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
     float offset_m;         // of the look-up, along the normal
+    float window;           // weight of band 1 at the look-up
     uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
 };
@@ -32,7 +33,7 @@ struct lpv_view_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct lpv_params) == 20 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 21 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
 #endif
 

@@ -33,6 +33,7 @@ bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
         .irradiance_scale =
             options->gain * MEAN_CHORD / (grid->cell_m * grid->cell_m * scale.grid_from_flux),
         .offset_m = options->offset * grid->cell_m,
+        .window = options->window,
         .rsm_size = view->rsm_size,
         .width = view->width,
         .height = view->height,
