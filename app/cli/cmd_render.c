@@ -227,6 +227,7 @@ static enum status render(const struct arguments *arguments)
     if (status == DONE) status = check_usage(job);
     if (status == DONE) status = check_outputs(job);
     if (status == DONE) status = prepare(job);
+    if (status == DONE) session_say(&job->session);
     if (status == DONE) status = render_frames(job, path);
     if (status == DONE) status = report(job, path);
     if (status == DONE && !arguments->output) note("written: %s", path);

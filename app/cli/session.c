@@ -2,6 +2,7 @@
 #include "session.h"
 #include "values.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,6 +126,24 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
+// ---- what was decided
+
+__attribute__((format(printf, 2, 3))) static void remember(struct session *session,
+                                                           const char *format, ...)
+{
+    if (session->note_count == MAX_NOTES) return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(session->notes[session->note_count++], sizeof session->notes[0], format, arguments);
+    va_end(arguments);
+}
+
+void session_say(struct session *session)
+{
+    for (int i = 0; i < session->note_count; i++) note("%s", session->notes[i]);
+    session->note_count = 0;
+}
+
 // ---- light
 
 static enum status add_default_light(struct session *session)
@@ -135,16 +154,33 @@ static enum status add_default_light(struct session *session)
     enum ag_result result = ag_scene_add_light(session->scene, &defaults.light_desc, NULL);
     if (result == AG_OK) result = ag_scene_set_sky(session->scene, defaults.sky_radiance);
     if (result != AG_OK) return fail_library(session->context, result);
-    note("no light in %s: as with --light %s --sky %s", session->arguments->positional[0],
-         defaults.light, defaults.sky);
+    remember(session, "no light in %s: as with --light %s --sky %s",
+             session->arguments->positional[0], defaults.light, defaults.sky);
+    return DONE;
+}
+
+// The direct light comes from lights alone: a scene that only glows would be dark for no apparent
+// reason.
+static enum status note_glow(struct session *session)
+{
+    struct ag_scene_info info;
+    enum ag_result result = ag_scene_get_info(session->scene, 0, 0.0, &info);
+    if (result != AG_OK) return fail_library(session->context, result);
+    bool sky = info.sky[0] > 0 || info.sky[1] > 0 || info.sky[2] > 0;
+    if (info.emissive && info.lights == 0 && !sky)
+        remember(session,
+                 "no light in %s but what glows, which direct light leaves out: see --light",
+                 session->arguments->positional[0]);
     return DONE;
 }
 
 enum status session_light(struct session *session)
 {
     const struct arguments *a = session->arguments;
-    if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky)
-        return add_default_light(session);
+    if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky) {
+        enum status status = add_default_light(session);
+        return status == DONE ? note_glow(session) : status;
+    }
     enum ag_result result = AG_OK;
     if (a->no_scene_lights) result = ag_scene_remove_lights(session->scene);
     for (int i = 0; i < a->light_count && result == AG_OK; i++)
@@ -195,8 +231,8 @@ static enum status camera_default(struct session *session, double time_s, struct
     }
     session->made_up = true;
     session->made_up_camera = defaults.camera;
-    note("no camera in %s: as with --eye %s --target %s --fov %s",
-         session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
+    remember(session, "no camera in %s: as with --eye %s --target %s --fov %s",
+             session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
     snprintf(session->camera_name, sizeof session->camera_name, "--eye %.80s --target %.80s",
              defaults.eye, defaults.target);
     return DONE;

@@ -5,7 +5,7 @@
 
 #include <afterglow/afterglow.h>
 
-enum { SPEC_SIZE = 256 };
+enum { SPEC_SIZE = 256, MAX_NOTES = 4, NOTE_SIZE = 1024 };
 
 struct session {
     const struct arguments *arguments;
@@ -15,6 +15,8 @@ struct session {
     char camera_name[SPEC_SIZE]; // as it is stored in results: a name, or the options that ask for it
     bool made_up;                // the scene has no camera: this one stays, whatever moves
     struct ag_camera made_up_camera;
+    char notes[MAX_NOTES][NOTE_SIZE]; // what was decided for the user, see session_say
+    int note_count;
 };
 
 // What a scene gets that brings no light or no camera, as the options that ask for the same. "" where not needed.
@@ -38,5 +40,7 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
 
 // Changes the scene's lights and sky as the options say; a dark scene that no option lights gets the default.
 enum status session_light(struct session *session);
-// The camera of a moment. The first call says which default is taken, if one is.
+// The camera of a moment.
 enum status session_camera(struct session *session, double time_s, struct ag_camera *out);
+// Says which light and camera were decided on: when nothing that could fail early is left, so that an error stands alone.
+void session_say(struct session *session);

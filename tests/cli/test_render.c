@@ -169,6 +169,14 @@ TEST(the_defaults_that_are_said_give_the_same_picture)
     CHECK(mean_of(first, NULL) > 0);
 }
 
+TEST(a_scene_that_only_glows_is_said_to)
+{
+    require_device();
+    const char *path = test_path("glow.png");
+    CHECK(strstr(run_expect(0, "render @cornell --size 16x16 -o", path, NULL)->err, "glows"));
+    CHECK_STRING(run_expect(0, "render @cornell:light=point --size 16x16 -o", path, NULL)->err, "");
+}
+
 TEST(a_number_in_the_name_writes_every_frame_and_time_moves)
 {
     require_device();
@@ -282,7 +290,7 @@ TEST(a_wrong_device_fails_and_leaves_nothing)
     snprintf(folder, sizeof folder, "%s", make_folder("device"));
     snprintf(path, sizeof path, "%s/out.png", folder);
     check_one_error_line(run_expect(1, SMALL, "--device", "no-such-gpu", "-o", path, NULL));
-    check_one_error_line(run_expect(1, SMALL, "--device", "4711", "-o", path, NULL));
+    check_one_error_line(run_expect(1, "render @cornell --device 4711 -o", path, NULL));
     assert_int_equal(count_files(folder), 0);
 }
 
