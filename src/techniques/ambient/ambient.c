@@ -23,7 +23,6 @@ static const struct option_row option_rows[] = {
 struct ambient {
     struct gpu *gpu;
     struct ambient_options options;
-    gpu_sampler nearest;
     gpu_pipeline sum, total, fill;
     gpu_buffer partials; // vec3 each: scaled lumen
     gpu_buffer result;   // vec3: scaled lux
@@ -37,14 +36,10 @@ static bool ambient_create(void *state, const struct technique_create *how)
     struct gpu *gpu = how->gpu;
     ambient->gpu = gpu;
     ambient->options = *(const struct ambient_options *)how->options;
-    const struct gpu_sampler_desc nearest = {
-        .name = "ambient.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
-    };
     const struct gpu_buffer_desc partials = { "ambient.partials", AMBIENT_GROUPS * VEC3_BYTES,
                                               GPU_BUFFER_STORAGE };
     const struct gpu_buffer_desc result = { "ambient.result", VEC3_BYTES, GPU_BUFFER_STORAGE };
-    return gpu_sampler_get(gpu, &nearest, &ambient->nearest) &&
-           gpu_buffer_create(gpu, &partials, &ambient->partials) &&
+    return gpu_buffer_create(gpu, &partials, &ambient->partials) &&
            gpu_buffer_create(gpu, &result, &ambient->result) &&
            gpu_compute_pipeline_create(gpu, "ambient.sum", &shader_ambient_sum_comp, NULL, 0,
                                        &ambient->sum) &&
@@ -91,25 +86,21 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
     const struct gpu_binding result = { .name = "ambient_result", .buffer = ambient->result };
     gpu_scope_begin(cmd, "ambient.sum");
     if (push.blocks > 0) {
-        gpu_dispatch(
-            cmd, ambient->sum,
-            GPU_BIND(view->rsm_faces_binding,
-                     { .name = "rsm_depth", .image = view->rsm_depth, .sampler = ambient->nearest },
-                     { .name = "rsm_flux", .image = view->rsm_flux, .sampler = ambient->nearest },
-                     partials),
-            &push, sizeof push, AMBIENT_GROUPS, 1, 1);
+        gpu_dispatch(cmd, ambient->sum,
+                     GPU_BIND(view->rsm_faces_binding,
+                              { .name = "rsm_depth", .image = view->rsm_depth },
+                              { .name = "rsm_flux", .image = view->rsm_flux }, partials),
+                     &push, sizeof push, AMBIENT_GROUPS, 1, 1);
     }
     gpu_dispatch(cmd, ambient->total, GPU_BIND(partials, result), &push, sizeof push, 1, 1, 1);
     gpu_scope_end(cmd);
 
     gpu_scope_begin(cmd, "ambient.fill");
-    gpu_dispatch(
-        cmd, ambient->fill,
-        GPU_BIND(
-            result,
-            { .name = "depth", .image = view->layers[FRAME_DEPTH], .sampler = ambient->nearest },
-            { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-        &push, sizeof push, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
+    gpu_dispatch(cmd, ambient->fill,
+                 GPU_BIND(result, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+                 &push, sizeof push, gpu_groups(view->width, LOCAL),
+                 gpu_groups(view->height, LOCAL), 1);
     gpu_scope_end(cmd);
 }
 

@@ -65,14 +65,12 @@ static bool create_resources(struct lpv *lpv)
     const struct gpu_buffer_desc sums = { .name = "lpv.sums",
                                           .bytes = dim * dim * dim * LPV_CELL_BYTES,
                                           .usage = GPU_BUFFER_STORAGE };
-    const struct gpu_sampler_desc nearest = {
-        .name = "lpv.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
-    };
-    struct gpu_sampler_desc linear = nearest;
-    linear.name = "lpv.linear";
-    linear.filter = GPU_LINEAR;
-    return gpu_sampler_get(lpv->gpu, &nearest, &lpv->nearest) &&
-           gpu_sampler_get(lpv->gpu, &linear, &lpv->linear) &&
+    const struct gpu_sampler_desc linear = { .name = "lpv.linear",
+                                             .filter = GPU_LINEAR,
+                                             .wrap_u = GPU_CLAMP,
+                                             .wrap_v = GPU_CLAMP,
+                                             .wrap_w = GPU_CLAMP };
+    return gpu_sampler_get(lpv->gpu, &linear, &lpv->linear) &&
            gpu_buffer_create(lpv->gpu, &sums, &lpv->sums) &&
            create_volume(lpv, &lpv->injected, COLOUR_NAMES("injected"), GPU_RGBA32F) &&
            create_volume(lpv, &lpv->steps[0], COLOUR_NAMES("step_even"), GPU_RGBA32F) &&

@@ -61,14 +61,13 @@ void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct fra
     const uint32_t groups = gpu_groups(view->rsm_size, LOCAL * LPV_TEXELS);
     gpu_scope_begin(cmd, "lpv.inject");
     gpu_fill_buffer(cmd, lpv->sums, 0, cells * LPV_CELL_BYTES, 0);
-    gpu_dispatch(
-        cmd, lpv->inject,
-        GPU_BIND(grid_binding(lpv, cmd), view->rsm_faces_binding,
-                 { .name = "rsm_depth", .image = view->rsm_depth, .sampler = lpv->nearest },
-                 { .name = "rsm_normal", .image = view->rsm_normal, .sampler = lpv->nearest },
-                 { .name = "rsm_flux", .image = view->rsm_flux, .sampler = lpv->nearest },
-                 { .name = "lpv_sums", .buffer = lpv->sums }),
-        NULL, 0, groups, groups, (uint32_t)view->rsm_face_count);
+    gpu_dispatch(cmd, lpv->inject,
+                 GPU_BIND(grid_binding(lpv, cmd), view->rsm_faces_binding,
+                          { .name = "rsm_depth", .image = view->rsm_depth },
+                          { .name = "rsm_normal", .image = view->rsm_normal },
+                          { .name = "rsm_flux", .image = view->rsm_flux },
+                          { .name = "lpv_sums", .buffer = lpv->sums }),
+                 NULL, 0, groups, groups, (uint32_t)view->rsm_face_count);
     gpu_scope_end(cmd);
 
     gpu_scope_begin(cmd, "lpv.resolve");
@@ -84,19 +83,17 @@ static void record_step(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipel
                         const struct lpv_volume *before, const struct lpv_volume *after)
 {
     const struct lpv_volume *injected = &lpv->injected;
-    const gpu_sampler nearest = lpv->nearest;
-    dispatch_cells(
-        lpv, cmd, pipeline,
-        GPU_BIND(grid_binding(lpv, cmd),
-                 { .name = "injected_red", .image = injected->colour[0], .sampler = nearest },
-                 { .name = "injected_green", .image = injected->colour[1], .sampler = nearest },
-                 { .name = "injected_blue", .image = injected->colour[2], .sampler = nearest },
-                 { .name = "before_red", .image = before->colour[0], .sampler = nearest },
-                 { .name = "before_green", .image = before->colour[1], .sampler = nearest },
-                 { .name = "before_blue", .image = before->colour[2], .sampler = nearest },
-                 { .name = "after_red", .image = after->colour[0] },
-                 { .name = "after_green", .image = after->colour[1] },
-                 { .name = "after_blue", .image = after->colour[2] }));
+    dispatch_cells(lpv, cmd, pipeline,
+                   GPU_BIND(grid_binding(lpv, cmd),
+                            { .name = "injected_red", .image = injected->colour[0] },
+                            { .name = "injected_green", .image = injected->colour[1] },
+                            { .name = "injected_blue", .image = injected->colour[2] },
+                            { .name = "before_red", .image = before->colour[0] },
+                            { .name = "before_green", .image = before->colour[1] },
+                            { .name = "before_blue", .image = before->colour[2] },
+                            { .name = "after_red", .image = after->colour[0] },
+                            { .name = "after_green", .image = after->colour[1] },
+                            { .name = "after_blue", .image = after->colour[2] }));
 }
 
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
@@ -118,8 +115,8 @@ void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct f
     gpu_dispatch(
         cmd, lpv->apply,
         GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
-                 { .name = "depth", .image = view->layers[FRAME_DEPTH], .sampler = lpv->nearest },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL], .sampler = lpv->nearest },
+                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                  { .name = "light_red", .image = light->colour[0], .sampler = lpv->linear },
                  { .name = "light_green", .image = light->colour[1], .sampler = lpv->linear },
                  { .name = "light_blue", .image = light->colour[2], .sampler = lpv->linear },
@@ -138,14 +135,14 @@ void lpv_record_debug(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_v
     };
     const struct lpv_volume *shown = what == LPV_VIEW_PROPAGATED ? &lpv->light : &lpv->injected;
     gpu_scope_begin(cmd, "lpv.debug");
-    gpu_dispatch(
-        cmd, lpv->debug,
-        GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
-                 { .name = "depth", .image = view->layers[FRAME_DEPTH], .sampler = lpv->nearest },
-                 { .name = "shown_red", .image = shown->colour[0], .sampler = lpv->nearest },
-                 { .name = "shown_green", .image = shown->colour[1], .sampler = lpv->nearest },
-                 { .name = "shown_blue", .image = shown->colour[2], .sampler = lpv->nearest },
-                 { .name = "picture", .image = out }),
-        &push, sizeof push, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
+    gpu_dispatch(cmd, lpv->debug,
+                 GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "shown_red", .image = shown->colour[0] },
+                          { .name = "shown_green", .image = shown->colour[1] },
+                          { .name = "shown_blue", .image = shown->colour[2] },
+                          { .name = "picture", .image = out }),
+                 &push, sizeof push, gpu_groups(view->width, LOCAL),
+                 gpu_groups(view->height, LOCAL), 1);
     gpu_scope_end(cmd);
 }

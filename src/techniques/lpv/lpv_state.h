@@ -23,7 +23,7 @@ struct lpv_volume {
 struct lpv {
     struct gpu *gpu;
     struct lpv_options options;
-    gpu_sampler nearest, linear;
+    gpu_sampler linear;
     gpu_pipeline inject, resolve, propagate, finish, apply, debug;
     gpu_buffer sums;             // [cell][colour][coefficient] 64-bit integers
     struct lpv_volume injected;  // RGBA32F
