@@ -1,0 +1,60 @@
+#include "techniques/lpv_rig.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct lpv *rig_create(struct gpu *gpu, const char *text)
+{
+    struct lpv *lpv = calloc(1, technique_lpv.state_size);
+    struct lpv_options options;
+    option_defaults(&technique_lpv.options, &options);
+    CHECK(option_parse(test_host(), &technique_lpv.options, "lpv", text, &options));
+    const struct technique_create how = { .host = test_host(), .gpu = gpu, .options = &options };
+    CHECK(technique_lpv.check(&how));
+    CHECK(technique_lpv.create(lpv, &how));
+    return lpv;
+}
+
+void rig_destroy(struct lpv *lpv)
+{
+    technique_lpv.destroy(lpv);
+    free(lpv);
+}
+
+void rig_render(struct lpv *lpv, struct stage *stage)
+{
+    struct gpu_cmd *cmd = gpu_frame_begin(stage->gpu);
+    assert_non_null(cmd);
+    technique_lpv.record(lpv, cmd, &stage->view);
+    CHECK(gpu_frame_end(stage->gpu, cmd));
+    CHECK(gpu_wait(stage->gpu));
+}
+
+float *rig_read(struct lpv *lpv, const struct lpv_volume *volume, int colour)
+{
+    const size_t dim = (size_t)lpv->options.dim;
+    float *all = malloc(dim * dim * dim * 4 * sizeof *all);
+    CHECK(gpu_image_download_float(lpv->gpu, volume->colour[colour], 0, 0, all, 4,
+                                   dim * dim * dim * 4));
+    const int32_t *cells = lpv->grid.cells;
+    const float unit = lpv->params.fixed_from_flux * lpv->params.grid_from_fixed; // grid_from_flux
+    size_t out = 0;
+    for (size_t z = 0; z < (size_t)cells[2]; z++)
+        for (size_t y = 0; y < (size_t)cells[1]; y++)
+            for (size_t i = 0; i < 4 * (size_t)cells[0]; i++)
+                all[out++] = all[(z * dim + y) * dim * 4 + i] / unit;
+    return all;
+}
+
+void rig_inject_twin(struct twin *twin, const struct stage *stage, int colour)
+{
+    const uint32_t size = stage->view.rsm_size;
+    for (int face = 0; face < stage->view.rsm_face_count; face++)
+        for (uint32_t i = 0; i < size * size; i++) {
+            const struct stage_texel *texel = &stage->texels[(size_t)face * size * size + i];
+            if (texel->depth == 0.0f) continue;
+            twin_inject(twin, stage_texel_position(stage, face, i % size, i / size),
+                        stage_rounded_normal(texel->normal),
+                        (double)stage_texel_flux(stage, face, i % size, i / size).raw[colour]);
+        }
+}

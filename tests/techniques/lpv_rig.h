@@ -1,0 +1,16 @@
+// Light propagation volumes on a stage, with their grids open to the tests.
+#pragma once
+
+#include "techniques/lpv/lpv.h"
+#include "techniques/lpv/lpv_state.h"
+#include "techniques/lpv_twin.h"
+#include "techniques/stage.h"
+
+struct lpv *rig_create(struct gpu *gpu, const char *options);
+void rig_destroy(struct lpv *lpv);
+// One frame, waited for.
+void rig_render(struct lpv *lpv, struct stage *stage);
+// One colour of a volume as lumen/sr, 4 floats a cell in use, [z][y][x]. To be freed.
+float *rig_read(struct lpv *lpv, const struct lpv_volume *volume, int colour);
+// What the stage's reflective shadow maps inject of one colour.
+void rig_inject_twin(struct twin *twin, const struct stage *stage, int colour);

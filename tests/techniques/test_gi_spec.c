@@ -1,0 +1,152 @@
+#include "framework/test.h"
+#include "techniques/gi_spec.h"
+#include "techniques/registry.h"
+
+#include <string.h>
+
+// Techniques of the other roles, which only parsing sees.
+static bool fake_create(void *state, const struct technique_create *how)
+{
+    return state && how;
+}
+static void fake_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    (void)state, (void)cmd, (void)view;
+}
+static void fake_destroy(void *state)
+{
+    (void)state;
+}
+
+struct fake_options {
+    float bias;
+};
+static const struct option_row fake_rows[] = { OPTION_ROW(struct fake_options, float32, bias, 1,
+                                                          -1e6, 1e6, "", LIVE, "a number") };
+
+#define FAKE(name_, role_)                                                                         \
+    {                                                                                              \
+        .name = name_, .title = "fake", .paper = "none", .role = role_, .create = fake_create,     \
+        .record = fake_record, .destroy = fake_destroy, .options = {                               \
+            fake_rows,                                                                             \
+            1,                                                                                     \
+            sizeof(struct fake_options)                                                            \
+        }                                                                                          \
+    }
+static const struct technique still = FAKE("still", ROLE_SOURCE), glow = FAKE("glow", ROLE_SOURCE),
+                              change = FAKE("change", ROLE_DELTA),
+                              shade = FAKE("shade", ROLE_VISIBILITY);
+static const struct technique *const fakes[] = { &still, &glow, &change, &shade, NULL };
+
+static void parses_as(const char *text, const char *printed)
+{
+    struct gi_spec spec;
+    CHECK(gi_spec_parse_among(&spec, test_host(), text, fakes));
+    char *back = gi_spec_print(&spec);
+    CHECK_STRING(back, printed);
+    host_free(test_host(), back);
+    gi_spec_finish(&spec);
+}
+
+static void fails_with(const char *text, const char *words)
+{
+    struct gi_spec spec;
+    test_forget_messages();
+    CHECK(!gi_spec_parse_among(&spec, test_host(), text, fakes));
+    if (!strstr(test_last_message(), words))
+        fail_msg("\"%s\" says \"%s\", not \"%s\"", text, test_last_message(), words);
+    assert_int_equal(spec.count, 0);
+}
+
+TEST(gi_spec_terms_may_stand_in_any_order)
+{
+    parses_as("glow:bias=2+change+shade", "glow:bias=2+change:bias=1+shade:bias=1");
+    parses_as("shade+glow:bias=2+change", "glow:bias=2+change:bias=1+shade:bias=1");
+    parses_as("change+shade+glow:bias=2", "glow:bias=2+change:bias=1+shade:bias=1");
+}
+
+TEST(gi_spec_without_a_source_has_the_first_one)
+{
+    parses_as("", "still:bias=1");
+    parses_as("shade:bias=3", "still:bias=1+shade:bias=3");
+}
+
+TEST(gi_spec_reads_exponents_with_a_plus)
+{
+    parses_as("glow:bias=1e+3+shade:bias=2.5E+2", "glow:bias=1e+03+shade:bias=2.5e+02");
+    parses_as("glow:bias=1e+03+shade:bias=2.5e+02", "glow:bias=1e+03+shade:bias=2.5e+02");
+}
+
+TEST(gi_spec_prints_what_it_reads)
+{
+    struct gi_spec spec, again;
+    CHECK(gi_spec_parse(&spec, test_host(), "lpv:steps=7,lobe=normal,focus=0.625"));
+    char *text = gi_spec_print(&spec);
+    CHECK(gi_spec_parse(&again, test_host(), text));
+    CHECK(option_difference(&spec.technique[0]->options, spec.options[0], again.options[0]) == -1);
+    CHECK(strstr(text, "lpv:dim=32,steps=7,lobe=normal") == text);
+    host_free(test_host(), text);
+    gi_spec_finish(&again);
+    gi_spec_finish(&spec);
+}
+
+TEST(gi_spec_errors_name_what_is_wrong_and_what_was_meant)
+{
+    fails_with("glov", "unknown technique glov: did you mean glow?");
+    fails_with("xyzzyxyzzy", "known are still, glow, change, shade");
+    fails_with("glow:bais=1", "bias");
+    fails_with("glow:bias=x", "glow:bias");
+    fails_with("glow+still", "at most one source");
+    fails_with("shade+glow+shade", "at most one visibility");
+    fails_with("glow+", "a name is missing");
+    fails_with("+glow", "a name is missing");
+    fails_with("glow++shade", "a name is missing");
+    fails_with(":bias=1", "a name is missing");
+    fails_with("change", "changes what a source gives");
+    fails_with("change+shade", "changes what a source gives");
+    fails_with("glow +shade", "unknown technique");
+    char longest[GI_MAX_TEXT + 2];
+    memset(longest, 'a', sizeof longest - 1);
+    longest[sizeof longest - 1] = 0;
+    fails_with(longest, "longer than");
+}
+
+TEST(gi_spec_cut_anywhere_is_read_or_refused)
+{
+    const char *text = "lpv:dim=16,steps=3,lobe=normal,focus=0.5,offset=1,gain=2e+0";
+    char part[128];
+    for (size_t length = 0; length <= strlen(text); length++) {
+        memcpy(part, text, length);
+        part[length] = 0;
+        struct gi_spec spec;
+        if (gi_spec_parse(&spec, test_host(), part)) gi_spec_finish(&spec);
+    }
+}
+
+TEST(registry_finds_each_technique_by_its_name)
+{
+    for (size_t i = 0; techniques[i]; i++) {
+        CHECK(technique_is_sound(techniques[i]));
+        CHECK(technique_find(techniques[i]->name) == techniques[i]);
+    }
+    CHECK(technique_find("lpv2") == NULL);
+    CHECK(techniques[0] == technique_find("none"));
+}
+
+TEST(registry_refuses_a_technique_that_lacks_something)
+{
+    CHECK(technique_is_sound(&glow));
+    struct technique bad = glow;
+    bad.name = "Glow";
+    CHECK(!technique_is_sound(&bad));
+    bad = glow;
+    bad.record = NULL;
+    CHECK(!technique_is_sound(&bad));
+    bad = glow;
+    bad.bake_version = 1;
+    CHECK(!technique_is_sound(&bad));
+    const struct technique_debug_view views[] = { { "a", "b" }, { NULL, NULL } };
+    bad = glow;
+    bad.debug_views = views;
+    CHECK(!technique_is_sound(&bad));
+}

@@ -1,0 +1,267 @@
+// Each GPU stage against the plain C twin, and what must hold to the bit.
+#include "techniques/lpv_rig.h"
+
+#include "core/rng.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE = 24, WIDTH = 16, HEIGHT = 8, PIXELS = WIDTH * HEIGHT };
+
+static vec3s random_direction(struct rng *rng)
+{
+    return glms_vec3_normalize(
+        vec3_of(rng_float(rng) - 0.5f, rng_float(rng) - 0.5f, rng_float(rng) - 0.5f));
+}
+
+// Two maps of texels scattered over a box of 4 × 3 × 3.5 m, some of them outside of it, some empty.
+static void scatter(struct stage *stage, struct gpu *gpu)
+{
+    struct rng rng = rng_for(5, 0, 0);
+    stage_init(stage, gpu, WIDTH, HEIGHT, SIZE, 2);
+    stage->view.bounds = (struct box3){ vec3_of(-2.1f, 0.3f, 1.2f), vec3_of(1.9f, 3.3f, 4.7f) };
+    stage_set_face(stage, 0, vec3_of(-2.5f, 0.2f, 1.1f), vec3_of(4.6f, 0.3f, 0.1f),
+                   vec3_of(0.2f, 3.2f, 0.3f), vec3_of(0.1f, -0.2f, 3.6f), vec3_of(3, 2, 1));
+    stage_set_face(stage, 1, vec3_of(1.7f, 3.1f, 4.6f), vec3_of(-3.3f, 0.3f, 0.1f),
+                   vec3_of(0.2f, 0.2f, -3.2f), vec3_of(0.1f, -2.6f, 0.2f), vec3_of(0.01f, 40, 1));
+    for (int face = 0; face < 2; face++)
+        for (uint32_t i = 0; i < SIZE * SIZE; i++) {
+            struct stage_texel texel = { .depth = i % 7 == 0 ? 0.0f : rng_float(&rng),
+                                         .normal = random_direction(&rng) };
+            for (int c = 0; c < 3; c++) texel.reflectance[c] = (uint8_t)(rng_u32(&rng) & 255);
+            *stage_texel(stage, face, i % SIZE, i / SIZE) = texel;
+        }
+    stage_show_wall(stage, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
+                    vec3_of(0.1f, 0.3f, 3), vec3_of(0, 1, 0));
+    stage_upload(stage);
+}
+
+static double largest(double (*values)[4], size_t count)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 4; k++) most = fmax(most, fabs(values[i][k]));
+    return most;
+}
+
+static void check_volume(const float *got, double (*expected)[4], size_t count, double tolerance)
+{
+    const double most = largest(expected, count);
+    CHECK(most > 0.0);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 4; k++)
+            CHECK_NEAR((double)got[4 * i + (size_t)k], expected[i][k], tolerance * most);
+}
+
+TEST_GPU(lpv_injection_is_the_twins)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    rig_render(lpv, &stage);
+    for (int colour = 0; colour < LPV_COLOURS; colour++) {
+        struct twin twin;
+        twin_init(&twin, lpv->grid);
+        rig_inject_twin(&twin, &stage, colour);
+        float *got = rig_read(lpv, &lpv->injected, colour);
+        check_volume(got, twin.light, twin_cells(&twin), 1e-5);
+        free(got);
+        twin_finish(&twin);
+    }
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+static void propagation_is_the_twins(struct gpu *gpu, const char *options)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, options);
+    rig_render(lpv, &stage);
+    for (int colour = 0; colour < LPV_COLOURS; colour++) {
+        struct twin twin;
+        twin_init(&twin, lpv->grid);
+        rig_inject_twin(&twin, &stage, colour);
+        for (int i = 0; i < lpv->options.steps; i++)
+            twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, lpv->options.focus);
+        float *got = rig_read(lpv, &lpv->light, colour);
+        check_volume(got, twin.accumulated, twin_cells(&twin), 1e-3);
+        free(got);
+        twin_finish(&twin);
+    }
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+TEST_GPU(lpv_propagation_is_the_sum_over_faces_and_steps)
+{
+    propagation_is_the_twins(gpu, "dim=8,steps=1");
+    propagation_is_the_twins(gpu, "dim=8,steps=6");
+    propagation_is_the_twins(gpu, "dim=8,steps=7,lobe=normal,focus=0.6666667");
+    propagation_is_the_twins(gpu, "dim=16,steps=20,focus=1,cell_margin=1.5");
+}
+
+TEST_GPU(lpv_application_is_the_twins)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=5,offset=0.75,window=0.8");
+    rig_render(lpv, &stage);
+    float got[PIXELS * 3];
+    stage_read_irradiance(&stage, got);
+    for (int colour = 0; colour < LPV_COLOURS; colour++) {
+        struct twin twin;
+        twin_init(&twin, lpv->grid);
+        rig_inject_twin(&twin, &stage, colour);
+        for (int i = 0; i < 5; i++) twin_propagate(&twin, LPV_LOBE_PROPAGATION, lpv->options.focus);
+        double expected[PIXELS], most = 0.0;
+        for (int i = 0; i < PIXELS; i++) {
+            const float x = ((float)(i % WIDTH) + 0.5f) * 2.0f / WIDTH - 1.0f;
+            const float y = ((float)(i / WIDTH) + 0.5f) * 2.0f / HEIGHT - 1.0f;
+            expected[i] = twin_irradiance(
+                &twin, mat4_point(stage.constants.world_from_clip, vec3_of(x, y, 0.5f)),
+                stage_rounded_normal(vec3_of(0, 1, 0)), 0.75f, 0.8f);
+            most = fmax(most, expected[i]);
+        }
+        CHECK(most > 0.0);
+        // Besides halves, filtering hardware may round its weights to 8 bits.
+        for (int i = 0; i < PIXELS; i++)
+            CHECK_NEAR((double)got[3 * i + colour], expected[i], 5e-3 * most);
+        twin_finish(&twin);
+    }
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+// The bytes of the injected grid, all colours.
+static float *injected(struct lpv *lpv, size_t *count)
+{
+    const size_t cells =
+        (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] * (size_t)lpv->grid.cells[2];
+    float *all = malloc(LPV_COLOURS * cells * 4 * sizeof *all);
+    for (int colour = 0; colour < LPV_COLOURS; colour++) {
+        float *one = rig_read(lpv, &lpv->injected, colour);
+        memcpy(all + (size_t)colour * cells * 4, one, cells * 4 * sizeof *all);
+        free(one);
+    }
+    *count = LPV_COLOURS * cells * 4;
+    return all;
+}
+
+static float *injected_of(struct stage *stage, struct lpv *lpv, size_t *count)
+{
+    stage_upload(stage);
+    rig_render(lpv, stage);
+    return injected(lpv, count);
+}
+
+TEST_GPU(lpv_injection_knows_no_order)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    size_t count;
+    float *before = injected_of(&stage, lpv, &count), *again = injected_of(&stage, lpv, &count);
+    assert_memory_equal(before, again, count * sizeof *before);
+    // The same lights in the other order.
+    for (uint32_t i = 0; i < SIZE * SIZE; i++) {
+        const struct stage_texel texel = stage.texels[i];
+        stage.texels[i] = stage.texels[SIZE * SIZE + i];
+        stage.texels[SIZE * SIZE + i] = texel;
+    }
+    const struct rsm_face face = stage.faces[0];
+    stage.faces[0] = stage.faces[1];
+    stage.faces[1] = face;
+    float *swapped = injected_of(&stage, lpv, &count);
+    assert_memory_equal(before, swapped, count * sizeof *before);
+    free(before);
+    free(again);
+    free(swapped);
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+TEST_GPU(lpv_half_the_light_is_half_the_grid_to_the_bit)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    size_t count;
+    float *full = injected_of(&stage, lpv, &count);
+    for (int face = 0; face < 2; face++)
+        stage.faces[face].intensity = glms_vec3_scale(stage.faces[face].intensity, 0.5f);
+    float *half = injected_of(&stage, lpv, &count);
+    for (size_t i = 0; i < count; i++) CHECK(half[i] == 0.5f * full[i]);
+    free(full);
+    free(half);
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+TEST_GPU(lpv_two_lights_are_the_sum_even_ten_thousand_times_apart)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    stage.faces[1].intensity = glms_vec3_scale(stage.faces[1].intensity, 1e4f);
+    const vec3s dim = stage.faces[0].intensity, bright = stage.faces[1].intensity;
+    size_t count;
+    float *both = injected_of(&stage, lpv, &count);
+    stage.faces[1].intensity = vec3_of(0, 0, 0);
+    float *first = injected_of(&stage, lpv, &count);
+    stage.faces[1].intensity = bright;
+    stage.faces[0].intensity = vec3_of(0, 0, 0);
+    float *second = injected_of(&stage, lpv, &count);
+    stage.faces[0].intensity = dim;
+    for (size_t i = 0; i < count; i++)
+        CHECK_NEAR((double)both[i], (double)first[i] + (double)second[i],
+                   1e-6 * (fabs((double)second[i]) + fabs((double)first[i])) + 1e-2);
+    // Cells that only the faint light reaches hold it beside a light 10⁴ times as strong.
+    size_t seen = 0;
+    for (size_t i = 0; i < count; i++)
+        if (second[i] == 0.0f && fabsf(first[i]) > 1.0f) {
+            seen++;
+            CHECK_RELATIVE((double)both[i], (double)first[i], 1e-2);
+        }
+    CHECK(seen > 10);
+    free(both);
+    free(first);
+    free(second);
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+static void expect_black(struct lpv *lpv, struct stage *stage)
+{
+    float got[PIXELS * 3];
+    rig_render(lpv, stage);
+    stage_read_irradiance(stage, got);
+    for (int i = 0; i < PIXELS * 3; i++) CHECK(got[i] == 0.0f);
+}
+
+TEST_GPU(lpv_without_light_or_scene_is_black_exactly)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=4");
+    rig_render(lpv, &stage); // leaves light in all images
+    const struct box3 bounds = stage.view.bounds;
+    stage.view.bounds = box3_empty();
+    expect_black(lpv, &stage);
+    stage.view.bounds = (struct box3){ bounds.min, bounds.min };
+    expect_black(lpv, &stage);
+    stage.view.bounds = bounds;
+    for (int face = 0; face < 2; face++) stage.faces[face].intensity = vec3_of(0, 0, 0);
+    expect_black(lpv, &stage);
+    for (int face = 0; face < 2; face++) {
+        stage.faces[face].intensity = vec3_of(9, 9, 9);
+        stage_fill_face(&stage, face, (struct stage_texel){ .depth = 0 });
+    }
+    stage_upload(&stage);
+    expect_black(lpv, &stage);
+    stage.view.rsm_face_count = 0;
+    expect_black(lpv, &stage);
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}

@@ -1,0 +1,108 @@
+// What holds for every source, through the real frame: light adds up, none is black, the same is
+// the same.
+#include "frame/studio.h"
+#include "techniques/gi.h"
+#include "techniques/registry.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE = 32, FLOATS = SIZE * SIZE * 3 };
+
+// A closed room; `lights` is a set of bits: which of its two lights are on.
+static float *irradiance(struct gpu *gpu, const char *text, int lights, float strength, int frames)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    studio_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
+               studio_matte(&s, vec3_of(0.7f, 0.5f, 0.3f)));
+    studio_box(&s, vec3_of(0.2f, 0, -0.5f), vec3_of(1, 1, 0.3f), false,
+               studio_matte(&s, vec3_of(0.2f, 0.5f, 0.8f)));
+    const vec3s one = { { 100 * strength, 60 * strength, 20 * strength } };
+    const vec3s two = { { 10 * strength, 40 * strength, 90 * strength } };
+    if (lights & 1) studio_add_point(&s, vec3_of(-1, 2, 0), one);
+    if (lights & 2) studio_add_spot(&s, vec3_of(1, 2.5f, 1), vec3_of(-1, -2, -1), 0.3f, 0.7f, two);
+    studio_look(&s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
+    studio_open(&s);
+    struct gi_spec spec;
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);
+    assert_non_null(gi);
+    s.indirect = gi_hook(gi);
+    for (int i = 0; i < frames; i++) studio_render(&s);
+    float *out = studio_read(&s, READ_IRRADIANCE);
+    gi_destroy(gi);
+    gi_spec_finish(&spec);
+    studio_finish(&s);
+    return out;
+}
+
+static float largest(const float *values)
+{
+    float most = 0.0f;
+    for (int i = 0; i < FLOATS; i++) most = fmaxf(most, values[i]);
+    return most;
+}
+
+TEST_GPU(techniques_give_half_for_half_the_light)
+{
+    for (size_t t = 0; techniques[t]; t++) {
+        if (techniques[t]->role != ROLE_SOURCE) continue;
+        float *full = irradiance(gpu, techniques[t]->name, 3, 1.0f, 1);
+        float *half = irradiance(gpu, techniques[t]->name, 3, 0.5f, 1);
+        for (int i = 0; i < FLOATS; i++) CHECK(half[i] == 0.5f * full[i]);
+        free(full);
+        free(half);
+    }
+}
+
+TEST_GPU(techniques_add_two_lights_up)
+{
+    for (size_t t = 0; techniques[t]; t++) {
+        if (techniques[t]->role != ROLE_SOURCE) continue;
+        float *both = irradiance(gpu, techniques[t]->name, 3, 1.0f, 1);
+        float *one = irradiance(gpu, techniques[t]->name, 1, 1.0f, 1);
+        float *two = irradiance(gpu, techniques[t]->name, 2, 1.0f, 1);
+        const double most = (double)largest(both);
+        int compared = 0;
+        for (int i = 0; i < FLOATS; i++) {
+            // Where one of them is clamped at zero the sum is not the sum of what is shown.
+            if (most > 0.0 && (one[i] == 0.0f || two[i] == 0.0f || both[i] == 0.0f)) continue;
+            compared++;
+            CHECK_NEAR((double)both[i], (double)one[i] + (double)two[i], 2e-3 * most);
+        }
+        CHECK(compared > FLOATS / 2);
+        free(both);
+        free(one);
+        free(two);
+    }
+}
+
+TEST_GPU(techniques_give_exactly_nothing_without_light)
+{
+    for (size_t t = 0; techniques[t]; t++) {
+        if (techniques[t]->role != ROLE_SOURCE) continue;
+        float *dark = irradiance(gpu, techniques[t]->name, 0, 1.0f, 1);
+        CHECK(largest(dark) == 0.0f);
+        free(dark);
+        if (techniques[t] == technique_find("none")) continue;
+        float *lit = irradiance(gpu, techniques[t]->name, 3, 1.0f, 1);
+        CHECK(largest(lit) > 1.0f); // lux
+        free(lit);
+    }
+}
+
+TEST_GPU(techniques_give_the_same_bytes_in_every_run_and_frame)
+{
+    for (size_t t = 0; techniques[t]; t++) {
+        float *first = irradiance(gpu, techniques[t]->name, 3, 1.0f, 1);
+        float *again = irradiance(gpu, techniques[t]->name, 3, 1.0f, 1);
+        float *later = irradiance(gpu, techniques[t]->name, 3, 1.0f, 3);
+        assert_memory_equal(first, again, FLOATS * sizeof *first);
+        assert_memory_equal(first, later, FLOATS * sizeof *first);
+        free(first);
+        free(again);
+        free(later);
+    }
+}

@@ -1,0 +1,191 @@
+// Every technique through the real frame: its whole life, with every option at both ends.
+#include "frame/studio.h"
+#include "techniques/gi.h"
+#include "techniques/registry.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A room with a box in it, a sun from above and a point light.
+static void room(struct studio *s, struct gpu *gpu)
+{
+    studio_init(s, gpu);
+    const int matte = studio_matte(s, vec3_of(0.7f, 0.6f, 0.5f));
+    studio_floor(s, 3, matte);
+    studio_box(s, vec3_of(-0.5f, 0, -0.5f), vec3_of(0.5f, 1, 0.5f), false, matte);
+    studio_quad(s, vec3_of(-3, 0, -3), vec3_of(3, 0, -3), vec3_of(3, 3, -3), vec3_of(-3, 3, -3),
+                matte);
+    studio_add_sun(s, vec3_of(0.3f, -1, -0.4f), vec3_of(20000, 18000, 15000));
+    studio_add_point(s, vec3_of(1, 2, 1), vec3_of(50, 300, 100));
+    studio_look(s, vec3_of(1, 2, 4), vec3_of(0, 0.5f, 0));
+    s->input.sky = vec3_of(10, 20, 30);
+    studio_open(s);
+}
+
+static struct gi *create(struct studio *s, const char *text)
+{
+    struct gi_spec spec;
+    if (!gi_spec_parse(&spec, test_host(), text)) fail_msg("%s: %s", text, test_last_message());
+    struct gi *gi = gi_create(test_host(), s->gpu, &spec, &s->pose, s->width, s->height);
+    if (!gi) fail_msg("%s: %s", text, test_last_message());
+    gi_spec_finish(&spec);
+    s->indirect = gi_hook(gi);
+    return gi;
+}
+
+static void finite_frames(struct studio *s, int count)
+{
+    for (int i = 0; i < count; i++) studio_render(s);
+    float *e = studio_read(s, READ_IRRADIANCE);
+    for (size_t i = 0; i < (size_t)s->width * s->height * 3; i++)
+        CHECK(isfinite(e[i]) && e[i] >= 0.0f);
+    free(e);
+}
+
+TEST_GPU(techniques_live_through_frames_sizes_and_views)
+{
+    struct studio s;
+    room(&s, gpu);
+    for (size_t i = 0; techniques[i]; i++) {
+        struct gi *gi = create(&s, techniques[i]->name);
+        finite_frames(&s, 3);
+        CHECK(gi_resize(gi, 45, 27));
+        studio_resize(&s, 45, 27);
+        gi_invalidate(gi, CHANGED_GEOMETRY | CHANGED_LIGHT | CHANGED_CAMERA);
+        finite_frames(&s, 1);
+        const struct technique_debug_view *view = techniques[i]->debug_views;
+        for (; view && view->name; view++) {
+            CHECK(gi_set_debug_view(gi, view->name));
+            finite_frames(&s, 1);
+            float rgb[45 * 27 * 3];
+            CHECK(gpu_image_download_float(gpu, gi_debug_image(gi), 0, 0, rgb, 3, 45 * 27 * 3));
+            float most = 0.0f;
+            for (int k = 0; k < 45 * 27 * 3; k++) {
+                CHECK(isfinite(rgb[k]));
+                most = fmaxf(most, rgb[k]);
+            }
+            CHECK(most > 0.0f);
+        }
+        CHECK(!gi_set_debug_view(gi, "nonesuch"));
+        CHECK(strstr(test_last_message(), "nonesuch"));
+        CHECK(gi_set_debug_view(gi, NULL));
+        CHECK(gi_debug_image(gi).id == 0);
+        CHECK(gi_resize(gi, 32, 32));
+        studio_resize(&s, 32, 32);
+        gi_destroy(gi);
+    }
+    studio_finish(&s);
+}
+
+TEST_GPU(techniques_run_with_every_option_at_both_ends)
+{
+    struct studio s;
+    room(&s, gpu);
+    for (size_t i = 0; techniques[i]; i++) {
+        for (size_t k = 0; k < techniques[i]->options.count; k++) {
+            const struct option_row *row = &techniques[i]->options.rows[k];
+            for (int end = 0; end < 2; end++) {
+                struct gi_spec spec;
+                CHECK(gi_spec_parse(&spec, test_host(), techniques[i]->name));
+                char text[128], value[64];
+                void *options = spec.options[0];
+                if (row->type == OPTION_TYPE_float32)
+                    *(float *)((char *)options + row->offset) = (float)(end ? row->max : row->min);
+                else if (row->type == OPTION_TYPE_bool8)
+                    *(bool *)((char *)options + row->offset) = end != 0;
+                else
+                    *(int32_t *)((char *)options + row->offset) =
+                        (int32_t)(end ? row->max : row->min);
+                option_print(row, options, value, sizeof value);
+                snprintf(text, sizeof text, "%s:%s=%s", techniques[i]->name, row->name, value);
+                gi_spec_finish(&spec);
+                struct gi *gi = create(&s, text);
+                finite_frames(&s, 1);
+                gi_destroy(gi);
+            }
+        }
+    }
+    studio_finish(&s);
+}
+
+TEST_GPU(techniques_survive_scenes_with_nothing_in_them)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    studio_add_sun(&s, vec3_of(0, -1, 0), vec3_of(1, 1, 1));
+    studio_open(&s);
+    for (size_t i = 0; techniques[i]; i++) {
+        struct gi *gi = create(&s, techniques[i]->name);
+        finite_frames(&s, 2);
+        gi_destroy(gi);
+    }
+    studio_finish(&s);
+}
+
+TEST_GPU(techniques_say_before_how_much_memory_they_take)
+{
+    struct studio s;
+    room(&s, gpu);
+    for (size_t i = 0; techniques[i]; i++) {
+        struct gi_spec spec;
+        CHECK(gi_spec_parse(&spec, test_host(), techniques[i]->name));
+        const uint64_t estimate = gi_memory_estimate(&spec, s.width, s.height);
+        gi_spec_finish(&spec);
+        struct gi *gi = create(&s, techniques[i]->name);
+        struct gpu_memory owners[32];
+        uint64_t taken = 0;
+        const int count = gpu_memory_by_owner(gpu, owners, 32);
+        for (int k = 0; k < count && k < 32; k++)
+            if (strcmp(owners[k].owner, techniques[i]->name) == 0) taken = owners[k].bytes;
+        print_message("%s: %llu bytes said, %llu taken\n", techniques[i]->name,
+                      (unsigned long long)estimate, (unsigned long long)taken);
+        // The device may round each object up.
+        CHECK(taken >= estimate && (double)taken <= 1.02 * (double)estimate + 4096);
+        gi_destroy(gi);
+    }
+    studio_finish(&s);
+}
+
+TEST_GPU(gi_changes_live_options_in_place_and_asks_for_a_new_one_else)
+{
+    struct studio s;
+    room(&s, gpu);
+    struct gi *gi = create(&s, "ambient");
+    studio_render(&s);
+    const float before = studio_pixel(&s, READ_IRRADIANCE, 16, 20).y;
+    struct gi_spec spec;
+    CHECK(gi_spec_parse(&spec, test_host(), "ambient:strength=2"));
+    CHECK(gi_set_options(gi, &spec));
+    gi_spec_finish(&spec);
+    studio_render(&s);
+    CHECK(before > 0.0f);
+    CHECK_RELATIVE((double)studio_pixel(&s, READ_IRRADIANCE, 16, 20).y, 2.0 * (double)before, 1e-3);
+    CHECK(gi_spec_parse(&spec, test_host(), "lpv"));
+    CHECK(!gi_set_options(gi, &spec));
+    gi_spec_finish(&spec);
+    gi_destroy(gi);
+
+    gi = create(&s, "lpv:dim=16");
+    CHECK(gi_spec_parse(&spec, test_host(), "lpv:dim=16,steps=2,gain=3"));
+    CHECK(gi_set_options(gi, &spec));
+    gi_spec_finish(&spec);
+    CHECK(gi_spec_parse(&spec, test_host(), "lpv:dim=24,steps=2,gain=3"));
+    CHECK(!gi_set_options(gi, &spec));
+    gi_spec_finish(&spec);
+    gi_destroy(gi);
+    studio_finish(&s);
+}
+
+TEST_GPU(lpv_refuses_a_dimension_that_does_not_fit_its_workgroups)
+{
+    struct studio s;
+    room(&s, gpu);
+    struct gi_spec spec;
+    CHECK(gi_spec_parse(&spec, test_host(), "lpv:dim=20"));
+    CHECK(gi_create(test_host(), gpu, &spec, &s.pose, 32, 32) == NULL);
+    CHECK(strstr(test_last_message(), "dim=20 is not a multiple of 8"));
+    gi_spec_finish(&spec);
+    studio_finish(&s);
+}

@@ -1,0 +1,6 @@
+add_library(ag_test_techniques STATIC techniques/lpv_rig.c techniques/lpv_twin.c techniques/stage.c)
+target_link_libraries(ag_test_techniques PUBLIC ag_test_gpu ag_techniques PRIVATE afterglow_flags m)
+
+foreach(name gi_spec lpv_flux lpv_math lpv_twin technique_invariants technique_smoke)
+  ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_studio)
+endforeach()
