@@ -41,10 +41,7 @@ void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd)
 {
     vkDestroyQueryPool(gpu->device, cmd->scopes.queries, NULL);
     vkDestroyCommandPool(gpu->device, cmd->pool, NULL);
-    if (cmd->ring.buffer.id) {
-        buffer_free(gpu, table_remove(&gpu->buffers, cmd->ring.buffer.id));
-        gpu->internal_buffers--;
-    }
+    ring_finish(cmd);
     *cmd = (struct gpu_cmd){ 0 };
 }
 
@@ -174,6 +171,7 @@ static void close_recording(struct gpu_cmd *cmd)
         gpu_render_end(cmd);
     }
     unite_shared(cmd);
+    ring_stop(cmd);
     scopes_stop(cmd);
 }
 

@@ -12,11 +12,29 @@ void ring_start(struct gpu_cmd *cmd)
     cmd->ring.used = 0;
 }
 
-static void ring_drop(struct gpu *gpu, struct ring *ring)
+void ring_stop(struct gpu_cmd *cmd)
 {
-    if (!ring->buffer.id) return;
-    gpu_buffer_destroy(gpu, &ring->buffer);
+    struct ring *ring = &cmd->ring;
+    for (int i = 0; i < ring->outgrown_count; i++) {
+        gpu_buffer_destroy(cmd->gpu, &ring->outgrown[i]);
+        cmd->gpu->internal_buffers--;
+    }
+    ring->outgrown_count = 0;
+}
+
+static void ring_free(struct gpu *gpu, gpu_buffer buffer)
+{
+    if (!buffer.id) return;
+    buffer_free(gpu, table_remove(&gpu->buffers, buffer.id));
     gpu->internal_buffers--;
+}
+
+void ring_finish(struct gpu_cmd *cmd)
+{
+    struct ring *ring = &cmd->ring;
+    for (int i = 0; i < ring->outgrown_count; i++) ring_free(cmd->gpu, ring->outgrown[i]);
+    ring_free(cmd->gpu, ring->buffer);
+    *ring = (struct ring){ 0 };
 }
 
 static bool ring_grow(struct gpu_cmd *cmd, size_t bytes)
@@ -27,6 +45,7 @@ static bool ring_grow(struct gpu_cmd *cmd, size_t bytes)
     while (size < bytes && size < SIZE_MAX / 2) size *= 2;
     const uint32_t usage =
         GPU_BUFFER_STORAGE | GPU_BUFFER_UNIFORM | GPU_BUFFER_INDEX | GPU_BUFFER_INDIRECT;
+    if (cmd->ring.outgrown_count == RING_OUTGROWN) return false;
     struct buffer *buffer = buffer_new(gpu, "gpu.transient", size, usage, MEMORY_RING);
     if (!buffer) return false;
     buffer->constant = true;
@@ -35,9 +54,10 @@ static bool ring_grow(struct gpu_cmd *cmd, size_t bytes)
         buffer_free(gpu, buffer);
         return false;
     }
-    ring_drop(gpu, &cmd->ring);
+    if (cmd->ring.buffer.id) cmd->ring.outgrown[cmd->ring.outgrown_count++] = cmd->ring.buffer;
     gpu->internal_buffers++;
-    cmd->ring = (struct ring){ .buffer = { id } };
+    cmd->ring.buffer = (gpu_buffer){ id };
+    cmd->ring.used = 0;
     return true;
 }
 

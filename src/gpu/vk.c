@@ -75,6 +75,7 @@ bool gpu_misuse(struct gpu *gpu, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     host_fail(gpu->host, FAIL_ARGUMENT, "gpu %s", text);
+    if (gpu->recording) gpu->recording->broken = true;
     assert(!"misuse of the gpu module; the log says how");
     return false;
 }

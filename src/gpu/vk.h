@@ -251,9 +251,13 @@ struct rendering {
     uint64_t op;
 };
 
+enum { RING_OUTGROWN = 40 }; // each is twice the one before: no memory has room for more
+
 struct ring { // transient data
     gpu_buffer buffer;
     size_t used;
+    gpu_buffer outgrown[RING_OUTGROWN]; // bindings of this recording may still name them
+    int outgrown_count;
 };
 
 struct scope {
@@ -289,6 +293,9 @@ struct gpu_cmd {
     VkPipeline bound[2]; // compute, graphics
 };
 
+// Lets the rings go that this recording has outgrown.
+void ring_stop(struct gpu_cmd *cmd);
+void ring_finish(struct gpu_cmd *cmd); // the GPU is done with all of them
 // The next command is an operation of its own as regards hazards.
 void hazard_next_op(struct gpu_cmd *cmd);
 // Queues the barriers that `access` needs and remembers it. Clears what was never used before.

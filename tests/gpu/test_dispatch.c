@@ -280,6 +280,26 @@ TEST_GPU(transient_data_outgrows_its_ring_and_stays_right)
     gpu_pipeline_destroy(gpu, &sum);
 }
 
+// A frame binds what it made first, its constants say, to the end, however much it makes in between.
+TEST_GPU(a_binding_made_before_the_ring_grew_stays_right_to_the_frames_end)
+{
+    enum { WORDS = 3000, PIECES = 100 };
+    static uint32_t ones[WORDS], zeros[WORDS];
+    for (int i = 0; i < WORDS; i++) ones[i] = 1;
+    gpu_buffer total = test_gpu_buffer(gpu, 4);
+    gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    const struct gpu_binding first = gpu_transient(cmd, "Words", ones, sizeof ones);
+    for (int piece = 0; piece < PIECES; piece++) gpu_transient(cmd, "Words", zeros, sizeof zeros);
+    gpu_dispatch(cmd, sum, GPU_BIND(first, { "Total", .buffer = total }), NULL, 0, 1, 1, 1);
+    CHECK(gpu_frame_end(gpu, cmd));
+    uint32_t got;
+    CHECK(gpu_buffer_download(gpu, total, 0, &got, 4));
+    assert_int_equal(got, WORDS);
+    gpu_buffer_destroy(gpu, &total);
+    gpu_pipeline_destroy(gpu, &sum);
+}
+
 TEST_GPU(bindings_that_a_shader_only_declares_need_not_be_given)
 {
     gpu_buffer values = test_gpu_buffer(gpu, 8 * 4);
