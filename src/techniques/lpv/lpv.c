@@ -22,7 +22,7 @@ static const struct option_row option_rows[] = {
 static const struct technique_debug_view debug_views[] = {
     { "injected", "slices of the grid: the light that reflective shadow maps put in" },
     { "propagated", "slices of the grid: the light accumulated over all steps" },
-    { "cells", "the surfaces coloured by their cell, bright where light was injected" },
+    { "cells", "the surfaces coloured by the cell they inject into, bright where light was injected" },
     { NULL, NULL },
 };
 

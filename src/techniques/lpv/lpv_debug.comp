@@ -6,6 +6,7 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
+#include "frame/octahedral.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -18,7 +19,8 @@ layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler3D shown_red;
 layout(set = 0, binding = 4) uniform sampler3D shown_green;
 layout(set = 0, binding = 5) uniform sampler3D shown_blue;
-layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D picture;
+layout(set = 0, binding = 6) uniform sampler2D normal;
+layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D picture;
 
 // Flux of a cell, ∫ I dω = c0 √(4π), as the mean radiance in it.
 vec3 shown(ivec3 cell)
@@ -41,13 +43,14 @@ vec3 slices(ivec2 pixel)
     return shown(ivec3(ivec2(vec2(within.x, 1.0 - within.y) * 0.9999 * vec2(cells.xy)), z));
 }
 
-// A colour for each cell, full where light was injected and dim where not.
+// A colour for the cell into which a surface injects, half a cell along its normal: full where there is light, dim where not.
 vec3 cells_on_surfaces(ivec2 pixel)
 {
     float z = texelFetch(depth, pixel, 0).r;
     if (z == 0.0) return vec3(0.0);
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-    ivec3 cell = clamp(ivec3(floor(lpv_cells_from_world(position))), ivec3(0), lpv_cells() - 1);
+    vec3 at = lpv_cells_from_world(position) + 0.5 * octahedral_decode(texelFetch(normal, pixel, 0).rg);
+    ivec3 cell = clamp(ivec3(floor(at)), ivec3(0), lpv_cells() - 1);
     vec3 colour = 0.25 + 0.5 * vec3(cell & 1);
     return colour * (any(greaterThan(shown(cell), vec3(0.0))) ? 1.0 : 0.1);
 }
