@@ -22,20 +22,22 @@ layout(set = 0, binding = 7, LPV_FORMAT) uniform writeonly image3D after_red;
 layout(set = 0, binding = 8, LPV_FORMAT) uniform writeonly image3D after_green;
 layout(set = 0, binding = 9, LPV_FORMAT) uniform writeonly image3D after_blue;
 
-// Coefficients are c0, cy, cz, cx. `up` came along +axis, `down` along −axis; `axis` selects the axis' component.
-vec4 arriving(vec4 up, vec4 down, vec3 axis)
+// What arrives along each axis; coefficients are c0, cy, cz, cx. West, under and north send along +x, +y, +z.
+vec4 arriving(vec4 west, vec4 east, vec4 under, vec4 over, vec4 north, vec4 south)
 {
-    vec4 sum = up + down, difference = up - down;
-    float driven = lpv.keep * sum.x + lpv.drive * dot(difference.yzw, axis);
-    vec3 turned = mix(vec3(lpv.across), vec3(lpv.along), axis) * sum.yzw;
-    return vec4(driven, turned + lpv.aim * difference.x * axis);
+    vec4 x = west + east, y = under + over, z = north + south;
+    vec4 dx = west - east, dy = under - over, dz = north - south;
+    return vec4(lpv.keep * (x.x + y.x + z.x) + lpv.drive * (dx.w + dy.y + dz.z),
+                lpv.across * (x.y + z.y) + lpv.along * y.y + lpv.aim * dy.x,
+                lpv.across * (x.z + y.z) + lpv.along * z.z + lpv.aim * dz.x,
+                lpv.across * (y.w + z.w) + lpv.along * x.w + lpv.aim * dx.x);
 }
 
-#define LPV_GATHER(before, injected)                                                                         \
-    (texelFetch(injected, cell, 0) +                                                                         \
-     arriving(texelFetch(before, west, 0) * has_west, texelFetch(before, east, 0) * has_east, vec3(0, 0, 1)) + \
-     arriving(texelFetch(before, under, 0) * has_under, texelFetch(before, over, 0) * has_over, vec3(1, 0, 0)) + \
-     arriving(texelFetch(before, north, 0) * has_north, texelFetch(before, south, 0) * has_south, vec3(0, 1, 0)))
+#define LPV_GATHER(before, injected)                                                                           \
+    (texelFetch(injected, cell, 0) +                                                                           \
+     arriving(texelFetch(before, west, 0) * has_west, texelFetch(before, east, 0) * has_east,                  \
+              texelFetch(before, under, 0) * has_under, texelFetch(before, over, 0) * has_over,                \
+              texelFetch(before, north, 0) * has_north, texelFetch(before, south, 0) * has_south))
 
 void main()
 {
