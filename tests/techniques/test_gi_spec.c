@@ -1,7 +1,10 @@
 #include "framework/test.h"
+
+#include "core/file.h"
 #include "techniques/gi_spec.h"
 #include "techniques/registry.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // Techniques of the other roles, which only parsing sees.
@@ -149,4 +152,24 @@ TEST(registry_refuses_a_technique_that_lacks_something)
     bad = glow;
     bad.debug_views = views;
     CHECK(!technique_is_sound(&bad));
+}
+
+TEST(every_option_and_view_is_in_the_readme_of_its_technique)
+{
+    for (size_t i = 0; techniques[i]; i++) {
+        char path[1024], quoted[64];
+        snprintf(path, sizeof path, TECHNIQUES_DIR "/%s/README.md", techniques[i]->name);
+        struct file_bytes text;
+        CHECK(file_read(test_host(), path, 0, &text));
+        for (size_t k = 0; k < techniques[i]->options.count; k++) {
+            snprintf(quoted, sizeof quoted, "`%s`", techniques[i]->options.rows[k].name);
+            if (!strstr((const char *)text.data, quoted)) fail_msg("%s lacks %s", path, quoted);
+        }
+        const struct technique_debug_view *view = techniques[i]->debug_views;
+        for (; view && view->name; view++) {
+            snprintf(quoted, sizeof quoted, "`%s`", view->name);
+            if (!strstr((const char *)text.data, quoted)) fail_msg("%s lacks %s", path, quoted);
+        }
+        file_bytes_finish(test_host(), &text);
+    }
 }

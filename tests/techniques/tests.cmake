@@ -4,3 +4,4 @@ target_link_libraries(ag_test_techniques PUBLIC ag_test_gpu ag_techniques PRIVAT
 foreach(name gi_spec lpv_flux lpv_math lpv_twin technique_invariants technique_smoke)
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_studio)
 endforeach()
+target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
