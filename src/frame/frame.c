@@ -42,16 +42,20 @@ void frame_destroy(struct frame *f)
     rsm_finish(&f->rsm);
     shadow_finish(&f->shadow);
     gbuffer_finish(&f->gbuffer);
+    emitters_finish(&f->emitters);
     scene_gpu_finish(&f->scene);
     host_free(f->host, f);
 }
 
 bool frame_set_scene(struct frame *f, const struct scene *scene)
 {
+    emitters_finish(&f->emitters);
     scene_gpu_finish(&f->scene);
     f->has_scene = f->prepared = false;
     f->index = 0;
-    if (!scene_gpu_init(&f->scene, f->host, f->gpu, scene)) {
+    if (!scene_gpu_init(&f->scene, f->host, f->gpu, scene) ||
+        !emitters_init(&f->emitters, f->host, scene)) {
+        emitters_finish(&f->emitters);
         scene_gpu_finish(&f->scene);
         return false;
     }
@@ -205,6 +209,19 @@ static void record_rsm(struct frame *f, struct gpu_cmd *cmd)
     rsm_record(&f->rsm, cmd, &f->scene, bindings);
 }
 
+static void record_emitters(struct frame *f, struct gpu_cmd *cmd)
+{
+    struct frame_view *view = &f->view;
+    if (!(f->needs & FRAME_NEEDS_EMITTERS)) return;
+    emitters_scale(&f->emitters, f->constants.radiance_scale);
+    size_t count = f->emitters.count ? (size_t)f->emitters.count : 1; // a block is never empty
+    view->emitter_count = f->emitters.count;
+    view->emitters = f->emitters.scaled;
+    view->emitters_binding = gpu_transient(cmd, "frame_emitters", f->emitters.scaled,
+                                           count * sizeof *f->emitters.scaled);
+    view->emitted_irradiance = f->emitted_irradiance;
+}
+
 static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
                             const struct frame_indirect *indirect)
 {
@@ -233,8 +250,15 @@ static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct f
         exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);
         return;
     }
-    exposure_record_auto(&f->exposure, cmd, f->constants_binding, f->layers[FRAME_DIRECT], f->width,
-                         f->height);
+    struct exposure_input metered = {
+        .direct = f->layers[FRAME_DIRECT],
+        .albedo = f->layers[FRAME_ALBEDO],
+        .material = f->layers[FRAME_MATERIAL],
+        .emitted = f->emitted_irradiance,
+        .width = f->width,
+        .height = f->height,
+    };
+    exposure_record_auto(&f->exposure, cmd, f->constants_binding, &metered);
 }
 
 static void record_composite(struct frame *f, struct gpu_cmd *cmd)
@@ -260,12 +284,14 @@ void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input
 {
     if (!f->prepared) return;
     f->view = (struct frame_view){ 0 };
+    emitters_update(&f->emitters, input->pose);
     frame_begin(f, cmd, input);
     scene_gpu_update(&f->scene, cmd, input->pose, f->camera_cut);
     record_gbuffer(f, cmd);
     record_shadows(f, cmd);
     record_direct(f, cmd);
     record_rsm(f, cmd);
+    record_emitters(f, cmd);
     record_indirect(f, cmd, input, indirect);
     record_exposure(f, cmd, input);
     record_composite(f, cmd);

@@ -48,6 +48,11 @@ struct frame_view {
     struct gpu_binding lights_binding;       // named "frame_lights"
     const struct frame_light *lights;
     int light_count;
+    // Points of emissive surfaces (frame/emitters.h); none where nobody needs them.
+    int emitter_count;
+    const struct frame_emitter *emitters; // CPU copy
+    struct gpu_binding emitters_binding;  // named "frame_emitters"
+    vec3s emitted_irradiance; // scaled lux: mean over the scene by emission on its straight way (emitters_irradiance)
     const struct scene_pose *pose;
     struct world_camera camera;
     struct box3 bounds;              // of the scene, world space; empty for an empty scene
@@ -77,6 +82,7 @@ enum frame_need {
     FRAME_WRITES_IRRADIANCE = 4,
     FRAME_WRITES_SPECULAR = 8,
     FRAME_WRITES_VISIBILITY = 16,
+    FRAME_NEEDS_EMITTERS = 32,
 };
 
 struct frame_indirect {

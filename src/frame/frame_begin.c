@@ -72,10 +72,13 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
         .light_count = input->light_count,
         .sky = input->sky,
         .max_emissive = f->scene.max_emissive,
+        .emitted_flux = f->emitters.flux,
         .bounds = input->pose->bounds,
     });
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
+    f->emitted_irradiance =
+        glms_vec3_scale(emitters_irradiance(&f->emitters, input->pose->bounds), c->radiance_scale);
     c->width = f->width;
     c->height = f->height;
     c->frame_index = (uint32_t)f->index;

@@ -8,6 +8,7 @@ struct scale_input {
     int light_count;
     vec3s sky;          // cd/m²
     float max_emissive; // cd/m²
+    vec3s emitted_flux; // of all emissive surfaces, lumen
     struct box3 bounds; // of the scene
 };
 

@@ -57,9 +57,17 @@ struct rsm_face {
     uint32_t light;      // index in frame_lights
 };
 
+// Storage block "frame_emitters": a point of an emissive surface as a virtual light of intensity flux/π · (normal·ω)₊.
+struct frame_emitter {
+    vec3s position;      // world, m
+    vec3s normal;        // unit, the side that emits
+    vec3s flux;          // scaled lumen
+};
+
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct frame_constants) == 4 * 64 + 16 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_light) == 64, "layout is shared with GLSL");
+_Static_assert(sizeof(struct frame_emitter) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct rsm_face) == 2 * 64 + 12 * 4, "layout is shared with GLSL");
 #endif
 

@@ -6,6 +6,7 @@
 #include "frame/composite/composite.h"
 #include "frame/composite/exposure.h"
 #include "frame/direct/direct.h"
+#include "frame/emitters.h"
 #include "frame/gbuffer/gbuffer.h"
 #include "frame/rsm/rsm.h"
 #include "frame/scene_gpu.h"
@@ -18,6 +19,7 @@ struct frame {
     uint32_t width, height; // 0 before the first resize
 
     struct scene_gpu scene;
+    struct emitters emitters;
     bool has_scene;
     struct gbuffer gbuffer;
     struct shadow shadow;
@@ -39,6 +41,7 @@ struct frame {
     int light_count;
     struct world_light world_lights[FRAME_MAX_LIGHTS]; // to see what changed
     struct world_camera camera;
+    vec3s emitted_irradiance; // scaled lux
     bool camera_cut, lights_changed;
     struct gpu_binding constants_binding, lights_binding;
     struct frame_view view;

@@ -5,23 +5,6 @@
 
 #include <string.h>
 
-static bool turns_over(mat4s m)
-{
-    return glms_mat4_det(m) < 0.0f;
-}
-
-// Whether an instance's triangles are turned over by its transform; of a skin, the first joint
-// decides.
-static bool is_mirrored(const struct scene_pose *pose, int instance)
-{
-    const struct instance *i = &pose->scene->instances[instance];
-    if (i->skin < 0) return turns_over(pose->world_from_node[i->node]);
-    const struct skin *skin = &pose->scene->skins[i->skin];
-    if (skin->joint_count == 0) return false;
-    return turns_over(
-        glms_mat4_mul(pose->world_from_node[skin->joints[0]], skin->joint_from_mesh[0]));
-}
-
 // Copies a deformed instance's vertices behind those before it; grows the draw's bounds.
 static void copy_deformed(struct scene_gpu *s, const struct deformed_mesh *from,
                           const struct mesh *mesh, struct scene_draw *draw)
@@ -45,7 +28,7 @@ static void update_draw(struct scene_gpu *s, const struct scene_pose *pose, stru
 {
     const struct mesh *mesh = &s->scene->meshes[draw->mesh];
     const struct deformed_mesh *deformed = &pose->deformed[draw->instance];
-    draw->mirrored = is_mirrored(pose, draw->instance);
+    draw->mirrored = pose_is_mirrored(pose, draw->instance);
     if (draw->deformed) {
         copy_deformed(s, deformed, mesh, draw);
         s->instances[draw->instance].world_from_instance = glms_mat4_identity();

@@ -204,6 +204,21 @@ mat4s pose_world_from_instance(const struct scene_pose *pose, int instance)
     return pose->world_from_node[pose->scene->instances[instance].node];
 }
 
+static bool turns_over(mat4s m)
+{
+    return glms_mat4_det(m) < 0.0f;
+}
+
+bool pose_is_mirrored(const struct scene_pose *pose, int instance)
+{
+    const struct instance *i = &pose->scene->instances[instance];
+    if (i->skin < 0) return turns_over(pose->world_from_node[i->node]);
+    const struct skin *skin = &pose->scene->skins[i->skin];
+    if (skin->joint_count == 0) return false;
+    return turns_over(
+        glms_mat4_mul(pose->world_from_node[skin->joints[0]], skin->joint_from_mesh[0]));
+}
+
 // A unit direction through a node's transform; `fallback` where the transform flattens it to
 // nothing.
 static vec3s node_direction(const struct scene_pose *pose, int node, vec3s direction,

@@ -29,6 +29,8 @@ void pose_finish(struct scene_pose *pose);
 
 // World transform of an instance (identity for skinned ones, whose vertices are in world space already).
 mat4s pose_world_from_instance(const struct scene_pose *pose, int instance);
+// Whether an instance's triangles are turned over by its transform; of a skin, the first joint decides.
+bool pose_is_mirrored(const struct scene_pose *pose, int instance);
 
 // A light in world space.
 struct world_light {

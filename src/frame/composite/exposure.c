@@ -52,16 +52,18 @@ static uint32_t group_count(uint32_t width, uint32_t height)
 }
 
 void exposure_record_auto(const struct exposure *e, struct gpu_cmd *cmd,
-                          struct gpu_binding constants, gpu_image direct, uint32_t width,
-                          uint32_t height)
+                          struct gpu_binding constants, const struct exposure_input *in)
 {
-    struct exposure_push push = { .groups = group_count(width, height) };
+    struct exposure_push push = { .groups = group_count(in->width, in->height),
+                                  .emitted = in->emitted };
     gpu_scope_begin(cmd, "exposure");
     for (push.round_index = 0; push.round_index < 2; push.round_index++) {
         gpu_dispatch(cmd, e->sum,
                      GPU_BIND(constants, { "exposure_state", .buffer = e->state },
                               { "exposure_sums", .buffer = e->sums },
-                              { "direct_layer", .image = direct, .sampler = e->nearest }),
+                              { "direct_layer", .image = in->direct, .sampler = e->nearest },
+                              { "albedo_layer", .image = in->albedo, .sampler = e->nearest },
+                              { "material_layer", .image = in->material, .sampler = e->nearest }),
                      &push, sizeof push, push.groups, 1, 1);
         gpu_dispatch(cmd, e->finish,
                      GPU_BIND(constants, { "exposure_state", .buffer = e->state },

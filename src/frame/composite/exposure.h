@@ -1,7 +1,8 @@
-// The exposure value, kept on the GPU: given, or from the log-average of the direct image as image/tonemap.h's
-// auto_exposure defines it.
+// The exposure value, kept on the GPU: given, or from a log-average as image/tonemap.h's auto_exposure defines it. What is
+// metered is the same for every technique, so that pictures of one scene by several of them can be compared.
 #pragma once
 
+#include "core/vec.h"
 #include "gpu/gpu.h"
 
 struct exposure {
@@ -15,8 +16,13 @@ struct exposure {
 bool exposure_init(struct exposure *exposure, struct gpu *gpu);
 void exposure_finish(struct exposure *exposure); // accepts zero
 void exposure_record_fixed(const struct exposure *exposure, struct gpu_cmd *cmd, float ev);
+// What is metered: the direct image, and what each surface would reflect of the irradiance `emitted` (scaled lux).
+struct exposure_input {
+    gpu_image direct, albedo, material;
+    vec3s emitted;
+    uint32_t width, height;
+};
 void exposure_record_auto(const struct exposure *exposure, struct gpu_cmd *cmd,
-                          struct gpu_binding constants, gpu_image direct, uint32_t width,
-                          uint32_t height);
+                          struct gpu_binding constants, const struct exposure_input *input);
 // Waits; the newest finished frame's.
 bool exposure_read(struct exposure *exposure, float *ev);

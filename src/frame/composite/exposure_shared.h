@@ -18,6 +18,7 @@ struct exposure_values {
 struct exposure_push {
     uint32_t round_index; // 0: over lit pixels; 1: over all, with the floor
     uint32_t groups;
+    vec3s emitted; // scaled lux: mean irradiance by emissive surfaces
 };
 
 #endif

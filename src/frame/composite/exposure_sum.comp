@@ -5,6 +5,7 @@
 // A sum of log2 luminances for each group of threads. The order of additions depends on the image's size alone, so equal
 // images give equal bits.
 #include "frame/frame.glsl"
+#include "frame/brdf.glsl"
 #include "frame/composite/exposure_shared.h"
 #include "frame/composite/exposure_reduce.glsl"
 
@@ -13,18 +14,28 @@ layout(local_size_x = EXPOSURE_THREADS) in;
 layout(set = 0, binding = 1, scalar) readonly buffer exposure_state { exposure_values state; };
 layout(set = 0, binding = 2, scalar) writeonly buffer exposure_sums { vec2 sums[]; };
 layout(set = 0, binding = 3) uniform sampler2D direct_layer;
+layout(set = 0, binding = 4) uniform sampler2D albedo_layer;
+layout(set = 0, binding = 5) uniform sampler2D material_layer;
 
 layout(push_constant, scalar) uniform push_block
 {
     exposure_push push;
 };
 
+// What a pixel is metered as. The direct image has emissive surfaces but not what they light: that is taken as if it
+// fell evenly on everything, whichever technique lights the frame.
+vec3 metered(ivec2 pixel)
+{
+    vec3 radiance = texelFetch(direct_layer, pixel, 0).rgb;
+    float metallic = texelFetch(material_layer, pixel, 0).g;
+    return radiance + brdf_diffuse(texelFetch(albedo_layer, pixel, 0).rgb, metallic) * push.emitted;
+}
+
 // x: log2 of what the pixel counts as; y: 1 where it counts.
 vec2 pixel_term(uint index)
 {
     uint y = index / frame.width;
-    vec3 radiance = texelFetch(direct_layer, ivec2(index - y * frame.width, y), 0).rgb;
-    float l = dot(radiance, vec3(0.2126, 0.7152, 0.0722));
+    float l = dot(metered(ivec2(index - y * frame.width, y)), vec3(0.2126, 0.7152, 0.0722));
     bool lit = l > 0.0 && !isinf(l);
     float value = lit ? log2(l) : 0.0;
     if (push.round_index == 0) return vec2(value, lit ? 1.0 : 0.0);

@@ -1,0 +1,442 @@
+// Virtual lights on emissive triangles: their flux once a scene, their places whenever they move.
+#include "frame/emitters.h"
+
+#include "frame/emission_map.h"
+
+#include "core/rng.h"
+#include "core/sampling.h"
+
+#include <math.h>
+#include <string.h>
+
+static const float BLEND_CUTOFF = 0.5f; // blended materials are drawn as masks
+static const double PI = 3.14159265358979323846;
+enum {
+    MAX_STRATA = 32
+}; // a side of a triangle is cut into at most so many pieces to average its map
+
+// Of an emissive material; unused ones have no levels.
+struct emission_maps {
+    struct emission_map color, mask;
+};
+
+struct emitter_triangle {
+    vec3s radiance; // mean, cd/m²
+    float area_m2;
+};
+
+struct emitter_instance {
+    int instance;
+    const struct mesh *mesh;
+    const struct material *material;
+    const struct emission_maps *maps;
+    size_t first; // triangle
+    bool known;   // the areas are those of world_from_mesh
+    mat4s world_from_mesh;
+};
+
+static size_t triangle_count(const struct mesh *mesh)
+{
+    return mesh->index_count / 3;
+}
+
+// ---- Radiance, once a scene ---------------------------------------------------------------------
+
+static bool is_emissive(const struct material *m)
+{
+    return m->emissive.x > 0.0f || m->emissive.y > 0.0f || m->emissive.z > 0.0f;
+}
+
+// The alpha that a texel must have to be there; below 0 where nothing is cut away.
+static float least_alpha(const struct material *m)
+{
+    if (m->alpha_mode == ALPHA_OPAQUE) return -1.0f;
+    float cutoff = m->alpha_mode == ALPHA_BLEND ? BLEND_CUTOFF : m->alpha_cutoff;
+    if (cutoff <= 0.0f) return -1.0f;
+    return m->base_color.w > 0.0f ? cutoff / m->base_color.w : INFINITY;
+}
+
+static bool make_maps(struct emitters *e, const struct material *m, struct emission_maps *maps)
+{
+    float least = least_alpha(m);
+    if (m->emissive_map.image >= 0 && maps->color.level_count == 0 &&
+        !emission_map_init_color(&maps->color, e->host, e->scene, &m->emissive_map)) {
+        return false;
+    }
+    return m->base_color_map.image < 0 || least < 0.0f || maps->mask.level_count > 0 ||
+           emission_map_init_mask(&maps->mask, e->host, e->scene, &m->base_color_map, least);
+}
+
+// A triangle's coordinates in a map: a corner, two edges, and the area (the whole image is 1).
+struct map_triangle {
+    vec2s corner, edges[2];
+    float area;
+};
+
+static struct map_triangle map_triangle_of(const struct emission_map *map, const struct mesh *mesh,
+                                           const uint32_t index[3])
+{
+    vec2s p[3];
+    for (int i = 0; i < 3; i++) p[i] = emission_map_uv(map, mesh->uv[0], mesh->uv[1], index[i]);
+    struct map_triangle t = { .corner = p[0],
+                              .edges = { glms_vec2_sub(p[1], p[0]), glms_vec2_sub(p[2], p[0]) } };
+    t.area = 0.5f * fabsf(glms_vec2_cross(t.edges[0], t.edges[1]));
+    return t;
+}
+
+static vec3s map_mean(const struct emission_map *map, const struct map_triangle *t, vec2s at,
+                      float share)
+{
+    vec2s uv = glms_vec2_add(t->corner, glms_vec2_add(glms_vec2_scale(t->edges[0], at.x),
+                                                      glms_vec2_scale(t->edges[1], at.y)));
+    return emission_map_mean(map, uv, t->area * share);
+}
+
+// What the maps leave of a material's emission on one triangle.
+struct emission {
+    const struct emission_maps *maps;
+    vec3s factor; // cd/m²
+    struct map_triangle color, mask;
+};
+
+static struct emission emission_of(const struct emitter_instance *it, size_t triangle)
+{
+    const uint32_t *index = &it->mesh->indices[3 * triangle];
+    struct emission e = { .maps = it->maps,
+                          .factor = glms_vec3_maxv(it->material->emissive, vec3_of(0, 0, 0)) };
+    // A mask without a map keeps or takes the whole surface.
+    if (it->material->base_color_map.image < 0 && least_alpha(it->material) > 1.0f)
+        e.factor = vec3_of(0, 0, 0);
+    if (e.maps->color.level_count) e.color = map_triangle_of(&e.maps->color, it->mesh, index);
+    if (e.maps->mask.level_count) e.mask = map_triangle_of(&e.maps->mask, it->mesh, index);
+    return e;
+}
+
+static bool is_mapped(const struct emission *e)
+{
+    return e->maps->color.level_count > 0 || e->maps->mask.level_count > 0;
+}
+
+// Mean radiance around the barycentric coordinates `at`, over a share of the triangle's area.
+static vec3s radiance_at(const struct emission *e, vec2s at, float share)
+{
+    vec3s l = e->factor;
+    if (e->maps->color.level_count)
+        l = glms_vec3_mul(l, map_mean(&e->maps->color, &e->color, at, share));
+    if (e->maps->mask.level_count)
+        l = glms_vec3_mul(l, map_mean(&e->maps->mask, &e->mask, at, share));
+    return l;
+}
+
+// Pieces along a side that bring the footprint of each down to a third of a texel of the finest
+// level, across.
+static int strata_of(const struct emission *e)
+{
+    const struct emission_level *color = &e->maps->color.levels[0];
+    const struct emission_level *mask = &e->maps->mask.levels[0];
+    float texels = fmaxf(e->color.area * (float)color->width * (float)color->height,
+                         e->mask.area * (float)mask->width * (float)mask->height);
+    return (int)fminf(fmaxf(ceilf(3.0f * sqrtf(texels)), 1.0f), (float)MAX_STRATA);
+}
+
+// The triangle cut into n² equal ones, each looked up at its centre.
+static vec3s mean_radiance(const struct emission *e)
+{
+    if (!is_mapped(e)) return e->factor;
+    int n = strata_of(e);
+    float step = 1.0f / (float)n, share = step * step;
+    vec3s sum = vec3_of(0, 0, 0);
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i + j < n; i++) {
+            vec2s at = { { ((float)i + 1.0f / 3.0f) * step, ((float)j + 1.0f / 3.0f) * step } };
+            sum = glms_vec3_add(sum, radiance_at(e, at, share));
+            if (i + j + 1 >= n) continue;
+            at = glms_vec2_adds(at, step / 3.0f); // its neighbour, the other way round
+            sum = glms_vec3_add(sum, radiance_at(e, at, share));
+        }
+    }
+    return glms_vec3_scale(sum, share);
+}
+
+static void fill_radiance(struct emitters *e, const struct emitter_instance *it)
+{
+    struct emitter_triangle *out = &e->triangles[it->first];
+    for (const struct emitter_instance *other = e->instances; other < it; other++) {
+        if (other->mesh != it->mesh) continue;
+        memcpy(out, &e->triangles[other->first], triangle_count(it->mesh) * sizeof *out);
+        return;
+    }
+    for (size_t t = 0; t < triangle_count(it->mesh); t++) {
+        struct emission emission = emission_of(it, t);
+        out[t].radiance = mean_radiance(&emission);
+    }
+}
+
+static bool list_instances(struct emitters *e)
+{
+    const struct scene *scene = e->scene;
+    size_t triangles = 0;
+    for (int i = 0; i < scene->instance_count; i++) {
+        const struct mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        const struct material *material = &scene->materials[mesh->material];
+        if (!is_emissive(material) || mesh->index_count == 0) continue;
+        if (!make_maps(e, material, &e->maps[mesh->material])) return false;
+        e->instances[e->instance_count++] = (struct emitter_instance){
+            .instance = i,
+            .mesh = mesh,
+            .material = material,
+            .maps = &e->maps[mesh->material],
+            .first = triangles,
+        };
+        if (!size_add(triangles, triangle_count(mesh), &triangles))
+            return host_fail(e->host, FAIL_MEMORY, "scene %s: too many emissive triangles",
+                             scene->name);
+    }
+    e->triangles = host_alloc(e->host, triangles, sizeof *e->triangles);
+    if (!e->triangles) return false;
+    for (int i = 0; i < e->instance_count; i++) fill_radiance(e, &e->instances[i]);
+    return true;
+}
+
+bool emitters_init(struct emitters *out, struct host *host, const struct scene *scene)
+{
+    *out = (struct emitters){ .host = host, .scene = scene };
+    out->maps = host_alloc(host, (size_t)scene->material_count, sizeof *out->maps);
+    out->instances = host_alloc(host, (size_t)scene->instance_count, sizeof *out->instances);
+    if (!out->maps || !out->instances || !list_instances(out)) return false;
+    size_t room = out->instance_count ? EMITTERS_MAX : 1; // a block is never empty
+    out->points = host_alloc(host, room, sizeof *out->points);
+    out->scaled = host_alloc(host, room, sizeof *out->scaled);
+    return out->points && out->scaled;
+}
+
+void emitters_finish(struct emitters *e)
+{
+    if (!e->host) return;
+    for (int m = 0; e->maps && m < e->scene->material_count; m++) {
+        emission_map_finish(&e->maps[m].color, e->host);
+        emission_map_finish(&e->maps[m].mask, e->host);
+    }
+    host_free(e->host, e->maps);
+    host_free(e->host, e->instances);
+    host_free(e->host, e->triangles);
+    host_free(e->host, e->points);
+    host_free(e->host, e->scaled);
+    *e = (struct emitters){ 0 };
+}
+
+// ---- Areas, whenever something moves ------------------------------------------------------------
+
+// A triangle in world space; the normal is the front's, unit.
+struct world_triangle {
+    vec3s corner, edges[2], normal;
+    float area_m2; // 0 where it has none
+};
+
+static struct world_triangle world_triangle_of(const struct emitter_instance *it,
+                                               const struct scene_pose *pose, size_t triangle,
+                                               bool mirrored)
+{
+    const uint32_t *index = &it->mesh->indices[3 * triangle];
+    const vec3s *deformed = pose->deformed[it->instance].positions;
+    vec3s p[3];
+    for (int i = 0; i < 3; i++)
+        p[i] = deformed ? deformed[index[i]]
+                        : mat4_point(it->world_from_mesh, it->mesh->positions[index[i]]);
+    struct world_triangle t = { .corner = p[0],
+                                .edges = { glms_vec3_sub(p[1], p[0]), glms_vec3_sub(p[2], p[0]) } };
+    vec3s cross = glms_vec3_cross(t.edges[0], t.edges[1]);
+    float length = glms_vec3_norm(cross);
+    if (!(length > 0.0f) || !isfinite(length)) return t;
+    t.area_m2 = 0.5f * length;
+    t.normal = glms_vec3_scale(cross, (mirrored ? -1.0f : 1.0f) / length);
+    return t;
+}
+
+// False while everything is where it was. What is deformed comes anew each time.
+static bool update_areas(struct emitters *e, const struct scene_pose *pose)
+{
+    bool changed = false;
+    for (int i = 0; i < e->instance_count; i++) {
+        struct emitter_instance *it = &e->instances[i];
+        mat4s world_from_mesh = pose_world_from_instance(pose, it->instance);
+        if (it->known && !pose->deformed[it->instance].positions &&
+            memcmp(&it->world_from_mesh, &world_from_mesh, sizeof world_from_mesh) == 0) {
+            continue;
+        }
+        it->known = changed = true;
+        it->world_from_mesh = world_from_mesh;
+        struct emitter_triangle *triangles = &e->triangles[it->first];
+        for (size_t t = 0; t < triangle_count(it->mesh); t++)
+            triangles[t].area_m2 = world_triangle_of(it, pose, t, false).area_m2;
+    }
+    return changed;
+}
+
+// ---- Points -------------------------------------------------------------------------------------
+
+struct flux {
+    double channel[3];
+};
+
+static struct flux flux_of(const struct emitter_triangle *t)
+{
+    struct flux f;
+    for (int c = 0; c < 3; c++) f.channel[c] = PI * (double)t->radiance.raw[c] * (double)t->area_m2;
+    return f;
+}
+
+static double power(const struct flux *f)
+{
+    return (f->channel[0] + f->channel[1] + f->channel[2]) / 3.0;
+}
+
+static double spread(const struct emitter_triangle *t, const struct flux *f)
+{
+    return sqrt(power(f) * (double)t->area_m2);
+}
+
+// The walk over all sides of all triangles.
+struct walk {
+    double all_power, all_spread;
+    double due; // points, of the sides so far
+    int placed;
+    struct flux carried; // lumen of the sides that had no point of their own
+};
+
+static void measure(const struct emitters *e, struct walk *w)
+{
+    for (int i = 0; i < e->instance_count; i++) {
+        const struct emitter_instance *it = &e->instances[i];
+        double sides = it->material->double_sided ? 2.0 : 1.0;
+        for (size_t t = 0; t < triangle_count(it->mesh); t++) {
+            struct flux f = flux_of(&e->triangles[it->first + t]);
+            w->all_power += sides * power(&f);
+            w->all_spread += sides * spread(&e->triangles[it->first + t], &f);
+        }
+    }
+}
+
+// Evenly over the triangle: R2 (Roberts 2018), from the centre on, folded at the diagonal.
+static vec2s place_in_triangle(uint32_t i)
+{
+    vec2s first = r2_sequence(0), at = r2_sequence(i);
+    for (int axis = 0; axis < 2; axis++) {
+        float x = at.raw[axis] - first.raw[axis] + 1.0f / 3.0f;
+        at.raw[axis] = x - floorf(x);
+    }
+    return at.x + at.y > 1.0f ? (vec2s){ { 1.0f - at.x, 1.0f - at.y } } : at;
+}
+
+// `count` points on one side, which share `flux` in proportion to the radiance around each.
+static void place_on_side(struct frame_emitter *out, int count, const struct world_triangle *side,
+                          const struct emission *emission, const struct flux *flux)
+{
+    struct flux sum = { { 0 } };
+    for (int i = 0; i < count; i++) {
+        vec2s at = place_in_triangle((uint32_t)i);
+        out[i].position =
+            glms_vec3_add(side->corner, glms_vec3_add(glms_vec3_scale(side->edges[0], at.x),
+                                                      glms_vec3_scale(side->edges[1], at.y)));
+        out[i].normal = side->normal;
+        out[i].flux = radiance_at(emission, at, 1.0f / (float)count);
+        for (int c = 0; c < 3; c++) sum.channel[c] += (double)out[i].flux.raw[c];
+    }
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < count; i++) {
+            double share = sum.channel[c] > 0.0 ? (double)out[i].flux.raw[c] / sum.channel[c]
+                                                : 1.0 / (double)count;
+            out[i].flux.raw[c] = (float)(flux->channel[c] * share);
+        }
+    }
+}
+
+static void visit_triangle(struct emitters *e, struct walk *w, const struct scene_pose *pose,
+                           const struct emitter_instance *it, size_t t, bool back, bool mirrored)
+{
+    const struct emitter_triangle *triangle = &e->triangles[it->first + t];
+    struct flux f = flux_of(triangle);
+    if (!(power(&f) > 0.0)) return;
+    double share = 0.5 * power(&f) / w->all_power + 0.5 * spread(triangle, &f) / w->all_spread;
+    w->due += share * EMITTERS_MAX;
+    for (int c = 0; c < 3; c++) w->carried.channel[c] += f.channel[c];
+    int until = (int)fmin(floor(w->due + 0.5), EMITTERS_MAX);
+    if (until <= w->placed) return;
+    struct world_triangle side = world_triangle_of(it, pose, t, mirrored != back);
+    struct emission emission = emission_of(it, t);
+    place_on_side(&e->points[w->placed], until - w->placed, &side, &emission, &w->carried);
+    w->placed = until;
+    w->carried = (struct flux){ { 0 } };
+}
+
+// All fronts, then all backs: alternating, the even steps of the walk would favour one side.
+static void place_points(struct emitters *e, const struct scene_pose *pose)
+{
+    struct walk w = { 0 };
+    measure(e, &w);
+    e->count = 0;
+    e->flux = vec3_of(0, 0, 0);
+    if (!(w.all_power > 0.0) || !isfinite(w.all_power)) return;
+    for (int back = 0; back < 2; back++) {
+        for (int i = 0; i < e->instance_count; i++) {
+            const struct emitter_instance *it = &e->instances[i];
+            if (back && !it->material->double_sided) continue;
+            bool mirrored = pose_is_mirrored(pose, it->instance);
+            for (size_t t = 0; t < triangle_count(it->mesh); t++)
+                visit_triangle(e, &w, pose, it, t, back != 0, mirrored);
+        }
+    }
+    e->count = w.placed;
+    double total[3] = { 0 };
+    for (int i = 0; i < e->count; i++)
+        for (int c = 0; c < 3; c++) total[c] += (double)e->points[i].flux.raw[c];
+    for (int c = 0; c < 3; c++) {
+        // Sides behind the last point are there by rounding alone.
+        e->points[e->count - 1].flux.raw[c] += (float)w.carried.channel[c];
+        e->flux.raw[c] = (float)(total[c] + w.carried.channel[c]);
+    }
+}
+
+void emitters_update(struct emitters *e, const struct scene_pose *pose)
+{
+    if (update_areas(e, pose)) place_points(e, pose);
+}
+
+void emitters_scale(struct emitters *e, float radiance_scale)
+{
+    for (int i = 0; i < e->count; i++) {
+        e->scaled[i] = e->points[i];
+        e->scaled[i].flux = glms_vec3_scale(e->points[i].flux, radiance_scale);
+    }
+}
+
+// ---- Irradiance ---------------------------------------------------------------------------------
+
+static double distance_to_exit(struct box3 box, vec3s from, vec3s direction)
+{
+    double least = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double d = (double)direction.raw[axis];
+        if (d == 0.0) continue;
+        double wall = (double)(d > 0.0 ? box.max.raw[axis] : box.min.raw[axis]);
+        least = fmin(least, fmax((wall - (double)from.raw[axis]) / d, 0.0));
+    }
+    return isfinite(least) ? least : 0.0;
+}
+
+vec3s emitters_irradiance(const struct emitters *e, struct box3 bounds)
+{
+    vec3s none = vec3_of(0, 0, 0);
+    if (e->count == 0 || box3_is_empty(bounds)) return none;
+    vec3s size = box3_size(bounds);
+    double volume = (double)size.x * (double)size.y * (double)size.z;
+    if (!(volume > 0.0) || !isfinite(volume)) return none;
+    double sum[3] = { 0 };
+    for (int i = 0; i < e->count; i++) {
+        const struct frame_emitter *p = &e->points[i];
+        double way = 2.0 / 3.0 * distance_to_exit(bounds, p->position, p->normal);
+        for (int c = 0; c < 3; c++) sum[c] += (double)p->flux.raw[c] * way;
+    }
+    return vec3_of((float)(sum[0] / (4.0 * volume)), (float)(sum[1] / (4.0 * volume)),
+                   (float)(sum[2] / (4.0 * volume)));
+}
