@@ -1,0 +1,188 @@
+// Embree, versions 3 and 4. They differ in how a query's flags and context are handed over.
+#include "trace/embree.h"
+
+#if AG_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
+#include <assert.h>
+
+struct embree {
+    struct host *host;
+    RTCDevice device;
+    RTCScene scene;
+};
+
+static bool fail(const struct embree *embree, const char *doing)
+{
+    enum RTCError code = rtcGetDeviceError(embree->device);
+    bool memory = code == RTC_ERROR_OUT_OF_MEMORY;
+    return host_fail(embree->host, memory ? FAIL_MEMORY : FAIL_UNSUPPORTED,
+                     "cannot %s for rays: %s (Embree's error %d)", doing,
+                     memory ? "out of memory" : "the library refuses", (int)code);
+}
+
+struct embree *embree_create(struct host *host)
+{
+    struct embree *embree = host_alloc(host, 1, sizeof *embree);
+    if (!embree) return NULL;
+    embree->host = host;
+    embree->device = rtcNewDevice(NULL);
+    if (embree->device) embree->scene = rtcNewScene(embree->device);
+    if (!embree->scene) {
+        fail(embree, "begin a scene");
+        embree_destroy(embree);
+        return NULL;
+    }
+    // Robust: no ray slips through an edge that two triangles share.
+    rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
+    return embree;
+}
+
+void embree_destroy(struct embree *embree)
+{
+    if (!embree) return;
+    if (embree->scene) rtcReleaseScene(embree->scene);
+    if (embree->device) rtcReleaseDevice(embree->device);
+    host_free(embree->host, embree);
+}
+
+// ---- what is solid where
+
+struct query {
+#if AG_EMBREE == 4
+    struct RTCRayQueryContext context;
+#else
+    struct RTCIntersectContext context;
+#endif
+    const void *view;
+};
+
+// Queries are of one ray each, so hits have the layout of RTCHit.
+static void filter(const struct RTCFilterFunctionNArguments *arguments)
+{
+    const struct embree_geometry *geometry = arguments->geometryUserPtr;
+    const struct query *query = (const struct query *)arguments->context;
+    const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
+    assert(arguments->N == 1);
+    if (arguments->valid[0] &&
+        !geometry->solid(geometry->user, hit->primID, hit->u, hit->v, query->view))
+        arguments->valid[0] = 0;
+}
+
+bool embree_add(struct embree *embree, const struct embree_geometry *geometry)
+{
+    RTCGeometry g = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!g) return fail(embree, "add triangles");
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry->positions,
+                               0, sizeof(vec3s), geometry->vertex_count);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry->indices, 0,
+                               3 * sizeof(uint32_t), geometry->triangle_count);
+    if (geometry->solid) {
+        rtcSetGeometryUserData(g, (void *)(uintptr_t)geometry);
+        rtcSetGeometryIntersectFilterFunction(g, filter);
+        rtcSetGeometryOccludedFilterFunction(g, filter);
+    }
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(embree->scene, g);
+    rtcReleaseGeometry(g);
+    return rtcGetDeviceError(embree->device) == RTC_ERROR_NONE || fail(embree, "add triangles");
+}
+
+bool embree_commit(struct embree *embree)
+{
+    rtcCommitScene(embree->scene);
+    enum RTCError code = rtcGetDeviceError(embree->device);
+    if (code == RTC_ERROR_NONE) return true;
+    return host_fail(embree->host, code == RTC_ERROR_OUT_OF_MEMORY ? FAIL_MEMORY : FAIL_UNSUPPORTED,
+                     "cannot sort triangles for rays: Embree's error %d", (int)code);
+}
+
+// ---- queries
+
+static struct RTCRay rtc_ray(const struct ray *ray)
+{
+    return (struct RTCRay){ .org_x = ray->origin.x,
+                            .org_y = ray->origin.y,
+                            .org_z = ray->origin.z,
+                            .tnear = ray->near,
+                            .dir_x = ray->direction.x,
+                            .dir_y = ray->direction.y,
+                            .dir_z = ray->direction.z,
+                            .tfar = ray->far,
+                            .mask = 0xffffffffu };
+}
+
+bool embree_closest(const struct embree *embree, const struct ray *ray, const void *view,
+                    bool coherent, struct ray_hit *hit)
+{
+    struct query query;
+    query.view = view;
+    struct RTCRayHit r;
+    r.ray = rtc_ray(ray);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if AG_EMBREE == 4
+    rtcInitRayQueryContext(&query.context);
+    struct RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.context;
+    if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect1(embree->scene, &r, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    if (coherent) query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect1(embree->scene, &query.context, &r);
+#endif
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    *hit = (struct ray_hit){ r.ray.tfar, r.hit.geomID, r.hit.primID, r.hit.u, r.hit.v };
+    return true;
+}
+
+bool embree_occluded(const struct embree *embree, const struct ray *ray)
+{
+    struct query query;
+    query.view = NULL;
+    struct RTCRay r = rtc_ray(ray);
+#if AG_EMBREE == 4
+    rtcInitRayQueryContext(&query.context);
+    struct RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &query.context;
+    rtcOccluded1(embree->scene, &r, &arguments);
+#else
+    rtcInitIntersectContext(&query.context);
+    rtcOccluded1(embree->scene, &query.context, &r);
+#endif
+    return r.tfar < 0.0f; // −∞ where something was met
+}
+
+// ---- the floating-point unit
+
+enum { FLUSH_TO_ZERO = 0x8000, DENORMALS_ARE_ZERO = 0x0040 }; // bits of MXCSR
+
+unsigned embree_flush_denormals(void)
+{
+#ifdef __SSE2__
+    unsigned before = _mm_getcsr();
+    _mm_setcsr(before | FLUSH_TO_ZERO | DENORMALS_ARE_ZERO);
+    return before;
+#else
+    return 0;
+#endif
+}
+
+void embree_restore_denormals(unsigned before)
+{
+#ifdef __SSE2__
+    _mm_setcsr(before);
+#else
+    (void)before;
+#endif
+}

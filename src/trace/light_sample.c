@@ -1,0 +1,220 @@
+// Lights: punctual ones as light.glsl has them, and triangles that glow, chosen by power through an
+// alias table.
+//
+// The sky is uniform. Sampling what a surface reflects finds it as well as any sampler of its own
+// could, so it has none.
+#include "trace/light_sample.h"
+
+#include "trace/surface.h"
+
+#include "core/sampling.h"
+
+#include <math.h>
+
+static const float MIN_DISTANCE_M = 0.01f; // light.glsl: 1/r² is cut off there
+
+// ---- the table
+
+static bool glows(const struct trace_mesh *mesh)
+{
+    return mesh->material->emissive && mesh->mesh->index_count > 0;
+}
+
+// The mean luminance over a triangle, from a lattice of points. What the lattice misses is still
+// chosen now and then: the least weight is a hundredth of the factor's.
+static float mean_emission(const struct trace_mesh *mesh, uint32_t triangle)
+{
+    enum { SIDE = 4 };
+    float factor = luminance(mesh->material->emission);
+    if (!mesh->material->emissive_map.texture) return factor;
+    float sum = 0.0f;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        vec2s u = { { ((float)(i % SIDE) + 0.5f) / SIDE, ((float)(i / SIDE) + 0.5f) / SIDE } };
+        vec2s b = sample_triangle(u);
+        sum += luminance(surface_emission(mesh, triangle, b.x, b.y));
+    }
+    return fmaxf(sum / (SIDE * SIDE), 0.01f * factor);
+}
+
+// Vose 1991: those with less than the mean are filled up from those with more. `scaled` has the
+// weights over their mean.
+static void build_alias(struct emitter *emitters, uint32_t count, double *scaled, uint32_t *work)
+{
+    uint32_t small = 0, large = count;
+    for (uint32_t i = 0; i < count; i++) {
+        if (scaled[i] < 1.0)
+            work[small++] = i;
+        else
+            work[--large] = i;
+    }
+    // work[0…small) are small, work[large…count) are large.
+    while (small > 0 && large < count) {
+        uint32_t s = work[--small], l = work[large];
+        emitters[s].stay = (float)scaled[s];
+        emitters[s].alias = l;
+        scaled[l] -= 1.0 - scaled[s];
+        if (scaled[l] >= 1.0) continue;
+        large++;
+        work[small++] = l;
+    }
+    // What is left is full but for rounding.
+    while (large < count) emitters[work[large++]].stay = 1.0f;
+    while (small > 0) emitters[work[--small]].stay = 1.0f;
+}
+
+static bool choose_by_power(struct trace_scene *scene)
+{
+    struct light_table *t = &scene->lights;
+    double *power = host_alloc(scene->host, t->emitter_count, sizeof *power);
+    uint32_t *work = host_alloc(scene->host, t->emitter_count, sizeof *work);
+    double total = 0.0;
+    bool ok = power && work;
+    for (uint32_t i = 0; ok && i < t->emitter_count; i++) {
+        const struct trace_mesh *mesh = &scene->meshes[t->emitters[i].mesh];
+        uint32_t corner[3];
+        trace_corners(mesh, t->emitters[i].triangle, corner);
+        double area = 0.5 * (double)glms_vec3_norm(trace_area_normal(mesh, corner));
+        power[i] = area * (double)mean_emission(mesh, t->emitters[i].triangle);
+        if (!isfinite(power[i])) power[i] = 0.0;
+        total += power[i];
+    }
+    t->has_emitters = ok && total > 0.0 && isfinite(total);
+    for (uint32_t i = 0; t->has_emitters && i < t->emitter_count; i++) {
+        const struct trace_mesh *mesh = &scene->meshes[t->emitters[i].mesh];
+        uint32_t corner[3];
+        trace_corners(mesh, t->emitters[i].triangle, corner);
+        double area = 0.5 * (double)glms_vec3_norm(trace_area_normal(mesh, corner));
+        t->emitters[i].density = power[i] > 0.0 ? (float)(power[i] / total / area) : 0.0f;
+        power[i] *= (double)t->emitter_count / total;
+    }
+    if (t->has_emitters) build_alias(t->emitters, t->emitter_count, power, work);
+    host_free(scene->host, power);
+    host_free(scene->host, work);
+    return ok;
+}
+
+static bool list_emitters(struct trace_scene *scene)
+{
+    struct light_table *t = &scene->lights;
+    size_t count = 0;
+    for (uint32_t m = 0; m < scene->mesh_count; m++) {
+        struct trace_mesh *mesh = &scene->meshes[m];
+        mesh->emitter_first = glows(mesh) ? (uint32_t)count : NO_EMITTER;
+        if (glows(mesh)) count += mesh->mesh->index_count / 3;
+        if (count >= NO_EMITTER)
+            return host_fail(scene->host, FAIL_UNSUPPORTED, "light of %s: too many triangles glow",
+                             scene->scene->name);
+    }
+    if (count == 0) return true;
+    t->emitters = host_alloc(scene->host, count, sizeof *t->emitters);
+    if (!t->emitters) return false;
+    for (uint32_t m = 0; m < scene->mesh_count; m++) {
+        if (scene->meshes[m].emitter_first == NO_EMITTER) continue;
+        for (uint32_t i = 0; i < scene->meshes[m].mesh->index_count / 3; i++)
+            t->emitters[t->emitter_count++] = (struct emitter){ .mesh = m, .triangle = i };
+    }
+    return choose_by_power(scene);
+}
+
+bool light_table_init(struct trace_scene *scene, const struct scene_pose *pose)
+{
+    struct light_table *t = &scene->lights;
+    t->sky = scene->scene->sky;
+    t->has_sky = t->sky.x > 0.0f || t->sky.y > 0.0f || t->sky.z > 0.0f;
+    int count = scene->scene->light_count;
+    t->punctual = host_alloc(scene->host, (size_t)count, sizeof *t->punctual);
+    if (!t->punctual) return false;
+    for (int i = 0; i < count; i++) t->punctual[t->punctual_count++] = pose_light(pose, i);
+    return list_emitters(scene);
+}
+
+void light_table_finish(struct trace_scene *scene)
+{
+    host_free(scene->host, scene->lights.punctual);
+    host_free(scene->host, scene->lights.emitters);
+    scene->lights = (struct light_table){ 0 };
+}
+
+// ---- punctual lights
+
+// light.glsl: light_cone.
+static float cone(const struct world_light *light, vec3s from_light)
+{
+    if (light->type != LIGHT_SPOT) return 1.0f;
+    float scale = 1.0f / fmaxf(light->cos_inner - light->cos_outer, 1e-3f);
+    float t = (glms_vec3_dot(light->direction, from_light) - light->cos_outer) * scale;
+    t = fminf(fmaxf(t, 0.0f), 1.0f);
+    return t * t;
+}
+
+// light.glsl: light_window.
+static float window(const struct world_light *light, float distance2_m2)
+{
+    if (light->range_m <= 0.0f) return 1.0f;
+    float ratio2 = distance2_m2 / (light->range_m * light->range_m);
+    return fminf(fmaxf(1.0f - ratio2 * ratio2, 0.0f), 1.0f);
+}
+
+struct punctual_light light_punctual(const struct world_light *light, vec3s position)
+{
+    struct punctual_light p = { glms_vec3_negate(light->direction), INFINITY, light->intensity };
+    if (light->type == LIGHT_SUN) return p;
+    vec3s to_light = glms_vec3_sub(light->position, position);
+    float distance2 = glms_vec3_norm2(to_light);
+    p.distance_m = sqrtf(distance2);
+    p.to_light = glms_vec3_scale(to_light, 1.0f / sqrtf(fmaxf(distance2, 1e-12f)));
+    float attenuation = cone(light, glms_vec3_negate(p.to_light)) * window(light, distance2) /
+                        fmaxf(distance2, MIN_DISTANCE_M * MIN_DISTANCE_M);
+    p.illuminance = glms_vec3_scale(light->intensity, attenuation);
+    return p;
+}
+
+// ---- emitters
+
+static const struct emitter *choose(const struct light_table *t, float choice, float *rest)
+{
+    float at = choice * (float)t->emitter_count;
+    uint32_t i = (uint32_t)at;
+    if (i >= t->emitter_count) i = t->emitter_count - 1;
+    const struct emitter *e = &t->emitters[i];
+    *rest = at - (float)i;
+    return *rest < e->stay ? e : &t->emitters[e->alias];
+}
+
+struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3s from,
+                                           float choice, vec2s u)
+{
+    float rest;
+    const struct emitter *e = choose(&scene->lights, choice, &rest);
+    const struct trace_mesh *mesh = &scene->meshes[e->mesh];
+    uint32_t corner[3];
+    trace_corners(mesh, e->triangle, corner);
+    vec2s b = sample_triangle(u);
+    vec3s p = glms_vec3_scale(mesh->positions[corner[0]], 1.0f - b.x - b.y);
+    p = glms_vec3_muladds(mesh->positions[corner[1]], b.x, p);
+    p = glms_vec3_muladds(mesh->positions[corner[2]], b.y, p);
+    vec3s to_light = glms_vec3_sub(p, from);
+    float distance2 = glms_vec3_norm2(to_light);
+    struct emitter_sample s = { .position = p };
+    if (!(distance2 > 0.0f)) return s;
+    s.to_light = glms_vec3_scale(to_light, 1.0f / sqrtf(distance2));
+    vec3s normal = glms_vec3_normalize(trace_area_normal(mesh, corner));
+    float cosine = -glms_vec3_dot(normal, s.to_light);
+    if (cosine < 0.0f && mesh->material->double_sided) {
+        cosine = -cosine;
+        normal = glms_vec3_negate(normal);
+    }
+    if (!(cosine > 0.0f)) return s;
+    s.position = glms_vec3_muladds(normal, surface_reach(mesh, corner), p);
+    s.radiance = surface_emission(mesh, e->triangle, b.x, b.y);
+    s.pdf = e->density * distance2 / cosine;
+    return s;
+}
+
+float light_emitter_pdf(const struct trace_scene *scene, uint32_t mesh, uint32_t triangle,
+                        float distance_m, float cosine)
+{
+    uint32_t first = scene->meshes[mesh].emitter_first;
+    if (first == NO_EMITTER || !scene->lights.has_emitters || !(cosine > 0.0f)) return 0.0f;
+    return scene->lights.emitters[first + triangle].density * distance_m * distance_m / cosine;
+}

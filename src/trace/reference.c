@@ -1,0 +1,452 @@
+// The reference: passes of samples over the tiles of a picture, their sums, and what is read from
+// them.
+//
+// A pixel's samples depend on its number and theirs alone and are added in their order, so that
+// neither threads nor the way the samples are spread over calls change a bit.
+#include "trace/path.h"
+
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "core/rng.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    TILE = 16,                        // pixels: rays of neighbours meet the same triangles
+    CHUNK = 256,                      // tiles between two reports
+    MAX_STEP = 4,                     // samples of a pixel between two reports
+    ANTIALIAS_DIMENSION = 0x40000000, // random numbers apart from those of the paths
+};
+
+struct pixel_sums {
+    double direct[3], indirect[3], irradiance[3];
+    double squares[3]; // of direct + indirect
+};
+
+struct tile {
+    int samples; // done, of each pixel
+    uint64_t rays;
+};
+
+struct reference {
+    struct host *host;
+    struct trace_scene *scene;
+    struct path_rules rules;
+    struct reference_options options;
+    int width, height, tiles_x, tiles_y;
+    vec3s eye, forward, right, up; // right and up: to the picture's edge at a distance of 1
+    float near_m;
+    struct pixel_sums *sums; // [height][width]
+    struct tile *tiles;      // [tiles_y][tiles_x]
+    uint64_t key;
+};
+
+struct reference_options reference_options_default(void)
+{
+    return (struct reference_options){ .bounces = -1 };
+}
+
+static const char *const layer_names[REFERENCE_LAYER_COUNT] = {
+    [REFERENCE_COLOR] = "color",       [REFERENCE_DIRECT] = "direct",
+    [REFERENCE_INDIRECT] = "indirect", [REFERENCE_IRRADIANCE] = "irradiance",
+    [REFERENCE_ALBEDO] = "albedo",     [REFERENCE_NORMAL] = "normal",
+    [REFERENCE_DEPTH] = "depth",       [REFERENCE_POSITION] = "position",
+    [REFERENCE_ERROR] = "error",       [REFERENCE_SAMPLES] = "samples",
+};
+
+const char *reference_layer_name(int layer)
+{
+    return layer >= 0 && layer < REFERENCE_LAYER_COUNT ? layer_names[layer] : NULL;
+}
+
+// ---- life
+
+static void aim(struct reference *r, const struct world_camera *camera)
+{
+    float tan_y = tanf(0.5f * camera->vertical_fov_rad);
+    float tan_x = tan_y * (float)r->width / (float)r->height;
+    vec3s right = glms_vec3_normalize(glms_vec3_cross(camera->forward, camera->up));
+    r->eye = camera->eye;
+    r->forward = camera->forward;
+    r->right = glms_vec3_scale(right, tan_x);
+    r->up = glms_vec3_scale(glms_vec3_cross(right, camera->forward), tan_y);
+    r->near_m = camera->near_m;
+}
+
+static uint64_t key_of(const struct reference *r)
+{
+    const struct reference_options *o = &r->options;
+    const int words[] = { r->width,         r->height,       o->bounces,  o->direct_only,
+                          o->indirect_only, o->diffuse_only, o->antialias };
+    uint64_t key = hash_bytes(words, sizeof words, r->scene->key);
+    const vec3s camera[] = { r->eye, r->forward, r->right, r->up, vec3_of(r->near_m, 0, 0) };
+    key = hash_bytes(camera, sizeof camera, key);
+    return hash_bytes(&o->seed, sizeof o->seed, key);
+}
+
+static bool check(struct host *host, int width, int height, const struct reference_options *options)
+{
+    if (width < 1 || height < 1 || width > IMAGE_MAX_SIZE || height > IMAGE_MAX_SIZE)
+        return host_fail(host, FAIL_ARGUMENT, "reference of %dx%d: each must be 1 to %d", width,
+                         height, IMAGE_MAX_SIZE);
+    if (options->bounces < -1)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "reference with %d bounces: 0 is the least, -1 no limit",
+                         options->bounces);
+    if (options->direct_only && options->indirect_only)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "reference of direct light only and of indirect light only: choose one");
+    return true;
+}
+
+struct reference *reference_create(struct host *host, const struct scene_pose *pose,
+                                   const struct world_camera *camera, int width, int height,
+                                   const struct reference_options *options)
+{
+    if (!check(host, width, height, options)) return NULL;
+    struct reference *r = host_alloc(host, 1, sizeof *r);
+    if (!r) return NULL;
+    r->host = host;
+    r->options = *options;
+    r->width = width;
+    r->height = height;
+    r->tiles_x = (width + TILE - 1) / TILE;
+    r->tiles_y = (height + TILE - 1) / TILE;
+    r->sums = host_alloc(host, (size_t)width * (size_t)height, sizeof *r->sums);
+    r->tiles = host_alloc(host, (size_t)r->tiles_x * (size_t)r->tiles_y, sizeof *r->tiles);
+    r->scene = r->sums && r->tiles ? trace_scene_create(host, pose) : NULL;
+    if (!r->scene) {
+        reference_destroy(r);
+        return NULL;
+    }
+    aim(r, camera);
+    r->key = key_of(r);
+    uint32_t low = (uint32_t)options->seed, high = (uint32_t)(options->seed >> 32);
+    r->rules = (struct path_rules){
+        .scene = r->scene,
+        .bounces = options->bounces,
+        .direct = !options->indirect_only,
+        .indirect = !options->direct_only && options->bounces != 0,
+        .diffuse_only = options->diffuse_only,
+        .seed = pcg_hash(low ^ pcg_hash(high)),
+    };
+    return r;
+}
+
+void reference_destroy(struct reference *r)
+{
+    if (!r) return;
+    trace_scene_destroy(r->scene);
+    host_free(r->host, r->sums);
+    host_free(r->host, r->tiles);
+    host_free(r->host, r);
+}
+
+uint64_t reference_key(const struct reference *reference)
+{
+    return reference->key;
+}
+
+// ---- rendering
+
+// The ray through a point of the picture, in pixels; its direction is 1 along the view axis.
+static struct ray eye_ray(const struct reference *r, float x, float y)
+{
+    vec3s d = glms_vec3_muladds(r->right, 2.0f * x / (float)r->width - 1.0f, r->forward);
+    d = glms_vec3_muladds(r->up, 1.0f - 2.0f * y / (float)r->height, d);
+    return (struct ray){ r->eye, d, r->near_m, INFINITY };
+}
+
+static struct path_start start_at(const struct reference *r, float x, float y, uint64_t *rays)
+{
+    struct ray ray = eye_ray(r, x, y);
+    struct pixel_footprint footprint = {
+        .direction = ray.direction,
+        .origin = ray.origin,
+        .dx = glms_vec3_scale(r->right, 2.0f / (float)r->width),
+        .dy = glms_vec3_scale(r->up, -2.0f / (float)r->height),
+    };
+    return path_begin(&r->rules, &ray, &footprint, rays);
+}
+
+static void add_sample(struct pixel_sums *sums, const struct path_light *light)
+{
+    for (int c = 0; c < 3; c++) {
+        double direct = (double)light->direct.raw[c], indirect = (double)light->indirect.raw[c];
+        sums->direct[c] += direct;
+        sums->indirect[c] += indirect;
+        sums->irradiance[c] += (double)light->irradiance.raw[c];
+        sums->squares[c] += (direct + indirect) * (direct + indirect);
+    }
+}
+
+static void render_pixel(const struct reference *r, int x, int y, int from, int to, uint64_t *rays)
+{
+    uint32_t pixel = (uint32_t)y * (uint32_t)r->width + (uint32_t)x;
+    struct pixel_sums *sums = &r->sums[pixel];
+    struct path_start start;
+    if (!r->options.antialias) start = start_at(r, (float)x + 0.5f, (float)y + 0.5f, rays);
+    for (int i = from; i < to; i++) {
+        if (r->options.antialias) {
+            struct rng rng = rng_for(pixel, (uint32_t)i, r->rules.seed + ANTIALIAS_DIMENSION);
+            vec2s u = rng_vec2(&rng);
+            start = start_at(r, (float)x + u.x, (float)y + u.y, rays);
+        }
+        struct path_light light = path_sample(&r->rules, &start, pixel, (uint32_t)i, rays);
+        add_sample(sums, &light);
+    }
+}
+
+struct pass {
+    struct reference *reference;
+    size_t first_tile;
+    int samples; // that every tile has afterwards
+};
+
+static void render_tile(void *user, size_t i)
+{
+    const struct pass *pass = user;
+    struct reference *r = pass->reference;
+    size_t index = pass->first_tile + i;
+    struct tile *tile = &r->tiles[index];
+    if (tile->samples >= pass->samples) return;
+    int left = (int)(index % (size_t)r->tiles_x) * TILE,
+        top = (int)(index / (size_t)r->tiles_x) * TILE;
+    unsigned before = embree_flush_denormals();
+    uint64_t rays = 0;
+    for (int y = top; y < top + TILE && y < r->height; y++)
+        for (int x = left; x < left + TILE && x < r->width; x++)
+            render_pixel(r, x, y, tile->samples, pass->samples, &rays);
+    embree_restore_denormals(before);
+    tile->rays += rays;
+    tile->samples = pass->samples;
+}
+
+static size_t tile_count(const struct reference *r)
+{
+    return (size_t)r->tiles_x * (size_t)r->tiles_y;
+}
+
+static int least_samples(const struct reference *r)
+{
+    int least = r->tiles[0].samples;
+    for (size_t i = 1; i < tile_count(r); i++)
+        if (r->tiles[i].samples < least) least = r->tiles[i].samples;
+    return least;
+}
+
+// Steps grow from 1, so that a first picture is there soon.
+static int next_step(int done, int left)
+{
+    int step = done < 2 ? 1 : done < 4 ? 2 : MAX_STEP;
+    return step < left ? step : left;
+}
+
+bool reference_render(struct reference *r, int samples, bool (*progress)(void *user, double done),
+                      void *user)
+{
+    int begun = least_samples(r);
+    if (samples < 1 || samples > INT32_MAX - begun)
+        return host_fail(r->host, FAIL_ARGUMENT,
+                         "reference with %d more samples than %d: 1 is the least", samples, begun);
+    size_t count = tile_count(r);
+    for (int done = begun; done < begun + samples;) {
+        int step = next_step(done, begun + samples - done);
+        for (size_t first = 0; first < count; first += CHUNK) {
+            size_t chunk = count - first < CHUNK ? count - first : CHUNK;
+            struct pass pass = { r, first, done + step };
+            parallel_for(chunk, 1, render_tile, &pass);
+            double share = (double)(first + chunk) / (double)count;
+            double all = ((double)(done - begun) + share * (double)step) / (double)samples;
+            if (progress && !progress(user, all))
+                return host_fail(r->host, FAIL_CANCELLED, "reference of %s: cancelled",
+                                 r->scene->scene->name);
+        }
+        done += step;
+    }
+    return true;
+}
+
+// ---- reading
+
+static int samples_of(const struct reference *r, int x, int y)
+{
+    return r->tiles[(size_t)(y / TILE) * (size_t)r->tiles_x + (size_t)(x / TILE)].samples;
+}
+
+static const struct pixel_sums *sums_of(const struct reference *r, int x, int y)
+{
+    return &r->sums[(size_t)y * (size_t)r->width + (size_t)x];
+}
+
+static float mean_of(double sum, int samples)
+{
+    return samples > 0 ? (float)(sum / samples) : 0.0f;
+}
+
+// Standard error of the mean: the samples' unbiased variance over their number.
+static double variance_of_mean(double sum, double squares, int samples)
+{
+    if (samples < 2) return INFINITY;
+    double n = samples;
+    return fmax(0.0, squares - sum * sum / n) / (n * (n - 1.0));
+}
+
+static void read_sums(const struct reference *r, enum reference_layer layer, int x, int y,
+                      float *out)
+{
+    const struct pixel_sums *s = sums_of(r, x, y);
+    int n = samples_of(r, x, y);
+    for (int c = 0; c < 3; c++) {
+        float direct = mean_of(s->direct[c], n), indirect = mean_of(s->indirect[c], n);
+        if (layer == REFERENCE_COLOR) out[c] = direct + indirect;
+        if (layer == REFERENCE_DIRECT) out[c] = direct;
+        if (layer == REFERENCE_INDIRECT) out[c] = indirect;
+        if (layer == REFERENCE_IRRADIANCE) out[c] = mean_of(s->irradiance[c], n);
+        if (layer == REFERENCE_ERROR)
+            out[c] = (float)sqrt(variance_of_mean(s->direct[c] + s->indirect[c], s->squares[c], n));
+    }
+    if (layer == REFERENCE_SAMPLES) out[0] = (float)n;
+}
+
+static void read_surface(const struct reference *r, enum reference_layer layer, int x, int y,
+                         float *out)
+{
+    struct path_rules rules = r->rules;
+    rules.direct = false;
+    uint64_t rays = 0;
+    struct reference bare = *r;
+    bare.rules = rules;
+    struct path_start start = start_at(&bare, (float)x + 0.5f, (float)y + 0.5f, &rays);
+    if (!start.hit) return;
+    vec3s v = layer == REFERENCE_ALBEDO   ? start.surface.albedo
+              : layer == REFERENCE_NORMAL ? start.surface.normal
+                                          : start.surface.position;
+    if (layer == REFERENCE_DEPTH) {
+        out[0] = glms_vec3_dot(glms_vec3_sub(start.surface.position, r->eye), r->forward);
+        return;
+    }
+    for (int c = 0; c < 3; c++) out[c] = v.raw[c];
+}
+
+static bool is_of_surface(enum reference_layer layer)
+{
+    return layer == REFERENCE_ALBEDO || layer == REFERENCE_NORMAL || layer == REFERENCE_DEPTH ||
+           layer == REFERENCE_POSITION;
+}
+
+struct reading {
+    const struct reference *reference;
+    enum reference_layer layer;
+    const struct image *out;
+};
+
+static void read_row(void *user, size_t y)
+{
+    const struct reading *reading = user;
+    const struct reference *r = reading->reference;
+    unsigned before = embree_flush_denormals();
+    for (int x = 0; x < r->width; x++) {
+        float *out = image_at(reading->out, x, (int)y);
+        if (is_of_surface(reading->layer))
+            read_surface(r, reading->layer, x, (int)y, out);
+        else
+            read_sums(r, reading->layer, x, (int)y, out);
+    }
+    embree_restore_denormals(before);
+}
+
+bool reference_read(const struct reference *r, enum reference_layer layer, struct image *out)
+{
+    if ((unsigned)layer >= REFERENCE_LAYER_COUNT)
+        return host_fail(r->host, FAIL_ARGUMENT, "reference's layer %d: there is none", (int)layer);
+    int channels = layer == REFERENCE_DEPTH || layer == REFERENCE_SAMPLES ? 1 : 3;
+    if (!image_init(out, r->host, r->width, r->height, channels)) return false;
+    struct reading reading = { r, layer, out };
+    parallel_for((size_t)r->height, 4, read_row, &reading);
+    return true;
+}
+
+struct reference_info reference_info(const struct reference *r)
+{
+    static const double weights[3] = { 0.2126, 0.7152, 0.0722 };
+    struct reference_info info = { .samples = least_samples(r) };
+    for (size_t i = 0; i < tile_count(r); i++) info.rays += r->tiles[i].rays;
+    double variance = 0.0;
+    for (int y = 0; y < r->height; y++) {
+        for (int x = 0; x < r->width; x++) {
+            const struct pixel_sums *s = sums_of(r, x, y);
+            int n = samples_of(r, x, y);
+            double error = 0.0; // of channels that rise and fall together: an upper bound
+            for (int c = 0; c < 3; c++) {
+                double sum = s->direct[c] + s->indirect[c];
+                info.mean += n > 0 ? weights[c] * sum / n : 0.0;
+                error += weights[c] * sqrt(variance_of_mean(sum, s->squares[c], n));
+            }
+            variance += error * error;
+        }
+    }
+    double pixels = (double)r->width * (double)r->height;
+    info.mean /= pixels;
+    info.error = sqrt(variance / pixels);
+    return info;
+}
+
+// ---- going on
+
+static bool is_of(const struct reference *r, const struct image *image, int channels)
+{
+    return image->width == r->width && image->height == r->height && image->channels == channels;
+}
+
+// Samples must be whole numbers, the same for all pixels of a tile.
+static bool restore_tile(struct reference *r, size_t index, const struct image *samples)
+{
+    int left = (int)(index % (size_t)r->tiles_x) * TILE,
+        top = (int)(index / (size_t)r->tiles_x) * TILE;
+    float n = image_at(samples, left, top)[0];
+    if (!(n >= 0.0f && n < 0x1p24f && n == floorf(n))) return false;
+    for (int y = top; y < top + TILE && y < r->height; y++)
+        for (int x = left; x < left + TILE && x < r->width; x++)
+            if (image_at(samples, x, y)[0] != n) return false;
+    r->tiles[index].samples = (int)n;
+    return true;
+}
+
+static bool restore_pixel(struct pixel_sums *s, int n, const float *direct, const float *indirect,
+                          const float *irradiance, const float *error)
+{
+    for (int c = 0; c < 3; c++) {
+        double sum = ((double)direct[c] + (double)indirect[c]) * n, deviation = (double)error[c];
+        s->direct[c] = (double)direct[c] * n;
+        s->indirect[c] = (double)indirect[c] * n;
+        s->irradiance[c] = (double)irradiance[c] * n;
+        s->squares[c] = n > 0 ? sum * sum / n : 0.0;
+        if (n > 1) s->squares[c] += deviation * deviation * n * (n - 1.0);
+        if (!isfinite(s->squares[c]) || !isfinite(s->irradiance[c])) return false;
+    }
+    return true;
+}
+
+bool reference_restore(struct reference *r, const struct image *direct,
+                       const struct image *indirect, const struct image *irradiance,
+                       const struct image *error, const struct image *samples)
+{
+    if (!is_of(r, direct, 3) || !is_of(r, indirect, 3) || !is_of(r, irradiance, 3) ||
+        !is_of(r, error, 3) || !is_of(r, samples, 1))
+        return host_fail(r->host, FAIL_FORMAT, "reference to go on with: its layers are not %dx%d",
+                         r->width, r->height);
+    bool ok = true;
+    for (size_t i = 0; ok && i < tile_count(r); i++) ok = restore_tile(r, i, samples);
+    for (int y = 0; ok && y < r->height; y++)
+        for (int x = 0; ok && x < r->width; x++)
+            ok =
+                restore_pixel(&r->sums[(size_t)y * (size_t)r->width + (size_t)x],
+                              samples_of(r, x, y), image_at(direct, x, y), image_at(indirect, x, y),
+                              image_at(irradiance, x, y), image_at(error, x, y));
+    if (ok) return true;
+    memset(r->sums, 0, (size_t)r->width * (size_t)r->height * sizeof *r->sums);
+    memset(r->tiles, 0, tile_count(r) * sizeof *r->tiles);
+    return host_fail(r->host, FAIL_FORMAT, "reference to go on with: its layers are damaged");
+}

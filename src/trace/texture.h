@@ -1,0 +1,31 @@
+// Maps of materials, read as the frame's samplers do: wrapped, filtered linearly between texels and between mips.
+#pragma once
+
+#include "scene/scene.h"
+
+enum { TEXTURE_LEVELS = 16 };
+
+// An image as colours (sRGB, decoded before filtering) or as data. Smaller mips have 8 bits too, as on the GPU.
+struct texture {
+    int width, height, levels;
+    bool srgb;
+    const uint8_t *texels[TEXTURE_LEVELS]; // the first is the scene's own
+    uint8_t *owned;                        // the others
+    float decode[256];                     // of a byte of R, G, B
+};
+
+bool texture_init(struct texture *texture, struct host *host, const struct scene_image *image, bool srgb);
+void texture_finish(struct texture *texture, struct host *host); // accepts zero
+
+// A texture as a material uses it. texture NULL: no map.
+struct texture_map {
+    const struct texture *texture;
+    int uv_set;
+    vec3s row_u, row_v; // uv' = (row_u · (u, v, 1), row_v · (u, v, 1)): KHR_texture_transform
+    enum texture_wrap wrap_u, wrap_v;
+    bool nearest;
+};
+struct texture_map texture_map_of(const struct texture_use *use, const struct texture *texture);
+
+// uv: of the vertex attribute. dx, dy: how uv changes from one pixel to the next, both 0 for the full resolution. RGBA, decoded.
+vec4s texture_sample(const struct texture_map *map, vec2s uv, vec2s dx, vec2s dy);

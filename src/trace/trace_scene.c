@@ -1,0 +1,307 @@
+// A scene at a moment as triangles in world space; the rays that others shoot through it.
+#include "trace/trace_scene.h"
+
+#include "trace/surface.h"
+
+#include "core/hash.h"
+
+#include <math.h>
+#include <string.h>
+
+static const float BLEND_CUTOFF = 0.5f; // blended materials are masks, as in the frame
+
+// ---- materials
+
+static bool texture_of(struct trace_scene *s, const struct texture_use *use, bool srgb,
+                       struct texture_map *out)
+{
+    struct texture *texture = NULL;
+    if (use->image >= 0) {
+        texture = srgb ? &s->color_textures[use->image] : &s->data_textures[use->image];
+        if (texture->levels == 0 &&
+            !texture_init(texture, s->host, &s->scene->images[use->image], srgb))
+            return false;
+    }
+    *out = texture_map_of(use, texture);
+    return true;
+}
+
+static bool make_material(struct trace_scene *s, const struct material *m,
+                          struct trace_material *out)
+{
+    *out = (struct trace_material){
+        .base_color = vec3_xyz(m->base_color),
+        .emission = m->emissive,
+        .alpha = m->base_color.w,
+        .alpha_cutoff = m->alpha_mode == ALPHA_BLEND ? BLEND_CUTOFF : m->alpha_cutoff,
+        .metallic = m->metallic,
+        .roughness = m->roughness,
+        .normal_scale = m->normal_scale,
+        .masked = m->alpha_mode != ALPHA_OPAQUE,
+        .double_sided = m->double_sided,
+        .unlit = m->unlit,
+        .emissive = m->emissive.x > 0.0f || m->emissive.y > 0.0f || m->emissive.z > 0.0f,
+    };
+    return texture_of(s, &m->base_color_map, true, &out->base_color_map) &&
+           texture_of(s, &m->metallic_roughness_map, false, &out->metallic_roughness_map) &&
+           texture_of(s, &m->normal_map, false, &out->normal_map) &&
+           texture_of(s, &m->emissive_map, true, &out->emissive_map);
+}
+
+static bool make_materials(struct trace_scene *s)
+{
+    size_t images = (size_t)s->scene->image_count, materials = (size_t)s->scene->material_count;
+    s->color_textures = host_alloc(s->host, images, sizeof *s->color_textures);
+    s->data_textures = host_alloc(s->host, images, sizeof *s->data_textures);
+    s->materials = host_alloc(s->host, materials, sizeof *s->materials);
+    if (!s->color_textures || !s->data_textures || !s->materials) return false;
+    for (size_t i = 0; i < materials; i++)
+        if (!make_material(s, &s->scene->materials[i], &s->materials[i])) return false;
+    return true;
+}
+
+// ---- meshes
+
+// Whether an instance's triangles are turned over by its transform; of a skin, the first joint
+// decides (as in the frame).
+static bool is_mirrored(const struct scene_pose *pose, int instance)
+{
+    const struct instance *i = &pose->scene->instances[instance];
+    mat4s m = pose->world_from_node[i->node];
+    if (i->skin >= 0) {
+        const struct skin *skin = &pose->scene->skins[i->skin];
+        if (skin->joint_count == 0) return false;
+        m = glms_mat4_mul(pose->world_from_node[skin->joints[0]], skin->joint_from_mesh[0]);
+    }
+    return glms_mat4_det(m) < 0.0f;
+}
+
+static vec3s unit_or_zero(vec3s v)
+{
+    float length2 = glms_vec3_norm2(v);
+    return length2 > 0.0f ? glms_vec3_scale(v, 1.0f / sqrtf(length2)) : v;
+}
+
+// scene.glsl: scene_frame_of. Normals go through the cofactor matrix.
+static void move_rigid(struct trace_mesh *out, mat4s m)
+{
+    vec3s c0 = vec3_xyz(m.col[0]), c1 = vec3_xyz(m.col[1]), c2 = vec3_xyz(m.col[2]);
+    vec3s k0 = glms_vec3_cross(c1, c2), k1 = glms_vec3_cross(c2, c0), k2 = glms_vec3_cross(c0, c1);
+    float side = out->mirrored ? -1.0f : 1.0f;
+    for (uint32_t v = 0; v < out->mesh->vertex_count; v++) {
+        out->positions[v] = mat4_point(m, out->mesh->positions[v]);
+        vec3s n = out->mesh->normals[v];
+        vec3s moved = glms_vec3_scale(k0, n.x);
+        moved = glms_vec3_muladds(k1, n.y, moved);
+        moved = glms_vec3_muladds(k2, n.z, moved);
+        out->normals[v] = glms_vec3_scale(unit_or_zero(moved), side);
+        if (!out->tangents) continue;
+        vec4s t = out->mesh->tangents[v];
+        vec3s tangent = unit_or_zero(mat4_direction(m, vec3_xyz(t)));
+        out->tangents[v] = vec4_of(tangent, t.w * side);
+    }
+}
+
+static void copy_deformed(struct trace_mesh *out, const struct deformed_mesh *from)
+{
+    size_t count = out->mesh->vertex_count;
+    memcpy(out->positions, from->positions, count * sizeof *out->positions);
+    memcpy(out->normals, from->normals, count * sizeof *out->normals);
+    if (!out->tangents) return;
+    for (size_t v = 0; v < count; v++) {
+        out->tangents[v] = from->tangents[v];
+        if (out->mirrored) out->tangents[v].w = -out->tangents[v].w;
+    }
+}
+
+static bool make_mesh(struct trace_scene *s, const struct scene_pose *pose, int instance,
+                      struct trace_mesh *out)
+{
+    const struct mesh *mesh = &s->scene->meshes[s->scene->instances[instance].mesh];
+    const struct deformed_mesh *deformed = &pose->deformed[instance];
+    *out = (struct trace_mesh){ .mesh = mesh,
+                                .material = &s->materials[mesh->material],
+                                .instance = instance,
+                                .mirrored = is_mirrored(pose, instance),
+                                .emitter_first = NO_EMITTER };
+    size_t count = mesh->vertex_count;
+    out->positions = host_alloc(s->host, count + 1, sizeof *out->positions);
+    out->normals = host_alloc(s->host, count, sizeof *out->normals);
+    if (!out->positions || !out->normals) return false;
+    if (mesh->tangents && (!deformed->positions || deformed->tangents)) {
+        out->tangents = host_alloc(s->host, count, sizeof *out->tangents);
+        if (!out->tangents) return false;
+    }
+    if (deformed->positions)
+        copy_deformed(out, deformed);
+    else
+        move_rigid(out, pose_world_from_instance(pose, instance));
+    out->geometry = (struct embree_geometry){
+        .positions = out->positions,
+        .vertex_count = mesh->vertex_count,
+        .indices = mesh->indices,
+        .triangle_count = mesh->index_count / 3,
+        .solid = out->material->masked ? surface_is_solid : NULL,
+        .user = out,
+    };
+    return true;
+}
+
+static bool make_meshes(struct trace_scene *s, const struct scene_pose *pose)
+{
+    s->meshes = host_alloc(s->host, (size_t)s->scene->instance_count, sizeof *s->meshes);
+    s->embree = embree_create(s->host);
+    if (!s->meshes || !s->embree) return false;
+    for (int i = 0; i < s->scene->instance_count; i++) {
+        if (s->scene->meshes[s->scene->instances[i].mesh].index_count == 0) continue;
+        struct trace_mesh *mesh = &s->meshes[s->mesh_count++];
+        if (!make_mesh(s, pose, i, mesh) || !embree_add(s->embree, &mesh->geometry)) return false;
+    }
+    return embree_commit(s->embree);
+}
+
+// ---- the key
+
+static uint64_t add(uint64_t key, const void *data, size_t count, size_t size)
+{
+    return data ? hash_bytes(data, count * size, key) : key;
+}
+
+static uint64_t add_floats(uint64_t key, const float *values, size_t count)
+{
+    return add(key, values, count, sizeof *values);
+}
+
+static uint64_t add_map(uint64_t key, const struct texture_map *map)
+{
+    if (!map->texture) return add_floats(key, (float[1]){ 0 }, 1);
+    const int words[] = { map->uv_set,  (int)map->wrap_u,    (int)map->wrap_v,
+                          map->nearest, map->texture->width, map->texture->height };
+    key = add(key, words, 6, sizeof *words);
+    key = add_floats(add_floats(key, map->row_u.raw, 3), map->row_v.raw, 3);
+    return add(key, map->texture->texels[0],
+               (size_t)map->texture->width * (size_t)map->texture->height, 4);
+}
+
+static uint64_t add_material(uint64_t key, const struct trace_material *m)
+{
+    const float values[] = { m->base_color.x, m->base_color.y, m->base_color.z, m->alpha,
+                             m->emission.x,   m->emission.y,   m->emission.z,   m->alpha_cutoff,
+                             m->metallic,     m->roughness,    m->normal_scale };
+    const int flags[] = { m->masked, m->double_sided, m->unlit };
+    key = add_floats(key, values, sizeof values / sizeof *values);
+    key = add(key, flags, 3, sizeof *flags);
+    key = add_map(add_map(key, &m->base_color_map), &m->metallic_roughness_map);
+    return add_map(add_map(key, &m->normal_map), &m->emissive_map);
+}
+
+static uint64_t add_mesh(uint64_t key, const struct trace_mesh *m)
+{
+    const struct mesh *mesh = m->mesh;
+    size_t count = mesh->vertex_count;
+    key = add(key, &mesh->index_count, 1, sizeof mesh->index_count);
+    key = add(key, mesh->indices, mesh->index_count, sizeof *mesh->indices);
+    key = add(key, m->positions, count, sizeof *m->positions);
+    key = add(key, m->normals, count, sizeof *m->normals);
+    key = add(key, m->tangents, count, sizeof *m->tangents);
+    key = add(key, mesh->uv[0], count, sizeof *mesh->uv[0]);
+    key = add(key, mesh->uv[1], count, sizeof *mesh->uv[1]);
+    key = add(key, mesh->colors, count, sizeof *mesh->colors);
+    return add_material(key, m->material);
+}
+
+static uint64_t add_light(uint64_t key, const struct world_light *l)
+{
+    const float values[] = { (float)l->type, l->position.x,  l->position.y,  l->position.z,
+                             l->direction.x, l->direction.y, l->direction.z, l->intensity.x,
+                             l->intensity.y, l->intensity.z, l->cos_inner,   l->cos_outer,
+                             l->range_m };
+    return add_floats(key, values, sizeof values / sizeof *values);
+}
+
+static uint64_t key_of(const struct trace_scene *s)
+{
+    uint64_t key = add_floats(0, s->lights.sky.raw, 3);
+    for (uint32_t i = 0; i < s->mesh_count; i++) key = add_mesh(key, &s->meshes[i]);
+    for (int i = 0; i < s->lights.punctual_count; i++) key = add_light(key, &s->lights.punctual[i]);
+    return key;
+}
+
+// ---- life
+
+struct trace_scene *trace_scene_create(struct host *host, const struct scene_pose *pose)
+{
+    struct trace_scene *s = host_alloc(host, 1, sizeof *s);
+    if (!s) return NULL;
+    s->host = host;
+    s->scene = pose->scene;
+    if (!make_materials(s) || !make_meshes(s, pose) || !light_table_init(s, pose)) {
+        trace_scene_destroy(s);
+        return NULL;
+    }
+    s->key = key_of(s);
+    return s;
+}
+
+void trace_scene_destroy(struct trace_scene *s)
+{
+    if (!s) return;
+    embree_destroy(s->embree);
+    light_table_finish(s);
+    for (uint32_t i = 0; i < s->mesh_count; i++) {
+        host_free(s->host, s->meshes[i].positions);
+        host_free(s->host, s->meshes[i].normals);
+        host_free(s->host, s->meshes[i].tangents);
+    }
+    for (int i = 0; i < s->scene->image_count; i++) {
+        if (s->color_textures) texture_finish(&s->color_textures[i], s->host);
+        if (s->data_textures) texture_finish(&s->data_textures[i], s->host);
+    }
+    host_free(s->host, s->color_textures);
+    host_free(s->host, s->data_textures);
+    host_free(s->host, s->materials);
+    host_free(s->host, s->meshes);
+    host_free(s->host, s);
+}
+
+// ---- rays
+
+bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s direction,
+                   float max_distance, struct trace_hit *hit)
+{
+    struct ray ray = { origin, direction, 0.0f, max_distance };
+    struct ray_hit met;
+    if (!embree_closest(scene->embree, &ray, NULL, false, &met)) return false;
+    if (!hit) return true;
+    struct surface s = surface_at(scene, &ray, &met, NULL);
+    *hit = (struct trace_hit){
+        .distance = met.distance,
+        .instance = scene->meshes[met.geometry].instance,
+        .triangle = met.triangle,
+        .u = met.u,
+        .v = met.v,
+        .position = s.position,
+        .geometric = s.front ? s.geometric : glms_vec3_negate(s.geometric),
+        .normal = s.normal,
+        .front = s.front,
+        .albedo = s.albedo,
+        .metallic = s.metallic,
+        .roughness = s.roughness,
+        .emission = s.emission,
+        .reach_m = s.reach,
+    };
+    return true;
+}
+
+bool trace_occluded(const struct trace_scene *scene, vec3s origin, vec3s direction,
+                    float max_distance)
+{
+    struct ray ray = { origin, direction, 0.0f, max_distance };
+    return embree_occluded(scene->embree, &ray);
+}
+
+vec3s trace_leave(const struct trace_hit *hit, vec3s direction)
+{
+    float side = glms_vec3_dot(hit->geometric, direction) < 0.0f ? -hit->reach_m : hit->reach_m;
+    return glms_vec3_muladds(hit->geometric, side, hit->position);
+}

@@ -1,0 +1,114 @@
+// The reference and the real-time frame show the same direct light.
+#include "frame/studio.h"
+#include "trace/trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { WIDTH = 128, HEIGHT = 72, PIXELS = WIDTH * HEIGHT };
+
+static float *frame_layer_of(struct gpu *gpu, const char *name, enum frame_readback what)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    scene_destroy(s.scene);
+    s.scene = scene_load(test_host(), name);
+    assert_non_null(s.scene);
+    s.options.shadow_size = 1024;
+    s.width = WIDTH;
+    s.height = HEIGHT;
+    studio_open(&s);
+    s.input.camera = pose_camera(&s.pose, 0);
+    s.input.sky = s.scene->sky;
+    for (int i = 0; i < s.scene->light_count; i++)
+        s.lights[s.input.light_count++] = pose_light(&s.pose, i);
+    studio_render(&s);
+    float *pixels = studio_read(&s, what);
+    studio_finish(&s);
+    return pixels;
+}
+
+static struct image reference_layer_of(const char *name, enum reference_layer layer)
+{
+    struct scene *scene = scene_load(test_host(), name);
+    struct scene_pose pose;
+    assert_non_null(scene);
+    assert_true(pose_init(&pose, scene, scene->animation_count ? 0 : -1, 0));
+    struct world_camera camera = pose_camera(&pose, 0);
+    struct reference_options options = reference_options_default();
+    options.bounces = 0;
+    struct reference *r = reference_create(test_host(), &pose, &camera, WIDTH, HEIGHT, &options);
+    struct image image = { 0 };
+    assert_non_null(r);
+    assert_true(reference_render(r, 1, NULL, NULL));
+    assert_true(reference_read(r, layer, &image));
+    reference_destroy(r);
+    pose_finish(&pose);
+    scene_destroy(scene);
+    return image;
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Relative differences over pixels of which at least one is not black, in ascending order; how many
+// there are.
+static int differences(struct gpu *gpu, const char *name, enum frame_readback what,
+                       enum reference_layer layer, double out[PIXELS])
+{
+    float *frame = frame_layer_of(gpu, name, what);
+    struct image reference = reference_layer_of(name, layer);
+    int count = 0, channels = reference.channels;
+    for (int i = 0; i < PIXELS; i++) {
+        double difference = 0, size = 0;
+        for (int c = 0; c < channels; c++) {
+            double a = (double)frame[i * channels + c],
+                   b = (double)reference.pixels[i * channels + c];
+            difference += fabs(a - b);
+            size += fmax(fabs(a), fabs(b));
+        }
+        if (size > 0) out[count++] = difference / size;
+    }
+    qsort(out, (size_t)count, sizeof *out, compare);
+    image_finish(&reference, test_host());
+    free(frame);
+    return count;
+}
+
+TEST_GPU(direct_light_of_the_frame_is_the_references)
+{
+    static double d[PIXELS];
+    int count = differences(gpu, "@cornell:light=point", READ_DIRECT, REFERENCE_DIRECT, d);
+    CHECK(count > PIXELS / 4);
+    // Half floats, 8-bit albedo, and drivers that decode sRGB by a polynomial; beyond nine in ten: edges.
+    CHECK(d[count / 2] < 0.007);
+    CHECK(d[count * 9 / 10] < 0.01);
+}
+
+TEST_GPU(surfaces_of_the_frame_are_the_references)
+{
+    static const struct {
+        const char *scene;
+        enum frame_readback what;
+        enum reference_layer layer;
+        double tolerance; // of nine pixels in ten
+    } cases[] = {
+        { "@cornell:light=point", READ_DEPTH, REFERENCE_DEPTH, 1e-4 },
+        { "@cornell:light=point", READ_NORMAL, REFERENCE_NORMAL, 2e-3 },
+        { "@cornell:light=point", READ_POSITION, REFERENCE_POSITION, 1e-3 },
+        { "@cornell:light=point", READ_ALBEDO, REFERENCE_ALBEDO, 0.01 },
+        { "@atrium", READ_DEPTH, REFERENCE_DEPTH, 1e-4 },
+        // Software drivers make and mix mips in 8 bits: up to 4/255 of a normal map's components.
+        { "@atrium", READ_NORMAL, REFERENCE_NORMAL, 0.06 },
+        { "@atrium", READ_ALBEDO, REFERENCE_ALBEDO, 0.05 },
+    };
+    static double d[PIXELS];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        int count = differences(gpu, cases[i].scene, cases[i].what, cases[i].layer, d);
+        CHECK(count > PIXELS / 4);
+        CHECK_NEAR(d[count * 9 / 10], 0, cases[i].tolerance);
+    }
+}

@@ -1,0 +1,336 @@
+// The reference as a whole: determinism, linearity, how its layers fit together, going on and
+// stopping.
+#include "trace/stage.h"
+
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+static size_t float_count(const struct image *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+static bool images_are_equal(const struct image *a, const struct image *b)
+{
+    return float_count(a) == float_count(b) &&
+           memcmp(a->pixels, b->pixels, float_count(a) * sizeof *a->pixels) == 0;
+}
+
+static struct image read_layer(struct reference *r, enum reference_layer layer)
+{
+    struct image image = { 0 };
+    assert_true(reference_read(r, layer, &image));
+    return image;
+}
+
+static void finish(struct image *a)
+{
+    image_finish(a, test_host());
+}
+
+TEST(result_does_not_depend_on_the_number_of_threads)
+{
+    struct image images[2];
+    for (int i = 0; i < 2; i++) {
+        struct stage s;
+        stage_builtin(&s, "@cornell");
+        s.width = 50; // tiles that are cut, too
+        omp_set_num_threads(i + 1);
+        images[i] = stage_layer(&s, REFERENCE_COLOR);
+        stage_finish(&s);
+    }
+    CHECK(image_mean(&images[0], 1) > 0);
+    CHECK(images_are_equal(&images[0], &images[1]));
+    finish(&images[0]);
+    finish(&images[1]);
+}
+
+TEST(result_does_not_depend_on_how_samples_are_spread_over_calls)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell:light=point");
+    struct reference *whole = stage_reference(&s), *parts = stage_reference(&s);
+    assert_true(reference_render(whole, 11, NULL, NULL));
+    assert_true(reference_render(parts, 1, NULL, NULL));
+    assert_true(reference_render(parts, 7, NULL, NULL));
+    assert_true(reference_render(parts, 3, NULL, NULL));
+    assert_int_equal(reference_info(parts).samples, 11);
+    CHECK(reference_info(parts).rays > 11u * 32 * 32);
+    struct image a = read_layer(whole, REFERENCE_COLOR), b = read_layer(parts, REFERENCE_COLOR);
+    CHECK(images_are_equal(&a, &b));
+    finish(&a);
+    finish(&b);
+    reference_destroy(whole);
+    reference_destroy(parts);
+    stage_finish(&s);
+}
+
+TEST(another_seed_is_another_picture_of_the_same_scene)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    struct image a = stage_layer(&s, REFERENCE_COLOR);
+    s.options.seed = UINT64_C(1) << 40;
+    struct image b = stage_layer(&s, REFERENCE_COLOR);
+    CHECK(!images_are_equal(&a, &b));
+    CHECK_RELATIVE(image_mean(&a, 1), image_mean(&b, 1), 0.1);
+    finish(&a);
+    finish(&b);
+    stage_finish(&s);
+}
+
+TEST(doubled_lights_give_doubled_radiance_to_the_bit)
+{
+    static const char *const names[][2] = { { "@cornell", "@cornell:power=2" },
+                                            { "@cornell:light=point",
+                                              "@cornell:light=point,power=2" } };
+    for (int i = 0; i < 2; i++) {
+        struct image images[2];
+        for (int k = 0; k < 2; k++) {
+            struct stage s;
+            stage_builtin(&s, names[i][k]);
+            s.scene->sky = vec3_of(10.0f * (float)(k + 1), 0, 3.0f * (float)(k + 1));
+            images[k] = stage_layer(&s, REFERENCE_COLOR);
+            stage_finish(&s);
+        }
+        for (size_t p = 0; p < float_count(&images[0]); p++)
+            CHECK(images[1].pixels[p] == 2.0f * images[0].pixels[p]);
+        finish(&images[0]);
+        finish(&images[1]);
+    }
+}
+
+TEST(color_is_direct_plus_indirect_to_the_bit)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    struct reference *r = stage_reference(&s);
+    assert_true(reference_render(r, 5, NULL, NULL));
+    struct image color = read_layer(r, REFERENCE_COLOR), direct = read_layer(r, REFERENCE_DIRECT),
+                 indirect = read_layer(r, REFERENCE_INDIRECT);
+    CHECK(image_mean(&indirect, 0) > 0);
+    for (size_t i = 0; i < float_count(&color); i++)
+        CHECK(color.pixels[i] == direct.pixels[i] + indirect.pixels[i]);
+    finish(&color);
+    finish(&direct);
+    finish(&indirect);
+    reference_destroy(r);
+    stage_finish(&s);
+}
+
+static struct stage_mean cornell_mean(int bounces, bool direct_only, bool indirect_only)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    s.samples = 64;
+    s.options.bounces = bounces;
+    s.options.direct_only = direct_only;
+    s.options.indirect_only = indirect_only;
+    struct stage_mean m = stage_mean(&s, REFERENCE_COLOR);
+    stage_finish(&s);
+    return m;
+}
+
+TEST(one_bounce_less_direct_light_is_the_first_bounce_alone)
+{
+    struct stage_mean one = cornell_mean(1, false, false), none = cornell_mean(0, false, false);
+    struct stage_mean alone = cornell_mean(1, false, true), direct = cornell_mean(-1, true, false);
+    double noise =
+        sqrt(one.error * one.error + none.error * none.error + alone.error * alone.error);
+    CHECK(alone.mean[1] > 10 * alone.error);
+    CHECK_NEAR(one.mean[1] - none.mean[1], alone.mean[1], 4 * noise);
+    CHECK_NEAR(direct.mean[1], none.mean[1], 4 * noise);
+    CHECK(cornell_mean(-1, false, false).mean[1] > one.mean[1]);
+}
+
+// A diffuse surface shows albedo · E / π of indirect light.
+TEST(indirect_light_of_a_diffuse_surface_is_its_albedo_times_its_irradiance)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    s.options.diffuse_only = true;
+    struct reference *r = stage_reference(&s);
+    assert_true(reference_render(r, 16, NULL, NULL));
+    struct image indirect = read_layer(r, REFERENCE_INDIRECT),
+                 albedo = read_layer(r, REFERENCE_ALBEDO),
+                 irradiance = read_layer(r, REFERENCE_IRRADIANCE);
+    for (size_t i = 0; i < float_count(&indirect); i++) {
+        double expected =
+            (double)albedo.pixels[i] * (double)irradiance.pixels[i] / 3.14159265358979;
+        CHECK_NEAR(indirect.pixels[i], expected, 1e-5 * expected + 1e-6);
+    }
+    finish(&indirect);
+    finish(&albedo);
+    finish(&irradiance);
+    reference_destroy(r);
+    stage_finish(&s);
+}
+
+// The error that the reference states is the one that other seeds show.
+TEST(standard_error_is_the_spread_of_repeated_renderings)
+{
+    enum { RUNS = 24 };
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    s.width = s.height = 16;
+    double sums[16 * 16] = { 0 }, squares[16 * 16] = { 0 }, stated = 0, seen = 0;
+    for (int run = 0; run < RUNS; run++) {
+        s.options.seed = (uint64_t)run;
+        struct reference *r = stage_reference(&s);
+        assert_true(reference_render(r, 16, NULL, NULL));
+        struct image color = read_layer(r, REFERENCE_COLOR), error = read_layer(r, REFERENCE_ERROR);
+        for (size_t i = 0; i < 256; i++) {
+            double v = (double)color.pixels[3 * i + 1], e = (double)error.pixels[3 * i + 1];
+            sums[i] += v;
+            squares[i] += v * v;
+            stated += e * e / RUNS;
+        }
+        finish(&color);
+        finish(&error);
+        reference_destroy(r);
+    }
+    for (int i = 0; i < 256; i++) seen += (squares[i] - sums[i] * sums[i] / RUNS) / (RUNS - 1);
+    CHECK_RELATIVE(stated, seen, 0.15);
+    stage_finish(&s);
+}
+
+static bool stop_at_half(void *user, double done)
+{
+    double *last = user;
+    CHECK(done > *last && done <= 1);
+    *last = done;
+    return done < 0.5;
+}
+
+TEST(a_stopped_reference_goes_on_to_the_same_picture)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell:light=point");
+    s.width = 400; // more tiles than one report covers
+    s.height = 200;
+    struct reference *whole = stage_reference(&s), *stopped = stage_reference(&s);
+    double last = 0;
+    assert_true(reference_render(whole, 3, NULL, NULL));
+    CHECK(!reference_render(stopped, 3, stop_at_half, &last));
+    assert_int_equal(test_host()->failure, FAIL_CANCELLED);
+    CHECK(last >= 0.5 && last < 1);
+    int done = reference_info(stopped).samples;
+    CHECK(done >= 1 && done < 3);
+    assert_true(reference_render(stopped, 3 - done, NULL, NULL));
+    struct image a = read_layer(whole, REFERENCE_COLOR), b = read_layer(stopped, REFERENCE_COLOR);
+    CHECK(images_are_equal(&a, &b));
+    finish(&a);
+    finish(&b);
+    reference_destroy(whole);
+    reference_destroy(stopped);
+    stage_finish(&s);
+}
+
+static bool restore(struct reference *to, struct image layers[5])
+{
+    return reference_restore(to, &layers[0], &layers[1], &layers[2], &layers[3], &layers[4]);
+}
+
+TEST(layers_restore_what_they_came_from)
+{
+    static const enum reference_layer kept[5] = { REFERENCE_DIRECT, REFERENCE_INDIRECT,
+                                                  REFERENCE_IRRADIANCE, REFERENCE_ERROR,
+                                                  REFERENCE_SAMPLES };
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    struct reference *whole = stage_reference(&s), *first = stage_reference(&s),
+                     *second = stage_reference(&s);
+    CHECK(reference_key(whole) == reference_key(second));
+    assert_true(reference_render(whole, 12, NULL, NULL));
+    assert_true(reference_render(first, 5, NULL, NULL));
+    struct image layers[5];
+    for (int i = 0; i < 5; i++) layers[i] = read_layer(first, kept[i]);
+    assert_true(restore(second, layers));
+    assert_true(reference_render(second, 7, NULL, NULL));
+    for (int i = 0; i < 5; i++) {
+        struct image a = read_layer(whole, kept[i]), b = read_layer(second, kept[i]);
+        for (size_t k = 0; k < float_count(&a); k++)
+            CHECK_NEAR(b.pixels[k], a.pixels[k], 1e-3 * fabs((double)a.pixels[k]) + 1e-2);
+        finish(&a);
+        finish(&b);
+    }
+    layers[4].pixels[7] = 3.5f;
+    CHECK(!restore(second, layers));
+    layers[4].pixels[7] = 5.0f;
+    layers[1].pixels[7] = NAN;
+    CHECK(!restore(second, layers));
+    assert_int_equal(reference_info(second).samples, 0);
+    layers[1].width--;
+    CHECK(!restore(second, layers));
+    layers[1].width++;
+    for (int i = 0; i < 5; i++) finish(&layers[i]);
+    reference_destroy(whole);
+    reference_destroy(first);
+    reference_destroy(second);
+    stage_finish(&s);
+}
+
+static uint64_t key_of(struct stage *s)
+{
+    struct reference *r = stage_reference(s);
+    uint64_t key = reference_key(r);
+    reference_destroy(r);
+    return key;
+}
+
+TEST(keys_tell_pictures_apart)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    uint64_t key = key_of(&s);
+    CHECK(key == key_of(&s));
+    s.options.seed = 1;
+    CHECK(key != key_of(&s));
+    s.options.seed = 0;
+    s.options.bounces = 3;
+    CHECK(key != key_of(&s));
+    s.options.bounces = -1;
+    s.camera.eye.x += 0.001f;
+    CHECK(key != key_of(&s));
+    s.camera.eye.x -= 0.001f;
+    s.scene->sky.x = 1;
+    CHECK(key != key_of(&s));
+    s.scene->sky.x = 0;
+    s.scene->materials[0].roughness *= 0.5f;
+    CHECK(key != key_of(&s));
+    stage_finish(&s);
+}
+
+TEST(what_cannot_be_rendered_is_refused)
+{
+    struct stage s;
+    stage_builtin(&s, "@cornell");
+    struct reference_options wrong = s.options, both = s.options;
+    wrong.bounces = -2;
+    both.direct_only = both.indirect_only = true;
+    struct host *host = test_host();
+    CHECK(!reference_create(host, &s.pose, &s.camera, 0, 8, &s.options));
+    CHECK(!reference_create(host, &s.pose, &s.camera, 8, IMAGE_MAX_SIZE + 1, &s.options));
+    CHECK(!reference_create(host, &s.pose, &s.camera, 8, 8, &wrong));
+    CHECK(!reference_create(host, &s.pose, &s.camera, 8, 8, &both));
+    struct reference *r = stage_reference(&s);
+    CHECK(!reference_render(r, 0, NULL, NULL));
+    CHECK(!reference_render(r, -1, NULL, NULL));
+    reference_destroy(r);
+    reference_destroy(NULL);
+    trace_scene_destroy(NULL);
+    stage_finish(&s);
+}
+
+TEST(an_empty_scene_is_its_sky)
+{
+    struct stage s;
+    stage_init(&s);
+    s.scene->sky = vec3_of(1, 2, 3);
+    struct stage_mean m = stage_mean(&s, REFERENCE_COLOR);
+    CHECK_NEAR(m.mean[0], 1, 0);
+    CHECK_NEAR(m.mean[2], 3, 0);
+    CHECK_NEAR(m.error, 0, 0);
+    stage_finish(&s);
+}

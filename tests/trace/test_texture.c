@@ -1,0 +1,119 @@
+// Maps against values that can be worked out by hand.
+#include "framework/test.h"
+
+#include "image/png_file.h"
+#include "trace/texture.h"
+
+#include <math.h>
+
+enum { SIZE = 8 };
+
+// Red grows with x, green with y, in steps of 16.
+static struct scene_image ramp(uint8_t texels[SIZE * SIZE * 4])
+{
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        texels[4 * i] = (uint8_t)(16 * (i % SIZE));
+        texels[4 * i + 1] = (uint8_t)(16 * (i / SIZE));
+        texels[4 * i + 2] = 200;
+        texels[4 * i + 3] = 128;
+    }
+    return (struct scene_image){ .name = "ramp", .width = SIZE, .height = SIZE, .rgba = texels };
+}
+
+struct fixture {
+    uint8_t texels[SIZE * SIZE * 4];
+    struct texture texture;
+    struct texture_use use;
+};
+
+static void open(struct fixture *f, bool srgb)
+{
+    struct scene_image image = ramp(f->texels);
+    assert_true(texture_init(&f->texture, test_host(), &image, srgb));
+    f->use = (struct texture_use){ .uv_scale = { 1, 1 } };
+}
+
+static vec4s read_at(struct fixture *f, float x, float y)
+{
+    struct texture_map map = texture_map_of(&f->use, &f->texture);
+    vec2s zero = { { 0, 0 } };
+    return texture_sample(&map, (vec2s){ { x / SIZE, y / SIZE } }, zero, zero);
+}
+
+TEST(texel_centres_are_the_texels_and_between_them_it_is_linear)
+{
+    struct fixture f;
+    open(&f, false);
+    vec4s at = read_at(&f, 2.5f, 3.5f), between = read_at(&f, 2.75f, 4.0f);
+    CHECK_NEAR(at.x, 32 / 255.0, 1e-6);
+    CHECK_NEAR(at.y, 48 / 255.0, 1e-6);
+    CHECK_NEAR(at.w, 128 / 255.0, 1e-6);
+    CHECK_NEAR(between.x, 36 / 255.0, 1e-6);
+    CHECK_NEAR(between.y, 56 / 255.0, 1e-6);
+    texture_finish(&f.texture, test_host());
+}
+
+TEST(colours_are_decoded_before_they_are_mixed)
+{
+    struct fixture f;
+    open(&f, true);
+    double low = (double)srgb_decode(32 / 255.0f), high = (double)srgb_decode(48 / 255.0f);
+    CHECK_NEAR(read_at(&f, 3.0f, 0.5f).x, 0.5 * (low + high), 1e-6);
+    CHECK_NEAR(read_at(&f, 3.0f, 0.5f).w, 128 / 255.0, 1e-6);
+    texture_finish(&f.texture, test_host());
+}
+
+TEST(wraps_repeat_mirror_and_clamp)
+{
+    struct fixture f;
+    open(&f, false);
+    CHECK_NEAR(read_at(&f, SIZE + 1.5f, 0.5f).x, 16 / 255.0, 1e-6);
+    CHECK_NEAR(read_at(&f, -0.5f, 0.5f).x, 112 / 255.0, 1e-6);
+    CHECK_NEAR(read_at(&f, 0.0f, 0.5f).x, 56 / 255.0, 1e-6); // half of the first, half of the last
+    f.use.wrap_u = WRAP_MIRROR;
+    CHECK_NEAR(read_at(&f, -1.5f, 0.5f).x, 16 / 255.0, 1e-6);
+    CHECK_NEAR(read_at(&f, SIZE + 1.5f, 0.5f).x, 96 / 255.0, 1e-6);
+    f.use.wrap_u = WRAP_CLAMP;
+    CHECK_NEAR(read_at(&f, -50.0f, 0.5f).x, 0, 0);
+    CHECK_NEAR(read_at(&f, 1e30f, 0.5f).x, 112 / 255.0, 1e-6);
+    texture_finish(&f.texture, test_host());
+}
+
+TEST(nearest_maps_have_whole_texels)
+{
+    struct fixture f;
+    open(&f, false);
+    f.use.nearest = true;
+    CHECK_NEAR(read_at(&f, 2.99f, 3.01f).x, 32 / 255.0, 1e-6);
+    CHECK_NEAR(read_at(&f, 2.99f, 3.01f).y, 48 / 255.0, 1e-6);
+    texture_finish(&f.texture, test_host());
+}
+
+TEST(transforms_scale_turn_and_move)
+{
+    struct fixture f;
+    open(&f, false);
+    f.use.uv_scale[0] = 0.5f;
+    f.use.uv_offset[0] = 0.25f;
+    CHECK_NEAR(read_at(&f, 1.0f, 2.5f).x, 32 / 255.0, 1e-6); // 0.5 · 1 + 2 = 2.5 texels
+    f.use = (struct texture_use){ .uv_scale = { 1, 1 }, .uv_rotation_rad = GLM_PI_2f };
+    // A quarter turn: u' = v, v' = −u.
+    CHECK_NEAR(read_at(&f, 1.5f, 2.5f).x, 32 / 255.0, 1e-5);
+    CHECK_NEAR(read_at(&f, 1.5f, 2.5f).y, 96 / 255.0, 1e-5);
+    texture_finish(&f.texture, test_host());
+}
+
+TEST(a_pixel_as_wide_as_the_image_sees_its_mean)
+{
+    struct fixture f;
+    open(&f, false);
+    struct texture_map map = texture_map_of(&f.use, &f.texture);
+    vec2s at = { { 0.3f, 0.6f } }, wide = { { 1, 0 } }, narrow = { { 0.25f, 0 } },
+          zero = { { 0, 0 } };
+    CHECK_NEAR(texture_sample(&map, at, wide, zero).x, 56 / 255.0, 1.0 / 255);
+    CHECK_NEAR(texture_sample(&map, at, zero, wide).y, 56 / 255.0, 1.0 / 255);
+    // Two texels a pixel: the second level, whose texels are means of two by two.
+    vec2s centre = { { 0.125f, 0.125f } };
+    CHECK_NEAR(texture_sample(&map, centre, narrow, zero).x, 8 / 255.0, 1e-6);
+    texture_finish(&f.texture, test_host());
+}
