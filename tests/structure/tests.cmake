@@ -23,3 +23,23 @@ foreach(header ${public_headers})
   target_compile_options(header_${name} PRIVATE -Wall -Wextra -Wpedantic -Werror)
   set_target_properties(header_${name} PROPERTIES C_EXTENSIONS OFF CXX_EXTENSIONS OFF)
 endforeach()
+
+# C and GLSL agree about the structs that they share, in the shaders as they were built.
+file(GLOB_RECURSE shared_headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/*_shared.h)
+set(shared_structs ${CMAKE_CURRENT_BINARY_DIR}/structure/shared_structs)
+add_custom_command(OUTPUT ${shared_structs}.inc ${shared_structs}.spv
+  COMMAND awk -f ${structure}/shared_structs.awk ${shared_headers} > ${shared_structs}.inc
+  COMMAND awk -v glsl=1 -f ${structure}/shared_structs.awk ${shared_headers} > ${shared_structs}.comp
+  COMMAND ${GLSLC} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 -I${CMAKE_SOURCE_DIR}/src
+          -o ${shared_structs}.spv ${shared_structs}.comp
+  DEPENDS ${structure}/shared_structs.awk ${shared_headers} ${CMAKE_SOURCE_DIR}/src/core/shared.h VERBATIM)
+set(shared_spirv ${shared_structs}.spv)
+foreach(module frame techniques)
+  get_target_property(spirv ag_${module} AFTERGLOW_SPIRV)
+  list(APPEND shared_spirv ${spirv})
+endforeach()
+list(JOIN shared_spirv "\",\n\"" paths)
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/structure/shared_shaders.inc CONTENT "\"${paths}\"\n" @ONLY)
+ag_test(structure/shared_layout USES frame techniques LIBRARIES PkgConfig::SPIRV_CROSS)
+target_sources(test_structure_shared_layout PRIVATE ${shared_structs}.inc)
+target_include_directories(test_structure_shared_layout PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/structure)
