@@ -1,8 +1,8 @@
 // Renderers through the public functions: frames, layers, what may change while one lives, two side
 // by side, and a device and a command buffer that are the program's own.
-#include "api/own_device.h"
 #include "api/purse.h"
 #include "framework/gpu_test.h"
+#include "framework/own_device.h"
 
 #include <afterglow/afterglow.h>
 
@@ -412,6 +412,18 @@ TEST(two_renderers_share_a_device_and_a_scene)
 
 // ---- the program's own device
 
+static struct ag_device_adopt lend(struct own_device *own)
+{
+    return (struct ag_device_adopt){ .instance = own->instance,
+                                     .physical_device = own->physical,
+                                     .device = own->device,
+                                     .queue = own->queue,
+                                     .queue_family = own->family,
+                                     .lock_queue = own_device_lock,
+                                     .unlock_queue = own_device_unlock,
+                                     .user = own };
+}
+
 // What the library's own device gives; static storage.
 static const struct ag_image *expected_color(void)
 {
@@ -430,8 +442,8 @@ TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
 {
     const struct ag_image *expected = expected_color();
     struct own_device own;
-    own_device_open(&own);
-    struct ag_device_adopt adopt = own_device_lend(&own);
+    own_device_open(&own, 0);
+    struct ag_device_adopt adopt = lend(&own);
     struct stage s = open_stage("lpv", &adopt);
     int before = own.locks;
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
@@ -456,8 +468,8 @@ TEST(a_frame_goes_into_the_programs_command_buffer)
 {
     const struct ag_image *expected = expected_color();
     struct own_device own;
-    own_device_open(&own);
-    struct ag_device_adopt adopt = own_device_lend(&own);
+    own_device_open(&own, 0);
+    struct ag_device_adopt adopt = lend(&own);
     struct stage s = open_stage("lpv", &adopt);
     int before = own.locks;
     for (int i = 0; i < 2; i++) {

@@ -2,8 +2,6 @@
 foreach(name arguments context scene catalogue)
   ag_test(api/${name} USES api)
 endforeach()
-add_library(ag_test_own_device STATIC ${CMAKE_CURRENT_LIST_DIR}/own_device.c)
-target_link_libraries(ag_test_own_device PUBLIC ag_test_framework ag_api Vulkan::Vulkan PRIVATE afterglow_flags)
 ag_test(api/renderer USES api LIBRARIES ag_test_own_device ag_test_gpu)
 
 # Only ag_… is to be seen from outside. (Sanitizers add names of their own.)

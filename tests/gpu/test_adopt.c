@@ -1,170 +1,27 @@
 // A host's own device: made here with plain Vulkan, lent to the layer, and used by both.
 #include "framework/gpu_test.h"
+#include "framework/own_device.h"
 #include "gpu_test_shaders.h"
-
-#include <vulkan/vulkan.h>
 
 #include <string.h>
 
-struct own {
-    VkInstance instance;
-    VkPhysicalDevice physical;
-    VkDevice device;
-    VkQueue queue;
-    VkCommandPool pool;
-    uint32_t family;
-    int locks, held; // the queue's lock, counted
-};
-
-static void lock_queue(void *user)
+static void open_own(struct own_device *own, uint32_t flags)
 {
-    struct own *own = user;
-    own->locks++;
-    own->held++;
-    assert_int_equal(own->held, 1);
-}
-
-static void unlock_queue(void *user)
-{
-    ((struct own *)user)->held--;
-}
-
-static void create_instance(struct own *own)
-{
-    const VkValidationFeatureEnableEXT enable =
-        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-    const VkValidationFeaturesEXT features = { .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
-                                               .enabledValidationFeatureCount = 1,
-                                               .pEnabledValidationFeatures = &enable };
-    const char *layers[] = { "VK_LAYER_KHRONOS_validation" };
-    const char *extensions[] = { "VK_EXT_debug_utils", "VK_EXT_validation_features" };
-    VkResult result = vkCreateInstance(
-        &(VkInstanceCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-            .pNext = &features,
-            .pApplicationInfo = &(VkApplicationInfo){ .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                                      .apiVersion = VK_API_VERSION_1_3 },
-            .enabledLayerCount = 1,
-            .ppEnabledLayerNames = layers,
-            .enabledExtensionCount = 2,
-            .ppEnabledExtensionNames = extensions,
-        },
-        NULL, &own->instance);
-    assert_int_equal(result, VK_SUCCESS);
-}
-
-// With what gpu_required_features lists, but for the extension where `push_descriptors` is false.
-static void create_device(struct own *own, bool push_descriptors)
-{
-    VkPhysicalDeviceVulkan13Features v13 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
-        .dynamicRendering = VK_TRUE,
-        .synchronization2 = VK_TRUE,
-        .maintenance4 = VK_TRUE,
-        .shaderDemoteToHelperInvocation = VK_TRUE,
-        .shaderTerminateInvocation = VK_TRUE
-    };
-    VkPhysicalDeviceVulkan12Features v12 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
-        .pNext = &v13,
-        .scalarBlockLayout = VK_TRUE,
-        .timelineSemaphore = VK_TRUE,
-        .hostQueryReset = VK_TRUE
-    };
-    VkPhysicalDeviceVulkan11Features v11 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES,
-        .pNext = &v12,
-        .shaderDrawParameters = VK_TRUE
-    };
-    const VkPhysicalDeviceFeatures core = { .imageCubeArray = VK_TRUE,
-                                            .independentBlend = VK_TRUE,
-                                            .depthClamp = VK_TRUE,
-                                            .fragmentStoresAndAtomics = VK_TRUE,
-                                            .shaderStorageImageExtendedFormats = VK_TRUE,
-                                            .shaderStorageImageWriteWithoutFormat = VK_TRUE };
-    const char *extension = "VK_KHR_push_descriptor";
-    const float priority = 1;
-    VkResult result = vkCreateDevice(
-        own->physical,
-        &(VkDeviceCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-            .pNext = &v11,
-            .queueCreateInfoCount = 1,
-            .pQueueCreateInfos =
-                &(VkDeviceQueueCreateInfo){ .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                            .queueFamilyIndex = own->family,
-                                            .queueCount = 1,
-                                            .pQueuePriorities = &priority },
-            .enabledExtensionCount = push_descriptors,
-            .ppEnabledExtensionNames = &extension,
-            .pEnabledFeatures = &core,
-        },
-        NULL, &own->device);
-    assert_int_equal(result, VK_SUCCESS);
-}
-
-static void open_own(struct own *own, bool push_descriptors)
-{
-    *own = (struct own){ 0 };
     test_gpu_require();
-    create_instance(own);
-    uint32_t count = 1;
-    vkEnumeratePhysicalDevices(own->instance, &count, &own->physical);
-    VkQueueFamilyProperties families[16];
-    count = 16;
-    vkGetPhysicalDeviceQueueFamilyProperties(own->physical, &count, families);
-    while (own->family < count && !(families[own->family].queueFlags & VK_QUEUE_GRAPHICS_BIT))
-        own->family++;
-    create_device(own, push_descriptors);
-    vkGetDeviceQueue(own->device, own->family, 0, &own->queue);
-    vkCreateCommandPool(
-        own->device,
-        &(VkCommandPoolCreateInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .queueFamilyIndex = own->family },
-        NULL, &own->pool);
+    own_device_open(own, flags | OWN_DEVICE_VALIDATION);
 }
 
-static void close_own(struct own *own)
+static struct gpu *adopt(struct own_device *own)
 {
-    vkDestroyCommandPool(own->device, own->pool, NULL);
-    vkDestroyDevice(own->device, NULL);
-    vkDestroyInstance(own->instance, NULL);
-}
-
-static struct gpu *adopt(struct own *own)
-{
-    struct gpu_adopt adopt = { own->instance, own->physical, own->device,  own->queue,
-                               own->family,   lock_queue,    unlock_queue, own };
+    struct gpu_adopt adopt = { own->instance, own->physical,   own->device,       own->queue,
+                               own->family,   own_device_lock, own_device_unlock, own };
     return gpu_create(test_host(), &(struct gpu_desc){ .validation = true, .adopt = &adopt });
-}
-
-static VkCommandBuffer begin_commands(struct own *own)
-{
-    VkCommandBuffer commands;
-    vkAllocateCommandBuffers(
-        own->device,
-        &(VkCommandBufferAllocateInfo){ .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                        .commandPool = own->pool,
-                                        .commandBufferCount = 1 },
-        &commands);
-    vkBeginCommandBuffer(commands, &(VkCommandBufferBeginInfo){
-                                       .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO });
-    return commands;
-}
-
-static void submit(struct own *own, VkCommandBuffer commands)
-{
-    assert_int_equal(vkEndCommandBuffer(commands), VK_SUCCESS);
-    VkSubmitInfo info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                          .commandBufferCount = 1,
-                          .pCommandBuffers = &commands };
-    assert_int_equal(vkQueueSubmit(own->queue, 1, &info, VK_NULL_HANDLE), VK_SUCCESS);
 }
 
 TEST(an_adopted_device_does_what_our_own_does)
 {
-    struct own own;
-    open_own(&own, true);
+    struct own_device own;
+    open_own(&own, 0);
     struct gpu *gpu = adopt(&own);
     CHECK(gpu != NULL);
     gpu_buffer words = test_gpu_buffer(gpu, 40), total = test_gpu_buffer(gpu, 4);
@@ -184,7 +41,7 @@ TEST(an_adopted_device_does_what_our_own_does)
     gpu_pipeline_destroy(gpu, &sum);
     test_gpu_finish(gpu);
     gpu_destroy(gpu);
-    close_own(&own);
+    own_device_close(&own);
 }
 
 static bool owns(struct gpu *gpu, const char *owner)
@@ -200,8 +57,8 @@ static bool owns(struct gpu *gpu, const char *owner)
 TEST(commands_go_into_the_hosts_command_buffer)
 {
     enum { FRAMES = 3 };
-    struct own own;
-    open_own(&own, true);
+    struct own_device own;
+    open_own(&own, 0);
     struct gpu *gpu = adopt(&own);
     CHECK(gpu != NULL);
     gpu_buffer total = test_gpu_buffer(gpu, 4), words;
@@ -209,7 +66,7 @@ TEST(commands_go_into_the_hosts_command_buffer)
     struct gpu_cmd *cmds[FRAMES];
     for (uint32_t i = 0; i < FRAMES; i++) { // all in flight at once
         const uint32_t data[2] = { i, 10 };
-        VkCommandBuffer commands = begin_commands(&own);
+        VkCommandBuffer commands = own_device_begin(&own);
         CHECK(gpu_buffer_create(
             gpu, &(struct gpu_buffer_desc){ "passing.words", 400, GPU_BUFFER_STORAGE }, &words));
         cmds[i] = gpu_frame_begin_adopted(gpu, commands);
@@ -226,7 +83,7 @@ TEST(commands_go_into_the_hosts_command_buffer)
         gpu_scope_end(cmds[i]);
         gpu_buffer_destroy(gpu, &words);
         CHECK(gpu_frame_end(gpu, cmds[i]));
-        submit(&own, commands);
+        own_device_submit(&own, commands);
     }
     assert_int_equal(own.locks, 0); // the host submitted
     vkQueueWaitIdle(own.queue);
@@ -246,10 +103,10 @@ TEST(commands_go_into_the_hosts_command_buffer)
     gpu_pipeline_destroy(gpu, &sum);
     test_gpu_finish(gpu);
     gpu_destroy(gpu);
-    close_own(&own);
+    own_device_close(&own);
 }
 
-static VkImage create_image(struct own *own, VkDeviceMemory *memory)
+static VkImage create_image(struct own_device *own, VkDeviceMemory *memory)
 {
     VkImage image;
     vkCreateImage(own->device,
@@ -308,8 +165,8 @@ static void host_returns(VkCommandBuffer commands, VkImage image, VkImageLayout 
 
 // Fetches the image into `texels`, in a host's command buffer in which the host has just cleared
 // it.
-static void fetch(struct own *own, struct gpu *gpu, VkCommandBuffer commands, gpu_image image,
-                  gpu_buffer texels)
+static void fetch(struct own_device *own, struct gpu *gpu, VkCommandBuffer commands,
+                  gpu_image image, gpu_buffer texels)
 {
     gpu_pipeline pipeline = test_gpu_compute(gpu, &shader_test_fetch_comp);
     struct gpu_cmd *cmd = gpu_frame_begin_adopted(gpu, commands);
@@ -317,16 +174,15 @@ static void fetch(struct own *own, struct gpu *gpu, VkCommandBuffer commands, gp
                  GPU_BIND({ "image", .image = image }, { "Texels", .buffer = texels }), NULL, 0, 1,
                  1, 1);
     CHECK(gpu_frame_end(gpu, cmd));
-    submit(own, commands);
-    vkQueueWaitIdle(own->queue);
+    own_device_run(own, commands);
     gpu_frame_adopted_done(gpu, cmd);
     gpu_pipeline_destroy(gpu, &pipeline);
 }
 
 TEST(a_wrapped_image_is_shared_with_the_host)
 {
-    struct own own;
-    open_own(&own, true);
+    struct own_device own;
+    open_own(&own, 0);
     struct gpu *gpu = adopt(&own);
     CHECK(gpu != NULL);
     VkDeviceMemory memory;
@@ -336,7 +192,7 @@ TEST(a_wrapped_image_is_shared_with_the_host)
     const struct gpu_image_desc desc = {
         .name = "host.image", .format = GPU_RGBA32F, .width = 8, .height = 8, .usage = GPU_SAMPLED
     };
-    VkCommandBuffer commands = begin_commands(&own);
+    VkCommandBuffer commands = own_device_begin(&own);
     host_clears(commands, vk_image, VK_IMAGE_LAYOUT_UNDEFINED, 3);
     CHECK(
         gpu_image_wrap(gpu, &desc, (void *)vk_image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &image));
@@ -348,7 +204,7 @@ TEST(a_wrapped_image_is_shared_with_the_host)
     uint32_t layout = 0; // the host takes it as it is, and gives it back so
     assert_ptr_equal(gpu_image_handle(gpu, image, &layout), (void *)vk_image);
     assert_int_equal(layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    commands = begin_commands(&own);
+    commands = own_device_begin(&own);
     host_clears(commands, vk_image, (VkImageLayout)layout, 5);
     host_returns(commands, vk_image, (VkImageLayout)layout);
     fetch(&own, gpu, commands, image, texels);
@@ -361,43 +217,42 @@ TEST(a_wrapped_image_is_shared_with_the_host)
     gpu_destroy(gpu);
     vkDestroyImage(own.device, vk_image, NULL);
     vkFreeMemory(own.device, memory, NULL);
-    close_own(&own);
+    own_device_close(&own);
 }
 
 TEST(unfinished_adopted_frames_are_limited_with_a_sentence)
 {
-    struct own own;
-    open_own(&own, true);
+    struct own_device own;
+    open_own(&own, 0);
     struct gpu *gpu = adopt(&own);
     CHECK(gpu != NULL);
     struct gpu_cmd *cmds[4];
     for (int i = 0; i < 4; i++) {
-        VkCommandBuffer commands = begin_commands(&own);
+        VkCommandBuffer commands = own_device_begin(&own);
         cmds[i] = gpu_frame_begin_adopted(gpu, commands);
         CHECK(cmds[i] != NULL);
         assert_null(gpu_frame_begin(gpu)); // one at a time
         CHECK(gpu_frame_end(gpu, cmds[i]));
-        submit(&own, commands);
+        own_device_submit(&own, commands);
     }
-    VkCommandBuffer commands = begin_commands(&own);
+    VkCommandBuffer commands = own_device_begin(&own);
     assert_null(gpu_frame_begin_adopted(gpu, commands));
     assert_non_null(strstr(test_last_message(), "4 are unfinished"));
     vkQueueWaitIdle(own.queue);
     gpu_frame_adopted_done(gpu, cmds[1]);
     cmds[1] = gpu_frame_begin_adopted(gpu, commands);
     CHECK(cmds[1] != NULL && gpu_frame_end(gpu, cmds[1]));
-    submit(&own, commands);
-    vkQueueWaitIdle(own.queue);
+    own_device_run(&own, commands);
     for (int i = 0; i < 4; i++) gpu_frame_adopted_done(gpu, cmds[i]);
     test_gpu_finish(gpu);
     gpu_destroy(gpu);
-    close_own(&own);
+    own_device_close(&own);
 }
 
 TEST(a_device_that_cannot_be_adopted_is_refused_with_a_sentence)
 {
-    struct own own;
-    open_own(&own, false);
+    struct own_device own;
+    open_own(&own, OWN_DEVICE_NO_PUSH_DESCRIPTORS);
     assert_null(adopt(&own));
     assert_non_null(strstr(test_last_message(), "created without VK_KHR_push_descriptor"));
     VkQueue queue = own.queue;
@@ -405,5 +260,5 @@ TEST(a_device_that_cannot_be_adopted_is_refused_with_a_sentence)
     assert_null(adopt(&own));
     assert_non_null(strstr(test_last_message(), "must be there"));
     own.queue = queue;
-    close_own(&own);
+    own_device_close(&own);
 }

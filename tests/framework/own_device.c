@@ -1,23 +1,32 @@
-#include "api/own_device.h"
+#include "framework/own_device.h"
 
 #include "framework/test.h"
 
 #define CHECK_VK(call) assert_int_equal((call), VK_SUCCESS)
 
-static void create_instance(struct own_device *own)
+static void create_instance(struct own_device *own, bool validation)
 {
-    const char *extensions[] = { "VK_EXT_debug_utils" };
+    const char *layers[] = { "VK_LAYER_KHRONOS_validation" };
+    const char *extensions[] = { "VK_EXT_debug_utils", "VK_EXT_validation_features" };
+    const VkValidationFeatureEnableEXT enable =
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    const VkValidationFeaturesEXT features = { .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                               .enabledValidationFeatureCount = 1,
+                                               .pEnabledValidationFeatures = &enable };
     const VkApplicationInfo application = { .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                             .apiVersion = VK_API_VERSION_1_3 };
     const VkInstanceCreateInfo info = { .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                        .pNext = validation ? &features : NULL,
                                         .pApplicationInfo = &application,
-                                        .enabledExtensionCount = 1,
+                                        .enabledLayerCount = validation ? 1 : 0,
+                                        .ppEnabledLayerNames = layers,
+                                        .enabledExtensionCount = validation ? 2 : 1,
                                         .ppEnabledExtensionNames = extensions };
     CHECK_VK(vkCreateInstance(&info, NULL, &own->instance));
 }
 
-// With what ag_device_required_features lists.
-static void create_device(struct own_device *own)
+// With what ag_device_required_features and gpu_required_features list.
+static void create_device(struct own_device *own, bool push_descriptors)
 {
     VkPhysicalDeviceVulkan13Features v13 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
@@ -55,16 +64,16 @@ static void create_device(struct own_device *own)
                                       .pNext = &v11,
                                       .queueCreateInfoCount = 1,
                                       .pQueueCreateInfos = &queue,
-                                      .enabledExtensionCount = 1,
+                                      .enabledExtensionCount = push_descriptors,
                                       .ppEnabledExtensionNames = &extension,
                                       .pEnabledFeatures = &core };
     CHECK_VK(vkCreateDevice(own->physical, &info, NULL, &own->device));
 }
 
-void own_device_open(struct own_device *own)
+void own_device_open(struct own_device *own, uint32_t flags)
 {
     *own = (struct own_device){ 0 };
-    create_instance(own);
+    create_instance(own, flags & OWN_DEVICE_VALIDATION);
     uint32_t count = 1;
     vkEnumeratePhysicalDevices(own->instance, &count, &own->physical);
     VkQueueFamilyProperties families[16];
@@ -72,7 +81,7 @@ void own_device_open(struct own_device *own)
     vkGetPhysicalDeviceQueueFamilyProperties(own->physical, &count, families);
     while (own->family < count && !(families[own->family].queueFlags & VK_QUEUE_GRAPHICS_BIT))
         own->family++;
-    create_device(own);
+    create_device(own, !(flags & OWN_DEVICE_NO_PUSH_DESCRIPTORS));
     vkGetDeviceQueue(own->device, own->family, 0, &own->queue);
     const VkCommandPoolCreateInfo pool = { .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                            .queueFamilyIndex = own->family };
@@ -86,28 +95,16 @@ void own_device_close(struct own_device *own)
     vkDestroyInstance(own->instance, NULL);
 }
 
-static void lock_queue(void *user)
+void own_device_lock(void *user)
 {
     struct own_device *own = user;
     own->locks++;
     assert_int_equal(++own->held, 1);
 }
 
-static void unlock_queue(void *user)
+void own_device_unlock(void *user)
 {
     ((struct own_device *)user)->held--;
-}
-
-struct ag_device_adopt own_device_lend(struct own_device *own)
-{
-    return (struct ag_device_adopt){ .instance = own->instance,
-                                     .physical_device = own->physical,
-                                     .device = own->device,
-                                     .queue = own->queue,
-                                     .queue_family = own->family,
-                                     .lock_queue = lock_queue,
-                                     .unlock_queue = unlock_queue,
-                                     .user = own };
 }
 
 VkCommandBuffer own_device_begin(struct own_device *own)
@@ -124,12 +121,17 @@ VkCommandBuffer own_device_begin(struct own_device *own)
     return commands;
 }
 
-void own_device_run(struct own_device *own, VkCommandBuffer commands)
+void own_device_submit(struct own_device *own, VkCommandBuffer commands)
 {
     CHECK_VK(vkEndCommandBuffer(commands));
     const VkSubmitInfo submit = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                                   .commandBufferCount = 1,
                                   .pCommandBuffers = &commands };
     CHECK_VK(vkQueueSubmit(own->queue, 1, &submit, VK_NULL_HANDLE));
+}
+
+void own_device_run(struct own_device *own, VkCommandBuffer commands)
+{
+    own_device_submit(own, commands);
     CHECK_VK(vkQueueWaitIdle(own->queue));
 }
