@@ -28,14 +28,14 @@ static const struct source sources[] = {
     [READ_IRRADIANCE] = { "irradiance", FRAME_IRRADIANCE, .scaled = true, .fallible = true },
     [READ_VISIBILITY] = { "visibility", FRAME_VISIBILITY, .fallible = true, .neutral = 1.0f },
     [READ_SPECULAR] = { "specular", FRAME_SPECULAR, .scaled = true, .fallible = true },
-    [READ_ALBEDO] = { "albedo", FRAME_ALBEDO },
-    [READ_NORMAL] = { "normal", FRAME_NORMAL },
-    [READ_DEPTH] = { "depth", FRAME_DEPTH },
-    [READ_POSITION] = { "position", FRAME_DEPTH },
+    [READ_ALBEDO] = { "albedo", FRAME_ALBEDO, .scaled = false },
+    [READ_NORMAL] = { "normal", FRAME_NORMAL, .scaled = false },
+    [READ_DEPTH] = { "depth", FRAME_DEPTH, .scaled = false },
+    [READ_POSITION] = { "position", FRAME_DEPTH, .scaled = false },
     [READ_EMISSIVE] = { "emissive", FRAME_EMISSIVE, .scaled = true },
-    [READ_ROUGHNESS_METALLIC] = { "roughness and metallic", FRAME_MATERIAL },
-    [READ_MOTION] = { "motion", FRAME_MOTION },
-    [READ_DISPLAY] = { "display", FRAME_DISPLAY },
+    [READ_ROUGHNESS_METALLIC] = { "roughness and metallic", FRAME_MATERIAL, .scaled = false },
+    [READ_MOTION] = { "motion", FRAME_MOTION, .scaled = false },
+    [READ_DISPLAY] = { "display", FRAME_DISPLAY, .scaled = false },
 };
 
 static bool download(struct frame *f, enum frame_layer layer, float *pixels, int channels)

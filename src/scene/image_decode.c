@@ -31,7 +31,9 @@ static void *limited_realloc(void *old, size_t bytes)
 #define STB_IMAGE_IMPLEMENTATION
 // For the rest of this file: the compiler looks for unused functions at its end.
 #pragma GCC diagnostic ignored "-Wunused-function"
+#ifndef __clang__ // which does not know it
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <stb_image.h>
 
 // Largest block per pixel: 16-bit RGBA beside its filter bytes, twice for a buffer that grows by
