@@ -278,7 +278,8 @@ static enum status check_together(const struct command *command, const struct ar
     if (a->camera && a->has_eye)
         return wrong_usage("cannot use --camera %s: --eye and --target are a camera already",
                            a->camera);
-    if (a->has_eye && memcmp(a->eye, a->target, sizeof a->eye) == 0)
+    if (a->has_eye && a->eye[0] == a->target[0] && a->eye[1] == a->target[1] &&
+        a->eye[2] == a->target[2])
         return wrong_usage("cannot use --eye: it is the same point as --target");
     return DONE;
 }

@@ -395,7 +395,7 @@ enum ag_result ag_scene_default_lighting(struct ag_scene *scene, struct ag_defau
 enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,
                                              struct ag_default_lighting *out)
 {
-    struct ag_default_lighting lighting;
+    struct ag_default_lighting lighting = { 0 };
     enum ag_result result = ag_scene_default_lighting(scene, &lighting);
     if (result == AG_OK && lighting.needed) {
         struct ag_light_desc sun;

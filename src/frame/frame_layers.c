@@ -64,8 +64,9 @@ uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t wid
         texel_bytes += (uint64_t)gpu_format_bytes(table[l].format);
     uint64_t faces = 6 * (uint64_t)(light_count > 0 ? light_count : 0);
     uint64_t shadow = (uint64_t)options->shadow_size, rsm = (uint64_t)options->rsm_size;
-    uint64_t rsm_texel = (uint64_t)(gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) +
-                                    gpu_format_bytes(GPU_RGBA8_SRGB));
+    int rsm_bytes = gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) +
+                    gpu_format_bytes(GPU_RGBA8_SRGB); // of a texel
     return texel_bytes * width * height +
-           faces * (shadow * shadow * (uint64_t)gpu_format_bytes(GPU_D32F) + rsm * rsm * rsm_texel);
+           faces * (shadow * shadow * (uint64_t)gpu_format_bytes(GPU_D32F) +
+                    rsm * rsm * (uint64_t)rsm_bytes);
 }

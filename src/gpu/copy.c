@@ -4,7 +4,10 @@
 static bool ready(struct gpu_cmd *cmd, bool objects, const char *what)
 {
     if (cmd->gpu->lost || cmd->broken) return false;
-    if (!objects) return gpu_misuse(cmd->gpu, "%s: there is no such object", what);
+    if (!objects) {
+        gpu_misuse(cmd->gpu, "%s: there is no such object", what);
+        return false;
+    }
     if (cmd->rendering.open) return gpu_misuse(cmd->gpu, "%s: not inside a rendering", what);
     hazard_next_op(cmd);
     return true;

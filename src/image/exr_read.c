@@ -3,6 +3,7 @@
 // and multi-part ones are refused.
 #include "image/exr_file.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { EXR_CHUNK_BYTES_MAX = 1 << 30 }; // unpacked
@@ -75,7 +76,7 @@ static bool layer_of_channel(const char *channel, char out[EXR_NAME_MAX + 1])
     if (dot)
         memcpy(out, channel, length), out[length] = 0;
     else
-        strcpy(out, strcmp(channel, "Z") == 0 ? "depth" : "color");
+        snprintf(out, EXR_NAME_MAX + 1, "%s", strcmp(channel, "Z") == 0 ? "depth" : "color");
     return true;
 }
 

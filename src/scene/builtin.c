@@ -16,7 +16,7 @@ enum { MAX_NAME = 32, MAX_BUILTINS = 32 };
 static const struct builtin_scene *find_builtin(struct host *host, const char *spec,
                                                 const char *name)
 {
-    const char *known[MAX_BUILTINS];
+    const char *known[MAX_BUILTINS] = { NULL };
     size_t count = 0;
     for (; builtin_scenes[count] && count < MAX_BUILTINS; count++) {
         known[count] = builtin_scenes[count]->name;

@@ -52,9 +52,15 @@ struct gltf_object gltf_child(struct gltf_object object, const char *key);
 struct gltf_object gltf_extension(struct gltf_object object, const char *name);
 bool gltf_has(struct gltf_object object, const char *key);
 json_t *gltf_array(struct gltf_object object, const char *key); // never NULL
-// False, always: fails with the object's name before the sentence.
-bool gltf_wrong(struct gltf_object object, const char *format, ...)
+// Fails with the object's name before the sentence. False, always; a macro, so that analyzers see that.
+#define gltf_wrong(...) gltf_false(gltf_set_wrong(__VA_ARGS__))
+bool gltf_set_wrong(struct gltf_object object, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+static inline bool gltf_false(bool failed)
+{
+    (void)failed;
+    return false;
+}
 int gltf_index(struct gltf_object object, const char *key, json_t *of); // -1: absent
 int gltf_index_value(struct gltf_object object, const char *key, json_t *value, json_t *of);
 size_t gltf_size(struct gltf_object object, const char *key, size_t fallback, size_t max);

@@ -37,7 +37,7 @@ bool gltf_has(struct gltf_object object, const char *key)
     return json_object_get(object.json, key) != NULL;
 }
 
-bool gltf_wrong(struct gltf_object object, const char *format, ...)
+bool gltf_set_wrong(struct gltf_object object, const char *format, ...)
 {
     struct gltf *gltf = object.gltf;
     if (gltf->failed) return false;

@@ -80,7 +80,7 @@ static bool fbx_property(struct fbx_cursor *c)
 static bool fbx_record(struct fbx_cursor *c, uint64_t *end)
 {
     int word = c->wide ? 8 : 4;
-    if (c->size - c->at < (size_t)(3 * word + 1)) return fbx_cut(c);
+    if (c->size - c->at < 3 * (size_t)word + 1) return fbx_cut(c);
     *end = fbx_unsigned(c, word);
     uint64_t properties = fbx_unsigned(c, word);
     c->at += (size_t)word; // bytes of the properties

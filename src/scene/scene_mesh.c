@@ -92,7 +92,7 @@ static bool copy_arrays(struct scene *scene, struct mesh *mesh)
     COPY(indices, mesh->index_count);
     if (mesh->morph_count == 0) mesh->morphs = NULL;
     COPY(morphs, (size_t)mesh->morph_count);
-    for (int m = 0; m < mesh->morph_count; m++) {
+    for (int m = 0; mesh->morphs && m < mesh->morph_count; m++) {
         COPY(morphs[m].positions, count);
         COPY(morphs[m].normals, count);
     }

@@ -94,6 +94,7 @@ TEST(wrong_values_are_wrong_usage)
         { "render @cornell --sky 1,2,-3", "--sky" },
         { "render @cornell --eye 1,2,3", "--target" },
         { "render @cornell --target 1,2,3", "--eye" },
+        { "render @cornell --eye 0,0,0 --target -0,0,0", "same point" },
         { "render @cornell --eye 1,2,3 --target 1,2,3", "--eye" },
         { "render @cornell --eye 1,2,x --target 1,2,3", "--eye" },
         { "render @cornell --camera main --eye 0,0,0 --target 1,2,3", "--camera" },
