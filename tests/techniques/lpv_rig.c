@@ -48,6 +48,10 @@ float *rig_read(struct lpv *lpv, const struct lpv_volume *volume, int colour)
 
 void rig_inject_twin(struct twin *twin, const struct stage *stage, int colour)
 {
+    for (int i = 0; i < stage->view.emitter_count; i++) {
+        const struct frame_emitter *point = &stage->view.emitters[i];
+        twin_inject(twin, point->position, point->normal, (double)point->flux.raw[colour]);
+    }
     const uint32_t size = stage->view.rsm_size;
     for (int face = 0; face < stage->view.rsm_face_count; face++)
         for (uint32_t i = 0; i < size * size; i++) {

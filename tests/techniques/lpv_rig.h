@@ -12,5 +12,5 @@ void rig_destroy(struct lpv *lpv);
 void rig_render(struct lpv *lpv, struct stage *stage);
 // One colour of a volume as lumen/sr, 4 floats a cell in use, [z][y][x]. To be freed.
 float *rig_read(struct lpv *lpv, const struct lpv_volume *volume, int colour);
-// What the stage's reflective shadow maps inject of one colour.
+// What the stage's reflective shadow maps and emissive surfaces inject of one colour.
 void rig_inject_twin(struct twin *twin, const struct stage *stage, int colour);

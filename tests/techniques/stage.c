@@ -104,6 +104,7 @@ void stage_finish(struct stage *stage)
         gpu_image_destroy(stage->gpu, images[i]);
     gpu_buffer_destroy(stage->gpu, &stage->faces_buffer);
     gpu_buffer_destroy(stage->gpu, &stage->constants_buffer);
+    gpu_buffer_destroy(stage->gpu, &stage->emitters_buffer);
     free(stage->texels);
 }
 
@@ -174,6 +175,19 @@ vec3s stage_texel_flux(const struct stage *stage, int face, uint32_t x, uint32_t
     return vec3_of(lumen.x * (float)texel->reflectance[0] / 255.0f,
                    lumen.y * (float)texel->reflectance[1] / 255.0f,
                    lumen.z * (float)texel->reflectance[2] / 255.0f);
+}
+
+void stage_set_emitters(struct stage *stage, const struct frame_emitter *emitters, int count)
+{
+    const size_t bytes = (size_t)count * sizeof *emitters;
+    gpu_buffer_destroy(stage->gpu, &stage->emitters_buffer);
+    stage->view.emitters = emitters;
+    stage->view.emitter_count = count;
+    if (count == 0) return;
+    stage->emitters_buffer = buffer(stage->gpu, "stage.emitters", bytes, GPU_BUFFER_STORAGE);
+    stage->view.emitters_binding =
+        (struct gpu_binding){ .name = "frame_emitters", .buffer = stage->emitters_buffer };
+    CHECK(gpu_buffer_upload(stage->gpu, stage->emitters_buffer, 0, emitters, bytes));
 }
 
 void stage_upload(struct stage *stage)

@@ -17,7 +17,7 @@ struct stage {
     struct gpu *gpu;
     gpu_image depth, normal, irradiance;
     gpu_image rsm_depth, rsm_normal, rsm_flux;
-    gpu_buffer faces_buffer, constants_buffer;
+    gpu_buffer faces_buffer, constants_buffer, emitters_buffer;
     struct rsm_face faces[STAGE_MAX_FACES];
     struct stage_texel *texels; // [face][y][x]
     struct frame_constants constants;
@@ -36,6 +36,8 @@ void stage_fill_face(struct stage *stage, int face, struct stage_texel texel);
 vec3s stage_texel_position(const struct stage *stage, int face, uint32_t x, uint32_t y);
 vec3s stage_texel_flux(const struct stage *stage, int face, uint32_t x, uint32_t y); // scaled lumen
 vec3s stage_rounded_normal(vec3s normal); // as the 16-bit image holds it
+// Points of emissive surfaces, until set again; they must live as long.
+void stage_set_emitters(struct stage *stage, const struct frame_emitter *emitters, int count);
 // Sends texels and faces to the GPU; to be called after changes.
 void stage_upload(struct stage *stage);
 // Irradiance, 3 floats a pixel.

@@ -214,6 +214,28 @@ TEST(lpv_grid_refuses_bounds_without_extent)
         !lpv_grid_fit((struct box3){ vec3_of(0, 0, 0), vec3_of(INFINITY, 1, 1) }, 32, 0.0f, &grid));
 }
 
+static bool scale_of(const struct rsm_face *faces, int count, struct lpv_scale *out)
+{
+    return lpv_scale_of(
+        &(struct lpv_lights){ .faces = faces, .face_count = count, .rsm_size = 256 }, out);
+}
+
+TEST(lpv_scales_bound_emissive_surfaces_with_the_rest)
+{
+    struct rsm_face face = { .type = FRAME_LIGHT_SUN, .intensity = { { 1e-3f, 0, 0 } } };
+    struct frame_emitter points[3] = { { .flux = { { 1, 2, 3 } } },
+                                       { .flux = { { 900, 10, 0 } } },
+                                       { .flux = { { 0, 700, 1 } } } };
+    struct lpv_scale rsm, all, alone;
+    struct lpv_lights lights = { &face, 1, 256, points, 3 };
+    CHECK(lpv_scale_of(&lights, &all));
+    CHECK(900 * 0.33f * all.fixed_from_flux <= 1073741824.0f);
+    CHECK((65.5f + 1603) * all.grid_from_flux <= 1024 && (65.5f + 1603) * all.grid_from_flux > 511);
+    CHECK(scale_of(&face, 1, &rsm) && rsm.fixed_from_flux > all.fixed_from_flux);
+    lights.face_count = 0;
+    CHECK(lpv_scale_of(&lights, &alone) && alone.fixed_from_flux == all.fixed_from_flux);
+}
+
 TEST(lpv_scales_are_powers_of_two_that_follow_the_light)
 {
     struct rsm_face faces[2] = {
@@ -221,9 +243,9 @@ TEST(lpv_scales_are_powers_of_two_that_follow_the_light)
         { .type = FRAME_LIGHT_POINT, .intensity = { { 0.0f, 812.0f, 3.0f } }, .tan_half = 1.0f },
     };
     struct lpv_scale one, two;
-    CHECK(lpv_scale_of(faces, 2, 256, &one));
+    CHECK(scale_of(faces, 2, &one));
     for (int i = 0; i < 2; i++) faces[i].intensity = glms_vec3_scale(faces[i].intensity, 2.0f);
-    CHECK(lpv_scale_of(faces, 2, 256, &two));
+    CHECK(scale_of(faces, 2, &two));
     CHECK(one.fixed_from_flux == 2.0f * two.fixed_from_flux);
     CHECK(one.grid_from_flux == 2.0f * two.grid_from_flux);
     int exponent;
@@ -232,6 +254,6 @@ TEST(lpv_scales_are_powers_of_two_that_follow_the_light)
     // The strongest texel, a sun's here, fills a block.
     CHECK(7.4f * LPV_TEXELS * LPV_TEXELS * 0.33f * two.fixed_from_flux <= 1073741824.0f);
     for (int i = 0; i < 2; i++) faces[i].intensity = vec3_of(0, 0, 0);
-    CHECK(!lpv_scale_of(faces, 2, 256, &one));
-    CHECK(!lpv_scale_of(faces, 0, 256, &one));
+    CHECK(!scale_of(faces, 2, &one));
+    CHECK(!scale_of(faces, 0, &one));
 }

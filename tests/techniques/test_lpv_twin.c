@@ -54,21 +54,58 @@ static void check_volume(const float *got, double (*expected)[4], size_t count, 
             CHECK_NEAR((double)got[4 * i + (size_t)k], expected[i][k], tolerance * most);
 }
 
-TEST_GPU(lpv_injection_is_the_twins)
+static void check_injection(struct lpv *lpv, struct stage *stage)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
-    rig_render(lpv, &stage);
+    rig_render(lpv, stage);
     for (int colour = 0; colour < LPV_COLOURS; colour++) {
         struct twin twin;
         twin_init(&twin, lpv->grid);
-        rig_inject_twin(&twin, &stage, colour);
+        rig_inject_twin(&twin, stage, colour);
         float *got = rig_read(lpv, &lpv->injected, colour);
         check_volume(got, twin.light, twin_cells(&twin), 1e-5);
         free(got);
         twin_finish(&twin);
     }
+}
+
+TEST_GPU(lpv_injection_is_the_twins)
+{
+    struct stage stage;
+    scatter(&stage, gpu);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    check_injection(lpv, &stage);
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+enum { POINTS = 777 }; // not a multiple of a workgroup
+
+// Points all over the box and a little outside of it, faint and strong ones.
+static void scatter_points(struct frame_emitter *points)
+{
+    struct rng rng = rng_for(6, 0, 0);
+    for (int i = 0; i < POINTS; i++) {
+        const float strength = i % 5 == 0 ? 3.0f : 1e-3f;
+        points[i] = (struct frame_emitter){
+            .position = vec3_of(-2.2f + 4.2f * rng_float(&rng), 0.2f + 3.2f * rng_float(&rng),
+                                1.1f + 3.7f * rng_float(&rng)),
+            .normal = random_direction(&rng),
+            .flux = vec3_of(strength * rng_float(&rng), strength, 0.5f * strength),
+        };
+    }
+}
+
+TEST_GPU(lpv_injection_of_emissive_surfaces_is_the_twins)
+{
+    struct stage stage;
+    struct frame_emitter points[POINTS];
+    scatter(&stage, gpu);
+    scatter_points(points);
+    stage_set_emitters(&stage, points, POINTS);
+    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    check_injection(lpv, &stage); // with the maps
+    stage.view.rsm_face_count = 0;
+    check_injection(lpv, &stage); // alone
     rig_destroy(lpv);
     stage_finish(&stage);
 }
@@ -164,6 +201,13 @@ TEST_GPU(lpv_injection_knows_no_order)
     size_t count;
     float *before = injected_of(&stage, lpv, &count), *again = injected_of(&stage, lpv, &count);
     assert_memory_equal(before, again, count * sizeof *before);
+    struct frame_emitter points[POINTS], reversed[POINTS];
+    scatter_points(points);
+    for (int i = 0; i < POINTS; i++) reversed[i] = points[POINTS - 1 - i];
+    free(before);
+    stage_set_emitters(&stage, points, POINTS);
+    before = injected_of(&stage, lpv, &count);
+    stage_set_emitters(&stage, reversed, POINTS);
     // The same lights in the other order.
     for (uint32_t i = 0; i < SIZE * SIZE; i++) {
         const struct stage_texel texel = stage.texels[i];

@@ -1,10 +1,10 @@
 // Light propagation volumes (Martin 2012, ch. 3; Kaplanyan & Dachsbacher 2010) without the geometry
 // volume.
 //
-// The light that reflective shadow maps see leaving the lit surfaces is put into a grid over the
-// scene as spherical harmonics (inject), walks from cell to neighbour (propagate), and is looked up
-// by each pixel (apply). One bounce, diffuse, everything moving. README.md says what differs from
-// the paper and how good it is.
+// The light that reflective shadow maps see leaving the lit surfaces, and that of emissive
+// surfaces, is put into a grid over the scene as spherical harmonics (inject), walks from cell to
+// neighbour (propagate), and is looked up by each pixel (apply). One bounce, diffuse, everything
+// moving. README.md says what differs from the paper and how good it is.
 #include "techniques/lpv/lpv.h"
 
 #include "techniques/lpv/lpv_state.h"
@@ -20,9 +20,10 @@ static const struct option_row option_rows[] = {
 };
 
 static const struct technique_debug_view debug_views[] = {
-    { "injected", "slices of the grid: the light that reflective shadow maps put in" },
+    { "injected", "slices of the grid: the light that lit and emissive surfaces put in" },
     { "propagated", "slices of the grid: the light accumulated over all steps" },
-    { "cells", "the surfaces coloured by the cell they inject into, bright where light was injected" },
+    { "cells",
+      "the surfaces coloured by the cell they inject into, bright where light was injected" },
     { NULL, NULL },
 };
 
@@ -86,6 +87,7 @@ static bool create_pipelines(struct lpv *lpv)
         const struct gpu_shader *shader;
     } pipelines[] = {
         { &lpv->inject, "lpv.inject", &shader_lpv_inject_comp },
+        { &lpv->inject_emitters, "lpv.inject_emitters", &shader_lpv_inject_emitters_comp },
         { &lpv->resolve, "lpv.resolve", &shader_lpv_resolve_comp },
         { &lpv->propagate, "lpv.propagate", &shader_lpv_propagate_comp },
         { &lpv->finish, "lpv.finish", &shader_lpv_finish_comp },
@@ -157,8 +159,9 @@ static void lpv_destroy(void *state)
     destroy_volume(lpv, &lpv->steps[1]);
     destroy_volume(lpv, &lpv->light);
     gpu_buffer_destroy(lpv->gpu, &lpv->sums);
-    gpu_pipeline *pipelines[] = { &lpv->inject, &lpv->resolve, &lpv->propagate,
-                                  &lpv->finish, &lpv->apply,   &lpv->debug };
+    gpu_pipeline *pipelines[] = { &lpv->inject,    &lpv->inject_emitters, &lpv->resolve,
+                                  &lpv->propagate, &lpv->finish,          &lpv->apply,
+                                  &lpv->debug };
     for (size_t i = 0; i < sizeof pipelines / sizeof pipelines[0]; i++)
         gpu_pipeline_destroy(lpv->gpu, pipelines[i]);
 }
@@ -181,7 +184,7 @@ const struct technique technique_lpv = {
         "Martin 2012, Higher Order Light Propagation Volumes, ch. 3; Kaplanyan & Dachsbacher 2010",
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
-    .needs = FRAME_NEEDS_RSM | FRAME_WRITES_IRRADIANCE,
+    .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,
     .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
                  sizeof(struct lpv_options) },
     .debug_views = debug_views,

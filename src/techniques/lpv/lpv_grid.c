@@ -23,23 +23,27 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
     return isfinite(out->cell_m) && out->cell_m > 0.0f;
 }
 
+static double strongest(vec3s v)
+{
+    return (double)fmaxf(v.x, fmaxf(v.y, v.z));
+}
+
 // Bounds in scaled lumen for a reflectance of 1: through the strongest texel of a face, and through
 // the face.
 static void face_flux(const struct rsm_face *face, double rsm_size, double *texel, double *total)
 {
-    const double strongest =
-        (double)fmaxf(face->intensity.x, fmaxf(face->intensity.y, face->intensity.z));
+    const double intensity = strongest(face->intensity);
     if (face->type == FRAME_LIGHT_SUN) {
-        *texel = strongest;
-        *total = strongest * rsm_size * rsm_size;
+        *texel = intensity;
+        *total = intensity * rsm_size * rsm_size;
         return;
     }
     // A texel at unit distance has the side 2 tan/size; its solid angle is at most its area. The
     // face's is that of a square pyramid, 4 asin(sin² of the half-angle).
     const double tangent = (double)face->tan_half;
     const double side = 2.0 * tangent / rsm_size;
-    *texel = strongest * side * side;
-    *total = strongest * 4.0 * asin(tangent * tangent / (1.0 + tangent * tangent));
+    *texel = intensity * side * side;
+    *total = intensity * 4.0 * asin(tangent * tangent / (1.0 + tangent * tangent));
 }
 
 // The largest power of two that makes value · 2^n ≤ 2^limit; exponents that a float can hold.
@@ -51,18 +55,22 @@ static float power_of_two_below(double value, int limit)
     return ldexpf(1.0f, power < -100 ? -100 : power > 100 ? 100 : power);
 }
 
-bool lpv_scale_of(const struct rsm_face *faces, int count, uint32_t rsm_size, struct lpv_scale *out)
+bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out)
 {
-    double texel = 0.0, total = 0.0;
-    for (int i = 0; i < count; i++) {
-        double face_texel, face_total;
-        face_flux(&faces[i], (double)rsm_size, &face_texel, &face_total);
-        texel = fmax(texel, face_texel);
-        total += face_total;
+    double most = 0.0, total = 0.0; // most: that one addition brings
+    for (int i = 0; i < lights->face_count; i++) {
+        double texel, face;
+        face_flux(&lights->faces[i], (double)lights->rsm_size, &texel, &face);
+        most = fmax(most, texel * (LPV_TEXELS * LPV_TEXELS));
+        total += face;
+    }
+    for (int i = 0; i < lights->emitter_count; i++) {
+        most = fmax(most, strongest(lights->emitters[i].flux));
+        total += strongest(lights->emitters[i].flux);
     }
     if (!(total > 0.0) || !isfinite(total)) return false;
     // The largest coefficient of a unit-flux lobe is below 1/2 (2/3 √(3/4π) = 0.326).
-    out->fixed_from_flux = power_of_two_below(texel * (LPV_TEXELS * LPV_TEXELS) * 0.5, 30);
+    out->fixed_from_flux = power_of_two_below(most * 0.5, 30);
     out->grid_from_flux = power_of_two_below(total, 10);
     return true;
 }

@@ -20,11 +20,18 @@ struct lpv_grid {
 bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *out);
 
 // Injection adds whole numbers, so that its order does not matter. A block of LPV_TEXELS² texels of a reflective shadow
-// map adds at most 2^30 to a coefficient; sums are 64 bits wide and cannot overflow.
+// map, or a point of an emissive surface, adds at most 2^30 to a coefficient; sums are 64 bits wide and cannot overflow.
 
 struct lpv_scale {
     float fixed_from_flux; // integer per scaled lumen, a power of two
     float grid_from_flux;  // the grid's unit per scaled lumen, a power of two: all light together is less than 1024
 };
+struct lpv_lights {
+    const struct rsm_face *faces;
+    int face_count;
+    uint32_t rsm_size;
+    const struct frame_emitter *emitters;
+    int emitter_count;
+};
 // false: there is no light (or its strength is not finite).
-bool lpv_scale_of(const struct rsm_face *faces, int count, uint32_t rsm_size, struct lpv_scale *out);
+bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out);

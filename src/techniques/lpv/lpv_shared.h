@@ -5,6 +5,7 @@
 #include "core/shared.h"
 
 #define LPV_TEXELS 4 // side of the block of texels of a reflective shadow map that one invocation injects
+#define LPV_EMITTERS_LOCAL 64 // invocations of a workgroup that injects emissive surfaces, one point each
 
 // Uniform block "lpv_grid".
 struct lpv_params {
@@ -20,6 +21,7 @@ struct lpv_params {
     float window;           // weight of band 1 at the look-up
     uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
+    uint32_t emitter_count;
 };
 
 // Views of lpv_debug.comp.
@@ -33,7 +35,7 @@ struct lpv_view_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct lpv_params) == 21 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 22 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
 #endif
 

@@ -9,10 +9,16 @@ static const float MEAN_CHORD = 2.0f / 3.0f;
 bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
 {
     const struct lpv_options *options = &lpv->options;
+    const struct lpv_lights lights = {
+        .faces = view->rsm_faces,
+        .face_count = view->rsm_face_count,
+        .rsm_size = view->rsm_size,
+        .emitters = view->emitters,
+        .emitter_count = options->emitters ? view->emitter_count : 0,
+    };
     struct lpv_scale scale;
-    lpv->lit = view->rsm_face_count > 0 &&
-               lpv_grid_fit(view->bounds, options->dim, options->cell_margin, &lpv->grid) &&
-               lpv_scale_of(view->rsm_faces, view->rsm_face_count, view->rsm_size, &scale);
+    lpv->lit = lpv_grid_fit(view->bounds, options->dim, options->cell_margin, &lpv->grid) &&
+               lpv_scale_of(&lights, &scale);
     if (!lpv->lit) return false;
     const struct lpv_grid *grid = &lpv->grid;
     const struct lpv_step step = lpv_step_of((enum lpv_lobe)options->lobe, options->focus);
@@ -37,6 +43,7 @@ bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
         .rsm_size = view->rsm_size,
         .width = view->width,
         .height = view->height,
+        .emitter_count = (uint32_t)lights.emitter_count,
     };
     return true;
 }
@@ -54,13 +61,10 @@ static void dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pi
                  gpu_groups((uint32_t)lpv->grid.cells[1], LOCAL), (uint32_t)lpv->grid.cells[2]);
 }
 
-void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+static void inject_rsm(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const size_t cells =
-        (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] * (size_t)lpv->grid.cells[2];
     const uint32_t groups = gpu_groups(view->rsm_size, LOCAL * LPV_TEXELS);
-    gpu_scope_begin(cmd, "lpv.inject");
-    gpu_fill_buffer(cmd, lpv->sums, 0, cells * LPV_CELL_BYTES, 0);
+    if (view->rsm_face_count == 0) return;
     gpu_dispatch(cmd, lpv->inject,
                  GPU_BIND(grid_binding(lpv, cmd), view->rsm_faces_binding,
                           { .name = "rsm_depth", .image = view->rsm_depth },
@@ -68,6 +72,25 @@ void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct fra
                           { .name = "rsm_flux", .image = view->rsm_flux },
                           { .name = "lpv_sums", .buffer = lpv->sums }),
                  NULL, 0, groups, groups, (uint32_t)view->rsm_face_count);
+}
+
+static void inject_emitters(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    if (lpv->params.emitter_count == 0) return;
+    gpu_dispatch(cmd, lpv->inject_emitters,
+                 GPU_BIND(grid_binding(lpv, cmd), view->emitters_binding,
+                          { .name = "lpv_sums", .buffer = lpv->sums }),
+                 NULL, 0, gpu_groups(lpv->params.emitter_count, LPV_EMITTERS_LOCAL), 1, 1);
+}
+
+void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const size_t cells =
+        (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] * (size_t)lpv->grid.cells[2];
+    gpu_scope_begin(cmd, "lpv.inject");
+    gpu_fill_buffer(cmd, lpv->sums, 0, cells * LPV_CELL_BYTES, 0);
+    inject_rsm(lpv, cmd, view);
+    inject_emitters(lpv, cmd, view);
     gpu_scope_end(cmd);
 
     gpu_scope_begin(cmd, "lpv.resolve");
@@ -139,7 +162,7 @@ void lpv_record_debug(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_v
                  GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "shown_red", .image = shown->colour[0] },
+                          { .name = "shown_red", .image = shown->colour[0] },
                           { .name = "shown_green", .image = shown->colour[1] },
                           { .name = "shown_blue", .image = shown->colour[2] },
                           { .name = "picture", .image = out }),

@@ -24,7 +24,7 @@ struct lpv {
     struct gpu *gpu;
     struct lpv_options options;
     gpu_sampler linear;
-    gpu_pipeline inject, resolve, propagate, finish, apply, debug;
+    gpu_pipeline inject, inject_emitters, resolve, propagate, finish, apply, debug;
     gpu_buffer sums;             // [cell][colour][coefficient] 64-bit integers
     struct lpv_volume injected;  // RGBA32F
     struct lpv_volume steps[2];  // RGBA32F, in turn
