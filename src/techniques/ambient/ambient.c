@@ -1,12 +1,16 @@
-// Ambient light that knows how much light there is: E = (π·sky + Φ/A) · strength, the same at every
-// surface. Φ (lumen) is the flux that all reflective shadow maps see leaving the lit surfaces, A
-// (m²) the surface of the scene's bounding box, onto which it falls. README.md says when that is
-// exact.
+// Ambient light that knows how much light there is: the same irradiance at every surface,
+//     E = (π·sky + Σ Φ ℓ̄ / (4V)) · strength.
+// A virtual light of flux Φ (lumen), a texel of a reflective shadow map or a point of an emissive
+// surface, sends its light through the scene's box of volume V on a way of ℓ̄ = ⅔ d on average, d
+// the distance along its normal to the box's wall (Cauchy's mean chord of a cube's wall). README.md
+// says when that is exact.
 #include "techniques/ambient/ambient.h"
 
 #include "techniques/ambient/ambient_shared.h"
 
 #include "technique_shaders.h"
+
+#include <math.h>
 
 struct ambient_options {
 #define OPTION OPTION_FIELD
@@ -29,6 +33,8 @@ struct ambient {
 };
 
 enum { VEC3_BYTES = 12, LOCAL = 8 };
+
+static const float MEAN_WAY = 2.0f / 3.0f; // over the distance along the normal
 
 static bool ambient_create(void *state, const struct technique_create *how)
 {
@@ -54,21 +60,24 @@ static void ambient_set_options(void *state, const void *options)
     ((struct ambient *)state)->options = *(const struct ambient_options *)options;
 }
 
-// Surface of a box in m²; 0 for an empty one.
-static float surface_area(struct box3 box)
+// 1/m³; 0 for a flat or empty box, which light leaves at once.
+static float per_way(struct box3 box)
 {
     if (box3_is_empty(box)) return 0.0f;
     const vec3s size = box3_size(box);
-    return 2.0f * (size.x * size.y + size.y * size.z + size.z * size.x);
+    const float volume = size.x * size.y * size.z;
+    return volume > 0.0f && isfinite(volume) ? MEAN_WAY / (4.0f * volume) : 0.0f;
 }
 
 static struct ambient_push push_of(const struct ambient *ambient, const struct frame_view *view)
 {
-    const float area = surface_area(view->bounds);
     const uint32_t across = gpu_groups(view->rsm_size, AMBIENT_TEXELS);
     return (struct ambient_push){
-        .sky = glms_vec3_scale(view->constants->sky, GLM_PIf),
-        .per_area = area > 0.0f ? 1.0f / area : 0.0f,
+        .evenly =
+            glms_vec3_add(glms_vec3_scale(view->constants->sky, GLM_PIf), view->emitted_irradiance),
+        .per_way = per_way(view->bounds),
+        .box_min = view->bounds.min,
+        .box_max = view->bounds.max,
         .strength = ambient->options.strength,
         .rsm_size = view->rsm_size,
         .blocks_across = across,
@@ -89,6 +98,7 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
         gpu_dispatch(cmd, ambient->sum,
                      GPU_BIND(view->rsm_faces_binding,
                               { .name = "rsm_depth", .image = view->rsm_depth },
+                              { .name = "rsm_normal", .image = view->rsm_normal },
                               { .name = "rsm_flux", .image = view->rsm_flux }, partials),
                      &push, sizeof push, AMBIENT_GROUPS, 1, 1);
     }
@@ -126,10 +136,10 @@ static uint64_t ambient_memory_estimate(const void *options, uint32_t width, uin
 const struct technique technique_ambient = {
     .name = "ambient",
     .title = "reflected light, spread evenly",
-    .paper = "flux balance of a convex room; flux as in Martin 2012, sec. 3.1",
+    .paper = "mean fluence in a box, mean chord after Cauchy; flux as in Martin 2012, sec. 3.1",
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
-    .needs = FRAME_NEEDS_RSM | FRAME_WRITES_IRRADIANCE,
+    .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,
     .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
                  sizeof(struct ambient_options) },
     .state_size = sizeof(struct ambient),

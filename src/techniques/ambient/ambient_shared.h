@@ -10,8 +10,9 @@
 
 // Push constants of all passes.
 struct ambient_push {
-    vec3s sky;              // scaled irradiance of the sky
-    float per_area;         // 1/m²: irradiance per reflected flux; 0 where the bounds have no surface
+    vec3s evenly;           // scaled irradiance of what falls on everything: the sky, and emissive surfaces
+    float per_way;          // 1/m³: irradiance per flux and metre to the exit; 0 where the bounds have no volume
+    vec3s box_min, box_max; // the bounds
     float strength;
     uint32_t rsm_size;      // texels
     uint32_t blocks_across; // blocks in a row of a reflective shadow map
@@ -20,7 +21,7 @@ struct ambient_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct ambient_push) == 10 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct ambient_push) == 16 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

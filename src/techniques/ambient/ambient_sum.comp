@@ -1,10 +1,11 @@
-// Reflected flux (scaled lumen) of all reflective shadow maps, as AMBIENT_GROUPS partial sums. Every sum has a fixed
+// Reflected flux times its way to the box's exit (scaled lumen · m) of all reflective shadow maps, as AMBIENT_GROUPS partial sums. Every sum has a fixed
 // order, so that a frame gives the same bits each time.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "frame/frame_shared.h"
+#include "frame/octahedral.glsl"
 #include "frame/rsm/rsm.glsl"
 #include "techniques/ambient/ambient_tree.glsl"
 
@@ -19,11 +20,22 @@ layout(set = 0, binding = 0, scalar) readonly buffer rsm_faces
     rsm_face faces[];
 };
 layout(set = 0, binding = 1) uniform sampler2DArray rsm_depth;
-layout(set = 0, binding = 2) uniform sampler2DArray rsm_flux;
-layout(set = 0, binding = 3, scalar) writeonly buffer ambient_partials
+layout(set = 0, binding = 2) uniform sampler2DArray rsm_normal;
+layout(set = 0, binding = 3) uniform sampler2DArray rsm_flux;
+layout(set = 0, binding = 4, scalar) writeonly buffer ambient_partials
 {
     vec3 partials[];
 };
+
+const float FAR = 1e30;
+
+// m; emitters.c has the same for emissive surfaces.
+float distance_to_exit(vec3 from, vec3 direction)
+{
+    vec3 way = max((mix(push.box_min, push.box_max, greaterThan(direction, vec3(0.0))) - from) / direction, vec3(0.0));
+    way = mix(way, vec3(FAR), equal(direction, vec3(0.0)));
+    return min(way.x, min(way.y, way.z));
+}
 
 vec3 block_flux(uint block)
 {
@@ -36,9 +48,8 @@ vec3 block_flux(uint block)
     vec3 sum = vec3(0.0);
     for (int y = first.y; y < last.y; y++) {
         for (int x = first.x; x < last.x; x++) {
-            ivec3 at = ivec3(x, y, layer);
-            if (texelFetch(rsm_depth, at, 0).r == 0.0) continue;
-            sum += texelFetch(rsm_flux, at, 0).rgb * rsm_flux_through(face, at.xy, push.rsm_size);
+            rsm_texel light = rsm_fetch(face, ivec2(x, y), layer, push.rsm_size, rsm_depth, rsm_normal, rsm_flux);
+            if (light.valid) sum += light.flux * distance_to_exit(light.position, light.normal);
         }
     }
     return sum;

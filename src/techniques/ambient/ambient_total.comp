@@ -24,5 +24,5 @@ void main()
 {
     uint me = gl_LocalInvocationIndex;
     vec3 flux = workgroup_sum(push.blocks > 0u && me < AMBIENT_GROUPS ? partials[me] : vec3(0.0));
-    if (me == 0u) irradiance = push.strength * (push.sky + flux * push.per_area);
+    if (me == 0u) irradiance = push.strength * (push.evenly + flux * push.per_way);
 }
