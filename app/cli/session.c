@@ -159,28 +159,11 @@ static enum status add_default_light(struct session *session)
     return DONE;
 }
 
-// The direct light comes from lights alone: a scene that only glows would be dark for no apparent
-// reason.
-static enum status note_glow(struct session *session)
-{
-    struct ag_scene_info info;
-    enum ag_result result = ag_scene_get_info(session->scene, 0, 0.0, &info);
-    if (result != AG_OK) return fail_library(session->context, result);
-    bool sky = info.sky[0] > 0 || info.sky[1] > 0 || info.sky[2] > 0;
-    if (info.emissive && info.lights == 0 && !sky)
-        remember(session,
-                 "no light in %s but what glows, which direct light leaves out: see --light",
-                 session->arguments->positional[0]);
-    return DONE;
-}
-
 enum status session_light(struct session *session)
 {
     const struct arguments *a = session->arguments;
-    if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky) {
-        enum status status = add_default_light(session);
-        return status == DONE ? note_glow(session) : status;
-    }
+    if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky)
+        return add_default_light(session);
     enum ag_result result = AG_OK;
     if (a->no_scene_lights) result = ag_scene_remove_lights(session->scene);
     for (int i = 0; i < a->light_count && result == AG_OK; i++)

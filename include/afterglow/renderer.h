@@ -34,7 +34,7 @@ struct ag_frame_desc {
     struct ag_camera camera;
     double time_s;      ///< animation time
     int animation;      ///< see ag_scene_camera; default 0: the first, if there is one
-    bool auto_exposure; ///< from the direct image's log-average; default true
+    bool auto_exposure; ///< from the log-average of direct light and of what emission lights; default true
     float exposure_ev;  ///< used where auto_exposure is false
     bool camera_cut;    ///< forget history; default false
 };

@@ -65,6 +65,18 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
 
 // ---- life
 
+// A picture that is black but for a lamp has no apparent reason without a word about it.
+static void warn_of_darkness(const struct ag_renderer *r)
+{
+    const struct scene *scene = r->scene->scene;
+    bool glows_alone =
+        scene->light_count == 0 && luminance(scene->sky) <= 0.0f && scene_has_emission(scene);
+    if (glows_alone && !(gi_hook(r->gi).needs & FRAME_NEEDS_EMITTERS))
+        host_log(host_of(r), LOG_WARNING,
+                 "%s: lit by emissive surfaces alone, which --gi %s does not gather: try --gi lpv",
+                 scene->name, r->gi_text);
+}
+
 static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
 {
     struct host *host = host_of(r);
@@ -77,6 +89,7 @@ static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
     if (!frame_resize(r->frame, width, height)) return false;
     r->gi = gi_create(host, r->device->gpu, &r->spec, &r->pose, width, height);
     r->sized = r->gi != NULL;
+    if (r->sized) warn_of_darkness(r);
     return r->sized;
 }
 

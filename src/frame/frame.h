@@ -97,7 +97,7 @@ struct frame_input {
     const struct world_light *lights; // physical units
     int light_count;                  // ≤ FRAME_MAX_LIGHTS
     vec3s sky;                        // cd/m²
-    bool auto_exposure;               // from the direct image's log-average
+    bool auto_exposure;               // from the log-average of direct light and emission (composite/exposure.h)
     float exposure_ev;                // used where auto_exposure is false
     bool camera_cut;                  // forget history
     bool want_indirect_layer;         // fill FRAME_INDIRECT

@@ -519,3 +519,30 @@ TEST(an_unknown_device_is_refused)
     CHECK(strstr(ag_context_last_error(context), "no such device"));
     ag_context_destroy(context);
 }
+
+TEST(a_scene_lit_by_emission_alone_is_warned_about_where_no_technique_gathers_it)
+{
+    static const struct {
+        const char *scene, *gi;
+        bool warns;
+    } cases[] = { { "@cornell", "none", true },
+                  { "@cornell", "lpv", false },
+                  { "@cornell", "ambient", false },
+                  { "@cornell:light=point", "none", false } };
+    struct stage s = open_stage("none", NULL);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct ag_scene *scene = NULL;
+        struct ag_renderer *renderer = NULL;
+        struct ag_renderer_desc desc = renderer_desc(cases[i].gi);
+        assert_int_equal(ag_scene_load(s.context, cases[i].scene, &scene), AG_OK);
+        last_warning[0] = '\0';
+        assert_int_equal(ag_renderer_create(s.device, scene, &desc, &renderer), AG_OK);
+        CHECK_STRING(last_warning,
+                     cases[i].warns ? "@cornell: lit by emissive surfaces alone, which --gi none "
+                                      "does not gather: try --gi lpv"
+                                    : "");
+        ag_renderer_destroy(renderer);
+        ag_scene_destroy(scene);
+    }
+    close_stage(&s);
+}

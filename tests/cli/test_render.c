@@ -169,11 +169,12 @@ TEST(the_defaults_that_are_said_give_the_same_picture)
     CHECK(mean_of(first, NULL) > 0);
 }
 
-TEST(a_scene_that_only_glows_is_said_to)
+TEST(a_scene_that_only_glows_is_said_to_where_nothing_gathers_it)
 {
     require_device();
     const char *path = test_path("glow.png");
-    CHECK(strstr(run_expect(0, "render @cornell --size 16x16 -o", path, NULL)->err, "glows"));
+    CHECK(strstr(run_expect(0, "render @cornell --size 16x16 -o", path, NULL)->err, "--gi lpv"));
+    CHECK_STRING(run_expect(0, "render @cornell --gi lpv --size 16x16 -o", path, NULL)->err, "");
     CHECK_STRING(run_expect(0, "render @cornell:light=point --size 16x16 -o", path, NULL)->err, "");
 }
 
