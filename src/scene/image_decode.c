@@ -1,6 +1,7 @@
 // The one file that contains stb_image.
 #include "scene/image_decode.h"
 
+#include "scene/jpeg_check.h"
 #include "scene/scene.h"
 
 #include <limits.h>
@@ -12,12 +13,18 @@
 // stops that.
 static _Thread_local size_t largest_block;
 
+// Zeroed: an image that names tables it does not have must decode to the same pixels each time.
+static void *limited_alloc(size_t bytes)
+{
+    return bytes <= largest_block ? calloc(1, bytes) : NULL;
+}
+
 static void *limited_realloc(void *old, size_t bytes)
 {
     return bytes <= largest_block ? realloc(old, bytes) : NULL;
 }
 
-#define STBI_MALLOC(bytes)       limited_realloc(NULL, (bytes))
+#define STBI_MALLOC(bytes)       limited_alloc((bytes))
 #define STBI_REALLOC(old, bytes) limited_realloc((old), (bytes))
 #define STBI_FREE(block)         free(block)
 #define STBI_MAX_DIMENSIONS      SCENE_MAX_IMAGE_SIZE
@@ -66,6 +73,9 @@ const char *image_decode_size(const uint8_t *data, size_t size, int *width, int 
     int channels;
     if (size > INT_MAX) return "it has more than 2 GiB";
     largest_block = BLOCK_ALLOWANCE;
+    const bool jpeg = size > 0 && data[0] == 0xff; // as the decoder sees it: fill bytes may follow
+    const char *unsound = jpeg ? jpeg_check(data, size) : NULL;
+    if (unsound) return unsound;
     if (!stbi_info_from_memory(data, (int)size, width, height, &channels)) {
         const char *reason = stbi_failure_reason();
         return reason ? reason : "unknown format";
@@ -74,9 +84,7 @@ const char *image_decode_size(const uint8_t *data, size_t size, int *width, int 
     if (*width > SCENE_MAX_IMAGE_SIZE || *height > SCENE_MAX_IMAGE_SIZE) {
         return "it is larger than 8192 x 8192";
     }
-    if (image_kind_of(data, size) == IMAGE_JPEG && too_many_scans(data, size)) {
-        return "it has more than 100 scans";
-    }
+    if (jpeg && too_many_scans(data, size)) return "it has more than 100 scans";
     return NULL;
 }
 
