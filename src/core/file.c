@@ -3,13 +3,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 static const uint64_t MAX_BYTES_DEFAULT = UINT64_C(4) << 30;
-enum { TEMPORARY_TRIES = 1000 };
+// ".tmp-", a process, a number and the zero take less.
+enum { TEMPORARY_TRIES = 1000, TEMPORARY_SUFFIX = 32 };
 
 static bool fail_read(struct host *host, const char *path, const char *why)
 {
@@ -94,12 +96,25 @@ static bool target_of(struct host *host, const char *path, char **out)
     return *out != NULL;
 }
 
+// The part of `target` that its temporary names begin with: all, unless the name, or the path,
+// would become longer than a name, or a path, can be.
+static int temporary_stem(const char *target)
+{
+    const char *slash = strrchr(target, '/');
+    size_t folder = slash ? (size_t)(slash + 1 - target) : 0, length = strlen(target);
+    size_t longest = folder + NAME_MAX - TEMPORARY_SUFFIX;
+    if (longest > PATH_MAX - TEMPORARY_SUFFIX) longest = PATH_MAX - TEMPORARY_SUFFIX;
+    if (length <= longest) return (int)length;
+    return (int)(longest > folder ? longest : folder);
+}
+
 // As mkstemp, but the file's mode comes from the umask, which cannot be asked for without changing
 // it for all threads.
 static int open_temporary(struct host *host, const char *target, char **out_path)
 {
     for (int i = 0; i < TEMPORARY_TRIES; i++) {
-        char *path = host_sprintf(host, "%s.tmp-%ld-%d", target, (long)getpid(), i);
+        char *path = host_sprintf(host, "%.*s.tmp-%ld-%d", temporary_stem(target), target,
+                                  (long)getpid(), i);
         if (!path) return -1;
         int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0) {

@@ -268,6 +268,19 @@ static bool commit_on_full_disk(const char *path, bool room_before_commit)
     return committed;
 }
 
+TEST(longest_name_that_a_folder_takes_can_be_written)
+{
+    const char *folder = fresh_folder("long");
+    char name[256] = "";
+    memset(name, 'n', 255);
+    struct file_writer writer;
+    CHECK(file_begin(&writer, test_host(), in(folder, name)));
+    fputs("here", writer.stream);
+    CHECK(file_commit(&writer));
+    CHECK_STRING(read_text(in(folder, name)), "here");
+    assert_int_equal(entries_in(folder), 1);
+}
+
 TEST(failed_write_keeps_the_old_file_and_leaves_nothing_else)
 {
     const char *folder = fresh_folder("full"), *path = in(folder, "out.txt");
