@@ -1,5 +1,6 @@
 // afterglow diff: how far one image is from another.
 #include "commands.h"
+#include "interrupt.h"
 #include "json.h"
 #include "output.h"
 #include "values.h"
@@ -92,8 +93,10 @@ static enum status write_map(struct session *session, const struct ag_image *a,
 {
     struct ag_image *map = NULL;
     enum ag_result result = ag_image_error_map(session->context, a, b, 0.0f, &map);
+    interrupt_hold();
     if (result == AG_OK)
         result = ag_image_write_png(session->context, session->arguments->map, map);
+    interrupt_release();
     ag_image_destroy(session->context, map);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }

@@ -26,9 +26,9 @@ static json_t *light_json(struct session *session, int index)
     if (ag_scene_get_light(session->scene, index, session->animation, time_s, &light) != AG_OK)
         return NULL;
     const struct ag_light_desc *l = &light.light;
-    json_t *object =
-        json_pack("{s:s, s:s, s:s, s:o}", "name", light.name, "type", light_types[l->type], "unit",
-                  l->type == AG_LIGHT_SUN ? "lx" : "cd", "intensity", json_floats(l->intensity, 3));
+    json_t *object = json_pack("{s:o, s:s, s:s, s:o}", "name", json_text(light.name), "type",
+                               light_types[l->type], "unit", l->type == AG_LIGHT_SUN ? "lx" : "cd",
+                               "intensity", json_floats(l->intensity, 3));
     if (l->type != AG_LIGHT_SUN)
         json_object_set_new(object, "position", json_floats(l->position, 3));
     if (l->type != AG_LIGHT_POINT)
@@ -48,7 +48,7 @@ static json_t *camera_json(struct session *session, int index)
     if (!name ||
         ag_scene_camera(session->scene, name, session->animation, time_s, &camera) != AG_OK)
         return NULL;
-    return json_pack("{s:s, s:o, s:o, s:o, s:f, s:o}", "name", name, "eye",
+    return json_pack("{s:o, s:o, s:o, s:o, s:f, s:o}", "name", json_text(name), "eye",
                      json_floats(camera.eye, 3), "target", json_floats(camera.target, 3), "up",
                      json_floats(camera.up, 3), "fov_deg", degrees(camera.vertical_fov_rad),
                      "near_m", json_float(camera.near_m));
@@ -58,20 +58,21 @@ static json_t *material_json(struct session *session, int index)
 {
     struct ag_material_info m;
     if (ag_scene_get_material(session->scene, index, &m) != AG_OK) return NULL;
-    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:b, s:s, s:b, s:b, s:b, s:b}", "name", m.name,
-                     "base_color", json_floats(m.material.base_color, 4), "metallic",
-                     json_float(m.material.metallic), "roughness", json_float(m.material.roughness),
-                     "emissive", json_floats(m.material.emissive, 3), "double_sided",
-                     m.material.double_sided, "alpha_mode", m.alpha_mode, "base_color_map",
-                     m.base_color_map, "metallic_roughness_map", m.metallic_roughness_map,
-                     "normal_map", m.normal_map, "emissive_map", m.emissive_map);
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:b, s:s, s:b, s:b, s:b, s:b}", "name", json_text(m.name),
+        "base_color", json_floats(m.material.base_color, 4), "metallic",
+        json_float(m.material.metallic), "roughness", json_float(m.material.roughness), "emissive",
+        json_floats(m.material.emissive, 3), "double_sided", m.material.double_sided, "alpha_mode",
+        m.alpha_mode, "base_color_map", m.base_color_map, "metallic_roughness_map",
+        m.metallic_roughness_map, "normal_map", m.normal_map, "emissive_map", m.emissive_map);
 }
 
 static json_t *animation_json(struct session *session, int index)
 {
     struct ag_animation_info animation;
     if (ag_scene_get_animation(session->scene, index, &animation) != AG_OK) return NULL;
-    return json_pack("{s:s, s:f}", "name", animation.name, "duration_s", animation.duration_s);
+    return json_pack("{s:o, s:f}", "name", json_text(animation.name), "duration_s",
+                     animation.duration_s);
 }
 
 static json_t *list_of(struct session *session, int count,
@@ -105,8 +106,8 @@ static enum status info_json(struct session *session, const struct facts *facts)
 {
     const struct ag_scene_info *i = &facts->info;
     return json_print(json_pack(
-        "{s:s, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, s:o, s:o, s:o, s:o}",
-        "scene", facts->scene, "triangles", (json_int_t)i->triangles, "vertices",
+        "{s:o, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, s:o, s:o, s:o, s:o}",
+        "scene", json_text(facts->scene), "triangles", (json_int_t)i->triangles, "vertices",
         (json_int_t)i->vertices, "meshes", i->meshes, "instances", i->instances, "images",
         i->images, "skins", i->skins, "nodes", i->nodes, "bounds", bounds_json(i), "sky",
         json_floats(i->sky, 3), "emissive", i->emissive, "memory_bytes",

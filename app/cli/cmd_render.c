@@ -180,10 +180,10 @@ static json_t *result_json(struct job *job, const char *path)
 {
     json_t *document = statistics_json(&job->statistics, &job->session, job->device, job->renderer);
     if (!document) return NULL;
-    json_object_set_new(document, "scene", json_string(job->arguments->positional[0]));
-    json_object_set_new(document, "camera", json_string(job->session.camera_name));
+    json_object_set_new(document, "scene", json_text(job->arguments->positional[0]));
+    json_object_set_new(document, "camera", json_text(job->session.camera_name));
     json_object_set_new(document, "exposure_ev", json_float(job->exposure_ev));
-    json_object_set_new(document, "output", json_string(path));
+    json_object_set_new(document, "output", json_text(path));
     return document;
 }
 

@@ -1,7 +1,9 @@
 // JSON out.
 #include "json.h"
+#include "interrupt.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,6 +35,35 @@ json_t *json_floats(const float *values, int count)
     return array;
 }
 
+// The bytes of the character at `s`, 0 where they are none (Unicode 15, table 3-7).
+static size_t utf8_length(const unsigned char *s)
+{
+    if (s[0] < 0x80) return 1;
+    size_t length = s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : s[0] < 0xf5 ? 4 : 0;
+    for (size_t i = 1; i < length; i++)
+        if ((s[i] & 0xc0) != 0x80) return 0;
+    bool wrong = (s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) ||
+                 (s[0] == 0xf0 && s[1] < 0x90) || (s[0] == 0xf4 && s[1] > 0x8f);
+    return wrong ? 0 : length;
+}
+
+json_t *json_text(const char *text)
+{
+    static const char REPLACEMENT[] = "\xef\xbf\xbd";
+    char *clean = malloc(3 * strlen(text) + 1);
+    if (!clean) return NULL;
+    size_t used = 0;
+    while (*text) {
+        size_t length = utf8_length((const unsigned char *)text);
+        memcpy(clean + used, length ? text : REPLACEMENT, length ? length : 3);
+        used += length ? length : 3;
+        text += length ? length : 1;
+    }
+    json_t *string = json_stringn(clean, used);
+    free(clean);
+    return string;
+}
+
 enum status json_print(json_t *document)
 {
     if (!document) return fail("cannot write JSON on standard output: out of memory");
@@ -41,20 +72,42 @@ enum status json_print(json_t *document)
     return ok ? DONE : fail("cannot write standard output: %s", strerror(errno));
 }
 
+// The name beside which a file is written: shorter than the longest that folders take.
+static char *name_beside(const char *path)
+{
+    enum { SUFFIX_SIZE = 32 };
+    const char *slash = strrchr(path, '/');
+    size_t folder = slash ? (size_t)(slash + 1 - path) : 0, length = strlen(path);
+    if (length - folder > NAME_MAX - SUFFIX_SIZE) length = folder + NAME_MAX - SUFFIX_SIZE;
+    char *beside = malloc(length + SUFFIX_SIZE);
+    if (beside)
+        snprintf(beside, length + SUFFIX_SIZE, "%.*s.tmp-%ld", (int)length, path, (long)getpid());
+    return beside;
+}
+
+// 0, or errno. The temporary file is new: what has its name already is left alone.
+static int write_beside(const json_t *document, const char *beside, const char *path)
+{
+    FILE *file = fopen(beside, "wxe");
+    if (!file) return errno;
+    bool ok = json_dumpf(document, file, JSON_FLAGS) == 0 && fputc('\n', file) != EOF;
+    if (fclose(file) != 0) ok = false;
+    if (ok) ok = rename(beside, path) == 0;
+    int why = errno;
+    if (!ok) unlink(beside);
+    return ok ? 0 : why;
+}
+
 enum status json_write(const json_t *document, const char *path)
 {
     if (!document) return fail("cannot write %s: out of memory", path);
-    size_t size = strlen(path) + 32;
-    char *beside = malloc(size);
-    if (!beside) return fail("cannot write %s: out of memory", path);
-    snprintf(beside, size, "%s.tmp-%ld", path, (long)getpid());
-    FILE *file = fopen(beside, "wxe");
-    bool ok = file != NULL;
-    if (ok) ok = json_dumpf(document, file, JSON_FLAGS) == 0 && fputc('\n', file) != EOF;
-    if (file && fclose(file) != 0) ok = false;
-    if (ok) ok = rename(beside, path) == 0;
-    int why = errno;
-    if (!ok && file) unlink(beside);
+    char *real = realpath(path, NULL); // through symbolic links, which a rename would replace
+    const char *target = real ? real : path;
+    char *beside = name_beside(target);
+    interrupt_hold();
+    int why = beside ? write_beside(document, beside, target) : ENOMEM;
+    interrupt_release();
     free(beside);
-    return ok ? DONE : fail("cannot write %s: %s", path, strerror(why));
+    free(real);
+    return why == 0 ? DONE : fail("cannot write %s: %s", path, strerror(why));
 }

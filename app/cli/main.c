@@ -1,10 +1,15 @@
 // afterglow: finds the command and runs it. Exit status: 0 done, 1 it failed, 2 wrong usage.
 #include "commands.h"
+#include "interrupt.h"
 
 #include <afterglow/catalogue.h>
 
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct command *const commands[] = { &command_render, &command_info, &command_list,
                                                   &command_diff };
@@ -71,7 +76,19 @@ static enum status run(int count, char **words)
     return command->run(&arguments);
 }
 
+// Where a standard stream is closed, the first file that is opened would become it, and a note
+// would be written into the picture. What stands in for it fails as the closed one does.
+static void keep_standard_streams_apart(void)
+{
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && errno == EBADF)
+            (void)!open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 int main(int count, char **words)
 {
+    keep_standard_streams_apart();
+    signal(SIGXFSZ, SIG_IGN); // a file that grows too large is a failed write, and is cleaned up
+    interrupt_begin();
     return flush_output(run(count, words));
 }

@@ -1,5 +1,6 @@
 // Pictures: which layers, how a layer looks in a PNG, what an EXR says about itself.
 #include "output.h"
+#include "interrupt.h"
 #include "values.h"
 
 #include <errno.h>
@@ -25,7 +26,8 @@ enum status output_check(const char *path)
     if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is no folder", path, folder);
     if (access(length ? folder : ".", W_OK | X_OK) != 0)
         return fail("cannot write %s: %s", path, strerror(errno));
-    if (stat(path, &info) != 0) return DONE;
+    if (stat(path, &info) != 0)
+        return errno == ENOENT ? DONE : fail("cannot write %s: %s", path, strerror(errno));
     if (S_ISDIR(info.st_mode)) return fail("cannot write %s: it is a folder", path);
     if (!S_ISREG(info.st_mode)) return fail("cannot write %s: it is no regular file", path);
     return access(path, W_OK) == 0 ? DONE : fail("cannot write %s: %s", path, strerror(errno));
@@ -203,7 +205,9 @@ static enum status write_png(struct session *session, struct ag_renderer *render
     struct ag_image *image = NULL;
     enum ag_result result = ag_renderer_read(renderer, layer, &image);
     if (result == AG_OK) result = to_display(session, renderer, layer, &image);
+    interrupt_hold();
     if (result == AG_OK) result = ag_image_write_png(session->context, path, image);
+    interrupt_release();
     ag_image_destroy(session->context, image);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
@@ -232,8 +236,11 @@ static enum ag_result write_exr_layers(struct session *session, struct ag_render
         { "afterglow.seed", seed },
         { "afterglow.version", version },
     };
-    return ag_image_write_exr(session->context, path, layers, count, attributes,
-                              sizeof attributes / sizeof attributes[0]);
+    interrupt_hold();
+    result = ag_image_write_exr(session->context, path, layers, count, attributes,
+                                sizeof attributes / sizeof attributes[0]);
+    interrupt_release();
+    return result;
 }
 
 static enum status write_exr(struct session *session, struct ag_renderer *renderer,

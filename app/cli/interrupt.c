@@ -1,0 +1,56 @@
+// A thread waits for the signals that end the program, which all other threads block: it can take a
+// mutex, as a handler could not, and so waits for the end of a file that is being written.
+#include "interrupt.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stddef.h>
+
+static pthread_mutex_t writing = PTHREAD_MUTEX_INITIALIZER;
+static sigset_t ending;
+
+// As if nobody had waited for it: the parent sees which signal it was. The mutex stays taken.
+static void *wait_for_the_end(void *unused)
+{
+    int number = 0;
+    if (sigwait(&ending, &number) != 0) return unused;
+    pthread_mutex_lock(&writing);
+    sigset_t one;
+    sigemptyset(&one);
+    sigaddset(&one, number);
+    signal(number, SIG_DFL);
+    raise(number);
+    pthread_sigmask(SIG_UNBLOCK, &one, NULL);
+    return unused;
+}
+
+static void add_unless_ignored(int number)
+{
+    struct sigaction action;
+    if (sigaction(number, NULL, &action) == 0 && action.sa_handler != SIG_IGN)
+        sigaddset(&ending, number);
+}
+
+void interrupt_begin(void)
+{
+    pthread_t thread;
+    sigemptyset(&ending);
+    add_unless_ignored(SIGINT);
+    add_unless_ignored(SIGTERM);
+    add_unless_ignored(SIGHUP);
+    pthread_sigmask(SIG_BLOCK, &ending, NULL);
+    if (pthread_create(&thread, NULL, wait_for_the_end, NULL) == 0)
+        pthread_detach(thread);
+    else
+        pthread_sigmask(SIG_UNBLOCK, &ending, NULL); // they end it at once, then
+}
+
+void interrupt_hold(void)
+{
+    pthread_mutex_lock(&writing);
+}
+
+void interrupt_release(void)
+{
+    pthread_mutex_unlock(&writing);
+}
