@@ -1,0 +1,250 @@
+// What a frame costs: milliseconds of GPU time for each pass, median and 95th percentile, for each
+// sum of techniques side by side.
+//
+//     frame [--gi SUM]… [--frames N] [--size WxH] [--device NAME] [--csv FILE] [SCENE]…
+#include <afterglow/afterglow.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_SUMS = 8, MAX_SCENES = 64, MAX_PASSES = 64, MAX_FRAMES = 1000 };
+
+struct pass {
+    char name[48];
+    struct {
+        int count; // 0: the sum does not have the pass
+        double median_ms, p95_ms;
+    } by_sum[MAX_SUMS];
+};
+
+struct bench {
+    const char *sums[MAX_SUMS], *scenes[MAX_SCENES];
+    int sum_count, scene_count, width, height, frames;
+    const char *device_name, *csv_path;
+    FILE *csv;
+    struct ag_context *context;
+    struct ag_device *device;
+    struct pass passes[MAX_PASSES]; // of the scene at hand
+    int pass_count;
+};
+
+// ---- measuring
+
+static struct pass *pass_of(struct bench *bench, const char *name)
+{
+    for (int i = 0; i < bench->pass_count; i++)
+        if (strcmp(bench->passes[i].name, name) == 0) return &bench->passes[i];
+    if (bench->pass_count == MAX_PASSES) return NULL;
+    struct pass *pass = &bench->passes[bench->pass_count++];
+    *pass = (struct pass){ 0 };
+    snprintf(pass->name, sizeof pass->name, "%s", name);
+    return pass;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// The middle, and the least value that 95 % do not exceed, as `afterglow render --stats` has them.
+static void summarize(struct pass *pass, int sum, double *ms, int count)
+{
+    if (!pass || count == 0) return;
+    qsort(ms, (size_t)count, sizeof *ms, by_value);
+    pass->by_sum[sum].count = count;
+    pass->by_sum[sum].median_ms = 0.5 * (ms[(count - 1) / 2] + ms[count / 2]);
+    pass->by_sum[sum].p95_ms = ms[(95 * count + 99) / 100 - 1];
+}
+
+// The first frame is left out: it pays for what later ones find ready.
+static enum ag_result render_frames(struct bench *bench, struct ag_renderer *renderer,
+                                    const struct ag_frame_desc *frame, int sum)
+{
+    static double ms[MAX_PASSES][MAX_FRAMES];
+    int counts[MAX_PASSES] = { 0 };
+    for (int f = 0; f <= bench->frames; f++) {
+        struct ag_timing timings[MAX_PASSES];
+        enum ag_result result = ag_renderer_render(renderer, frame);
+        if (result == AG_OK) result = ag_renderer_wait(renderer);
+        if (result != AG_OK) return result;
+        int count = f > 0 ? ag_renderer_timings(renderer, timings, MAX_PASSES) : 0;
+        for (int i = 0; i < count && i < MAX_PASSES; i++) {
+            struct pass *pass = pass_of(bench, timings[i].name);
+            if (!pass) continue;
+            int p = (int)(pass - bench->passes);
+            if (counts[p] < MAX_FRAMES) ms[p][counts[p]++] = timings[i].ms;
+        }
+    }
+    for (int p = 0; p < bench->pass_count; p++) summarize(&bench->passes[p], sum, ms[p], counts[p]);
+    return AG_OK;
+}
+
+static enum ag_result measure_sum(struct bench *bench, struct ag_scene *scene,
+                                  const struct ag_frame_desc *frame, int sum)
+{
+    struct ag_renderer_desc desc;
+    ag_renderer_desc_default(&desc);
+    desc.width = bench->width;
+    desc.height = bench->height;
+    desc.gi = bench->sums[sum];
+    struct ag_renderer *renderer = NULL;
+    enum ag_result result = ag_renderer_create(bench->device, scene, &desc, &renderer);
+    if (result == AG_OK) result = render_frames(bench, renderer, frame, sum);
+    ag_renderer_destroy(renderer);
+    return result;
+}
+
+// ---- what comes out
+
+static void print_table(const struct bench *bench, const char *scene)
+{
+    struct ag_device_info device;
+    ag_device_get_info(bench->device, &device);
+    printf("%s, %dx%d, %d frames on %s; ms, median and p95\n", scene, bench->width, bench->height,
+           bench->frames, device.name);
+    printf("%-24s", "");
+    for (int s = 0; s < bench->sum_count; s++) printf("  %18.18s", bench->sums[s]);
+    putchar('\n');
+    for (int p = 0; p < bench->pass_count; p++) {
+        const struct pass *pass = &bench->passes[p];
+        printf("%-24s", pass->name);
+        for (int s = 0; s < bench->sum_count; s++) {
+            if (pass->by_sum[s].count > 0)
+                printf("  %9.3f%9.3f", pass->by_sum[s].median_ms, pass->by_sum[s].p95_ms);
+            else
+                printf("  %9s%9s", "-", "-");
+        }
+        putchar('\n');
+    }
+    putchar('\n');
+    fflush(stdout);
+}
+
+static void write_csv_text(FILE *file, const char *text)
+{
+    fputc('"', file);
+    for (; *text; text++) {
+        if (*text == '"') fputc('"', file);
+        fputc(*text, file);
+    }
+    fputs("\",", file);
+}
+
+static void write_csv(const struct bench *bench, const char *scene)
+{
+    for (int s = 0; s < bench->sum_count; s++) {
+        for (int p = 0; p < bench->pass_count; p++) {
+            const struct pass *pass = &bench->passes[p];
+            if (pass->by_sum[s].count == 0) continue;
+            write_csv_text(bench->csv, scene);
+            write_csv_text(bench->csv, bench->sums[s]);
+            write_csv_text(bench->csv, pass->name);
+            fprintf(bench->csv, "%d,%d,%d,%.6f,%.6f\n", bench->width, bench->height,
+                    pass->by_sum[s].count, pass->by_sum[s].median_ms, pass->by_sum[s].p95_ms);
+        }
+    }
+}
+
+// ---- the run
+
+static enum ag_result measure_scene(struct bench *bench, const char *name)
+{
+    struct ag_scene *scene = NULL;
+    struct ag_frame_desc frame;
+    ag_frame_desc_default(&frame);
+    bench->pass_count = 0;
+    enum ag_result result = ag_scene_load(bench->context, name, &scene);
+    if (result == AG_OK) result = ag_scene_add_default_lighting(scene, NULL);
+    if (result == AG_OK) result = ag_scene_default_camera(scene, 0, 0.0, &frame.camera, NULL);
+    for (int s = 0; s < bench->sum_count && result == AG_OK; s++)
+        result = measure_sum(bench, scene, &frame, s);
+    ag_scene_destroy(scene);
+    if (result != AG_OK) return result;
+    print_table(bench, name);
+    if (bench->csv) write_csv(bench, name);
+    return AG_OK;
+}
+
+static enum ag_result run(struct bench *bench)
+{
+    struct ag_device_desc desc;
+    ag_device_desc_default(&desc);
+    desc.device = bench->device_name;
+    enum ag_result result = ag_device_create(bench->context, &desc, &bench->device);
+    if (bench->csv) fputs("scene,gi,pass,width,height,frames,median_ms,p95_ms\n", bench->csv);
+    for (int i = 0; i < bench->scene_count && result == AG_OK; i++)
+        result = measure_scene(bench, bench->scenes[i]);
+    return result;
+}
+
+static bool parse_option(struct bench *bench, const char *name, const char *value)
+{
+    char rest;
+    if (strcmp(name, "--gi") == 0 && bench->sum_count < MAX_SUMS)
+        bench->sums[bench->sum_count++] = value;
+    else if (strcmp(name, "--frames") == 0)
+        return sscanf(value, "%d%c", &bench->frames, &rest) == 1 && bench->frames >= 1 &&
+               bench->frames <= MAX_FRAMES;
+    else if (strcmp(name, "--size") == 0)
+        return sscanf(value, "%dx%d%c", &bench->width, &bench->height, &rest) == 2;
+    else if (strcmp(name, "--device") == 0)
+        bench->device_name = value;
+    else if (strcmp(name, "--csv") == 0)
+        bench->csv_path = value;
+    else
+        return false;
+    return true;
+}
+
+static bool parse(struct bench *bench, int argc, char **argv)
+{
+    for (int i = 1; i < argc; i++) {
+        if (strncmp(argv[i], "--", 2) == 0) {
+            if (i + 1 == argc || !parse_option(bench, argv[i], argv[i + 1])) return false;
+            i++;
+        } else if (bench->scene_count < MAX_SCENES) {
+            bench->scenes[bench->scene_count++] = argv[i];
+        } else {
+            return false;
+        }
+    }
+    if (bench->sum_count == 0) {
+        static const char *const usual[] = { "none", "ambient", "lpv" };
+        for (int i = 0; i < 3; i++) bench->sums[bench->sum_count++] = usual[i];
+    }
+    if (bench->scene_count == 0) {
+        bench->scenes[bench->scene_count++] = "@atrium";
+        bench->scenes[bench->scene_count++] = "@cornell:light=point";
+    }
+    return true;
+}
+
+int main(int argc, char **argv)
+{
+    static struct bench bench = { .width = 640, .height = 360, .frames = 20 };
+    if (!parse(&bench, argc, argv)) {
+        fprintf(stderr,
+                "usage: frame [--gi SUM]... [--frames 1..%d] [--size WxH] [--device NAME] "
+                "[--csv FILE] [SCENE]...\n",
+                MAX_FRAMES);
+        return 2;
+    }
+    if (bench.csv_path && !(bench.csv = fopen(bench.csv_path, "w"))) {
+        perror(bench.csv_path);
+        return 1;
+    }
+    enum ag_result result = ag_context_create(NULL, &bench.context);
+    if (result == AG_OK) result = run(&bench);
+    if (result != AG_OK)
+        fprintf(stderr, "frame: %s (%s)\n", ag_context_last_error(bench.context),
+                ag_result_string(result));
+    ag_device_destroy(bench.device);
+    ag_context_destroy(bench.context);
+    if (bench.csv && (ferror(bench.csv) | fclose(bench.csv))) {
+        perror(bench.csv_path);
+        return 1;
+    }
+    return result == AG_OK ? 0 : 1;
+}
