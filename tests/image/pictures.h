@@ -21,3 +21,27 @@ static inline void flat_picture(struct image *out, int width, int height, int ch
     for (size_t i = 0; i < (size_t)width * (size_t)height * (size_t)channels; i++)
         out->pixels[i] = value;
 }
+
+// Display values, 0…1, of smooth shapes and noise; another seed is another picture.
+static inline void display_picture(struct image *out, int width, int height, int channels, int seed)
+{
+    CHECK(image_init(out, test_host(), width, height, channels));
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            for (int c = 0; c < channels; c++) {
+                uint32_t word = (uint32_t)(((y * width + x) * 4 + c) * 64 + seed) * 2654435761u;
+                word ^= word >> 15, word *= 2246822519u, word ^= word >> 13;
+                float shape = (float)((x / 7 + y / 5 + c + seed) % 3) / 3.0f;
+                image_at(out, x, y)[c] = 0.6f * shape + 0.4f * (float)(word >> 8) / 16777216.0f;
+            }
+}
+
+// image = share · other + (1 − share) · image
+static inline void blend(struct image *image, const struct image *other, float share)
+{
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        for (size_t c = 0; c < 3; c++) {
+            float *to = &image->pixels[i * (size_t)image->channels + c];
+            *to += share * (other->pixels[i * (size_t)other->channels + c] - *to);
+        }
+}

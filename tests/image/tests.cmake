@@ -4,6 +4,8 @@ ag_test(image/png USES image LIBRARIES PkgConfig::PNG)
 ag_test(image/tonemap USES image)
 target_sources(test_image_tonemap PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/image/tonemap_twin.cpp)
 ag_test(image/metrics USES image)
+ag_test(image/ssim USES image)
+ag_test(image/flip USES image LIBRARIES OpenMP::OpenMP_C)
 ag_test(image/damaged USES image)
 ag_test(image/scarce USES image)
 
