@@ -40,11 +40,17 @@ static enum ag_result compare(struct bench *bench, struct ag_renderer *renderer)
     if (result == AG_OK) result = ag_renderer_read(renderer, "indirect", &indirect);
     if (result == AG_OK && !bench->direct)
         result = ag_renderer_read(renderer, "direct", &bench->direct);
-    if (result == AG_OK) result = ag_image_metrics(bench->context, color, bench->direct, &metrics);
+    struct ag_compare_desc desc;
+    ag_compare_desc_default(&desc);
+    desc.radiance = true;
+    if (result == AG_OK) desc.ev = ag_image_auto_exposure(bench->direct);
+    if (result == AG_OK)
+        result = ag_image_metrics(bench->context, color, bench->direct, &desc, &metrics);
     if (result == AG_OK) {
         const struct ag_image_layer layers[] = { { "color", color }, { "indirect", indirect } };
         const struct ag_attribute how = { "afterglow.gi", ag_renderer_gi(renderer) };
-        printf("    mean absolute difference from direct light: %.4g cd/m2\n", metrics.mae);
+        printf("    mean absolute difference from direct light: %.4g cd/m2, FLIP %.3f\n",
+               metrics.mae, metrics.flip);
         result = ag_image_write_exr(bench->context, bench->out, layers, 2, &how, 1);
     }
     ag_image_destroy(bench->context, color);

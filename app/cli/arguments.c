@@ -174,6 +174,35 @@ static bool set_map(struct arguments *a, const char *value, const char **why)
     return has_extension(value, "png");
 }
 
+static bool set_metric(struct arguments *a, const char *value, const char **why)
+{
+    static const char *const names[] = { "mae", "mse", "relmse", "ssim", "flip", "flip_hdr" };
+    *why = "it must be mae, mse, relmse, ssim, flip or flip_hdr";
+    for (int i = 0; i < (int)(sizeof names / sizeof names[0]); i++) {
+        if (strcmp(value, names[i]) != 0) continue;
+        a->metric = (enum ag_difference)(AG_DIFFERENCE_ABSOLUTE + i);
+        return true;
+    }
+    return false;
+}
+
+static bool set_mask(struct arguments *a, const char *value, const char **why)
+{
+    size_t length = strcspn(value, "=");
+    *why = "it must be the name of a layer, or LAYER=THRESHOLD";
+    if (length == 0 || length >= sizeof a->mask_layer) return false;
+    snprintf(a->mask_layer, sizeof a->mask_layer, "%.*s", (int)length, value);
+    a->mask_threshold = 0.0;
+    return !value[length] || value_number(value + length + 1, &a->mask_threshold);
+}
+
+static bool set_ignore_nan(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->ignore_nan = true;
+    return true;
+}
+
 static bool set_json(struct arguments *a, const char *value, const char **why)
 {
     (void)value, (void)why;

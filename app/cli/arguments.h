@@ -3,6 +3,7 @@
 
 #include "messages.h"
 
+#include <afterglow/image.h>
 #include <afterglow/scene.h>
 
 enum command_bit { RENDER = 1, INFO = 2, LIST = 4, DIFF = 8 };
@@ -32,6 +33,10 @@ struct arguments {
     float sky[3];
     // diff
     const char *layer, *map;
+    enum ag_difference metric; // of the map
+    char mask_layer[64];       // "": none
+    double mask_threshold;
+    bool ignore_nan;
 };
 
 struct command {

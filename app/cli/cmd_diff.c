@@ -5,12 +5,27 @@
 #include "output.h"
 #include "values.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
 static bool is_image(const char *path)
 {
     return has_extension(path, "png") || has_extension(path, "exr");
+}
+
+// Of two PNG files: what only an EXR has.
+static enum status check_png_usage(const struct arguments *a)
+{
+    if (a->layer)
+        return wrong_usage("cannot use --layer %s: %s has no layers", a->layer, a->positional[0]);
+    if (a->mask_layer[0])
+        return wrong_usage("cannot use --mask %s: %s has no layers", a->mask_layer,
+                           a->positional[1]);
+    if (a->has_exposure) return wrong_usage("cannot use --exposure: a .png is exposed already");
+    if (a->metric == AG_DIFFERENCE_FLIP_HDR)
+        return wrong_usage("cannot use --metric flip_hdr: it takes radiance, as .exr files hold");
+    return DONE;
 }
 
 static enum status check_usage(const struct arguments *a)
@@ -23,9 +38,7 @@ static enum status check_usage(const struct arguments *a)
         return wrong_usage(
             "cannot compare %s with %s: an .exr holds radiance, a .png exposed display values",
             first, second);
-    if (a->layer && !has_extension(first, "exr"))
-        return wrong_usage("cannot use --layer %s: %s has no layers", a->layer, first);
-    return DONE;
+    return has_extension(first, "exr") ? DONE : check_png_usage(a);
 }
 
 // One channel three times, so that single-channel layers can be compared like any other.
@@ -44,7 +57,7 @@ static enum ag_result spread(struct ag_context *context, struct ag_image **image
     return AG_OK;
 }
 
-static size_t count_not_finite(const struct ag_image *image)
+static size_t count_not_finite(const struct ag_image *image, const struct ag_image *mask)
 {
     size_t count = 0, channels = (size_t)image->channels;
     size_t pixels = (size_t)image->width * (size_t)image->height;
@@ -52,88 +65,164 @@ static size_t count_not_finite(const struct ag_image *image)
         bool finite = true;
         for (size_t c = 0; c < channels; c++)
             finite &= isfinite(image->pixels[channels * i + c]) != 0;
-        count += !finite;
+        count += !finite && (!mask || mask->pixels[i] > 0.0f);
     }
     return count;
 }
 
 // What the files hold is no matter of usage: all failures here are FAILED.
-static enum status load(struct session *session, const char *path, struct ag_image **out)
+static enum status load(struct session *session, const char *path, const char *layer,
+                        struct ag_image **out)
 {
-    enum ag_result result = ag_image_read(session->context, path, session->arguments->layer, out);
-    if (result == AG_OK) result = spread(session->context, out);
-    if (result != AG_OK) {
-        fail_library(session->context, result);
-        return FAILED;
-    }
-    size_t bad = count_not_finite(*out);
-    if (bad) return fail("cannot compare %s: %zu of its pixels are NaN or infinite", path, bad);
+    enum ag_result result = ag_image_read(session->context, path, layer, out);
+    if (result == AG_OK) return DONE;
+    fail_library(session->context, result);
+    return FAILED;
+}
+
+// One channel of 0 and 1: where the mask's layer is above the threshold.
+static enum status load_mask(struct session *session, struct ag_image **out)
+{
+    const struct arguments *arguments = session->arguments;
+    struct ag_image *layer = NULL;
+    enum status status = load(session, arguments->positional[1], arguments->mask_layer, &layer);
+    if (status != DONE) return status;
+    enum ag_result result = ag_image_create(session->context, layer->width, layer->height, 1, out);
+    size_t channels = (size_t)layer->channels, pixels = 0;
+    if (result == AG_OK) pixels = (size_t)layer->width * (size_t)layer->height;
+    for (size_t i = 0; i < pixels; i++)
+        for (size_t c = 0; c < channels; c++)
+            if ((double)layer->pixels[channels * i + c] > arguments->mask_threshold)
+                (*out)->pixels[i] = 1.0f;
+    ag_image_destroy(session->context, layer);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+struct pair {
+    struct ag_image *a, *b, *mask; // mask: NULL without --mask
+    struct ag_compare_desc desc;
+};
+
+static enum status check_values(const struct arguments *arguments, const struct pair *pair, int i)
+{
+    const char *path = arguments->positional[i];
+    size_t bad = count_not_finite(i ? pair->b : pair->a, pair->mask);
+    if (!bad) return DONE;
+    if (!arguments->ignore_nan)
+        return fail("cannot compare %s: %zu of its pixels are NaN or infinite", path, bad);
+    note("%s: %zu of its pixels are NaN or infinite and do not count", path, bad);
     return DONE;
 }
 
-static json_t *metrics_json(const struct ag_metrics *m, const struct ag_image *image)
+static enum status check_sizes(const struct arguments *arguments, const struct pair *pair)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:[fff], s:[fff], s:i, s:i}", "mse", json_double(m->mse),
-                     "relmse", json_double(m->relmse), "mae", json_double(m->mae), "psnr",
-                     json_double(m->psnr), "mean_a", m->mean_a[0], m->mean_a[1], m->mean_a[2],
-                     "mean_b", m->mean_b[0], m->mean_b[1], m->mean_b[2], "width", image->width,
-                     "height", image->height);
+    const struct ag_image *a = pair->a, *b = pair->b;
+    if (a->width == b->width && a->height == b->height) return DONE;
+    return fail("cannot compare %s with %s: %dx%d and %dx%d are not the same size",
+                arguments->positional[0], arguments->positional[1], a->width, a->height, b->width,
+                b->height);
 }
 
-static void print_metrics(const struct ag_metrics *m, const struct ag_image *image)
+static enum status load_pair(struct session *session, struct pair *pair)
 {
-    printf("size    %dx%d\nmse     %.6g\nrelmse  %.6g\nmae     %.6g\npsnr    %.4g dB\n",
-           image->width, image->height, m->mse, m->relmse, m->mae, m->psnr);
+    const struct arguments *arguments = session->arguments;
+    enum status status = load(session, arguments->positional[0], arguments->layer, &pair->a);
+    if (status == DONE)
+        status = load(session, arguments->positional[1], arguments->layer, &pair->b);
+    if (status == DONE) status = check_sizes(arguments, pair);
+    if (status == DONE && arguments->mask_layer[0]) status = load_mask(session, &pair->mask);
+    for (int i = 0; i < 2 && status == DONE; i++) status = check_values(arguments, pair, i);
+    if (status != DONE) return status;
+    enum ag_result result = spread(session->context, &pair->a);
+    if (result == AG_OK) result = spread(session->context, &pair->b);
+    if (result != AG_OK) return fail_library(session->context, result);
+    ag_compare_desc_default(&pair->desc);
+    pair->desc.mask = pair->mask;
+    pair->desc.ignore_not_finite = arguments->ignore_nan;
+    pair->desc.radiance = has_extension(arguments->positional[1], "exr");
+    pair->desc.ev =
+        arguments->has_exposure ? arguments->exposure_ev : ag_image_auto_exposure(pair->b);
+    return DONE;
+}
+
+// Keys for EXR files and for masks come after those that every comparison has.
+static json_t *metrics_json(const struct ag_metrics *m, const struct arguments *arguments,
+                            const struct pair *pair)
+{
+    json_t *document = json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:[fff], s:[fff], s:i, s:i}", "mse", json_double(m->mse),
+        "relmse", json_double(m->relmse), "mae", json_double(m->mae), "psnr", json_double(m->psnr),
+        "ssim", json_double(m->ssim), "flip", json_double(m->flip), "mean_a", m->mean_a[0],
+        m->mean_a[1], m->mean_a[2], "mean_b", m->mean_b[0], m->mean_b[1], m->mean_b[2], "width",
+        pair->a->width, "height", pair->a->height);
+    bool ok = document != NULL;
+    if (ok && pair->desc.radiance)
+        ok = json_object_set_new(document, "flip_hdr", json_double(m->flip_hdr)) == 0 &&
+             json_object_set_new(document, "exposure_ev", json_float(pair->desc.ev)) == 0;
+    if (ok && (pair->mask || arguments->ignore_nan))
+        ok = json_object_set_new(document, "pixels", json_integer((json_int_t)m->counted)) == 0;
+    if (ok) return document;
+    json_decref(document);
+    return NULL;
+}
+
+static void print_metrics(const struct ag_metrics *m, const struct arguments *arguments,
+                          const struct pair *pair)
+{
+    printf("size    %dx%d\n", pair->a->width, pair->a->height);
+    if (pair->mask || arguments->ignore_nan) printf("pixels  %" PRIu64 "\n", m->counted);
+    printf("mse     %.6g\nrelmse  %.6g\nmae     %.6g\npsnr    %.4g dB\n", m->mse, m->relmse, m->mae,
+           m->psnr);
+    printf("ssim    %.6g\nflip    %.6g\n", m->ssim, m->flip);
+    if (pair->desc.radiance)
+        printf("flip_hdr %.6g\n(ssim and flip are seen at EV %.4g)\n", m->flip_hdr,
+               (double)pair->desc.ev);
     printf("mean a  %.6g, %.6g, %.6g\nmean b  %.6g, %.6g, %.6g\n", m->mean_a[0], m->mean_a[1],
            m->mean_a[2], m->mean_b[0], m->mean_b[1], m->mean_b[2]);
 }
 
-static enum status write_map(struct session *session, const struct ag_image *a,
-                             const struct ag_image *b)
+static enum status write_map(struct session *session, const struct pair *pair)
 {
+    const struct arguments *arguments = session->arguments;
     struct ag_image *map = NULL;
-    enum ag_result result = ag_image_error_map(session->context, a, b, 0.0f, &map);
+    enum ag_result result = ag_image_error_map(session->context, pair->a, pair->b, &pair->desc,
+                                               arguments->metric, 0.0f, &map);
     interrupt_hold();
-    if (result == AG_OK)
-        result = ag_image_write_png(session->context, session->arguments->map, map);
+    if (result == AG_OK) result = ag_image_write_png(session->context, arguments->map, map);
     interrupt_release();
     ag_image_destroy(session->context, map);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
-static enum status compare(struct session *session, const struct ag_image *a,
-                           const struct ag_image *b)
+static enum status compare(struct session *session, const struct pair *pair)
 {
     const struct arguments *arguments = session->arguments;
-    if (a->width != b->width || a->height != b->height)
-        return fail("cannot compare %s with %s: %dx%d and %dx%d are not the same size",
-                    arguments->positional[0], arguments->positional[1], a->width, a->height,
-                    b->width, b->height);
     struct ag_metrics metrics;
-    enum ag_result result = ag_image_metrics(session->context, a, b, &metrics);
+    enum ag_result result =
+        ag_image_metrics(session->context, pair->a, pair->b, &pair->desc, &metrics);
     if (result != AG_OK) {
         fail_library(session->context, result);
         return FAILED;
     }
-    enum status status = arguments->map ? write_map(session, a, b) : DONE;
+    enum status status = arguments->map ? write_map(session, pair) : DONE;
     if (status != DONE) return status;
-    if (arguments->json) return json_print(metrics_json(&metrics, a));
-    print_metrics(&metrics, a);
+    if (arguments->json) return json_print(metrics_json(&metrics, arguments, pair));
+    print_metrics(&metrics, arguments, pair);
     return DONE;
 }
 
 static enum status diff(const struct arguments *arguments)
 {
     struct session session = { 0 };
-    struct ag_image *a = NULL, *b = NULL;
+    struct pair pair = { 0 };
     enum status status = check_usage(arguments);
     if (status == DONE && arguments->map) status = output_check(arguments->map);
     if (status == DONE) status = session_begin(&session, arguments);
-    if (status == DONE) status = load(&session, arguments->positional[0], &a);
-    if (status == DONE) status = load(&session, arguments->positional[1], &b);
-    if (status == DONE) status = compare(&session, a, b);
-    ag_image_destroy(session.context, a);
-    ag_image_destroy(session.context, b);
+    if (status == DONE) status = load_pair(&session, &pair);
+    if (status == DONE) status = compare(&session, &pair);
+    ag_image_destroy(session.context, pair.a);
+    ag_image_destroy(session.context, pair.b);
+    ag_image_destroy(session.context, pair.mask);
     session_end(&session);
     return status;
 }
@@ -148,9 +237,13 @@ const struct command command_diff = {
             "squared error,\n"
             "the same relative to B, mean absolute error, peak signal-to-noise ratio (for values "
             "in 0 to 1),\n"
-            "and the mean colours.\n",
+            "structural similarity (1 for equal images), FLIP (0 for equal images, to 1) and the "
+            "mean colours.\n"
+            "For ssim and flip two .exr are shown alike: with one exposure, through the tone "
+            "mapper.\n",
     .examples = "  afterglow diff lpv.exr reference.exr\n"
                 "  afterglow diff lpv.exr reference.exr --layer indirect --json\n"
-                "  afterglow diff before.png after.png --map error.png\n",
+                "  afterglow diff before.png after.png --map error.png --metric flip\n"
+                "  afterglow diff lpv.exr reference.exr --mask depth --ignore-nan\n",
     .run = diff,
 };

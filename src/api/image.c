@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "image/exr.h"
+#include "image/flip.h"
 #include "image/image.h"
 #include "image/metrics.h"
 #include "image/png_file.h"
@@ -182,32 +183,77 @@ enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag
     return give(context, ok, &image, out);
 }
 
+void ag_compare_desc_default(struct ag_compare_desc *desc)
+{
+    if (!desc) return;
+    *desc = (struct ag_compare_desc){ .pixels_per_degree = FLIP_PIXELS_PER_DEGREE };
+}
+
+// The same, as the module sees it; `mask` is room for the mask's view.
+static bool options_of(struct ag_context *context, const struct ag_compare_desc *desc,
+                       struct image *mask, struct metrics_options *out)
+{
+    struct ag_compare_desc defaults;
+    ag_compare_desc_default(&defaults);
+    if (!desc) desc = &defaults;
+    if (desc->mask && !is_whole(desc->mask))
+        return host_fail(&context->host, FAIL_ARGUMENT,
+                         "cannot compare images: the mask is not valid");
+    if (!isfinite(desc->ev))
+        return host_fail(&context->host, FAIL_ARGUMENT, "cannot compare images: ev is not finite");
+    if (desc->mask) *mask = view_of(desc->mask);
+    *out = (struct metrics_options){ .radiance = desc->radiance,
+                                     .ev = desc->ev,
+                                     .mask = desc->mask ? mask : NULL,
+                                     .ignore_not_finite = desc->ignore_not_finite,
+                                     .pixels_per_degree = desc->pixels_per_degree };
+    return true;
+}
+
 enum ag_result ag_image_metrics(struct ag_context *context, const struct ag_image *a,
-                                const struct ag_image *b, struct ag_metrics *out)
+                                const struct ag_image *b, const struct ag_compare_desc *desc,
+                                struct ag_metrics *out)
 {
     AG_REQUIRE(context, context, "context is NULL");
     AG_REQUIRE(context, out, "out is NULL");
     AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
-    struct image view_a = view_of(a), view_b = view_of(b);
-    struct metrics metrics = { 0 };
-    bool ok = metrics_compute(&context->host, &view_a, &view_b, &metrics);
-    *out = (struct ag_metrics){
-        .mse = metrics.mse, .mae = metrics.mae, .relmse = metrics.relmse, .psnr = metrics.psnr
-    };
-    memcpy(out->mean_a, metrics.mean_a, sizeof out->mean_a);
-    memcpy(out->mean_b, metrics.mean_b, sizeof out->mean_b);
+    struct image view_a = view_of(a), view_b = view_of(b), mask;
+    struct metrics_options options;
+    struct metrics m = { 0 };
+    bool ok = options_of(context, desc, &mask, &options) &&
+              metrics_compute(&context->host, &view_a, &view_b, &options, &m);
+    *out = (struct ag_metrics){ .mse = m.mse,
+                                .mae = m.mae,
+                                .relmse = m.relmse,
+                                .psnr = m.psnr,
+                                .ssim = m.ssim,
+                                .flip = m.flip,
+                                .flip_hdr = m.flip_hdr,
+                                .counted = m.counted,
+                                .ignored = m.ignored };
+    memcpy(out->mean_a, m.mean_a, sizeof out->mean_a);
+    memcpy(out->mean_b, m.mean_b, sizeof out->mean_b);
     return api_done(context, ok);
 }
 
+_Static_assert((int)AG_DIFFERENCE_FLIP_HDR == (int)METRICS_FLIP_HDR, "one order in both");
+
 enum ag_result ag_image_error_map(struct ag_context *context, const struct ag_image *a,
-                                  const struct ag_image *b, float full, struct ag_image **out)
+                                  const struct ag_image *b, const struct ag_compare_desc *desc,
+                                  enum ag_difference difference, float full, struct ag_image **out)
 {
     AG_REQUIRE(context, out, "out is NULL");
     *out = NULL;
     AG_REQUIRE(context, context, "context is NULL");
     AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
+    AG_REQUIRE(context,
+               difference >= AG_DIFFERENCE_ABSOLUTE && difference <= AG_DIFFERENCE_FLIP_HDR,
+               "difference %d is not one of its names", (int)difference);
     AG_REQUIRE(context, isfinite(full), "full is not finite");
-    struct image view_a = view_of(a), view_b = view_of(b), image = { 0 };
-    bool ok = metrics_error_map(&context->host, &view_a, &view_b, full, &image);
+    struct image view_a = view_of(a), view_b = view_of(b), mask, image = { 0 };
+    struct metrics_options options;
+    bool ok = options_of(context, desc, &mask, &options) &&
+              metrics_error_map(&context->host, &view_a, &view_b, &options,
+                                (enum metrics_error)difference, full, &image);
     return give(context, ok, &image, out);
 }

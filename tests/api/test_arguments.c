@@ -40,6 +40,7 @@ TEST(default_functions_accept_nothing)
     ag_frame_desc_default(NULL);
     ag_material_desc_default(NULL);
     ag_light_desc_default(NULL, AG_LIGHT_SUN);
+    ag_compare_desc_default(NULL);
 }
 
 TEST(null_instead_of_a_context_is_refused)
@@ -63,8 +64,8 @@ TEST(null_instead_of_a_context_is_refused)
     CHECK_REFUSED(NULL, ag_image_write_exr(NULL, "a.exr", NULL, 0, NULL, 0));
     CHECK_REFUSED(NULL, ag_image_tonemap(NULL, NULL, 0, &image));
     CHECK_REFUSED(NULL, ag_image_side_by_side(NULL, NULL, NULL, 0, &image));
-    CHECK_REFUSED(NULL, ag_image_metrics(NULL, NULL, NULL, &metrics));
-    CHECK_REFUSED(NULL, ag_image_error_map(NULL, NULL, NULL, 0, &image));
+    CHECK_REFUSED(NULL, ag_image_metrics(NULL, NULL, NULL, NULL, &metrics));
+    CHECK_REFUSED(NULL, ag_image_error_map(NULL, NULL, NULL, NULL, AG_DIFFERENCE_FLIP, 0, &image));
     CHECK_REFUSED(NULL, ag_renderer_estimate_memory(NULL, NULL, 0, &bytes));
     CHECK_STRING(ag_context_last_error(NULL), "");
     (void)context;
@@ -181,9 +182,41 @@ TEST(image_sizes_out_of_range_are_refused)
     assert_int_equal(ag_image_create(context, 2, 1, 3, &image), AG_OK);
     image->width = 0; // a caller's mistake later on
     struct ag_metrics metrics;
-    CHECK_REFUSED(context, ag_image_metrics(context, image, image, &metrics));
+    CHECK_REFUSED(context, ag_image_metrics(context, image, image, NULL, &metrics));
     CHECK_REFUSED(context, ag_image_write_png(context, test_path("a.png"), image));
     ag_image_destroy(context, image);
+    ag_context_destroy(context);
+}
+
+TEST(comparisons_that_make_no_sense_are_refused)
+{
+    struct ag_context *context = open_context();
+    struct ag_image *a = NULL, *small = NULL, *map = (struct ag_image *)1;
+    struct ag_metrics metrics;
+    struct ag_compare_desc desc;
+    assert_int_equal(ag_image_create(context, 4, 3, 3, &a), AG_OK);
+    assert_int_equal(ag_image_create(context, 3, 4, 1, &small), AG_OK);
+    ag_compare_desc_default(&desc);
+    assert_int_equal(ag_image_metrics(context, a, a, &desc, &metrics), AG_OK);
+    assert_int_equal((int)metrics.counted, 12);
+    CHECK(metrics.ssim == 1.0 && metrics.flip == 0.0 && isnan(metrics.flip_hdr));
+    CHECK_REFUSED(context,
+                  ag_image_error_map(context, a, a, &desc, AG_DIFFERENCE_FLIP_HDR, 0, &map));
+    assert_null(map);
+    CHECK_REFUSED(context,
+                  ag_image_error_map(context, a, a, &desc, (enum ag_difference)6, 0, &map));
+    desc.mask = small;
+    CHECK_REFUSED(context, ag_image_metrics(context, a, a, &desc, &metrics));
+    desc.mask = a; // black: no pixel counts
+    CHECK_REFUSED(context, ag_image_metrics(context, a, a, &desc, &metrics));
+    desc.mask = NULL;
+    desc.ev = NAN;
+    CHECK_REFUSED(context, ag_image_metrics(context, a, a, &desc, &metrics));
+    desc.ev = 0;
+    desc.pixels_per_degree = 1e6f;
+    CHECK_REFUSED(context, ag_image_metrics(context, a, a, &desc, &metrics));
+    ag_image_destroy(context, a);
+    ag_image_destroy(context, small);
     ag_context_destroy(context);
 }
 

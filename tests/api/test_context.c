@@ -103,6 +103,9 @@ static enum ag_result use_everything(struct ag_context *context, const char *sce
     struct ag_scene_info info;
     struct ag_camera camera;
     struct ag_metrics metrics;
+    struct ag_compare_desc compare;
+    ag_compare_desc_default(&compare);
+    compare.radiance = true;
     char png[512], exr[512];
     snprintf(png, sizeof png, "%s.png", folder);
     snprintf(exr, sizeof exr, "%s.exr", folder);
@@ -128,8 +131,9 @@ static enum ag_result use_everything(struct ag_context *context, const char *sce
     if (result == AG_OK) result = ag_image_write_exr(context, exr, &layer, 1, NULL, 0);
     if (result == AG_OK) result = ag_image_read(context, exr, NULL, &read);
     if (result == AG_OK) result = ag_image_side_by_side(context, image, read, 1, &pair);
-    if (result == AG_OK) result = ag_image_metrics(context, image, read, &metrics);
-    if (result == AG_OK) result = ag_image_error_map(context, image, read, 0, &map);
+    if (result == AG_OK) result = ag_image_metrics(context, image, read, &compare, &metrics);
+    if (result == AG_OK)
+        result = ag_image_error_map(context, image, read, &compare, AG_DIFFERENCE_FLIP, 0, &map);
     ag_image_destroy(context, map);
     ag_image_destroy(context, pair);
     ag_image_destroy(context, read);

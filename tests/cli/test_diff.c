@@ -43,6 +43,9 @@ TEST(a_constant_difference_has_the_errors_of_its_size)
     CHECK_NEAR(metric(d, "mae"), 0.25, 1e-9);
     CHECK_NEAR(metric(d, "psnr"), -10 * log10(0.0625), 1e-6);
     CHECK_NEAR(metric(d, "relmse"), 0.0625 / (0.25 + 0.0001 * 0.25), 1e-6);
+    CHECK(metric(d, "ssim") < 1 && metric(d, "flip") > 0.01 && metric(d, "flip_hdr") > 0.01);
+    CHECK_NEAR(metric(d, "exposure_ev"), log2(0.5 / (1.2 * 0.18)), 1e-5);
+    CHECK(!json_object_get(d, "pixels"));
     assert_int_equal((int)metric(d, "width"), WIDTH);
     assert_int_equal((int)metric(d, "height"), HEIGHT);
     CHECK_NEAR(json_number_value(json_array_get(json_object_get(d, "mean_a"), 2)), 0.75, 1e-9);
@@ -51,6 +54,7 @@ TEST(a_constant_difference_has_the_errors_of_its_size)
     // The table says the same.
     const struct run *r = run_expect(0, "diff", a, b, NULL);
     CHECK(strstr(r->out, "mse     0.0625\n") && strstr(r->out, "mae     0.25\n"));
+    CHECK(strstr(r->out, "\nssim    0.") && strstr(r->out, "\nflip    0."));
 }
 
 TEST(equal_images_have_no_error_and_no_finite_psnr)
@@ -59,6 +63,7 @@ TEST(equal_images_have_no_error_and_no_finite_psnr)
     json_t *d = run_json(run_expect(0, "diff --json", a, a, NULL));
     assert_true(metric(d, "mse") == 0 && metric(d, "mae") == 0 && metric(d, "relmse") == 0);
     CHECK(json_is_null(json_object_get(d, "psnr")));
+    assert_true(metric(d, "ssim") == 1 && metric(d, "flip") == 0 && metric(d, "flip_hdr") == 0);
     json_decref(d);
 }
 
@@ -113,4 +118,74 @@ TEST(a_failed_comparison_writes_no_map)
     snprintf(map, sizeof map, "%s/map.png", make_folder("maps"));
     run_expect(1, "diff --map", map, a, b, NULL);
     CHECK(!file_exists(map));
+}
+
+TEST(the_exposure_is_one_for_both_and_can_be_given)
+{
+    char a[300], b[300];
+    snprintf(a, sizeof a, "%s", write_exr("ea.exr", WIDTH, 4.0f, 2.0f));
+    snprintf(b, sizeof b, "%s", write_exr("eb.exr", WIDTH, 2.0f, 4.0f));
+    json_t *automatic = run_json(run_expect(0, "diff --json", a, b, NULL));
+    json_t *dark = run_json(run_expect(0, "diff --json --exposure 12", a, b, NULL));
+    CHECK_NEAR(metric(dark, "exposure_ev"), 12.0, 1e-9);
+    CHECK(metric(dark, "flip") < 0.1 * metric(automatic, "flip"));
+    CHECK(metric(dark, "mse") == metric(automatic, "mse"));
+    CHECK(metric(dark, "flip_hdr") == metric(automatic, "flip_hdr"));
+    json_decref(automatic);
+    json_decref(dark);
+}
+
+TEST(a_mask_and_ignored_pixels_leave_the_rest)
+{
+    char a[300], b[300];
+    snprintf(a, sizeof a, "%s", write_exr("ma.exr", WIDTH, 1.0f, NAN));
+    snprintf(b, sizeof b, "%s", write_exr("mb.exr", WIDTH, 1.0f, 1.0f));
+    const struct run *r = run_expect(1, "diff --json --mask depth", a, b, NULL);
+    check_one_error_line(r);
+    r = run_expect(0, "diff --json --ignore-nan --mask depth", a, b, NULL);
+    CHECK(strstr(r->err, "ma.exr") && strstr(r->err, "1 of its pixels"));
+    json_t *d = run_json(r);
+    assert_int_equal((int)metric(d, "pixels"), WIDTH * HEIGHT - 1);
+    CHECK(metric(d, "mse") == 0 && metric(d, "flip") == 0);
+    json_decref(d);
+    // The depth is 2 everywhere: nothing is above 2.
+    r = run_expect(1, "diff --ignore-nan --mask depth=2", a, b, NULL);
+    check_one_error_line(r);
+    r = run_expect(1, "diff --mask indirect", a, b, NULL);
+    CHECK(strstr(r->err, "indirect"));
+    run_expect(0, "diff --ignore-nan --mask=depth=1.5", a, b, NULL);
+}
+
+TEST(each_metric_has_its_map)
+{
+    static const char *const names[] = { "mae", "mse", "relmse", "ssim", "flip", "flip_hdr" };
+    char a[300], b[300], map[300], words[64];
+    snprintf(a, sizeof a, "%s", write_exr("pa.exr", WIDTH, 1.0f, 9.0f));
+    snprintf(b, sizeof b, "%s", write_exr("pb.exr", WIDTH, 2.0f, 1.0f));
+    snprintf(map, sizeof map, "%s", test_path("metric.png"));
+    for (int i = 0; i < 6; i++) {
+        struct image picture = { 0 };
+        snprintf(words, sizeof words, "diff --metric %s --map", names[i]);
+        run_expect(0, words, map, a, b, NULL);
+        assert_true(png_read(test_host(), map, &picture));
+        assert_int_equal(picture.height, HEIGHT);
+        image_finish(&picture, test_host());
+    }
+    run_expect(2, "diff --metric psnr --map", map, a, b, NULL);
+}
+
+TEST(what_only_radiance_has_is_wrong_usage_of_pictures)
+{
+    char png[300];
+    struct image picture = { 0 };
+    assert_true(image_init(&picture, test_host(), 8, 4, 3));
+    snprintf(png, sizeof png, "%s", test_path("display.png"));
+    assert_true(png_write(test_host(), png, &picture));
+    image_finish(&picture, test_host());
+    run_expect(2, "diff --exposure 3", png, png, NULL);
+    run_expect(2, "diff --mask depth", png, png, NULL);
+    run_expect(2, "diff --metric flip_hdr --map m.png", png, png, NULL);
+    json_t *d = run_json(run_expect(0, "diff --json", png, png, NULL));
+    CHECK(metric(d, "ssim") == 1 && !json_object_get(d, "flip_hdr"));
+    json_decref(d);
 }

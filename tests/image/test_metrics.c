@@ -1,6 +1,7 @@
 #include "pictures.h"
 
 #include "image/metrics.h"
+#include "image/tonemap.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +9,7 @@
 static struct metrics measure(const struct image *a, const struct image *b)
 {
     struct metrics m;
-    CHECK(metrics_compute(test_host(), a, b, &m));
+    CHECK(metrics_compute(test_host(), a, b, NULL, &m));
     return m;
 }
 
@@ -108,10 +109,10 @@ TEST(a_size_mismatch_names_both_sizes)
     struct metrics m;
     flat_picture(&a, 6, 4, 3, 0.0f);
     flat_picture(&b, 5, 3, 3, 0.0f);
-    CHECK(!metrics_compute(test_host(), &a, &b, &m));
+    CHECK(!metrics_compute(test_host(), &a, &b, NULL, &m));
     CHECK(strstr(test_last_message(), "6x4") && strstr(test_last_message(), "5x3"));
     CHECK(test_host()->failure == FAIL_ARGUMENT);
-    CHECK(!metrics_error_map(test_host(), &a, &b, 1.0f, &map));
+    CHECK(!metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 1.0f, &map));
     CHECK(!map.pixels);
     image_finish(&a, test_host());
     image_finish(&b, test_host());
@@ -123,8 +124,8 @@ TEST(too_few_channels_are_refused)
     struct metrics m;
     flat_picture(&a, 2, 2, 3, 0.0f);
     flat_picture(&b, 2, 2, 1, 0.0f);
-    CHECK(!metrics_compute(test_host(), &a, &b, &m));
-    CHECK(!metrics_compute(test_host(), &b, &a, &m));
+    CHECK(!metrics_compute(test_host(), &a, &b, NULL, &m));
+    CHECK(!metrics_compute(test_host(), &b, &a, NULL, &m));
     image_finish(&a, test_host());
     image_finish(&b, test_host());
 }
@@ -136,9 +137,9 @@ TEST(pixels_that_are_not_finite_are_counted_in_the_message)
     flat_picture(&a, 8, 8, 3, 1.0f);
     flat_picture(&b, 8, 8, 3, 1.0f);
     for (int i = 0; i < 5; i++) image_at(&a, i, 2)[i % 3] = NAN;
-    CHECK(!metrics_compute(test_host(), &a, &b, &m));
+    CHECK(!metrics_compute(test_host(), &a, &b, NULL, &m));
     CHECK(strstr(test_last_message(), "5 of 64 pixels of the image"));
-    CHECK(!metrics_compute(test_host(), &b, &a, &m));
+    CHECK(!metrics_compute(test_host(), &b, &a, NULL, &m));
     CHECK(strstr(test_last_message(), "5 of 64 pixels of the reference"));
     image_finish(&a, test_host());
     image_finish(&b, test_host());
@@ -158,7 +159,7 @@ TEST(the_error_map_rises_in_lightness_as_the_error_does)
     flat_picture(&a, N, 1, 3, 1.0f);
     for (int x = 0; x < N; x++)
         for (int c = 0; c < 3; c++) image_at(&a, x, 0)[c] += 2.0f * (float)x / (float)(N - 1);
-    CHECK(metrics_error_map(test_host(), &a, &b, 2.0f, &map));
+    CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 2.0f, &map));
     CHECK(map.channels == 3 && map.width == N && map.height == 1);
     CHECK_NEAR((double)map_luminance(&map, 0), 0.0, 1e-6);
     CHECK_NEAR((double)map_luminance(&map, N - 1), 1.0, 1e-4);
@@ -185,12 +186,12 @@ TEST(the_automatic_scale_of_the_error_map_is_the_99th_percentile)
     flat_picture(&b, 200, 1, 3, 0.0f);
     for (int x = 0; x < 200; x++) // errors 1…200, in scrambled order; two lie above the percentile
         for (int c = 0; c < 3; c++) image_at(&a, x, 0)[c] = (float)((x * 77) % 200 + 1);
-    CHECK(metrics_error_map(test_host(), &a, &b, 0.0f, &automatic));
-    CHECK(metrics_error_map(test_host(), &a, &b, 198.0f, &given));
+    CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 0.0f, &automatic));
+    CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 198.0f, &given));
     CHECK(memcmp(automatic.pixels, given.pixels, 200 * 3 * sizeof(float)) == 0);
     image_finish(&automatic, test_host());
     image_finish(&given, test_host());
-    CHECK(metrics_error_map(test_host(), &b, &b, -1.0f, &automatic));
+    CHECK(metrics_error_map(test_host(), &b, &b, NULL, METRICS_ABSOLUTE, -1.0f, &automatic));
     for (int i = 0; i < 600; i++) CHECK_NEAR((double)automatic.pixels[i], 0.0, 1e-6);
     image_finish(&automatic, test_host());
     image_finish(&a, test_host());
@@ -203,10 +204,144 @@ TEST(one_wrong_pixel_in_many_is_still_seen)
     flat_picture(&a, 40, 30, 3, 0.5f);
     flat_picture(&b, 40, 30, 3, 0.5f);
     image_at(&a, 7, 9)[1] = 4.0f;
-    CHECK(metrics_error_map(test_host(), &a, &b, 0.0f, &map));
+    CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 0.0f, &map));
     CHECK_NEAR((double)image_at(&map, 7, 9)[0], 1.0, 1e-4);
     CHECK_NEAR((double)image_at(&map, 8, 9)[0], 0.0, 1e-6);
     image_finish(&a, test_host());
     image_finish(&b, test_host());
     image_finish(&map, test_host());
+}
+
+// ---- what is shown, and which pixels count
+
+TEST(radiance_is_shown_with_one_exposure_and_display_values_as_they_are)
+{
+    struct image a, b, shown_a, shown_b;
+    const struct metrics_options radiance = { .radiance = true, .ev = 3.0f };
+    display_picture(&a, 24, 17, 3, 1);
+    display_picture(&b, 24, 17, 3, 2);
+    for (int i = 0; i < 24 * 17 * 3; i++) a.pixels[i] *= 20.0f, b.pixels[i] *= 20.0f;
+    CHECK(image_tonemap(&shown_a, test_host(), &a, 3.0f));
+    CHECK(image_tonemap(&shown_b, test_host(), &b, 3.0f));
+    struct metrics light, display = measure(&shown_a, &shown_b), unscaled = measure(&a, &b);
+    CHECK(metrics_compute(test_host(), &a, &b, &radiance, &light));
+    CHECK(light.flip == display.flip && light.ssim == display.ssim);
+    CHECK(light.flip != unscaled.flip);
+    CHECK(light.mse == unscaled.mse &&
+          light.relmse == unscaled.relmse); // of the values in the file
+    CHECK(light.flip_hdr > 0.0 && light.flip_hdr <= 1.0 && isnan(display.flip_hdr));
+    CHECK(light.counted == 24 * 17 && light.ignored == 0);
+    image_finish(&a, test_host());
+    image_finish(&b, test_host());
+    image_finish(&shown_a, test_host());
+    image_finish(&shown_b, test_host());
+}
+
+TEST(only_pixels_in_the_mask_count)
+{
+    struct image a, b, mask, half_a, half_b;
+    display_picture(&a, 20, 10, 3, 1);
+    display_picture(&b, 20, 10, 3, 2);
+    flat_picture(&mask, 20, 10, 2, -1.0f);
+    CHECK(image_init(&half_a, test_host(), 10, 10, 3));
+    CHECK(image_init(&half_b, test_host(), 10, 10, 3));
+    for (int y = 0; y < 10; y++)
+        for (int x = 0; x < 20; x++) {
+            if (x >= 10) {
+                image_at(&mask, x, y)[0] = NAN; // is not above 0
+                image_at(&a, x, y)[y % 3] = x % 2 ? INFINITY : NAN;
+                continue;
+            }
+            image_at(&mask, x, y)[(x + y) % 2] = 1e-6f;
+            memcpy(image_at(&half_a, x, y), image_at(&a, x, y), 3 * sizeof(float));
+            memcpy(image_at(&half_b, x, y), image_at(&b, x, y), 3 * sizeof(float));
+        }
+    const struct metrics_options options = { .mask = &mask };
+    struct metrics masked, half = measure(&half_a, &half_b);
+    CHECK(metrics_compute(test_host(), &a, &b, &options, &masked));
+    CHECK(masked.counted == 100 && masked.ignored == 0);
+    CHECK(masked.mse == half.mse && masked.mae == half.mae && masked.relmse == half.relmse);
+    CHECK(memcmp(masked.mean_b, half.mean_b, sizeof half.mean_b) == 0);
+    CHECK_NEAR(masked.flip, half.flip, 0.1); // the filters see what is beyond the mask
+    CHECK(masked.ssim < 1.0 && masked.flip > 0.0);
+    image_finish(&a, test_host());
+    image_finish(&b, test_host());
+    image_finish(&mask, test_host());
+    image_finish(&half_a, test_host());
+    image_finish(&half_b, test_host());
+}
+
+TEST(ignored_pixels_are_counted_and_do_not_spoil_their_neighbours)
+{
+    struct image a, b, map;
+    struct metrics m;
+    const struct metrics_options options = { .ignore_not_finite = true };
+    display_picture(&b, 30, 20, 3, 1);
+    display_picture(&a, 30, 20, 3, 1);
+    for (int i = 0; i < 4; i++) image_at(&a, 5 + i, 7)[i % 3] = NAN;
+    image_at(&b, 8, 7)[1] = INFINITY;
+    image_at(&b, 20, 2)[2] = -INFINITY;
+    CHECK(metrics_compute(test_host(), &a, &b, &options, &m));
+    CHECK(m.ignored == 5 && m.counted == 595);
+    CHECK(m.mse == 0.0 && m.ssim == 1.0 && m.flip == 0.0); // equal everywhere else
+    CHECK(metrics_error_map(test_host(), &a, &b, &options, METRICS_FLIP, 0.0f, &map));
+    for (int i = 0; i < 30 * 20 * 3; i++) CHECK(map.pixels[i] < 1e-6f);
+    image_finish(&map, test_host());
+    for (int i = 0; i < 30 * 20 * 3; i++) a.pixels[i] = NAN;
+    CHECK(!metrics_compute(test_host(), &a, &b, &options, &m));
+    CHECK(strstr(test_last_message(), "no pixel is left"));
+    image_finish(&a, test_host());
+    image_finish(&b, test_host());
+}
+
+TEST(a_mask_of_another_size_or_without_pixels_is_refused)
+{
+    struct image a, mask, none;
+    struct metrics m;
+    display_picture(&a, 6, 4, 3, 1);
+    flat_picture(&mask, 4, 6, 1, 1.0f);
+    flat_picture(&none, 6, 4, 1, 0.0f);
+    CHECK(!metrics_compute(test_host(), &a, &a, &(struct metrics_options){ .mask = &mask }, &m));
+    CHECK(strstr(test_last_message(), "4x6"));
+    CHECK(!metrics_compute(test_host(), &a, &a, &(struct metrics_options){ .mask = &none }, &m));
+    CHECK(strstr(test_last_message(), "24 are outside the mask"));
+    image_finish(&a, test_host());
+    image_finish(&mask, test_host());
+    image_finish(&none, test_host());
+}
+
+TEST(each_measure_is_the_mean_of_its_map)
+{
+    struct image a, b, errors;
+    struct metrics m;
+    const struct metrics_options options = { .radiance = true, .ev = -1.0f };
+    display_picture(&a, 24, 17, 3, 1);
+    display_picture(&b, 24, 17, 3, 2);
+    CHECK(metrics_compute(test_host(), &a, &b, &options, &m));
+    const double expected[] = { m.mae, m.mse, m.relmse, 1.0 - m.ssim, m.flip, m.flip_hdr };
+    for (int error = METRICS_ABSOLUTE; error <= METRICS_FLIP_HDR; error++) {
+        double sum = 0.0;
+        CHECK(metrics_errors(test_host(), &a, &b, &options, (enum metrics_error)error, &errors));
+        for (int i = 0; i < 24 * 17; i++) sum += (double)errors.pixels[i];
+        CHECK_RELATIVE(sum / (24 * 17), expected[error], 1e-5);
+        image_finish(&errors, test_host());
+    }
+    CHECK(!metrics_errors(test_host(), &a, &b, NULL, METRICS_FLIP_HDR, &errors));
+    CHECK(!errors.pixels && strstr(test_last_message(), "radiance"));
+    image_finish(&a, test_host());
+    image_finish(&b, test_host());
+}
+
+TEST(the_map_of_flip_saturates_at_one)
+{
+    struct image a, b, automatic, given;
+    display_picture(&a, 24, 17, 3, 1);
+    display_picture(&b, 24, 17, 3, 2);
+    CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_FLIP, 0.0f, &automatic));
+    CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_FLIP, 1.0f, &given));
+    CHECK(memcmp(automatic.pixels, given.pixels, 24 * 17 * 3 * sizeof(float)) == 0);
+    image_finish(&a, test_host());
+    image_finish(&b, test_host());
+    image_finish(&automatic, test_host());
+    image_finish(&given, test_host());
 }

@@ -7,6 +7,7 @@
 #include "image/png_file.h"
 #include "image/tonemap.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,7 +116,21 @@ static bool do_get_attribute(struct host *host)
 static bool do_map_error(struct host *host)
 {
     struct image map;
-    return finish(metrics_error_map(host, &picture, &picture, 0.0f, &map), &map, host);
+    return finish(metrics_error_map(host, &picture, &picture, NULL, METRICS_ABSOLUTE, 0.0f, &map),
+                  &map, host);
+}
+
+// With a copy, for the pixel that is not finite.
+static bool do_measure(struct host *host)
+{
+    struct image holed;
+    struct metrics m;
+    noise_picture(&holed, 9, 20, 4);
+    holed.pixels[4] = NAN;
+    const struct metrics_options options = { .radiance = true, .ignore_not_finite = true };
+    bool good = metrics_compute(host, &holed, &picture, &options, &m);
+    image_finish(&holed, test_host());
+    return good;
 }
 
 static bool do_tonemap(struct host *host)
@@ -132,9 +147,9 @@ static bool do_pair(struct host *host)
 
 TEST(memory_that_runs_out_anywhere_is_a_clean_failure)
 {
-    static const action actions[] = { do_read_exr,  do_read_png,    do_write_exr,
-                                      do_write_png, do_list_layers, do_get_attribute,
-                                      do_map_error, do_tonemap,     do_pair };
+    static const action actions[] = { do_read_exr,    do_read_png,      do_write_exr, do_write_png,
+                                      do_list_layers, do_get_attribute, do_map_error, do_measure,
+                                      do_tonemap,     do_pair };
     prepare();
     for (size_t i = 0; i < sizeof actions / sizeof actions[0]; i++) check_action(actions[i]);
 }
