@@ -40,7 +40,8 @@ AG_API enum ag_result ag_image_read(struct ag_context *context, const char *path
 /// Radiance (cd/m²) to display values 0…1: exposure for `ev` at ISO 100, then the Khronos PBR Neutral tone mapper.
 AG_API enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
                                        float ev, struct ag_image **out);
-/// EV that puts the log-average luminance of a radiance image at middle grey.
+/// EV that puts the log-average luminance of a radiance image at middle grey. Of 4 channels the last is alpha: pixels
+/// where it is 0 do not count.
 AG_API float ag_image_auto_exposure(const struct ag_image *radiance);
 /// Two images of equal height next to each other, `gap` black columns between.
 AG_API enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,

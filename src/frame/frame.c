@@ -255,6 +255,7 @@ static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct f
         .albedo = f->layers[FRAME_ALBEDO],
         .material = f->layers[FRAME_MATERIAL],
         .emitted = f->emitted_irradiance,
+        .fallback = f->unlit_luminance,
         .width = f->width,
         .height = f->height,
     };

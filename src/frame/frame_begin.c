@@ -67,14 +67,16 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     struct frame_constants *c = &f->constants;
     float previous_scale = c->radiance_scale;
     begin_camera(f, input);
-    c->radiance_scale = frame_scale(&(struct scale_input){
+    const struct scale_input light = {
         .lights = input->lights,
         .light_count = input->light_count,
         .sky = input->sky,
         .max_emissive = f->scene.max_emissive,
         .emitted_flux = f->emitters.flux,
         .bounds = input->pose->bounds,
-    });
+    };
+    c->radiance_scale = frame_scale(&light);
+    f->unlit_luminance = frame_unlit_luminance(&light) * c->radiance_scale;
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
     f->emitted_irradiance =

@@ -37,19 +37,41 @@ static int exponent_to(float value, int target)
     return target - exponent;
 }
 
-float frame_scale(const struct scale_input *in)
+static float typical_distance(const struct scale_input *in)
 {
-    float distance = fmaxf(TYPICAL_SHARE * light_diagonal(in->bounds), LEAST_DISTANCE_M);
-    // π radiance is the irradiance under a sky, or right before an emitter; Φ/π is the intensity of
-    // a flat one.
-    float most = strongest(in->sky) * GLM_PIf;
-    float lamp = strongest(in->emitted_flux) / (GLM_PIf * distance * distance);
-    most = fmaxf(most, fminf(in->max_emissive * GLM_PIf, lamp));
+    return fmaxf(TYPICAL_SHARE * light_diagonal(in->bounds), LEAST_DISTANCE_M);
+}
+
+// Irradiance by the strongest punctual light at a typical place, lux.
+static float typical_irradiance(const struct scale_input *in)
+{
+    float distance = typical_distance(in), most = 0.0f;
     for (int i = 0; i < in->light_count; i++) {
         float strength = strongest(in->lights[i].intensity);
         if (in->lights[i].type != LIGHT_SUN) strength /= distance * distance;
         most = fmaxf(most, strength);
     }
+    return most;
+}
+
+// A surface of albedo ½ that gets a fiftieth of the light that others get directly, or the sky alone.
+float frame_unlit_luminance(const struct scale_input *in)
+{
+    static const float INDIRECT_SHARE = 0.02f, ALBEDO = 0.5f;
+    float indirect = INDIRECT_SHARE * ALBEDO * GLM_1_PIf * typical_irradiance(in);
+    float value = fmaxf(indirect, luminance(in->sky));
+    return isfinite(value) ? value : 0.0f;
+}
+
+float frame_scale(const struct scale_input *in)
+{
+    float distance = typical_distance(in);
+    // π radiance is the irradiance under a sky, or right before an emitter; Φ/π is the intensity of
+    // a flat one.
+    float most = strongest(in->sky) * GLM_PIf;
+    float lamp = strongest(in->emitted_flux) / (GLM_PIf * distance * distance);
+    most = fmaxf(most, fminf(in->max_emissive * GLM_PIf, lamp));
+    most = fmaxf(most, typical_irradiance(in));
     bool lit = most > 0.0f && isfinite(most);
     bool glows = in->max_emissive > 0.0f && isfinite(in->max_emissive);
     if (!lit && !glows) return 1.0f;

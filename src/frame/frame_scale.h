@@ -14,3 +14,5 @@ struct scale_input {
 
 // A power of two. Twice as much of everything halves it exactly; no light at all gives 1.
 float frame_scale(const struct scale_input *in);
+// What exposure meters where no surface in sight is lit, cd/m²: see docs/units.md. 0 without light.
+float frame_unlit_luminance(const struct scale_input *in);

@@ -42,6 +42,7 @@ struct frame {
     struct world_light world_lights[FRAME_MAX_LIGHTS]; // to see what changed
     struct world_camera camera;
     vec3s emitted_irradiance; // scaled lux
+    float unlit_luminance;    // scaled, see frame_unlit_luminance
     bool camera_cut, lights_changed;
     struct gpu_binding constants_binding, lights_binding;
     struct frame_view view;

@@ -74,6 +74,12 @@ static double lit_luminance(const struct image *image, int x, int y)
     return value > 0.0f && isfinite(value) ? (double)value : 0.0;
 }
 
+// Whether there is something in the pixel: with an alpha of 0 there is not.
+static bool counts(const struct image *image, int x, int y)
+{
+    return image->channels < 4 || image_at(image, x, y)[3] != 0.0f;
+}
+
 // exp of the mean log luminance of the lit pixels; 0 when none is lit.
 static double lit_mean(const struct image *image)
 {
@@ -81,7 +87,7 @@ static double lit_mean(const struct image *image)
     size_t lit = 0;
     for (int y = 0; y < image->height; y++) {
         for (int x = 0; x < image->width; x++) {
-            double value = lit_luminance(image, x, y);
+            double value = counts(image, x, y) ? lit_luminance(image, x, y) : 0.0;
             if (value > 0.0) sum += log2(value), lit++;
         }
     }
@@ -93,10 +99,15 @@ float auto_exposure(const struct image *radiance)
     double floor_value = DARK_SHARE * lit_mean(radiance);
     if (!(floor_value > 0.0)) return 0.0f;
     double sum = 0.0;
-    for (int y = 0; y < radiance->height; y++)
-        for (int x = 0; x < radiance->width; x++)
+    size_t count = 0;
+    for (int y = 0; y < radiance->height; y++) {
+        for (int x = 0; x < radiance->width; x++) {
+            if (!counts(radiance, x, y)) continue;
             sum += log2(fmax(lit_luminance(radiance, x, y), floor_value));
-    double mean_log2 = sum / ((double)radiance->width * (double)radiance->height);
+            count++;
+        }
+    }
+    double mean_log2 = sum / (double)count;
     // exposure_scale(EV) · mean = middle grey, solved for EV.
     double ev = mean_log2 - log2(1.2 * MIDDLE_GREY);
     return (float)fmax(-EV_LIMIT, fmin(EV_LIMIT, ev));

@@ -94,13 +94,41 @@ TEST_GPU(exposure_is_what_the_cpu_finds)
         studio_look(&s, vec3_of(0, 1, 3), vec3_of(0, 1, 0)); // half of it sees nothing
         studio_open(&s);
         studio_render(&s);
-        float *direct = studio_read(&s, READ_DIRECT), ev;
-        struct image image = { (int)s.width, (int)s.height, 3, direct };
+        float *direct = studio_read(&s, READ_DIRECT), *depth = studio_read(&s, READ_DEPTH), ev;
+        struct image image;
+        assert_true(image_init(&image, test_host(), (int)s.width, (int)s.height, 4));
+        for (size_t p = 0; p < (size_t)s.width * s.height; p++) {
+            memcpy(image.pixels + 4 * p, direct + 3 * p, 3 * sizeof *direct);
+            image.pixels[4 * p + 3] = depth[p] > 0 ? 1 : 0;
+        }
         assert_true(frame_exposure(s.frame, &ev));
         CHECK_NEAR(ev, auto_exposure(&image), 1e-3);
-        free(direct);
+        image_finish(&image, test_host());
+        free(direct), free(depth);
         studio_finish(&s);
     }
+}
+
+// Where nothing in sight is lit, the lights' strength says what to expect.
+TEST_GPU(exposure_of_what_lies_in_shadow_follows_the_lights)
+{
+    float ev[3];
+    for (int i = 0; i < 3; i++) {
+        struct studio s;
+        begin(&s, gpu);
+        s.input.light_count = 0;
+        studio_add_sun(&s, vec3_of(0, 1, 0), vec3_of(1000 * (i == 1 ? 2 : 1), 0, 0)); // from below
+        if (i == 2) s.input.sky = vec3_of(50, 50, 50);
+        studio_look(&s, vec3_of(0, 2, 0.5f), vec3_of(0, 0, 0));
+        studio_open(&s);
+        studio_render(&s);
+        CHECK(studio_pixel(&s, READ_DIRECT, 16, 16).x == 0);
+        assert_true(frame_exposure(s.frame, &ev[i]));
+        studio_finish(&s);
+    }
+    CHECK_NEAR(ev[0], log2(0.02 * 0.5 / PI * 1000 / (1.2 * 0.18)), 1e-3);
+    CHECK_NEAR(ev[1], (double)ev[0] + 1, 1e-4);
+    CHECK_NEAR(ev[2], log2(50 / (1.2 * 0.18)), 1e-3);
 }
 
 TEST_GPU(exposure_of_a_dark_frame_is_zero_and_a_fixed_one_is_kept)

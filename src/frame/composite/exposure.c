@@ -55,7 +55,8 @@ void exposure_record_auto(const struct exposure *e, struct gpu_cmd *cmd,
                           struct gpu_binding constants, const struct exposure_input *in)
 {
     struct exposure_push push = { .groups = group_count(in->width, in->height),
-                                  .emitted = in->emitted };
+                                  .emitted = in->emitted,
+                                  .fallback = in->fallback };
     gpu_scope_begin(cmd, "exposure");
     for (push.round_index = 0; push.round_index < 2; push.round_index++) {
         gpu_dispatch(cmd, e->sum,

@@ -16,10 +16,12 @@ struct exposure {
 bool exposure_init(struct exposure *exposure, struct gpu *gpu);
 void exposure_finish(struct exposure *exposure); // accepts zero
 void exposure_record_fixed(const struct exposure *exposure, struct gpu_cmd *cmd, float ev);
-// What is metered: the direct image, and what each surface would reflect of the irradiance `emitted` (scaled lux).
+// What is metered where there is a surface: the direct image, and what the surface would reflect of the irradiance
+// `emitted` (scaled lux); where nothing of it is lit, `fallback` (scaled luminance, 0: EV 0).
 struct exposure_input {
     gpu_image direct, albedo, material;
     vec3s emitted;
+    float fallback;
     uint32_t width, height;
 };
 void exposure_record_auto(const struct exposure *exposure, struct gpu_cmd *cmd,

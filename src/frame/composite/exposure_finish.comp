@@ -34,7 +34,8 @@ void main()
         state.floor_log2 = mean_log2 + log2(DARK_SHARE);
         return;
     }
+    if (state.lit == 0) mean_log2 = log2(max(push.fallback, 1e-30));
     // exposure_scale(ev) · mean = middle grey, for the physical mean.
     float ev = mean_log2 - log2(frame.radiance_scale) - log2(1.2 * MIDDLE_GREY);
-    state.ev = state.lit != 0 ? clamp(ev, -EV_LIMIT, EV_LIMIT) : 0.0;
+    state.ev = state.lit != 0 || push.fallback > 0.0 ? clamp(ev, -EV_LIMIT, EV_LIMIT) : 0.0;
 }

@@ -18,7 +18,8 @@ struct exposure_values {
 struct exposure_push {
     uint32_t round_index; // 0: over lit pixels; 1: over all, with the floor
     uint32_t groups;
-    vec3s emitted; // scaled lux: mean irradiance by emissive surfaces
+    vec3s emitted;  // scaled lux: mean irradiance by emissive surfaces
+    float fallback; // scaled luminance that is metered where no surface in sight is lit
 };
 
 #endif

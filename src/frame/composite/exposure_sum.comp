@@ -31,11 +31,13 @@ vec3 metered(ivec2 pixel)
     return radiance + brdf_diffuse(texelFetch(albedo_layer, pixel, 0).rgb, metallic) * push.emitted;
 }
 
-// x: log2 of what the pixel counts as; y: 1 where it counts.
+// x: log2 of what the pixel counts as; y: 1 where it counts. The sky and the void behind the scene do not.
 vec2 pixel_term(uint index)
 {
     uint y = index / frame.width;
-    float l = dot(metered(ivec2(index - y * frame.width, y)), vec3(0.2126, 0.7152, 0.0722));
+    ivec2 pixel = ivec2(index - y * frame.width, y);
+    if (texelFetch(albedo_layer, pixel, 0).a == 0.0) return vec2(0.0);
+    float l = dot(metered(pixel), vec3(0.2126, 0.7152, 0.0722));
     bool lit = l > 0.0 && !isinf(l);
     float value = lit ? log2(l) : 0.0;
     if (push.round_index == 0) return vec2(value, lit ? 1.0 : 0.0);
