@@ -38,7 +38,7 @@ static struct pass *pass_of(struct bench *bench, const char *name)
     if (bench->pass_count == MAX_PASSES) return NULL;
     struct pass *pass = &bench->passes[bench->pass_count++];
     *pass = (struct pass){ 0 };
-    snprintf(pass->name, sizeof pass->name, "%s", name);
+    snprintf(pass->name, sizeof pass->name, "%.*s", (int)sizeof pass->name - 1, name);
     return pass;
 }
 
