@@ -2,6 +2,7 @@
 #include "session.h"
 #include "values.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -82,7 +83,13 @@ enum status session_load(struct session *session, const char *name)
 
 static void print_floats(char out[SPEC_SIZE], const float v[3])
 {
-    snprintf(out, SPEC_SIZE, "%.6g,%.6g,%.6g", (double)v[0], (double)v[1], (double)v[2]);
+    size_t used = 0;
+    for (int i = 0; i < 3; i++) { // a millimetre, also far from the origin
+        int digits = fabsf(v[i]) < 1000.0f ? 6 : 9;
+        int wrote =
+            snprintf(out + used, SPEC_SIZE - used, "%s%.*g", i ? "," : "", digits, (double)v[i]);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
 }
 
 enum status defaults_light(struct session *session, struct defaults *out)
@@ -123,7 +130,9 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
         return fail("cannot look at %s: its default camera is not finite",
                     session->arguments->positional[0]);
     result = ag_scene_look_at(session->scene, eye, target, radians(fov_deg), &out->camera);
-    return result == AG_OK ? DONE : fail_library(session->context, result);
+    if (result == AG_OK) return DONE;
+    fail_library(session->context, result);
+    return FAILED; // it is the scene's affair where it stands
 }
 
 // ---- what was decided

@@ -51,9 +51,11 @@ enum ag_result api_refuse(struct ag_context *context, const char *function, cons
     __attribute__((format(printf, 3, 4)));
 
 // At the door of every function: returns AG_ERROR_ARGUMENT unless the condition holds. `context` may be NULL.
-#define AG_REQUIRE(context, condition, ...)                                                        \
+#define AG_REQUIRE(context, condition, ...) AG_REQUIRE_FOR(__func__, context, condition, __VA_ARGS__)
+// The same in a part of a public function, which the message names.
+#define AG_REQUIRE_FOR(function, context, condition, ...)                                          \
     do {                                                                                           \
-        if (!(condition)) return api_refuse((context), __func__, __VA_ARGS__);                     \
+        if (!(condition)) return api_refuse((context), (function), __VA_ARGS__);                   \
     } while (0)
 
 static inline bool api_finite(const float *values, int count)

@@ -21,10 +21,12 @@ void ag_renderer_desc_default(struct ag_renderer_desc *desc)
     };
 }
 
-static enum ag_result size_check(struct ag_context *context, int width, int height)
+static enum ag_result size_check(const char *function, struct ag_context *context, int width,
+                                 int height)
 {
-    AG_REQUIRE(context, width >= 1 && width <= MAX_SIZE && height >= 1 && height <= MAX_SIZE,
-               "width and height must be 1 to %d, not %d and %d", (int)MAX_SIZE, width, height);
+    AG_REQUIRE_FOR(function, context,
+                   width >= 1 && width <= MAX_SIZE && height >= 1 && height <= MAX_SIZE,
+                   "width and height must be 1 to %d, not %d and %d", (int)MAX_SIZE, width, height);
     return AG_OK;
 }
 
@@ -49,7 +51,7 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
     ag_renderer_desc_default(&fallback);
     if (!desc) desc = &fallback;
     AG_REQUIRE(context, light_count >= 0, "light_count %d is negative", light_count);
-    enum ag_result checked = size_check(context, desc->width, desc->height);
+    enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
     struct gi_spec spec = { 0 };
     struct frame_options options;
@@ -105,7 +107,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     struct ag_renderer_desc fallback;
     ag_renderer_desc_default(&fallback);
     if (!desc) desc = &fallback;
-    enum ag_result checked = size_check(context, desc->width, desc->height);
+    enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
 
     struct ag_renderer *r = host_alloc(&context->host, 1, sizeof *r);
@@ -139,10 +141,10 @@ void ag_renderer_destroy(struct ag_renderer *r)
 
 // Between the moment of recording into a caller's command buffer and its end, nothing else may
 // happen.
-static enum ag_result idle_check(const struct ag_renderer *r)
+static enum ag_result idle_check(const char *function, const struct ag_renderer *r)
 {
-    AG_REQUIRE(renderer_context(r), !r->recorded,
-               "a recorded frame is not finished: ag_renderer_recorded_done comes first");
+    AG_REQUIRE_FOR(function, renderer_context(r), !r->recorded,
+                   "a recorded frame is not finished: ag_renderer_recorded_done comes first");
     return AG_OK;
 }
 
@@ -150,8 +152,8 @@ enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
-    enum ag_result checked = size_check(context, width, height);
-    if (checked == AG_OK) checked = idle_check(r);
+    enum ag_result checked = size_check(__func__, context, width, height);
+    if (checked == AG_OK) checked = idle_check(__func__, r);
     if (checked != AG_OK) return checked;
     r->rendered = 0;
     r->sized = frame_resize(r->frame, (uint32_t)width, (uint32_t)height) &&
@@ -170,7 +172,7 @@ void ag_frame_desc_default(struct ag_frame_desc *desc)
 static struct world_camera camera_in(const struct ag_camera *camera)
 {
     vec3s eye = api_vec3(camera->eye), up = api_vec3(camera->up);
-    vec3s forward = glms_vec3_normalize(glms_vec3_sub(api_vec3(camera->target), eye));
+    vec3s forward = vec3_towards(eye, api_vec3(camera->target));
     vec3s across = glms_vec3_sub(up, glms_vec3_scale(forward, glms_vec3_dot(up, forward)));
     vec3s tangent;
     if (glms_vec3_norm(across) > 1e-6f * glms_vec3_norm(up))
@@ -184,35 +186,39 @@ static struct world_camera camera_in(const struct ag_camera *camera)
                                   .near_m = camera->near_m };
 }
 
-static enum ag_result camera_check(struct ag_context *context, const struct ag_camera *camera)
+static enum ag_result camera_check(const char *function, struct ag_context *context,
+                                   const struct ag_camera *camera)
 {
-    AG_REQUIRE(context,
-               api_finite(camera->eye, 3) && api_finite(camera->target, 3) &&
-                   api_finite(camera->up, 3),
-               "the camera is not finite");
-    float distance = glms_vec3_distance(api_vec3(camera->eye), api_vec3(camera->target));
-    AG_REQUIRE(context, distance > 0.0f && isfinite(distance),
-               "the camera's eye and target are the same point");
-    AG_REQUIRE(context, camera->vertical_fov_rad > 0.0f && camera->vertical_fov_rad < PI,
-               "the camera's vertical_fov_rad %g is not between 0 and pi",
-               (double)camera->vertical_fov_rad);
-    AG_REQUIRE(context, camera->near_m > 0.0f && isfinite(camera->near_m),
-               "the camera's near_m %g is not above 0", (double)camera->near_m);
+    AG_REQUIRE_FOR(function, context,
+                   api_finite(camera->eye, 3) && api_finite(camera->target, 3) &&
+                       api_finite(camera->up, 3),
+                   "the camera is not finite");
+    vec3s forward = vec3_towards(api_vec3(camera->eye), api_vec3(camera->target));
+    AG_REQUIRE_FOR(function, context, glms_vec3_norm(forward) > 0.0f,
+                   "the camera's eye and target are the same point");
+    AG_REQUIRE_FOR(function, context,
+                   camera->vertical_fov_rad > 0.0f && camera->vertical_fov_rad < PI,
+                   "the camera's vertical_fov_rad %g is not between 0 and pi",
+                   (double)camera->vertical_fov_rad);
+    AG_REQUIRE_FOR(function, context, camera->near_m > 0.0f && isfinite(camera->near_m),
+                   "the camera's near_m %g is not above 0", (double)camera->near_m);
     return AG_OK;
 }
 
-static enum ag_result frame_check(const struct ag_renderer *r, const struct ag_frame_desc *desc)
+static enum ag_result frame_check(const char *function, const struct ag_renderer *r,
+                                  const struct ag_frame_desc *desc)
 {
     struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, desc, "desc is NULL");
-    AG_REQUIRE(context, r->sized, "the last resize failed");
-    AG_REQUIRE(context, api_animation_exists(r->scene, desc->animation),
-               "animation %d is not one of %d", desc->animation, r->scene->scene->animation_count);
-    AG_REQUIRE(context, isfinite(desc->time_s), "time_s is not finite");
-    AG_REQUIRE(context, desc->auto_exposure || isfinite(desc->exposure_ev),
-               "exposure_ev is not finite");
-    enum ag_result checked = camera_check(context, &desc->camera);
-    return checked == AG_OK ? idle_check(r) : checked;
+    AG_REQUIRE_FOR(function, context, desc, "desc is NULL");
+    AG_REQUIRE_FOR(function, context, r->sized, "the last resize failed");
+    AG_REQUIRE_FOR(function, context, api_animation_exists(r->scene, desc->animation),
+                   "animation %d is not one of %d", desc->animation,
+                   r->scene->scene->animation_count);
+    AG_REQUIRE_FOR(function, context, isfinite(desc->time_s), "time_s is not finite");
+    AG_REQUIRE_FOR(function, context, desc->auto_exposure || isfinite(desc->exposure_ev),
+                   "exposure_ev is not finite");
+    enum ag_result checked = camera_check(function, context, &desc->camera);
+    return checked == AG_OK ? idle_check(function, r) : checked;
 }
 
 static int resolve_lights(struct ag_renderer *r)
@@ -261,7 +267,7 @@ enum ag_result ag_renderer_render(struct ag_renderer *r, const struct ag_frame_d
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
-    enum ag_result checked = frame_check(r, desc);
+    enum ag_result checked = frame_check(__func__, r, desc);
     if (checked != AG_OK) return checked;
     struct frame_input input;
     struct frame_indirect hook;
@@ -281,7 +287,7 @@ enum ag_result ag_renderer_record(struct ag_renderer *r, const struct ag_frame_d
     AG_REQUIRE(context, r, "renderer is NULL");
     AG_REQUIRE(context, vk_command_buffer, "vk_command_buffer is NULL");
     AG_REQUIRE(context, r->device->adopted, "the device is not an adopted one");
-    enum ag_result checked = frame_check(r, desc);
+    enum ag_result checked = frame_check(__func__, r, desc);
     if (checked != AG_OK) return checked;
     struct frame_input input;
     struct frame_indirect hook;
@@ -308,7 +314,7 @@ enum ag_result ag_renderer_wait(struct ag_renderer *r)
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
-    enum ag_result checked = idle_check(r);
+    enum ag_result checked = idle_check(__func__, r);
     if (checked != AG_OK) return checked;
     return api_done(context, gpu_wait(r->device->gpu) || fail_lost(r));
 }

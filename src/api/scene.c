@@ -212,23 +212,24 @@ void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type)
     };
 }
 
-static enum ag_result light_check(struct ag_context *context, const struct ag_light_desc *desc)
+static enum ag_result light_check(const char *function, struct ag_context *context,
+                                  const struct ag_light_desc *desc)
 {
-    AG_REQUIRE(context, (unsigned)desc->type <= AG_LIGHT_SPOT, "type %d is unknown",
-               (int)desc->type);
-    AG_REQUIRE(context, api_finite_at_least(desc->intensity, 3, 0.0f),
-               "intensity is negative or not finite");
-    AG_REQUIRE(context, desc->type == AG_LIGHT_SUN || api_finite(desc->position, 3),
-               "position is not finite");
-    float length = glms_vec3_norm(api_vec3(desc->direction));
-    AG_REQUIRE(context, desc->type == AG_LIGHT_POINT || (isfinite(length) && length > 0.0f),
-               "direction is zero or not finite");
+    AG_REQUIRE_FOR(function, context, (unsigned)desc->type <= AG_LIGHT_SPOT, "type %d is unknown",
+                   (int)desc->type);
+    AG_REQUIRE_FOR(function, context, api_finite_at_least(desc->intensity, 3, 0.0f),
+                   "intensity is negative or not finite");
+    AG_REQUIRE_FOR(function, context, desc->type == AG_LIGHT_SUN || api_finite(desc->position, 3),
+                   "position is not finite");
+    float length = glms_vec3_norm(vec3_unit(api_vec3(desc->direction)));
+    AG_REQUIRE_FOR(function, context, desc->type == AG_LIGHT_POINT || length > 0.0f,
+                   "direction is zero or not finite");
     if (desc->type == AG_LIGHT_SPOT)
-        AG_REQUIRE(context,
-                   desc->inner_rad >= 0.0f && desc->inner_rad < desc->outer_rad &&
-                       desc->outer_rad <= HALF_PI * (1 + 1e-6f),
-                   "inner_rad %g and outer_rad %g are not 0 to half pi, inner below outer",
-                   (double)desc->inner_rad, (double)desc->outer_rad);
+        AG_REQUIRE_FOR(function, context,
+                       desc->inner_rad >= 0.0f && desc->inner_rad < desc->outer_rad &&
+                           desc->outer_rad <= HALF_PI * (1 + 1e-6f),
+                       "inner_rad %g and outer_rad %g are not 0 to half pi, inner below outer",
+                       (double)desc->inner_rad, (double)desc->outer_rad);
     return AG_OK;
 }
 
@@ -237,7 +238,7 @@ static int add_light(struct scene *scene, const struct ag_light_desc *desc, cons
 {
     vec3s position = desc->type == AG_LIGHT_SUN ? vec3_of(0, 0, 0) : api_vec3(desc->position);
     vec3s direction = desc->type == AG_LIGHT_POINT ? vec3_of(0, -1, 0) : api_vec3(desc->direction);
-    int node = scene_add_node_looking(scene, name, position, glms_vec3_normalize(direction));
+    int node = scene_add_node_looking(scene, name, position, direction);
     if (node < 0) return -1;
     struct light light = { .name = name,
                            .type = (enum light_type)desc->type,
@@ -255,7 +256,7 @@ enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_
     if (index) *index = -1;
     AG_REQUIRE(context, scene, "scene is NULL");
     AG_REQUIRE(context, desc, "desc is NULL");
-    enum ag_result checked = light_check(context, desc);
+    enum ag_result checked = light_check(__func__, context, desc);
     if (checked != AG_OK) return checked;
     return added(scene, add_light(scene->scene, desc, "light"), index);
 }
@@ -280,12 +281,24 @@ enum ag_result ag_scene_set_sky(struct ag_scene *scene, const float *radiance)
 
 // ---- cameras
 
+// How far from the eye a target is put: a metre, and far from the origin so much more that the
+// rounding of both does not turn the view.
+static float target_distance(vec3s eye)
+{
+    static const float NEAR_ORIGIN_M = 16.0f;
+    int exponent = 0;
+    float far = fmaxf(fmaxf(fabsf(eye.x), fabsf(eye.y)), fabsf(eye.z)) / NEAR_ORIGIN_M;
+    if (far > 1.0f) frexpf(far, &exponent);
+    return ldexpf(1.0f, exponent);
+}
+
 static struct ag_camera camera_out(const struct world_camera *camera)
 {
     struct ag_camera out = { .vertical_fov_rad = camera->vertical_fov_rad,
                              .near_m = camera->near_m };
     api_store(out.eye, camera->eye);
-    api_store(out.target, glms_vec3_add(camera->eye, camera->forward));
+    api_store(out.target,
+              glms_vec3_muladds(camera->forward, target_distance(camera->eye), camera->eye));
     api_store(out.up, camera->up);
     return out;
 }
@@ -297,8 +310,8 @@ enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye, const 
     AG_REQUIRE(context, scene, "scene is NULL");
     AG_REQUIRE(context, eye && target && out, "eye, target or out is NULL");
     AG_REQUIRE(context, api_finite(eye, 3) && api_finite(target, 3), "eye or target is not finite");
-    float distance = glms_vec3_distance(api_vec3(eye), api_vec3(target));
-    AG_REQUIRE(context, distance > 0.0f && isfinite(distance), "eye and target are the same point");
+    vec3s forward = vec3_towards(api_vec3(eye), api_vec3(target));
+    AG_REQUIRE(context, glms_vec3_norm(forward) > 0.0f, "eye and target are the same point");
     AG_REQUIRE(context, vertical_fov_rad > 0.0f && vertical_fov_rad < 2 * HALF_PI,
                "vertical_fov_rad %g is not between 0 and pi", (double)vertical_fov_rad);
     const struct scene_pose *pose = pose_at(scene, 0, 0.0);

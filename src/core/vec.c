@@ -4,6 +4,26 @@
 #include <float.h>
 #include <math.h>
 
+// Scaled by a power of two first, which is exact.
+vec3s vec3_unit(vec3s v)
+{
+    float largest = fmaxf(fmaxf(fabsf(v.x), fabsf(v.y)), fabsf(v.z));
+    bool finite = isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+    if (!finite || largest <= 0.0f) return vec3_of(0, 0, 0);
+    int exponent;
+    frexpf(largest, &exponent);
+    v = vec3_of(ldexpf(v.x, -exponent), ldexpf(v.y, -exponent), ldexpf(v.z, -exponent));
+    return glms_vec3_scale(v, 1.0f / glms_vec3_norm(v));
+}
+
+vec3s vec3_towards(vec3s from, vec3s to)
+{
+    vec3s whole = glms_vec3_sub(to, from);
+    if (isfinite(whole.x) && isfinite(whole.y) && isfinite(whole.z)) return vec3_unit(whole);
+    // Farther apart than a float can say; their halves are not.
+    return vec3_unit(glms_vec3_sub(glms_vec3_scale(to, 0.5f), glms_vec3_scale(from, 0.5f)));
+}
+
 struct box3 box3_empty(void)
 {
     return (struct box3){ vec3_of(FLT_MAX, FLT_MAX, FLT_MAX),

@@ -36,6 +36,11 @@ static inline vec3s mat4_direction(mat4s to_from, vec3s d)
     return glms_mat4_mulv3(to_from, d, 0.0f);
 }
 
+// The unit vector along v, whatever v's length: nothing overflows or vanishes on the way. 0 where v is 0 or not finite.
+vec3s vec3_unit(vec3s v);
+// The unit vector from one point to another; 0 where they are the same.
+vec3s vec3_towards(vec3s from, vec3s to);
+
 // Luminance of linear Rec. 709.
 static inline float luminance(vec3s rgb)
 {

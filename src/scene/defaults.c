@@ -147,8 +147,7 @@ static struct world_camera outside_camera(const struct scene_pose *pose)
         return camera_look_at(vec3_of(0, 0, 3), vec3_of(0, 0, 0), OUTSIDE_FOV, near_m);
     }
     vec3s centre = box3_centre(pose->bounds), back = glms_vec3_normalize(THREE_QUARTER);
-    struct world_camera camera =
-        camera_look_at(glms_vec3_add(centre, back), centre, OUTSIDE_FOV, near_m);
+    struct world_camera camera = camera_look_at(back, vec3_of(0, 0, 0), OUTSIDE_FOV, near_m);
     vec3s right = glms_vec3_cross(camera.forward, camera.up);
     float tangent = tanf(0.5f * OUTSIDE_FOV), distance = 0.0f;
     for (int i = 0; i < 8; i++) {

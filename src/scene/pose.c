@@ -273,9 +273,8 @@ struct world_camera pose_camera(const struct scene_pose *pose, int camera)
 
 struct world_camera camera_look_at(vec3s eye, vec3s target, float vertical_fov_rad, float near_m)
 {
-    vec3s forward = glms_vec3_sub(target, eye);
-    float length = glms_vec3_norm(forward);
-    forward = length > 0.0f ? glms_vec3_scale(forward, 1.0f / length) : vec3_of(0, 0, -1);
+    vec3s forward = vec3_towards(eye, target);
+    if (glms_vec3_norm(forward) == 0.0f) forward = vec3_of(0, 0, -1);
     return (struct world_camera){
         .eye = eye,
         .forward = forward,

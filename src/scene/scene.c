@@ -267,12 +267,12 @@ int scene_add_camera(struct scene *scene, const struct camera *camera)
 
 int scene_add_node_looking(struct scene *scene, const char *name, vec3s position, vec3s direction)
 {
-    float length = glms_vec3_norm(direction);
-    if (!vec3_is_finite(position) || !isfinite(length) || length <= 0.0f) {
+    direction = vec3_unit(direction);
+    if (!vec3_is_finite(position) || glms_vec3_norm(direction) == 0.0f) {
         refuse(scene, "node", name, "its position is not finite or its direction has no length");
         return -1;
     }
-    vec3s back = glms_vec3_scale(direction, -1.0f / length);
+    vec3s back = glms_vec3_negate(direction);
     // +y stays as upright as it can; for straight up or down, up is -z or +z.
     vec3s reference = fabsf(back.y) < 0.9999f ? vec3_of(0, 1, 0) : vec3_of(0, 0, -back.y);
     vec3s right = glms_vec3_normalize(glms_vec3_cross(reference, back));

@@ -242,6 +242,45 @@ TEST(looking_from_a_point_at_itself_is_refused)
     end();
 }
 
+// The picture of a scene must not turn, nor get lost, where the scene stands far away.
+TEST(a_far_scene_gets_the_same_view_as_a_near_one)
+{
+    static const float places[] = { 0.0f, 65536.0f, 16777216.0f, 1e12f };
+    float first[3] = { 0 };
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        begin();
+        const float x = places[i], r = fmaxf(1.0f, 0.5f * x);
+        const float transform[16] = { r, 0, 0, 0, 0, r, 0, 0, 0, 0, r, 0, x, 0, -x, 1 };
+        assert_int_equal(ag_scene_add_instance(scene, add_square(), transform, NULL), AG_OK);
+        struct ag_camera camera;
+        bool made_up = false;
+        assert_int_equal(ag_scene_default_camera(scene, 0, 0, &camera, &made_up), AG_OK);
+        float forward[3], length = 0;
+        for (int k = 0; k < 3; k++) forward[k] = camera.target[k] - camera.eye[k];
+        for (int k = 0; k < 3; k++) length = hypotf(length, forward[k]);
+        CHECK(length > 0);
+        for (int k = 0; k < 3; k++) {
+            if (i == 0) first[k] = forward[k] / length;
+            CHECK_NEAR(forward[k] / length, first[k], 1e-4f);
+        }
+        end();
+    }
+}
+
+TEST(refusals_name_the_function_that_was_called)
+{
+    begin();
+    struct ag_light_desc desc;
+    ag_light_desc_default(&desc, AG_LIGHT_SUN);
+    desc.intensity[0] = -1;
+    assert_int_equal(ag_scene_add_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    assert_non_null(strstr(ag_context_last_error(context), "cannot call ag_scene_add_light: "));
+    desc.intensity[0] = 1;
+    desc.direction[1] = -1e30f; // a direction need not be a unit vector
+    assert_int_equal(ag_scene_add_light(scene, &desc, NULL), AG_OK);
+    end();
+}
+
 TEST(a_scene_without_a_camera_gets_one_that_is_said_to_be_made_up)
 {
     begin();

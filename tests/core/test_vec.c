@@ -103,6 +103,21 @@ TEST(basis_is_orthonormal_and_right_handed_everywhere)
     check_basis(glms_vec3_normalize(vec3_of(1e-4f, -1e-4f, -1.0f)));
 }
 
+TEST(unit_vectors_have_length_one_whatever_the_vector_had)
+{
+    static const float lengths[] = { 1e-44f, 1e-38f, 1e-20f, 1.0f, 1e20f, 3e38f };
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        vec3s unit = vec3_unit(vec3_of(0, -lengths[i], 0));
+        CHECK(unit.x == 0.0f && unit.y == -1.0f && unit.z == 0.0f);
+        vec3s slanted = vec3_unit(vec3_of(lengths[i], lengths[i], -lengths[i]));
+        CHECK_NEAR(glms_vec3_norm(slanted), 1.0f, 1e-6f);
+    }
+    CHECK(glms_vec3_norm(vec3_unit(vec3_of(0, 0, 0))) == 0.0f);
+    CHECK(glms_vec3_norm(vec3_unit(vec3_of(0, INFINITY, 0))) == 0.0f);
+    vec3s far = vec3_towards(vec3_of(-3e38f, 0, 0), vec3_of(3e38f, 0, 0));
+    CHECK(far.x == 1.0f && far.y == 0.0f && far.z == 0.0f);
+}
+
 TEST(points_move_with_a_translation_and_directions_do_not)
 {
     mat4s move = glms_translate_make(vec3_of(1.0f, 2.0f, 3.0f));
