@@ -2,7 +2,9 @@
 // it.
 #include "gpu/vk.h"
 
+#include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 static bool load_functions(struct gpu *gpu)
 {
@@ -100,6 +102,9 @@ struct gpu *gpu_create(struct host *host, const struct gpu_desc *desc)
     if (desc->shader_dir && desc->shader_dir[0]) {
         gpu->shader_dir = host_strdup(host, desc->shader_dir);
         if (!gpu->shader_dir) goto fail;
+        if (access(gpu->shader_dir, R_OK | X_OK) != 0)
+            host_log(host, LOG_WARNING, "gpu shaders %s: %s; the built-in ones are used",
+                     gpu->shader_dir, strerror(errno));
     }
     if (!create_shared(gpu)) goto fail;
     host_log(host, LOG_INFO, "gpu device %s (%s)%s", gpu->info.name, gpu->info.driver,

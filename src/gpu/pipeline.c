@@ -256,7 +256,12 @@ static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
     trash_collect(gpu);
     bool on_disk = false;
     for (int i = 0; i < p->stage_count; i++) on_disk |= p->stages[i].stamp != 0;
-    if (!(on_disk && build(gpu, p, true)) && !build(gpu, p, false)) goto fail;
+    bool built = on_disk && build(gpu, p, true);
+    if (on_disk && !built)
+        host_log(gpu->host, LOG_WARNING,
+                 "gpu pipeline %s: a shader in %s is bad; the built-in one is used", p->name,
+                 gpu->shader_dir);
+    if (!built && !build(gpu, p, false)) goto fail;
     out->id = table_add(gpu->host, &gpu->pipelines, p);
     if (out->id) return true;
 fail:

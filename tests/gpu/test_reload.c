@@ -68,10 +68,24 @@ TEST(a_changed_shader_is_reloaded_and_a_bad_one_is_not)
     assert_int_equal(run(gpu, pipeline), 2);
     gpu_pipeline_destroy(gpu, &pipeline);
     write_file(path, "text", 4); // unless it is bad
+    test_forget_messages();
     pipeline = test_gpu_compute(gpu, first);
+    assert_non_null(strstr(test_last_message(), "the built-in one is used"));
     assert_int_equal(run(gpu, pipeline), 1);
     gpu_pipeline_destroy(gpu, &pipeline);
     test_gpu_finish(gpu);
+    gpu_destroy(gpu);
+}
+
+TEST(a_folder_that_is_not_there_is_said_to_be_missing)
+{
+    test_gpu_require();
+    struct host host = *test_host();
+    host.log_up_to = LOG_WARNING; // nothing comes after it
+    test_forget_messages();
+    struct gpu *gpu = gpu_create(&host, &(struct gpu_desc){ .shader_dir = test_path("nowhere") });
+    CHECK(gpu != NULL);
+    assert_non_null(strstr(test_last_message(), "No such file or directory"));
     gpu_destroy(gpu);
 }
 
