@@ -4,6 +4,7 @@
 
 #include <afterglow/catalogue.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -304,6 +305,9 @@ static enum status check_together(const struct command *command, const struct ar
     if (a->has_eye != a->has_target)
         return wrong_usage("cannot use --%s: it goes with --%s", a->has_eye ? "eye" : "target",
                            a->has_eye ? "target" : "eye");
+    if (!isfinite(a->time_s + (a->frames - 1) * a->time_step_s))
+        return wrong_usage("cannot use --time-step: after %d frames the time is not finite",
+                           a->frames);
     if (a->camera && a->has_eye)
         return wrong_usage("cannot use --camera %s: --eye and --target are a camera already",
                            a->camera);

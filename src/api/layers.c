@@ -55,6 +55,12 @@ static bool fail_unknown(struct host *host, const char *name)
     return host_fail(host, FAIL_ARGUMENT, "unknown layer %s: see ag_layer_name", name);
 }
 
+static gpu_image layer_image(const struct ag_renderer *r, const struct layer *layer)
+{
+    if (layer->read == NO_READBACK) return gi_debug_image(r->gi);
+    return frame_layer_image(r->frame, (enum frame_layer)layer->image);
+}
+
 // The layer of that name, if the renderer keeps it; else NULL and a failure.
 static const struct layer *layer_kept(const struct ag_renderer *r, const char *name)
 {
@@ -69,14 +75,10 @@ static const struct layer *layer_kept(const struct ag_renderer *r, const char *n
         need = "the renderer was made without display_layer";
     else if (layer->read == NO_READBACK && !r->debug_view)
         need = "no debug view is set";
+    else if (layer->image == FRAME_MOTION && layer_image(r, layer).id == 0)
+        need = "no technique asks for it";
     if (need) host_fail(host, FAIL_ARGUMENT, "cannot read layer %s: %s", name, need);
     return layer && !need ? layer : NULL;
-}
-
-static gpu_image layer_image(const struct ag_renderer *r, const struct layer *layer)
-{
-    if (layer->read == NO_READBACK) return gi_debug_image(r->gi);
-    return frame_layer_image(r->frame, (enum frame_layer)layer->image);
 }
 
 static bool read_debug(struct ag_renderer *r, struct image *image)

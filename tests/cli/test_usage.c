@@ -87,6 +87,7 @@ TEST(wrong_values_are_wrong_usage)
         { "render @cornell --fov 0", "--fov" },
         { "render @cornell --time nan", "--time" },
         { "render @cornell --time 1,5", "--time" },
+        { "render @cornell --frames 3 --time-step 1e308", "--time-step" },
         { "render @cornell --exposure bright", "--exposure" },
         { "render @cornell --exposure inf", "--exposure" },
         { "render @cornell --seed -1", "--seed" },
