@@ -280,7 +280,8 @@ TEST_GPU(transient_data_outgrows_its_ring_and_stays_right)
     gpu_pipeline_destroy(gpu, &sum);
 }
 
-// A frame binds what it made first, its constants say, to the end, however much it makes in between.
+// A frame binds what it made first, its constants say, to the end, however much it makes in
+// between.
 TEST_GPU(a_binding_made_before_the_ring_grew_stays_right_to_the_frames_end)
 {
     enum { WORDS = 3000, PIECES = 100 };
@@ -392,7 +393,15 @@ TEST_GPU(shaders_that_cannot_be_are_refused_with_a_sentence)
 }
 
 #ifdef NDEBUG // debug builds assert instead
-TEST_GPU(a_misused_dispatch_is_logged_and_skipped)
+// Ends the frame: it fails, and the message says why.
+static void check_misused(struct gpu *gpu, struct gpu_cmd *cmd, const char *says)
+{
+    if (!strstr(test_last_message(), says)) fail_msg("\"%s\"", test_last_message());
+    assert_false(gpu_frame_end(gpu, cmd));
+    test_forget_messages();
+}
+
+TEST_GPU(a_misused_dispatch_is_logged_and_skipped_and_fails_its_frame)
 {
     gpu_buffer buffer = test_gpu_buffer(gpu, 64 * 4);
     gpu_image image = test_gpu_image(gpu, GPU_2D, GPU_R32U, 8, 8, 1, 1, GPU_SAMPLED);
@@ -401,22 +410,26 @@ TEST_GPU(a_misused_dispatch_is_logged_and_skipped)
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
     gpu_dispatch(cmd, pipeline, GPU_BIND({ "Vaules", .buffer = buffer }), &push, sizeof push, 1, 1,
                  1);
-    assert_non_null(strstr(test_last_message(), "nothing is bound to \"Values\""));
+    check_misused(gpu, cmd, "nothing is bound to \"Values\"");
+    cmd = gpu_frame_begin(gpu);
     gpu_dispatch(cmd, pipeline, GPU_BIND({ "Values", .buffer = buffer }), &push, 4, 1, 1, 1);
-    assert_non_null(strstr(test_last_message(), "push constants"));
+    check_misused(gpu, cmd, "push constants");
+    cmd = gpu_frame_begin(gpu);
     gpu_dispatch(cmd, pipeline, GPU_BIND({ "Values", .image = image }), &push, sizeof push, 1, 1,
                  1);
-    assert_non_null(strstr(test_last_message(), "no buffer"));
+    check_misused(gpu, cmd, "no buffer");
+    cmd = gpu_frame_begin(gpu);
     gpu_dispatch(cmd, pipeline, GPU_BIND({ "Values", .buffer = buffer, .offset = 256 }), &push,
                  sizeof push, 1, 1, 1);
-    assert_non_null(strstr(test_last_message(), "cannot see"));
+    check_misused(gpu, cmd, "cannot see");
+    cmd = gpu_frame_begin(gpu);
     gpu_dispatch(cmd, step,
                  GPU_BIND({ "source", .image = image }, { "destination", .image = image }), NULL, 0,
                  1, 1, 1);
-    assert_non_null(strstr(test_last_message(), "was not created for"));
+    check_misused(gpu, cmd, "was not created for");
+    cmd = gpu_frame_begin(gpu);
     gpu_dispatch(cmd, (gpu_pipeline){ 0 }, NULL, 0, NULL, 0, 1, 1, 1);
-    assert_non_null(strstr(test_last_message(), "none"));
-    CHECK(gpu_frame_end(gpu, cmd));
+    check_misused(gpu, cmd, "none");
     uint32_t got[64];
     CHECK(gpu_buffer_download(gpu, buffer, 0, got, sizeof got));
     for (int i = 0; i < 64; i++) assert_int_equal(got[i], 0);

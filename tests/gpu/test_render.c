@@ -467,7 +467,15 @@ TEST_GPU(indices_choose_vertices_from_an_offset_on)
 }
 
 #ifdef NDEBUG // debug builds assert instead
-TEST_GPU(a_misused_rendering_is_logged_and_draws_nothing)
+// Ends the frame: it fails, and the message says why.
+static void check_misused(struct gpu *gpu, struct gpu_cmd *cmd, const char *says)
+{
+    if (!strstr(test_last_message(), says)) fail_msg("\"%s\"", test_last_message());
+    assert_false(gpu_frame_end(gpu, cmd));
+    test_forget_messages();
+}
+
+TEST_GPU(a_misused_rendering_is_logged_draws_nothing_and_fails_its_frame)
 {
     gpu_image color = target(gpu, GPU_RGBA32F, GPU_SAMPLED),
               other = target(gpu, GPU_RGBA8, GPU_SAMPLED);
@@ -478,29 +486,35 @@ TEST_GPU(a_misused_rendering_is_logged_and_draws_nothing)
     struct push push = { { 1, 1, 1, 1 }, 0, 1 };
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
     draw(cmd, plain, 1, 0);
-    assert_non_null(strstr(test_last_message(), "no rendering is open"));
+    check_misused(gpu, cmd, "no rendering is open");
+    cmd = gpu_frame_begin(gpu);
     begin(cmd, other, false);
     draw(cmd, plain, 1, 0);
-    assert_non_null(strstr(test_last_message(), "not of its formats"));
     gpu_render_end(cmd);
+    check_misused(gpu, cmd, "not of its formats");
+    cmd = gpu_frame_begin(gpu);
     begin(cmd, color, false);
     gpu_draw(cmd, &(struct gpu_draw_desc){ .pipeline = textured,
                                            GPU_BIND({ "image", .image = color }),
                                            .push = &push,
                                            .push_bytes = sizeof push,
                                            .count = 3 });
-    assert_non_null(strstr(test_last_message(), "rendered to at once"));
-    gpu_fill_buffer(cmd, (gpu_buffer){ 0 }, 0, 4, 0);
-    assert_non_null(strstr(test_last_message(), "no such object"));
     gpu_render_end(cmd);
+    check_misused(gpu, cmd, "rendered to at once");
+    cmd = gpu_frame_begin(gpu);
+    gpu_fill_buffer(cmd, (gpu_buffer){ 0 }, 0, 4, 0);
+    check_misused(gpu, cmd, "no such object");
+    cmd = gpu_frame_begin(gpu);
+    gpu_clear_image(cmd, color, (const float[4]){ 0 });
+    CHECK(gpu_frame_end(gpu, cmd));
+    cmd = gpu_frame_begin(gpu);
     gpu_render_begin(cmd, &(struct gpu_render_desc){ .color = { { .image = color } },
                                                      .color_count = 1,
                                                      .width = WIDTH + 1,
                                                      .height = HEIGHT });
-    assert_non_null(strstr(test_last_message(), "does not fit"));
     draw(cmd, plain, 1, 0);
     gpu_render_end(cmd);
-    CHECK(gpu_frame_end(gpu, cmd));
+    check_misused(gpu, cmd, "does not fit");
     check_red(gpu, color, 0, 0, PIXELS, 0);
     gpu_image_destroy(gpu, &color);
     gpu_image_destroy(gpu, &other);
