@@ -20,7 +20,8 @@ static void log_to_stderr(void *user, enum ag_log_level level, const char *messa
     fprintf(stderr, "side_by_side: %s%s\n", level == AG_LOG_ERROR ? "" : "note: ", message);
 }
 
-// Radiance of the scene with shot->gi. The first shot measures the exposure, which the next ones keep.
+// Radiance of the scene with shot->gi. The first shot measures the exposure, which the next ones
+// keep.
 static enum ag_result take(struct ag_device *device, struct ag_scene *scene, struct shot *shot,
                            struct ag_image **out)
 {

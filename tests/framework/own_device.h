@@ -22,7 +22,8 @@ enum own_device_flags {
 void own_device_open(struct own_device *own, uint32_t flags);
 void own_device_close(struct own_device *own);
 
-// The queue's lock, to be lent with `own` as the user: counts, and fails the test when it is taken twice.
+// The queue's lock, to be lent with `own` as the user: counts, and fails the test when it is taken
+// twice.
 void own_device_lock(void *own);
 void own_device_unlock(void *own);
 
