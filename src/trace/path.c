@@ -47,7 +47,7 @@ static vec3s reflected(const struct surface *s, const struct bsdf *b,
     float cosine = glms_vec3_dot(b->normal, p->to_light);
     if (!(cosine > 0.0f) || !(glms_vec3_dot(s->geometric, p->to_light) > 0.0f))
         return vec3_of(0, 0, 0);
-    vec3s f = bsdf_eval(b, p->to_light);
+    vec3s f = bsdf_reflect(b, p->to_light).f;
     return glms_vec3_scale(glms_vec3_mul(f, p->illuminance), cosine);
 }
 
@@ -145,8 +145,9 @@ static vec3s one_emitter(const struct path_rules *rules, const struct surface *s
     struct ray ray = { from, glms_vec3_sub(e.position, from), 0.0f, 1.0f };
     ++*rays;
     if (embree_occluded(rules->scene->embree, &ray)) return vec3_of(0, 0, 0);
-    float scale = cosine / e.pdf * mis_weight(e.pdf, bsdf_pdf(b, e.to_light));
-    return glms_vec3_scale(glms_vec3_mul(bsdf_eval(b, e.to_light), e.radiance), scale);
+    struct reflection r = bsdf_reflect(b, e.to_light);
+    float scale = cosine / e.pdf * mis_weight(e.pdf, r.pdf);
+    return glms_vec3_scale(glms_vec3_mul(r.f, e.radiance), scale);
 }
 
 // ---- the path
@@ -204,9 +205,10 @@ static bool choose_step(const struct walk *w, struct rng *rng, struct step *out)
     out->cosine = glms_vec3_dot(w->bsdf.normal, to_light);
     if (!(out->cosine > 0.0f) || !(glms_vec3_dot(w->surface.geometric, to_light) > 0.0f))
         return false;
-    out->pdf = bsdf_pdf(&w->bsdf, to_light);
-    if (!(out->pdf > 0.0f)) return false;
-    out->weight = glms_vec3_scale(bsdf_eval(&w->bsdf, to_light), out->cosine / out->pdf);
+    struct reflection r = bsdf_reflect(&w->bsdf, to_light);
+    if (!(r.pdf > 0.0f)) return false;
+    out->pdf = r.pdf;
+    out->weight = glms_vec3_scale(r.f, out->cosine / r.pdf);
     out->ray = (struct ray){ surface_leave(&w->surface, to_light), to_light, 0.0f, INFINITY };
     return true;
 }
@@ -228,7 +230,7 @@ static bool survives(struct walk *w, struct rng *rng)
 {
     float choice = rng_float(rng);
     if (w->depth < FIRST_ROULETTE) return true;
-    float most = fmaxf(w->carried.x, fmaxf(w->carried.y, w->carried.z));
+    float most = glms_vec3_max(w->carried);
     float chance = fminf(most, MAX_SURVIVAL);
     if (!(choice < chance)) return false;
     w->carried = glms_vec3_scale(w->carried, 1.0f / chance);

@@ -150,16 +150,22 @@ static vec3s shading_normal(const struct spot *s, vec3s geometric)
     return length2 > 1e-12f ? glms_vec3_scale(n, 1.0f / sqrtf(length2)) : geometric;
 }
 
-static float largest(vec3s v)
+// fmaxf is a call, for the sake of NaN.
+static inline float larger(float a, float b)
 {
-    return fmaxf(fabsf(v.x), fmaxf(fabsf(v.y), fabsf(v.z)));
+    return a > b ? a : b;
+}
+
+static inline float largest(vec3s v)
+{
+    return larger(fabsf(v.x), larger(fabsf(v.y), fabsf(v.z)));
 }
 
 float surface_reach(const struct trace_mesh *mesh, const uint32_t corner[3])
 {
     float size = largest(mesh->positions[corner[0]]);
-    size = fmaxf(size, largest(mesh->positions[corner[1]]));
-    size = fmaxf(size, largest(mesh->positions[corner[2]]));
+    size = larger(size, largest(mesh->positions[corner[1]]));
+    size = larger(size, largest(mesh->positions[corner[2]]));
     return REACH * size + 1e-9f;
 }
 

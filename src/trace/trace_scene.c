@@ -62,20 +62,6 @@ static bool make_materials(struct trace_scene *s)
 
 // ---- meshes
 
-// Whether an instance's triangles are turned over by its transform; of a skin, the first joint
-// decides (as in the frame).
-static bool is_mirrored(const struct scene_pose *pose, int instance)
-{
-    const struct instance *i = &pose->scene->instances[instance];
-    mat4s m = pose->world_from_node[i->node];
-    if (i->skin >= 0) {
-        const struct skin *skin = &pose->scene->skins[i->skin];
-        if (skin->joint_count == 0) return false;
-        m = glms_mat4_mul(pose->world_from_node[skin->joints[0]], skin->joint_from_mesh[0]);
-    }
-    return glms_mat4_det(m) < 0.0f;
-}
-
 static vec3s unit_or_zero(vec3s v)
 {
     float length2 = glms_vec3_norm2(v);
@@ -122,7 +108,7 @@ static bool make_mesh(struct trace_scene *s, const struct scene_pose *pose, int 
     *out = (struct trace_mesh){ .mesh = mesh,
                                 .material = &s->materials[mesh->material],
                                 .instance = instance,
-                                .mirrored = is_mirrored(pose, instance),
+                                .mirrored = pose_is_mirrored(pose, instance),
                                 .emitter_first = NO_EMITTER };
     size_t count = mesh->vertex_count;
     out->positions = host_alloc(s->host, count + 1, sizeof *out->positions);

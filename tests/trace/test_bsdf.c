@@ -36,7 +36,7 @@ static void integrate(const struct bsdf *b, double expected[BINS])
         for (int k = 0; k < FINE * FINE; k++) {
             double z = ((i / PHI_BINS) + (k / FINE + 0.5) / FINE) / Z_BINS * 2 - 1;
             double phi = ((i % PHI_BINS) + (k % FINE + 0.5) / FINE) / PHI_BINS * 2 * PI;
-            sum += (double)bsdf_pdf(b, direction(z, phi));
+            sum += (double)bsdf_reflect(b, direction(z, phi)).pdf;
         }
         expected[i] = sum / (FINE * FINE) * 4 * PI / BINS;
     }
@@ -104,7 +104,7 @@ TEST(reflection_is_reciprocal)
         float metallic = rng_float(&rng), roughness = rng_float(&rng);
         struct bsdf from_a = bsdf_of(n, a, albedo, metallic, roughness, false);
         struct bsdf from_b = bsdf_of(n, b, albedo, metallic, roughness, false);
-        vec3s ab = bsdf_eval(&from_a, b), ba = bsdf_eval(&from_b, a);
+        vec3s ab = bsdf_reflect(&from_a, b).f, ba = bsdf_reflect(&from_b, a).f;
         for (int c = 0; c < 3; c++) CHECK_RELATIVE(ab.raw[c], ba.raw[c], 1e-3);
     }
 }
@@ -121,11 +121,12 @@ TEST(sampling_and_plain_integration_agree_on_the_albedo)
             struct rng rng = rng_for(5, k, 1);
             float choice = rng_float(&rng);
             vec3s d = bsdf_sample(&b, choice, rng_vec2(&rng));
-            if (d.z > 0) sampled += (double)(bsdf_eval(&b, d).y * d.z / bsdf_pdf(&b, d)) / SAMPLES;
+            struct reflection r = bsdf_reflect(&b, d);
+            if (d.z > 0) sampled += (double)(r.f.y * d.z / r.pdf) / SAMPLES;
         }
         for (int k = 0; k < STEPS * STEPS; k++) {
             double z = (k / STEPS + 0.5) / STEPS, phi = (k % STEPS + 0.5) / STEPS * 2 * PI;
-            plain += (double)bsdf_eval(&b, direction(z, phi)).y * z * 2 * PI / (STEPS * STEPS);
+            plain += (double)bsdf_reflect(&b, direction(z, phi)).f.y * z * 2 * PI / (STEPS * STEPS);
         }
         CHECK_RELATIVE(sampled, plain, 0.004);
     }
@@ -135,7 +136,7 @@ TEST(nothing_is_reflected_from_below_the_horizon)
 {
     struct bsdf b = make(0.5f, 0.5f, 0.5f);
     for (int i = 1; i < 10; i++) {
-        vec3s f = bsdf_eval(&b, direction(-0.1 * i, i));
+        vec3s f = bsdf_reflect(&b, direction(-0.1 * i, i)).f;
         CHECK(f.x == 0 && f.y == 0 && f.z == 0);
     }
 }

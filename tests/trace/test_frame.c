@@ -83,7 +83,8 @@ TEST_GPU(direct_light_of_the_frame_is_the_references)
     static double d[PIXELS];
     int count = differences(gpu, "@cornell:light=point", READ_DIRECT, REFERENCE_DIRECT, d);
     CHECK(count > PIXELS / 4);
-    // Half floats, 8-bit albedo, and drivers that decode sRGB by a polynomial; beyond nine in ten: edges.
+    // Half floats, 8-bit albedo, and drivers that decode sRGB by a polynomial; beyond nine in ten:
+    // edges.
     CHECK(d[count / 2] < 0.007);
     CHECK(d[count * 9 / 10] < 0.01);
 }
