@@ -8,7 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HELP_COLUMN = 24, HELP_WIDTH = 100, MAX_FRAMES = 1000000 };
+enum {
+    HELP_COLUMN = 24,
+    HELP_WIDTH = 100,
+    MAX_FRAMES = 1000000,
+    MAX_SPP = 1000000,
+    MAX_BOUNCES = 1000000
+};
 
 // A setter says itself what is wrong and returns false, or NULL for "see the help".
 typedef bool setter(struct arguments *a, const char *value, const char **why);
@@ -159,6 +165,52 @@ static bool set_seed(struct arguments *a, const char *value, const char **why)
 {
     *why = "it must be a whole number of at most 64 bits";
     return value_seed(value, &a->seed);
+}
+
+static bool set_spp(struct arguments *a, const char *value, const char **why)
+{
+    long spp = 0;
+    *why = "it must be 1 to 1000000";
+    bool ok = value_int(value, 1, MAX_SPP, &spp);
+    a->spp = (int)spp;
+    return ok;
+}
+
+static bool set_bounces(struct arguments *a, const char *value, const char **why)
+{
+    long bounces = 0;
+    *why = "it must be 0 to 1000000";
+    bool ok = value_int(value, 0, MAX_BOUNCES, &bounces);
+    a->bounces = (int)bounces;
+    return ok;
+}
+
+static bool set_direct_only(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->direct_only = true;
+    return true;
+}
+
+static bool set_indirect_only(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->indirect_only = true;
+    return true;
+}
+
+static bool set_antialias(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->antialias = true;
+    return true;
+}
+
+static bool set_resume(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->resume = true;
+    return true;
 }
 
 static bool set_layer(struct arguments *a, const char *value, const char **why)
@@ -314,15 +366,21 @@ static enum status check_together(const struct command *command, const struct ar
     if (a->has_eye && a->eye[0] == a->target[0] && a->eye[1] == a->target[1] &&
         a->eye[2] == a->target[2])
         return wrong_usage("cannot use --eye: it is the same point as --target");
+    if (a->direct_only && a->indirect_only)
+        return wrong_usage("cannot use --direct-only: --indirect-only is the other half");
     return DONE;
 }
 
 enum status arguments_parse(const struct command *command, int count, char **words,
                             struct arguments *out)
 {
-    *out = (struct arguments){
-        .gi = "none", .width = 1280, .height = 720, .frames = 1, .fov_deg = 60.0
-    };
+    *out = (struct arguments){ .gi = "none",
+                               .width = 1280,
+                               .height = 720,
+                               .frames = 1,
+                               .fov_deg = 60.0,
+                               .spp = 64,
+                               .bounces = -1 };
     bool only_files = false; // after "--"
     for (int i = 0; i < count; i++) {
         if (!only_files && strcmp(words[i], "--") == 0) {

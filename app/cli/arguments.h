@@ -6,7 +6,7 @@
 #include <afterglow/image.h>
 #include <afterglow/scene.h>
 
-enum command_bit { RENDER = 1, INFO = 2, LIST = 4, DIFF = 8 };
+enum command_bit { RENDER = 1, INFO = 2, LIST = 4, DIFF = 8, REFERENCE = 16 };
 enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 2 };
 
 struct arguments {
@@ -31,6 +31,9 @@ struct arguments {
     int light_count;
     bool no_scene_lights, has_sky;
     float sky[3];
+    // reference
+    int spp, bounces;
+    bool direct_only, indirect_only, antialias, resume;
     // diff
     const char *layer, *map;
     enum ag_difference metric; // of the map

@@ -23,31 +23,21 @@ struct job {
 
 // ---- what the command line alone decides
 
-// "shots/house.glb" and "@house:lit=1" give "house.png".
-static void default_output(const char *scene, char out[PATH_SIZE])
-{
-    const char *slash = strrchr(scene, '/');
-    const char *name = scene[0] == '@' ? scene + 1 : slash ? slash + 1 : scene;
-    const char *dot = strrchr(name, '.');
-    size_t length = scene[0] == '@'     ? strcspn(name, ":/")
-                    : dot && dot > name ? (size_t)(dot - name)
-                                        : strlen(name);
-    snprintf(out, PATH_SIZE, "%.*s.png", length < 255 ? (int)length : 255, name);
-}
-
 static enum status plan_output(struct job *job)
 {
     const struct arguments *a = job->arguments;
     if (a->output)
         snprintf(job->pattern, sizeof job->pattern, "%s", a->output);
     else
-        default_output(a->positional[0], job->pattern);
+        output_default(a->positional[0], ".png", job->pattern);
     char first[PATH_SIZE];
     if (a->output && strlen(a->output) >= sizeof job->pattern)
         return wrong_usage("wrong value -o: the path is longer than %d", PATH_SIZE - 1);
     if (!value_frame_path(job->pattern, 0, first, sizeof first, &job->sequence))
         return wrong_usage("wrong value -o %s: one frame number (%%04d) is the most", job->pattern);
-    return picture_plan(a, job->pattern, &job->picture);
+    bool exr = has_extension(job->pattern, "exr");
+    const char *fallback = a->debug_view ? exr ? "color,debug" : "debug" : "color";
+    return picture_plan(a, job->pattern, ag_layer_name, fallback, &job->picture);
 }
 
 static enum status check_debug_view(const char *wanted)

@@ -4,16 +4,22 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
 
 static pthread_mutex_t writing = PTHREAD_MUTEX_INITIALIZER;
 static sigset_t ending;
+static atomic_bool catching, caught;
 
 // As if nobody had waited for it: the parent sees which signal it was. The mutex stays taken.
 static void *wait_for_the_end(void *unused)
 {
     int number = 0;
     if (sigwait(&ending, &number) != 0) return unused;
+    if (number == SIGINT && atomic_exchange(&catching, false)) {
+        atomic_store(&caught, true);
+        if (sigwait(&ending, &number) != 0) return unused;
+    }
     pthread_mutex_lock(&writing);
     sigset_t one;
     sigemptyset(&one);
@@ -43,6 +49,16 @@ void interrupt_begin(void)
         pthread_detach(thread);
     else
         pthread_sigmask(SIG_UNBLOCK, &ending, NULL); // they end it at once, then
+}
+
+void interrupt_catch(void)
+{
+    atomic_store(&catching, true);
+}
+
+bool interrupt_caught(void)
+{
+    return atomic_load(&caught);
 }
 
 void interrupt_hold(void)

@@ -33,30 +33,42 @@ enum status output_check(const char *path)
     return access(path, W_OK) == 0 ? DONE : fail("cannot write %s: %s", path, strerror(errno));
 }
 
+void output_default(const char *scene, const char *ending, char out[PATH_SIZE])
+{
+    const char *slash = strrchr(scene, '/');
+    const char *name = scene[0] == '@' ? scene + 1 : slash ? slash + 1 : scene;
+    const char *dot = strrchr(name, '.');
+    size_t length = scene[0] == '@'     ? strcspn(name, ":/")
+                    : dot && dot > name ? (size_t)(dot - name)
+                                        : strlen(name);
+    snprintf(out, PATH_SIZE, "%.*s%s", length < 255 ? (int)length : 255, name, ending);
+}
+
 // ---- which layers
 
-static enum status unknown_layer(const char *name)
+static enum status unknown_layer(const char *name, const char *(*layer_name)(int))
 {
     const char *known[MAX_LAYERS];
     int count = 0;
-    for (const char *layer; count < MAX_LAYERS && (layer = ag_layer_name(count));)
+    for (const char *layer; count < MAX_LAYERS && (layer = layer_name(count));)
         known[count++] = layer;
     const char *nearest = ag_nearest_name(name, known, count);
     if (nearest) return wrong_usage("unknown layer %s in --aov: did you mean %s?", name, nearest);
-    return wrong_usage("unknown layer %s in --aov: see afterglow render --help", name);
+    return wrong_usage("unknown layer %s in --aov: see --help", name);
 }
 
-static bool layer_exists(const char *name)
+static bool layer_exists(const char *name, const char *(*layer_name)(int))
 {
     const char *layer;
-    for (int i = 0; (layer = ag_layer_name(i)); i++)
+    for (int i = 0; (layer = layer_name(i)); i++)
         if (strcmp(layer, name) == 0) return true;
     return false;
 }
 
-static enum status add_layer(struct picture *picture, const char *name)
+static enum status add_layer(struct picture *picture, const char *name,
+                             const char *(*layer_name)(int))
 {
-    if (!layer_exists(name)) return unknown_layer(name);
+    if (!layer_exists(name, layer_name)) return unknown_layer(name, layer_name);
     for (int i = 0; i < picture->layer_count; i++)
         if (strcmp(picture->layers[i], name) == 0)
             return wrong_usage("wrong value --aov: layer %s is named twice", name);
@@ -64,16 +76,16 @@ static enum status add_layer(struct picture *picture, const char *name)
     return DONE;
 }
 
-enum status picture_plan(const struct arguments *a, const char *path, struct picture *out)
+enum status picture_plan(const struct arguments *a, const char *path,
+                         const char *(*layer_name)(int), const char *fallback, struct picture *out)
 {
     *out = (struct picture){ .exr = has_extension(path, "exr") };
     enum status status = DONE;
-    const char *fallback = a->debug_view ? out->exr ? "color,debug" : "debug" : "color";
     int wrote = snprintf(out->names, sizeof out->names, "%s", a->aov ? a->aov : fallback);
     if (wrote >= (int)sizeof out->names)
         return wrong_usage("wrong value --aov: the list is too long");
     char *rest = out->names;
-    while (rest && status == DONE) status = add_layer(out, strsep(&rest, ","));
+    while (rest && status == DONE) status = add_layer(out, strsep(&rest, ","), layer_name);
     if (status != DONE) return status;
     if (!out->exr && out->layer_count > 1)
         return wrong_usage("cannot write %d layers into %s: a PNG holds one, an .exr holds all",
@@ -146,13 +158,10 @@ static void irradiance_to_radiance(struct ag_image *image)
     for (size_t i = 0; i < count; i++) image->pixels[i] *= 0.318309886f;
 }
 
-static enum ag_result tonemap(struct session *session, struct ag_renderer *renderer,
-                              struct ag_image **image)
+static enum ag_result tonemap(struct session *session, float ev, struct ag_image **image)
 {
-    float ev = 0.0f;
     struct ag_image *display = NULL;
-    enum ag_result result = ag_renderer_exposure(renderer, &ev);
-    if (result == AG_OK) result = ag_image_tonemap(session->context, *image, ev, &display);
+    enum ag_result result = ag_image_tonemap(session->context, *image, ev, &display);
     if (result != AG_OK) return result;
     ag_image_destroy(session->context, *image);
     *image = display;
@@ -167,16 +176,18 @@ static enum look look_of(const char *layer)
     static const struct {
         const char *layer;
         enum look look;
-    } looks[] = { { "albedo", AS_IT_IS },  { "visibility", AS_IT_IS },  { "display", AS_IT_IS },
-                  { "normal", DIRECTION }, { "motion", DIRECTION },     { "depth", DEPTH },
-                  { "position", RANGE },   { "irradiance", IRRADIANCE } };
+    } looks[] = {
+        { "albedo", AS_IT_IS },  { "visibility", AS_IT_IS }, { "display", AS_IT_IS },
+        { "normal", DIRECTION }, { "motion", DIRECTION },    { "depth", DEPTH },
+        { "position", RANGE },   { "samples", RANGE },       { "irradiance", IRRADIANCE }
+    };
     for (size_t i = 0; i < sizeof looks / sizeof looks[0]; i++)
         if (strcmp(looks[i].layer, layer) == 0) return looks[i].look;
     return RADIANCE;
 }
 
-static enum ag_result to_display(struct session *session, struct ag_renderer *renderer,
-                                 const char *layer, struct ag_image **image)
+enum ag_result picture_show(struct session *session, const char *layer, float ev,
+                            struct ag_image **image)
 {
     switch (look_of(layer)) {
     case AS_IT_IS:
@@ -196,15 +207,17 @@ static enum ag_result to_display(struct session *session, struct ag_renderer *re
     case RADIANCE:
         break;
     }
-    return tonemap(session, renderer, image);
+    return tonemap(session, ev, image);
 }
 
 static enum status write_png(struct session *session, struct ag_renderer *renderer,
                              const char *layer, const char *path)
 {
     struct ag_image *image = NULL;
+    float ev = 0.0f;
     enum ag_result result = ag_renderer_read(renderer, layer, &image);
-    if (result == AG_OK) result = to_display(session, renderer, layer, &image);
+    if (result == AG_OK) result = ag_renderer_exposure(renderer, &ev);
+    if (result == AG_OK) result = picture_show(session, layer, ev, &image);
     interrupt_hold();
     if (result == AG_OK) result = ag_image_write_png(session->context, path, image);
     interrupt_release();

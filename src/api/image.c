@@ -28,9 +28,8 @@ static bool is_whole(const struct ag_image *image)
            image->channels <= 4;
 }
 
-// Hands a finished image over to the caller; takes *image in any case.
-static enum ag_result give(struct ag_context *context, bool ok, struct image *image,
-                           struct ag_image **out)
+enum ag_result api_give_image(struct ag_context *context, bool ok, struct image *image,
+                              struct ag_image **out)
 {
     struct ag_image *given = ok ? host_alloc(&context->host, 1, sizeof *given) : NULL;
     if (!given) {
@@ -55,7 +54,7 @@ enum ag_result ag_image_create(struct ag_context *context, int width, int height
     AG_REQUIRE(context, channels >= 1 && channels <= 4, "channels %d is not 1 to 4", channels);
     struct image image = { 0 };
     bool ok = image_init(&image, &context->host, width, height, channels);
-    return give(context, ok, &image, out);
+    return api_give_image(context, ok, &image, out);
 }
 
 void ag_image_destroy(struct ag_context *context, struct ag_image *image)
@@ -140,7 +139,7 @@ enum ag_result ag_image_read(struct ag_context *context, const char *path, const
                        layer, path);
     else
         ok = png_read(host, path, &image);
-    return give(context, ok, &image, out);
+    return api_give_image(context, ok, &image, out);
 }
 
 enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
@@ -154,7 +153,7 @@ enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_imag
     AG_REQUIRE(context, isfinite(ev), "ev is not finite");
     struct image view = view_of(radiance), image = { 0 };
     bool ok = image_tonemap(&image, &context->host, &view, ev);
-    return give(context, ok, &image, out);
+    return api_give_image(context, ok, &image, out);
 }
 
 float ag_image_auto_exposure(const struct ag_image *radiance)
@@ -180,7 +179,7 @@ enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag
                "%d + %d + %d columns are more than %d", a->width, gap, b->width, IMAGE_MAX_SIZE);
     struct image view_a = view_of(a), view_b = view_of(b), image = { 0 };
     bool ok = image_side_by_side(&image, &context->host, &view_a, &view_b, gap);
-    return give(context, ok, &image, out);
+    return api_give_image(context, ok, &image, out);
 }
 
 void ag_compare_desc_default(struct ag_compare_desc *desc)
@@ -255,5 +254,5 @@ enum ag_result ag_image_error_map(struct ag_context *context, const struct ag_im
     bool ok = options_of(context, desc, &mask, &options) &&
               metrics_error_map(&context->host, &view_a, &view_b, &options,
                                 (enum metrics_error)difference, full, &image);
-    return give(context, ok, &image, out);
+    return api_give_image(context, ok, &image, out);
 }

@@ -58,6 +58,14 @@ enum ag_result api_refuse(struct ag_context *context, const char *function, cons
         if (!(condition)) return api_refuse((context), (function), __VA_ARGS__);                   \
     } while (0)
 
+// Forward and up, unit and orthogonal; where the camera's up says nothing, any.
+struct world_camera api_camera(const struct ag_camera *camera);
+enum ag_result api_camera_check(struct ag_context *context, const char *function, const struct ag_camera *camera);
+
+// Hands a finished image over to the caller; takes *image in any case.
+struct image;
+enum ag_result api_give_image(struct ag_context *context, bool ok, struct image *image, struct ag_image **out);
+
 static inline bool api_finite(const float *values, int count)
 {
     for (int i = 0; i < count; i++)

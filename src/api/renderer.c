@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-static const float PI = 3.14159265f;
 enum { MAX_SIZE = 16384, MAX_PASSES = 128, MAX_OWNERS = 128 };
 
 static struct host *host_of(const struct ag_renderer *renderer)
@@ -168,43 +167,6 @@ void ag_frame_desc_default(struct ag_frame_desc *desc)
     if (desc) *desc = (struct ag_frame_desc){ .auto_exposure = true };
 }
 
-// Forward and up, unit and orthogonal; where `up` says nothing, any.
-static struct world_camera camera_in(const struct ag_camera *camera)
-{
-    vec3s eye = api_vec3(camera->eye), up = api_vec3(camera->up);
-    vec3s forward = vec3_towards(eye, api_vec3(camera->target));
-    vec3s across = glms_vec3_sub(up, glms_vec3_scale(forward, glms_vec3_dot(up, forward)));
-    vec3s tangent;
-    if (glms_vec3_norm(across) > 1e-6f * glms_vec3_norm(up))
-        up = glms_vec3_normalize(across);
-    else
-        basis_of(forward, &tangent, &up);
-    return (struct world_camera){ .eye = eye,
-                                  .forward = forward,
-                                  .up = up,
-                                  .vertical_fov_rad = camera->vertical_fov_rad,
-                                  .near_m = camera->near_m };
-}
-
-static enum ag_result camera_check(const char *function, struct ag_context *context,
-                                   const struct ag_camera *camera)
-{
-    AG_REQUIRE_FOR(function, context,
-                   api_finite(camera->eye, 3) && api_finite(camera->target, 3) &&
-                       api_finite(camera->up, 3),
-                   "the camera is not finite");
-    vec3s forward = vec3_towards(api_vec3(camera->eye), api_vec3(camera->target));
-    AG_REQUIRE_FOR(function, context, glms_vec3_norm(forward) > 0.0f,
-                   "the camera's eye and target are the same point");
-    AG_REQUIRE_FOR(function, context,
-                   camera->vertical_fov_rad > 0.0f && camera->vertical_fov_rad < PI,
-                   "the camera's vertical_fov_rad %g is not between 0 and pi",
-                   (double)camera->vertical_fov_rad);
-    AG_REQUIRE_FOR(function, context, camera->near_m > 0.0f && isfinite(camera->near_m),
-                   "the camera's near_m %g is not above 0", (double)camera->near_m);
-    return AG_OK;
-}
-
 static enum ag_result frame_check(const char *function, const struct ag_renderer *r,
                                   const struct ag_frame_desc *desc)
 {
@@ -217,7 +179,7 @@ static enum ag_result frame_check(const char *function, const struct ag_renderer
     AG_REQUIRE_FOR(function, context, isfinite(desc->time_s), "time_s is not finite");
     AG_REQUIRE_FOR(function, context, desc->auto_exposure || isfinite(desc->exposure_ev),
                    "exposure_ev is not finite");
-    enum ag_result checked = camera_check(function, context, &desc->camera);
+    enum ag_result checked = api_camera_check(context, function, &desc->camera);
     return checked == AG_OK ? idle_check(function, r) : checked;
 }
 
@@ -242,7 +204,7 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
     if (!api_pose_at(r->scene, &r->pose, &r->pose_version, desc->animation, desc->time_s))
         return false;
     *input = (struct frame_input){ .pose = &r->pose,
-                                   .camera = camera_in(&desc->camera),
+                                   .camera = api_camera(&desc->camera),
                                    .lights = r->lights,
                                    .light_count = resolve_lights(r),
                                    .sky = r->scene->scene->sky,

@@ -1,5 +1,5 @@
 # The public functions, through the public headers alone.
-foreach(name arguments context scene catalogue)
+foreach(name arguments context scene catalogue reference)
   ag_test(api/${name} USES api)
 endforeach()
 ag_test(api/renderer USES api LIBRARIES ag_test_own_device ag_test_gpu)

@@ -41,7 +41,7 @@ TEST(wrong_commands_and_arguments_are_wrong_usage)
         { "", "--help" },
         { "rendr @cornell", "render" },
         { "view @cornell", "view" },
-        { "reference @cornell", "reference" },
+        { "reference @cornell @cornell", "@cornell" },
         { "render", "SCENE" },
         { "render @cornell @cornell", "@cornell" },
         { "info", "SCENE" },

@@ -1,0 +1,187 @@
+// The reference: forwards to trace/.
+#include "api/objects.h"
+
+#include "core/option.h"
+#include "image/exr.h"
+#include "trace/trace.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+struct ag_reference {
+    struct ag_context *context;
+    struct reference *reference;
+    char checkpoint[48];
+};
+
+// The layers that a run goes on from.
+static const enum reference_layer kept_layers[] = { REFERENCE_DIRECT, REFERENCE_INDIRECT,
+                                                    REFERENCE_IRRADIANCE, REFERENCE_ERROR,
+                                                    REFERENCE_SAMPLES };
+enum { KEPT_COUNT = sizeof kept_layers / sizeof kept_layers[0] };
+
+static struct ag_context *context_of(const struct ag_reference *r)
+{
+    return r ? r->context : NULL;
+}
+
+void ag_reference_desc_default(struct ag_reference_desc *desc)
+{
+    if (desc) *desc = (struct ag_reference_desc){ .width = 1280, .height = 720, .bounces = -1 };
+}
+
+static bool build(struct ag_reference *r, const struct ag_scene *scene,
+                  const struct ag_reference_desc *desc)
+{
+    struct host *host = &r->context->host;
+    struct scene_pose pose = { 0 };
+    uint64_t version = 0;
+    if (!api_pose_at(scene, &pose, &version, desc->animation, desc->time_s)) return false;
+    struct world_camera camera = api_camera(&desc->camera);
+    struct reference_options options = { .bounces = desc->bounces,
+                                         .direct_only = desc->direct_only,
+                                         .indirect_only = desc->indirect_only,
+                                         .antialias = desc->antialias,
+                                         .seed = desc->seed };
+    r->reference = reference_create(host, &pose, &camera, desc->width, desc->height, &options);
+    pose_finish(&pose);
+    if (!r->reference) return false;
+    // The number counts changes of the sampling: files of another one are not gone on from.
+    snprintf(r->checkpoint, sizeof r->checkpoint, "reference 1 %016" PRIx64,
+             reference_key(r->reference));
+    return true;
+}
+
+enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_reference_desc *desc,
+                                   struct ag_reference **out)
+{
+    struct ag_context *context = scene ? scene->context : NULL;
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, scene, "scene is NULL");
+    AG_REQUIRE(context, desc, "desc is NULL");
+    AG_REQUIRE(context,
+               desc->width >= 1 && desc->width <= IMAGE_MAX_SIZE && desc->height >= 1 &&
+                   desc->height <= IMAGE_MAX_SIZE,
+               "width and height must be 1 to %d, not %d and %d", IMAGE_MAX_SIZE, desc->width,
+               desc->height);
+    AG_REQUIRE(context, desc->bounces >= -1, "bounces %d is less than -1", desc->bounces);
+    AG_REQUIRE(context, !(desc->direct_only && desc->indirect_only),
+               "direct_only and indirect_only exclude each other");
+    AG_REQUIRE(context, api_animation_exists(scene, desc->animation),
+               "animation %d is not one of %d", desc->animation, scene->scene->animation_count);
+    AG_REQUIRE(context, isfinite(desc->time_s), "time_s is not finite");
+    enum ag_result checked = api_camera_check(context, __func__, &desc->camera);
+    if (checked != AG_OK) return checked;
+
+    struct ag_reference *r = host_alloc(&context->host, 1, sizeof *r);
+    if (!r) return api_done(context, false);
+    r->context = context;
+    bool ok = build(r, scene, desc);
+    enum ag_result result = api_done(context, ok);
+    if (ok)
+        *out = r;
+    else
+        ag_reference_destroy(r);
+    return result;
+}
+
+void ag_reference_destroy(struct ag_reference *r)
+{
+    if (!r) return;
+    reference_destroy(r->reference);
+    host_free(&r->context->host, r);
+}
+
+enum ag_result ag_reference_render(struct ag_reference *r, int samples,
+                                   bool (*progress)(void *user, double done), void *user)
+{
+    struct ag_context *context = context_of(r);
+    AG_REQUIRE(context, r, "reference is NULL");
+    AG_REQUIRE(context, samples >= 1, "samples %d is less than 1", samples);
+    return api_done(context, reference_render(r->reference, samples, progress, user));
+}
+
+const char *ag_reference_layer_name(int index)
+{
+    return reference_layer_name(index);
+}
+
+static bool fail_unknown(struct host *host, const char *name)
+{
+    const char *names[REFERENCE_LAYER_COUNT];
+    for (int i = 0; i < REFERENCE_LAYER_COUNT; i++) names[i] = reference_layer_name(i);
+    const char *nearest = nearest_name(name, names, REFERENCE_LAYER_COUNT);
+    return host_fail(host, FAIL_ARGUMENT, "unknown layer %s of a reference: %s%s", name,
+                     nearest ? "did you mean " : "see ag_reference_layer_name",
+                     nearest ? nearest : "");
+}
+
+enum ag_result ag_reference_read(struct ag_reference *r, const char *layer, struct ag_image **out)
+{
+    struct ag_context *context = context_of(r);
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    AG_REQUIRE(context, r, "reference is NULL");
+    AG_REQUIRE(context, layer, "layer is NULL");
+    int index = 0;
+    while (index < REFERENCE_LAYER_COUNT && strcmp(reference_layer_name(index), layer) != 0)
+        index++;
+    if (index == REFERENCE_LAYER_COUNT)
+        return api_done(context, fail_unknown(&context->host, layer));
+    struct image image = { 0 };
+    bool ok = reference_read(r->reference, (enum reference_layer)index, &image);
+    return api_give_image(context, ok, &image, out);
+}
+
+enum ag_result ag_reference_get_info(const struct ag_reference *r, struct ag_reference_info *out)
+{
+    struct ag_context *context = context_of(r);
+    AG_REQUIRE(context, r, "reference is NULL");
+    AG_REQUIRE(context, out, "out is NULL");
+    struct reference_info info = reference_info(r->reference);
+    *out = (struct ag_reference_info){ info.samples, info.rays, info.mean, info.error };
+    return AG_OK;
+}
+
+// ---- going on
+
+const char *ag_reference_checkpoint(const struct ag_reference *r)
+{
+    return r ? r->checkpoint : "";
+}
+
+static bool is_of_this(struct ag_reference *r, const char *path)
+{
+    struct host *host = &r->context->host;
+    char *value = exr_attribute_value(host, path, AG_REFERENCE_CHECKPOINT);
+    bool same = value && strcmp(value, r->checkpoint) == 0;
+    host_free(host, value);
+    if (same || host->failure != FAIL_NONE) return same;
+    return host_fail(host, FAIL_ARGUMENT,
+                     "cannot go on with %s: it is of another scene, camera, size or option", path);
+}
+
+static bool resume(struct ag_reference *r, const char *path)
+{
+    struct host *host = &r->context->host;
+    struct image layers[KEPT_COUNT] = { 0 };
+    host->failure = FAIL_NONE;
+    bool ok = is_of_this(r, path);
+    for (int i = 0; i < KEPT_COUNT && ok; i++)
+        ok = exr_read(host, path, reference_layer_name(kept_layers[i]), &layers[i]);
+    if (ok)
+        ok = reference_restore(r->reference, &layers[0], &layers[1], &layers[2], &layers[3],
+                               &layers[4]);
+    for (int i = 0; i < KEPT_COUNT; i++) image_finish(&layers[i], host);
+    return ok;
+}
+
+enum ag_result ag_reference_resume(struct ag_reference *r, const char *path)
+{
+    struct ag_context *context = context_of(r);
+    AG_REQUIRE(context, r, "reference is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    return api_done(context, resume(r, path));
+}

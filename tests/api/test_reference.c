@@ -1,0 +1,201 @@
+// The reference through the public functions: layers, progress, going on, wrong arguments.
+#include "framework/test.h"
+
+#include <afterglow/afterglow.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define CHECK_REFUSED(context, call)                                                               \
+    do {                                                                                           \
+        assert_int_equal((call), AG_ERROR_ARGUMENT);                                               \
+        if (context) CHECK(ag_context_last_error(context)[0]);                                     \
+    } while (0)
+
+struct fixture {
+    struct ag_context *context;
+    struct ag_scene *scene;
+    struct ag_reference_desc desc;
+};
+
+static void open(struct fixture *f, const char *name)
+{
+    assert_int_equal(ag_context_create(NULL, &f->context), AG_OK);
+    assert_int_equal(ag_scene_load(f->context, name, &f->scene), AG_OK);
+    ag_reference_desc_default(&f->desc);
+    assert_int_equal(f->desc.bounces, -1);
+    f->desc.width = 24;
+    f->desc.height = 18;
+    assert_int_equal(ag_scene_camera(f->scene, "main", 0, 0, &f->desc.camera), AG_OK);
+}
+
+static void close(struct fixture *f)
+{
+    ag_scene_destroy(f->scene);
+    ag_context_destroy(f->context);
+}
+
+static struct ag_reference *create(struct fixture *f)
+{
+    struct ag_reference *r = NULL;
+    assert_int_equal(ag_reference_create(f->scene, &f->desc, &r), AG_OK);
+    return r;
+}
+
+static struct ag_image *read_layer(struct ag_reference *r, const char *name)
+{
+    struct ag_image *image = NULL;
+    assert_int_equal(ag_reference_read(r, name, &image), AG_OK);
+    return image;
+}
+
+static size_t float_count(const struct ag_image *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+TEST(every_named_layer_can_be_read)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    struct ag_reference *r = create(&f);
+    struct ag_reference_info info;
+    assert_int_equal(ag_reference_get_info(r, &info), AG_OK);
+    assert_int_equal(info.samples, 0);
+    assert_int_equal(ag_reference_render(r, 2, NULL, NULL), AG_OK);
+    assert_int_equal(ag_reference_render(r, 2, NULL, NULL), AG_OK);
+    assert_int_equal(ag_reference_get_info(r, &info), AG_OK);
+    assert_int_equal(info.samples, 4);
+    CHECK(info.rays > 4 * 24 * 18 && info.mean > 0 && info.error > 0 && isfinite(info.error));
+    int count = 0;
+    for (const char *name; (name = ag_reference_layer_name(count)); count++) {
+        struct ag_image *image = read_layer(r, name);
+        bool single = strcmp(name, "depth") == 0 || strcmp(name, "samples") == 0;
+        assert_int_equal(image->channels, single ? 1 : 3);
+        assert_int_equal(image->width, 24);
+        for (size_t i = 0; i < float_count(image); i++) CHECK(isfinite(image->pixels[i]));
+        if (strcmp(name, "samples") == 0) CHECK_NEAR(image->pixels[0], 4, 0);
+        ag_image_destroy(f.context, image);
+    }
+    assert_int_equal(count, 10);
+    assert_null(ag_reference_layer_name(-1));
+    ag_reference_destroy(r);
+    close(&f);
+}
+
+static bool stop(void *user, double done)
+{
+    *(double *)user = done;
+    return false;
+}
+
+TEST(progress_can_cancel)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    struct ag_reference *r = create(&f);
+    double done = 0;
+    assert_int_equal(ag_reference_render(r, 100, stop, &done), AG_ERROR_CANCELLED);
+    CHECK(done > 0 && done < 1);
+    assert_int_equal(ag_reference_render(r, 1, NULL, NULL), AG_OK);
+    ag_reference_destroy(r);
+    close(&f);
+}
+
+static void write_checkpoint(struct fixture *f, struct ag_reference *r, const char *path)
+{
+    static const char *const names[] = { "direct", "indirect", "irradiance", "error", "samples" };
+    struct ag_image_layer layers[5];
+    struct ag_image *images[5];
+    for (int i = 0; i < 5; i++) {
+        images[i] = read_layer(r, names[i]);
+        layers[i] = (struct ag_image_layer){ names[i], images[i] };
+    }
+    struct ag_attribute attribute = { AG_REFERENCE_CHECKPOINT, ag_reference_checkpoint(r) };
+    assert_int_equal(ag_image_write_exr(f->context, path, layers, 5, &attribute, 1), AG_OK);
+    for (int i = 0; i < 5; i++) ag_image_destroy(f->context, images[i]);
+}
+
+TEST(a_file_of_the_same_picture_is_gone_on_with_and_no_other)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    char path[512];
+    snprintf(path, sizeof path, "%s", test_path("checkpoint.exr"));
+    struct ag_reference *first = create(&f), *second = create(&f);
+    assert_int_equal(ag_reference_render(first, 3, NULL, NULL), AG_OK);
+    write_checkpoint(&f, first, path);
+    assert_int_equal(ag_reference_resume(second, path), AG_OK);
+    struct ag_reference_info info;
+    assert_int_equal(ag_reference_get_info(second, &info), AG_OK);
+    assert_int_equal(info.samples, 3);
+    struct ag_image *a = read_layer(first, "color"), *b = read_layer(second, "color");
+    for (size_t i = 0; i < float_count(a); i++) CHECK_RELATIVE(a->pixels[i], b->pixels[i], 1e-6);
+    ag_image_destroy(f.context, a);
+    ag_image_destroy(f.context, b);
+    f.desc.seed = 1;
+    struct ag_reference *other = create(&f);
+    CHECK_REFUSED(f.context, ag_reference_resume(other, path));
+    CHECK(strstr(ag_context_last_error(f.context), "checkpoint.exr"));
+    assert_int_equal(ag_reference_resume(other, test_path("none.exr")), AG_ERROR_FILE);
+    CHECK_REFUSED(f.context, ag_reference_resume(other, ""));
+    ag_reference_destroy(first);
+    ag_reference_destroy(second);
+    ag_reference_destroy(other);
+    close(&f);
+}
+
+TEST(null_instead_of_an_object_is_refused)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    struct ag_reference *r = (struct ag_reference *)1;
+    struct ag_image *image = (struct ag_image *)1;
+    struct ag_reference_info info;
+    ag_reference_desc_default(NULL);
+    ag_reference_destroy(NULL);
+    CHECK_REFUSED(NULL, ag_reference_create(NULL, &f.desc, &r));
+    assert_null(r);
+    CHECK_REFUSED(f.context, ag_reference_create(f.scene, NULL, &r));
+    CHECK_REFUSED(f.context, ag_reference_create(f.scene, &f.desc, NULL));
+    CHECK_REFUSED(NULL, ag_reference_render(NULL, 1, NULL, NULL));
+    CHECK_REFUSED(NULL, ag_reference_read(NULL, "color", &image));
+    assert_null(image);
+    CHECK_REFUSED(NULL, ag_reference_get_info(NULL, &info));
+    CHECK_REFUSED(NULL, ag_reference_resume(NULL, "a.exr"));
+    CHECK_STRING(ag_reference_checkpoint(NULL), "");
+    r = create(&f);
+    CHECK_REFUSED(f.context, ag_reference_read(r, "color", NULL));
+    CHECK_REFUSED(f.context, ag_reference_read(r, NULL, &image));
+    CHECK_REFUSED(f.context, ag_reference_read(r, "colour", &image));
+    CHECK(strstr(ag_context_last_error(f.context), "did you mean color"));
+    CHECK_REFUSED(f.context, ag_reference_get_info(r, NULL));
+    CHECK_REFUSED(f.context, ag_reference_resume(r, NULL));
+    CHECK_REFUSED(f.context, ag_reference_render(r, 0, NULL, NULL));
+    ag_reference_destroy(r);
+    close(&f);
+}
+
+TEST(wrong_descriptions_are_refused)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    struct ag_reference *r = NULL;
+    struct ag_reference_desc d[] = { f.desc, f.desc, f.desc, f.desc, f.desc,
+                                     f.desc, f.desc, f.desc, f.desc };
+    d[0].width = 0;
+    d[1].height = 16385;
+    d[2].bounces = -2;
+    d[3].direct_only = d[3].indirect_only = true;
+    d[4].animation = 3;
+    d[5].time_s = (double)NAN;
+    d[6].camera.vertical_fov_rad = 0;
+    d[7].camera.near_m = (float)INFINITY;
+    memcpy(d[8].camera.target, d[8].camera.eye, sizeof d[8].camera.eye);
+    for (size_t i = 0; i < sizeof d / sizeof d[0]; i++) {
+        CHECK_REFUSED(f.context, ag_reference_create(f.scene, &d[i], &r));
+        assert_null(r);
+    }
+    close(&f);
+}

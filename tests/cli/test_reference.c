@@ -1,0 +1,178 @@
+// reference: the same command gives the same bytes, a longer run can be made of shorter ones,
+// layers add up, and what is interrupted leaves what there is.
+#include "cli/program.h"
+
+#include "image/exr.h"
+#include "image/png_file.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define SMALL "reference @cornell --size 32x24 --quiet"
+
+static struct image read_layer(const char *path, const char *layer)
+{
+    struct image image = { 0 };
+    if (!exr_read(test_host(), path, layer, &image)) fail_msg("%s", test_last_message());
+    return image;
+}
+
+static double mean_of(const char *path, const char *layer)
+{
+    struct image image = read_layer(path, layer);
+    double sum = 0;
+    int count = image.width * image.height * image.channels;
+    for (int i = 0; i < count; i++) sum += (double)image.pixels[i];
+    image_finish(&image, test_host());
+    return sum / count;
+}
+
+static const char *path_of(const char *name)
+{
+    static char paths[4][300];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s", test_path(name));
+    return path;
+}
+
+TEST(equal_commands_write_equal_files)
+{
+    const char *a = path_of("a.exr"), *b = path_of("b.exr"), *other = path_of("c.exr");
+    const struct run *r = run_expect(0, SMALL, "--spp", "4", "-o", a, NULL);
+    CHECK_STRING(r->err, "");
+    CHECK_STRING(r->out, "");
+    run_expect(0, SMALL, "--spp", "4", "-o", b, NULL);
+    run_expect(0, SMALL, "--spp", "4", "--seed", "7", "-o", other, NULL);
+    CHECK(files_are_equal(a, b));
+    CHECK(!files_are_equal(a, other));
+}
+
+TEST(layers_are_those_that_resuming_needs)
+{
+    const char *path = path_of("layers.exr");
+    run_expect(0, SMALL, "--spp", "4", "-o", path, NULL);
+    char *names = exr_layer_names(test_host(), path);
+    assert_non_null(names);
+    CHECK_STRING(names, "color\ndirect\nerror\nindirect\nirradiance\nsamples");
+    host_free(test_host(), names);
+    struct image color = read_layer(path, NULL), direct = read_layer(path, "direct"),
+                 indirect = read_layer(path, "indirect");
+    for (int i = 0; i < 32 * 24 * 3; i++)
+        CHECK(color.pixels[i] == direct.pixels[i] + indirect.pixels[i]);
+    image_finish(&color, test_host());
+    image_finish(&direct, test_host());
+    image_finish(&indirect, test_host());
+    CHECK_NEAR(mean_of(path, "samples"), 4, 0);
+}
+
+TEST(parts_of_the_light_are_what_they_are_called)
+{
+    const char *all = path_of("all.exr"), *direct = path_of("direct.exr"),
+               *indirect = path_of("indirect.exr");
+    run_expect(0, SMALL " --spp 64 -o", all, NULL);
+    run_expect(0, SMALL " --spp 64 --direct-only -o", direct, NULL);
+    run_expect(0, SMALL " --spp 64 --indirect-only -o", indirect, NULL);
+    CHECK(mean_of(direct, "indirect") == 0 && mean_of(indirect, "direct") == 0);
+    CHECK_RELATIVE(mean_of(direct, NULL) + mean_of(indirect, NULL), mean_of(all, NULL), 0.02);
+    run_expect(0, SMALL " --spp 64 --bounces 0 -o", indirect, NULL);
+    CHECK_RELATIVE(mean_of(indirect, NULL), mean_of(direct, NULL), 0.01);
+    run_expect(0, SMALL " --spp 64 --bounces 1 -o", indirect, NULL);
+    CHECK(mean_of(indirect, NULL) < 0.97 * mean_of(all, NULL));
+}
+
+TEST(a_longer_run_can_be_made_of_shorter_ones)
+{
+    const char *whole = path_of("whole.exr"), *parts = path_of("parts.exr");
+    run_expect(0, SMALL " --spp 9 -o", whole, NULL);
+    run_expect(0, SMALL " --spp 4 --resume -o", parts, NULL); // there is none yet: it begins
+    run_expect(0, SMALL " --spp 9 --resume -o", parts, NULL);
+    CHECK_NEAR(mean_of(parts, "samples"), 9, 0);
+    CHECK_RELATIVE(mean_of(parts, NULL), mean_of(whole, NULL), 1e-6);
+    CHECK_RELATIVE(mean_of(parts, "error"), mean_of(whole, "error"), 1e-4);
+    run_expect(0, SMALL " --spp 9 --resume -o", parts, NULL); // nothing is left to do
+    check_one_error_line(run_expect(1, SMALL " --spp 12 --resume --seed 5 -o", parts, NULL));
+    CHECK_NEAR(mean_of(parts, "samples"), 9, 0);
+    const char *bare = path_of("bare.exr");
+    run_expect(0, SMALL " --spp 2 --aov color -o", bare, NULL);
+    check_one_error_line(run_expect(1, SMALL " --spp 4 --resume -o", bare, NULL));
+}
+
+TEST(json_says_what_was_traced)
+{
+    const char *path = path_of("json.png");
+    const struct run *r = run_expect(0, SMALL " --spp 3 --json -o", path, NULL);
+    json_t *document = run_json(r);
+    assert_int_equal(json_integer_value(json_object_get(document, "spp")), 3);
+    CHECK(json_is_null(json_object_get(document, "bounces")));
+    CHECK(json_integer_value(json_object_get(document, "rays")) > 3 * 32 * 24);
+    CHECK(json_number_value(json_object_get(document, "rays_per_second")) > 0);
+    CHECK(json_number_value(json_object_get(document, "error")) > 0);
+    CHECK_STRING(json_string_value(json_object_get(document, "camera")), "main");
+    json_decref(document);
+    struct image picture = { 0 };
+    assert_true(png_read(test_host(), path, &picture));
+    image_finish(&picture, test_host());
+    r = run_expect(0, "reference @cornell --size 16x16 --spp 2 -o", path, NULL);
+    CHECK(strstr(r->err, "million a second") && strstr(r->err, "standard error"));
+}
+
+TEST(each_layer_makes_a_picture)
+{
+    static const char *const layers[] = { "color", "irradiance", "albedo", "normal",
+                                          "depth", "position",   "error",  "samples" };
+    for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++)
+        run_expect(0, SMALL " --spp 2 --aov", layers[i], "-o", path_of("layer.png"), NULL);
+}
+
+TEST(wrong_usage_is_said_before_the_work)
+{
+    static const char *const wrong[] = { "--spp 0",
+                                         "--spp x",
+                                         "--bounces -1",
+                                         "--direct-only --indirect-only",
+                                         "--aov color,visibility",
+                                         "--aov color,direct -o a.png",
+                                         "--resume -o a.png",
+                                         "--gi lpv",
+                                         "-o a.jpg" };
+    char words[200];
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        snprintf(words, sizeof words, "reference @cornell %s", wrong[i]);
+        check_one_error_line(run_expect(2, words, NULL));
+    }
+    check_one_error_line(run_expect(1, SMALL, "-o", "/nowhere/a.exr", NULL));
+    check_one_error_line(run_expect(1, SMALL, "--camera", "nobody", "-o", path_of("x.exr"), NULL));
+}
+
+TEST(an_interrupt_leaves_a_picture_to_go_on_with)
+{
+    const char *path = path_of("interrupted.exr");
+    fflush(NULL);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        signal(SIGINT, SIG_DFL);
+        if (!freopen("/dev/null", "w", stderr)) _exit(126);
+        execl(AFTERGLOW_PROGRAM, AFTERGLOW_PROGRAM, "reference", "@cornell", "--size", "64x64",
+              "--spp", "1000000", "--quiet", "-o", path, (char *)NULL);
+        _exit(127);
+    }
+    for (int i = 0; i < 1000 && !file_exists(path); i++)
+        usleep(20000); // the first sample is written
+    usleep(300000);
+    assert_int_equal(kill(child, SIGINT), 0);
+    int status = 0;
+    assert_true(waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    double samples = mean_of(path, "samples");
+    CHECK(samples > 1 && samples < 1000000);
+    char spp[32];
+    snprintf(spp, sizeof spp, "%d", (int)samples + 3);
+    run_expect(0, "reference @cornell --size 64x64 --quiet --resume --spp", spp, "-o", path, NULL);
+    CHECK_NEAR(mean_of(path, "samples"), (int)samples + 3, 0);
+}
