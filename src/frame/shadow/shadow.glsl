@@ -35,8 +35,9 @@ int shadow_cube_face(vec3 from_light)
 
 // The share of a box of (2·radius+1)² texels around `at` (in 0…1) that lets light through to `depth`. A texel's
 // weight is its overlap with the box. Two neighbours are one bilinear fetch that stands between them
-// where it weighs both right: (radius+1)² fetches in all. rows: 0 skips the fetches.
-float shadow_filtered(vec2 at, int layer, float depth, float size, int radius, int rows)
+// where it weighs both right: (radius+1)² fetches in all. rows: 0 skips the fetches. slope: change of the receiver's depth
+// with the map's coordinates, so that each fetch is held against the receiver's plane where it is made.
+float shadow_filtered(vec2 at, int layer, float depth, vec2 slope, float size, int radius, int rows)
 {
     vec2 start = at * size - (float(radius) + 0.5);
     vec2 first = floor(start);
@@ -49,7 +50,8 @@ float shadow_filtered(vec2 at, int layer, float depth, float size, int radius, i
         for (int x = 0; x <= radius; x++) {
             float x0 = x == 0 ? 1.0 - f.x : 1.0, x1 = x == radius ? f.x : 1.0;
             float u = (first.x + float(2 * x) + x1 / (x0 + x1) + 0.5) / size;
-            row += (x0 + x1) * texture(shadow_maps, vec4(u, v, float(layer), depth));
+            float there = depth + dot(slope, vec2(u, v) - at);
+            row += (x0 + x1) * texture(shadow_maps, vec4(u, v, float(layer), there));
         }
         sum += (y0 + y1) * row;
     }
@@ -57,12 +59,28 @@ float shadow_filtered(vec2 at, int layer, float depth, float size, int radius, i
     return sum / (width * width);
 }
 
-// 0 (in shadow) … 1. normal: unit; to_light: unit; facing: whether the light shines on the front at all.
+const float SHADOW_TEXEL_REACH = 1.5;     // texels that the depth of one is wrong by: rasterisation, bilinear comparison
+const float SHADOW_LEAST_COSINE = 0.1;    // the slope of planes that graze the light more is not followed
+
+// Change of NDC depth with NDC x and y on the plane with this normal, which projections keep a plane.
+vec2 shadow_slope(mat4 clip_from_world, vec3 ndc, vec3 normal)
+{
+    vec3 a = normalize(abs(normal.y) < 0.7 ? cross(normal, vec3(0, 1, 0)) : cross(normal, vec3(1, 0, 0)));
+    vec4 ca = clip_from_world * vec4(a, 0.0), cb = clip_from_world * vec4(cross(normal, a), 0.0);
+    vec3 da = ca.xyz - ndc * ca.w, db = cb.xyz - ndc * cb.w; // along the plane, up to a common factor
+    float area = da.x * db.y - da.y * db.x;
+    if (abs(area) < 1e-20) return vec2(0.0);
+    return vec2(da.z * db.y - db.z * da.y, da.x * db.z - db.x * da.z) / area;
+}
+
+// 0 (in shadow) … 1. plane: unit normal of the receiver's plane, towards the eye; to_light: unit; facing: whether the light
+// shines on the front at all.
 //
-// The receiver is moved along its normal by d·sin θ, where d is the reach of the filter: on a plane, the depth that
-// the filter meets at distance d differs by d·tan θ, and a step o along the normal gains o/cos θ. So a plane never
-// shadows itself, and the step is never longer than the filter is wide.
-float shadow_of(frame_light light, vec3 world, vec3 normal, vec3 to_light, bool facing, float size, int radius)
+// What is left after each fetch follows the plane is the error of a texel: the receiver is moved along its normal by
+// d·sin θ, where d is that reach: at distance d the depth of a plane differs by d·tan θ, and a step o along the
+// normal gains o/cos θ. So a plane never shadows itself, and a shadow's edge moves by less than two texels across
+// the light, whatever the filter's width.
+float shadow_of(frame_light light, vec3 world, vec3 plane, vec3 to_light, bool facing, float size, int radius)
 {
     float reach = float(radius) + 1.5; // texels: the filter, half a texel of rasterisation, and the bilinear rim
     int face = 0;
@@ -75,12 +93,16 @@ float shadow_of(frame_light light, vec3 world, vec3 normal, vec3 to_light, bool 
         mat4 m = shadow_face_table[layer].clip_from_world;
         texel *= max(dot(vec4(m[0].w, m[1].w, m[2].w, m[3].w), vec4(world, 1.0)), 0.0);
     }
-    float cosine = dot(normal, to_light);
-    float offset = texel * reach * 1.41421356 * sqrt(max(1.0 - cosine * cosine, 0.0));
-    vec4 clip = shadow_face_table[layer].clip_from_world * vec4(world + normal * offset, 1.0);
+    float cosine = dot(plane, to_light);
+    float offset = texel * SHADOW_TEXEL_REACH * 1.41421356 * sqrt(max(1.0 - cosine * cosine, 0.0));
+    mat4 clip_from_world = shadow_face_table[layer].clip_from_world;
+    vec4 clip = clip_from_world * vec4(world + plane * offset, 1.0);
     vec3 at = clip.xyz / clip.w;
-    float depth = at.z * shadow_face_table[layer].depth_scale + shadow_face_table[layer].depth_offset;
-    return shadow_filtered(at.xy * 0.5 + 0.5, layer, depth, size, radius, facing ? radius + 1 : 0);
+    float depth_scale = shadow_face_table[layer].depth_scale;
+    float depth = at.z * depth_scale + shadow_face_table[layer].depth_offset;
+    float followed = clamp(abs(cosine) / SHADOW_LEAST_COSINE, 0.0, 1.0);
+    vec2 slope = shadow_slope(clip_from_world, at, plane) * (2.0 * depth_scale * followed); // NDC is twice as wide
+    return shadow_filtered(at.xy * 0.5 + 0.5, layer, depth, slope, size, radius, facing ? radius + 1 : 0);
 }
 
 #endif
