@@ -166,10 +166,12 @@ TEST_GPU(plane_does_not_shadow_itself_at_any_angle)
     }
 }
 
-TEST_GPU(lamp_in_a_closed_box_lights_every_pixel)
+// at_edges: share of the light that a pixel along an edge keeps at least.
+static void check_closed_box(struct gpu *gpu, int radius, float at_edges)
 {
     struct studio s;
     studio_init(&s, gpu);
+    s.options.shadow_filter = radius;
     studio_box(&s, vec3_of(-2, 0, -3), vec3_of(2, 3, 3), true, studio_matte(&s, GREY));
     vec3s lamp = vec3_of(0.5f, 1.9f, -0.3f);
     studio_add_point(&s, lamp, LUX);
@@ -184,17 +186,25 @@ TEST_GPU(lamp_in_a_closed_box_lights_every_pixel)
             glms_vec3_sub(lamp, vec3_of(position[3 * i], position[3 * i + 1], position[3 * i + 2]));
         vec3s n = vec3_of(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]);
         float r2 = glms_vec3_norm2(to), cosine = glms_vec3_dot(n, to) / sqrtf(r2);
-        // Along the edges half of the filter's box reaches around the corner, where the other wall is
-        // nearer to the lamp; half a texel of rasterisation of its three is a sixth more.
+        // Along the edges the filter reaches around the corner, where the other wall is nearer to
+        // the lamp.
         int walls = (fabsf(position[3 * i]) > 1.88f) + (fabsf(position[3 * i + 1] - 1.5f) > 1.38f) +
                     (fabsf(position[3 * i + 2]) > 2.88f);
-        float least = walls > 1 ? 1.0f / 3.0f : 0.97f;
+        float least = walls > 1 ? at_edges : 0.97f;
         CHECK(direct[3 * i] > least * 1000 / r2 * cosine * 0.5f / 3.14159f);
     }
     free(direct);
     free(position);
     free(normal);
     studio_finish(&s);
+}
+
+// Half of the filter's box lies around the corner; of a box of three texels, half a texel of
+// rasterisation is a sixth more.
+TEST_GPU(lamp_in_a_closed_box_lights_every_pixel)
+{
+    check_closed_box(gpu, 1, 1.0f / 3.0f);
+    check_closed_box(gpu, 2, 0.5f);
 }
 
 // The light of every floor point that both pictures see, as a function of the point, must not
