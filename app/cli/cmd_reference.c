@@ -14,7 +14,8 @@
 
 static const double WRITE_EVERY_S = 10.0; // while it converges
 static const double LONGEST_STEP_S = 2.0; // between two looks at the clock
-static const char KEPT_LAYERS[] = "color,direct,indirect,irradiance,error,samples";
+static const char KEPT_LAYERS[] =
+    "color,direct,indirect,gathered,irradiance,gathered_irradiance,error,samples";
 
 struct job {
     const struct arguments *arguments;

@@ -177,9 +177,11 @@ static enum look look_of(const char *layer)
         const char *layer;
         enum look look;
     } looks[] = {
-        { "albedo", AS_IT_IS },  { "visibility", AS_IT_IS }, { "display", AS_IT_IS },
-        { "normal", DIRECTION }, { "motion", DIRECTION },    { "depth", DEPTH },
-        { "position", RANGE },   { "samples", RANGE },       { "irradiance", IRRADIANCE }
+        { "albedo", AS_IT_IS },       { "visibility", AS_IT_IS },
+        { "display", AS_IT_IS },      { "normal", DIRECTION },
+        { "motion", DIRECTION },      { "depth", DEPTH },
+        { "position", RANGE },        { "samples", RANGE },
+        { "irradiance", IRRADIANCE }, { "gathered_irradiance", IRRADIANCE },
     };
     for (size_t i = 0; i < sizeof looks / sizeof looks[0]; i++)
         if (strcmp(looks[i].layer, layer) == 0) return looks[i].look;

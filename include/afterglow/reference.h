@@ -35,12 +35,16 @@ AG_API void ag_reference_destroy(struct ag_reference *reference);
 AG_API enum ag_result ag_reference_render(struct ag_reference *reference, int samples,
                                           bool (*progress)(void *user, double done), void *user);
 
-/// Names of the layers: color direct indirect irradiance albedo normal depth position error samples. NULL past the end.
+/// Names of the layers: color direct indirect gathered irradiance gathered_irradiance albedo normal depth position error
+/// samples. NULL past the end.
 AG_API const char *ag_reference_layer_name(int index);
 /// A layer in physical units (cd/m², lux, metres): 3 channels, depth and samples 1. color = direct + indirect, to the bit.
 /// direct is what comes straight from a light, a surface that glows or the sky, and these themselves; indirect
-/// the rest; irradiance that of the indirect light. error is the standard error of color (infinite for less than 2
-/// samples), samples how many each pixel has. The others are those of the pixel's centre, 0 where there is no surface.
+/// the rest; irradiance that of the indirect light. gathered and gathered_irradiance are the same with what surfaces that
+/// glow and the sky throw straight on the surface seen: what techniques add to a frame's direct light, to be
+/// compared with its layers indirect and irradiance. With direct_only they hold the straight part alone, with
+/// indirect_only the other. error is the standard error of color (infinite for less than 2 samples), samples how many
+/// each pixel has. The others are those of the pixel's centre, 0 where there is no surface.
 AG_API enum ag_result ag_reference_read(struct ag_reference *reference, const char *layer,
                                         struct ag_image **out);
 
@@ -53,8 +57,8 @@ struct ag_reference_info {
 AG_API enum ag_result ag_reference_get_info(const struct ag_reference *reference,
                                             struct ag_reference_info *out);
 
-/// The attribute that makes an EXR of the layers direct, indirect, irradiance, error and samples one to go on from; its
-/// value is ag_reference_checkpoint, a string that belongs to the reference.
+/// The attribute that makes an EXR of the layers direct, indirect, gathered, irradiance, gathered_irradiance, error and
+/// samples one to go on from; its value is ag_reference_checkpoint, a string that belongs to the reference.
 #define AG_REFERENCE_CHECKPOINT "afterglow.checkpoint"
 AG_API const char *ag_reference_checkpoint(const struct ag_reference *reference);
 /// Replaces the samples by those of such a file. It must be of the same scene, light, camera, size and options

@@ -15,12 +15,6 @@ struct ag_reference {
     char checkpoint[48];
 };
 
-// The layers that a run goes on from.
-static const enum reference_layer kept_layers[] = { REFERENCE_DIRECT, REFERENCE_INDIRECT,
-                                                    REFERENCE_IRRADIANCE, REFERENCE_ERROR,
-                                                    REFERENCE_SAMPLES };
-enum { KEPT_COUNT = sizeof kept_layers / sizeof kept_layers[0] };
-
 static struct ag_context *context_of(const struct ag_reference *r)
 {
     return r ? r->context : NULL;
@@ -48,7 +42,7 @@ static bool build(struct ag_reference *r, const struct ag_scene *scene,
     pose_finish(&pose);
     if (!r->reference) return false;
     // The number counts changes of the sampling: files of another one are not gone on from.
-    snprintf(r->checkpoint, sizeof r->checkpoint, "reference 1 %016" PRIx64,
+    snprintf(r->checkpoint, sizeof r->checkpoint, "reference 2 %016" PRIx64,
              reference_key(r->reference));
     return true;
 }
@@ -166,15 +160,13 @@ static bool is_of_this(struct ag_reference *r, const char *path)
 static bool resume(struct ag_reference *r, const char *path)
 {
     struct host *host = &r->context->host;
-    struct image layers[KEPT_COUNT] = { 0 };
+    struct image layers[REFERENCE_KEPT_COUNT] = { 0 };
     host->failure = FAIL_NONE;
     bool ok = is_of_this(r, path);
-    for (int i = 0; i < KEPT_COUNT && ok; i++)
-        ok = exr_read(host, path, reference_layer_name(kept_layers[i]), &layers[i]);
-    if (ok)
-        ok = reference_restore(r->reference, &layers[0], &layers[1], &layers[2], &layers[3],
-                               &layers[4]);
-    for (int i = 0; i < KEPT_COUNT; i++) image_finish(&layers[i], host);
+    for (int i = 0; i < REFERENCE_KEPT_COUNT && ok; i++)
+        ok = exr_read(host, path, reference_layer_name(reference_kept_layers[i]), &layers[i]);
+    ok = ok && reference_restore(r->reference, layers);
+    for (int i = 0; i < REFERENCE_KEPT_COUNT; i++) image_finish(&layers[i], host);
     return ok;
 }
 

@@ -86,7 +86,7 @@ struct path_start path_begin(const struct path_rules *rules, const struct ray *r
     if (start.hit) {
         vec3s to_eye = glms_vec3_normalize(glms_vec3_negate(ray->direction));
         start.bsdf = bsdf_at(rules, &start.surface, to_eye);
-        if (rules->indirect) bsdf_sample_evenly(&start.bsdf, IRRADIANCE_SHARE);
+        bsdf_sample_evenly(&start.bsdf, IRRADIANCE_SHARE);
         if (rules->direct)
             start.seen = glms_vec3_add(start.surface.emission, all_punctual(rules, &start, rays));
     }
@@ -133,21 +133,33 @@ static float mis_weight(float pdf, float other)
     return 1.0f / (1.0f + ratio * ratio);
 }
 
-static vec3s one_emitter(const struct path_rules *rules, const struct surface *s,
-                         const struct bsdf *b, float choice, vec2s u, uint64_t *rays)
+// Light on a surface and what of it goes on towards where the path came from.
+struct gathered {
+    vec3s irradiance, radiance;
+};
+
+static struct gathered gathered_of(vec3s f, vec3s radiance, float scale)
 {
+    struct gathered g = { .irradiance = glms_vec3_scale(radiance, scale) };
+    g.radiance = glms_vec3_mul(f, g.irradiance);
+    return g;
+}
+
+static struct gathered one_emitter(const struct path_rules *rules, const struct surface *s,
+                                   const struct bsdf *b, float choice, vec2s u, uint64_t *rays)
+{
+    struct gathered none = { 0 };
     struct emitter_sample e = light_sample_emitter(rules->scene, s->position, choice, u);
     float cosine = glms_vec3_dot(b->normal, e.to_light);
     if (is_black(e.radiance) || !(e.pdf > 0.0f) || !(cosine > 0.0f) ||
         !(glms_vec3_dot(s->geometric, e.to_light) > 0.0f))
-        return vec3_of(0, 0, 0);
+        return none;
     vec3s from = surface_leave(s, e.to_light);
     struct ray ray = { from, glms_vec3_sub(e.position, from), 0.0f, 1.0f };
     ++*rays;
-    if (embree_occluded(rules->scene->embree, &ray)) return vec3_of(0, 0, 0);
+    if (embree_occluded(rules->scene->embree, &ray)) return none;
     struct reflection r = bsdf_reflect(b, e.to_light);
-    float scale = cosine / e.pdf * mis_weight(e.pdf, r.pdf);
-    return glms_vec3_scale(glms_vec3_mul(r.f, e.radiance), scale);
+    return gathered_of(r.f, e.radiance, cosine / e.pdf * mis_weight(e.pdf, r.pdf));
 }
 
 // ---- the path
@@ -167,16 +179,33 @@ struct walk {
     struct path_light light;
 };
 
-// Light reflected at the walk's surface towards where the walk came from.
+static void add_to(vec3s *sum, vec3s light)
+{
+    *sum = glms_vec3_add(*sum, light);
+}
+
+// Light reflected at a later surface towards where the walk came from.
 static void collect(struct walk *w, vec3s light)
 {
-    if (w->depth == 0) {
-        if (w->rules->direct) w->light.direct = glms_vec3_add(w->light.direct, light);
-        return;
-    }
     vec3s arriving = glms_vec3_mul(w->carried, light);
-    w->light.indirect = glms_vec3_add(w->light.indirect, glms_vec3_mul(w->share, arriving));
-    w->light.irradiance = glms_vec3_muladds(arriving, w->irradiance_share, w->light.irradiance);
+    vec3s seen = glms_vec3_mul(w->share, arriving);
+    vec3s falling = glms_vec3_scale(arriving, w->irradiance_share);
+    add_to(&w->light.indirect, seen);
+    add_to(&w->light.gathered, seen);
+    add_to(&w->light.irradiance, falling);
+    add_to(&w->light.gathered_irradiance, falling);
+}
+
+// Light straight from an emitter or the sky, at any surface.
+static void collect_gathered(struct walk *w, const struct gathered *g)
+{
+    if (w->depth > 0) {
+        collect(w, g->radiance);
+    } else if (w->rules->direct) {
+        add_to(&w->light.direct, g->radiance);
+        add_to(&w->light.gathered, g->radiance);
+        add_to(&w->light.gathered_irradiance, g->irradiance);
+    }
 }
 
 static void ask_lights(struct walk *w, struct rng *rng)
@@ -187,28 +216,30 @@ static void ask_lights(struct walk *w, struct rng *rng)
     if (w->depth == 0 && !w->rules->direct) return;
     if (w->depth > 0 && lights->punctual_count > 0)
         collect(w, one_punctual(w->rules, &w->surface, &w->bsdf, rng_float(rng), w->rays));
-    if (lights->has_emitters)
-        collect(w, one_emitter(w->rules, &w->surface, &w->bsdf, choice, u, w->rays));
+    if (!lights->has_emitters) return;
+    struct gathered g = one_emitter(w->rules, &w->surface, &w->bsdf, choice, u, w->rays);
+    collect_gathered(w, &g);
 }
 
 // A step of the path and what it reflects of the light that will arrive along it.
 struct step {
     struct ray ray;
-    float cosine, pdf;
-    vec3s weight; // f · cosine / pdf
+    vec3s f;     // 1/sr
+    float scale; // cosine / pdf, sr
+    float pdf;   // 1/sr
 };
 
 static bool choose_step(const struct walk *w, struct rng *rng, struct step *out)
 {
     float choice = rng_float(rng);
     vec3s to_light = bsdf_sample(&w->bsdf, choice, rng_vec2(rng));
-    out->cosine = glms_vec3_dot(w->bsdf.normal, to_light);
-    if (!(out->cosine > 0.0f) || !(glms_vec3_dot(w->surface.geometric, to_light) > 0.0f))
-        return false;
+    float cosine = glms_vec3_dot(w->bsdf.normal, to_light);
+    if (!(cosine > 0.0f) || !(glms_vec3_dot(w->surface.geometric, to_light) > 0.0f)) return false;
     struct reflection r = bsdf_reflect(&w->bsdf, to_light);
     if (!(r.pdf > 0.0f)) return false;
     out->pdf = r.pdf;
-    out->weight = glms_vec3_scale(r.f, out->cosine / r.pdf);
+    out->f = r.f;
+    out->scale = cosine / r.pdf;
     out->ray = (struct ray){ surface_leave(&w->surface, to_light), to_light, 0.0f, INFINITY };
     return true;
 }
@@ -239,11 +270,12 @@ static bool survives(struct walk *w, struct rng *rng)
 
 static void advance(struct walk *w, const struct step *step, const struct surface *end)
 {
+    vec3s weight = glms_vec3_scale(step->f, step->scale);
     if (w->depth == 0) {
-        w->share = step->weight;
-        w->irradiance_share = step->cosine / step->pdf;
+        w->share = weight;
+        w->irradiance_share = step->scale;
     } else {
-        w->carried = glms_vec3_mul(w->carried, step->weight);
+        w->carried = glms_vec3_mul(w->carried, weight);
     }
     w->depth++;
     w->surface = *end;
@@ -271,7 +303,8 @@ static bool walk_on(struct walk *w, struct rng *rng)
     bool met = embree_closest(w->rules->scene->embree, &step.ray, NULL, false, &hit);
     if (met) end = surface_at(w->rules->scene, &step.ray, &hit, NULL);
     vec3s light = met_light(w, &step, met ? &hit : NULL, &end);
-    collect(w, glms_vec3_mul(step.weight, light));
+    struct gathered g = gathered_of(step.f, light, step.scale);
+    collect_gathered(w, &g);
     if (last || !met) return false;
     advance(w, &step, &end);
     return survives(w, rng);

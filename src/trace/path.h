@@ -19,9 +19,11 @@ struct path_start {
     vec3s seen; // cd/m²: the sky, or emission and the reflection of punctual lights; 0 where not wanted
 };
 
-// Radiance towards the eye, cd/m², and irradiance by indirect light, lux.
+// Radiance towards the eye, cd/m², and irradiance, lux. Gathered is indirect light and what emitters and the sky throw
+// straight on the surface seen.
 struct path_light {
-    vec3s direct, indirect, irradiance;
+    vec3s direct, indirect, gathered;
+    vec3s irradiance, gathered_irradiance; // by indirect and by gathered light
 };
 
 // The ray passes through backs of single-sided surfaces. *rays counts.

@@ -20,7 +20,8 @@ enum {
 };
 
 struct pixel_sums {
-    double direct[3], indirect[3], irradiance[3];
+    double direct[3], indirect[3], gathered[3];
+    double irradiance[3], gathered_irradiance[3];
     double squares[3]; // of direct + indirect
 };
 
@@ -50,6 +51,7 @@ struct reference_options reference_options_default(void)
 static const char *const layer_names[REFERENCE_LAYER_COUNT] = {
     [REFERENCE_COLOR] = "color",       [REFERENCE_DIRECT] = "direct",
     [REFERENCE_INDIRECT] = "indirect", [REFERENCE_IRRADIANCE] = "irradiance",
+    [REFERENCE_GATHERED] = "gathered", [REFERENCE_GATHERED_IRRADIANCE] = "gathered_irradiance",
     [REFERENCE_ALBEDO] = "albedo",     [REFERENCE_NORMAL] = "normal",
     [REFERENCE_DEPTH] = "depth",       [REFERENCE_POSITION] = "position",
     [REFERENCE_ERROR] = "error",       [REFERENCE_SAMPLES] = "samples",
@@ -176,7 +178,9 @@ static void add_sample(struct pixel_sums *sums, const struct path_light *light)
         double direct = (double)light->direct.raw[c], indirect = (double)light->indirect.raw[c];
         sums->direct[c] += direct;
         sums->indirect[c] += indirect;
+        sums->gathered[c] += (double)light->gathered.raw[c];
         sums->irradiance[c] += (double)light->irradiance.raw[c];
+        sums->gathered_irradiance[c] += (double)light->gathered_irradiance.raw[c];
         sums->squares[c] += (direct + indirect) * (direct + indirect);
     }
 }
@@ -304,6 +308,8 @@ static void read_sums(const struct reference *r, enum reference_layer layer, int
         if (layer == REFERENCE_DIRECT) out[c] = direct;
         if (layer == REFERENCE_INDIRECT) out[c] = indirect;
         if (layer == REFERENCE_IRRADIANCE) out[c] = mean_of(s->irradiance[c], n);
+        if (layer == REFERENCE_GATHERED) out[c] = mean_of(s->gathered[c], n);
+        if (layer == REFERENCE_GATHERED_IRRADIANCE) out[c] = mean_of(s->gathered_irradiance[c], n);
         if (layer == REFERENCE_ERROR)
             out[c] = (float)sqrt(variance_of_mean(s->direct[c] + s->indirect[c], s->squares[c], n));
     }
@@ -357,12 +363,16 @@ static void read_row(void *user, size_t y)
     embree_restore_denormals(before);
 }
 
+static int channels_of(enum reference_layer layer)
+{
+    return layer == REFERENCE_DEPTH || layer == REFERENCE_SAMPLES ? 1 : 3;
+}
+
 bool reference_read(const struct reference *r, enum reference_layer layer, struct image *out)
 {
     if ((unsigned)layer >= REFERENCE_LAYER_COUNT)
         return host_fail(r->host, FAIL_ARGUMENT, "reference's layer %d: there is none", (int)layer);
-    int channels = layer == REFERENCE_DEPTH || layer == REFERENCE_SAMPLES ? 1 : 3;
-    if (!image_init(out, r->host, r->width, r->height, channels)) return false;
+    if (!image_init(out, r->host, r->width, r->height, channels_of(layer))) return false;
     struct reading reading = { r, layer, out };
     parallel_for((size_t)r->height, 4, read_row, &reading);
     return true;
@@ -395,10 +405,15 @@ struct reference_info reference_info(const struct reference *r)
 
 // ---- going on
 
-static bool is_of(const struct reference *r, const struct image *image, int channels)
-{
-    return image->width == r->width && image->height == r->height && image->channels == channels;
-}
+const enum reference_layer reference_kept_layers[REFERENCE_KEPT_COUNT] = {
+    [KEPT_DIRECT] = REFERENCE_DIRECT,
+    [KEPT_INDIRECT] = REFERENCE_INDIRECT,
+    [KEPT_GATHERED] = REFERENCE_GATHERED,
+    [KEPT_IRRADIANCE] = REFERENCE_IRRADIANCE,
+    [KEPT_GATHERED_IRRADIANCE] = REFERENCE_GATHERED_IRRADIANCE,
+    [KEPT_ERROR] = REFERENCE_ERROR,
+    [KEPT_SAMPLES] = REFERENCE_SAMPLES,
+};
 
 // Samples must be whole numbers, the same for all pixels of a tile.
 static bool restore_tile(struct reference *r, size_t index, const struct image *samples)
@@ -414,37 +429,49 @@ static bool restore_tile(struct reference *r, size_t index, const struct image *
     return true;
 }
 
-static bool restore_pixel(struct pixel_sums *s, int n, const float *direct, const float *indirect,
-                          const float *irradiance, const float *error)
+static bool restore_sums(const struct image *image, int x, int y, int samples, double sums[3])
 {
+    const float *mean = image_at(image, x, y);
+    bool finite = true;
     for (int c = 0; c < 3; c++) {
-        double sum = ((double)direct[c] + (double)indirect[c]) * n, deviation = (double)error[c];
-        s->direct[c] = (double)direct[c] * n;
-        s->indirect[c] = (double)indirect[c] * n;
-        s->irradiance[c] = (double)irradiance[c] * n;
-        s->squares[c] = n > 0 ? sum * sum / n : 0.0;
-        if (n > 1) s->squares[c] += deviation * deviation * n * (n - 1.0);
-        if (!isfinite(s->squares[c]) || !isfinite(s->irradiance[c])) return false;
+        sums[c] = (double)mean[c] * samples;
+        finite = finite && isfinite(sums[c]);
     }
-    return true;
+    return finite;
 }
 
-bool reference_restore(struct reference *r, const struct image *direct,
-                       const struct image *indirect, const struct image *irradiance,
-                       const struct image *error, const struct image *samples)
+static bool restore_pixel(struct reference *r, int x, int y,
+                          const struct image layers[REFERENCE_KEPT_COUNT])
 {
-    if (!is_of(r, direct, 3) || !is_of(r, indirect, 3) || !is_of(r, irradiance, 3) ||
-        !is_of(r, error, 3) || !is_of(r, samples, 1))
-        return host_fail(r->host, FAIL_FORMAT, "reference to go on with: its layers are not %dx%d",
-                         r->width, r->height);
+    struct pixel_sums *s = &r->sums[(size_t)y * (size_t)r->width + (size_t)x];
+    int n = samples_of(r, x, y);
+    bool ok = restore_sums(&layers[KEPT_DIRECT], x, y, n, s->direct) &&
+              restore_sums(&layers[KEPT_INDIRECT], x, y, n, s->indirect) &&
+              restore_sums(&layers[KEPT_GATHERED], x, y, n, s->gathered) &&
+              restore_sums(&layers[KEPT_IRRADIANCE], x, y, n, s->irradiance) &&
+              restore_sums(&layers[KEPT_GATHERED_IRRADIANCE], x, y, n, s->gathered_irradiance);
+    const float *error = image_at(&layers[KEPT_ERROR], x, y);
+    for (int c = 0; ok && c < 3; c++) {
+        double sum = s->direct[c] + s->indirect[c], deviation = (double)error[c];
+        s->squares[c] = n > 0 ? sum * sum / n : 0.0;
+        if (n > 1) s->squares[c] += deviation * deviation * n * (n - 1.0);
+        ok = isfinite(s->squares[c]);
+    }
+    return ok;
+}
+
+bool reference_restore(struct reference *r, const struct image layers[REFERENCE_KEPT_COUNT])
+{
+    for (int i = 0; i < REFERENCE_KEPT_COUNT; i++)
+        if (layers[i].width != r->width || layers[i].height != r->height ||
+            layers[i].channels != channels_of(reference_kept_layers[i]))
+            return host_fail(r->host, FAIL_FORMAT,
+                             "reference to go on with: its layer %s is not %dx%d",
+                             layer_names[reference_kept_layers[i]], r->width, r->height);
     bool ok = true;
-    for (size_t i = 0; ok && i < tile_count(r); i++) ok = restore_tile(r, i, samples);
+    for (size_t i = 0; ok && i < tile_count(r); i++) ok = restore_tile(r, i, &layers[KEPT_SAMPLES]);
     for (int y = 0; ok && y < r->height; y++)
-        for (int x = 0; ok && x < r->width; x++)
-            ok =
-                restore_pixel(&r->sums[(size_t)y * (size_t)r->width + (size_t)x],
-                              samples_of(r, x, y), image_at(direct, x, y), image_at(indirect, x, y),
-                              image_at(irradiance, x, y), image_at(error, x, y));
+        for (int x = 0; ok && x < r->width; x++) ok = restore_pixel(r, x, y, layers);
     if (ok) return true;
     memset(r->sums, 0, (size_t)r->width * (size_t)r->height * sizeof *r->sums);
     memset(r->tiles, 0, tile_count(r) * sizeof *r->tiles);

@@ -58,7 +58,11 @@ enum reference_layer {
     REFERENCE_DIRECT,     // cd/m²: emission and sky as seen, and what is reflected of light that comes straight from a light,
                           // an emitter or the sky
     REFERENCE_INDIRECT,   // cd/m²: the rest
-    REFERENCE_IRRADIANCE, // lux: of the indirect light, as a technique's irradiance; 0 with direct_only
+    REFERENCE_GATHERED,   // cd/m²: indirect light, and what emitters and the sky throw straight on the surface seen: all that
+                          // techniques add to the frame's direct light. With direct_only the latter alone, with
+                          // indirect_only the former
+    REFERENCE_IRRADIANCE, // lux: of the indirect light; 0 with direct_only
+    REFERENCE_GATHERED_IRRADIANCE, // lux: of the gathered light, as a technique's irradiance
     REFERENCE_ALBEDO,     // of the pixel's centre, as all from here on but the last two
     REFERENCE_NORMAL,     // shading normal, world space; 0 where there is no surface, as are the next two
     REFERENCE_DEPTH,      // m along the view axis; 1 channel
@@ -98,8 +102,18 @@ bool reference_read(const struct reference *reference, enum reference_layer laye
 // What identifies the picture being computed: scene, light, camera, size and options. Two references with equal keys
 // converge to the same values through the same samples.
 uint64_t reference_key(const struct reference *reference);
-// Goes on from layers of an earlier run with the same key: color is not needed. The layers have 32-bit floats, sums
-// have 64: the result is the uninterrupted one's but for rounding.
-bool reference_restore(struct reference *reference, const struct image *direct, const struct image *indirect,
-                       const struct image *irradiance, const struct image *error,
-                       const struct image *samples);
+// The layers to go on from later.
+enum reference_kept {
+    KEPT_DIRECT,
+    KEPT_INDIRECT,
+    KEPT_GATHERED,
+    KEPT_IRRADIANCE,
+    KEPT_GATHERED_IRRADIANCE,
+    KEPT_ERROR,
+    KEPT_SAMPLES,
+    REFERENCE_KEPT_COUNT
+};
+extern const enum reference_layer reference_kept_layers[REFERENCE_KEPT_COUNT];
+// Goes on from these layers of an earlier run with the same key. They have 32-bit floats, sums have 64: the result is the
+// uninterrupted one's but for rounding.
+bool reference_restore(struct reference *reference, const struct image layers[REFERENCE_KEPT_COUNT]);

@@ -78,7 +78,7 @@ TEST(every_named_layer_can_be_read)
         if (strcmp(name, "samples") == 0) CHECK_NEAR(image->pixels[0], 4, 0);
         ag_image_destroy(f.context, image);
     }
-    assert_int_equal(count, 10);
+    assert_int_equal(count, 12);
     assert_null(ag_reference_layer_name(-1));
     ag_reference_destroy(r);
     close(&f);
@@ -105,16 +105,19 @@ TEST(progress_can_cancel)
 
 static void write_checkpoint(struct fixture *f, struct ag_reference *r, const char *path)
 {
-    static const char *const names[] = { "direct", "indirect", "irradiance", "error", "samples" };
-    struct ag_image_layer layers[5];
-    struct ag_image *images[5];
-    for (int i = 0; i < 5; i++) {
+    static const char *const names[] = {
+        "direct", "indirect", "gathered", "irradiance", "gathered_irradiance", "error", "samples"
+    };
+    enum { COUNT = sizeof names / sizeof names[0] };
+    struct ag_image_layer layers[COUNT];
+    struct ag_image *images[COUNT];
+    for (int i = 0; i < COUNT; i++) {
         images[i] = read_layer(r, names[i]);
         layers[i] = (struct ag_image_layer){ names[i], images[i] };
     }
     struct ag_attribute attribute = { AG_REFERENCE_CHECKPOINT, ag_reference_checkpoint(r) };
-    assert_int_equal(ag_image_write_exr(f->context, path, layers, 5, &attribute, 1), AG_OK);
-    for (int i = 0; i < 5; i++) ag_image_destroy(f->context, images[i]);
+    assert_int_equal(ag_image_write_exr(f->context, path, layers, COUNT, &attribute, 1), AG_OK);
+    for (int i = 0; i < COUNT; i++) ag_image_destroy(f->context, images[i]);
 }
 
 TEST(a_file_of_the_same_picture_is_gone_on_with_and_no_other)

@@ -58,7 +58,9 @@ TEST(layers_are_those_that_resuming_needs)
     run_expect(0, SMALL, "--spp", "4", "-o", path, NULL);
     char *names = exr_layer_names(test_host(), path);
     assert_non_null(names);
-    CHECK_STRING(names, "color\ndirect\nerror\nindirect\nirradiance\nsamples");
+    CHECK_STRING(
+        names,
+        "color\ndirect\nerror\ngathered\ngathered_irradiance\nindirect\nirradiance\nsamples");
     host_free(test_host(), names);
     struct image color = read_layer(path, NULL), direct = read_layer(path, "direct"),
                  indirect = read_layer(path, "indirect");
@@ -123,8 +125,9 @@ TEST(json_says_what_was_traced)
 
 TEST(each_layer_makes_a_picture)
 {
-    static const char *const layers[] = { "color", "irradiance", "albedo", "normal",
-                                          "depth", "position",   "error",  "samples" };
+    static const char *const layers[] = { "color",  "gathered", "irradiance", "gathered_irradiance",
+                                          "albedo", "normal",   "depth",      "position",
+                                          "error",  "samples" };
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++)
         run_expect(0, SMALL " --spp 2 --aov", layers[i], "-o", path_of("layer.png"), NULL);
 }

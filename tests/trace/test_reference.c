@@ -227,16 +227,8 @@ TEST(a_stopped_reference_goes_on_to_the_same_picture)
     stage_finish(&s);
 }
 
-static bool restore(struct reference *to, struct image layers[5])
-{
-    return reference_restore(to, &layers[0], &layers[1], &layers[2], &layers[3], &layers[4]);
-}
-
 TEST(layers_restore_what_they_came_from)
 {
-    static const enum reference_layer kept[5] = { REFERENCE_DIRECT, REFERENCE_INDIRECT,
-                                                  REFERENCE_IRRADIANCE, REFERENCE_ERROR,
-                                                  REFERENCE_SAMPLES };
     struct stage s;
     stage_builtin(&s, "@cornell");
     struct reference *whole = stage_reference(&s), *first = stage_reference(&s),
@@ -244,27 +236,34 @@ TEST(layers_restore_what_they_came_from)
     CHECK(reference_key(whole) == reference_key(second));
     assert_true(reference_render(whole, 12, NULL, NULL));
     assert_true(reference_render(first, 5, NULL, NULL));
-    struct image layers[5];
-    for (int i = 0; i < 5; i++) layers[i] = read_layer(first, kept[i]);
-    assert_true(restore(second, layers));
+    struct image layers[REFERENCE_KEPT_COUNT];
+    for (int i = 0; i < REFERENCE_KEPT_COUNT; i++)
+        layers[i] = read_layer(first, reference_kept_layers[i]);
+    assert_true(reference_restore(second, layers));
     assert_true(reference_render(second, 7, NULL, NULL));
-    for (int i = 0; i < 5; i++) {
-        struct image a = read_layer(whole, kept[i]), b = read_layer(second, kept[i]);
+    for (int i = 0; i < REFERENCE_KEPT_COUNT; i++) {
+        struct image a = read_layer(whole, reference_kept_layers[i]),
+                     b = read_layer(second, reference_kept_layers[i]);
+        CHECK(image_mean(&a, 0) > 0);
         for (size_t k = 0; k < float_count(&a); k++)
             CHECK_NEAR(b.pixels[k], a.pixels[k], 1e-3 * fabs((double)a.pixels[k]) + 1e-2);
         finish(&a);
         finish(&b);
     }
-    layers[4].pixels[7] = 3.5f;
-    CHECK(!restore(second, layers));
-    layers[4].pixels[7] = 5.0f;
-    layers[1].pixels[7] = NAN;
-    CHECK(!restore(second, layers));
+    layers[KEPT_SAMPLES].pixels[7] = 3.5f;
+    CHECK(!reference_restore(second, layers));
+    layers[KEPT_SAMPLES].pixels[7] = 5.0f;
+    for (int i = 0; i < KEPT_SAMPLES; i++) {
+        float before = layers[i].pixels[7];
+        layers[i].pixels[7] = NAN;
+        CHECK(!reference_restore(second, layers));
+        layers[i].pixels[7] = before;
+    }
     assert_int_equal(reference_info(second).samples, 0);
     layers[1].width--;
-    CHECK(!restore(second, layers));
+    CHECK(!reference_restore(second, layers));
     layers[1].width++;
-    for (int i = 0; i < 5; i++) finish(&layers[i]);
+    for (int i = 0; i < REFERENCE_KEPT_COUNT; i++) finish(&layers[i]);
     reference_destroy(whole);
     reference_destroy(first);
     reference_destroy(second);
