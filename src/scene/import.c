@@ -51,13 +51,18 @@ void *import_alloc(struct import *import, size_t count, size_t size)
     return arena_alloc(&import->scene->arena, count, size);
 }
 
+// Names and paths end up on terminals, where control characters are commands.
+static void replace_controls(char *text)
+{
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
+}
+
 struct import_text import_printable(const char *text)
 {
     struct import_text out;
     snprintf(out.s, sizeof out.s, "%s", text);
-    for (char *c = out.s; *c; c++) {
-        if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
-    }
+    replace_controls(out.s);
     return out;
 }
 
@@ -67,7 +72,9 @@ const char *import_name(struct import *import, const char *text, const char *fal
     snprintf(made, sizeof made, "%s %zu", fallback, i);
     if (!text || !text[0]) text = made;
     if (!import_charge(import, strlen(text) + 1, 1)) return NULL;
-    return arena_strdup(&import->scene->arena, text);
+    char *name = arena_strdup(&import->scene->arena, text);
+    if (name) replace_controls(name);
+    return name;
 }
 
 void import_note(struct import *import, const char *format, ...)

@@ -40,7 +40,7 @@ struct import_text {
 };
 struct import_text import_printable(const char *text);
 
-// Copies the text into the scene's arena; `fallback` and the index where it is NULL or empty.
+// Copies the text into the scene's arena, made printable; `fallback` and the index where it is NULL or empty.
 const char *import_name(struct import *import, const char *text, const char *fallback, size_t i);
 
 // Importers: fill import->scene from the file's bytes.

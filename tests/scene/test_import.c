@@ -276,6 +276,17 @@ TEST(perspective_cameras_are_read_and_orthographic_ones_named)
     scene_destroy(scene);
 }
 
+TEST(names_give_no_commands_to_a_terminal)
+{
+    struct scene *scene =
+        load_gltf("{" ASSET ",'cameras':[{'name':'a\\u001b[31m\\u007f','type':'perspective',"
+                  "'perspective':{'yfov':0.8,'znear':0.05}}],'nodes':[{'camera':0}]}",
+                  NULL, 0);
+    CHECK(scene && scene->camera_count == 1);
+    CHECK_STRING(scene->cameras[0].name, "a?[31m?");
+    scene_destroy(scene);
+}
+
 TEST(animations_keep_their_interpolation_and_drop_doubled_keys)
 {
     static const float data[] = { 0, 1, 1, 2,                         // times
