@@ -114,7 +114,8 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
         return VK_FALSE;
     }
     gpu->validation_messages++;
-    host_log(gpu->host, LOG_ERROR, "gpu validation %s: %s",
+    // A warning, as the call it is about goes on: errors are what a call's result tells.
+    host_log(gpu->host, LOG_WARNING, "gpu validation %s: %s",
              severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? "error" : "warning",
              data->pMessage);
     return VK_FALSE;
