@@ -1,14 +1,12 @@
 // JSON out.
 #include "json.h"
-#include "interrupt.h"
+#include "whole_file.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const size_t JSON_FLAGS = JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(12);
 
@@ -72,42 +70,17 @@ enum status json_print(json_t *document)
     return ok ? DONE : fail("cannot write standard output: %s", strerror(errno));
 }
 
-// The name beside which a file is written: shorter than the longest that folders take.
-static char *name_beside(const char *path)
+static enum status write_document(FILE *file, const void *what)
 {
-    enum { SUFFIX_SIZE = 32 };
-    const char *slash = strrchr(path, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - path) : 0, length = strlen(path);
-    if (length - folder > NAME_MAX - SUFFIX_SIZE) length = folder + NAME_MAX - SUFFIX_SIZE;
-    char *beside = malloc(length + SUFFIX_SIZE);
-    if (beside)
-        snprintf(beside, length + SUFFIX_SIZE, "%.*s.tmp-%ld", (int)length, path, (long)getpid());
-    return beside;
-}
-
-// 0, or errno. The temporary file is new: what has its name already is left alone.
-static int write_beside(const json_t *document, const char *beside, const char *path)
-{
-    FILE *file = fopen(beside, "wxe");
-    if (!file) return errno;
-    bool ok = json_dumpf(document, file, JSON_FLAGS) == 0 && fputc('\n', file) != EOF;
-    if (fclose(file) != 0) ok = false;
-    if (ok) ok = rename(beside, path) == 0;
-    int why = errno;
-    if (!ok) unlink(beside);
-    return ok ? 0 : why;
+    const json_t *document = what;
+    if (json_dumpf(document, file, JSON_FLAGS) != 0 && !ferror(file))
+        return fail("cannot write JSON: out of memory");
+    fputc('\n', file);
+    return DONE;
 }
 
 enum status json_write(const json_t *document, const char *path)
 {
     if (!document) return fail("cannot write %s: out of memory", path);
-    char *real = realpath(path, NULL); // through symbolic links, which a rename would replace
-    const char *target = real ? real : path;
-    char *beside = name_beside(target);
-    interrupt_hold();
-    int why = beside ? write_beside(document, beside, target) : ENOMEM;
-    interrupt_release();
-    free(beside);
-    free(real);
-    return why == 0 ? DONE : fail("cannot write %s: %s", path, strerror(why));
+    return whole_file_write(path, write_document, document);
 }
