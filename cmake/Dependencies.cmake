@@ -20,6 +20,8 @@ endif()
 set(EMBREE_TARGET embree)
 string(REGEX MATCH "^[0-9]+" EMBREE_MAJOR "${embree_VERSION}")
 find_program(GLSLC glslc REQUIRED)
+# Chart.js 3, minified and made for <script>: a part of the page that compare writes.
+find_file(CHART_JS chart.min.js PATHS /usr/share/javascript PATH_SUFFIXES chart.js Chart.js REQUIRED)
 if(AFTERGLOW_TESTS)
   pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
 endif()

@@ -8,6 +8,13 @@ foreach(name usage info diff reference render interrupt)
   add_dependencies(test_cli_${name} afterglow)
 endforeach()
 
+# The page of compare, written by the program's own code and used in a browser, where there is one.
+add_library(ag_test_report STATIC ${CMAKE_CURRENT_LIST_DIR}/report_sample.c ${CMAKE_CURRENT_LIST_DIR}/browser.c)
+target_link_libraries(ag_test_report PUBLIC ag_test_program ag_image afterglow_commands PRIVATE afterglow_flags)
+ag_test(cli/report_page LIBRARIES ag_test_report)
+ag_test(cli/report_page_browser LIBRARIES ag_test_report)
+set_tests_properties(cli.report_page_browser PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: there is no Chromium")
+
 # The examples, as their readers would run them.
 set(pictures ${CMAKE_BINARY_DIR}/tests)
 add_test(NAME examples.minimal COMMAND minimal ${pictures}/minimal.png)

@@ -1,0 +1,84 @@
+// The report, numbers as people read them, and elements of the page.
+
+const dataOf = id => JSON.parse(document.getElementById(`data-${id}`).textContent);
+const report = dataOf('report');
+const pictures = dataOf('pictures'); // file name → data: URI
+const scale = dataOf('scale'); // colours of the error maps, least to largest error
+const methods = Array.isArray(report.methods) ? report.methods : [];
+const byId = id => document.getElementById(id);
+
+// An element with properties and children; text is never read as HTML.
+function element(tag, properties = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [key, value] of Object.entries(properties)) {
+    if (value === undefined || value === false || value === null) continue;
+    if (key in made && !key.includes('-')) made[key] = value;
+    else made.setAttribute(key, value);
+  }
+  made.append(...children.filter(child => child !== null && child !== undefined));
+  return made;
+}
+
+const isNumber = value => typeof value === 'number' && Number.isFinite(value);
+
+// As many decimals as make the largest of a column show three digits and the smallest two, at most five.
+function decimalsFor(values) {
+  const sizes = values.filter(isNumber).map(Math.abs).filter(value => value > 0);
+  if (!sizes.length) return 0;
+  const digit = value => Math.floor(Math.log10(value));
+  const wanted = Math.max(2 - digit(Math.max(...sizes)), 1 - digit(Math.min(...sizes)));
+  return Math.min(Math.max(wanted, 0), 5);
+}
+
+function numberText(value, decimals = decimalsFor([value])) {
+  if (!isNumber(value)) return '–';
+  if (value !== 0 && Math.abs(value) < 0.5 * 10 ** -decimals) return value.toExponential(1).replace('-', '−');
+  return value.toFixed(decimals).replace('-', '−');
+}
+
+// 38316784 → "38.3 million"
+function countText(value) {
+  for (const [size, word] of [[1e12, 'trillion'], [1e9, 'billion'], [1e6, 'million']])
+    if (value >= size) return `${numberText(value / size)} ${word}`;
+  return String(value);
+}
+
+function secondsText(seconds) {
+  if (seconds < 60) return `${numberText(seconds, seconds < 10 ? 1 : 0)} s`;
+  const minutes = Math.round(seconds / 60);
+  return minutes < 60 ? `${minutes} min` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
+// ---- methods by name
+
+// "lpv:dim=32+vo" → ["lpv", "vo"]; a plus before a digit belongs to a number, as in 1e+05.
+const terms = gi => String(gi ?? '').split(/\+(?!\d)/);
+const techniquesOf = method => terms(method.gi).map(term => term.split(':')[0]);
+const baseName = method => techniquesOf(method).join(' + ') || 'unnamed';
+
+// {"lpv.dim": "32", …}
+function optionsOf(method) {
+  const flat = {};
+  for (const [technique, options] of Object.entries(method.options ?? {}))
+    for (const [option, value] of Object.entries(options ?? {}))
+      flat[`${technique}.${option}`] = isNumber(value) ? String(+value.toPrecision(6)) : String(value);
+  return flat;
+}
+
+// Methods of the same techniques are told apart by the options in which they differ.
+function labelsOf(all) {
+  const labels = all.map(method => {
+    const alike = all.filter(other => baseName(other) === baseName(method)).map(optionsOf);
+    const own = optionsOf(method);
+    const differing = Object.keys(own).filter(key => alike.some(other => other[key] !== own[key]));
+    const several = techniquesOf(method).length > 1;
+    const text = differing.map(key => `${several ? key : key.split('.').pop()}=${own[key]}`);
+    return [baseName(method), ...text].join(' ');
+  });
+  return labels.map((label, i) => {
+    const before = labels.slice(0, i).filter(other => other === label).length;
+    return before ? `${label} #${before + 1}` : label;
+  });
+}
+
+const labels = labelsOf(methods);

@@ -1,0 +1,17 @@
+// A report as compare writes it, with small pictures, for the tests of its page.
+#pragma once
+
+#include "framework/test.h"
+
+#include <jansson.h>
+
+enum {
+    SAMPLE_WIDTH = 64,
+    SAMPLE_HEIGHT = 48,
+    SAMPLE_METHODS = 4,
+    SAMPLE_PICTURES = 2 + 4 * SAMPLE_METHODS
+};
+
+// Scene and spelling of the first method as given; the pictures lie in `folder` afterwards. The
+// caller releases it.
+json_t *sample_report(const char *folder, const char *scene, const char *gi);
