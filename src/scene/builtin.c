@@ -7,8 +7,8 @@
 #include <string.h>
 
 const struct builtin_scene *const builtin_scenes[] = {
-    &builtin_cornell, &builtin_atrium,  &builtin_corridor, &builtin_maze,
-    &builtin_tunnel,  &builtin_spheres, &builtin_diagonal, NULL,
+    &builtin_cornell, &builtin_atrium,   &builtin_corridor, &builtin_maze, &builtin_tunnel,
+    &builtin_spheres, &builtin_diagonal, &builtin_planter,  NULL,
 };
 
 enum { MAX_NAME = 32, MAX_BUILTINS = 32 };
@@ -117,14 +117,15 @@ int builtin_emitter(struct scene *scene, const char *name, vec3s radiance)
     return scene_add_material(scene, &material);
 }
 
-bool builtin_camera(struct scene *scene, vec3s eye, vec3s target, float vertical_fov_rad)
+bool builtin_camera(struct scene *scene, const char *name, vec3s eye, vec3s target,
+                    float vertical_fov_rad)
 {
     struct camera camera = {
-        .name = "main",
+        .name = name,
         .vertical_fov_rad = vertical_fov_rad,
         .near_m = 0.01f,
     };
-    camera.node = scene_add_node_looking(scene, "main", eye, glms_vec3_sub(target, eye));
+    camera.node = scene_add_node_looking(scene, name, eye, glms_vec3_sub(target, eye));
     return camera.node >= 0 && scene_add_camera(scene, &camera) >= 0;
 }
 

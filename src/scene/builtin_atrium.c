@@ -251,7 +251,7 @@ static bool build_atrium(struct scene *scene, const void *options)
            build_arches(scene, materials) && build_balustrade(scene, materials) &&
            build_doors(scene, materials) && (!o->drapes || atrium_drapes(scene, materials)) &&
            atrium_furniture(scene, materials) && build_light(scene, o) &&
-           builtin_camera(scene, vec3_of(-11.2f, 1.75f, 1.0f), vec3_of(8, 3.5f, -0.9f),
+           builtin_camera(scene, "main", vec3_of(-11.2f, 1.75f, 1.0f), vec3_of(8, 3.5f, -0.9f),
                           glm_rad(60.0f));
 }
 

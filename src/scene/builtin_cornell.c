@@ -203,7 +203,7 @@ static bool build_cornell(struct scene *scene, const void *options)
     // Published: at (278, 273, -800), focal length 35 mm before a sensor of 25 mm.
     float vertical_fov_rad = 2.0f * atanf(0.5f * 0.025f / 0.035f);
     return build_shell(scene, options) && build_light(scene, options) &&
-           builtin_camera(scene, from_data(278, 273, -800), from_data(278, 273, 0),
+           builtin_camera(scene, "main", from_data(278, 273, -800), from_data(278, 273, 0),
                           vertical_fov_rad);
 }
 

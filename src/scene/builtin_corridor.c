@@ -154,7 +154,7 @@ static bool build_corridor(struct scene *scene, const void *options)
     vec3s eye = vec3_of(0.36f * o->length, 1.6f, 0.25f * o->width);
     return build_rooms(scene, o) && build_ribs(scene, o) && build_crates(scene, o) &&
            builtin_ball(scene, middle, o->light == 1, o->lumens) &&
-           builtin_camera(scene, eye, vec3_of(0, 1.4f, -0.1f * o->width), glm_rad(60.0f));
+           builtin_camera(scene, "main", eye, vec3_of(0, 1.4f, -0.1f * o->width), glm_rad(60.0f));
 }
 
 const struct builtin_scene builtin_corridor = {

@@ -1,5 +1,7 @@
 // @diagonal: a square floor with an area light that stands upright near one corner and faces the
-// middle, after Martin 2012, section 5.2: how well does light travel along a grid's diagonal?
+// middle, after Martin 2012, section 5.2: how well does light travel along a grid's diagonal? The
+// camera `above` looks straight down, the light in the picture's upper left corner: the picture's
+// diagonal is the floor's.
 #include "scene/builtin_parts.h"
 
 #include <math.h>
@@ -53,8 +55,10 @@ static bool build_diagonal(struct scene *scene, const void *options)
     const struct diagonal_options *o = options;
     float size = o->size;
     return build_floor(scene, size) && build_light(scene, size, o->luminance) &&
-           builtin_camera(scene, vec3_of(0.85f * size, 0.9f * size, 0.55f * size),
-                          vec3_of(-0.03f * size, 0, 0), glm_rad(45.0f));
+           builtin_camera(scene, "main", vec3_of(0.85f * size, 0.9f * size, 0.55f * size),
+                          vec3_of(-0.03f * size, 0, 0), glm_rad(45.0f)) &&
+           builtin_camera(scene, "above", vec3_of(0, 1.25f * size, 0), vec3_of(0, 0, 0),
+                          glm_rad(45.0f));
 }
 
 const struct builtin_scene builtin_diagonal = {

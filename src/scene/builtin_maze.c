@@ -178,7 +178,7 @@ static bool build_cameras(struct scene *scene, const struct maze *maze, float si
         vec3s away = glms_vec3_sub(beside, block_middle(maze, 0, size, 0.5f));
         eye = glms_vec3_muladds(away, 0.38f, beside);
     }
-    if (!builtin_camera(scene, eye, light_block, glm_rad(70.0f))) return false;
+    if (!builtin_camera(scene, "main", eye, light_block, glm_rad(70.0f))) return false;
     if (maze->count == 1) return true;
     int last = maze->count - 1;
     vec3s end = block_middle(maze, last, size, 0.5f);

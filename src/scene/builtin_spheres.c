@@ -45,7 +45,7 @@ static bool build_furnace(struct scene *scene, const struct spheres_options *opt
     shape_begin(&builder, scene);
     shape_blocks(&builder, &grid, 1);
     return shape_emit(&builder, "furnace", material) >= 0 &&
-           builtin_camera(scene, vec3_of(0.3f * half, 0.9f * half, 0.8f * half),
+           builtin_camera(scene, "main", vec3_of(0.3f * half, 0.9f * half, 0.8f * half),
                           vec3_of(-0.2f * half, 0.7f * half, -half), glm_rad(60.0f));
 }
 
@@ -99,7 +99,8 @@ static bool build_chart(struct scene *scene, const struct spheres_options *optio
     float distance = 1.5f * fmaxf(height + 1.0f, 0.65f * (width + 1.0f));
     return builtin_sun(scene, "sun", vec3_of(0, height + 5, 0), vec3_of(0.45f, -0.8f, -0.6f),
                        vec3_of(60000, 57000, 52000)) &&
-           builtin_camera(scene, vec3_of(0, 0.6f * height, distance), middle, glm_rad(40.0f));
+           builtin_camera(scene, "main", vec3_of(0, 0.6f * height, distance), middle,
+                          glm_rad(40.0f));
 }
 
 static bool build_spheres(struct scene *scene, const void *options)

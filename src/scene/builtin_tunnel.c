@@ -130,7 +130,7 @@ static bool build_tunnel(struct scene *scene, const void *options)
     vec3s light = mat4_point(tunnel->frames[lit], vec3_of(0, 0.5f * RADIUS, 0));
     bool ok = build_inside(scene, tunnel) && build_outside(scene, tunnel) &&
               builtin_ball(scene, light, o->light == 1, o->lumens) &&
-              builtin_camera(scene, eye, target, glm_rad(70.0f));
+              builtin_camera(scene, "main", eye, target, glm_rad(70.0f));
     host_free(scene->host, tunnel);
     return ok;
 }

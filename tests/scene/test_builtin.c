@@ -320,6 +320,7 @@ TEST(rooms_are_closed_so_that_no_light_leaks)
         "@spheres:furnace=1",
         "@diagonal",
         "@atrium",
+        "@planter",
     };
     for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) check_closed(specs[i]);
 }
@@ -391,6 +392,73 @@ TEST(the_atriums_sun_lights_floor_wall_and_cloth_through_the_roof)
         vec2s u = r2_sequence((uint32_t)i);
         vec3s above = vec3_of(-12 + 24 * u.x, 30, -7 + 14 * u.y);
         CHECK(raycast_blocked(&raycast, above, vec3_of(0.01f, -1, 0.02f), 31));
+    }
+    raycast_finish(&raycast);
+    pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+// Of the points of a mesh that face the sun, the share that it reaches; each is moved a little
+// along its normal.
+static double sunlit_share(const struct scene *scene, const struct scene_pose *pose,
+                           const char *name)
+{
+    struct raycast raycast;
+    CHECK(raycast_init(&raycast, test_host(), pose));
+    const struct mesh *mesh = mesh_named(scene, name);
+    vec3s towards = glms_vec3_negate(pose_light(pose, 0).direction);
+    int lit = 0, facing = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (glms_vec3_dot(mesh->normals[v], towards) <= 0) continue;
+        vec3s from = glms_vec3_muladds(mesh->normals[v], 0.01f, mesh->positions[v]);
+        lit += !raycast_blocked(&raycast, from, towards, INFINITY);
+        facing++;
+    }
+    raycast_finish(&raycast);
+    CHECK(facing > 0);
+    return (double)lit / facing;
+}
+
+TEST(the_planter_stands_in_the_shade_beside_a_sunlit_drape)
+{
+    struct scene *scene = load("@planter");
+    struct scene_pose pose;
+    CHECK(pose_init(&pose, scene, -1, 0));
+    // The arch is lower than the drape and round, and folds shade each other.
+    CHECK(sunlit_share(scene, &pose, "drape") > 0.2);
+    CHECK(sunlit_share(scene, &pose, "planter") == 0 && sunlit_share(scene, &pose, "plant") == 0);
+    CHECK(mesh_named(scene, "drape")->bounds.max.x < mesh_named(scene, "plant")->bounds.min.x);
+    pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+TEST(plain_and_textured_planters_are_the_same_solids)
+{
+    struct scene *plain = load("@planter:textures=false"), *painted = load("@planter");
+    CHECK(plain->image_count == 0 && painted->image_count > 0);
+    CHECK(scene_triangle_count(plain) == scene_triangle_count(painted));
+    scene_destroy(plain);
+    scene_destroy(painted);
+}
+
+TEST(the_floors_camera_sees_the_floor_alone_and_no_sun_on_it)
+{
+    struct scene *scene = load("@planter");
+    struct scene_pose pose;
+    CHECK(pose_init(&pose, scene, -1, 0));
+    CHECK_STRING(scene->cameras[1].name, "floor");
+    struct world_camera camera = pose_camera(&pose, 1);
+    vec3s towards = glms_vec3_negate(pose_light(&pose, 0).direction);
+    struct raycast raycast;
+    CHECK(raycast_init(&raycast, test_host(), &pose));
+    float half = camera.eye.y * tanf(0.5f * camera.vertical_fov_rad);
+    for (int i = 0; i < 1000; i++) {
+        vec2s u = r2_sequence((uint32_t)i); // a picture of 4:3
+        vec3s at = vec3_of(camera.eye.x + half * 4.0f / 3.0f * (2 * u.x - 1), 0.01f,
+                           camera.eye.z + half * (2 * u.y - 1));
+        vec3s way = glms_vec3_sub(camera.eye, at);
+        CHECK(!raycast_blocked(&raycast, at, way, 1.0f));
+        CHECK(raycast_blocked(&raycast, at, towards, INFINITY));
     }
     raycast_finish(&raycast);
     pose_finish(&pose);
