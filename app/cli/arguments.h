@@ -2,6 +2,7 @@
 #pragma once
 
 #include "messages.h"
+#include "values.h"
 
 #include <afterglow/image.h>
 #include <afterglow/scene.h>
@@ -27,7 +28,7 @@ struct arguments {
     float eye[3], target[3];
     double fov_deg, time_s, time_step_s;
     // light
-    struct ag_light_desc lights[MAX_LIGHTS];
+    struct light_value lights[MAX_LIGHTS];
     int light_count;
     bool no_scene_lights, has_sky;
     float sky[3];

@@ -105,7 +105,7 @@ enum status defaults_light(struct session *session, struct defaults *out)
     print_floats(out->sky, lighting.sky);
     const char *why;
     int wrote = snprintf(out->light, sizeof out->light, "sun:%s:%s", direction, lux);
-    if (wrote < (int)sizeof out->light && value_light(out->light, &out->light_desc, &why) &&
+    if (wrote < (int)sizeof out->light && value_light(out->light, &out->light_value, &why) &&
         value_floats(out->sky, 3, out->sky_radiance))
         return DONE;
     return fail("cannot light %s: its default light %s is not finite",
@@ -160,12 +160,19 @@ static enum status add_default_light(struct session *session)
     struct defaults defaults;
     enum status status = defaults_light(session, &defaults);
     if (status != DONE || !defaults.light[0]) return status;
-    enum ag_result result = ag_scene_add_light(session->scene, &defaults.light_desc, NULL);
+    enum ag_result result =
+        ag_scene_add_light(session->scene, &defaults.light_value.punctual, NULL);
     if (result == AG_OK) result = ag_scene_set_sky(session->scene, defaults.sky_radiance);
     if (result != AG_OK) return fail_library(session->context, result);
     remember(session, "no light in %s: as with --light %s --sky %s",
              session->arguments->positional[0], defaults.light, defaults.sky);
     return DONE;
+}
+
+static enum ag_result add_light(struct ag_scene *scene, const struct light_value *light)
+{
+    return light->is_area ? ag_scene_add_area_light(scene, &light->area, NULL)
+                          : ag_scene_add_light(scene, &light->punctual, NULL);
 }
 
 enum status session_light(struct session *session)
@@ -176,7 +183,7 @@ enum status session_light(struct session *session)
     enum ag_result result = AG_OK;
     if (a->no_scene_lights) result = ag_scene_remove_lights(session->scene);
     for (int i = 0; i < a->light_count && result == AG_OK; i++)
-        result = ag_scene_add_light(session->scene, &a->lights[i], NULL);
+        result = add_light(session->scene, &a->lights[i]);
     if (result == AG_OK && a->has_sky) result = ag_scene_set_sky(session->scene, a->sky);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }

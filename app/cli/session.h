@@ -24,7 +24,7 @@ struct defaults {
     char light[SPEC_SIZE];  // the value of --light
     char sky[SPEC_SIZE];    // of --sky
     char eye[SPEC_SIZE], target[SPEC_SIZE], fov[SPEC_SIZE];
-    struct ag_light_desc light_desc; // the same as numbers, read back from the text
+    struct light_value light_value; // the same as numbers, read back from the text
     float sky_radiance[3];
     struct ag_camera camera;
 };

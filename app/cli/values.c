@@ -84,18 +84,18 @@ static int split(char *text, char *parts[MAX_PARTS])
     return text ? MAX_PARTS + 1 : count;
 }
 
-static bool read_intensity(const char *text, struct ag_light_desc *out, const char **why)
+static bool read_intensity(const char *text, float out[3], const char **why)
 {
-    if (!value_floats(text, 3, out->intensity)) return false;
+    if (!value_floats(text, 3, out)) return false;
     *why = "the intensity is negative";
-    return out->intensity[0] >= 0 && out->intensity[1] >= 0 && out->intensity[2] >= 0;
+    return out[0] >= 0 && out[1] >= 0 && out[2] >= 0;
 }
 
-static bool read_direction(const char *text, struct ag_light_desc *out, const char **why)
+static bool read_direction(const char *text, float out[3], const char **why)
 {
-    if (!value_floats(text, 3, out->direction)) return false;
+    if (!value_floats(text, 3, out)) return false;
     *why = "the direction is zero";
-    float length = hypotf(hypotf(out->direction[0], out->direction[1]), out->direction[2]);
+    float length = hypotf(hypotf(out[0], out[1]), out[2]);
     if (!(length > 0.0f) || !isfinite(length)) return false;
     *why = NULL;
     return true;
@@ -114,47 +114,77 @@ static bool read_cone(const char *inner, const char *outer, struct ag_light_desc
     return true;
 }
 
-static bool read_sun(char **parts, int count, struct ag_light_desc *out, const char **why)
+static bool read_sun(char **parts, int count, struct light_value *out, const char **why)
 {
     *why = "a sun is sun:dx,dy,dz:r,g,b";
     if (count != 3) return false;
-    return read_direction(parts[1], out, why) && read_intensity(parts[2], out, why);
+    ag_light_desc_default(&out->punctual, AG_LIGHT_SUN);
+    return read_direction(parts[1], out->punctual.direction, why) &&
+           read_intensity(parts[2], out->punctual.intensity, why);
 }
 
-static bool read_point(char **parts, int count, struct ag_light_desc *out, const char **why)
+static bool read_point(char **parts, int count, struct light_value *out, const char **why)
 {
     *why = "a point light is point:x,y,z:r,g,b";
     if (count != 3) return false;
-    return value_floats(parts[1], 3, out->position) && read_intensity(parts[2], out, why);
+    ag_light_desc_default(&out->punctual, AG_LIGHT_POINT);
+    return value_floats(parts[1], 3, out->punctual.position) &&
+           read_intensity(parts[2], out->punctual.intensity, why);
 }
 
-static bool read_spot(char **parts, int count, struct ag_light_desc *out, const char **why)
+static bool read_spot(char **parts, int count, struct light_value *out, const char **why)
 {
     *why = "a spot is spot:x,y,z:dx,dy,dz:innerDEG:outerDEG:r,g,b";
     if (count != 6) return false;
-    return value_floats(parts[1], 3, out->position) && read_direction(parts[2], out, why) &&
-           read_cone(parts[3], parts[4], out, why) && read_intensity(parts[5], out, why);
+    ag_light_desc_default(&out->punctual, AG_LIGHT_SPOT);
+    return value_floats(parts[1], 3, out->punctual.position) &&
+           read_direction(parts[2], out->punctual.direction, why) &&
+           read_cone(parts[3], parts[4], &out->punctual, why) &&
+           read_intensity(parts[5], out->punctual.intensity, why);
 }
 
-bool value_light(const char *text, struct ag_light_desc *out, const char **why)
+static bool read_size(const char *text, struct ag_area_light_desc *out, const char **why)
+{
+    float size[2];
+    if (!value_floats(text, 2, size)) return false;
+    *why = "width and height must be above 0";
+    if (!(size[0] > 0.0f && size[1] > 0.0f && isfinite(size[0] * size[1]))) return false;
+    out->width = size[0];
+    out->height = size[1];
+    *why = NULL;
+    return true;
+}
+
+static bool read_area(char **parts, int count, struct light_value *out, const char **why)
+{
+    *why = "an area light is area:x,y,z:dx,dy,dz:w,h:r,g,b";
+    if (count != 5) return false;
+    ag_area_light_desc_default(&out->area);
+    out->is_area = true;
+    return value_floats(parts[1], 3, out->area.position) &&
+           read_direction(parts[2], out->area.direction, why) &&
+           read_size(parts[3], &out->area, why) &&
+           read_intensity(parts[4], out->area.radiance, why);
+}
+
+bool value_light(const char *text, struct light_value *out, const char **why)
 {
     static const struct {
         const char *name;
-        enum ag_light_type type;
-        bool (*read)(char **parts, int count, struct ag_light_desc *out, const char **why);
-    } kinds[] = { { "sun", AG_LIGHT_SUN, read_sun },
-                  { "point", AG_LIGHT_POINT, read_point },
-                  { "spot", AG_LIGHT_SPOT, read_spot } };
+        bool (*read)(char **parts, int count, struct light_value *out, const char **why);
+    } kinds[] = {
+        { "sun", read_sun }, { "point", read_point }, { "spot", read_spot }, { "area", read_area }
+    };
     char copy[SPEC_SIZE];
     char *parts[MAX_PARTS];
-    *why = "a light is sun:…, point:… or spot:…";
+    *why = "a light is sun:…, point:…, spot:… or area:…";
     if (strlen(text) >= sizeof copy) return false;
     memcpy(copy, text, strlen(text) + 1);
     int count = split(copy, parts);
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         if (strcmp(parts[0], kinds[i].name) != 0) continue;
-        ag_light_desc_default(out, kinds[i].type);
         const char *form = NULL, *reason = NULL;
+        *out = (struct light_value){ 0 };
         bool ok = kinds[i].read(parts, count, out, &reason);
         kinds[i].read(parts, 0, out, &form); // the spelling, for a value that is no number
         *why = reason ? reason : form;

@@ -10,8 +10,15 @@ bool value_number(const char *text, double *out);  // finite
 bool value_floats(const char *text, int count, float *out); // "x,y,z", finite
 // "WxH", each 1…16384.
 bool value_size(const char *text, int *width, int *height);
-// "point:x,y,z:r,g,b", "sun:dx,dy,dz:r,g,b" or "spot:x,y,z:dx,dy,dz:innerDEG:outerDEG:r,g,b".
-bool value_light(const char *text, struct ag_light_desc *out, const char **why);
+// A light of the command line: a punctual one, or an area that glows.
+struct light_value {
+    bool is_area;
+    struct ag_light_desc punctual;
+    struct ag_area_light_desc area;
+};
+// "point:x,y,z:r,g,b", "sun:dx,dy,dz:r,g,b", "spot:x,y,z:dx,dy,dz:innerDEG:outerDEG:r,g,b" or
+// "area:x,y,z:dx,dy,dz:w,h:r,g,b".
+bool value_light(const char *text, struct light_value *out, const char **why);
 // The lower-case part after the last dot of a path's last part: is it that?
 bool has_extension(const char *path, const char *extension);
 // "" where the path has none of "%d", "%4d", "%04d"; the path of that frame else. False: more than one, or too long.

@@ -56,6 +56,19 @@ AG_API enum ag_result ag_scene_add_instance(struct ag_scene *scene, int mesh,
                                             const float *world_from_mesh, int *index);
 AG_API enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_desc *desc,
                                          int *index);
+/// A rectangle that glows evenly on its front, as a panel or a window does. It is part of the geometry: seen, in the way
+/// of other light, and it lights others through the techniques that gather emission. The back is dark.
+struct ag_area_light_desc {
+    float position[3];   ///< its centre, metres
+    float direction[3];  ///< of its front; need not be unit
+    float width, height; ///< metres, > 0; the width lies level (along x where it faces up or down)
+    float radiance[3];   ///< linear Rec. 709, cd/m²; the rectangle shines π · radiance · width · height lumens
+};
+/// A square metre at the origin that faces down, radiance 1.
+AG_API void ag_area_light_desc_default(struct ag_area_light_desc *desc);
+/// Sets *instance (may be NULL) to the instance that was added.
+AG_API enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
+                                              const struct ag_area_light_desc *desc, int *instance);
 /// Removes the punctual lights.
 AG_API enum ag_result ag_scene_remove_lights(struct ag_scene *scene);
 /// Uniform radiance from outside, cd/m², 3 values ≥ 0.

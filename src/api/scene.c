@@ -261,6 +261,59 @@ enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_
     return added(scene, add_light(scene->scene, desc, "light"), index);
 }
 
+void ag_area_light_desc_default(struct ag_area_light_desc *desc)
+{
+    if (!desc) return;
+    *desc = (struct ag_area_light_desc){
+        .direction = { 0, -1, 0 }, .width = 1, .height = 1, .radiance = { 1, 1, 1 }
+    };
+}
+
+// The instance, -1 where memory or the node's place fails. The quad lies in its node's x and y and
+// faces -z, the way a node looks.
+static int add_glowing_quad(struct scene *scene, const struct ag_area_light_desc *desc)
+{
+    static const char *const NAME = "area light";
+    float x = 0.5f * desc->width, y = 0.5f * desc->height;
+    vec3s corners[4] = { { { -x, -y, 0 } }, { { -x, y, 0 } }, { { x, y, 0 } }, { { x, -y, 0 } } };
+    uint32_t indices[6] = { 0, 1, 2, 0, 2, 3 };
+    struct material material = material_default();
+    material.name = NAME;
+    material.base_color = vec4_of(vec3_of(0, 0, 0), 1);
+    material.emissive = api_vec3(desc->radiance);
+    struct mesh mesh = { .name = NAME,
+                         .vertex_count = 4,
+                         .index_count = 6,
+                         .positions = corners,
+                         .indices = indices,
+                         .material = scene_add_material(scene, &material) };
+    if (mesh.material < 0) return -1;
+    struct instance instance = { .skin = -1, .mesh = scene_add_mesh(scene, &mesh) };
+    if (instance.mesh < 0) return -1;
+    instance.node =
+        scene_add_node_looking(scene, NAME, api_vec3(desc->position), api_vec3(desc->direction));
+    return instance.node < 0 ? -1 : scene_add_instance(scene, &instance);
+}
+
+enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
+                                       const struct ag_area_light_desc *desc, int *instance)
+{
+    struct ag_context *context = context_of(scene);
+    if (instance) *instance = -1;
+    AG_REQUIRE(context, scene, "scene is NULL");
+    AG_REQUIRE(context, desc, "desc is NULL");
+    REQUIRE_UNUSED(scene);
+    AG_REQUIRE(context, api_finite(desc->position, 3), "position is not finite");
+    AG_REQUIRE(context, glms_vec3_norm(vec3_unit(api_vec3(desc->direction))) > 0.0f,
+               "direction is zero or not finite");
+    AG_REQUIRE(context,
+               desc->width > 0.0f && desc->height > 0.0f && isfinite(desc->width * desc->height),
+               "width %g and height %g are not above 0", (double)desc->width, (double)desc->height);
+    AG_REQUIRE(context, api_finite_at_least(desc->radiance, 3, 0.0f),
+               "radiance is negative or not finite");
+    return added(scene, add_glowing_quad(scene->scene, desc), instance);
+}
+
 enum ag_result ag_scene_remove_lights(struct ag_scene *scene)
 {
     AG_REQUIRE(NULL, scene, "scene is NULL");

@@ -84,6 +84,62 @@ TEST(every_named_layer_can_be_read)
     close(&f);
 }
 
+// The form factor from a point to a parallel rectangle at distance 1 that stands with a corner over
+// it (Siegel & Howell, configuration 11).
+static double corner_factor(double x, double y)
+{
+    double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
+    return (x / a * atan(y / a) + y / b * atan(x / b)) / (2 * 3.14159265358979);
+}
+
+static void add_floor(struct ag_scene *scene)
+{
+    static const float CORNERS[12] = { -9, 0, -9, -9, 0, 9, 9, 0, 9, 9, 0, -9 };
+    static const uint32_t INDICES[6] = { 0, 1, 2, 0, 2, 3 };
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    struct ag_mesh_desc mesh = {
+        .positions = CORNERS, .vertex_count = 4, .indices = INDICES, .index_count = 6
+    };
+    int index = -1;
+    assert_int_equal(ag_scene_add_material(scene, &material, &mesh.material), AG_OK);
+    assert_int_equal(ag_scene_add_mesh(scene, &mesh, &index), AG_OK);
+    assert_int_equal(ag_scene_add_instance(scene, index, NULL, NULL), AG_OK);
+}
+
+TEST(an_area_light_brings_what_its_form_factor_says)
+{
+    struct fixture f;
+    assert_int_equal(ag_context_create(NULL, &f.context), AG_OK);
+    assert_int_equal(ag_scene_create(f.context, &f.scene), AG_OK);
+    add_floor(f.scene);
+    struct ag_area_light_desc light;
+    ag_area_light_desc_default(&light);
+    light.position[1] = 2;
+    light.width = 3;
+    light.height = 1;
+    light.radiance[1] = 100;
+    assert_int_equal(ag_scene_add_area_light(f.scene, &light, NULL), AG_OK);
+    ag_reference_desc_default(&f.desc);
+    f.desc.width = f.desc.height = 1; // the floor under the middle, aslant past the light
+    f.desc.bounces = 0;
+    const float eye[3] = { 0, 1, 4 }, target[3] = { 0, 0, 0 };
+    assert_int_equal(ag_scene_look_at(f.scene, eye, target, 0.1f, &f.desc.camera), AG_OK);
+    struct ag_reference *r = create(&f);
+    assert_int_equal(ag_reference_render(r, 4096, NULL, NULL), AG_OK);
+    struct ag_image *direct = read_layer(r, "direct"), *error = read_layer(r, "error");
+    // E = π L F of four quarters. What the floor reflects is albedo / π of it, and its rough gloss
+    // (4 % head on) adds some two percent.
+    double irradiance = 3.14159265358979 * 100 * 4 * corner_factor(0.75, 0.25);
+    CHECK_RELATIVE((double)direct->pixels[1], 0.8 / 3.14159265358979 * irradiance, 0.03);
+    CHECK_RELATIVE((double)direct->pixels[0], (double)direct->pixels[1] / 100, 1e-3);
+    CHECK((double)error->pixels[1] < 0.01 * (double)direct->pixels[1]);
+    ag_image_destroy(f.context, direct);
+    ag_image_destroy(f.context, error);
+    ag_reference_destroy(r);
+    close(&f);
+}
+
 static bool stop(void *user, double done)
 {
     *(double *)user = done;

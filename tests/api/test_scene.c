@@ -208,6 +208,54 @@ TEST(wrong_lights_stay_outside)
     end();
 }
 
+TEST(an_area_light_is_a_rectangle_around_its_place)
+{
+    begin();
+    struct ag_area_light_desc desc;
+    ag_area_light_desc_default(&desc);
+    memcpy(desc.position, (float[3]){ 1, 2, 3 }, sizeof desc.position);
+    memcpy(desc.direction, (float[3]){ 0, 0, -5 }, sizeof desc.direction);
+    desc.width = 4;
+    desc.height = 0.5f;
+    int instance = -1;
+    assert_int_equal(ag_scene_add_area_light(scene, &desc, &instance), AG_OK);
+    assert_int_equal(instance, 0);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+    const float low[3] = { -1, 1.75f, 3 }, high[3] = { 3, 2.25f, 3 };
+    for (int i = 0; i < 3; i++) {
+        CHECK_NEAR(info.bounds_min[i], low[i], 1e-6);
+        CHECK_NEAR(info.bounds_max[i], high[i], 1e-6);
+    }
+    CHECK(info.emissive && info.lights == 0);
+    end();
+}
+
+TEST(wrong_area_lights_stay_outside)
+{
+    begin();
+    struct ag_area_light_desc desc;
+    assert_int_equal(ag_scene_add_area_light(scene, NULL, NULL), AG_ERROR_ARGUMENT);
+    const float wrong[][4] = { { 0, 1, 1, 1 },  { -1, 1, 1, 1 },  { NAN, 1, 1, 1 },
+                               { 1, 0, 1, 1 },  { 1, 1, 0, 1 },   { 1, 1, NAN, 1 },
+                               { 1, 1, 1, -1 }, { 1, 1, 1, NAN }, { 1e30f, 1e30f, 1, 1 } };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        ag_area_light_desc_default(&desc);
+        desc.width = wrong[i][0];
+        desc.height = wrong[i][1];
+        desc.direction[1] = wrong[i][2];
+        desc.radiance[2] = wrong[i][3];
+        assert_int_equal(ag_scene_add_area_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    }
+    ag_area_light_desc_default(&desc);
+    desc.position[2] = INFINITY;
+    assert_int_equal(ag_scene_add_area_light(scene, &desc, NULL), AG_ERROR_ARGUMENT);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+    assert_int_equal(info.instances, 0);
+    end();
+}
+
 TEST(only_a_dark_scene_gets_the_default_light_and_only_once)
 {
     begin();

@@ -113,6 +113,10 @@ TEST(light_options_add_and_remove_light)
                "point:0,2.7,0:100,100,100", "-o", path, NULL);
     CHECK(once > 0);
     CHECK_RELATIVE(mean_of(path, NULL), 2 * once, 2e-3);
+    // An area light lights others through a technique; direct light shows the rectangle alone.
+    run_expect(0, SMALL, "--no-scene-lights", "--light", "area:0,3,-2:0,0,1:1,1:100,100,100",
+               "--gi", "ambient", "--aov", "color,direct,indirect", "-o", path, NULL);
+    CHECK(mean_of(path, "direct") > 0 && mean_of(path, "indirect") > 0);
 }
 
 TEST(a_sky_is_seen_where_there_is_nothing)

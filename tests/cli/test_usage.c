@@ -118,6 +118,11 @@ TEST(wrong_lights_are_wrong_usage)
         { "render @cornell --light spot:0,0,0:0,-1,0:20:91:1,1,1", "half-angles" },
         { "render @cornell --light spot:0,0,0:0,-1,0:a:20:1,1,1", "spot:" },
         { "render @cornell --light spot:0,0,0:0,-1,0:20:1,1,1", "spot:" },
+        { "render @cornell --light area:0,0,0:0,-1,0:1,1", "area:" },
+        { "render @cornell --light area:0,0,0:0,-1,0:1:1,1,1", "w,h" },
+        { "render @cornell --light area:0,0,0:0,-1,0:1,0:1,1,1", "above 0" },
+        { "render @cornell --light area:0,0,0:0,0,0:1,1:1,1,1", "direction" },
+        { "render @cornell --light area:0,0,0:0,-1,0:1,1:1,1,-1", "negative" },
         { "render @cornell --light :", "sun:" },
     };
     CHECK_WRONG(cases, 2);
