@@ -2,20 +2,18 @@
 // sum of techniques side by side.
 //
 //     frame [--gi SUM]… [--frames N] [--size WxH] [--device NAME] [--csv FILE] [SCENE]…
+#include "passes.h"
+
 #include <afterglow/afterglow.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { MAX_SUMS = 8, MAX_SCENES = 64, MAX_PASSES = 64, MAX_FRAMES = 1000 };
+enum { MAX_SUMS = 8, MAX_SCENES = 64 };
 
 struct pass {
     char name[48];
-    struct {
-        int count; // 0: the sum does not have the pass
-        double median_ms, p95_ms;
-    } by_sum[MAX_SUMS];
+    struct pass_time by_sum[MAX_SUMS]; // count 0: the sum does not have the pass
 };
 
 struct bench {
@@ -25,7 +23,7 @@ struct bench {
     FILE *csv;
     struct ag_context *context;
     struct ag_device *device;
-    struct pass passes[MAX_PASSES]; // of the scene at hand
+    struct pass passes[PASSES_MAX]; // of the scene at hand
     int pass_count;
 };
 
@@ -35,50 +33,11 @@ static struct pass *pass_of(struct bench *bench, const char *name)
 {
     for (int i = 0; i < bench->pass_count; i++)
         if (strcmp(bench->passes[i].name, name) == 0) return &bench->passes[i];
-    if (bench->pass_count == MAX_PASSES) return NULL;
+    if (bench->pass_count == PASSES_MAX) return NULL;
     struct pass *pass = &bench->passes[bench->pass_count++];
     *pass = (struct pass){ 0 };
     snprintf(pass->name, sizeof pass->name, "%.*s", (int)sizeof pass->name - 1, name);
     return pass;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-// The middle, and the least value that 95 % do not exceed, as `afterglow render --stats` has them.
-static void summarize(struct pass *pass, int sum, double *ms, int count)
-{
-    if (!pass || count == 0) return;
-    qsort(ms, (size_t)count, sizeof *ms, by_value);
-    pass->by_sum[sum].count = count;
-    pass->by_sum[sum].median_ms = 0.5 * (ms[(count - 1) / 2] + ms[count / 2]);
-    pass->by_sum[sum].p95_ms = ms[(95 * count + 99) / 100 - 1];
-}
-
-// The first frame is left out: it pays for what later ones find ready.
-static enum ag_result render_frames(struct bench *bench, struct ag_renderer *renderer,
-                                    const struct ag_frame_desc *frame, int sum)
-{
-    static double ms[MAX_PASSES][MAX_FRAMES];
-    int counts[MAX_PASSES] = { 0 };
-    for (int f = 0; f <= bench->frames; f++) {
-        struct ag_timing timings[MAX_PASSES];
-        enum ag_result result = ag_renderer_render(renderer, frame);
-        if (result == AG_OK) result = ag_renderer_wait(renderer);
-        if (result != AG_OK) return result;
-        int count = f > 0 ? ag_renderer_timings(renderer, timings, MAX_PASSES) : 0;
-        for (int i = 0; i < count && i < MAX_PASSES; i++) {
-            struct pass *pass = pass_of(bench, timings[i].name);
-            if (!pass) continue;
-            int p = (int)(pass - bench->passes);
-            if (counts[p] < MAX_FRAMES) ms[p][counts[p]++] = timings[i].ms;
-        }
-    }
-    for (int p = 0; p < bench->pass_count; p++) summarize(&bench->passes[p], sum, ms[p], counts[p]);
-    return AG_OK;
 }
 
 static enum ag_result measure_sum(struct bench *bench, struct ag_scene *scene,
@@ -90,9 +49,15 @@ static enum ag_result measure_sum(struct bench *bench, struct ag_scene *scene,
     desc.height = bench->height;
     desc.gi = bench->sums[sum];
     struct ag_renderer *renderer = NULL;
+    struct pass_time times[PASSES_MAX];
+    int count = 0;
     enum ag_result result = ag_renderer_create(bench->device, scene, &desc, &renderer);
-    if (result == AG_OK) result = render_frames(bench, renderer, frame, sum);
+    if (result == AG_OK) result = passes_measure(renderer, frame, bench->frames, times, &count);
     ag_renderer_destroy(renderer);
+    for (int i = 0; i < count; i++) {
+        struct pass *pass = pass_of(bench, times[i].name);
+        if (pass) pass->by_sum[sum] = times[i];
+    }
     return result;
 }
 
@@ -186,7 +151,7 @@ static bool parse_option(struct bench *bench, const char *name, const char *valu
         bench->sums[bench->sum_count++] = value;
     else if (strcmp(name, "--frames") == 0)
         return sscanf(value, "%d%c", &bench->frames, &rest) == 1 && bench->frames >= 1 &&
-               bench->frames <= MAX_FRAMES;
+               bench->frames <= PASSES_MAX_FRAMES;
     else if (strcmp(name, "--size") == 0)
         return sscanf(value, "%dx%d%c", &bench->width, &bench->height, &rest) == 2;
     else if (strcmp(name, "--device") == 0)
@@ -228,7 +193,7 @@ int main(int argc, char **argv)
         fprintf(stderr,
                 "usage: frame [--gi SUM]... [--frames 1..%d] [--size WxH] [--device NAME] "
                 "[--csv FILE] [SCENE]...\n",
-                MAX_FRAMES);
+                PASSES_MAX_FRAMES);
         return 2;
     }
     if (bench.csv_path && !(bench.csv = fopen(bench.csv_path, "w"))) {

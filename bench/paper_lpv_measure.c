@@ -1,0 +1,270 @@
+// The reference is the light that the techniques are for: what one bounce brings, or an area light
+// straight.
+#include "paper_lpv_measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void say(const struct paper_scene *scene, const char *what)
+{
+    fprintf(stderr, "%s: %s\n", scene->name, what);
+}
+
+static double luminance(const float *rgb)
+{
+    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+}
+
+// ---- techniques
+
+static bool has_technique(const char *name)
+{
+    struct ag_technique_info info;
+    for (int i = 0; ag_technique_get(i, &info); i++)
+        if (strcmp(info.name, name) == 0) return true;
+    return false;
+}
+
+static void name_techniques(const struct measure *measure, const struct paper_scene *scene,
+                            struct scanline *line)
+{
+    static const char *const names[MEASURE_TECHNIQUES] = { "lpv", "holpv" };
+    line->technique_count = 0;
+    for (int i = 0; i < MEASURE_TECHNIQUES; i++) {
+        if (!has_technique(names[i])) continue;
+        struct measured *m = &line->techniques[line->technique_count++];
+        char settings[64] = "";
+        if (measure->paper_settings)
+            snprintf(settings, sizeof settings, "dim=%d,steps=%d", scene->dim, scene->steps);
+        const char *more = measure->options ? measure->options : "";
+        m->technique = names[i];
+        snprintf(m->gi, sizeof m->gi, "%s%s%s%s%s", names[i], settings[0] || more[0] ? ":" : "",
+                 settings, settings[0] && more[0] ? "," : "", more);
+    }
+}
+
+static enum ag_result create_renderer(const struct measure *measure, struct ag_scene *loaded,
+                                      const char *gi, int width, int height,
+                                      struct ag_renderer **out)
+{
+    struct ag_renderer_desc desc;
+    ag_renderer_desc_default(&desc);
+    desc.width = width;
+    desc.height = height;
+    desc.gi = gi;
+    return ag_renderer_create(measure->device, loaded, &desc, out);
+}
+
+// ---- scanlines
+
+static void take_line(const struct measure *measure, struct ag_image *image, double *out)
+{
+    for (int i = 0; i < image->width; i++) out[i] = luminance(image->pixels + 3 * i);
+    ag_image_destroy(measure->context, image);
+}
+
+static enum ag_result trace_line(const struct measure *measure, const struct paper_scene *scene,
+                                 struct ag_scene *loaded, const struct ag_camera *camera,
+                                 struct scanline *line)
+{
+    struct ag_reference_desc desc;
+    ag_reference_desc_default(&desc);
+    desc.width = line->count;
+    desc.height = 1;
+    desc.camera = *camera;
+    desc.bounces = scene->bounces;
+    struct ag_reference *reference = NULL;
+    struct ag_image *image = NULL;
+    say(scene, "path tracing the scanline");
+    enum ag_result result = ag_reference_create(loaded, &desc, &reference);
+    if (result == AG_OK) result = ag_reference_render(reference, measure->spp, NULL, NULL);
+    if (result == AG_OK) result = ag_reference_read(reference, "gathered_irradiance", &image);
+    if (result == AG_OK) take_line(measure, image, line->reference);
+    ag_reference_destroy(reference);
+    return result;
+}
+
+static enum ag_result render_line(const struct measure *measure, struct ag_scene *loaded,
+                                  const struct ag_camera *camera, int count, struct measured *m)
+{
+    struct ag_renderer *renderer = NULL;
+    struct ag_frame_desc frame;
+    struct ag_image *image = NULL;
+    ag_frame_desc_default(&frame);
+    frame.camera = *camera;
+    enum ag_result result = create_renderer(measure, loaded, m->gi, count, 1, &renderer);
+    if (result == AG_OK) result = ag_renderer_render(renderer, &frame);
+    if (result == AG_OK) result = ag_renderer_read(renderer, "irradiance", &image);
+    if (result == AG_OK) take_line(measure, image, m->lux);
+    ag_renderer_destroy(renderer);
+    return result;
+}
+
+// Pixels without a surface have no irradiance in either, and do not count.
+static double error_of(const double *lux, const double *reference, int count)
+{
+    double difference = 0, sum = 0;
+    for (int i = 0; i < count; i++) {
+        difference += fabs(lux[i] - reference[i]);
+        sum += reference[i];
+    }
+    return sum > 0 ? difference / sum : 0;
+}
+
+enum ag_result measure_scanline(struct measure *measure, const struct paper_scene *scene,
+                                struct ag_scene *loaded, struct scanline *out)
+{
+    struct ag_camera camera;
+    *out = (struct scanline){ .count = MEASURE_COLUMNS };
+    name_techniques(measure, scene, out);
+    enum ag_result result = paper_scene_scan_camera(scene, loaded, out->count, &camera);
+    if (result == AG_OK) result = trace_line(measure, scene, loaded, &camera, out);
+    const float *from = scene->scan_from, *to = scene->scan_to;
+    double length = hypot((double)(to[0] - from[0]), (double)(to[2] - from[2]));
+    for (int i = 0; i < out->count; i++) {
+        double at = (i + 0.5) / out->count;
+        out->x[i] = paper_scene_scans_floor(scene) ? at * length : at * scene->width;
+    }
+    for (int t = 0; t < out->technique_count && result == AG_OK; t++) {
+        struct measured *m = &out->techniques[t];
+        result = render_line(measure, loaded, &camera, out->count, m);
+        m->error = error_of(m->lux, out->reference, out->count);
+    }
+    return result;
+}
+
+// ---- costs
+
+static void add_pass(struct technique_cost *cost, const struct pass_time *pass,
+                     const char *technique)
+{
+    size_t length = strlen(technique);
+    if (strcmp(pass->name, "frame") == 0) cost->frame_ms = pass->median_ms;
+    if (strncmp(pass->name, technique, length) != 0 || pass->name[length] != '.') return;
+    const char *stage = pass->name + length + 1;
+    double *sum = strncmp(stage, "inject", 6) == 0 || strncmp(stage, "resolve", 7) == 0
+                      ? &cost->inject_ms
+                  : strncmp(stage, "propagate", 9) == 0 ? &cost->propagate_ms
+                  : strncmp(stage, "apply", 5) == 0     ? &cost->apply_ms
+                                                        : &cost->other_ms;
+    *sum += pass->median_ms;
+    cost->technique_ms += pass->median_ms;
+}
+
+static uint64_t memory_of(struct ag_renderer *renderer, const char *technique)
+{
+    struct ag_memory memory[PASSES_MAX];
+    uint64_t bytes = 0;
+    int count = ag_renderer_memory(renderer, memory, PASSES_MAX);
+    for (int i = 0; i < count && i < PASSES_MAX; i++)
+        if (strcmp(memory[i].owner, technique) == 0) bytes += memory[i].bytes;
+    return bytes;
+}
+
+static enum ag_result measure_cost(struct measure *measure, struct ag_scene *loaded,
+                                   const struct ag_frame_desc *frame, struct measured *m)
+{
+    struct ag_renderer *renderer = NULL;
+    struct pass_time passes[PASSES_MAX];
+    int count = 0;
+    enum ag_result result =
+        create_renderer(measure, loaded, m->gi, measure->width, measure->height, &renderer);
+    if (result == AG_OK) result = passes_measure(renderer, frame, measure->frames, passes, &count);
+    m->cost = (struct technique_cost){ 0 };
+    for (int i = 0; i < count; i++) add_pass(&m->cost, &passes[i], m->technique);
+    if (result == AG_OK) m->cost.bytes = memory_of(renderer, m->technique);
+    ag_renderer_destroy(renderer);
+    return result;
+}
+
+enum ag_result measure_costs(struct measure *measure, const struct paper_scene *scene,
+                             struct ag_scene *loaded, struct scanline *line)
+{
+    struct ag_frame_desc frame;
+    ag_frame_desc_default(&frame);
+    measure->width = scene->width;
+    measure->height = scene->height;
+    enum ag_result result = paper_scene_camera(scene, loaded, &frame.camera);
+    for (int t = 0; t < line->technique_count && result == AG_OK; t++) {
+        say(scene, line->techniques[t].gi);
+        result = measure_cost(measure, loaded, &frame, &line->techniques[t]);
+    }
+    return result;
+}
+
+// ---- pictures
+
+static enum ag_result trace_picture(const struct measure *measure, const struct paper_scene *scene,
+                                    struct ag_scene *loaded, const struct ag_camera *camera,
+                                    int height, struct ag_image **out)
+{
+    struct ag_reference_desc desc;
+    ag_reference_desc_default(&desc);
+    desc.width = measure->picture_width;
+    desc.height = height;
+    desc.camera = *camera;
+    desc.bounces = scene->bounces;
+    struct ag_reference *reference = NULL;
+    say(scene, "path tracing the picture");
+    enum ag_result result = ag_reference_create(loaded, &desc, &reference);
+    if (result == AG_OK) result = ag_reference_render(reference, measure->picture_spp, NULL, NULL);
+    if (result == AG_OK) result = ag_reference_read(reference, "color", out);
+    ag_reference_destroy(reference);
+    return result;
+}
+
+static enum ag_result render_picture(const struct measure *measure, struct ag_scene *loaded,
+                                     const struct ag_camera *camera, int height, const char *gi,
+                                     float *ev, struct ag_image **out)
+{
+    struct ag_renderer *renderer = NULL;
+    struct ag_frame_desc frame;
+    ag_frame_desc_default(&frame);
+    frame.camera = *camera;
+    enum ag_result result =
+        create_renderer(measure, loaded, gi, measure->picture_width, height, &renderer);
+    if (result == AG_OK) result = ag_renderer_render(renderer, &frame);
+    if (result == AG_OK) result = ag_renderer_read(renderer, "color", out);
+    if (result == AG_OK) result = ag_renderer_exposure(renderer, ev);
+    ag_renderer_destroy(renderer);
+    return result;
+}
+
+// Puts a picture at the right of *all, which may be NULL, and takes both.
+static enum ag_result append(struct ag_context *context, struct ag_image **all,
+                             struct ag_image *picture)
+{
+    struct ag_image *joined = NULL;
+    if (!*all) {
+        *all = picture;
+        return AG_OK;
+    }
+    enum ag_result result = ag_image_side_by_side(context, *all, picture, 4, &joined);
+    ag_image_destroy(context, *all);
+    ag_image_destroy(context, picture);
+    *all = joined;
+    return result;
+}
+
+enum ag_result measure_picture(struct measure *measure, const struct paper_scene *scene,
+                               struct ag_scene *loaded, const struct scanline *line,
+                               struct ag_image **out)
+{
+    int height = measure->picture_width * scene->height / scene->width;
+    struct ag_camera camera;
+    struct ag_image *all = NULL, *picture = NULL;
+    float ev = 0;
+    *out = NULL;
+    enum ag_result result = paper_scene_camera(scene, loaded, &camera);
+    if (result == AG_OK) result = trace_picture(measure, scene, loaded, &camera, height, &picture);
+    if (result == AG_OK) result = append(measure->context, &all, picture);
+    for (int t = 0; t < line->technique_count && result == AG_OK; t++) {
+        result =
+            render_picture(measure, loaded, &camera, height, line->techniques[t].gi, &ev, &picture);
+        if (result == AG_OK) result = append(measure->context, &all, picture);
+    }
+    if (result == AG_OK) result = ag_image_tonemap(measure->context, all, ev, out);
+    ag_image_destroy(measure->context, all);
+    return result;
+}
