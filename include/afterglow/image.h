@@ -36,6 +36,9 @@ AG_API enum ag_result ag_image_write_png(struct ag_context *context, const char 
 /// Reads .exr (layer NULL: "color") or .png (decoded to linear), by the file's extension.
 AG_API enum ag_result ag_image_read(struct ag_context *context, const char *path, const char *layer,
                                     struct ag_image **out);
+/// The text attribute `name` of an EXR file in `size` bytes, cut where it is longer; "" where the file has none.
+AG_API enum ag_result ag_image_read_attribute(struct ag_context *context, const char *path, const char *name,
+                                              char *out, size_t size);
 
 /// Radiance (cd/m²) to display values 0…1: exposure for `ev` at ISO 100, then the Khronos PBR Neutral tone mapper.
 AG_API enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,

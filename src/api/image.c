@@ -9,6 +9,7 @@
 #include "image/png_file.h"
 #include "image/tonemap.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { MAX_LAYERS = 256, MAX_ATTRIBUTES = 256 };
@@ -140,6 +141,22 @@ enum ag_result ag_image_read(struct ag_context *context, const char *path, const
     else
         ok = png_read(host, path, &image);
     return api_give_image(context, ok, &image, out);
+}
+
+enum ag_result ag_image_read_attribute(struct ag_context *context, const char *path,
+                                       const char *name, char *out, size_t size)
+{
+    AG_REQUIRE(context, out && size > 0, "out is NULL or has no room");
+    out[0] = 0;
+    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    AG_REQUIRE(context, name && name[0], "name is empty");
+    struct host *host = &context->host;
+    host->failure = FAIL_NONE; // NULL without a failure: the file has no such attribute
+    char *value = exr_attribute_value(host, path, name);
+    if (value) snprintf(out, size, "%s", value);
+    host_free(host, value);
+    return api_done(context, host->failure == FAIL_NONE);
 }
 
 enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,

@@ -52,6 +52,7 @@ TEST(null_instead_of_a_context_is_refused)
     struct ag_metrics metrics;
     uint64_t bytes;
     int count;
+    char text[8];
     struct ag_device_info info;
     CHECK_REFUSED(NULL, ag_context_create(NULL, NULL));
     CHECK_REFUSED(NULL, ag_device_list(NULL, &info, 1, &count));
@@ -60,6 +61,7 @@ TEST(null_instead_of_a_context_is_refused)
     CHECK_REFUSED(NULL, ag_scene_create(NULL, &scene));
     CHECK_REFUSED(NULL, ag_image_create(NULL, 1, 1, 1, &image));
     CHECK_REFUSED(NULL, ag_image_read(NULL, "a.png", NULL, &image));
+    CHECK_REFUSED(NULL, ag_image_read_attribute(NULL, "a.exr", "name", text, sizeof text));
     CHECK_REFUSED(NULL, ag_image_write_png(NULL, "a.png", NULL));
     CHECK_REFUSED(NULL, ag_image_write_exr(NULL, "a.exr", NULL, 0, NULL, 0));
     CHECK_REFUSED(NULL, ag_image_tonemap(NULL, NULL, 0, &image));
@@ -132,6 +134,7 @@ TEST(null_results_are_refused)
     CHECK_REFUSED(context, ag_scene_create(context, NULL));
     CHECK_REFUSED(context, ag_image_create(context, 1, 1, 1, NULL));
     CHECK_REFUSED(context, ag_image_read(context, "a.png", NULL, NULL));
+    CHECK_REFUSED(context, ag_image_read_attribute(context, "a.exr", "name", NULL, 0));
     CHECK_REFUSED(context, ag_renderer_estimate_memory(context, NULL, 0, NULL));
     CHECK_REFUSED(context, ag_renderer_create(NULL, scene, NULL, NULL));
     CHECK_REFUSED(context, ag_scene_get_info(scene, 0, 0, NULL));

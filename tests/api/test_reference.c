@@ -176,6 +176,40 @@ static void write_checkpoint(struct fixture *f, struct ag_reference *r, const ch
     for (int i = 0; i < COUNT; i++) ag_image_destroy(f->context, images[i]);
 }
 
+TEST(an_attribute_of_a_file_is_read_back)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    struct ag_reference *r = create(&f);
+    char path[512], text[64], narrow[4];
+    snprintf(path, sizeof path, "%s", test_path("attribute.exr"));
+    assert_int_equal(ag_reference_render(r, 1, NULL, NULL), AG_OK);
+    write_checkpoint(&f, r, path);
+    const char *name = AG_REFERENCE_CHECKPOINT;
+    assert_int_equal(ag_image_read_attribute(f.context, path, name, text, sizeof text), AG_OK);
+    CHECK_STRING(text, ag_reference_checkpoint(r));
+    assert_int_equal(ag_image_read_attribute(f.context, path, name, narrow, sizeof narrow), AG_OK);
+    CHECK_STRING(narrow, "ref");
+    assert_int_equal(ag_image_read_attribute(f.context, path, "other", text, sizeof text), AG_OK);
+    CHECK_STRING(text, "");
+    assert_int_equal(ag_image_read_attribute(f.context, path, "compression", text, sizeof text),
+                     AG_OK); // it has one, which is no text
+    CHECK_STRING(text, "");
+    CHECK_REFUSED(f.context, ag_image_read_attribute(f.context, path, "", text, sizeof text));
+    CHECK_REFUSED(f.context, ag_image_read_attribute(f.context, "", name, text, sizeof text));
+    assert_int_equal(
+        ag_image_read_attribute(f.context, test_path("none.exr"), name, text, sizeof text),
+        AG_ERROR_FILE);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs("no picture", file) >= 0 && fclose(file) == 0);
+    assert_int_equal(ag_image_read_attribute(f.context, path, name, text, sizeof text),
+                     AG_ERROR_FORMAT);
+    CHECK_STRING(text, "");
+    ag_reference_destroy(r);
+    close(&f);
+}
+
 TEST(a_file_of_the_same_picture_is_gone_on_with_and_no_other)
 {
     struct fixture f;
