@@ -1,5 +1,6 @@
 // afterglow diff: how far one image is from another.
 #include "commands.h"
+#include "images.h"
 #include "interrupt.h"
 #include "json.h"
 #include "output.h"
@@ -57,35 +58,13 @@ static enum ag_result spread(struct ag_context *context, struct ag_image **image
     return AG_OK;
 }
 
-static size_t count_not_finite(const struct ag_image *image, const struct ag_image *mask)
-{
-    size_t count = 0, channels = (size_t)image->channels;
-    size_t pixels = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < pixels; i++) {
-        bool finite = true;
-        for (size_t c = 0; c < channels; c++)
-            finite &= isfinite(image->pixels[channels * i + c]) != 0;
-        count += !finite && (!mask || mask->pixels[i] > 0.0f);
-    }
-    return count;
-}
-
-// What the files hold is no matter of usage: all failures here are FAILED.
-static enum status load(struct session *session, const char *path, const char *layer,
-                        struct ag_image **out)
-{
-    enum ag_result result = ag_image_read(session->context, path, layer, out);
-    if (result == AG_OK) return DONE;
-    fail_library(session->context, result);
-    return FAILED;
-}
-
 // One channel of 0 and 1: where the mask's layer is above the threshold.
 static enum status load_mask(struct session *session, struct ag_image **out)
 {
     const struct arguments *arguments = session->arguments;
     struct ag_image *layer = NULL;
-    enum status status = load(session, arguments->positional[1], arguments->mask_layer, &layer);
+    enum status status =
+        image_load(session, arguments->positional[1], arguments->mask_layer, &layer);
     if (status != DONE) return status;
     enum ag_result result = ag_image_create(session->context, layer->width, layer->height, 1, out);
     size_t channels = (size_t)layer->channels, pixels = 0;
@@ -103,17 +82,6 @@ struct pair {
     struct ag_compare_desc desc;
 };
 
-static enum status check_values(const struct arguments *arguments, const struct pair *pair, int i)
-{
-    const char *path = arguments->positional[i];
-    size_t bad = count_not_finite(i ? pair->b : pair->a, pair->mask);
-    if (!bad) return DONE;
-    if (!arguments->ignore_nan)
-        return fail("cannot compare %s: %zu of its pixels are NaN or infinite", path, bad);
-    note("%s: %zu of its pixels are NaN or infinite and do not count", path, bad);
-    return DONE;
-}
-
 static enum status check_sizes(const struct arguments *arguments, const struct pair *pair)
 {
     const struct ag_image *a = pair->a, *b = pair->b;
@@ -126,12 +94,13 @@ static enum status check_sizes(const struct arguments *arguments, const struct p
 static enum status load_pair(struct session *session, struct pair *pair)
 {
     const struct arguments *arguments = session->arguments;
-    enum status status = load(session, arguments->positional[0], arguments->layer, &pair->a);
+    enum status status = image_load(session, arguments->positional[0], arguments->layer, &pair->a);
     if (status == DONE)
-        status = load(session, arguments->positional[1], arguments->layer, &pair->b);
+        status = image_load(session, arguments->positional[1], arguments->layer, &pair->b);
     if (status == DONE) status = check_sizes(arguments, pair);
     if (status == DONE && arguments->mask_layer[0]) status = load_mask(session, &pair->mask);
-    for (int i = 0; i < 2 && status == DONE; i++) status = check_values(arguments, pair, i);
+    for (int i = 0; i < 2 && status == DONE; i++)
+        status = image_check(session, i ? pair->b : pair->a, pair->mask, arguments->positional[i]);
     if (status != DONE) return status;
     enum ag_result result = spread(session->context, &pair->a);
     if (result == AG_OK) result = spread(session->context, &pair->b);

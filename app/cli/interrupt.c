@@ -10,6 +10,8 @@
 static pthread_mutex_t writing = PTHREAD_MUTEX_INITIALIZER;
 static sigset_t ending;
 static atomic_bool catching, caught;
+static void (*clean_up)(void *user); // under the mutex, as is the next
+static void *clean_user;
 
 // As if nobody had waited for it: the parent sees which signal it was. The mutex stays taken.
 static void *wait_for_the_end(void *unused)
@@ -21,6 +23,7 @@ static void *wait_for_the_end(void *unused)
         if (sigwait(&ending, &number) != 0) return unused;
     }
     pthread_mutex_lock(&writing);
+    if (clean_up) clean_up(clean_user);
     sigset_t one;
     sigemptyset(&one);
     sigaddset(&one, number);
@@ -59,6 +62,20 @@ void interrupt_catch(void)
 bool interrupt_caught(void)
 {
     return atomic_load(&caught);
+}
+
+// Who resets `catching` first knows what becomes of a signal that comes at this moment.
+bool interrupt_let_go(void)
+{
+    return !atomic_exchange(&catching, false) || interrupt_caught();
+}
+
+void interrupt_clean_with(void (*clean)(void *user), void *user)
+{
+    pthread_mutex_lock(&writing);
+    clean_up = clean;
+    clean_user = user;
+    pthread_mutex_unlock(&writing);
 }
 
 void interrupt_hold(void)

@@ -11,7 +11,12 @@ void interrupt_begin(void);
 // the program.
 void interrupt_catch(void);
 bool interrupt_caught(void);
+// From here on the first one ends the program again. True: one had come.
+bool interrupt_let_go(void);
 
 // Around all that writes a file.
 void interrupt_hold(void);
 void interrupt_release(void);
+
+// What a signal that ends the program calls before, on another thread, between files; NULL: nothing.
+void interrupt_clean_with(void (*clean)(void *user), void *user);

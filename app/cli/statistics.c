@@ -113,8 +113,9 @@ static char *next_term(char **rest)
     return term;
 }
 
-static json_t *options_json(const char *gi)
+json_t *statistics_options(const struct ag_renderer *renderer)
 {
+    const char *gi = ag_renderer_gi(renderer);
     char text[GI_SIZE];
     json_t *object = json_object();
     if (!object || snprintf(text, sizeof text, "%s", gi) >= (int)sizeof text) return object;
@@ -128,7 +129,7 @@ static json_t *options_json(const char *gi)
 
 // ---- the document
 
-static json_t *memory_json(struct ag_renderer *renderer)
+json_t *statistics_memory(struct ag_renderer *renderer)
 {
     struct ag_memory owners[MAX_OWNERS];
     json_t *object = json_object();
@@ -138,7 +139,7 @@ static json_t *memory_json(struct ag_renderer *renderer)
     return object;
 }
 
-static json_t *passes_json(struct statistics *statistics)
+json_t *statistics_passes(struct statistics *statistics)
 {
     json_t *array = json_array();
     for (int i = 0; array && i < statistics->pass_count; i++) {
@@ -150,20 +151,25 @@ static json_t *passes_json(struct statistics *statistics)
     return array;
 }
 
+json_t *statistics_frame(struct statistics *statistics)
+{
+    struct pass_times *frame = NULL;
+    for (int i = 0; i < statistics->pass_count; i++)
+        if (strcmp(statistics->passes[i].name, "frame") == 0) frame = &statistics->passes[i];
+    return statistics_summary(frame);
+}
+
 json_t *statistics_json(struct statistics *statistics, const struct session *session,
                         struct ag_device *device, struct ag_renderer *renderer)
 {
     const struct arguments *a = session->arguments;
     struct ag_device_info info;
     ag_device_get_info(device, &info);
-    struct pass_times *frame = NULL;
-    for (int i = 0; i < statistics->pass_count; i++)
-        if (strcmp(statistics->passes[i].name, "frame") == 0) frame = &statistics->passes[i];
     // No technique bakes anything here: nothing was spent on it.
     return json_pack("{s:s, s:s, s:[ii], s:i, s:s, s:o, s:o, s:o, s:o, s:{s:f, s:i}}", "device",
                      info.name, "driver", info.driver, "size", a->width, a->height, "frames",
                      a->frames, "gi", ag_renderer_gi(renderer), "options",
-                     options_json(ag_renderer_gi(renderer)), "passes", passes_json(statistics),
-                     "frame_ms", statistics_summary(frame), "memory_bytes", memory_json(renderer),
-                     "bake", "seconds", 0.0, "bytes", 0);
+                     statistics_options(renderer), "passes", statistics_passes(statistics),
+                     "frame_ms", statistics_frame(statistics), "memory_bytes",
+                     statistics_memory(renderer), "bake", "seconds", 0.0, "bytes", 0);
 }

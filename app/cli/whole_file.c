@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-// The name beside which a file is written: shorter than the longest that folders take.
-static char *name_beside(const char *path)
+// Shorter than the longest name that folders take.
+char *whole_file_beside(const char *path)
 {
     enum { SUFFIX_SIZE = 32 };
     const char *slash = strrchr(path, '/');
@@ -57,7 +57,7 @@ enum status whole_file_write(const char *path, enum status (*write)(FILE *file, 
                              const void *what)
 {
     char *real = realpath(path, NULL);
-    char *beside = name_beside(real ? real : path);
+    char *beside = whole_file_beside(real ? real : path);
     const struct destination to = { path, real ? real : path, beside };
     interrupt_hold();
     enum status status = beside ? write_beside(&to, write, what) : cannot_write(&to, ENOMEM);

@@ -1,0 +1,162 @@
+// Samples until there are enough, a file now and then.
+#include "tracing.h"
+#include "interrupt.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+
+static const double LONGEST_STEP_S = 2.0; // between two looks at the clock
+enum { MAX_ATTRIBUTES = 16 };
+
+const char tracing_kept_layers[] =
+    "color,direct,indirect,gathered,irradiance,gathered_irradiance,error,samples";
+
+static double now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int samples_of(const struct tracing *t)
+{
+    struct ag_reference_info info = { 0 };
+    ag_reference_get_info(t->reference, &info);
+    return info.samples;
+}
+
+enum status tracing_begin(struct tracing *t, struct session *session,
+                          const struct ag_camera *camera, int wanted)
+{
+    const struct arguments *a = session->arguments;
+    *t = (struct tracing){ .session = session, .wanted = wanted };
+    struct ag_reference_desc desc;
+    ag_reference_desc_default(&desc);
+    desc.width = a->width;
+    desc.height = a->height;
+    desc.camera = *camera;
+    desc.time_s = a->time_s;
+    desc.animation = session->animation;
+    desc.bounces = a->bounces;
+    desc.direct_only = a->direct_only;
+    desc.indirect_only = a->indirect_only;
+    desc.antialias = a->antialias;
+    desc.seed = a->seed;
+    enum ag_result result = ag_reference_create(session->scene, &desc, &t->reference);
+    return result == AG_OK ? DONE : fail_library(session->context, result);
+}
+
+void tracing_end(struct tracing *t)
+{
+    ag_reference_destroy(t->reference);
+    *t = (struct tracing){ 0 };
+}
+
+enum ag_result tracing_resume(struct tracing *t, const char *path)
+{
+    enum ag_result result = ag_reference_resume(t->reference, path);
+    if (result == AG_OK) t->begun = t->done = samples_of(t);
+    return result;
+}
+
+// ---- rendering
+
+struct step {
+    const struct tracing *tracing;
+    int samples;
+};
+
+static bool show_progress(void *user, double done)
+{
+    const struct step *step = user;
+    const struct tracing *t = step->tracing;
+    int samples = t->done + (int)(done * step->samples);
+    progress("path tracing", samples - t->begun, t->wanted - t->begun);
+    return !interrupt_caught();
+}
+
+// As many samples as fit into a step, judged by those before.
+static int next_step(const struct tracing *t)
+{
+    int fresh = t->done - t->begun, left = t->wanted - t->done;
+    if (fresh == 0) return 1;
+    double fit = LONGEST_STEP_S * fresh / fmax(t->seconds, 1e-6);
+    return fit < 1.0 ? 1 : fit < left ? (int)fit : left;
+}
+
+static enum status render_step(struct tracing *t)
+{
+    struct step step = { t, next_step(t) };
+    double begun = now_s();
+    enum ag_result result = ag_reference_render(t->reference, step.samples, show_progress, &step);
+    t->seconds += now_s() - begun;
+    t->done = samples_of(t);
+    if (result == AG_OK || result == AG_ERROR_CANCELLED) return DONE;
+    return fail_library(t->session->context, result);
+}
+
+static enum status keep(const struct tracing_keeper *keeper)
+{
+    return keeper->keep ? keeper->keep(keeper->user) : DONE;
+}
+
+enum status tracing_converge(struct tracing *t, const struct tracing_keeper *keeper)
+{
+    enum status status = DONE;
+    double kept_s = now_s();
+    interrupt_catch();
+    while (status == DONE && t->done < t->wanted && !interrupt_caught()) {
+        bool first = t->done == t->begun;
+        status = render_step(t);
+        bool due = (first && keeper->first) || now_s() - kept_s > keeper->every_s;
+        if (status != DONE || !due || t->done >= t->wanted || interrupt_caught()) continue;
+        status = keep(keeper);
+        kept_s = now_s();
+    }
+    progress_end();
+    return status == DONE ? keep(keeper) : status;
+}
+
+// ---- files
+
+static enum ag_result write_layers(const struct tracing *t, const char *path,
+                                   const struct ag_image_layer *layers, int count,
+                                   const struct ag_attribute *more, int more_count)
+{
+    const struct arguments *a = t->session->arguments;
+    char seed[32], version[32], bounces[32];
+    int v = ag_version();
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)a->seed);
+    snprintf(version, sizeof version, "%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
+    snprintf(bounces, sizeof bounces, a->bounces < 0 ? "unlimited" : "%d", a->bounces);
+    struct ag_attribute attributes[MAX_ATTRIBUTES] = {
+        { "afterglow.scene", a->positional[0] },
+        { "afterglow.camera", t->session->camera_name },
+        { "afterglow.bounces", bounces },
+        { "afterglow.seed", seed },
+        { "afterglow.version", version },
+        { AG_REFERENCE_CHECKPOINT, ag_reference_checkpoint(t->reference) },
+    };
+    int used = 6;
+    for (int i = 0; i < more_count && used < MAX_ATTRIBUTES; i++) attributes[used++] = more[i];
+    return ag_image_write_exr(t->session->context, path, layers, count, attributes, used);
+}
+
+enum ag_result tracing_write_exr(const struct tracing *t, const struct picture *picture,
+                                 const char *path, const struct ag_attribute *more, int more_count)
+{
+    struct ag_image *images[MAX_LAYERS] = { 0 };
+    struct ag_image_layer layers[MAX_LAYERS];
+    enum ag_result result = AG_OK;
+    int count = picture->layer_count;
+    for (int i = 0; i < count && result == AG_OK; i++) {
+        result = ag_reference_read(t->reference, picture->layers[i], &images[i]);
+        layers[i] = (struct ag_image_layer){ picture->layers[i], images[i] };
+    }
+    interrupt_hold();
+    if (result == AG_OK) result = write_layers(t, path, layers, count, more, more_count);
+    interrupt_release();
+    for (int i = 0; i < count; i++) ag_image_destroy(t->session->context, images[i]);
+    return result;
+}
