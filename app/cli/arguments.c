@@ -26,11 +26,26 @@ static bool set_gi(struct arguments *a, const char *value, const char **why)
     return true;
 }
 
+static bool add_method(struct arguments *a, const char *value, const char **why)
+{
+    *why = "16 are the most";
+    if (a->method_count == MAX_METHODS) return false;
+    a->methods[a->method_count++] = value;
+    return true;
+}
+
 static bool set_output(struct arguments *a, const char *value, const char **why)
 {
     *why = "a picture is a .png or an .exr";
     a->output = value;
     return has_extension(value, "png") || has_extension(value, "exr");
+}
+
+static bool set_folder(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->output = value;
+    return true;
 }
 
 static bool set_size(struct arguments *a, const char *value, const char **why)
@@ -173,6 +188,7 @@ static bool set_spp(struct arguments *a, const char *value, const char **why)
     *why = "it must be 1 to 1000000";
     bool ok = value_int(value, 1, MAX_SPP, &spp);
     a->spp = (int)spp;
+    a->has_spp = true;
     return ok;
 }
 
@@ -211,6 +227,41 @@ static bool set_resume(struct arguments *a, const char *value, const char **why)
     (void)value, (void)why;
     a->resume = true;
     return true;
+}
+
+static bool set_reference(struct arguments *a, const char *value, const char **why)
+{
+    *why = "a reference is an .exr";
+    a->reference = value;
+    return has_extension(value, "exr");
+}
+
+static bool set_no_cache(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->no_cache = true;
+    return true;
+}
+
+static bool set_bound(const char *value, double *out, const char **why)
+{
+    *why = "it must be a number from 0 on";
+    return value_number(value, out) && *out >= 0.0;
+}
+
+static bool set_max_flip(struct arguments *a, const char *value, const char **why)
+{
+    return set_bound(value, &a->max_flip, why);
+}
+
+static bool set_max_relmse(struct arguments *a, const char *value, const char **why)
+{
+    return set_bound(value, &a->max_relmse, why);
+}
+
+static bool set_max_ms(struct arguments *a, const char *value, const char **why)
+{
+    return set_bound(value, &a->max_ms, why);
 }
 
 static bool set_layer(struct arguments *a, const char *value, const char **why)
@@ -368,19 +419,31 @@ static enum status check_together(const struct command *command, const struct ar
         return wrong_usage("cannot use --eye: it is the same point as --target");
     if (a->direct_only && a->indirect_only)
         return wrong_usage("cannot use --direct-only: --indirect-only is the other half");
+    if (a->reference && a->has_spp)
+        return wrong_usage("cannot use --spp: --reference %s has the samples that it has",
+                           a->reference);
     return DONE;
+}
+
+static struct arguments defaults_of(const struct command *command)
+{
+    bool compare = command->bit == COMPARE;
+    return (struct arguments){ .gi = "none",
+                               .width = 1280,
+                               .height = 720,
+                               .frames = compare ? 8 : 1,
+                               .fov_deg = 60.0,
+                               .spp = compare ? 256 : 64,
+                               .bounces = -1,
+                               .max_flip = -1.0,
+                               .max_relmse = -1.0,
+                               .max_ms = -1.0 };
 }
 
 enum status arguments_parse(const struct command *command, int count, char **words,
                             struct arguments *out)
 {
-    *out = (struct arguments){ .gi = "none",
-                               .width = 1280,
-                               .height = 720,
-                               .frames = 1,
-                               .fov_deg = 60.0,
-                               .spp = 64,
-                               .bounces = -1 };
+    *out = defaults_of(command);
     bool only_files = false; // after "--"
     for (int i = 0; i < count; i++) {
         if (!only_files && strcmp(words[i], "--") == 0) {

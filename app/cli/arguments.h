@@ -7,8 +7,8 @@
 #include <afterglow/image.h>
 #include <afterglow/scene.h>
 
-enum command_bit { RENDER = 1, INFO = 2, LIST = 4, DIFF = 8, REFERENCE = 16 };
-enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 2 };
+enum command_bit { RENDER = 1, INFO = 2, LIST = 4, DIFF = 8, REFERENCE = 16, COMPARE = 32 };
+enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 2, MAX_METHODS = 16 };
 
 struct arguments {
     const char *positional[MAX_POSITIONAL]; // SCENE, or A and B
@@ -34,7 +34,13 @@ struct arguments {
     float sky[3];
     // reference
     int spp, bounces;
-    bool direct_only, indirect_only, antialias, resume;
+    bool has_spp, direct_only, indirect_only, antialias, resume;
+    // compare
+    const char *methods[MAX_METHODS]; // each a --gi
+    int method_count;
+    const char *reference; // an EXR; NULL: traced
+    bool no_cache;
+    double max_flip, max_relmse, max_ms; // below 0: no bound
     // diff
     const char *layer, *map;
     enum ag_difference metric; // of the map

@@ -11,8 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct command *const commands[] = { &command_render, &command_reference,
-                                                  &command_info, &command_list, &command_diff };
+static const struct command *const commands[] = { &command_render,  &command_reference,
+                                                  &command_compare, &command_info,
+                                                  &command_list,    &command_diff };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_usage(void)

@@ -1,0 +1,138 @@
+// afterglow compare: methods beside each other, each held against the truth.
+#include "commands.h"
+#include "compare.h"
+#include "json.h"
+#include "report_page.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char REPORT[] = "report.json";
+
+// All wrong usage, and a folder that cannot be written, are found before a file is opened or a
+// device is woken.
+static enum status plan(struct comparison *c)
+{
+    const struct arguments *a = c->arguments;
+    char folder[PATH_SIZE];
+    output_default(a->positional[0], "-compare", folder);
+    enum status status = methods_plan(c);
+    if (status == DONE)
+        status = folder_plan(&c->folder, a->output ? a->output : folder, REPORT, files_are_named);
+    return status;
+}
+
+static enum status open_device(struct comparison *c)
+{
+    struct ag_device_desc desc;
+    ag_device_desc_default(&desc);
+    desc.device = c->arguments->device;
+    enum ag_result result = ag_device_create(c->session.context, &desc, &c->device);
+    if (result == AG_OK) return DONE;
+    fail_library(c->session.context, result);
+    return FAILED; // which devices there are is the machine's affair
+}
+
+static enum status prepare(struct comparison *c)
+{
+    const struct arguments *a = c->arguments;
+    enum status status = session_load(&c->session, a->positional[0]);
+    if (status == DONE) status = session_light(&c->session);
+    if (status == DONE) status = session_camera(&c->session, a->time_s, &c->camera);
+    if (status == DONE) status = truth_begin(c);
+    if (status == DONE) status = open_device(c);
+    if (status == DONE) session_say(&c->session);
+    return status;
+}
+
+// Vulkan's own complaints make all that was rendered doubtful.
+static enum status check_device(const struct comparison *c)
+{
+    if (ag_device_validation_messages(c->device) == 0) return DONE;
+    return fail("cannot trust %s: Vulkan's validation has complaints (see --verbose)",
+                c->arguments->positional[0]);
+}
+
+static enum status write_folder(struct comparison *c, const json_t *report)
+{
+    char path[PATH_SIZE];
+    enum status status = folder_begin(&c->folder);
+    if (status == DONE) status = files_write(c);
+    if (status == DONE && !folder_file(&c->folder, REPORT, path))
+        status = fail("cannot write %s: the path is too long", c->folder.shown);
+    if (status == DONE) status = json_write(report, path);
+    if (status == DONE) status = report_page_write(c->folder.beside, report);
+    if (status == DONE) status = folder_commit(&c->folder, REPORT);
+    return status;
+}
+
+static enum status publish(struct comparison *c)
+{
+    json_t *report = report_json(c);
+    if (!report) return fail("cannot compare %s: out of memory", c->arguments->positional[0]);
+    enum status status = write_folder(c, report);
+    if (status != DONE) {
+        json_decref(report);
+        return status;
+    }
+    if (c->arguments->json) {
+        status = json_print(report); // takes it
+    } else {
+        report_print(c);
+        json_decref(report);
+    }
+    if (!c->arguments->output) note("written: %s", c->folder.shown);
+    return status == DONE ? report_gates(c) : status;
+}
+
+static enum status compare(const struct arguments *arguments)
+{
+    struct comparison *c = calloc(1, sizeof *c);
+    if (!c) return fail("cannot compare %s: out of memory", arguments->positional[0]);
+    c->arguments = arguments;
+    enum status status = session_begin(&c->session, arguments);
+    if (status == DONE) status = plan(c);
+    if (status == DONE) status = prepare(c);
+    for (int i = 0; i < c->method_count && status == DONE; i++) status = method_render(c, i);
+    if (status == DONE) status = check_device(c);
+    if (status == DONE) status = truth_complete(c);
+    if (status == DONE) status = methods_measure(c);
+    if (status == DONE) status = publish(c);
+
+    folder_abort(&c->folder);
+    methods_finish(c);
+    truth_finish(c);
+    ag_scene_destroy(c->session.scene);
+    c->session.scene = NULL;
+    ag_device_destroy(c->device);
+    session_end(&c->session);
+    free(c);
+    return status;
+}
+
+const struct command command_compare = {
+    .name = "compare",
+    .bit = COMPARE,
+    .positional_count = 1,
+    .usage = "SCENE [options]",
+    .summary = "holds methods of indirect light against the truth: a folder with a report",
+    .text =
+        "Renders SCENE with each --gi on the GPU, path-traces the same picture on the CPU,\n"
+        "measures how far each is from it and what it costs, and writes a folder: report.html,\n"
+        "the pictures, maps of the errors and EXR files. All have one camera, light and exposure.\n"
+        "\n"
+        "Nearly all of the time goes into the reference and grows with pixels times --spp: on\n"
+        "two cores a minute for 320x180 with 64 samples can become an hour for 1280x720 with 256.\n"
+        "Begin small. Ctrl-C keeps the samples in a cache: the same command goes on with them,\n"
+        "and once they are there it takes seconds.\n",
+    .examples = "  afterglow compare @cornell --size 320x180 --spp 64\n"
+                "      none, ambient and lpv, into cornell-compare\n"
+                "  afterglow compare house.glb --size 640x360 --gi lpv:steps=16 --gi lpv -o house\n"
+                "      one method with two settings\n"
+                "  afterglow reference @atrium --size 640x360 --spp 1024 -o court.exr\n"
+                "  afterglow compare @atrium --size 640x360 --reference court.exr\n"
+                "      against a picture that was traced before\n"
+                "  afterglow compare @cornell --size 160x90 --gi lpv --max-flip 0.4 --quiet\n"
+                "      in a test: the exit status is 1 where lpv is further from the truth\n",
+    .run = compare,
+};

@@ -1,0 +1,159 @@
+// The folder's pictures: what was rendered, the truth, and maps of the errors, which share their
+// scale so that they can be compared with each other.
+#include "compare.h"
+#include "interrupt.h"
+#include "values.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const fixed_names[] = { "report.json", "report.html", "reference.png",
+                                           "reference.exr", "reference-indirect.png" };
+
+bool files_are_named(const char *name)
+{
+    for (size_t i = 0; i < sizeof fixed_names / sizeof fixed_names[0]; i++)
+        if (strcmp(name, fixed_names[i]) == 0) return true;
+    bool numbered = isdigit((unsigned char)name[0]) != 0;
+    return numbered && (has_extension(name, "png") || has_extension(name, "exr"));
+}
+
+// The path of "STEM" + ending.
+static enum status path_of(const struct comparison *c, const char *stem, const char *ending,
+                           char out[PATH_SIZE])
+{
+    char name[STEM_SIZE + 32];
+    snprintf(name, sizeof name, "%s%s", stem, ending);
+    return folder_file(&c->folder, name, out)
+               ? DONE
+               : fail("cannot write %s/%s: the path is too long", c->folder.shown, name);
+}
+
+// Takes the image, which may be NULL where `result` says why.
+static enum status write_png(struct comparison *c, enum ag_result result, struct ag_image *image,
+                             const char *stem, const char *ending)
+{
+    char path[PATH_SIZE];
+    enum status status = path_of(c, stem, ending, path);
+    interrupt_hold();
+    if (result == AG_OK && status == DONE)
+        result = ag_image_write_png(c->session.context, path, image);
+    interrupt_release();
+    ag_image_destroy(c->session.context, image);
+    if (result == AG_OK) return status;
+    fail_library(c->session.context, result);
+    return FAILED;
+}
+
+static enum status write_picture(struct comparison *c, const struct ag_image *radiance,
+                                 const char *stem, const char *ending)
+{
+    struct ag_image *display = NULL;
+    enum ag_result result =
+        ag_image_tonemap(c->session.context, radiance, c->exposure_ev, &display);
+    return write_png(c, result, display, stem, ending);
+}
+
+static enum status write_map(struct comparison *c, const struct ag_image *a,
+                             const struct ag_image *b, enum ag_difference difference, float full,
+                             const char *stem, const char *ending)
+{
+    struct ag_compare_desc desc;
+    ag_compare_desc_default(&desc);
+    desc.radiance = true;
+    desc.ev = c->exposure_ev;
+    desc.ignore_not_finite = c->arguments->ignore_nan;
+    struct ag_image *map = NULL;
+    enum ag_result result =
+        ag_image_error_map(c->session.context, a, b, &desc, difference, full, &map);
+    return write_png(c, result, map, stem, ending);
+}
+
+static enum status write_method_exr(struct comparison *c, const struct method *m)
+{
+    char path[PATH_SIZE], exposure[32], version[32];
+    int v = ag_version();
+    snprintf(exposure, sizeof exposure, "%.9g", (double)c->exposure_ev);
+    snprintf(version, sizeof version, "%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
+    const struct ag_image_layer layers[] = { { "color", m->color },
+                                             { "indirect", m->indirect },
+                                             { "irradiance", m->irradiance } };
+    const struct ag_attribute attributes[] = {
+        { "afterglow.scene", c->arguments->positional[0] },
+        { "afterglow.camera", c->session.camera_name },
+        { "afterglow.gi", m->spelled },
+        { "afterglow.exposure_ev", exposure },
+        { "afterglow.version", version },
+    };
+    enum status status = path_of(c, m->stem, ".exr", path);
+    if (status != DONE) return status;
+    interrupt_hold();
+    enum ag_result result = ag_image_write_exr(c->session.context, path, layers, 3, attributes, 5);
+    interrupt_release();
+    return result == AG_OK ? DONE : fail_library(c->session.context, result);
+}
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// What is white in all maps of indirect light: an error as large as the truth is there, but for the
+// brightest twentieth of the lit pixels.
+static bool find_full_indirect(struct comparison *c)
+{
+    const struct ag_image *truth = c->truth.gathered;
+    size_t pixels = (size_t)truth->width * (size_t)truth->height, lit = 0;
+    float *values = malloc(pixels * sizeof *values);
+    if (!values) return false;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *rgb = &truth->pixels[i * (size_t)truth->channels];
+        float mean = (rgb[0] + rgb[1] + rgb[2]) / 3.0f;
+        if (mean > 0.0f && isfinite(mean)) values[lit++] = mean;
+    }
+    qsort(values, lit, sizeof *values, by_value);
+    c->full_indirect = lit > 0 ? values[lit - 1 - lit / 20] : 1.0f;
+    free(values);
+    return true;
+}
+
+static enum status write_method(struct comparison *c, const struct method *m)
+{
+    const struct truth *truth = &c->truth;
+    enum status status = write_picture(c, m->color, m->stem, ".png");
+    if (status == DONE)
+        status =
+            write_map(c, m->color, truth->color, AG_DIFFERENCE_FLIP, 0.0f, m->stem, "-flip.png");
+    if (status == DONE) status = write_picture(c, m->indirect, m->stem, "-indirect.png");
+    if (status == DONE && truth->gathered)
+        status = write_map(c, m->indirect, truth->gathered, AG_DIFFERENCE_ABSOLUTE,
+                           c->full_indirect, m->stem, "-indirect-error.png");
+    return status == DONE ? write_method_exr(c, m) : status;
+}
+
+static enum status write_truth(struct comparison *c)
+{
+    char path[PATH_SIZE];
+    enum status status = write_picture(c, c->truth.color, "reference", ".png");
+    if (status == DONE && c->truth.gathered)
+        status = write_picture(c, c->truth.gathered, "reference", "-indirect.png");
+    if (status == DONE) status = path_of(c, "reference", ".exr", path);
+    return status == DONE ? truth_write_exr(c, path) : status;
+}
+
+enum status files_write(struct comparison *c)
+{
+    if (c->truth.gathered && !find_full_indirect(c))
+        return fail("cannot compare %s: out of memory", c->arguments->positional[0]);
+    enum status status = write_truth(c);
+    for (int i = 0; i < c->method_count && status == DONE; i++) {
+        progress("writing", i, c->method_count);
+        status = write_method(c, &c->methods[i]);
+    }
+    progress_end();
+    return status;
+}

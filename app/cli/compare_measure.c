@@ -1,0 +1,64 @@
+// How far each method's picture and its indirect light are from the reference's.
+#include "compare.h"
+#include "images.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static double energy_of(const struct ag_metrics *m)
+{
+    const double weights[3] = { 0.2126, 0.7152, 0.0722 };
+    double a = 0.0, b = 0.0;
+    for (int i = 0; i < 3; i++) {
+        a += weights[i] * m->mean_a[i];
+        b += weights[i] * m->mean_b[i];
+    }
+    return b > 0.0 ? a / b : (double)NAN;
+}
+
+static enum status measure(struct comparison *c, const struct ag_image *image,
+                           const struct ag_image *truth, const struct ag_compare_desc *desc,
+                           struct measured *out)
+{
+    enum ag_result result = ag_image_metrics(c->session.context, image, truth, desc, &out->metrics);
+    if (result != AG_OK) {
+        fail_library(c->session.context, result);
+        return FAILED;
+    }
+    out->energy = energy_of(&out->metrics);
+    return DONE;
+}
+
+static enum status measure_method(struct comparison *c, struct method *m)
+{
+    char name[STEM_SIZE + 32];
+    struct ag_compare_desc desc;
+    ag_compare_desc_default(&desc);
+    desc.radiance = true;
+    desc.ev = c->exposure_ev;
+    desc.ignore_not_finite = c->arguments->ignore_nan;
+    snprintf(name, sizeof name, "%s", m->gi);
+    enum status status = image_check(&c->session, m->color, NULL, name);
+    if (status == DONE) status = measure(c, m->color, c->truth.color, &desc, &m->picture);
+    if (status != DONE || !c->truth.gathered) return status;
+    desc.radiance =
+        false; // of indirect light relmse, mae and energy alone are said, which do not depend on it
+    snprintf(name, sizeof name, "the indirect light of %s", m->gi);
+    status = image_check(&c->session, m->indirect, NULL, name);
+    return status == DONE ? measure(c, m->indirect, c->truth.gathered, &desc, &m->gathered)
+                          : status;
+}
+
+enum status methods_measure(struct comparison *c)
+{
+    enum status status = image_check(&c->session, c->truth.color, NULL, "the reference");
+    if (status == DONE && c->truth.gathered)
+        status =
+            image_check(&c->session, c->truth.gathered, NULL, "the reference's indirect light");
+    for (int i = 0; i < c->method_count && status == DONE; i++) {
+        progress("measuring", i, c->method_count);
+        status = measure_method(c, &c->methods[i]);
+    }
+    progress_end();
+    return status;
+}

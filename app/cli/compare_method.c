@@ -1,0 +1,189 @@
+// One method: rendered, timed, its layers taken.
+#include "compare.h"
+#include "statistics.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const usual_methods[] = { "none", "ambient", "lpv" };
+
+// ---- before the work
+
+static void renderer_desc(const struct comparison *c, int index, struct ag_renderer_desc *desc)
+{
+    const struct arguments *a = c->arguments;
+    ag_renderer_desc_default(desc);
+    desc->width = a->width;
+    desc->height = a->height;
+    desc->gi = c->methods[index].gi;
+    desc->frame_options = a->frame_options;
+    desc->indirect_layer = true;
+    desc->display_layer = false;
+}
+
+// "2-lpv-steps-8": safe on any file system and in any address, and no two are equal.
+static void name_files(struct method *method, int number)
+{
+    int used = snprintf(method->stem, STEM_SIZE, "%d", number);
+    bool gap = true;
+    for (const char *c = method->gi; *c && used < STEM_SIZE - 2; c++) {
+        bool plain = isalnum((unsigned char)*c) != 0 || *c == '.';
+        if (plain && gap) method->stem[used++] = '-';
+        if (plain) method->stem[used++] = *c;
+        gap = !plain;
+    }
+    method->stem[used] = 0;
+}
+
+enum status methods_plan(struct comparison *c)
+{
+    const struct arguments *a = c->arguments;
+    const char *const *gis = a->method_count > 0 ? a->methods : usual_methods;
+    c->method_count = a->method_count > 0 ? a->method_count : 3;
+    for (int i = 0; i < c->method_count; i++) {
+        struct ag_renderer_desc desc;
+        uint64_t bytes;
+        c->methods[i].gi = gis[i];
+        name_files(&c->methods[i], i + 1);
+        renderer_desc(c, i, &desc);
+        enum ag_result result =
+            ag_renderer_estimate_memory(c->session.context, &desc, a->light_count, &bytes);
+        if (result != AG_OK) return fail_library(c->session.context, result);
+        detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi,
+               desc.width, desc.height, (double)bytes * 1e-6);
+    }
+    return DONE;
+}
+
+// ---- frames
+
+struct rendering {
+    struct comparison *c;
+    struct method *method;
+    struct ag_renderer *renderer;
+    struct statistics statistics;
+};
+
+static void frame_desc(const struct comparison *c, struct ag_frame_desc *desc)
+{
+    ag_frame_desc_default(desc);
+    desc->camera = c->camera;
+    desc->time_s = c->arguments->time_s;
+    desc->animation = c->session.animation;
+    desc->auto_exposure = false;
+    desc->exposure_ev = c->exposure_ev;
+}
+
+// What is metered is the same for all methods: direct light and what emission lights.
+static enum status find_exposure(struct rendering *r)
+{
+    struct comparison *c = r->c;
+    c->exposure_ev = c->arguments->exposure_ev;
+    if (c->arguments->has_exposure) return DONE;
+    struct ag_frame_desc desc;
+    frame_desc(c, &desc);
+    desc.auto_exposure = true;
+    enum ag_result result = ag_renderer_render(r->renderer, &desc);
+    if (result == AG_OK) result = ag_renderer_exposure(r->renderer, &c->exposure_ev);
+    return result == AG_OK ? DONE : fail_library(c->session.context, result);
+}
+
+// The first frame forgets that exposure was metered, and of several it pays for what later ones
+// find ready.
+static enum status render_frame(struct rendering *r, int index)
+{
+    struct comparison *c = r->c;
+    struct ag_frame_desc desc;
+    frame_desc(c, &desc);
+    desc.camera_cut = index == 0;
+    enum ag_result result = ag_renderer_render(r->renderer, &desc);
+    if (result != AG_OK) return fail_library(c->session.context, result);
+    bool counts = index > 0 || c->arguments->frames == 1;
+    if (counts && !statistics_add(&r->statistics, r->renderer))
+        return fail("cannot measure %s: out of memory", r->method->gi);
+    result = ag_renderer_wait(r->renderer);
+    return result == AG_OK ? DONE : fail_library(c->session.context, result);
+}
+
+static enum status render_frames(struct rendering *r)
+{
+    char what[STEM_SIZE + 16];
+    int frames = r->c->arguments->frames;
+    enum status status = DONE;
+    snprintf(what, sizeof what, "rendering %.*s", STEM_SIZE, r->method->gi);
+    for (int i = 0; i < frames && status == DONE; i++) {
+        progress(what, i, frames);
+        status = render_frame(r, i);
+    }
+    progress_end();
+    return status;
+}
+
+// ---- what is taken from them
+
+static enum status take_layers(struct rendering *r)
+{
+    struct method *m = r->method;
+    enum ag_result result = ag_renderer_read(r->renderer, "color", &m->color);
+    if (result == AG_OK) result = ag_renderer_read(r->renderer, "indirect", &m->indirect);
+    if (result == AG_OK) result = ag_renderer_read(r->renderer, "irradiance", &m->irradiance);
+    return result == AG_OK ? DONE : fail_library(r->c->session.context, result);
+}
+
+static enum status take_costs(struct rendering *r)
+{
+    struct method *m = r->method;
+    m->spelled = strdup(ag_renderer_gi(r->renderer));
+    m->options = statistics_options(r->renderer);
+    m->passes = statistics_passes(&r->statistics);
+    m->frame_ms = statistics_frame(&r->statistics);
+    m->memory = statistics_memory(r->renderer);
+    bool ok = m->spelled && m->options && m->passes && m->frame_ms && m->memory;
+    return ok ? DONE : fail("cannot measure %s: out of memory", m->gi);
+}
+
+static enum status create(struct rendering *r, int index)
+{
+    struct comparison *c = r->c;
+    struct ag_renderer_desc desc;
+    renderer_desc(c, index, &desc);
+    enum ag_result result = ag_renderer_create(c->device, c->session.scene, &desc, &r->renderer);
+    if (result == AG_OK) return DONE;
+    fail_library(c->session.context, result);
+    return FAILED; // what the scene and the device let a technique do is not the command line's
+                   // affair
+}
+
+enum status method_render(struct comparison *c, int index)
+{
+    struct rendering *r = calloc(1, sizeof *r);
+    if (!r) return fail("cannot render %s: out of memory", c->methods[index].gi);
+    r->c = c;
+    r->method = &c->methods[index];
+    enum status status = create(r, index);
+    if (status == DONE && index == 0) status = find_exposure(r);
+    if (status == DONE) status = render_frames(r);
+    if (status == DONE) status = take_layers(r);
+    if (status == DONE) status = take_costs(r);
+    statistics_finish(&r->statistics);
+    ag_renderer_destroy(r->renderer);
+    free(r);
+    return status;
+}
+
+void methods_finish(struct comparison *c)
+{
+    for (int i = 0; i < c->method_count; i++) {
+        struct method *m = &c->methods[i];
+        ag_image_destroy(c->session.context, m->color);
+        ag_image_destroy(c->session.context, m->indirect);
+        ag_image_destroy(c->session.context, m->irradiance);
+        free(m->spelled);
+        json_decref(m->options);
+        json_decref(m->passes);
+        json_decref(m->frame_ms);
+        json_decref(m->memory);
+    }
+}

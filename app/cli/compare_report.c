@@ -1,0 +1,206 @@
+// What compare says: report.json, a table, and which bounds were broken.
+#include "compare.h"
+#include "json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// ---- report.json
+
+static json_t *file_name(const char *stem, const char *ending)
+{
+    return json_sprintf("%s%s", stem, ending);
+}
+
+static json_t *method_images(const struct comparison *c, const struct method *m)
+{
+    json_t *images =
+        json_pack("{s:o, s:o, s:o}", "picture", file_name(m->stem, ".png"), "error",
+                  file_name(m->stem, "-flip.png"), "indirect", file_name(m->stem, "-indirect.png"));
+    if (images && c->truth.gathered)
+        json_object_set_new(images, "indirect_error", file_name(m->stem, "-indirect-error.png"));
+    return images;
+}
+
+static json_t *indirect_json(const struct comparison *c, const struct method *m)
+{
+    if (!c->truth.gathered) return json_null();
+    return json_pack("{s:o, s:o, s:o}", "relmse", json_double(m->gathered.metrics.relmse), "mae",
+                     json_double(m->gathered.metrics.mae), "energy",
+                     json_double(m->gathered.energy));
+}
+
+static json_t *method_json(const struct comparison *c, const struct method *m)
+{
+    const struct ag_metrics *p = &m->picture.metrics;
+    json_t *object =
+        json_pack("{s:o, s:O, s:o, s:o, s:o, s:o, s:o, s:o, s:O, s:O, s:O, s:o, s:o}", "gi",
+                  json_text(m->gi), "options", m->options, "relmse", json_double(p->relmse), "flip",
+                  json_double(p->flip), "mae", json_double(p->mae), "ssim", json_double(p->ssim),
+                  "energy", json_double(m->picture.energy), "indirect", indirect_json(c, m),
+                  "frame_ms", m->frame_ms, "passes", m->passes, "memory_bytes", m->memory,
+                  "flip_hdr", json_double(p->flip_hdr), "images", method_images(c, m));
+    if (object && c->arguments->ignore_nan)
+        json_object_set_new(object, "pixels", json_integer((json_int_t)p->counted));
+    return object;
+}
+
+static json_t *methods_json(const struct comparison *c)
+{
+    json_t *array = json_array();
+    for (int i = 0; array && i < c->method_count; i++) {
+        if (json_array_append_new(array, method_json(c, &c->methods[i])) == 0) continue;
+        json_decref(array);
+        return NULL;
+    }
+    return array;
+}
+
+static json_t *whole_or_null(double value)
+{
+    return isfinite(value) ? json_integer((json_int_t)value) : json_null();
+}
+
+// A number of bounces that is not known has no key: null is no limit.
+static json_t *truth_json(const struct truth *t)
+{
+    json_t *images = json_pack("{s:s}", "picture", "reference.png");
+    if (images && t->gathered)
+        json_object_set_new(images, "indirect", json_string("reference-indirect.png"));
+    json_t *object = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o}", "spp",
+                               t->spp > 0 ? json_integer(t->spp) : json_null(), "bounces",
+                               t->bounces >= 0 ? json_integer(t->bounces) : json_null(), "seconds",
+                               json_double(t->seconds), "noise", json_double(t->noise),
+                               "noise_relmse", json_double(t->noise_relmse), "rays",
+                               whole_or_null(t->rays), "cached", t->cached, "images", images);
+    if (object && t->bounces == NOT_KNOWN) json_object_del(object, "bounces");
+    return object;
+}
+
+json_t *report_json(const struct comparison *c)
+{
+    const struct arguments *a = c->arguments;
+    struct ag_device_info device;
+    ag_device_get_info(c->device, &device);
+    return json_pack(
+        "{s:o, s:o, s:[ii], s:o, s:o, s:o, s:o, s:o, s:i}", "scene", json_text(a->positional[0]),
+        "camera", json_text(c->session.camera_name), "size", a->width, a->height, "exposure_ev",
+        json_float(c->exposure_ev), "reference", truth_json(&c->truth), "methods", methods_json(c),
+        "device", json_text(device.name), "driver", json_text(device.driver), "frames", a->frames);
+}
+
+// ---- the table
+
+static double number_in(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : (double)NAN;
+}
+
+static double sum_of(json_t *object)
+{
+    const char *key;
+    json_t *value;
+    double sum = 0.0;
+    json_object_foreach(object, key, value) sum += json_number_value(value);
+    return sum;
+}
+
+// A number, or a dash where there is none.
+static void print_cell(int width, int digits, double value)
+{
+    if (isfinite(value))
+        printf("  %*.*f", width, digits, value);
+    else
+        printf("  %*s", width, "-");
+}
+
+// Four digits, however large or small.
+static void print_any(int width, double value)
+{
+    char text[32];
+    snprintf(text, sizeof text, fabs(value) >= 1000.0 ? "%.0f" : "%.4g", value);
+    printf("  %*s", width, isfinite(value) ? text : "-");
+}
+
+static void print_head(const struct comparison *c)
+{
+    const struct arguments *a = c->arguments;
+    const struct truth *t = &c->truth;
+    struct ag_device_info device;
+    ag_device_get_info(c->device, &device);
+    printf("%s, camera %s, %dx%d, EV %.3f, %d frames on %s\n", a->positional[0],
+           c->session.camera_name, a->width, a->height, (double)c->exposure_ev, a->frames,
+           device.name);
+    printf("reference: ");
+    if (a->reference) printf("%s, ", a->reference);
+    if (t->spp > 0) printf("%d samples", t->spp);
+    if (isfinite(t->noise))
+        printf(", noise %.2g %% (relmse %.2g)", 100.0 * t->noise, t->noise_relmse);
+    if (isfinite(t->seconds)) printf(", %.1f s%s", t->seconds, t->cached ? " (cached)" : "");
+    printf("\n\n");
+}
+
+static int widest_name(const struct comparison *c)
+{
+    int widest = 6; // "method"
+    for (int i = 0; i < c->method_count; i++) {
+        int length = (int)strlen(c->methods[i].gi);
+        if (length > widest) widest = length;
+    }
+    return widest;
+}
+
+static void print_row(const struct comparison *c, const struct method *m, int width)
+{
+    double nothing = c->truth.gathered ? 0.0 : (double)NAN;
+    printf("%-*s", width, m->gi);
+    print_any(8, m->picture.metrics.relmse);
+    print_cell(6, 4, m->picture.metrics.flip);
+    print_cell(7, 4, m->picture.metrics.ssim);
+    print_cell(6, 3, m->picture.energy);
+    print_any(8, m->gathered.metrics.mae + nothing);
+    print_cell(6, 3, m->gathered.energy + nothing);
+    print_cell(9, 3, number_in(m->frame_ms, "median"));
+    print_cell(9, 3, number_in(m->frame_ms, "p95"));
+    print_cell(8, 1, sum_of(m->memory) / (1 << 20));
+    putchar('\n');
+}
+
+void report_print(const struct comparison *c)
+{
+    int width = widest_name(c);
+    print_head(c);
+    printf("%-*s  %8s  %6s  %7s  %6s  %16s  %20s  %8s\n", width, "", "", "", "", "",
+           "indirect light", "frame, ms", "memory");
+    printf("%-*s  %8s  %6s  %7s  %6s  %8s  %6s  %9s  %9s  %8s\n", width, "method", "relmse", "flip",
+           "ssim", "energy", "mae", "energy", "median", "p95", "MiB");
+    for (int i = 0; i < c->method_count; i++) print_row(c, &c->methods[i], width);
+}
+
+// ---- bounds
+
+// No bound is below 0. What could not be measured keeps none.
+static bool breaks(const char *gi, const char *what, double value, double bound)
+{
+    if (bound < 0.0 || value <= bound) return false;
+    if (isfinite(value))
+        fail("%s of %s: %.6g is more than --max-%s %.6g", what, gi, value, what, bound);
+    else
+        fail("%s of %s: not measured, and --max-%s is %.6g", what, gi, what, bound);
+    return true;
+}
+
+enum status report_gates(const struct comparison *c)
+{
+    const struct arguments *a = c->arguments;
+    bool broken = false;
+    for (int i = 0; i < c->method_count; i++) {
+        const struct method *m = &c->methods[i];
+        broken |= breaks(m->gi, "flip", m->picture.metrics.flip, a->max_flip);
+        broken |= breaks(m->gi, "relmse", m->picture.metrics.relmse, a->max_relmse);
+        broken |= breaks(m->gi, "ms", number_in(m->frame_ms, "median"), a->max_ms);
+    }
+    return broken ? FAILED : DONE;
+}

@@ -1,0 +1,591 @@
+// compare: the report's contract, numbers that can be known beforehand, samples that are kept, and
+// a folder that appears whole or not at all.
+#include "cli/program.h"
+
+#include "image/exr.h"
+#include "image/png_file.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#define SCENE "compare @cornell --size 24x18 --quiet"
+#define SMALL SCENE " --frames 2 --spp 2 --gi none"
+
+// Both results are valid for a while: until some calls later.
+static const char *path_of(const char *name)
+{
+    static char paths[8][400];
+    static int next;
+    char *path = paths[next++ % 8];
+    snprintf(path, sizeof paths[0], "%s", test_path(name));
+    return path;
+}
+
+static const char *in(const char *folder, const char *name)
+{
+    static char paths[8][600];
+    static int next;
+    char path[600];
+    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
+        fail_msg("too long: %s", path);
+    return memcpy(paths[next++ % 8], path, sizeof path);
+}
+
+// A cache of the test's own; the folder of its files.
+static const char *own_cache(const char *name)
+{
+    static char folder[600];
+    setenv("AFTERGLOW_CACHE", path_of(name), 1);
+    snprintf(folder, sizeof folder, "%s/references", getenv("AFTERGLOW_CACHE"));
+    return folder;
+}
+
+static json_t *report_of(const char *folder)
+{
+    json_error_t error;
+    json_t *report = json_load_file(in(folder, "report.json"), 0, &error);
+    if (!report) fail_msg("%s/report.json, line %d: %s", folder, error.line, error.text);
+    return report;
+}
+
+static json_t *method_of(const json_t *report, size_t index)
+{
+    return json_array_get(json_object_get(report, "methods"), index);
+}
+
+static double number(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    if (!json_is_number(value)) fail_msg("no number %s", key);
+    return json_number_value(value);
+}
+
+static double of_reference(const json_t *report, const char *key)
+{
+    return number(json_object_get(report, "reference"), key);
+}
+
+static void check_keys(json_t *object, const char *keys)
+{
+    char found[512] = "";
+    const char *key;
+    json_t *value;
+    size_t used = 0;
+    json_object_foreach(object, key, value)
+    {
+        int wrote = snprintf(found + used, sizeof found - used, "%s%s", used ? " " : "", key);
+        used += (size_t)wrote;
+    }
+    CHECK_STRING(found, keys);
+}
+
+static void check_images(const char *folder, json_t *images, int width, int height)
+{
+    const char *key;
+    json_t *name;
+    json_object_foreach(images, key, name)
+    {
+        struct image image = { 0 };
+        if (!png_read(test_host(), in(folder, json_string_value(name)), &image))
+            fail_msg("%s: %s", key, test_last_message());
+        assert_int_equal(image.width, width);
+        assert_int_equal(image.height, height);
+        image_finish(&image, test_host());
+    }
+}
+
+TEST(the_report_has_the_fields_and_files_that_were_promised)
+{
+    require_device();
+    own_cache("contract-cache");
+    const char *folder = path_of("contract");
+    const struct run *r = run_expect(
+        0, SCENE " --frames 3 --spp 2 --gi ambient --gi ambient:strength=0.5 -o", folder, NULL);
+    CHECK(strstr(r->out, "\nambient:strength=0.5  ") && strstr(r->out, "2 samples"));
+    CHECK(file_exists(in(folder, "report.html")));
+    json_t *report = report_of(folder);
+    check_keys(report, "scene camera size exposure_ev reference methods device driver frames");
+    json_t *reference = json_object_get(report, "reference");
+    check_keys(reference, "spp bounces seconds noise noise_relmse rays cached images");
+    check_images(folder, json_object_get(reference, "images"), 24, 18);
+    assert_int_equal(json_array_size(json_object_get(report, "methods")), 2);
+    for (size_t i = 0; i < 2; i++) {
+        json_t *method = method_of(report, i);
+        check_keys(method,
+                   "gi options relmse flip mae ssim energy indirect frame_ms passes memory_bytes "
+                   "flip_hdr images");
+        check_keys(json_object_get(method, "indirect"), "relmse mae energy");
+        check_keys(json_object_get(method, "frame_ms"), "median p95");
+        check_keys(json_object_get(method, "images"), "picture error indirect indirect_error");
+        check_images(folder, json_object_get(method, "images"), 24, 18);
+        CHECK(json_array_size(json_object_get(method, "passes")) > 2);
+        CHECK(number(json_object_get(method, "memory_bytes"), "scene") > 0);
+    }
+    CHECK_STRING(json_string_value(json_object_get(report, "scene")), "@cornell");
+    CHECK_STRING(json_string_value(json_object_get(method_of(report, 0), "gi")), "ambient");
+    CHECK_STRING(json_string_value(json_object_get(method_of(report, 1), "gi")),
+                 "ambient:strength=0.5");
+    json_t *options = json_object_get(json_object_get(method_of(report, 1), "options"), "ambient");
+    CHECK_NEAR(number(options, "strength"), 0.5, 0);
+    // Half the strength, half the light: the energy of what is gathered says so.
+    double whole = number(json_object_get(method_of(report, 0), "indirect"), "energy"),
+           half = number(json_object_get(method_of(report, 1), "indirect"), "energy");
+    CHECK_RELATIVE(half, 0.5 * whole, 0.002); // half floats
+    assert_int_equal((int)number(report, "frames"), 3);
+    CHECK(json_is_null(json_object_get(reference, "bounces")));
+    CHECK(json_is_false(json_object_get(reference, "cached")));
+    assert_int_equal((int)number(reference, "spp"), 2);
+    json_decref(report);
+    char *names = exr_layer_names(test_host(), in(folder, "2-ambient-strength-0.5.exr"));
+    CHECK_STRING(names, "color\nindirect\nirradiance");
+    host_free(test_host(), names);
+    // What --json prints is the file.
+    r = run_expect(0, SMALL " --json -o", folder, NULL);
+    json_t *printed = run_json(r);
+    report = report_of(folder);
+    CHECK(json_equal(printed, report));
+    json_decref(report);
+    json_decref(printed);
+}
+
+// ---- numbers that are known
+
+static struct image read_layer(const char *path, const char *layer)
+{
+    struct image image = { 0 };
+    if (!exr_read(test_host(), path, layer, &image)) fail_msg("%s", test_last_message());
+    return image;
+}
+
+// A frame's layers as if it were the truth, `scale` times as bright; its first value is `first`
+// unless that is 0.
+static const char *frame_as_reference(const char *name, float scale, float first)
+{
+    const char *frame = path_of("frame.exr"), *path = path_of(name);
+    run_expect(0, "render @cornell --size 24x18 --quiet --gi ambient --aov color,indirect -o",
+               frame, NULL);
+    struct image color = read_layer(frame, NULL), indirect = read_layer(frame, "indirect");
+    for (int i = 0; i < 24 * 18 * 3; i++) color.pixels[i] *= scale, indirect.pixels[i] *= scale;
+    if (first != 0.0f) color.pixels[0] = first;
+    const struct exr_layer layers[] = { { "color", &color }, { "gathered", &indirect } };
+    assert_true(exr_write(test_host(), path, layers, 2, NULL, 0));
+    image_finish(&color, test_host());
+    image_finish(&indirect, test_host());
+    return path;
+}
+
+TEST(a_method_that_is_the_truth_has_no_error)
+{
+    require_device();
+    const char *truth = frame_as_reference("truth.exr", 1, 0), *folder = path_of("known");
+    run_expect(0, SCENE " --frames 1 --gi ambient --gi none -o", folder, "--reference", truth,
+               NULL);
+    json_t *report = report_of(folder), *method = method_of(report, 0);
+    CHECK(number(method, "relmse") == 0 && number(method, "mae") == 0 &&
+          number(method, "flip") == 0);
+    CHECK_NEAR(number(method, "ssim"), 1, 1e-6);
+    CHECK(number(method, "energy") == 1);
+    json_t *indirect = json_object_get(method, "indirect");
+    CHECK(number(indirect, "relmse") == 0 && number(indirect, "mae") == 0);
+    CHECK(number(indirect, "energy") == 1);
+    // Without indirect light all of it is missing.
+    indirect = json_object_get(method_of(report, 1), "indirect");
+    CHECK(number(indirect, "energy") == 0);
+    CHECK(number(method_of(report, 1), "energy") < 0.9 &&
+          number(method_of(report, 1), "flip") > 0.1);
+    json_t *reference = json_object_get(report, "reference");
+    CHECK(!json_object_get(reference, "bounces"));
+    CHECK(json_is_null(json_object_get(reference, "spp")) &&
+          json_is_null(json_object_get(reference, "noise")));
+    json_decref(report);
+    CHECK(files_are_equal(truth, in(folder, "reference.exr")));
+    truth = frame_as_reference("twice.exr", 2, 0);
+    run_expect(0, SCENE " --frames 1 --gi ambient -o", folder, "--reference", truth, NULL);
+    report = report_of(folder);
+    CHECK_RELATIVE(number(method_of(report, 0), "energy"), 0.5, 1e-6);
+    CHECK_RELATIVE(number(json_object_get(method_of(report, 0), "indirect"), "energy"), 0.5, 1e-6);
+    json_decref(report);
+}
+
+TEST(pixels_that_are_no_numbers_are_an_error_or_left_out)
+{
+    require_device();
+    const char *truth = frame_as_reference("nan.exr", 1, NAN), *folder = path_of("nan");
+    const struct run *r =
+        run_expect(1, SCENE " --frames 1 --gi ambient -o", folder, "--reference", truth, NULL);
+    CHECK(strstr(r->err, "1 of its pixels"));
+    CHECK(!file_exists(folder));
+    run_expect(0, SCENE " --frames 1 --gi ambient --ignore-nan -o", folder, "--reference", truth,
+               NULL);
+    json_t *report = report_of(folder);
+    CHECK(number(method_of(report, 0), "mae") == 0);
+    assert_int_equal((int)number(method_of(report, 0), "pixels"), 24 * 18 - 1);
+    json_decref(report);
+}
+
+// ---- what is the same twice
+
+static void check_equal_numbers(const json_t *a, const json_t *b)
+{
+    static const char *const keys[] = { "relmse", "flip", "mae", "ssim", "energy", "flip_hdr" };
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        CHECK(number(a, keys[i]) == number(b, keys[i]));
+    CHECK(json_equal(json_object_get(a, "indirect"), json_object_get(b, "indirect")));
+    CHECK(json_equal(json_object_get(a, "options"), json_object_get(b, "options")));
+}
+
+TEST(equal_methods_and_equal_commands_have_equal_results)
+{
+    require_device();
+    own_cache("twice-cache");
+    const char *a = path_of("twice-a"), *b = path_of("twice-b");
+    // The first of the two meters the exposure too.
+    run_expect(0, SCENE " --frames 2 --spp 2 --gi lpv --gi lpv -o", a, NULL);
+    run_expect(0, SCENE " --frames 2 --spp 2 --gi lpv --gi lpv --no-cache -o", b, NULL);
+    json_t *first = report_of(a), *second = report_of(b);
+    check_equal_numbers(method_of(first, 0), method_of(first, 1));
+    check_equal_numbers(method_of(first, 0), method_of(second, 0));
+    json_decref(first);
+    json_decref(second);
+    static const char *const files[] = { "1-lpv.png", "1-lpv.exr", "1-lpv-flip.png",
+                                         "1-lpv-indirect.png", "1-lpv-indirect-error.png" };
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        char other[64];
+        snprintf(other, sizeof other, "2%s", files[i] + 1);
+        CHECK(files_are_equal(in(a, files[i]), in(a, other)));
+        CHECK(files_are_equal(in(a, files[i]), in(b, files[i])));
+    }
+    CHECK(files_are_equal(in(a, "reference.png"), in(b, "reference.png")));
+    CHECK(files_are_equal(in(a, "reference.exr"), in(b, "reference.exr")));
+}
+
+TEST(one_exposure_is_renders_own_or_the_one_that_was_asked_for)
+{
+    require_device();
+    own_cache("exposure-cache");
+    const char *folder = path_of("exposure"), *png = path_of("exposure.png");
+    run_expect(0, SMALL " -o", folder, NULL);
+    json_t *report = report_of(folder);
+    json_t *frame = run_json(
+        run_expect(0, "render @cornell --size 24x18 --quiet --json --gi lpv -o", png, NULL));
+    CHECK(number(report, "exposure_ev") == number(frame, "exposure_ev"));
+    json_decref(report);
+    json_decref(frame);
+    run_expect(0, SMALL " --exposure 3.25 -o", folder, NULL);
+    run_expect(0, "render @cornell --size 24x18 --quiet --exposure 3.25 -o", png, NULL);
+    report = report_of(folder);
+    CHECK_NEAR(number(report, "exposure_ev"), 3.25, 0);
+    json_decref(report);
+    CHECK(files_are_equal(png, in(folder, "1-none.png")));
+}
+
+// ---- references that are kept
+
+TEST(a_reference_is_traced_once_and_gone_on_with)
+{
+    require_device();
+    const char *cache = own_cache("kept-cache"), *folder = path_of("kept");
+    run_expect(0, SMALL " -o", folder, NULL);
+    assert_int_equal(count_files(cache), 1);
+    json_t *first = report_of(folder);
+    run_expect(0, SMALL " -o", folder, NULL);
+    json_t *second = report_of(folder);
+    CHECK(json_is_false(json_object_get(json_object_get(first, "reference"), "cached")));
+    CHECK(json_is_true(json_object_get(json_object_get(second, "reference"), "cached")));
+    check_equal_numbers(method_of(first, 0), method_of(second, 0));
+    CHECK(of_reference(first, "seconds") == of_reference(second, "seconds"));
+    CHECK(of_reference(first, "rays") == of_reference(second, "rays"));
+    CHECK_RELATIVE(of_reference(first, "noise"), of_reference(second, "noise"),
+                   1e-5); // 32-bit floats
+    // More samples go on from those; fewer are there already.
+    run_expect(0, SMALL " --spp 5 -o", folder, NULL);
+    json_t *third = report_of(folder);
+    CHECK(json_is_false(json_object_get(json_object_get(third, "reference"), "cached")));
+    assert_int_equal((int)of_reference(third, "spp"), 5);
+    CHECK(of_reference(third, "rays") > of_reference(second, "rays"));
+    CHECK(of_reference(third, "seconds") > of_reference(second, "seconds"));
+    const char *whole = path_of("whole.exr");
+    run_expect(0, "reference @cornell --size 24x18 --quiet --spp 5 -o", whole, NULL);
+    struct image a = read_layer(whole, NULL), b = read_layer(in(folder, "reference.exr"), NULL);
+    for (int i = 0; i < 24 * 18 * 3; i++) CHECK_RELATIVE(a.pixels[i], b.pixels[i], 1e-5);
+    image_finish(&a, test_host());
+    image_finish(&b, test_host());
+    run_expect(0, SMALL " --spp 3 -o", folder, NULL);
+    json_t *fourth = report_of(folder);
+    CHECK(json_is_true(json_object_get(json_object_get(fourth, "reference"), "cached")));
+    assert_int_equal((int)of_reference(fourth, "spp"), 5);
+    assert_int_equal(count_files(cache), 1);
+    // Another picture has a file of its own, and --no-cache leaves none.
+    run_expect(0, SMALL " --bounces 1 -o", folder, NULL);
+    assert_int_equal(count_files(cache), 2);
+    run_expect(0, SMALL " --bounces 2 --no-cache -o", folder, NULL);
+    assert_int_equal(count_files(cache), 2);
+    json_decref(first);
+    json_decref(second);
+    json_decref(third);
+    json_decref(fourth);
+}
+
+TEST(a_cache_that_is_damaged_or_cannot_be_written_costs_time_alone)
+{
+    require_device();
+    const char *cache = own_cache("damaged-cache"), *folder = path_of("damaged");
+    run_expect(0, SMALL " -o", folder, NULL);
+    DIR *dir = opendir(cache);
+    assert_non_null(dir);
+    for (struct dirent *entry; (entry = readdir(dir));)
+        if (entry->d_name[0] == 'r') write_file(in(cache, entry->d_name), "no picture", 10);
+    closedir(dir);
+    const struct run *r = run_expect(
+        0, "compare @cornell --size 24x18 --frames 1 --spp 2 --gi none -o", folder, NULL);
+    CHECK(strstr(r->err, "traced anew"));
+    json_t *report = report_of(folder);
+    CHECK(json_is_false(json_object_get(json_object_get(report, "reference"), "cached")));
+    json_decref(report);
+    write_file(path_of("no-folder"), "", 0);
+    setenv("AFTERGLOW_CACHE", path_of("no-folder"), 1);
+    run_expect(0, SMALL " -o", folder, NULL);
+}
+
+// A sparse file of 3 GB that nobody has used for years.
+static void make_old(const char *path)
+{
+    int fd = open(path, O_WRONLY | O_CREAT, 0600);
+    const struct timespec times[2] = { { .tv_sec = 1e9 }, { .tv_sec = 1e9 } };
+    assert_true(fd >= 0 && ftruncate(fd, 3000000000) == 0 && futimens(fd, times) == 0 &&
+                close(fd) == 0);
+}
+
+TEST(the_cache_keeps_within_its_bound_and_to_its_own)
+{
+    require_device();
+    const char *cache = own_cache("bound-cache"), *folder = path_of("bound");
+    run_expect(0, SMALL " -o", folder, NULL);
+    make_old(in(cache, "reference-1-0123456789abcdef.exr"));
+    make_old(in(cache, "holiday.exr"));
+    run_expect(0, SMALL " --spp 3 -o", folder, NULL);
+    CHECK(!file_exists(in(cache, "reference-1-0123456789abcdef.exr")));
+    CHECK(file_exists(in(cache, "holiday.exr")));
+    assert_int_equal(count_files(cache), 2);
+}
+
+TEST(a_reference_of_another_picture_is_refused)
+{
+    require_device();
+    own_cache("other-cache");
+    const char *own = path_of("own"), *again = path_of("again");
+    run_expect(0, SMALL " -o", own, NULL);
+    const char *exr = in(own, "reference.exr");
+    run_expect(0, SCENE " --frames 1 --gi none -o", again, "--reference", exr, NULL);
+    json_t *first = report_of(own), *second = report_of(again);
+    check_equal_numbers(method_of(first, 0), method_of(second, 0));
+    assert_int_equal((int)of_reference(second, "spp"), 2);
+    CHECK_RELATIVE(of_reference(first, "noise"), of_reference(second, "noise"), 1e-5);
+    json_decref(first);
+    json_decref(second);
+    static const char *const others[] = {
+        "compare @cornell --size 32x18 --gi none", // another size …
+        "compare @cornell --size 24x18 --gi none --eye 0,3,12 --target 0,2,0",
+        "compare @cornell --size 24x18 --gi none --bounces 1",
+        "compare @cornell:light=point --size 24x18 --gi none",
+        "compare @cornell --size 24x18 --gi none --sky 1,1,1",
+    };
+    const char *folder = path_of("refused");
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        check_one_error_line(run_expect(1, others[i], "-o", folder, "--reference", exr, NULL));
+    check_one_error_line(
+        run_expect(1, SCENE " -o", folder, "--reference", path_of("none.exr"), NULL));
+    CHECK(!file_exists(folder));
+    // Without the layer of indirect light there is the picture to go by.
+    const char *bare = path_of("bare.exr");
+    run_expect(0, "reference @cornell --size 24x18 --quiet --spp 2 --aov color -o", bare, NULL);
+    run_expect(0, SCENE " --frames 1 --gi none -o", folder, "--reference", bare, NULL);
+    json_t *report = report_of(folder);
+    CHECK(json_is_null(json_object_get(method_of(report, 0), "indirect")));
+    CHECK(number(method_of(report, 0), "flip") > 0);
+    CHECK(!file_exists(in(folder, "reference-indirect.png")));
+    json_decref(report);
+}
+
+// ---- bounds, usage, folders
+
+static int count_lines(const char *text)
+{
+    int count = 0;
+    while ((text = strchr(text, '\n'))) count++, text++;
+    return count;
+}
+
+TEST(a_method_beyond_a_bound_fails_after_the_report)
+{
+    require_device();
+    own_cache("bounds-cache");
+    const char *folder = path_of("bounds");
+    const struct run *r =
+        run_expect(1, SMALL " --gi ambient --max-flip 0.01 --max-relmse 1e9 -o", folder, NULL);
+    assert_int_equal(count_lines(r->err), 2);
+    CHECK(strstr(r->err, "afterglow: flip of none: 0.") && strstr(r->err, "--max-flip 0.01"));
+    CHECK(file_exists(in(folder, "report.json")) && strstr(r->out, "\nambient"));
+    r = run_expect(1, SMALL " --max-relmse 0 --max-ms 0 -o", folder, NULL);
+    CHECK(strstr(r->err, "relmse of none") && strstr(r->err, "ms of none"));
+    run_expect(0, SMALL " --max-flip 1 --max-relmse 1e9 --max-ms 1e9 -o", folder, NULL);
+}
+
+TEST(wrong_usage_is_said_before_the_work)
+{
+    static const char *const wrong[] = {
+        "--gi lvp",
+        "--gi none --gi lpv:steps=0",
+        "--frame-options size=3",
+        "--max-flip -1",
+        "--max-ms x",
+        "--reference a.png",
+        "--reference a.exr --spp 4",
+        "--frames 0",
+        "--aov color",
+        "--gi lpv --eye 1,2,3",
+        "--antialias",
+    };
+    char words[200];
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        snprintf(words, sizeof words, "compare @cornell %s -o", wrong[i]);
+        check_one_error_line(run_expect(2, words, path_of("wrong"), NULL));
+    }
+    char many[400] = "compare @cornell";
+    for (int i = 0; i < 17; i++) strcat(many, " --gi none");
+    check_one_error_line(run_expect(2, many, NULL));
+    check_one_error_line(run_expect(1, SMALL " --camera nobody -o", path_of("wrong"), NULL));
+    CHECK(!file_exists(path_of("wrong")));
+}
+
+TEST(a_folder_that_is_not_of_compare_is_left_alone)
+{
+    require_device();
+    own_cache("folders-cache");
+    char folder[400], file[500];
+    snprintf(folder, sizeof folder, "%s", make_folder("folder"));
+    snprintf(file, sizeof file, "%s/notes.txt", folder);
+    write_file(file, "mine", 4);
+    check_one_error_line(run_expect(1, SMALL " -o", folder, NULL)); // no report in it
+    check_one_error_line(run_expect(1, SMALL " -o", file, NULL));
+    check_one_error_line(run_expect(1, SMALL " -o", in(folder, "none/deeper"), NULL));
+    check_one_error_line(run_expect(1, SMALL " -o", "/proc/compare", NULL));
+    unlink(file);
+    run_expect(0, SMALL " --gi ambient -o", folder, NULL); // an empty one
+    CHECK(file_exists(in(folder, "2-ambient.png")));
+    run_expect(0, SMALL " -o", folder, NULL); // one of its own; what was in it is gone
+    CHECK(!file_exists(in(folder, "2-ambient.png")) && file_exists(in(folder, "1-none.png")));
+    write_file(file, "mine", 4);
+    const struct run *r = run_expect(1, SMALL " -o", folder, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "notes.txt"));
+    unlink(file);
+    // Through a link, and with a slash at its end.
+    const char *link = path_of("link");
+    assert_int_equal(symlink(folder, link), 0);
+    run_expect(0, SMALL " --gi ambient -o", in(link, ""), NULL);
+    CHECK(file_exists(in(folder, "2-ambient.png")));
+    struct stat info;
+    CHECK(lstat(link, &info) == 0 && S_ISLNK(info.st_mode));
+    // Where it stands is not taken away under the feet of who stands there.
+    char before[1000];
+    assert_true(getcwd(before, sizeof before) && chdir(folder) == 0);
+    check_one_error_line(run_expect(1, SMALL " -o .", NULL));
+    assert_int_equal(chdir(before), 0);
+    // By default it is named after the scene.
+    assert_int_equal(chdir(make_folder("elsewhere")), 0);
+    run_expect(0, SMALL, NULL);
+    CHECK(file_exists("cornell-compare/report.json"));
+    assert_int_equal(count_files("."), 1);
+    assert_int_equal(chdir(before), 0);
+}
+
+// ---- ended in the middle
+
+static void pause_ms(long ms)
+{
+    nanosleep(&(struct timespec){ .tv_nsec = ms * 1000000 }, NULL);
+}
+
+static pid_t start(const char *words, const char *folder)
+{
+    static char text[2000];
+    char *list[80] = { (char *)AFTERGLOW_PROGRAM };
+    int count = 1;
+    snprintf(text, sizeof text, "%s", words);
+    char *rest = text;
+    for (char *word; (word = strsep(&rest, " ")) && count < 77;) list[count++] = word;
+    list[count++] = (char *)"-o";
+    list[count++] = (char *)folder;
+    fflush(NULL);
+    pid_t child = fork();
+    if (child < 0) fail_msg("cannot fork");
+    if (child == 0) {
+        signal(SIGINT, SIG_DFL);
+        if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr)) _exit(126);
+        execv(AFTERGLOW_PROGRAM, list);
+        _exit(127);
+    }
+    return child;
+}
+
+static bool has_entry(const char *folder, const char *part)
+{
+    DIR *dir = opendir(folder);
+    bool found = false;
+    for (struct dirent *entry; dir && (entry = readdir(dir));)
+        found |= strstr(entry->d_name, part) != NULL;
+    if (dir) closedir(dir);
+    return found;
+}
+
+TEST(ctrl_c_keeps_the_samples_and_leaves_no_folder)
+{
+    require_device();
+    char home[400], folder[500];
+    snprintf(home, sizeof home, "%s", make_folder("stopped"));
+    snprintf(folder, sizeof folder, "%s/results", home);
+    const char *cache = own_cache("stopped-cache");
+    pid_t child = start("compare @cornell --size 24x18 --frames 1 --gi none --spp 1000000", folder);
+    for (int i = 0; i < 60000 && !has_entry(cache, "reference"); i++) pause_ms(1);
+    pause_ms(200); // the first samples are written; more are being traced
+    assert_int_equal(kill(child, SIGINT), 0);
+    int status = 0;
+    assert_true(waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    CHECK(!file_exists(folder) && !has_entry(home, ".tmp-"));
+    assert_int_equal(count_files(cache), 1);
+    // They are there for the next run.
+    run_expect(0, SMALL " -o", folder, NULL);
+    json_t *report = report_of(folder);
+    CHECK(json_is_true(json_object_get(json_object_get(report, "reference"), "cached")));
+    CHECK(of_reference(report, "spp") > 2);
+    json_decref(report);
+}
+
+TEST(a_signal_while_the_folder_is_filled_leaves_none)
+{
+    require_device();
+    own_cache("filled-cache");
+    char home[400], folder[500], words[600];
+    snprintf(home, sizeof home, "%s", make_folder("filled"));
+    snprintf(folder, sizeof folder, "%s/results", home);
+    snprintf(words, sizeof words, "compare @cornell --size 256x192 --frames 1 --spp 1 --quiet");
+    for (int i = 0; i < 8; i++) strcat(words, " --gi none");
+    pid_t child = start(words, folder);
+    int status = 0;
+    for (int i = 0; i < 60000 && !has_entry(home, ".tmp-"); i++) pause_ms(1);
+    kill(child, SIGTERM);
+    assert_true(waitpid(child, &status, 0) == child);
+    CHECK(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+    CHECK(!has_entry(home, ".tmp-") && !file_exists(folder));
+}
