@@ -30,7 +30,7 @@ function buildHead() {
   const size = Array.isArray(report.size) ? `${report.size[0]} × ${report.size[1]} px` : null;
   const facts = [
     ['Size', size], ['Camera', report.camera], ['Exposure', isNumber(report.exposure_ev) ? `EV ${numberText(report.exposure_ev, 2)}` : null],
-    ['Frames timed', isNumber(report.frames) ? report.frames : null], ['Device', report.device, report.driver],
+    ['Frames timed', framesTimed], ['Device', report.device, report.driver],
   ];
   byId('facts').append(...facts.filter(([, value]) => value !== null && value !== undefined).map(([name, value, more]) =>
     element('div', { title: more ? `Driver: ${more}` : undefined }, element('dt', {}, name), element('dd', {}, String(value)))));
@@ -50,7 +50,8 @@ function buildReference() {
   const noise = isNumber(reference.noise) ? element('button', { type: 'button', className: 'term' },
     `noise ${numberText(100 * reference.noise, decimalsFor([100 * reference.noise]) ? 1 : 0)} %`) : null;
   if (noise) explain(noise, 'The standard error of the reference, as the root of its mean square over all pixels, over the mean ' +
-    'of the picture. Errors of methods hold this much that is not theirs: more samples per pixel lessen it.');
+    'of the picture. Errors of methods hold this much that is not theirs' + (isNumber(reference.noise_relmse)
+    ? `: a perfect picture would have a relMSE of ${numberText(reference.noise_relmse)}.` : '.') + ' More samples per pixel lessen it.');
   byId('reference').append(element('b', {}, 'Reference'), ` path traced${spp}${bounces}`, ...(noise ? [', ', noise] : []),
     cost ? ` (${cost}).` : '.');
 }

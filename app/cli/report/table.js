@@ -52,7 +52,7 @@ function nameCell(i, show) {
   const count = Object.keys(optionsOf(methods[i])).length;
   const options = count ? element('details', { className: 'options' },
     element('summary', {}, count === 1 ? '1 option' : `${count} options`),
-    element('code', {}, `--gi ${methods[i].gi}`)) : null;
+    element('code', {}, `--gi ${spellingOf(methods[i])}`)) : null;
   return element('th', { scope: 'row' }, button, options);
 }
 

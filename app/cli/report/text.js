@@ -65,6 +65,15 @@ function optionsOf(method) {
   return flat;
 }
 
+// The sum with every option written out, as --gi takes it.
+function spellingOf(method) {
+  return terms(method.gi).map(term => {
+    const name = term.split(':')[0];
+    const options = Object.entries(method.options?.[name] ?? {}).map(([option, value]) => `${option}=${value}`);
+    return options.length ? `${name}:${options.join(',')}` : term;
+  }).join('+');
+}
+
 // Methods of the same techniques are told apart by the options in which they differ.
 function labelsOf(all) {
   const labels = all.map(method => {
