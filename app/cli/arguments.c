@@ -433,7 +433,7 @@ static struct arguments defaults_of(const struct command *command)
                                .height = 720,
                                .frames = compare ? 8 : 1,
                                .fov_deg = 60.0,
-                               .spp = compare ? 256 : 64,
+                               .spp = 64,
                                .bounces = -1,
                                .max_flip = -1.0,
                                .max_relmse = -1.0,

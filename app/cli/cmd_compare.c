@@ -122,9 +122,9 @@ const struct command command_compare = {
         "the pictures, maps of the errors and EXR files. All have one camera, light and exposure.\n"
         "\n"
         "Nearly all of the time goes into the reference and grows with pixels times --spp: on\n"
-        "two cores a minute for 320x180 with 64 samples can become an hour for 1280x720 with 256.\n"
-        "Begin small. Ctrl-C keeps the samples in a cache: the same command goes on with them,\n"
-        "and once they are there it takes seconds.\n",
+        "two cores half a minute for 640x360 of a room, half an hour for 1280x720 of a large\n"
+        "scene with --spp 512. Begin small. Ctrl-C keeps the samples in a cache: the same command\n"
+        "goes on with them, and once they are there it takes seconds.\n",
     .examples = "  afterglow compare @cornell --size 320x180 --spp 64\n"
                 "      none, ambient and lpv, into cornell-compare\n"
                 "  afterglow compare house.glb --size 640x360 --gi lpv:steps=16 --gi lpv -o house\n"
