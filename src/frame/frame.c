@@ -235,6 +235,7 @@ static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct f
     view->lights = f->lights;
     view->light_count = f->light_count;
     view->pose = input->pose;
+    view->scene = &f->scene;
     view->camera = input->camera;
     view->bounds = input->pose->bounds;
     view->camera_cut = f->camera_cut;

@@ -13,6 +13,7 @@
 #include "frame/frame_shared.h"
 
 struct frame;
+struct scene_gpu;
 
 struct frame_options {
 #define OPTION OPTION_FIELD
@@ -54,6 +55,7 @@ struct frame_view {
     struct gpu_binding emitters_binding;  // named "frame_emitters"
     vec3s emitted_irradiance; // scaled lux: mean over the scene by emission on its straight way (emitters_irradiance)
     const struct scene_pose *pose;
+    const struct scene_gpu *scene; // triangles and materials on the GPU (frame/scene_gpu.h)
     struct world_camera camera;
     struct box3 bounds;              // of the scene, world space; empty for an empty scene
     bool camera_cut, geometry_moved, lights_changed; // since last frame

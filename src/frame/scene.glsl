@@ -1,5 +1,5 @@
 // Vertex pulling: the scene's buffers and maps. Bindings 1…7 are the buffers, 8…11 the maps; 0 is frame_constants,
-// 12 and up are the pass's own. A pass declares its push block, `push`, with a scene_push named `draw` in it.
+// 12 and up are the pass's own. Compute shaders include it through scene_triangles.glsl. A pass declares its push block, `push`, with a scene_push named `draw` in it.
 #ifndef AG_FRAME_SCENE_GLSL
 #define AG_FRAME_SCENE_GLSL
 

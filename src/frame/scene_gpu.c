@@ -119,8 +119,8 @@ static bool make_streams(struct scene_gpu *s)
                 &s->frames) &&
          upload(s, "scene.surfaces", GPU_BUFFER_STORAGE, t.surfaces, n.vertices, sizeof *t.surfaces,
                 &s->surfaces) &&
-         upload(s, "scene.indices", GPU_BUFFER_INDEX, t.indices, n.indices, sizeof *t.indices,
-                &s->indices);
+         upload(s, "scene.indices", GPU_BUFFER_INDEX | GPU_BUFFER_STORAGE, t.indices, n.indices,
+                sizeof *t.indices, &s->indices);
 done:
     host_free(s->host, t.positions);
     host_free(s->host, t.frames);

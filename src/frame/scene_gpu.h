@@ -1,5 +1,5 @@
-// The scene on the GPU: vertex streams, materials, textures, and the draws that show it. Passes that rasterise
-// share it. One draw is one instance of one mesh, which has one material.
+// The scene on the GPU: vertex streams, materials, textures, and the draws that show it. Passes that rasterise, and
+// techniques that walk the triangles in compute, share it. One draw is one instance of one mesh, which has one material.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -23,6 +23,7 @@ struct scene_draw {
     struct scene_push push;
     bool deformed;     // vertices come anew each frame, in world space
     bool mirrored;     // this frame's transform turns triangles over
+    bool moves;        // its vertices have moved since the scene was set; what has not is still
     struct box3 bounds; // this frame's, world space
 };
 
@@ -53,6 +54,7 @@ struct scene_gpu {
     vec3s *deformed_positions, *deformed_previous; // [deformed_vertex_count]
     uint32_t (*deformed_frames)[2];
     bool has_previous, moved;
+    int moving_count; // draws that move
     struct gpu_binding instances_binding, deformed_positions_binding, deformed_previous_binding,
         deformed_frames_binding;
 };
@@ -61,7 +63,7 @@ struct scene_gpu {
 bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu, const struct scene *scene);
 void scene_gpu_finish(struct scene_gpu *scene); // accepts zero
 
-// Uploads a moment. With `forget`, everything counts as having stood where it is. Sets `moved`.
+// Uploads a moment. With `forget`, everything counts as having stood where it is. Sets `moved`, and `moves` of the draws.
 void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct scene_pose *pose,
                       bool forget);
 
@@ -77,6 +79,16 @@ struct scene_draw_call {
 };
 void scene_gpu_draw(const struct scene_gpu *scene, struct gpu_cmd *cmd,
                     const struct scene_draw_call *call);
+
+// Records a compute dispatch over the triangles of one draw; the shader includes scene_triangles.glsl.
+struct scene_dispatch_call {
+    gpu_pipeline pipeline;
+    const struct scene_draw *draw;
+    const struct gpu_binding *bindings; // the pass's own
+    int binding_count;                  // ≤ 4
+};
+void scene_gpu_dispatch(const struct scene_gpu *scene, struct gpu_cmd *cmd,
+                        const struct scene_dispatch_call *call);
 
 // scene_gpu_textures.c
 bool scene_gpu_make_textures(struct scene_gpu *scene);

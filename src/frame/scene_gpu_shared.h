@@ -42,6 +42,8 @@ struct scene_push {
     uint32_t surface_base; // into surfaces
 };
 
+#define SCENE_TRIANGLES_LOCAL 64 // invocations of a workgroup of a dispatch over triangles: one for each
+
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct scene_surface) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct scene_material) == 48 + 4 * 24, "layout is shared with GLSL");

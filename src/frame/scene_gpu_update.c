@@ -5,6 +5,14 @@
 
 #include <string.h>
 
+static void note_move(struct scene_gpu *s, struct scene_draw *draw)
+{
+    s->moved = true;
+    if (draw->moves || !s->has_previous) return; // in the first frame everything has just come
+    draw->moves = true;
+    s->moving_count++;
+}
+
 // Copies a deformed instance's vertices behind those before it; grows the draw's bounds.
 static void copy_deformed(struct scene_gpu *s, const struct deformed_mesh *from,
                           const struct mesh *mesh, struct scene_draw *draw)
@@ -13,7 +21,7 @@ static void copy_deformed(struct scene_gpu *s, const struct deformed_mesh *from,
     draw->bounds = box3_empty();
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         vec3s p = from->positions[v];
-        if (memcmp(&s->deformed_positions[base + v], &p, sizeof p) != 0) s->moved = true;
+        if (memcmp(&s->deformed_positions[base + v], &p, sizeof p) != 0) note_move(s, draw);
         s->deformed_positions[base + v] = p;
         draw->bounds = box3_add_point(draw->bounds, p);
         uint32_t *frame = s->deformed_frames[base + v];
@@ -36,7 +44,7 @@ static void update_draw(struct scene_gpu *s, const struct scene_pose *pose, stru
     }
     mat4s m = pose_world_from_instance(pose, draw->instance);
     struct scene_instance *instance = &s->instances[draw->instance];
-    if (memcmp(&instance->world_from_instance, &m, sizeof m) != 0) s->moved = true;
+    if (memcmp(&instance->world_from_instance, &m, sizeof m) != 0) note_move(s, draw);
     instance->world_from_instance = m;
     draw->bounds = box3_transform(m, mesh->bounds);
 }
@@ -75,12 +83,13 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
     upload_deformed(s, cmd);
 }
 
-void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
-                    const struct scene_draw_call *call)
+// What every draw and dispatch of the scene may read; returns the count.
+enum { SCENE_BINDINGS = 10 };
+static int scene_bindings(const struct scene_gpu *s, const struct scene_draw *draw,
+                          struct gpu_binding out[SCENE_BINDINGS])
 {
-    const struct scene_draw *draw = call->draw;
     const struct gpu_binding *maps = s->maps[draw->material];
-    struct gpu_binding bindings[16] = {
+    const struct gpu_binding bindings[SCENE_BINDINGS] = {
         draw->deformed ? s->deformed_positions_binding
                        : (struct gpu_binding){ .name = "scene_positions", .buffer = s->positions },
         draw->deformed ? s->deformed_frames_binding
@@ -96,7 +105,16 @@ void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
         maps[2],
         maps[3],
     };
-    int count = 10;
+    memcpy(out, bindings, sizeof bindings);
+    return SCENE_BINDINGS;
+}
+
+void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
+                    const struct scene_draw_call *call)
+{
+    const struct scene_draw *draw = call->draw;
+    struct gpu_binding bindings[16];
+    int count = scene_bindings(s, draw, bindings);
     for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
     memcpy(call->push, &draw->push, sizeof draw->push);
     gpu_draw(cmd, &(struct gpu_draw_desc){
@@ -111,4 +129,36 @@ void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
                       .cull = call->cull,
                       .flip_front = draw->mirrored,
                   });
+}
+
+// A dispatch covers so many triangles at most: their groups and the bytes of their indices are
+// within every device's limits.
+static const uint32_t DISPATCH_TRIANGLES = 1u << 21;
+static const size_t BYTES_ALIGNED = 256; // no device asks more of a buffer's offset
+
+void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
+                        const struct scene_dispatch_call *call)
+{
+    const struct scene_draw *draw = call->draw;
+    const uint32_t triangles = s->scene->meshes[draw->mesh].index_count / 3;
+    struct gpu_binding bindings[16];
+    int count = scene_bindings(s, draw, bindings);
+    for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
+    struct gpu_binding *indices = &bindings[count++];
+    for (uint32_t first = 0; first < triangles; first += DISPATCH_TRIANGLES) {
+        const uint32_t some =
+            triangles - first < DISPATCH_TRIANGLES ? triangles - first : DISPATCH_TRIANGLES;
+        const size_t begin = s->index_offset[draw->mesh] + (size_t)first * 3 * sizeof(uint32_t);
+        const size_t end = begin + (size_t)some * 3 * sizeof(uint32_t);
+        const size_t aligned = begin / BYTES_ALIGNED * BYTES_ALIGNED;
+        const struct {
+            struct scene_push draw;
+            uint32_t first_index, triangle_count;
+        } push = { draw->push, (uint32_t)((begin - aligned) / sizeof(uint32_t)), some };
+        *indices = (struct gpu_binding){
+            .name = "scene_indices", .buffer = s->indices, .offset = aligned, .bytes = end - aligned
+        };
+        gpu_dispatch(cmd, call->pipeline, bindings, count, &push, sizeof push,
+                     gpu_groups(some, SCENE_TRIANGLES_LOCAL), 1, 1);
+    }
 }

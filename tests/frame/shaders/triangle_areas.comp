@@ -1,0 +1,22 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+// What techniques see of the triangles of a draw: how many there are, how many are solid at their middle, and their area in
+// whole 1/1024 m², which sums in any order.
+#include "frame/scene_triangles.glsl"
+
+layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
+
+layout(set = 0, binding = 12, scalar) buffer totals { uint total[]; };
+
+void main()
+{
+    if (gl_GlobalInvocationID.x >= push.triangle_count) return;
+    uvec3 vertices = scene_triangle(gl_GlobalInvocationID.x);
+    mat3 corners = scene_triangle_positions(vertices);
+    float area = 0.5 * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    atomicAdd(total[0], 1u);
+    if (scene_triangle_solid(vertices, vec3(1.0 / 3.0))) atomicAdd(total[1], 1u);
+    atomicAdd(total[2], uint(round(1024.0 * area)));
+}

@@ -1,0 +1,170 @@
+// What a technique sees of the scene's triangles in compute, and how still draws are told from
+// moving ones.
+#include "frame/studio.h"
+
+#include "frame/scene_gpu.h"
+#include "frame_test_shaders.h"
+
+#include <stdlib.h>
+
+struct totals {
+    uint32_t triangles, solid, area; // area in 1/1024 m²
+};
+
+struct reader {
+    gpu_pipeline opaque, masked;
+    gpu_buffer totals;
+    int moving;     // draws
+    bool moves[16]; // by instance
+};
+
+static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct reader *r = user;
+    gpu_fill_buffer(cmd, r->totals, 0, sizeof(struct totals), 0);
+    r->moving = view->scene->moving_count;
+    for (int i = 0; i < view->scene->draw_count; i++) {
+        const struct scene_draw *draw = &view->scene->draws[i];
+        r->moves[draw->instance] = draw->moves;
+        const struct gpu_binding own = { .name = "totals", .buffer = r->totals };
+        scene_gpu_dispatch(view->scene, cmd,
+                           &(struct scene_dispatch_call){
+                               .pipeline = draw->variant & VARIANT_MASKED ? r->masked : r->opaque,
+                               .draw = draw,
+                               .bindings = &own,
+                               .binding_count = 1 });
+    }
+}
+
+static void begin(struct studio *s, struct reader *r, struct gpu *gpu)
+{
+    studio_init(s, gpu);
+    *r = (struct reader){ .opaque = test_gpu_compute(gpu, &shader_triangle_areas_comp) };
+    const struct gpu_constant is_masked = { 4, 1 };
+    assert_true(gpu_compute_pipeline_create(gpu, "test.masked", &shader_triangle_areas_comp,
+                                            &is_masked, 1, &r->masked));
+    r->totals = test_gpu_buffer(gpu, sizeof(struct totals));
+    s->indirect = (struct frame_indirect){ .record = record, .user = r };
+}
+
+static struct totals render(struct studio *s, struct reader *r)
+{
+    struct totals t;
+    studio_render(s);
+    assert_true(gpu_buffer_download(s->gpu, r->totals, 0, &t, sizeof t));
+    return t;
+}
+
+static void finish(struct studio *s, struct reader *r)
+{
+    gpu_pipeline_destroy(s->gpu, &r->opaque);
+    gpu_pipeline_destroy(s->gpu, &r->masked);
+    gpu_buffer_destroy(s->gpu, &r->totals);
+    studio_finish(s);
+}
+
+// Many small meshes, so that their indices begin at all kinds of places.
+TEST_GPU(every_triangle_is_seen_once_in_world_space)
+{
+    struct studio s;
+    struct reader r;
+    begin(&s, &r, gpu);
+    const int matte = studio_matte(&s, vec3_of(1, 1, 1));
+    studio_floor(&s, 2, matte);                                         // 16 m²
+    studio_box(&s, vec3_of(-1, 0, -1), vec3_of(0, 1, 1), false, matte); // 10 m²
+    struct node twice = node_default();
+    twice.scale = vec3_of(-2, 1, 2); // mirrored
+    twice.translation = vec3_of(5, 6, 7);
+    studio_instance(&s, 0, &twice); // 64 m²
+    studio_open(&s);
+    const struct totals t = render(&s, &r);
+    assert_int_equal(t.triangles, 16);
+    assert_int_equal(t.solid, 16);
+    CHECK_NEAR(t.area / 1024.0, 90.0, 1e-2);
+    finish(&s, &r);
+}
+
+// More indices than one alignment, and more triangles than one workgroup.
+TEST_GPU(long_meshes_are_seen_to_their_end)
+{
+    enum { STRIPES = 333 };
+    struct studio s;
+    struct reader r;
+    begin(&s, &r, gpu);
+    vec3s positions[2 * (STRIPES + 1)], normals[2 * (STRIPES + 1)];
+    uint32_t indices[6 * STRIPES];
+    for (uint32_t i = 0; i <= STRIPES; i++)
+        for (uint32_t k = 0; k < 2; k++) {
+            positions[2 * i + k] = vec3_of((float)i, 0, (float)k);
+            normals[2 * i + k] = vec3_of(0, 1, 0);
+        }
+    for (uint32_t i = 0; i < STRIPES; i++) {
+        const uint32_t quad[6] = { 0, 1, 3, 0, 3, 2 };
+        for (uint32_t k = 0; k < 6; k++) indices[6 * i + k] = 2 * i + quad[k];
+    }
+    const int matte = studio_matte(&s, vec3_of(1, 1, 1));
+    studio_floor(&s, 1, matte); // 4 m²
+    const int mesh = scene_add_mesh(s.scene, &(struct mesh){ .name = "stripes",
+                                                             .vertex_count = 2 * (STRIPES + 1),
+                                                             .index_count = 6 * STRIPES,
+                                                             .positions = positions,
+                                                             .normals = normals,
+                                                             .indices = indices,
+                                                             .material = matte });
+    studio_instance(&s, mesh, NULL);
+    studio_open(&s);
+    const struct totals t = render(&s, &r);
+    assert_int_equal(t.triangles, 2 + 2 * STRIPES);
+    CHECK_NEAR(t.area / 1024.0, 4.0 + STRIPES, 1e-2);
+    finish(&s, &r);
+}
+
+// A picture whose right half is cut away: of the two triangles, split along the diagonal, one has
+// its middle there.
+TEST_GPU(what_a_mask_cuts_away_is_not_solid)
+{
+    struct studio s;
+    struct reader r;
+    begin(&s, &r, gpu);
+    uint8_t pixels[2 * 4] = { 255, 255, 255, 255, 255, 255, 255, 0 };
+    const int image = scene_add_image(
+        s.scene, &(struct scene_image){
+                     .name = "half", .width = 2, .height = 1, .rgba = pixels, .has_alpha = true });
+    struct material m = material_default();
+    m.alpha_mode = ALPHA_MASK;
+    m.alpha_cutoff = 0.5f;
+    m.base_color_map.image = image;
+    m.base_color_map.nearest = true;
+    studio_floor(&s, 1, studio_material(&s, &m));
+    m.base_color_map.image = -1;
+    m.base_color.w = 0.4f;
+    studio_floor(&s, 1, studio_material(&s, &m)); // all of it
+    studio_open(&s);
+    const struct totals t = render(&s, &r);
+    assert_int_equal(t.triangles, 4);
+    assert_int_equal(t.solid, 1);
+    finish(&s, &r);
+}
+
+TEST_GPU(what_has_moved_once_is_told_from_what_never_did)
+{
+    struct studio s;
+    struct reader r;
+    begin(&s, &r, gpu);
+    const int matte = studio_matte(&s, vec3_of(1, 1, 1));
+    studio_floor(&s, 2, matte);
+    studio_floor(&s, 1, matte);
+    studio_open(&s);
+    render(&s, &r);
+    CHECK(r.moving == 0); // all have just come
+    render(&s, &r);
+    CHECK(r.moving == 0);
+    s.pose.world_from_node[s.scene->instances[1].node].raw[3][1] += 0.1f;
+    s.input.camera_cut = true; // forgets how it moved, not that it moves
+    render(&s, &r);
+    CHECK(r.moving == 1 && !r.moves[0] && r.moves[1]);
+    s.input.camera_cut = false;
+    render(&s, &r);
+    CHECK(r.moving == 1 && r.moves[1]);
+    finish(&s, &r);
+}
