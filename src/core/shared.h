@@ -11,10 +11,13 @@
 #define mat4s mat4
 #define int32_t int
 #define uint32_t uint
+#define AG_STRUCT(name) name // the type of a member that is a shared struct itself
 #else
 #include "core/vec.h"
 
 #include <stdint.h>
+
+#define AG_STRUCT(name) struct name
 #endif
 
 #endif

@@ -9,7 +9,7 @@
 #include <string.h>
 
 const struct technique *const techniques[] = { &technique_none, &technique_ambient, &technique_lpv,
-                                               NULL };
+                                               &technique_holpv, NULL };
 
 bool technique_is_sound(const struct technique *technique)
 {

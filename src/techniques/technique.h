@@ -52,6 +52,7 @@ struct technique {
     const char *name;  // stable, [a-z0-9]+
     const char *title; // a few words
     const char *paper; // one-line citation
+    const char *folder; // that it shares with another technique; NULL: that of its name
     enum technique_role role;
     uint32_t capabilities; // technique_capability bits
     uint32_t needs;        // frame_need bits

@@ -29,7 +29,7 @@ name != "" && /^\};/ {
 }
 
 name != "" { # vec3s map_u[4], map_v[4];
-    sub(/^ *[a-z0-9_]+ +/, "")
+    sub(/^ *(AG_STRUCT\([a-z0-9_]+\)|[a-z0-9_]+) +/, "")
     count = split($0, parts, /[,;]/)
     for (i = 1; i <= count; i++) {
         member = parts[i]

@@ -3,15 +3,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct lpv *rig_create(struct gpu *gpu, const char *text)
+struct lpv *rig_create(struct gpu *gpu, const char *gi)
 {
-    struct lpv *lpv = calloc(1, technique_lpv.state_size);
+    const char *colon = strchr(gi, ':');
+    const struct technique *technique =
+        strncmp(gi, "holpv", 5) == 0 ? &technique_holpv : &technique_lpv;
+    struct lpv *lpv = calloc(1, technique->state_size);
     struct lpv_options options;
-    option_defaults(&technique_lpv.options, &options);
-    CHECK(option_parse(test_host(), &technique_lpv.options, "lpv", text, &options));
+    option_defaults(&technique->options, &options);
+    CHECK(option_parse(test_host(), &technique->options, "lpv", colon ? colon + 1 : "", &options));
     const struct technique_create how = { .host = test_host(), .gpu = gpu, .options = &options };
-    CHECK(technique_lpv.check(&how));
-    CHECK(technique_lpv.create(lpv, &how));
+    CHECK(technique->check(&how));
+    CHECK(technique->create(lpv, &how));
     return lpv;
 }
 
@@ -30,20 +33,28 @@ void rig_render(struct lpv *lpv, struct stage *stage)
     CHECK(gpu_wait(stage->gpu));
 }
 
-float *rig_read(struct lpv *lpv, const struct lpv_volume *volume, int colour)
+float *rig_read(struct lpv *lpv, gpu_image volume, int colour)
 {
-    const size_t dim = (size_t)lpv->options.dim;
-    float *all = malloc(dim * dim * dim * 4 * sizeof *all);
-    CHECK(gpu_image_download_float(lpv->gpu, volume->colour[colour], 0, 0, all, 4,
-                                   dim * dim * dim * 4));
+    const size_t dim = (size_t)lpv->options.dim, slab = dim * dim * dim * 4;
+    const size_t count = slab * lpv_slabs(&lpv->options);
+    const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
+    float *all = malloc(count * sizeof *all);
+    CHECK(gpu_image_download_float(lpv->gpu, volume, 0, 0, all, 4, count));
     const int32_t *cells = lpv->grid.cells;
     const float unit = lpv->params.fixed_from_flux * lpv->params.grid_from_fixed; // grid_from_flux
-    size_t out = 0;
+    float *out =
+        malloc((size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2] * coefficients * sizeof *out);
+    size_t at = 0;
     for (size_t z = 0; z < (size_t)cells[2]; z++)
         for (size_t y = 0; y < (size_t)cells[1]; y++)
-            for (size_t i = 0; i < 4 * (size_t)cells[0]; i++)
-                all[out++] = all[(z * dim + y) * dim * 4 + i] / unit;
-    return all;
+            for (size_t x = 0; x < (size_t)cells[0]; x++)
+                for (size_t i = 0; i < coefficients; i++) {
+                    const size_t number = 3 * i + (size_t)colour;
+                    const size_t texel = (z * dim + y) * dim + x;
+                    out[at++] = all[number / 4 * slab + 4 * texel + number % 4] / unit;
+                }
+    free(all);
+    return out;
 }
 
 void rig_inject_twin(struct twin *twin, const struct stage *stage, int colour)

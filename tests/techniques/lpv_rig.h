@@ -6,11 +6,14 @@
 #include "techniques/lpv_twin.h"
 #include "techniques/stage.h"
 
-struct lpv *rig_create(struct gpu *gpu, const char *options);
+enum { RIG_COLOURS = 3 };
+
+// `gi` is "lpv:options" or "holpv:options".
+struct lpv *rig_create(struct gpu *gpu, const char *gi);
 void rig_destroy(struct lpv *lpv);
 // One frame, waited for.
 void rig_render(struct lpv *lpv, struct stage *stage);
-// One colour of a volume as lumen/sr, 4 floats a cell in use, [z][y][x]. To be freed.
-float *rig_read(struct lpv *lpv, const struct lpv_volume *volume, int colour);
+// One colour of a volume as lumen/sr, bands² floats a cell in use, [z][y][x]. To be freed.
+float *rig_read(struct lpv *lpv, gpu_image volume, int colour);
 // What the stage's reflective shadow maps and emissive surfaces inject of one colour.
 void rig_inject_twin(struct twin *twin, const struct stage *stage, int colour);

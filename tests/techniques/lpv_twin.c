@@ -11,9 +11,11 @@ size_t twin_cells(const struct twin *twin)
     return (size_t)twin->grid.cells[0] * (size_t)twin->grid.cells[1] * (size_t)twin->grid.cells[2];
 }
 
-void twin_init(struct twin *twin, struct lpv_grid grid)
+void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_scheme scheme)
 {
     twin->grid = grid;
+    twin->bands = bands;
+    twin->scheme = scheme;
     twin->light = calloc(twin_cells(twin), sizeof *twin->light);
     twin->accumulated = calloc(twin_cells(twin), sizeof *twin->accumulated);
 }
@@ -42,53 +44,53 @@ void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux)
                         0.5f * normal.raw[axis]);
     const int at = index_of(twin, cell);
     if (at < 0) return;
-    float zonal[2], lobe[4];
-    zh_clamped_cosine(2, zonal);
-    zh_rotate(2, zonal, normal, lobe);
-    for (int i = 0; i < 4; i++) {
+    float zonal[3], lobe[9];
+    zh_clamped_cosine(twin->bands, zonal);
+    zh_rotate(twin->bands, zonal, normal, lobe);
+    for (int i = 0; i < SH_COUNT(twin->bands); i++) {
         twin->light[at][i] += flux / GLM_PI * (double)lobe[i];
         twin->accumulated[at][i] += flux / GLM_PI * (double)lobe[i];
     }
 }
 
-// Martin 2012, sec. 3.2.3: the flux through each face of each neighbour becomes a lobe in the
+// Martin 2012, sec. 3.2.3 and 4.2: the flux through each face of a neighbour becomes a lobe in the
 // neighbour.
-static void send(const struct twin *twin, double (*next)[4], const double light[4],
-                 const int cell[3], enum lpv_lobe lobe, float mean_cosine)
+static void send(const struct twin *twin, const double *light,
+                 const struct lpv_neighbour *neighbour, enum lpv_lobe lobe,
+                 const struct lpv_lobe_weights *weights, double *to)
 {
-    for (int direction = 0; direction < LPV_DIRECTIONS; direction++) {
-        int to[3] = { cell[0], cell[1], cell[2] };
-        to[direction / 2] += direction % 2 == 0 ? 1 : -1;
-        const int at = index_of(twin, to);
-        if (at < 0) continue;
-        struct lpv_face faces[LPV_FACES];
-        lpv_faces(direction, faces);
-        for (int f = 0; f < LPV_FACES; f++) {
-            float basis[4], sent[4];
-            sh_eval(2, faces[f].direction, basis);
-            double intensity = 0.0;
-            for (int i = 0; i < 4; i++) intensity += light[i] * (double)basis[i];
-            lpv_lobe_coefficients(lobe == LPV_LOBE_NORMAL ? faces[f].normal : faces[f].direction,
-                                  mean_cosine, sent);
-            for (int i = 0; i < 4; i++)
-                next[at][i] += faces[f].solid_angle_sr * intensity * (double)sent[i];
-        }
+    for (int f = 0; f < neighbour->face_count; f++) {
+        const struct lpv_face *face = &neighbour->faces[f];
+        float basis[9], sent[9];
+        sh_eval(twin->bands, face->direction, basis);
+        sh_eval(twin->bands, lobe == LPV_LOBE_NORMAL ? face->normal : face->direction, sent);
+        double intensity = 0.0;
+        for (int i = 0; i < SH_COUNT(twin->bands); i++) intensity += light[i] * (double)basis[i];
+        for (int i = 0; i < SH_COUNT(twin->bands); i++)
+            to[i] +=
+                face->solid_angle_sr * intensity * lpv_lobe_weight(weights, i) * (double)sent[i];
     }
 }
 
-void twin_propagate(struct twin *twin, enum lpv_lobe lobe, float mean_cosine)
+void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)
 {
-    const size_t count = twin_cells(twin);
-    double(*next)[4] = calloc(count, sizeof *next);
+    const int count = (int)twin_cells(twin);
     const int32_t *cells = twin->grid.cells;
-    for (int z = 0; z < cells[2]; z++)
-        for (int y = 0; y < cells[1]; y++)
-            for (int x = 0; x < cells[0]; x++) {
-                const int cell[3] = { x, y, z };
-                send(twin, next, twin->light[index_of(twin, cell)], cell, lobe, mean_cosine);
-            }
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 4; k++) twin->accumulated[i][k] += next[i][k];
+    const struct lpv_lobe_weights weights = lpv_lobe_weights_of(twin->scheme, lobe, focus);
+    struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
+    const int neighbour_count = lpv_neighbours(twin->scheme, neighbours);
+    double(*next)[9] = calloc((size_t)count, sizeof *next);
+    for (int i = 0; i < count; i++) {
+        const int cell[3] = { i % cells[0], i / cells[0] % cells[1], i / cells[0] / cells[1] };
+        for (int n = 0; n < neighbour_count; n++) {
+            int to[3];
+            for (int axis = 0; axis < 3; axis++) to[axis] = cell[axis] + neighbours[n].offset[axis];
+            const int at = index_of(twin, to);
+            if (at >= 0) send(twin, twin->light[i], &neighbours[n], lobe, &weights, next[at]);
+        }
+    }
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 9; k++) twin->accumulated[i][k] += next[i][k];
     free(twin->light);
     twin->light = next;
 }
@@ -114,10 +116,10 @@ double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal, fl
         low[axis] = (int)fmin(floor(at[axis]), fmax(cells - 2.0, 0.0));
         at[axis] -= (double)low[axis];
     }
-    float zonal[2], lobe[4];
-    zh_clamped_cosine(2, zonal);
-    zh_rotate(2, zonal, glms_vec3_negate(normal), lobe);
-    for (int i = 1; i < 4; i++) lobe[i] *= window;
+    float zonal[3], lobe[9];
+    zh_clamped_cosine(twin->bands, zonal);
+    zh_rotate(twin->bands, zonal, glms_vec3_negate(normal), lobe);
+    for (int i = 1; i < SH_COUNT(twin->bands); i++) lobe[i] *= window;
     double sum = 0.0;
     for (int corner = 0; corner < 8; corner++) {
         double weight = 1.0;
@@ -129,8 +131,9 @@ double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal, fl
         }
         const int index = index_of(twin, cell);
         if (index < 0 || weight == 0.0) continue;
-        for (int i = 0; i < 4; i++) sum += weight * twin->accumulated[index][i] * (double)lobe[i];
+        for (int i = 0; i < SH_COUNT(twin->bands); i++)
+            sum += weight * twin->accumulated[index][i] * (double)lobe[i];
     }
     const double area = (double)twin->grid.cell_m * (double)twin->grid.cell_m;
-    return fmax(sum * 2.0 / 3.0 / area, 0.0);
+    return fmax(sum * lpv_mean_way(twin->scheme) / area, 0.0);
 }

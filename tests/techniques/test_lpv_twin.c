@@ -37,44 +37,64 @@ static void scatter(struct stage *stage, struct gpu *gpu)
     stage_upload(stage);
 }
 
-static double largest(double (*values)[4], size_t count)
+static double largest(const struct twin *twin, double (*values)[9])
 {
     double most = 0.0;
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 4; k++) most = fmax(most, fabs(values[i][k]));
+    for (size_t i = 0; i < twin_cells(twin); i++)
+        for (int k = 0; k < SH_COUNT(twin->bands); k++) most = fmax(most, fabs(values[i][k]));
     return most;
 }
 
-static void check_volume(const float *got, double (*expected)[4], size_t count, double tolerance)
+// `tolerance` is relative to the largest coefficient.
+static void check_volume(const float *got, const struct twin *twin, double (*expected)[9],
+                         double tolerance)
 {
-    const double most = largest(expected, count);
+    const size_t coefficients = (size_t)SH_COUNT(twin->bands);
+    const double most = largest(twin, expected);
     CHECK(most > 0.0);
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 4; k++)
-            CHECK_NEAR((double)got[4 * i + (size_t)k], expected[i][k], tolerance * most);
+    for (size_t i = 0; i < twin_cells(twin); i++)
+        for (size_t k = 0; k < coefficients; k++)
+            CHECK_NEAR((double)got[coefficients * i + k], expected[i][k], tolerance * most);
+}
+
+// Of half floats, 11 bits, and of floats, whose sums were whole numbers.
+static double rounding(const struct lpv *lpv)
+{
+    return lpv->options.precision == LPV_PRECISION_HALF ? 5e-4 : 1e-5;
+}
+
+static void twin_of(struct twin *twin, struct lpv *lpv, const struct stage *stage, int colour)
+{
+    twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
+    rig_inject_twin(twin, stage, colour);
 }
 
 static void check_injection(struct lpv *lpv, struct stage *stage)
 {
     rig_render(lpv, stage);
-    for (int colour = 0; colour < LPV_COLOURS; colour++) {
+    for (int colour = 0; colour < RIG_COLOURS; colour++) {
         struct twin twin;
-        twin_init(&twin, lpv->grid);
-        rig_inject_twin(&twin, stage, colour);
-        float *got = rig_read(lpv, &lpv->injected, colour);
-        check_volume(got, twin.light, twin_cells(&twin), 1e-5);
+        twin_of(&twin, lpv, stage, colour);
+        float *got = rig_read(lpv, lpv->injected, colour);
+        check_volume(got, &twin, twin.light, rounding(lpv));
         free(got);
         twin_finish(&twin);
     }
 }
 
+static const char *const INJECTIONS[] = { "lpv:dim=8,steps=1", "lpv:dim=8,steps=1,precision=float",
+                                          "holpv:dim=8,steps=1,precision=float" };
+enum { INJECTION_COUNT = sizeof INJECTIONS / sizeof INJECTIONS[0] };
+
 TEST_GPU(lpv_injection_is_the_twins)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
-    check_injection(lpv, &stage);
-    rig_destroy(lpv);
+    for (int i = 0; i < INJECTION_COUNT; i++) {
+        struct lpv *lpv = rig_create(gpu, INJECTIONS[i]);
+        check_injection(lpv, &stage);
+        rig_destroy(lpv);
+    }
     stage_finish(&stage);
 }
 
@@ -102,12 +122,21 @@ TEST_GPU(lpv_injection_of_emissive_surfaces_is_the_twins)
     scatter(&stage, gpu);
     scatter_points(points);
     stage_set_emitters(&stage, points, POINTS);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
-    check_injection(lpv, &stage); // with the maps
-    stage.view.rsm_face_count = 0;
-    check_injection(lpv, &stage); // alone
-    rig_destroy(lpv);
+    for (int i = 0; i < INJECTION_COUNT; i++) {
+        struct lpv *lpv = rig_create(gpu, INJECTIONS[i]);
+        stage.view.rsm_face_count = 2;
+        check_injection(lpv, &stage); // with the maps
+        stage.view.rsm_face_count = 0;
+        check_injection(lpv, &stage); // alone
+        rig_destroy(lpv);
+    }
     stage_finish(&stage);
+}
+
+static void propagate_twin(struct twin *twin, const struct lpv *lpv)
+{
+    for (int i = 0; i < lpv->options.steps; i++)
+        twin_propagate(twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);
 }
 
 static void propagation_is_the_twins(struct gpu *gpu, const char *options)
@@ -116,14 +145,12 @@ static void propagation_is_the_twins(struct gpu *gpu, const char *options)
     scatter(&stage, gpu);
     struct lpv *lpv = rig_create(gpu, options);
     rig_render(lpv, &stage);
-    for (int colour = 0; colour < LPV_COLOURS; colour++) {
+    for (int colour = 0; colour < RIG_COLOURS; colour++) {
         struct twin twin;
-        twin_init(&twin, lpv->grid);
-        rig_inject_twin(&twin, &stage, colour);
-        for (int i = 0; i < lpv->options.steps; i++)
-            twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, lpv->options.focus);
-        float *got = rig_read(lpv, &lpv->light, colour);
-        check_volume(got, twin.accumulated, twin_cells(&twin), 1e-3);
+        twin_of(&twin, lpv, &stage, colour);
+        propagate_twin(&twin, lpv);
+        float *got = rig_read(lpv, lpv->light, colour);
+        check_volume(got, &twin, twin.accumulated, 1e-3);
         free(got);
         twin_finish(&twin);
     }
@@ -133,32 +160,47 @@ static void propagation_is_the_twins(struct gpu *gpu, const char *options)
 
 TEST_GPU(lpv_propagation_is_the_sum_over_faces_and_steps)
 {
-    propagation_is_the_twins(gpu, "dim=8,steps=1");
-    propagation_is_the_twins(gpu, "dim=8,steps=6");
-    propagation_is_the_twins(gpu, "dim=8,steps=7,lobe=normal,focus=0.6666667");
-    propagation_is_the_twins(gpu, "dim=16,steps=20,focus=1,cell_margin=1.5");
+    propagation_is_the_twins(gpu, "lpv:dim=8,steps=1,precision=float");
+    propagation_is_the_twins(gpu, "lpv:dim=8,steps=6");
+    propagation_is_the_twins(gpu, "lpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
+    propagation_is_the_twins(gpu, "lpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
 }
 
-TEST_GPU(lpv_application_is_the_twins)
+TEST_GPU(lpv_propagation_of_higher_order_is_the_sum_over_faces_and_steps)
+{
+    propagation_is_the_twins(gpu, "holpv:dim=8,steps=1,precision=float");
+    propagation_is_the_twins(gpu, "holpv:dim=8,steps=6");
+    propagation_is_the_twins(gpu, "holpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
+    propagation_is_the_twins(gpu, "holpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
+}
+
+TEST_GPU(lpv_bands_and_neighbours_are_independent)
+{
+    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,bands=3,focus=0.8");
+    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,bands=3,lobe=normal,precision=float");
+    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,neighbours=26,focus=0.8");
+    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,neighbours=26,lobe=normal,precision=float");
+}
+
+static void application_is_the_twins(struct gpu *gpu, const char *options)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=5,offset=0.75,window=0.8");
+    struct lpv *lpv = rig_create(gpu, options);
     rig_render(lpv, &stage);
     float got[PIXELS * 3];
     stage_read_irradiance(&stage, got);
-    for (int colour = 0; colour < LPV_COLOURS; colour++) {
+    for (int colour = 0; colour < RIG_COLOURS; colour++) {
         struct twin twin;
-        twin_init(&twin, lpv->grid);
-        rig_inject_twin(&twin, &stage, colour);
-        for (int i = 0; i < 5; i++) twin_propagate(&twin, LPV_LOBE_PROPAGATION, lpv->options.focus);
+        twin_of(&twin, lpv, &stage, colour);
+        propagate_twin(&twin, lpv);
         double expected[PIXELS], most = 0.0;
         for (int i = 0; i < PIXELS; i++) {
             const float x = ((float)(i % WIDTH) + 0.5f) * 2.0f / WIDTH - 1.0f;
             const float y = ((float)(i / WIDTH) + 0.5f) * 2.0f / HEIGHT - 1.0f;
             expected[i] = twin_irradiance(
                 &twin, mat4_point(stage.constants.world_from_clip, vec3_of(x, y, 0.5f)),
-                stage_rounded_normal(vec3_of(0, 1, 0)), 0.75f, 0.8f);
+                stage_rounded_normal(vec3_of(0, 1, 0)), lpv->options.offset, lpv->options.window);
             most = fmax(most, expected[i]);
         }
         CHECK(most > 0.0);
@@ -171,18 +213,24 @@ TEST_GPU(lpv_application_is_the_twins)
     stage_finish(&stage);
 }
 
-// The bytes of the injected grid, all colours.
+TEST_GPU(lpv_application_is_the_twins)
+{
+    application_is_the_twins(gpu, "lpv:dim=8,steps=5,offset=0.75,window=0.8");
+    application_is_the_twins(gpu, "holpv:dim=8,steps=5,offset=0.75,window=0.9");
+}
+
+// The numbers of the injected grid, all colours.
 static float *injected(struct lpv *lpv, size_t *count)
 {
-    const size_t cells =
-        (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] * (size_t)lpv->grid.cells[2];
-    float *all = malloc(LPV_COLOURS * cells * 4 * sizeof *all);
-    for (int colour = 0; colour < LPV_COLOURS; colour++) {
-        float *one = rig_read(lpv, &lpv->injected, colour);
-        memcpy(all + (size_t)colour * cells * 4, one, cells * 4 * sizeof *all);
-        free(one);
+    const size_t one = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
+                       (size_t)lpv->grid.cells[2] * (size_t)SH_COUNT(lpv->options.bands);
+    float *all = malloc(RIG_COLOURS * one * sizeof *all);
+    for (int colour = 0; colour < RIG_COLOURS; colour++) {
+        float *read = rig_read(lpv, lpv->injected, colour);
+        memcpy(all + (size_t)colour * one, read, one * sizeof *all);
+        free(read);
     }
-    *count = LPV_COLOURS * cells * 4;
+    *count = RIG_COLOURS * one;
     return all;
 }
 
@@ -193,11 +241,35 @@ static float *injected_of(struct stage *stage, struct lpv *lpv, size_t *count)
     return injected(lpv, count);
 }
 
+static double mebibytes(struct gpu *gpu, gpu_image image)
+{
+    const struct gpu_image_desc *desc = gpu_image_info(gpu, image);
+    return (double)desc->width * desc->height * desc->depth * gpu_format_bytes(desc->format) /
+           (1 << 20);
+}
+
+// Martin 2012, sec. 5.8: 0.75 MiB for a grid of 32³ cells in two bands, 1.75 in three; three grids.
+TEST_GPU(lpv_volumes_of_half_floats_are_as_large_as_the_papers)
+{
+    const struct {
+        const char *gi;
+        double grid;
+    } cases[] = { { "lpv:dim=32,precision=half", 0.75 }, { "holpv:dim=32,precision=half", 1.75 } };
+    for (int i = 0; i < 2; i++) {
+        struct lpv *lpv = rig_create(gpu, cases[i].gi);
+        CHECK(mebibytes(gpu, lpv->injected) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->steps[0]) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->light) == cases[i].grid);
+        assert_int_equal(lpv->steps[1].id, 0);
+        rig_destroy(lpv);
+    }
+}
+
 TEST_GPU(lpv_injection_knows_no_order)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=1,precision=float");
     size_t count;
     float *before = injected_of(&stage, lpv, &count), *again = injected_of(&stage, lpv, &count);
     assert_memory_equal(before, again, count * sizeof *before);
@@ -230,7 +302,7 @@ TEST_GPU(lpv_half_the_light_is_half_the_grid_to_the_bit)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=1,precision=float");
     size_t count;
     float *full = injected_of(&stage, lpv, &count);
     for (int face = 0; face < 2; face++)
@@ -243,11 +315,54 @@ TEST_GPU(lpv_half_the_light_is_half_the_grid_to_the_bit)
     stage_finish(&stage);
 }
 
+// All texels of a face in one cell, with the most steps: half floats end at 65504.
+TEST_GPU(lpv_no_light_is_too_strong_or_too_weak_for_half_floats)
+{
+    static const char *const gis[] = { "lpv:dim=8,steps=128,precision=half,focus=0",
+                                       "lpv:dim=8,steps=128,precision=half,focus=1",
+                                       "holpv:dim=8,steps=128,precision=half,focus=0",
+                                       "holpv:dim=8,steps=128,precision=half,focus=1" };
+    struct stage stage;
+    scatter(&stage, gpu);
+    stage_set_face(&stage, 0, vec3_of(-0.1f, 2, 3), vec3_of(0.01f, 0, 0), vec3_of(0, 0.01f, 0),
+                   vec3_of(0, 0, 0.01f), vec3_of(3, 2, 1));
+    for (uint32_t i = 0; i < SIZE * SIZE; i++)
+        *stage_texel(&stage, 0, i % SIZE, i / SIZE) = (struct stage_texel){
+            .depth = 0.5f, .normal = vec3_of(0, 1, 0), .reflectance = { 255, 255, 255 }
+        };
+    stage_upload(&stage);
+    stage.view.rsm_face_count = 1;
+    const vec3s intensity = stage.faces[0].intensity;
+    for (int i = 0; i < 4; i++) {
+        struct lpv *lpv = rig_create(gpu, gis[i]);
+        float most = 0.0f;
+        float *all[3];
+        for (int k = 0; k < 3; k++) { // 2^-40, 1 and 2^40 of the light
+            stage.faces[0].intensity = glms_vec3_scale(intensity, ldexpf(1.0f, 40 * (k - 1)));
+            stage_upload(&stage);
+            rig_render(lpv, &stage);
+            all[k] = rig_read(lpv, lpv->light, 0);
+        }
+        const size_t count = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
+                             (size_t)lpv->grid.cells[2] * (size_t)SH_COUNT(lpv->options.bands);
+        for (size_t n = 0; n < count; n++) {
+            CHECK(ldexpf(all[0][n], 40) == all[1][n] && all[1][n] == ldexpf(all[2][n], -40));
+            most = fmaxf(most, fabsf(all[1][n]));
+        }
+        const float unit = lpv->params.fixed_from_flux * lpv->params.grid_from_fixed;
+        print_message("%s: at most %g of 65504\n", gis[i], (double)(ldexpf(most, 40) * unit));
+        CHECK(ldexpf(most, 40) * unit < 65504.0f / 8);
+        for (int k = 0; k < 3; k++) free(all[k]);
+        rig_destroy(lpv);
+    }
+    stage_finish(&stage);
+}
+
 TEST_GPU(lpv_two_lights_are_the_sum_even_ten_thousand_times_apart)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=1");
+    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=1,precision=float");
     stage.faces[1].intensity = glms_vec3_scale(stage.faces[1].intensity, 1e4f);
     const vec3s dim = stage.faces[0].intensity, bright = stage.faces[1].intensity;
     size_t count;
@@ -288,7 +403,7 @@ TEST_GPU(lpv_without_light_or_scene_is_black_exactly)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "dim=8,steps=4");
+    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=4");
     rig_render(lpv, &stage); // leaves light in all images
     const struct box3 bounds = stage.view.bounds;
     stage.view.bounds = box3_empty();

@@ -1,5 +1,5 @@
-// Light propagation volumes (Martin 2012, ch. 3; Kaplanyan & Dachsbacher 2010) without the geometry
-// volume.
+// Light propagation volumes (Martin 2012, ch. 3; Kaplanyan & Dachsbacher 2010) and those of higher
+// order (Martin 2012, ch. 4), without the geometry volume. One method with other defaults.
 //
 // The light that reflective shadow maps see leaving the lit surfaces, and that of emissive
 // surfaces, is put into a grid over the scene as spherical harmonics (inject), walks from cell to
@@ -13,11 +13,28 @@
 
 #include <string.h>
 
-static const struct option_row option_rows[] = {
 #define OPTION(...) OPTION_ROW(struct lpv_options, __VA_ARGS__)
+static const struct option_row option_rows[] = {
+#define LPV_DEFAULT(of_lpv, of_holpv) (of_lpv)
 #include "techniques/lpv/lpv_options.def"
-#undef OPTION
+#undef LPV_DEFAULT
 };
+static const struct option_row higher_order_rows[] = {
+#define LPV_DEFAULT(of_lpv, of_holpv) (of_holpv)
+#include "techniques/lpv/lpv_options.def"
+#undef LPV_DEFAULT
+};
+#undef OPTION
+
+#define NAMES(technique)                                                                           \
+    {                                                                                              \
+        .inject = technique ".inject", .inject_emitters = technique ".inject_emitters",            \
+        .resolve = technique ".resolve", .propagate = technique ".propagate",                      \
+        .apply = technique ".apply", .debug = technique ".debug", .sums = technique ".sums",       \
+        .injected = technique ".injected", .light = technique ".light",                            \
+        .steps = { technique ".step_even", technique ".step_odd" }, .linear = technique ".linear", \
+    }
+static const struct lpv_names names = NAMES("lpv"), higher_order_names = NAMES("holpv");
 
 static const struct technique_debug_view debug_views[] = {
     { "injected", "slices of the grid: the light that lit and emissive surfaces put in" },
@@ -27,94 +44,126 @@ static const struct technique_debug_view debug_views[] = {
     { NULL, NULL },
 };
 
-static bool lpv_check(const struct technique_create *how)
+static bool check(const char *name, const struct technique_create *how)
 {
     const struct lpv_options *options = how->options;
+    const uint32_t depth = (uint32_t)options->dim * lpv_slabs(options);
     if (options->dim % 8 != 0)
-        return host_fail(how->host, FAIL_ARGUMENT, "gi lpv: dim=%d is not a multiple of 8",
+        return host_fail(how->host, FAIL_ARGUMENT, "gi %s: dim=%d is not a multiple of 8", name,
                          (int)options->dim);
-    if (gpu_limits(how->gpu)->max_image_3d < (uint32_t)options->dim)
+    if (gpu_limits(how->gpu)->max_image_3d < depth)
         return host_fail(how->host, FAIL_UNSUPPORTED,
-                         "gi lpv: dim=%d: the device has 3D images of at most %u",
-                         (int)options->dim, gpu_limits(how->gpu)->max_image_3d);
+                         "gi %s: dim=%d needs 3D images of a depth of %u, the device has %u", name,
+                         (int)options->dim, depth, gpu_limits(how->gpu)->max_image_3d);
     return true;
 }
 
-static bool create_volume(struct lpv *lpv, struct lpv_volume *volume,
-                          const char *const names[LPV_COLOURS], enum gpu_format format)
+static bool lpv_check(const struct technique_create *how)
+{
+    return check("lpv", how);
+}
+
+static bool holpv_check(const struct technique_create *how)
+{
+    return check("holpv", how);
+}
+
+static bool create_volume(struct lpv *lpv, const char *name, enum gpu_format format, gpu_image *out)
 {
     const uint32_t dim = (uint32_t)lpv->options.dim;
-    for (int i = 0; i < LPV_COLOURS; i++) {
-        const struct gpu_image_desc desc = { .name = names[i],
-                                             .dimension = GPU_3D,
-                                             .format = format,
-                                             .width = dim,
-                                             .height = dim,
-                                             .depth = dim,
-                                             .usage = GPU_SAMPLED | GPU_STORAGE };
-        if (!gpu_image_create(lpv->gpu, &desc, &volume->colour[i])) return false;
-    }
-    return true;
+    const struct gpu_image_desc desc = { .name = name,
+                                         .dimension = GPU_3D,
+                                         .format = format,
+                                         .width = dim,
+                                         .height = dim,
+                                         .depth = dim * lpv_slabs(&lpv->options),
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    return gpu_image_create(lpv->gpu, &desc, out);
 }
 
-#define COLOUR_NAMES(thing)                                                                        \
-    ((const char *const[]){ "lpv." thing "_red", "lpv." thing "_green", "lpv." thing "_blue" })
+static bool create_volumes(struct lpv *lpv)
+{
+    const struct lpv_names *name = lpv->names;
+    const bool half = lpv->options.precision == LPV_PRECISION_HALF;
+    const enum gpu_format format = half ? GPU_RGBA16F : GPU_RGBA32F;
+    return create_volume(lpv, name->injected, format, &lpv->injected) &&
+           create_volume(lpv, name->steps[0], format, &lpv->steps[0]) &&
+           (half || create_volume(lpv, name->steps[1], format, &lpv->steps[1])) &&
+           create_volume(lpv, name->light, GPU_RGBA16F, &lpv->light);
+}
 
 static bool create_resources(struct lpv *lpv)
 {
     const size_t dim = (size_t)lpv->options.dim;
-    const struct gpu_buffer_desc sums = { .name = "lpv.sums",
-                                          .bytes = dim * dim * dim * LPV_CELL_BYTES,
+    const struct gpu_buffer_desc sums = { .name = lpv->names->sums,
+                                          .bytes = dim * dim * dim * lpv_cell_bytes(&lpv->options),
                                           .usage = GPU_BUFFER_STORAGE };
-    const struct gpu_sampler_desc linear = { .name = "lpv.linear",
+    const struct gpu_sampler_desc linear = { .name = lpv->names->linear,
                                              .filter = GPU_LINEAR,
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
     return gpu_sampler_get(lpv->gpu, &linear, &lpv->linear) &&
-           gpu_buffer_create(lpv->gpu, &sums, &lpv->sums) &&
-           create_volume(lpv, &lpv->injected, COLOUR_NAMES("injected"), GPU_RGBA32F) &&
-           create_volume(lpv, &lpv->steps[0], COLOUR_NAMES("step_even"), GPU_RGBA32F) &&
-           create_volume(lpv, &lpv->steps[1], COLOUR_NAMES("step_odd"), GPU_RGBA32F) &&
-           create_volume(lpv, &lpv->light, COLOUR_NAMES("light"), GPU_RGBA16F);
+           gpu_buffer_create(lpv->gpu, &sums, &lpv->sums) && create_volumes(lpv);
 }
 
 static bool create_pipelines(struct lpv *lpv)
 {
+    const struct lpv_names *name = lpv->names;
     const struct {
         gpu_pipeline *out;
         const char *name;
         const struct gpu_shader *shader;
+        int constants; // how many of them it has
     } pipelines[] = {
-        { &lpv->inject, "lpv.inject", &shader_lpv_inject_comp },
-        { &lpv->inject_emitters, "lpv.inject_emitters", &shader_lpv_inject_emitters_comp },
-        { &lpv->resolve, "lpv.resolve", &shader_lpv_resolve_comp },
-        { &lpv->propagate, "lpv.propagate", &shader_lpv_propagate_comp },
-        { &lpv->finish, "lpv.finish", &shader_lpv_finish_comp },
-        { &lpv->apply, "lpv.apply", &shader_lpv_apply_comp },
-        { &lpv->debug, "lpv.debug", &shader_lpv_debug_comp },
+        { &lpv->inject, name->inject, &shader_lpv_inject_comp, 2 },
+        { &lpv->inject_emitters, name->inject_emitters, &shader_lpv_inject_emitters_comp, 2 },
+        { &lpv->resolve, name->resolve, &shader_lpv_resolve_comp, 2 },
+        { &lpv->propagate, name->propagate, &shader_lpv_propagate_comp, 3 },
+        { &lpv->apply, name->apply, &shader_lpv_apply_comp, 2 },
+        { &lpv->debug, name->debug, &shader_lpv_debug_comp, 2 },
+    };
+    const struct gpu_constant constants[] = {
+        { LPV_CONSTANT_BANDS, (uint32_t)lpv->options.bands },
+        { LPV_CONSTANT_HALF, lpv->options.precision == LPV_PRECISION_HALF },
+        { LPV_CONSTANT_NEIGHBOURS, lpv->options.neighbours == LPV_SIX ? 6 : 26 },
     };
     for (size_t i = 0; i < sizeof pipelines / sizeof pipelines[0]; i++)
-        if (!gpu_compute_pipeline_create(lpv->gpu, pipelines[i].name, pipelines[i].shader, NULL, 0,
-                                         pipelines[i].out))
+        if (!gpu_compute_pipeline_create(lpv->gpu, pipelines[i].name, pipelines[i].shader,
+                                         constants, pipelines[i].constants, pipelines[i].out))
             return false;
     return true;
 }
 
-static bool lpv_create(void *state, const struct technique_create *how)
+static bool create(struct lpv *lpv, const struct lpv_names *name,
+                   const struct technique_create *how)
 {
-    struct lpv *lpv = state;
+    lpv->names = name;
     lpv->gpu = how->gpu;
     lpv->options = *(const struct lpv_options *)how->options;
     return create_resources(lpv) && create_pipelines(lpv);
 }
 
+static bool lpv_create(void *state, const struct technique_create *how)
+{
+    return create(state, &names, how);
+}
+
+static bool holpv_create(void *state, const struct technique_create *how)
+{
+    return create(state, &higher_order_names, how);
+}
+
 static void lpv_set_options(void *state, const void *options)
 {
     struct lpv *lpv = state;
-    const int32_t dim = lpv->options.dim; // what the images have
-    lpv->options = *(const struct lpv_options *)options;
-    lpv->options.dim = dim;
+    // What the images and the shaders were made for stays.
+    struct lpv_options next = *(const struct lpv_options *)options;
+    next.bands = lpv->options.bands;
+    next.neighbours = lpv->options.neighbours;
+    next.precision = lpv->options.precision;
+    next.dim = lpv->options.dim;
+    lpv->options = next;
 }
 
 static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -145,23 +194,16 @@ static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
                      out);
 }
 
-static void destroy_volume(struct lpv *lpv, struct lpv_volume *volume)
-{
-    for (int i = 0; i < LPV_COLOURS; i++) gpu_image_destroy(lpv->gpu, &volume->colour[i]);
-}
-
 static void lpv_destroy(void *state)
 {
     struct lpv *lpv = state;
     if (!lpv->gpu) return;
-    destroy_volume(lpv, &lpv->injected);
-    destroy_volume(lpv, &lpv->steps[0]);
-    destroy_volume(lpv, &lpv->steps[1]);
-    destroy_volume(lpv, &lpv->light);
+    gpu_image *images[] = { &lpv->injected, &lpv->steps[0], &lpv->steps[1], &lpv->light };
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
+        gpu_image_destroy(lpv->gpu, images[i]);
     gpu_buffer_destroy(lpv->gpu, &lpv->sums);
     gpu_pipeline *pipelines[] = { &lpv->inject,    &lpv->inject_emitters, &lpv->resolve,
-                                  &lpv->propagate, &lpv->finish,          &lpv->apply,
-                                  &lpv->debug };
+                                  &lpv->propagate, &lpv->apply,           &lpv->debug };
     for (size_t i = 0; i < sizeof pipelines / sizeof pipelines[0]; i++)
         gpu_pipeline_destroy(lpv->gpu, pipelines[i]);
 }
@@ -170,30 +212,34 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
 {
     (void)width;
     (void)height;
-    const uint64_t dim = (uint64_t)((const struct lpv_options *)options)->dim;
-    const uint64_t cell =
-        LPV_CELL_BYTES + LPV_COLOURS * (3 * (uint64_t)gpu_format_bytes(GPU_RGBA32F) +
-                                        (uint64_t)gpu_format_bytes(GPU_RGBA16F));
-    return dim * dim * dim * cell;
+    const struct lpv_options *how = options;
+    const uint64_t dim = (uint64_t)how->dim, half = (uint64_t)gpu_format_bytes(GPU_RGBA16F),
+                   full = (uint64_t)gpu_format_bytes(GPU_RGBA32F);
+    const uint64_t slab = how->precision == LPV_PRECISION_HALF ? 3 * half : 3 * full + half;
+    return dim * dim * dim * (lpv_cell_bytes(how) + slab * lpv_slabs(how));
 }
 
+#define LPV_TECHNIQUE(name_, title_, paper_, rows_)                                                \
+    .name = name_, .title = title_, .paper = paper_, .folder = "lpv", .role = ROLE_SOURCE,         \
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,                                           \
+    .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
+    .options = { rows_, sizeof rows_ / sizeof rows_[0], sizeof(struct lpv_options) },              \
+    .debug_views = debug_views, .state_size = sizeof(struct lpv), .set_options = lpv_set_options,  \
+    .record = lpv_record, .debug_view = lpv_debug_view, .destroy = lpv_destroy,                    \
+    .memory_estimate = lpv_memory_estimate
+
 const struct technique technique_lpv = {
-    .name = "lpv",
-    .title = "light propagation volumes",
-    .paper =
-        "Martin 2012, Higher Order Light Propagation Volumes, ch. 3; Kaplanyan & Dachsbacher 2010",
-    .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
-    .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,
-    .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
-                 sizeof(struct lpv_options) },
-    .debug_views = debug_views,
-    .state_size = sizeof(struct lpv),
+    LPV_TECHNIQUE("lpv", "light propagation volumes",
+                  "Martin 2012, Higher Order Light Propagation Volumes, ch. 3; Kaplanyan & "
+                  "Dachsbacher 2010",
+                  option_rows),
     .check = lpv_check,
     .create = lpv_create,
-    .set_options = lpv_set_options,
-    .record = lpv_record,
-    .debug_view = lpv_debug_view,
-    .destroy = lpv_destroy,
-    .memory_estimate = lpv_memory_estimate,
+};
+
+const struct technique technique_holpv = {
+    LPV_TECHNIQUE("holpv", "higher order light propagation volumes",
+                  "Martin 2012, Higher Order Light Propagation Volumes, ch. 4", higher_order_rows),
+    .check = holpv_check,
+    .create = holpv_create,
 };

@@ -1,12 +1,14 @@
 // Irradiance at each pixel from the accumulated intensity (Martin 2012, sec. 3.2.4, without the albedo of eq. 3.4).
 //
-// From intensity to irradiance. In one step the flux I(ω) dω crosses a cell; on its way it is in there for a mean chord of
-// 4 V/S = 2/3 of the cell's side a (Cauchy). A flux density of paths per volume is radiance: L(ω) = I(ω) (2/3 a) / a³,
-// and E = ∫ L(ω) (−n·ω)₊ dω. Hence irradiance_scale = 2/3 / a²; the tests print how near that comes to form factors.
+// From intensity to irradiance. The flux I(ω) dω that a step finds in a cell of side a goes a way w a in that step, w = 2/3
+// with six neighbours and 1.203 with 26 (lpv_mean_way). A flux density of paths per volume is radiance: L(ω) = I(ω) (w a) / a³,
+// and E = ∫ L(ω) (−n·ω)₊ dω. Hence irradiance_scale = w / a²; the tests print how near that comes to form factors.
 //
-// The window. Light with the mean direction m, |m| ≤ 1, has in two bands the irradiance ∝ 1 − 2 w (m·n) with w the weight of
-// band 1: exact for w = 1, but beside a bright wall, whose light all leaves it, it is negative and takes other light away,
-// in the wall's complementary colour. w = 1/2 is the largest weight with which no light of positive intensity becomes negative.
+// The window. Light with the direction ω, c = −n·ω, has the irradiance ∝ 1 + w 2 c in two bands and ∝ 1 + w (2 c + 5/4 P2(c))
+// in three, w being the weight of the bands above the first: exact for w = 1, but it comes out negative behind the surface (−1
+// at c = −1; −0.158 at c = −8/15), and beside a bright wall, whose light all leaves it, it takes other light away, in the
+// wall's complementary colour. 1/2 in two bands and 0.863 in three are the largest weights with which no light of positive
+// intensity becomes negative.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -16,15 +18,26 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler2D normal;
-layout(set = 0, binding = 4) uniform sampler3D light_red;
-layout(set = 0, binding = 5) uniform sampler3D light_green;
-layout(set = 0, binding = 6) uniform sampler3D light_blue;
-layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 4) uniform sampler3D light;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D irradiance;
+
+// ∫ I(ω) (−n·ω)₊ dω in the bands of I, weighted with the window.
+vec3 irradiance_of(lpv_light light, vec3 n)
+{
+    vec3 sum = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);
+    vec3 products = n.yzx * n.zxy;
+    for (int a = 0; a < 3; a++) {
+        band_1 -= SH_Y1 * n[a] * light.along[a];
+        band_2 += n[a] * n[a] * light.square[a] + SH_Y2_XY * products[a] * light.product[a];
+    }
+    return sum + lpv.window * (SH_COSINE_1 * band_1 + SH_COSINE_2 * band_2);
+}
 
 void main()
 {
@@ -35,10 +48,7 @@ void main()
     if (z > 0.0) {
         vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
         vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z) + lpv.offset_m * n;
-        vec3 at = clamp(lpv_cells_from_world(position), vec3(0.5), vec3(lpv_cells()) - 0.5) / float(lpv.dim);
-        vec4 towards = sh4_clamped_cosine(-n) * vec4(1.0, vec3(lpv.window));
-        result = vec3(dot(textureLod(light_red, at, 0.0), towards), dot(textureLod(light_green, at, 0.0), towards),
-                      dot(textureLod(light_blue, at, 0.0), towards));
+        result = irradiance_of(lpv_sample(light, lpv_cells_from_world(position)), n);
         // What steps of sharp lobes left negative behind a bright wall stays out.
         result = clamp(result * lpv.irradiance_scale, 0.0, HALF_MAX);
     }

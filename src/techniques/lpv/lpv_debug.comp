@@ -8,6 +8,7 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -16,18 +17,14 @@ layout(push_constant, scalar) uniform push_block
     lpv_view_push push;
 };
 layout(set = 0, binding = 2) uniform sampler2D depth;
-layout(set = 0, binding = 3) uniform sampler3D shown_red;
-layout(set = 0, binding = 4) uniform sampler3D shown_green;
-layout(set = 0, binding = 5) uniform sampler3D shown_blue;
-layout(set = 0, binding = 6) uniform sampler2D normal;
-layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D picture;
+layout(set = 0, binding = 3) uniform sampler3D volume;
+layout(set = 0, binding = 4) uniform sampler2D normal;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D picture;
 
 // Flux of a cell, ∫ I dω = c0 √(4π), as the mean radiance in it.
 vec3 shown(ivec3 cell)
 {
-    vec3 c0 = vec3(texelFetch(shown_red, cell, 0).x, texelFetch(shown_green, cell, 0).x,
-                   texelFetch(shown_blue, cell, 0).x);
-    return clamp(c0 / SH_Y0 * push.radiance_scale, 0.0, HALF_MAX);
+    return clamp(texelFetch(volume, cell, 0).rgb / SH_Y0 * push.radiance_scale, 0.0, HALF_MAX);
 }
 
 vec3 slices(ivec2 pixel)

@@ -69,8 +69,10 @@ bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out)
         total += strongest(lights->emitters[i].flux);
     }
     if (!(total > 0.0) || !isfinite(total)) return false;
-    // The largest coefficient of a unit-flux lobe is below 1/2 (2/3 √(3/4π) = 0.326).
+    // The largest coefficient of a unit-flux lobe is below 1/2: 2/3 √(3/4π) = 0.326 in band 1.
     out->fixed_from_flux = power_of_two_below(most * 0.5, 30);
-    out->grid_from_flux = power_of_two_below(total, 10);
+    // All light in one cell has coefficients up to half of it, and what comes back there in later
+    // steps leaves the sum below three quarters of it.
+    out->grid_from_flux = power_of_two_below(total, 13);
     return true;
 }

@@ -24,7 +24,7 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
 
 struct lpv_scale {
     float fixed_from_flux; // integer per scaled lumen, a power of two
-    float grid_from_flux;  // the grid's unit per scaled lumen, a power of two: all light together is less than 1024
+    float grid_from_flux;  // the grid's unit per scaled lumen, a power of two: all light together is less than 8192
 };
 struct lpv_lights {
     const struct rsm_face *faces;

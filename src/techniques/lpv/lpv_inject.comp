@@ -1,6 +1,6 @@
 // Injection: every texel of every reflective shadow map is a virtual point light with the intensity
 // I(ω) = Φ/π (n·ω)₊ lumen/sr (Martin 2012, sec. 3.2.1; flux Φ, so the 1/π), added to the cell half a cell along its
-// normal as coefficients of two bands. One invocation takes a block of LPV_TEXELS² texels and adds once per run of texels
+// normal as coefficients of two or three bands. One invocation takes a block of LPV_TEXELS² texels and adds once per run of texels
 // that meet in one cell.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -11,6 +11,7 @@
 #include "frame/octahedral.glsl"
 #include "frame/rsm/rsm.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
 #define LPV_SUMS_BINDING 5
 #include "techniques/lpv/lpv_sums.glsl"
 
@@ -23,6 +24,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer rsm_faces
 layout(set = 0, binding = 2) uniform sampler2DArray rsm_depth;
 layout(set = 0, binding = 3) uniform sampler2DArray rsm_normal;
 layout(set = 0, binding = 4) uniform sampler2DArray rsm_flux;
+
 void main()
 {
     int layer = int(gl_GlobalInvocationID.z);
@@ -31,7 +33,8 @@ void main()
     rsm_face face = faces[layer];
 
     int cell = LPV_NO_CELL;
-    vec4 red = vec4(0.0), green = vec4(0.0), blue = vec4(0.0);
+    vec3 sum[9];
+    for (int k = 0; k < 9; k++) sum[k] = vec3(0.0);
     // One turn more than there are texels, to put the last run down.
     for (int i = 0; i <= LPV_TEXELS * LPV_TEXELS; i++) {
         ivec2 texel = first + ivec2(i % LPV_TEXELS, i / LPV_TEXELS);
@@ -42,15 +45,14 @@ void main()
             if (light.valid) next = lpv_injection_cell(light.position, light.normal);
         }
         if (next != cell) {
-            lpv_add(cell, red, green, blue);
-            red = green = blue = vec4(0.0);
+            lpv_add(cell, sum);
+            for (int k = 0; k < 9; k++) sum[k] = vec3(0.0);
             cell = next;
         }
         if (next != LPV_NO_CELL) {
-            vec4 lobe = lpv_unit_lobe(light.normal);
-            red += light.flux.r * lobe;
-            green += light.flux.g * lobe;
-            blue += light.flux.b * lobe;
+            float lobe[9];
+            lpv_unit_lobe(light.normal, lobe);
+            for (int k = 0; k < 9; k++) sum[k] += light.flux * lobe[k];
         }
     }
 }

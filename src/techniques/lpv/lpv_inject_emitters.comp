@@ -7,6 +7,7 @@
 #include "core/sh.glsl"
 #include "frame/frame_shared.h"
 #include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
 #define LPV_SUMS_BINDING 2
 #include "techniques/lpv/lpv_sums.glsl"
 
@@ -22,7 +23,9 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= lpv.emitter_count) return;
     frame_emitter light = emitters[i];
-    vec4 lobe = lpv_unit_lobe(light.normal);
-    lpv_add(lpv_injection_cell(light.position, light.normal), light.flux.r * lobe, light.flux.g * lobe,
-            light.flux.b * lobe);
+    float lobe[9];
+    vec3 sum[9];
+    lpv_unit_lobe(light.normal, lobe);
+    for (int k = 0; k < 9; k++) sum[k] = light.flux * lobe[k];
+    lpv_add(lpv_injection_cell(light.position, light.normal), sum);
 }

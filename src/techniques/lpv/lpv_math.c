@@ -1,5 +1,4 @@
-// Faces of neighbour cells, their solid angles in closed form, and the propagation step as a
-// matrix.
+// Faces of neighbour cells, their solid angles in closed form, and the lobes behind them.
 //
 // Differs from Martin 2012, eq. 3.3 in the weight: with Ω/4π and a lobe of unit peak a step keeps a
 // quarter of the flux. Here the flux through a face is Φ = Ω I(ω) and the re-projected lobe has the
@@ -7,16 +6,8 @@
 // conserve flux. And the lobe's width is a parameter, see README.md.
 #include "techniques/lpv/lpv_math.h"
 
-#include "core/sh.h"
-
 #include <math.h>
-
-vec3s lpv_direction(int direction)
-{
-    vec3s out = vec3_of(0, 0, 0);
-    out.raw[direction / 2] = direction % 2 == 0 ? 1.0f : -1.0f;
-    return out;
-}
+#include <stdlib.h>
 
 // Of the rectangle [0,x] × [0,y]: ∫∫ d / (u² + v² + d²)^(3/2) du dv. atan2 is right for d → 0 too.
 static double corner_sr(double x, double y, double distance)
@@ -30,52 +21,141 @@ double lpv_rectangle_sr(double x0, double x1, double y0, double y1, double dista
            corner_sr(x0, y0, distance);
 }
 
-void lpv_faces(int direction, struct lpv_face out[LPV_FACES])
+// The face of the cell at `offset` whose normal is ±axis. In units of the cell, from the source's
+// centre.
+static struct lpv_face face_of(const int offset[3], int axis, int side)
 {
-    // In units of the cell, from the source's centre: the neighbour's far face lies at 1.5, its
-    // side faces span 0.5 … 1.5 along the direction and stand at 0.5 across it.
-    const vec3s forward = lpv_direction(direction);
-    out[0] = (struct lpv_face){ forward, forward, lpv_rectangle_sr(-0.5, 0.5, -0.5, 0.5, 1.5) };
-    int count = 1;
-    for (int side = 0; side < LPV_DIRECTIONS; side++) {
-        if (side / 2 == direction / 2) continue;
-        const vec3s normal = lpv_direction(side);
-        const vec3s centre = glms_vec3_add(forward, glms_vec3_scale(normal, 0.5f));
-        out[count++] = (struct lpv_face){ glms_vec3_normalize(centre), normal,
-                                          lpv_rectangle_sr(0.5, 1.5, -0.5, 0.5, 0.5) };
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    const double distance = fabs((double)offset[axis] + 0.5 * (double)side);
+    vec3s centre = vec3_of((float)offset[0], (float)offset[1], (float)offset[2]);
+    centre.raw[axis] += 0.5f * (float)side;
+    vec3s normal = vec3_of(0, 0, 0);
+    normal.raw[axis] = (float)side;
+    return (struct lpv_face){
+        .direction = glms_vec3_normalize(centre),
+        .normal = normal,
+        .solid_angle_sr = lpv_rectangle_sr(offset[b] - 0.5, offset[b] + 0.5, offset[c] - 0.5,
+                                           offset[c] + 0.5, distance),
+    };
+}
+
+// Whether light goes on through this face: of six neighbours through all but the shared one, of 26
+// through those on the outside of the 3 × 3 × 3 cells.
+static bool passes(enum lpv_scheme scheme, const int offset[3], int axis, int side)
+{
+    return scheme == LPV_SIX ? offset[axis] != -side : offset[axis] == side;
+}
+
+static struct lpv_neighbour neighbour_of(enum lpv_scheme scheme, const int offset[3])
+{
+    struct lpv_neighbour out = { .offset = { offset[0], offset[1], offset[2] } };
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = -1; side <= 1; side += 2)
+            if (passes(scheme, offset, axis, side))
+                out.faces[out.face_count++] = face_of(offset, axis, side);
+    return out;
+}
+
+int lpv_neighbours(enum lpv_scheme scheme, struct lpv_neighbour out[LPV_MAX_NEIGHBOURS])
+{
+    int count = 0;
+    for (int i = 0; i < 27; i++) {
+        const int offset[3] = { i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1 };
+        const int steps = abs(offset[0]) + abs(offset[1]) + abs(offset[2]);
+        if (steps == 0 || (scheme == LPV_SIX && steps > 1)) continue;
+        out[count++] = neighbour_of(scheme, offset);
     }
+    return count;
 }
 
-void lpv_lobe_coefficients(vec3s axis, float mean_cosine, float out[4])
+// Light of direction ω that goes from cell to neighbour takes |x| + |y| + |z| steps for one cell of
+// way if there are six of them, max(|x|, |y|, |z|) if 26. The means over the sphere are 3/2 (so
+// that a step is Cauchy's mean chord of a cube, 4 V/S) and, six times the projection of one face of
+// the cube of side 2 over its share of the sphere, 3√2/π atan(1/√2) = 0.831.
+double lpv_mean_way(enum lpv_scheme scheme)
 {
-    sh_eval(2, axis, out); // ∫ (1 + 3 g cosθ)/4π Y: band 0 Y00, band 1 g Y1m(axis)
-    for (int i = 1; i < 4; i++) out[i] *= mean_cosine;
+    const double root = sqrt(2.0);
+    return scheme == LPV_SIX ? 2.0 / 3.0 : GLM_PI / (3.0 * root * atan(1.0 / root));
 }
 
-void lpv_step_matrix(int direction, enum lpv_lobe lobe, float mean_cosine, double out[4][4])
+// How the faces, as the nodes of a quadrature with the solid angles as weights, see the squares of
+// x² − y² and xy: 1 each if it were exact. By the cube's symmetry these are all that band 2 has.
+static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double *product)
 {
-    struct lpv_face faces[LPV_FACES];
-    lpv_faces(direction, faces);
-    for (int i = 0; i < 16; i++) out[i / 4][i % 4] = 0.0;
-    for (int f = 0; f < LPV_FACES; f++) {
-        float seen[4], sent[4];
-        sh_eval(2, faces[f].direction, seen);
-        lpv_lobe_coefficients(lobe == LPV_LOBE_NORMAL ? faces[f].normal : faces[f].direction,
-                              mean_cosine, sent);
-        for (int i = 0; i < 4; i++)
-            for (int j = 0; j < 4; j++)
-                out[i][j] += faces[f].solid_angle_sr * (double)sent[i] * (double)seen[j];
-    }
+    enum { XY = 4, XX_YY = 8 };
+    struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
+    const int count = lpv_neighbours(scheme, neighbours);
+    *square = *product = 0.0;
+    for (int n = 0; n < count; n++)
+        for (int f = 0; f < neighbours[n].face_count; f++) {
+            const struct lpv_face *face = &neighbours[n].faces[f];
+            float basis[9];
+            sh_eval(3, face->direction, basis);
+            *square += face->solid_angle_sr * (double)(basis[XX_YY] * basis[XX_YY]);
+            *product += face->solid_angle_sr * (double)(basis[XY] * basis[XY]);
+        }
 }
 
-struct lpv_step lpv_step_of(enum lpv_lobe lobe, float mean_cosine)
+// Band 2 of the lobe (cosθ)₊ⁿ of mean cosine g = (n+1)/(n+2), relative to band 0, is the mean of
+// the Legendre polynomial P2: n/(n+3) = (2g − 1)/(2 − g). n = 1 is the clamped cosine with g = 2/3
+// and the paper's 1/4, g = 1 keeps every direction. Broader lobes than a hemisphere have none.
+//
+// No wave grows. A step takes the coefficients c of the wave exp(i k·x) to G A E B c: the fluxes
+// through the faces over √Ω, the faces' phases E (unitary), the polynomials at the lobes' axes
+// times √Ω, and the weights G. B Bᵀ is the quadrature of products of two coefficients: exact up to
+// degree 3 by the cube's symmetry, and in band 2 diagonal with the two numbers q of
+// quadrature_of_band_2. With D = √q, 1 for the lower bands, B D⁻¹ has the norm 1, and the step
+// grows no more than D G A does. Along the way A = Bᵀ, and D G A has the norm of q G: weights over
+// q leave 1, g and the family's band 2, none of which is above 1, and light of any direction keeps
+// the same share, along an axis or not. With lobes along the normals, six directions of weight
+// 4π/6, x² − y² is seen 5/2 times and xy not at all: √(5/2 q) G ≤ 1 is a bound on the weight.
+struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
+                                            double focus)
 {
-    enum { Y = 1, X = 3 };
-    double m[4][4];
-    lpv_step_matrix(0, lobe, mean_cosine, m); // towards +x
-    return (struct lpv_step){ .keep = (float)m[0][0],
-                              .drive = (float)m[0][X],
-                              .aim = (float)m[X][0],
-                              .along = (float)m[X][X],
-                              .across = (float)m[Y][Y] };
+    const double band_2 = fmax(2.0 * focus - 1.0, 0.0) / (2.0 - focus);
+    double square, product;
+    quadrature_of_band_2(scheme, &square, &product);
+    if (lobe == LPV_LOBE_PROPAGATION)
+        return (struct lpv_lobe_weights){ focus, band_2 / square, band_2 / product };
+    return (struct lpv_lobe_weights){ focus, fmin(band_2, sqrt(0.4 / square)), 0.0 };
+}
+
+double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient)
+{
+    if (coefficient == 0) return 1.0;
+    if (coefficient < 4) return weights->along;
+    return coefficient == 6 || coefficient == 8 ? weights->square : weights->product;
+}
+
+static struct lpv_reprojection reprojection_of(struct lpv_face face, int p_axis, int q_axis,
+                                               enum lpv_lobe lobe)
+{
+    const double y0 = sqrt(1.0 / (4.0 * GLM_PI)), y1 = sqrt(3.0 / (4.0 * GLM_PI)),
+                 xy = sqrt(15.0 / (4.0 * GLM_PI)), solid_angle = face.solid_angle_sr;
+    const double p = (double)face.direction.raw[p_axis], q = (double)face.direction.raw[q_axis];
+    const vec3s axis = lobe == LPV_LOBE_NORMAL ? face.normal : face.direction;
+    return (struct lpv_reprojection){
+        .flux_0 = (float)(solid_angle * y0),
+        .flux_p = (float)(solid_angle * y1 * p),
+        .flux_q = (float)(solid_angle * y1 * q),
+        .flux_pp = (float)(solid_angle * p * p),
+        .flux_qq = (float)(solid_angle * q * q),
+        .flux_product_pq = (float)(solid_angle * xy * p * q),
+        .flux_product_qq = (float)(solid_angle * xy * q * q),
+        .lobe_p = axis.raw[p_axis],
+        .lobe_q = axis.raw[q_axis],
+    };
+}
+
+struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus)
+{
+    enum { X, Y };
+    const int ahead[3] = { 1, 0, 0 }, edge[3] = { 1, 1, 0 }, corner[3] = { 1, 1, 1 };
+    const struct lpv_face beside = scheme == LPV_SIX ? face_of(ahead, Y, 1) : face_of(edge, X, 1);
+    return (struct lpv_step){
+        .ahead = reprojection_of(face_of(ahead, X, 1), X, Y, lobe),
+        .beside = reprojection_of(beside, X, Y, lobe),
+        .diagonal = reprojection_of(face_of(corner, X, 1), X, Y, lobe),
+        .lobe = lpv_lobe_weights_of(scheme, lobe, focus),
+    };
 }

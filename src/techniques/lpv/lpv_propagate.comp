@@ -1,4 +1,220 @@
-// All steps but the last: in 32 bits, since rounding to 16 in every step loses more than 1e-4 of the flux.
+// One step: light goes from each cell into its 6 or 26 neighbours, gathered by the receiver (Martin 2012, sec. 3.2.3, 3.3
+// and 4.2).
+//
+// What accumulates over the steps is A = S + TS + T²S + …, S what was injected, T the step. T is linear (nothing is
+// clamped), so the accumulation needs no pass and no third grid of its own: A' = S + T A.
+//
+// T sends the flux Φ = Ω I(ω) through each face of a neighbour, of direction ω and solid angle Ω, and re-projects it as a
+// lobe around an axis n: the coefficients of a lobe are those of the band's polynomials at n. So a receiver adds up Φ, Φ n
+// and the products of Φ n nᵀ (struct sums), which one multiplication for each coefficient makes light of. Directions are
+// (p, q, q) in the order of a neighbour's axes, its signs aside; terms that the faces of one neighbour share are taken out.
+// test_lpv_twin holds this to the plain sum over faces.
 #version 460
-#define LPV_FORMAT rgba32f
-#include "lpv_propagate.glsl"
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "core/sh.glsl"
+#include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = LPV_CONSTANT_NEIGHBOURS) const int LPV_NEIGHBOURS = 6;
+
+layout(set = 0, binding = 1) uniform sampler3D injected;
+layout(set = 0, binding = 2) uniform sampler3D before;
+layout(set = 0, binding = 3) uniform writeonly image3D after;
+
+struct sums {
+    vec3 flux;
+    vec3 along[3];
+    vec3 square[3];
+    vec3 product[3];
+};
+
+sums nothing()
+{
+    vec3 none[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
+    return sums(vec3(0.0), none, none, none);
+}
+
+// The share of the light that goes from `cell` to the neighbour at `offset` which arrives there: 0 from outside of the grid.
+// What stands in the way belongs here; light that does not arrive is gone.
+float reach(ivec3 cell, ivec3 offset)
+{
+    return lpv_inside(cell) ? 1.0 : 0.0;
+}
+
+// The neighbour along axis a: its far face, (±1, 0, 0).
+void send_ahead(inout sums to, lpv_light light, int a, float side, float share)
+{
+    lpv_reprojection face = lpv.ahead;
+    vec3 flux = share * (face.flux_0 * light.mean + side * face.flux_p * light.along[a] + face.flux_pp * light.square[a]);
+    to.flux += flux;
+    to.along[a] += side * flux;
+    to.square[a] += flux;
+}
+
+// The same with its four side faces, (±p, ±q, 0) and (±p, 0, ±q): pairs, whose sums and differences are what is needed.
+void send_through_five(inout sums to, lpv_light light, int a, float side, float share)
+{
+    int b = (a + 1) % 3, c = (a + 2) % 3;
+    lpv_reprojection face = lpv.beside;
+    float p = side * face.lobe_p, q = face.lobe_q;
+    send_ahead(to, light, a, side, share);
+    vec3 even = face.flux_0 * light.mean + side * face.flux_p * light.along[a] + face.flux_pp * light.square[a];
+    vec3 sum_b = 2.0 * share * (even + face.flux_qq * light.square[b]);
+    vec3 sum_c = 2.0 * share * (even + face.flux_qq * light.square[c]);
+    vec3 difference_b = 2.0 * share * (face.flux_q * light.along[b] + side * face.flux_product_pq * light.product[c]);
+    vec3 difference_c = 2.0 * share * (face.flux_q * light.along[c] + side * face.flux_product_pq * light.product[b]);
+    vec3 all = sum_b + sum_c;
+    to.flux += all;
+    to.along[a] += p * all;
+    to.along[b] += q * difference_b;
+    to.along[c] += q * difference_c;
+    to.square[a] += p * p * all;
+    to.square[b] += q * q * sum_b;
+    to.square[c] += q * q * sum_c;
+    to.product[c] += p * q * difference_b;
+    to.product[b] += p * q * difference_c;
+}
+
+// The neighbour across the edge along axis c: its two outer faces, (±p, ±q, 0) and (±q, ±p, 0).
+void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float side_b, float share)
+{
+    int a = (c + 1) % 3, b = (c + 2) % 3;
+    lpv_reprojection face = lpv.beside;
+    float p = face.lobe_p, q = face.lobe_q, sides = side_a * side_b;
+    vec3 shared_part = face.flux_0 * light.mean + sides * face.flux_product_pq * light.product[c];
+    vec3 flux_a = share * (shared_part + side_a * face.flux_p * light.along[a] + side_b * face.flux_q * light.along[b] +
+                           face.flux_pp * light.square[a] + face.flux_qq * light.square[b]);
+    vec3 flux_b = share * (shared_part + side_a * face.flux_q * light.along[a] + side_b * face.flux_p * light.along[b] +
+                           face.flux_qq * light.square[a] + face.flux_pp * light.square[b]);
+    to.flux += flux_a + flux_b;
+    to.along[a] += side_a * (p * flux_a + q * flux_b);
+    to.along[b] += side_b * (q * flux_a + p * flux_b);
+    to.square[a] += p * p * flux_a + q * q * flux_b;
+    to.square[b] += q * q * flux_a + p * p * flux_b;
+    to.product[c] += sides * p * q * (flux_a + flux_b);
+}
+
+// The neighbour across a corner: its three outer faces, (±p, ±q, ±q) and so on. Squares may leave out what is the same for
+// all axes.
+void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
+{
+    lpv_reprojection face = lpv.diagonal;
+    float p = face.lobe_p, q = face.lobe_q;
+    vec3 sides = side.yzx * side.zxy; // of the products
+    vec3 shared_part = face.flux_0 * light.mean;
+    for (int a = 0; a < 3; a++)
+        shared_part += side[a] * face.flux_q * light.along[a] + sides[a] * face.flux_product_pq * light.product[a];
+    vec3 all = vec3(0.0), flux[3];
+    for (int a = 0; a < 3; a++) {
+        flux[a] = share * (shared_part + side[a] * (face.flux_p - face.flux_q) * light.along[a] +
+                           sides[a] * (face.flux_product_qq - face.flux_product_pq) * light.product[a] +
+                           (face.flux_pp - face.flux_qq) * light.square[a]);
+        all += flux[a];
+    }
+    to.flux += all;
+    for (int a = 0; a < 3; a++) {
+        to.along[a] += side[a] * (q * all + (p - q) * flux[a]);
+        to.square[a] += (p * p - q * q) * flux[a];
+        to.product[a] += sides[a] * (p * q * all + (q * q - p * q) * flux[a]);
+    }
+}
+
+// What a receiver has with what was injected into it.
+void store(ivec3 cell, sums sum)
+{
+    vec4 slabs[7];
+    lpv_fetch_slabs(injected, cell, slabs);
+    float one = SH_Y1 * lpv.lobe_along, two = SH_Y2_XY * lpv.lobe_product;
+    vec3 mean = SH_Y0 * sum.flux;
+    vec3 x = one * sum.along[0], y = one * sum.along[1], z = one * sum.along[2];
+    vec3 yz = two * sum.product[0], xz = two * sum.product[1], xy = two * sum.product[2];
+    vec3 zz = lpv.lobe_square * SH_Y2_ZZ * (2.0 * sum.square[2] - sum.square[0] - sum.square[1]);
+    vec3 xx_yy = lpv.lobe_square * SH_Y2_XX_YY * (sum.square[0] - sum.square[1]);
+    slabs[0] += vec4(mean, y.r);
+    slabs[1] += vec4(y.gb, z.rg);
+    slabs[2] += vec4(z.b, x);
+    slabs[3] += vec4(xy, yz.r);
+    slabs[4] += vec4(yz.gb, zz.rg);
+    slabs[5] += vec4(zz.b, xz);
+    slabs[6] += vec4(xx_yy, 0.0);
+    lpv_store_slabs(after, cell, slabs);
+}
+
+lpv_light light_of(ivec3 cell) // anything outside of the grid
+{
+    return lpv_fetch(before, clamp(cell, ivec3(0), lpv_cells() - 1));
+}
+
+void from_face(inout sums to, ivec3 cell, int axis, int side)
+{
+    ivec3 offset = ivec3(0);
+    offset[axis] = side;
+    send_through_five(to, light_of(cell - offset), axis, float(side), reach(cell - offset, offset));
+}
+
+void gather_six(ivec3 cell)
+{
+    sums sum = nothing();
+    for (int axis = 0; axis < 3; axis++) {
+        from_face(sum, cell, axis, 1);
+        from_face(sum, cell, axis, -1);
+    }
+    store(cell, sum);
+}
+
+// ---- 26 neighbours. An invocation goes along z and takes each source once, for the receivers below, beside and above it.
+
+struct receivers {
+    sums below, level, above;
+};
+
+// From the source at x = −step.x, y = −step.y of the receivers' column.
+void from_column(inout receivers to, ivec3 cell, ivec2 step)
+{
+    lpv_light light = light_of(cell);
+    float x = float(step.x), y = float(step.y);
+    float below = reach(cell, ivec3(step, -1)), level = reach(cell, ivec3(step, 0)), above = reach(cell, ivec3(step, 1));
+    if (step.x != 0 && step.y != 0) {
+        send_over_corner(to.below, light, vec3(x, y, -1.0), below);
+        send_over_edge(to.level, light, 2, x, y, level);
+        send_over_corner(to.above, light, vec3(x, y, 1.0), above);
+    } else if (step.x != 0) {
+        send_over_edge(to.below, light, 1, -1.0, x, below);
+        send_ahead(to.level, light, 0, x, level);
+        send_over_edge(to.above, light, 1, 1.0, x, above);
+    } else if (step.y != 0) {
+        send_over_edge(to.below, light, 0, y, -1.0, below);
+        send_ahead(to.level, light, 1, y, level);
+        send_over_edge(to.above, light, 0, y, 1.0, above);
+    } else {
+        send_ahead(to.below, light, 2, -1.0, below);
+        send_ahead(to.above, light, 2, 1.0, above);
+    }
+}
+
+void gather_twenty_six(ivec3 first)
+{
+    receivers to = receivers(nothing(), nothing(), nothing());
+    for (int z = first.z - 1; z <= first.z + LPV_RUN; z++) {
+        [[unroll]] for (int y = -1; y <= 1; y++)
+            [[unroll]] for (int x = -1; x <= 1; x++) from_column(to, ivec3(first.xy - ivec2(x, y), z), ivec2(x, y));
+        if (z > first.z && z - 1 < lpv.cells_z) store(ivec3(first.xy, z - 1), to.below);
+        to = receivers(to.level, to.above, nothing());
+    }
+}
+
+void main()
+{
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    if (LPV_NEIGHBOURS == 26) cell.z *= LPV_RUN;
+    if (!lpv_inside(cell)) return;
+    if (LPV_NEIGHBOURS == 26)
+        gather_twenty_six(cell);
+    else
+        gather_six(cell);
+}

@@ -3,7 +3,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -11,9 +13,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer lpv_sums
 {
     uint words[];
 };
-layout(set = 0, binding = 2, rgba32f) uniform writeonly image3D injected_red;
-layout(set = 0, binding = 3, rgba32f) uniform writeonly image3D injected_green;
-layout(set = 0, binding = 4, rgba32f) uniform writeonly image3D injected_blue;
+layout(set = 0, binding = 2) uniform writeonly image3D injected;
 
 // A 64-bit two's complement number. Negated first where negative: −1 as 2^32 · (2^32 − 1) + … would cancel to nothing.
 float number(int at)
@@ -28,17 +28,11 @@ float number(int at)
     return (negative ? -value : value) * lpv.grid_from_fixed;
 }
 
-vec4 lobe(int at)
-{
-    return vec4(number(at), number(at + 2), number(at + 4), number(at + 6));
-}
-
 void main()
 {
     ivec3 cell = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(cell)) return;
-    int at = 24 * lpv_index(cell);
-    imageStore(injected_red, cell, lobe(at));
-    imageStore(injected_green, cell, lobe(at + 8));
-    imageStore(injected_blue, cell, lobe(at + 16));
+    int at = 2 * LPV_NUMBERS * lpv_index(cell);
+    for (int i = 0; i < LPV_SLABS; i++, at += 8)
+        lpv_store_slab(injected, cell, i, vec4(number(at), number(at + 2), number(at + 4), number(at + 6)));
 }

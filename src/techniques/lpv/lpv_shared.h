@@ -6,6 +6,21 @@
 
 #define LPV_TEXELS 4 // side of the block of texels of a reflective shadow map that one invocation injects
 #define LPV_EMITTERS_LOCAL 64 // invocations of a workgroup that injects emissive surfaces, one point each
+#define LPV_RUN 8 // cells along z that an invocation of a step with 26 neighbours takes; divides every dimension
+
+// Specialization constants.
+#define LPV_CONSTANT_BANDS 0 // 2 or 3
+#define LPV_CONSTANT_HALF 1
+#define LPV_CONSTANT_NEIGHBOURS 2 // 6 or 26
+
+// Faces that are alike: their direction is (p, q, 0) or (p, q, q) in some order of the axes, their solid angle Ω, the axis
+// of the lobes they are re-projected as (lobe_p, lobe_q, …). See lpv_propagate.comp.
+struct lpv_reprojection {
+    float flux_0, flux_p, flux_q;           // Ω Y0, Ω Y1 p, Ω Y1 q
+    float flux_pp, flux_qq;                 // Ω p², Ω q²
+    float flux_product_pq, flux_product_qq; // Ω Yxy p q, Ω Yxy q²
+    float lobe_p, lobe_q;
+};
 
 // Uniform block "lpv_grid".
 struct lpv_params {
@@ -13,12 +28,13 @@ struct lpv_params {
     float cell_m;
     int32_t cells_x, cells_y, cells_z; // in use; beyond them is the outside
     int32_t dim;            // side of the images
-    float keep, drive, aim, along, across; // struct lpv_step
+    AG_STRUCT(lpv_reprojection) ahead, beside, diagonal; // struct lpv_step
+    float lobe_along, lobe_square, lobe_product;
     float fixed_from_flux;  // integer per scaled lumen
     float grid_from_fixed;  // the grid's unit per integer
     float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
     float offset_m;         // of the look-up, along the normal
-    float window;           // weight of band 1 at the look-up
+    float window;           // weight of the bands above the first at the look-up
     uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
     uint32_t emitter_count;
@@ -35,7 +51,8 @@ struct lpv_view_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct lpv_params) == 22 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 47 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
 #endif
 

@@ -3,9 +3,6 @@
 
 enum { LOCAL = 8 }; // of all shaders, in x and y
 
-// Mean chord of a cube over its side, 4 V/S (Cauchy): see lpv_apply.comp.
-static const float MEAN_CHORD = 2.0f / 3.0f;
-
 bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
 {
     const struct lpv_options *options = &lpv->options;
@@ -21,7 +18,10 @@ bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
                lpv_scale_of(&lights, &scale);
     if (!lpv->lit) return false;
     const struct lpv_grid *grid = &lpv->grid;
-    const struct lpv_step step = lpv_step_of((enum lpv_lobe)options->lobe, options->focus);
+    const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
+    const struct lpv_step step =
+        lpv_step_of(scheme, (enum lpv_lobe)options->lobe, (double)options->focus);
+    const float mean_way = (float)lpv_mean_way(scheme); // see lpv_apply.comp
     lpv->params = (struct lpv_params){
         .origin_m = grid->origin_m,
         .cell_m = grid->cell_m,
@@ -29,15 +29,16 @@ bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
         .cells_y = grid->cells[1],
         .cells_z = grid->cells[2],
         .dim = options->dim,
-        .keep = step.keep,
-        .drive = step.drive,
-        .aim = step.aim,
-        .along = step.along,
-        .across = step.across,
+        .ahead = step.ahead,
+        .beside = step.beside,
+        .diagonal = step.diagonal,
+        .lobe_along = (float)step.lobe.along,
+        .lobe_square = (float)step.lobe.square,
+        .lobe_product = (float)step.lobe.product,
         .fixed_from_flux = scale.fixed_from_flux,
         .grid_from_fixed = scale.grid_from_flux / scale.fixed_from_flux,
         .irradiance_scale =
-            options->gain * MEAN_CHORD / (grid->cell_m * grid->cell_m * scale.grid_from_flux),
+            options->gain * mean_way / (grid->cell_m * grid->cell_m * scale.grid_from_flux),
         .offset_m = options->offset * grid->cell_m,
         .window = options->window,
         .rsm_size = view->rsm_size,
@@ -53,12 +54,14 @@ static struct gpu_binding grid_binding(struct lpv *lpv, struct gpu_cmd *cmd)
     return gpu_transient(cmd, "lpv_grid", &lpv->params, sizeof lpv->params);
 }
 
+// An invocation takes `run` cells along z.
 static void dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
-                           const struct gpu_binding *bindings, int count)
+                           uint32_t run, const struct gpu_binding *bindings, int count)
 {
     gpu_dispatch(cmd, pipeline, bindings, count, NULL, 0,
                  gpu_groups((uint32_t)lpv->grid.cells[0], LOCAL),
-                 gpu_groups((uint32_t)lpv->grid.cells[1], LOCAL), (uint32_t)lpv->grid.cells[2]);
+                 gpu_groups((uint32_t)lpv->grid.cells[1], LOCAL),
+                 gpu_groups((uint32_t)lpv->grid.cells[2], run));
 }
 
 static void inject_rsm(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -87,64 +90,59 @@ void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct fra
 {
     const size_t cells =
         (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] * (size_t)lpv->grid.cells[2];
-    gpu_scope_begin(cmd, "lpv.inject");
-    gpu_fill_buffer(cmd, lpv->sums, 0, cells * LPV_CELL_BYTES, 0);
+    gpu_scope_begin(cmd, lpv->names->inject);
+    gpu_fill_buffer(cmd, lpv->sums, 0, cells * lpv_cell_bytes(&lpv->options), 0);
     inject_rsm(lpv, cmd, view);
     inject_emitters(lpv, cmd, view);
     gpu_scope_end(cmd);
 
-    gpu_scope_begin(cmd, "lpv.resolve");
-    dispatch_cells(lpv, cmd, lpv->resolve,
+    gpu_scope_begin(cmd, lpv->names->resolve);
+    dispatch_cells(lpv, cmd, lpv->resolve, 1,
                    GPU_BIND(grid_binding(lpv, cmd), { .name = "lpv_sums", .buffer = lpv->sums },
-                            { .name = "injected_red", .image = lpv->injected.colour[0] },
-                            { .name = "injected_green", .image = lpv->injected.colour[1] },
-                            { .name = "injected_blue", .image = lpv->injected.colour[2] }));
+                            { .name = "injected", .image = lpv->injected }));
     gpu_scope_end(cmd);
 }
 
-static void record_step(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
-                        const struct lpv_volume *before, const struct lpv_volume *after)
+static void record_step(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image before, gpu_image after)
 {
-    const struct lpv_volume *injected = &lpv->injected;
-    dispatch_cells(lpv, cmd, pipeline,
-                   GPU_BIND(grid_binding(lpv, cmd),
-                            { .name = "injected_red", .image = injected->colour[0] },
-                            { .name = "injected_green", .image = injected->colour[1] },
-                            { .name = "injected_blue", .image = injected->colour[2] },
-                            { .name = "before_red", .image = before->colour[0] },
-                            { .name = "before_green", .image = before->colour[1] },
-                            { .name = "before_blue", .image = before->colour[2] },
-                            { .name = "after_red", .image = after->colour[0] },
-                            { .name = "after_green", .image = after->colour[1] },
-                            { .name = "after_blue", .image = after->colour[2] }));
+    const uint32_t run = lpv->options.neighbours == LPV_TWENTY_SIX ? LPV_RUN : 1;
+    dispatch_cells(lpv, cmd, lpv->propagate, run,
+                   GPU_BIND(grid_binding(lpv, cmd), { .name = "injected", .image = lpv->injected },
+                            { .name = "before", .image = before },
+                            { .name = "after", .image = after }));
+}
+
+// Where a step writes when `left` more follow: the last to the light, the others by turns. In 16
+// bits the light's own image takes its turn.
+static gpu_image step_target(const struct lpv *lpv, int left)
+{
+    const bool half = lpv->options.precision == LPV_PRECISION_HALF;
+    if (left == 0 || (half && left % 2 == 0)) return lpv->light;
+    return lpv->steps[half ? 0 : (left + 1) % 2];
 }
 
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
 {
-    const int last = lpv->options.steps - 1;
-    gpu_scope_begin(cmd, "lpv.propagate");
-    for (int i = 0; i <= last; i++) {
-        const struct lpv_volume *before = i == 0 ? &lpv->injected : &lpv->steps[(i - 1) % 2];
-        const struct lpv_volume *after = i == last ? &lpv->light : &lpv->steps[i % 2];
-        record_step(lpv, cmd, i == last ? lpv->finish : lpv->propagate, before, after);
+    gpu_image before = lpv->injected;
+    gpu_scope_begin(cmd, lpv->names->propagate);
+    for (int left = lpv->options.steps - 1; left >= 0; left--) {
+        const gpu_image after = step_target(lpv, left);
+        record_step(lpv, cmd, before, after);
+        before = after;
     }
     gpu_scope_end(cmd);
 }
 
 void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const struct lpv_volume *light = &lpv->light;
-    gpu_scope_begin(cmd, "lpv.apply");
-    gpu_dispatch(
-        cmd, lpv->apply,
-        GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
-                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "light_red", .image = light->colour[0], .sampler = lpv->linear },
-                 { .name = "light_green", .image = light->colour[1], .sampler = lpv->linear },
-                 { .name = "light_blue", .image = light->colour[2], .sampler = lpv->linear },
-                 { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-        NULL, 0, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
+    gpu_scope_begin(cmd, lpv->names->apply);
+    gpu_dispatch(cmd, lpv->apply,
+                 GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                          { .name = "light", .image = lpv->light, .sampler = lpv->linear },
+                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+                 NULL, 0, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
     gpu_scope_end(cmd);
 }
 
@@ -156,17 +154,14 @@ void lpv_record_debug(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_v
         .view = what,
         .radiance_scale = lpv->params.irradiance_scale / (4.0f * GLM_PIf),
     };
-    const struct lpv_volume *shown = what == LPV_VIEW_PROPAGATED ? &lpv->light : &lpv->injected;
-    gpu_scope_begin(cmd, "lpv.debug");
-    gpu_dispatch(cmd, lpv->debug,
-                 GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
-                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                          { .name = "shown_red", .image = shown->colour[0] },
-                          { .name = "shown_green", .image = shown->colour[1] },
-                          { .name = "shown_blue", .image = shown->colour[2] },
-                          { .name = "picture", .image = out }),
-                 &push, sizeof push, gpu_groups(view->width, LOCAL),
-                 gpu_groups(view->height, LOCAL), 1);
+    const gpu_image shown = what == LPV_VIEW_PROPAGATED ? lpv->light : lpv->injected;
+    gpu_scope_begin(cmd, lpv->names->debug);
+    gpu_dispatch(
+        cmd, lpv->debug,
+        GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
+                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                 { .name = "volume", .image = shown }, { .name = "picture", .image = out }),
+        &push, sizeof push, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
     gpu_scope_end(cmd);
 }

@@ -12,26 +12,38 @@ struct lpv_options {
 #undef OPTION
 };
 
-#define LPV_COLOURS 3
-#define LPV_CELL_BYTES (LPV_COLOURS * 4 * 2 * 4) // of a cell's 64-bit sums
+enum lpv_precision { LPV_PRECISION_HALF, LPV_PRECISION_FLOAT };
 
-// Intensity of one grid: an image per colour, a texel per cell, its four coefficients in the grid's unit.
-struct lpv_volume {
-    gpu_image colour[LPV_COLOURS];
+// Texels of a cell: 12 or 27 coefficients, four to a texel (lpv_light.glsl).
+static inline uint32_t lpv_slabs(const struct lpv_options *options)
+{
+    return options->bands == 3 ? 7 : 3;
+}
+
+static inline size_t lpv_cell_bytes(const struct lpv_options *options) // of a cell's 64-bit sums
+{
+    return 4 * (size_t)lpv_slabs(options) * 8;
+}
+
+// Of passes and objects, "technique.thing".
+struct lpv_names {
+    const char *inject, *inject_emitters, *resolve, *propagate, *apply, *debug;
+    const char *sums, *injected, *steps[2], *light, *linear;
 };
 
 struct lpv {
+    const struct lpv_names *names;
     struct gpu *gpu;
     struct lpv_options options;
     gpu_sampler linear;
-    gpu_pipeline inject, inject_emitters, resolve, propagate, finish, apply, debug;
-    gpu_buffer sums;             // [cell][colour][coefficient] 64-bit integers
-    struct lpv_volume injected;  // RGBA32F
-    struct lpv_volume steps[2];  // RGBA32F, in turn
-    struct lpv_volume light;     // RGBA16F: accumulated over all steps
+    gpu_pipeline inject, inject_emitters, resolve, propagate, apply, debug;
+    gpu_buffer sums;    // [cell][coefficient][colour] 64-bit integers
+    gpu_image injected; // volumes: dim² × slabs · dim texels
+    gpu_image steps[2]; // in turn; with half precision only the first, and `light` is the other
+    gpu_image light;    // RGBA16F: accumulated over all steps
     struct lpv_grid grid;
-    struct lpv_params params;    // of the frame being recorded
-    bool lit;                    // the frame being recorded has light and something to light
+    struct lpv_params params; // of the frame being recorded
+    bool lit;                 // the frame being recorded has light and something to light
 };
 
 // Places the grid and chooses the scales; false where there is nothing to do.

@@ -1,11 +1,11 @@
-// Adding virtual lights to the grid. Include after core/sh.glsl and lpv_grid.glsl; define LPV_SUMS_BINDING.
+// Adding virtual lights to the grid. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl; define LPV_SUMS_BINDING.
 //
 // Sums are whole numbers, so that no order of the invocations changes a bit: each coefficient has 64 bits in two words.
 // The carry out of the low word is added to the high one; modulo 2^64 the total is exact whatever the order.
 #ifndef AG_LPV_SUMS_GLSL
 #define AG_LPV_SUMS_GLSL
 
-// [cell][colour][coefficient][low, high]
+// [cell][coefficient][colour][low, high], as many numbers to a cell as its slabs hold
 layout(set = 0, binding = LPV_SUMS_BINDING, scalar) buffer lpv_sums
 {
     uint words[];
@@ -26,18 +26,13 @@ void lpv_add_number(int at, float value)
     if (high != 0u) atomicAdd(words[at + 1], high);
 }
 
-void lpv_add_lobe(int at, vec4 lobe)
-{
-    for (int i = 0; i < 4; i++) lpv_add_number(at + 2 * i, lobe[i]);
-}
-
 // Coefficients × flux of what arrives in a cell; nothing for LPV_NO_CELL.
-void lpv_add(int cell, vec4 red, vec4 green, vec4 blue)
+void lpv_add(int cell, vec3 lobe[9])
 {
     if (cell == LPV_NO_CELL) return;
-    lpv_add_lobe(24 * cell, red);
-    lpv_add_lobe(24 * cell + 8, green);
-    lpv_add_lobe(24 * cell + 16, blue);
+    int at = 2 * LPV_NUMBERS * cell;
+    for (int i = 0; i < LPV_BANDS * LPV_BANDS; i++)
+        for (int colour = 0; colour < 3; colour++) lpv_add_number(at + 2 * (3 * i + colour), lobe[i][colour]);
 }
 
 // Half a cell in front of its surface, so that a virtual light is on the side that it shines to.
@@ -47,10 +42,11 @@ int lpv_injection_cell(vec3 position, vec3 normal)
     return lpv_inside(at) ? lpv_index(at) : LPV_NO_CELL;
 }
 
-// Coefficients of 1/π (n·ω)₊: a flux of 1.
-vec4 lpv_unit_lobe(vec3 normal)
+// Coefficients of 1/π (n·ω)₊: a flux of 1. Those of bands that are not in use are never looked at.
+void lpv_unit_lobe(vec3 normal, out float lobe[9])
 {
-    return sh4_clamped_cosine(normal) / SH_COSINE_0;
+    sh9_clamped_cosine(normal, lobe);
+    for (int i = 0; i < 9; i++) lobe[i] /= SH_COSINE_0;
 }
 
 #endif
