@@ -2,30 +2,13 @@
 #include "core/rng.h"
 
 static const uint64_t PCG_MULTIPLIER = UINT64_C(6364136223846793005);
-static const float UNIT_24 =
-    0x1p-24f; // 24 bits are what a float in [0, 1) holds without rounding up to 1
-
-static float unit_float(uint32_t bits)
-{
-    return (float)(bits >> 8) * UNIT_24;
-}
-
-// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): every input bit reaches every output bit.
-static uint64_t mix(uint64_t x)
-{
-    x ^= x >> 30;
-    x *= UINT64_C(0xbf58476d1ce4e5b9);
-    x ^= x >> 27;
-    x *= UINT64_C(0x94d049bb133111eb);
-    return x ^ (x >> 31);
-}
 
 struct rng rng_for(uint32_t pixel, uint32_t sample, uint32_t dimension)
 {
     static const uint64_t golden = UINT64_C(0x9e3779b97f4a7c15);
-    uint64_t key = mix(((uint64_t)pixel << 32 | sample) + golden);
-    key = mix(key ^ mix(dimension + golden * 2));
-    struct rng rng = { .state = key, .increment = mix(key + golden) | 1 };
+    uint64_t key = rng_mix(((uint64_t)pixel << 32 | sample) + golden);
+    key = rng_mix(key ^ rng_mix(dimension + golden * 2));
+    struct rng rng = { .state = key, .increment = rng_mix(key + golden) | 1 };
     rng_u32(&rng);
     return rng;
 }
@@ -41,7 +24,7 @@ uint32_t rng_u32(struct rng *rng)
 
 float rng_float(struct rng *rng)
 {
-    return unit_float(rng_u32(rng));
+    return rng_unit(rng_u32(rng));
 }
 
 vec2s rng_vec2(struct rng *rng)
@@ -63,7 +46,7 @@ uint32_t pcg_hash(uint32_t word)
 vec2s r2_sequence(uint32_t i)
 {
     static const uint32_t half = 0x80000000u, inverse_g = 3242174889u, inverse_g2 = 2447445414u;
-    return (vec2s){ { unit_float(half + i * inverse_g), unit_float(half + i * inverse_g2) } };
+    return (vec2s){ { rng_unit(half + i * inverse_g), rng_unit(half + i * inverse_g2) } };
 }
 
 static uint32_t reverse_bits(uint32_t x)
@@ -105,5 +88,5 @@ vec2s sobol_2d(uint32_t i, uint32_t seed)
         x = owen_scramble(x, pcg_hash(seed));
         y = owen_scramble(y, pcg_hash(seed ^ 0x9e3779b9u));
     }
-    return (vec2s){ { unit_float(x), unit_float(y) } };
+    return (vec2s){ { rng_unit(x), rng_unit(y) } };
 }

@@ -21,3 +21,27 @@ uint32_t pcg_hash(uint32_t word);
 vec2s r2_sequence(uint32_t i);
 // Point i of the two-dimensional Sobol sequence, Owen-scrambled by `seed` (0: plain), in [0, 1)².
 vec2s sobol_2d(uint32_t i, uint32_t seed);
+
+// ---- what a path tracer asks for at every ray
+
+// Every input bit reaches every output bit: the finaliser of SplitMix64 (Steele, Lea & Flood 2014).
+static inline uint64_t rng_mix(uint64_t x)
+{
+    x ^= x >> 30;
+    x *= UINT64_C(0xbf58476d1ce4e5b9);
+    x ^= x >> 27;
+    x *= UINT64_C(0x94d049bb133111eb);
+    return x ^ (x >> 31);
+}
+
+// In [0, 1), from the upper 24 bits: what a float there holds without rounding up to 1.
+static inline float rng_unit(uint32_t bits)
+{
+    return (float)(bits >> 8) * 0x1p-24f;
+}
+
+// Two such numbers from a word's halves.
+static inline vec2s rng_pair(uint64_t word)
+{
+    return (vec2s){ { rng_unit((uint32_t)(word >> 32)), rng_unit((uint32_t)word) } };
+}

@@ -24,13 +24,6 @@ float pdf_sphere(void)
     return 1.0f / (4.0f * PI);
 }
 
-// Malley's method: the disk, lifted to the hemisphere.
-vec3s sample_hemisphere_cosine(vec2s u)
-{
-    vec2s d = sample_disk(u);
-    return vec3_of(d.x, d.y, sqrtf(fmaxf(0.0f, 1.0f - d.x * d.x - d.y * d.y)));
-}
-
 float pdf_hemisphere_cosine(float cos_theta)
 {
     return fmaxf(0.0f, cos_theta) / PI;
@@ -54,28 +47,4 @@ vec3s sample_cone_uniform(vec2s u, float cos_max)
 float pdf_cone_uniform(float cos_max)
 {
     return 1.0f / (2.0f * PI * (1.0f - cos_max));
-}
-
-vec2s sample_disk(vec2s u)
-{
-    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
-    if (x == 0.0f && y == 0.0f) return (vec2s){ { 0.0f, 0.0f } };
-    bool wide = fabsf(x) > fabsf(y);
-    float radius = wide ? x : y;
-    float phi = wide ? PI / 4.0f * (y / x) : PI / 2.0f - PI / 4.0f * (x / y);
-    return (vec2s){ { radius * cosf(phi), radius * sinf(phi) } };
-}
-
-// Heitz 2019, "A Low-Distortion Map Between Triangle and Square": each half of the square keeps its
-// area, and near points stay near, which the square-root map does not do.
-vec2s sample_triangle(vec2s u)
-{
-    if (u.y > u.x) {
-        u.x *= 0.5f;
-        u.y -= u.x;
-    } else {
-        u.y *= 0.5f;
-        u.x -= u.y;
-    }
-    return u;
 }

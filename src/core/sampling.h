@@ -4,13 +4,58 @@
 
 #include "core/vec.h"
 
+#include <math.h>
+
 vec3s sample_sphere(vec2s u);                           // uniform, pdf 1/(4π)
 float pdf_sphere(void);
-vec3s sample_hemisphere_cosine(vec2s u);                // around +z, pdf cosθ/π
+static inline vec3s sample_hemisphere_cosine(vec2s u);  // around +z, pdf cosθ/π
 float pdf_hemisphere_cosine(float cos_theta);
 vec3s sample_hemisphere_uniform(vec2s u);               // around +z, pdf 1/(2π)
 float pdf_hemisphere_uniform(void);
 vec3s sample_cone_uniform(vec2s u, float cos_max);      // around +z
 float pdf_cone_uniform(float cos_max);
-vec2s sample_disk(vec2s u);                             // concentric (Shirley & Chiu 1997), unit disk
-vec2s sample_triangle(vec2s u);                         // barycentric b1, b2, uniform by area
+static inline vec2s sample_disk(vec2s u);               // concentric (Shirley & Chiu 1997), unit disk
+static inline vec2s sample_triangle(vec2s u);           // barycentric b1, b2, uniform by area
+
+// ---- what a path tracer calls for every ray
+
+// cos x and sin x for |x| ≤ π/4 by their series, to the last bits of a float; the C library's ask first how large x is.
+static inline vec2s eighth_turn(float x)
+{
+    float s = x * x;
+    return (vec2s){ { 1.0f - s * (1.0f / 2 - s * (1.0f / 24 - s * (1.0f / 720 - s * (1.0f / 40320)))),
+                      x * (1.0f - s * (1.0f / 6 - s * (1.0f / 120 - s * (1.0f / 5040 - s * (1.0f / 362880))))) } };
+}
+
+static inline vec2s sample_disk(vec2s u)
+{
+    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
+    if (x == 0.0f && y == 0.0f) return (vec2s){ { 0.0f, 0.0f } };
+    bool wide = fabsf(x) > fabsf(y);
+    float radius = wide ? x : y;
+    // The angle is π/4 · y/x from the x axis, or π/4 · x/y from the y axis.
+    vec2s turn = eighth_turn(GLM_PIf / 4.0f * (wide ? y / x : x / y));
+    return (vec2s){ { radius * (wide ? turn.x : turn.y), radius * (wide ? turn.y : turn.x) } };
+}
+
+// Heitz 2019, "A Low-Distortion Map Between Triangle and Square": each half of the square keeps its
+// area, and near points stay near, which the square-root map does not do.
+static inline vec2s sample_triangle(vec2s u)
+{
+    if (u.y > u.x) {
+        u.x *= 0.5f;
+        u.y -= u.x;
+    } else {
+        u.y *= 0.5f;
+        u.x -= u.y;
+    }
+    return u;
+}
+
+// Malley's method: the disk, lifted to the hemisphere.
+static inline vec3s sample_hemisphere_cosine(vec2s u)
+{
+    vec2s d = sample_disk(u);
+    float rest = 1.0f - d.x * d.x - d.y * d.y;
+    return vec3_of(d.x, d.y, sqrtf(rest > 0.0f ? rest : 0.0f));
+}

@@ -71,12 +71,3 @@ vec3s box3_size(struct box3 box)
     if (box3_is_empty(box)) return vec3_of(0.0f, 0.0f, 0.0f);
     return glms_vec3_sub(box.max, box.min);
 }
-
-void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent)
-{
-    float sign = copysignf(1.0f, n.z);
-    float a = -1.0f / (sign + n.z);
-    float b = n.x * n.y * a;
-    *tangent = vec3_of(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    *bitangent = vec3_of(b, sign + n.y * n.y * a, -n.y);
-}

@@ -62,4 +62,11 @@ vec3s box3_size(struct box3 box);
 
 // Any two unit vectors that make a right-handed frame (tangent, bitangent, n) with the unit vector n
 // (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
-void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent);
+static inline void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent)
+{
+    float sign = copysignf(1.0f, n.z);
+    float a = -1.0f / (sign + n.z);
+    float b = n.x * n.y * a;
+    *tangent = vec3_of(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    *bitangent = vec3_of(b, sign + n.y * n.y * a, -n.y);
+}

@@ -17,6 +17,7 @@ struct embree {
     struct host *host;
     RTCDevice device;
     RTCScene scene;
+    struct ray_log *log; // NULL: none
 };
 
 static bool fail(const struct embree *embree, const char *doing)
@@ -81,7 +82,7 @@ bool embree_add(struct embree *embree, const struct embree_geometry *geometry)
     RTCGeometry g = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!g) return fail(embree, "add triangles");
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry->positions,
-                               0, sizeof(vec3s), geometry->vertex_count);
+                               0, geometry->stride, geometry->vertex_count);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, geometry->indices, 0,
                                3 * sizeof(uint32_t), geometry->triangle_count);
     if (geometry->solid) {
@@ -106,6 +107,17 @@ bool embree_commit(struct embree *embree)
 
 // ---- queries
 
+void embree_log(struct embree *embree, struct ray_log *log)
+{
+    embree->log = log;
+}
+
+static void log_ray(struct ray_log *log, const struct ray *ray, bool occlusion)
+{
+    size_t i = atomic_fetch_add_explicit(&log->count, 1, memory_order_relaxed);
+    if (i < log->capacity) log->rays[i] = (struct logged_ray){ *ray, occlusion };
+}
+
 static struct RTCRay rtc_ray(const struct ray *ray)
 {
     return (struct RTCRay){ .org_x = ray->origin.x,
@@ -122,6 +134,7 @@ static struct RTCRay rtc_ray(const struct ray *ray)
 bool embree_closest(const struct embree *embree, const struct ray *ray, const void *view,
                     bool coherent, struct ray_hit *hit)
 {
+    if (embree->log) log_ray(embree->log, ray, false);
     struct query query;
     query.view = view;
     struct RTCRayHit r;
@@ -147,6 +160,7 @@ bool embree_closest(const struct embree *embree, const struct ray *ray, const vo
 
 bool embree_occluded(const struct embree *embree, const struct ray *ray)
 {
+    if (embree->log) log_ray(embree->log, ray, true);
     struct query query;
     query.view = NULL;
     struct RTCRay r = rtc_ray(ray);

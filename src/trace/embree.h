@@ -4,6 +4,7 @@
 #include "core/host.h"
 #include "core/vec.h"
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 struct embree;
@@ -23,7 +24,8 @@ struct ray_hit {
 typedef bool embree_solid(const void *geometry, uint32_t triangle, float u, float v, const void *view);
 
 struct embree_geometry {
-    const vec3s *positions; // with room for 4 more bytes after the last: Embree reads 16 at a time
+    const vec3s *positions; // the first of them; 4 more bytes follow the last: Embree reads 16 at a time
+    size_t stride;          // from one to the next, bytes
     uint32_t vertex_count;
     const uint32_t *indices;
     uint32_t triangle_count;
@@ -36,6 +38,18 @@ struct embree *embree_create(struct host *host);
 bool embree_add(struct embree *embree, const struct embree_geometry *geometry);
 bool embree_commit(struct embree *embree);
 void embree_destroy(struct embree *embree); // accepts NULL
+
+// Queries as they were made, for those who measure. From many threads at a time; what there is no room for is only counted.
+struct logged_ray {
+    struct ray ray;
+    bool occlusion;
+};
+struct ray_log {
+    struct logged_ray *rays;
+    size_t capacity;
+    atomic_size_t count;
+};
+void embree_log(struct embree *embree, struct ray_log *log); // NULL: no longer
 
 // view is handed to the `solid` of what the ray meets. Nearest first.
 bool embree_closest(const struct embree *embree, const struct ray *ray, const void *view, bool coherent,

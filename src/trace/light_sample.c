@@ -190,22 +190,21 @@ struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3
     uint32_t corner[3];
     trace_corners(mesh, e->triangle, corner);
     vec2s b = sample_triangle(u);
-    vec3s p = glms_vec3_scale(mesh->positions[corner[0]], 1.0f - b.x - b.y);
-    p = glms_vec3_muladds(mesh->positions[corner[1]], b.x, p);
-    p = glms_vec3_muladds(mesh->positions[corner[2]], b.y, p);
+    vec3s p = trace_point(mesh, corner, b.x, b.y);
     vec3s to_light = glms_vec3_sub(p, from);
     float distance2 = glms_vec3_norm2(to_light);
     struct emitter_sample s = { .position = p };
     if (!(distance2 > 0.0f)) return s;
     s.to_light = glms_vec3_scale(to_light, 1.0f / sqrtf(distance2));
-    vec3s normal = glms_vec3_normalize(trace_area_normal(mesh, corner));
+    const struct trace_facet *facet = &mesh->facets[e->triangle];
+    vec3s normal = facet->normal;
     float cosine = -glms_vec3_dot(normal, s.to_light);
     if (cosine < 0.0f && mesh->material->double_sided) {
         cosine = -cosine;
         normal = glms_vec3_negate(normal);
     }
     if (!(cosine > 0.0f)) return s;
-    s.position = glms_vec3_muladds(normal, surface_reach(mesh, corner), p);
+    s.position = glms_vec3_muladds(normal, facet->reach, p);
     s.radiance = surface_emission(mesh, e->triangle, b.x, b.y);
     s.pdf = e->density * distance2 / cosine;
     return s;

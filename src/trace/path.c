@@ -1,8 +1,10 @@
 // A path tracer with next-event estimation (Kajiya 1986, "The Rendering Equation"): at each surface
-// the punctual lights and a point on an emitter are asked for their light, then a direction is
-// sampled. What glows is found both ways, weighted by the power heuristic (Veach 1997, sec. 9.2.4).
-// Chance ends paths by what they still carry (Arvo & Kirk 1990).
+// the punctual lights and a point on an emitter are asked for their light (gather.c), then a
+// direction is sampled. What glows is found both ways, weighted by the power heuristic (Veach 1997,
+// sec. 9.2.4). Chance ends paths by what they still carry (Arvo & Kirk 1990).
 #include "trace/path.h"
+
+#include "trace/gather.h"
 
 #include "core/rng.h"
 
@@ -28,49 +30,10 @@ static bool first_surface(const struct path_rules *rules, struct ray ray,
     for (;;) {
         ++*rays;
         if (!embree_closest(rules->scene->embree, &ray, footprint, true, &hit)) return false;
-        *out = surface_at(rules->scene, &ray, &hit, footprint);
+        surface_at(rules->scene, &ray, &hit, footprint, out);
         if (is_seen(rules->scene, out)) return true;
         ray.near = nextafterf(hit.distance * (1.0f + STEP_THROUGH), INFINITY);
     }
-}
-
-static bool is_black(vec3s v)
-{
-    return !(v.x > 0.0f || v.y > 0.0f || v.z > 0.0f);
-}
-
-// The light of a punctual light that a surface would reflect, were nothing between; 0 where it
-// faces away.
-static vec3s reflected(const struct surface *s, const struct bsdf *b,
-                       const struct punctual_light *p)
-{
-    float cosine = glms_vec3_dot(b->normal, p->to_light);
-    if (!(cosine > 0.0f) || !(glms_vec3_dot(s->geometric, p->to_light) > 0.0f))
-        return vec3_of(0, 0, 0);
-    vec3s f = bsdf_reflect(b, p->to_light).f;
-    return glms_vec3_scale(glms_vec3_mul(f, p->illuminance), cosine);
-}
-
-static bool is_visible(const struct trace_scene *scene, const struct surface *s,
-                       const struct punctual_light *p, uint64_t *rays)
-{
-    struct ray ray = { surface_leave(s, p->to_light), p->to_light, 0.0f, p->distance_m };
-    ++*rays;
-    return !embree_occluded(scene->embree, &ray);
-}
-
-static vec3s all_punctual(const struct path_rules *rules, const struct path_start *start,
-                          uint64_t *rays)
-{
-    const struct light_table *lights = &rules->scene->lights;
-    vec3s sum = vec3_of(0, 0, 0);
-    for (int i = 0; i < lights->punctual_count; i++) {
-        struct punctual_light p = light_punctual(&lights->punctual[i], start->surface.position);
-        vec3s light = reflected(&start->surface, &start->bsdf, &p);
-        if (!is_black(light) && is_visible(rules->scene, &start->surface, &p, rays))
-            sum = glms_vec3_add(sum, light);
-    }
-    return sum;
 }
 
 static struct bsdf bsdf_at(const struct path_rules *rules, const struct surface *s, vec3s to_eye)
@@ -88,95 +51,41 @@ struct path_start path_begin(const struct path_rules *rules, const struct ray *r
         start.bsdf = bsdf_at(rules, &start.surface, to_eye);
         bsdf_sample_evenly(&start.bsdf, IRRADIANCE_SHARE);
         if (rules->direct)
-            start.seen = glms_vec3_add(start.surface.emission, all_punctual(rules, &start, rays));
+            start.seen =
+                glms_vec3_add(start.surface.emission,
+                              gather_all_punctual(rules->scene, &start.surface, &start.bsdf, rays));
     }
     if (!rules->direct) start.seen = vec3_of(0, 0, 0);
     return start;
 }
 
-// ---- light at a surface of the path
+// ---- the walk
 
-// One light, chosen by what it would give, stands for all.
-static vec3s one_punctual(const struct path_rules *rules, const struct surface *s,
-                          const struct bsdf *b, float choice, uint64_t *rays)
-{
-    const struct light_table *lights = &rules->scene->lights;
-    struct punctual_light chosen = { 0 };
-    vec3s light = vec3_of(0, 0, 0);
-    float total = 0.0f, weight = 0.0f;
-    // Reservoir sampling (Chao 1982): each replaces the one before with its share of the sum so
-    // far.
-    for (int i = 0; i < lights->punctual_count; i++) {
-        struct punctual_light p = light_punctual(&lights->punctual[i], s->position);
-        vec3s candidate = reflected(s, b, &p);
-        float w = luminance(candidate);
-        if (!(w > 0.0f)) continue;
-        total += w;
-        float share = w / total;
-        if (choice < share) {
-            choice /= share;
-            chosen = p;
-            light = candidate;
-            weight = w;
-        } else {
-            choice = (choice - share) / (1.0f - share);
-        }
-    }
-    if (!(weight > 0.0f) || !is_visible(rules->scene, s, &chosen, rays)) return vec3_of(0, 0, 0);
-    return glms_vec3_scale(light, total / weight);
-}
-
-// Power heuristic with an exponent of 2; a ratio, so that nothing overflows.
-static float mis_weight(float pdf, float other)
-{
-    float ratio = other / pdf;
-    return 1.0f / (1.0f + ratio * ratio);
-}
-
-// Light on a surface and what of it goes on towards where the path came from.
-struct gathered {
-    vec3s irradiance, radiance;
+// A step of the path and what it reflects of the light that will arrive along it.
+struct step {
+    struct ray ray;
+    vec3s f;     // 1/sr
+    float scale; // cosine / pdf, sr
+    float pdf;   // 1/sr
 };
-
-static struct gathered gathered_of(vec3s f, vec3s radiance, float scale)
-{
-    struct gathered g = { .irradiance = glms_vec3_scale(radiance, scale) };
-    g.radiance = glms_vec3_mul(f, g.irradiance);
-    return g;
-}
-
-static struct gathered one_emitter(const struct path_rules *rules, const struct surface *s,
-                                   const struct bsdf *b, float choice, vec2s u, uint64_t *rays)
-{
-    struct gathered none = { 0 };
-    struct emitter_sample e = light_sample_emitter(rules->scene, s->position, choice, u);
-    float cosine = glms_vec3_dot(b->normal, e.to_light);
-    if (is_black(e.radiance) || !(e.pdf > 0.0f) || !(cosine > 0.0f) ||
-        !(glms_vec3_dot(s->geometric, e.to_light) > 0.0f))
-        return none;
-    vec3s from = surface_leave(s, e.to_light);
-    struct ray ray = { from, glms_vec3_sub(e.position, from), 0.0f, 1.0f };
-    ++*rays;
-    if (embree_occluded(rules->scene->embree, &ray)) return none;
-    struct reflection r = bsdf_reflect(b, e.to_light);
-    return gathered_of(r.f, e.radiance, cosine / e.pdf * mis_weight(e.pdf, r.pdf));
-}
-
-// ---- the path
 
 // Radiance at the surface seen is `share` times what arrives along the first sampled direction;
 // `carried` is what of it comes from further on. The two shares are the same light as seen by the
 // eye and as irradiance.
 struct walk {
     const struct path_rules *rules;
+    struct path_sample *sample;
     uint64_t *rays;
+    uint64_t key; // of its numbers
     struct surface surface;
     struct bsdf bsdf;
+    struct step step;
+    struct ray_hit hit;     // of the step
+    bool met;               // there is a hit
     vec3s share;            // of the first step, for the eye
     float irradiance_share; // and for irradiance
     vec3s carried;          // of all later steps
     int depth;              // bounces so far
-    struct path_light light;
 };
 
 static void add_to(vec3s *sum, vec3s light)
@@ -190,10 +99,10 @@ static void collect(struct walk *w, vec3s light)
     vec3s arriving = glms_vec3_mul(w->carried, light);
     vec3s seen = glms_vec3_mul(w->share, arriving);
     vec3s falling = glms_vec3_scale(arriving, w->irradiance_share);
-    add_to(&w->light.indirect, seen);
-    add_to(&w->light.gathered, seen);
-    add_to(&w->light.irradiance, falling);
-    add_to(&w->light.gathered_irradiance, falling);
+    add_to(&w->sample->light.indirect, seen);
+    add_to(&w->sample->light.gathered, seen);
+    add_to(&w->sample->light.irradiance, falling);
+    add_to(&w->sample->light.gathered_irradiance, falling);
 }
 
 // Light straight from an emitter or the sky, at any surface.
@@ -202,65 +111,100 @@ static void collect_gathered(struct walk *w, const struct gathered *g)
     if (w->depth > 0) {
         collect(w, g->radiance);
     } else if (w->rules->direct) {
-        add_to(&w->light.direct, g->radiance);
-        add_to(&w->light.gathered, g->radiance);
-        add_to(&w->light.gathered_irradiance, g->irradiance);
+        add_to(&w->sample->light.direct, g->radiance);
+        add_to(&w->sample->light.gathered, g->radiance);
+        add_to(&w->sample->light.gathered_irradiance, g->irradiance);
     }
 }
 
-static void ask_lights(struct walk *w, struct rng *rng)
+// What numbers are drawn for at each surface. They are independent, so that the spread of a pixel's
+// samples says how far their mean is off; evenly spread ones (Owen-scrambled Sobol points) are off by
+// a tenth less and can no longer tell.
+enum draw { DRAW_CHOICES, DRAW_LIGHT, DRAW_STEP, DRAW_LATER, DRAW_COUNT };
+
+// Words of SplitMix64, each in its place of the sequence that the sample's key begins.
+static const uint64_t STRIDE = UINT64_C(0x9e3779b97f4a7c15);
+
+static uint64_t key_of(const struct path_rules *rules, uint32_t pixel, uint32_t sample)
 {
-    const struct light_table *lights = &w->rules->scene->lights;
-    float choice = rng_float(rng);
-    vec2s u = rng_vec2(rng);
+    return rng_mix(rng_mix((uint64_t)rules->seed << 32 | pixel) + sample);
+}
+
+vec2s path_place(const struct path_rules *rules, uint32_t pixel, uint32_t sample)
+{
+    return rng_pair(rng_mix(key_of(rules, pixel, sample)));
+}
+
+static vec2s draw(const struct walk *w, enum draw what)
+{
+    uint64_t number = (uint64_t)(DRAW_COUNT * w->depth + (int)what) + 1;
+    return rng_pair(rng_mix(w->key + number * STRIDE));
+}
+
+static void ask_lights(struct walk *w, float choice)
+{
+    const struct trace_scene *scene = w->rules->scene;
     if (w->depth == 0 && !w->rules->direct) return;
-    if (w->depth > 0 && lights->punctual_count > 0)
-        collect(w, one_punctual(w->rules, &w->surface, &w->bsdf, rng_float(rng), w->rays));
-    if (!lights->has_emitters) return;
-    struct gathered g = one_emitter(w->rules, &w->surface, &w->bsdf, choice, u, w->rays);
+    if (w->depth > 0 && scene->lights.punctual_count > 0)
+        collect(w, gather_one_punctual(scene, &w->surface, &w->bsdf, draw(w, DRAW_LATER).x, w->rays));
+    if (!scene->lights.has_emitters) return;
+    struct gathered g =
+        gather_one_emitter(scene, &w->surface, &w->bsdf, choice, draw(w, DRAW_LIGHT), w->rays);
     collect_gathered(w, &g);
 }
 
-// A step of the path and what it reflects of the light that will arrive along it.
-struct step {
-    struct ray ray;
-    vec3s f;     // 1/sr
-    float scale; // cosine / pdf, sr
-    float pdf;   // 1/sr
-};
-
-static bool choose_step(const struct walk *w, struct rng *rng, struct step *out)
+static bool choose_step(struct walk *w, float choice)
 {
-    float choice = rng_float(rng);
-    vec3s to_light = bsdf_sample(&w->bsdf, choice, rng_vec2(rng));
+    vec3s to_light = bsdf_sample(&w->bsdf, choice, draw(w, DRAW_STEP));
     float cosine = glms_vec3_dot(w->bsdf.normal, to_light);
     if (!(cosine > 0.0f) || !(glms_vec3_dot(w->surface.geometric, to_light) > 0.0f)) return false;
     struct reflection r = bsdf_reflect(&w->bsdf, to_light);
     if (!(r.pdf > 0.0f)) return false;
-    out->pdf = r.pdf;
-    out->f = r.f;
-    out->scale = cosine / r.pdf;
-    out->ray = (struct ray){ surface_leave(&w->surface, to_light), to_light, 0.0f, INFINITY };
+    struct ray ray = { surface_leave(&w->surface, to_light), to_light, 0.0f, INFINITY };
+    w->step = (struct step){ .ray = ray, .f = r.f, .scale = cosine / r.pdf, .pdf = r.pdf };
     return true;
 }
 
-// Light that the step meets at its end: the sky, or what glows there.
-static vec3s met_light(const struct walk *w, const struct step *step, const struct ray_hit *hit,
-                       const struct surface *end)
+// The last surface of a path: only what its sampled direction meets still counts.
+static bool is_last(const struct walk *w)
 {
-    if (!hit) return w->rules->scene->lights.sky;
-    if (is_black(end->emission)) return end->emission;
-    float cosine = -glms_vec3_dot(end->geometric, step->ray.direction);
+    return w->depth == (w->rules->indirect ? w->rules->bounces : 0);
+}
+
+// What lies at the surface, and where to go on from it; false where the path ends.
+static bool leave(struct walk *w)
+{
+    const struct light_table *lights = &w->rules->scene->lights;
+    vec2s choices = draw(w, DRAW_CHOICES);
+    ask_lights(w, choices.x);
+    if (is_last(w) && !lights->has_emitters && !lights->has_sky) return false;
+    return choose_step(w, choices.y);
+}
+
+static void trace_step(struct walk *w)
+{
+    ++*w->rays;
+    w->met = embree_closest(w->rules->scene->embree, &w->step.ray, NULL, false, &w->hit);
+    if (w->met) surface_expect(w->rules->scene, &w->hit);
+}
+
+// Light that the step meets at its end: the sky, or what the surface there emits.
+static vec3s met_light(const struct walk *w)
+{
+    const struct surface *end = &w->surface;
+    if (!w->met) return w->rules->scene->lights.sky;
+    if (gather_is_black(end->emission)) return end->emission;
+    float cosine = -glms_vec3_dot(end->geometric, w->step.ray.direction);
     float other =
-        light_emitter_pdf(w->rules->scene, end->mesh, end->triangle, hit->distance, cosine);
-    return glms_vec3_scale(end->emission, mis_weight(step->pdf, other));
+        light_emitter_pdf(w->rules->scene, end->mesh, end->triangle, w->hit.distance, cosine);
+    return glms_vec3_scale(end->emission, gather_weight(w->step.pdf, other));
 }
 
 // Survives with a chance of what it carries, and carries the more.
-static bool survives(struct walk *w, struct rng *rng)
+static bool survives(struct walk *w)
 {
-    float choice = rng_float(rng);
     if (w->depth < FIRST_ROULETTE) return true;
+    float choice = draw(w, DRAW_LATER).y;
     float most = glms_vec3_max(w->carried);
     float chance = fminf(most, MAX_SURVIVAL);
     if (!(choice < chance)) return false;
@@ -268,63 +212,78 @@ static bool survives(struct walk *w, struct rng *rng)
     return true;
 }
 
-static void advance(struct walk *w, const struct step *step, const struct surface *end)
+static void advance(struct walk *w)
 {
-    vec3s weight = glms_vec3_scale(step->f, step->scale);
+    vec3s weight = glms_vec3_scale(w->step.f, w->step.scale);
     if (w->depth == 0) {
         w->share = weight;
-        w->irradiance_share = step->scale;
+        w->irradiance_share = w->step.scale;
     } else {
         w->carried = glms_vec3_mul(w->carried, weight);
     }
     w->depth++;
-    w->surface = *end;
-    w->bsdf = bsdf_at(w->rules, end, glms_vec3_negate(step->ray.direction));
+    w->bsdf = bsdf_at(w->rules, &w->surface, glms_vec3_negate(w->step.ray.direction));
 }
 
-// Whether the last surface's sampled direction can still meet light.
-static bool light_is_met(const struct path_rules *rules)
+// At the step's end; false where the path does.
+static bool arrive(struct walk *w)
 {
-    return rules->scene->lights.has_emitters || rules->scene->lights.has_sky;
-}
-
-// One more surface; false where the path ends.
-static bool walk_on(struct walk *w, struct rng *rng)
-{
-    int bounces = w->rules->indirect ? w->rules->bounces : 0;
-    ask_lights(w, rng);
-    bool last = w->depth == bounces;
-    if (last && !light_is_met(w->rules)) return false;
-    struct step step;
-    if (!choose_step(w, rng, &step)) return false;
-    struct ray_hit hit;
-    struct surface end;
-    ++*w->rays;
-    bool met = embree_closest(w->rules->scene->embree, &step.ray, NULL, false, &hit);
-    if (met) end = surface_at(w->rules->scene, &step.ray, &hit, NULL);
-    vec3s light = met_light(w, &step, met ? &hit : NULL, &end);
-    struct gathered g = gathered_of(step.f, light, step.scale);
+    bool last = is_last(w);
+    if (w->met) surface_at(w->rules->scene, &w->step.ray, &w->hit, NULL, &w->surface);
+    struct gathered g = gather_arriving(w->step.f, met_light(w), w->step.scale);
     collect_gathered(w, &g);
-    if (last || !met) return false;
-    advance(w, &step, &end);
-    return survives(w, rng);
+    if (last || !w->met) return false;
+    advance(w);
+    return survives(w);
 }
 
-struct path_light path_sample(const struct path_rules *rules, const struct path_start *start,
-                              uint32_t pixel, uint32_t sample, uint64_t *rays)
+// ---- many together
+
+struct batch {
+    struct walk walks[PATH_BATCH];
+    struct walk *going[PATH_BATCH]; // those that have not ended
+    int count;
+};
+
+static void keep_those(struct batch *batch, bool (*go_on)(struct walk *walk))
 {
-    struct walk w = { .rules = rules,
-                      .rays = rays,
-                      .surface = start->surface,
-                      .bsdf = start->bsdf,
-                      .carried = { { 1, 1, 1 } },
-                      .light = { .direct = start->seen } };
-    if (!start->hit) return w.light;
-    for (bool goes_on = true; goes_on;) {
-        // Each surface has a sequence of its own: what happens at one does not shift the next
-        // one's.
-        struct rng rng = rng_for(pixel, sample, rules->seed + (uint32_t)w.depth);
-        goes_on = walk_on(&w, &rng);
+    int kept = 0;
+    for (int i = 0; i < batch->count; i++)
+        if (go_on(batch->going[i])) batch->going[kept++] = batch->going[i];
+    batch->count = kept;
+}
+
+static void begin(struct batch *batch, const struct path_rules *rules, struct path_sample *sample,
+                  uint64_t *rays)
+{
+    const struct path_start *start = sample->start;
+    sample->light = (struct path_light){ .direct = start->seen };
+    if (!start->hit) return;
+    struct walk *w = batch->going[batch->count] = &batch->walks[batch->count];
+    w->rules = rules;
+    w->sample = sample;
+    w->rays = rays;
+    w->surface = start->surface;
+    w->bsdf = start->bsdf;
+    w->key = key_of(rules, sample->pixel, sample->sample);
+    w->carried = vec3_of(1, 1, 1);
+    w->depth = 0;
+    batch->count++;
+}
+
+void path_trace(const struct path_rules *rules, struct path_sample *samples, int count,
+                uint64_t *rays)
+{
+    struct batch batch;
+    batch.count = 0;
+    for (int i = 0; i < count; i++) begin(&batch, rules, &samples[i], rays);
+    while (batch.count > 0) {
+        keep_those(&batch, leave);
+        for (int i = 0; i < batch.count; i++) trace_step(batch.going[i]);
+        for (int i = 0; i < batch.count; i++)
+            if (batch.going[i]->met) surface_expect_corners(rules->scene, &batch.going[i]->hit);
+        for (int i = 0; i < batch.count; i++)
+            if (batch.going[i]->met) surface_expect_texels(rules->scene, &batch.going[i]->hit);
+        keep_those(&batch, arrive);
     }
-    return w.light;
 }

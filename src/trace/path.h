@@ -26,9 +26,19 @@ struct path_light {
     vec3s irradiance, gathered_irradiance; // by indirect and by gathered light
 };
 
+// Where in its pixel a sample is, 0…1 each way.
+vec2s path_place(const struct path_rules *rules, uint32_t pixel, uint32_t sample);
+
 // The ray passes through backs of single-sided surfaces. *rays counts.
 struct path_start path_begin(const struct path_rules *rules, const struct ray *ray,
                              const struct pixel_footprint *footprint, uint64_t *rays);
-// Sample number `sample` of pixel `pixel`: the same arguments give the same light.
-struct path_light path_sample(const struct path_rules *rules, const struct path_start *start,
-                              uint32_t pixel, uint32_t sample, uint64_t *rays);
+
+// One sample of a pixel, and the light that it brings: the same arguments bring the same.
+struct path_sample {
+    const struct path_start *start;
+    uint32_t pixel, sample;
+    struct path_light light;
+};
+enum { PATH_BATCH = 64 };
+// At most PATH_BATCH at a time. They go step by step together: what one needs from memory is on its way while others compute.
+void path_trace(const struct path_rules *rules, struct path_sample *samples, int count, uint64_t *rays);

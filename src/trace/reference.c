@@ -13,10 +13,10 @@
 #include <string.h>
 
 enum {
-    TILE = 16,                        // pixels: rays of neighbours meet the same triangles
-    CHUNK = 256,                      // tiles between two reports
-    MAX_STEP = 4,                     // samples of a pixel between two reports
-    ANTIALIAS_DIMENSION = 0x40000000, // random numbers apart from those of the paths
+    TILE = 16,                           // pixels: rays of neighbours meet the same triangles
+    SAMPLES_AT_ONCE = PATH_BATCH / TILE, // of each pixel of a tile's row
+    CHUNK = 256,                         // tiles between two reports
+    MAX_STEP = 4,                        // samples of a pixel between two reports
 };
 
 struct pixel_sums {
@@ -185,21 +185,41 @@ static void add_sample(struct pixel_sums *sums, const struct path_light *light)
     }
 }
 
-static void render_pixel(const struct reference *r, int x, int y, int from, int to, uint64_t *rays)
+// Some pixels beside each other, and some samples of each: as many as a batch holds.
+struct run {
+    int x, y, width;
+    int from, to; // samples
+};
+
+static void start_run(const struct reference *r, const struct run *run,
+                      struct path_start starts[PATH_BATCH], struct path_sample *samples,
+                      uint64_t *rays)
 {
-    uint32_t pixel = (uint32_t)y * (uint32_t)r->width + (uint32_t)x;
-    struct pixel_sums *sums = &r->sums[pixel];
-    struct path_start start;
-    if (!r->options.antialias) start = start_at(r, (float)x + 0.5f, (float)y + 0.5f, rays);
-    for (int i = from; i < to; i++) {
-        if (r->options.antialias) {
-            struct rng rng = rng_for(pixel, (uint32_t)i, r->rules.seed + ANTIALIAS_DIMENSION);
-            vec2s u = rng_vec2(&rng);
-            start = start_at(r, (float)x + u.x, (float)y + u.y, rays);
+    int count = 0;
+    for (int x = run->x; x < run->x + run->width; x++) {
+        uint32_t pixel = (uint32_t)run->y * (uint32_t)r->width + (uint32_t)x;
+        for (int i = run->from; i < run->to; i++, count++) {
+            bool another = r->options.antialias;
+            vec2s u = { { 0.5f, 0.5f } };
+            if (another) u = path_place(&r->rules, pixel, (uint32_t)i);
+            int start = another ? count : x - run->x;
+            if (another || i == run->from)
+                starts[start] = start_at(r, (float)x + u.x, (float)run->y + u.y, rays);
+            samples[count] = (struct path_sample){ .start = &starts[start],
+                                                   .pixel = pixel,
+                                                   .sample = (uint32_t)i };
         }
-        struct path_light light = path_sample(&r->rules, &start, pixel, (uint32_t)i, rays);
-        add_sample(sums, &light);
     }
+}
+
+static void render_run(const struct reference *r, const struct run *run, uint64_t *rays)
+{
+    struct path_start starts[PATH_BATCH];
+    struct path_sample samples[PATH_BATCH];
+    int count = run->width * (run->to - run->from);
+    start_run(r, run, starts, samples, rays);
+    path_trace(&r->rules, samples, count, rays);
+    for (int i = 0; i < count; i++) add_sample(&r->sums[samples[i].pixel], &samples[i].light);
 }
 
 struct pass {
@@ -219,9 +239,14 @@ static void render_tile(void *user, size_t i)
         top = (int)(index / (size_t)r->tiles_x) * TILE;
     unsigned before = embree_flush_denormals();
     uint64_t rays = 0;
+    int width = r->width - left < TILE ? r->width - left : TILE;
     for (int y = top; y < top + TILE && y < r->height; y++)
-        for (int x = left; x < left + TILE && x < r->width; x++)
-            render_pixel(r, x, y, tile->samples, pass->samples, &rays);
+        for (int from = tile->samples; from < pass->samples; from += SAMPLES_AT_ONCE) {
+            int left_over = pass->samples - from;
+            int count = left_over < SAMPLES_AT_ONCE ? left_over : SAMPLES_AT_ONCE;
+            struct run run = { left, y, width, from, from + count };
+            render_run(r, &run, &rays);
+        }
     embree_restore_denormals(before);
     tile->rays += rays;
     tile->samples = pass->samples;
@@ -270,6 +295,11 @@ bool reference_render(struct reference *r, int samples, bool (*progress)(void *u
         done += step;
     }
     return true;
+}
+
+void reference_log_rays(struct reference *r, struct ray_log *log)
+{
+    embree_log(r->scene->embree, log);
 }
 
 // ---- reading

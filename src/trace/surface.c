@@ -3,46 +3,28 @@
 
 #include <math.h>
 
-// Rounding errors of a position are a few units in the last place (2⁻²⁴) of the corners that it is
-// interpolated from.
-static const float REACH = 0x1p-19f;
-
-struct weights {
-    float w[3];
-};
-
-static struct weights weights_of(float u, float v)
-{
-    return (struct weights){ { 1.0f - u - v, u, v } };
-}
-
-static vec3s interpolate3(const vec3s *values, const uint32_t corner[3], struct weights w)
-{
-    vec3s p = glms_vec3_scale(values[corner[0]], w.w[0]);
-    p = glms_vec3_muladds(values[corner[1]], w.w[1], p);
-    return glms_vec3_muladds(values[corner[2]], w.w[2], p);
-}
-
-// The coordinates of a set; a mesh without a second one uses the first, one without any has 0.
-static const vec2s *uv_set(const struct mesh *mesh, int set)
-{
-    return set == 1 && mesh->uv[1] ? mesh->uv[1] : mesh->uv[0];
-}
-
-static vec2s interpolate2(const vec2s *uv, const uint32_t corner[3], struct weights w)
-{
-    vec2s p = glms_vec2_scale(uv[corner[0]], w.w[0]);
-    p = glms_vec2_add(p, glms_vec2_scale(uv[corner[1]], w.w[1]));
-    return glms_vec2_add(p, glms_vec2_scale(uv[corner[2]], w.w[2]));
-}
-
 // One point of one triangle, and how its weights change from pixel to pixel.
 struct spot {
     const struct trace_mesh *mesh;
+    const struct trace_facet *facet;
     uint32_t corner[3];
-    struct weights w;
+    const struct trace_vertex *a, *b, *c; // there
+    float w[3];
+    bool wide;          // a pixel's worth, not a point
     float dx[2], dy[2]; // of the second and third weight
 };
+
+static inline vec3s weighted3(const float w[3], vec3s a, vec3s b, vec3s c)
+{
+    return vec3_of(w[0] * a.x + w[1] * b.x + w[2] * c.x, w[0] * a.y + w[1] * b.y + w[2] * c.y,
+                   w[0] * a.z + w[1] * b.z + w[2] * c.z);
+}
+
+static inline vec4s weighted4(const float w[3], vec4s a, vec4s b, vec4s c)
+{
+    return vec4_of(weighted3(w, vec3_xyz(a), vec3_xyz(b), vec3_xyz(c)),
+                   w[0] * a.w + w[1] * b.w + w[2] * c.w);
+}
 
 // The step along the triangle that a step of the ray's direction makes, as weights of its edges.
 static void weight_step(const struct pixel_footprint *f, vec3s normal, vec3s e1, vec3s e2, float t,
@@ -60,36 +42,67 @@ static void weight_step(const struct pixel_footprint *f, vec3s normal, vec3s e1,
     out[1] = (a * q - b * p) / determinant;
 }
 
-static struct spot spot_of(const struct trace_mesh *mesh, uint32_t triangle, float u, float v)
+static inline struct spot spot_of(const struct trace_mesh *mesh, uint32_t triangle, float u,
+                                  float v)
 {
-    struct spot s = { .mesh = mesh, .w = weights_of(u, v) };
+    struct spot s = { .mesh = mesh, .facet = &mesh->facets[triangle], .w = { 1.0f - u - v, u, v } };
     trace_corners(mesh, triangle, s.corner);
+    s.a = &mesh->vertices[s.corner[0]];
+    s.b = &mesh->vertices[s.corner[1]];
+    s.c = &mesh->vertices[s.corner[2]];
     return s;
 }
 
 static void spot_widen(struct spot *s, const struct pixel_footprint *f)
 {
-    vec3s p0 = s->mesh->positions[s->corner[0]];
-    vec3s e1 = glms_vec3_sub(s->mesh->positions[s->corner[1]], p0);
-    vec3s e2 = glms_vec3_sub(s->mesh->positions[s->corner[2]], p0);
+    vec3s e1 = glms_vec3_sub(s->b->position, s->a->position);
+    vec3s e2 = glms_vec3_sub(s->c->position, s->a->position);
     vec3s normal = glms_vec3_cross(e1, e2);
-    vec3s position = interpolate3(s->mesh->positions, s->corner, s->w);
+    vec3s position = weighted3(s->w, s->a->position, s->b->position, s->c->position);
     vec3s away = glms_vec3_sub(position, f->origin);
     float t = glms_vec3_dot(away, f->direction) / glms_vec3_norm2(f->direction);
     weight_step(f, normal, e1, e2, t, f->dx, s->dx);
     weight_step(f, normal, e1, e2, t, f->dy, s->dy);
+    s->wide = true;
+}
+
+static inline vec2s step_of(const float weights[2], vec2s e1, vec2s e2)
+{
+    return glms_vec2_add(glms_vec2_scale(e1, weights[0]), glms_vec2_scale(e2, weights[1]));
+}
+
+// Of the second set where there is one, else of the first.
+static void corner_uv(const struct spot *s, const struct texture_map *map, vec2s out[3])
+{
+    const vec2s *second = map->uv_set == 1 ? s->mesh->mesh->uv[1] : NULL;
+    out[0] = second ? second[s->corner[0]] : s->a->uv;
+    out[1] = second ? second[s->corner[1]] : s->b->uv;
+    out[2] = second ? second[s->corner[2]] : s->c->uv;
+}
+
+static inline vec2s weighted2(const float w[3], const vec2s uv[3])
+{
+    return (vec2s){ { w[0] * uv[0].x + w[1] * uv[1].x + w[2] * uv[2].x,
+                      w[0] * uv[0].y + w[1] * uv[1].y + w[2] * uv[2].y } };
 }
 
 static vec4s sample_map(const struct spot *s, const struct texture_map *map)
 {
-    const vec2s *uv = uv_set(s->mesh->mesh, map->uv_set);
-    vec2s zero = { { 0, 0 } };
-    if (!uv) return texture_sample(map, zero, zero, zero);
-    vec2s d1 = glms_vec2_sub(uv[s->corner[1]], uv[s->corner[0]]);
-    vec2s d2 = glms_vec2_sub(uv[s->corner[2]], uv[s->corner[0]]);
-    vec2s dx = glms_vec2_add(glms_vec2_scale(d1, s->dx[0]), glms_vec2_scale(d2, s->dx[1]));
-    vec2s dy = glms_vec2_add(glms_vec2_scale(d1, s->dy[0]), glms_vec2_scale(d2, s->dy[1]));
-    return texture_sample(map, interpolate2(uv, s->corner, s->w), dx, dy);
+    vec2s uv[3];
+    corner_uv(s, map, uv);
+    vec2s at = weighted2(s->w, uv);
+    if (!s->wide) return texture_sample(map, at, 0.0f);
+    vec2s e1 = glms_vec2_sub(uv[1], uv[0]), e2 = glms_vec2_sub(uv[2], uv[0]);
+    float level = texture_level(map, step_of(s->dx, e1, e2), step_of(s->dy, e1, e2));
+    return texture_sample(map, at, level);
+}
+
+static void expect_map(const struct spot *s, const struct texture_map *map)
+{
+    vec2s uv[3];
+    if (!map->texture) return;
+    corner_uv(s, map, uv);
+    texture_expect(map, weighted2(s->w, uv));
 }
 
 // Factor × vertex colour × map, as scene_base_color.
@@ -99,9 +112,7 @@ static vec4s base_color(const struct spot *s)
     vec4s base = vec4_of(m->base_color, m->alpha);
     const vec4s *colors = s->mesh->mesh->colors;
     if (colors) {
-        vec4s c = glms_vec4_scale(colors[s->corner[0]], s->w.w[0]);
-        c = glms_vec4_muladds(colors[s->corner[1]], s->w.w[1], c);
-        c = glms_vec4_muladds(colors[s->corner[2]], s->w.w[2], c);
+        vec4s c = weighted4(s->w, colors[s->corner[0]], colors[s->corner[1]], colors[s->corner[2]]);
         base = glms_vec4_mul(base, glms_vec4_clamp(c, 0.0f, 1.0f));
     }
     if (m->base_color_map.texture) base = glms_vec4_mul(base, sample_map(s, &m->base_color_map));
@@ -130,14 +141,12 @@ vec3s surface_emission(const struct trace_mesh *mesh, uint32_t triangle, float u
 }
 
 // glTF 2.0, sec. 3.9.3, on the front's side.
-static vec3s shading_normal(const struct spot *s, vec3s geometric)
+static vec3s shading_normal(const struct spot *s)
 {
     const struct trace_material *m = s->mesh->material;
-    vec3s n = interpolate3(s->mesh->normals, s->corner, s->w);
-    if (m->normal_map.texture && s->mesh->tangents) {
-        vec4s t = glms_vec4_scale(s->mesh->tangents[s->corner[0]], s->w.w[0]);
-        t = glms_vec4_muladds(s->mesh->tangents[s->corner[1]], s->w.w[1], t);
-        t = glms_vec4_muladds(s->mesh->tangents[s->corner[2]], s->w.w[2], t);
+    vec3s n = weighted3(s->w, s->a->normal, s->b->normal, s->c->normal);
+    if (m->normal_map.texture && s->mesh->has_tangents) {
+        vec4s t = weighted4(s->w, s->a->tangent, s->b->tangent, s->c->tangent);
         vec3s tangent = vec3_xyz(t), local = vec3_xyz(sample_map(s, &m->normal_map));
         local = vec3_of((2.0f * local.x - 1.0f) * m->normal_scale,
                         (2.0f * local.y - 1.0f) * m->normal_scale, 2.0f * local.z - 1.0f);
@@ -147,26 +156,7 @@ static vec3s shading_normal(const struct spot *s, vec3s geometric)
         n = glms_vec3_muladds(bitangent, local.y, n);
     }
     float length2 = glms_vec3_norm2(n);
-    return length2 > 1e-12f ? glms_vec3_scale(n, 1.0f / sqrtf(length2)) : geometric;
-}
-
-// fmaxf is a call, for the sake of NaN.
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline float largest(vec3s v)
-{
-    return larger(fabsf(v.x), larger(fabsf(v.y), fabsf(v.z)));
-}
-
-float surface_reach(const struct trace_mesh *mesh, const uint32_t corner[3])
-{
-    float size = largest(mesh->positions[corner[0]]);
-    size = larger(size, largest(mesh->positions[corner[1]]));
-    size = larger(size, largest(mesh->positions[corner[2]]));
-    return REACH * size + 1e-9f;
+    return length2 > 1e-12f ? glms_vec3_scale(n, 1.0f / sqrtf(length2)) : s->facet->normal;
 }
 
 static void read_maps(const struct spot *s, struct surface *out)
@@ -185,33 +175,59 @@ static void read_maps(const struct spot *s, struct surface *out)
         out->roughness = 1.0f;
         out->metallic = 0.0f;
     }
-    if (m->emissive && (out->front || m->double_sided)) out->emission = emission_of(s);
+    bool glows = m->emissive && (out->front || m->double_sided);
+    out->emission = glows ? emission_of(s) : vec3_of(0, 0, 0);
 }
 
-struct surface surface_at(const struct trace_scene *scene, const struct ray *ray,
-                          const struct ray_hit *hit, const struct pixel_footprint *footprint)
+void surface_at(const struct trace_scene *scene, const struct ray *ray, const struct ray_hit *hit,
+                const struct pixel_footprint *footprint, struct surface *out)
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     struct spot s = spot_of(mesh, hit->triangle, hit->u, hit->v);
     if (footprint) spot_widen(&s, footprint);
-    vec3s geometric = glms_vec3_normalize(trace_area_normal(mesh, s.corner));
-    bool front = glms_vec3_dot(geometric, ray->direction) < 0.0f;
-    vec3s normal = shading_normal(&s, geometric);
-    struct surface out = {
-        .position = interpolate3(mesh->positions, s.corner, s.w),
-        .geometric = front ? geometric : glms_vec3_negate(geometric),
-        .normal = front ? normal : glms_vec3_negate(normal),
-        .reach = surface_reach(mesh, s.corner),
-        .front = front,
-        .mesh = hit->geometry,
-        .triangle = hit->triangle,
-    };
-    read_maps(&s, &out);
-    return out;
+    vec3s geometric = s.facet->normal, normal = shading_normal(&s);
+    out->front = glms_vec3_dot(geometric, ray->direction) < 0.0f;
+    out->position = weighted3(s.w, s.a->position, s.b->position, s.c->position);
+    out->geometric = out->front ? geometric : glms_vec3_negate(geometric);
+    out->normal = out->front ? normal : glms_vec3_negate(normal);
+    out->reach = s.facet->reach;
+    out->mesh = hit->geometry;
+    out->triangle = hit->triangle;
+    read_maps(&s, out);
 }
 
-vec3s surface_leave(const struct surface *s, vec3s direction)
+// ---- ahead of time
+
+void surface_expect(const struct trace_scene *scene, const struct ray_hit *hit)
 {
-    float side = glms_vec3_dot(s->geometric, direction) < 0.0f ? -s->reach : s->reach;
-    return glms_vec3_muladds(s->geometric, side, s->position);
+    const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
+    __builtin_prefetch(&mesh->mesh->indices[3 * (size_t)hit->triangle]);
+    __builtin_prefetch(&mesh->facets[hit->triangle]);
+}
+
+// A vertex may lie across two cache lines.
+static void expect_vertex(const struct trace_vertex *vertex)
+{
+    __builtin_prefetch(vertex);
+    __builtin_prefetch((const char *)(vertex + 1) - 1);
+}
+
+void surface_expect_corners(const struct trace_scene *scene, const struct ray_hit *hit)
+{
+    const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
+    uint32_t corner[3];
+    trace_corners(mesh, hit->triangle, corner);
+    for (int i = 0; i < 3; i++) expect_vertex(&mesh->vertices[corner[i]]);
+}
+
+void surface_expect_texels(const struct trace_scene *scene, const struct ray_hit *hit)
+{
+    const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
+    const struct trace_material *m = mesh->material;
+    if (!m->mapped) return;
+    struct spot s = spot_of(mesh, hit->triangle, hit->u, hit->v);
+    expect_map(&s, &m->base_color_map);
+    expect_map(&s, &m->metallic_roughness_map);
+    expect_map(&s, &m->normal_map);
+    if (m->emissive) expect_map(&s, &m->emissive_map);
 }

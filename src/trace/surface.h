@@ -23,12 +23,18 @@ struct surface {
 };
 
 // footprint NULL: maps at their full resolution.
-struct surface surface_at(const struct trace_scene *scene, const struct ray *ray, const struct ray_hit *hit,
-                          const struct pixel_footprint *footprint);
+void surface_at(const struct trace_scene *scene, const struct ray *ray, const struct ray_hit *hit,
+                const struct pixel_footprint *footprint, struct surface *out);
+// What surface_at will read of a hit is asked for from memory, each of three steps after the one before has had its time.
+void surface_expect(const struct trace_scene *scene, const struct ray_hit *hit);
+void surface_expect_corners(const struct trace_scene *scene, const struct ray_hit *hit);
+void surface_expect_texels(const struct trace_scene *scene, const struct ray_hit *hit);
 // A point beside the surface, on the side of `direction`.
-vec3s surface_leave(const struct surface *surface, vec3s direction);
-// Distance to leave a triangle by, m.
-float surface_reach(const struct trace_mesh *mesh, const uint32_t corner[3]);
+static inline vec3s surface_leave(const struct surface *s, vec3s direction)
+{
+    float side = glms_vec3_dot(s->geometric, direction) < 0.0f ? -s->reach : s->reach;
+    return glms_vec3_muladds(s->geometric, side, s->position);
+}
 // Emission of a triangle's point at full resolution, cd/m², whatever the side.
 vec3s surface_emission(const struct trace_mesh *mesh, uint32_t triangle, float u, float v);
 // embree_solid of masked geometries; view: a pixel_footprint or NULL.

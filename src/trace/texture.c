@@ -22,7 +22,14 @@ static vec4s fetch(const struct texture *t, int level, int x, int y)
 {
     size_t width = (size_t)level_size(t->width, level);
     const uint8_t *p = t->texels[level] + 4 * ((size_t)y * width + (size_t)x);
-    return (vec4s){ { t->decode[p[0]], t->decode[p[1]], t->decode[p[2]], (float)p[3] / 255.0f } };
+    return (vec4s){ { t->decode[p[0]], t->decode[p[1]], t->decode[p[2]], t->unit[p[3]] } };
+}
+
+// cglm's clamps the weight, which is not asked for here.
+static vec4s mix(vec4s a, vec4s b, float t)
+{
+    return (vec4s){ { a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z),
+                      a.w + t * (b.w - a.w) } };
 }
 
 static uint8_t to_byte(float v)
@@ -44,9 +51,9 @@ static float taps(float x, int size, int out[2])
 static vec4s blend(const struct texture *t, int level, const int x[2], const int y[2], float fx,
                    float fy)
 {
-    vec4s top = glms_vec4_lerp(fetch(t, level, x[0], y[0]), fetch(t, level, x[1], y[0]), fx);
-    vec4s low = glms_vec4_lerp(fetch(t, level, x[0], y[1]), fetch(t, level, x[1], y[1]), fx);
-    return glms_vec4_lerp(top, low, fy);
+    vec4s top = mix(fetch(t, level, x[0], y[0]), fetch(t, level, x[1], y[0]), fx);
+    vec4s low = mix(fetch(t, level, x[0], y[1]), fetch(t, level, x[1], y[1]), fx);
+    return mix(top, low, fy);
 }
 
 // A level from the one above it, as a linear blit makes it: the mean of 2 × 2 where sizes are even.
@@ -75,6 +82,7 @@ bool texture_init(struct texture *t, struct host *host, const struct scene_image
     *t = (struct texture){ .width = image->width, .height = image->height, .srgb = srgb };
     for (int i = 0; i < 256; i++) {
         float v = (float)i / 255.0f;
+        t->unit[i] = v;
         t->decode[i] = srgb ? srgb_decode(v) : v;
     }
     t->levels = 1;
@@ -122,22 +130,31 @@ struct texture_map texture_map_of(const struct texture_use *use, const struct te
     };
 }
 
-// A texel index of any size brought into the image.
-static int wrap(int i, int size, enum texture_wrap how)
+// floorf without a call, for |x| < 2³¹.
+static inline int whole(float x)
 {
-    if (how == WRAP_CLAMP) return i < 0 ? 0 : i >= size ? size - 1 : i;
-    int period = how == WRAP_MIRROR ? 2 * size : size;
-    i %= period;
-    if (i < 0) i += period;
-    return i < size ? i : period - 1 - i;
+    int i = (int)x;
+    return i - (x < (float)i);
 }
 
-// A coordinate near enough to 0 that its texel index is an int; repeats lose nothing by that.
+// A coordinate brought near 0, where its texel index is an int: repeated ones to 0…1, mirrored ones
+// to 0…2, so that an index is at most one texel outside.
 static float tame(float u, enum texture_wrap how)
 {
-    if (!isfinite(u)) return 0.0f;
-    if (how == WRAP_CLAMP) return fminf(fmaxf(u, -1.0f), 2.0f);
-    return u - 2.0f * floorf(0.5f * u);
+    if (how == WRAP_CLAMP) return u > -1.0f ? u < 2.0f ? u : 2.0f : -1.0f;
+    if (!(fabsf(u) < 0x1p24f)) return 0.0f; // there floats are whole, or no numbers
+    if (how == WRAP_MIRROR) return u - 2.0f * (float)whole(0.5f * u);
+    return u - (float)whole(u);
+}
+
+// The texel that stands for index i of a tamed coordinate.
+static inline int wrap(int i, int size, enum texture_wrap how)
+{
+    if (how == WRAP_REPEAT) return i < 0 ? i + size : i >= size ? i - size : i;
+    if (how == WRAP_CLAMP) return i < 0 ? 0 : i >= size ? size - 1 : i;
+    i = i < 0 ? -1 - i : i; // mirrored at 0 and at `size`, and again at twice that
+    if (i >= 2 * size) i -= 2 * size;
+    return i < size ? i : 2 * size - 1 - i;
 }
 
 static vec4s sample_level(const struct texture_map *map, int level, float u, float v)
@@ -146,12 +163,14 @@ static vec4s sample_level(const struct texture_map *map, int level, float u, flo
     int width = level_size(t->width, level), height = level_size(t->height, level);
     float x = u * (float)width, y = v * (float)height;
     if (map->nearest)
-        return fetch(t, level, wrap((int)floorf(x), width, map->wrap_u),
-                     wrap((int)floorf(y), height, map->wrap_v));
-    float left = floorf(x - 0.5f), top = floorf(y - 0.5f);
-    int tx[2] = { wrap((int)left, width, map->wrap_u), wrap((int)left + 1, width, map->wrap_u) };
-    int ty[2] = { wrap((int)top, height, map->wrap_v), wrap((int)top + 1, height, map->wrap_v) };
-    return blend(t, level, tx, ty, x - 0.5f - left, y - 0.5f - top);
+        return fetch(t, level, wrap(whole(x), width, map->wrap_u),
+                     wrap(whole(y), height, map->wrap_v));
+    x -= 0.5f;
+    y -= 0.5f;
+    int left = whole(x), top = whole(y);
+    int tx[2] = { wrap(left, width, map->wrap_u), wrap(left + 1, width, map->wrap_u) };
+    int ty[2] = { wrap(top, height, map->wrap_v), wrap(top + 1, height, map->wrap_v) };
+    return blend(t, level, tx, ty, x - (float)left, y - (float)top);
 }
 
 static vec2s transformed(const struct texture_map *map, vec2s uv, float one)
@@ -161,7 +180,7 @@ static vec2s transformed(const struct texture_map *map, vec2s uv, float one)
 }
 
 // Vulkan 1.3, sec. 16.5.6: log2 of the longer of the pixel's two steps in texels.
-static float level_of(const struct texture_map *map, vec2s dx, vec2s dy)
+float texture_level(const struct texture_map *map, vec2s dx, vec2s dy)
 {
     const struct texture *t = map->texture;
     vec2s size = { { (float)t->width, (float)t->height } };
@@ -172,14 +191,30 @@ static float level_of(const struct texture_map *map, vec2s dx, vec2s dy)
     return fminf(0.5f * log2f(longest2), (float)(t->levels - 1));
 }
 
-vec4s texture_sample(const struct texture_map *map, vec2s uv, vec2s dx, vec2s dy)
+vec4s texture_sample(const struct texture_map *map, vec2s uv, float level)
 {
     vec2s at = transformed(map, uv, 1.0f);
     float u = tame(at.x, map->wrap_u), v = tame(at.y, map->wrap_v);
-    float level = level_of(map, dx, dy);
     if (map->nearest) return sample_level(map, (int)(level + 0.5f), u, v);
     int low = (int)level;
     vec4s a = sample_level(map, low, u, v);
     if (level == (float)low) return a;
-    return glms_vec4_lerp(a, sample_level(map, low + 1, u, v), level - (float)low);
+    return mix(a, sample_level(map, low + 1, u, v), level - (float)low);
+}
+
+static const uint8_t *texel(const struct texture *t, int x, int y)
+{
+    return t->texels[0] + 4 * ((size_t)y * (size_t)t->width + (size_t)x);
+}
+
+// The two rows; a neighbour in the next cache line is left to chance.
+void texture_expect(const struct texture_map *map, vec2s uv)
+{
+    const struct texture *t = map->texture;
+    vec2s at = transformed(map, uv, 1.0f);
+    float x = tame(at.x, map->wrap_u) * (float)t->width - 0.5f,
+          y = tame(at.y, map->wrap_v) * (float)t->height - 0.5f;
+    int left = wrap(whole(x), t->width, map->wrap_u), top = whole(y);
+    __builtin_prefetch(texel(t, left, wrap(top, t->height, map->wrap_v)));
+    __builtin_prefetch(texel(t, left, wrap(top + 1, t->height, map->wrap_v)));
 }

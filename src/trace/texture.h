@@ -11,7 +11,7 @@ struct texture {
     bool srgb;
     const uint8_t *texels[TEXTURE_LEVELS]; // the first is the scene's own
     uint8_t *owned;                        // the others
-    float decode[256];                     // of a byte of R, G, B
+    float decode[256], unit[256];          // of a byte of R, G, B; of A: n / 255
 };
 
 bool texture_init(struct texture *texture, struct host *host, const struct scene_image *image, bool srgb);
@@ -27,5 +27,9 @@ struct texture_map {
 };
 struct texture_map texture_map_of(const struct texture_use *use, const struct texture *texture);
 
-// uv: of the vertex attribute. dx, dy: how uv changes from one pixel to the next, both 0 for the full resolution. RGBA, decoded.
-vec4s texture_sample(const struct texture_map *map, vec2s uv, vec2s dx, vec2s dy);
+// RGBA, decoded. uv: of the vertex attribute. level: of the mips, 0 … levels − 1; between two both are mixed.
+vec4s texture_sample(const struct texture_map *map, vec2s uv, float level);
+// What texture_sample will read at level 0 is asked for from memory.
+void texture_expect(const struct texture_map *map, vec2s uv);
+// The level for a pixel, in which uv changes by dx to the right and by dy downwards.
+float texture_level(const struct texture_map *map, vec2s dx, vec2s dy);

@@ -96,6 +96,10 @@ struct reference_info {
 };
 struct reference_info reference_info(const struct reference *reference);
 
+// From now on all rays are put down in the log (trace/embree.h); NULL: no longer.
+struct ray_log;
+void reference_log_rays(struct reference *reference, struct ray_log *log);
+
 // A new image of 3 channels (1 where said so above); image_finish is the caller's.
 bool reference_read(const struct reference *reference, enum reference_layer layer, struct image *out);
 

@@ -42,6 +42,8 @@ static bool make_material(struct trace_scene *s, const struct material *m,
         .unlit = m->unlit,
         .emissive = m->emissive.x > 0.0f || m->emissive.y > 0.0f || m->emissive.z > 0.0f,
     };
+    out->mapped = m->base_color_map.image >= 0 || m->metallic_roughness_map.image >= 0 ||
+                  m->normal_map.image >= 0 || m->emissive_map.image >= 0;
     return texture_of(s, &m->base_color_map, true, &out->base_color_map) &&
            texture_of(s, &m->metallic_roughness_map, false, &out->metallic_roughness_map) &&
            texture_of(s, &m->normal_map, false, &out->normal_map) &&
@@ -75,28 +77,52 @@ static void move_rigid(struct trace_mesh *out, mat4s m)
     vec3s k0 = glms_vec3_cross(c1, c2), k1 = glms_vec3_cross(c2, c0), k2 = glms_vec3_cross(c0, c1);
     float side = out->mirrored ? -1.0f : 1.0f;
     for (uint32_t v = 0; v < out->mesh->vertex_count; v++) {
-        out->positions[v] = mat4_point(m, out->mesh->positions[v]);
+        struct trace_vertex *vertex = &out->vertices[v];
+        vertex->position = mat4_point(m, out->mesh->positions[v]);
         vec3s n = out->mesh->normals[v];
         vec3s moved = glms_vec3_scale(k0, n.x);
         moved = glms_vec3_muladds(k1, n.y, moved);
         moved = glms_vec3_muladds(k2, n.z, moved);
-        out->normals[v] = glms_vec3_scale(unit_or_zero(moved), side);
-        if (!out->tangents) continue;
+        vertex->normal = glms_vec3_scale(unit_or_zero(moved), side);
+        if (!out->has_tangents) continue;
         vec4s t = out->mesh->tangents[v];
         vec3s tangent = unit_or_zero(mat4_direction(m, vec3_xyz(t)));
-        out->tangents[v] = vec4_of(tangent, t.w * side);
+        vertex->tangent = vec4_of(tangent, t.w * side);
     }
 }
 
 static void copy_deformed(struct trace_mesh *out, const struct deformed_mesh *from)
 {
-    size_t count = out->mesh->vertex_count;
-    memcpy(out->positions, from->positions, count * sizeof *out->positions);
-    memcpy(out->normals, from->normals, count * sizeof *out->normals);
-    if (!out->tangents) return;
-    for (size_t v = 0; v < count; v++) {
-        out->tangents[v] = from->tangents[v];
-        if (out->mirrored) out->tangents[v].w = -out->tangents[v].w;
+    for (uint32_t v = 0; v < out->mesh->vertex_count; v++) {
+        struct trace_vertex *vertex = &out->vertices[v];
+        vertex->position = from->positions[v];
+        vertex->normal = from->normals[v];
+        if (!out->has_tangents) continue;
+        vertex->tangent = from->tangents[v];
+        if (out->mirrored) vertex->tangent.w = -vertex->tangent.w;
+    }
+}
+
+// Rounding errors of a position are a few units in the last place (2⁻²⁴) of the corners that it is
+// interpolated from.
+static float reach_of(const struct trace_mesh *mesh, const uint32_t corner[3])
+{
+    static const float REACH = 0x1p-19f;
+    float size = 0.0f;
+    for (int i = 0; i < 3; i++)
+        size = fmaxf(size, glms_vec3_max(glms_vec3_abs(mesh->vertices[corner[i]].position)));
+    return REACH * size + 1e-9f;
+}
+
+static void make_facets(struct trace_mesh *out)
+{
+    for (uint32_t i = 0; i < out->mesh->index_count / 3; i++) {
+        uint32_t corner[3];
+        trace_corners(out, i, corner);
+        out->facets[i] = (struct trace_facet){
+            .normal = glms_vec3_normalize(trace_area_normal(out, corner)),
+            .reach = reach_of(out, corner),
+        };
     }
 }
 
@@ -110,20 +136,20 @@ static bool make_mesh(struct trace_scene *s, const struct scene_pose *pose, int 
                                 .instance = instance,
                                 .mirrored = pose_is_mirrored(pose, instance),
                                 .emitter_first = NO_EMITTER };
-    size_t count = mesh->vertex_count;
-    out->positions = host_alloc(s->host, count + 1, sizeof *out->positions);
-    out->normals = host_alloc(s->host, count, sizeof *out->normals);
-    if (!out->positions || !out->normals) return false;
-    if (mesh->tangents && (!deformed->positions || deformed->tangents)) {
-        out->tangents = host_alloc(s->host, count, sizeof *out->tangents);
-        if (!out->tangents) return false;
-    }
+    out->has_tangents = mesh->tangents && (!deformed->positions || deformed->tangents);
+    out->vertices = host_alloc(s->host, mesh->vertex_count, sizeof *out->vertices);
+    out->facets = host_alloc(s->host, mesh->index_count / 3, sizeof *out->facets);
+    if (!out->vertices || !out->facets) return false;
     if (deformed->positions)
         copy_deformed(out, deformed);
     else
         move_rigid(out, pose_world_from_instance(pose, instance));
+    for (uint32_t v = 0; mesh->uv[0] && v < mesh->vertex_count; v++)
+        out->vertices[v].uv = mesh->uv[0][v];
+    make_facets(out);
     out->geometry = (struct embree_geometry){
-        .positions = out->positions,
+        .positions = &out->vertices->position,
+        .stride = sizeof *out->vertices,
         .vertex_count = mesh->vertex_count,
         .indices = mesh->indices,
         .triangle_count = mesh->index_count / 3,
@@ -187,10 +213,7 @@ static uint64_t add_mesh(uint64_t key, const struct trace_mesh *m)
     size_t count = mesh->vertex_count;
     key = add(key, &mesh->index_count, 1, sizeof mesh->index_count);
     key = add(key, mesh->indices, mesh->index_count, sizeof *mesh->indices);
-    key = add(key, m->positions, count, sizeof *m->positions);
-    key = add(key, m->normals, count, sizeof *m->normals);
-    key = add(key, m->tangents, count, sizeof *m->tangents);
-    key = add(key, mesh->uv[0], count, sizeof *mesh->uv[0]);
+    key = add(key, m->vertices, count, sizeof *m->vertices);
     key = add(key, mesh->uv[1], count, sizeof *mesh->uv[1]);
     key = add(key, mesh->colors, count, sizeof *mesh->colors);
     return add_material(key, m->material);
@@ -235,9 +258,8 @@ void trace_scene_destroy(struct trace_scene *s)
     embree_destroy(s->embree);
     light_table_finish(s);
     for (uint32_t i = 0; i < s->mesh_count; i++) {
-        host_free(s->host, s->meshes[i].positions);
-        host_free(s->host, s->meshes[i].normals);
-        host_free(s->host, s->meshes[i].tangents);
+        host_free(s->host, s->meshes[i].vertices);
+        host_free(s->host, s->meshes[i].facets);
     }
     for (int i = 0; i < s->scene->image_count; i++) {
         if (s->color_textures) texture_finish(&s->color_textures[i], s->host);
@@ -259,7 +281,8 @@ bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s directio
     struct ray_hit met;
     if (!embree_closest(scene->embree, &ray, NULL, false, &met)) return false;
     if (!hit) return true;
-    struct surface s = surface_at(scene, &ray, &met, NULL);
+    struct surface s;
+    surface_at(scene, &ray, &met, NULL, &s);
     *hit = (struct trace_hit){
         .distance = met.distance,
         .instance = scene->meshes[met.geometry].instance,

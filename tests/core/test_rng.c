@@ -93,6 +93,24 @@ TEST(neighbouring_pixels_samples_and_dimensions_are_independent)
     check_neighbours(0, 0, 1);
 }
 
+// The path tracer's numbers: of one word the two, and of neighbouring words the first, fill the square
+// evenly.
+TEST(mixed_words_have_independent_halves_and_neighbours)
+{
+    enum { CELLS = 32, PAIRS = 200000 };
+    static int halves[CELLS * CELLS], neighbours[CELLS * CELLS];
+    for (uint64_t i = 0; i < PAIRS; i++) {
+        vec2s a = rng_pair(rng_mix(i)), b = rng_pair(rng_mix(i + 1));
+        CHECK(a.x >= 0.0f && a.x < 1.0f && a.y >= 0.0f && a.y < 1.0f);
+        int column = (int)(a.x * (float)CELLS);
+        halves[(int)(a.y * (float)CELLS) * CELLS + column]++;
+        neighbours[(int)(b.x * (float)CELLS) * CELLS + column]++;
+    }
+    double expected = (double)PAIRS / (CELLS * CELLS);
+    CHECK(fabs(chi_square_excess(halves, CELLS * CELLS, expected)) < 5.0);
+    CHECK(fabs(chi_square_excess(neighbours, CELLS * CELLS, expected)) < 6.0); // they overlap
+}
+
 TEST(same_arguments_give_the_same_numbers)
 {
     struct rng a = rng_for(11, 22, 33), b = rng_for(11, 22, 33), c = rng_for(22, 11, 33);
