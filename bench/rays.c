@@ -1,0 +1,256 @@
+// What the reference makes of the rays that Embree can trace: millions a second of the path tracer,
+// and of Embree alone with the very same rays, in turns. Seconds are those of the processor's cores,
+// all together, so that what else the machine does hardly counts.
+//
+//     rays [--size WxH] [--spp N] [--rounds N] [SCENE]…
+#include "core/parallel.h"
+#include "scene/defaults.h"
+#include "trace/trace_scene.h"
+
+#if AG_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+enum { MAX_SCENES = 64, LOG_SIZE = 1 << 20, CHUNK = 4096 }; // rays
+
+struct bench {
+    const char *scenes[MAX_SCENES];
+    int scene_count, width, height, samples, rounds;
+    struct host host;
+};
+
+static double core_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// ---- Embree alone
+
+struct bare {
+    RTCDevice device;
+    RTCScene scene;
+    const struct ray_log *log;
+    size_t count;
+    atomic_size_t met; // so that no call can be left out
+};
+
+static void add_mesh(struct bare *bare, const struct embree_geometry *mesh)
+{
+    RTCGeometry g = rtcNewGeometry(bare->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh->positions, 0,
+                               mesh->stride, mesh->vertex_count);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->indices, 0,
+                               3 * sizeof(uint32_t), mesh->triangle_count);
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(bare->scene, g);
+    rtcReleaseGeometry(g);
+}
+
+// All is solid: masks are the path tracer's affair.
+static bool begin_bare(struct bare *bare, const struct trace_scene *scene)
+{
+    bare->device = rtcNewDevice(NULL);
+    if (bare->device) bare->scene = rtcNewScene(bare->device);
+    if (!bare->scene) return false;
+    rtcSetSceneFlags(bare->scene, RTC_SCENE_FLAG_ROBUST);
+    for (uint32_t i = 0; i < scene->mesh_count; i++) add_mesh(bare, &scene->meshes[i].geometry);
+    rtcCommitScene(bare->scene);
+    return rtcGetDeviceError(bare->device) == RTC_ERROR_NONE;
+}
+
+static void finish_bare(struct bare *bare)
+{
+    if (bare->scene) rtcReleaseScene(bare->scene);
+    if (bare->device) rtcReleaseDevice(bare->device);
+}
+
+static bool trace(const struct bare *bare, const struct logged_ray *logged)
+{
+    const struct ray *ray = &logged->ray;
+    struct RTCRayHit r;
+    r.ray = (struct RTCRay){ .org_x = ray->origin.x,
+                             .org_y = ray->origin.y,
+                             .org_z = ray->origin.z,
+                             .tnear = ray->near,
+                             .dir_x = ray->direction.x,
+                             .dir_y = ray->direction.y,
+                             .dir_z = ray->direction.z,
+                             .tfar = ray->far,
+                             .mask = 0xffffffffu };
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if AG_EMBREE == 4
+    if (logged->occlusion)
+        rtcOccluded1(bare->scene, &r.ray, NULL);
+    else
+        rtcIntersect1(bare->scene, &r, NULL);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    if (logged->occlusion)
+        rtcOccluded1(bare->scene, &context, &r.ray);
+    else
+        rtcIntersect1(bare->scene, &context, &r);
+#endif
+    return logged->occlusion ? r.ray.tfar < 0.0f : r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+static void trace_chunk(void *user, size_t chunk)
+{
+    struct bare *bare = user;
+    size_t met = 0, end = (chunk + 1) * CHUNK < bare->count ? (chunk + 1) * CHUNK : bare->count;
+    for (size_t i = chunk * CHUNK; i < end; i++) met += trace(bare, &bare->log->rays[i]);
+    atomic_fetch_add(&bare->met, met);
+}
+
+// Rays a second.
+static double bare_rate(struct bare *bare)
+{
+    double begun = core_s();
+    parallel_for((bare->count + CHUNK - 1) / CHUNK, 1, trace_chunk, bare);
+    return (double)bare->count / (core_s() - begun);
+}
+
+// ---- the path tracer
+
+static double reference_rate(struct reference *reference, int samples)
+{
+    uint64_t before = reference_info(reference).rays;
+    double begun = core_s();
+    if (!reference_render(reference, samples, NULL, NULL)) return 0.0;
+    double seconds = core_s() - begun;
+    return (double)(reference_info(reference).rays - before) / seconds;
+}
+
+// The log has the rays of whole tiles, each tile's in the order in which they were traced, as far
+// as there is room.
+static bool measure(struct bench *bench, const char *name, struct reference *reference,
+                    struct trace_scene *scene, struct ray_log *log)
+{
+    struct bare bare = { .log = log };
+    reference_log_rays(reference, log);
+    bool ok = reference_render(reference, 2, NULL, NULL) && begin_bare(&bare, scene);
+    reference_log_rays(reference, NULL);
+    size_t logged = atomic_load(&log->count), occlusion = 0;
+    bare.count = logged < log->capacity ? logged : log->capacity;
+    for (size_t i = 0; i < bare.count; i++) occlusion += log->rays[i].occlusion;
+    double best = 0.0, best_bare = 0.0;
+    for (int i = 0; ok && i < bench->rounds; i++) {
+        double rate = reference_rate(reference, bench->samples), alone = bare_rate(&bare);
+        best = rate > best ? rate : best;
+        best_bare = alone > best_bare ? alone : best_bare;
+    }
+    if (ok)
+        printf("%-32s %10.2f %10.2f %9.0f %% %9.0f %%\n", name, best * 1e-6, best_bare * 1e-6,
+               100.0 * best / best_bare, 100.0 * (double)occlusion / (double)bare.count);
+    fflush(stdout);
+    finish_bare(&bare);
+    return ok;
+}
+
+static bool add_default_lighting(struct scene *scene)
+{
+    struct scene_pose pose = { 0 };
+    if (!scene_is_dark(scene)) return true;
+    if (!pose_init(&pose, scene, -1, 0.0f)) return false;
+    struct default_lighting lighting = default_lighting(&pose);
+    pose_finish(&pose);
+    int node = scene_add_node_looking(scene, "sun", vec3_of(0, 0, 0), lighting.sun_direction);
+    struct light sun = {
+        .name = "sun", .type = LIGHT_SUN, .node = node, .intensity = lighting.sun_lux
+    };
+    scene->sky = lighting.sky;
+    return node >= 0 && scene_add_light(scene, &sun) >= 0;
+}
+
+static bool measure_scene(struct bench *bench, const char *name)
+{
+    struct scene_pose pose = { 0 };
+    struct reference *reference = NULL;
+    struct trace_scene *traced = NULL;
+    struct ray_log log = { .capacity = LOG_SIZE };
+    struct reference_options options = reference_options_default();
+    struct scene *scene = scene_load(&bench->host, name);
+    bool ok = scene && add_default_lighting(scene) && pose_init(&pose, scene, -1, 0.0f);
+    if (ok) {
+        struct world_camera camera =
+            scene->camera_count > 0 ? pose_camera(&pose, 0) : default_camera(&pose);
+        reference =
+            reference_create(&bench->host, &pose, &camera, bench->width, bench->height, &options);
+        traced = trace_scene_create(&bench->host, &pose);
+        log.rays = host_alloc(&bench->host, log.capacity, sizeof *log.rays);
+    }
+    ok = ok && reference && traced && log.rays && measure(bench, name, reference, traced, &log);
+    host_free(&bench->host, log.rays);
+    reference_destroy(reference);
+    trace_scene_destroy(traced);
+    pose_finish(&pose);
+    scene_destroy(scene);
+    return ok;
+}
+
+// ---- the run
+
+static bool parse_option(struct bench *bench, const char *name, const char *value)
+{
+    char rest;
+    if (strcmp(name, "--size") == 0)
+        return sscanf(value, "%dx%d%c", &bench->width, &bench->height, &rest) == 2;
+    if (strcmp(name, "--spp") == 0)
+        return sscanf(value, "%d%c", &bench->samples, &rest) == 1 && bench->samples >= 1;
+    if (strcmp(name, "--rounds") == 0)
+        return sscanf(value, "%d%c", &bench->rounds, &rest) == 1 && bench->rounds >= 1;
+    return false;
+}
+
+static bool parse(struct bench *bench, int argc, char **argv)
+{
+    for (int i = 1; i < argc; i++) {
+        if (strncmp(argv[i], "--", 2) == 0) {
+            if (i + 1 == argc || !parse_option(bench, argv[i], argv[i + 1])) return false;
+            i++;
+        } else if (bench->scene_count < MAX_SCENES) {
+            bench->scenes[bench->scene_count++] = argv[i];
+        } else {
+            return false;
+        }
+    }
+    if (bench->scene_count == 0) {
+        bench->scenes[bench->scene_count++] = "@cornell";
+        bench->scenes[bench->scene_count++] = "@atrium";
+    }
+    return true;
+}
+
+static void print_error(void *user, enum log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    fprintf(stderr, "rays: %s\n", message);
+}
+
+int main(int argc, char **argv)
+{
+    static struct bench bench = { .width = 256, .height = 256, .samples = 16, .rounds = 5 };
+    bench.host = host_default();
+    bench.host.log = print_error;
+    bench.host.log_up_to = LOG_ERROR;
+    if (!parse(&bench, argc, argv)) {
+        fprintf(stderr, "usage: rays [--size WxH] [--spp N] [--rounds N] [SCENE]...\n");
+        return 2;
+    }
+    printf("%-32s %10s %10s %11s %11s\n", "million rays a core and second", "reference", "Embree", "of it",
+           "shadow rays");
+    for (int i = 0; i < bench.scene_count; i++)
+        if (!measure_scene(&bench, bench.scenes[i])) return 1;
+    return 0;
+}
