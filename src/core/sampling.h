@@ -42,14 +42,8 @@ static inline vec2s sample_disk(vec2s u)
 // area, and near points stay near, which the square-root map does not do.
 static inline vec2s sample_triangle(vec2s u)
 {
-    if (u.y > u.x) {
-        u.x *= 0.5f;
-        u.y -= u.x;
-    } else {
-        u.y *= 0.5f;
-        u.x -= u.y;
-    }
-    return u;
+    float half = 0.5f * (u.x < u.y ? u.x : u.y); // the smaller is halved, and the other loses as much
+    return (vec2s){ { u.x - half, u.y - half } };
 }
 
 // Malley's method: the disk, lifted to the hemisphere.
