@@ -8,6 +8,7 @@
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -52,6 +53,41 @@ TEST(equal_commands_write_equal_files)
     CHECK(!files_are_equal(a, other));
 }
 
+TEST(the_number_of_threads_does_not_change_the_file)
+{
+    const char *one = path_of("one-thread.exr"), *three = path_of("three-threads.exr");
+    assert_int_equal(setenv("OMP_NUM_THREADS", "1", 1), 0);
+    run_expect(0, SMALL, "--spp", "4", "-o", one, NULL);
+    assert_int_equal(setenv("OMP_NUM_THREADS", "3", 1), 0);
+    run_expect(0, SMALL, "--spp", "4", "-o", three, NULL);
+    assert_int_equal(unsetenv("OMP_NUM_THREADS"), 0);
+    CHECK(files_are_equal(one, three));
+}
+
+// Doubling is exact in floats, so the same numbers drawn must give the double to the bit.
+TEST(a_doubled_light_doubles_every_pixel)
+{
+    static const char *const layers[] = { "color", "direct", "indirect", "irradiance", "error" };
+    const char *once = path_of("once.exr"), *twice = path_of("twice.exr");
+    run_expect(0, "reference @cornell:light=point --size 32x24 --quiet --spp 4 --no-scene-lights",
+               "--light", "point:0.3,1.2,0:30,50,70", "--light", "spot:0,1.9,0:0,-1,0:20:40:9,8,7",
+               "-o", once, NULL);
+    run_expect(0, "reference @cornell:light=point --size 32x24 --quiet --spp 4 --no-scene-lights",
+               "--light", "point:0.3,1.2,0:60,100,140", "--light",
+               "spot:0,1.9,0:0,-1,0:20:40:18,16,14", "-o", twice, NULL);
+    for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
+        struct image a = read_layer(once, layers[i]), b = read_layer(twice, layers[i]);
+        double sum = 0;
+        for (int p = 0; p < 32 * 24 * 3; p++) {
+            CHECK(b.pixels[p] == 2 * a.pixels[p]);
+            sum += (double)a.pixels[p];
+        }
+        CHECK(sum > 0);
+        image_finish(&a, test_host());
+        image_finish(&b, test_host());
+    }
+}
+
 TEST(layers_are_those_that_resuming_needs)
 {
     const char *path = path_of("layers.exr");
@@ -87,6 +123,32 @@ TEST(parts_of_the_light_are_what_they_are_called)
     CHECK(mean_of(indirect, NULL) < 0.97 * mean_of(all, NULL));
 }
 
+// Of the mean over all pixels, whose errors are independent.
+static double error_of_mean(const char *path)
+{
+    struct image error = read_layer(path, "error");
+    double variance = 0; // of a sum whose channels rise and fall together: an upper bound
+    int pixels = error.width * error.height;
+    for (int i = 0; i < pixels; i++) {
+        const float *e = &error.pixels[3 * i];
+        double all = (double)e[0] + (double)e[1] + (double)e[2];
+        variance += all * all;
+    }
+    image_finish(&error, test_host());
+    return sqrt(variance) / (3.0 * pixels);
+}
+
+TEST(the_first_bounce_is_what_one_bounce_adds_to_none)
+{
+    const char *one = path_of("one.exr"), *none = path_of("none.exr"), *alone = path_of("alone.exr");
+    run_expect(0, SMALL " --spp 64 --bounces 1 --seed 1 -o", one, NULL);
+    run_expect(0, SMALL " --spp 64 --bounces 0 --seed 2 -o", none, NULL);
+    run_expect(0, SMALL " --spp 64 --bounces 1 --indirect-only --seed 3 -o", alone, NULL);
+    double noise = hypot(error_of_mean(one), hypot(error_of_mean(none), error_of_mean(alone)));
+    CHECK(mean_of(alone, NULL) > 20 * noise); // so that the next line can fail
+    CHECK_NEAR(mean_of(one, NULL) - mean_of(none, NULL), mean_of(alone, NULL), 4 * noise);
+}
+
 TEST(a_longer_run_can_be_made_of_shorter_ones)
 {
     const char *whole = path_of("whole.exr"), *parts = path_of("parts.exr");
@@ -98,6 +160,7 @@ TEST(a_longer_run_can_be_made_of_shorter_ones)
     CHECK_RELATIVE(mean_of(parts, "error"), mean_of(whole, "error"), 1e-4);
     run_expect(0, SMALL " --spp 9 --resume -o", parts, NULL); // nothing is left to do
     check_one_error_line(run_expect(1, SMALL " --spp 12 --resume --seed 5 -o", parts, NULL));
+    check_one_error_line(run_expect(1, SMALL " --spp 12 --resume --fov 50 -o", parts, NULL));
     CHECK_NEAR(mean_of(parts, "samples"), 9, 0);
     const char *bare = path_of("bare.exr");
     run_expect(0, SMALL " --spp 2 --aov color -o", bare, NULL);
