@@ -222,6 +222,20 @@ static bool set_antialias(struct arguments *a, const char *value, const char **w
     return true;
 }
 
+static bool set_obscurance_radius(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be more than 0 and at most 1000000 m";
+    return value_floats(value, 1, &a->obscurance_radius_m) && a->obscurance_radius_m > 0.0f &&
+           a->obscurance_radius_m <= 1e6f;
+}
+
+static bool set_obscurance_sphere(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->obscurance_sphere = true;
+    return true;
+}
+
 static bool set_resume(struct arguments *a, const char *value, const char **why)
 {
     (void)value, (void)why;
@@ -435,6 +449,7 @@ static struct arguments defaults_of(const struct command *command)
                                .fov_deg = 60.0,
                                .spp = 64,
                                .bounces = -1,
+                               .obscurance_radius_m = 0.5f,
                                .max_flip = -1.0,
                                .max_relmse = -1.0,
                                .max_ms = -1.0 };

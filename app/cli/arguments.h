@@ -35,6 +35,8 @@ struct arguments {
     // reference
     int spp, bounces;
     bool has_spp, direct_only, indirect_only, antialias, resume;
+    float obscurance_radius_m;
+    bool obscurance_sphere;
     // compare
     const char *methods[MAX_METHODS]; // each a --gi
     int method_count;

@@ -180,6 +180,7 @@ static enum look look_of(const char *layer)
         { "albedo", AS_IT_IS },       { "visibility", AS_IT_IS },
         { "display", AS_IT_IS },      { "normal", DIRECTION },
         { "motion", DIRECTION },      { "depth", DEPTH },
+        { "obscurance", AS_IT_IS },   { "ambient_occlusion", AS_IT_IS },
         { "position", RANGE },        { "samples", RANGE },
         { "irradiance", IRRADIANCE }, { "gathered_irradiance", IRRADIANCE },
     };

@@ -42,6 +42,8 @@ enum status tracing_begin(struct tracing *t, struct session *session,
     desc.direct_only = a->direct_only;
     desc.indirect_only = a->indirect_only;
     desc.antialias = a->antialias;
+    desc.obscurance_radius_m = a->obscurance_radius_m;
+    desc.obscurance_sphere = a->obscurance_sphere;
     desc.seed = a->seed;
     enum ag_result result = ag_reference_create(session->scene, &desc, &t->reference);
     return result == AG_OK ? DONE : fail_library(session->context, result);

@@ -19,6 +19,8 @@ struct ag_reference_desc {
     bool direct_only;   ///< color holds direct light alone; default false
     bool indirect_only; ///< color holds indirect light alone; default false
     bool antialias;     ///< samples all over each pixel; default false: at its centre, as a renderer's
+    float obscurance_radius_m; ///< of the layers obscurance and ambient_occlusion; default 0.5
+    bool obscurance_sphere; ///< obscurance of the whole sphere, not of the hemisphere above the surface; default false
     uint64_t seed;      ///< default 0
 };
 /// Everything but the camera.
@@ -36,15 +38,18 @@ AG_API enum ag_result ag_reference_render(struct ag_reference *reference, int sa
                                           bool (*progress)(void *user, double done), void *user);
 
 /// Names of the layers: color direct indirect gathered irradiance gathered_irradiance albedo normal depth position error
-/// samples. NULL past the end.
+/// samples obscurance ambient_occlusion. NULL past the end.
 AG_API const char *ag_reference_layer_name(int index);
-/// A layer in physical units (cd/m², lux, metres): 3 channels, depth and samples 1. color = direct + indirect, to the bit.
+/// A layer in physical units (cd/m², lux, metres): 3 channels, depth, samples, obscurance and
+/// ambient_occlusion 1. color = direct + indirect, to the bit.
 /// direct is what comes straight from a light, a surface that glows or the sky, and these themselves; indirect
 /// the rest; irradiance that of the indirect light. gathered and gathered_irradiance are the same with what surfaces that
 /// glow and the sky throw straight on the surface seen: what techniques add to a frame's direct light, to be
 /// compared with its layers indirect and irradiance. With direct_only they hold the straight part alone, with
 /// indirect_only the other. error is the standard error of color (infinite for less than 2 samples), samples how many
-/// each pixel has. The others are those of the pixel's centre, 0 where there is no surface.
+/// each pixel has. obscurance is the open share of the volume round the surface up to the radius, ambient_occlusion the
+/// share of the sky above it that is open so far, weighted with the cosine; 1 is open, and where there is no surface.
+/// The others are those of the pixel's centre, 0 where there is no surface.
 AG_API enum ag_result ag_reference_read(struct ag_reference *reference, const char *layer,
                                         struct ag_image **out);
 

@@ -22,7 +22,10 @@ static struct ag_context *context_of(const struct ag_reference *r)
 
 void ag_reference_desc_default(struct ag_reference_desc *desc)
 {
-    if (desc) *desc = (struct ag_reference_desc){ .width = 1280, .height = 720, .bounces = -1 };
+    if (desc)
+        *desc = (struct ag_reference_desc){
+            .width = 1280, .height = 720, .bounces = -1, .obscurance_radius_m = 0.5f
+        };
 }
 
 static bool build(struct ag_reference *r, const struct ag_scene *scene,
@@ -37,6 +40,8 @@ static bool build(struct ag_reference *r, const struct ag_scene *scene,
                                          .direct_only = desc->direct_only,
                                          .indirect_only = desc->indirect_only,
                                          .antialias = desc->antialias,
+                                         .obscurance_radius_m = desc->obscurance_radius_m,
+                                         .obscurance_sphere = desc->obscurance_sphere,
                                          .seed = desc->seed };
     r->reference = reference_create(host, &pose, &camera, desc->width, desc->height, &options);
     pose_finish(&pose);
@@ -63,6 +68,8 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
     AG_REQUIRE(context, desc->bounces >= -1, "bounces %d is less than -1", desc->bounces);
     AG_REQUIRE(context, !(desc->direct_only && desc->indirect_only),
                "direct_only and indirect_only exclude each other");
+    AG_REQUIRE(context, desc->obscurance_radius_m > 0.0f && isfinite(desc->obscurance_radius_m),
+               "obscurance_radius_m %g is not more than 0", (double)desc->obscurance_radius_m);
     AG_REQUIRE(context, api_animation_exists(scene, desc->animation),
                "animation %d is not one of %d", desc->animation, scene->scene->animation_count);
     AG_REQUIRE(context, isfinite(desc->time_s), "time_s is not finite");

@@ -5,6 +5,8 @@
 // neither threads nor the way the samples are spread over calls change a bit.
 #include "trace/path.h"
 
+#include "trace/obscurance.h"
+
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -38,14 +40,15 @@ struct reference {
     int width, height, tiles_x, tiles_y;
     vec3s eye, forward, right, up; // right and up: to the picture's edge at a distance of 1
     float near_m;
-    struct pixel_sums *sums; // [height][width]
-    struct tile *tiles;      // [tiles_y][tiles_x]
+    struct pixel_sums *sums;            // [height][width]
+    struct tile *tiles;                 // [tiles_y][tiles_x]
+    struct obscurance_sums *obscurance; // [height][width]; NULL: nobody asked yet
     uint64_t key;
 };
 
 struct reference_options reference_options_default(void)
 {
-    return (struct reference_options){ .bounces = -1 };
+    return (struct reference_options){ .bounces = -1, .obscurance_radius_m = 0.5f };
 }
 
 static const char *const layer_names[REFERENCE_LAYER_COUNT] = {
@@ -55,6 +58,8 @@ static const char *const layer_names[REFERENCE_LAYER_COUNT] = {
     [REFERENCE_ALBEDO] = "albedo",     [REFERENCE_NORMAL] = "normal",
     [REFERENCE_DEPTH] = "depth",       [REFERENCE_POSITION] = "position",
     [REFERENCE_ERROR] = "error",       [REFERENCE_SAMPLES] = "samples",
+    [REFERENCE_OBSCURANCE] = "obscurance",
+    [REFERENCE_AMBIENT_OCCLUSION] = "ambient_occlusion",
 };
 
 const char *reference_layer_name(int layer)
@@ -99,6 +104,10 @@ static bool check(struct host *host, int width, int height, const struct referen
     if (options->direct_only && options->indirect_only)
         return host_fail(host, FAIL_ARGUMENT,
                          "reference of direct light only and of indirect light only: choose one");
+    if (!(options->obscurance_radius_m > 0.0f) || !isfinite(options->obscurance_radius_m))
+        return host_fail(host, FAIL_ARGUMENT,
+                         "reference with an obscurance radius of %g m: more than 0 is wanted",
+                         (double)options->obscurance_radius_m);
     return true;
 }
 
@@ -142,6 +151,7 @@ void reference_destroy(struct reference *r)
     trace_scene_destroy(r->scene);
     host_free(r->host, r->sums);
     host_free(r->host, r->tiles);
+    host_free(r->host, r->obscurance);
     host_free(r->host, r);
 }
 
@@ -346,15 +356,34 @@ static void read_sums(const struct reference *r, enum reference_layer layer, int
     if (layer == REFERENCE_SAMPLES) out[0] = (float)n;
 }
 
+static struct path_start centre_of(const struct reference *r, int x, int y)
+{
+    uint64_t rays = 0;
+    struct reference bare = *r;
+    bare.rules.direct = false;
+    return start_at(&bare, (float)x + 0.5f, (float)y + 0.5f, &rays);
+}
+
+static void read_obscurance(const struct reference *r, enum reference_layer layer, int x, int y,
+                            float *out)
+{
+    struct path_start start = centre_of(r, x, y);
+    *out = 1.0f;
+    if (!start.hit) return;
+    const struct obscurance_rules rules = { r->scene, r->options.obscurance_radius_m,
+                                            r->options.obscurance_sphere, r->rules.seed };
+    uint32_t pixel = (uint32_t)y * (uint32_t)r->width + (uint32_t)x;
+    struct obscurance_sums *sums = &r->obscurance[pixel];
+    obscurance_add(&rules, &start.surface, pixel, samples_of(r, x, y), sums);
+    if (sums->samples == 0) return;
+    const double sum = layer == REFERENCE_OBSCURANCE ? sums->volume : sums->ambient;
+    *out = (float)(sum / sums->samples);
+}
+
 static void read_surface(const struct reference *r, enum reference_layer layer, int x, int y,
                          float *out)
 {
-    struct path_rules rules = r->rules;
-    rules.direct = false;
-    uint64_t rays = 0;
-    struct reference bare = *r;
-    bare.rules = rules;
-    struct path_start start = start_at(&bare, (float)x + 0.5f, (float)y + 0.5f, &rays);
+    struct path_start start = centre_of(r, x, y);
     if (!start.hit) return;
     vec3s v = layer == REFERENCE_ALBEDO   ? start.surface.albedo
               : layer == REFERENCE_NORMAL ? start.surface.normal
@@ -372,6 +401,11 @@ static bool is_of_surface(enum reference_layer layer)
            layer == REFERENCE_POSITION;
 }
 
+static bool is_obscurance(enum reference_layer layer)
+{
+    return layer == REFERENCE_OBSCURANCE || layer == REFERENCE_AMBIENT_OCCLUSION;
+}
+
 struct reading {
     const struct reference *reference;
     enum reference_layer layer;
@@ -385,7 +419,9 @@ static void read_row(void *user, size_t y)
     unsigned before = embree_flush_denormals();
     for (int x = 0; x < r->width; x++) {
         float *out = image_at(reading->out, x, (int)y);
-        if (is_of_surface(reading->layer))
+        if (is_obscurance(reading->layer))
+            read_obscurance(r, reading->layer, x, (int)y, out);
+        else if (is_of_surface(reading->layer))
             read_surface(r, reading->layer, x, (int)y, out);
         else
             read_sums(r, reading->layer, x, (int)y, out);
@@ -395,13 +431,18 @@ static void read_row(void *user, size_t y)
 
 static int channels_of(enum reference_layer layer)
 {
-    return layer == REFERENCE_DEPTH || layer == REFERENCE_SAMPLES ? 1 : 3;
+    return layer == REFERENCE_DEPTH || layer == REFERENCE_SAMPLES || is_obscurance(layer) ? 1 : 3;
 }
 
-bool reference_read(const struct reference *r, enum reference_layer layer, struct image *out)
+bool reference_read(struct reference *r, enum reference_layer layer, struct image *out)
 {
     if ((unsigned)layer >= REFERENCE_LAYER_COUNT)
         return host_fail(r->host, FAIL_ARGUMENT, "reference's layer %d: there is none", (int)layer);
+    if (is_obscurance(layer) && !r->obscurance) {
+        r->obscurance =
+            host_alloc(r->host, (size_t)r->width * (size_t)r->height, sizeof *r->obscurance);
+        if (!r->obscurance) return false;
+    }
     if (!image_init(out, r->host, r->width, r->height, channels_of(layer))) return false;
     struct reading reading = { r, layer, out };
     parallel_for((size_t)r->height, 4, read_row, &reading);

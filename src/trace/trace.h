@@ -49,9 +49,11 @@ struct reference_options {
     bool indirect_only; // color holds indirect light alone
     bool diffuse_only;  // surfaces do not gloss: Lambert's term alone
     bool antialias;     // samples all over the pixel; false: at its centre, as in the frame
+    float obscurance_radius_m; // of the layers obscurance and ambient_occlusion: > 0
+    bool obscurance_sphere;    // obscurance of the whole sphere, else of the hemisphere above the surface
     uint64_t seed;
 };
-struct reference_options reference_options_default(void); // bounces -1, seed 0, all else off
+struct reference_options reference_options_default(void); // bounces -1, radius 0.5 m, seed 0, all else off
 
 enum reference_layer {
     REFERENCE_COLOR,      // cd/m²: direct + indirect, to the bit
@@ -63,12 +65,15 @@ enum reference_layer {
                           // indirect_only the former
     REFERENCE_IRRADIANCE, // lux: of the indirect light; 0 with direct_only
     REFERENCE_GATHERED_IRRADIANCE, // lux: of the gathered light, as a technique's irradiance
-    REFERENCE_ALBEDO,     // of the pixel's centre, as all from here on but the last two
+    REFERENCE_ALBEDO,     // of the pixel's centre, as all from here on but error and samples
     REFERENCE_NORMAL,     // shading normal, world space; 0 where there is no surface, as are the next two
     REFERENCE_DEPTH,      // m along the view axis; 1 channel
     REFERENCE_POSITION,   // m
     REFERENCE_ERROR,      // standard error of color, per channel, cd/m²; infinite for less than 2 samples
     REFERENCE_SAMPLES,    // how many there are so far; 1 channel
+    REFERENCE_OBSCURANCE, // open share of the volume of a (hemi)sphere round the pixel's centre (obscurance.c); 1 channel
+    REFERENCE_AMBIENT_OCCLUSION, // open share of the sky up to that radius, by the cosine; 1 channel; both 1 where there is
+                                 // no surface, from as many rays as there are samples
     REFERENCE_LAYER_COUNT
 };
 const char *reference_layer_name(int layer); // "color", …; NULL out of range
@@ -101,7 +106,7 @@ struct ray_log;
 void reference_log_rays(struct reference *reference, struct ray_log *log);
 
 // A new image of 3 channels (1 where said so above); image_finish is the caller's.
-bool reference_read(const struct reference *reference, enum reference_layer layer, struct image *out);
+bool reference_read(struct reference *reference, enum reference_layer layer, struct image *out);
 
 // What identifies the picture being computed: scene, light, camera, size and options. Two references with equal keys
 // converge to the same values through the same samples.

@@ -71,14 +71,17 @@ TEST(every_named_layer_can_be_read)
     int count = 0;
     for (const char *name; (name = ag_reference_layer_name(count)); count++) {
         struct ag_image *image = read_layer(r, name);
-        bool single = strcmp(name, "depth") == 0 || strcmp(name, "samples") == 0;
+        static const char *const singles[] = { "depth", "samples", "obscurance",
+                                               "ambient_occlusion" };
+        bool single = false;
+        for (int i = 0; i < 4; i++) single |= strcmp(name, singles[i]) == 0;
         assert_int_equal(image->channels, single ? 1 : 3);
         assert_int_equal(image->width, 24);
         for (size_t i = 0; i < float_count(image); i++) CHECK(isfinite(image->pixels[i]));
         if (strcmp(name, "samples") == 0) CHECK_NEAR(image->pixels[0], 4, 0);
         ag_image_destroy(f.context, image);
     }
-    assert_int_equal(count, 12);
+    assert_int_equal(count, 14);
     assert_null(ag_reference_layer_name(-1));
     ag_reference_destroy(r);
     close(&f);

@@ -149,6 +149,22 @@ TEST(the_first_bounce_is_what_one_bounce_adds_to_none)
     CHECK_NEAR(mean_of(one, NULL) - mean_of(none, NULL), mean_of(alone, NULL), 4 * noise);
 }
 
+TEST(the_radius_of_obscurance_is_that_of_the_option)
+{
+    const char *small = path_of("small.exr"), *large = path_of("large.exr"),
+               *whole = path_of("whole.exr");
+    run_expect(0, SMALL " --spp 16 --aov obscurance --obscurance-radius 0.05 -o", small, NULL);
+    run_expect(0, SMALL " --spp 16 --aov obscurance --obscurance-radius 2 -o", large, NULL);
+    // A square shows nothing but the room.
+    run_expect(0,
+               "reference @cornell --size 24x24 --quiet --spp 16 --aov obscurance "
+               "--obscurance-radius 0.05 --obscurance-sphere -o",
+               whole, NULL);
+    CHECK(mean_of(small, "obscurance") > 0.95 && mean_of(small, "obscurance") < 1.0);
+    CHECK(mean_of(large, "obscurance") < 0.9);
+    CHECK_NEAR(mean_of(whole, "obscurance"), 0.5, 0.1);
+}
+
 TEST(a_longer_run_can_be_made_of_shorter_ones)
 {
     const char *whole = path_of("whole.exr"), *parts = path_of("parts.exr");
@@ -190,7 +206,7 @@ TEST(each_layer_makes_a_picture)
 {
     static const char *const layers[] = { "color",  "gathered", "irradiance", "gathered_irradiance",
                                           "albedo", "normal",   "depth",      "position",
-                                          "error",  "samples" };
+                                          "error",  "samples",  "obscurance", "ambient_occlusion" };
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++)
         run_expect(0, SMALL " --spp 2 --aov", layers[i], "-o", path_of("layer.png"), NULL);
 }
@@ -200,6 +216,8 @@ TEST(wrong_usage_is_said_before_the_work)
     static const char *const wrong[] = { "--spp 0",
                                          "--spp x",
                                          "--bounces -1",
+                                         "--obscurance-radius 0",
+                                         "--obscurance-radius nan",
                                          "--direct-only --indirect-only",
                                          "--aov color,visibility",
                                          "--aov color,direct -o a.png",

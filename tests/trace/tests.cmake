@@ -1,6 +1,6 @@
 add_library(ag_test_box STATIC ${CMAKE_CURRENT_LIST_DIR}/stage.c)
 target_link_libraries(ag_test_box PUBLIC ag_test_framework ag_trace PRIVATE afterglow_flags)
-foreach(name bsdf direct furnace gathered light_sample reference surface texture)
+foreach(name bsdf direct furnace gathered light_sample obscurance reference surface texture)
   ag_test(trace/${name} USES trace LIBRARIES ag_test_box)
 endforeach()
 ag_test(trace/frame USES trace frame LIBRARIES ag_test_studio)
