@@ -5,3 +5,4 @@ foreach(name emission gi_spec lpv_flux lpv_math lpv_twin technique_invariants te
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_studio)
 endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
+ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
