@@ -2,14 +2,18 @@
 #include "techniques/registry.h"
 
 #include "techniques/ambient/ambient.h"
+#include "techniques/hbao/hbao.h"
 #include "techniques/lpv/lpv.h"
 #include "techniques/none/none.h"
+#include "techniques/ssao/ssao.h"
+#include "techniques/vo/vo.h"
 
 #include <assert.h>
 #include <string.h>
 
 const struct technique *const techniques[] = { &technique_none, &technique_ambient, &technique_lpv,
-                                               &technique_holpv, NULL };
+                                               &technique_holpv, &technique_vo, &technique_ssao,
+                                               &technique_hbao, NULL };
 
 bool technique_is_sound(const struct technique *technique)
 {

@@ -11,7 +11,8 @@
 enum { SIZE = 32, FLOATS = SIZE * SIZE * 3 };
 
 // A closed room; `lights` is a set of bits: which of its two lights are on.
-static float *irradiance(struct gpu *gpu, const char *text, int lights, float strength, int frames)
+static float *layer(struct gpu *gpu, const char *text, int lights, float strength, int frames,
+                    enum frame_readback what)
 {
     struct studio s;
     studio_init(&s, gpu);
@@ -31,11 +32,16 @@ static float *irradiance(struct gpu *gpu, const char *text, int lights, float st
     assert_non_null(gi);
     s.indirect = gi_hook(gi);
     for (int i = 0; i < frames; i++) studio_render(&s);
-    float *out = studio_read(&s, READ_IRRADIANCE);
+    float *out = studio_read(&s, what);
     gi_destroy(gi);
     gi_spec_finish(&spec);
     studio_finish(&s);
     return out;
+}
+
+static float *irradiance(struct gpu *gpu, const char *text, int lights, float strength, int frames)
+{
+    return layer(gpu, text, lights, strength, frames, READ_IRRADIANCE);
 }
 
 static float largest(const float *values)
@@ -96,13 +102,35 @@ TEST_GPU(techniques_give_exactly_nothing_without_light)
 TEST_GPU(techniques_give_the_same_bytes_in_every_run_and_frame)
 {
     for (size_t t = 0; techniques[t]; t++) {
-        float *first = irradiance(gpu, techniques[t]->name, 3, 1.0f, 1);
-        float *again = irradiance(gpu, techniques[t]->name, 3, 1.0f, 1);
-        float *later = irradiance(gpu, techniques[t]->name, 3, 1.0f, 3);
-        assert_memory_equal(first, again, FLOATS * sizeof *first);
-        assert_memory_equal(first, later, FLOATS * sizeof *first);
+        const bool source = techniques[t]->role == ROLE_SOURCE;
+        const enum frame_readback what = source ? READ_IRRADIANCE : READ_VISIBILITY;
+        const size_t floats = source ? FLOATS : FLOATS / 3;
+        float *first = layer(gpu, techniques[t]->name, 3, 1.0f, 1, what);
+        float *again = layer(gpu, techniques[t]->name, 3, 1.0f, 1, what);
+        float *later = layer(gpu, techniques[t]->name, 3, 1.0f, 3, what);
+        assert_memory_equal(first, again, floats * sizeof *first);
+        assert_memory_equal(first, later, floats * sizeof *first);
         free(first);
         free(again);
         free(later);
+    }
+}
+
+// The room has corners and a box in it: some of it is open, some is not, and light does not matter.
+TEST_GPU(visibilities_see_the_geometry_and_not_the_light)
+{
+    for (size_t t = 0; techniques[t]; t++) {
+        if (techniques[t]->role != ROLE_VISIBILITY) continue;
+        float *lit = layer(gpu, techniques[t]->name, 3, 1.0f, 1, READ_VISIBILITY);
+        float *dark = layer(gpu, techniques[t]->name, 0, 1.0f, 1, READ_VISIBILITY);
+        assert_memory_equal(lit, dark, SIZE * SIZE * sizeof *lit);
+        float least = 1.0f, most = 0.0f;
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            least = fminf(least, lit[i]);
+            most = fmaxf(most, lit[i]);
+        }
+        CHECK(least < 0.7f && most > 0.95f);
+        free(lit);
+        free(dark);
     }
 }

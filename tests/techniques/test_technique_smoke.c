@@ -42,6 +42,9 @@ static void finite_frames(struct studio *s, int count)
     for (size_t i = 0; i < (size_t)s->width * s->height * 3; i++)
         CHECK(isfinite(e[i]) && e[i] >= 0.0f);
     free(e);
+    float *v = studio_read(s, READ_VISIBILITY);
+    for (size_t i = 0; i < (size_t)s->width * s->height; i++) CHECK(v[i] >= 0.0f && v[i] <= 1.0f);
+    free(v);
 }
 
 TEST_GPU(techniques_live_through_frames_sizes_and_views)
@@ -90,7 +93,7 @@ TEST_GPU(techniques_run_with_every_option_at_both_ends)
                 struct gi_spec spec;
                 CHECK(gi_spec_parse(&spec, test_host(), techniques[i]->name));
                 char text[128], value[64];
-                void *options = spec.options[0];
+                void *options = spec.options[spec.count - 1]; // a source may stand before it
                 if (row->type == OPTION_TYPE_float32)
                     *(float *)((char *)options + row->offset) = (float)(end ? row->max : row->min);
                 else if (row->type == OPTION_TYPE_bool8)

@@ -1,7 +1,7 @@
-add_library(ag_test_techniques STATIC techniques/lpv_rig.c techniques/lpv_twin.c techniques/stage.c)
-target_link_libraries(ag_test_techniques PUBLIC ag_test_gpu ag_techniques PRIVATE afterglow_flags m)
+add_library(ag_test_techniques STATIC techniques/lpv_rig.c techniques/lpv_twin.c techniques/stage.c techniques/vo_rig.c)
+target_link_libraries(ag_test_techniques PUBLIC ag_test_studio ag_techniques PRIVATE afterglow_flags m)
 
-foreach(name emission gi_spec lpv_flux lpv_math lpv_twin technique_invariants technique_smoke)
+foreach(name emission gi_spec lpv_flux lpv_math lpv_twin technique_invariants technique_smoke visibility vo)
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_studio)
 endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")

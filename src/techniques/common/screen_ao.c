@@ -1,0 +1,161 @@
+// From a noisy estimate to the frame's visibility: blur, fit to the frame's size.
+#include "techniques/common/screen_ao.h"
+
+#include "technique_shaders.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { LOCAL = 8, BLUR_ROW = 4, NAME_SIZE = 32 };
+
+static const enum gpu_format ESTIMATE_FORMAT = GPU_RG32F;
+
+static uint32_t step_of(const struct screen_ao_options *options)
+{
+    return options->half ? 2 : 1;
+}
+
+static uint32_t work_size(const struct screen_ao_options *options, uint32_t size)
+{
+    return gpu_groups(size, step_of(options));
+}
+
+struct gpu_constant screen_ao_step(const struct screen_ao *ao)
+{
+    return (struct gpu_constant){ 0, step_of(&ao->options) };
+}
+
+// ---- life
+
+static bool make_image(struct screen_ao *ao, const char *thing, gpu_image *out)
+{
+    char name[NAME_SIZE];
+    snprintf(name, sizeof name, "%s.%s", ao->owner, thing);
+    const struct gpu_image_desc desc = { .name = name,
+                                         .format = ESTIMATE_FORMAT,
+                                         .width = ao->work_width,
+                                         .height = ao->work_height,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    gpu_image_destroy(ao->gpu, out);
+    return gpu_image_create(ao->gpu, &desc, out);
+}
+
+bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
+{
+    ao->width = width;
+    ao->height = height;
+    ao->work_width = work_size(&ao->options, width);
+    ao->work_height = work_size(&ao->options, height);
+    return make_image(ao, "estimate", &ao->estimate) &&
+           (!ao->options.blur || make_image(ao, "scratch", &ao->scratch));
+}
+
+static bool make_pipeline(struct screen_ao *ao, const char *thing, const struct gpu_shader *shader,
+                          gpu_pipeline *out)
+{
+    char name[NAME_SIZE];
+    snprintf(name, sizeof name, "%s.%s", ao->owner, thing);
+    const struct gpu_constant step = screen_ao_step(ao);
+    return gpu_compute_pipeline_create(ao->gpu, name, shader, &step, 1, out);
+}
+
+bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const char *owner,
+                    const struct screen_ao_options *options, uint32_t width, uint32_t height)
+{
+    *ao = (struct screen_ao){ .gpu = gpu, .owner = owner, .options = *options };
+    const struct gpu_shader *blur_y =
+        options->half ? &shader_screen_ao_blur_y_half_comp : &shader_screen_ao_blur_y_comp;
+    return make_pipeline(ao, "blur_x", &shader_screen_ao_blur_x_comp, &ao->blur_x) &&
+           make_pipeline(ao, "blur_y", blur_y, &ao->blur_y) &&
+           make_pipeline(ao, "fit", &shader_screen_ao_fit_comp, &ao->fit) &&
+           screen_ao_resize(ao, width, height);
+}
+
+void screen_ao_finish(struct screen_ao *ao)
+{
+    if (!ao->gpu) return;
+    gpu_image_destroy(ao->gpu, &ao->estimate);
+    gpu_image_destroy(ao->gpu, &ao->scratch);
+    gpu_pipeline_destroy(ao->gpu, &ao->blur_x);
+    gpu_pipeline_destroy(ao->gpu, &ao->blur_y);
+    gpu_pipeline_destroy(ao->gpu, &ao->fit);
+    *ao = (struct screen_ao){ 0 };
+}
+
+uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height)
+{
+    const uint64_t pixels = (uint64_t)work_size(options, width) * work_size(options, height);
+    return pixels * (uint64_t)gpu_format_bytes(ESTIMATE_FORMAT) * (options->blur ? 2 : 1);
+}
+
+// ---- a frame
+
+void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float radius_m,
+                     float reach)
+{
+    const struct world_camera *camera = &view->camera;
+    const float width = (float)view->width, height = (float)view->height;
+    ao->params = (struct screen_ao_params){
+        .right = glms_vec3_cross(camera->forward, camera->up),
+        .down = glms_vec3_negate(camera->up),
+        .forward = camera->forward,
+        .focal_px = 0.5f * height / tanf(0.5f * camera->vertical_fov_rad),
+        .near_m = camera->near_m,
+        .radius_m = radius_m,
+        .most_px = reach * height,
+        .middle_x = 0.5f * width,
+        .middle_y = 0.5f * height,
+        .width = view->width,
+        .height = view->height,
+        .work_width = ao->work_width,
+        .work_height = ao->work_height,
+    };
+}
+
+struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd)
+{
+    return gpu_transient(cmd, "screen_ao", &ao->params, sizeof ao->params);
+}
+
+static void scope_begin(const struct screen_ao *ao, struct gpu_cmd *cmd, const char *stage)
+{
+    char name[NAME_SIZE];
+    snprintf(name, sizeof name, "%s.%s", ao->owner, stage);
+    gpu_scope_begin(cmd, name);
+}
+
+static void record_blur(const struct screen_ao *ao, struct gpu_cmd *cmd, gpu_image visibility)
+{
+    const struct gpu_binding params = screen_ao_binding(ao, cmd);
+    scope_begin(ao, cmd, "blur");
+    gpu_dispatch(cmd, ao->blur_x,
+                 GPU_BIND(params, { .name = "before", .image = ao->estimate },
+                          { .name = "after", .image = ao->scratch }),
+                 NULL, 0, gpu_groups(ao->work_width, LOCAL * BLUR_ROW),
+                 gpu_groups(ao->work_height, LOCAL), 1);
+    gpu_dispatch(cmd, ao->blur_y,
+                 GPU_BIND(params, { .name = "before", .image = ao->scratch },
+                          { .name = "after", .image = ao->estimate },
+                          { .name = "visibility", .image = visibility }),
+                 NULL, 0, gpu_groups(ao->work_width, LOCAL),
+                 gpu_groups(ao->work_height, LOCAL * BLUR_ROW), 1);
+    gpu_scope_end(cmd);
+}
+
+static void record_fit(const struct screen_ao *ao, struct gpu_cmd *cmd,
+                       const struct frame_view *view)
+{
+    scope_begin(ao, cmd, "fit");
+    gpu_dispatch(cmd, ao->fit,
+                 GPU_BIND(screen_ao_binding(ao, cmd), { .name = "before", .image = ao->estimate },
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "visibility", .image = view->layers[FRAME_VISIBILITY] }),
+                 NULL, 0, gpu_groups(ao->width, LOCAL), gpu_groups(ao->height, LOCAL), 1);
+    gpu_scope_end(cmd);
+}
+
+void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    if (ao->options.blur) record_blur(ao, cmd, view->layers[FRAME_VISIBILITY]);
+    if (ao->options.half || !ao->options.blur) record_fit(ao, cmd, view);
+}

@@ -1,0 +1,43 @@
+// What techniques that look for occluders in the depth buffer have in common: the picture's
+// geometry (screen_ao.glsl), and the way from their noisy estimate to the frame's visibility.
+#pragma once
+
+#include "frame/frame.h"
+
+#include "techniques/common/screen_ao_shared.h"
+
+struct screen_ao_options {
+    bool blur; // evens the estimate out over 4 × 4 pixels, not across edges
+    bool half; // the estimate has half the frame's size
+};
+
+struct screen_ao {
+    struct gpu *gpu;
+    const char *owner; // "vo": of the images and of the passes
+    struct screen_ao_options options;
+    uint32_t width, height, work_width, work_height;
+    gpu_image
+        estimate; // RG32F: visibility, depth of the frame's pixel; the technique writes every pixel
+    gpu_image scratch; // RG32F
+    gpu_pipeline blur_x, blur_y, fit;
+    struct screen_ao_params params; // of the frame being recorded
+};
+
+// owner: lives as long as the object. false: what was made is there, screen_ao_finish frees it.
+bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const char *owner,
+                    const struct screen_ao_options *options, uint32_t width, uint32_t height);
+bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height);
+void screen_ao_finish(struct screen_ao *ao); // accepts zero
+uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height);
+
+// The constant that all shaders of the estimate take: SCREEN_AO_STEP.
+struct gpu_constant screen_ao_step(const struct screen_ao *ao);
+
+// Once a frame, before the estimate. radius_m: of the sphere; reach: its radius on the screen at
+// most, in picture heights.
+void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float radius_m,
+                     float reach);
+// The block "screen_ao".
+struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd);
+// After the estimate: fills the frame's visibility. Passes "owner.blur" and "owner.fit".
+void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view);

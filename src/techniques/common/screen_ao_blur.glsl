@@ -1,0 +1,57 @@
+// Mean of an estimate over five pixels in a row, the outer two by half, so that a pattern of four pixels is evened out
+// wholly, and not across edges: a pixel counts the less the farther it is, in radii of the sphere, from the straight line
+// through its neighbours in depth. One direction after the other makes the mean over 4 by 4 pixels.
+//
+// One invocation does four pixels in a row: they share what they read. DOWN: ivec2(1, 0) or ivec2(0, 1), the row's direction.
+#include "techniques/common/screen_ao.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 1) uniform sampler2D before; // visibility, depth
+
+const int ROW = 4, REACH = 2;
+const float EDGE = 4.0; // a pixel a quarter of a radius off does not count
+
+// The part of a pixel `offset` steps away in the mean around one of depth `here`; slope: of the depth per step.
+float weight_of(float depth, float here, float slope, float offset, float per_depth)
+{
+    return clamp(1.0 - abs(depth - here - slope * offset) * per_depth, 0.0, 1.0);
+}
+
+// Of the two slopes beside a pixel the flatter: the steeper may lead over an edge.
+float flatter(float a, float b)
+{
+    return abs(a) < abs(b) ? a : b;
+}
+
+vec2 mean_around(vec2 row[ROW + 2 * REACH], int i)
+{
+    float here = row[i].y;
+    if (here <= 0.0) return row[i];
+    float radius_px = clamp(view.radius_m * view.focal_px * here / view.near_m, LEAST_PX, view.most_px);
+    float per_depth = EDGE * view.focal_px / (radius_px * here);
+    float slope = flatter(row[i + 1].y - here, here - row[i - 1].y);
+    float weights = 1.0, sum = row[i].x;
+    for (int k = 1; k <= REACH; k++) {
+        float share = k == REACH ? 0.5 : 1.0;
+        float left = share * weight_of(row[i - k].y, here, slope, -float(k), per_depth);
+        float right = share * weight_of(row[i + k].y, here, slope, float(k), per_depth);
+        sum += left * row[i - k].x + right * row[i + k].x;
+        weights += left + right;
+    }
+    return vec2(sum / weights, here);
+}
+
+void blur()
+{
+    ivec2 size = ivec2(view.work_width, view.work_height);
+    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * (ivec2(1) + DOWN * (ROW - 1));
+    if (any(greaterThanEqual(first, size))) return;
+    vec2 row[ROW + 2 * REACH];
+    for (int i = 0; i < ROW + 2 * REACH; i++)
+        row[i] = texelFetch(before, clamp(first + DOWN * (i - REACH), ivec2(0), size - 1), 0).rg;
+    for (int i = 0; i < ROW; i++) {
+        ivec2 at = first + DOWN * i;
+        if (all(lessThan(at, size))) store(at, mean_around(row, i + REACH));
+    }
+}

@@ -1,0 +1,25 @@
+// What the shaders of the techniques that look for occluders in the depth buffer share with the
+// host. Scalar layout.
+#ifndef AG_SCREEN_AO_SHARED_H
+#define AG_SCREEN_AO_SHARED_H
+
+#include "core/shared.h"
+
+// Uniform block "screen_ao".
+struct screen_ao_params {
+    vec3s right, down, forward; // of the picture, world space, unit
+    float focal_px;             // pixels per unit of the angle's tangent
+    float near_m;
+    float radius_m;                   // of the sphere in which occluders count
+    float most_px;                    // the sphere's radius on the screen at most
+    float turn;                       // of the pattern in this frame, 0…1
+    float middle_x, middle_y;         // of the picture, pixels
+    uint32_t width, height;           // of the frame, pixels
+    uint32_t work_width, work_height; // of the estimate, pixels
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct screen_ao_params) == 20 * 4, "layout is shared with GLSL");
+#endif
+
+#endif

@@ -1,0 +1,119 @@
+// Horizon-based ambient occlusion (Bavoil & Sainz 2008), to be held against vo. README.md says what
+// differs.
+#include "techniques/hbao/hbao.h"
+
+#include "techniques/common/screen_ao.h"
+#include "techniques/hbao/hbao_shared.h"
+
+#include "technique_shaders.h"
+
+#include <math.h>
+
+enum { LOCAL = 8 };
+
+enum hbao_falloff { HBAO_FALLOFF_CUBIC, HBAO_FALLOFF_QUADRATIC };
+
+struct hbao_options {
+#define OPTION OPTION_FIELD
+#include "techniques/hbao/hbao_options.def"
+#undef OPTION
+};
+
+static const struct option_row option_rows[] = {
+#define OPTION(...) OPTION_ROW(struct hbao_options, __VA_ARGS__)
+#include "techniques/hbao/hbao_options.def"
+#undef OPTION
+};
+
+struct hbao {
+    struct gpu *gpu;
+    struct hbao_options options;
+    struct screen_ao ao;
+    gpu_pipeline horizons;
+};
+
+static struct screen_ao_options ao_options(const struct hbao_options *options)
+{
+    return (struct screen_ao_options){ .blur = options->blur, .half = options->half };
+}
+
+static bool hbao_create(void *state, const struct technique_create *how)
+{
+    struct hbao *hbao = state;
+    hbao->gpu = how->gpu;
+    hbao->options = *(const struct hbao_options *)how->options;
+    const struct screen_ao_options options = ao_options(&hbao->options);
+    if (!screen_ao_init(&hbao->ao, how->gpu, "hbao", &options, how->width, how->height))
+        return false;
+    const struct gpu_constant step = screen_ao_step(&hbao->ao);
+    return gpu_compute_pipeline_create(hbao->gpu, "hbao.horizons", &shader_hbao_horizons_comp,
+                                       &step, 1, &hbao->horizons);
+}
+
+static bool hbao_resize(void *state, uint32_t width, uint32_t height)
+{
+    return screen_ao_resize(&((struct hbao *)state)->ao, width, height);
+}
+
+static void hbao_set_options(void *state, const void *options)
+{
+    ((struct hbao *)state)->options = *(const struct hbao_options *)options;
+}
+
+static void record_horizons(struct hbao *hbao, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const struct hbao_options *o = &hbao->options;
+    const struct hbao_push push = { .directions = o->directions,
+                                    .steps = o->steps,
+                                    .bias = tanf(o->bias * GLM_PIf / 180.0f),
+                                    .quadratic = o->falloff == HBAO_FALLOFF_QUADRATIC };
+    gpu_scope_begin(cmd, "hbao.horizons");
+    gpu_dispatch(cmd, hbao->horizons,
+                 GPU_BIND(screen_ao_binding(&hbao->ao, cmd),
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                          { .name = "estimate", .image = hbao->ao.estimate }),
+                 &push, sizeof push, gpu_groups(hbao->ao.work_width, LOCAL),
+                 gpu_groups(hbao->ao.work_height, LOCAL), 1);
+    gpu_scope_end(cmd);
+}
+
+static void hbao_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct hbao *hbao = state;
+    screen_ao_begin(&hbao->ao, view, hbao->options.radius, hbao->options.reach);
+    record_horizons(hbao, cmd, view);
+    screen_ao_record(&hbao->ao, cmd, view);
+}
+
+static void hbao_destroy(void *state)
+{
+    struct hbao *hbao = state;
+    if (!hbao->gpu) return;
+    screen_ao_finish(&hbao->ao);
+    gpu_pipeline_destroy(hbao->gpu, &hbao->horizons);
+}
+
+static uint64_t hbao_memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    return screen_ao_memory(&ao, width, height);
+}
+
+const struct technique technique_hbao = {
+    .name = "hbao",
+    .title = "ambient occlusion by horizons",
+    .paper = "Bavoil & Sainz 2008, Image-Space Horizon-Based Ambient Occlusion",
+    .role = ROLE_VISIBILITY,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
+    .needs = FRAME_WRITES_VISIBILITY,
+    .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
+                 sizeof(struct hbao_options) },
+    .state_size = sizeof(struct hbao),
+    .create = hbao_create,
+    .resize = hbao_resize,
+    .set_options = hbao_set_options,
+    .record = hbao_record,
+    .destroy = hbao_destroy,
+    .memory_estimate = hbao_memory_estimate,
+};

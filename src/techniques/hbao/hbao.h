@@ -1,0 +1,6 @@
+// Ambient occlusion by horizons.
+#pragma once
+
+#include "techniques/technique.h"
+
+extern const struct technique technique_hbao;

@@ -1,0 +1,137 @@
+// Screen-space ambient occlusion by points in a sphere (Mittring 2007), to be held against vo.
+// README.md says what differs.
+#include "techniques/ssao/ssao.h"
+
+#include "techniques/common/sample_sets.h"
+#include "techniques/common/screen_ao.h"
+#include "techniques/ssao/ssao_shared.h"
+
+#include "technique_shaders.h"
+
+enum { LOCAL = 8 };
+
+_Static_assert(SAMPLE_SET_MOST == SSAO_MOST_SAMPLES, "every set fits into the table");
+
+struct ssao_options {
+#define OPTION OPTION_FIELD
+#include "techniques/ssao/ssao_options.def"
+#undef OPTION
+};
+
+static const struct option_row option_rows[] = {
+#define OPTION(...) OPTION_ROW(struct ssao_options, __VA_ARGS__)
+#include "techniques/ssao/ssao_options.def"
+#undef OPTION
+};
+
+struct ssao {
+    struct gpu *gpu;
+    struct ssao_options options;
+    struct screen_ao ao;
+    gpu_pipeline points;
+    struct ssao_samples table;
+};
+
+static struct screen_ao_options ao_options(const struct ssao_options *options)
+{
+    return (struct screen_ao_options){ .blur = options->blur, .half = options->half };
+}
+
+static int fill_table(const struct ssao_options *options, struct ssao_samples *table)
+{
+    const struct sample_set *set = sample_set_at(SAMPLE_BALL, options->samples);
+    *table = (struct ssao_samples){ .range = options->range };
+    for (int i = 0; i < set->count; i++) {
+        const struct sample *s = &set->samples[i];
+        table->at[i] = (vec4s){ { s->x, s->y, s->z, s->weight } };
+    }
+    return set->count;
+}
+
+static bool create_points(struct ssao *ssao)
+{
+    const struct gpu_constant constants[] = {
+        screen_ao_step(&ssao->ao),
+        { 1, (uint32_t)fill_table(&ssao->options, &ssao->table) },
+        { 2, ssao->options.normal },
+    };
+    return gpu_compute_pipeline_create(ssao->gpu, "ssao.points", &shader_ssao_points_comp,
+                                       constants, sizeof constants / sizeof constants[0],
+                                       &ssao->points);
+}
+
+static bool ssao_create(void *state, const struct technique_create *how)
+{
+    struct ssao *ssao = state;
+    ssao->gpu = how->gpu;
+    ssao->options = *(const struct ssao_options *)how->options;
+    const struct screen_ao_options options = ao_options(&ssao->options);
+    return screen_ao_init(&ssao->ao, how->gpu, "ssao", &options, how->width, how->height) &&
+           create_points(ssao);
+}
+
+static bool ssao_resize(void *state, uint32_t width, uint32_t height)
+{
+    return screen_ao_resize(&((struct ssao *)state)->ao, width, height);
+}
+
+static void ssao_set_options(void *state, const void *options)
+{
+    ((struct ssao *)state)->options = *(const struct ssao_options *)options;
+}
+
+static void record_points(struct ssao *ssao, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    fill_table(&ssao->options, &ssao->table);
+    gpu_scope_begin(cmd, "ssao.points");
+    gpu_dispatch(cmd, ssao->points,
+                 GPU_BIND(screen_ao_binding(&ssao->ao, cmd),
+                          gpu_transient(cmd, "ssao_table", &ssao->table, sizeof ssao->table),
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                          { .name = "estimate", .image = ssao->ao.estimate }),
+                 NULL, 0, gpu_groups(ssao->ao.work_width, LOCAL),
+                 gpu_groups(ssao->ao.work_height, LOCAL), 1);
+    gpu_scope_end(cmd);
+}
+
+static void ssao_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct ssao *ssao = state;
+    screen_ao_begin(&ssao->ao, view, ssao->options.radius, ssao->options.reach);
+    record_points(ssao, cmd, view);
+    screen_ao_record(&ssao->ao, cmd, view);
+}
+
+static void ssao_destroy(void *state)
+{
+    struct ssao *ssao = state;
+    if (!ssao->gpu) return;
+    screen_ao_finish(&ssao->ao);
+    gpu_pipeline_destroy(ssao->gpu, &ssao->points);
+}
+
+static uint64_t ssao_memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    return screen_ao_memory(&ao, width, height);
+}
+
+const struct technique technique_ssao = {
+    .name = "ssao",
+    .title = "ambient occlusion by points in a sphere",
+    .paper = "Mittring 2007, Finding Next Gen: CryEngine 2; Filion & McNaughton 2008, Effects & "
+             "Techniques (StarCraft II)",
+    .role = ROLE_VISIBILITY,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
+    .needs = FRAME_WRITES_VISIBILITY,
+    .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
+                 sizeof(struct ssao_options) },
+    .state_size = sizeof(struct ssao),
+    .create = ssao_create,
+    .resize = ssao_resize,
+    .set_options = ssao_set_options,
+    .record = ssao_record,
+    .destroy = ssao_destroy,
+    .memory_estimate = ssao_memory_estimate,
+};

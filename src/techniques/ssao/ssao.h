@@ -1,0 +1,6 @@
+// Ambient occlusion by points in a sphere.
+#pragma once
+
+#include "techniques/technique.h"
+
+extern const struct technique technique_ssao;

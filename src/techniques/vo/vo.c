@@ -1,0 +1,83 @@
+// Volumetric obscurance (Loos 2015, ch. 6): how much of a sphere round each point is empty, as far
+// as the depth buffer can tell.
+//
+// The estimate comes from few samples per pixel, turned from pixel to pixel; what follows evens out
+// the noise (techniques/common/screen_ao.h). README.md says what differs from the paper.
+#include "techniques/vo/vo.h"
+
+#include "techniques/vo/vo_state.h"
+
+#include <math.h>
+
+static const struct option_row option_rows[] = {
+#define OPTION(...) OPTION_ROW(struct vo_options, __VA_ARGS__)
+#include "techniques/vo/vo_options.def"
+#undef OPTION
+};
+
+static struct screen_ao_options ao_options(const struct vo_options *options)
+{
+    return (struct screen_ao_options){ .blur = options->blur, .half = options->half };
+}
+
+static bool vo_create(void *state, const struct technique_create *how)
+{
+    struct vo *vo = state;
+    vo->gpu = how->gpu;
+    vo->options = *(const struct vo_options *)how->options;
+    const struct screen_ao_options options = ao_options(&vo->options);
+    return screen_ao_init(&vo->ao, how->gpu, "vo", &options, how->width, how->height) &&
+           vo_create_estimate(vo);
+}
+
+static bool vo_resize(void *state, uint32_t width, uint32_t height)
+{
+    return screen_ao_resize(&((struct vo *)state)->ao, width, height);
+}
+
+static void vo_set_options(void *state, const void *options)
+{
+    ((struct vo *)state)->options = *(const struct vo_options *)options;
+}
+
+static void vo_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct vo *vo = state;
+    const float radius_m = fmaxf(vo->options.radius, vo->options.radius2);
+    screen_ao_begin(&vo->ao, view, radius_m, vo->options.reach);
+    vo_record_estimate(vo, cmd, view);
+    screen_ao_record(&vo->ao, cmd, view);
+}
+
+static void vo_destroy(void *state)
+{
+    struct vo *vo = state;
+    if (!vo->gpu) return;
+    screen_ao_finish(&vo->ao);
+    gpu_pipeline_destroy(vo->gpu, &vo->estimate);
+}
+
+static uint64_t vo_memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    return screen_ao_memory(&ao, width, height);
+}
+
+const struct technique technique_vo = {
+    .name = "vo",
+    .title = "volumetric obscurance",
+    .paper =
+        "Loos 2015, Modular Radiance Transfer, ch. 6; Loos & Sloan 2010, Volumetric Obscurance",
+    .role = ROLE_VISIBILITY,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
+    .needs = FRAME_WRITES_VISIBILITY,
+    .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
+                 sizeof(struct vo_options) },
+    .state_size = sizeof(struct vo),
+    .create = vo_create,
+    .resize = vo_resize,
+    .set_options = vo_set_options,
+    .record = vo_record,
+    .destroy = vo_destroy,
+    .memory_estimate = vo_memory_estimate,
+};

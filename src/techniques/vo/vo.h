@@ -1,0 +1,6 @@
+// Volumetric obscurance.
+#pragma once
+
+#include "techniques/technique.h"
+
+extern const struct technique technique_vo;

@@ -1,0 +1,76 @@
+// What the ways to look into the sphere round a pixel's point have in common. A shader includes this file and says in
+// vo_visibility how much it sees.
+//
+// Depths are in radii along a line of sight, z as in screen_ao.glsl. With the normal only what is before the surface's tangent
+// plane counts, and what is visible is divided by all there is up to there, so that a plane is visible in full.
+#include "frame/octahedral.glsl"
+#include "techniques/common/screen_ao.glsl"
+#include "techniques/vo/vo_shared.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 1) const int COUNT = 4;
+layout(constant_id = 2) const bool WITH_NORMAL = true;
+
+layout(set = 0, binding = 1, scalar) uniform vo_table
+{
+    vo_samples table;
+};
+layout(set = 0, binding = 2) uniform sampler2D depth;
+layout(set = 0, binding = 3) uniform sampler2D normal;
+layout(set = 0, binding = 4, rg32f) uniform writeonly image2D estimate;
+
+struct vo_place {
+    ivec2 pixel;
+    uint pattern; // which of the turned sets is this pixel's
+    screen_sphere sphere;
+    screen_plane plane;
+    float thickness; // radii along a line
+};
+
+float vo_visibility(vo_place p);
+
+// How much of a line from `from` to `to` is open beside a surface at z; what is behind that by more than the thickness is empty.
+float vo_open(float z, float from, float to, float thickness)
+{
+    float before = clamp(z, from, to);
+    return before - from + to - clamp(z + thickness, before, to);
+}
+
+// Depth behind the tangent plane of the surface at an offset in pixels. What lies beside the picture goes on as the plane from
+// its edge on.
+float vo_behind(vo_place p, vec2 offset)
+{
+    ivec2 there = clamp(p.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
+    float behind = screen_behind(p.sphere, p.plane, there - p.pixel, texelFetch(depth, there, 0).r);
+    return WITH_NORMAL ? min(behind + p.plane.tolerance, 0.0) : behind;
+}
+
+float vo_of_radius(ivec2 work, ivec2 pixel, float here, vec3 n, float radius_m)
+{
+    vo_place p;
+    p.pixel = pixel;
+    p.pattern = screen_pattern(uvec2(work));
+    p.sphere = screen_sphere_at(pixel, here, radius_m);
+    p.plane = screen_plane_of(p.sphere, n);
+    // Without the normal the surface's own plane must close its half of the sphere: its thickness is across, not along lines.
+    p.thickness = table.thickness * (WITH_NORMAL ? 1.0 : sqrt(1.0 + dot(p.plane.on_disk, p.plane.on_disk)));
+    return mix(WITH_NORMAL ? 1.0 : 0.5, vo_visibility(p), screen_fade(p.sphere));
+}
+
+void main()
+{
+    ivec2 work = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(work, ivec2(view.work_width, view.work_height)))) return;
+    ivec2 pixel = work * SCREEN_AO_STEP;
+    float here = texelFetch(depth, pixel, 0).r;
+    float result = 1.0;
+    if (here > 0.0) {
+        vec3 n = screen_normal(octahedral_decode(texelFetch(normal, pixel, 0).rg));
+        int radii = table.radii_m.y > 0.0 ? 2 : 1;
+        result = 0.0;
+        for (int i = 0; i < radii; i++) result += vo_of_radius(work, pixel, here, n, table.radii_m[i]);
+        result /= float(radii);
+    }
+    imageStore(estimate, work, vec4(clamp(result, 0.0, 1.0), here, 0.0, 0.0));
+}

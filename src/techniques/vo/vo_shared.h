@@ -1,0 +1,24 @@
+// What the shaders of volumetric obscurance share with the host. Scalar layout.
+#ifndef AG_VO_SHARED_H
+#define AG_VO_SHARED_H
+
+#include "core/shared.h"
+
+#define VO_MOST_SAMPLES 33
+
+// Uniform block "vo_table".
+struct vo_samples {
+    // Lines: x, y in the disk, half length, weight over length. Points: x, y, z in the ball,
+    // weight.
+    vec4s at[VO_MOST_SAMPLES];
+    vec2s radii_m;   // the second 0: there is one
+    float thickness; // of occluders, radii
+    float centre;    // weight of the sample at the sphere's centre, which needs no look; 0: there is none
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct vo_samples) == VO_MOST_SAMPLES * 16 + 16,
+               "layout is shared with GLSL");
+#endif
+
+#endif

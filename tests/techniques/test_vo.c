@@ -1,0 +1,177 @@
+// Volumetric obscurance against closed forms: planes and creases, at any angle, distance and sample
+// set.
+#include "techniques/vo_rig.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { WIDTH = 96, HEIGHT = 64 };
+
+static const int counts[] = { 5, 6, 7, 9, 12, 13, 16, 33 };
+enum { COUNTS = sizeof counts / sizeof counts[0] };
+
+static void begin(struct studio *s, struct gpu *gpu)
+{
+    studio_init(s, gpu);
+    s->width = WIDTH;
+    s->height = HEIGHT;
+}
+
+// ---- planes
+
+// The eye is `height` above a floor without end and looks down at `degrees` below the horizon.
+static void floor_seen(struct studio *s, struct gpu *gpu, float height, float degrees)
+{
+    begin(s, gpu);
+    studio_floor(s, 200, studio_matte(s, vec3_of(0.5f, 0.5f, 0.5f)));
+    const float a = degrees * GLM_PIf / 180.0f;
+    studio_look(s, vec3_of(0.1f, height, 0),
+                vec3_of(0.1f + 0.3f * cosf(a), height - sinf(a), -cosf(a)));
+    studio_open(s);
+}
+
+// Largest difference from `expected` where there is a surface, `margin` pixels and more from the
+// picture's edge.
+static double farthest(struct vo_rig *rig, float expected, uint32_t margin)
+{
+    float *estimate = vo_rig_estimate(rig), *depth = studio_read(rig->studio, READ_DEPTH);
+    double most = 0.0;
+    int looked_at = 0;
+    for (uint32_t y = margin; y < HEIGHT - margin; y++)
+        for (uint32_t x = margin; x < WIDTH - margin; x++) {
+            if (depth[y * WIDTH + x] <= 0.0f) continue;
+            most = fmax(most, fabs((double)(estimate[y * WIDTH + x] - expected)));
+            looked_at++;
+        }
+    CHECK(looked_at > 500);
+    free(estimate);
+    free(depth);
+    return most;
+}
+
+static const float slants[] = { 90, 60, 35, 20 };
+
+TEST_GPU(vo_leaves_a_plane_exactly_half_of_its_sphere)
+{
+    for (int i = 0; i < 4; i++) {
+        struct studio s;
+        floor_seen(&s, gpu, 1.5f, slants[i]);
+        double most = 0.0;
+        for (int k = 0; k < COUNTS; k++) {
+            char options[96];
+            // The sphere's radius is 0.1 of the height, 6.4 pixels, at most: seven from the edge no
+            // line is cut off.
+            snprintf(options, sizeof options,
+                     "samples=%d,radius=0.3,reach=0.1,normal=false", counts[k]);
+            struct vo_rig rig = vo_rig_create(&s, options);
+            most = fmax(most, farthest(&rig, 0.5f, 11));
+            vo_rig_destroy(&rig);
+        }
+        print_message("slant %2.0f: half to %.1e\n", (double)slants[i], most);
+        CHECK(most < 1e-4);
+        studio_finish(&s);
+    }
+}
+
+TEST_GPU(vo_leaves_a_plane_all_of_its_hemisphere_up_to_the_pictures_edge)
+{
+    for (int i = 0; i < 4; i++) {
+        struct studio s;
+        floor_seen(&s, gpu, 1.5f, slants[i]);
+        double most = 0.0;
+        for (int k = 0; k < COUNTS; k++) {
+            char options[96];
+            snprintf(options, sizeof options, "samples=%d,radius=0.5,thickness=%d", counts[k],
+                     k % 3);
+            struct vo_rig rig = vo_rig_create(&s, options);
+            most = fmax(most, farthest(&rig, 1.0f, 0));
+            vo_rig_destroy(&rig);
+        }
+        print_message("slant %2.0f: all to %.1e\n", (double)slants[i], most);
+        CHECK(most < 1e-4);
+        studio_finish(&s);
+    }
+}
+
+// ---- a crease
+
+// Two walls that meet at a right angle along the y axis, z = 0 and x = 0, seen from between them.
+static void crease(struct studio *s, struct gpu *gpu)
+{
+    begin(s, gpu);
+    const int matte = studio_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
+    studio_quad(s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
+                matte);
+    studio_quad(s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
+                matte);
+    studio_look(s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
+    studio_open(s);
+}
+
+// Volume of the sphere that is on the open side of a plane at the distance a (radii) from its
+// middle: with the height h = 1 + a of the cap, h² (3 − h)/4 of it. The wall that the point is on
+// halves what is left, by symmetry.
+static double open_share(double a)
+{
+    return a < 1.0 ? (2.0 + 3.0 * a - a * a * a) / 4.0 : 1.0;
+}
+
+// Means over the points of each of BINS distances up to 1.2 radii; all turns of the pattern are
+// among them.
+enum { BINS = 8 };
+static void by_distance(struct vo_rig *rig, float radius_m, double mean[BINS], double exact[BINS],
+                        int count[BINS])
+{
+    float *estimate = vo_rig_estimate(rig), *at = studio_read(rig->studio, READ_POSITION);
+    for (int b = 0; b < BINS; b++) mean[b] = exact[b] = count[b] = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const double a = (double)fmaxf(at[3 * i], at[3 * i + 2]) / (double)radius_m;
+        const int b = (int)(a / 1.2 * BINS);
+        if (b >= BINS) continue;
+        mean[b] += (double)estimate[i];
+        exact[b] += open_share(a);
+        count[b]++;
+    }
+    for (int b = 0; b < BINS; b++) {
+        mean[b] /= count[b];
+        exact[b] /= count[b];
+    }
+    free(estimate);
+    free(at);
+}
+
+TEST_GPU(vo_beside_a_wall_is_the_closed_form_up_to_the_sets_bias)
+{
+    struct studio s;
+    crease(&s, gpu);
+    const float radius_m = 0.6f; // a seventh of the distance, nine pixels
+    for (int normal = 0; normal < 2; normal++) {
+        double before = 1.0;
+        for (int k = 0; k < COUNTS; k++) {
+            char options[96];
+            snprintf(options, sizeof options, "samples=%d,radius=%g,normal=%s,thickness=1000",
+                     counts[k], (double)radius_m, normal ? "true" : "false");
+            struct vo_rig rig = vo_rig_create(&s, options);
+            double mean[BINS], exact[BINS], squares = 0.0;
+            int count[BINS];
+            by_distance(&rig, radius_m, mean, exact, count);
+            printf("%2d %s:", counts[k], normal ? "hemisphere" : "sphere    ");
+            for (int b = 0; b < BINS; b++) {
+                CHECK(count[b] > 50);
+                const double half = normal ? 1.0 : 0.5;
+                printf(" %+.3f", mean[b] - half * exact[b]);
+                squares += pow(mean[b] - half * exact[b], 2.0) / BINS;
+            }
+            printf("  rms %.4f\n", sqrt(squares));
+            // The set's own bias beside walls and ramps, and 0.015 for a picture's pixels and
+            // perspective.
+            const double bias = (double)sample_set_at(SAMPLE_DISK, k + 1)->bias;
+            CHECK(sqrt(squares) < bias + 0.015);
+            before = sqrt(squares);
+            vo_rig_destroy(&rig);
+        }
+        CHECK(before < 0.02); // 33
+    }
+    studio_finish(&s);
+}
