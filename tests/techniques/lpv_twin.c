@@ -1,6 +1,7 @@
 #include "techniques/lpv_twin.h"
 
 #include "core/sh.h"
+#include "techniques/geometry_twin.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,6 +17,8 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
     twin->grid = grid;
     twin->bands = bands;
     twin->scheme = scheme;
+    twin->steps = 0;
+    twin->geometry = NULL;
     twin->light = calloc(twin_cells(twin), sizeof *twin->light);
     twin->accumulated = calloc(twin_cells(twin), sizeof *twin->accumulated);
 }
@@ -54,8 +57,8 @@ void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux)
 }
 
 // Martin 2012, sec. 3.2.3 and 4.2: the flux through each face of a neighbour becomes a lobe in the
-// neighbour.
-static void send(const struct twin *twin, const double *light,
+// neighbour, of which `share` gets there.
+static void send(const struct twin *twin, const double *light, double share,
                  const struct lpv_neighbour *neighbour, enum lpv_lobe lobe,
                  const struct lpv_lobe_weights *weights, double *to)
 {
@@ -67,9 +70,15 @@ static void send(const struct twin *twin, const double *light,
         double intensity = 0.0;
         for (int i = 0; i < SH_COUNT(twin->bands); i++) intensity += light[i] * (double)basis[i];
         for (int i = 0; i < SH_COUNT(twin->bands); i++)
-            to[i] +=
-                face->solid_angle_sr * intensity * lpv_lobe_weight(weights, i) * (double)sent[i];
+            to[i] += share * face->solid_angle_sr * intensity * lpv_lobe_weight(weights, i) *
+                     (double)sent[i];
     }
+}
+
+static double passing(const struct twin *twin, const int cell[3], const int offset[3])
+{
+    if (!twin->geometry || twin->steps == 0) return 1.0;
+    return geometry_twin_passing(twin->geometry, cell, offset, twin->blocking);
 }
 
 void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)
@@ -86,13 +95,16 @@ void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)
             int to[3];
             for (int axis = 0; axis < 3; axis++) to[axis] = cell[axis] + neighbours[n].offset[axis];
             const int at = index_of(twin, to);
-            if (at >= 0) send(twin, twin->light[i], &neighbours[n], lobe, &weights, next[at]);
+            if (at < 0) continue;
+            const double share = passing(twin, cell, neighbours[n].offset);
+            send(twin, twin->light[i], share, &neighbours[n], lobe, &weights, next[at]);
         }
     }
     for (int i = 0; i < count; i++)
         for (int k = 0; k < 9; k++) twin->accumulated[i][k] += next[i][k];
     free(twin->light);
     twin->light = next;
+    twin->steps++;
 }
 
 double twin_flux(const struct twin *twin)

@@ -5,12 +5,17 @@
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_math.h"
 
+struct geometry_twin;
+
 struct twin {
     struct lpv_grid grid;
     int bands;
     enum lpv_scheme scheme;
     double (*light)[9];       // of this step, [z][y][x]
     double (*accumulated)[9]; // of all steps so far, the injected light among it
+    int steps;                // so far
+    const struct geometry_twin *geometry; // what is in the way from the second step on; NULL: nothing
+    double blocking;                      // the option
 };
 
 void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_scheme scheme);

@@ -248,7 +248,8 @@ static double mebibytes(struct gpu *gpu, gpu_image image)
            (1 << 20);
 }
 
-// Martin 2012, sec. 5.8: 0.75 MiB for a grid of 32³ cells in two bands, 1.75 in three; three grids.
+// Martin 2012, sec. 5.8: 0.75 MiB for a grid of 32³ cells in two bands, 1.75 in three; three grids; and a
+// geometry volume of 0.25.
 TEST_GPU(lpv_volumes_of_half_floats_are_as_large_as_the_papers)
 {
     const struct {
@@ -260,6 +261,7 @@ TEST_GPU(lpv_volumes_of_half_floats_are_as_large_as_the_papers)
         CHECK(mebibytes(gpu, lpv->injected) == cases[i].grid);
         CHECK(mebibytes(gpu, lpv->steps[0]) == cases[i].grid);
         CHECK(mebibytes(gpu, lpv->light) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->geometry.volume) == 0.25);
         assert_int_equal(lpv->steps[1].id, 0);
         rig_destroy(lpv);
     }

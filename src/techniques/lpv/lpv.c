@@ -1,10 +1,11 @@
 // Light propagation volumes (Martin 2012, ch. 3; Kaplanyan & Dachsbacher 2010) and those of higher
-// order (Martin 2012, ch. 4), without the geometry volume. One method with other defaults.
+// order (Martin 2012, ch. 4). One method with other defaults.
 //
 // The light that reflective shadow maps see leaving the lit surfaces, and that of emissive
 // surfaces, is put into a grid over the scene as spherical harmonics (inject), walks from cell to
-// neighbour (propagate), and is looked up by each pixel (apply). One bounce, diffuse, everything
-// moving. README.md says what differs from the paper and how good it is.
+// neighbour past what stands in its way (geometry, propagate), and is looked up by each pixel
+// (apply). One bounce, diffuse, everything moving. README.md says what differs from the paper and
+// how good it is.
 #include "techniques/lpv/lpv.h"
 
 #include "techniques/lpv/lpv_state.h"
@@ -29,10 +30,11 @@ static const struct option_row higher_order_rows[] = {
 #define NAMES(technique)                                                                           \
     {                                                                                              \
         .inject = technique ".inject", .inject_emitters = technique ".inject_emitters",            \
-        .resolve = technique ".resolve", .propagate = technique ".propagate",                      \
-        .apply = technique ".apply", .debug = technique ".debug", .sums = technique ".sums",       \
-        .injected = technique ".injected", .light = technique ".light",                            \
-        .steps = { technique ".step_even", technique ".step_odd" }, .linear = technique ".linear", \
+        .resolve = technique ".resolve", .geometry = technique ".geometry",                        \
+        .propagate = technique ".propagate", .apply = technique ".apply",                          \
+        .debug = technique ".debug", .sums = technique ".sums", .injected = technique ".injected", \
+        .light = technique ".light", .steps = { technique ".step_even", technique ".step_odd" },   \
+        .linear = technique ".linear", .of_geometry = LPV_GEOMETRY_NAMES(technique),               \
     }
 static const struct lpv_names names = NAMES("lpv"), higher_order_names = NAMES("holpv");
 
@@ -41,6 +43,9 @@ static const struct technique_debug_view debug_views[] = {
     { "propagated", "slices of the grid: the light accumulated over all steps" },
     { "cells",
       "the surfaces coloured by the cell they inject into, bright where light was injected" },
+    { "geometry", "slices of the grid: what is held back along x, y, z at each cell's low faces, "
+                  "as red, green, "
+                  "blue" },
     { NULL, NULL },
 };
 
@@ -119,20 +124,24 @@ static bool create_pipelines(struct lpv *lpv)
         { &lpv->inject, name->inject, &shader_lpv_inject_comp, 2 },
         { &lpv->inject_emitters, name->inject_emitters, &shader_lpv_inject_emitters_comp, 2 },
         { &lpv->resolve, name->resolve, &shader_lpv_resolve_comp, 2 },
-        { &lpv->propagate, name->propagate, &shader_lpv_propagate_comp, 3 },
+        { &lpv->propagate, name->propagate, &shader_lpv_propagate_comp, 4 },
         { &lpv->apply, name->apply, &shader_lpv_apply_comp, 2 },
-        { &lpv->debug, name->debug, &shader_lpv_debug_comp, 2 },
+        { &lpv->debug, name->debug, &shader_lpv_debug_comp, 3 },
     };
     const struct gpu_constant constants[] = {
         { LPV_CONSTANT_BANDS, (uint32_t)lpv->options.bands },
         { LPV_CONSTANT_HALF, lpv->options.precision == LPV_PRECISION_HALF },
+        { LPV_CONSTANT_GEOMETRY, (uint32_t)lpv->options.geometry },
         { LPV_CONSTANT_NEIGHBOURS, lpv->options.neighbours == LPV_SIX ? 6 : 26 },
+        { LPV_CONSTANT_HELD, 1 },
     };
     for (size_t i = 0; i < sizeof pipelines / sizeof pipelines[0]; i++)
         if (!gpu_compute_pipeline_create(lpv->gpu, pipelines[i].name, pipelines[i].shader,
                                          constants, pipelines[i].constants, pipelines[i].out))
             return false;
-    return true;
+    return lpv->options.geometry == LPV_GEOMETRY_OFF ||
+           gpu_compute_pipeline_create(lpv->gpu, name->propagate, &shader_lpv_propagate_comp,
+                                       constants, 5, &lpv->propagate_held);
 }
 
 static bool create(struct lpv *lpv, const struct lpv_names *name,
@@ -141,7 +150,7 @@ static bool create(struct lpv *lpv, const struct lpv_names *name,
     lpv->names = name;
     lpv->gpu = how->gpu;
     lpv->options = *(const struct lpv_options *)how->options;
-    return create_resources(lpv) && create_pipelines(lpv);
+    return create_resources(lpv) && create_pipelines(lpv) && lpv_geometry_create(lpv);
 }
 
 static bool lpv_create(void *state, const struct technique_create *how)
@@ -163,7 +172,13 @@ static void lpv_set_options(void *state, const void *options)
     next.neighbours = lpv->options.neighbours;
     next.precision = lpv->options.precision;
     next.dim = lpv->options.dim;
+    next.geometry = lpv->options.geometry;
     lpv->options = next;
+}
+
+static void lpv_invalidate(void *state, uint32_t changes)
+{
+    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) lpv_geometry_forget(state);
 }
 
 static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -175,6 +190,7 @@ static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         return;
     }
     lpv_record_injection(lpv, cmd, view);
+    lpv_record_geometry(lpv, cmd, view);
     lpv_record_propagation(lpv, cmd);
     lpv_record_application(lpv, cmd, view);
 }
@@ -189,6 +205,7 @@ static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
     }
     lpv_record_debug(lpv, cmd, view,
                      strcmp(name, "cells") == 0        ? LPV_VIEW_CELLS
+                     : strcmp(name, "geometry") == 0   ? LPV_VIEW_GEOMETRY
                      : strcmp(name, "propagated") == 0 ? LPV_VIEW_PROPAGATED
                                                        : LPV_VIEW_INJECTED,
                      out);
@@ -203,9 +220,11 @@ static void lpv_destroy(void *state)
         gpu_image_destroy(lpv->gpu, images[i]);
     gpu_buffer_destroy(lpv->gpu, &lpv->sums);
     gpu_pipeline *pipelines[] = { &lpv->inject,    &lpv->inject_emitters, &lpv->resolve,
-                                  &lpv->propagate, &lpv->apply,           &lpv->debug };
+                                  &lpv->propagate, &lpv->propagate_held,  &lpv->apply,
+                                  &lpv->debug };
     for (size_t i = 0; i < sizeof pipelines / sizeof pipelines[0]; i++)
         gpu_pipeline_destroy(lpv->gpu, pipelines[i]);
+    lpv_geometry_destroy(lpv);
 }
 
 static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_t height)
@@ -216,7 +235,8 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     const uint64_t dim = (uint64_t)how->dim, half = (uint64_t)gpu_format_bytes(GPU_RGBA16F),
                    full = (uint64_t)gpu_format_bytes(GPU_RGBA32F);
     const uint64_t slab = how->precision == LPV_PRECISION_HALF ? 3 * half : 3 * full + half;
-    return dim * dim * dim * (lpv_cell_bytes(how) + slab * lpv_slabs(how));
+    return dim * dim * dim * (lpv_cell_bytes(how) + slab * lpv_slabs(how)) +
+           lpv_geometry_bytes(how);
 }
 
 #define LPV_TECHNIQUE(name_, title_, paper_, rows_)                                                \
@@ -225,8 +245,8 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
     .options = { rows_, sizeof rows_ / sizeof rows_[0], sizeof(struct lpv_options) },              \
     .debug_views = debug_views, .state_size = sizeof(struct lpv), .set_options = lpv_set_options,  \
-    .record = lpv_record, .debug_view = lpv_debug_view, .destroy = lpv_destroy,                    \
-    .memory_estimate = lpv_memory_estimate
+    .invalidate = lpv_invalidate, .record = lpv_record, .debug_view = lpv_debug_view,              \
+    .destroy = lpv_destroy, .memory_estimate = lpv_memory_estimate
 
 const struct technique technique_lpv = {
     LPV_TECHNIQUE("lpv", "light propagation volumes",

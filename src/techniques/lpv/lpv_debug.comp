@@ -9,6 +9,8 @@
 #include "frame/octahedral.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#define LPV_GEOMETRY_BINDING 6
+#include "techniques/lpv/lpv_geometry.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -27,6 +29,18 @@ vec3 shown(ivec3 cell)
     return clamp(texelFetch(volume, cell, 0).rgb / SH_Y0 * push.radiance_scale, 0.0, HALF_MAX);
 }
 
+// What is held back at a cell's faces towards −x, −y, −z, of the light that goes either way.
+vec3 held_back(ivec3 cell)
+{
+    vec3 held = vec3(0.0);
+    for (int axis = 0; axis < 3; axis++) {
+        ivec3 low = ivec3(0);
+        low[axis] = -1;
+        if (lpv_inside(cell + low)) held[axis] = 1.0 - min(lpv_passing(cell, low), lpv_passing(cell + low, -low));
+    }
+    return held;
+}
+
 vec3 slices(ivec2 pixel)
 {
     ivec3 cells = lpv_cells();
@@ -37,7 +51,8 @@ vec3 slices(ivec2 pixel)
     vec2 within = fract(tiled);
     int z = tile.y * columns + tile.x;
     if (z >= cells.z) return vec3(0.0);
-    return shown(ivec3(ivec2(vec2(within.x, 1.0 - within.y) * 0.9999 * vec2(cells.xy)), z));
+    ivec3 cell = ivec3(ivec2(vec2(within.x, 1.0 - within.y) * 0.9999 * vec2(cells.xy)), z);
+    return push.view == LPV_VIEW_GEOMETRY ? held_back(cell) : shown(cell);
 }
 
 // A colour for the cell into which a surface injects, half a cell along its normal: full where there is light, dim where not.

@@ -17,10 +17,14 @@
 #include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#define LPV_SHARES_BINDING 4
+#define LPV_SHARES_ACCESS readonly
+#include "techniques/lpv/lpv_shares.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = LPV_CONSTANT_NEIGHBOURS) const int LPV_NEIGHBOURS = 6;
+layout(constant_id = LPV_CONSTANT_GEOMETRY) const int LPV_GEOMETRY = LPV_GEOMETRY_OFF;
+layout(constant_id = LPV_CONSTANT_HELD) const bool LPV_HELD = false;
 
 layout(set = 0, binding = 1) uniform sampler3D injected;
 layout(set = 0, binding = 2) uniform sampler3D before;
@@ -39,11 +43,14 @@ sums nothing()
     return sums(vec3(0.0), none, none, none);
 }
 
-// The share of the light that goes from `cell` to the neighbour at `offset` which arrives there: 0 from outside of the grid.
-// What stands in the way belongs here; light that does not arrive is gone.
-float reach(ivec3 cell, ivec3 offset)
+// The shares of the light from `cell` that arrive where it goes: four neighbours, as lpv_shares.glsl has them. Nothing comes
+// from outside of the grid, and light that does not arrive is gone.
+vec4 reach(ivec3 cell, int word)
 {
-    return lpv_inside(cell) ? 1.0 : 0.0;
+    if (!lpv_inside(cell)) return vec4(0.0);
+    if (LPV_GEOMETRY == LPV_GEOMETRY_OFF) return vec4(1.0);
+    vec4 passing = unpackUnorm4x8(share_words[LPV_WORDS * lpv_index(cell) + word]);
+    return LPV_HELD ? 1.0 - passing : passing;
 }
 
 // The neighbour along axis a: its far face, (±1, 0, 0).
@@ -154,7 +161,8 @@ void from_face(inout sums to, ivec3 cell, int axis, int side)
 {
     ivec3 offset = ivec3(0);
     offset[axis] = side;
-    send_through_five(to, light_of(cell - offset), axis, float(side), reach(cell - offset, offset));
+    float share = reach(cell - offset, axis)[side > 0 ? 1 : 0];
+    send_through_five(to, light_of(cell - offset), axis, float(side), share);
 }
 
 void gather_six(ivec3 cell)
@@ -178,7 +186,8 @@ void from_column(inout receivers to, ivec3 cell, ivec2 step)
 {
     lpv_light light = light_of(cell);
     float x = float(step.x), y = float(step.y);
-    float below = reach(cell, ivec3(step, -1)), level = reach(cell, ivec3(step, 0)), above = reach(cell, ivec3(step, 1));
+    vec4 shares = reach(cell, 3 * (step.y + 1) + step.x + 1);
+    float below = shares[0], level = shares[1], above = shares[2];
     if (step.x != 0 && step.y != 0) {
         send_over_corner(to.below, light, vec3(x, y, -1.0), below);
         send_over_edge(to.level, light, 2, x, y, level);

@@ -11,7 +11,17 @@
 // Specialization constants.
 #define LPV_CONSTANT_BANDS 0 // 2 or 3
 #define LPV_CONSTANT_HALF 1
-#define LPV_CONSTANT_NEIGHBOURS 2 // 6 or 26
+#define LPV_CONSTANT_GEOMETRY 2 // LPV_GEOMETRY_…
+#define LPV_CONSTANT_NEIGHBOURS 3 // 6 or 26
+#define LPV_CONSTANT_HELD 4 // send on what geometry holds back, not what it lets through
+
+// What stands in the way of the light: nothing, what lights and camera see, or all of the scene.
+#define LPV_GEOMETRY_OFF 0
+#define LPV_GEOMETRY_MAPS 1
+#define LPV_GEOMETRY_SCENE 2
+#define LPV_LINES 4 // through a face, each way
+#define LPV_WORDS_OF_6 3 // of a cell's shares, with six neighbours and with 26
+#define LPV_WORDS_OF_26 9
 
 // Faces that are alike: their direction is (p, q, 0) or (p, q, q) in some order of the axes, their solid angle Ω, the axis
 // of the lobes they are re-projected as (lobe_p, lobe_q, …). See lpv_propagate.comp.
@@ -35,6 +45,7 @@ struct lpv_params {
     float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
     float offset_m;         // of the look-up, along the normal
     float window;           // weight of the bands above the first at the look-up
+    float blocking;         // factor on what the geometry volume says is blocked
     uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
     uint32_t emitter_count;
@@ -44,6 +55,7 @@ struct lpv_params {
 #define LPV_VIEW_INJECTED 0
 #define LPV_VIEW_PROPAGATED 1
 #define LPV_VIEW_CELLS 2
+#define LPV_VIEW_GEOMETRY 3
 
 struct lpv_view_push {
     uint32_t view;
@@ -52,7 +64,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 47 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 48 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
 #endif
 

@@ -1,8 +1,6 @@
 // The stages of a frame: prepare, inject, propagate, apply.
 #include "techniques/lpv/lpv_state.h"
 
-enum { LOCAL = 8 }; // of all shaders, in x and y
-
 bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
 {
     const struct lpv_options *options = &lpv->options;
@@ -41,6 +39,7 @@ bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
             options->gain * mean_way / (grid->cell_m * grid->cell_m * scale.grid_from_flux),
         .offset_m = options->offset * grid->cell_m,
         .window = options->window,
+        .blocking = options->blocking,
         .rsm_size = view->rsm_size,
         .width = view->width,
         .height = view->height,
@@ -49,27 +48,26 @@ bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
     return true;
 }
 
-static struct gpu_binding grid_binding(struct lpv *lpv, struct gpu_cmd *cmd)
+struct gpu_binding lpv_grid_binding(struct lpv *lpv, struct gpu_cmd *cmd)
 {
     return gpu_transient(cmd, "lpv_grid", &lpv->params, sizeof lpv->params);
 }
 
-// An invocation takes `run` cells along z.
-static void dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
-                           uint32_t run, const struct gpu_binding *bindings, int count)
+void lpv_dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline, uint32_t run,
+                        const struct gpu_binding *bindings, int count)
 {
     gpu_dispatch(cmd, pipeline, bindings, count, NULL, 0,
-                 gpu_groups((uint32_t)lpv->grid.cells[0], LOCAL),
-                 gpu_groups((uint32_t)lpv->grid.cells[1], LOCAL),
+                 gpu_groups((uint32_t)lpv->grid.cells[0], LPV_LOCAL),
+                 gpu_groups((uint32_t)lpv->grid.cells[1], LPV_LOCAL),
                  gpu_groups((uint32_t)lpv->grid.cells[2], run));
 }
 
 static void inject_rsm(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const uint32_t groups = gpu_groups(view->rsm_size, LOCAL * LPV_TEXELS);
+    const uint32_t groups = gpu_groups(view->rsm_size, LPV_LOCAL * LPV_TEXELS);
     if (view->rsm_face_count == 0) return;
     gpu_dispatch(cmd, lpv->inject,
-                 GPU_BIND(grid_binding(lpv, cmd), view->rsm_faces_binding,
+                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->rsm_faces_binding,
                           { .name = "rsm_depth", .image = view->rsm_depth },
                           { .name = "rsm_normal", .image = view->rsm_normal },
                           { .name = "rsm_flux", .image = view->rsm_flux },
@@ -81,9 +79,18 @@ static void inject_emitters(struct lpv *lpv, struct gpu_cmd *cmd, const struct f
 {
     if (lpv->params.emitter_count == 0) return;
     gpu_dispatch(cmd, lpv->inject_emitters,
-                 GPU_BIND(grid_binding(lpv, cmd), view->emitters_binding,
+                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->emitters_binding,
                           { .name = "lpv_sums", .buffer = lpv->sums }),
                  NULL, 0, gpu_groups(lpv->params.emitter_count, LPV_EMITTERS_LOCAL), 1, 1);
+}
+
+// From sums to the injected light.
+static void resolve(struct lpv *lpv, struct gpu_cmd *cmd)
+{
+    lpv_dispatch_cells(lpv, cmd, lpv->resolve, 1,
+                       GPU_BIND(lpv_grid_binding(lpv, cmd),
+                                { .name = "lpv_sums", .buffer = lpv->sums },
+                                { .name = "injected", .image = lpv->injected }));
 }
 
 void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -97,19 +104,22 @@ void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct fra
     gpu_scope_end(cmd);
 
     gpu_scope_begin(cmd, lpv->names->resolve);
-    dispatch_cells(lpv, cmd, lpv->resolve, 1,
-                   GPU_BIND(grid_binding(lpv, cmd), { .name = "lpv_sums", .buffer = lpv->sums },
-                            { .name = "injected", .image = lpv->injected }));
+    resolve(lpv, cmd);
     gpu_scope_end(cmd);
 }
 
-static void record_step(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image before, gpu_image after)
+static void record_step(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
+                        gpu_image injected, gpu_image before, gpu_image after)
 {
+    // Where there are no shares, anything: nothing reads it.
+    const gpu_buffer shares =
+        lpv->options.geometry == LPV_GEOMETRY_OFF ? lpv->sums : lpv->geometry.shares;
     const uint32_t run = lpv->options.neighbours == LPV_TWENTY_SIX ? LPV_RUN : 1;
-    dispatch_cells(lpv, cmd, lpv->propagate, run,
-                   GPU_BIND(grid_binding(lpv, cmd), { .name = "injected", .image = lpv->injected },
-                            { .name = "before", .image = before },
-                            { .name = "after", .image = after }));
+    lpv_dispatch_cells(
+        lpv, cmd, pipeline, run,
+        GPU_BIND(lpv_grid_binding(lpv, cmd), { .name = "lpv_shares", .buffer = shares },
+                 { .name = "injected", .image = injected }, { .name = "before", .image = before },
+                 { .name = "after", .image = after }));
 }
 
 // Where a step writes when `left` more follow: the last to the light, the others by turns. In 16
@@ -121,13 +131,30 @@ static gpu_image step_target(const struct lpv *lpv, int left)
     return lpv->steps[half ? 0 : (left + 1) % 2];
 }
 
+// Nothing is held back in the first step (Martin 2012, sec. 3.2.3), or surfaces would shade what
+// they send out themselves: A = S + FS + TFS + T²FS + …, F the free step. With F = T + H, where H
+// sends what is held back, this is A = S' + TA for S' = S + HS, from A = S: the same steps with a
+// little more injected. Returns where S' is, which is none of the first step's images.
+static gpu_image record_held(struct lpv *lpv, struct gpu_cmd *cmd, int left)
+{
+    if (lpv->options.geometry == LPV_GEOMETRY_OFF) return lpv->injected;
+    const gpu_image held = step_target(lpv, left + 1);
+    record_step(lpv, cmd, lpv->propagate_held, lpv->injected, lpv->injected, held);
+    return held;
+}
+
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
 {
+    const int first = lpv->options.steps - 1;
     gpu_image before = lpv->injected;
     gpu_scope_begin(cmd, lpv->names->propagate);
-    for (int left = lpv->options.steps - 1; left >= 0; left--) {
+    const gpu_image injected = record_held(lpv, cmd, first);
+    for (int left = first; left >= 0; left--) {
         const gpu_image after = step_target(lpv, left);
-        record_step(lpv, cmd, before, after);
+        record_step(lpv, cmd, lpv->propagate, left == first ? injected : lpv->injected, before,
+                    after);
+        if (left == first && lpv->options.geometry != LPV_GEOMETRY_OFF)
+            gpu_copy_image(cmd, lpv->injected, injected);
         before = after;
     }
     gpu_scope_end(cmd);
@@ -137,12 +164,13 @@ void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct f
 {
     gpu_scope_begin(cmd, lpv->names->apply);
     gpu_dispatch(cmd, lpv->apply,
-                 GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
+                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->constants_binding,
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "light", .image = lpv->light, .sampler = lpv->linear },
                           { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-                 NULL, 0, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
+                 NULL, 0, gpu_groups(view->width, LPV_LOCAL), gpu_groups(view->height, LPV_LOCAL),
+                 1);
     gpu_scope_end(cmd);
 }
 
@@ -155,13 +183,18 @@ void lpv_record_debug(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_v
         .radiance_scale = lpv->params.irradiance_scale / (4.0f * GLM_PIf),
     };
     const gpu_image shown = what == LPV_VIEW_PROPAGATED ? lpv->light : lpv->injected;
+    const gpu_image geometry =
+        lpv->options.geometry == LPV_GEOMETRY_OFF ? shown : lpv->geometry.volume;
     gpu_scope_begin(cmd, lpv->names->debug);
-    gpu_dispatch(
-        cmd, lpv->debug,
-        GPU_BIND(grid_binding(lpv, cmd), view->constants_binding,
-                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "volume", .image = shown }, { .name = "picture", .image = out }),
-        &push, sizeof push, gpu_groups(view->width, LOCAL), gpu_groups(view->height, LOCAL), 1);
+    resolve(lpv, cmd); // propagation may have added what geometry held back
+    gpu_dispatch(cmd, lpv->debug,
+                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->constants_binding,
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                          { .name = "geometry", .image = geometry, .sampler = lpv->linear },
+                          { .name = "volume", .image = shown },
+                          { .name = "picture", .image = out }),
+                 &push, sizeof push, gpu_groups(view->width, LPV_LOCAL),
+                 gpu_groups(view->height, LPV_LOCAL), 1);
     gpu_scope_end(cmd);
 }

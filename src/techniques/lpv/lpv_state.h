@@ -1,6 +1,7 @@
 // The private state of light propagation volumes, shared by its stages.
 #pragma once
 
+#include "techniques/lpv/lpv_geometry.h"
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_math.h"
 #include "techniques/lpv/lpv_shared.h"
@@ -11,6 +12,10 @@ struct lpv_options {
 #include "techniques/lpv/lpv_options.def"
 #undef OPTION
 };
+
+#define LPV_LOCAL 8 // of shaders of cells or pixels, in x and y
+#define LPV_AREA_BYTES (4 * 4) // of a corner's sums
+#define LPV_LINES_BYTES (3 * 4) // of a cell's low faces
 
 enum lpv_precision { LPV_PRECISION_HALF, LPV_PRECISION_FLOAT };
 
@@ -27,8 +32,9 @@ static inline size_t lpv_cell_bytes(const struct lpv_options *options) // of a c
 
 // Of passes and objects, "technique.thing".
 struct lpv_names {
-    const char *inject, *inject_emitters, *resolve, *propagate, *apply, *debug;
+    const char *inject, *inject_emitters, *resolve, *geometry, *propagate, *apply, *debug;
     const char *sums, *injected, *steps[2], *light, *linear;
+    struct lpv_geometry_names of_geometry;
 };
 
 struct lpv {
@@ -37,10 +43,12 @@ struct lpv {
     struct lpv_options options;
     gpu_sampler linear;
     gpu_pipeline inject, inject_emitters, resolve, propagate, apply, debug;
+    gpu_pipeline propagate_held; // what geometry holds back; none without geometry
     gpu_buffer sums;    // [cell][coefficient][colour] 64-bit integers
     gpu_image injected; // volumes: dim² × slabs · dim texels
     gpu_image steps[2]; // in turn; with half precision only the first, and `light` is the other
     gpu_image light;    // RGBA16F: accumulated over all steps
+    struct lpv_geometry geometry;
     struct lpv_grid grid;
     struct lpv_params params; // of the frame being recorded
     bool lit;                 // the frame being recorded has light and something to light
@@ -48,6 +56,10 @@ struct lpv {
 
 // Places the grid and chooses the scales; false where there is nothing to do.
 bool lpv_prepare(struct lpv *lpv, const struct frame_view *view);
+// Grid and parameters as the shaders read them; a dispatch whose invocations take `run` cells along z each.
+struct gpu_binding lpv_grid_binding(struct lpv *lpv, struct gpu_cmd *cmd);
+void lpv_dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline, uint32_t run,
+                        const struct gpu_binding *bindings, int count);
 // The stages, in order. Each reads lpv->params.
 void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd);
@@ -55,3 +67,6 @@ void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct f
 // Draws the view LPV_VIEW_… into `out` (RGBA16F of the frame's size).
 void lpv_record_debug(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view,
                       uint32_t what, gpu_image out);
+// The two ways to fill the geometry volume; that from the scene says whether it is another than it was.
+void lpv_record_geometry_maps(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
+bool lpv_record_geometry_scene(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);

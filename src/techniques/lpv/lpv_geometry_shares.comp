@@ -1,0 +1,40 @@
+// From the geometry volume to the shares of light that reach each neighbour (lpv_shares.glsl): once, not in each step.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "core/sh.glsl"
+#include "techniques/lpv/lpv_grid.glsl"
+#define LPV_GEOMETRY_BINDING 1
+#include "techniques/lpv/lpv_geometry.glsl"
+#define LPV_SHARES_BINDING 2
+#define LPV_SHARES_ACCESS writeonly
+#include "techniques/lpv/lpv_shares.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+float share(ivec3 cell, ivec3 offset)
+{
+    return lpv_inside(cell + offset) ? lpv_passing(cell, offset) : 0.0;
+}
+
+uint along_axis(ivec3 cell, int axis)
+{
+    ivec3 one = ivec3(0);
+    one[axis] = 1;
+    return packUnorm4x8(vec4(share(cell, -one), share(cell, one), 0.0, 0.0));
+}
+
+uint in_column(ivec3 cell, ivec2 step)
+{
+    return packUnorm4x8(vec4(share(cell, ivec3(step, -1)), share(cell, ivec3(step, 0)), share(cell, ivec3(step, 1)), 0.0));
+}
+
+void main()
+{
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    if (!lpv_inside(cell)) return;
+    int first = LPV_WORDS * lpv_index(cell);
+    for (int i = 0; i < LPV_WORDS; i++)
+        share_words[first + i] = LPV_NEIGHBOURS == 26 ? in_column(cell, ivec2(i % 3, i / 3) - 1) : along_axis(cell, i);
+}

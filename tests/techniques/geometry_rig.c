@@ -1,0 +1,121 @@
+#include "techniques/geometry_rig.h"
+
+#include "core/rng.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+float *geometry_read(struct lpv *lpv)
+{
+    const size_t dim = (size_t)lpv->options.dim;
+    float *all = malloc(dim * dim * dim * 4 * sizeof *all);
+    CHECK(gpu_image_download_float(lpv->gpu, lpv->geometry.volume, 0, 0, all, 4,
+                                   dim * dim * dim * 4));
+    const int32_t *cells = lpv->grid.cells;
+    size_t out = 0;
+    for (size_t z = 0; z < (size_t)cells[2]; z++)
+        for (size_t y = 0; y < (size_t)cells[1]; y++, out += 4 * (size_t)cells[0])
+            memmove(all + out, all + (z * dim + y) * dim * 4, 4 * (size_t)cells[0] * sizeof *all);
+    return all;
+}
+
+size_t geometry_floats(const struct lpv *lpv)
+{
+    return 4 * (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] * (size_t)lpv->grid.cells[2];
+}
+
+// Texel (x, y, z) of what maps fill is the corner (x + 1, y + 1, z + 1), of what the scene fills
+// the cell (x, y, z).
+void geometry_check(struct lpv *lpv, const struct geometry_twin *twin, double tolerance)
+{
+    const int shift = twin->kind == LPV_GEOMETRY_MAPS ? 1 : 0;
+    const int32_t *cells = lpv->grid.cells;
+    float *got = geometry_read(lpv);
+    double most = 0.0;
+    size_t at = 0;
+    for (int z = 0; z < cells[2]; z++)
+        for (int y = 0; y < cells[1]; y++)
+            for (int x = 0; x < cells[0]; x++)
+                for (int i = 0; i < 4; i++, at++) {
+                    const double expected =
+                        geometry_twin_at(twin, x + shift, y + shift, z + shift)[i];
+                    CHECK_NEAR((double)got[at], expected, tolerance);
+                    most = fmax(most, fabs(expected));
+                }
+    CHECK(most > 0.3);
+    free(got);
+}
+
+void geometry_scatter(struct stage *stage, struct gpu *gpu)
+{
+    struct rng rng = rng_for(7, 0, 0);
+    stage_init(stage, gpu, GEOMETRY_WIDTH, GEOMETRY_HEIGHT, GEOMETRY_SIZE, 2);
+    stage->view.bounds = (struct box3){ vec3_of(-2.1f, 0.3f, 1.2f), vec3_of(1.9f, 3.3f, 4.7f) };
+    stage_set_face(stage, 0, vec3_of(-2.5f, 0.2f, 1.1f), vec3_of(4.6f, 0.3f, 0.1f),
+                   vec3_of(0.2f, 3.2f, 0.3f), vec3_of(0.1f, -0.2f, 3.6f), vec3_of(3, 2, 1));
+    stage_set_face(stage, 1, vec3_of(1.7f, 3.1f, 4.6f), vec3_of(-3.3f, 0.3f, 0.1f),
+                   vec3_of(0.2f, 0.2f, -3.2f), vec3_of(0.1f, -2.6f, 0.2f), vec3_of(0.01f, 40, 1));
+    stage->faces[0].direction = glms_vec3_normalize(vec3_of(0.1f, -0.2f, 1));
+    stage->faces[0].tan_half = 3.7f;
+    stage->faces[1].type = FRAME_LIGHT_POINT;
+    stage->faces[1].light = 1;
+    stage->faces[1].position = vec3_of(0.3f, 4.1f, 2.9f);
+    stage->faces[1].tan_half = 1.7f;
+    for (int face = 0; face < 2; face++)
+        for (uint32_t i = 0; i < GEOMETRY_SIZE * GEOMETRY_SIZE; i++) {
+            struct stage_texel texel = { .depth = i % 7 == 0 ? 0.0f : rng_float(&rng),
+                                         .normal = glms_vec3_normalize(
+                                             vec3_of(rng_float(&rng) - 0.5f, rng_float(&rng) - 0.5f,
+                                                     rng_float(&rng) - 0.5f)),
+                                         .reflectance = { 200, 200, 200 } };
+            *stage_texel(stage, face, i % GEOMETRY_SIZE, i / GEOMETRY_SIZE) = texel;
+        }
+    stage_show_wall(stage, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
+                    vec3_of(0.1f, 0.3f, 3), vec3_of(0.2f, 0.9f, 0.1f));
+    stage->constants.eye = vec3_of(0.1f, 3, 2.5f);
+    stage_upload(stage);
+}
+
+// What the stage injects of green, in a grid where nothing is in the way.
+static void inject_as(struct twin *twin, const struct lpv *lpv, struct stage *stage)
+{
+    const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
+    struct lpv_options options = lpv->options;
+    options.geometry = LPV_GEOMETRY_OFF;
+    struct lpv *open = calloc(1, technique_lpv.state_size);
+    const struct technique_create how = { .host = test_host(),
+                                          .gpu = lpv->gpu,
+                                          .options = &options };
+    CHECK(technique_lpv.create(open, &how));
+    rig_render(open, stage);
+    float *injected = rig_read(open, open->injected, 1);
+    for (size_t i = 0; i < twin_cells(twin); i++)
+        for (size_t k = 0; k < coefficients; k++)
+            twin->light[i][k] = twin->accumulated[i][k] = (double)injected[coefficients * i + k];
+    free(injected);
+    rig_destroy(open);
+}
+
+void geometry_check_light(struct lpv *lpv, struct stage *stage,
+                          const struct geometry_twin *geometry)
+{
+    const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
+    struct twin twin;
+    twin_init(&twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
+    twin.geometry = geometry;
+    twin.blocking = (double)lpv->options.blocking;
+    inject_as(&twin, lpv, stage);
+    for (int i = 0; i < lpv->options.steps; i++)
+        twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);
+    float *got = rig_read(lpv, lpv->light, 1);
+    double most = 0.0;
+    for (size_t i = 0; i < twin_cells(&twin); i++) most = fmax(most, fabs(twin.accumulated[i][0]));
+    CHECK(most > 0.0);
+    // Shares have 8 bits, the geometry volume 11.
+    for (size_t i = 0; i < twin_cells(&twin); i++)
+        for (size_t k = 0; k < coefficients; k++)
+            CHECK_NEAR((double)got[coefficients * i + k], twin.accumulated[i][k], 3e-3 * most);
+    free(got);
+    twin_finish(&twin);
+}

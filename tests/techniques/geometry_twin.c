@@ -1,0 +1,208 @@
+#include "techniques/geometry_twin.h"
+
+#include "core/sh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int index_of(const struct geometry_twin *twin, int x, int y, int z)
+{
+    const int32_t *cells = twin->grid.cells;
+    return (z * (cells[1] + 1) + y) * (cells[0] + 1) + x;
+}
+
+static size_t count_of(const struct geometry_twin *twin)
+{
+    return (size_t)index_of(twin, twin->grid.cells[0], twin->grid.cells[1], twin->grid.cells[2]) +
+           1;
+}
+
+void geometry_twin_init(struct geometry_twin *twin, struct lpv_grid grid, int kind)
+{
+    *twin = (struct geometry_twin){ .grid = grid, .kind = kind };
+    twin->volume = calloc(count_of(twin), sizeof *twin->volume);
+    twin->source = calloc(count_of(twin), sizeof *twin->source);
+    twin->crossed = calloc(count_of(twin), (size_t)3 * LPV_LINES * LPV_LINES);
+}
+
+void geometry_twin_finish(struct geometry_twin *twin)
+{
+    free(twin->volume);
+    free(twin->source);
+    free(twin->crossed);
+}
+
+static double in_cells(const struct geometry_twin *twin, vec3s position, int axis)
+{
+    return ((double)position.raw[axis] - (double)twin->grid.origin_m.raw[axis]) /
+           (double)twin->grid.cell_m;
+}
+
+void geometry_twin_surfel(struct geometry_twin *twin, vec3s position, vec3s normal, vec3s to_eye,
+                          double across)
+{
+    int corner[3];
+    for (int axis = 0; axis < 3; axis++) {
+        corner[axis] = (int)floor(in_cells(twin, position, axis) + 0.5);
+        if (corner[axis] < 1 || corner[axis] >= twin->grid.cells[axis]) return;
+    }
+    const double cosine = fmax((double)glms_vec3_dot(normal, to_eye), 0.1);
+    const double face = (double)twin->grid.cell_m * (double)twin->grid.cell_m;
+    const double share = fmin(across / cosine / face, 1.0);
+    float zonal[2], lobe[4];
+    zh_clamped_cosine(2, zonal);
+    zh_rotate(2, zonal, normal, lobe);
+    double *sum = twin->source[index_of(twin, corner[0], corner[1], corner[2])];
+    for (int i = 0; i < 4; i++) sum[i] += share * (double)lobe[i];
+}
+
+// Rounded to a half float: eleven bits.
+static double half_of(double value)
+{
+    int exponent;
+    const double fraction = frexp(value, &exponent);
+    return ldexp(nearbyint(ldexp(fraction, 11)), exponent - 11);
+}
+
+static bool is_greater(const double a[4], const double b[4])
+{
+    for (int i = 0; i < 4; i++)
+        if (half_of(a[i]) != half_of(b[i])) return half_of(a[i]) > half_of(b[i]);
+    return false;
+}
+
+void geometry_twin_merge(struct geometry_twin *twin)
+{
+    for (size_t i = 0; i < count_of(twin); i++)
+        if (is_greater(twin->source[i], twin->volume[i]))
+            memcpy(twin->volume[i], twin->source[i], sizeof twin->volume[i]);
+    memset(twin->source, 0, count_of(twin) * sizeof *twin->source);
+}
+
+// Where the line (u, v) along `axis` meets the triangle; false: nowhere. All in cells.
+static bool meets(double corners[3][3], int axis, double u, double v, double *where)
+{
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    double weight[3], area = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double *p = corners[(k + 1) % 3], *q = corners[(k + 2) % 3];
+        weight[k] = (p[a] - u) * (q[b] - v) - (p[b] - v) * (q[a] - u);
+        area += weight[k];
+    }
+    *where = 0.0;
+    for (int k = 0; k < 3; k++) {
+        if (!(weight[k] * area > 0.0)) return false;
+        *where += weight[k] / area * corners[k][axis];
+    }
+    return true;
+}
+
+static void cross(struct geometry_twin *twin, double corners[3][3], int axis, int u, int v)
+{
+    double where;
+    if (!meets(corners, axis, (u + 0.5) / LPV_LINES, (v + 0.5) / LPV_LINES, &where)) return;
+    int at[3];
+    at[axis] = (int)floor(where + 0.5);
+    at[(axis + 1) % 3] = u / LPV_LINES;
+    at[(axis + 2) % 3] = v / LPV_LINES;
+    for (int i = 0; i < 3; i++)
+        if (at[i] < 0 || at[i] >= twin->grid.cells[i]) return;
+    const int index = index_of(twin, at[0], at[1], at[2]);
+    unsigned char *line =
+        &twin->crossed[((index * 3 + axis) * LPV_LINES + u % LPV_LINES) * LPV_LINES +
+                       v % LPV_LINES];
+    if (!*line) twin->volume[index][axis] += 1.0 / (LPV_LINES * LPV_LINES);
+    *line = 1;
+}
+
+void geometry_twin_triangle(struct geometry_twin *twin, const vec3s corners[3])
+{
+    double in[3][3];
+    for (int k = 0; k < 3; k++)
+        for (int axis = 0; axis < 3; axis++) in[k][axis] = in_cells(twin, corners[k], axis);
+    for (int axis = 0; axis < 3; axis++)
+        for (int v = 0; v < LPV_LINES * twin->grid.cells[(axis + 2) % 3]; v++)
+            for (int u = 0; u < LPV_LINES * twin->grid.cells[(axis + 1) % 3]; u++)
+                cross(twin, in, axis, u, v);
+}
+
+const double *geometry_twin_at(const struct geometry_twin *twin, int x, int y, int z)
+{
+    return twin->volume[index_of(twin, x, y, z)];
+}
+
+static double passing(double blocked, double blocking)
+{
+    return 1.0 - fmin(fmax(blocked * blocking, 0.0), 1.0);
+}
+
+static int clamped(int value, int low, int high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+// The corners that the two cells have in common, those on the border replaced by their neighbours.
+static double corners_block(const struct geometry_twin *twin, const int cell[3],
+                            const int offset[3])
+{
+    double sum[4] = { 0 };
+    int count = 0;
+    for (int k = 0; k < 8; k++) {
+        int corner[3];
+        bool common = true;
+        for (int axis = 0; axis < 3; axis++) {
+            const int high = k >> axis & 1;
+            common = common && (offset[axis] == 0 || high == (offset[axis] > 0));
+            const int last = twin->grid.cells[axis] > 1 ? twin->grid.cells[axis] - 1 : 1;
+            corner[axis] = clamped(cell[axis] + high, 1, last);
+        }
+        if (!common) continue;
+        const double *c = geometry_twin_at(twin, corner[0], corner[1], corner[2]);
+        for (int i = 0; i < 4; i++) sum[i] += c[i];
+        count++;
+    }
+    float basis[4];
+    const vec3s back = vec3_of((float)-offset[0], (float)-offset[1], (float)-offset[2]);
+    sh_eval(2, glms_vec3_normalize(back), basis);
+    double blocked = 0.0;
+    for (int i = 0; i < 4; i++) blocked += sum[i] / count * (double)basis[i];
+    return blocked * (double)glms_vec3_norm(back) / 0.75; // the peak of a clamped cosine
+}
+
+// Along each axis that the offset has: the mean of the faces across it that touch the place of
+// crossing.
+static double faces_pass(const struct geometry_twin *twin, const int cell[3], const int offset[3],
+                         double blocking)
+{
+    double pass = 1.0;
+    for (int axis = 0; axis < 3; axis++) {
+        if (offset[axis] == 0) continue;
+        double sum = 0.0;
+        int count = 0;
+        for (int k = 0; k < 8;
+             k++) { // over the other axes: at the source's place, or at the neighbour's
+            int at[3];
+            bool is = true;
+            for (int i = 0; i < 3; i++) {
+                const int moved = k >> i & 1;
+                if (i == axis || offset[i] == 0) is = is && !moved;
+                at[i] = cell[i] + moved * offset[i];
+            }
+            if (!is) continue;
+            if (offset[axis] > 0) at[axis]++;
+            sum += geometry_twin_at(twin, at[0], at[1], at[2])[axis];
+            count++;
+        }
+        pass *= passing(sum / count, blocking);
+    }
+    return pass;
+}
+
+double geometry_twin_passing(const struct geometry_twin *twin, const int cell[3],
+                             const int offset[3], double blocking)
+{
+    if (twin->kind == LPV_GEOMETRY_MAPS)
+        return passing(corners_block(twin, cell, offset), blocking);
+    return faces_pass(twin, cell, offset, blocking);
+}

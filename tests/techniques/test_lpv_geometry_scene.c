@@ -1,0 +1,247 @@
+// The geometry volume from the scene's triangles against the plain C twin, and what must hold to
+// the bit.
+#include "techniques/geometry_rig.h"
+#include "techniques/props.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A stage with `soups` things on it.
+struct set {
+    struct stage stage;
+    struct props props;
+};
+
+static void set_init(struct set *set, struct gpu *gpu, int soups)
+{
+    geometry_scatter(&set->stage, gpu);
+    props_init(&set->props, &set->stage);
+    for (int i = 0; i < soups; i++) props_add_soup(&set->props, (uint32_t)i);
+    props_place(&set->props);
+}
+
+static void set_finish(struct set *set)
+{
+    props_finish(&set->props);
+    stage_finish(&set->stage);
+}
+
+static void twin_of(struct geometry_twin *twin, const struct lpv *lpv, const struct props *props)
+{
+    geometry_twin_init(twin, lpv->grid, LPV_GEOMETRY_SCENE);
+    for (int i = 0; i < props->scene->instance_count; i++) {
+        const struct mesh *mesh = &props->scene->meshes[props->scene->instances[i].mesh];
+        const mat4s m = pose_world_from_instance(&props->pose, i);
+        for (uint32_t t = 0; t < mesh->index_count; t += 3) {
+            vec3s corners[3];
+            for (uint32_t k = 0; k < 3; k++)
+                corners[k] = mat4_point(m, mesh->positions[mesh->indices[t + k]]);
+            geometry_twin_triangle(twin, corners);
+        }
+    }
+}
+
+TEST_GPU(lpv_geometry_from_the_scene_is_the_twins)
+{
+    const char *options[] = { "lpv:dim=8,steps=1", "lpv:dim=16,steps=1,cell_margin=1" };
+    for (int i = 0; i < 2; i++) {
+        struct set set;
+        struct geometry_twin twin;
+        set_init(&set, gpu, 1);
+        struct lpv *lpv = rig_create(gpu, options[i]);
+        props_render(&set.props, lpv);
+        twin_of(&twin, lpv, &set.props);
+        geometry_check(lpv, &twin, 0.0); // sixteenths
+        geometry_twin_finish(&twin);
+        rig_destroy(lpv);
+        set_finish(&set);
+    }
+}
+
+TEST_GPU(lpv_light_goes_past_the_scene_as_the_twins_does)
+{
+    const char *options[] = { "lpv:dim=8,steps=1", "lpv:dim=8,steps=6",
+                              "lpv:dim=8,steps=7,blocking=0.7,precision=float",
+                              "holpv:dim=8,steps=5", "lpv:dim=16,steps=9,neighbours=26" };
+    struct set set;
+    set_init(&set, gpu, 1);
+    for (int i = 0; i < 5; i++) {
+        struct lpv *lpv = rig_create(gpu, options[i]);
+        struct geometry_twin twin;
+        props_render(&set.props, lpv);
+        twin_of(&twin, lpv, &set.props);
+        geometry_check_light(lpv, &set.stage, &twin);
+        geometry_twin_finish(&twin);
+        rig_destroy(lpv);
+    }
+    set_finish(&set);
+}
+
+// What the option `blocking` makes of the kept volume follows it at once.
+TEST_GPU(lpv_blocking_changes_what_was_kept)
+{
+    struct set set;
+    set_init(&set, gpu, 1);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=6,blocking=0.2");
+    props_render(&set.props, lpv);
+    struct lpv_options options = lpv->options;
+    options.blocking = 2;
+    technique_lpv.set_options(lpv, &options);
+    props_render(&set.props, lpv);
+    struct geometry_twin twin;
+    twin_of(&twin, lpv, &set.props);
+    geometry_check_light(lpv, &set.stage, &twin);
+    geometry_twin_finish(&twin);
+    rig_destroy(lpv);
+    set_finish(&set);
+}
+
+// Things begin to move and stop, and each moment is shown as a first frame, too.
+TEST_GPU(lpv_geometry_kept_from_earlier_frames_is_that_of_a_first_frame)
+{
+    struct set set;
+    set_init(&set, gpu, 3);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1");
+    for (int frame = 0; frame < 6; frame++) {
+        if (frame > 1 && frame < 5) props_move(&set.props, 1, 0.21f);
+        if (frame == 3) props_move(&set.props, 2, -0.4f); // one more begins to move
+        props_render(&set.props, lpv);
+        float *kept = geometry_read(lpv);
+        struct lpv *fresh = rig_create(gpu, "lpv:dim=8,steps=1");
+        props_render(&set.props, fresh);
+        float *first = geometry_read(fresh);
+        assert_memory_equal(kept, first, geometry_floats(lpv) * sizeof *kept);
+        free(kept);
+        free(first);
+        rig_destroy(fresh);
+    }
+    rig_destroy(lpv);
+    set_finish(&set);
+}
+
+// What the still lines hold is overwritten behind the technique's back: it stays until it must be
+// made anew.
+static bool is_made_anew(struct props *props, struct lpv *lpv)
+{
+    const size_t words = gpu_buffer_bytes(lpv->gpu, lpv->geometry.still) / 4;
+    uint32_t *mark = malloc(words * sizeof *mark), *after = malloc(words * sizeof *mark);
+    for (size_t i = 0; i < words; i++) mark[i] = 0x5555;
+    CHECK(gpu_buffer_upload(lpv->gpu, lpv->geometry.still, 0, mark, words * sizeof *mark));
+    props_render(props, lpv);
+    CHECK(gpu_buffer_download(lpv->gpu, lpv->geometry.still, 0, after, words * sizeof *mark));
+    const bool anew = memcmp(mark, after, words * sizeof *mark) != 0;
+    free(mark);
+    free(after);
+    return anew;
+}
+
+TEST_GPU(lpv_geometry_of_still_things_is_made_once)
+{
+    struct set set;
+    set_init(&set, gpu, 2);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1");
+    CHECK(is_made_anew(&set.props, lpv));
+    CHECK(!is_made_anew(&set.props, lpv));
+    props_move(&set.props, 1, 0.3f);
+    CHECK(is_made_anew(&set.props, lpv)); // without what moves
+    props_move(&set.props, 1, 0.3f);
+    CHECK(!is_made_anew(&set.props, lpv));
+    CHECK(!is_made_anew(&set.props, lpv));
+    technique_lpv.invalidate(lpv, CHANGED_LIGHT | CHANGED_CAMERA);
+    CHECK(!is_made_anew(&set.props, lpv));
+    technique_lpv.invalidate(lpv, CHANGED_GEOMETRY);
+    CHECK(is_made_anew(&set.props, lpv));
+    set.stage.view.bounds.max.x += 3; // another grid
+    CHECK(is_made_anew(&set.props, lpv));
+    set.stage.view.index = 0; // another scene
+    CHECK(is_made_anew(&set.props, lpv));
+    rig_destroy(lpv);
+    set_finish(&set);
+}
+
+// A sheet of many triangles, which meet on lines and at corners of cells too: a gap would show.
+TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
+{
+    enum { N = 7 };
+    struct set set;
+    vec3s positions[(N + 1) * (N + 1)];
+    uint32_t indices[6 * N * N];
+    for (uint32_t i = 0; i < (N + 1) * (N + 1); i++) {
+        const float u = (float)(i % (N + 1)) / N, v = (float)(i / (N + 1)) / N;
+        // A slope: across x and y it covers every face that it passes in the room, once.
+        positions[i] = vec3_of(8 * u, 8 * v, 2.3f + 3.1f * u);
+    }
+    for (uint32_t i = 0; i < N * N; i++) {
+        const uint32_t a = i / N * (N + 1) + i % N;
+        const uint32_t quad[6] = { a, a + 1, a + N + 2, a, a + N + 2, a + N + 1 };
+        memcpy(&indices[6 * i], quad, sizeof quad);
+    }
+    geometry_scatter(&set.stage, gpu);
+    set.stage.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(8, 8, 8) };
+    props_init(&set.props, &set.stage);
+    props_add(&set.props, positions, (N + 1) * (N + 1), indices, 6 * N * N);
+    props_place(&set.props);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=16,steps=1");
+    props_render(&set.props, lpv);
+    const int32_t *cells = lpv->grid.cells;
+    float *got = geometry_read(lpv);
+    for (int y = 0; y < cells[1]; y++)
+        for (int x = 0; x < cells[0]; x++) {
+            // Columns along z that lie over the slope as a whole meet it once.
+            const float end = (float)(x + 1) * lpv->grid.cell_m,
+                        top = (float)(y + 1) * lpv->grid.cell_m;
+            if (end > 8.0f || top > 8.0f) continue;
+            double sum = 0.0;
+            for (int z = 0; z < cells[2]; z++)
+                sum += (double)got[4 * ((z * cells[1] + y) * cells[0] + x) + 2];
+            CHECK_NEAR(sum, 1.0, 0.0);
+        }
+    free(got);
+    rig_destroy(lpv);
+    set_finish(&set);
+}
+
+TEST_GPU(lpv_geometry_of_nothing_is_nothing)
+{
+    const char *options[] = { "lpv:dim=8,steps=3,geometry=maps", "lpv:dim=8,steps=3" };
+    for (int i = 0; i < 2; i++) {
+        struct set set;
+        set_init(&set, gpu, 0);
+        for (int face = 0; face < 2; face++)
+            stage_fill_face(&set.stage, face, (struct stage_texel){ .depth = 0 });
+        // The camera sees a wall outside of the grid.
+        stage_show_wall(&set.stage, vec3_of(90, 0, 0), vec3_of(1, 0, 0), vec3_of(0, 1, 0),
+                        vec3_of(0, 0, 1));
+        stage_upload(&set.stage);
+        struct lpv *lpv = rig_create(gpu, options[i]);
+        props_render(&set.props, lpv);
+        float *got = geometry_read(lpv);
+        for (size_t k = 0; k < geometry_floats(lpv); k++) CHECK(got[k] == 0.0f);
+        free(got);
+        rig_destroy(lpv);
+        set_finish(&set);
+    }
+}
+
+// Vertices that are no numbers, or far away, leave what is fine as it is.
+TEST_GPU(lpv_geometry_leaves_out_what_has_no_place)
+{
+    struct set set;
+    set_init(&set, gpu, 2);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1");
+    props_move(&set.props, 1, 1e4f);
+    props_render(&set.props, lpv);
+    float *one = geometry_read(lpv);
+    const float wrong[] = { NAN, INFINITY, -INFINITY, 3e38f, 1e20f };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        set.props.pose.world_from_node[set.props.scene->instances[1].node].raw[3][0] = wrong[i];
+        props_render(&set.props, lpv);
+        float *got = geometry_read(lpv);
+        assert_memory_equal(one, got, geometry_floats(lpv) * sizeof *one);
+        free(got);
+    }
+    free(one);
+    rig_destroy(lpv);
+    set_finish(&set);
+}

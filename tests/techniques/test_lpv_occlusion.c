@@ -1,0 +1,92 @@
+// What a wall between the light and the receiver leaves of the light.
+#include "techniques/props.h"
+
+#include <math.h>
+
+enum { SIZE = 64, WIDTH = 16, PIXELS = WIDTH * WIDTH };
+
+static const float ROOM = 8, WALL = 4.13f; // m; not on a border between cells
+
+// Nothing, or a wall that its own map sees too.
+static void set_wall(struct stage *stage, float height)
+{
+    const float texel = ROOM / SIZE;
+    stage_set_face(stage, 1, vec3_of(0, 0, WALL), vec3_of(ROOM, 0, 0), vec3_of(0, ROOM, 0),
+                   vec3_of(0, 0, 1e-3f), vec3_of(texel * texel, texel * texel, texel * texel));
+    stage->faces[1].type = FRAME_LIGHT_SUN;
+    stage->faces[1].light = 1;
+    stage->faces[1].direction = vec3_of(0, 0, 1);
+    stage->faces[1].tan_half = ROOM / 2;
+    for (uint32_t y = 0; y < SIZE; y++)
+        for (uint32_t x = 0; x < SIZE; x++) {
+            const bool is_wall = ((float)y + 0.5f) * texel < height;
+            *stage_texel(stage, 1, x, y) =
+                (struct stage_texel){ .depth = is_wall ? 1.0f : 0.0f, .normal = vec3_of(0, 0, -1) };
+        }
+}
+
+// Mean irradiance of the wall z = ROOM in lumen/m² when the wall z = 0 of a black room sends out 1
+// lumen/m² and a wall of this height stands between them.
+static double behind(struct gpu *gpu, const char *gi, float height)
+{
+    struct stage stage;
+    struct props props;
+    stage_init(&stage, gpu, WIDTH, WIDTH, SIZE, 2);
+    stage.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(ROOM, ROOM, ROOM) };
+    const float lumen = ROOM * ROOM / (SIZE * SIZE);
+    stage_set_face(&stage, 0, vec3_of(0, 0, 0), vec3_of(ROOM, 0, 0), vec3_of(0, ROOM, 0),
+                   vec3_of(0, 0, 1e-3f), vec3_of(lumen, lumen, lumen));
+    stage_fill_face(&stage, 0,
+                    (struct stage_texel){
+                        .depth = 1, .normal = vec3_of(0, 0, 1), .reflectance = { 255, 255, 255 } });
+    set_wall(&stage, height);
+    stage_show_wall(&stage, vec3_of(0.02f, 0.02f, ROOM - 0.01f), vec3_of(ROOM - 0.04f, 0, 0),
+                    vec3_of(0, ROOM - 0.04f, 0), vec3_of(0, 0, -1));
+    stage.constants.eye = vec3_of(ROOM / 2, ROOM / 2, ROOM / 2);
+    stage_upload(&stage);
+    props_init(&props, &stage);
+    if (height > 0)
+        props_add_wall(&props, vec3_of(0, 0, WALL), vec3_of(ROOM, 0, 0), vec3_of(0, height, 0));
+    props_place(&props);
+    struct lpv *lpv = rig_create(gpu, gi);
+    props_render(&props, lpv);
+    float got[PIXELS * 3];
+    double sum = 0.0;
+    stage_read_irradiance(&stage, got);
+    for (int i = 0; i < PIXELS; i++) sum += (double)got[3 * i] / PIXELS;
+    rig_destroy(lpv);
+    props_finish(&props);
+    stage_finish(&stage);
+    return sum;
+}
+
+// A wall as high as the room lets nothing through. Without the geometry volume it is not there.
+TEST_GPU(lpv_is_dark_behind_a_wall)
+{
+    const char *with[] = { "lpv:dim=24,geometry=scene", "lpv:dim=24,geometry=maps",
+                           "holpv:dim=24,geometry=scene", "holpv:dim=24,geometry=maps" };
+    const char *without[] = { "lpv:dim=24,geometry=off", "lpv:dim=24,geometry=off",
+                              "holpv:dim=24,geometry=off", "holpv:dim=24,geometry=off" };
+    for (int i = 0; i < 4; i++) {
+        const double open = behind(gpu, with[i], 0), leak = behind(gpu, with[i], ROOM),
+                     off = behind(gpu, without[i], ROOM);
+        print_message("%-28s behind the wall %.4f lm/m², without the wall %.4f (%.1f %%); "
+                      "geometry=off: %.4f\n",
+                      with[i], leak, open, 100.0 * leak / open, off);
+        CHECK(open > 0.05); // the form factor of facing walls of a cube is 0.2
+        CHECK(leak < 0.1 * open);
+        CHECK(off > 0.9 * open);
+    }
+}
+
+// Half a wall takes away some of the light and not all of it.
+TEST_GPU(lpv_is_dim_behind_half_a_wall)
+{
+    const char *with[] = { "lpv:dim=24", "lpv:dim=24,geometry=maps", "holpv:dim=24",
+                           "holpv:dim=24,geometry=maps" };
+    for (int i = 0; i < 4; i++) {
+        const double open = behind(gpu, with[i], 0), half = behind(gpu, with[i], ROOM / 2);
+        print_message("%-28s behind half a wall %.1f %%\n", with[i], 100.0 * half / open);
+        CHECK(half > 0.2 * open && half < 0.8 * open);
+    }
+}
