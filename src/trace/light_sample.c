@@ -93,6 +93,26 @@ static bool choose_by_power(struct trace_scene *scene)
     return ok;
 }
 
+static struct emitter emitter_of(const struct trace_scene *scene, uint32_t mesh, uint32_t triangle)
+{
+    const struct trace_mesh *m = &scene->meshes[mesh];
+    uint32_t corner[3];
+    trace_corners(m, triangle, corner);
+    vec3s p = m->vertices[corner[0]].position;
+    return (struct emitter){
+        .mesh = mesh,
+        .triangle = triangle,
+        .corner = p,
+        .edges = { glms_vec3_sub(m->vertices[corner[1]].position, p),
+                   glms_vec3_sub(m->vertices[corner[2]].position, p) },
+        .normal = m->facets[triangle].normal,
+        .radiance = m->material->emission,
+        .reach = m->facets[triangle].reach,
+        .mapped = m->material->emissive_map.texture,
+        .double_sided = m->material->double_sided,
+    };
+}
+
 static bool list_emitters(struct trace_scene *scene)
 {
     struct light_table *t = &scene->lights;
@@ -111,7 +131,7 @@ static bool list_emitters(struct trace_scene *scene)
     for (uint32_t m = 0; m < scene->mesh_count; m++) {
         if (scene->meshes[m].emitter_first == NO_EMITTER) continue;
         for (uint32_t i = 0; i < scene->meshes[m].mesh->index_count / 3; i++)
-            t->emitters[t->emitter_count++] = (struct emitter){ .mesh = m, .triangle = i };
+            t->emitters[t->emitter_count++] = emitter_of(scene, m, i);
     }
     return choose_by_power(scene);
 }
@@ -186,26 +206,23 @@ struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3
 {
     float rest;
     const struct emitter *e = choose(&scene->lights, choice, &rest);
-    const struct trace_mesh *mesh = &scene->meshes[e->mesh];
-    uint32_t corner[3];
-    trace_corners(mesh, e->triangle, corner);
     vec2s b = sample_triangle(u);
-    vec3s p = trace_point(mesh, corner, b.x, b.y);
+    vec3s p = glms_vec3_muladds(e->edges[0], b.x, e->corner);
+    p = glms_vec3_muladds(e->edges[1], b.y, p);
     vec3s to_light = glms_vec3_sub(p, from);
     float distance2 = glms_vec3_norm2(to_light);
     struct emitter_sample s = { .position = p };
     if (!(distance2 > 0.0f)) return s;
     s.to_light = glms_vec3_scale(to_light, 1.0f / sqrtf(distance2));
-    const struct trace_facet *facet = &mesh->facets[e->triangle];
-    vec3s normal = facet->normal;
-    float cosine = -glms_vec3_dot(normal, s.to_light);
-    if (cosine < 0.0f && mesh->material->double_sided) {
+    float cosine = -glms_vec3_dot(e->normal, s.to_light), side = 1.0f;
+    if (cosine < 0.0f && e->double_sided) {
         cosine = -cosine;
-        normal = glms_vec3_negate(normal);
+        side = -1.0f;
     }
     if (!(cosine > 0.0f)) return s;
-    s.position = glms_vec3_muladds(normal, facet->reach, p);
-    s.radiance = surface_emission(mesh, e->triangle, b.x, b.y);
+    s.position = glms_vec3_muladds(e->normal, side * e->reach, p);
+    s.radiance = e->radiance;
+    if (e->mapped) s.radiance = surface_emission(&scene->meshes[e->mesh], e->triangle, b.x, b.y);
     s.pdf = e->density * distance2 / cosine;
     return s;
 }

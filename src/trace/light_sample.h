@@ -7,9 +7,14 @@ struct trace_scene;
 
 #define NO_EMITTER UINT32_MAX
 
-// A triangle that glows.
+// A triangle that glows, with what a sample of it asks for.
 struct emitter {
     uint32_t mesh, triangle;
+    vec3s corner, edges[2]; // a point is corner + b1 · edges[0] + b2 · edges[1]
+    vec3s normal;           // unit, of the front
+    vec3s radiance;         // cd/m²; of mapped ones the factor
+    float reach;            // as a facet's, m
+    bool mapped, double_sided;
     float density; // of light_sample_emitter, per m²; 0: never chosen
     // Alias table (Walker 1977; Vose 1991): with the chance `stay` this one, else `alias`.
     float stay;

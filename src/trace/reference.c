@@ -15,10 +15,9 @@
 #include <string.h>
 
 enum {
-    TILE = 16,                           // pixels: rays of neighbours meet the same triangles
-    SAMPLES_AT_ONCE = PATH_BATCH / TILE, // of each pixel of a tile's row
-    CHUNK = 256,                         // tiles between two reports
-    MAX_STEP = 4,                        // samples of a pixel between two reports
+    TILE = 16,     // pixels: rays of neighbours meet the same triangles
+    CHUNK = 128,   // tiles between two reports
+    MAX_STEP = 16, // samples of a pixel between two reports
 };
 
 struct pixel_sums {
@@ -195,7 +194,8 @@ static void add_sample(struct pixel_sums *sums, const struct path_light *light)
     }
 }
 
-// Some pixels beside each other, and some samples of each: as many as a batch holds.
+// Some pixels beside each other, and up to MAX_STEP samples of each: as many as a batch holds. What
+// the samples of a pixel's centre share is found once for all of them.
 struct run {
     int x, y, width;
     int from, to; // samples
@@ -238,6 +238,11 @@ struct pass {
     int samples; // that every tile has afterwards
 };
 
+static int least_of(int a, int b)
+{
+    return a < b ? a : b;
+}
+
 static void render_tile(void *user, size_t i)
 {
     const struct pass *pass = user;
@@ -249,14 +254,14 @@ static void render_tile(void *user, size_t i)
         top = (int)(index / (size_t)r->tiles_x) * TILE;
     unsigned before = embree_flush_denormals();
     uint64_t rays = 0;
-    int width = r->width - left < TILE ? r->width - left : TILE;
-    for (int y = top; y < top + TILE && y < r->height; y++)
-        for (int from = tile->samples; from < pass->samples; from += SAMPLES_AT_ONCE) {
-            int left_over = pass->samples - from;
-            int count = left_over < SAMPLES_AT_ONCE ? left_over : SAMPLES_AT_ONCE;
-            struct run run = { left, y, width, from, from + count };
-            render_run(r, &run, &rays);
-        }
+    for (int from = tile->samples; from < pass->samples; from += MAX_STEP) {
+        int to = least_of(from + MAX_STEP, pass->samples), width = PATH_BATCH / (to - from);
+        for (int y = top; y < least_of(top + TILE, r->height); y++)
+            for (int x = left, end = least_of(left + TILE, r->width); x < end; x += width) {
+                struct run run = { x, y, least_of(width, end - x), from, to };
+                render_run(r, &run, &rays);
+            }
+    }
     embree_restore_denormals(before);
     tile->rays += rays;
     tile->samples = pass->samples;
@@ -278,8 +283,7 @@ static int least_samples(const struct reference *r)
 // Steps grow from 1, so that a first picture is there soon.
 static int next_step(int done, int left)
 {
-    int step = done < 2 ? 1 : done < 4 ? 2 : MAX_STEP;
-    return step < left ? step : left;
+    return least_of(done < 1 ? 1 : least_of(done, MAX_STEP), left);
 }
 
 bool reference_render(struct reference *r, int samples, bool (*progress)(void *user, double done),
