@@ -64,15 +64,23 @@ TEST(points_are_spread_over_emitters_by_power_and_area)
 {
     struct stage s;
     struct trace_scene *scene = panels(&s);
-    int counts[BINS] = { 0 };
+    int counts[BINS] = { 0 }, chosen[PANELS] = { 0 };
     double chi2 = 0;
-    for (uint32_t i = 0; i < SAMPLES; i++) counts[bin_of(sample(scene, i).position)]++;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        int bin = bin_of(sample(scene, i).position);
+        counts[bin]++;
+        chosen[bin / (SIDE * SIDE)]++;
+    }
+    for (int i = 0; i < PANELS; i++) { // 4.5 standard deviations, here and below
+        double share = areas_m2[i] * luminances[i] / total_power();
+        CHECK_NEAR(chosen[i], SAMPLES * share, 4.5 * sqrt(SAMPLES * share * (1 - share)));
+    }
     for (int i = 0; i < BINS; i++) {
         int panel = i / (SIDE * SIDE);
         double share = areas_m2[panel] * luminances[panel] / total_power() / (SIDE * SIDE);
         chi2 += (counts[i] - SAMPLES * share) * (counts[i] - SAMPLES * share) / (SAMPLES * share);
     }
-    CHECK(chi2 < BINS - 1 + 4.5 * sqrt(2.0 * (BINS - 1))); // 4.5 standard deviations
+    CHECK(chi2 < BINS - 1 + 4.5 * sqrt(2.0 * (BINS - 1)));
     trace_scene_destroy(scene);
     stage_finish(&s);
 }
