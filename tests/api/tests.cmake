@@ -10,7 +10,7 @@ if(NOT AFTERGLOW_SANITIZE)
     COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/exports.sh $<TARGET_FILE:afterglow_shared> ${CMAKE_SOURCE_DIR}/include)
   add_test(NAME api.install
     COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/install.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR} ${CMAKE_C_COMPILER})
-  set_tests_properties(api.exports api.install PROPERTIES TIMEOUT 120 LABELS api)
+  set_tests_properties(api.exports api.install PROPERTIES TIMEOUT 300 LABELS api)
 endif()
 add_test(NAME api.documented COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/documented.sh ${CMAKE_SOURCE_DIR})
 set_tests_properties(api.documented PROPERTIES LABELS api)

@@ -4,4 +4,4 @@ target_sources(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR}/bench/plot.c)
 target_include_directories(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR})
 
 add_test(NAME bench.paper_lpv COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_lpv.sh $<TARGET_FILE:bench_paper_lpv> $<TARGET_FILE:afterglow>)
-set_tests_properties(bench.paper_lpv PROPERTIES TIMEOUT 120 LABELS bench SKIP_RETURN_CODE 77)
+set_tests_properties(bench.paper_lpv PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)

@@ -6,7 +6,7 @@ add_test(NAME structure.headers_alone
   COMMAND sh ${structure}/headers_alone.sh ${CMAKE_SOURCE_DIR}/include ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
 add_test(NAME structure.self_test COMMAND sh ${structure}/self_test.sh ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
 set_tests_properties(structure.include_table structure.source_text structure.headers_alone structure.self_test
-  PROPERTIES TIMEOUT 120 LABELS structure)
+  PROPERTIES TIMEOUT 300 LABELS structure)
 
 # The public headers are part of the build too, so that a broken one is seen at once.
 file(GLOB public_headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/include ${CMAKE_SOURCE_DIR}/include/afterglow/*.h)
