@@ -164,8 +164,13 @@ TEST_GPU(lpv_of_a_lit_wall_is_near_form_factors)
 // The window gives a part of the light back to the wall that it came from.
 TEST_GPU(lpv_defaults_are_within_a_half_of_form_factors)
 {
-    const char *options[] = { "lpv:dim=24", "lpv:dim=16", "holpv:dim=24", "holpv:dim=16" };
-    for (int i = 0; i < 4; i++) {
+    const char *options[] = { "lpv:dim=24",
+                              "lpv:dim=16",
+                              "holpv:dim=24",
+                              "holpv:dim=16",
+                              "lpv:dim=16,cascades=3,steps=5",
+                              "holpv:dim=16,cascades=3,steps=5" };
+    for (int i = 0; i < 6; i++) {
         const struct room_error r = print_room(gpu, options[i], 0, 10);
         CHECK(r.relative < 0.5);
         CHECK(r.side > 0.75 && r.side < 1.25);

@@ -31,10 +31,12 @@ static const struct option_row higher_order_rows[] = {
     {                                                                                              \
         .inject = technique ".inject", .inject_emitters = technique ".inject_emitters",            \
         .resolve = technique ".resolve", .geometry = technique ".geometry",                        \
-        .propagate = technique ".propagate", .apply = technique ".apply",                          \
-        .debug = technique ".debug", .sums = technique ".sums", .injected = technique ".injected", \
-        .light = technique ".light", .steps = { technique ".step_even", technique ".step_odd" },   \
-        .linear = technique ".linear", .of_geometry = LPV_GEOMETRY_NAMES(technique),               \
+        .refine = technique ".refine", .propagate = technique ".propagate",                        \
+        .apply = technique ".apply", .debug = technique ".debug", .sums = technique ".sums",       \
+        .injected = technique ".injected", .light = technique ".light",                            \
+        .coarser_light = technique ".coarser_light",                                               \
+        .steps = { technique ".step_even", technique ".step_odd" }, .linear = technique ".linear", \
+        .of_geometry = LPV_GEOMETRY_NAMES(technique),                                              \
     }
 static const struct lpv_names names = NAMES("lpv"), higher_order_names = NAMES("holpv");
 
@@ -73,7 +75,7 @@ static bool holpv_check(const struct technique_create *how)
     return check("holpv", how);
 }
 
-static bool create_volume(struct lpv *lpv, const char *name, enum gpu_format format, gpu_image *out)
+bool lpv_create_volume(struct lpv *lpv, const char *name, enum gpu_format format, gpu_image *out)
 {
     const uint32_t dim = (uint32_t)lpv->options.dim;
     const struct gpu_image_desc desc = { .name = name,
@@ -91,10 +93,10 @@ static bool create_volumes(struct lpv *lpv)
     const struct lpv_names *name = lpv->names;
     const bool half = lpv->options.precision == LPV_PRECISION_HALF;
     const enum gpu_format format = half ? GPU_RGBA16F : GPU_RGBA32F;
-    return create_volume(lpv, name->injected, format, &lpv->injected) &&
-           create_volume(lpv, name->steps[0], format, &lpv->steps[0]) &&
-           (half || create_volume(lpv, name->steps[1], format, &lpv->steps[1])) &&
-           create_volume(lpv, name->light, GPU_RGBA16F, &lpv->light);
+    return lpv_create_volume(lpv, name->injected, format, &lpv->injected) &&
+           lpv_create_volume(lpv, name->steps[0], format, &lpv->steps[0]) &&
+           (half || lpv_create_volume(lpv, name->steps[1], format, &lpv->steps[1])) &&
+           lpv_create_volume(lpv, name->light, GPU_RGBA16F, &lpv->light);
 }
 
 static bool create_resources(struct lpv *lpv)
@@ -144,13 +146,15 @@ static bool create_pipelines(struct lpv *lpv)
                                        constants, 5, &lpv->propagate_held);
 }
 
-static bool create(struct lpv *lpv, const struct lpv_names *name,
+static bool create(struct lpv_cascades *cascades, const struct lpv_names *name,
                    const struct technique_create *how)
 {
+    struct lpv *lpv = &cascades->levels[0];
     lpv->names = name;
     lpv->gpu = how->gpu;
     lpv->options = *(const struct lpv_options *)how->options;
-    return create_resources(lpv) && create_pipelines(lpv) && lpv_geometry_create(lpv);
+    return create_resources(lpv) && create_pipelines(lpv) && lpv_geometry_create(lpv) &&
+           lpv_cascades_create(cascades);
 }
 
 static bool lpv_create(void *state, const struct technique_create *how)
@@ -169,6 +173,7 @@ static void lpv_set_options(void *state, const void *options)
     // What the images and the shaders were made for stays.
     struct lpv_options next = *(const struct lpv_options *)options;
     next.bands = lpv->options.bands;
+    next.cascades = lpv->options.cascades;
     next.neighbours = lpv->options.neighbours;
     next.precision = lpv->options.precision;
     next.dim = lpv->options.dim;
@@ -178,7 +183,17 @@ static void lpv_set_options(void *state, const void *options)
 
 static void lpv_invalidate(void *state, uint32_t changes)
 {
-    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) lpv_geometry_forget(state);
+    if (!(changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL))) return;
+    for (struct lpv *level = state; level; level = level->coarser) lpv_geometry_forget(level);
+}
+
+// The coarser cascades first.
+static void record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    if (lpv->coarser) record_light(lpv->coarser, cmd, view);
+    lpv_record_injection(lpv, cmd, view);
+    lpv_record_geometry(lpv, cmd, view);
+    lpv_record_propagation(lpv, cmd);
 }
 
 static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -189,9 +204,7 @@ static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
         return;
     }
-    lpv_record_injection(lpv, cmd, view);
-    lpv_record_geometry(lpv, cmd, view);
-    lpv_record_propagation(lpv, cmd);
+    record_light(lpv, cmd, view);
     lpv_record_application(lpv, cmd, view);
 }
 
@@ -215,6 +228,7 @@ static void lpv_destroy(void *state)
 {
     struct lpv *lpv = state;
     if (!lpv->gpu) return;
+    lpv_cascades_destroy(state);
     gpu_image *images[] = { &lpv->injected, &lpv->steps[0], &lpv->steps[1], &lpv->light };
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         gpu_image_destroy(lpv->gpu, images[i]);
@@ -235,8 +249,9 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     const uint64_t dim = (uint64_t)how->dim, half = (uint64_t)gpu_format_bytes(GPU_RGBA16F),
                    full = (uint64_t)gpu_format_bytes(GPU_RGBA32F);
     const uint64_t slab = how->precision == LPV_PRECISION_HALF ? 3 * half : 3 * full + half;
-    return dim * dim * dim * (lpv_cell_bytes(how) + slab * lpv_slabs(how)) +
-           lpv_geometry_bytes(how);
+    const uint64_t lights = (uint64_t)(how->cascades - 1) * half; // of the coarser cascades
+    return dim * dim * dim * (lpv_cell_bytes(how) + (slab + lights) * lpv_slabs(how)) +
+           (uint64_t)how->cascades * lpv_geometry_bytes(how);
 }
 
 #define LPV_TECHNIQUE(name_, title_, paper_, rows_)                                                \
@@ -244,9 +259,9 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,                                           \
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
     .options = { rows_, sizeof rows_ / sizeof rows_[0], sizeof(struct lpv_options) },              \
-    .debug_views = debug_views, .state_size = sizeof(struct lpv), .set_options = lpv_set_options,  \
-    .invalidate = lpv_invalidate, .record = lpv_record, .debug_view = lpv_debug_view,              \
-    .destroy = lpv_destroy, .memory_estimate = lpv_memory_estimate
+    .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),                         \
+    .set_options = lpv_set_options, .invalidate = lpv_invalidate, .record = lpv_record,            \
+    .debug_view = lpv_debug_view, .destroy = lpv_destroy, .memory_estimate = lpv_memory_estimate
 
 const struct technique technique_lpv = {
     LPV_TECHNIQUE("lpv", "light propagation volumes",

@@ -22,10 +22,14 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+layout(push_constant, scalar) uniform push_block
+{
+    lpv_apply_push push;
+};
 layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler2D normal;
 layout(set = 0, binding = 4) uniform sampler3D light;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 5, rgba16f) uniform image2D irradiance;
 
 // ∫ I(ω) (−n·ω)₊ dω in the bands of I, weighted with the window.
 vec3 irradiance_of(lpv_light light, vec3 n)
@@ -39,6 +43,21 @@ vec3 irradiance_of(lpv_light light, vec3 n)
     return sum + lpv.window * (SH_COSINE_1 * band_1 + SH_COSINE_2 * band_2);
 }
 
+bool covered_by_finer(vec3 surface)
+{
+    if (push.finer_cell_m == 0.0) return false;
+    ivec3 cells = ivec3(push.finer_cells_x, push.finer_cells_y, push.finer_cells_z);
+    return lpv_cascade_weight((surface - push.finer_origin_m) / push.finer_cell_m, cells, push.finer_open) == 1.0;
+}
+
+vec3 lit(vec3 surface, vec3 n)
+{
+    vec3 sum = irradiance_of(lpv_sample(light, lpv_cells_from_world(surface + lpv.offset_m * n)), n);
+    // What steps of sharp lobes left negative behind a bright wall stays out.
+    return clamp(sum * lpv.irradiance_scale, 0.0, HALF_MAX);
+}
+
+// From the coarsest cascade to the finest, each over what the one before left. Outside of the coarsest there is no light.
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -46,11 +65,11 @@ void main()
     float z = texelFetch(depth, pixel, 0).r;
     vec3 result = vec3(0.0);
     if (z > 0.0) {
-        vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-        vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z) + lpv.offset_m * n;
-        result = irradiance_of(lpv_sample(light, lpv_cells_from_world(position)), n);
-        // What steps of sharp lobes left negative behind a bright wall stays out.
-        result = clamp(result * lpv.irradiance_scale, 0.0, HALF_MAX);
+        vec3 surface = frame_world_position(frame_uv(uvec2(pixel)), z);
+        float weight = lpv_cascade_weight(lpv_cells_from_world(surface), lpv_cells(), push.open);
+        if (covered_by_finer(surface) || (weight == 0.0 && push.coarsest == 0u)) return;
+        if (weight > 0.0) result = lit(surface, octahedral_decode(texelFetch(normal, pixel, 0).rg));
+        if (weight < 1.0) result = mix(push.coarsest != 0u ? vec3(0.0) : imageLoad(irradiance, pixel).rgb, result, weight);
     }
     imageStore(irradiance, pixel, vec4(result, 1.0));
 }

@@ -14,6 +14,7 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
     const double least = longest / ((double)dim - 1.0 - 2.0 * (double)margin);
     const double cell = exp2(ceil(16.0 * log2(least)) / 16.0);
     out->cell_m = (float)cell;
+    out->open = 0;
     for (int axis = 0; axis < 3; axis++) {
         const double first = floor((double)bounds.min.raw[axis] / cell - (double)margin);
         const double last = ceil((double)bounds.max.raw[axis] / cell + (double)margin);
@@ -21,6 +22,25 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
         out->cells[axis] = (int32_t)fmin(fmax(last - first, 1.0), (double)dim);
     }
     return isfinite(out->cell_m) && out->cell_m > 0.0f;
+}
+
+void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s eye,
+                     struct lpv_grid *out)
+{
+    const double cell = (double)cell_m;
+    out->cell_m = cell_m;
+    out->open = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = floor((double)bounds.min.raw[axis] / cell - (double)margin);
+        const double high = ceil((double)bounds.max.raw[axis] / cell + (double)margin);
+        const double centred = 2.0 * round(0.5 * (double)eye.raw[axis] / cell) - 0.5 * dim;
+        const double first = fmax(low, fmin(centred, high - dim));
+        const double last = fmax(fmin(high, first + dim), first + 1.0);
+        out->origin_m.raw[axis] = (float)(first * cell);
+        out->cells[axis] = (int32_t)(last - first);
+        if (first > low) out->open |= LPV_OPEN(axis, 0);
+        if (last < high) out->open |= LPV_OPEN(axis, 1);
+    }
 }
 
 static double strongest(vec3s v)

@@ -25,6 +25,28 @@ vec3 lpv_cells_from_world(vec3 position)
     return (position - lpv.origin_m) / lpv.cell_m;
 }
 
+// Whether the cell is one of the outermost on a side of a set (LPV_OPEN).
+bool lpv_outermost(ivec3 cell, uint sides)
+{
+    ivec3 last = lpv_cells() - 1;
+    for (int axis = 0; axis < 3; axis++) {
+        if ((sides & LPV_OPEN(axis, 0)) != 0u && cell[axis] == 0) return true;
+        if ((sides & LPV_OPEN(axis, 1)) != 0u && cell[axis] == last[axis]) return true;
+    }
+    return false;
+}
+
+// The weight of a cascade at a place in its cells, against the next coarser one: 1, but before open sides it falls to 0.
+float lpv_cascade_weight(vec3 at, ivec3 cells, uint open)
+{
+    float inside = LPV_TRANSITION; // cells from the outermost ones
+    for (int axis = 0; axis < 3; axis++) {
+        if ((open & LPV_OPEN(axis, 0)) != 0u) inside = min(inside, at[axis] - 1.0);
+        if ((open & LPV_OPEN(axis, 1)) != 0u) inside = min(inside, float(cells[axis]) - 1.0 - at[axis]);
+    }
+    return smoothstep(0.0, LPV_TRANSITION, inside);
+}
+
 int lpv_index(ivec3 cell)
 {
     return (cell.z * lpv.cells_y + cell.y) * lpv.cells_x + cell.x;

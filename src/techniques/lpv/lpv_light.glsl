@@ -80,14 +80,20 @@ lpv_light lpv_fetch(sampler3D volume, ivec3 cell)
     return lpv_unpack(slabs);
 }
 
-// Filtered, `at` in cells from the grid's corner; half a cell inside of the grid at least, so that slabs do not mix.
-lpv_light lpv_sample(sampler3D volume, vec3 at)
+// Filtered, `at` in cells from the corner of a grid of so many cells; half a cell inside of it at least, so that slabs do not
+// mix.
+void lpv_sample_slabs(sampler3D volume, vec3 at, ivec3 cells, out vec4 slabs[7])
 {
-    vec4 slabs[7];
-    vec3 texel = clamp(at, vec3(0.5), vec3(lpv_cells()) - 0.5), size = vec3(textureSize(volume, 0));
+    vec3 texel = clamp(at, vec3(0.5), vec3(cells) - 0.5), size = vec3(textureSize(volume, 0));
     for (int i = 0; i < 3; i++) slabs[i] = textureLod(volume, (texel + vec3(0, 0, i * lpv.dim)) / size, 0.0);
     for (int i = 3; i < 7; i++)
         slabs[i] = LPV_BANDS == 3 ? textureLod(volume, (texel + vec3(0, 0, i * lpv.dim)) / size, 0.0) : vec4(0.0);
+}
+
+lpv_light lpv_sample(sampler3D volume, vec3 at)
+{
+    vec4 slabs[7];
+    lpv_sample_slabs(volume, at, lpv_cells(), slabs);
     return lpv_unpack(slabs);
 }
 

@@ -131,10 +131,16 @@ void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
     }
 }
 
-// What a receiver has with what was injected into it.
+// What a receiver has with what was injected into it. At the sides of a cascade where light comes in from the next coarser one
+// that one's light stays.
 void store(ivec3 cell, sums sum)
 {
     vec4 slabs[7];
+    if (lpv.held != 0u && lpv_outermost(cell, lpv.held)) {
+        lpv_fetch_slabs(before, cell, slabs);
+        lpv_store_slabs(after, cell, slabs);
+        return;
+    }
     lpv_fetch_slabs(injected, cell, slabs);
     float one = SH_Y1 * lpv.lobe_along, two = SH_Y2_XY * lpv.lobe_product;
     vec3 mean = SH_Y0 * sum.flux;

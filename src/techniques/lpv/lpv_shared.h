@@ -8,6 +8,10 @@
 #define LPV_EMITTERS_LOCAL 64 // invocations of a workgroup that injects emissive surfaces, one point each
 #define LPV_RUN 8 // cells along z that an invocation of a step with 26 neighbours takes; divides every dimension
 
+#define LPV_MAX_CASCADES 4
+#define LPV_OPEN(axis, high) (1u << (2 * (axis) + (high))) // a side of a grid, in a set of them
+#define LPV_TRANSITION 4.0 // cells before an open side over which a cascade gives way to the next coarser one
+
 // Specialization constants.
 #define LPV_CONSTANT_BANDS 0 // 2 or 3
 #define LPV_CONSTANT_HALF 1
@@ -49,6 +53,24 @@ struct lpv_params {
     uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
     uint32_t emitter_count;
+    uint32_t held;          // sides whose outermost cells keep the light of the coarser cascade
+};
+
+// Where the next coarser cascade lies as seen from this one: lpv_refine.comp.
+struct lpv_refine_push {
+    vec3s first;       // the corner of cell 0, in cells of the coarser
+    float ratio;       // cells of the coarser per cell
+    int32_t cells_x, cells_y, cells_z; // of the coarser
+};
+
+// Which pixels a cascade lights: lpv_apply.comp.
+struct lpv_apply_push {
+    vec3s finer_origin_m; // of the next finer cascade
+    float finer_cell_m;   // 0: there is none
+    int32_t finer_cells_x, finer_cells_y, finer_cells_z;
+    uint32_t finer_open;
+    uint32_t open;        // this one's sides
+    uint32_t coarsest;    // there is none before it
 };
 
 // Views of lpv_debug.comp.
@@ -64,7 +86,9 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 48 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 49 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");
 #endif
 

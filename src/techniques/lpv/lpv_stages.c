@@ -1,26 +1,27 @@
 // The stages of a frame: prepare, inject, propagate, apply.
 #include "techniques/lpv/lpv_state.h"
 
-bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
+static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_view *view)
 {
-    const struct lpv_options *options = &lpv->options;
-    const struct lpv_lights lights = {
+    return (struct lpv_lights){
         .faces = view->rsm_faces,
         .face_count = view->rsm_face_count,
         .rsm_size = view->rsm_size,
         .emitters = view->emitters,
-        .emitter_count = options->emitters ? view->emitter_count : 0,
+        .emitter_count = lpv->options.emitters ? view->emitter_count : 0,
     };
-    struct lpv_scale scale;
-    lpv->lit = lpv_grid_fit(view->bounds, options->dim, options->cell_margin, &lpv->grid) &&
-               lpv_scale_of(&lights, &scale);
-    if (!lpv->lit) return false;
+}
+
+static struct lpv_params params_of(const struct lpv *lpv, const struct frame_view *view,
+                                   const struct lpv_scale *scale)
+{
+    const struct lpv_options *options = &lpv->options;
     const struct lpv_grid *grid = &lpv->grid;
     const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
     const struct lpv_step step =
         lpv_step_of(scheme, (enum lpv_lobe)options->lobe, (double)options->focus);
     const float mean_way = (float)lpv_mean_way(scheme); // see lpv_apply.comp
-    lpv->params = (struct lpv_params){
+    return (struct lpv_params){
         .origin_m = grid->origin_m,
         .cell_m = grid->cell_m,
         .cells_x = grid->cells[0],
@@ -33,18 +34,29 @@ bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
         .lobe_along = (float)step.lobe.along,
         .lobe_square = (float)step.lobe.square,
         .lobe_product = (float)step.lobe.product,
-        .fixed_from_flux = scale.fixed_from_flux,
-        .grid_from_fixed = scale.grid_from_flux / scale.fixed_from_flux,
+        .fixed_from_flux = scale->fixed_from_flux,
+        .grid_from_fixed = scale->grid_from_flux / scale->fixed_from_flux,
         .irradiance_scale =
-            options->gain * mean_way / (grid->cell_m * grid->cell_m * scale.grid_from_flux),
+            options->gain * mean_way / (grid->cell_m * grid->cell_m * scale->grid_from_flux),
         .offset_m = options->offset * grid->cell_m,
         .window = options->window,
         .blocking = options->blocking,
         .rsm_size = view->rsm_size,
         .width = view->width,
         .height = view->height,
-        .emitter_count = (uint32_t)lights.emitter_count,
+        .emitter_count = (uint32_t)lights_of(lpv, view).emitter_count,
+        .held = lpv->coarser ? grid->open : 0,
     };
+}
+
+bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
+{
+    const struct lpv_lights lights = lights_of(lpv, view);
+    struct lpv_scale scale;
+    lpv->lit = lpv_cascades_place(lpv, view) && lpv_scale_of(&lights, &scale);
+    if (!lpv->lit) return false;
+    for (struct lpv *level = lpv; level; level = level->coarser)
+        level->params = params_of(level, view, &scale);
     return true;
 }
 
@@ -148,29 +160,50 @@ void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
     const int first = lpv->options.steps - 1;
     gpu_image before = lpv->injected;
     gpu_scope_begin(cmd, lpv->names->propagate);
-    const gpu_image injected = record_held(lpv, cmd, first);
+    gpu_image injected = record_held(lpv, cmd, first);
+    if (lpv->coarser) {
+        before = step_target(lpv, first + 1);
+        injected = lpv_record_refinement(lpv, cmd, injected, before);
+    }
     for (int left = first; left >= 0; left--) {
         const gpu_image after = step_target(lpv, left);
         record_step(lpv, cmd, lpv->propagate, left == first ? injected : lpv->injected, before,
                     after);
-        if (left == first && lpv->options.geometry != LPV_GEOMETRY_OFF)
+        if (left == first && injected.id != lpv->injected.id)
             gpu_copy_image(cmd, lpv->injected, injected);
         before = after;
     }
     gpu_scope_end(cmd);
 }
 
-void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+// Of a cascade and all coarser ones that light what it leaves, these first.
+static void apply(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view,
+                  const struct lpv_grid *finer)
 {
-    gpu_scope_begin(cmd, lpv->names->apply);
+    struct lpv_apply_push push = { .open = lpv->grid.open, .coarsest = !lpv->params.held };
+    if (finer) {
+        push.finer_origin_m = finer->origin_m;
+        push.finer_cell_m = finer->cell_m;
+        push.finer_cells_x = finer->cells[0];
+        push.finer_cells_y = finer->cells[1];
+        push.finer_cells_z = finer->cells[2];
+        push.finer_open = finer->open;
+    }
+    if (lpv->params.held) apply(lpv->coarser, cmd, view, &lpv->grid);
     gpu_dispatch(cmd, lpv->apply,
                  GPU_BIND(lpv_grid_binding(lpv, cmd), view->constants_binding,
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "light", .image = lpv->light, .sampler = lpv->linear },
                           { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-                 NULL, 0, gpu_groups(view->width, LPV_LOCAL), gpu_groups(view->height, LPV_LOCAL),
-                 1);
+                 &push, sizeof push, gpu_groups(view->width, LPV_LOCAL),
+                 gpu_groups(view->height, LPV_LOCAL), 1);
+}
+
+void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    gpu_scope_begin(cmd, lpv->names->apply);
+    apply(lpv, cmd, view, NULL);
     gpu_scope_end(cmd);
 }
 

@@ -32,17 +32,18 @@ static inline size_t lpv_cell_bytes(const struct lpv_options *options) // of a c
 
 // Of passes and objects, "technique.thing".
 struct lpv_names {
-    const char *inject, *inject_emitters, *resolve, *geometry, *propagate, *apply, *debug;
-    const char *sums, *injected, *steps[2], *light, *linear;
+    const char *inject, *inject_emitters, *resolve, *geometry, *refine, *propagate, *apply, *debug;
+    const char *sums, *injected, *steps[2], *light, *coarser_light, *linear;
     struct lpv_geometry_names of_geometry;
 };
 
+// One grid, or one of several cascades. Coarser ones have all objects of the finest but the light.
 struct lpv {
     const struct lpv_names *names;
     struct gpu *gpu;
     struct lpv_options options;
     gpu_sampler linear;
-    gpu_pipeline inject, inject_emitters, resolve, propagate, apply, debug;
+    gpu_pipeline inject, inject_emitters, resolve, refine, propagate, apply, debug;
     gpu_pipeline propagate_held; // what geometry holds back; none without geometry
     gpu_buffer sums;    // [cell][coefficient][colour] 64-bit integers
     gpu_image injected; // volumes: dim² × slabs · dim texels
@@ -52,7 +53,20 @@ struct lpv {
     struct lpv_grid grid;
     struct lpv_params params; // of the frame being recorded
     bool lit;                 // the frame being recorded has light and something to light
+    struct lpv *coarser;      // the next cascade; NULL: this is the coarsest
 };
+
+// The state of the technique.
+struct lpv_cascades {
+    struct lpv levels[LPV_MAX_CASCADES]; // from the finest
+};
+
+bool lpv_create_volume(struct lpv *lpv, const char *name, enum gpu_format format, gpu_image *out);
+// The coarser cascades, of a finest one that is complete.
+bool lpv_cascades_create(struct lpv_cascades *cascades);
+void lpv_cascades_destroy(struct lpv_cascades *cascades);
+// Gives each cascade its grid; false: the scene has no extent.
+bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view);
 
 // Places the grid and chooses the scales; false where there is nothing to do.
 bool lpv_prepare(struct lpv *lpv, const struct frame_view *view);
@@ -63,6 +77,10 @@ void lpv_dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipel
 // The stages, in order. Each reads lpv->params.
 void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd);
+// Puts the light of the coarser cascade into `to`, which the first step reads. What is injected may be in there and is moved to
+// its own image, which is returned.
+gpu_image lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image injected, gpu_image to);
+// Of all cascades.
 void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 // Draws the view LPV_VIEW_… into `out` (RGBA16F of the frame's size).
 void lpv_record_debug(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view,

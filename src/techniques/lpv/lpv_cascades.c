@@ -1,0 +1,89 @@
+// Cascades (Kaplanyan & Dachsbacher 2010): grids with cells of several sizes, each of which begins
+// with the light of the next coarser one.
+#include "techniques/lpv/lpv_state.h"
+
+#include "technique_shaders.h"
+
+bool lpv_cascades_create(struct lpv_cascades *cascades)
+{
+    struct lpv *finest = &cascades->levels[0];
+    if (finest->options.cascades == 1) return true;
+    const struct gpu_constant constants[] = {
+        { LPV_CONSTANT_BANDS, (uint32_t)finest->options.bands },
+        { LPV_CONSTANT_HALF, finest->options.precision == LPV_PRECISION_HALF },
+    };
+    if (!gpu_compute_pipeline_create(finest->gpu, finest->names->refine, &shader_lpv_refine_comp,
+                                     constants, 2, &finest->refine))
+        return false;
+    for (int i = 1; i < finest->options.cascades; i++) {
+        struct lpv *level = &cascades->levels[i];
+        *level = *finest;
+        level->light = (gpu_image){ 0 };
+        level->geometry = (struct lpv_geometry){ 0 };
+        level->coarser = NULL;
+        cascades->levels[i - 1].coarser = level;
+        if (!lpv_create_volume(level, level->names->coarser_light, GPU_RGBA16F, &level->light) ||
+            !lpv_geometry_create(level))
+            return false;
+    }
+    return true;
+}
+
+void lpv_cascades_destroy(struct lpv_cascades *cascades)
+{
+    for (struct lpv *level = cascades->levels[0].coarser; level; level = level->coarser) {
+        gpu_image_destroy(level->gpu, &level->light);
+        lpv_geometry_destroy(level);
+    }
+    gpu_pipeline_destroy(cascades->levels[0].gpu, &cascades->levels[0].refine);
+}
+
+// As many steps as light needs to cross the coarsest grid, up to four times those of the others:
+// its cells are few.
+static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid *grid)
+{
+    int32_t longest = 0;
+    for (int axis = 0; axis < 3; axis++)
+        longest = grid->cells[axis] > longest ? grid->cells[axis] : longest;
+    const int32_t steps = finest->options.steps;
+    const int32_t needed = finest->options.neighbours == LPV_SIX ? 2 * longest : longest;
+    return needed < steps ? steps : needed < 4 * steps ? needed : 4 * steps;
+}
+
+bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view)
+{
+    const struct lpv_options *options = &finest->options;
+    if (!lpv_grid_fit(view->bounds, options->dim, options->cell_margin, &finest->grid))
+        return false;
+    if (!finest->coarser) return true;
+    float cell_m = options->cell > 0.0f ? options->cell : 0.5f * finest->grid.cell_m;
+    for (struct lpv *level = finest; level; level = level->coarser, cell_m *= 2.0f) {
+        lpv_grid_around(view->bounds, options->dim, options->cell_margin, cell_m,
+                        view->constants->eye, &level->grid);
+        level->options = *options;
+        if (!level->coarser) level->options.steps = steps_of_coarsest(finest, &level->grid);
+    }
+    return true;
+}
+
+gpu_image lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image injected,
+                                gpu_image to)
+{
+    const struct lpv_grid *grid = &lpv->grid, *coarser = &lpv->coarser->grid;
+    const struct lpv_refine_push push = {
+        .first = glms_vec3_divs(glms_vec3_sub(grid->origin_m, coarser->origin_m), coarser->cell_m),
+        .ratio = grid->cell_m / coarser->cell_m,
+        .cells_x = coarser->cells[0],
+        .cells_y = coarser->cells[1],
+        .cells_z = coarser->cells[2],
+    };
+    if (injected.id != lpv->injected.id) gpu_copy_image(cmd, lpv->injected, injected);
+    gpu_dispatch(
+        cmd, lpv->refine,
+        GPU_BIND(lpv_grid_binding(lpv, cmd),
+                 { .name = "coarser", .image = lpv->coarser->light, .sampler = lpv->linear },
+                 { .name = "refined", .image = to }),
+        &push, sizeof push, gpu_groups((uint32_t)grid->cells[0], LPV_LOCAL),
+        gpu_groups((uint32_t)grid->cells[1], LPV_LOCAL), (uint32_t)grid->cells[2]);
+    return lpv->injected;
+}

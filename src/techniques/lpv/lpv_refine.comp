@@ -1,0 +1,31 @@
+// Where the steps of a cascade begin: with the light of the next coarser one, which has come from further away than they
+// reach. k steps leave of it what is older than k steps, T^k A, and put the nearer light in its place, S + TS + … + T^(k−1)S.
+//
+// Radiance is I · (w a)/a³ in cells of side a (lpv_apply.comp), so the same radiance has intensities ∝ a².
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "core/sh.glsl"
+#include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    lpv_refine_push push;
+};
+layout(set = 0, binding = 1) uniform sampler3D coarser;
+layout(set = 0, binding = 2) uniform writeonly image3D refined;
+
+void main()
+{
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    if (!lpv_inside(cell)) return;
+    vec4 slabs[7];
+    vec3 at = push.first + push.ratio * (vec3(cell) + 0.5);
+    lpv_sample_slabs(coarser, at, ivec3(push.cells_x, push.cells_y, push.cells_z), slabs);
+    for (int i = 0; i < 7; i++) slabs[i] *= push.ratio * push.ratio;
+    lpv_store_slabs(refined, cell, slabs);
+}
