@@ -6,6 +6,7 @@
 #include <afterglow/context.h>
 #include <afterglow/device.h>
 #include <afterglow/image.h>
+#include <afterglow/probes.h>
 #include <afterglow/reference.h>
 #include <afterglow/renderer.h>
 #include <afterglow/scene.h>

@@ -64,10 +64,20 @@ struct frame_emitter {
     vec3s flux;          // scaled lumen
 };
 
+// Where the points of a probe volume are, and how its image holds them: frame/probes.glsl.
+#define FRAME_PROBE_SLABS 7
+struct frame_probes {
+    vec3s first_m;       // of probe (0, 0, 0), world
+    float spacing_m;     // from one to the next, along each axis of the world
+    int32_t count_x, count_y, count_z;
+    int32_t slab;        // texels along z from one slab of the image to the next
+};
+
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct frame_constants) == 4 * 64 + 16 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_light) == 64, "layout is shared with GLSL");
 _Static_assert(sizeof(struct frame_emitter) == 9 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct frame_probes) == 8 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct rsm_face) == 2 * 64 + 12 * 4, "layout is shared with GLSL");
 #endif
 

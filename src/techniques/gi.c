@@ -1,6 +1,7 @@
 // The life of a sum of techniques: create, frames, resize, debug views, destroy.
 #include "techniques/gi.h"
 
+#include "techniques/common/probe_view.h"
 #include "techniques/gi_spec.h"
 
 #include <stdio.h>
@@ -17,6 +18,7 @@ struct gi {
     int debug_term;         // whose view is shown
     const char *debug_name; // NULL: none
     gpu_image debug_image;
+    struct probe_view probe_view; // made when it is first shown
 };
 
 static bool create_term(struct gi *gi, int i, const struct scene_pose *pose)
@@ -60,6 +62,7 @@ void gi_destroy(struct gi *gi)
         host_free(gi->host, gi->state[i]);
     }
     gpu_image_destroy(gi->gpu, &gi->debug_image);
+    probe_view_destroy(&gi->probe_view, gi->gpu);
     gi_spec_finish(&gi->spec);
     host_free(gi->host, gi);
 }
@@ -116,13 +119,52 @@ bool gi_set_options(struct gi *gi, const struct gi_spec *spec)
     return true;
 }
 
+static bool probes_of(const struct gi *gi, int term, struct probe_volume *out)
+{
+    const struct technique *technique = gi->spec.technique[term];
+    return technique->probes && technique->probes(gi->state[term], out);
+}
+
+static bool fail_probes(const struct gi *gi)
+{
+    for (int i = 0; i < gi->spec.count; i++) {
+        const char *name = gi->spec.technique[i]->name;
+        if (gi->spec.technique[i]->capabilities & PUBLISHES_PROBES)
+            return host_fail(gi->host, FAIL_ARGUMENT, "%s publishes no probes: %s:probes=true does",
+                             name, name);
+    }
+    return host_fail(gi->host, FAIL_ARGUMENT, "%s publishes no probes",
+                     gi->spec.technique[0]->name);
+}
+
+bool gi_probes(const struct gi *gi, struct probe_volume *out)
+{
+    for (int i = 0; i < gi->spec.count; i++)
+        if (probes_of(gi, i, out)) return true;
+    return fail_probes(gi);
+}
+
+static bool is_of_probes(const struct technique *technique, const char *view)
+{
+    return (technique->capabilities & PUBLISHES_PROBES) && strcmp(view, PROBES_VIEW) == 0;
+}
+
+static void record_debug_view(struct gi *gi, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct probe_volume probes;
+    const int term = gi->debug_term;
+    const struct technique *technique = gi->spec.technique[term];
+    if (!is_of_probes(technique, gi->debug_name))
+        technique->debug_view(gi->state[term], cmd, view, gi->debug_name, gi->debug_image);
+    else if (probes_of(gi, term, &probes))
+        probe_view_record(&gi->probe_view, cmd, view, probes.image, probes.place, gi->debug_image);
+}
+
 static void gi_record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct gi *gi = user;
     for (int i = 0; i < gi->spec.count; i++) gi->spec.technique[i]->record(gi->state[i], cmd, view);
-    if (!gi->debug_name) return;
-    gi->spec.technique[gi->debug_term]->debug_view(gi->state[gi->debug_term], cmd, view,
-                                                   gi->debug_name, gi->debug_image);
+    if (gi->debug_name) record_debug_view(gi, cmd, view);
 }
 
 struct frame_indirect gi_hook(struct gi *gi)
@@ -140,18 +182,15 @@ static bool is_named(const struct technique *technique, const char *view, const 
     return strcmp(view, name) == 0;
 }
 
-static bool find_debug_view(struct gi *gi, const char *name)
+static const char *find_debug_view(const struct gi *gi, const char *name, int *term)
 {
-    for (int i = 0; i < gi->spec.count; i++) {
-        const struct technique_debug_view *view = gi->spec.technique[i]->debug_views;
-        for (; view && view->name; view++) {
-            if (!is_named(gi->spec.technique[i], view->name, name)) continue;
-            gi->debug_term = i;
-            gi->debug_name = view->name;
-            return true;
-        }
+    for (*term = 0; *term < gi->spec.count; ++*term) {
+        const struct technique *technique = gi->spec.technique[*term];
+        const struct technique_debug_view *view = technique->debug_views;
+        for (; view && view->name; view++)
+            if (is_named(technique, view->name, name)) return view->name;
     }
-    return false;
+    return NULL;
 }
 
 static bool fail_debug_view(const struct gi *gi, const char *name)
@@ -170,18 +209,32 @@ static bool fail_debug_view(const struct gi *gi, const char *name)
                      used ? "there are " : "there is none", list);
 }
 
+// What the view draws with, and draws into.
+static bool make_debug_view(struct gi *gi, const char *view, int term)
+{
+    struct probe_volume probes;
+    if (is_of_probes(gi->spec.technique[term], view)) {
+        if (!probes_of(gi, term, &probes)) return fail_probes(gi);
+        if (!gi->probe_view.pipeline.id && !probe_view_create(&gi->probe_view, gi->gpu))
+            return false;
+    }
+    return gi->debug_name || make_debug_image(gi);
+}
+
 bool gi_set_debug_view(struct gi *gi, const char *name)
 {
+    int term = 0;
     if (!name) {
         gi->debug_name = NULL;
         gpu_image_destroy(gi->gpu, &gi->debug_image);
         return true;
     }
-    const char *before = gi->debug_name;
-    if (!find_debug_view(gi, name)) return fail_debug_view(gi, name);
-    if (before || make_debug_image(gi)) return true;
-    gi->debug_name = NULL;
-    return false;
+    const char *view = find_debug_view(gi, name, &term);
+    if (!view) return fail_debug_view(gi, name);
+    if (!make_debug_view(gi, view, term)) return false;
+    gi->debug_name = view;
+    gi->debug_term = term;
+    return true;
 }
 
 gpu_image gi_debug_image(const struct gi *gi)

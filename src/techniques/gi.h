@@ -34,4 +34,6 @@ struct frame_indirect gi_hook(struct gi *gi); // refers to gi
 bool gi_set_debug_view(struct gi *gi, const char *name);
 // The image it draws into, none where no view is set.
 gpu_image gi_debug_image(const struct gi *gi);
+// The probe volume of the sum, of the newest frame; false: no term publishes one (says how it would).
+bool gi_probes(const struct gi *gi, struct probe_volume *out);
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height);

@@ -29,6 +29,15 @@ enum technique_change {
 struct technique_debug_view {
     const char *name, *help;
 };
+// A view of this name of a technique that publishes probes is drawn from them by gi.c; debug_view is not called.
+#define PROBES_VIEW "probes"
+#define PROBES_VIEW_HELP "white balls where probes stand, before surfaces lit by the probes; with probes=true"
+
+// Irradiance at the points of a grid: an image of the format in frame/probes.glsl and its place. Each frame's record fills it.
+struct probe_volume {
+    gpu_image image; // RGBA16F
+    struct frame_probes place;
+};
 
 struct technique_create {
     struct host *host;
@@ -73,6 +82,8 @@ struct technique {
     void (*record)(void *state, struct gpu_cmd *cmd, const struct frame_view *view); // no allocation, no wait, no failure
     void (*debug_view)(void *state, struct gpu_cmd *cmd, const struct frame_view *view, const char *name,
                        gpu_image out); // RGBA16F of the frame's size, scaled radiance
+    // With PUBLISHES_PROBES: what the newest record filled. false: its option `probes` is off.
+    bool (*probes)(void *state, struct probe_volume *out);
     void (*destroy)(void *state); // accepts any half-built state
     // Bytes of GPU memory for these options at this size, before anything is created.
     uint64_t (*memory_estimate)(const void *options, uint32_t width, uint32_t height);

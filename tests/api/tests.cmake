@@ -2,6 +2,7 @@
 foreach(name arguments context scene catalogue reference)
   ag_test(api/${name} USES api)
 endforeach()
+ag_test(api/probes USES api LIBRARIES ag_test_gpu)
 ag_test(api/renderer USES api LIBRARIES ag_test_own_device ag_test_gpu)
 
 # Only ag_… is to be seen from outside. (Sanitizers add names of their own.)

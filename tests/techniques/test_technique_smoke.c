@@ -52,7 +52,10 @@ TEST_GPU(techniques_live_through_frames_sizes_and_views)
     struct studio s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
-        struct gi *gi = create(&s, techniques[i]->name);
+        char text[64];
+        const bool probes = techniques[i]->capabilities & PUBLISHES_PROBES; // they have a view
+        snprintf(text, sizeof text, "%s%s", techniques[i]->name, probes ? ":probes=true" : "");
+        struct gi *gi = create(&s, text);
         finite_frames(&s, 3);
         CHECK(gi_resize(gi, 45, 27));
         studio_resize(&s, 45, 27);

@@ -32,8 +32,8 @@ static const struct option_row higher_order_rows[] = {
         .inject = technique ".inject", .inject_emitters = technique ".inject_emitters",            \
         .resolve = technique ".resolve", .geometry = technique ".geometry",                        \
         .refine = technique ".refine", .propagate = technique ".propagate",                        \
-        .apply = technique ".apply", .debug = technique ".debug", .sums = technique ".sums",       \
-        .injected = technique ".injected", .light = technique ".light",                            \
+        .apply = technique ".apply", .probes = technique ".probes", .debug = technique ".debug",   \
+        .sums = technique ".sums", .injected = technique ".injected", .light = technique ".light", \
         .coarser_light = technique ".coarser_light",                                               \
         .steps = { technique ".step_even", technique ".step_odd" }, .linear = technique ".linear", \
         .of_geometry = LPV_GEOMETRY_NAMES(technique),                                              \
@@ -48,6 +48,7 @@ static const struct technique_debug_view debug_views[] = {
     { "geometry", "slices of the grid: what is held back along x, y, z at each cell's low faces, "
                   "as red, green, "
                   "blue" },
+    { PROBES_VIEW, PROBES_VIEW_HELP },
     { NULL, NULL },
 };
 
@@ -154,7 +155,7 @@ static bool create(struct lpv_cascades *cascades, const struct lpv_names *name,
     lpv->gpu = how->gpu;
     lpv->options = *(const struct lpv_options *)how->options;
     return create_resources(lpv) && create_pipelines(lpv) && lpv_geometry_create(lpv) &&
-           lpv_cascades_create(cascades);
+           lpv_probes_create(lpv) && lpv_cascades_create(cascades);
 }
 
 static bool lpv_create(void *state, const struct technique_create *how)
@@ -178,6 +179,7 @@ static void lpv_set_options(void *state, const void *options)
     next.precision = lpv->options.precision;
     next.dim = lpv->options.dim;
     next.geometry = lpv->options.geometry;
+    next.probes = lpv->options.probes;
     lpv->options = next;
 }
 
@@ -202,10 +204,12 @@ static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     if (!lpv_prepare(lpv, view)) {
         gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+        lpv_record_probes(lpv, cmd);
         return;
     }
     record_light(lpv, cmd, view);
     lpv_record_application(lpv, cmd, view);
+    lpv_record_probes(lpv, cmd);
 }
 
 static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -224,6 +228,11 @@ static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
                      out);
 }
 
+static bool lpv_probes(void *state, struct probe_volume *out)
+{
+    return lpv_probes_publish(state, out);
+}
+
 static void lpv_destroy(void *state)
 {
     struct lpv *lpv = state;
@@ -233,6 +242,7 @@ static void lpv_destroy(void *state)
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         gpu_image_destroy(lpv->gpu, images[i]);
     gpu_buffer_destroy(lpv->gpu, &lpv->sums);
+    lpv_probes_destroy(lpv);
     gpu_pipeline *pipelines[] = { &lpv->inject,    &lpv->inject_emitters, &lpv->resolve,
                                   &lpv->propagate, &lpv->propagate_held,  &lpv->apply,
                                   &lpv->debug };
@@ -251,17 +261,18 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     const uint64_t slab = how->precision == LPV_PRECISION_HALF ? 3 * half : 3 * full + half;
     const uint64_t lights = (uint64_t)(how->cascades - 1) * half; // of the coarser cascades
     return dim * dim * dim * (lpv_cell_bytes(how) + (slab + lights) * lpv_slabs(how)) +
-           (uint64_t)how->cascades * lpv_geometry_bytes(how);
+           (uint64_t)how->cascades * lpv_geometry_bytes(how) + lpv_probes_bytes(how);
 }
 
 #define LPV_TECHNIQUE(name_, title_, paper_, rows_)                                                \
     .name = name_, .title = title_, .paper = paper_, .folder = "lpv", .role = ROLE_SOURCE,         \
-    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,                                           \
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | PUBLISHES_PROBES,                        \
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
     .options = { rows_, sizeof rows_ / sizeof rows_[0], sizeof(struct lpv_options) },              \
     .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),                         \
     .set_options = lpv_set_options, .invalidate = lpv_invalidate, .record = lpv_record,            \
-    .debug_view = lpv_debug_view, .destroy = lpv_destroy, .memory_estimate = lpv_memory_estimate
+    .debug_view = lpv_debug_view, .probes = lpv_probes, .destroy = lpv_destroy,                    \
+    .memory_estimate = lpv_memory_estimate
 
 const struct technique technique_lpv = {
     LPV_TECHNIQUE("lpv", "light propagation volumes",

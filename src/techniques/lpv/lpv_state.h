@@ -4,6 +4,7 @@
 #include "techniques/lpv/lpv_geometry.h"
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_math.h"
+#include "techniques/lpv/lpv_probes.h"
 #include "techniques/lpv/lpv_shared.h"
 #include "techniques/technique.h"
 
@@ -32,8 +33,8 @@ static inline size_t lpv_cell_bytes(const struct lpv_options *options) // of a c
 
 // Of passes and objects, "technique.thing".
 struct lpv_names {
-    const char *inject, *inject_emitters, *resolve, *geometry, *refine, *propagate, *apply, *debug;
-    const char *sums, *injected, *steps[2], *light, *coarser_light, *linear;
+    const char *inject, *inject_emitters, *resolve, *geometry, *refine, *propagate, *apply, *probes;
+    const char *debug, *sums, *injected, *steps[2], *light, *coarser_light, *linear;
     struct lpv_geometry_names of_geometry;
 };
 
@@ -50,6 +51,7 @@ struct lpv {
     gpu_image steps[2]; // in turn; with half precision only the first, and `light` is the other
     gpu_image light;    // RGBA16F: accumulated over all steps
     struct lpv_geometry geometry;
+    struct lpv_probes probes;
     struct lpv_grid grid;
     struct lpv_params params; // of the frame being recorded
     bool lit;                 // the frame being recorded has light and something to light

@@ -1,0 +1,156 @@
+// Probe volumes: read back, looked up on the CPU, or handed out as the image that they are.
+#include "api/renderer_state.h"
+
+#include "core/sh.h"
+
+#include <string.h>
+
+enum { COEFFICIENTS = 9, NUMBERS = 3 * COEFFICIENTS };
+
+// The newest frame's volume, if there is one.
+static enum ag_result find(const char *function, struct ag_renderer *r, struct probe_volume *out)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE_FOR(function, context, r, "renderer is NULL");
+    AG_REQUIRE_FOR(function, context, r->rendered, "no frame has been rendered");
+    return api_done(context, gi_probes(r->gi, out));
+}
+
+static void place_of(const struct probe_volume *volume, float first[3], float *spacing,
+                     int counts[3])
+{
+    const struct frame_probes *place = &volume->place;
+    api_store(first, place->first_m);
+    *spacing = place->spacing_m;
+    counts[0] = place->count_x;
+    counts[1] = place->count_y;
+    counts[2] = place->count_z;
+}
+
+// From slabs of texels to probes of numbers.
+static void unpack(const struct ag_probes *probes, const float *texels,
+                   const struct gpu_image_desc *size, const struct frame_probes *place, float scale)
+{
+    float *out = probes->coefficients;
+    for (int z = 0; z < probes->counts[2]; z++)
+        for (int y = 0; y < probes->counts[1]; y++)
+            for (int x = 0; x < probes->counts[0]; x++)
+                for (int k = 0; k < NUMBERS; k++) {
+                    size_t row = (size_t)(z + k / 4 * place->slab) * size->height + (size_t)y;
+                    *out++ = texels[4 * (row * size->width + (size_t)x) + (size_t)(k % 4)] / scale;
+                }
+}
+
+static struct ag_probes *create(struct host *host, const struct probe_volume *volume)
+{
+    struct ag_probes *probes = host_alloc(host, 1, sizeof *probes);
+    if (!probes) return NULL;
+    place_of(volume, probes->first, &probes->spacing, probes->counts);
+    size_t count =
+        (size_t)probes->counts[0] * (size_t)probes->counts[1] * (size_t)probes->counts[2];
+    probes->coefficients = host_alloc(host, count, NUMBERS * sizeof *probes->coefficients);
+    if (probes->coefficients) return probes;
+    host_free(host, probes);
+    return NULL;
+}
+
+static bool download(struct ag_renderer *r, const struct probe_volume *volume,
+                     const struct ag_probes *probes)
+{
+    struct host *host = &renderer_context(r)->host;
+    struct gpu *gpu = r->device->gpu;
+    const struct gpu_image_desc *size = gpu_image_info(gpu, volume->image);
+    size_t texels = (size_t)size->width * size->height * size->depth;
+    float *values = host_alloc(host, texels, 4 * sizeof *values);
+    bool ok = values && gpu_image_download_float(gpu, volume->image, 0, 0, values, 4, 4 * texels);
+    if (ok) unpack(probes, values, size, &volume->place, frame_radiance_scale(r->frame));
+    host_free(host, values);
+    return ok;
+}
+
+enum ag_result ag_renderer_read_probes(struct ag_renderer *r, struct ag_probes **out)
+{
+    struct ag_context *context = renderer_context(r);
+    struct probe_volume volume;
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = NULL;
+    enum ag_result result = find(__func__, r, &volume);
+    if (result == AG_OK) result = ag_renderer_wait(r);
+    if (result != AG_OK) return result;
+    struct ag_probes *probes = create(&context->host, &volume);
+    if (!probes || !download(r, &volume, probes)) {
+        result = api_done(context, false);
+        ag_probes_destroy(context, probes);
+        return result;
+    }
+    *out = probes;
+    return api_done(context, true);
+}
+
+void ag_probes_destroy(struct ag_context *context, struct ag_probes *probes)
+{
+    if (!context || !probes) return;
+    host_free(&context->host, probes->coefficients);
+    host_free(&context->host, probes);
+}
+
+// The eight probes around a point, and the share of each.
+struct corner {
+    size_t probe;
+    float weight;
+};
+
+static void corners_of(const struct ag_probes *probes, const float *position, struct corner out[8])
+{
+    int low[3];
+    float share[3];
+    for (int axis = 0; axis < 3; axis++) {
+        float last = (float)(probes->counts[axis] - 1);
+        float at = (position[axis] - probes->first[axis]) / probes->spacing;
+        at = at > 0.0f ? fminf(at, last) : 0.0f; // NaN too
+        low[axis] = (int)at;
+        share[axis] = at - (float)low[axis];
+    }
+    for (int c = 0; c < 8; c++) {
+        size_t place[3];
+        out[c].weight = 1.0f;
+        for (int axis = 0; axis < 3; axis++) {
+            bool high = (c >> axis) & 1;
+            place[axis] = (size_t)(low[axis] + (high && low[axis] + 1 < probes->counts[axis]));
+            out[c].weight *= high ? share[axis] : 1.0f - share[axis];
+        }
+        size_t row = place[2] * (size_t)probes->counts[1] + place[1];
+        out[c].probe = row * (size_t)probes->counts[0] + place[0];
+    }
+}
+
+void ag_probes_irradiance(const struct ag_probes *probes, const float *position,
+                          const float *normal, float *out)
+{
+    struct corner corners[8];
+    float basis[COEFFICIENTS], sum[3] = { 0 };
+    if (!probes || !position || !normal || !out) return;
+    corners_of(probes, position, corners);
+    sh_eval(3, api_vec3(normal), basis);
+    for (int c = 0; c < 8; c++) {
+        const float *numbers = probes->coefficients + NUMBERS * corners[c].probe;
+        for (int k = 0; k < NUMBERS; k++)
+            sum[k % 3] += corners[c].weight * basis[k / 3] * numbers[k];
+    }
+    for (int k = 0; k < 3; k++) out[k] = fmaxf(sum[k], 0.0f);
+}
+
+enum ag_result ag_renderer_probes_handle(struct ag_renderer *r, struct ag_probes_handle *out)
+{
+    struct ag_context *context = renderer_context(r);
+    struct probe_volume volume;
+    AG_REQUIRE(context, out, "out is NULL");
+    *out = (struct ag_probes_handle){ 0 };
+    enum ag_result result = find(__func__, r, &volume);
+    if (result != AG_OK) return result;
+    place_of(&volume, out->first, &out->spacing, out->counts);
+    out->slab = volume.place.slab;
+    out->vk_image = gpu_image_handle(r->device->gpu, volume.image, &out->vk_layout);
+    out->scale = frame_radiance_scale(r->frame);
+    return api_done(context, true);
+}

@@ -1,0 +1,50 @@
+// Set-up and the one dispatch of the view of probes.
+#include "techniques/common/probe_view.h"
+
+#include "techniques/common/probe_view_shared.h"
+
+#include "technique_shaders.h"
+
+enum { LOCAL = 8, BALLS_A_SIDE = 16 };
+
+bool probe_view_create(struct probe_view *view, struct gpu *gpu)
+{
+    const struct gpu_sampler_desc linear = { .name = "probe_view.linear",
+                                             .filter = GPU_LINEAR,
+                                             .wrap_u = GPU_CLAMP,
+                                             .wrap_v = GPU_CLAMP,
+                                             .wrap_w = GPU_CLAMP };
+    return gpu_sampler_get(gpu, &linear, &view->linear) &&
+           gpu_compute_pipeline_create(gpu, "probe_view", &shader_probe_view_comp, NULL, 0,
+                                       &view->pipeline);
+}
+
+void probe_view_destroy(struct probe_view *view, struct gpu *gpu)
+{
+    gpu_pipeline_destroy(gpu, &view->pipeline);
+}
+
+// So many balls that one sees through between them.
+static int32_t ball_distance(struct frame_probes place)
+{
+    int32_t most = place.count_x > place.count_y ? place.count_x : place.count_y;
+    if (place.count_z > most) most = place.count_z;
+    return (most + BALLS_A_SIDE - 1) / BALLS_A_SIDE;
+}
+
+void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd,
+                       const struct frame_view *frame, gpu_image probes, struct frame_probes place,
+                       gpu_image out)
+{
+    const struct probe_view_push push = { place, ball_distance(place) };
+    gpu_scope_begin(cmd, "probe_view");
+    gpu_dispatch(
+        cmd, view->pipeline,
+        GPU_BIND(frame->constants_binding, { .name = "depth", .image = frame->layers[FRAME_DEPTH] },
+                 { .name = "normal", .image = frame->layers[FRAME_NORMAL] },
+                 { .name = "albedo", .image = frame->layers[FRAME_ALBEDO] },
+                 { .name = "probes", .image = probes, .sampler = view->linear },
+                 { .name = "picture", .image = out }),
+        &push, sizeof push, gpu_groups(frame->width, LOCAL), gpu_groups(frame->height, LOCAL), 1);
+    gpu_scope_end(cmd);
+}

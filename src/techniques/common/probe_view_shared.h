@@ -1,0 +1,20 @@
+// What the shader of the view of probes shares with the host. Scalar layout.
+#ifndef AG_PROBE_VIEW_SHARED_H
+#define AG_PROBE_VIEW_SHARED_H
+
+#include "core/shared.h"
+
+#ifndef AG_GLSL
+#include "frame/frame_shared.h"
+#endif
+
+struct probe_view_push {
+    AG_STRUCT(frame_probes) place;
+    int32_t every; // probes from one ball to the next
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct probe_view_push) == 9 * 4, "layout is shared with GLSL");
+#endif
+
+#endif

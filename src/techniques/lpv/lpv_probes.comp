@@ -1,0 +1,39 @@
+// The probe volume: what the light of each cell brings to a surface of any normal n that stood in its middle,
+// E(n) = ∫ I(ω) (−n·ω)₊ dω as in lpv_apply.comp. In spherical harmonics a factor for each band, and as light comes from where n
+// looks to, another sign for band 1. It is not clamped: where light comes from one side alone, E may be a little negative.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "core/sh.glsl"
+#include "frame/frame_shared.h"
+#include "frame/probes.glsl"
+#include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 1) uniform sampler3D light;
+layout(set = 0, binding = 2) uniform writeonly image3D probes;
+
+layout(push_constant, scalar) uniform push_block
+{
+    frame_probes place;
+};
+
+void main()
+{
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    if (!lpv_inside(cell)) return;
+    vec4 slabs[7];
+    lpv_fetch_slabs(light, cell, slabs);
+    vec3 coefficients[9];
+    for (int i = 0; i < 9; i++) {
+        float weight = sh9_cosine_weight(i) * lpv.irradiance_scale * (i == 0 ? 1.0 : lpv.window) * (i > 0 && i < 4 ? -1.0 : 1.0);
+        for (int colour = 0; colour < 3; colour++) {
+            int number = 3 * i + colour;
+            coefficients[i][colour] = clamp(weight * slabs[number / 4][number % 4], -PROBES_MAX, PROBES_MAX);
+        }
+    }
+    probes_store(probes, place, cell, coefficients);
+}

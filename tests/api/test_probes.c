@@ -1,0 +1,262 @@
+// Probe volumes through the public functions: where probes stand, what they hold, who has them.
+#include "framework/gpu_test.h"
+
+#include <afterglow/afterglow.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 48, HEIGHT = 32, PIXELS = WIDTH * HEIGHT };
+static const float PI = 3.14159265f;
+
+struct stage {
+    struct ag_context *context;
+    struct ag_device *device;
+    struct ag_scene *scene;
+    struct ag_renderer *renderer;
+    struct ag_frame_desc frame;
+};
+
+static char last_warning[512];
+
+static void listen(void *user, enum ag_log_level level, const char *message)
+{
+    (void)user;
+    if (level <= AG_LOG_WARNING) snprintf(last_warning, sizeof last_warning, "%s", message);
+}
+
+// A point light in the Cornell box, not rendered yet.
+static struct stage open_stage(const char *gi)
+{
+    test_gpu_require();
+    struct stage s = { 0 };
+    struct ag_context_desc context;
+    struct ag_device_desc device;
+    struct ag_renderer_desc desc;
+    ag_context_desc_default(&context);
+    context.log = listen;
+    assert_int_equal(ag_context_create(&context, &s.context), AG_OK);
+    ag_device_desc_default(&device);
+    device.validation = true;
+    assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
+    assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
+    ag_renderer_desc_default(&desc);
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    desc.gi = gi;
+    desc.frame_options = "shadow_size=256,rsm_size=64";
+    if (ag_renderer_create(s.device, s.scene, &desc, &s.renderer) != AG_OK)
+        fail_msg("%s", ag_context_last_error(s.context));
+    ag_frame_desc_default(&s.frame);
+    assert_int_equal(ag_scene_camera(s.scene, "main", 0, 0, &s.frame.camera), AG_OK);
+    return s;
+}
+
+static void close_stage(struct stage *s)
+{
+    ag_renderer_destroy(s->renderer);
+    if (ag_device_validation_messages(s->device)) fail_msg("validation says: %s", last_warning);
+    ag_scene_destroy(s->scene);
+    ag_device_destroy(s->device);
+    ag_context_destroy(s->context);
+}
+
+static struct ag_image *read_layer(struct stage *s, const char *layer)
+{
+    struct ag_image *image = NULL;
+    if (ag_renderer_read(s->renderer, layer, &image) != AG_OK)
+        fail_msg("%s: %s", layer, ag_context_last_error(s->context));
+    return image;
+}
+
+static struct ag_probes *render_probes(struct stage *s)
+{
+    struct ag_probes *probes = NULL;
+    assert_int_equal(ag_renderer_render(s->renderer, &s->frame), AG_OK);
+    if (ag_renderer_read_probes(s->renderer, &probes) != AG_OK)
+        fail_msg("%s", ag_context_last_error(s->context));
+    return probes;
+}
+
+static size_t probe_at(const struct ag_probes *probes, int x, int y, int z)
+{
+    return ((size_t)z * (size_t)probes->counts[1] + (size_t)y) * (size_t)probes->counts[0] +
+           (size_t)x;
+}
+
+static double mean(const struct ag_image *image)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3 * PIXELS; i++) sum += (double)image->pixels[i] / (3.0 * PIXELS);
+    return sum;
+}
+
+// A surface of the scene, and a stranger in the same place, are lit alike. A technique looks its
+// surfaces up in its own way; without an offset it is the probes' way but for the rounding of
+// coefficients and results to half floats (11 bits, nine terms of which some cancel).
+TEST(strangers_are_lit_as_surfaces_are)
+{
+    const char *gi[] = { "lpv:probes=true,dim=16,offset=0", "holpv:probes=true,dim=16,offset=0" };
+    for (int k = 0; k < 2; k++) {
+        struct stage s = open_stage(gi[k]);
+        struct ag_probes *probes = render_probes(&s);
+        struct ag_image *irradiance = read_layer(&s, "irradiance"),
+                        *normal = read_layer(&s, "normal"), *position = read_layer(&s, "position"),
+                        *depth = read_layer(&s, "depth");
+        const double typical = mean(irradiance);
+        int seen = 0;
+        CHECK(typical > 0.0);
+        for (int i = 0; i < PIXELS; i++) {
+            if (depth->pixels[i] <= 0.0f) continue;
+            float lux[3];
+            ag_probes_irradiance(probes, position->pixels + 3 * i, normal->pixels + 3 * i, lux);
+            for (int c = 0; c < 3; c++)
+                CHECK_NEAR((double)lux[c], (double)irradiance->pixels[3 * i + c],
+                           3e-3 * ((double)lux[c] + typical));
+            seen++;
+        }
+        CHECK(seen > PIXELS / 3);
+        ag_image_destroy(s.context, irradiance);
+        ag_image_destroy(s.context, normal);
+        ag_image_destroy(s.context, position);
+        ag_image_destroy(s.context, depth);
+        ag_probes_destroy(s.context, probes);
+        close_stage(&s);
+    }
+}
+
+// The view draws surfaces by the shaders' look-up, which must be the processor's: 0.3 albedo/π E
+// half a spacing before the surface. Pixels with a ball before them are others, a few of them.
+TEST(shaders_look_probes_up_as_the_processor_does)
+{
+    struct stage s = open_stage("holpv:probes=true,dim=16");
+    assert_int_equal(ag_renderer_set_debug_view(s.renderer, "probes"), AG_OK);
+    struct ag_probes *probes = render_probes(&s);
+    struct ag_image *view = read_layer(&s, "debug"), *normal = read_layer(&s, "normal"),
+                    *position = read_layer(&s, "position"), *albedo = read_layer(&s, "albedo"),
+                    *depth = read_layer(&s, "depth");
+    int seen = 0, equal = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        const float *n = normal->pixels + 3 * i, *p = position->pixels + 3 * i;
+        float at[3], lux[3];
+        if (depth->pixels[i] <= 0.0f) continue;
+        for (int axis = 0; axis < 3; axis++) at[axis] = p[axis] + 0.5f * probes->spacing * n[axis];
+        ag_probes_irradiance(probes, at, n, lux);
+        const float expected = 0.3f * albedo->pixels[3 * i + 1] / PI * lux[1];
+        seen++;
+        equal += fabsf(view->pixels[3 * i + 1] - expected) <= 0.01f * expected;
+    }
+    print_message("%d of %d pixels equal\n", equal, seen);
+    // Balls of the radius 0.12 d, one in d³, stand before 1 − exp(−π 0.12² L/d) of the pixels:
+    // 1/2 where one sees past 16 of them.
+    CHECK(seen > PIXELS / 3 && equal > seen / 2);
+    CHECK(equal < seen); // there are balls
+    ag_image_destroy(s.context, view);
+    ag_image_destroy(s.context, normal);
+    ag_image_destroy(s.context, position);
+    ag_image_destroy(s.context, albedo);
+    ag_image_destroy(s.context, depth);
+    ag_probes_destroy(s.context, probes);
+    close_stage(&s);
+}
+
+TEST(probes_are_filtered_between_and_kept_outside)
+{
+    struct stage s = open_stage("lpv:probes=true,dim=16");
+    struct ag_probes *probes = render_probes(&s);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(s.scene, 0, 0.0, &info), AG_OK);
+    for (int axis = 0; axis < 3; axis++) { // cells around all of the scene, a probe in each
+        const float half = 0.5f * probes->spacing, low = probes->first[axis] - half;
+        CHECK(low <= info.bounds_min[axis] + 1e-4f);
+        CHECK(low + probes->spacing * (float)probes->counts[axis] >= info.bounds_max[axis] - 1e-4f);
+    }
+    // E(up) at a probe, from its coefficients: Y00, y and the even ones of 3z² − 1 and x² − y².
+    const int x = probes->counts[0] / 2, y = probes->counts[1] / 2, z = probes->counts[2] / 2;
+    const float up[3] = { 0, 1, 0 };
+    float position[3] = { probes->first[0] + probes->spacing * (float)x,
+                          probes->first[1] + probes->spacing * (float)y,
+                          probes->first[2] + probes->spacing * (float)z };
+    float here[3], there[3], between[3];
+    ag_probes_irradiance(probes, position, up, here);
+    const float *c = probes->coefficients + 27 * probe_at(probes, x, y, z);
+    for (int colour = 0; colour < 3; colour++) {
+        const double expected =
+            0.282094792 * (double)c[colour] + 0.488602512 * (double)c[3 + colour] -
+            0.315391565 * (double)c[18 + colour] - 0.546274215 * (double)c[24 + colour];
+        CHECK(expected > 0.0);
+        CHECK_RELATIVE((double)here[colour], expected, 1e-5);
+    }
+    position[0] += probes->spacing;
+    ag_probes_irradiance(probes, position, up, there);
+    position[0] -= 0.25f * probes->spacing;
+    ag_probes_irradiance(probes, position, up, between);
+    CHECK_RELATIVE((double)between[1], 0.25 * (double)here[1] + 0.75 * (double)there[1], 1e-4);
+    CHECK(here[1] != there[1]);
+    // Outside: that of the border, however far.
+    position[0] = probes->first[0] + probes->spacing * (float)(probes->counts[0] - 1);
+    ag_probes_irradiance(probes, position, up, here);
+    position[0] = INFINITY;
+    ag_probes_irradiance(probes, position, up, there);
+    CHECK(here[1] == there[1]);
+    position[0] = NAN;
+    ag_probes_irradiance(probes, position, up, there);
+    CHECK(isfinite(there[1]));
+    ag_probes_destroy(s.context, probes);
+    close_stage(&s);
+}
+
+TEST(probes_are_dark_without_light)
+{
+    struct stage s = open_stage("lpv:probes=true,dim=16");
+    assert_int_equal(ag_scene_remove_lights(s.scene), AG_OK);
+    struct ag_probes *probes = render_probes(&s);
+    const size_t count =
+        (size_t)probes->counts[0] * (size_t)probes->counts[1] * (size_t)probes->counts[2];
+    CHECK(count > 0);
+    for (size_t i = 0; i < 27 * count; i++) CHECK(probes->coefficients[i] == 0.0f);
+    ag_probes_destroy(s.context, probes);
+    close_stage(&s);
+}
+
+TEST(the_image_of_the_probes_is_handed_out)
+{
+    struct stage s = open_stage("lpv:probes=true,dim=16");
+    struct ag_probes *probes = render_probes(&s);
+    struct ag_probes_handle handle;
+    assert_int_equal(ag_renderer_probes_handle(s.renderer, &handle), AG_OK);
+    CHECK(handle.vk_image != NULL);
+    CHECK(handle.scale > 0.0f && handle.slab == 16);
+    CHECK(handle.spacing == probes->spacing);
+    CHECK(memcmp(handle.counts, probes->counts, sizeof handle.counts) == 0);
+    CHECK(memcmp(handle.first, probes->first, sizeof handle.first) == 0);
+    ag_probes_destroy(s.context, probes);
+    close_stage(&s);
+}
+
+TEST(who_has_no_probes_says_what_would_bring_them)
+{
+    struct stage s = open_stage("lpv");
+    struct ag_probes *probes = (struct ag_probes *)1;
+    struct ag_probes_handle handle;
+    assert_int_equal(ag_renderer_read_probes(s.renderer, &probes), AG_ERROR_ARGUMENT); // no frame
+    assert_null(probes);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_renderer_read_probes(s.renderer, &probes), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(s.context), "lpv:probes=true"));
+    assert_int_equal(ag_renderer_read_probes(s.renderer, NULL), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_read_probes(NULL, &probes), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_probes_handle(s.renderer, &handle), AG_ERROR_ARGUMENT);
+    assert_null(handle.vk_image);
+    assert_int_equal(ag_renderer_set_debug_view(s.renderer, "probes"), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(s.context), "lpv:probes=true"));
+    close_stage(&s);
+    s = open_stage("ambient");
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_renderer_read_probes(s.renderer, &probes), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(s.context), "ambient publishes no probes"));
+    ag_probes_destroy(s.context, NULL);
+    close_stage(&s);
+}
