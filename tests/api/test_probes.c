@@ -94,8 +94,8 @@ static double mean(const struct ag_image *image)
 }
 
 // A surface of the scene, and a stranger in the same place, are lit alike. A technique looks its
-// surfaces up in its own way; without an offset it is the probes' way but for the rounding of
-// coefficients and results to half floats (11 bits, nine terms of which some cancel).
+// surfaces up in its own way; without an offset it is the probes' way but for the rounding
+// of coefficients and results to half floats (11 bits, nine terms of which some cancel).
 TEST(strangers_are_lit_as_surfaces_are)
 {
     const char *gi[] = { "lpv:probes=true,dim=16,offset=0", "holpv:probes=true,dim=16,offset=0" };

@@ -114,38 +114,66 @@ double twin_flux(const struct twin *twin)
     return sum * sqrt(4.0 * GLM_PI);
 }
 
-double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal, float offset,
-                       float window)
+// Cells around a place along one axis, and their weights. Beyond the border its cells go on.
+struct taps {
+    int cell[4];
+    double weight[4];
+};
+
+static struct taps taps_of(double at, int cells, enum lpv_reconstruction reconstruction)
 {
-    double at[3];
-    int low[3];
+    struct taps out;
+    const double first = floor(at - 0.5), f = at - 0.5 - first;
+    for (int i = 0; i < 4; i++) {
+        out.cell[i] = (int)fmin(fmax(first + i - 1, 0.0), cells - 1.0);
+        // Distance d from the cell's centre: a tent, or the cubic B-spline.
+        const double d = fabs(f + 1.0 - i);
+        const double near = 2.0 / 3.0 - d * d + 0.5 * d * d * d, far = pow(2.0 - d, 3.0) / 6.0;
+        out.weight[i] = reconstruction == LPV_LINEAR ? fmax(1.0 - d, 0.0) : d < 1.0 ? near : far;
+    }
+    return out;
+}
+
+// ∫ I (−n·ω)₊ dω at a place in cells, where `lobe` is the weighted cosine; not below 0.
+static double gather(const struct twin *twin, const double at[3],
+                     enum lpv_reconstruction reconstruction, const float lobe[9])
+{
+    struct taps taps[3];
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+        taps[axis] = taps_of(at[axis], twin->grid.cells[axis], reconstruction);
+    for (int tap = 0; tap < 64; tap++) {
+        double weight = 1.0;
+        int cell[3];
+        for (int axis = 0; axis < 3; axis++) {
+            const int i = tap >> 2 * axis & 3;
+            cell[axis] = taps[axis].cell[i];
+            weight *= taps[axis].weight[i];
+        }
+        for (int i = 0; i < SH_COUNT(twin->bands); i++)
+            sum += weight * twin->accumulated[index_of(twin, cell)][i] * (double)lobe[i];
+    }
+    return fmax(sum, 0.0);
+}
+
+double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,
+                       const struct lpv_options *how)
+{
+    double here[3], further[3];
     for (int axis = 0; axis < 3; axis++) {
-        const double cells = (double)twin->grid.cells[axis];
-        const double p = (double)(position.raw[axis] - twin->grid.origin_m.raw[axis]) /
-                             (double)twin->grid.cell_m +
-                         (double)(offset * normal.raw[axis]);
-        at[axis] = fmin(fmax(p - 0.5, 0.0), cells - 1.0);
-        low[axis] = (int)fmin(floor(at[axis]), fmax(cells - 2.0, 0.0));
-        at[axis] -= (double)low[axis];
+        here[axis] = (double)(position.raw[axis] - twin->grid.origin_m.raw[axis]) /
+                         (double)twin->grid.cell_m +
+                     (double)(how->offset * normal.raw[axis]);
+        further[axis] = here[axis] + (double)normal.raw[axis];
     }
     float zonal[3], lobe[9];
     zh_clamped_cosine(twin->bands, zonal);
     zh_rotate(twin->bands, zonal, glms_vec3_negate(normal), lobe);
-    for (int i = 1; i < SH_COUNT(twin->bands); i++) lobe[i] *= window;
-    double sum = 0.0;
-    for (int corner = 0; corner < 8; corner++) {
-        double weight = 1.0;
-        int cell[3];
-        for (int axis = 0; axis < 3; axis++) {
-            const int up = corner >> axis & 1;
-            weight *= up ? at[axis] : 1.0 - at[axis];
-            cell[axis] = low[axis] + up;
-        }
-        const int index = index_of(twin, cell);
-        if (index < 0 || weight == 0.0) continue;
-        for (int i = 0; i < SH_COUNT(twin->bands); i++)
-            sum += weight * twin->accumulated[index][i] * (double)lobe[i];
-    }
+    for (int i = 1; i < SH_COUNT(twin->bands); i++) lobe[i] *= how->window;
+    const enum lpv_reconstruction reconstruction = (enum lpv_reconstruction)how->reconstruction;
+    const double first = gather(twin, here, reconstruction, lobe);
+    const double loss = fmax(first - gather(twin, further, reconstruction, lobe), 0.0);
+    const double damped = fmax(first - (double)how->damping * loss, 0.0);
     const double area = (double)twin->grid.cell_m * (double)twin->grid.cell_m;
-    return fmax(sum * lpv_mean_way(twin->scheme) / area, 0.0);
+    return damped * lpv_mean_way(twin->scheme) / area;
 }

@@ -4,6 +4,7 @@
 
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_math.h"
+#include "techniques/lpv/lpv_state.h"
 
 struct geometry_twin;
 
@@ -25,5 +26,5 @@ size_t twin_cells(const struct twin *twin);
 void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux);
 void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus);
 double twin_flux(const struct twin *twin); // of this step, lumen
-// Irradiance (lux) at a surface point, looked up `offset` cells along its normal, directional bands weighted with `window`.
-double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal, float offset, float window);
+// Irradiance (lux) at a surface point, as the options offset, window, damping and reconstruction say.
+double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal, const struct lpv_options *how);

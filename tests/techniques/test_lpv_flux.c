@@ -178,6 +178,16 @@ TEST_GPU(lpv_defaults_are_within_a_half_of_form_factors)
     }
 }
 
+// What a wall is lit by itself lessens along its normal; what comes from elsewhere does not.
+TEST_GPU(lpv_damping_takes_a_walls_own_light_and_leaves_that_of_others)
+{
+    const struct room_error all = print_room(gpu, "lpv:dim=16,damping=0", 0, 10),
+                            damped = print_room(gpu, "lpv:dim=16,damping=1", 0, 10);
+    CHECK(damped.own < 0.8 * all.own);
+    CHECK(damped.facing > 0.95 * all.facing && damped.side > 0.95 * all.side);
+    CHECK(damped.relative < all.relative);
+}
+
 TEST_GPU(lpv_defaults_beat_the_papers_lobe_and_the_other_orientation)
 {
     const float lit[2][2] = { { 0, 10 }, { 3, 7 } };

@@ -200,7 +200,7 @@ static void application_is_the_twins(struct gpu *gpu, const char *options)
             const float y = ((float)(i / WIDTH) + 0.5f) * 2.0f / HEIGHT - 1.0f;
             expected[i] = twin_irradiance(
                 &twin, mat4_point(stage.constants.world_from_clip, vec3_of(x, y, 0.5f)),
-                stage_rounded_normal(vec3_of(0, 1, 0)), lpv->options.offset, lpv->options.window);
+                stage_rounded_normal(vec3_of(0, 1, 0)), &lpv->options);
             most = fmax(most, expected[i]);
         }
         CHECK(most > 0.0);
@@ -216,7 +216,10 @@ static void application_is_the_twins(struct gpu *gpu, const char *options)
 TEST_GPU(lpv_application_is_the_twins)
 {
     application_is_the_twins(gpu, "lpv:dim=8,steps=5,offset=0.75,window=0.8");
+    application_is_the_twins(gpu, "lpv:dim=8,steps=5,damping=0.8");
+    application_is_the_twins(gpu, "lpv:dim=8,steps=5,damping=2,reconstruction=cubic");
     application_is_the_twins(gpu, "holpv:dim=8,steps=5,offset=0.75,window=0.9");
+    application_is_the_twins(gpu, "holpv:dim=8,steps=5,damping=1,reconstruction=cubic");
 }
 
 // The numbers of the injected grid, all colours.

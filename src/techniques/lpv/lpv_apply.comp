@@ -9,6 +9,14 @@
 // at c = −1; −0.158 at c = −8/15), and beside a bright wall, whose light all leaves it, it takes other light away, in the
 // wall's complementary colour. 1/2 in two bands and 0.863 in three are the largest weights with which no light of positive
 // intensity becomes negative.
+//
+// Damping. Light from elsewhere is there further along the normal too; what a surface sends out itself, or what comes through
+// it from behind, is less there, and the two bands take a part of it for light that arrives. So what irradiance loses over a
+// cell along the normal, h ∂E/∂n < 0, is taken off (the directional derivative of Martin 2012, sec. 3.2.4, for which the paper
+// gives no formula).
+//
+// Reconstruction. Between cells trilinear, whose kinks show where light changes fast (sec. 6.4); or a cubic B-spline, smooth and
+// broader.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -50,11 +58,45 @@ bool covered_by_finer(vec3 surface)
     return lpv_cascade_weight((surface - push.finer_origin_m) / push.finer_cell_m, cells, push.finer_open) == 1.0;
 }
 
+vec3 linear_irradiance(vec3 at, vec3 n)
+{
+    return irradiance_of(lpv_sample(light, at), n);
+}
+
+// A cubic B-spline over 4³ cells in eight filtered look-ups (Sigg & Hadwiger 2005): along an axis, the weights of two cells
+// are one filtered look-up between them.
+vec3 cubic_irradiance(vec3 at, vec3 n)
+{
+    vec3 first = floor(at - 0.5), f = at - 0.5 - first, g = 1.0 - f;
+    vec3 w0 = g * g * g / 6.0, w1 = 2.0 / 3.0 - 0.5 * f * f * (1.0 + g), w3 = f * f * f / 6.0, w2 = 1.0 - w0 - w1 - w3;
+    vec3 low = first - 0.5 + w1 / (w0 + w1), high = first + 1.5 + w3 / (w2 + w3);
+    vec3 sum = vec3(0.0);
+    for (int corner = 0; corner < 8; corner++) {
+        bvec3 is_high = bvec3((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+        vec3 weight = mix(w0 + w1, w2 + w3, is_high);
+        sum += weight.x * weight.y * weight.z * linear_irradiance(mix(low, high, is_high), n);
+    }
+    return sum;
+}
+
+// What steps of sharp lobes left negative behind a bright wall stays out.
+vec3 irradiance_at(vec3 at, vec3 n)
+{
+    return max(lpv.cubic != 0u ? cubic_irradiance(at, n) : linear_irradiance(at, n), vec3(0.0));
+}
+
+vec3 damped_irradiance(vec3 at, vec3 n)
+{
+    vec3 here = irradiance_at(at, n);
+    if (lpv.damping == 0.0) return here;
+    vec3 gain = irradiance_at(at + n, n) - here;
+    return max(here + lpv.damping * min(gain, vec3(0.0)), vec3(0.0));
+}
+
 vec3 lit(vec3 surface, vec3 n)
 {
-    vec3 sum = irradiance_of(lpv_sample(light, lpv_cells_from_world(surface + lpv.offset_m * n)), n);
-    // What steps of sharp lobes left negative behind a bright wall stays out.
-    return clamp(sum * lpv.irradiance_scale, 0.0, HALF_MAX);
+    vec3 at = lpv_cells_from_world(surface + lpv.offset_m * n);
+    return min(lpv.irradiance_scale * damped_irradiance(at, n), vec3(HALF_MAX));
 }
 
 // From the coarsest cascade to the finest, each over what the one before left. Outside of the coarsest there is no light.

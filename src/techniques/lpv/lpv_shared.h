@@ -50,6 +50,8 @@ struct lpv_params {
     float offset_m;         // of the look-up, along the normal
     float window;           // weight of the bands above the first at the look-up
     float blocking;         // factor on what the geometry volume says is blocked
+    float damping;          // of light that is less a cell further along the normal
+    uint32_t cubic;         // reconstruction between cells: 1, or 0 for linear
     uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
     uint32_t emitter_count;
@@ -86,7 +88,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 49 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 51 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");

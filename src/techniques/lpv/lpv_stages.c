@@ -41,6 +41,8 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .offset_m = options->offset * grid->cell_m,
         .window = options->window,
         .blocking = options->blocking,
+        .damping = options->damping,
+        .cubic = options->reconstruction == LPV_CUBIC,
         .rsm_size = view->rsm_size,
         .width = view->width,
         .height = view->height,

@@ -18,6 +18,7 @@ struct lpv_options {
 #define LPV_AREA_BYTES (4 * 4) // of a corner's sums
 #define LPV_LINES_BYTES (3 * 4) // of a cell's low faces
 
+enum lpv_reconstruction { LPV_LINEAR, LPV_CUBIC };
 enum lpv_precision { LPV_PRECISION_HALF, LPV_PRECISION_FLOAT };
 
 // Texels of a cell: 12 or 27 coefficients, four to a texel (lpv_light.glsl).
