@@ -2,7 +2,9 @@
 foreach(name arguments context scene catalogue reference)
   ag_test(api/${name} USES api)
 endforeach()
-ag_test(api/probes USES api LIBRARIES ag_test_gpu)
+foreach(name odd_scenes probes)
+  ag_test(api/${name} USES api LIBRARIES ag_test_gpu)
+endforeach()
 ag_test(api/renderer USES api LIBRARIES ag_test_own_device ag_test_gpu)
 
 # Only ag_… is to be seen from outside. (Sanitizers add names of their own.)

@@ -119,6 +119,19 @@ TEST(light_options_add_and_remove_light)
     CHECK(mean_of(path, "direct") > 0 && mean_of(path, "indirect") > 0);
 }
 
+TEST(what_a_technique_makes_of_a_scene_is_said)
+{
+    require_device();
+    char path[300];
+    snprintf(path, sizeof path, "%s", test_path("remarks.png"));
+    const struct run *r = run_expect(0,
+                                     "render @cornell:light=point --size 16x16 --gi lpv --verbose "
+                                     "--light point:90,0,0:1,1,1 -o",
+                                     path, NULL);
+    CHECK(strstr(r->err, "cells of 0."));
+    CHECK(strstr(r->err, "light 1 of @cornell:light=point is outside of the grid"));
+}
+
 TEST(a_sky_is_seen_where_there_is_nothing)
 {
     require_device();

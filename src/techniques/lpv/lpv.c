@@ -8,6 +8,7 @@
 // how good it is.
 #include "techniques/lpv/lpv.h"
 
+#include "techniques/lpv/lpv_remarks.h"
 #include "techniques/lpv/lpv_state.h"
 
 #include "technique_shaders.h"
@@ -29,11 +30,12 @@ static const struct option_row higher_order_rows[] = {
 
 #define NAMES(technique)                                                                           \
     {                                                                                              \
-        .inject = technique ".inject", .inject_emitters = technique ".inject_emitters",            \
-        .resolve = technique ".resolve", .geometry = technique ".geometry",                        \
-        .refine = technique ".refine", .propagate = technique ".propagate",                        \
-        .apply = technique ".apply", .probes = technique ".probes", .debug = technique ".debug",   \
-        .sums = technique ".sums", .injected = technique ".injected", .light = technique ".light", \
+        .gi = technique, .inject = technique ".inject",                                            \
+        .inject_emitters = technique ".inject_emitters", .resolve = technique ".resolve",          \
+        .geometry = technique ".geometry", .refine = technique ".refine",                          \
+        .propagate = technique ".propagate", .apply = technique ".apply",                          \
+        .probes = technique ".probes", .debug = technique ".debug", .sums = technique ".sums",     \
+        .injected = technique ".injected", .light = technique ".light",                            \
         .coarser_light = technique ".coarser_light",                                               \
         .steps = { technique ".step_even", technique ".step_odd" }, .linear = technique ".linear", \
         .of_geometry = LPV_GEOMETRY_NAMES(technique),                                              \
@@ -152,6 +154,7 @@ static bool create(struct lpv_cascades *cascades, const struct lpv_names *name,
 {
     struct lpv *lpv = &cascades->levels[0];
     lpv->names = name;
+    if (how->pose) lpv_remark_on_scene(how->host, name->gi, how->options, how->pose);
     lpv->gpu = how->gpu;
     lpv->options = *(const struct lpv_options *)how->options;
     return create_resources(lpv) && create_pipelines(lpv) && lpv_geometry_create(lpv) &&

@@ -34,6 +34,7 @@ static inline size_t lpv_cell_bytes(const struct lpv_options *options) // of a c
 
 // Of passes and objects, "technique.thing".
 struct lpv_names {
+    const char *gi;
     const char *inject, *inject_emitters, *resolve, *geometry, *refine, *propagate, *apply, *probes;
     const char *debug, *sums, *injected, *steps[2], *light, *coarser_light, *linear;
     struct lpv_geometry_names of_geometry;

@@ -1,0 +1,136 @@
+// Scenes that do not suit a grid of cells: techniques say what they do, and do it.
+#include "framework/gpu_test.h"
+
+#include <afterglow/afterglow.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SIZE = 32, LOG_BYTES = 8192 };
+
+static char said[LOG_BYTES]; // by level, "0 …\n" and so on
+
+static void listen(void *user, enum ag_log_level level, const char *message)
+{
+    (void)user;
+    const size_t length = strlen(said);
+    snprintf(said + length, sizeof said - length, "%d %s\n", (int)level, message);
+}
+
+static void check_said(enum ag_log_level level, const char *gi, const char *what)
+{
+    char begin[64];
+    snprintf(begin, sizeof begin, "%d gi %s: ", (int)level, gi);
+    const char *line = strstr(said, begin);
+    for (; line; line = strstr(line + 1, begin)) {
+        const char *hit = strstr(line, what), *end = strchr(line, '\n');
+        if (hit && hit < end) return;
+    }
+    fail_msg("not said by %s at level %d: %s; but\n%s", gi, (int)level, what, said);
+}
+
+// A floor of `side` metres, lit by a sun and by a lamp at a height; its mean irradiance by `gi`,
+// with a sunlit wall at one end that lights it.
+static double render_floor(const char *gi, float side, float lamp_height)
+{
+    test_gpu_require();
+    struct ag_context_desc context_desc;
+    struct ag_context *context = NULL;
+    struct ag_device *device = NULL;
+    struct ag_scene *scene = NULL;
+    struct ag_renderer *renderer = NULL;
+    said[0] = '\0';
+    ag_context_desc_default(&context_desc);
+    context_desc.log = listen;
+    context_desc.log_up_to = AG_LOG_INFO;
+    assert_int_equal(ag_context_create(&context_desc, &context), AG_OK);
+    struct ag_device_desc device_desc;
+    ag_device_desc_default(&device_desc);
+    device_desc.validation = true;
+    assert_int_equal(ag_device_create(context, &device_desc, &device), AG_OK);
+    assert_int_equal(ag_scene_create(context, &scene), AG_OK);
+
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    int matte, mesh;
+    assert_int_equal(ag_scene_add_material(scene, &material, &matte), AG_OK);
+    const float h = 0.5f * side;
+    const float positions[] = { -h, 0, -h, -h, 0, h, h, 0, h, h, 0, -h, -h, h, -h, h, h, -h };
+    const uint32_t indices[] = { 0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4 };
+    const struct ag_mesh_desc desc = { .positions = positions,
+                                       .vertex_count = 6,
+                                       .indices = indices,
+                                       .index_count = 12,
+                                       .material = matte };
+    assert_int_equal(ag_scene_add_mesh(scene, &desc, &mesh), AG_OK);
+    assert_int_equal(ag_scene_add_instance(scene, mesh, NULL, NULL), AG_OK);
+    struct ag_light_desc light;
+    ag_light_desc_default(&light, AG_LIGHT_POINT);
+    light.position[1] = lamp_height;
+    for (int c = 0; c < 3; c++) light.intensity[c] = 1000.0f * lamp_height * lamp_height;
+    assert_int_equal(ag_scene_add_light(scene, &light, NULL), AG_OK);
+
+    struct ag_renderer_desc renderer_desc;
+    struct ag_frame_desc frame;
+    ag_renderer_desc_default(&renderer_desc);
+    renderer_desc.width = renderer_desc.height = SIZE;
+    renderer_desc.gi = gi;
+    ag_frame_desc_default(&frame);
+    const float distance = side > 0 ? side : 1;
+    const float eye[3] = { 0, distance, distance }, target[3] = { 0, 0, 0 };
+    assert_int_equal(ag_scene_look_at(scene, eye, target, 1.0f, &frame.camera), AG_OK);
+    assert_int_equal(ag_renderer_create(device, scene, &renderer_desc, &renderer), AG_OK);
+    assert_int_equal(ag_renderer_render(renderer, &frame), AG_OK);
+    struct ag_image *image = NULL;
+    assert_int_equal(ag_renderer_read(renderer, "irradiance", &image), AG_OK);
+    double sum = 0;
+    for (int i = 0; i < 3 * SIZE * SIZE; i++) {
+        CHECK(isfinite(image->pixels[i]) && image->pixels[i] >= 0.0f);
+        sum += (double)image->pixels[i] / (3.0 * SIZE * SIZE);
+    }
+    ag_image_destroy(context, image);
+    ag_renderer_destroy(renderer);
+    assert_int_equal(ag_device_validation_messages(device), 0);
+    ag_scene_destroy(scene);
+    ag_device_destroy(device);
+    ag_context_destroy(context);
+    return sum;
+}
+
+static const char *const volumes[] = { "lpv", "holpv" };
+enum { VOLUMES = sizeof volumes / sizeof volumes[0] };
+
+TEST(a_scene_that_suits_the_grid_is_told_its_cells)
+{
+    for (int i = 0; i < VOLUMES; i++) {
+        CHECK(render_floor(volumes[i], 8, 2) > 0);
+        check_said(AG_LOG_INFO, volumes[i], "scene: 32 x ");
+        CHECK(!strstr(said, "0 gi") && !strstr(said, "1 gi")); // no error, no warning
+    }
+}
+
+TEST(a_scene_too_large_for_its_cells_is_said_to_lose_detail)
+{
+    for (int i = 0; i < VOLUMES; i++) {
+        CHECK(render_floor(volumes[i], 4000, 1000) > 0);
+        check_said(AG_LOG_WARNING, volumes[i], "indirect light has no finer detail");
+    }
+}
+
+TEST(a_scene_without_extent_is_said_to_have_no_indirect_light)
+{
+    for (int i = 0; i < VOLUMES; i++) {
+        CHECK(render_floor(volumes[i], 0, 2) == 0);
+        check_said(AG_LOG_WARNING, volumes[i], "there is no indirect light");
+    }
+}
+
+// The wall is half as high as the floor is long.
+TEST(a_light_outside_of_the_grid_lights_as_others_do)
+{
+    for (int i = 0; i < VOLUMES; i++) {
+        CHECK(render_floor(volumes[i], 8, 100) > 0);
+        check_said(AG_LOG_INFO, volumes[i], "light 0 of scene is outside of the grid");
+    }
+}
