@@ -315,10 +315,13 @@ TEST(lpv_scales_bound_emissive_surfaces_with_the_rest)
                                        { .flux = { { 900, 10, 0 } } },
                                        { .flux = { { 0, 700, 1 } } } };
     struct lpv_scale rsm, all, alone;
-    struct lpv_lights lights = { &face, 1, 256, points, 3 };
+    struct lpv_lights lights = {
+        .faces = &face, .face_count = 1, .rsm_size = 256, .emitters = points, .emitter_count = 3
+    };
     CHECK(lpv_scale_of(&lights, &all));
     CHECK(900 * 0.33f * all.fixed_from_flux <= 1073741824.0f);
-    CHECK((65.5f + 1603) * all.grid_from_flux <= 8192 && (65.5f + 1603) * all.grid_from_flux > 4095);
+    CHECK((65.5f + 1603) * all.grid_from_flux <= 8192 &&
+          (65.5f + 1603) * all.grid_from_flux > 4095);
     CHECK(scale_of(&face, 1, &rsm) && rsm.fixed_from_flux > all.fixed_from_flux);
     lights.face_count = 0;
     CHECK(lpv_scale_of(&lights, &alone) && alone.fixed_from_flux == all.fixed_from_flux);

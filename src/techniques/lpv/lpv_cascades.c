@@ -53,13 +53,13 @@ static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid
 bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view)
 {
     const struct lpv_options *options = &finest->options;
-    if (!lpv_grid_fit(view->bounds, options->dim, options->cell_margin, &finest->grid))
-        return false;
+    const float margin = lpv_margin(options, view->constants->sky);
+    if (!lpv_grid_fit(view->bounds, options->dim, margin, &finest->grid)) return false;
     if (!finest->coarser) return true;
     float cell_m = options->cell > 0.0f ? options->cell : 0.5f * finest->grid.cell_m;
     for (struct lpv *level = finest; level; level = level->coarser, cell_m *= 2.0f) {
-        lpv_grid_around(view->bounds, options->dim, options->cell_margin, cell_m,
-                        view->constants->eye, &level->grid);
+        lpv_grid_around(view->bounds, options->dim, margin, cell_m, view->constants->eye,
+                        &level->grid);
         level->options = *options;
         if (!level->coarser) level->options.steps = steps_of_coarsest(finest, &level->grid);
     }

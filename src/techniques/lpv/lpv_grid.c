@@ -88,6 +88,7 @@ bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out)
         most = fmax(most, strongest(lights->emitters[i].flux));
         total += strongest(lights->emitters[i].flux);
     }
+    total += strongest(lights->sky_flux);
     if (!(total > 0.0) || !isfinite(total)) return false;
     // The largest coefficient of a unit-flux lobe is below 1/2: 2/3 √(3/4π) = 0.326 in band 1.
     out->fixed_from_flux = power_of_two_below(most * 0.5, 30);

@@ -37,6 +37,7 @@ struct lpv_lights {
     uint32_t rsm_size;
     const struct frame_emitter *emitters;
     int emitter_count;
+    vec3s sky_flux; // of a cell under the sky alone
 };
 // false: there is no light (or its strength is not finite).
 bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out);

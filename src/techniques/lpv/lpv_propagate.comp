@@ -43,11 +43,11 @@ sums nothing()
     return sums(vec3(0.0), none, none, none);
 }
 
-// The shares of the light from `cell` that arrive where it goes: four neighbours, as lpv_shares.glsl has them. Nothing comes
-// from outside of the grid, and light that does not arrive is gone.
+// The shares of the light from `cell` that arrive where it goes: four neighbours, as lpv_shares.glsl has them. Light
+// that does not arrive is gone. What comes from outside of the grid finds nothing in its way.
 vec4 reach(ivec3 cell, int word)
 {
-    if (!lpv_inside(cell)) return vec4(0.0);
+    if (!lpv_inside(cell)) return vec4(LPV_HELD ? 0.0 : 1.0);
     if (LPV_GEOMETRY == LPV_GEOMETRY_OFF) return vec4(1.0);
     vec4 passing = unpackUnorm4x8(share_words[LPV_WORDS * lpv_index(cell) + word]);
     return LPV_HELD ? 1.0 - passing : passing;
@@ -158,9 +158,12 @@ void store(ivec3 cell, sums sum)
     lpv_store_slabs(after, cell, slabs);
 }
 
-lpv_light light_of(ivec3 cell) // anything outside of the grid
+// Outside of the grid the sky: the same from all directions.
+lpv_light light_of(ivec3 cell)
 {
-    return lpv_fetch(before, clamp(cell, ivec3(0), lpv_cells() - 1));
+    if (lpv_inside(cell)) return lpv_fetch(before, cell);
+    vec3 none[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
+    return lpv_light(lpv.sky, none, none, none);
 }
 
 void from_face(inout sums to, ivec3 cell, int axis, int side)

@@ -51,7 +51,7 @@ void lpv_remark_on_scene(struct host *host, const char *technique,
 {
     struct lpv_grid grid;
     const char *scene = pose->scene->name;
-    if (!lpv_grid_fit(pose->bounds, options->dim, options->cell_margin, &grid)) {
+    if (!lpv_grid_fit(pose->bounds, options->dim, lpv_margin(options, pose->scene->sky), &grid)) {
         host_log(host, LOG_WARNING,
                  "gi %s: %s has no extent that a grid could cover: there is no indirect light",
                  technique, scene);

@@ -44,6 +44,7 @@ struct lpv_params {
     int32_t dim;            // side of the images
     AG_STRUCT(lpv_reprojection) ahead, beside, diagonal; // struct lpv_step
     float lobe_along, lobe_square, lobe_product;
+    vec3s sky;              // coefficient of band 0 that a cell under the sky alone has, in the grid's unit; 0: none
     float fixed_from_flux;  // integer per scaled lumen
     float grid_from_fixed;  // the grid's unit per integer
     float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
@@ -88,7 +89,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 51 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 54 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");

@@ -1,6 +1,18 @@
 // The stages of a frame: prepare, inject, propagate, apply.
 #include "techniques/lpv/lpv_state.h"
 
+static const float Y0 = 0.282094792f; // √(1/4π)
+
+// Of a cell that the sky's radiance L comes to from everywhere: 4π I, L = I (w a) / a³
+// (lpv_apply.comp).
+static vec3s sky_flux(const struct lpv *lpv, const struct frame_view *view)
+{
+    const float mean_way = (float)lpv_mean_way((enum lpv_scheme)lpv->options.neighbours);
+    const float cell_m = lpv->grid.cell_m;
+    if (!lpv->options.sky) return vec3_of(0, 0, 0);
+    return glms_vec3_scale(view->constants->sky, 4.0f * GLM_PIf * cell_m * cell_m / mean_way);
+}
+
 static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_view *view)
 {
     return (struct lpv_lights){
@@ -34,6 +46,7 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .lobe_along = (float)step.lobe.along,
         .lobe_square = (float)step.lobe.square,
         .lobe_product = (float)step.lobe.product,
+        .sky = glms_vec3_scale(sky_flux(lpv, view), Y0 * scale->grid_from_flux),
         .fixed_from_flux = scale->fixed_from_flux,
         .grid_from_fixed = scale->grid_from_flux / scale->fixed_from_flux,
         .irradiance_scale =
@@ -53,9 +66,14 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
 
 bool lpv_prepare(struct lpv *lpv, const struct frame_view *view)
 {
-    const struct lpv_lights lights = lights_of(lpv, view);
+    struct lpv_lights lights = lights_of(lpv, view);
     struct lpv_scale scale;
-    lpv->lit = lpv_cascades_place(lpv, view) && lpv_scale_of(&lights, &scale);
+    lpv->lit = lpv_cascades_place(lpv, view);
+    if (!lpv->lit) return false;
+    const struct lpv *coarsest = lpv;
+    while (coarsest->coarser) coarsest = coarsest->coarser;
+    lights.sky_flux = sky_flux(coarsest, view);
+    lpv->lit = lpv_scale_of(&lights, &scale);
     if (!lpv->lit) return false;
     for (struct lpv *level = lpv; level; level = level->coarser)
         level->params = params_of(level, view, &scale);

@@ -32,6 +32,13 @@ static inline size_t lpv_cell_bytes(const struct lpv_options *options) // of a c
     return 4 * (size_t)lpv_slabs(options) * 8;
 }
 
+// Cells around the scene. What comes in through the border finds a whole one free of surfaces.
+static inline float lpv_margin(const struct lpv_options *options, vec3s sky)
+{
+    const bool enters = options->sky && fmaxf(sky.x, fmaxf(sky.y, sky.z)) > 0.0f;
+    return enters ? fmaxf(options->cell_margin, 1.0f) : options->cell_margin;
+}
+
 // Of passes and objects, "technique.thing".
 struct lpv_names {
     const char *gi;

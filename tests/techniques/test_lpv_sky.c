@@ -1,0 +1,149 @@
+// The light of the sky, which comes in through the border of the grid.
+#include "frame/studio.h"
+#include "techniques/gi.h"
+#include "techniques/lpv_rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { WIDTH = 8, PIXELS = WIDTH * WIDTH, DIRECTIONS = 5 };
+
+static const vec3s SKY = { { 1, 10, 200 } };
+
+// No lamp, nothing in the way: what one sees from everywhere is the sky, so that E = π L whatever
+// the normal.
+static void check_furnace(struct stage *stage, struct lpv *lpv, double tolerance)
+{
+    static const float normals[DIRECTIONS][3] = {
+        { 0, 1, 0 }, { 0, -1, 0 }, { 1, 0, 0 }, { 1, 2, -3 }, { -1, -1, 1 }
+    };
+    for (int i = 0; i < DIRECTIONS; i++) {
+        const vec3s n = glms_vec3_normalize(vec3_of(normals[i][0], normals[i][1], normals[i][2]));
+        float got[3 * PIXELS];
+        // From corner to corner of the box, and a little beyond.
+        stage_show_wall(stage, vec3_of(-2, -1, -3), vec3_of(4, 0, 6), vec3_of(0, 2, 0), n);
+        stage_upload(stage);
+        rig_render(lpv, stage);
+        stage_read_irradiance(stage, got);
+        for (int k = 0; k < 3 * PIXELS; k++)
+            CHECK_RELATIVE((double)got[k], GLM_PI * (double)SKY.raw[k % 3], tolerance);
+    }
+}
+
+// A cell in the middle of 16 gets its share of the border's light step by step; 128 steps leave
+// less than the rounding of half floats to be gained.
+TEST_GPU(lpv_under_the_sky_alone_is_a_furnace)
+{
+    const char *cases[] = { "lpv:dim=16,steps=128,sky=true",
+                            "lpv:dim=16,steps=128,sky=true,bands=3,lobe=normal",
+                            "lpv:dim=16,steps=128,sky=true,focus=0.6666667,precision=float",
+                            "holpv:dim=16,steps=128,sky=true" };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct stage stage;
+        stage_init(&stage, gpu, WIDTH, WIDTH, 8, 0);
+        stage.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
+        stage.constants.sky = SKY;
+        struct lpv *lpv = rig_create(gpu, cases[i]);
+        check_furnace(&stage, lpv, 5e-3);
+        rig_destroy(lpv);
+        stage_finish(&stage);
+    }
+}
+
+TEST_GPU(lpv_leaves_the_sky_out_when_told)
+{
+    struct stage stage;
+    float got[3 * PIXELS];
+    stage_init(&stage, gpu, WIDTH, WIDTH, 8, 0);
+    stage.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
+    stage.constants.sky = SKY;
+    stage_show_wall(&stage, vec3_of(-1, 0, -1), vec3_of(1, 0, 1), vec3_of(0, 1, 0),
+                    vec3_of(0, 1, 0));
+    stage_upload(&stage);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=16,sky=false");
+    rig_render(lpv, &stage);
+    stage_read_irradiance(&stage, got);
+    for (int k = 0; k < 3 * PIXELS; k++) CHECK(got[k] == 0.0f);
+    rig_destroy(lpv);
+    stage_finish(&stage);
+}
+
+// Sky and lamps together are the sum of each alone, in one grid: with a sky there is a cell around
+// the scene.
+TEST_GPU(lpv_sky_adds_to_other_light)
+{
+    float sum[3 * PIXELS] = { 0 }, both[3 * PIXELS], got[3 * PIXELS];
+    struct frame_emitter point = { .position = vec3_of(0.5f, -0.9f, 0.2f),
+                                   .normal = vec3_of(0, 1, 0),
+                                   .flux = vec3_of(500, 20, 1) };
+    for (int which = 1; which <= 3; which++) {
+        struct stage stage;
+        stage_init(&stage, gpu, WIDTH, WIDTH, 8, 0);
+        stage.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
+        if (which & 1) stage.constants.sky = SKY;
+        stage_set_emitters(&stage, &point, which & 2 ? 1 : 0);
+        stage_show_wall(&stage, vec3_of(-2, 0.9f, -3), vec3_of(4, 0, 0), vec3_of(0, 0, 6),
+                        vec3_of(0, -1, 0));
+        stage_upload(&stage);
+        struct lpv *lpv = rig_create(gpu, "lpv:dim=16,sky=true,cell_margin=1,precision=float");
+        rig_render(lpv, &stage);
+        stage_read_irradiance(&stage, which == 3 ? both : got);
+        for (int k = 0; k < 3 * PIXELS && which < 3; k++) sum[k] += got[k];
+        rig_destroy(lpv);
+        stage_finish(&stage);
+    }
+    for (int k = 0; k < 3 * PIXELS; k++) // 11 bits of three results
+        CHECK_RELATIVE((double)both[k], (double)sum[k], 3e-3);
+}
+
+// Irradiance over πL in the middle of a floor of 6 m that nothing shades, and its range.
+static void floor_under_sky(struct gpu *gpu, const char *text, double *least, double *most)
+{
+    struct studio s;
+    struct gi_spec spec;
+    studio_init(&s, gpu);
+    studio_floor(&s, 3, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    studio_look(&s, vec3_of(0, 2, 0.1f), vec3_of(0, 0, 0));
+    s.input.sky = SKY;
+    studio_open(&s);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);
+    assert_non_null(gi);
+    s.indirect = gi_hook(gi);
+    studio_render(&s);
+    float *e = studio_read(&s, READ_IRRADIANCE), *depth = studio_read(&s, READ_DEPTH);
+    *least = INFINITY;
+    *most = 0;
+    for (uint32_t k = 0; k < s.width * s.height; k++)
+        for (uint32_t c = 0; c < 3 && depth[k] > 0; c++) {
+            const double share = (double)e[3 * k + c] / (GLM_PI * (double)SKY.raw[c]);
+            *least = fmin(*least, share);
+            *most = fmax(*most, share);
+        }
+    free(e);
+    free(depth);
+    gi_destroy(gi);
+    gi_spec_finish(&spec);
+    studio_finish(&s);
+}
+
+// Light from below the floor is none of its irradiance. Without geometry it is there, and the bands
+// of all directions together are exact; with geometry two or three bands must tell above from
+// below, which the window blurs: of a hemisphere two bands make 1/2 + w/2.
+TEST_GPU(lpv_lights_an_open_floor_with_all_of_the_sky)
+{
+    const struct {
+        const char *gi;
+        double least, most;
+    } cases[] = {
+        { "lpv:sky=true,geometry=off", 0.99, 1.01 }, { "holpv:sky=true,geometry=off", 0.99, 1.01 },
+        { "lpv:sky=true,window=1", 0.8, 1.1 },       { "holpv:sky=true,window=1", 0.8, 1.1 },
+        { "lpv:sky=true", 0.8 * 0.75, 1.01 },        { "holpv:sky=true", 0.8 * 0.93, 1.01 }
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double least, most;
+        floor_under_sky(gpu, cases[i].gi, &least, &most);
+        print_message("%s: %.3f to %.3f of the irradiance\n", cases[i].gi, least, most);
+        CHECK(least >= cases[i].least && most <= cases[i].most);
+    }
+}
