@@ -85,7 +85,11 @@ struct scene_dispatch_call {
     gpu_pipeline pipeline;
     const struct scene_draw *draw;
     const struct gpu_binding *bindings; // the pass's own
-    int binding_count;                  // ≤ 4
+    int binding_count;                  // ≤ 8
+    // What `pipeline` puts off, if it does: `rest` follows with the same bindings, in as many workgroups as `pipeline` says in
+    // rest_groups: x, y, z, which are 0, 1, 1 before it, and a word of the pass's own, which is 0.
+    gpu_pipeline rest;
+    gpu_buffer rest_groups;
 };
 void scene_gpu_dispatch(const struct scene_gpu *scene, struct gpu_cmd *cmd,
                         const struct scene_dispatch_call *call);

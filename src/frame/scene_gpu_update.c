@@ -3,6 +3,7 @@
 
 #include "frame/octahedral.h"
 
+#include <assert.h>
 #include <string.h>
 
 static void note_move(struct scene_gpu *s, struct scene_draw *draw)
@@ -141,7 +142,8 @@ void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
 {
     const struct scene_draw *draw = call->draw;
     const uint32_t triangles = s->scene->meshes[draw->mesh].index_count / 3;
-    struct gpu_binding bindings[16];
+    struct gpu_binding bindings[SCENE_BINDINGS + 8 + 1];
+    assert(call->binding_count <= 8);
     int count = scene_bindings(s, draw, bindings);
     for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
     struct gpu_binding *indices = &bindings[count++];
@@ -153,12 +155,20 @@ void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
         const size_t aligned = begin / BYTES_ALIGNED * BYTES_ALIGNED;
         const struct {
             struct scene_push draw;
-            uint32_t first_index, triangle_count;
-        } push = { draw->push, (uint32_t)((begin - aligned) / sizeof(uint32_t)), some };
+            uint32_t first_index, triangle_count, mirrored;
+        } push = { draw->push, (uint32_t)((begin - aligned) / sizeof(uint32_t)), some,
+                   draw->mirrored };
         *indices = (struct gpu_binding){
             .name = "scene_indices", .buffer = s->indices, .offset = aligned, .bytes = end - aligned
         };
+        if (call->rest.id) {
+            gpu_fill_buffer(cmd, call->rest_groups, 0, 4 * sizeof(uint32_t), 0);
+            gpu_fill_buffer(cmd, call->rest_groups, sizeof(uint32_t), 2 * sizeof(uint32_t), 1);
+        }
         gpu_dispatch(cmd, call->pipeline, bindings, count, &push, sizeof push,
                      gpu_groups(some, SCENE_TRIANGLES_LOCAL), 1, 1);
+        if (call->rest.id)
+            gpu_dispatch_indirect(cmd, call->rest, bindings, count, &push, sizeof push,
+                                  call->rest_groups, 0);
     }
 }

@@ -9,6 +9,7 @@ layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
     uint first_index, triangle_count;
+    uint mirrored; // this frame's transform turns triangles over
 } push;
 
 #define SCENE_VERTEX
