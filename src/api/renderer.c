@@ -72,7 +72,7 @@ static void warn_of_darkness(const struct ag_renderer *r)
     const struct scene *scene = r->scene->scene;
     bool glows_alone =
         scene->light_count == 0 && luminance(scene->sky) <= 0.0f && scene_has_emission(scene);
-    if (glows_alone && !(gi_hook(r->gi).needs & FRAME_NEEDS_EMITTERS))
+    if (glows_alone && !gi_spec_gathers_emission(&r->spec))
         host_log(host_of(r), LOG_WARNING,
                  "%s: lit by emissive surfaces alone, which --gi %s does not gather: try --gi lpv",
                  scene->name, r->gi_text);

@@ -18,6 +18,7 @@ bool gi_spec_parse(struct gi_spec *spec, struct host *host, const char *text);
 void gi_spec_finish(struct gi_spec *spec);  // accepts zero
 // The spec with all options written out, owned by the caller.
 char *gi_spec_print(const struct gi_spec *spec);
+bool gi_spec_gathers_emission(const struct gi_spec *spec);
 
 struct gi;
 // Checks, creates (and later bakes or loads) each technique. The spec is copied.

@@ -200,3 +200,10 @@ uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t
     }
     return bytes;
 }
+
+bool gi_spec_gathers_emission(const struct gi_spec *spec)
+{
+    for (int i = 0; i < spec->count; i++)
+        if (spec->technique[i]->capabilities & GATHERS_EMISSION) return true;
+    return false;
+}

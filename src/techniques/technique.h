@@ -15,6 +15,7 @@ enum technique_capability {
     NEEDS_BAKE = 4,
     MAKES_SPECULAR = 8,
     PUBLISHES_PROBES = 16,
+    GATHERS_EMISSION = 32, // what glows lights others
 };
 
 // What changed, for `invalidate`.

@@ -89,7 +89,7 @@ static float largest(const float *values)
 static const struct technique *next_gatherer(size_t *t)
 {
     for (; techniques[*t]; (*t)++) {
-        if (techniques[*t]->role == ROLE_SOURCE && techniques[*t]->needs & FRAME_NEEDS_EMITTERS)
+        if (techniques[*t]->role == ROLE_SOURCE && techniques[*t]->capabilities & GATHERS_EMISSION)
             return techniques[(*t)++];
     }
     return NULL;

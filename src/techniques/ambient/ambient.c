@@ -138,7 +138,7 @@ const struct technique technique_ambient = {
     .title = "reflected light, spread evenly",
     .paper = "mean fluence in a box, mean chord after Cauchy; flux as in Martin 2012, sec. 3.1",
     .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | GATHERS_EMISSION,
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,
     .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
                  sizeof(struct ambient_options) },

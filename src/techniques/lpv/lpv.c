@@ -269,7 +269,8 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
 
 #define LPV_TECHNIQUE(name_, title_, paper_, rows_)                                                \
     .name = name_, .title = title_, .paper = paper_, .folder = "lpv", .role = ROLE_SOURCE,         \
-    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | PUBLISHES_PROBES,                        \
+    .capabilities =                                                                                \
+        CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | PUBLISHES_PROBES | GATHERS_EMISSION,                 \
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
     .options = { rows_, sizeof rows_ / sizeof rows_[0], sizeof(struct lpv_options) },              \
     .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),                         \
