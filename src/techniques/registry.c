@@ -6,14 +6,15 @@
 #include "techniques/lpv/lpv.h"
 #include "techniques/none/none.h"
 #include "techniques/ssao/ssao.h"
+#include "techniques/vct/vct.h"
 #include "techniques/vo/vo.h"
 
 #include <assert.h>
 #include <string.h>
 
 const struct technique *const techniques[] = { &technique_none, &technique_ambient, &technique_lpv,
-                                               &technique_holpv, &technique_vo, &technique_ssao,
-                                               &technique_hbao, NULL };
+                                               &technique_holpv, &technique_vct, &technique_vo,
+                                               &technique_ssao, &technique_hbao, NULL };
 
 bool technique_is_sound(const struct technique *technique)
 {

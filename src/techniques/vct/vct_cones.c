@@ -1,0 +1,46 @@
+#include "techniques/vct/vct_cones.h"
+
+#include <math.h>
+
+// Cones in each ring, from the pole down; the first is the cap.
+static const struct {
+    int count, rings[4];
+} sets[] = {
+    [VCT_CONES_1] = { 1, { 1 } },          [VCT_CONES_5] = { 5, { 1, 4 } },
+    [VCT_CONES_6] = { 6, { 1, 5 } },       [VCT_CONES_9] = { 9, { 1, 8 } },
+    [VCT_CONES_16] = { 16, { 1, 5, 10 } }, [VCT_CONES_25] = { 25, { 1, 8, 16 } },
+};
+
+int vct_cone_count(int choice)
+{
+    return sets[choice].count;
+}
+
+// Solid angle is proportional to height z = cos θ (Archimedes): a ring between heights a > b has
+// 2π(a − b) sr, and ∫ cos dω = π(a² − b²). Its cones point to the height at which half of that
+// integral lies above.
+void vct_cone_set(int choice, struct vct_cone *out)
+{
+    const int count = sets[choice].count;
+    int done = 0;
+    for (int ring = 0; done < count; ring++) {
+        const int parts = sets[choice].rings[ring];
+        const double a = 1.0 - (double)done / count, b = 1.0 - (double)(done + parts) / count;
+        const double z = parts == 1 ? 1.0 : sqrt(0.5 * (a * a + b * b)), r = sqrt(1.0 - z * z);
+        for (int i = 0; i < parts; i++, done++) {
+            // Every other ring is turned by half a part.
+            const double phi = 2.0 * GLM_PI * ((double)i + 0.5 * (ring % 2)) / parts;
+            out[done].direction = vec3_of((float)(r * cos(phi)), (float)(r * sin(phi)), (float)z);
+            out[done].weight = (float)(GLM_PI * (a * a - b * b) / parts);
+        }
+    }
+}
+
+// A cone of half-angle h has 2π(1 − cos h) sr. One cone for all would have no width to speak of its
+// edge: it is taken for the one around which the cosine is concentrated, with ∫ cos dω = π/2
+// inside: half-angle 45°.
+float vct_cone_width(int choice)
+{
+    const double c = choice == VCT_CONES_1 ? sqrt(0.5) : 1.0 - 1.0 / sets[choice].count;
+    return (float)(2.0 * sqrt(1.0 - c * c) / c);
+}

@@ -1,0 +1,83 @@
+// Debug views: the first voxel that the eye's ray meets.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#define FRAME_CONSTANTS_BINDING 9
+#include "frame/frame.glsl"
+#define VCT_GRID_BINDING 0
+#include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/vct_record.glsl"
+#define VCT_SLOTS(name) static_##name
+#define VCT_SLOTS_BINDING 1
+#include "techniques/vct/vct_slots.glsl"
+#define VCT_SLOTS(name) dynamic_##name
+#define VCT_SLOTS_BINDING 3
+#include "techniques/vct/vct_slots.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    vct_view_push push;
+};
+layout(set = 0, binding = 5, scalar) readonly buffer static_records { uint static_record_words[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer dynamic_records { uint dynamic_record_words[]; };
+layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D picture;
+
+vec3 shown(vct_record r, vec3 direction)
+{
+    if (push.view == VCT_VIEW_REFLECTANCE) return r.reflectance * push.reflectance_shown;
+    if (push.view == VCT_VIEW_NORMAL) return (r.normal * 0.5 + 0.5) * push.reflectance_shown;
+    return dot(r.normal, direction) < 0.0 ? r.front + r.emitted_front : r.back + r.emitted_back;
+}
+
+bool voxel_at(ivec3 voxel, out vct_record r)
+{
+    uint words[VCT_RECORD_WORDS];
+    uint index = vct_index(voxel), slot = dynamic_slot(index);
+    if (slot != VCT_NO_SLOT) {
+        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = dynamic_record_words[slot * VCT_RECORD_WORDS + k];
+    } else {
+        slot = static_slot(index);
+        if (slot == VCT_NO_SLOT) return false;
+        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = static_record_words[slot * VCT_RECORD_WORDS + k];
+    }
+    r = vct_unpack(words);
+    return true;
+}
+
+// From voxel to voxel along the ray (Amanatides & Woo 1987).
+vec3 march(vec3 from, vec3 direction)
+{
+    vec3 inverse = 1.0 / mix(direction, vec3(1e-12), lessThan(abs(direction), vec3(1e-12)));
+    vec3 near = min(-from * inverse, (vec3(vct_cells()) - from) * inverse);
+    float start = max(max(near.x, max(near.y, near.z)), 0.0) + 1e-3;
+    vec3 at = from + direction * start;
+    ivec3 voxel = ivec3(floor(at)), step = ivec3(sign(direction));
+    vec3 next = (vec3(voxel) + max(vec3(step), vec3(0.0)) - at) * inverse;
+    for (int i = 0; i < 3 * vct.dim && vct_inside(voxel); i++) {
+        vct_record r;
+        if (voxel_at(voxel, r)) return shown(r, direction);
+        if (next.x <= next.y && next.x <= next.z) {
+            voxel.x += step.x;
+            next.x += abs(inverse.x);
+        } else if (next.y <= next.z) {
+            voxel.y += step.y;
+            next.y += abs(inverse.y);
+        } else {
+            voxel.z += step.z;
+            next.z += abs(inverse.z);
+        }
+    }
+    return vec3(0.0);
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
+    vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0);
+    vec3 colour = march(vct_voxels_from_world(frame.eye), normalize(through - frame.eye));
+    imageStore(picture, pixel, vec4(clamp(colour, 0.0, HALF_MAX), 1.0));
+}

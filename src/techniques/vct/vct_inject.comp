@@ -1,0 +1,86 @@
+// Light on the voxels: what lights make both sides of each reflect, and what they emit.
+//
+// Differs from Hong 2015, sec. 2.5.3.3.9, where the texels of reflective shadow maps are scattered into voxels and
+// leave cracks where these maps are coarser than the voxels (figure 47): here each voxel asks the shadow maps what it
+// gets. There are no cracks and no order of additions, and no reflective shadow map has to be drawn.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame/frame.glsl"
+#include "frame/light.glsl"
+#include "frame/shadow/shadow.glsl"
+#define VCT_GRID_BINDING 4
+#include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/vct_record.glsl"
+
+layout(local_size_x = VCT_LOCAL) in;
+
+layout(set = 0, binding = 1, scalar) readonly buffer frame_lights { frame_light frame_light_table[]; };
+layout(set = 0, binding = 5, scalar) readonly buffer vct_list { uint list[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer vct_sums { uint sums[]; };
+layout(set = 0, binding = 7, scalar) writeonly buffer vct_records { uint records[]; };
+layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments { uint groups[3]; uint listed; uint left_out; };
+layout(set = 0, binding = 9, scalar) readonly buffer vct_brought { uint brought[]; };
+
+#include "techniques/vct/vct_sums.glsl"
+
+const float PI = 3.14159265;
+const float SHADOW_LIFT = 0.25; // voxels: a surface lies that far from where its voxel thinks, if it is curved
+
+// Irradiance by one light, scaled lux; `front` says of which side.
+vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
+{
+    vec3 to_light = -light.direction;
+    float attenuation = 1.0;
+    if (light.type != FRAME_LIGHT_SUN) {
+        to_light = light.position - position;
+        float distance2 = dot(to_light, to_light);
+        to_light *= inversesqrt(max(distance2, 1e-12));
+        // A light in a voxel is not nearer to it than its side is long.
+        float nearest = max(LIGHT_MIN_DISTANCE_M, 0.5 * vct.cell_m);
+        attenuation = light_cone(light, -to_light) * light_window(light, distance2) / max(distance2, nearest * nearest);
+    }
+    float cosine = dot(normal, to_light);
+    front = cosine >= 0.0;
+    if (attenuation == 0.0) return vec3(0.0);
+    vec3 plane = front ? normal : -normal;
+    if (light.shadow_first >= 0)
+        attenuation *= shadow_of(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light, true,
+                                 vct.shadow_size, vct.shadow_radius);
+    return light.intensity * (attenuation * abs(cosine));
+}
+
+void main()
+{
+    uint slot = gl_GlobalInvocationID.x;
+    if (slot >= listed) return;
+    uint at = slot * VCT_SUM_WORDS;
+    float per_opaque = 1.0 / max(float(sums[at + VCT_SUM_OPACITY]), 1.0);
+    vct_sheet sheet = vct_sheet_of(slot);
+    vct_record r;
+    r.opacity = sheet.opacity;
+    r.normal = sheet.normal;
+    r.reflectance = vct_sum(at + VCT_SUM_REFLECTANCE) * (per_opaque / VCT_COLOUR_ONE);
+    r.emitted_front = min(vct_sum(at + VCT_SUM_FRONT) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
+    r.emitted_back = min(vct_sum(at + VCT_SUM_BACK) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
+
+    vec3 front = vec3(0.0), back = vec3(0.0);
+    for (uint i = 0; i < vct.light_count; i++) {
+        bool at_front;
+        vec3 e = irradiance(frame_light_table[i], sheet.position, sheet.normal, at_front);
+        if (at_front) front += e;
+        else back += e;
+    }
+    if (vct.brought != 0u) {
+        uint from = slot * VCT_BROUGHT_WORDS;
+        vec2 middle = unpackHalf2x16(brought[from + 1u]);
+        front += vec3(unpackHalf2x16(brought[from]), middle.x);
+        back += vec3(middle.y, unpackHalf2x16(brought[from + 2u]));
+    }
+    r.front = min(front * r.reflectance / PI, vec3(HALF_MAX));
+    r.back = min(back * r.reflectance / PI, vec3(HALF_MAX));
+    uint words[VCT_RECORD_WORDS];
+    vct_pack(r, words);
+    for (uint k = 0u; k < VCT_RECORD_WORDS; k++) records[slot * VCT_RECORD_WORDS + k] = words[k];
+}

@@ -1,0 +1,142 @@
+// Light: on the voxels, into the light volume, and up its levels.
+#include "techniques/vct/vct_state.h"
+
+#include "frame/scene_gpu.h"
+
+#include <string.h>
+
+static void inject(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                   const struct vct_set *set)
+{
+    gpu_dispatch_indirect(
+        cmd, vct->inject,
+        GPU_BIND(
+            vct_grid_binding(vct, cmd), view->constants_binding, view->lights_binding,
+            view->shadow_faces_binding,
+            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
+            { .name = "vct_list", .buffer = set->list },
+            { .name = "vct_sums", .buffer = set->sums },
+            { .name = "vct_records", .buffer = set->records },
+            { .name = "vct_brought", .buffer = set->brought },
+            { .name = "vct_arguments", .buffer = set->arguments }),
+        NULL, 0, set->arguments, 0);
+}
+
+static void fill(struct vct *vct, struct gpu_cmd *cmd)
+{
+    const struct vct_set *rest = &vct->rest, *moving = &vct->moving;
+    const int32_t *cells = vct->grid.cells;
+    gpu_dispatch(cmd, vct->fill,
+                 GPU_BIND(vct_grid_binding(vct, cmd),
+                          { .name = "static_mask", .buffer = rest->mask },
+                          { .name = "static_before", .buffer = rest->before },
+                          { .name = "static_records", .buffer = rest->records },
+                          { .name = "dynamic_mask", .buffer = moving->mask },
+                          { .name = "dynamic_before", .buffer = moving->before },
+                          { .name = "dynamic_records", .buffer = moving->records },
+                          { .name = "light", .image = vct->light }),
+                 NULL, 0, gpu_groups((uint32_t)cells[0] / 2, VCT_LOCAL_2D),
+                 gpu_groups((uint32_t)cells[1] / 2, VCT_LOCAL_2D), (uint32_t)cells[2] / 2);
+}
+
+static int32_t level_size(int32_t cells, uint32_t level)
+{
+    const int32_t size = (cells / 2 + (1 << level) - 1) >> level; // what is in use, rounded up
+    return size > 1 ? size : 1;
+}
+
+static void filter(struct vct *vct, struct gpu_cmd *cmd)
+{
+    const uint32_t mips = vct_volume_mips(&vct->options);
+    const int32_t dim = (int32_t)vct_volume_dim(&vct->options), *cells = vct->grid.cells;
+    for (uint32_t level = 1; level < mips; level++) {
+        const struct vct_mip_push push = {
+            .size_x = level_size(cells[0], level),
+            .size_y = level_size(cells[1], level),
+            .size_z = level_size(cells[2], level),
+            .source_x = level_size(cells[0], level - 1),
+            .source_y = level_size(cells[1], level - 1),
+            .source_z = level_size(cells[2], level - 1),
+            .source_tile = dim >> (level - 1),
+            .target_tile = dim >> level,
+        };
+        gpu_dispatch(
+            cmd, vct->mip,
+            GPU_BIND({ .name = "source", .image = vct->light, .mip = level - 1, .one_mip = true },
+                     { .name = "target", .image = vct->light, .mip = level }),
+            &push, sizeof push, gpu_groups((uint32_t)push.size_x, VCT_LOCAL_2D),
+            gpu_groups((uint32_t)push.size_y, VCT_LOCAL_2D), 6 * (uint32_t)push.size_z);
+    }
+}
+
+static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    gpu_scope_begin(cmd, "vct.inject");
+    inject(vct, cmd, view, &vct->rest);
+    inject(vct, cmd, view, &vct->moving);
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "vct.fill");
+    fill(vct, cmd);
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "vct.mips");
+    filter(vct, cmd);
+    gpu_scope_end(cmd);
+}
+
+static void bring(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                  const struct vct_set *set, struct gpu_binding cones)
+{
+    gpu_dispatch_indirect(cmd, vct->bounce,
+                          GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, cones,
+                                   { .name = "light", .image = vct->light, .sampler = vct->linear },
+                                   { .name = "vct_list", .buffer = set->list },
+                                   { .name = "vct_sums", .buffer = set->sums },
+                                   { .name = "vct_arguments", .buffer = set->arguments },
+                                   { .name = "vct_brought", .buffer = set->brought }),
+                          NULL, 0, set->arguments, 0);
+}
+
+static bool has_sky(const struct frame_view *view)
+{
+    const vec3s sky = view->constants->sky;
+    return sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f;
+}
+
+// Whether what glows brings the same to the voxels as in the last frame.
+static bool brings_the_same(const struct vct *vct, const struct vct_brought_by *by)
+{
+    return vct->brought_valid && !vct->remade && memcmp(by, &vct->brought_by, sizeof *by) == 0;
+}
+
+void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const bool more = vct->options.bounces > 1;
+    const struct vct_brought_by by = { view->constants->sky, view->constants->radiance_scale };
+    const uint32_t lights = vct->params.light_count;
+    vct->params.brought = more || has_sky(view) || view->scene->max_emissive > 0.0f;
+    if (!vct->params.brought || (!more && brings_the_same(vct, &by))) return;
+    const struct vct_cone_params params = vct_cone_params(vct, view, VCT_CONES_6, 1);
+    const struct gpu_binding cones = gpu_transient(cmd, "vct_cones", &params, sizeof params);
+    vct->params.light_scale = view->constants->previous_scale_ratio;
+    if (!more || vct->remade || !vct->light_valid) {
+        // Nothing from the last frame can be used: what goes straight comes first.
+        vct->params.brought = false;
+        vct->params.light_count = more ? lights : 0;
+        vct->params.light_scale = 1.0f;
+        put_light(vct, cmd, view);
+    }
+    gpu_scope_begin(cmd, "vct.bounce");
+    bring(vct, cmd, view, &vct->rest, cones);
+    bring(vct, cmd, view, &vct->moving, cones);
+    gpu_scope_end(cmd);
+    vct->params.brought = true;
+    vct->params.light_count = lights;
+    vct->brought_by = by;
+    vct->brought_valid = true;
+}
+
+void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    put_light(vct, cmd, view);
+    vct->light_valid = true;
+}

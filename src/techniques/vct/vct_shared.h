@@ -1,0 +1,95 @@
+// What the shaders of voxel cone tracing share with the host. Scalar layout.
+#ifndef AG_VCT_SHARED_H
+#define AG_VCT_SHARED_H
+
+#include "core/shared.h"
+
+// Voxelisation.
+#define VCT_LOCAL         64 // invocations of a workgroup that has one dimension
+#define VCT_TILE          8 // side of the square of columns that one workgroup takes of a large triangle
+#define VCT_SMALL_COLUMNS 64 // a triangle over at most so many columns is walked by one invocation
+#define VCT_QUEUE         65535 // tiles of large triangles that wait for a workgroup each
+#define VCT_BLOCK_WORDS   32    // words of the mask that one invocation counts and lists
+#define VCT_SCAN_LOCAL    256
+
+// Words of vct_sums for a voxel: integers, so that no order of triangles changes a bit.
+#define VCT_SUM_WEIGHT      0
+#define VCT_SUM_OPACITY     1
+#define VCT_SUM_REFLECTANCE 2  // 3 words, × opacity
+#define VCT_SUM_NORMAL      5  // 3 words, signed
+#define VCT_SUM_POSITION    8  // 3 words, signed: from the voxel's centre
+#define VCT_SUM_FRONT       11 // 3 words: emission to the side of the normal
+#define VCT_SUM_BACK        14 // 3 words: emission to the other side
+#define VCT_SUM_FRONTS 17        // weight of what turns a front to the side of the normal
+#define VCT_SUM_BACKS 18         // and to the other side
+#define VCT_SUM_WORDS 19
+#define VCT_WEIGHT_ONE      1024.0 // weight of a triangle that is at least as large as a voxel's face
+#define VCT_COLOUR_ONE      255.0
+#define VCT_NORMAL_ONE      127.0
+#define VCT_POSITION_ONE    127.0 // of a whole voxel
+#define VCT_EMISSION_ONE    256.0 // of the strongest emission of the scene
+
+// Words of vct_records for a voxel: what its two sides emit and reflect.
+#define VCT_RECORD_WORDS 8
+// Words of vct_brought: irradiance on the front and the back.
+#define VCT_BROUGHT_WORDS 3
+
+// Uniform block "vct_grid".
+struct vct_params {
+    vec3s origin_m;                    // corner of voxel 0, world space
+    float cell_m;                      // side of a voxel
+    int32_t cells_x, cells_y, cells_z; // in use; beyond them is the outside
+    int32_t dim;                       // voxels along a side, with which they are numbered
+    float cells_per_m;
+    uint32_t capacity;     // voxels with attributes
+    float emission_fixed;  // whole numbers per cd/m²
+    float emission_scaled; // scaled cd/m² per whole number
+    float shadow_size;     // texels
+    int32_t shadow_radius; // texels
+    int32_t volume_dim;    // texels of the light volume along a side
+    uint32_t light_count;  // of the frame's lights that are injected
+    uint32_t brought;      // whether light that voxels got from others is injected
+    float light_scale;     // the frame's unit over that of the light volume
+};
+
+#define VCT_MAX_CONES      25
+#define VCT_MAX_INTERLEAVE 5
+
+// Uniform block "vct_cones".
+struct vct_cone_params {
+    vec4s cones[VCT_MAX_CONES]; // direction about +z; weight in sr, Σ = π
+    uint32_t cone_count;
+    uint32_t interleave;
+    uint32_t width, height;         // of the frame, pixels
+    uint32_t sub_width, sub_height; // of a sub-image
+    float width_per_m;              // width of the texels that a cone meets over the distance
+    float offset;                   // texels of the light volume
+    float gain;
+    float texel_m; // of the light volume
+    uint32_t last_mip;
+};
+
+struct vct_mip_push {
+    int32_t size_x, size_y, size_z;   // of the level that is written, of one direction
+    int32_t source_x, source_y, source_z; // of the level that is read
+    int32_t source_tile, target_tile; // texels between directions
+};
+
+#define VCT_VIEW_REFLECTANCE 0
+#define VCT_VIEW_NORMAL      1
+#define VCT_VIEW_RADIANCE    2
+
+struct vct_view_push {
+    uint32_t view;
+    float reflectance_shown; // scaled radiance that a reflectance of 1 is shown as
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct vct_params) == 18 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
+               "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_mip_push) == 32, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_view_push) == 8, "layout is shared with GLSL");
+#endif
+
+#endif

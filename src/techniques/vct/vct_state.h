@@ -1,0 +1,77 @@
+// The private state of voxel cone tracing, shared by its stages.
+#pragma once
+
+#include "techniques/technique.h"
+#include "techniques/vct/vct_cones.h"
+#include "techniques/vct/vct_grid.h"
+#include "techniques/vct/vct_shared.h"
+
+struct vct_options {
+#define OPTION OPTION_FIELD
+#include "techniques/vct/vct_options.def"
+#undef OPTION
+};
+
+enum { VCT_LOCAL_2D = 8 }; // of shaders over pixels or texels, in x and y
+
+// Voxels of a part of the scene: which, in what order, what they are, what they send out.
+struct vct_set {
+    gpu_buffer mask, before, blocks, list, sums, records, brought, arguments;
+};
+
+// Draws by what their materials read; maps that one of a kind lacks are white.
+enum vct_kind { VCT_PLAIN, VCT_MAPPED, VCT_MASKED, VCT_KINDS };
+
+struct vct_walk { // pipelines for small and for large triangles
+    gpu_pipeline small, large;
+};
+
+// What light that glowing surfaces and the sky bring to voxels depends on besides these.
+struct vct_brought_by {
+    vec3s sky; // scaled
+    float radiance_scale;
+};
+
+struct vct {
+    struct gpu *gpu;
+    struct vct_options options;
+    struct vct_walk mark, add[VCT_KINDS];
+    gpu_pipeline count, scan, list, inject, bounce, fill, mip, cones, edges, gather_rows,
+        gather_columns, debug;
+    struct vct_set rest, moving; // what stands still; what has moved
+    gpu_buffer queue, queue_state;
+    gpu_sampler linear;
+    gpu_image light;            // RGBA16F, mips: six volumes side by side
+    gpu_image edge_image;       // R8
+    gpu_image traced, gathered; // RGBA16F: Σ radiance × weight, Σ weight
+    uint32_t width, height;
+
+    struct vct_grid grid;
+    struct vct_params params; // of the frame being recorded
+    bool ready;               // there is something to voxelise
+    bool remade;              // voxels have come anew in this frame
+    bool light_valid;         // `light` is last frame's, of this grid
+    bool brought_valid;       // so is what the voxels got from each other
+    struct vct_brought_by brought_by;
+    bool rest_valid;           // `rest` is of the scene as it stands
+    const struct scene *scene; // that it is of
+    int moving_draws;          // then
+};
+
+uint32_t vct_capacity(const struct vct_options *options); // voxels of a set
+uint32_t vct_volume_dim(const struct vct_options *options);
+uint32_t vct_volume_mips(const struct vct_options *options);
+
+// Places the grid; false where there is nothing to voxelise.
+bool vct_prepare(struct vct *vct, const struct frame_view *view);
+struct gpu_binding vct_grid_binding(struct vct *vct, struct gpu_cmd *cmd);
+// The cones of one choice, of which `side` × `side` pixels share each set.
+struct vct_cone_params vct_cone_params(const struct vct *vct, const struct frame_view *view,
+                                       int choice, uint32_t side);
+// The stages, in order. Each reads vct->params.
+void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                      uint32_t what, gpu_image out);

@@ -1,0 +1,72 @@
+// One cone through the light volume (Crassin et al. 2011; Hong 2015, sec. 2.5.3.3.7). The printed accumulation
+// multiplies the colour with the old opacity, which is wrong; front to back it is, with c₂ premultiplied with α₂,
+//     c ← c + (1 − α) c₂,   α ← α + (1 − α) α₂.                                                       (1)
+// Each step is as long as a texel of the level that it looks at, so that opacities need no correction for its length.
+//
+// Differs where a sheet is met. Samples of a sheet that fills its texels split its opacity between them: filtered,
+// they add up to what one sample in its middle would have, and across a sheet that is met at a slant the parts are as
+// many as the way through it is long. (1) takes them for sheets behind each other, and through every closed wall a
+// sixth to a third of the light beyond is seen. There
+//     c ← c + c₂,   α ← α + α₂,   up to α = 1                                                         (2)
+// is right. What fills a part of its texels is met once more by chance, as (1) says. How much of a sheet there is,
+// 0…1, is the largest opacity along an axis: it blends the two.
+#ifndef AG_VCT_TRACE_GLSL
+#define AG_VCT_TRACE_GLSL
+
+const float VCT_OPAQUE = 0.98; // a cone that has met so much ends there, as if it had met all
+
+struct vct_met
+{
+    vec4 light;  // premultiplied radiance, opacity
+    float sheet; // the largest opacity along an axis
+};
+
+// What light comes against `direction`, or the part of it that is `counted`, at a place in texels of level 0. The six
+// volumes lie side by side along x: what is filtered keeps half a texel away from its neighbour.
+vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int level)
+{
+    vec3 share = abs(counted);
+    float dim = float(vct.volume_dim >> level), half_texel = 0.5 / dim;
+    vec3 size = vec3((vct_cells() / 2 + (1 << level) - 1) >> level) / dim;
+    vec3 uv = clamp(at / float(vct.volume_dim), vec3(half_texel), size - half_texel);
+    vec3 way = (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
+    vec4 x = textureLod(light, vec3(way.x, uv.yz), float(level));
+    vec4 y = textureLod(light, vec3(way.y, uv.yz), float(level));
+    vec4 z = textureLod(light, vec3(way.z, uv.yz), float(level));
+    vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
+    return vct_met(share.x * x + share.y * y + share.z * z, max(met.x, max(met.y, met.z)));
+}
+
+// Radiance in xyz, premultiplied, and opacity. Lengths in texels of level 0; `from`: where the cone starts, of width 0
+// there; wide: width of a texel over distance.
+vec4 vct_trace(sampler3D light, vec3 from, vec3 direction, float wide, uint last_mip)
+{
+    vec3 ends = mix(vec3(0.0), vec3(vct_cells() / 2), greaterThan(direction, vec3(0.0)));
+    bvec3 across = lessThan(abs(direction), vec3(1e-6));
+    vec3 until = mix((ends - from) / mix(direction, vec3(1.0), across), vec3(1e6), across);
+    float end = min(until.x, min(until.y, until.z));
+    vec3 out_of = vec3(lessThanEqual(until, vec3(end))) * direction;
+    float out_speed = max(abs(out_of.x), max(abs(out_of.y), abs(out_of.z)));
+    vec4 sum = vec4(0.0);
+    float t = 0.0;
+    for (int i = 0; i < 256; i++) {
+        int level = min(int(log2(max(wide * t, 1.0)) + 0.5), int(last_mip));
+        float texel = float(1 << level), middle = t + 0.5 * texel;
+        // The side through which the cone leaves may be a wall, which is filtered out to a texel beyond it.
+        bool left_grid = middle > end;
+        if (left_grid && (middle - end) * out_speed > texel) break;
+        vec3 at = from + direction * min(middle, end);
+        vct_met here = vct_look(light, at, direction, left_grid ? out_of : direction, level);
+        float alpha = here.light.a;
+        if (alpha > 0.0) {
+            float left = 1.0 - sum.a;
+            float covered = mix(left * min(alpha, 1.0), min(alpha, left), here.sheet * here.sheet);
+            sum += covered * vec4(here.light.rgb / alpha, 1.0);
+            if (sum.a > VCT_OPAQUE) return vec4(sum.rgb / sum.a, 1.0);
+        }
+        t += texel;
+    }
+    return sum;
+}
+
+#endif

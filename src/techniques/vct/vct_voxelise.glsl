@@ -1,0 +1,146 @@
+// Walking the triangles of a draw over the voxels that they touch. A triangle is walked in columns along the axis to
+// which its plane is nearest to perpendicular (the dominant axis of Crassin & Green 2012; Hong 2015, sec. 2.5.3.1),
+// where it is at most a few voxels deep. Small triangles take one invocation; large ones are cut into tiles of columns
+// that wait in a queue for a workgroup each.
+//
+// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_visit().
+#include "frame/scene_triangles.glsl"
+#include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/vct_overlap.glsl"
+
+// x, y, z of an indirect dispatch; how many tiles were asked for.
+layout(set = 0, binding = 14, scalar) buffer vct_queue_state { uint queue_groups[3]; uint queue_asked; };
+layout(set = 0, binding = 15, scalar) buffer vct_queue { uvec2 queue[]; };
+
+#if VCT_LARGE
+layout(local_size_x = VCT_TILE, local_size_y = VCT_TILE) in;
+#else
+layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
+#endif
+
+struct vct_triangle
+{
+    uvec3 vertices;
+    vec3 a, b, c;      // in voxels from the grid's corner
+    int turn;          // 0…2: the axis along which columns run is (turn + 2) % 3
+    vec3 u, v, w;      // a, b, c with axes turned so that the third is the columns'
+    vec3 normal;       // turned; not unit: its length is twice the area in faces of a voxel
+    ivec3 low, high;   // turned: voxels that its box touches
+};
+
+void vct_visit(ivec3 voxel, vct_triangle t);
+
+// What lies on the grid's border but for rounding belongs to the last voxel, and is not lost.
+vec3 kept_inside(vec3 at)
+{
+    vec3 inside = clamp(at, vec3(0.0), vec3(vct_cells()));
+    return mix(at, inside, lessThan(abs(at - inside), vec3(0.01)));
+}
+
+vec3 vertex_at(uint vertex)
+{
+    precise vec3 world = (scene_world_from_instance() * vec4(scene_position(vertex), 1.0)).xyz;
+    precise vec3 at = (world - vct.origin_m) * vct.cells_per_m;
+    return kept_inside(at);
+}
+
+vec3 turned(vec3 v, int turn)
+{
+    return turn == 0 ? v : turn == 1 ? v.yzx : v.zxy;
+}
+
+ivec3 turned_back(ivec3 v, int turn)
+{
+    return turn == 0 ? v : turn == 1 ? v.zxy : v.yzx;
+}
+
+// False where it has no area or is not finite.
+bool triangle_at(uint triangle, out vct_triangle t)
+{
+    t.vertices = scene_triangle(triangle);
+    t.a = vertex_at(t.vertices.x);
+    t.b = vertex_at(t.vertices.y);
+    t.c = vertex_at(t.vertices.z);
+    precise vec3 p = t.b - t.a, q = t.c - t.b;
+    precise vec3 n = p.yzx * q.zxy - p.zxy * q.yzx;
+    vec3 length = abs(n);
+    t.turn = length.z >= length.x && length.z >= length.y ? 0 : length.x >= length.y ? 1 : 2;
+    t.normal = turned(n, t.turn);
+    t.u = turned(t.a, t.turn);
+    t.v = turned(t.b, t.turn);
+    t.w = turned(t.c, t.turn);
+    // What only touches a border from below is not in the voxel above; what lies in the border is in that one alone.
+    vec3 low = floor(min(min(t.u, t.v), t.w));
+    vec3 high = max(ceil(max(max(t.u, t.v), t.w)) - 1.0, low);
+    vec3 end = turned(vec3(vct_cells()), t.turn) - 1.0;
+    if (!(abs(t.normal.z) > 0.0) || !all(lessThan(max(abs(low), abs(high)), vec3(1e6)))) return false;
+    t.low = ivec3(clamp(low, vec3(0.0), end));
+    t.high = ivec3(clamp(high, vec3(0.0), end));
+    return true;
+}
+
+// All voxels of one column that the triangle touches. Its plane is within half a voxel in both directions of the
+// height at the column's centre, as the slopes along the dominant axis are at most 1.
+void walk_column(vct_triangle t, ivec2 column)
+{
+    vec2 centre = vec2(column) + 0.5;
+    float height = t.u.z - dot(t.normal.xy, centre - t.u.xy) / t.normal.z;
+    float reach = 0.5 * (abs(t.normal.x) + abs(t.normal.y)) / abs(t.normal.z) + 0.01;
+    float low = clamp(height - reach, -1.0, float(vct.dim)), high = clamp(height + reach, -1.0, float(vct.dim));
+    int last = min(int(floor(high)), t.high.z);
+    for (int depth = max(int(floor(low)), t.low.z); depth <= last; depth++) {
+        precise vec3 middle = vec3(column, depth) + 0.5;
+        precise vec3 u = t.u - middle, v = t.v - middle, w = t.w - middle;
+        if (vct_overlaps(u, v, w, t.normal)) vct_visit(turned_back(ivec3(column, depth), t.turn), t);
+    }
+}
+
+#if VCT_LARGE
+
+void main()
+{
+    uvec2 job = queue[gl_WorkGroupID.x];
+    vct_triangle t;
+    if (!triangle_at(job.x, t)) return;
+    uint across = uint(t.high.x - t.low.x) / VCT_TILE + 1u;
+    ivec2 tile = ivec2(job.y % across, job.y / across);
+    ivec2 column = t.low.xy + tile * VCT_TILE + ivec2(gl_LocalInvocationID.xy);
+    if (all(lessThanEqual(column, t.high.xy))) walk_column(t, column);
+}
+
+#else
+
+void walk_columns(vct_triangle t, ivec2 first, ivec2 last)
+{
+    for (int y = first.y; y <= last.y; y++)
+        for (int x = first.x; x <= last.x; x++) walk_column(t, ivec2(x, y));
+}
+
+// Puts tiles into the queue; those for which there is no room are walked here.
+void queue_tiles(uint triangle, vct_triangle t)
+{
+    uvec2 tiles = uvec2(t.high.xy - t.low.xy) / VCT_TILE + 1u;
+    uint count = tiles.x * tiles.y;
+    uint first = atomicAdd(queue_asked, count);
+    uint fitting = first < VCT_QUEUE ? min(count, VCT_QUEUE - first) : 0u;
+    for (uint i = 0u; i < fitting; i++) queue[first + i] = uvec2(triangle, i);
+    if (fitting > 0u) atomicMax(queue_groups[0], first + fitting);
+    for (uint i = fitting; i < count; i++) {
+        ivec2 corner = t.low.xy + ivec2(i % tiles.x, i / tiles.x) * VCT_TILE;
+        walk_columns(t, corner, min(corner + VCT_TILE - 1, t.high.xy));
+    }
+}
+
+void main()
+{
+    uint triangle = gl_GlobalInvocationID.x;
+    vct_triangle t;
+    if (triangle >= push.triangle_count || !triangle_at(triangle, t)) return;
+    ivec2 size = t.high.xy - t.low.xy + 1;
+    if (size.x * size.y <= VCT_SMALL_COLUMNS)
+        walk_columns(t, t.low.xy, t.high.xy);
+    else
+        queue_tiles(triangle, t);
+}
+
+#endif

@@ -1,0 +1,209 @@
+// Which voxels hold a surface: the exact set of a twin by separating axes, on borders, with what
+// moves and what is no triangle.
+#include "techniques/vct_rig.h"
+
+#include "core/rng.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { DIM = 16 };
+
+// ---- The twin: every voxel of a triangle's box against its thirteen axes (Akenine-Möller 2001).
+
+static bool separated(vec3s axis, const vec3s at[3])
+{
+    const float p = glms_vec3_dot(axis, at[0]), q = glms_vec3_dot(axis, at[1]),
+                r = glms_vec3_dot(axis, at[2]);
+    const float reach = 0.5f * (fabsf(axis.x) + fabsf(axis.y) + fabsf(axis.z));
+    // Rounding: a triangle that touches a face exactly is on its border here and there.
+    const float slack = 1e-4f * reach;
+    return fminf(p, fminf(q, r)) > reach + slack || fmaxf(p, fmaxf(q, r)) < -reach - slack;
+}
+
+static bool touches(vec3s voxel_middle, const vec3s corners[3])
+{
+    vec3s at[3];
+    for (int i = 0; i < 3; i++) at[i] = glms_vec3_sub(corners[i], voxel_middle);
+    const vec3s normal = glms_vec3_cross(glms_vec3_sub(at[1], at[0]), glms_vec3_sub(at[2], at[1]));
+    if (separated(normal, at)) return false;
+    for (int axis = 0; axis < 3; axis++) {
+        vec3s unit = vec3_of(0, 0, 0);
+        unit.raw[axis] = 1.0f;
+        if (separated(unit, at)) return false;
+        for (int i = 0; i < 3; i++)
+            if (separated(glms_vec3_cross(unit, glms_vec3_sub(at[(i + 1) % 3], at[i])), at))
+                return false;
+    }
+    return true;
+}
+
+struct twin {
+    bool voxels[DIM][DIM][DIM]; // z, y, x
+};
+
+// A coordinate on the border between two voxels belongs to the upper one as a start, to the lower
+// one as an end.
+static void twin_add(struct twin *twin, const struct vct_grid *grid, const vec3s world[3])
+{
+    vec3s at[3];
+    int first[3], last[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = glms_vec3_scale(glms_vec3_sub(world[i], grid->origin_m), 1.0f / grid->cell_m);
+    if (!(glms_vec3_norm2(
+              glms_vec3_cross(glms_vec3_sub(at[1], at[0]), glms_vec3_sub(at[2], at[1]))) > 0.0f))
+        return;
+    for (int a = 0; a < 3; a++) {
+        const float low = fminf(at[0].raw[a], fminf(at[1].raw[a], at[2].raw[a]));
+        const float high = fmaxf(at[0].raw[a], fmaxf(at[1].raw[a], at[2].raw[a]));
+        const int end = grid->cells[a] - 1;
+        first[a] = (int)floorf(low);
+        last[a] = (int)ceilf(high) - 1;
+        if (last[a] < first[a]) last[a] = first[a];
+        if (first[a] > end) first[a] = end;
+        if (last[a] > end) last[a] = end;
+    }
+    for (int z = first[2]; z <= last[2]; z++)
+        for (int y = first[1]; y <= last[1]; y++)
+            for (int x = first[0]; x <= last[0]; x++)
+                if (touches(vec3_of((float)x + 0.5f, (float)y + 0.5f, (float)z + 0.5f), at))
+                    twin->voxels[z][y][x] = true;
+}
+
+static int check_same(const struct vct_rig *rig, const struct twin *twin, const struct vct_set *set)
+{
+    uint32_t *mask = vct_rig_mask(rig, set);
+    int count = 0;
+    for (int z = 0; z < DIM; z++)
+        for (int y = 0; y < DIM; y++)
+            for (int x = 0; x < DIM; x++) {
+                const bool has = vct_rig_has(rig, mask, x, y, z);
+                if (has != twin->voxels[z][y][x])
+                    fail_msg("voxel %d %d %d: %d, the twin says %d", x, y, z, has,
+                             twin->voxels[z][y][x]);
+                count += has;
+            }
+    free(mask);
+    return count;
+}
+
+// ---- Scenes
+
+static int add_triangle(struct vct_rig *rig, const vec3s corners[3], int material)
+{
+    vec3s positions[3] = { corners[0], corners[1], corners[2] };
+    vec3s normals[3] = { vec3_of(0, 1, 0), vec3_of(0, 1, 0), vec3_of(0, 1, 0) };
+    uint32_t indices[3] = { 0, 1, 2 };
+    const int mesh = scene_add_mesh(rig->studio.scene, &(struct mesh){ .name = "triangle",
+                                                                       .vertex_count = 3,
+                                                                       .index_count = 3,
+                                                                       .positions = positions,
+                                                                       .normals = normals,
+                                                                       .indices = indices,
+                                                                       .material = material });
+    assert_true(mesh >= 0);
+    return studio_instance(&rig->studio, mesh, NULL);
+}
+
+static vec3s random_point(struct rng *rng)
+{
+    return vec3_of(11.3f * rng_float(rng), 8.1f * rng_float(rng), 9.7f * rng_float(rng));
+}
+
+// Of all sizes: a third of them span the scene, a third a few voxels, a third less than one.
+static void random_triangle(struct rng *rng, int kind, vec3s out[3])
+{
+    out[0] = random_point(rng);
+    for (int k = 1; k < 3; k++) {
+        const float part = kind == 0 ? 1.0f : kind == 1 ? 0.25f : 0.02f;
+        out[k] = glms_vec3_lerp(out[0], random_point(rng), part);
+    }
+}
+
+TEST_GPU(voxels_are_those_that_a_triangle_touches)
+{
+    enum { TRIANGLES = 45 };
+    struct vct_rig rig;
+    struct twin twin = { 0 };
+    vec3s triangles[TRIANGLES][3];
+    struct rng rng = rng_for(11, 0, 0);
+    vct_rig_init(&rig, gpu);
+    const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
+    for (int i = 0; i < TRIANGLES; i++) {
+        random_triangle(&rng, i % 3, triangles[i]);
+        add_triangle(&rig, triangles[i], matte);
+    }
+    vct_rig_open(&rig, "resolution=16");
+    studio_render(&rig.studio);
+    for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, &rig.vct->grid, triangles[i]);
+    const int count = check_same(&rig, &twin, &rig.vct->rest);
+    CHECK(count > 200 && count < DIM * DIM * DIM / 2); // neither all nor nothing
+    vct_rig_finish(&rig);
+}
+
+TEST_GPU(what_is_no_triangle_touches_nothing)
+{
+    struct vct_rig rig;
+    struct twin twin = { 0 };
+    vct_rig_init(&rig, gpu);
+    const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
+    const vec3s real[3] = { vec3_of(0, 0, 0), vec3_of(2, 0, 0.5f), vec3_of(0.3f, 2, 1) };
+    const vec3s line[3] = { vec3_of(0, 0, 0), vec3_of(4, 4, 4), vec3_of(8, 8, 8) };
+    const vec3s point[3] = { vec3_of(7, 7, 7), vec3_of(7, 7, 7), vec3_of(7, 7, 7) };
+    add_triangle(&rig, real, matte);
+    add_triangle(&rig, line, matte);
+    add_triangle(&rig, point, matte);
+    vct_rig_open(&rig, "resolution=16");
+    studio_render(&rig.studio);
+    twin_add(&twin, &rig.vct->grid, real);
+    CHECK(check_same(&rig, &twin, &rig.vct->rest) > 0);
+    vct_rig_finish(&rig);
+}
+
+// 12 m in 12 cells of 1 m: every wall lies in the border of the grid, none may be lost.
+TEST_GPU(walls_on_the_border_of_the_grid_are_kept)
+{
+    struct vct_rig rig;
+    vct_rig_init(&rig, gpu);
+    studio_box(&rig.studio, vec3_of(0, 0, 0), vec3_of(12, 12, 12), true,
+               studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f)));
+    vct_rig_open(&rig, "resolution=16");
+    studio_render(&rig.studio);
+    CHECK(rig.vct->grid.cell_m == 1.0f && rig.vct->grid.origin_m.x == 0.0f);
+    for (int axis = 0; axis < 3; axis++) CHECK(rig.vct->grid.cells[axis] == 12);
+    uint32_t *mask = vct_rig_mask(&rig, &rig.vct->rest);
+    for (int z = 0; z < DIM; z++)
+        for (int y = 0; y < DIM; y++)
+            for (int x = 0; x < DIM; x++) {
+                const bool inside = x < 12 && y < 12 && z < 12;
+                const bool border = x == 0 || y == 0 || z == 0 || x == 11 || y == 11 || z == 11;
+                CHECK(vct_rig_has(&rig, mask, x, y, z) == (inside && border));
+            }
+    free(mask);
+    vct_rig_finish(&rig);
+}
+
+TEST_GPU(what_moves_is_voxelised_anew_and_what_stands_is_kept)
+{
+    struct vct_rig rig;
+    struct twin still = { 0 }, moving = { 0 };
+    vct_rig_init(&rig, gpu);
+    const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
+    const vec3s one[3] = { vec3_of(0, 0, 0), vec3_of(12, 0, 0), vec3_of(0, 0.3f, 12) };
+    vec3s other[3] = { vec3_of(3, 5.2f, 3), vec3_of(8, 5.4f, 3), vec3_of(3, 9.7f, 3.3f) };
+    add_triangle(&rig, one, matte);
+    const int instance = add_triangle(&rig, other, matte);
+    vct_rig_open(&rig, "resolution=16");
+    studio_render(&rig.studio);
+    const vec3s step = vec3_of(1.5f, -1, 2);
+    mat4s *world = &rig.studio.pose.world_from_node[rig.studio.scene->instances[instance].node];
+    *world = glms_translate(*world, step);
+    studio_render(&rig.studio);
+    studio_render(&rig.studio);
+    for (int i = 0; i < 3; i++) other[i] = glms_vec3_add(other[i], step);
+    twin_add(&still, &rig.vct->grid, one);
+    twin_add(&moving, &rig.vct->grid, other);
+    CHECK(check_same(&rig, &still, &rig.vct->rest) > 0);
+    CHECK(check_same(&rig, &moving, &rig.vct->moving) > 0);
+    vct_rig_finish(&rig);
+}

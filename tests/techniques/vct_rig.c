@@ -1,0 +1,65 @@
+#include "techniques/vct_rig.h"
+
+#include <stdlib.h>
+
+void vct_rig_init(struct vct_rig *rig, struct gpu *gpu)
+{
+    *rig = (struct vct_rig){ 0 };
+    studio_init(&rig->studio, gpu);
+}
+
+static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    technique_vct.record(user, cmd, view);
+}
+
+void vct_rig_open(struct vct_rig *rig, const char *text)
+{
+    struct studio *s = &rig->studio;
+    studio_open(s);
+    struct vct_options options;
+    option_defaults(&technique_vct.options, &options);
+    CHECK(option_parse(test_host(), &technique_vct.options, "vct", text, &options));
+    const struct technique_create how = { .host = test_host(),
+                                          .gpu = s->gpu,
+                                          .pose = &s->pose,
+                                          .options = &options,
+                                          .width = s->width,
+                                          .height = s->height };
+    rig->vct = calloc(1, technique_vct.state_size);
+    CHECK(technique_vct.check(&how));
+    CHECK(technique_vct.create(rig->vct, &how));
+    s->indirect =
+        (struct frame_indirect){ .record = record, .user = rig->vct, .needs = technique_vct.needs };
+}
+
+void vct_rig_finish(struct vct_rig *rig)
+{
+    technique_vct.destroy(rig->vct);
+    free(rig->vct);
+    studio_finish(&rig->studio);
+}
+
+uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set)
+{
+    const size_t bytes = gpu_buffer_bytes(rig->studio.gpu, set->mask);
+    uint32_t *mask = malloc(bytes);
+    CHECK(gpu_buffer_download(rig->studio.gpu, set->mask, 0, mask, bytes));
+    return mask;
+}
+
+bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z)
+{
+    const int dim = rig->vct->options.resolution;
+    const uint32_t index = (uint32_t)((z * dim + y) * dim + x);
+    return mask[index / 32] >> (index % 32) & 1u;
+}
+
+float *vct_rig_light(const struct vct_rig *rig, uint32_t level)
+{
+    const size_t dim = vct_volume_dim(&rig->vct->options) >> level;
+    const size_t floats = 6 * dim * dim * dim * 4;
+    float *light = malloc(floats * sizeof *light);
+    CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->light, level, 0, light, 4, floats));
+    return light;
+}

@@ -1,0 +1,22 @@
+// Voxel cone tracing in a studio, with its voxels and its light volume open to the tests.
+#pragma once
+
+#include "frame/studio.h"
+#include "techniques/vct/vct.h"
+#include "techniques/vct/vct_state.h"
+
+struct vct_rig {
+    struct studio studio; // vct_rig_open takes it over
+    struct vct *vct;
+};
+
+// Fill the studio between these two.
+void vct_rig_init(struct vct_rig *rig, struct gpu *gpu);
+void vct_rig_open(struct vct_rig *rig, const char *options);
+void vct_rig_finish(struct vct_rig *rig);
+
+// One word for each 32 voxels of a set, as many as resolution³ need. To be freed.
+uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set);
+bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z);
+// A level of the light volume, 4 floats a texel, all six ways. To be freed.
+float *vct_rig_light(const struct vct_rig *rig, uint32_t level);
