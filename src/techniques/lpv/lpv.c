@@ -34,9 +34,10 @@ static const struct option_row higher_order_rows[] = {
         .inject_emitters = technique ".inject_emitters", .resolve = technique ".resolve",          \
         .geometry = technique ".geometry", .refine = technique ".refine",                          \
         .propagate = technique ".propagate", .apply = technique ".apply",                          \
-        .probes = technique ".probes", .debug = technique ".debug", .sums = technique ".sums",     \
-        .injected = technique ".injected", .light = technique ".light",                            \
-        .coarser_light = technique ".coarser_light",                                               \
+        .probes = technique ".probes", .surfaces = technique ".surfaces",                          \
+        .reflected = technique ".reflected", .sent = technique ".sent",                            \
+        .debug = technique ".debug", .sums = technique ".sums", .injected = technique ".injected", \
+        .light = technique ".light", .coarser_light = technique ".coarser_light",                  \
         .steps = { technique ".step_even", technique ".step_odd" }, .linear = technique ".linear", \
         .of_geometry = LPV_GEOMETRY_NAMES(technique),                                              \
     }
@@ -158,7 +159,7 @@ static bool create(struct lpv_cascades *cascades, const struct lpv_names *name,
     lpv->gpu = how->gpu;
     lpv->options = *(const struct lpv_options *)how->options;
     return create_resources(lpv) && create_pipelines(lpv) && lpv_geometry_create(lpv) &&
-           lpv_probes_create(lpv) && lpv_cascades_create(cascades);
+           lpv_probes_create(lpv) && lpv_bounce_create(lpv) && lpv_cascades_create(cascades);
 }
 
 static bool lpv_create(void *state, const struct technique_create *how)
@@ -183,13 +184,17 @@ static void lpv_set_options(void *state, const void *options)
     next.dim = lpv->options.dim;
     next.geometry = lpv->options.geometry;
     next.probes = lpv->options.probes;
+    next.bounces = lpv->options.bounces;
     lpv->options = next;
 }
 
 static void lpv_invalidate(void *state, uint32_t changes)
 {
     if (!(changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL))) return;
-    for (struct lpv *level = state; level; level = level->coarser) lpv_geometry_forget(level);
+    for (struct lpv *level = state; level; level = level->coarser) {
+        lpv_geometry_forget(level);
+        level->bounce.kept = false;
+    }
 }
 
 // The coarser cascades first.
@@ -198,6 +203,7 @@ static void record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
     if (lpv->coarser) record_light(lpv->coarser, cmd, view);
     lpv_record_injection(lpv, cmd, view);
     lpv_record_geometry(lpv, cmd, view);
+    lpv_record_surfaces(lpv, cmd, view);
     lpv_record_propagation(lpv, cmd);
 }
 
@@ -246,6 +252,7 @@ static void lpv_destroy(void *state)
         gpu_image_destroy(lpv->gpu, images[i]);
     gpu_buffer_destroy(lpv->gpu, &lpv->sums);
     lpv_probes_destroy(lpv);
+    lpv_bounce_destroy(lpv);
     gpu_pipeline *pipelines[] = { &lpv->inject,    &lpv->inject_emitters, &lpv->resolve,
                                   &lpv->propagate, &lpv->propagate_held,  &lpv->apply,
                                   &lpv->debug };
@@ -264,7 +271,8 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     const uint64_t slab = how->precision == LPV_PRECISION_HALF ? 3 * half : 3 * full + half;
     const uint64_t lights = (uint64_t)(how->cascades - 1) * half; // of the coarser cascades
     return dim * dim * dim * (lpv_cell_bytes(how) + (slab + lights) * lpv_slabs(how)) +
-           (uint64_t)how->cascades * lpv_geometry_bytes(how) + lpv_probes_bytes(how);
+           (uint64_t)how->cascades * lpv_geometry_bytes(how) + lpv_probes_bytes(how) +
+           lpv_bounce_bytes(how);
 }
 
 #define LPV_TECHNIQUE(name_, title_, paper_, rows_)                                                \

@@ -27,6 +27,7 @@
 #include "frame/octahedral.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#include "techniques/lpv/lpv_irradiance.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -39,18 +40,6 @@ layout(set = 0, binding = 3) uniform sampler2D normal;
 layout(set = 0, binding = 4) uniform sampler3D light;
 layout(set = 0, binding = 5, rgba16f) uniform image2D irradiance;
 
-// ∫ I(ω) (−n·ω)₊ dω in the bands of I, weighted with the window.
-vec3 irradiance_of(lpv_light light, vec3 n)
-{
-    vec3 sum = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);
-    vec3 products = n.yzx * n.zxy;
-    for (int a = 0; a < 3; a++) {
-        band_1 -= SH_Y1 * n[a] * light.along[a];
-        band_2 += n[a] * n[a] * light.square[a] + SH_Y2_XY * products[a] * light.product[a];
-    }
-    return sum + lpv.window * (SH_COSINE_1 * band_1 + SH_COSINE_2 * band_2);
-}
-
 bool covered_by_finer(vec3 surface)
 {
     if (push.finer_cell_m == 0.0) return false;
@@ -60,7 +49,7 @@ bool covered_by_finer(vec3 surface)
 
 vec3 linear_irradiance(vec3 at, vec3 n)
 {
-    return irradiance_of(lpv_sample(light, at), n);
+    return lpv_irradiance(lpv_sample(light, at), n);
 }
 
 // A cubic B-spline over 4³ cells in eight filtered look-ups (Sigg & Hadwiger 2005): along an axis, the weights of two cells

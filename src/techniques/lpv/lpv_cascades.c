@@ -20,10 +20,11 @@ bool lpv_cascades_create(struct lpv_cascades *cascades)
         *level = *finest;
         level->light = (gpu_image){ 0 };
         level->geometry = (struct lpv_geometry){ 0 };
+        level->bounce.surfaces = (gpu_buffer){ 0 };
         level->coarser = NULL;
         cascades->levels[i - 1].coarser = level;
         if (!lpv_create_volume(level, level->names->coarser_light, GPU_RGBA16F, &level->light) ||
-            !lpv_geometry_create(level))
+            !lpv_geometry_create(level) || !lpv_surfaces_create(level))
             return false;
     }
     return true;
@@ -34,6 +35,7 @@ void lpv_cascades_destroy(struct lpv_cascades *cascades)
     for (struct lpv *level = cascades->levels[0].coarser; level; level = level->coarser) {
         gpu_image_destroy(level->gpu, &level->light);
         lpv_geometry_destroy(level);
+        gpu_buffer_destroy(level->gpu, &level->bounce.surfaces);
     }
     gpu_pipeline_destroy(cascades->levels[0].gpu, &cascades->levels[0].refine);
 }

@@ -4,8 +4,6 @@
 
 #include "frame/scene_gpu.h"
 
-#include <string.h>
-
 static size_t lines_bytes(const struct lpv *lpv)
 {
     const int32_t *cells = lpv->grid.cells;
@@ -34,19 +32,13 @@ static void record_lines(struct lpv *lpv, struct gpu_cmd *cmd, const struct scen
     }
 }
 
-static bool same_grid(const struct lpv_grid *a, const struct lpv_grid *b)
-{
-    return a->cell_m == b->cell_m && memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&
-           memcmp(&a->origin_m, &b->origin_m, sizeof a->origin_m) == 0;
-}
-
 // Whether `still` is what it would be if it were made now. In a scene's first frame nothing is
 // known to move; what does then leaves it.
 static bool is_kept(const struct lpv *lpv, const struct frame_view *view, int moving_count)
 {
     const struct lpv_geometry *g = &lpv->geometry;
     return g->kept && view->index > 0 && g->kept_moving_count == moving_count &&
-           same_grid(&g->kept_grid, &lpv->grid);
+           lpv_grid_equal(&g->kept_grid, &lpv->grid);
 }
 
 bool lpv_record_geometry_scene(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)

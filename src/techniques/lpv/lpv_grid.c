@@ -3,6 +3,7 @@
 #include "techniques/lpv/lpv_grid.h"
 
 #include <math.h>
+#include <string.h>
 
 bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *out)
 {
@@ -41,6 +42,12 @@ void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, ve
         if (first > low) out->open |= LPV_OPEN(axis, 0);
         if (last < high) out->open |= LPV_OPEN(axis, 1);
     }
+}
+
+bool lpv_grid_equal(const struct lpv_grid *a, const struct lpv_grid *b)
+{
+    return a->cell_m == b->cell_m && memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&
+           memcmp(&a->origin_m, &b->origin_m, sizeof a->origin_m) == 0;
 }
 
 static double strongest(vec3s v)
@@ -88,7 +95,7 @@ bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out)
         most = fmax(most, strongest(lights->emitters[i].flux));
         total += strongest(lights->emitters[i].flux);
     }
-    total += strongest(lights->sky_flux);
+    total = (total + strongest(lights->sky_flux)) * (1.0 + (double)lights->bounces);
     if (!(total > 0.0) || !isfinite(total)) return false;
     // The largest coefficient of a unit-flux lobe is below 1/2: 2/3 √(3/4π) = 0.326 in band 1.
     out->fixed_from_flux = power_of_two_below(most * 0.5, 30);

@@ -23,6 +23,7 @@ bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *ou
 // One of several cascades, with cells of cell_m: the bounds where they need no more than `dim` cells along an axis, else the part
 // around `eye`. It moves by two cells at a time, one of the next coarser cascade.
 void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s eye, struct lpv_grid *out);
+bool lpv_grid_equal(const struct lpv_grid *a, const struct lpv_grid *b);
 
 // Injection adds whole numbers, so that its order does not matter. A block of LPV_TEXELS² texels of a reflective shadow
 // map, or a point of an emissive surface, adds at most 2^30 to a coefficient; sums are 64 bits wide and cannot overflow.
@@ -38,6 +39,7 @@ struct lpv_lights {
     const struct frame_emitter *emitters;
     int emitter_count;
     vec3s sky_flux; // of a cell under the sky alone
+    int bounces;    // more than one: each adds as much as there is at most
 };
 // false: there is no light (or its strength is not finite).
 bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out);

@@ -6,6 +6,8 @@
 
 #define LPV_TEXELS 4 // side of the block of texels of a reflective shadow map that one invocation injects
 #define LPV_EMITTERS_LOCAL 64 // invocations of a workgroup that injects emissive surfaces, one point each
+#define LPV_SURFACE_LINES 4 // along each side of a cell's face; where one crosses a triangle its surface is sampled
+#define LPV_SURFACE_UNIT 65536.0 // of reflectance × area, per cells²
 #define LPV_RUN 8 // cells along z that an invocation of a step with 26 neighbours takes; divides every dimension
 
 #define LPV_MAX_CASCADES 4
@@ -48,6 +50,7 @@ struct lpv_params {
     float fixed_from_flux;  // integer per scaled lumen
     float grid_from_fixed;  // the grid's unit per integer
     float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
+    float mean_way;         // of light in a step, cells
     float offset_m;         // of the look-up, along the normal
     float window;           // weight of the bands above the first at the look-up
     float blocking;         // factor on what the geometry volume says is blocked
@@ -89,7 +92,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 54 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 55 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");

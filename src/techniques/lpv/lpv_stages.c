@@ -21,6 +21,7 @@ static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_vie
         .rsm_size = view->rsm_size,
         .emitters = view->emitters,
         .emitter_count = lpv->options.emitters ? view->emitter_count : 0,
+        .bounces = lpv->options.bounces,
     };
 }
 
@@ -51,6 +52,7 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .grid_from_fixed = scale->grid_from_flux / scale->fixed_from_flux,
         .irradiance_scale =
             options->gain * mean_way / (grid->cell_m * grid->cell_m * scale->grid_from_flux),
+        .mean_way = mean_way,
         .offset_m = options->offset * grid->cell_m,
         .window = options->window,
         .blocking = options->blocking,
@@ -175,10 +177,25 @@ static gpu_image record_held(struct lpv *lpv, struct gpu_cmd *cmd, int left)
     return held;
 }
 
+// What surfaces reflect of what has arrived goes on with what was injected, its own first step
+// free as well.
+static gpu_image record_bounce(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image arrived)
+{
+    const struct lpv_bounce *bounce = &lpv->bounce;
+    const bool half = lpv->options.precision == LPV_PRECISION_HALF;
+    const gpu_image other = half ? lpv->light : lpv->steps[1];
+    const gpu_image unused = arrived.id == lpv->steps[0].id ? other : lpv->steps[0];
+    lpv_record_bounce(lpv, cmd, arrived);
+    if (lpv->options.geometry == LPV_GEOMETRY_OFF) return bounce->sent;
+    record_step(lpv, cmd, lpv->propagate_held, bounce->sent, bounce->reflected, unused);
+    gpu_copy_image(cmd, bounce->sent, unused);
+    return bounce->sent;
+}
+
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
 {
     const int first = lpv->options.steps - 1;
-    gpu_image before = lpv->injected;
+    gpu_image before = lpv->injected, source = before;
     gpu_scope_begin(cmd, lpv->names->propagate);
     gpu_image injected = record_held(lpv, cmd, first);
     if (lpv->coarser) {
@@ -187,11 +204,11 @@ void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
     }
     for (int left = first; left >= 0; left--) {
         const gpu_image after = step_target(lpv, left);
-        record_step(lpv, cmd, lpv->propagate, left == first ? injected : lpv->injected, before,
-                    after);
+        record_step(lpv, cmd, lpv->propagate, left == first ? injected : source, before, after);
         if (left == first && injected.id != lpv->injected.id)
             gpu_copy_image(cmd, lpv->injected, injected);
         before = after;
+        if (lpv_bounces_after(lpv, left)) source = record_bounce(lpv, cmd, after);
     }
     gpu_scope_end(cmd);
 }

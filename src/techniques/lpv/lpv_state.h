@@ -1,6 +1,7 @@
 // The private state of light propagation volumes, shared by its stages.
 #pragma once
 
+#include "techniques/lpv/lpv_bounce.h"
 #include "techniques/lpv/lpv_geometry.h"
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_math.h"
@@ -42,8 +43,9 @@ static inline float lpv_margin(const struct lpv_options *options, vec3s sky)
 // Of passes and objects, "technique.thing".
 struct lpv_names {
     const char *gi;
-    const char *inject, *inject_emitters, *resolve, *geometry, *refine, *propagate, *apply, *probes;
-    const char *debug, *sums, *injected, *steps[2], *light, *coarser_light, *linear;
+    const char *inject, *inject_emitters, *resolve, *geometry, *surfaces, *refine, *propagate;
+    const char *apply, *probes, *debug;
+    const char *sums, *injected, *reflected, *sent, *steps[2], *light, *coarser_light, *linear;
     struct lpv_geometry_names of_geometry;
 };
 
@@ -61,6 +63,7 @@ struct lpv {
     gpu_image light;    // RGBA16F: accumulated over all steps
     struct lpv_geometry geometry;
     struct lpv_probes probes;
+    struct lpv_bounce bounce;
     struct lpv_grid grid;
     struct lpv_params params; // of the frame being recorded
     bool lit;                 // the frame being recorded has light and something to light

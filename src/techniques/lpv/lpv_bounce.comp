@@ -1,0 +1,59 @@
+// A bounce: what surfaces reflect of the light that has come to them so far joins what was injected. A cell's surfaces are
+// six, one for each direction ±a, with the reflectance times area of lpv_surfaces.comp; each receives E(±a) and sends it on
+// as a clamped cosine around ±a.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "core/sh.glsl"
+#include "techniques/lpv/lpv_grid.glsl"
+#include "techniques/lpv/lpv_light.glsl"
+#include "techniques/lpv/lpv_irradiance.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 1, scalar) readonly buffer lpv_surfaces
+{
+    uint reflecting[];
+};
+layout(set = 0, binding = 2) uniform sampler3D injected; // by lamps and emissive surfaces
+layout(set = 0, binding = 3) uniform sampler3D arrived; // accumulated so far
+layout(set = 0, binding = 4) uniform writeonly image3D reflected;
+layout(set = 0, binding = 5) uniform writeonly image3D sent; // both together
+
+// Reflectance × area in cells².
+vec3 reflecting_area(int at)
+{
+    return vec3(reflecting[at], reflecting[at + 1], reflecting[at + 2]) / LPV_SURFACE_UNIT;
+}
+
+// Flux: irradiance is w / a² times the integral, area a² times the number.
+vec3 reflected_flux(ivec3 cell, vec3 area, vec3 n)
+{
+    vec3 at = vec3(cell) + 0.5 + (lpv.offset_m / lpv.cell_m - 0.5) * n; // the surface is half a cell behind
+    return lpv.mean_way * area * lpv_irradiance(lpv_sample(arrived, at), n);
+}
+
+void main()
+{
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    if (!lpv_inside(cell)) return;
+    vec4 before[7], slabs[7] = vec4[7](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+    for (int side = 0; side < 6; side++) {
+        vec3 area = reflecting_area(18 * lpv_index(cell) + 3 * side), n = vec3(0.0);
+        if (area == vec3(0.0)) continue;
+        n[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
+        vec3 flux = reflected_flux(cell, area, n);
+        float lobe[9];
+        sh9_clamped_cosine(n, lobe);
+        for (int i = 0; i < LPV_BANDS * LPV_BANDS; i++)
+            for (int colour = 0; colour < 3; colour++) {
+                int number = 3 * i + colour;
+                slabs[number / 4][number % 4] += flux[colour] * lobe[i] / SH_COSINE_0;
+            }
+    }
+    lpv_store_slabs(reflected, cell, slabs);
+    lpv_fetch_slabs(injected, cell, before);
+    for (int i = 0; i < LPV_SLABS; i++) slabs[i] += before[i];
+    lpv_store_slabs(sent, cell, slabs);
+}

@@ -1,0 +1,221 @@
+// Further bounces: what is known of the surfaces, and what they send on.
+#include "frame/studio.h"
+#include "techniques/lpv_rig.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDES = 6, NUMBERS = SIDES * RIG_COLOURS };
+
+static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    technique_lpv.record(user, cmd, view);
+}
+
+static void use(struct studio *s, struct lpv *lpv)
+{
+    s->indirect = (struct frame_indirect){ record, lpv, technique_lpv.needs };
+}
+
+// Σ reflectance × area over all cells, in m²: [side][colour].
+static void read_areas(struct lpv *lpv, double out[NUMBERS])
+{
+    const int32_t *cells = lpv->grid.cells;
+    const size_t count = (size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2];
+    const double unit = (double)(lpv->grid.cell_m * lpv->grid.cell_m) / LPV_SURFACE_UNIT;
+    uint32_t *words = malloc(count * NUMBERS * sizeof *words);
+    CHECK(gpu_buffer_download(lpv->gpu, lpv->bounce.surfaces, 0, words,
+                              count * NUMBERS * sizeof *words));
+    memset(out, 0, NUMBERS * sizeof *out);
+    for (size_t i = 0; i < count * NUMBERS; i++) out[i % NUMBERS] += unit * words[i];
+    free(words);
+}
+
+static void begin(struct studio *s, struct gpu *gpu)
+{
+    studio_init(s, gpu);
+    studio_look(s, vec3_of(0, 2, 5), vec3_of(0, 1, 0));
+    studio_add_sun(s, vec3_of(0.3f, -1, -0.2f), vec3_of(1, 1, 1));
+}
+
+// Lines sample the area: a border's length times half their distance may be missed or counted
+// twice.
+TEST_GPU(lpv_surfaces_have_the_area_and_colour_of_the_scene)
+{
+    struct studio s;
+    begin(&s, gpu);
+    const int matte = studio_matte(&s, vec3_of(0.2f, 0.5f, 0.8f));
+    studio_floor(&s, 3, matte);                                            // +y
+    studio_box(&s, vec3_of(-1, 1, -1), vec3_of(1, 2, 1.5f), false, matte); // outwards
+    struct node flip = node_default();
+    flip.scale = vec3_of(1, -1, 1);
+    flip.translation = vec3_of(0, 3, 0);
+    studio_instance(&s, 0, &flip); // the floor as a ceiling, −y
+    // A slope of 4 × 5 m, n = (3/5, 4/5, 0).
+    studio_quad(&s, vec3_of(-2, 2, 2), vec3_of(2, -1, 2), vec3_of(2, -1, -2), vec3_of(-2, 2, -2),
+                matte);
+    struct material metal = material_default();
+    metal.metallic = 1;
+    studio_floor(&s, 2, studio_material(&s, &metal)); // reflects nothing diffusely
+    studio_open(&s);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
+    use(&s, lpv);
+    studio_render(&s);
+    double areas[NUMBERS];
+    read_areas(lpv, areas);
+    // +x −x +y −y +z −z
+    const double expected[SIDES] = { 2.5 + 20 * 0.36, 2.5, 36 + 5 + 20 * 0.64, 36 + 5, 2, 2 };
+    const double albedo[RIG_COLOURS] = { 0.2, 0.5, 0.8 };
+    for (int side = 0; side < SIDES; side++)
+        for (int c = 0; c < RIG_COLOURS; c++)
+            CHECK_RELATIVE(areas[RIG_COLOURS * side + c], albedo[c] * expected[side], 0.06);
+    rig_destroy(lpv);
+    studio_finish(&s);
+}
+
+// A cutout and both sides of it.
+TEST_GPU(lpv_surfaces_respect_masks_and_sides)
+{
+    struct studio s;
+    begin(&s, gpu);
+    uint8_t pixels[2 * 4] = { 255, 255, 255, 255, 255, 255, 255, 0 }; // the right half is away
+    const int image = scene_add_image(
+        s.scene, &(struct scene_image){
+                     .name = "half", .width = 2, .height = 1, .rgba = pixels, .has_alpha = true });
+    struct material m = material_default();
+    m.metallic = 0;
+    m.alpha_mode = ALPHA_MASK;
+    m.alpha_cutoff = 0.5f;
+    m.double_sided = true;
+    m.base_color_map.image = image;
+    m.base_color_map.nearest = true;
+    studio_floor(&s, 2, studio_material(&s, &m));
+    studio_quad(&s, vec3_of(-2, 0, -2), vec3_of(2, 0, -2), vec3_of(2, 2, -2), vec3_of(-2, 2, -2),
+                studio_matte(&s, vec3_of(1, 1, 1))); // +z, 8 m²
+    studio_open(&s);
+    struct lpv *lpv = rig_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
+    use(&s, lpv);
+    studio_render(&s);
+    double areas[NUMBERS];
+    read_areas(lpv, areas);
+    const double expected[SIDES] = { 0, 0, 8, 8, 8, 0 };
+    for (int side = 0; side < SIDES; side++)
+        CHECK_NEAR(areas[RIG_COLOURS * side], expected[side], 0.06 * 8);
+    rig_destroy(lpv);
+    studio_finish(&s);
+}
+
+// Mean irradiance of a picture.
+static double render_mean(struct studio *s)
+{
+    studio_render(s);
+    float *e = studio_read(s, READ_IRRADIANCE);
+    double sum = 0;
+    for (uint32_t i = 0; i < 3 * s->width * s->height; i++) sum += (double)e[i];
+    free(e);
+    return sum;
+}
+
+static double closed_box(struct gpu *gpu, const char *gi, float albedo)
+{
+    struct studio s;
+    studio_init(&s, gpu);
+    studio_look(&s, vec3_of(1.8f, 1.8f, 1.8f), vec3_of(-1, -1, -1));
+    studio_add_point(&s, vec3_of(0, 0, 0), vec3_of(100, 100, 100));
+    studio_box(&s, vec3_of(-2, -2, -2), vec3_of(2, 2, 2), true,
+               studio_matte(&s, vec3_of(albedo, albedo, albedo)));
+    studio_open(&s);
+    struct lpv *lpv = rig_create(gpu, gi);
+    use(&s, lpv);
+    const double mean = render_mean(&s);
+    rig_destroy(lpv);
+    studio_finish(&s);
+    return mean;
+}
+
+// A lamp in the middle of a closed box: of its flux Φ all walls get Φ ρ by one bounce, Φ ρ / (1 −
+// ρ) by all of them.
+TEST_GPU(lpv_bounces_are_near_the_geometric_series)
+{
+    static const char *const techniques[] = { "lpv", "holpv" };
+    static const float albedos[] = { 0.3f, 0.6f };
+    for (int t = 0; t < 2; t++)
+        for (int i = 0; i < 2; i++) {
+            char gi[64];
+            double mean[3];
+            static const int bounces[3] = { 0, 1, 8 };
+            for (int k = 0; k < 3; k++) {
+                snprintf(gi, sizeof gi, "%s:dim=16,steps=64,bounces=%d", techniques[t], bounces[k]);
+                mean[k] = closed_box(gpu, gi, albedos[i]);
+            }
+            const double rho = (double)albedos[i], all = mean[2] / mean[0];
+            print_message("%s, albedo %.1f: by one more %.3f (%.3f), by eight more %.3f (%.3f)\n",
+                          techniques[t], rho, mean[1] / mean[0], 1 + rho, all, 1 / (1 - rho));
+            // The far wall gets a part of its share alone, and a wall some of its own.
+            CHECK(mean[1] > 1.1 * mean[0] && mean[2] > mean[1]);
+            CHECK(all - 1 > 0.6 * rho / (1 - rho) && all - 1 < 1.4 * rho / (1 - rho));
+        }
+}
+
+TEST_GPU(lpv_bounces_are_linear)
+{
+    struct studio s;
+    begin(&s, gpu);
+    const int matte = studio_matte(&s, vec3_of(0.7f, 0.5f, 0.3f));
+    studio_floor(&s, 3, matte);
+    studio_quad(&s, vec3_of(-3, 0, -2), vec3_of(3, 0, -2), vec3_of(3, 3, -2), vec3_of(-3, 3, -2),
+                matte);
+    studio_add_point(&s, vec3_of(1, 1, 1), vec3_of(3, 2, 1));
+    studio_open(&s);
+    float *e[4];
+    double most = 0;
+    for (int lights = 1; lights < 4; lights++) {
+        struct lpv *lpv = rig_create(gpu, "lpv:dim=16,steps=24,bounces=2,precision=float");
+        const vec3s one = lights & 1 ? vec3_of(1, 1, 1) : vec3_of(0, 0, 0);
+        const vec3s two = lights & 2 ? vec3_of(3, 2, 1) : vec3_of(0, 0, 0);
+        s.lights[0].intensity = one;
+        s.lights[1].intensity = two;
+        use(&s, lpv);
+        studio_render(&s);
+        e[lights] = studio_read(&s, READ_IRRADIANCE);
+        rig_destroy(lpv);
+    }
+    const size_t count = (size_t)s.width * s.height * 3;
+    for (size_t i = 0; i < count; i++) most = fmax(most, (double)e[3][i]);
+    for (size_t i = 0; i < count; i++) // where nothing is clamped; 11 bits of three results
+        if (e[1][i] > 0 && e[2][i] > 0)
+            CHECK_NEAR((double)e[3][i], (double)e[1][i] + (double)e[2][i], 2e-3 * most);
+    for (int i = 1; i < 4; i++) free(e[i]);
+    studio_finish(&s);
+}
+
+// Surfaces are kept while nothing moves, and are new when something has.
+TEST_GPU(lpv_surfaces_follow_what_moves)
+{
+    struct studio s;
+    begin(&s, gpu);
+    const int matte = studio_matte(&s, vec3_of(0.7f, 0.5f, 0.3f));
+    studio_floor(&s, 3, matte);
+    const int slab = studio_quad(&s, vec3_of(-1, 1, 0), vec3_of(1, 1, 0), vec3_of(1, 2, 0),
+                                 vec3_of(-1, 2, 0), matte);
+    studio_open(&s);
+    struct lpv *kept = rig_create(gpu, "lpv:dim=16,steps=16,bounces=1");
+    use(&s, kept);
+    const double first = render_mean(&s), second = render_mean(&s);
+    CHECK(first > 0 && first == second);
+    // Turned by a right angle around the vertical axis: it looks along x.
+    mat4s *m = &s.pose.world_from_node[s.scene->instances[slab].node];
+    *m = glms_rotate_make(GLM_PI_2f, vec3_of(0, 1, 0));
+    const double turned = render_mean(&s);
+    double areas[NUMBERS];
+    read_areas(kept, areas);
+    CHECK(areas[0] > 1.0 && areas[3 * 4] < 0.1);
+    rig_destroy(kept);
+    struct lpv *fresh = rig_create(gpu, "lpv:dim=16,steps=16,bounces=1");
+    use(&s, fresh);
+    CHECK(render_mean(&s) == turned);
+    rig_destroy(fresh);
+    studio_finish(&s);
+}
