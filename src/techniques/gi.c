@@ -170,7 +170,11 @@ static void gi_record(void *user, struct gpu_cmd *cmd, const struct frame_view *
 struct frame_indirect gi_hook(struct gi *gi)
 {
     uint32_t needs = 0;
-    for (int i = 0; i < gi->spec.count; i++) needs |= gi->spec.technique[i]->needs;
+    for (int i = 0; i < gi->spec.count; i++) {
+        const struct technique *technique = gi->spec.technique[i];
+        needs |= technique->needs;
+        if (technique->more_needs) needs |= technique->more_needs(gi->spec.options[i]);
+    }
     return (struct frame_indirect){ .record = gi_record, .user = gi, .needs = needs };
 }
 

@@ -72,6 +72,8 @@ struct technique {
     size_t state_size;     // of the private state, allocated zeroed by the host
 
     // All but create, record and destroy may be NULL. `state` is the private state.
+    // frame_need bits that these options ask for beside `needs`.
+    uint32_t (*more_needs)(const void *options);
     // Can it run here? If not, a sentence why goes to host_fail.
     bool (*check)(const struct technique_create *how);
     bool (*bake)(const struct technique_bake *how); // CPU only, deterministic for a seed

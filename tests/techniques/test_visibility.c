@@ -17,6 +17,10 @@ static const char *const ways[] = { "vo:samples=5",
                                     "vo:samples=6,half=true,blur=false",
                                     "vo:samples=7,radius2=0.15",
                                     "vo:mode=points,samples=12",
+                                    "vo:mode=areas,samples=1",
+                                    "vo:mode=areas,samples=5,half=true",
+                                    "vo:samples=5,temporal=true",
+                                    "vo:samples=5,half=true,temporal=true,blur=false",
                                     "ssao:samples=12",
                                     "ssao:samples=5,half=true",
                                     "hbao:steps=6",
@@ -130,7 +134,9 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_eye_moves)
             studio_look(&s, vec3_of(x, 1.5f, x), vec3_of(x + 0.2f, 1.5f - 0.02f * (float)k, x - 1));
             studio_render(&s);
             float *v = studio_read(&s, READ_VISIBILITY);
-            check_all(ways[i], v, 1.0 - STEP, 1.0);
+            // Beside the picture's middle the plane's slope is beyond its bound while spheres are still two pixels large: an
+            // area looks farther from its pixel than a line there.
+            check_all(ways[i], v, 1.0 - (strstr(ways[i], "areas") ? 5 : 1) * STEP, 1.0);
             free(v);
         }
         look_end(&look);
@@ -205,11 +211,97 @@ TEST_GPU(silhouettes_have_no_halo_on_what_is_far_behind_them)
     for (int i = 0; i < WAYS; i++) {
         const double least = darkest_background(&s, ways[i]);
         print_message("%-36s %.3f\n", ways[i], least);
-        CHECK(least >= 1.0 - 2 * STEP);
+        // A box spreads board and wall over all that is between them, of which the thickness closes a part.
+        CHECK(least >= (strstr(ways[i], "areas") ? 0.9 : 1.0 - 2 * STEP));
     }
     // What would be there if occluders had no end:
     CHECK(darkest_background(&s, "vo:samples=5,thickness=1000") < 0.8);
     CHECK(darkest_background(&s, "vo:mode=points,samples=12,thickness=1000") < 0.8);
     CHECK(darkest_background(&s, "ssao:range=1000") < 0.8);
+    studio_finish(&s);
+}
+
+// ---- a moving camera
+
+// Mean difference from frame to frame of a pan of a third of a pixel a frame.
+static double change_in_pan(struct studio *s, const char *way)
+{
+    enum { FRAMES = 30 };
+    struct look look = look_begin(s, way, 0.5);
+    float *last = NULL;
+    double sum = 0.0;
+    for (int f = 0; f < FRAMES; f++) {
+        const float a = 0.0052f * (float)f; // a pixel is 1/64 rad
+        studio_look(s, vec3_of(2.5f, 2.2f, 3.5f),
+                    vec3_of(2.5f - 3.5f * sinf(0.6f + a), 0.4f, 3.5f - 3.5f * cosf(0.6f + a)));
+        studio_render(s);
+        float *now = studio_read(s, READ_VISIBILITY);
+        for (int i = 0; last && i < PIXELS; i++)
+            sum += fabs((double)(now[i] - last[i])) / (PIXELS * (FRAMES - 1));
+        free(last);
+        last = now;
+    }
+    free(last);
+    look_end(&look);
+    return sum;
+}
+
+// Loos 2015, sec. 6.3.1: lines change as the depths beside them do, points jump. Ridges and grooves without silhouettes, so
+// that depth is continuous; at silhouettes both jump.
+TEST_GPU(five_lines_change_less_than_twelve_points_while_the_eye_turns)
+{
+    struct studio s;
+    begin(&s, gpu);
+    const int matte = studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
+    for (int i = -16; i < 16; i++) {
+        const float x = 0.4f * (float)i, low = i & 1 ? 0.3f : 0.0f, high = 0.3f - low;
+        studio_quad(&s, vec3_of(x, low, 6), vec3_of(x + 0.4f, high, 6), vec3_of(x + 0.4f, high, -6),
+                    vec3_of(x, low, -6), matte);
+    }
+    studio_open(&s);
+    const double lines = change_in_pan(&s, "vo:samples=5"),
+                 points = change_in_pan(&s, "ssao:samples=12"),
+                 same = change_in_pan(&s, "vo:mode=points,samples=12"),
+                 still = change_in_pan(&s, "vo:samples=5,temporal=true");
+    print_message("five lines %.5f, ssao's points %.5f, vo's points %.5f, with history %.5f\n", lines,
+                  points, same, still);
+    CHECK(lines < points && lines < 0.9 * same && still < lines);
+    studio_finish(&s);
+}
+
+// In a still scene each frame adds a turn: what is left of the noise of a picture without blur.
+TEST_GPU(history_takes_the_noise_out_of_a_still_picture)
+{
+    struct studio s;
+    box_on_floor(&s, gpu);
+    float *exact = seen(&s, "vo:samples=33", 0.5);
+    double noise[2];
+    for (int k = 0; k < 2; k++) {
+        struct look look = look_begin(
+            &s, k ? "vo:samples=5,blur=false,temporal=true" : "vo:samples=5,blur=false", 0.5);
+        for (int f = 0; f < 17; f++) studio_render(&s);
+        float *v = studio_read(&s, READ_VISIBILITY);
+        noise[k] = 0.0;
+        for (int i = 0; i < PIXELS; i++) noise[k] += fabs((double)(v[i] - exact[i])) / PIXELS;
+        free(v);
+        look_end(&look);
+    }
+    print_message("without history %.4f, with it %.4f\n", noise[0], noise[1]);
+    CHECK(noise[1] < 0.8 * noise[0]); // the rest is bias and what the blur of `exact` takes together
+    free(exact);
+    studio_finish(&s);
+}
+
+// Obscurance is linear in the fall-off.
+TEST_GPU(two_radii_see_the_mean_of_each)
+{
+    struct studio s;
+    box_on_floor(&s, gpu);
+    float *a = seen(&s, "vo:samples=5,blur=false", 0.5), *b = seen(&s, "vo:samples=5,blur=false", 0.2),
+          *both = seen(&s, "vo:samples=5,blur=false,radius2=0.2", 0.5);
+    for (int i = 0; i < PIXELS; i++) CHECK_NEAR(both[i], 0.5f * (a[i] + b[i]), 1.01 * STEP);
+    free(a);
+    free(b);
+    free(both);
     studio_finish(&s);
 }

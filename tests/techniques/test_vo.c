@@ -50,6 +50,14 @@ static double farthest(struct vo_rig *rig, float expected, uint32_t margin)
     return most;
 }
 
+static double off(struct studio *s, const char *options, float expected, uint32_t margin)
+{
+    struct vo_rig rig = vo_rig_create(s, options);
+    const double most = farthest(&rig, expected, margin);
+    vo_rig_destroy(&rig);
+    return most;
+}
+
 static const float slants[] = { 90, 60, 35, 20 };
 
 TEST_GPU(vo_leaves_a_plane_exactly_half_of_its_sphere)
@@ -64,12 +72,12 @@ TEST_GPU(vo_leaves_a_plane_exactly_half_of_its_sphere)
             // line is cut off.
             snprintf(options, sizeof options,
                      "samples=%d,radius=0.3,reach=0.1,normal=false", counts[k]);
-            struct vo_rig rig = vo_rig_create(&s, options);
-            most = fmax(most, farthest(&rig, 0.5f, 11));
-            vo_rig_destroy(&rig);
+            most = fmax(most, off(&s, options, 0.5f, 11));
         }
-        print_message("slant %2.0f: half to %.1e\n", (double)slants[i], most);
+        const double areas = off(&s, "mode=areas,samples=1,radius=0.3,reach=0.1,normal=false", 0.5f, 24);
+        print_message("slant %2.0f: half to %.1e, an area to %.1e\n", (double)slants[i], most, areas);
         CHECK(most < 1e-4);
+        CHECK(areas < 1e-4);
         studio_finish(&s);
     }
 }
@@ -84,9 +92,9 @@ TEST_GPU(vo_leaves_a_plane_all_of_its_hemisphere_up_to_the_pictures_edge)
             char options[96];
             snprintf(options, sizeof options, "samples=%d,radius=0.5,thickness=%d", counts[k],
                      k % 3);
-            struct vo_rig rig = vo_rig_create(&s, options);
-            most = fmax(most, farthest(&rig, 1.0f, 0));
-            vo_rig_destroy(&rig);
+            most = fmax(most, off(&s, options, 1.0f, 0));
+            snprintf(options, sizeof options, "mode=points,samples=%d,radius=0.5", counts[k]);
+            most = fmax(most, off(&s, options, 1.0f, 0));
         }
         print_message("slant %2.0f: all to %.1e\n", (double)slants[i], most);
         CHECK(most < 1e-4);

@@ -7,8 +7,9 @@
 #include <stdio.h>
 
 enum { LOCAL = 8, BLUR_ROW = 4, NAME_SIZE = 32 };
+enum { TURNS = 16 }; // of the patterns, and frames until they are the same again
 
-static const enum gpu_format ESTIMATE_FORMAT = GPU_RG32F;
+static const enum gpu_format ESTIMATE_FORMAT = GPU_RG32F, HISTORY_FORMAT = GPU_RGBA32F;
 
 static uint32_t step_of(const struct screen_ao_options *options)
 {
@@ -27,12 +28,13 @@ struct gpu_constant screen_ao_step(const struct screen_ao *ao)
 
 // ---- life
 
-static bool make_image(struct screen_ao *ao, const char *thing, gpu_image *out)
+static bool make_image(struct screen_ao *ao, const char *thing, enum gpu_format format,
+                       gpu_image *out)
 {
     char name[NAME_SIZE];
     snprintf(name, sizeof name, "%s.%s", ao->owner, thing);
     const struct gpu_image_desc desc = { .name = name,
-                                         .format = ESTIMATE_FORMAT,
+                                         .format = format,
                                          .width = ao->work_width,
                                          .height = ao->work_height,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
@@ -46,8 +48,11 @@ bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
     ao->height = height;
     ao->work_width = work_size(&ao->options, width);
     ao->work_height = work_size(&ao->options, height);
-    return make_image(ao, "estimate", &ao->estimate) &&
-           (!ao->options.blur || make_image(ao, "scratch", &ao->scratch));
+    ao->before.near_m = 0.0f;
+    if (!make_image(ao, "estimate", ESTIMATE_FORMAT, &ao->estimate)) return false;
+    if (ao->options.blur && !make_image(ao, "scratch", ESTIMATE_FORMAT, &ao->scratch)) return false;
+    return !ao->options.temporal || (make_image(ao, "history", HISTORY_FORMAT, &ao->history[0]) &&
+                                     make_image(ao, "history", HISTORY_FORMAT, &ao->history[1]));
 }
 
 static bool make_pipeline(struct screen_ao *ao, const char *thing, const struct gpu_shader *shader,
@@ -68,6 +73,7 @@ bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const char *owner,
     return make_pipeline(ao, "blur_x", &shader_screen_ao_blur_x_comp, &ao->blur_x) &&
            make_pipeline(ao, "blur_y", blur_y, &ao->blur_y) &&
            make_pipeline(ao, "fit", &shader_screen_ao_fit_comp, &ao->fit) &&
+           make_pipeline(ao, "temporal", &shader_screen_ao_temporal_comp, &ao->temporal) &&
            screen_ao_resize(ao, width, height);
 }
 
@@ -76,6 +82,8 @@ void screen_ao_finish(struct screen_ao *ao)
     if (!ao->gpu) return;
     gpu_image_destroy(ao->gpu, &ao->estimate);
     gpu_image_destroy(ao->gpu, &ao->scratch);
+    for (int i = 0; i < 2; i++) gpu_image_destroy(ao->gpu, &ao->history[i]);
+    gpu_pipeline_destroy(ao->gpu, &ao->temporal);
     gpu_pipeline_destroy(ao->gpu, &ao->blur_x);
     gpu_pipeline_destroy(ao->gpu, &ao->blur_y);
     gpu_pipeline_destroy(ao->gpu, &ao->fit);
@@ -85,10 +93,30 @@ void screen_ao_finish(struct screen_ao *ao)
 uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height)
 {
     const uint64_t pixels = (uint64_t)work_size(options, width) * work_size(options, height);
-    return pixels * (uint64_t)gpu_format_bytes(ESTIMATE_FORMAT) * (options->blur ? 2 : 1);
+    const uint64_t history = options->temporal ? 2 * (uint64_t)gpu_format_bytes(HISTORY_FORMAT) : 0;
+    return pixels *
+           ((uint64_t)gpu_format_bytes(ESTIMATE_FORMAT) * (options->blur ? 2 : 1) + history);
 }
 
 // ---- a frame
+
+// What tells a point's distance in the last frame.
+static void relate_to_last_frame(struct screen_ao *ao, const struct frame_view *view)
+{
+    struct screen_ao_params *p = &ao->params;
+    const struct world_camera *before = &ao->before;
+    const bool known = before->near_m > 0.0f && !view->camera_cut && view->index > 0;
+    p->before_forward = vec3_of(glms_vec3_dot(p->right, before->forward),
+                                glms_vec3_dot(p->down, before->forward),
+                                glms_vec3_dot(p->forward, before->forward));
+    p->before_offset_m =
+        glms_vec3_dot(glms_vec3_sub(view->camera.eye, before->eye), before->forward);
+    p->before_near_m = known ? before->near_m : 0.0f;
+    // The patterns' golden steps go on from frame to frame.
+    p->turn = fmodf(0.61803399f * (float)(TURNS * (view->index % TURNS)), 1.0f);
+    ao->before = view->camera;
+    ao->newest = 1 - ao->newest;
+}
 
 void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float radius_m,
                      float reach)
@@ -110,6 +138,7 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
         .work_width = ao->work_width,
         .work_height = ao->work_height,
     };
+    if (ao->options.temporal) relate_to_last_frame(ao, view);
 }
 
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd)
@@ -124,12 +153,30 @@ static void scope_begin(const struct screen_ao *ao, struct gpu_cmd *cmd, const c
     gpu_scope_begin(cmd, name);
 }
 
+static gpu_image evened(const struct screen_ao *ao)
+{
+    return ao->options.temporal ? ao->history[ao->newest] : ao->estimate;
+}
+
+static void record_temporal(const struct screen_ao *ao, struct gpu_cmd *cmd,
+                            const struct frame_view *view)
+{
+    scope_begin(ao, cmd, "temporal");
+    gpu_dispatch(cmd, ao->temporal,
+                 GPU_BIND(screen_ao_binding(ao, cmd), { .name = "estimate", .image = ao->estimate },
+                          { .name = "motion", .image = view->layers[FRAME_MOTION] },
+                          { .name = "history", .image = ao->history[1 - ao->newest] },
+                          { .name = "after", .image = ao->history[ao->newest] }),
+                 NULL, 0, gpu_groups(ao->work_width, LOCAL), gpu_groups(ao->work_height, LOCAL), 1);
+    gpu_scope_end(cmd);
+}
+
 static void record_blur(const struct screen_ao *ao, struct gpu_cmd *cmd, gpu_image visibility)
 {
     const struct gpu_binding params = screen_ao_binding(ao, cmd);
     scope_begin(ao, cmd, "blur");
     gpu_dispatch(cmd, ao->blur_x,
-                 GPU_BIND(params, { .name = "before", .image = ao->estimate },
+                 GPU_BIND(params, { .name = "before", .image = evened(ao) },
                           { .name = "after", .image = ao->scratch }),
                  NULL, 0, gpu_groups(ao->work_width, LOCAL * BLUR_ROW),
                  gpu_groups(ao->work_height, LOCAL), 1);
@@ -145,9 +192,10 @@ static void record_blur(const struct screen_ao *ao, struct gpu_cmd *cmd, gpu_ima
 static void record_fit(const struct screen_ao *ao, struct gpu_cmd *cmd,
                        const struct frame_view *view)
 {
+    const gpu_image before = ao->options.blur ? ao->estimate : evened(ao);
     scope_begin(ao, cmd, "fit");
     gpu_dispatch(cmd, ao->fit,
-                 GPU_BIND(screen_ao_binding(ao, cmd), { .name = "before", .image = ao->estimate },
+                 GPU_BIND(screen_ao_binding(ao, cmd), { .name = "before", .image = before },
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "visibility", .image = view->layers[FRAME_VISIBILITY] }),
                  NULL, 0, gpu_groups(ao->width, LOCAL), gpu_groups(ao->height, LOCAL), 1);
@@ -156,6 +204,7 @@ static void record_fit(const struct screen_ao *ao, struct gpu_cmd *cmd,
 
 void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view)
 {
+    if (ao->options.temporal) record_temporal(ao, cmd, view);
     if (ao->options.blur) record_blur(ao, cmd, view->layers[FRAME_VISIBILITY]);
     if (ao->options.half || !ao->options.blur) record_fit(ao, cmd, view);
 }

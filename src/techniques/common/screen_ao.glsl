@@ -81,9 +81,9 @@ screen_plane screen_plane_of(screen_sphere p, vec3 n)
 
 // Depth of a surface behind the plane, z. It is measured where the pixel is that was looked at, `step` pixels away, so that
 // rounding to pixels costs nothing on slopes; added to the plane's depth elsewhere it tells the surface's there.
-float screen_behind(screen_sphere p, screen_plane plane, ivec2 step, float depth)
+float screen_behind(screen_sphere p, screen_plane plane, vec2 step, float depth)
 {
-    return p.scale * (1.0 - depth / p.depth) - dot(plane.on_screen, vec2(step));
+    return p.scale * (1.0 - depth / p.depth) - dot(plane.on_screen, step);
 }
 
 vec3 screen_normal(vec3 world)

@@ -9,6 +9,7 @@
 struct screen_ao_options {
     bool blur; // evens the estimate out over 4 × 4 pixels, not across edges
     bool half; // the estimate has half the frame's size
+    bool temporal; // estimates of frames are averaged; the owner needs FRAME_NEEDS_MOTION
 };
 
 struct screen_ao {
@@ -19,7 +20,10 @@ struct screen_ao {
     gpu_image
         estimate; // RG32F: visibility, depth of the frame's pixel; the technique writes every pixel
     gpu_image scratch; // RG32F
-    gpu_pipeline blur_x, blur_y, fit;
+    gpu_image history[2]; // RGBA32F: visibility, depth, frames; the last frame's and this one's in turn
+    int newest;           // of the two
+    struct world_camera before; // the last frame's camera; near_m 0: forget the history
+    gpu_pipeline temporal, blur_x, blur_y, fit;
     struct screen_ao_params params; // of the frame being recorded
 };
 
@@ -39,5 +43,6 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
                      float reach);
 // The block "screen_ao".
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd);
-// After the estimate: fills the frame's visibility. Passes "owner.blur" and "owner.fit".
+// After the estimate: fills the frame's visibility. Passes "owner.temporal", "owner.blur" and
+// "owner.fit".
 void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -36,7 +36,7 @@ float occlusion(ivec2 pixel, screen_sphere sphere, screen_plane plane, vec2 dire
         float across = (float(i) + first) / float(push.steps);
         ivec2 there = pixel + ivec2(round(pixels * across));
         if (any(lessThan(there, ivec2(0))) || any(greaterThanEqual(there, ivec2(view.width, view.height)))) break;
-        float behind = screen_behind(sphere, plane, there - pixel, texelFetch(depth, there, 0).r);
+        float behind = screen_behind(sphere, plane, vec2(there - pixel), texelFetch(depth, there, 0).r);
         float up = slope * across - min(behind + plane.tolerance, 0.0);
         float r = sqrt(across * across + up * up);
         float elevation = up / r;

@@ -17,7 +17,9 @@ static const struct option_row option_rows[] = {
 
 static struct screen_ao_options ao_options(const struct vo_options *options)
 {
-    return (struct screen_ao_options){ .blur = options->blur, .half = options->half };
+    return (struct screen_ao_options){ .blur = options->blur,
+                                       .half = options->half,
+                                       .temporal = options->temporal };
 }
 
 static bool vo_create(void *state, const struct technique_create *how)
@@ -26,13 +28,18 @@ static bool vo_create(void *state, const struct technique_create *how)
     vo->gpu = how->gpu;
     vo->options = *(const struct vo_options *)how->options;
     const struct screen_ao_options options = ao_options(&vo->options);
-    return screen_ao_init(&vo->ao, how->gpu, "vo", &options, how->width, how->height) &&
-           vo_create_estimate(vo);
+    if (!screen_ao_init(&vo->ao, how->gpu, "vo", &options, how->width, how->height)) return false;
+    if (vo->options.mode == VO_MODE_AREAS &&
+        !(vo_create_pyramid(vo) && vo_resize_pyramid(vo, how->width, how->height)))
+        return false;
+    return vo_create_estimate(vo);
 }
 
 static bool vo_resize(void *state, uint32_t width, uint32_t height)
 {
-    return screen_ao_resize(&((struct vo *)state)->ao, width, height);
+    struct vo *vo = state;
+    return screen_ao_resize(&vo->ao, width, height) &&
+           (vo->options.mode != VO_MODE_AREAS || vo_resize_pyramid(vo, width, height));
 }
 
 static void vo_set_options(void *state, const void *options)
@@ -45,6 +52,7 @@ static void vo_record(void *state, struct gpu_cmd *cmd, const struct frame_view 
     struct vo *vo = state;
     const float radius_m = fmaxf(vo->options.radius, vo->options.radius2);
     screen_ao_begin(&vo->ao, view, radius_m, vo->options.reach);
+    if (vo->options.mode == VO_MODE_AREAS) vo_record_pyramid(vo, cmd, view);
     vo_record_estimate(vo, cmd, view);
     screen_ao_record(&vo->ao, cmd, view);
 }
@@ -54,13 +62,21 @@ static void vo_destroy(void *state)
     struct vo *vo = state;
     if (!vo->gpu) return;
     screen_ao_finish(&vo->ao);
+    gpu_image_destroy(vo->gpu, &vo->moments);
+    gpu_pipeline_destroy(vo->gpu, &vo->pyramid);
     gpu_pipeline_destroy(vo->gpu, &vo->estimate);
 }
 
 static uint64_t vo_memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
     const struct screen_ao_options ao = ao_options(options);
-    return screen_ao_memory(&ao, width, height);
+    const bool areas = ((const struct vo_options *)options)->mode == VO_MODE_AREAS;
+    return screen_ao_memory(&ao, width, height) + (areas ? vo_pyramid_memory(width, height) : 0);
+}
+
+static uint32_t vo_more_needs(const void *options)
+{
+    return ((const struct vo_options *)options)->temporal ? FRAME_NEEDS_MOTION : 0;
 }
 
 const struct technique technique_vo = {
@@ -71,6 +87,7 @@ const struct technique technique_vo = {
     .role = ROLE_VISIBILITY,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
     .needs = FRAME_WRITES_VISIBILITY,
+    .more_needs = vo_more_needs,
     .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
                  sizeof(struct vo_options) },
     .state_size = sizeof(struct vo),

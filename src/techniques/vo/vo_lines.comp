@@ -3,6 +3,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #include "techniques/vo/vo_estimate.glsl"
 
@@ -14,7 +15,7 @@ float vo_visibility(vo_place p)
     float top_at_centre = WITH_NORMAL ? 0.0 : 1.0;
     float visible = 0.5 * table.centre * vo_open(0.0, -1.0, top_at_centre, p.thickness);
     float full = 0.5 * table.centre * (top_at_centre + 1.0);
-    for (int i = 0; i < COUNT; i++) {
+    [[dont_unroll]] for (int i = 0; i < COUNT; i++) {
         vec4 line = table.at[i];
         float tangent = dot(slope, line.xy);
         float top = WITH_NORMAL ? clamp(tangent, -line.z, line.z) : line.z;

@@ -3,6 +3,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #include "techniques/vo/vo_estimate.glsl"
 
@@ -13,7 +14,7 @@ float vo_visibility(vo_place p)
     mat3 turn = screen_reflection_of_ball(p.pattern);
     vec3 outwards = normalize(vec3(p.plane.on_disk, -1.0));
     float visible = table.centre * (WITH_NORMAL ? 1.0 : 0.5);
-    for (int i = 0; i < COUNT; i++) {
+    [[dont_unroll]] for (int i = 0; i < COUNT; i++) {
         vec3 point = turn * table.at[i].xyz;
         // Points below the tangent plane are mirrored to above it.
         if (WITH_NORMAL) point -= 2.0 * min(dot(point, outwards), 0.0) * outwards;

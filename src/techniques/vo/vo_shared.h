@@ -9,15 +9,17 @@
 // Uniform block "vo_table".
 struct vo_samples {
     // Lines: x, y in the disk, half length, weight over length. Points: x, y, z in the ball,
-    // weight.
+    // weight. Areas: as lines.
     vec4s at[VO_MOST_SAMPLES];
-    vec2s radii_m;   // the second 0: there is one
+    float levels[VO_MOST_SAMPLES]; // areas: of the pyramid, log2 of the side in radii
+    int32_t level_count;           // of the pyramid, those in use
+    vec2s radii_m;   // the second 0: there is but the first
     float thickness; // of occluders, radii
     float centre;    // weight of the sample at the sphere's centre, which needs no look; 0: there is none
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct vo_samples) == VO_MOST_SAMPLES * 16 + 16,
+_Static_assert(sizeof(struct vo_samples) == VO_MOST_SAMPLES * 20 + 20,
                "layout is shared with GLSL");
 #endif
 

@@ -6,7 +6,7 @@
 #include "techniques/technique.h"
 #include "techniques/vo/vo_shared.h"
 
-enum vo_mode { VO_MODE_LINES, VO_MODE_POINTS };
+enum vo_mode { VO_MODE_LINES, VO_MODE_AREAS, VO_MODE_POINTS };
 
 struct vo_options {
 #define OPTION OPTION_FIELD
@@ -19,9 +19,16 @@ struct vo {
     struct vo_options options;
     struct screen_ao ao;
     gpu_pipeline estimate;
+    gpu_image moments; // areas: RG32F, mean and variance of depth; level 0 has half the frame's size
+    gpu_pipeline pyramid;
     struct vo_samples table;
 };
 
-const char *vo_estimate_name(const struct vo_options *options); // "vo.lines"
 bool vo_create_estimate(struct vo *vo);
 void vo_record_estimate(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view);
+
+// The pyramid of moments, of the mode areas alone.
+bool vo_create_pyramid(struct vo *vo);
+bool vo_resize_pyramid(struct vo *vo, uint32_t width, uint32_t height);
+uint64_t vo_pyramid_memory(uint32_t width, uint32_t height);
+void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view);

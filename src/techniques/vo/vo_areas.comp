@@ -1,0 +1,83 @@
+// Volumetric obscurance by areas (Loos 2015, sec. 6.3.2): the depths in the part of the picture that a sample stands for are
+// spread evenly over a box with the mean and the variance that the pyramid has there.
+//
+// The four texels beside a place are looked up, each half as wide as the part. The patterns move the place over the part, and by
+// a level: the blur makes of that what many taps would.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "techniques/vo/vo_estimate.glsl"
+
+layout(set = 0, binding = 5) uniform sampler2D moments; // level 0 has half the picture's size
+
+const float THINNEST = 1.0e-4; // half-width of a box, radii
+
+// Of the tangent plane's own depths over a texel.
+float plane_variance(vec2 slope, float texel_px)
+{
+    return dot(slope, slope) * (texel_px * texel_px - 1.0) / 12.0;
+}
+
+struct vo_box {
+    float middle, half_width;
+};
+
+// Depths beside the tangent plane round an offset in pixels. The variance is what is left beside the plane's.
+vo_box box_at(vo_place p, vec2 offset, int level)
+{
+    float texel_px = float(1 << level);
+    vec2 jitter = (vec2(p.pattern & 3u, p.pattern >> 2u) - 1.5) / 4.0; // texels
+    // Not textureSize: software drivers have taken its level from one invocation for its neighbours too.
+    vec2 here = vec2(p.pixel) + 0.5, last = vec2(max(ivec2(view.width, view.height) >> level, 1) - 1);
+    vec2 place = clamp((here + offset) * (1.0 / texel_px) + jitter - 0.5, vec2(0.0), last);
+    ivec2 first = ivec2(place), second = min(first + 1, ivec2(last));
+    vec2 between = place - vec2(first);
+    vec2 above = mix(texelFetch(moments, first, level - 1).rg,
+                     texelFetch(moments, ivec2(second.x, first.y), level - 1).rg, between.x);
+    vec2 below = mix(texelFetch(moments, ivec2(first.x, second.y), level - 1).rg,
+                     texelFetch(moments, second, level - 1).rg, between.x);
+    vec2 seen = mix(above, below, between.y);
+    vec2 step = (place + 0.5) * texel_px - here;
+    float to_z = p.sphere.scale / p.sphere.depth;
+    float tolerance = p.plane.tolerance;
+    // Of a slope s off by t the square is off by t (t + 2s), and 2s ≤ 1 + s².
+    float rounding = tolerance * (tolerance + 1.0 + dot(p.plane.on_disk, p.plane.on_disk));
+    float variance = seen.y * to_z * to_z - plane_variance(p.plane.on_screen, texel_px) - rounding;
+    return vo_box(screen_behind(p.sphere, p.plane, step, seen.x) + (WITH_NORMAL ? tolerance : 0.0),
+                  max(sqrt(3.0 * max(variance, 0.0)), THINNEST));
+}
+
+// From far before the box up to z the integral of the share of depths that are behind z: all before the box, none behind it.
+// z may be several.
+vec4 open_up_to(vo_box box, vec4 z)
+{
+    vec4 u = clamp((z - box.middle) * (0.5 / box.half_width) + 0.5, 0.0, 1.0);
+    return min(z, box.middle - box.half_width) + 2.0 * box.half_width * (u - 0.5 * u * u);
+}
+
+float open_between(vo_box box, float from, float to, float thickness)
+{
+    vec4 up_to = open_up_to(box, vec4(from, to, vec2(from, to) - thickness));
+    return up_to.y - up_to.x + to - from - (up_to.w - up_to.z);
+}
+
+float vo_visibility(vo_place p)
+{
+    mat2 turn = COUNT == 1 ? mat2(1.0) : screen_reflection(p.pattern);
+    mat2 pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) * p.sphere.radius_px;
+    vec2 slope = turn * p.plane.on_disk;
+    float dither = (float((p.pattern * 7u) & 15u) + 0.5) / 16.0, level = log2(p.sphere.radius_px) + dither;
+    float visible = 0.0, full = 0.0;
+    for (int i = 0; i < COUNT; i++) {
+        vec4 line = table.at[i];
+        int there = clamp(int(floor(level + table.levels[i])), 1, table.level_count);
+        vo_box box = box_at(p, pixels * line.xy, there);
+        float tangent = dot(slope, line.xy);
+        float top = WITH_NORMAL ? clamp(tangent, -line.z, line.z) : line.z;
+        box.middle += tangent;
+        visible += line.w * open_between(box, -line.z, top, p.thickness);
+        full += line.w * (top + line.z);
+    }
+    return visible / full;
+}

@@ -1,0 +1,75 @@
+// Mean and variance of depth over squares of pixels, level by level (Loos 2015, sec. 6.3.2).
+#include "techniques/vo/vo_state.h"
+
+#include "technique_shaders.h"
+
+#include <math.h>
+
+enum { LOCAL = 8 };
+
+static uint32_t half_of(uint32_t size)
+{
+    return size > 1 ? size / 2 : 1;
+}
+
+static uint32_t level_size(uint32_t size, uint32_t level)
+{
+    return size >> level ? size >> level : 1;
+}
+
+// Down to the level whose shorter side is a texel.
+static uint32_t levels_of(uint32_t width, uint32_t height)
+{
+    uint32_t levels = 1;
+    while (half_of(width < height ? width : height) >> levels) levels++;
+    return levels;
+}
+
+bool vo_create_pyramid(struct vo *vo)
+{
+    return gpu_compute_pipeline_create(vo->gpu, "vo.pyramid", &shader_vo_pyramid_comp, NULL, 0,
+                                       &vo->pyramid);
+}
+
+bool vo_resize_pyramid(struct vo *vo, uint32_t width, uint32_t height)
+{
+    const struct gpu_image_desc desc = { .name = "vo.moments",
+                                         .format = GPU_RG32F,
+                                         .width = half_of(width),
+                                         .height = half_of(height),
+                                         .mips = levels_of(width, height),
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    gpu_image_destroy(vo->gpu, &vo->moments);
+    return gpu_image_create(vo->gpu, &desc, &vo->moments);
+}
+
+uint64_t vo_pyramid_memory(uint32_t width, uint32_t height)
+{
+    uint64_t texels = 0;
+    for (uint32_t i = 0; i < levels_of(width, height); i++)
+        texels += (uint64_t)level_size(half_of(width), i) * level_size(half_of(height), i);
+    return texels * (uint64_t)gpu_format_bytes(GPU_RG32F);
+}
+
+void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const struct gpu_image_desc *info = gpu_image_info(vo->gpu, vo->moments);
+    // A sample that stands for the whole disk has its area, π radius².
+    const float widest_px = vo->ao.params.most_px * sqrtf(GLM_PIf);
+    const int wanted = (int)ceilf(log2f(fmaxf(widest_px, 2.0f)));
+    vo->table.level_count = wanted < (int)info->mips ? wanted : (int)info->mips;
+    gpu_scope_begin(cmd, "vo.pyramid");
+    for (int i = 0; i < vo->table.level_count; i++) {
+        struct gpu_binding before = { .name = "before", .image = view->layers[FRAME_DEPTH] };
+        if (i > 0)
+            before = (struct gpu_binding){
+                .name = "before", .image = vo->moments, .mip = (uint32_t)i - 1, .one_mip = true
+            };
+        gpu_dispatch(
+            cmd, vo->pyramid,
+            GPU_BIND(before, { .name = "after", .image = vo->moments, .mip = (uint32_t)i }), NULL,
+            0, gpu_groups(level_size(info->width, (uint32_t)i), LOCAL),
+            gpu_groups(level_size(info->height, (uint32_t)i), LOCAL), 1);
+    }
+    gpu_scope_end(cmd);
+}
