@@ -118,6 +118,20 @@ static bool create_resources(struct lpv *lpv)
            gpu_buffer_create(lpv->gpu, &sums, &lpv->sums) && create_volumes(lpv);
 }
 
+static bool create_application(struct lpv *lpv)
+{
+    const struct gpu_constant constants[] = {
+        { LPV_CONSTANT_BANDS, (uint32_t)lpv->options.bands },
+        { LPV_CONSTANT_HALF, lpv->options.precision == LPV_PRECISION_HALF },
+        { LPV_CONSTANT_CUBIC, lpv->options.reconstruction == LPV_CUBIC },
+        { LPV_CONSTANT_DAMPED, 1 },
+    };
+    return gpu_compute_pipeline_create(lpv->gpu, lpv->names->apply, &shader_lpv_apply_comp,
+                                       constants, 3, &lpv->apply) &&
+           gpu_compute_pipeline_create(lpv->gpu, lpv->names->apply, &shader_lpv_apply_comp,
+                                       constants, 4, &lpv->apply_damped);
+}
+
 static bool create_pipelines(struct lpv *lpv)
 {
     const struct lpv_names *name = lpv->names;
@@ -131,7 +145,6 @@ static bool create_pipelines(struct lpv *lpv)
         { &lpv->inject_emitters, name->inject_emitters, &shader_lpv_inject_emitters_comp, 2 },
         { &lpv->resolve, name->resolve, &shader_lpv_resolve_comp, 2 },
         { &lpv->propagate, name->propagate, &shader_lpv_propagate_comp, 4 },
-        { &lpv->apply, name->apply, &shader_lpv_apply_comp, 2 },
         { &lpv->debug, name->debug, &shader_lpv_debug_comp, 3 },
     };
     const struct gpu_constant constants[] = {
@@ -145,6 +158,7 @@ static bool create_pipelines(struct lpv *lpv)
         if (!gpu_compute_pipeline_create(lpv->gpu, pipelines[i].name, pipelines[i].shader,
                                          constants, pipelines[i].constants, pipelines[i].out))
             return false;
+    if (!create_application(lpv)) return false;
     return lpv->options.geometry == LPV_GEOMETRY_OFF ||
            gpu_compute_pipeline_create(lpv->gpu, name->propagate, &shader_lpv_propagate_comp,
                                        constants, 5, &lpv->propagate_held);
@@ -182,6 +196,7 @@ static void lpv_set_options(void *state, const void *options)
     next.neighbours = lpv->options.neighbours;
     next.precision = lpv->options.precision;
     next.dim = lpv->options.dim;
+    next.reconstruction = lpv->options.reconstruction;
     next.geometry = lpv->options.geometry;
     next.probes = lpv->options.probes;
     next.bounces = lpv->options.bounces;
@@ -253,9 +268,10 @@ static void lpv_destroy(void *state)
     gpu_buffer_destroy(lpv->gpu, &lpv->sums);
     lpv_probes_destroy(lpv);
     lpv_bounce_destroy(lpv);
-    gpu_pipeline *pipelines[] = { &lpv->inject,    &lpv->inject_emitters, &lpv->resolve,
-                                  &lpv->propagate, &lpv->propagate_held,  &lpv->apply,
-                                  &lpv->debug };
+    gpu_pipeline *pipelines[] = { &lpv->inject,         &lpv->inject_emitters,
+                                  &lpv->resolve,        &lpv->propagate,
+                                  &lpv->propagate_held, &lpv->apply,
+                                  &lpv->apply_damped,   &lpv->debug };
     for (size_t i = 0; i < sizeof pipelines / sizeof pipelines[0]; i++)
         gpu_pipeline_destroy(lpv->gpu, pipelines[i]);
     lpv_geometry_destroy(lpv);

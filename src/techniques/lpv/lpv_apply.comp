@@ -31,6 +31,10 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+// Constants, since drivers without branches would do both.
+layout(constant_id = LPV_CONSTANT_CUBIC) const bool LPV_CUBIC = false;
+layout(constant_id = LPV_CONSTANT_DAMPED) const bool LPV_DAMPED = false;
+
 layout(push_constant, scalar) uniform push_block
 {
     lpv_apply_push push;
@@ -71,13 +75,13 @@ vec3 cubic_irradiance(vec3 at, vec3 n)
 // What steps of sharp lobes left negative behind a bright wall stays out.
 vec3 irradiance_at(vec3 at, vec3 n)
 {
-    return max(lpv.cubic != 0u ? cubic_irradiance(at, n) : linear_irradiance(at, n), vec3(0.0));
+    return max(LPV_CUBIC ? cubic_irradiance(at, n) : linear_irradiance(at, n), vec3(0.0));
 }
 
 vec3 damped_irradiance(vec3 at, vec3 n)
 {
     vec3 here = irradiance_at(at, n);
-    if (lpv.damping == 0.0) return here;
+    if (!LPV_DAMPED) return here;
     vec3 gain = irradiance_at(at + n, n) - here;
     return max(here + lpv.damping * min(gain, vec3(0.0)), vec3(0.0));
 }

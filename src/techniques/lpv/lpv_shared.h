@@ -20,6 +20,8 @@
 #define LPV_CONSTANT_GEOMETRY 2 // LPV_GEOMETRY_…
 #define LPV_CONSTANT_NEIGHBOURS 3 // 6 or 26
 #define LPV_CONSTANT_HELD 4 // send on what geometry holds back, not what it lets through
+#define LPV_CONSTANT_CUBIC 5 // reconstruction between cells: cubic, or linear
+#define LPV_CONSTANT_DAMPED 6 // light is looked up a cell further along the normal too
 
 // What stands in the way of the light: nothing, what lights and camera see, or all of the scene.
 #define LPV_GEOMETRY_OFF 0
@@ -55,7 +57,6 @@ struct lpv_params {
     float window;           // weight of the bands above the first at the look-up
     float blocking;         // factor on what the geometry volume says is blocked
     float damping;          // of light that is less a cell further along the normal
-    uint32_t cubic;         // reconstruction between cells: 1, or 0 for linear
     uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
     uint32_t emitter_count;
@@ -92,7 +93,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 55 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 54 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");

@@ -57,7 +57,6 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .window = options->window,
         .blocking = options->blocking,
         .damping = options->damping,
-        .cubic = options->reconstruction == LPV_CUBIC,
         .rsm_size = view->rsm_size,
         .width = view->width,
         .height = view->height,
@@ -227,7 +226,7 @@ static void apply(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view 
         push.finer_open = finer->open;
     }
     if (lpv->params.held) apply(lpv->coarser, cmd, view, &lpv->grid);
-    gpu_dispatch(cmd, lpv->apply,
+    gpu_dispatch(cmd, lpv->options.damping > 0.0f ? lpv->apply_damped : lpv->apply,
                  GPU_BIND(lpv_grid_binding(lpv, cmd), view->constants_binding,
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },

@@ -55,7 +55,7 @@ struct lpv {
     struct gpu *gpu;
     struct lpv_options options;
     gpu_sampler linear;
-    gpu_pipeline inject, inject_emitters, resolve, refine, propagate, apply, debug;
+    gpu_pipeline inject, inject_emitters, resolve, refine, propagate, apply, apply_damped, debug;
     gpu_pipeline propagate_held; // what geometry holds back; none without geometry
     gpu_buffer sums;    // [cell][coefficient][colour] 64-bit integers
     gpu_image injected; // volumes: dim² × slabs · dim texels
