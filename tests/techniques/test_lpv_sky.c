@@ -112,7 +112,7 @@ static void floor_under_sky(struct gpu *gpu, const char *text, double *least, do
     s.indirect = gi_hook(gi);
     studio_render(&s);
     float *e = studio_read(&s, READ_IRRADIANCE), *depth = studio_read(&s, READ_DEPTH);
-    *least = INFINITY;
+    *least = HUGE_VAL;
     *most = 0;
     for (uint32_t k = 0; k < s.width * s.height; k++)
         for (uint32_t c = 0; c < 3 && depth[k] > 0; c++) {
