@@ -2,6 +2,7 @@
 // sum of techniques side by side.
 //
 //     frame [--gi SUM]… [--frames N] [--size WxH] [--device NAME] [--csv FILE] [SCENE]…
+#include "command_line.h"
 #include "passes.h"
 
 #include <afterglow/afterglow.h>
@@ -9,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_SUMS = 8, MAX_SCENES = 64 };
+enum { MAX_SUMS = 8 };
 
 struct pass {
     char name[48];
@@ -17,8 +18,9 @@ struct pass {
 };
 
 struct bench {
-    const char *sums[MAX_SUMS], *scenes[MAX_SCENES];
-    int sum_count, scene_count, width, height, frames;
+    const char *sums[MAX_SUMS];
+    struct bench_scenes scenes;
+    int sum_count, width, height, frames;
     const char *device_name, *csv_path;
     FILE *csv;
     struct ag_context *context;
@@ -139,13 +141,14 @@ static enum ag_result run(struct bench *bench)
     desc.device = bench->device_name;
     enum ag_result result = ag_device_create(bench->context, &desc, &bench->device);
     if (bench->csv) fputs("scene,gi,pass,width,height,frames,median_ms,p95_ms\n", bench->csv);
-    for (int i = 0; i < bench->scene_count && result == AG_OK; i++)
-        result = measure_scene(bench, bench->scenes[i]);
+    for (int i = 0; i < bench->scenes.count && result == AG_OK; i++)
+        result = measure_scene(bench, bench->scenes.names[i]);
     return result;
 }
 
-static bool parse_option(struct bench *bench, const char *name, const char *value)
+static bool parse_option(void *user, const char *name, const char *value)
 {
+    struct bench *bench = user;
     char rest;
     if (strcmp(name, "--gi") == 0 && bench->sum_count < MAX_SUMS)
         bench->sums[bench->sum_count++] = value;
@@ -165,24 +168,12 @@ static bool parse_option(struct bench *bench, const char *name, const char *valu
 
 static bool parse(struct bench *bench, int argc, char **argv)
 {
-    for (int i = 1; i < argc; i++) {
-        if (strncmp(argv[i], "--", 2) == 0) {
-            if (i + 1 == argc || !parse_option(bench, argv[i], argv[i + 1])) return false;
-            i++;
-        } else if (bench->scene_count < MAX_SCENES) {
-            bench->scenes[bench->scene_count++] = argv[i];
-        } else {
-            return false;
-        }
-    }
+    if (!command_line_parse(argc, argv, parse_option, bench, &bench->scenes)) return false;
     if (bench->sum_count == 0) {
         static const char *const usual[] = { "none", "ambient", "lpv" };
         for (int i = 0; i < 3; i++) bench->sums[bench->sum_count++] = usual[i];
     }
-    if (bench->scene_count == 0) {
-        bench->scenes[bench->scene_count++] = "@atrium";
-        bench->scenes[bench->scene_count++] = "@cornell:light=point";
-    }
+    command_line_usual_scenes(&bench->scenes, "@atrium", "@cornell:light=point");
     return true;
 }
 

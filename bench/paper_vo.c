@@ -5,12 +5,13 @@
 //
 // A technique's time is its own passes': the pyramid, the estimate, and all that follows. Its error is the difference from the
 // traced obscurance of the same radius, where there is a surface. TERM* looks with a second radius of a quarter.
+#include "command_line.h"
 #include "paper_vo_measure.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_TERMS = 24, MAX_SCENES = 16, TEXT = 256 };
+enum { MAX_TERMS = 24, TEXT = 256 };
 
 // The first are held against each other below the table.
 enum { LINES_5, POINTS_12, SSAO_12, LINE, AREA, HELD_TERMS };
@@ -32,8 +33,9 @@ static const char *const usual_terms[] = { [LINES_5] = "vo:samples=5",
 enum { USUAL_TERMS = sizeof usual_terms / sizeof usual_terms[0] };
 
 struct bench {
-    const char *terms[MAX_TERMS], *scenes[MAX_SCENES];
-    int term_count, scene_count;
+    const char *terms[MAX_TERMS];
+    int term_count;
+    struct bench_scenes scenes;
     struct vo_view view; // what all scenes share
     double radius_share;
     const char *device_name;
@@ -87,8 +89,9 @@ static enum ag_result measure_scene(const struct bench *bench, const char *name)
     return result;
 }
 
-static bool parse_option(struct bench *bench, const char *name, const char *value)
+static bool parse_option(void *user, const char *name, const char *value)
 {
+    struct bench *bench = user;
     char rest;
     struct vo_view *view = &bench->view;
     if (strcmp(name, "--gi") == 0 && bench->term_count < MAX_TERMS)
@@ -110,22 +113,10 @@ static bool parse_option(struct bench *bench, const char *name, const char *valu
 
 static bool parse(struct bench *bench, int argc, char **argv)
 {
-    for (int i = 1; i < argc; i++) {
-        if (strncmp(argv[i], "--", 2) == 0) {
-            if (i + 1 == argc || !parse_option(bench, argv[i], argv[i + 1])) return false;
-            i++;
-        } else if (bench->scene_count < MAX_SCENES) {
-            bench->scenes[bench->scene_count++] = argv[i];
-        } else {
-            return false;
-        }
-    }
+    if (!command_line_parse(argc, argv, parse_option, bench, &bench->scenes)) return false;
     if (bench->term_count == 0)
         for (int i = 0; i < USUAL_TERMS; i++) bench->terms[bench->term_count++] = usual_terms[i];
-    if (bench->scene_count == 0) {
-        bench->scenes[bench->scene_count++] = "@atrium";
-        bench->scenes[bench->scene_count++] = "@cornell:light=point";
-    }
+    command_line_usual_scenes(&bench->scenes, "@atrium", "@cornell:light=point");
     return true;
 }
 
@@ -144,8 +135,8 @@ int main(int argc, char **argv)
     ag_device_desc_default(&desc);
     desc.device = bench.device_name;
     if (result == AG_OK) result = ag_device_create(view->context, &desc, &view->device);
-    for (int i = 0; i < bench.scene_count && result == AG_OK; i++)
-        result = measure_scene(&bench, bench.scenes[i]);
+    for (int i = 0; i < bench.scenes.count && result == AG_OK; i++)
+        result = measure_scene(&bench, bench.scenes.names[i]);
     if (result != AG_OK)
         fprintf(stderr, "paper-vo: %s (%s)\n", ag_context_last_error(view->context),
                 ag_result_string(result));

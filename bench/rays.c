@@ -3,6 +3,7 @@
 // all together, so that what else the machine does hardly counts.
 //
 //     rays [--size WxH] [--spp N] [--rounds N] [SCENE]…
+#include "command_line.h"
 #include "core/parallel.h"
 #include "scene/defaults.h"
 #include "trace/trace_scene.h"
@@ -18,11 +19,11 @@
 #include <string.h>
 #include <time.h>
 
-enum { MAX_SCENES = 64, LOG_SIZE = 1 << 20, CHUNK = 4096 }; // rays
+enum { LOG_SIZE = 1 << 20, CHUNK = 4096 }; // rays
 
 struct bench {
-    const char *scenes[MAX_SCENES];
-    int scene_count, width, height, samples, rounds;
+    struct bench_scenes scenes;
+    int width, height, samples, rounds;
     struct host host;
 };
 
@@ -200,8 +201,9 @@ static bool measure_scene(struct bench *bench, const char *name)
 
 // ---- the run
 
-static bool parse_option(struct bench *bench, const char *name, const char *value)
+static bool parse_option(void *user, const char *name, const char *value)
 {
+    struct bench *bench = user;
     char rest;
     if (strcmp(name, "--size") == 0)
         return sscanf(value, "%dx%d%c", &bench->width, &bench->height, &rest) == 2;
@@ -214,20 +216,8 @@ static bool parse_option(struct bench *bench, const char *name, const char *valu
 
 static bool parse(struct bench *bench, int argc, char **argv)
 {
-    for (int i = 1; i < argc; i++) {
-        if (strncmp(argv[i], "--", 2) == 0) {
-            if (i + 1 == argc || !parse_option(bench, argv[i], argv[i + 1])) return false;
-            i++;
-        } else if (bench->scene_count < MAX_SCENES) {
-            bench->scenes[bench->scene_count++] = argv[i];
-        } else {
-            return false;
-        }
-    }
-    if (bench->scene_count == 0) {
-        bench->scenes[bench->scene_count++] = "@cornell";
-        bench->scenes[bench->scene_count++] = "@atrium";
-    }
+    if (!command_line_parse(argc, argv, parse_option, bench, &bench->scenes)) return false;
+    command_line_usual_scenes(&bench->scenes, "@cornell", "@atrium");
     return true;
 }
 
@@ -250,7 +240,7 @@ int main(int argc, char **argv)
     }
     printf("%-32s %10s %10s %11s %11s\n", "million rays a core and second", "reference", "Embree", "of it",
            "shadow rays");
-    for (int i = 0; i < bench.scene_count; i++)
-        if (!measure_scene(&bench, bench.scenes[i])) return 1;
+    for (int i = 0; i < bench.scenes.count; i++)
+        if (!measure_scene(&bench, bench.scenes.names[i])) return 1;
     return 0;
 }
