@@ -32,14 +32,13 @@ vec3 probes_irradiance(sampler3D volume, frame_probes place, vec3 position, vec3
     return max(sum, vec3(0.0));
 }
 
-void probes_store(writeonly image3D image, frame_probes place, ivec3 probe, vec3 coefficients[9])
+// What slab s of FRAME_PROBE_SLABS holds of a probe; its texel is probe + (0, 0, s × place.slab).
+vec4 probes_slab(vec3 coefficients[9], int s)
 {
-    for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
-        vec4 slab = vec4(0.0);
-        for (int k = 0; k < 4; k++)
-            if (4 * s + k < 27) slab[k] = coefficients[(4 * s + k) / 3][(4 * s + k) % 3];
-        imageStore(image, probe + ivec3(0, 0, s * place.slab), slab);
-    }
+    vec4 slab = vec4(0.0);
+    for (int k = 0; k < 4; k++)
+        if (4 * s + k < 27) slab[k] = coefficients[(4 * s + k) / 3][(4 * s + k) % 3];
+    return slab;
 }
 
 #endif

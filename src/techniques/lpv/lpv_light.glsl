@@ -61,17 +61,11 @@ vec4 lpv_rounded(vec4 value)
     return mix(nearest, small, lessThan(abs(value), vec4(1.0 / 16384.0)));
 }
 
-void lpv_store_slab(writeonly image3D volume, ivec3 cell, int slab, vec4 value)
-{
-    imageStore(volume, cell + ivec3(0, 0, slab * lpv.dim), LPV_HALF ? lpv_rounded(value) : value);
-}
-
-void lpv_store_slabs(writeonly image3D volume, ivec3 cell, vec4 slabs[7])
-{
-    for (int i = 0; i < 3; i++) lpv_store_slab(volume, cell, i, slabs[i]);
-    if (LPV_BANDS == 3)
-        for (int i = 3; i < 7; i++) lpv_store_slab(volume, cell, i, slabs[i]);
-}
+// Macros: not every driver takes images that are written alone as parameters of functions.
+#define lpv_store_slab(volume, cell, slab, value) \
+    imageStore(volume, (cell) + ivec3(0, 0, (slab) * lpv.dim), LPV_HALF ? lpv_rounded(value) : (value))
+#define lpv_store_slabs(volume, cell, slabs) \
+    for (int slab_ = 0; slab_ < (LPV_BANDS == 3 ? 7 : 3); slab_++) lpv_store_slab(volume, cell, slab_, slabs[slab_])
 
 lpv_light lpv_fetch(sampler3D volume, ivec3 cell)
 {

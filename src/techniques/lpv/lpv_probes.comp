@@ -35,5 +35,6 @@ void main()
             coefficients[i][colour] = clamp(weight * slabs[number / 4][number % 4], -PROBES_MAX, PROBES_MAX);
         }
     }
-    probes_store(probes, place, cell, coefficients);
+    for (int s = 0; s < FRAME_PROBE_SLABS; s++)
+        imageStore(probes, cell + ivec3(0, 0, s * place.slab), probes_slab(coefficients, s));
 }
