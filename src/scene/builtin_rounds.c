@@ -247,11 +247,14 @@ struct sheet_point {
 
 static struct sheet_point sheet_point(const struct shape_sheet *sheet, float s, float t)
 {
-    const float step = 1e-3f;
-    vec3s along_s =
-        glms_vec3_sub(sheet->at(sheet->user, s + step, t), sheet->at(sheet->user, s - step, t));
-    vec3s along_t =
-        glms_vec3_sub(sheet->at(sheet->user, s, t + step), sheet->at(sheet->user, s, t - step));
+    // Derivatives, not differences: some versions of cglm take what is shorter than 1e-7 for zero.
+    const float step = 1e-3f, per_step = 0.5f / step;
+    vec3s along_s = glms_vec3_scale(
+        glms_vec3_sub(sheet->at(sheet->user, s + step, t), sheet->at(sheet->user, s - step, t)),
+        per_step);
+    vec3s along_t = glms_vec3_scale(
+        glms_vec3_sub(sheet->at(sheet->user, s, t + step), sheet->at(sheet->user, s, t - step)),
+        per_step);
     return (struct sheet_point){ sheet->at(sheet->user, s, t),
                                  glms_vec3_normalize(glms_vec3_cross(along_t, along_s)) };
 }
