@@ -82,8 +82,16 @@ static double split_of(struct fixture *f)
                    ".replace(/^inset\\(0(px)? /, '')) / 100");
 }
 
+// What has scrolled is under the pointer where it is seen only once frames have been drawn.
+static void let_frames_pass(struct fixture *f)
+{
+    browser_true(f->browser, "new Promise(done => requestAnimationFrame(() => "
+                             "requestAnimationFrame(() => done(true))))");
+}
+
 static void click(struct fixture *f, const char *selector)
 {
+    let_frames_pass(f);
     struct box box = box_of(f, selector);
     double x = box.x + box.width / 2, y = box.y + box.height / 2;
     browser_mouse(f->browser, "mouseMoved", x, y, 0);
