@@ -5,6 +5,8 @@
 #ifndef AG_FRAME_GLSL
 #define AG_FRAME_GLSL
 
+#include "core/half.glsl"
+
 #define frame_constants frame_constants_data
 #include "frame/frame_shared.h"
 #undef frame_constants
@@ -17,8 +19,6 @@ layout(set = 0, binding = FRAME_CONSTANTS_BINDING, scalar) uniform frame_constan
 {
     frame_constants_data frame;
 };
-
-const float HALF_MAX = 65504.0; // largest value of the frame's 16-bit images
 
 // Centre of a pixel in 0…1, +y down.
 vec2 frame_uv(uvec2 pixel)

@@ -7,8 +7,6 @@
 #ifndef AG_FRAME_PROBES_GLSL
 #define AG_FRAME_PROBES_GLSL
 
-const float PROBES_MAX = 65504.0; // of a number: a half float's largest
-
 // Of a point of the world, filtered between the eight probes around it; outside of the grid the nearest face's.
 vec3 probes_irradiance(sampler3D volume, frame_probes place, vec3 position, vec3 normal)
 {

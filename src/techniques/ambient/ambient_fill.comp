@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/half.glsl"
 #include "techniques/ambient/ambient_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -17,8 +18,6 @@ layout(set = 0, binding = 0, scalar) readonly buffer ambient_result
 };
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D irradiance;
-
-const float HALF_MAX = 65504.0;
 
 void main()
 {

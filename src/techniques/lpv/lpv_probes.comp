@@ -5,6 +5,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/half.glsl"
 #include "core/sh.glsl"
 #include "frame/frame_shared.h"
 #include "frame/probes.glsl"
@@ -32,7 +33,7 @@ void main()
         float weight = sh9_cosine_weight(i) * lpv.irradiance_scale * (i == 0 ? 1.0 : lpv.window) * (i > 0 && i < 4 ? -1.0 : 1.0);
         for (int colour = 0; colour < 3; colour++) {
             int number = 3 * i + colour;
-            coefficients[i][colour] = clamp(weight * slabs[number / 4][number % 4], -PROBES_MAX, PROBES_MAX);
+            coefficients[i][colour] = clamp(weight * slabs[number / 4][number % 4], -HALF_MAX, HALF_MAX);
         }
     }
     for (int s = 0; s < FRAME_PROBE_SLABS; s++)

@@ -10,6 +10,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/half.glsl"
 #include "frame/frame_shared.h"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
@@ -26,8 +27,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 5, scalar) readonly buffer static_records { uint static_record_words[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer dynamic_records { uint dynamic_record_words[]; };
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image3D light;
-
-const float HALF_MAX = 65504.0;
 
 struct seen
 {

@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "core/half.glsl"
 #include "frame/frame_shared.h"
 #include "techniques/vct/vct_shared.h"
 
@@ -19,7 +20,7 @@ layout(set = 0, binding = 3) uniform sampler2D edges;
 layout(set = 0, binding = 4) uniform sampler2D gathered;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D result;
 
-const float PI = 3.14159265, HALF_MAX = 65504.0;
+const float PI = 3.14159265;
 
 bool ends(ivec2 pixel)
 {
