@@ -1,5 +1,5 @@
 // Probe volumes through the public functions: where probes stand, what they hold, who has them.
-#include "framework/gpu_test.h"
+#include "api/stage.h"
 
 #include <afterglow/afterglow.h>
 
@@ -8,68 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 48, HEIGHT = 32, PIXELS = WIDTH * HEIGHT };
+enum { WIDTH = STAGE_WIDTH, HEIGHT = STAGE_HEIGHT, PIXELS = WIDTH * HEIGHT };
 static const float PI = 3.14159265f;
-
-struct stage {
-    struct ag_context *context;
-    struct ag_device *device;
-    struct ag_scene *scene;
-    struct ag_renderer *renderer;
-    struct ag_frame_desc frame;
-};
-
-static char last_warning[512];
-
-static void listen(void *user, enum ag_log_level level, const char *message)
-{
-    (void)user;
-    if (level <= AG_LOG_WARNING) snprintf(last_warning, sizeof last_warning, "%s", message);
-}
-
-// A point light in the Cornell box, not rendered yet.
-static struct stage open_stage(const char *gi)
-{
-    test_gpu_require();
-    struct stage s = { 0 };
-    struct ag_context_desc context;
-    struct ag_device_desc device;
-    struct ag_renderer_desc desc;
-    ag_context_desc_default(&context);
-    context.log = listen;
-    assert_int_equal(ag_context_create(&context, &s.context), AG_OK);
-    ag_device_desc_default(&device);
-    device.validation = true;
-    assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
-    assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
-    ag_renderer_desc_default(&desc);
-    desc.width = WIDTH;
-    desc.height = HEIGHT;
-    desc.gi = gi;
-    desc.frame_options = "shadow_size=256,rsm_size=64";
-    if (ag_renderer_create(s.device, s.scene, &desc, &s.renderer) != AG_OK)
-        fail_msg("%s", ag_context_last_error(s.context));
-    ag_frame_desc_default(&s.frame);
-    assert_int_equal(ag_scene_camera(s.scene, "main", 0, 0, &s.frame.camera), AG_OK);
-    return s;
-}
-
-static void close_stage(struct stage *s)
-{
-    ag_renderer_destroy(s->renderer);
-    if (ag_device_validation_messages(s->device)) fail_msg("validation says: %s", last_warning);
-    ag_scene_destroy(s->scene);
-    ag_device_destroy(s->device);
-    ag_context_destroy(s->context);
-}
-
-static struct ag_image *read_layer(struct stage *s, const char *layer)
-{
-    struct ag_image *image = NULL;
-    if (ag_renderer_read(s->renderer, layer, &image) != AG_OK)
-        fail_msg("%s: %s", layer, ag_context_last_error(s->context));
-    return image;
-}
 
 static struct ag_probes *render_probes(struct stage *s)
 {
@@ -100,11 +40,11 @@ TEST(strangers_are_lit_as_surfaces_are)
 {
     const char *gi[] = { "lpv:probes=true,dim=16,offset=0", "holpv:probes=true,dim=16,offset=0" };
     for (int k = 0; k < 2; k++) {
-        struct stage s = open_stage(gi[k]);
+        struct stage s = stage_open(gi[k], NULL);
         struct ag_probes *probes = render_probes(&s);
-        struct ag_image *irradiance = read_layer(&s, "irradiance"),
-                        *normal = read_layer(&s, "normal"), *position = read_layer(&s, "position"),
-                        *depth = read_layer(&s, "depth");
+        struct ag_image *irradiance = stage_read(&s, "irradiance"),
+                        *normal = stage_read(&s, "normal"), *position = stage_read(&s, "position"),
+                        *depth = stage_read(&s, "depth");
         const double typical = mean(irradiance);
         int seen = 0;
         CHECK(typical > 0.0);
@@ -123,7 +63,7 @@ TEST(strangers_are_lit_as_surfaces_are)
         ag_image_destroy(s.context, position);
         ag_image_destroy(s.context, depth);
         ag_probes_destroy(s.context, probes);
-        close_stage(&s);
+        stage_close(&s);
     }
 }
 
@@ -131,12 +71,12 @@ TEST(strangers_are_lit_as_surfaces_are)
 // half a spacing before the surface. Pixels with a ball before them are others, a few of them.
 TEST(shaders_look_probes_up_as_the_processor_does)
 {
-    struct stage s = open_stage("holpv:probes=true,dim=16");
+    struct stage s = stage_open("holpv:probes=true,dim=16", NULL);
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "probes"), AG_OK);
     struct ag_probes *probes = render_probes(&s);
-    struct ag_image *view = read_layer(&s, "debug"), *normal = read_layer(&s, "normal"),
-                    *position = read_layer(&s, "position"), *albedo = read_layer(&s, "albedo"),
-                    *depth = read_layer(&s, "depth");
+    struct ag_image *view = stage_read(&s, "debug"), *normal = stage_read(&s, "normal"),
+                    *position = stage_read(&s, "position"), *albedo = stage_read(&s, "albedo"),
+                    *depth = stage_read(&s, "depth");
     int seen = 0, equal = 0;
     for (int i = 0; i < PIXELS; i++) {
         const float *n = normal->pixels + 3 * i, *p = position->pixels + 3 * i;
@@ -159,12 +99,12 @@ TEST(shaders_look_probes_up_as_the_processor_does)
     ag_image_destroy(s.context, albedo);
     ag_image_destroy(s.context, depth);
     ag_probes_destroy(s.context, probes);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(probes_are_filtered_between_and_kept_outside)
 {
-    struct stage s = open_stage("lpv:probes=true,dim=16");
+    struct stage s = stage_open("lpv:probes=true,dim=16", NULL);
     struct ag_probes *probes = render_probes(&s);
     struct ag_scene_info info;
     assert_int_equal(ag_scene_get_info(s.scene, 0, 0.0, &info), AG_OK);
@@ -205,12 +145,12 @@ TEST(probes_are_filtered_between_and_kept_outside)
     ag_probes_irradiance(probes, position, up, there);
     CHECK(isfinite(there[1]));
     ag_probes_destroy(s.context, probes);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(probes_are_dark_without_light)
 {
-    struct stage s = open_stage("lpv:probes=true,dim=16");
+    struct stage s = stage_open("lpv:probes=true,dim=16", NULL);
     assert_int_equal(ag_scene_remove_lights(s.scene), AG_OK);
     struct ag_probes *probes = render_probes(&s);
     const size_t count =
@@ -218,12 +158,12 @@ TEST(probes_are_dark_without_light)
     CHECK(count > 0);
     for (size_t i = 0; i < 27 * count; i++) CHECK(probes->coefficients[i] == 0.0f);
     ag_probes_destroy(s.context, probes);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(the_image_of_the_probes_is_handed_out)
 {
-    struct stage s = open_stage("lpv:probes=true,dim=16");
+    struct stage s = stage_open("lpv:probes=true,dim=16", NULL);
     struct ag_probes *probes = render_probes(&s);
     struct ag_probes_handle handle;
     assert_int_equal(ag_renderer_probes_handle(s.renderer, &handle), AG_OK);
@@ -233,12 +173,12 @@ TEST(the_image_of_the_probes_is_handed_out)
     CHECK(memcmp(handle.counts, probes->counts, sizeof handle.counts) == 0);
     CHECK(memcmp(handle.first, probes->first, sizeof handle.first) == 0);
     ag_probes_destroy(s.context, probes);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(who_has_no_probes_says_what_would_bring_them)
 {
-    struct stage s = open_stage("lpv");
+    struct stage s = stage_open("lpv", NULL);
     struct ag_probes *probes = (struct ag_probes *)1;
     struct ag_probes_handle handle;
     assert_int_equal(ag_renderer_read_probes(s.renderer, &probes), AG_ERROR_ARGUMENT); // no frame
@@ -252,11 +192,11 @@ TEST(who_has_no_probes_says_what_would_bring_them)
     assert_null(handle.vk_image);
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "probes"), AG_ERROR_ARGUMENT);
     CHECK(strstr(ag_context_last_error(s.context), "lpv:probes=true"));
-    close_stage(&s);
-    s = open_stage("ambient");
+    stage_close(&s);
+    s = stage_open("ambient", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_read_probes(s.renderer, &probes), AG_ERROR_ARGUMENT);
     CHECK(strstr(ag_context_last_error(s.context), "ambient publishes no probes"));
     ag_probes_destroy(s.context, NULL);
-    close_stage(&s);
+    stage_close(&s);
 }

@@ -1,7 +1,7 @@
 // Renderers through the public functions: frames, layers, what may change while one lives, two side
 // by side, and a device and a command buffer that are the program's own.
 #include "api/purse.h"
-#include "framework/gpu_test.h"
+#include "api/stage.h"
 #include "framework/own_device.h"
 
 #include <afterglow/afterglow.h>
@@ -11,83 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 48, HEIGHT = 32 };
-
-struct stage {
-    struct ag_context *context;
-    struct ag_device *device;
-    struct ag_scene *scene;
-    struct ag_renderer *renderer;
-    struct ag_frame_desc frame;
-};
-
-static char last_warning[512];
-
-static void listen(void *user, enum ag_log_level level, const char *message)
-{
-    (void)user;
-    if (level <= AG_LOG_WARNING) snprintf(last_warning, sizeof last_warning, "%s", message);
-}
-
-static struct ag_context *open_context(void)
-{
-    struct ag_context_desc desc;
-    struct ag_context *context = NULL;
-    ag_context_desc_default(&desc);
-    desc.log = listen;
-    assert_int_equal(ag_context_create(&desc, &context), AG_OK);
-    return context;
-}
-
-static struct ag_renderer_desc renderer_desc(const char *gi)
-{
-    struct ag_renderer_desc desc;
-    ag_renderer_desc_default(&desc);
-    desc.width = WIDTH;
-    desc.height = HEIGHT;
-    desc.gi = gi;
-    desc.frame_options = "shadow_size=256,rsm_size=64";
-    desc.indirect_layer = true;
-    return desc;
-}
-
-// A point light in the Cornell box, on a device of the library's or on a lent one.
-static struct stage open_stage(const char *gi, const struct ag_device_adopt *adopt)
-{
-    test_gpu_require();
-    struct stage s = { .context = open_context() };
-    // Hazards between submissions, which the layer leaves out unless told otherwise.
-    setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
-           0);
-    struct ag_device_desc device;
-    ag_device_desc_default(&device);
-    device.validation = !adopt; // a lent one is its owner's to validate
-    device.adopt = adopt;
-    assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
-    assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
-    struct ag_renderer_desc desc = renderer_desc(gi);
-    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
-    ag_frame_desc_default(&s.frame);
-    assert_int_equal(ag_scene_camera(s.scene, "main", 0, 0, &s.frame.camera), AG_OK);
-    return s;
-}
-
-static void close_stage(struct stage *s)
-{
-    ag_renderer_destroy(s->renderer);
-    if (ag_device_validation_messages(s->device)) fail_msg("validation says: %s", last_warning);
-    ag_scene_destroy(s->scene);
-    ag_device_destroy(s->device);
-    ag_context_destroy(s->context);
-}
-
-static struct ag_image *read_layer(struct stage *s, const char *layer)
-{
-    struct ag_image *image = NULL;
-    if (ag_renderer_read(s->renderer, layer, &image) != AG_OK)
-        fail_msg("%s: %s", layer, ag_context_last_error(s->context));
-    return image;
-}
+enum { WIDTH = STAGE_WIDTH, HEIGHT = STAGE_HEIGHT };
 
 static double mean(const struct ag_image *image)
 {
@@ -99,7 +23,7 @@ static double mean(const struct ag_image *image)
 
 static double mean_of(struct stage *s, const char *layer)
 {
-    struct ag_image *image = read_layer(s, layer);
+    struct ag_image *image = stage_read(s, layer);
     double value = mean(image);
     ag_image_destroy(s->context, image);
     return value;
@@ -114,12 +38,12 @@ static bool equal(const struct ag_image *a, const struct ag_image *b)
 
 TEST(every_layer_is_finite_and_of_the_frames_size)
 {
-    struct stage s = open_stage("lpv", NULL);
+    struct stage s = stage_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     const char *name;
     for (int i = 0; (name = ag_layer_name(i)); i++) {
         if (strcmp(name, "debug") == 0 || strcmp(name, "motion") == 0) continue; // not asked for
-        struct ag_image *image = read_layer(&s, name);
+        struct ag_image *image = stage_read(&s, name);
         bool single = strcmp(name, "depth") == 0 || strcmp(name, "visibility") == 0;
         assert_int_equal(image->width, WIDTH);
         assert_int_equal(image->height, HEIGHT);
@@ -133,12 +57,12 @@ TEST(every_layer_is_finite_and_of_the_frames_size)
     float ev = 0;
     assert_int_equal(ag_renderer_exposure(s.renderer, &ev), AG_OK);
     CHECK(isfinite(ev) && ev != 0);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(layers_that_are_not_kept_or_not_known_are_refused)
 {
-    struct stage s = open_stage("lpv", NULL);
+    struct stage s = stage_open("lpv", NULL);
     struct ag_image *image = (struct ag_image *)1;
     assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT); // no frame
     assert_null(image);
@@ -149,19 +73,19 @@ TEST(layers_that_are_not_kept_or_not_known_are_refused)
     assert_int_equal(ag_renderer_read(s.renderer, NULL, &image), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "no-such-view"), AG_ERROR_ARGUMENT);
     ag_renderer_destroy(s.renderer);
-    struct ag_renderer_desc desc = renderer_desc("none");
+    struct ag_renderer_desc desc = stage_renderer_desc("none");
     desc.indirect_layer = desc.display_layer = false;
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_read(s.renderer, "indirect", &image), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_read(s.renderer, "display", &image), AG_ERROR_ARGUMENT);
     CHECK(mean_of(&s, "irradiance") == 0.0); // that nobody writes
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(debug_views_fill_the_debug_layer_until_they_are_switched_off)
 {
-    struct stage s = open_stage("lpv", NULL);
+    struct stage s = stage_open("lpv", NULL);
     struct ag_technique_info info;
     const char *view = NULL;
     for (int i = 0; ag_technique_get(i, &info); i++)
@@ -174,12 +98,12 @@ TEST(debug_views_fill_the_debug_layer_until_they_are_switched_off)
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     struct ag_image *image = NULL;
     assert_int_equal(ag_renderer_read(s.renderer, "debug", &image), AG_ERROR_ARGUMENT);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(wrong_frames_are_refused)
 {
-    struct stage s = open_stage("none", NULL);
+    struct stage s = stage_open("none", NULL);
     struct ag_frame_desc frame;
     assert_int_equal(ag_renderer_render(s.renderer, NULL), AG_ERROR_ARGUMENT);
     ag_frame_desc_default(&frame); // no camera yet
@@ -202,24 +126,24 @@ TEST(wrong_frames_are_refused)
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_record(s.renderer, &s.frame, &s), AG_ERROR_ARGUMENT); // not lent
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(wrong_renderers_are_refused)
 {
-    struct stage s = open_stage("none", NULL);
+    struct stage s = stage_open("none", NULL);
     struct ag_renderer *renderer = (struct ag_renderer *)1;
-    struct ag_renderer_desc desc = renderer_desc("lpv:stepz=4");
+    struct ag_renderer_desc desc = stage_renderer_desc("lpv:stepz=4");
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
     assert_null(renderer);
     CHECK(strstr(ag_context_last_error(s.context), "steps"));
-    desc = renderer_desc("none");
+    desc = stage_renderer_desc("none");
     desc.height = 0;
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
-    desc = renderer_desc("none");
+    desc = stage_renderer_desc("none");
     desc.frame_options = "cascades=9";
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
-    struct ag_context *other = open_context();
+    struct ag_context *other = stage_context();
     struct ag_scene *stranger = NULL;
     assert_int_equal(ag_scene_load(other, "@cornell", &stranger), AG_OK);
     assert_int_equal(ag_renderer_create(s.device, stranger, NULL, &renderer), AG_ERROR_ARGUMENT);
@@ -231,12 +155,12 @@ TEST(wrong_renderers_are_refused)
     struct ag_material_desc material;
     ag_material_desc_default(&material);
     assert_int_equal(ag_scene_add_material(s.scene, &material, NULL), AG_OK);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(lights_and_sky_may_change_while_a_renderer_lives_and_nothing_else)
 {
-    struct stage s = open_stage("lpv", NULL);
+    struct stage s = stage_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     double once = mean_of(&s, "color");
     struct ag_light_info light;
@@ -251,12 +175,12 @@ TEST(lights_and_sky_may_change_while_a_renderer_lives_and_nothing_else)
     ag_material_desc_default(&material);
     assert_int_equal(ag_scene_add_material(s.scene, &material, NULL), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_scene_add_instance(s.scene, 0, NULL, NULL), AG_ERROR_ARGUMENT);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(a_resize_changes_the_size_of_every_layer)
 {
-    struct stage s = open_stage("lpv", NULL);
+    struct stage s = stage_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_resize(s.renderer, 0, 10), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_resize(s.renderer, 10, 16385), AG_ERROR_ARGUMENT);
@@ -264,16 +188,16 @@ TEST(a_resize_changes_the_size_of_every_layer)
     struct ag_image *image = NULL;
     assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT); // not yet
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
-    image = read_layer(&s, "color");
+    image = stage_read(&s, "color");
     CHECK(image->width == 17 && image->height == 9);
     CHECK(mean(image) > 0);
     ag_image_destroy(s.context, image);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(times_and_memory_are_told_by_name)
 {
-    struct stage s = open_stage("lpv", NULL);
+    struct stage s = stage_open("lpv", NULL);
     assert_int_equal(ag_renderer_timings(s.renderer, NULL, 0), 0); // no frame
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     struct ag_timing timings[64];
@@ -302,35 +226,35 @@ TEST(times_and_memory_are_told_by_name)
             taken += owners[i].bytes;
     }
     CHECK(has_lpv);
-    struct ag_renderer_desc desc = renderer_desc("lpv");
+    struct ag_renderer_desc desc = stage_renderer_desc("lpv");
     assert_int_equal(ag_renderer_estimate_memory(s.context, &desc, 1, &estimate), AG_OK);
     if (taken > estimate)
         fail_msg("%llu bytes are taken, %llu were estimated at most", (unsigned long long)taken,
                  (unsigned long long)estimate);
     CHECK(strncmp(ag_renderer_gi(s.renderer), "lpv:", 4) == 0);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 TEST(two_contexts_side_by_side_render_what_each_renders_alone)
 {
-    struct stage alone = open_stage("lpv", NULL);
+    struct stage alone = stage_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(alone.renderer, &alone.frame), AG_OK);
-    struct ag_image *expected = read_layer(&alone, "color");
-    struct stage a = open_stage("lpv", NULL), b = open_stage("ambient", NULL);
+    struct ag_image *expected = stage_read(&alone, "color");
+    struct stage a = stage_open("lpv", NULL), b = stage_open("ambient", NULL);
     for (int i = 0; i < 2; i++) {
         assert_int_equal(ag_renderer_render(a.renderer, &a.frame), AG_OK);
         assert_int_equal(ag_renderer_render(b.renderer, &b.frame), AG_OK);
     }
-    struct ag_image *of_a = read_layer(&a, "color"), *of_b = read_layer(&b, "color");
+    struct ag_image *of_a = stage_read(&a, "color"), *of_b = stage_read(&b, "color");
     CHECK(equal(of_a, expected));
     CHECK(!equal(of_b, expected));
     ag_image_destroy(b.context, of_b);
-    close_stage(&b); // a goes on without b
+    stage_close(&b); // a goes on without b
     assert_int_equal(ag_renderer_render(a.renderer, &a.frame), AG_OK);
     ag_image_destroy(a.context, of_a);
-    close_stage(&a);
+    stage_close(&a);
     ag_image_destroy(alone.context, expected);
-    close_stage(&alone);
+    stage_close(&alone);
 }
 
 // A renderer, a frame and a picture, or the first failure; then nothing is refused any more.
@@ -339,7 +263,7 @@ static enum ag_result render_once(struct stage *s, struct purse *purse, struct a
                                   long *calls)
 {
     long begun = purse->asked;
-    struct ag_renderer_desc desc = renderer_desc("lpv");
+    struct ag_renderer_desc desc = stage_renderer_desc("lpv");
     struct ag_renderer *renderer = NULL;
     enum ag_result result = ag_renderer_create(s->device, s->scene, &desc, &renderer);
     if (result == AG_OK) result = ag_renderer_render(renderer, &s->frame);
@@ -389,25 +313,25 @@ TEST(a_refused_allocation_in_a_renderer_is_a_memory_error_and_the_next_one_works
     CHECK(equal(image, expected));
     ag_image_destroy(s.context, image);
     ag_image_destroy(s.context, expected);
-    close_stage(&s);
+    stage_close(&s);
     assert_int_equal(purse.blocks, 0);
 }
 
 TEST(two_renderers_share_a_device_and_a_scene)
 {
-    struct stage s = open_stage("lpv", NULL);
-    struct ag_renderer_desc desc = renderer_desc("none");
+    struct stage s = stage_open("lpv", NULL);
+    struct ag_renderer_desc desc = stage_renderer_desc("none");
     struct ag_renderer *second = NULL;
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &second), AG_OK);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_render(second, &s.frame), AG_OK);
-    struct ag_image *with = read_layer(&s, "color"), *without = NULL;
+    struct ag_image *with = stage_read(&s, "color"), *without = NULL;
     assert_int_equal(ag_renderer_read(second, "color", &without), AG_OK);
     CHECK(mean(with) > mean(without));
     ag_image_destroy(s.context, with);
     ag_image_destroy(s.context, without);
     ag_renderer_destroy(second);
-    close_stage(&s);
+    stage_close(&s);
 }
 
 // ---- the program's own device
@@ -429,12 +353,12 @@ static const struct ag_image *expected_color(void)
 {
     static float pixels[WIDTH * HEIGHT * 3];
     static const struct ag_image copy = { WIDTH, HEIGHT, 3, pixels };
-    struct stage s = open_stage("lpv", NULL);
+    struct stage s = stage_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
-    struct ag_image *color = read_layer(&s, "color");
+    struct ag_image *color = stage_read(&s, "color");
     memcpy(pixels, color->pixels, sizeof pixels);
     ag_image_destroy(s.context, color);
-    close_stage(&s);
+    stage_close(&s);
     return &copy;
 }
 
@@ -444,11 +368,11 @@ TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
     struct own_device own;
     own_device_open(&own, 0);
     struct ag_device_adopt adopt = lend(&own);
-    struct stage s = open_stage("lpv", &adopt);
+    struct stage s = stage_open("lpv", &adopt);
     int before = own.locks;
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(own.locks, before + 1);
-    struct ag_image *color = read_layer(&s, "color");
+    struct ag_image *color = stage_read(&s, "color");
     CHECK(equal(color, expected));
     assert_int_equal(own.held, 0);
     void *image = NULL;
@@ -460,7 +384,7 @@ TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
     assert_int_equal(ag_renderer_layer_handle(s.renderer, "position", &image, &layout, &scale),
                      AG_ERROR_UNSUPPORTED);
     ag_image_destroy(s.context, color);
-    close_stage(&s);
+    stage_close(&s);
     own_device_close(&own);
 }
 
@@ -470,7 +394,7 @@ TEST(a_frame_goes_into_the_programs_command_buffer)
     struct own_device own;
     own_device_open(&own, 0);
     struct ag_device_adopt adopt = lend(&own);
-    struct stage s = open_stage("lpv", &adopt);
+    struct stage s = stage_open("lpv", &adopt);
     int before = own.locks;
     for (int i = 0; i < 2; i++) {
         VkCommandBuffer commands = own_device_begin(&own);
@@ -485,16 +409,16 @@ TEST(a_frame_goes_into_the_programs_command_buffer)
         assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_OK);
     }
     assert_int_equal(own.locks, before); // the program submitted
-    struct ag_image *color = read_layer(&s, "color");
+    struct ag_image *color = stage_read(&s, "color");
     CHECK(equal(color, expected));
     ag_image_destroy(s.context, color);
-    close_stage(&s);
+    stage_close(&s);
     own_device_close(&own);
 }
 
 TEST(an_adopted_device_needs_all_its_handles)
 {
-    struct ag_context *context = open_context();
+    struct ag_context *context = stage_context();
     struct ag_device *device = NULL;
     struct ag_device_adopt adopt = { .instance = context };
     struct ag_device_desc desc;
@@ -509,7 +433,7 @@ TEST(an_adopted_device_needs_all_its_handles)
 TEST(an_unknown_device_is_refused)
 {
     test_gpu_require();
-    struct ag_context *context = open_context();
+    struct ag_context *context = stage_context();
     struct ag_device *device = NULL;
     struct ag_device_desc desc;
     ag_device_desc_default(&desc);
@@ -529,20 +453,20 @@ TEST(a_scene_lit_by_emission_alone_is_warned_about_where_no_technique_gathers_it
                   { "@cornell", "lpv", false },
                   { "@cornell", "ambient", false },
                   { "@cornell:light=point", "none", false } };
-    struct stage s = open_stage("none", NULL);
+    struct stage s = stage_open("none", NULL);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct ag_scene *scene = NULL;
         struct ag_renderer *renderer = NULL;
-        struct ag_renderer_desc desc = renderer_desc(cases[i].gi);
+        struct ag_renderer_desc desc = stage_renderer_desc(cases[i].gi);
         assert_int_equal(ag_scene_load(s.context, cases[i].scene, &scene), AG_OK);
-        last_warning[0] = '\0';
+        stage_last_warning[0] = '\0';
         assert_int_equal(ag_renderer_create(s.device, scene, &desc, &renderer), AG_OK);
-        CHECK_STRING(last_warning,
+        CHECK_STRING(stage_last_warning,
                      cases[i].warns ? "@cornell: lit by emissive surfaces alone, which --gi none "
                                       "does not gather: try --gi lpv"
                                     : "");
         ag_renderer_destroy(renderer);
         ag_scene_destroy(scene);
     }
-    close_stage(&s);
+    stage_close(&s);
 }

@@ -1,0 +1,72 @@
+#include "api/stage.h"
+
+#include <stdio.h>
+
+char stage_last_warning[512];
+
+static void listen(void *user, enum ag_log_level level, const char *message)
+{
+    (void)user;
+    if (level <= AG_LOG_WARNING)
+        snprintf(stage_last_warning, sizeof stage_last_warning, "%s", message);
+}
+
+struct ag_context *stage_context(void)
+{
+    struct ag_context_desc desc;
+    struct ag_context *context = NULL;
+    ag_context_desc_default(&desc);
+    desc.log = listen;
+    assert_int_equal(ag_context_create(&desc, &context), AG_OK);
+    return context;
+}
+
+struct ag_renderer_desc stage_renderer_desc(const char *gi)
+{
+    struct ag_renderer_desc desc;
+    ag_renderer_desc_default(&desc);
+    desc.width = STAGE_WIDTH;
+    desc.height = STAGE_HEIGHT;
+    desc.gi = gi;
+    desc.frame_options = "shadow_size=256,rsm_size=64";
+    desc.indirect_layer = true;
+    return desc;
+}
+
+struct stage stage_open(const char *gi, const struct ag_device_adopt *adopt)
+{
+    test_gpu_require();
+    struct stage s = { .context = stage_context() };
+    // Hazards between submissions, which the layer leaves out unless told otherwise.
+    setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
+           0);
+    struct ag_device_desc device;
+    ag_device_desc_default(&device);
+    device.validation = !adopt;
+    device.adopt = adopt;
+    assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
+    assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
+    struct ag_renderer_desc desc = stage_renderer_desc(gi);
+    if (ag_renderer_create(s.device, s.scene, &desc, &s.renderer) != AG_OK)
+        fail_msg("%s", ag_context_last_error(s.context));
+    ag_frame_desc_default(&s.frame);
+    assert_int_equal(ag_scene_camera(s.scene, "main", 0, 0, &s.frame.camera), AG_OK);
+    return s;
+}
+
+void stage_close(struct stage *s)
+{
+    ag_renderer_destroy(s->renderer);
+    if (ag_device_validation_messages(s->device)) fail_msg("validation says: %s", stage_last_warning);
+    ag_scene_destroy(s->scene);
+    ag_device_destroy(s->device);
+    ag_context_destroy(s->context);
+}
+
+struct ag_image *stage_read(struct stage *s, const char *layer)
+{
+    struct ag_image *image = NULL;
+    if (ag_renderer_read(s->renderer, layer, &image) != AG_OK)
+        fail_msg("%s: %s", layer, ag_context_last_error(s->context));
+    return image;
+}
