@@ -8,8 +8,6 @@
 
 #include "techniques/vct/vct_state.h"
 
-#include "technique_shaders.h"
-
 #include <string.h>
 
 static const struct option_row option_rows[] = {
@@ -40,197 +38,9 @@ static bool vct_check(const struct technique_create *how)
     return true;
 }
 
-// ---- Sizes --------------------------------------------------------------------------------------
-
-static uint32_t voxel_count(const struct vct_options *options)
-{
-    const uint32_t dim = (uint32_t)options->resolution;
-    return dim * dim * dim;
-}
-
-// A scene's surfaces fill some multiple of the squares that the grid's faces are: 6 for an empty
-// room. 20 of them leave room for much furniture.
-uint32_t vct_capacity(const struct vct_options *options)
-{
-    const uint32_t dim = (uint32_t)options->resolution, most = 20 * dim * dim;
-    return most < voxel_count(options) ? most : voxel_count(options);
-}
-
-uint32_t vct_volume_dim(const struct vct_options *options)
-{
-    return (uint32_t)options->resolution / 2;
-}
-
-// Down to texels of which no side of the volume has more than a few, and as long as sides can be
-// halved.
-uint32_t vct_volume_mips(const struct vct_options *options)
-{
-    uint32_t mips = 1;
-    for (uint32_t dim = vct_volume_dim(options); dim % 2 == 0 && dim > 2; dim /= 2) mips++;
-    return mips;
-}
-
-static size_t mask_words(const struct vct_options *options)
-{
-    return voxel_count(options) / 32;
-}
-
-static size_t block_count(const struct vct_options *options)
-{
-    return (mask_words(options) + VCT_BLOCK_WORDS - 1) / VCT_BLOCK_WORDS;
-}
-
-struct buffer_plan {
-    const char *name;
-    gpu_buffer *out;
-    size_t words;
-    uint32_t usage;
-};
-
-enum { SET_BUFFERS = 8 };
-
-static void plan_set(const struct vct_options *options, bool moving, struct vct_set *set,
-                     struct buffer_plan out[SET_BUFFERS])
-{
-    const size_t capacity = vct_capacity(options);
-#define NAME(thing) (moving ? "vct.moving_" thing : "vct.rest_" thing)
-    const struct buffer_plan plan[SET_BUFFERS] = {
-        { NAME("mask"), &set->mask, mask_words(options), 0 },
-        { NAME("before"), &set->before, mask_words(options), 0 },
-        { NAME("blocks"), &set->blocks, block_count(options), 0 },
-        { NAME("list"), &set->list, capacity, 0 },
-        { NAME("sums"), &set->sums, capacity * VCT_SUM_WORDS, 0 },
-        { NAME("records"), &set->records, capacity * VCT_RECORD_WORDS, 0 },
-        { NAME("brought"), &set->brought, capacity * VCT_BROUGHT_WORDS, 0 },
-        { NAME("arguments"), &set->arguments, 5, GPU_BUFFER_INDIRECT },
-    };
-#undef NAME
-    memcpy(out, plan, sizeof plan);
-}
-
-enum { BUFFERS = 2 * SET_BUFFERS + 2 };
-
-static void plan_buffers(const struct vct_options *options, struct vct *vct,
-                         struct buffer_plan out[BUFFERS])
-{
-    plan_set(options, false, &vct->rest, out);
-    plan_set(options, true, &vct->moving, out + SET_BUFFERS);
-    out[2 * SET_BUFFERS] =
-        (struct buffer_plan){ "vct.queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 };
-    out[2 * SET_BUFFERS + 1] =
-        (struct buffer_plan){ "vct.queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT };
-}
-
-static struct gpu_image_desc volume_desc(const struct vct_options *options)
-{
-    const uint32_t dim = vct_volume_dim(options);
-    return (struct gpu_image_desc){ .name = "vct.light",
-                                    .dimension = GPU_3D,
-                                    .format = GPU_RGBA16F,
-                                    .width = 6 * dim,
-                                    .height = dim,
-                                    .depth = dim,
-                                    .mips = vct_volume_mips(options),
-                                    .usage = GPU_SAMPLED | GPU_STORAGE };
-}
-
-// ---- Life ---------------------------------------------------------------------------------------
-
-static bool create_image_2d(struct vct *vct, const char *name, enum gpu_format format,
-                            gpu_image *out)
-{
-    const struct gpu_image_desc desc = { .name = name,
-                                         .format = format,
-                                         .width = vct->width,
-                                         .height = vct->height,
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
-    gpu_image_destroy(vct->gpu, out);
-    return gpu_image_create(vct->gpu, &desc, out);
-}
-
 static bool vct_resize(void *state, uint32_t width, uint32_t height)
 {
-    struct vct *vct = state;
-    vct->width = width;
-    vct->height = height;
-    return create_image_2d(vct, "vct.edges", GPU_R8, &vct->edge_image) &&
-           create_image_2d(vct, "vct.traced", GPU_RGBA16F, &vct->traced) &&
-           create_image_2d(vct, "vct.gathered", GPU_RGBA16F, &vct->gathered);
-}
-
-static bool create_resources(struct vct *vct)
-{
-    struct buffer_plan plan[BUFFERS];
-    plan_buffers(&vct->options, vct, plan);
-    for (int i = 0; i < BUFFERS; i++) {
-        const struct gpu_buffer_desc desc = { .name = plan[i].name,
-                                              .bytes = plan[i].words * sizeof(uint32_t),
-                                              .usage = GPU_BUFFER_STORAGE | plan[i].usage };
-        if (!gpu_buffer_create(vct->gpu, &desc, plan[i].out)) return false;
-    }
-    const struct gpu_image_desc light = volume_desc(&vct->options);
-    const struct gpu_sampler_desc linear = { .name = "vct.linear",
-                                             .filter = GPU_LINEAR,
-                                             .wrap_u = GPU_CLAMP,
-                                             .wrap_v = GPU_CLAMP,
-                                             .wrap_w = GPU_CLAMP };
-    return gpu_sampler_get(vct->gpu, &linear, &vct->linear) &&
-           gpu_image_create(vct->gpu, &light, &vct->light);
-}
-
-// See scene.glsl.
-static const struct gpu_constant mapped[] = { { 0, 1 } };
-static const struct gpu_constant masked[] = { { 0, 1 }, { 4, 1 } };
-static const struct gpu_constant columns[] = { { 0, 1 } };
-
-struct pipeline_plan {
-    gpu_pipeline *out;
-    const char *name;
-    const struct gpu_shader *shader;
-    const struct gpu_constant *constants;
-    int constant_count;
-};
-
-enum { PIPELINES = 20 };
-
-static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
-{
-    struct vct_walk *plain = &vct->add[VCT_PLAIN], *maps = &vct->add[VCT_MAPPED],
-                    *masks = &vct->add[VCT_MASKED];
-    const struct pipeline_plan plan[PIPELINES] = {
-        { &vct->mark.small, "vct.mark", &shader_vct_mark_comp, NULL, 0 },
-        { &vct->mark.large, "vct.mark_large", &shader_vct_mark_large_comp, NULL, 0 },
-        { &plain->small, "vct.add", &shader_vct_add_comp, NULL, 0 },
-        { &plain->large, "vct.add_large", &shader_vct_add_large_comp, NULL, 0 },
-        { &maps->small, "vct.add_mapped", &shader_vct_add_comp, mapped, 1 },
-        { &maps->large, "vct.add_mapped_large", &shader_vct_add_large_comp, mapped, 1 },
-        { &masks->small, "vct.add_masked", &shader_vct_add_comp, masked, 2 },
-        { &masks->large, "vct.add_masked_large", &shader_vct_add_large_comp, masked, 2 },
-        { &vct->count, "vct.count", &shader_vct_count_comp, NULL, 0 },
-        { &vct->scan, "vct.scan", &shader_vct_scan_comp, NULL, 0 },
-        { &vct->list, "vct.list", &shader_vct_list_comp, NULL, 0 },
-        { &vct->inject, "vct.inject", &shader_vct_inject_comp, NULL, 0 },
-        { &vct->bounce, "vct.bounce", &shader_vct_bounce_comp, NULL, 0 },
-        { &vct->fill, "vct.fill", &shader_vct_fill_comp, NULL, 0 },
-        { &vct->mip, "vct.mip", &shader_vct_mip_comp, NULL, 0 },
-        { &vct->cones, "vct.cones", &shader_vct_cones_comp, NULL, 0 },
-        { &vct->edges, "vct.edges", &shader_vct_edges_comp, NULL, 0 },
-        { &vct->gather_rows, "vct.gather_rows", &shader_vct_gather_comp, NULL, 0 },
-        { &vct->gather_columns, "vct.gather_columns", &shader_vct_gather_comp, columns, 1 },
-        { &vct->debug, "vct.debug", &shader_vct_debug_comp, NULL, 0 },
-    };
-    memcpy(out, plan, sizeof plan);
-}
-
-static bool create_pipelines(struct vct *vct)
-{
-    struct pipeline_plan plan[PIPELINES];
-    plan_pipelines(vct, plan);
-    for (int i = 0; i < PIPELINES; i++)
-        if (!gpu_compute_pipeline_create(vct->gpu, plan[i].name, plan[i].shader, plan[i].constants,
-                                         plan[i].constant_count, plan[i].out))
-            return false;
-    return true;
+    return vct_create_images(state, width, height);
 }
 
 static bool vct_create(void *state, const struct technique_create *how)
@@ -238,8 +48,8 @@ static bool vct_create(void *state, const struct technique_create *how)
     struct vct *vct = state;
     vct->gpu = how->gpu;
     vct->options = *(const struct vct_options *)how->options;
-    return vct_resize(vct, how->width, how->height) && create_resources(vct) &&
-           create_pipelines(vct);
+    return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
+           vct_create_pipelines(vct);
 }
 
 static void vct_set_options(void *state, const void *options)
@@ -288,32 +98,12 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
 static void vct_destroy(void *state)
 {
     struct vct *vct = state;
-    if (!vct->gpu) return;
-    struct buffer_plan buffers[BUFFERS];
-    plan_buffers(&vct->options, vct, buffers);
-    for (int i = 0; i < BUFFERS; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
-    struct pipeline_plan pipelines[PIPELINES];
-    plan_pipelines(vct, pipelines);
-    for (int i = 0; i < PIPELINES; i++) gpu_pipeline_destroy(vct->gpu, pipelines[i].out);
-    gpu_image_destroy(vct->gpu, &vct->light);
-    gpu_image_destroy(vct->gpu, &vct->edge_image);
-    gpu_image_destroy(vct->gpu, &vct->traced);
-    gpu_image_destroy(vct->gpu, &vct->gathered);
+    if (vct->gpu) vct_destroy_resources(vct);
 }
 
 static uint64_t vct_memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
-    struct vct none = { 0 };
-    struct buffer_plan plan[BUFFERS];
-    plan_buffers(options, &none, plan);
-    uint64_t bytes = 0;
-    for (int i = 0; i < BUFFERS; i++) bytes += plan[i].words * sizeof(uint32_t);
-    const struct gpu_image_desc light = volume_desc(options);
-    for (uint32_t mip = 0; mip < light.mips; mip++)
-        bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
-                 (uint64_t)gpu_format_bytes(GPU_RGBA16F);
-    const int pixel = gpu_format_bytes(GPU_R8) + 2 * gpu_format_bytes(GPU_RGBA16F);
-    return bytes + (uint64_t)width * height * (uint64_t)pixel;
+    return vct_resource_bytes(options, width, height);
 }
 
 const struct technique technique_vct = {

@@ -62,6 +62,13 @@ uint32_t vct_capacity(const struct vct_options *options); // voxels of a set
 uint32_t vct_volume_dim(const struct vct_options *options);
 uint32_t vct_volume_mips(const struct vct_options *options);
 
+// What there is on the GPU. Each may stop half-way; vct_destroy_resources takes what there is.
+bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height); // of that many pixels
+bool vct_create_resources(struct vct *vct);                               // buffers, light volume
+bool vct_create_pipelines(struct vct *vct);
+void vct_destroy_resources(struct vct *vct);
+uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, uint32_t height);
+
 // Places the grid; false where there is nothing to voxelise.
 bool vct_prepare(struct vct *vct, const struct frame_view *view);
 struct gpu_binding vct_grid_binding(struct vct *vct, struct gpu_cmd *cmd);
