@@ -65,6 +65,7 @@ static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
     desc->frame_options = a->frame_options;
     desc->indirect_layer = picture_needs(&job->picture, "indirect");
     desc->display_layer = picture_needs(&job->picture, "display");
+    desc->motion_layer = picture_needs(&job->picture, "motion");
 }
 
 // All wrong usage is found before a file is opened or a device is woken.

@@ -119,6 +119,20 @@ static void show_direction(struct ag_image *image)
     }
 }
 
+// Grey where nothing moves; the largest motion as bright or dark as it goes. Not finite: grey.
+static void show_motion(struct ag_image *image)
+{
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    float most = 0.0f;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(image->pixels[i])) most = fmaxf(most, fabsf(image->pixels[i]));
+    for (size_t i = 0; i < count; i++) {
+        bool shown = most > 0.0f && isfinite(image->pixels[i]);
+        image->pixels[i] = shown ? image->pixels[i] / most : 0.0f;
+    }
+    show_direction(image);
+}
+
 // Each channel from its least to its greatest finite value. Not finite: 0.
 static void show_range(struct ag_image *image)
 {
@@ -169,7 +183,7 @@ static enum ag_result tonemap(struct session *session, float ev, struct ag_image
 }
 
 // How a layer becomes a picture; what is not named is radiance.
-enum look { RADIANCE, AS_IT_IS, DIRECTION, DEPTH, RANGE, IRRADIANCE };
+enum look { RADIANCE, AS_IT_IS, DIRECTION, MOTION, DEPTH, RANGE, IRRADIANCE };
 
 static enum look look_of(const char *layer)
 {
@@ -179,7 +193,7 @@ static enum look look_of(const char *layer)
     } looks[] = {
         { "albedo", AS_IT_IS },       { "visibility", AS_IT_IS },
         { "display", AS_IT_IS },      { "normal", DIRECTION },
-        { "motion", DIRECTION },      { "depth", DEPTH },
+        { "motion", MOTION },         { "depth", DEPTH },
         { "obscurance", AS_IT_IS },   { "ambient_occlusion", AS_IT_IS },
         { "position", RANGE },        { "samples", RANGE },
         { "irradiance", IRRADIANCE }, { "gathered_irradiance", IRRADIANCE },
@@ -197,6 +211,9 @@ enum ag_result picture_show(struct session *session, const char *layer, float ev
         return AG_OK;
     case DIRECTION:
         show_direction(*image);
+        return AG_OK;
+    case MOTION:
+        show_motion(*image);
         return AG_OK;
     case DEPTH:
         show_depth(*image);

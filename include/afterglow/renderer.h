@@ -17,6 +17,7 @@ struct ag_renderer_desc {
     const char *frame_options; ///< "shadow_size=2048,…" or NULL; see ag_frame_option_get
     bool indirect_layer;       ///< keep indirect radiance as a layer; default false
     bool display_layer;        ///< keep the tone-mapped picture as a layer; default true
+    bool motion_layer;         ///< keep motion since the last frame as a layer; default false
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 /// Bytes of GPU memory that these settings take at most, before anything is created (scene excluded).
@@ -55,9 +56,12 @@ AG_API enum ag_result ag_renderer_wait(struct ag_renderer *renderer);
 /// emissive motion display debug. NULL past the end.
 AG_API const char *ag_layer_name(int index);
 /// Reads a layer of the newest frame in physical units (cd/m², lux, metres): 3 channels, depth and visibility 1.
-/// Waits for the GPU. "indirect" needs indirect_layer, "display" display_layer, "debug" a debug view, "motion" a technique
-/// that asks for it. What no technique writes is neutral: no indirect light, visibility 1. Where there is no surface,
-/// normals, positions and depths are 0.
+/// Waits for the GPU. "indirect" needs indirect_layer, "display" display_layer, "debug" a debug view, "motion" motion_layer
+/// or a technique that asks for it. What no technique writes is neutral: no indirect light, visibility 1. Where there is no
+/// surface, normals, positions, depths and motions are 0.
+/// Motion is where a surface's point is now minus where it was in the last frame, as x and y in widths and heights of the
+/// picture, +x right, +y down; z is its distance along the view axis, then over now, minus 1. It is 0 in the first frame
+/// and after a cut.
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
 /// The VkImage of a layer and its VkImageLayout, for programs that share the device. Radiance and irradiance on the GPU

@@ -76,7 +76,7 @@ static const struct layer *layer_kept(const struct ag_renderer *r, const char *n
     else if (layer->read == NO_READBACK && !r->debug_view)
         need = "no debug view is set";
     else if (layer->image == FRAME_MOTION && layer_image(r, layer).id == 0)
-        need = "no technique asks for it";
+        need = "the renderer was made without motion_layer, and no technique asks for it";
     if (need) host_fail(host, FAIL_ARGUMENT, "cannot read layer %s: %s", name, need);
     return layer && !need ? layer : NULL;
 }

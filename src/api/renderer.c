@@ -115,6 +115,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->scene = scene;
     r->indirect_layer = desc->indirect_layer;
     r->display_layer = desc->display_layer;
+    r->motion_layer = desc->motion_layer;
     scene->renderers++;
     bool ok = build(r, desc);
     enum ag_result result = api_done(context, ok);
@@ -212,6 +213,7 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
                                    .exposure_ev = desc->exposure_ev,
                                    .camera_cut = desc->camera_cut,
                                    .want_indirect_layer = r->indirect_layer,
+                                   .want_motion_layer = r->motion_layer,
                                    .want_display = r->display_layer };
     *hook = gi_hook(r->gi);
     return frame_prepare(r->frame, input, hook);

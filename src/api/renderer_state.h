@@ -18,7 +18,7 @@ struct ag_renderer {
     struct gi *gi;
     struct world_light lights[FRAME_MAX_LIGHTS];
     struct gpu_cmd *recorded; // in a caller's command buffer, and not yet reported done
-    bool indirect_layer, display_layer, debug_view;
+    bool indirect_layer, display_layer, motion_layer, debug_view;
     bool sized;        // the last resize succeeded
     bool said_limit;   // that there are more lights than are used
     uint64_t rendered; // frames since the last resize

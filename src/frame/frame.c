@@ -129,7 +129,8 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     }
     if (input->pose->scene != f->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose is of another scene");
-    f->needs = indirect ? indirect->needs : 0;
+    f->needs =
+        (indirect ? indirect->needs : 0) | (input->want_motion_layer ? FRAME_NEEDS_MOTION : 0);
     f->composite_variant = composite_variant_of(input, f->needs);
     f->prepared = frame_make_layers(f, wanted_layers(input, f->needs)) &&
                   prepare_lights(f, input) &&

@@ -29,7 +29,8 @@ enum frame_layer {
     FRAME_ALBEDO,     // RGBA8_SRGB: base colour, alpha 1 where there is a surface
     FRAME_MATERIAL,   // RG8: roughness, metallic
     FRAME_EMISSIVE,   // RGBA16F: scaled radiance
-    FRAME_MOTION,     // RG16F: screen position now minus last frame's, in units of the screen (0…1), +y down
+    FRAME_MOTION,     // RGBA16F: screen position now minus last frame's, in units of the screen (0…1), +y down; distance along
+                      // the view axis, last frame's over now's, minus 1; 1 where there is a surface
     FRAME_DIRECT,     // RGBA16F: scaled radiance of punctual lights and emission
     FRAME_IRRADIANCE, // RGBA16F: scaled irradiance, indirect
     FRAME_SPECULAR,   // RGBA16F: scaled radiance, indirect
@@ -103,6 +104,7 @@ struct frame_input {
     float exposure_ev;                // used where auto_exposure is false
     bool camera_cut;                  // forget history
     bool want_indirect_layer;         // fill FRAME_INDIRECT
+    bool want_motion_layer;           // fill FRAME_MOTION, whether the hook needs it or not
     bool want_display;                // fill FRAME_DISPLAY
 };
 

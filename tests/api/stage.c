@@ -30,6 +30,7 @@ struct ag_renderer_desc stage_renderer_desc(const char *gi)
     desc.gi = gi;
     desc.frame_options = "shadow_size=256,rsm_size=64";
     desc.indirect_layer = true;
+    desc.motion_layer = true;
     return desc;
 }
 

@@ -42,7 +42,7 @@ TEST(every_layer_is_finite_and_of_the_frames_size)
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     const char *name;
     for (int i = 0; (name = ag_layer_name(i)); i++) {
-        if (strcmp(name, "debug") == 0 || strcmp(name, "motion") == 0) continue; // not asked for
+        if (strcmp(name, "debug") == 0) continue; // not asked for
         struct ag_image *image = stage_read(&s, name);
         bool single = strcmp(name, "depth") == 0 || strcmp(name, "visibility") == 0;
         assert_int_equal(image->width, WIDTH);
@@ -74,11 +74,13 @@ TEST(layers_that_are_not_kept_or_not_known_are_refused)
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "no-such-view"), AG_ERROR_ARGUMENT);
     ag_renderer_destroy(s.renderer);
     struct ag_renderer_desc desc = stage_renderer_desc("none");
-    desc.indirect_layer = desc.display_layer = false;
+    desc.indirect_layer = desc.display_layer = desc.motion_layer = false;
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_read(s.renderer, "indirect", &image), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_read(s.renderer, "display", &image), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_read(s.renderer, "motion", &image), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(s.context), "motion_layer"));
     CHECK(mean_of(&s, "irradiance") == 0.0); // that nobody writes
     stage_close(&s);
 }

@@ -214,6 +214,35 @@ TEST(a_number_in_the_name_writes_every_frame_and_time_moves)
     CHECK_NEAR(mean_of(frames[0], NULL), mean_of(frames[1], NULL), 0);
 }
 
+// The scene has a box that turns and rises, and one that stands still.
+TEST(motion_is_of_what_moves_and_begins_with_the_second_frame)
+{
+    require_device();
+    const char *scene = test_scene_path("box-animated.gltf");
+    char path[300];
+    snprintf(path, sizeof path, "%s", test_path("motion.exr"));
+    for (int frames = 1; frames <= 2; frames++) {
+        const char *words = frames == 1 ? "render --size 32x32 --quiet --aov motion,depth -o"
+                                        : "render --size 32x32 --quiet --aov motion,depth "
+                                          "--time 1 --frames 2 --time-step 0.25 -o";
+        run_expect(0, words, path, scene, NULL);
+        struct image motion = read_layer(path, "motion"), depth = read_layer(path, "depth");
+        int moving = 0, still = 0;
+        for (int i = 0; i < 32 * 32; i++) {
+            const float *m = &motion.pixels[3 * i];
+            const bool moves = m[0] != 0.0f || m[1] != 0.0f || m[2] != 0.0f;
+            CHECK(fabsf(m[0]) < 0.2f && fabsf(m[1]) < 0.2f && fabsf(m[2]) < 0.2f);
+            CHECK(!moves || depth.pixels[i] > 0.0f);
+            moving += moves;
+            still += !moves && depth.pixels[i] > 0.0f;
+        }
+        if (frames == 1) CHECK(moving == 0);
+        if (frames == 2) CHECK(moving > 20 && still > 20);
+        image_finish(&motion, test_host());
+        image_finish(&depth, test_host());
+    }
+}
+
 TEST(statistics_have_the_keys_that_scripts_rely_on)
 {
     require_device();
@@ -278,7 +307,7 @@ TEST(every_layer_can_be_a_png)
     require_device();
     static const char *const layers[] = { "color",      "direct",   "indirect", "irradiance",
                                           "visibility", "specular", "albedo",   "normal",
-                                          "depth",      "position", "display" };
+                                          "depth",      "position", "display",  "motion" };
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
         char path[300];
         struct image picture = { 0 };

@@ -17,7 +17,7 @@ static bool make_pipeline(struct gbuffer *g, uint32_t variant, bool motion)
         .constants = constants,
         .constant_count = 5,
         .color_formats = { GPU_RG16F, GPU_RGBA8_SRGB, GPU_RG8, GPU_RGBA16F,
-                           motion ? GPU_RG16F : GPU_FORMAT_NONE },
+                           motion ? GPU_RGBA16F : GPU_FORMAT_NONE },
         .depth_format = GPU_D32F,
         .depth_compare = GPU_GREATER,
         .depth_write = true,

@@ -17,7 +17,7 @@ layout(location = 1) out vec4 out_albedo;
 layout(location = 2) out vec2 out_material;
 layout(location = 3) out vec4 out_emissive;
 #ifdef GBUFFER_MOTION
-layout(location = 4) out vec2 out_motion;
+layout(location = 4) out vec4 out_motion; // see FRAME_MOTION
 #endif
 
 // glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w; the back of a double-sided surface has the
@@ -52,6 +52,7 @@ void main()
     vec2 now = vary_now.xy / vary_now.z;
     // Behind the last frame's eye there is no position to come from: as far outside as the format can say.
     vec2 before = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z : vec2(-HALF_MAX);
-    out_motion = clamp((now - before) * 0.5, -HALF_MAX, HALF_MAX);
+    float farther = max(vary_previous.z, 0.0) / vary_now.z - 1.0;
+    out_motion = vec4(clamp(vec3((now - before) * 0.5, farther), -HALF_MAX, HALF_MAX), 1.0);
 #endif
 }
