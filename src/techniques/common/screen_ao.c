@@ -48,7 +48,7 @@ bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
     ao->height = height;
     ao->work_width = work_size(&ao->options, width);
     ao->work_height = work_size(&ao->options, height);
-    ao->before.near_m = 0.0f;
+    ao->before_near_m = 0.0f;
     if (!make_image(ao, "estimate", ESTIMATE_FORMAT, &ao->estimate)) return false;
     if (ao->options.blur && !make_image(ao, "scratch", ESTIMATE_FORMAT, &ao->scratch)) return false;
     return !ao->options.temporal || (make_image(ao, "history", HISTORY_FORMAT, &ao->history[0]) &&
@@ -100,21 +100,14 @@ uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t widt
 
 // ---- a frame
 
-// What tells a point's distance in the last frame.
-static void relate_to_last_frame(struct screen_ao *ao, const struct frame_view *view)
+static void go_on_from_last_frame(struct screen_ao *ao, const struct frame_view *view)
 {
     struct screen_ao_params *p = &ao->params;
-    const struct world_camera *before = &ao->before;
-    const bool known = before->near_m > 0.0f && !view->camera_cut && view->index > 0;
-    p->before_forward = vec3_of(glms_vec3_dot(p->right, before->forward),
-                                glms_vec3_dot(p->down, before->forward),
-                                glms_vec3_dot(p->forward, before->forward));
-    p->before_offset_m =
-        glms_vec3_dot(glms_vec3_sub(view->camera.eye, before->eye), before->forward);
-    p->before_near_m = known ? before->near_m : 0.0f;
+    const bool known = ao->before_near_m > 0.0f && !view->camera_cut && view->index > 0;
+    p->before_near_m = known ? ao->before_near_m : 0.0f;
     // The patterns' golden steps go on from frame to frame.
     p->turn = fmodf(0.61803399f * (float)(TURNS * (view->index % TURNS)), 1.0f);
-    ao->before = view->camera;
+    ao->before_near_m = view->camera.near_m;
     ao->newest = 1 - ao->newest;
 }
 
@@ -138,7 +131,7 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
         .work_width = ao->work_width,
         .work_height = ao->work_height,
     };
-    if (ao->options.temporal) relate_to_last_frame(ao, view);
+    if (ao->options.temporal) go_on_from_last_frame(ao, view);
 }
 
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd)

@@ -22,7 +22,7 @@ struct screen_ao {
     gpu_image scratch; // RG32F
     gpu_image history[2]; // RGBA32F: visibility, depth, frames; the last frame's and this one's in turn
     int newest;           // of the two
-    struct world_camera before; // the last frame's camera; near_m 0: forget the history
+    float before_near_m; // of the last frame's camera; 0: forget the history
     gpu_pipeline temporal, blur_x, blur_y, fit;
     struct screen_ao_params params; // of the frame being recorded
 };

@@ -16,15 +16,11 @@ struct screen_ao_params {
     float middle_x, middle_y;         // of the picture, pixels
     uint32_t width, height;           // of the frame, pixels
     uint32_t work_width, work_height; // of the estimate, pixels
-    // Of the last frame's camera. A point's distance along its view axis is (m, 1) · before_forward times the distance
-    // now, plus before_offset_m.
-    vec3s before_forward; // in this frame's right, down, forward
-    float before_offset_m;
-    float before_near_m; // 0: no frame to go on from
+    float before_near_m;              // of the last frame's camera; 0: no frame to go on from
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct screen_ao_params) == 25 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct screen_ao_params) == 21 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

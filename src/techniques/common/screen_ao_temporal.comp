@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "techniques/common/reproject.glsl"
 #include "techniques/common/screen_ao.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -17,27 +18,19 @@ const float EDGE = 4.0;   // a surface a quarter of a radius off does not count
 const float LEAST = 0.25; // of the taps' weights: with less there is no history
 const float FRAMES = 16.0;
 
-// Distance along the last frame's view axis of what is at `distance_m` now, as it stood if it stands still.
-float distance_before(ivec2 pixel, float distance_m)
-{
-    vec2 m = (vec2(pixel) + 0.5 - vec2(view.middle_x, view.middle_y)) / view.focal_px;
-    return distance_m * dot(vec3(m, 1.0), view.before_forward) + view.before_offset_m;
-}
-
 // Visibility and frames at a place of the estimate, in its pixels; (0, 0): none.
 vec2 remembered(vec2 place, float depth)
 {
     float radius_px = clamp(view.radius_m * view.focal_px * depth / view.before_near_m, LEAST_PX, view.most_px);
     float per_depth = EDGE * view.focal_px / (radius_px * depth);
-    ivec2 first = ivec2(floor(place)), size = ivec2(view.work_width, view.work_height);
-    vec2 between = place - vec2(first), sum = vec2(0.0);
+    vec2 sum = vec2(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; i++) {
-        ivec2 corner = ivec2(i & 1, i >> 1), at = first + corner;
-        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
-        vec2 share = mix(1.0 - between, between, equal(corner, ivec2(1)));
+        ivec2 at = reproject_tap(place, i);
+        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(view.work_width, view.work_height)))) continue;
         vec3 tap = texelFetch(history, at, 0).rgb;
-        float w = tap.y > 0.0 ? share.x * share.y * max(1.0 - abs(tap.y - depth) * per_depth, 0.0) : 0.0;
+        float near = max(1.0 - abs(tap.y - depth) * per_depth, 0.0);
+        float w = tap.y > 0.0 ? reproject_share(place, i) * near : 0.0;
         sum += w * tap.xz;
         weights += w;
     }
@@ -52,10 +45,10 @@ void main()
     vec2 past = vec2(0.0);
     if (now.y > 0.0 && view.before_near_m > 0.0) {
         ivec2 pixel = work * SCREEN_AO_STEP;
-        vec2 moved_px = texelFetch(motion, pixel, 0).rg * vec2(view.width, view.height);
-        float distance_m = distance_before(pixel, view.near_m / now.y);
-        if (distance_m > 0.0 && all(lessThan(abs(moved_px), vec2(view.width, view.height))))
-            past = remembered((vec2(pixel) - moved_px) / float(SCREEN_AO_STEP), view.before_near_m / distance_m);
+        vec4 moved = texelFetch(motion, pixel, 0);
+        vec2 place = reproject_place(moved, pixel, vec2(view.width, view.height)) / float(SCREEN_AO_STEP);
+        float distance_m = reproject_distance(moved, view.near_m / now.y);
+        if (distance_m > 0.0) past = remembered(place, view.before_near_m / distance_m);
     }
     float frames = min(past.y + 1.0, FRAMES);
     imageStore(after, work, vec4(mix(past.x, now.x, 1.0 / frames), now.y, frames, 0.0));
