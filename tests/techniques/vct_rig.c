@@ -58,7 +58,7 @@ bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, 
 float *vct_rig_light(const struct vct_rig *rig, uint32_t level)
 {
     const size_t dim = vct_volume_dim(&rig->vct->options) >> level;
-    const size_t floats = 6 * dim * dim * dim * 4;
+    const size_t floats = vct_ways(&rig->vct->options) * dim * dim * dim * 4;
     float *light = malloc(floats * sizeof *light);
     CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->light, level, 0, light, 4, floats));
     return light;

@@ -18,5 +18,5 @@ void vct_rig_finish(struct vct_rig *rig);
 // One word for each 32 voxels of a set, as many as resolution³ need. To be freed.
 uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set);
 bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z);
-// A level of the light volume, 4 floats a texel, all six ways. To be freed.
+// A level of the light volume, 4 floats a texel, all ways. To be freed.
 float *vct_rig_light(const struct vct_rig *rig, uint32_t level);

@@ -29,12 +29,13 @@ static bool vct_check(const struct technique_create *how)
     if (options->resolution % 16 != 0)
         return host_fail(how->host, FAIL_ARGUMENT, "gi vct: resolution=%d is not a multiple of 16",
                          (int)options->resolution);
-    if (gpu_limits(how->gpu)->max_image_3d < 6 * vct_volume_dim(options))
+    const uint32_t most = gpu_limits(how->gpu)->max_image_3d,
+                   width = vct_ways(options) * vct_volume_dim(options);
+    if (most < width)
         return host_fail(
             how->host, FAIL_UNSUPPORTED,
             "gi vct: resolution=%d: the device has 3D images of at most %u, %u are needed",
-            (int)options->resolution, gpu_limits(how->gpu)->max_image_3d,
-            6 * vct_volume_dim(options));
+            (int)options->resolution, most, width);
     return true;
 }
 
@@ -55,9 +56,10 @@ static bool vct_create(void *state, const struct technique_create *how)
 static void vct_set_options(void *state, const void *options)
 {
     struct vct *vct = state;
-    const int32_t resolution = vct->options.resolution; // what the buffers have
+    const struct vct_options had = vct->options;
     vct->options = *(const struct vct_options *)options;
-    vct->options.resolution = resolution;
+    vct->options.resolution = had.resolution; // what the buffers and pipelines are for
+    vct->options.anisotropic = had.anisotropic;
 }
 
 static void vct_invalidate(void *state, uint32_t changes)

@@ -6,6 +6,9 @@
 // much of it as the sheet covers when it is seen along the axis. A side that is the back of a surface of one side
 // neither shows nor hides anything: what is looked for from a floor is not hidden by the floor, however coarse its
 // texels are.
+//
+// One volume for all ways has the mean of what both sides send out, and of the eight voxels: the isotropic pyramid of
+// figure 49, through whose thin walls light leaks.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -15,6 +18,7 @@
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/vct_record.glsl"
+#include "techniques/vct/vct_ways.glsl"
 #define VCT_SLOTS(name) static_##name
 #define VCT_SLOTS_BINDING 1
 #include "techniques/vct/vct_slots.glsl"
@@ -39,6 +43,11 @@ void look_at(vct_record r, inout seen s)
     float steepest = max(slopes.x, max(slopes.y, slopes.z));
     vec4 front = vec4(r.front + r.emitted_front, 1.0) * r.opacity.x;
     vec4 back = vec4(r.back + r.emitted_back, 1.0) * r.opacity.y;
+    if (!VCT_ANISOTROPIC) {
+        vec4 both = (front + back) * (max(front.a, back.a) / max(front.a + back.a, 1e-6));
+        s.along[0] = both.a > s.along[0].a ? both : s.along[0];
+        return;
+    }
     vec4 middle = 0.5 * (front + back);
     for (int axis = 0; axis < 3; axis++) {
         float share = steepest > 0.0 ? slopes[axis] / steepest : 1.0;
@@ -93,7 +102,8 @@ void main()
     if (occupied(texel)) {
         seen child[8];
         for (int i = 0; i < 8; i++) look(2 * texel + ivec3(i & 1, i >> 1 & 1, i >> 2), child[i]);
-        for (int axis = 0; axis < 3; axis++) {
+        for (int i = 0; i < 8 && !VCT_ANISOTROPIC; i++) sum[0] += 0.125 * child[i].along[0];
+        for (int axis = 0; axis < 3 && VCT_ANISOTROPIC; axis++) {
             int step = 1 << axis;
             for (int i = 0; i < 4; i++) {
                 int low = axis == 0 ? 2 * i : axis == 1 ? (i & 1) + 4 * (i >> 1) : i;
@@ -102,6 +112,6 @@ void main()
             }
         }
     }
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < VCT_WAYS; k++)
         imageStore(light, texel + ivec3(k * vct.volume_dim, 0, 0), min(sum[k], vec4(HALF_MAX)));
 }

@@ -65,7 +65,8 @@ static void filter(struct vct *vct, struct gpu_cmd *cmd)
             GPU_BIND({ .name = "source", .image = vct->light, .mip = level - 1, .one_mip = true },
                      { .name = "target", .image = vct->light, .mip = level }),
             &push, sizeof push, gpu_groups((uint32_t)push.size_x, VCT_LOCAL_2D),
-            gpu_groups((uint32_t)push.size_y, VCT_LOCAL_2D), 6 * (uint32_t)push.size_z);
+            gpu_groups((uint32_t)push.size_y, VCT_LOCAL_2D),
+            vct_ways(&vct->options) * (uint32_t)push.size_z);
     }
 }
 

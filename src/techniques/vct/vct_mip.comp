@@ -1,10 +1,12 @@
 // The next level of the light volume. Of each of the six volumes 2 × 2 × 2 texels make one: of two that lie one
-// behind the other on the volume's way the nearer covers the farther, and four such pairs are averaged.
+// behind the other on the volume's way the nearer covers the farther, and four such pairs are averaged. One volume for
+// all ways is averaged over all eight.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/vct/vct_shared.h"
+#include "techniques/vct/vct_ways.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -25,7 +27,7 @@ void main()
     ivec3 id = ivec3(gl_GlobalInvocationID);
     int way = id.z / push.size_z;
     ivec3 texel = ivec3(id.xy, id.z % push.size_z);
-    if (way >= 6 || any(greaterThanEqual(texel, ivec3(push.size_x, push.size_y, push.size_z)))) return;
+    if (way >= VCT_WAYS || any(greaterThanEqual(texel, ivec3(push.size_x, push.size_y, push.size_z)))) return;
     ivec3 from = 2 * texel + ivec3(way * push.source_tile, 0, 0);
     ivec3 along = way < 2 ? ivec3(1, 0, 0) : way < 4 ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
     ivec3 size = ivec3(push.source_x, push.source_y, push.source_z);
@@ -38,7 +40,8 @@ void main()
         bool whole = all(lessThan(2 * texel + side + along, size));
         ivec3 at = from + side;
         vec4 first = texelFetch(source, at, 0), second = whole ? texelFetch(source, at + along, 0) : vec4(0.0);
-        sum += (way & 1) == 0 ? over(first, second) : over(second, first);
+        if (VCT_ANISOTROPIC) sum += (way & 1) == 0 ? over(first, second) : over(second, first);
+        else sum += whole ? 0.5 * (first + second) : first;
         columns++;
     }
     imageStore(target, texel + ivec3(way * push.target_tile, 0, 0), sum / columns);

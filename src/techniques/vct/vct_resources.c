@@ -36,6 +36,11 @@ uint32_t vct_volume_mips(const struct vct_options *options)
     return mips;
 }
 
+uint32_t vct_ways(const struct vct_options *options)
+{
+    return options->anisotropic ? 6 : 1;
+}
+
 static size_t mask_words(const struct vct_options *options)
 {
     return voxel_count(options) / 32;
@@ -93,7 +98,7 @@ static struct gpu_image_desc volume_desc(const struct vct_options *options)
     return (struct gpu_image_desc){ .name = "vct.light",
                                     .dimension = GPU_3D,
                                     .format = GPU_RGBA16F,
-                                    .width = 6 * dim,
+                                    .width = vct_ways(options) * dim,
                                     .height = dim,
                                     .depth = dim,
                                     .mips = vct_volume_mips(options),
@@ -149,6 +154,8 @@ bool vct_create_resources(struct vct *vct)
 static const struct gpu_constant mapped[] = { { 0, 1 } };
 static const struct gpu_constant masked[] = { { 0, 1 }, { 4, 1 } };
 static const struct gpu_constant columns[] = { { 0, 1 } };
+// See vct_ways.glsl.
+static const struct gpu_constant isotropic[] = { { 10, 0 } };
 
 struct pipeline_plan {
     gpu_pipeline *out;
@@ -164,6 +171,8 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
     struct vct_walk *plain = &vct->add[VCT_PLAIN], *maps = &vct->add[VCT_MAPPED],
                     *masks = &vct->add[VCT_MASKED];
+    const struct gpu_constant *ways = vct->options.anisotropic ? NULL : isotropic;
+    const int way_count = vct->options.anisotropic ? 0 : 1;
     const struct pipeline_plan plan[PIPELINES] = {
         { &vct->mark.small, "vct.mark", &shader_vct_mark_comp, NULL, 0 },
         { &vct->mark.large, "vct.mark_large", &shader_vct_mark_large_comp, NULL, 0 },
@@ -177,10 +186,10 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->scan, "vct.scan", &shader_vct_scan_comp, NULL, 0 },
         { &vct->list, "vct.list", &shader_vct_list_comp, NULL, 0 },
         { &vct->inject, "vct.inject", &shader_vct_inject_comp, NULL, 0 },
-        { &vct->bounce, "vct.bounce", &shader_vct_bounce_comp, NULL, 0 },
-        { &vct->fill, "vct.fill", &shader_vct_fill_comp, NULL, 0 },
-        { &vct->mip, "vct.mip", &shader_vct_mip_comp, NULL, 0 },
-        { &vct->cones, "vct.cones", &shader_vct_cones_comp, NULL, 0 },
+        { &vct->bounce, "vct.bounce", &shader_vct_bounce_comp, ways, way_count },
+        { &vct->fill, "vct.fill", &shader_vct_fill_comp, ways, way_count },
+        { &vct->mip, "vct.mip", &shader_vct_mip_comp, ways, way_count },
+        { &vct->cones, "vct.cones", &shader_vct_cones_comp, ways, way_count },
         { &vct->edges, "vct.edges", &shader_vct_edges_comp, NULL, 0 },
         { &vct->gather_rows, "vct.gather_rows", &shader_vct_gather_comp, NULL, 0 },
         { &vct->gather_columns, "vct.gather_columns", &shader_vct_gather_comp, columns, 1 },

@@ -61,6 +61,7 @@ struct vct {
 uint32_t vct_capacity(const struct vct_options *options); // voxels of a set
 uint32_t vct_volume_dim(const struct vct_options *options);
 uint32_t vct_volume_mips(const struct vct_options *options);
+uint32_t vct_ways(const struct vct_options *options); // volumes side by side: 6, or 1 for all ways
 
 // What there is on the GPU. Each may stop half-way; vct_destroy_resources takes what there is.
 bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height); // of that many pixels

@@ -13,29 +13,9 @@
 #ifndef AG_VCT_TRACE_GLSL
 #define AG_VCT_TRACE_GLSL
 
+#include "techniques/vct/vct_look.glsl"
+
 const float VCT_OPAQUE = 0.98; // a cone that has met so much ends there, as if it had met all
-
-struct vct_met
-{
-    vec4 light;  // premultiplied radiance, opacity
-    float sheet; // the largest opacity along an axis
-};
-
-// What light comes against `direction`, or the part of it that is `counted`, at a place in texels of level 0. The six
-// volumes lie side by side along x: what is filtered keeps half a texel away from its neighbour.
-vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int level)
-{
-    vec3 share = abs(counted);
-    float dim = float(vct.volume_dim >> level), half_texel = 0.5 / dim;
-    vec3 size = vec3((vct_cells() / 2 + (1 << level) - 1) >> level) / dim;
-    vec3 uv = clamp(at / float(vct.volume_dim), vec3(half_texel), size - half_texel);
-    vec3 way = (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
-    vec4 x = textureLod(light, vec3(way.x, uv.yz), float(level));
-    vec4 y = textureLod(light, vec3(way.y, uv.yz), float(level));
-    vec4 z = textureLod(light, vec3(way.z, uv.yz), float(level));
-    vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
-    return vct_met(share.x * x + share.y * y + share.z * z, max(met.x, max(met.y, met.z)));
-}
 
 // Radiance in xyz, premultiplied, and opacity. Lengths in texels of level 0; `from`: where the cone starts, of width 0
 // there; wide: width of a texel over distance.
