@@ -1,7 +1,6 @@
 // Light that other voxels and the sky bring to each voxel, by cones: irradiance on both sides of its sheet. What
 // surfaces that glow bring on their straight way, and with more bounces all that the voxels sent out in the last
 // frame.
-#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

@@ -3,7 +3,6 @@
 // Pixels that share a set of cones are one sub-image (Hong 2015, sec. 4.2): every workgroup takes pixels of one alone,
 // so that all its invocations go the same way through the volume. That is what the paper's splitting and translation
 // of blocks is for; in compute the addresses are enough, and nothing is copied.
-#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,0 +1,4 @@
+// The cones of each pixel, through the mips.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "vct_cones.glsl"
