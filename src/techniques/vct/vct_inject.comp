@@ -28,6 +28,14 @@ layout(set = 0, binding = 9, scalar) readonly buffer vct_brought { uint brought[
 const float PI = 3.14159265;
 const float SHADOW_LIFT = 0.25; // voxels: a surface lies that far from where its voxel thinks, if it is curved
 
+// A small number that loops or branches depend on. Where it comes from uniforms alone, Mesa 22.3's lavapipe compiles
+// the shader again for its value in each dispatch, which takes longer than the dispatch. The length of a buffer, which
+// is never less, keeps it from that.
+uint kept(uint number)
+{
+    return min(number, list.length());
+}
+
 // Irradiance by one light, scaled lux; `front` says of which side.
 vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
 {
@@ -47,7 +55,7 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
     vec3 plane = front ? normal : -normal;
     if (light.shadow_first >= 0)
         attenuation *= shadow_of(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light, true,
-                                 vct.shadow_size, vct.shadow_radius);
+                                 vct.shadow_size, int(kept(uint(vct.shadow_radius))));
     return light.intensity * (attenuation * abs(cosine));
 }
 
@@ -66,13 +74,13 @@ void main()
     r.emitted_back = min(vct_sum(at + VCT_SUM_BACK) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
 
     vec3 front = vec3(0.0), back = vec3(0.0);
-    for (uint i = 0; i < vct.light_count; i++) {
+    for (uint i = 0; i < kept(vct.light_count); i++) {
         bool at_front;
         vec3 e = irradiance(frame_light_table[i], sheet.position, sheet.normal, at_front);
         if (at_front) front += e;
         else back += e;
     }
-    if (vct.brought != 0u) {
+    if (kept(vct.brought) != 0u) {
         uint from = slot * VCT_BROUGHT_WORDS;
         vec2 middle = unpackHalf2x16(brought[from + 1u]);
         front += vec3(unpackHalf2x16(brought[from]), middle.x);
