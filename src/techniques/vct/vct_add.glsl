@@ -89,6 +89,25 @@ void add(uint at, vec3 value, float one)
 // Planes whose normal is all but perpendicular to this are those whose sides cannot be told apart; no usual wall is.
 const vec3 FRONT = vec3(0.4743, 0.8165, 0.3294);
 
+// How much of a voxel's face the triangle covers in it, seen along its dominant axis, in sixteenths: of as many lines
+// along that axis those that cross it there. Lines cross a closed surface in one voxel of their column: what the voxels
+// of a slanted wall cover adds up to all.
+uint covered_lines(ivec3 voxel, vct_triangle t)
+{
+    ivec3 cell = ivec3(turned(vec3(voxel), t.turn));
+    float facing = t.normal.z < 0.0 ? -1.0 : 1.0;
+    vec2 ab = facing * (t.v.xy - t.u.xy), bc = facing * (t.w.xy - t.v.xy), ca = facing * (t.u.xy - t.w.xy);
+    uint lines = 0u;
+    for (uint i = 0u; i < VCT_LINES; i++) {
+        vec2 at = vec2(cell.xy) + (vec2(i, (i * 7u + 3u) % VCT_LINES) + 0.5) / float(VCT_LINES);
+        vec2 u = at - t.u.xy, v = at - t.v.xy, w = at - t.w.xy;
+        bool inside = ab.x * u.y >= ab.y * u.x && bc.x * v.y >= bc.y * v.x && ca.x * w.y >= ca.y * w.x;
+        int depth = int(floor(t.u.z - dot(t.normal.xy, u) / t.normal.z));
+        if (inside && clamp(depth, t.low.z, t.high.z) == cell.z) lines++;
+    }
+    return lines;
+}
+
 void vct_visit(ivec3 voxel, vct_triangle t)
 {
     uint slot = vct_slot(vct_index(voxel));
@@ -106,8 +125,10 @@ void vct_visit(ivec3 voxel, vct_triangle t)
     normal /= faces;
     bool turned_over = dot(normal, FRONT) < 0.0;
     bool front = turned_over == (push.mirrored != 0u); // whether the triangle's front is the sheet's
-    float weight = clamp(roundEven(0.5 * faces * VCT_WEIGHT_ONE), 1.0, VCT_WEIGHT_ONE);
+    uint lines = covered_lines(voxel, t);
+    float weight = max(float(lines) * VCT_WEIGHT_LINE, 1.0);
     float opaque = weight * s.color.a;
+    uint covered = uint(roundEven(float(lines) * VCT_WEIGHT_LINE * s.color.a));
     uint to = slot * VCT_SUM_WORDS;
     atomicAdd(sums[to + VCT_SUM_WEIGHT], uint(weight));
     atomicAdd(sums[to + VCT_SUM_OPACITY], uint(roundEven(opaque)));
@@ -115,8 +136,8 @@ void vct_visit(ivec3 voxel, vct_triangle t)
     add(to + VCT_SUM_NORMAL, (turned_over ? -normal : normal) * weight, VCT_NORMAL_ONE);
     add(to + VCT_SUM_POSITION, clamp(position, -1.0, 1.0) * weight, VCT_POSITION_ONE);
     bool both = (scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u;
-    if (front || both) atomicAdd(sums[to + VCT_SUM_FRONTS], uint(weight));
-    if (!front || both) atomicAdd(sums[to + VCT_SUM_BACKS], uint(weight));
+    if (front || both) atomicAdd(sums[to + VCT_SUM_FRONTS], covered);
+    if (!front || both) atomicAdd(sums[to + VCT_SUM_BACKS], covered);
     vec3 emission = s.emission * vct.emission_fixed * opaque;
     if (!any(greaterThan(emission, vec3(0.0)))) return;
     if (front || both) add(to + VCT_SUM_FRONT, emission, 1.0);

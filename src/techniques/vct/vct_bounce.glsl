@@ -31,7 +31,7 @@ vec3 irradiance(vec3 position, vec3 normal)
     vec3 from = (position - vct.origin_m) / set.texel_m + set.offset * normal;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < set.cone_count; i++) {
-        vec4 met = vct_trace(light, from, world_from_local * set.cones[i].xyz, set.width_per_m, set.last_mip);
+        vec4 met = vct_trace(light, from, normal, world_from_local * set.cones[i].xyz, set.width_per_m, set.last_mip);
         sum += set.cones[i].w * (met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky);
     }
     return min(sum, vec3(HALF_MAX));

@@ -42,7 +42,7 @@ void main()
         uint first = part * 7u % (side * side) % set.cone_count;
         for (uint i = first; i < set.cone_count; i += side * side) {
             vec3 direction = world_from_local * set.cones[i].xyz;
-            vec4 met = vct_trace(light, from, direction, set.width_per_m, set.last_mip);
+            vec4 met = vct_trace(light, from, n, direction, set.width_per_m, set.last_mip);
             sum += set.cones[i].w * vec4(met.rgb + (1.0 - met.a) * frame.sky, 1.0);
         }
     }

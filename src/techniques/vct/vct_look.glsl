@@ -6,8 +6,8 @@
 
 struct vct_met
 {
-    vec4 light;  // premultiplied radiance, opacity
-    float sheet; // the largest opacity along an axis
+    vec4 light; // premultiplied radiance, opacity
+    vec3 axes;  // opacity along each axis that is looked along
 };
 
 // What light comes against `direction`, or the part of it that is `counted`, at a place in texels of level 0. Six
@@ -21,14 +21,14 @@ vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int lev
     vec3 uv = clamp(at / float(vct.volume_dim), vec3(half_texel), size - half_texel);
     if (!VCT_ANISOTROPIC) {
         vec4 all = textureLod(light, uv, float(level));
-        return vct_met(all, all.a);
+        return vct_met(all, vec3(all.a));
     }
     vec3 way = (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
     vec4 x = textureLod(light, vec3(way.x, uv.yz), float(level));
     vec4 y = textureLod(light, vec3(way.y, uv.yz), float(level));
     vec4 z = textureLod(light, vec3(way.z, uv.yz), float(level));
     vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
-    return vct_met(share.x * x + share.y * y + share.z * z, max(met.x, max(met.y, met.z)));
+    return vct_met(share.x * x + share.y * y + share.z * z, met);
 }
 
 #endif

@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/vct/vct_shared.h"
+#include "techniques/vct/vct_over.glsl"
 #include "techniques/vct/vct_ways.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -16,11 +17,6 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 0) uniform sampler3D source;
 layout(set = 0, binding = 1, rgba16f) uniform writeonly image3D target;
-
-vec4 over(vec4 front, vec4 back)
-{
-    return front + (1.0 - front.a) * back;
-}
 
 void main()
 {
@@ -40,7 +36,7 @@ void main()
         bool whole = all(lessThan(2 * texel + side + along, size));
         ivec3 at = from + side;
         vec4 first = texelFetch(source, at, 0), second = whole ? texelFetch(source, at + along, 0) : vec4(0.0);
-        if (VCT_ANISOTROPIC) sum += (way & 1) == 0 ? over(first, second) : over(second, first);
+        if (VCT_ANISOTROPIC) sum += (way & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
         else sum += whole ? 0.5 * (first + second) : first;
         columns++;
     }

@@ -13,6 +13,7 @@
 
 #include "core/half.glsl"
 #include "frame/frame_shared.h"
+#include "techniques/vct/vct_over.glsl"
 #include "techniques/vct/vct_record.glsl"
 #include "techniques/vct/vct_ways.glsl"
 #define VCT_SLOTS(name) static_##name
@@ -71,11 +72,6 @@ void look(ivec3 voxel, out seen s)
     }
 }
 
-vec4 over(vec4 front, vec4 back)
-{
-    return front + (1.0 - front.a) * back;
-}
-
 // A block of at most 2 × 2 × 2 voxels as one texel: along each axis the nearer of two covers the farther, and columns
 // are averaged.
 void vct_see(ivec3 from, ivec3 size, out vec4 sum[6])
@@ -94,8 +90,8 @@ void vct_see(ivec3 from, ivec3 size, out vec4 sum[6])
         float column = each * float(size[axis]);
         for (int i = 0; i < 4; i++) {
             int low = axis == 0 ? 2 * i : axis == 1 ? (i & 1) + 4 * (i >> 1) : i;
-            sum[2 * axis] += column * over(child[low].along[2 * axis], child[low + step].along[2 * axis]);
-            sum[2 * axis + 1] += column * over(child[low + step].along[2 * axis + 1], child[low].along[2 * axis + 1]);
+            sum[2 * axis] += column * vct_over(child[low].along[2 * axis], child[low + step].along[2 * axis]);
+            sum[2 * axis + 1] += column * vct_over(child[low + step].along[2 * axis + 1], child[low].along[2 * axis + 1]);
         }
     }
 }

@@ -20,10 +20,12 @@
 #define VCT_SUM_POSITION    8  // 3 words, signed: from the voxel's centre
 #define VCT_SUM_FRONT       11 // 3 words: emission to the side of the normal
 #define VCT_SUM_BACK        14 // 3 words: emission to the other side
-#define VCT_SUM_FRONTS 17        // weight of what turns a front to the side of the normal
+#define VCT_SUM_FRONTS 17        // weight of what is covered by fronts to the side of the normal
 #define VCT_SUM_BACKS 18         // and to the other side
 #define VCT_SUM_WORDS 19
-#define VCT_WEIGHT_ONE      1024.0 // weight of a triangle that is at least as large as a voxel's face
+#define VCT_LINES           16 // along an axis through each voxel, of which those that a triangle crosses are counted
+#define VCT_WEIGHT_LINE     64.0
+#define VCT_WEIGHT_ONE      1024.0 // weight of what covers a voxel's face: of all lines
 #define VCT_COLOUR_ONE      255.0
 #define VCT_NORMAL_ONE      127.0
 #define VCT_POSITION_ONE    127.0 // of a whole voxel

@@ -23,8 +23,7 @@ struct vct_sheet
 vct_sheet vct_sheet_of(uint slot)
 {
     uint at = slot * VCT_SUM_WORDS;
-    float weight = max(float(sums[at + VCT_SUM_WEIGHT]), 1.0), opaque = float(sums[at + VCT_SUM_OPACITY]);
-    // The two faces of a thin wall have half of the weight each, and hide all.
+    float weight = max(float(sums[at + VCT_SUM_WEIGHT]), 1.0);
     vec2 sides = vec2(sums[at + VCT_SUM_FRONTS], sums[at + VCT_SUM_BACKS]);
     vec3 normal = vct_signed_sum(at + VCT_SUM_NORMAL);
     float length2 = dot(normal, normal);
@@ -32,7 +31,7 @@ vct_sheet vct_sheet_of(uint slot)
     vct_sheet sheet;
     sheet.position = vct_world_from_voxels(vec3(vct_voxel(list[slot])) + 0.5 + offset);
     sheet.normal = length2 > 0.0 ? normal * inversesqrt(length2) : vec3(0.0);
-    sheet.opacity = min(opaque / weight, 1.0) * min(2.0 * sides / weight, vec2(1.0));
+    sheet.opacity = min(sides / VCT_WEIGHT_ONE, vec2(1.0));
     return sheet;
 }
 

@@ -3,23 +3,32 @@
 //     c ← c + (1 − α) c₂,   α ← α + (1 − α) α₂.                                                       (1)
 // Each step is as long as a texel of the level that it looks at, so that opacities need no correction for its length.
 //
-// Differs where a sheet is met. Samples of a sheet that fills its texels split its opacity between them: filtered,
-// they add up to what one sample in its middle would have, and across a sheet that is met at a slant the parts are as
-// many as the way through it is long. (1) takes them for sheets behind each other, and through every closed wall a
-// sixth to a third of the light beyond is seen. There
+// Differs in two ways.
+//
+// Sheets. Samples of a sheet that fills its texels split its opacity between them: filtered, they add up to what one
+// sample in its middle would have, and across a sheet that is met at a slant the parts are as many as the way through
+// it is long. (1) takes them for sheets behind each other, and through every closed wall a sixth to a third of the
+// light beyond is seen. There
 //     c ← c + c₂,   α ← α + α₂,   up to α = 1                                                         (2)
 // is right. What fills a part of its texels is met once more by chance, as (1) says. How much of a sheet there is,
-// 0…1, is the largest opacity along an axis: it blends the two.
+// 0…1, is the largest opacity along an axis of this sample and the last one together, to the fourth power; it blends
+// the two (vct_over.glsl).
+//
+// The start. The first sample has a part of the sheets that lie less than a texel away, and a sheet is where its texel
+// is, half a texel from its place at most: from a wall's foot a floor would be seen through. So what lies half a texel
+// back stands in the way too, along the surface alone: off it are the surface itself and, behind, the other side of a
+// thin wall. Its light counts where it is rather ahead than behind.
 #ifndef AG_VCT_TRACE_GLSL
 #define AG_VCT_TRACE_GLSL
 
 #include "techniques/vct/vct_look.glsl"
+#include "techniques/vct/vct_over.glsl"
 
 const float VCT_OPAQUE = 0.98; // a cone that has met so much ends there, as if it had met all
 
 // Radiance in xyz, premultiplied, and opacity. Lengths in texels of level 0; `from`: where the cone starts, of width 0
-// there; wide: width of a texel over distance.
-vec4 vct_trace(sampler3D light, vec3 from, vec3 direction, float wide, uint last_mip)
+// there; `normal`: of the surface that it leaves; wide: width of a texel over distance.
+vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wide, uint last_mip)
 {
     vec3 ends = mix(vec3(0.0), vec3(vct_cells() / 2), greaterThan(direction, vec3(0.0)));
     bvec3 across = lessThan(abs(direction), vec3(1e-6));
@@ -28,6 +37,9 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 direction, float wide, uint last
     vec3 out_of = vec3(lessThanEqual(until, vec3(end))) * direction;
     float out_speed = max(abs(out_of.x), max(abs(out_of.y), abs(out_of.z)));
     vec4 sum = vec4(0.0);
+    vec3 level_with = direction - dot(direction, normal) * normal;
+    vct_met behind = vct_look(light, from - 0.5 * level_with, direction, level_with, 0);
+    vec3 before = behind.axes;
     float t = 0.0;
     for (int i = 0; i < 256; i++) {
         int level = min(int(log2(max(wide * t, 1.0)) + 0.5), int(last_mip));
@@ -37,13 +49,19 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 direction, float wide, uint last
         if (left_grid && (middle - end) * out_speed > texel) break;
         vec3 at = from + direction * min(middle, end);
         vct_met here = vct_look(light, at, direction, left_grid ? out_of : direction, level);
+        if (i == 0) {
+            float ahead = smoothstep(0.25, 0.5, here.light.a / max(here.light.a + behind.light.a, 1e-6));
+            here.light += behind.light;
+            here.light.rgb *= ahead;
+        }
         float alpha = here.light.a;
         if (alpha > 0.0) {
-            float left = 1.0 - sum.a;
-            float covered = mix(left * min(alpha, 1.0), min(alpha, left), here.sheet * here.sheet);
-            sum += covered * vec4(here.light.rgb / alpha, 1.0);
+            vec3 two = before + here.axes;
+            float sheet = min(max(two.x, max(two.y, two.z)), 1.0);
+            sum += vct_shown(1.0 - sum.a, alpha, sheet) * vec4(here.light.rgb / alpha, 1.0);
             if (sum.a > VCT_OPAQUE) return vec4(sum.rgb / sum.a, 1.0);
         }
+        before = here.axes;
         t += texel;
     }
     return sum;
