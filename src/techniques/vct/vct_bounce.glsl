@@ -42,10 +42,14 @@ void main()
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= listed) return;
     vct_sheet sheet = vct_sheet_of(slot);
+    bool knows_sides = sheet.normal != vec3(0.0);
+    bvec2 lit = bvec2(knows_sides && sheet.opacity.x > 0.0, knows_sides && sheet.opacity.y > 0.0);
+    // One side after the other in a loop, which ends where no invocation of a group has a second one.
     vec3 front = vec3(0.0), back = vec3(0.0);
-    if (sheet.normal != vec3(0.0)) {
-        if (sheet.opacity.x > 0.0) front = irradiance(sheet.position, sheet.normal);
-        if (sheet.opacity.y > 0.0) back = irradiance(sheet.position, -sheet.normal);
+    for (int side = lit.x ? 0 : 1; side < (lit.y ? 2 : 1); side++) {
+        vec3 e = irradiance(sheet.position, side == 0 ? sheet.normal : -sheet.normal);
+        if (side == 0) front = e;
+        else back = e;
     }
     uint to = slot * VCT_BROUGHT_WORDS;
     brought[to] = packHalf2x16(front.rg);
