@@ -50,8 +50,10 @@ uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set)
 
 bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z)
 {
-    const int dim = rig->vct->options.resolution;
-    const uint32_t index = (uint32_t)((z * dim + y) * dim + x);
+    // As vct_index of vct_grid.glsl says: texels of eight voxels.
+    const int dim = rig->vct->options.resolution / 2;
+    const int texel = ((z / 2) * dim + y / 2) * dim + x / 2;
+    const uint32_t index = (uint32_t)(8 * texel + x % 2 + 2 * (y % 2) + 4 * (z % 2));
     return mask[index / 32] >> (index % 32) & 1u;
 }
 

@@ -23,15 +23,38 @@ bool vct_inside(ivec3 voxel)
     return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, vct_cells()));
 }
 
+// Texels of 2 × 2 × 2 voxels are numbered along x, y and z.
+uint vct_texel_index(ivec3 texel)
+{
+    return uint((texel.z * vct.volume_dim + texel.y) * vct.volume_dim + texel.x);
+}
+
+ivec3 vct_texel(uint index)
+{
+    uint dim = uint(vct.volume_dim);
+    return ivec3(index % dim, index / dim % dim, index / (dim * dim));
+}
+
+// The eight voxels of a texel come one after the other: their bits are one byte of a mask.
 uint vct_index(ivec3 voxel)
 {
-    return uint((voxel.z * vct.dim + voxel.y) * vct.dim + voxel.x);
+    ivec3 low = voxel & 1;
+    return 8u * vct_texel_index(voxel >> 1) + uint(low.x | low.y << 1 | low.z << 2);
 }
 
 ivec3 vct_voxel(uint index)
 {
-    uint dim = uint(vct.dim);
-    return ivec3(index % dim, index / dim % dim, index / (dim * dim));
+    return 2 * vct_texel(index / 8u) + (ivec3(index) >> ivec3(0, 1, 2) & 1);
+}
+
+ivec3 vct_unpack_texel(uint packed)
+{
+    return ivec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20);
+}
+
+uint vct_pack_texel(ivec3 texel)
+{
+    return uint(texel.x | texel.y << 10 | texel.z << 20);
 }
 
 // Position in voxels from the grid's corner.

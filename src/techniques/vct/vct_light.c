@@ -25,18 +25,18 @@ static void inject(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view
 static void fill(struct vct *vct, struct gpu_cmd *cmd)
 {
     const struct vct_set *rest = &vct->rest, *moving = &vct->moving;
-    const int32_t *cells = vct->grid.cells;
-    gpu_dispatch(cmd, vct->fill,
-                 GPU_BIND(vct_grid_binding(vct, cmd),
-                          { .name = "static_mask", .buffer = rest->mask },
-                          { .name = "static_before", .buffer = rest->before },
-                          { .name = "static_records", .buffer = rest->records },
-                          { .name = "dynamic_mask", .buffer = moving->mask },
-                          { .name = "dynamic_before", .buffer = moving->before },
-                          { .name = "dynamic_records", .buffer = moving->records },
-                          { .name = "light", .image = vct->light }),
-                 NULL, 0, gpu_groups((uint32_t)cells[0] / 2, VCT_LOCAL_2D),
-                 gpu_groups((uint32_t)cells[1] / 2, VCT_LOCAL_2D), (uint32_t)cells[2] / 2);
+    gpu_dispatch_indirect(cmd, vct->fill,
+                          GPU_BIND(vct_grid_binding(vct, cmd),
+                                   { .name = "static_mask", .buffer = rest->mask },
+                                   { .name = "static_before", .buffer = rest->before },
+                                   { .name = "static_records", .buffer = rest->records },
+                                   { .name = "dynamic_mask", .buffer = moving->mask },
+                                   { .name = "dynamic_before", .buffer = moving->before },
+                                   { .name = "dynamic_records", .buffer = moving->records },
+                                   { .name = "light", .image = vct->light },
+                                   { .name = "vct_texels", .buffer = vct->texels },
+                                   { .name = "vct_texel_state", .buffer = vct->texel_state }),
+                          NULL, 0, vct->texel_state, vct_level_groups(0));
 }
 
 static int32_t level_size(int32_t cells, uint32_t level)
@@ -47,26 +47,26 @@ static int32_t level_size(int32_t cells, uint32_t level)
 
 static void filter(struct vct *vct, struct gpu_cmd *cmd)
 {
-    const uint32_t mips = vct_volume_mips(&vct->options);
+    const struct vct_texels_push lists = vct_texels_push(&vct->options);
     const int32_t dim = (int32_t)vct_volume_dim(&vct->options), *cells = vct->grid.cells;
-    for (uint32_t level = 1; level < mips; level++) {
+    for (uint32_t level = 1; level < lists.levels; level++) {
         const struct vct_mip_push push = {
-            .size_x = level_size(cells[0], level),
-            .size_y = level_size(cells[1], level),
-            .size_z = level_size(cells[2], level),
             .source_x = level_size(cells[0], level - 1),
             .source_y = level_size(cells[1], level - 1),
             .source_z = level_size(cells[2], level - 1),
             .source_tile = dim >> (level - 1),
             .target_tile = dim >> level,
+            .level = level,
+            .first = lists.first[level],
         };
-        gpu_dispatch(
+        gpu_dispatch_indirect(
             cmd, vct->mip,
             GPU_BIND({ .name = "source", .image = vct->light, .mip = level - 1, .one_mip = true },
-                     { .name = "target", .image = vct->light, .mip = level }),
-            &push, sizeof push, gpu_groups((uint32_t)push.size_x, VCT_LOCAL_2D),
-            gpu_groups((uint32_t)push.size_y, VCT_LOCAL_2D),
-            vct_ways(&vct->options) * (uint32_t)push.size_z);
+                     { .name = "target", .image = vct->light, .mip = level },
+                     { .name = "vct_texels", .buffer = vct->texels },
+                     { .name = "vct_texel_state", .buffer = vct->texel_state },
+                     vct_grid_binding(vct, cmd)),
+            &push, sizeof push, vct->texel_state, vct_level_groups(level));
     }
 }
 

@@ -1,29 +1,32 @@
 // The next level of the light volume. Of each of the six volumes 2 × 2 × 2 texels make one: of two that lie one
 // behind the other on the volume's way the nearer covers the farther, and four such pairs are averaged. One volume for
-// all ways is averaged over all eight.
+// all ways is averaged over all eight. Texels in which there is nothing are not here, and stay 0.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/vct/vct_shared.h"
+#define VCT_GRID_BINDING 0
+#include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/vct_over.glsl"
 #include "techniques/vct/vct_ways.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = VCT_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
     vct_mip_push push;
 };
-layout(set = 0, binding = 0) uniform sampler3D source;
-layout(set = 0, binding = 1, rgba16f) uniform writeonly image3D target;
+layout(set = 0, binding = 1) uniform sampler3D source;
+layout(set = 0, binding = 2, rgba16f) uniform writeonly image3D target;
+layout(set = 0, binding = 3, scalar) readonly buffer vct_texels { uint texels[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
 
 void main()
 {
-    ivec3 id = ivec3(gl_GlobalInvocationID);
-    int way = id.z / push.size_z;
-    ivec3 texel = ivec3(id.xy, id.z % push.size_z);
-    if (way >= VCT_WAYS || any(greaterThanEqual(texel, ivec3(push.size_x, push.size_y, push.size_z)))) return;
+    uint i = gl_GlobalInvocationID.x / uint(VCT_WAYS);
+    int way = int(gl_GlobalInvocationID.x % uint(VCT_WAYS));
+    if (i >= state.count[push.level]) return;
+    ivec3 texel = vct_unpack_texel(texels[push.first + i]);
     ivec3 from = 2 * texel + ivec3(way * push.source_tile, 0, 0);
     ivec3 along = way < 2 ? ivec3(1, 0, 0) : way < 4 ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
     ivec3 size = ivec3(push.source_x, push.source_y, push.source_z);

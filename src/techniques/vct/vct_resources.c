@@ -79,17 +79,22 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
     memcpy(out, plan, sizeof plan);
 }
 
-enum { BUFFERS = 2 * SET_BUFFERS + 2 };
+enum { BUFFERS = 2 * SET_BUFFERS + 5 };
 
 static void plan_buffers(const struct vct_options *options, struct vct *vct,
                          struct buffer_plan out[BUFFERS])
 {
     plan_set(options, false, &vct->rest, out);
     plan_set(options, true, &vct->moving, out + SET_BUFFERS);
-    out[2 * SET_BUFFERS] =
-        (struct buffer_plan){ "vct.queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 };
-    out[2 * SET_BUFFERS + 1] =
-        (struct buffer_plan){ "vct.queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT };
+    const struct buffer_plan plan[BUFFERS - 2 * SET_BUFFERS] = {
+        { "vct.queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 },
+        { "vct.queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT },
+        { "vct.texels", &vct->texels, vct_texel_words(options), 0 },
+        { "vct.texel_mask", &vct->texel_mask, vct_texel_mask_words(options), 0 },
+        { "vct.texel_state", &vct->texel_state, sizeof(struct vct_texel_levels) / sizeof(uint32_t),
+          GPU_BUFFER_INDIRECT },
+    };
+    memcpy(out + 2 * SET_BUFFERS, plan, sizeof plan);
 }
 
 static struct gpu_image_desc volume_desc(const struct vct_options *options)
@@ -165,7 +170,7 @@ struct pipeline_plan {
     int constant_count;
 };
 
-enum { PIPELINES = 20 };
+enum { PIPELINES = 21 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -185,6 +190,7 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->count, "vct.count", &shader_vct_count_comp, NULL, 0 },
         { &vct->scan, "vct.scan", &shader_vct_scan_comp, NULL, 0 },
         { &vct->list, "vct.list", &shader_vct_list_comp, NULL, 0 },
+        { &vct->texel_lists, "vct.texels", &shader_vct_texels_comp, NULL, 0 },
         { &vct->inject, "vct.inject", &shader_vct_inject_comp, NULL, 0 },
         { &vct->bounce, "vct.bounce", &shader_vct_bounce_mips_comp, ways, way_count },
         { &vct->fill, "vct.fill", &shader_vct_fill_comp, ways, way_count },

@@ -71,10 +71,27 @@ struct vct_cone_params {
     uint32_t last_mip;
 };
 
+// Of the light volume: enough for resolution 256.
+#define VCT_MAX_LEVELS 8
+
+// Buffer "vct_texel_state": dispatches over the lists of texels, how many there are in each.
+struct vct_texel_levels {
+    uint32_t groups[3 * VCT_MAX_LEVELS]; // x, y, z
+    uint32_t count[VCT_MAX_LEVELS];
+};
+
+struct vct_texels_push {
+    uint32_t levels;
+    uint32_t ways;                       // volumes side by side
+    uint32_t first[VCT_MAX_LEVELS];      // of each level in the buffer of lists
+    uint32_t mask_first[VCT_MAX_LEVELS]; // its first bit
+};
+
 struct vct_mip_push {
-    int32_t size_x, size_y, size_z;   // of the level that is written, of one direction
     int32_t source_x, source_y, source_z; // of the level that is read
     int32_t source_tile, target_tile; // texels between directions
+    uint32_t level;
+    uint32_t first; // of the list of texels
 };
 
 #define VCT_VIEW_REFLECTANCE 0
@@ -90,7 +107,11 @@ struct vct_view_push {
 _Static_assert(sizeof(struct vct_params) == 18 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_mip_push) == 32, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_texel_levels) == 4 * VCT_MAX_LEVELS * 4,
+               "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,
+               "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_mip_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_view_push) == 8, "layout is shared with GLSL");
 #endif
 

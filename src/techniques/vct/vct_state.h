@@ -36,10 +36,11 @@ struct vct {
     struct gpu *gpu;
     struct vct_options options;
     struct vct_walk mark, add[VCT_KINDS];
-    gpu_pipeline count, scan, list, inject, bounce, fill, mip, cones, edges, gather_rows,
+    gpu_pipeline count, scan, list, texel_lists, inject, bounce, fill, mip, cones, edges, gather_rows,
         gather_columns, debug;
     struct vct_set rest, moving; // what stands still; what has moved
     gpu_buffer queue, queue_state;
+    gpu_buffer texels, texel_mask, texel_state; // of the light volume: which hold something
     gpu_sampler linear;
     gpu_image light;            // RGBA16F, mips: six volumes side by side
     gpu_image edge_image;       // R8
@@ -63,6 +64,12 @@ uint32_t vct_volume_dim(const struct vct_options *options);
 uint32_t vct_volume_mips(const struct vct_options *options);
 uint32_t vct_ways(const struct vct_options *options); // volumes side by side: 6, or 1 for all ways
 
+// Lists of texels of the light volume, one for each level; see vct_texels.comp.
+struct vct_texels_push vct_texels_push(const struct vct_options *options);
+size_t vct_texel_words(const struct vct_options *options);
+size_t vct_texel_mask_words(const struct vct_options *options);
+size_t vct_level_groups(uint32_t level); // where a level's dispatch is in texel_state
+
 // What there is on the GPU. Each may stop half-way; vct_destroy_resources takes what there is.
 bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height); // of that many pixels
 bool vct_create_resources(struct vct *vct);                               // buffers, light volume
@@ -79,6 +86,7 @@ struct vct_cone_params vct_cone_params(const struct vct *vct, const struct frame
 // The stages, in order. Each reads vct->params.
 void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+void vct_record_texels(struct vct *vct, struct gpu_cmd *cmd);
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,

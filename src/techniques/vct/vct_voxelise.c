@@ -141,4 +141,5 @@ void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     vct->remade = rest || moving > 0 || vct->moving_draws > 0;
     vct->rest_valid = true;
     vct->moving_draws = moving;
+    if (vct->remade) vct_record_texels(vct, cmd);
 }

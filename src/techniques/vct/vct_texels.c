@@ -1,0 +1,63 @@
+// Which texels of the light volume hold something, level by level: light is filled in and filtered
+// there alone.
+#include "techniques/vct/vct_state.h"
+
+static size_t level_texels(const struct vct_options *options, uint32_t level)
+{
+    const size_t dim = vct_volume_dim(options) >> level;
+    return dim * dim * dim;
+}
+
+struct vct_texels_push vct_texels_push(const struct vct_options *options)
+{
+    struct vct_texels_push push = { .levels = vct_volume_mips(options),
+                                    .ways = vct_ways(options) };
+    size_t first = 0;
+    for (uint32_t level = 0; level < push.levels; level++) {
+        push.first[level] = (uint32_t)first;
+        first += level_texels(options, level);
+        // A bit for each texel that comes after those of the finest level, in the same order.
+        push.mask_first[level] = push.first[level] - (level > 0 ? push.first[1] : 0);
+    }
+    return push;
+}
+
+size_t vct_texel_words(const struct vct_options *options)
+{
+    size_t words = 0;
+    for (uint32_t level = 0; level < vct_volume_mips(options); level++)
+        words += level_texels(options, level);
+    return words;
+}
+
+size_t vct_texel_mask_words(const struct vct_options *options)
+{
+    return (vct_texel_words(options) - level_texels(options, 0) + 31) / 32 + 1;
+}
+
+size_t vct_level_groups(uint32_t level)
+{
+    return offsetof(struct vct_texel_levels, groups) + 3 * sizeof(uint32_t) * level;
+}
+
+void vct_record_texels(struct vct *vct, struct gpu_cmd *cmd)
+{
+    const struct vct_texels_push push = vct_texels_push(&vct->options);
+    const size_t counts = offsetof(struct vct_texel_levels, count);
+    const size_t words = gpu_buffer_bytes(vct->gpu, vct->rest.mask) / sizeof(uint32_t);
+    gpu_scope_begin(cmd, "vct.texels");
+    // At least one group each: a dispatch is never empty.
+    gpu_fill_buffer(cmd, vct->texel_state, 0, counts, 1);
+    gpu_fill_buffer(cmd, vct->texel_state, counts, sizeof(struct vct_texel_levels) - counts, 0);
+    gpu_fill_buffer(cmd, vct->texel_mask, 0, gpu_buffer_bytes(vct->gpu, vct->texel_mask), 0);
+    gpu_dispatch(cmd, vct->texel_lists,
+                 GPU_BIND(vct_grid_binding(vct, cmd),
+                          { .name = "static_mask", .buffer = vct->rest.mask },
+                          { .name = "dynamic_mask", .buffer = vct->moving.mask },
+                          { .name = "vct_texel_mask", .buffer = vct->texel_mask },
+                          { .name = "vct_texels", .buffer = vct->texels },
+                          { .name = "vct_texel_state", .buffer = vct->texel_state }),
+                 &push, sizeof push, gpu_groups((uint32_t)words, VCT_LOCAL), 1, 1);
+    gpu_clear_image(cmd, vct->light, (const float[4]){ 0.0f, 0.0f, 0.0f, 0.0f });
+    gpu_scope_end(cmd);
+}
