@@ -74,7 +74,7 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
 {
     gpu_scope_begin(cmd, "vct.inject");
     inject(vct, cmd, view, &vct->rest);
-    inject(vct, cmd, view, &vct->moving);
+    if (vct->moving_draws > 0) inject(vct, cmd, view, &vct->moving);
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "vct.fill");
     fill(vct, cmd);
@@ -90,11 +90,13 @@ static void bring(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view 
     gpu_dispatch_indirect(cmd, vct->bounce,
                           GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, cones,
                                    { .name = "light", .image = vct->light, .sampler = vct->linear },
-                                   { .name = "vct_list", .buffer = set->list },
+                                   { .name = "vct_texels", .buffer = vct->texels },
+                                   { .name = "vct_texel_state", .buffer = vct->texel_state },
+                                   { .name = "vct_mask", .buffer = set->mask },
+                                   { .name = "vct_before", .buffer = set->before },
                                    { .name = "vct_sums", .buffer = set->sums },
-                                   { .name = "vct_arguments", .buffer = set->arguments },
                                    { .name = "vct_brought", .buffer = set->brought }),
-                          NULL, 0, set->arguments, 0);
+                          NULL, 0, vct->texel_state, vct_level_groups(0));
 }
 
 static bool has_sky(const struct frame_view *view)
@@ -128,7 +130,7 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     }
     gpu_scope_begin(cmd, "vct.bounce");
     bring(vct, cmd, view, &vct->rest, cones);
-    bring(vct, cmd, view, &vct->moving, cones);
+    if (vct->moving_draws > 0) bring(vct, cmd, view, &vct->moving, cones);
     gpu_scope_end(cmd);
     vct->params.brought = true;
     vct->params.light_count = lights;
