@@ -25,7 +25,7 @@ static void inject(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view
 static void fill(struct vct *vct, struct gpu_cmd *cmd)
 {
     const struct vct_set *rest = &vct->rest, *moving = &vct->moving;
-    gpu_dispatch_indirect(cmd, vct->fill,
+    gpu_dispatch_indirect(cmd, vct->fill[vct->moving_draws > 0],
                           GPU_BIND(vct_grid_binding(vct, cmd),
                                    { .name = "static_mask", .buffer = rest->mask },
                                    { .name = "static_before", .buffer = rest->before },

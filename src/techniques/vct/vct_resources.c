@@ -159,8 +159,9 @@ bool vct_create_resources(struct vct *vct)
 static const struct gpu_constant mapped[] = { { 0, 1 } };
 static const struct gpu_constant masked[] = { { 0, 1 }, { 4, 1 } };
 static const struct gpu_constant columns[] = { { 0, 1 } };
-// See vct_ways.glsl.
+// See vct_ways.glsl and vct_seen.glsl.
 static const struct gpu_constant isotropic[] = { { 10, 0 } };
+static const struct gpu_constant still[] = { { 11, 0 }, { 10, 0 } };
 
 struct pipeline_plan {
     gpu_pipeline *out;
@@ -170,7 +171,7 @@ struct pipeline_plan {
     int constant_count;
 };
 
-enum { PIPELINES = 21 };
+enum { PIPELINES = 22 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -193,7 +194,8 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->texel_lists, "vct.texels", &shader_vct_texels_comp, NULL, 0 },
         { &vct->inject, "vct.inject", &shader_vct_inject_comp, NULL, 0 },
         { &vct->bounce, "vct.bounce", &shader_vct_bounce_mips_comp, ways, way_count },
-        { &vct->fill, "vct.fill", &shader_vct_fill_comp, ways, way_count },
+        { &vct->fill[0], "vct.fill_still", &shader_vct_fill_comp, still, 1 + way_count },
+        { &vct->fill[1], "vct.fill", &shader_vct_fill_comp, ways, way_count },
         { &vct->mip, "vct.mip", &shader_vct_mip_comp, ways, way_count },
         { &vct->cones, "vct.cones", &shader_vct_cones_mips_comp, ways, way_count },
         { &vct->edges, "vct.edges", &shader_vct_edges_comp, NULL, 0 },

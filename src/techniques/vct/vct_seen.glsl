@@ -26,6 +26,8 @@
 layout(set = 0, binding = 5, scalar) readonly buffer static_records { uint static_record_words[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer dynamic_records { uint dynamic_record_words[]; };
 
+layout(constant_id = 11) const bool VCT_HAS_MOVING = true; // false: the second set is empty
+
 struct seen
 {
     vec4 along[6]; // +x −x +y −y +z −z: premultiplied radiance and opacity
@@ -54,46 +56,68 @@ void look_at(vct_record r, inout seen s)
     }
 }
 
-void look(ivec3 voxel, out seen s)
+void look(uint static_at, uint dynamic_at, out seen s)
 {
     for (int i = 0; i < 6; i++) s.along[i] = vec4(0.0);
-    if (!vct_inside(voxel)) return;
-    uint index = vct_index(voxel);
-    uint slot = static_slot(index);
     uint words[VCT_RECORD_WORDS];
-    if (slot != VCT_NO_SLOT) {
-        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = static_record_words[slot * VCT_RECORD_WORDS + k];
+    if (static_at != VCT_NO_SLOT) {
+        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = static_record_words[static_at * VCT_RECORD_WORDS + k];
         look_at(vct_unpack(words), s);
     }
-    slot = dynamic_slot(index);
-    if (slot != VCT_NO_SLOT) {
-        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = dynamic_record_words[slot * VCT_RECORD_WORDS + k];
+    if (VCT_HAS_MOVING && dynamic_at != VCT_NO_SLOT) {
+        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = dynamic_record_words[dynamic_at * VCT_RECORD_WORDS + k];
         look_at(vct_unpack(words), s);
     }
 }
 
+void look_in_block(ivec3 from, ivec3 at, ivec3 size, out seen s)
+{
+    bool inside = all(lessThan(at, size)) && vct_inside(from + at);
+    uint index = vct_index(inside ? from + at : ivec3(0));
+    look(inside ? static_slot(index) : VCT_NO_SLOT,
+         VCT_HAS_MOVING && inside ? dynamic_slot(index) : VCT_NO_SLOT, s);
+}
+
+// Two voxels behind each other along an axis, the lower one first.
+void pair(seen low, seen high, const int axis, float column, inout vec4 sum[6])
+{
+    sum[2 * axis] += column * vct_over(low.along[2 * axis], high.along[2 * axis]);
+    sum[2 * axis + 1] += column * vct_over(high.along[2 * axis + 1], low.along[2 * axis + 1]);
+}
+
 // A block of at most 2 × 2 × 2 voxels as one texel: along each axis the nearer of two covers the farther, and columns
-// are averaged.
+// are averaged. Written out, as drivers keep in memory what loops that they do not unroll have in arrays.
 void vct_see(ivec3 from, ivec3 size, out vec4 sum[6])
 {
-    seen child[8];
-    for (int i = 0; i < 8; i++) {
-        ivec3 at = ivec3(i & 1, i >> 1 & 1, i >> 2);
-        if (all(lessThan(at, size))) look(from + at, child[i]);
-        else child[i].along = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-    }
+    seen a, b, c, d, e, f, g, h;
+    look_in_block(from, ivec3(0, 0, 0), size, a);
+    look_in_block(from, ivec3(1, 0, 0), size, b);
+    look_in_block(from, ivec3(0, 1, 0), size, c);
+    look_in_block(from, ivec3(1, 1, 0), size, d);
+    look_in_block(from, ivec3(0, 0, 1), size, e);
+    look_in_block(from, ivec3(1, 0, 1), size, f);
+    look_in_block(from, ivec3(0, 1, 1), size, g);
+    look_in_block(from, ivec3(1, 1, 1), size, h);
     sum = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     float each = 1.0 / float(size.x * size.y * size.z);
-    for (int i = 0; i < 8 && !VCT_ANISOTROPIC; i++) sum[0] += each * child[i].along[0];
-    for (int axis = 0; axis < 3 && VCT_ANISOTROPIC; axis++) {
-        int step = 1 << axis;
-        float column = each * float(size[axis]);
-        for (int i = 0; i < 4; i++) {
-            int low = axis == 0 ? 2 * i : axis == 1 ? (i & 1) + 4 * (i >> 1) : i;
-            sum[2 * axis] += column * vct_over(child[low].along[2 * axis], child[low + step].along[2 * axis]);
-            sum[2 * axis + 1] += column * vct_over(child[low + step].along[2 * axis + 1], child[low].along[2 * axis + 1]);
-        }
+    if (!VCT_ANISOTROPIC) {
+        sum[0] = each * (a.along[0] + b.along[0] + c.along[0] + d.along[0] + e.along[0] + f.along[0] + g.along[0] +
+                         h.along[0]);
+        return;
     }
+    vec3 column = each * vec3(size);
+    pair(a, b, 0, column.x, sum);
+    pair(c, d, 0, column.x, sum);
+    pair(e, f, 0, column.x, sum);
+    pair(g, h, 0, column.x, sum);
+    pair(a, c, 1, column.y, sum);
+    pair(b, d, 1, column.y, sum);
+    pair(e, g, 1, column.y, sum);
+    pair(f, h, 1, column.y, sum);
+    pair(a, e, 2, column.z, sum);
+    pair(b, f, 2, column.z, sum);
+    pair(c, g, 2, column.z, sum);
+    pair(d, h, 2, column.z, sum);
 }
 
 #endif

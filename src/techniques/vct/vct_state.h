@@ -36,7 +36,8 @@ struct vct {
     struct gpu *gpu;
     struct vct_options options;
     struct vct_walk mark, add[VCT_KINDS];
-    gpu_pipeline count, scan, list, texel_lists, inject, bounce, fill, mip, cones, edges, gather_rows,
+    gpu_pipeline fill[2]; // without and with what moves
+    gpu_pipeline count, scan, list, texel_lists, inject, bounce, mip, cones, edges, gather_rows,
         gather_columns, debug;
     struct vct_set rest, moving; // what stands still; what has moved
     gpu_buffer queue, queue_state;
