@@ -49,6 +49,7 @@ void frame_destroy(struct frame *f)
 
 bool frame_set_scene(struct frame *f, const struct scene *scene)
 {
+    const uint64_t updates = f->scene.updates;
     emitters_finish(&f->emitters);
     scene_gpu_finish(&f->scene);
     f->has_scene = f->prepared = false;
@@ -59,6 +60,7 @@ bool frame_set_scene(struct frame *f, const struct scene *scene)
         scene_gpu_finish(&f->scene);
         return false;
     }
+    f->scene.updates = updates + 1; // no map of the last scene is taken for one of this
     f->has_scene = true;
     return true;
 }
@@ -169,7 +171,8 @@ static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
     view->shadow_radius = f->options.shadow_filter;
     view->shadow_faces_binding =
         gpu_transient(cmd, "shadow_faces", f->shadow.faces, faces * sizeof *f->shadow.faces);
-    shadow_record(&f->shadow, cmd, &f->scene, f->lights, f->light_count);
+    shadow_record(&f->shadow, cmd, &f->scene, f->lights, f->light_count, f->options.keep_maps);
+    view->maps_drawn = f->shadow.drawn;
 }
 
 static void record_direct(struct frame *f, struct gpu_cmd *cmd)
@@ -207,7 +210,8 @@ static void record_rsm(struct frame *f, struct gpu_cmd *cmd)
                                             (size_t)f->rsm.face_count * sizeof *f->rsm.faces);
     const struct gpu_binding bindings[3] = { f->constants_binding, f->lights_binding,
                                              view->rsm_faces_binding };
-    rsm_record(&f->rsm, cmd, &f->scene, bindings);
+    rsm_record(&f->rsm, cmd, &f->scene, f->lights, bindings, f->options.keep_maps);
+    view->maps_drawn += f->rsm.drawn;
 }
 
 static void record_emitters(struct frame *f, struct gpu_cmd *cmd)

@@ -76,6 +76,7 @@ struct frame_view {
     uint32_t shadow_size;
     int shadow_radius; // of the filter, texels
     struct gpu_binding shadow_faces_binding; // named "shadow_faces"
+    int maps_drawn; // layers of shadow maps and reflective shadow maps drawn anew in this frame
 };
 
 // What the hook reads and writes; the frame makes and fills only what is needed.

@@ -24,7 +24,9 @@ struct scene_draw {
     bool deformed;     // vertices come anew each frame, in world space
     bool mirrored;     // this frame's transform turns triangles over
     bool moves;        // its vertices have moved since the scene was set; what has not is still
+    bool moved;        // since the last frame
     struct box3 bounds; // this frame's, world space
+    struct box3 swept;  // this frame's and the last one's
 };
 
 struct scene_gpu {
@@ -54,6 +56,7 @@ struct scene_gpu {
     vec3s *deformed_positions, *deformed_previous; // [deformed_vertex_count]
     uint32_t (*deformed_frames)[2];
     bool has_previous, moved;
+    uint64_t updates; // so many moments have been uploaded
     int moving_count; // draws that move
     struct gpu_binding instances_binding, deformed_positions_binding, deformed_previous_binding,
         deformed_frames_binding;
@@ -63,9 +66,12 @@ struct scene_gpu {
 bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu, const struct scene *scene);
 void scene_gpu_finish(struct scene_gpu *scene); // accepts zero
 
-// Uploads a moment. With `forget`, everything counts as having stood where it is. Sets `moved`, and `moves` of the draws.
+// Uploads a moment. With `forget`, everything counts as having stood where it is. Sets `moved`, and that and `moves` of the draws.
 void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct scene_pose *pose,
                       bool forget);
+
+// Whether nothing that has moved since the last update is or was inside of this clip volume.
+bool scene_gpu_still_in(const struct scene_gpu *scene, mat4s clip_from_world);
 
 // Records one draw. push: starts with a scene_push, which this fills. bindings: the pass's own.
 struct scene_draw_call {

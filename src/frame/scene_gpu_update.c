@@ -2,13 +2,14 @@
 #include "frame/scene_gpu.h"
 
 #include "frame/octahedral.h"
+#include "frame/projection.h"
 
 #include <assert.h>
 #include <string.h>
 
 static void note_move(struct scene_gpu *s, struct scene_draw *draw)
 {
-    s->moved = true;
+    s->moved = draw->moved = true;
     if (draw->moves || !s->has_previous) return; // in the first frame everything has just come
     draw->moves = true;
     s->moving_count++;
@@ -37,6 +38,7 @@ static void update_draw(struct scene_gpu *s, const struct scene_pose *pose, stru
 {
     const struct mesh *mesh = &s->scene->meshes[draw->mesh];
     const struct deformed_mesh *deformed = &pose->deformed[draw->instance];
+    draw->moved = false;
     draw->mirrored = pose_is_mirrored(pose, draw->instance);
     if (draw->deformed) {
         copy_deformed(s, deformed, mesh, draw);
@@ -70,7 +72,13 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
     for (size_t i = 0; i < n; i++)
         s->instances[i].previous_world_from_instance = s->instances[i].world_from_instance;
     s->moved = false;
-    for (int i = 0; i < s->draw_count; i++) update_draw(s, pose, &s->draws[i]);
+    for (int i = 0; i < s->draw_count; i++) {
+        struct scene_draw *draw = &s->draws[i];
+        const struct box3 before = s->has_previous ? draw->bounds : box3_empty();
+        update_draw(s, pose, draw);
+        draw->swept = box3_union(before, draw->bounds);
+    }
+    s->updates++;
     if (forget || !s->has_previous) {
         s->moved = s->moved || !s->has_previous;
         memcpy(s->deformed_previous, s->deformed_positions, v * sizeof *s->deformed_previous);
@@ -82,6 +90,13 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
         s->instances_binding =
             gpu_transient(cmd, "scene_instances", s->instances, n * sizeof *s->instances);
     upload_deformed(s, cmd);
+}
+
+bool scene_gpu_still_in(const struct scene_gpu *s, mat4s clip_from_world)
+{
+    for (int i = 0; i < s->draw_count && s->moved; i++)
+        if (s->draws[i].moved && projection_may_see(clip_from_world, s->draws[i].swept)) return false;
+    return true;
 }
 
 // What every draw and dispatch of the scene may read; returns the count.

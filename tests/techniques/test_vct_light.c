@@ -74,8 +74,10 @@ static void coarser(const struct volume *v, int way, const int at[3], double out
         static const float none[4] = { 0 };
         const float *low = texel(v, way, near), *high = in_use(v, far) ? texel(v, way, far) : none;
         const float *first = way % 2 == 0 ? low : high, *second = way % 2 == 0 ? high : low;
-        const double a = (double)first[3], b = (double)second[3];
-        const double part = b > 0.0 ? shown(1.0 - fmin(a, 1.0), b, fmin(a + b, 1.0)) / b : 0.0;
+        const double nearer = (double)first[3], farther = (double)second[3];
+        const double seen =
+            shown(1.0 - fmin(nearer, 1.0), farther, fmin(nearer + farther, 1.0));
+        const double part = farther > 0.0 ? seen / farther : 0.0;
         for (int k = 0; k < 4; k++) out[k] += (double)first[k] + part * (double)second[k];
     }
     for (int k = 0; k < 4; k++) out[k] /= columns;

@@ -29,7 +29,9 @@ static void destroy_images(struct rsm *r)
     gpu_image_destroy(r->gpu, &r->normal);
     gpu_image_destroy(r->gpu, &r->flux);
     host_free(r->host, r->faces);
+    host_free(r->host, r->kept);
     r->faces = NULL;
+    r->kept = NULL;
     r->capacity = 0;
 }
 
@@ -90,7 +92,8 @@ static bool make_images(struct rsm *r, int faces)
                          gpu_info(r->gpu)->name, gpu_limits(r->gpu)->max_layers);
     }
     r->faces = host_alloc(r->host, (size_t)faces, sizeof *r->faces);
-    if (!r->faces || !make_array(r, "frame.rsm_depth", GPU_D32F, faces, &r->depth) ||
+    r->kept = host_alloc(r->host, (size_t)faces, sizeof *r->kept);
+    if (!r->faces || !r->kept || !make_array(r, "frame.rsm_depth", GPU_D32F, faces, &r->depth) ||
         !make_array(r, "frame.rsm_normal", GPU_RG16F, faces, &r->normal) ||
         !make_array(r, "frame.rsm_flux", GPU_RGBA8_SRGB, faces, &r->flux)) {
         return false;
@@ -193,13 +196,20 @@ static void record_face(const struct rsm *r, struct gpu_cmd *cmd, const struct s
     gpu_render_end(cmd);
 }
 
-void rsm_record(const struct rsm *r, struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                const struct gpu_binding bindings[3])
+void rsm_record(struct rsm *r, struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                const struct frame_light *lights, const struct gpu_binding bindings[3], bool keep)
 {
     static const char *const scopes[] = { "rsm.sun", "rsm.point", "rsm.spot" };
+    r->drawn = 0;
     for (int i = 0; i < r->face_count; i++) {
-        gpu_scope_begin(cmd, scopes[r->faces[i].type]);
-        record_face(r, cmd, scene, i, bindings);
+        const struct rsm_face *face = &r->faces[i];
+        const bool stands =
+            kept_map_stands(&r->kept[i], scene, &lights[face->light], face->clip_from_world);
+        gpu_scope_begin(cmd, scopes[face->type]);
+        if (!stands || !keep) {
+            record_face(r, cmd, scene, i, bindings);
+            r->drawn++;
+        }
         gpu_scope_end(cmd);
     }
 }

@@ -67,6 +67,7 @@ void shadow_finish(struct shadow *s)
     for (int i = 0; i < 2; i++) gpu_pipeline_destroy(s->gpu, &s->masked[i]);
     gpu_image_destroy(s->gpu, &s->maps);
     host_free(s->host, s->faces);
+    host_free(s->host, s->kept);
     *s = (struct shadow){ 0 };
 }
 
@@ -86,8 +87,10 @@ bool shadow_prepare(struct shadow *s, int face_count)
     }
     gpu_image_destroy(s->gpu, &s->maps);
     host_free(s->host, s->faces);
+    host_free(s->host, s->kept);
     s->capacity = -1;
     s->faces = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->faces);
+    s->kept = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->kept);
     struct gpu_image_desc desc = {
         .name = "frame.shadow_maps",
         .dimension = GPU_2D_ARRAY,
@@ -97,7 +100,7 @@ bool shadow_prepare(struct shadow *s, int face_count)
         .depth = face_count ? (uint32_t)face_count : 1,
         .usage = GPU_SAMPLED | GPU_ATTACHMENT,
     };
-    if (!s->faces || !gpu_image_create(s->gpu, &desc, &s->maps)) return false;
+    if (!s->faces || !s->kept || !gpu_image_create(s->gpu, &desc, &s->maps)) return false;
     s->capacity = face_count;
     return true;
 }
@@ -171,15 +174,22 @@ static void record_face(const struct shadow *s, struct gpu_cmd *cmd, const struc
     gpu_render_end(cmd);
 }
 
-void shadow_record(const struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                   const struct frame_light *lights, int light_count)
+void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                   const struct frame_light *lights, int light_count, bool keep)
 {
+    s->drawn = 0;
     static const char *const scopes[] = { "shadow.sun", "shadow.point", "shadow.spot" };
     for (int i = 0; i < light_count; i++) {
         if (lights[i].shadow_count == 0) continue;
         gpu_scope_begin(cmd, scopes[lights[i].type]);
-        for (int k = 0; k < lights[i].shadow_count; k++)
-            record_face(s, cmd, scene, lights[i].shadow_first + k);
+        for (int k = 0; k < lights[i].shadow_count; k++) {
+            const int layer = lights[i].shadow_first + k;
+            const bool stands = kept_map_stands(&s->kept[layer], scene, &lights[i],
+                                                s->faces[layer].clip_from_world);
+            if (stands && keep) continue;
+            record_face(s, cmd, scene, layer);
+            s->drawn++;
+        }
         gpu_scope_end(cmd);
     }
 }

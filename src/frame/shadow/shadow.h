@@ -2,6 +2,7 @@
 #pragma once
 
 #include "frame/frame_shared.h"
+#include "frame/kept_map.h"
 #include "frame/scene_gpu.h"
 #include "frame/shadow/shadow_shared.h"
 
@@ -15,7 +16,9 @@ struct shadow {
     int capacity;     // layers
     gpu_sampler sampler; // compares
     struct shadow_face *faces; // [capacity]
+    struct kept_map *kept;     // [capacity]
     int face_count;            // this frame's
+    int drawn;                 // of them, those that were drawn anew
 };
 
 // How the cascades of suns are laid out.
@@ -39,8 +42,9 @@ bool shadow_prepare(struct shadow *shadow, int face_count);
 // casts no shadow.
 void shadow_place(struct shadow *shadow, struct frame_light *lights, int light_count,
                   const struct shadow_view *view);
-void shadow_record(const struct shadow *shadow, struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                   const struct frame_light *lights, int light_count);
+// keep: maps that would come out as they are stay as they are.
+void shadow_record(struct shadow *shadow, struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                   const struct frame_light *lights, int light_count, bool keep);
 
 // shadow_cascades.c: the maps of one sun, `count` of them.
 void shadow_place_sun(const struct shadow *shadow, struct shadow_face *faces, int count,
