@@ -41,7 +41,9 @@ static bool vct_check(const struct technique_create *how)
 
 static bool vct_resize(void *state, uint32_t width, uint32_t height)
 {
-    return vct_create_images(state, width, height);
+    struct vct *vct = state;
+    return vct_create_images(vct, width, height) &&
+           (!vct->options.temporal || vct_temporal_resize(&vct->temporal, vct->gpu, width, height));
 }
 
 static bool vct_create(void *state, const struct technique_create *how)
@@ -50,7 +52,8 @@ static bool vct_create(void *state, const struct technique_create *how)
     vct->gpu = how->gpu;
     vct->options = *(const struct vct_options *)how->options;
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
-           vct_create_pipelines(vct);
+           vct_create_pipelines(vct) &&
+           (!vct->options.temporal || vct_temporal_create(&vct->temporal, vct->gpu));
 }
 
 static void vct_set_options(void *state, const void *options)
@@ -60,12 +63,15 @@ static void vct_set_options(void *state, const void *options)
     vct->options = *(const struct vct_options *)options;
     vct->options.resolution = had.resolution; // what the buffers and pipelines are for
     vct->options.anisotropic = had.anisotropic;
+    vct->options.temporal = had.temporal;
+    vct_temporal_forget(&vct->temporal);
 }
 
 static void vct_invalidate(void *state, uint32_t changes)
 {
     struct vct *vct = state;
     if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) vct->rest_valid = false;
+    vct_temporal_forget(&vct->temporal);
 }
 
 static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -74,12 +80,16 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     if (!vct_prepare(vct, view)) {
         gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+        vct_temporal_forget(&vct->temporal);
         return;
     }
+    if (vct->options.temporal)
+        vct_temporal_begin(&vct->temporal, view, vct->options.frames, vct->options.clamp);
     vct_record_voxels(vct, cmd, view);
     vct_record_bounce(vct, cmd, view);
     vct_record_light(vct, cmd, view);
     vct_record_cones(vct, cmd, view);
+    if (vct->options.temporal) vct_temporal_record(&vct->temporal, cmd, view);
 }
 
 static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -100,12 +110,21 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
 static void vct_destroy(void *state)
 {
     struct vct *vct = state;
-    if (vct->gpu) vct_destroy_resources(vct);
+    if (!vct->gpu) return;
+    vct_temporal_destroy(&vct->temporal, vct->gpu);
+    vct_destroy_resources(vct);
+}
+
+static uint32_t vct_more_needs(const void *options)
+{
+    return ((const struct vct_options *)options)->temporal ? FRAME_NEEDS_MOTION : 0;
 }
 
 static uint64_t vct_memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
-    return vct_resource_bytes(options, width, height);
+    const bool temporal = ((const struct vct_options *)options)->temporal;
+    return vct_resource_bytes(options, width, height) +
+           (temporal ? vct_temporal_memory(width, height) : 0);
 }
 
 const struct technique technique_vct = {
@@ -120,6 +139,7 @@ const struct technique technique_vct = {
                  sizeof(struct vct_options) },
     .debug_views = debug_views,
     .state_size = sizeof(struct vct),
+    .more_needs = vct_more_needs,
     .check = vct_check,
     .create = vct_create,
     .resize = vct_resize,

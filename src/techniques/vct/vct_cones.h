@@ -15,5 +15,8 @@ int vct_cone_count(int choice);
 // The hemisphere in parts of equal solid angle 2π/count: a cap and rings, whose parts are equal.
 // Weights sum to π.
 void vct_cone_set(int choice, struct vct_cone *out);
+// The same, number 0, and others with other directions within the same parts, each cone's own; means over many numbers
+// are over nearly all of the hemisphere.
+void vct_cone_set_turned(int choice, uint32_t number, struct vct_cone *out);
 // Width over distance of a cone of solid angle 2π/count: 2 tan of its half-angle.
 float vct_cone_width(int choice);

@@ -41,8 +41,11 @@ struct vct_cone_params vct_cone_params(const struct vct *vct, const struct frame
 
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const struct vct_cone_params params =
+    const bool temporal = vct->options.temporal;
+    struct vct_cone_params params =
         vct_cone_params(vct, view, vct->options.cones, (uint32_t)vct->options.interleave);
+    if (temporal) vct_temporal_turn(&vct->temporal, vct->options.cones, &params);
+    const gpu_image result = temporal ? vct->temporal.now : view->layers[FRAME_IRRADIANCE];
     const struct gpu_binding cones = gpu_transient(cmd, "vct_cones", &params, sizeof params);
     const struct gpu_binding depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] };
     const struct gpu_binding normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] };
@@ -70,7 +73,7 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
                  NULL, 0, across, down, 1);
     gpu_dispatch(cmd, vct->gather_columns,
                  GPU_BIND(cones, edges, { .name = "gathered", .image = vct->gathered },
-                          { .name = "result", .image = view->layers[FRAME_IRRADIANCE] }),
+                          { .name = "result", .image = result }),
                  NULL, 0, across, down, 1);
     gpu_scope_end(cmd);
 }

@@ -87,6 +87,16 @@ struct vct_texels_push {
     uint32_t mask_first[VCT_MAX_LEVELS]; // its first bit
 };
 
+// Uniform block "vct_history": the last frame's picture, of which the pixel (x, y) shows what lies at
+// forward + x · right + y · down from its eye, per distance along the view axis; world space.
+struct vct_history_params {
+    vec3s right, down, forward;
+    float pixel;    // width of a pixel over the distance
+    float most;     // weight of the history at most, in frames
+    float clamp;    // standard deviations; 0: none
+    uint32_t known; // 0: there is no last frame
+};
+
 struct vct_mip_push {
     int32_t source_x, source_y, source_z; // of the level that is read
     int32_t source_tile, target_tile; // texels between directions
@@ -111,6 +121,7 @@ _Static_assert(sizeof(struct vct_texel_levels) == 4 * VCT_MAX_LEVELS * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,
                "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 13 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_mip_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_view_push) == 8, "layout is shared with GLSL");
 #endif

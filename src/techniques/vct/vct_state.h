@@ -5,6 +5,7 @@
 #include "techniques/vct/vct_cones.h"
 #include "techniques/vct/vct_grid.h"
 #include "techniques/vct/vct_shared.h"
+#include "techniques/vct/vct_temporal.h"
 
 struct vct_options {
 #define OPTION OPTION_FIELD
@@ -46,6 +47,7 @@ struct vct {
     gpu_image light;            // RGBA16F, mips: six volumes side by side
     gpu_image edge_image;       // R8
     gpu_image traced, gathered; // RGBA16F: Σ radiance × weight, Σ weight
+    struct vct_temporal temporal; // empty without the option
     uint32_t width, height;
 
     struct vct_grid grid;

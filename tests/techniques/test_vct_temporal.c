@@ -1,0 +1,482 @@
+// The temporal filter of voxel cone tracing: what a still picture, a pan, a moving object and a cut
+// show. Figures are printed.
+#include "techniques/vct_rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const vec3s EYE = { { 1, 6, 9 } }, TARGET = { { 8, 2, 3 } };
+
+// A room 11 m wide with a block and a red box in it, and a point light. Returns the box.
+static int furnish(struct vct_rig *rig, struct gpu *gpu)
+{
+    vct_rig_init(rig, gpu);
+    struct studio *s = &rig->studio;
+    studio_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
+               studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    studio_box(s, vec3_of(8, 0.2f, 3), vec3_of(10, 4, 6), false,
+               studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    const int first = s->scene->instance_count;
+    studio_box(s, vec3_of(4, 0.2f, 2), vec3_of(5.5f, 3, 3.5f), false,
+               studio_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
+    studio_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
+    studio_look(s, EYE, TARGET);
+    return first;
+}
+
+// The box's six sides.
+static void move_box(struct vct_rig *rig, int first, vec3s by)
+{
+    struct studio *s = &rig->studio;
+    for (int i = first; i < first + 6; i++)
+        for (int k = 0; k < 3; k++)
+            s->pose.world_from_node[s->scene->instances[i].node].raw[3][k] += by.raw[k];
+}
+
+static float *irradiance_after(struct vct_rig *rig, int frames)
+{
+    for (int i = 0; i < frames; i++) studio_render(&rig->studio);
+    return studio_read(&rig->studio, READ_IRRADIANCE);
+}
+
+static size_t floats_of(const struct vct_rig *rig)
+{
+    return (size_t)rig->studio.width * rig->studio.height * 3;
+}
+
+static double mean(const float *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += (double)values[i];
+    return sum / (double)count;
+}
+
+static double mean_difference(const float *a, const float *b, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += fabs((double)a[i] - (double)b[i]);
+    return sum / (double)count;
+}
+
+// What a channel of an image of the filter holds; to be freed.
+static float *channels(const struct vct_rig *rig, gpu_image image, int count)
+{
+    const size_t floats = (size_t)rig->studio.width * rig->studio.height * (size_t)count;
+    float *out = malloc(floats * sizeof *out);
+    CHECK(gpu_image_download_float(rig->studio.gpu, image, 0, 0, out, count, floats));
+    return out;
+}
+
+// ---- A still picture
+
+// In a still picture each pixel's history is its own: what the frames alone have, put together as
+// the formula says.
+TEST_GPU(history_is_the_weighted_mean_of_the_frames)
+{
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    vct_rig_open(&rig, "resolution=32,temporal=true,frames=4");
+    const size_t pixels = (size_t)rig.studio.width * rig.studio.height;
+    double *mean_of_them = calloc(3 * pixels, sizeof *mean_of_them);
+    for (int frame = 0; frame < 9; frame++) {
+        studio_render(&rig.studio);
+        float *now = channels(&rig, rig.vct->temporal.now, 3);
+        float *got = channels(&rig, rig.vct->temporal.light[rig.vct->temporal.newest], 4);
+        const double w = frame < 4 ? frame : 4; // frames=4: no more than four of them weigh
+        for (size_t i = 0; i < 3 * pixels; i++) {
+            mean_of_them[i] = (w * mean_of_them[i] + (double)now[i]) / (w + 1.0);
+            const double value = (double)got[i / 3 * 4 + i % 3];
+            CHECK_NEAR(value, mean_of_them[i], 1e-5 * mean_of_them[i] + 1e-6);
+        }
+        CHECK(got[3] == (frame < 4 ? (float)frame + 1.0f : 4.0f));
+        free(now);
+        free(got);
+    }
+    free(mean_of_them);
+    vct_rig_finish(&rig);
+}
+
+// Each frame has other cones, by a tenth of the light, and the mean over n of them changes by an
+// n-th of that from frame to frame: after 500 frames by less than a thousandth.
+TEST_GPU(a_still_picture_comes_to_rest)
+{
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    vct_rig_open(&rig, "resolution=32,temporal=true,frames=4");
+    const size_t count = floats_of(&rig);
+    float *first = irradiance_after(&rig, 1), *second = irradiance_after(&rig, 1);
+    float *before = irradiance_after(&rig, 497), *after = irradiance_after(&rig, 1);
+    const double average = mean(after, count);
+    double squares = 0.0, most = 0.0;
+    size_t resting = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double change = fabs((double)after[i] - (double)before[i]);
+        squares += change * change;
+        most = fmax(most, change / (double)after[i]);
+        resting += change < 1e-3 * (double)after[i];
+    }
+    const double change = sqrt(squares / (double)count) / average;
+    print_message(
+        "from the first frame to the second: %.2e of the mean; from the 499th to the 500th: %.2e "
+        "(root of the mean square), %.2e at most, %.2f %% of the values less than 1e-3\n",
+        mean_difference(first, second, count) / average, change, most,
+        100.0 * (double)resting / (double)count);
+    CHECK(change < 1e-3);
+    CHECK((double)resting > 0.95 * (double)count);
+    CHECK(mean_difference(first, second, count) > 1e-2 * average); // or nothing is filtered
+    free(first), free(second), free(before), free(after);
+    vct_rig_finish(&rig);
+}
+
+// ---- A pan
+
+enum { PAN = 30, WARM = 8 };
+
+static void turn_eye(struct studio *s, int frame)
+{
+    const float turn = 0.012f * (float)(frame - PAN / 2);
+    const vec3s to = glms_vec3_sub(TARGET, EYE);
+    const vec3s turned =
+        vec3_of(to.x * cosf(turn) - to.z * sinf(turn), to.y, to.x * sinf(turn) + to.z * cosf(turn));
+    studio_look(s, EYE, glms_vec3_add(EYE, turned));
+}
+
+struct picture {
+    float *position, *normal, *irradiance;
+};
+
+static struct picture picture_of(struct studio *s)
+{
+    return (struct picture){ studio_read(s, READ_POSITION), studio_read(s, READ_NORMAL),
+                             studio_read(s, READ_IRRADIANCE) };
+}
+
+static void picture_free(struct picture *p)
+{
+    free(p->position), free(p->normal), free(p->irradiance);
+}
+
+static vec3s vector(const float *of, size_t pixel)
+{
+    return vec3_of(of[3 * pixel], of[3 * pixel + 1], of[3 * pixel + 2]);
+}
+
+// Irradiance at a point of the world as the picture has it: bilinear, where all four pixels show
+// its plane within 0.1 m. False elsewhere: creases and silhouettes mix what is of other surfaces.
+static bool seen_at(const struct studio *s, vec3s p, vec3s n, const struct picture *picture,
+                    double out[3])
+{
+    const struct world_camera *c = &s->input.camera;
+    const int width = (int)s->width, height = (int)s->height;
+    const float tan_y = tanf(0.5f * c->vertical_fov_rad),
+                tan_x = tan_y * (float)width / (float)height;
+    const vec3s to = glms_vec3_sub(p, c->eye);
+    const float along = glms_vec3_dot(to, c->forward);
+    if (along <= 0.0f) return false;
+    const float x =
+        (0.5f + 0.5f * glms_vec3_dot(to, glms_vec3_cross(c->forward, c->up)) / (along * tan_x)) *
+            (float)width -
+        0.5f;
+    const float y =
+        (0.5f - 0.5f * glms_vec3_dot(to, c->up) / (along * tan_y)) * (float)height - 0.5f;
+    const int left = (int)floorf(x), top = (int)floorf(y);
+    if (left < 0 || top < 0 || left + 1 >= width || top + 1 >= height) return false;
+    memset(out, 0, 3 * sizeof *out);
+    for (int i = 0; i < 4; i++) {
+        const size_t at = (size_t)((top + (i >> 1)) * width + left + (i & 1));
+        const vec3s off = glms_vec3_sub(vector(picture->position, at), p);
+        if (glms_vec3_dot(vector(picture->normal, at), n) < 0.99f) return false;
+        if (fabsf(glms_vec3_dot(off, n)) > 0.1f || glms_vec3_norm(off) > 0.2f * along) return false;
+        const double fx = (double)(x - (float)left), fy = (double)(y - (float)top);
+        const double share = (i & 1 ? fx : 1.0 - fx) * (i >> 1 ? fy : 1.0 - fy);
+        for (int k = 0; k < 3; k++)
+            out[k] += share * (double)picture->irradiance[3 * at + (size_t)k];
+    }
+    return true;
+}
+
+// How much the light at points of the room changes from frame to frame while the eye turns, as the
+// root of the mean square, over its mean. Nothing of it is real: irradiance does not depend on the
+// eye.
+static double flicker_in_pan(struct gpu *gpu, const char *options)
+{
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    struct studio *s = &rig.studio;
+    s->width = s->height = 48;
+    turn_eye(s, 0);
+    vct_rig_open(&rig, options);
+    for (int i = 0; i < WARM; i++) studio_render(s);
+    turn_eye(s, PAN / 2);
+    studio_render(s);
+    struct picture middle = picture_of(s);
+    turn_eye(s, 0);
+    for (int i = 0; i < WARM; i++) studio_render(s);
+    const size_t pixels = (size_t)s->width * s->height;
+    double *last = calloc(4 * pixels, sizeof *last), changes = 0.0, sum = 0.0;
+    long count = 0;
+    for (int frame = 0; frame < PAN; frame++) {
+        turn_eye(s, frame);
+        studio_render(s);
+        struct picture picture = picture_of(s);
+        for (size_t i = 0; i < pixels; i++) {
+            double now[3];
+            const vec3s p = vector(middle.position, i), n = vector(middle.normal, i);
+            const bool seen = seen_at(s, p, n, &picture, now);
+            for (int k = 0; seen && k < 3; k++) {
+                if (last[4 * i + 3] > 0.0) {
+                    changes +=
+                        (now[k] - last[4 * i + (size_t)k]) * (now[k] - last[4 * i + (size_t)k]);
+                    sum += now[k];
+                    count++;
+                }
+                last[4 * i + (size_t)k] = now[k];
+            }
+            last[4 * i + 3] = seen;
+        }
+        picture_free(&picture);
+    }
+    CHECK(count > PAN * (long)pixels);
+    picture_free(&middle);
+    free(last);
+    vct_rig_finish(&rig);
+    return sqrt(changes / (double)count) / (sum / (double)count);
+}
+
+TEST_GPU(light_flickers_a_third_in_a_pan)
+{
+    const double with = flicker_in_pan(gpu, "resolution=32,temporal=true");
+    const double without = flicker_in_pan(gpu, "resolution=32");
+    const double clamped = flicker_in_pan(gpu, "resolution=32,temporal=true,clamp=2");
+    print_message("flicker in a pan: %.4f, with the filter %.4f, clamped %.4f\n", without, with,
+                  clamped);
+    CHECK(with < without / 3.0);
+}
+
+// ---- Things that move
+
+enum { FRAMES = 16 };
+
+// Light at surfaces that stand still all the time, from which the box takes it: by 1/(FRAMES + 1)
+// of the rest a frame. What is left of the change after n frames is (FRAMES/(FRAMES + 1))ⁿ of it,
+// and what frames differ by.
+TEST_GPU(what_an_object_leaves_behind_goes_as_the_weight_says)
+{
+    enum { LAST = 80 };
+    struct vct_rig rig;
+    const int box = furnish(&rig, gpu);
+    vct_rig_open(&rig, "resolution=32,temporal=true,frames=16");
+    const size_t count = floats_of(&rig);
+    free(irradiance_after(&rig, 200));
+    struct picture old = picture_of(&rig.studio);
+    move_box(&rig, box, vec3_of(-1.5f, 3, 2)); // under the light
+    float *trail[LAST + 1];
+    for (int n = 1; n <= LAST; n++) trail[n] = irradiance_after(&rig, 1);
+    free(irradiance_after(&rig, 400));
+    struct picture settled = picture_of(&rig.studio);
+    for (size_t i = 0; i < count / 3; i++) { // others do not count
+        const vec3s moved = glms_vec3_sub(vector(old.position, i), vector(settled.position, i));
+        if (glms_vec3_norm(moved) == 0.0f) continue;
+        for (int n = 1; n <= LAST; n++) memset(trail[n] + 3 * i, 0, 3 * sizeof(float));
+        memset(old.irradiance + 3 * i, 0, 3 * sizeof(float));
+        memset(settled.irradiance + 3 * i, 0, 3 * sizeof(float));
+    }
+    const double change = mean_difference(old.irradiance, settled.irradiance, count);
+    const double average = mean(settled.irradiance, count);
+    const double noise = mean_difference(trail[LAST], settled.irradiance, count); // (16/17)⁸⁰ < 1 %
+    CHECK(change > 0.05 * average && noise < 0.2 * change);
+    for (int n = 1; n <= LAST; n++) {
+        const double left = mean_difference(trail[n], settled.irradiance, count);
+        const double due = pow((double)FRAMES / (FRAMES + 1), n) * change;
+        if (n == 1 || n % 16 == 0)
+            print_message(
+                "%d frames after a change by %.3f of the mean: %.4f is left, %.4f is due\n", n,
+                change / average, left / average, due / average);
+        CHECK(left < due + 2.0 * noise);
+        CHECK(left > due - 2.0 * noise); // there is a trail, or nothing is tested
+        free(trail[n]);
+    }
+    picture_free(&old), picture_free(&settled);
+    vct_rig_finish(&rig);
+}
+
+// The clamp ends the trail where the new light is not in doubt.
+TEST_GPU(the_clamp_shortens_the_trail)
+{
+    double left[2];
+    for (int clamped = 0; clamped < 2; clamped++) {
+        struct vct_rig rig;
+        furnish(&rig, gpu);
+        vct_rig_open(&rig, clamped ? "resolution=32,temporal=true,clamp=2"
+                                   : "resolution=32,temporal=true");
+        const size_t count = floats_of(&rig);
+        float *old = irradiance_after(&rig, 40);
+        rig.studio.lights[0].position = vec3_of(9, 7, 8);
+        float *trail = irradiance_after(&rig, 4), *settled = irradiance_after(&rig, 200);
+        left[clamped] =
+            mean_difference(trail, settled, count) / mean_difference(old, settled, count);
+        free(old), free(trail), free(settled);
+        vct_rig_finish(&rig);
+    }
+    print_message(
+        "4 frames after the light has moved %.3f of the change is left, %.3f with the clamp\n",
+        left[0], left[1]);
+    CHECK(left[1] < 0.6 * left[0]);
+}
+
+// While the box moves its own sides keep their history, and what it uncovers has none.
+TEST_GPU(history_follows_what_moves_and_begins_where_it_was)
+{
+    struct vct_rig rig;
+    const int box = furnish(&rig, gpu);
+    rig.studio.width = rig.studio.height = 48;
+    vct_rig_open(&rig, "resolution=32,temporal=true,frames=16");
+    struct studio *s = &rig.studio;
+    const vec3s step = vec3_of(0.12f, 0, 0.03f);
+    for (int i = 0; i < 12; i++) {
+        studio_render(s);
+        move_box(&rig, box, step);
+    }
+    struct picture before = picture_of(s);
+    studio_render(s);
+    struct picture after = picture_of(s);
+    float *history = channels(&rig, rig.vct->temporal.light[rig.vct->temporal.newest], 4);
+    int on_box = 0, followed = 0, uncovered = 0, begun = 0, still = 0, kept = 0;
+    for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
+        const vec3s was = vector(before.position, i), is = vector(after.position, i);
+        const float frames = history[4 * i + 3];
+        // The box, 12 steps from where it was: x 5.44 … 6.94, y up to 3, z 2.36 … 3.86.
+        const bool box_now =
+            is.y > 0.3f && is.y < 3.1f && is.x > 5.4f && is.x < 7.0f && is.z > 2.3f && is.z < 3.9f;
+        const bool same = glms_vec3_norm(glms_vec3_sub(was, is)) < 1e-3f;
+        on_box += box_now;
+        followed += box_now && frames > 6.0f;
+        uncovered += !box_now && !same;
+        begun += !box_now && !same && frames == 1.0f;
+        still += !box_now && same;
+        kept += !box_now && same && frames > 6.0f;
+    }
+    print_message("%d of %d pixels on the box have followed it, %d of %d that it uncovered have "
+                  "begun, %d of %d elsewhere go on\n",
+                  followed, on_box, begun, uncovered, kept, still);
+    CHECK(on_box > 50 && followed > 0.8 * on_box);
+    CHECK(uncovered > 3 && begun > 0.8 * uncovered);
+    CHECK(kept > 0.95 * still);
+    picture_free(&before), picture_free(&after);
+    free(history);
+    vct_rig_finish(&rig);
+}
+
+// Light is kept in physical units while the frame's change: a light 2¹⁰ times as strong is mixed
+// with what was.
+TEST_GPU(history_goes_on_when_the_unit_changes)
+{
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    vct_rig_open(&rig, "resolution=32,temporal=true,frames=1");
+    const size_t count = floats_of(&rig);
+    float *old = irradiance_after(&rig, 1);
+    struct world_light *light = &rig.studio.lights[0];
+    const float scale = frame_radiance_scale(rig.studio.frame);
+    light->intensity = glms_vec3_scale(light->intensity, 1024);
+    float *mixed = irradiance_after(&rig, 1);
+    CHECK(frame_radiance_scale(rig.studio.frame) < scale);
+    float *now = channels(&rig, rig.vct->temporal.now, 3);
+    const double unit = (double)frame_radiance_scale(rig.studio.frame);
+    // Half floats of the frame: 11 bits.
+    for (size_t i = 0; i < count; i++) {
+        const double expected = 0.5 * ((double)old[i] + (double)now[i] / unit);
+        CHECK_NEAR((double)mixed[i], expected, 1e-3 * expected + 1e-6);
+    }
+    free(old), free(mixed), free(now);
+    vct_rig_finish(&rig);
+}
+
+// ---- Where the past ends
+
+static float *first_frame(struct gpu *gpu, const char *options, vec3s eye, vec3s target,
+                          uint32_t size)
+{
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    rig.studio.width = rig.studio.height = size;
+    studio_look(&rig.studio, eye, target);
+    vct_rig_open(&rig, options);
+    float *e = irradiance_after(&rig, 1);
+    vct_rig_finish(&rig);
+    return e;
+}
+
+static const vec3s OTHER_EYE = { { 10, 3, 9 } }, OTHER_TARGET = { { 2, 1, 1 } };
+
+TEST_GPU(a_cut_forgets_to_the_bit)
+{
+    static const char *const off = "resolution=32", *const on = "resolution=32,temporal=true";
+    float *fresh = first_frame(gpu, off, OTHER_EYE, OTHER_TARGET, 32);
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    vct_rig_open(&rig, on);
+    const size_t bytes = floats_of(&rig) * sizeof *fresh;
+    free(irradiance_after(&rig, 5));
+    studio_look(&rig.studio, OTHER_EYE, OTHER_TARGET);
+    rig.studio.input.camera_cut = true;
+    float *cut = irradiance_after(&rig, 1);
+    assert_memory_equal(cut, fresh, bytes);
+    free(cut);
+    // Other options, too; what it is told of a change; another size.
+    rig.studio.input.camera_cut = false;
+    free(irradiance_after(&rig, 3));
+    struct vct_options options = rig.vct->options;
+    options.gain = 2.0f;
+    technique_vct.set_options(rig.vct, &options);
+    float *gained = irradiance_after(&rig, 1);
+    for (size_t i = 0; i < floats_of(&rig); i++)
+        CHECK_NEAR(gained[i], 2.0f * fresh[i], 1e-3f * gained[i]);
+    free(gained);
+    options.gain = 1.0f;
+    technique_vct.set_options(rig.vct, &options);
+    free(irradiance_after(&rig, 3));
+    technique_vct.invalidate(rig.vct, CHANGED_CAMERA);
+    cut = irradiance_after(&rig, 1);
+    assert_memory_equal(cut, fresh, bytes);
+    free(cut), free(fresh);
+    fresh = first_frame(gpu, off, OTHER_EYE, OTHER_TARGET, 40);
+    CHECK(technique_vct.resize(rig.vct, 40, 40));
+    studio_resize(&rig.studio, 40, 40);
+    cut = irradiance_after(&rig, 1);
+    assert_memory_equal(cut, fresh, floats_of(&rig) * sizeof *fresh);
+    free(cut), free(fresh);
+    vct_rig_finish(&rig);
+}
+
+// A host that jumps and does not say so: what was seen before is the same surface, or does not
+// count. No picture is farther from what it comes to than one that begins there.
+TEST_GPU(a_jump_has_no_ghost)
+{
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    vct_rig_open(&rig, "resolution=32,temporal=true");
+    const size_t count = floats_of(&rig);
+    float *fresh = first_frame(gpu, "resolution=32", OTHER_EYE, OTHER_TARGET, 32);
+    float *there = irradiance_after(&rig, 60);
+    studio_look(&rig.studio, OTHER_EYE, OTHER_TARGET);
+    float *jump = irradiance_after(&rig, 1), *settled = irradiance_after(&rig, 200);
+    const double average = mean(settled, count),
+                 begun = mean_difference(fresh, settled, count) / average;
+    const double ghost = mean_difference(jump, settled, count) / average;
+    print_message("a jump leaves %.4f of the mean, a beginning %.4f, the old picture would %.4f\n",
+                  ghost, begun, mean_difference(there, settled, count) / average);
+    CHECK(ghost <= begun);
+    free(fresh), free(there), free(jump), free(settled);
+    vct_rig_finish(&rig);
+}
+
+// What is off costs nothing and changes nothing.
+TEST_GPU(the_first_frame_is_that_of_the_unfiltered)
+{
+    float *off = first_frame(gpu, "resolution=32", EYE, TARGET, 32);
+    float *on = first_frame(gpu, "resolution=32,temporal=true", EYE, TARGET, 32);
+    assert_memory_equal(off, on, 32 * 32 * 3 * sizeof *off);
+    free(off), free(on);
+}
