@@ -3,6 +3,7 @@
 #include "techniques/vct_rig.h"
 
 #include "core/rng.h"
+#include "techniques/vct/vct_remarks.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -138,6 +139,11 @@ TEST_GPU(voxels_are_those_that_a_triangle_touches)
     for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, &rig.vct->grid, triangles[i]);
     const int count = check_same(&rig, &twin, &rig.vct->rest);
     CHECK(count > 200 && count < DIM * DIM * DIM / 2); // neither all nor nothing
+    // The count on the CPU, but for triangles that touch a face exactly.
+    uint32_t counted = 0;
+    CHECK(vct_count_touched(test_host(), &rig.studio.pose, &rig.vct->grid, DIM, UINT32_MAX - 1,
+                            &counted));
+    CHECK(abs((int)counted - count) <= 2);
     vct_rig_finish(&rig);
 }
 

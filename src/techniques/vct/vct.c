@@ -6,6 +6,7 @@
 // README.md says what differs from the paper and how good it is.
 #include "techniques/vct/vct.h"
 
+#include "techniques/vct/vct_remarks.h"
 #include "techniques/vct/vct_state.h"
 
 #include <string.h>
@@ -49,6 +50,7 @@ static bool vct_resize(void *state, uint32_t width, uint32_t height)
 static bool vct_create(void *state, const struct technique_create *how)
 {
     struct vct *vct = state;
+    if (how->pose) vct_remark_on_scene(how->host, how->options, how->pose);
     vct->gpu = how->gpu;
     vct->options = *(const struct vct_options *)how->options;
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&

@@ -69,7 +69,7 @@ void main()
     vct_record r;
     r.opacity = sheet.opacity;
     r.normal = sheet.normal;
-    r.reflectance = vct_sum(at + VCT_SUM_REFLECTANCE) * (per_opaque / VCT_COLOUR_ONE);
+    r.reflectance = min(vct_sum(at + VCT_SUM_REFLECTANCE) * (per_opaque / VCT_COLOUR_ONE), vec3(1.0));
     r.emitted_front = min(vct_sum(at + VCT_SUM_FRONT) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
     r.emitted_back = min(vct_sum(at + VCT_SUM_BACK) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
 

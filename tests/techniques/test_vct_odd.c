@@ -1,0 +1,198 @@
+// Scenes that do not suit voxels: nothing hangs, everything is finite, and what is left out is said.
+#include "techniques/vct_rig.h"
+
+#include "techniques/vct/vct_remarks.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PIXELS = 32 * 32 };
+
+// Of a frame's irradiance, all of which has to be finite.
+static double mean_irradiance(struct vct_rig *rig)
+{
+    studio_render(&rig->studio);
+    float *e = studio_read(&rig->studio, READ_IRRADIANCE);
+    double sum = 0.0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        CHECK(isfinite(e[i]) && e[i] >= 0.0f);
+        sum += (double)e[i] / (3.0 * PIXELS);
+    }
+    free(e);
+    return sum;
+}
+
+static uint32_t argument(const struct vct_rig *rig, int which)
+{
+    uint32_t arguments[5];
+    CHECK(gpu_buffer_download(rig->studio.gpu, rig->vct->rest.arguments, 0, arguments,
+                              sizeof arguments));
+    return arguments[which];
+}
+
+static uint32_t listed(const struct vct_rig *rig)
+{
+    return argument(rig, 3);
+}
+
+static uint32_t left_out(const struct vct_rig *rig)
+{
+    return argument(rig, 4);
+}
+
+TEST_GPU(an_empty_scene_has_no_indirect_light)
+{
+    struct vct_rig rig;
+    vct_rig_init(&rig, gpu);
+    studio_add_point(&rig.studio, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
+    rig.studio.input.sky = vec3_of(5, 5, 5);
+    vct_rig_open(&rig, "resolution=32");
+    CHECK(mean_irradiance(&rig) == 0.0);
+    vct_rig_finish(&rig);
+}
+
+// ---- Lights in walls
+
+// A lamp in the middle of a voxel of a wall, in the wall's plane, and on a corner of the room:
+// the light that voxels get does not grow without bounds.
+TEST_GPU(a_light_within_a_wall_stays_finite)
+{
+    const vec3s places[] = { { { 3.02f, 4, 4 } }, { { 3, 4, 4 } }, { { 0, 0, 0 } } };
+    for (int i = 0; i < 3; i++) {
+        struct vct_rig rig;
+        vct_rig_init(&rig, gpu);
+        struct studio *s = &rig.studio;
+        const int matte = studio_matte(s, vec3_of(0.8f, 0.8f, 0.8f));
+        studio_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, matte);
+        studio_box(s, vec3_of(3, 0, 0), vec3_of(3.05f, 7, 9), false, matte);
+        studio_add_point(s, places[i], vec3_of(100, 100, 100));
+        studio_look(s, vec3_of(1, 6, 8), vec3_of(3, 3, 3));
+        vct_rig_open(&rig, "resolution=32,bounces=2");
+        double last = 0.0;
+        for (int frame = 0; frame < 4; frame++) last = mean_irradiance(&rig);
+        // 400π lm, reflected up to 1/(1 − 0.8) times, on the 520 m² that there are in the room.
+        // Voxels next to a lamp are lit as if it was half a voxel away, which is less than twice
+        // what a sphere around it gets; and half of the room may have all of it.
+        CHECK(last < 4.0 * 400.0 * 3.14159 / 0.2 / 520.0);
+        vct_rig_finish(&rig);
+    }
+}
+
+// ---- Many triangles
+
+enum { SIDE = 708 }; // squares along a side: 1 002 528 triangles
+
+static void add_field(struct vct_rig *rig, int squares)
+{
+    const uint32_t across = (uint32_t)squares + 1;
+    const size_t vertices = (size_t)across * across;
+    struct mesh mesh = { .name = "field",
+                         .vertex_count = (uint32_t)vertices,
+                         .index_count = 6 * (uint32_t)squares * (uint32_t)squares,
+                         .positions = malloc(vertices * sizeof(vec3s)),
+                         .normals = malloc(vertices * sizeof(vec3s)),
+                         .material =
+                             studio_matte(&rig->studio, vec3_of(0.5f, 0.5f, 0.5f)) };
+    mesh.indices = malloc(mesh.index_count * sizeof *mesh.indices);
+    CHECK(mesh.positions && mesh.normals && mesh.indices);
+    for (uint32_t i = 0; i < vertices; i++) {
+        const float step = 11.4f / (float)squares;
+        mesh.positions[i] =
+            vec3_of(0.3f + step * (float)(i % across), 0.4f, 0.3f + step * (float)(i / across));
+        mesh.normals[i] = vec3_of(0, 1, 0);
+    }
+    uint32_t *at = mesh.indices;
+    for (uint32_t y = 0; y + 1 < across; y++)
+        for (uint32_t x = 0; x + 1 < across; x++, at += 6) {
+            const uint32_t first = y * across + x;
+            const uint32_t square[] = { first, first + across, first + across + 1,
+                                        first, first + across + 1, first + 1 };
+            memcpy(at, square, sizeof square);
+        }
+    const int index = scene_add_mesh(rig->studio.scene, &mesh);
+    CHECK(index >= 0);
+    studio_instance(&rig->studio, index, NULL);
+    free(mesh.positions);
+    free(mesh.normals);
+    free(mesh.indices);
+}
+
+// The voxels of a floor, and the light on a wall over it, of so many squares.
+static double field(struct gpu *gpu, int squares, uint32_t *mask, size_t mask_bytes)
+{
+    struct vct_rig rig;
+    vct_rig_init(&rig, gpu);
+    add_field(&rig, squares);
+    studio_quad(&rig.studio, vec3_of(0.3f, 0.4f, 0.3f), vec3_of(11.7f, 0.4f, 0.3f),
+                vec3_of(11.7f, 9, 0.3f), vec3_of(0.3f, 9, 0.3f),
+                studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f)));
+    studio_add_sun(&rig.studio, vec3_of(0, -1, -0.1f), vec3_of(1000, 1000, 1000));
+    studio_look(&rig.studio, vec3_of(6, 5, 10), vec3_of(6, 4, 0));
+    vct_rig_open(&rig, "resolution=16");
+    const double e = mean_irradiance(&rig);
+    uint32_t *now = vct_rig_mask(&rig, &rig.vct->rest);
+    memcpy(mask, now, mask_bytes);
+    free(now);
+    vct_rig_finish(&rig);
+    return e;
+}
+
+TEST_GPU(a_million_triangles_are_the_floor_that_two_are)
+{
+    uint32_t two[16 * 16 * 16 / 32], million[16 * 16 * 16 / 32];
+    const double e_two = field(gpu, 1, two, sizeof two);
+    const double e_million = field(gpu, SIDE, million, sizeof million);
+    CHECK(memcmp(two, million, sizeof two) == 0);
+    CHECK(e_two > 1.0);
+    // Triangles that cross no line of a voxel count a thousandth of its face for its colour and
+    // place, nothing for what it covers.
+    CHECK_NEAR(e_million, e_two, 0.02 * e_two);
+}
+
+// ---- More than there is room for
+
+static int warnings;
+
+static void listen(void *user, enum log_level level, const char *message)
+{
+    (void)user;
+    if (level == LOG_WARNING && strstr(message, "for which there is room")) warnings++;
+}
+
+// Sheets one above the other, a voxel apart.
+static void stack(struct vct_rig *rig, int sheets)
+{
+    const int matte = studio_matte(&rig->studio, vec3_of(0.5f, 0.5f, 0.5f));
+    for (int i = 0; i < sheets; i++) {
+        const float y = 0.5f + (float)i;
+        studio_quad(&rig->studio, vec3_of(0, y, 28), vec3_of(28, y, 28), vec3_of(28, y, 0),
+                    vec3_of(0, y, 0), matte);
+    }
+    studio_add_sun(&rig->studio, vec3_of(-0.2f, -1, -0.4f), vec3_of(1000, 1000, 1000));
+    studio_look(&rig->studio, vec3_of(14, 40, 40), vec3_of(14, 20, 14));
+}
+
+TEST_GPU(voxels_without_room_are_left_out_and_said_to_be)
+{
+    const int sheets[] = { 26, 28 }; // of 784 voxels: 20 384 and 21 952, where there is room for 20 480
+    for (int i = 0; i < 2; i++) {
+        struct vct_rig rig;
+        vct_rig_init(&rig, gpu);
+        stack(&rig, sheets[i]);
+        vct_rig_open(&rig, "resolution=32");
+        const uint32_t room = vct_capacity(&rig.vct->options), all = 784 * (uint32_t)sheets[i];
+        const double e = mean_irradiance(&rig);
+        CHECK(e > 0.0);
+        CHECK(rig.vct->grid.cell_m == 1.0f);
+        CHECK(listed(&rig) == (all < room ? all : room));
+        CHECK(left_out(&rig) == (all > room ? all - room : 0));
+        struct host host = *test_host();
+        host.log = listen;
+        warnings = 0;
+        vct_remark_on_scene(&host, &rig.vct->options, &rig.studio.pose);
+        CHECK(warnings == (all > room));
+        vct_rig_finish(&rig);
+    }
+}
