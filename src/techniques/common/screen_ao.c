@@ -1,10 +1,12 @@
-// From a noisy estimate to the frame's visibility: blur, fit to the frame's size.
+// The estimate, and the way from it to the frame's visibility: history, blur, fit to the frame's size.
 #include "techniques/common/screen_ao.h"
 
 #include "technique_shaders.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { LOCAL = 8, BLUR_ROW = 4, NAME_SIZE = 32 };
 enum { TURNS = 16 }; // of the patterns, and frames until they are the same again
@@ -137,6 +139,25 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd)
 {
     return gpu_transient(cmd, "screen_ao", &ao->params, sizeof ao->params);
+}
+
+void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view,
+                        const char *name, gpu_pipeline pipeline, const struct gpu_binding *more,
+                        int more_count)
+{
+    struct gpu_binding bindings[4 + SCREEN_AO_MORE] = {
+        screen_ao_binding(ao, cmd),
+        { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+        { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+        { .name = "estimate", .image = ao->estimate },
+    };
+    assert(more_count <= SCREEN_AO_MORE);
+    memcpy(bindings + 4, more, (size_t)more_count * sizeof *more);
+    gpu_scope_begin(cmd, name);
+    gpu_dispatch(cmd, pipeline, bindings, 4 + more_count, NULL, 0,
+                 gpu_groups(ao->work_width, LOCAL),
+                 gpu_groups(ao->work_height, LOCAL * SCREEN_AO_ROWS), 1);
+    gpu_scope_end(cmd);
 }
 
 static void scope_begin(const struct screen_ao *ao, struct gpu_cmd *cmd, const char *stage)

@@ -33,30 +33,35 @@ const float GRAZING = 0.05;        // cosine towards the eye, at least
 const float NORMAL_STEP = 1.0 / 1024.0; // of the G-buffer's 16-bit octahedral normals, as an angle, generously
 
 struct screen_sphere {
-    float depth;     // D at P
-    float distance_m;
-    vec2 m;
-    float l;         // ℓ
-    float radius_px; // at the picture's middle
-    float scale;     // z per relative difference of D: ℓ f / radius in pixels
+    float depth;       // D at P
+    vec2 m, bend;      // bend: m/(ℓ + 1)
+    float l;           // ℓ
+    float radius_px;   // at the picture's middle
+    float z_per_depth; // of a difference of D: ℓ f / radius in pixels / D at P
 };
+
+// Of a sphere of the radius in metres about a point with the depth D, pixels.
+float screen_radius_px(float radius_m, float depth)
+{
+    return clamp(radius_m * (view.focal_px / view.near_m) * depth, LEAST_PX, view.most_px);
+}
 
 screen_sphere screen_sphere_at(ivec2 pixel, float depth, float radius_m)
 {
     screen_sphere p;
     p.depth = depth;
-    p.distance_m = view.near_m / depth;
-    p.m = (vec2(pixel) + 0.5 - vec2(view.middle_x, view.middle_y)) / view.focal_px;
+    p.m = (vec2(pixel) + 0.5 - vec2(view.middle_x, view.middle_y)) * (1.0 / view.focal_px);
     p.l = sqrt(1.0 + dot(p.m, p.m));
-    p.radius_px = clamp(radius_m * view.focal_px / p.distance_m, LEAST_PX, view.most_px);
-    p.scale = p.l * view.focal_px / p.radius_px;
+    p.bend = p.m / (p.l + 1.0);
+    p.radius_px = screen_radius_px(radius_m, depth);
+    p.z_per_depth = p.l * view.focal_px / (p.radius_px * depth);
     return p;
 }
 
 // B v
 vec2 screen_stretch(screen_sphere p, vec2 v)
 {
-    return v + p.m * (dot(p.m, v) / (p.l + 1.0));
+    return v + p.bend * dot(p.m, v);
 }
 
 // A surface through P: z of it is on_disk · s at the point s of the disk, and its part of z that comes from D at an offset in
@@ -70,12 +75,12 @@ struct screen_plane {
 screen_plane screen_plane_of(screen_sphere p, vec3 n)
 {
     float towards = min(dot(n, vec3(p.m, 1.0)), -GRAZING * p.l); // bounded: the slope grows without end
-    vec2 slope = n.xy * (-p.l / towards);
+    float steep = p.l / towards;
+    vec2 slope = n.xy * -steep;
     screen_plane plane;
     plane.on_disk = p.m + screen_stretch(p, slope);
     plane.on_screen = slope / p.radius_px;
-    float cosine = towards / p.l;
-    plane.tolerance = NORMAL_STEP / (cosine * cosine);
+    plane.tolerance = NORMAL_STEP * steep * steep;
     return plane;
 }
 
@@ -83,7 +88,7 @@ screen_plane screen_plane_of(screen_sphere p, vec3 n)
 // rounding to pixels costs nothing on slopes; added to the plane's depth elsewhere it tells the surface's there.
 float screen_behind(screen_sphere p, screen_plane plane, vec2 step, float depth)
 {
-    return p.scale * (1.0 - depth / p.depth) - dot(plane.on_screen, step);
+    return p.z_per_depth * (p.depth - depth) - dot(plane.on_screen, step);
 }
 
 vec3 screen_normal(vec3 world)

@@ -43,6 +43,12 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
                      float reach);
 // The block "screen_ao".
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd);
+// The estimate: `pipeline` with a shader that includes screen_ao_estimate.glsl. more: its own bindings, one at least and
+// SCREEN_AO_MORE at most. name: of the pass, "vo.lines".
+enum { SCREEN_AO_MORE = 2 };
+void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view,
+                        const char *name, gpu_pipeline pipeline, const struct gpu_binding *more,
+                        int more_count);
 // After the estimate: fills the frame's visibility. Passes "owner.temporal", "owner.blur" and
 // "owner.fit".
 void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -28,7 +28,7 @@ vec2 mean_around(vec2 row[ROW + 2 * REACH], int i)
 {
     float here = row[i].y;
     if (here <= 0.0) return row[i];
-    float radius_px = clamp(view.radius_m * view.focal_px * here / view.near_m, LEAST_PX, view.most_px);
+    float radius_px = screen_radius_px(view.radius_m, here);
     float per_depth = EDGE * view.focal_px / (radius_px * here);
     float slope = flatter(row[i + 1].y - here, here - row[i - 1].y);
     float weights = 1.0, sum = row[i].x;

@@ -19,7 +19,7 @@ float fitted(ivec2 pixel)
 {
     float here = texelFetch(depth, pixel, 0).r;
     if (here <= 0.0) return 1.0;
-    float radius_px = clamp(view.radius_m * view.focal_px * here / view.near_m, LEAST_PX, view.most_px);
+    float radius_px = screen_radius_px(view.radius_m, here);
     float per_depth = EDGE * view.focal_px / (radius_px * here);
     ivec2 last = ivec2(view.work_width, view.work_height) - 1;
     ivec2 first = pixel / SCREEN_AO_STEP;

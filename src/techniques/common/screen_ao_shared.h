@@ -5,6 +5,8 @@
 
 #include "core/shared.h"
 
+#define SCREEN_AO_ROWS 8 // pixels of the estimate below each other that one invocation does
+
 // Uniform block "screen_ao".
 struct screen_ao_params {
     vec3s right, down, forward; // of the picture, world space, unit

@@ -9,8 +9,6 @@
 
 #include <math.h>
 
-enum { LOCAL = 8 };
-
 enum hbao_falloff { HBAO_FALLOFF_CUBIC, HBAO_FALLOFF_QUADRATIC };
 
 struct hbao_options {
@@ -60,29 +58,21 @@ static void hbao_set_options(void *state, const void *options)
     ((struct hbao *)state)->options = *(const struct hbao_options *)options;
 }
 
-static void record_horizons(struct hbao *hbao, struct gpu_cmd *cmd, const struct frame_view *view)
+static struct hbao_params params_of(const struct hbao_options *options)
 {
-    const struct hbao_options *o = &hbao->options;
-    const struct hbao_push push = { .directions = o->directions,
-                                    .steps = o->steps,
-                                    .bias = tanf(o->bias * GLM_PIf / 180.0f),
-                                    .quadratic = o->falloff == HBAO_FALLOFF_QUADRATIC };
-    gpu_scope_begin(cmd, "hbao.horizons");
-    gpu_dispatch(cmd, hbao->horizons,
-                 GPU_BIND(screen_ao_binding(&hbao->ao, cmd),
-                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                          { .name = "estimate", .image = hbao->ao.estimate }),
-                 &push, sizeof push, gpu_groups(hbao->ao.work_width, LOCAL),
-                 gpu_groups(hbao->ao.work_height, LOCAL), 1);
-    gpu_scope_end(cmd);
+    return (struct hbao_params){ .directions = options->directions,
+                                 .steps = options->steps,
+                                 .bias = tanf(options->bias * GLM_PIf / 180.0f),
+                                 .quadratic = options->falloff == HBAO_FALLOFF_QUADRATIC };
 }
 
 static void hbao_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct hbao *hbao = state;
     screen_ao_begin(&hbao->ao, view, hbao->options.radius, hbao->options.reach);
-    record_horizons(hbao, cmd, view);
+    const struct hbao_params params = params_of(&hbao->options);
+    screen_ao_estimate(&hbao->ao, cmd, view, "hbao.horizons", hbao->horizons,
+                       GPU_BIND(gpu_transient(cmd, "hbao_table", &params, sizeof params)));
     screen_ao_record(&hbao->ao, cmd, view);
 }
 

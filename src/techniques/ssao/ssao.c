@@ -8,8 +8,6 @@
 
 #include "technique_shaders.h"
 
-enum { LOCAL = 8 };
-
 _Static_assert(SAMPLE_SET_MOST == SSAO_MOST_SAMPLES, "every set fits into the table");
 
 struct ssao_options {
@@ -80,26 +78,14 @@ static void ssao_set_options(void *state, const void *options)
     ((struct ssao *)state)->options = *(const struct ssao_options *)options;
 }
 
-static void record_points(struct ssao *ssao, struct gpu_cmd *cmd, const struct frame_view *view)
-{
-    fill_table(&ssao->options, &ssao->table);
-    gpu_scope_begin(cmd, "ssao.points");
-    gpu_dispatch(cmd, ssao->points,
-                 GPU_BIND(screen_ao_binding(&ssao->ao, cmd),
-                          gpu_transient(cmd, "ssao_table", &ssao->table, sizeof ssao->table),
-                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                          { .name = "estimate", .image = ssao->ao.estimate }),
-                 NULL, 0, gpu_groups(ssao->ao.work_width, LOCAL),
-                 gpu_groups(ssao->ao.work_height, LOCAL), 1);
-    gpu_scope_end(cmd);
-}
-
 static void ssao_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct ssao *ssao = state;
     screen_ao_begin(&ssao->ao, view, ssao->options.radius, ssao->options.reach);
-    record_points(ssao, cmd, view);
+    fill_table(&ssao->options, &ssao->table);
+    screen_ao_estimate(
+        &ssao->ao, cmd, view, "ssao.points", ssao->points,
+        GPU_BIND(gpu_transient(cmd, "ssao_table", &ssao->table, sizeof ssao->table)));
     screen_ao_record(&ssao->ao, cmd, view);
 }
 

@@ -4,22 +4,16 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "frame/octahedral.glsl"
-#include "techniques/common/screen_ao.glsl"
+#include "techniques/common/screen_ao_estimate.glsl"
 #include "techniques/ssao/ssao_shared.h"
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 1) const int COUNT = 12;
 layout(constant_id = 2) const bool WITH_NORMAL = true;
 
-layout(set = 0, binding = 1, scalar) uniform ssao_table
+layout(set = 0, binding = 4, scalar) uniform ssao_table
 {
     ssao_samples table;
 };
-layout(set = 0, binding = 2) uniform sampler2D depth;
-layout(set = 0, binding = 3) uniform sampler2D normal;
-layout(set = 0, binding = 4, rg32f) uniform writeonly image2D estimate;
 
 const float NEUTRAL = WITH_NORMAL ? 1.0 : 0.5; // what a plane leaves
 const float NEAREST = 1.0e-3; // of a point, distances of the pixel's own: it may lie behind the eye
@@ -30,48 +24,35 @@ float before(float surface, float distance_m, float radius_m)
     return surface > 0.0 ? (distance_m - view.near_m / surface) / radius_m : -1.0e9;
 }
 
-float visible(ivec2 pixel, screen_sphere sphere, screen_plane plane, vec3 point)
+float visible(screen_place place, screen_sphere sphere, screen_plane plane, vec3 point)
 {
-    float radius_m = sphere.radius_px * sphere.distance_m / view.focal_px; // `reach` may have made it smaller
-    vec3 at = vec3(sphere.m, 1.0) * sphere.distance_m + radius_m * point;
-    at.z = max(at.z, NEAREST * sphere.distance_m);
+    float distance_m = view.near_m / place.depth;
+    float radius_m = sphere.radius_px * distance_m / view.focal_px; // `reach` may have made it smaller
+    vec3 at = vec3(sphere.m, 1.0) * distance_m + radius_m * point;
+    at.z = max(at.z, NEAREST * distance_m);
     vec2 offset = view.focal_px * (at.xy / at.z - sphere.m);
-    ivec2 there = clamp(pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
+    ivec2 there = clamp(place.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
     float surface = texelFetch(depth, there, 0).r, tolerance = 0.0;
     if (WITH_NORMAL) {
         // The surface goes on from the pixel's centre to the point as the tangent plane does.
-        surface -= sphere.depth * dot(plane.on_screen, offset - vec2(there - pixel)) / sphere.scale;
+        surface -= dot(plane.on_screen, offset - vec2(there - place.pixel)) / sphere.z_per_depth;
         tolerance = plane.tolerance;
     }
     float open = before(surface, at.z, radius_m) <= tolerance ? 1.0 : 0.0;
-    float too_far = clamp(before(surface, sphere.distance_m, radius_m) / table.range - 1.0, 0.0, 1.0);
+    float too_far = clamp(before(surface, distance_m, radius_m) / table.range - 1.0, 0.0, 1.0);
     return mix(open, NEUTRAL, too_far);
 }
 
-float visibility(ivec2 work, ivec2 pixel, screen_sphere sphere, vec3 n)
+float screen_ao_visibility(screen_place place)
 {
-    screen_plane plane = screen_plane_of(sphere, n);
-    mat3 turn = screen_reflection_of_ball(screen_pattern(uvec2(work)));
+    screen_sphere sphere = screen_sphere_at(place.pixel, place.depth, view.radius_m);
+    screen_plane plane = screen_plane_of(sphere, place.n);
+    mat3 turn = screen_reflection_of_ball(place.pattern);
     float sum = 0.0;
     for (int i = 0; i < COUNT; i++) {
         vec3 point = turn * table.at[i].xyz;
-        if (WITH_NORMAL) point -= 2.0 * min(dot(point, n), 0.0) * n;
-        sum += table.at[i].w * visible(pixel, sphere, plane, point);
+        if (WITH_NORMAL) point -= 2.0 * min(dot(point, place.n), 0.0) * place.n;
+        sum += table.at[i].w * visible(place, sphere, plane, point);
     }
-    return sum;
-}
-
-void main()
-{
-    ivec2 work = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(work, ivec2(view.work_width, view.work_height)))) return;
-    ivec2 pixel = work * SCREEN_AO_STEP;
-    float here = texelFetch(depth, pixel, 0).r;
-    float result = 1.0;
-    if (here > 0.0) {
-        screen_sphere sphere = screen_sphere_at(pixel, here, view.radius_m);
-        vec3 n = screen_normal(octahedral_decode(texelFetch(normal, pixel, 0).rg));
-        result = mix(NEUTRAL, visibility(work, pixel, sphere, n), screen_fade(sphere));
-    }
-    imageStore(estimate, work, vec4(clamp(result, 0.0, 1.0), here, 0.0, 0.0));
+    return mix(NEUTRAL, sum, screen_fade(sphere));
 }

@@ -39,7 +39,7 @@ vo_box box_at(vo_place p, vec2 offset, int level)
                      texelFetch(moments, second, level - 1).rg, between.x);
     vec2 seen = mix(above, below, between.y);
     vec2 step = (place + 0.5) * texel_px - here;
-    float to_z = p.sphere.scale / p.sphere.depth;
+    float to_z = p.sphere.z_per_depth;
     float tolerance = p.plane.tolerance;
     // Of a slope s off by t the square is off by t (t + 2s), and 2s ≤ 1 + s².
     float rounding = tolerance * (tolerance + 1.0 + dot(p.plane.on_disk, p.plane.on_disk));

@@ -3,24 +3,18 @@
 //
 // Depths are in radii along a line of sight, z as in screen_ao.glsl. With the normal only what is before the surface's tangent
 // plane counts, and what is visible is divided by all there is up to there, so that a plane is visible in full.
-#include "frame/octahedral.glsl"
-#include "techniques/common/screen_ao.glsl"
+#include "techniques/common/screen_ao_estimate.glsl"
 #include "techniques/vo/vo_shared.h"
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 // Loops over many samples are not to be unrolled: a software driver takes up to four times as long for them.
 layout(constant_id = 1) const int COUNT = 4;
 layout(constant_id = 2) const bool WITH_NORMAL = true;
 layout(constant_id = 3) const bool TWO_RADII = false;
 
-layout(set = 0, binding = 1, scalar) uniform vo_table
+layout(set = 0, binding = 4, scalar) uniform vo_table
 {
     vo_samples table;
 };
-layout(set = 0, binding = 2) uniform sampler2D depth;
-layout(set = 0, binding = 3) uniform sampler2D normal;
-layout(set = 0, binding = 4, rg32f) uniform writeonly image2D estimate;
 
 struct vo_place {
     ivec2 pixel;
@@ -48,29 +42,20 @@ float vo_behind(vo_place p, vec2 offset)
     return WITH_NORMAL ? min(behind + p.plane.tolerance, 0.0) : behind;
 }
 
-float vo_of_radius(ivec2 work, ivec2 pixel, float here, vec3 n, float radius_m)
+float vo_of_radius(screen_place place, float radius_m)
 {
     vo_place p;
-    p.pixel = pixel;
-    p.pattern = screen_pattern(uvec2(work));
-    p.sphere = screen_sphere_at(pixel, here, radius_m);
-    p.plane = screen_plane_of(p.sphere, n);
+    p.pixel = place.pixel;
+    p.pattern = place.pattern;
+    p.sphere = screen_sphere_at(place.pixel, place.depth, radius_m);
+    p.plane = screen_plane_of(p.sphere, place.n);
     // Without the normal the surface's own plane must close its half of the sphere: its thickness is across, not along lines.
     p.thickness = table.thickness * (WITH_NORMAL ? 1.0 : sqrt(1.0 + dot(p.plane.on_disk, p.plane.on_disk)));
     return mix(WITH_NORMAL ? 1.0 : 0.5, vo_visibility(p), screen_fade(p.sphere));
 }
 
-void main()
+float screen_ao_visibility(screen_place place)
 {
-    ivec2 work = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(work, ivec2(view.work_width, view.work_height)))) return;
-    ivec2 pixel = work * SCREEN_AO_STEP;
-    float here = texelFetch(depth, pixel, 0).r;
-    float result = 1.0;
-    if (here > 0.0) {
-        vec3 n = screen_normal(octahedral_decode(texelFetch(normal, pixel, 0).rg));
-        result = vo_of_radius(work, pixel, here, n, table.radii_m.x);
-        if (TWO_RADII) result = 0.5 * (result + vo_of_radius(work, pixel, here, n, table.radii_m.y));
-    }
-    imageStore(estimate, work, vec4(clamp(result, 0.0, 1.0), here, 0.0, 0.0));
+    float first = vo_of_radius(place, table.radii_m.x);
+    return TWO_RADII ? 0.5 * (first + vo_of_radius(place, table.radii_m.y)) : first;
 }

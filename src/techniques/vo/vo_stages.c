@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-enum { LOCAL = 8 }; // of all shaders, in x and y
-
 _Static_assert(SAMPLE_SET_MOST == VO_MOST_SAMPLES, "every set fits into the table");
 
 static const struct way {
@@ -81,16 +79,10 @@ bool vo_create_estimate(struct vo *vo)
 void vo_record_estimate(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     fill_table(&vo->options, &vo->table);
+    const struct way *way = &ways[vo->options.mode];
     const bool areas = vo->options.mode == VO_MODE_AREAS;
-    gpu_scope_begin(cmd, ways[vo->options.mode].name);
-    gpu_dispatch(
-        cmd, vo->estimate,
-        GPU_BIND(screen_ao_binding(&vo->ao, cmd),
-                 gpu_transient(cmd, "vo_table", &vo->table, sizeof vo->table),
-                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "moments", .image = areas ? vo->moments : view->layers[FRAME_DEPTH] },
-                 { .name = "estimate", .image = vo->ao.estimate }),
-        NULL, 0, gpu_groups(vo->ao.work_width, LOCAL), gpu_groups(vo->ao.work_height, LOCAL), 1);
-    gpu_scope_end(cmd);
+    screen_ao_estimate(
+        &vo->ao, cmd, view, way->name, vo->estimate,
+        GPU_BIND(gpu_transient(cmd, "vo_table", &vo->table, sizeof vo->table),
+                 { .name = "moments", .image = areas ? vo->moments : view->layers[FRAME_DEPTH] }));
 }
