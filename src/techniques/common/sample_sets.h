@@ -2,7 +2,7 @@
 // it (Loos 2015, sec. 6.3.5). tools/samples makes the tables.
 //
 // Every set of two and more is symmetric about the centre, which is its first sample where the
-// count is odd.
+// count is odd; opposite samples follow each other.
 #pragma once
 
 #include <stddef.h>

@@ -1,8 +1,8 @@
 // Volumetric obscurance by areas (Loos 2015, sec. 6.3.2): the depths in the part of the picture that a sample stands for are
 // spread evenly over a box with the mean and the variance that the pyramid has there.
 //
-// The four texels beside a place are looked up, each half as wide as the part. The patterns move the place over the part, and by
-// a level: the blur makes of that what many taps would.
+// One texel is looked up, half as wide as the part. The patterns move the place over a texel, and by a level: the blur makes of
+// that what many taps would.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -11,6 +11,7 @@
 
 layout(set = 0, binding = 5) uniform sampler2D moments; // level 0 has half the picture's size
 
+const vec4 WHOLE = vec4(0.0, 0.0, 1.0, 0.5); // an area alone stands for the whole disk
 const float THINNEST = 1.0e-4; // half-width of a box, radii
 
 // Of the tangent plane's own depths over a texel.
@@ -30,15 +31,9 @@ vo_box box_at(vo_place p, vec2 offset, int level)
     vec2 jitter = (vec2(p.pattern & 3u, p.pattern >> 2u) - 1.5) / 4.0; // texels
     // Not textureSize: software drivers have taken its level from one invocation for its neighbours too.
     vec2 here = vec2(p.pixel) + 0.5, last = vec2(max(ivec2(view.width, view.height) >> level, 1) - 1);
-    vec2 place = clamp((here + offset) * (1.0 / texel_px) + jitter - 0.5, vec2(0.0), last);
-    ivec2 first = ivec2(place), second = min(first + 1, ivec2(last));
-    vec2 between = place - vec2(first);
-    vec2 above = mix(texelFetch(moments, first, level - 1).rg,
-                     texelFetch(moments, ivec2(second.x, first.y), level - 1).rg, between.x);
-    vec2 below = mix(texelFetch(moments, ivec2(first.x, second.y), level - 1).rg,
-                     texelFetch(moments, second, level - 1).rg, between.x);
-    vec2 seen = mix(above, below, between.y);
-    vec2 step = (place + 0.5) * texel_px - here;
+    vec2 texel = clamp(floor((here + offset) * (1.0 / texel_px) + jitter), vec2(0.0), last);
+    vec2 seen = texelFetch(moments, ivec2(texel), level - 1).rg;
+    vec2 step = (texel + 0.5) * texel_px - here;
     float to_z = p.sphere.z_per_depth;
     float tolerance = p.plane.tolerance;
     // Of a slope s off by t the square is off by t (t + 2s), and 2s ≤ 1 + s².
@@ -70,7 +65,7 @@ float vo_visibility(vo_place p)
     float dither = (float((p.pattern * 7u) & 15u) + 0.5) / 16.0, level = log2(p.sphere.radius_px) + dither;
     float visible = 0.0, full = 0.0;
     for (int i = 0; i < COUNT; i++) {
-        vec4 line = table.at[i];
+        vec4 line = COUNT == 1 ? WHOLE : table.at[i];
         int there = clamp(int(floor(level + table.levels[i])), 1, table.level_count);
         vo_box box = box_at(p, pixels * line.xy, there);
         float tangent = dot(slope, line.xy);

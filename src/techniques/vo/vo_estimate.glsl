@@ -6,7 +6,6 @@
 #include "techniques/common/screen_ao_estimate.glsl"
 #include "techniques/vo/vo_shared.h"
 
-// Loops over many samples are not to be unrolled: a software driver takes up to four times as long for them.
 layout(constant_id = 1) const int COUNT = 4;
 layout(constant_id = 2) const bool WITH_NORMAL = true;
 layout(constant_id = 3) const bool TWO_RADII = false;
@@ -37,8 +36,9 @@ float vo_open(float z, float from, float to, float thickness)
 // its edge on.
 float vo_behind(vo_place p, vec2 offset)
 {
-    ivec2 there = clamp(p.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
-    float behind = screen_behind(p.sphere, p.plane, vec2(there - p.pixel), texelFetch(depth, there, 0).r);
+    vec2 first = -vec2(p.pixel), last = vec2(view.width, view.height) - 1.0 + first;
+    vec2 step = clamp(roundEven(offset), first, last);
+    float behind = screen_behind(p.sphere, p.plane, step, texelFetch(depth, p.pixel + ivec2(step), 0).r);
     return WITH_NORMAL ? min(behind + p.plane.tolerance, 0.0) : behind;
 }
 

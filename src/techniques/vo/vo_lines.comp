@@ -6,20 +6,42 @@
 
 #include "techniques/vo/vo_estimate.glsl"
 
+// Where the picture's depth is on the disk, in pixels, and how the tangent plane rises there.
+struct vo_disk {
+    mat2 pixels;
+    vec2 slope;
+};
+
+// What is open of a line through the disk, from the sphere's front to its back or the tangent plane.
+float open_on(vo_place p, vo_disk disk, vec2 at, float tangent, float half_length)
+{
+    float top = WITH_NORMAL ? clamp(tangent, -half_length, half_length) : half_length;
+    return vo_open(tangent + vo_behind(p, disk.pixels * at), -half_length, top, p.thickness);
+}
+
+// Of two lines on both sides of the centre. With the normal what one has more of below the plane, the other has less of.
+float open_on_both(vo_place p, vo_disk disk, vec4 line)
+{
+    float tangent = dot(disk.slope, line.xy);
+    return line.w * (open_on(p, disk, line.xy, tangent, line.z) + open_on(p, disk, -line.xy, -tangent, line.z));
+}
+
+float open_on_one(vo_place p, vo_disk disk, vec4 line)
+{
+    float tangent = dot(disk.slope, line.xy);
+    float top = WITH_NORMAL ? clamp(tangent, -line.z, line.z) : line.z;
+    return open_on(p, disk, line.xy, tangent, line.z) / (top + line.z);
+}
+
 float vo_visibility(vo_place p)
 {
     mat2 turn = screen_reflection(p.pattern);
-    mat2 pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) * p.sphere.radius_px;
-    vec2 slope = turn * p.plane.on_disk;
-    float top_at_centre = WITH_NORMAL ? 0.0 : 1.0;
-    float visible = 0.5 * table.centre * vo_open(0.0, -1.0, top_at_centre, p.thickness);
-    float full = 0.5 * table.centre * (top_at_centre + 1.0);
-    [[dont_unroll]] for (int i = 0; i < COUNT; i++) {
-        vec4 line = table.at[i];
-        float tangent = dot(slope, line.xy);
-        float top = WITH_NORMAL ? clamp(tangent, -line.z, line.z) : line.z;
-        visible += line.w * vo_open(tangent + vo_behind(p, pixels * line.xy), -line.z, top, p.thickness);
-        full += line.w * (top + line.z);
-    }
+    vo_disk disk;
+    disk.pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) * p.sphere.radius_px;
+    disk.slope = turn * p.plane.on_disk;
+    if (COUNT == 1) return open_on_one(p, disk, table.at[0]);
+    float full = WITH_NORMAL ? 0.5 : 1.0; // of the sphere, by the set's symmetry
+    float visible = 0.5 * table.centre * vo_open(0.0, -1.0, 2.0 * full - 1.0, p.thickness);
+    [[unroll]] for (int i = 0; i < COUNT; i += 2) visible += open_on_both(p, disk, table.at[i]);
     return visible / full;
 }

@@ -13,7 +13,7 @@ float vo_visibility(vo_place p)
     mat3 turn = screen_reflection_of_ball(p.pattern);
     vec3 outwards = normalize(vec3(p.plane.on_disk, -1.0));
     float visible = table.centre * (WITH_NORMAL ? 1.0 : 0.5);
-    [[dont_unroll]] for (int i = 0; i < COUNT; i++) {
+    [[unroll]] for (int i = 0; i < COUNT; i++) {
         vec3 point = turn * table.at[i].xyz;
         // Points below the tangent plane are mirrored to above it.
         if (WITH_NORMAL) point -= 2.0 * min(dot(point, outwards), 0.0) * outwards;

@@ -8,8 +8,8 @@
 
 // Uniform block "vo_table".
 struct vo_samples {
-    // Lines: x, y in the disk, half length, weight over length. Points: x, y, z in the ball,
-    // weight. Areas: as lines.
+    // Lines: x, y in the disk, half length, weight over length, opposite ones next to each other.
+    // Points: x, y, z in the ball, weight. Areas: as lines.
     vec4s at[VO_MOST_SAMPLES];
     float levels[VO_MOST_SAMPLES]; // areas: of the pyramid, log2 of the side in radii
     int32_t level_count;           // of the pyramid, those in use

@@ -41,6 +41,14 @@ static float level_of(const struct sample *s)
     return 0.5f * log2f(GLM_PIf * s->share) - 1.0f;
 }
 
+// The looks of a set but its centre are pairs of opposite ones, first and second by turns: of lines the shader takes both from
+// the first, with the weight that they have in the mean (the tables' come from cells of a grid).
+static void even_out_pairs(struct vo_samples *table, int looks)
+{
+    for (int i = 0; i + 1 < looks; i += 2)
+        table->at[i].w = table->at[i + 1].w = 0.5f * (table->at[i].w + table->at[i + 1].w);
+}
+
 // Returns how many samples need a look.
 static int fill_table(const struct vo_options *options, struct vo_samples *table)
 {
@@ -60,6 +68,7 @@ static int fill_table(const struct vo_options *options, struct vo_samples *table
         table->at[looks] = (vec4s){ { s->x, s->y, s->z, weight } };
         table->levels[looks++] = level_of(s);
     }
+    if (options->mode == VO_MODE_LINES) even_out_pairs(table, looks);
     return looks;
 }
 
