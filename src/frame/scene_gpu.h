@@ -89,6 +89,7 @@ void scene_gpu_draw(const struct scene_gpu *scene, struct gpu_cmd *cmd,
 // Records a compute dispatch over the triangles of one draw; the shader includes scene_triangles.glsl.
 struct scene_dispatch_call {
     gpu_pipeline pipeline;
+    bool drawn; // it is a graphics pipeline instead: three vertices for each triangle, into the rendering that is open
     const struct scene_draw *draw;
     const struct gpu_binding *bindings; // the pass's own
     int binding_count;                  // ≤ 8

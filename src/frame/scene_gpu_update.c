@@ -176,6 +176,15 @@ void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
         *indices = (struct gpu_binding){
             .name = "scene_indices", .buffer = s->indices, .offset = aligned, .bytes = end - aligned
         };
+        if (call->drawn) {
+            gpu_draw(cmd, &(struct gpu_draw_desc){ .pipeline = call->pipeline,
+                                                   .bindings = bindings,
+                                                   .binding_count = count,
+                                                   .push = &push,
+                                                   .push_bytes = sizeof push,
+                                                   .count = 3 * some });
+            continue;
+        }
         if (call->rest.id) {
             gpu_fill_buffer(cmd, call->rest_groups, 0, 4 * sizeof(uint32_t), 0);
             gpu_fill_buffer(cmd, call->rest_groups, sizeof(uint32_t), 2 * sizeof(uint32_t), 1);

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { DIM = 16 };
 
@@ -121,7 +122,7 @@ static void random_triangle(struct rng *rng, int kind, vec3s out[3])
     }
 }
 
-TEST_GPU(voxels_are_those_that_a_triangle_touches)
+static void check_random_triangles(struct gpu *gpu, const char *options)
 {
     enum { TRIANGLES = 45 };
     struct vct_rig rig;
@@ -134,7 +135,7 @@ TEST_GPU(voxels_are_those_that_a_triangle_touches)
         random_triangle(&rng, i % 3, triangles[i]);
         add_triangle(&rig, triangles[i], matte);
     }
-    vct_rig_open(&rig, "resolution=16");
+    vct_rig_open(&rig, options);
     studio_render(&rig.studio);
     for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, &rig.vct->grid, triangles[i]);
     const int count = check_same(&rig, &twin, &rig.vct->rest);
@@ -145,6 +146,50 @@ TEST_GPU(voxels_are_those_that_a_triangle_touches)
                             &counted));
     CHECK(abs((int)counted - count) <= 2);
     vct_rig_finish(&rig);
+}
+
+TEST_GPU(voxels_are_those_that_a_triangle_touches)
+{
+    check_random_triangles(gpu, "resolution=16");
+}
+
+TEST_GPU(the_rasteriser_finds_the_same_voxels)
+{
+    check_random_triangles(gpu, "resolution=16,voxels=raster");
+}
+
+static void check_same_words(const struct vct_rig *a, gpu_buffer in_a, const struct vct_rig *b,
+                             gpu_buffer in_b)
+{
+    uint32_t *p = vct_rig_words(a, in_a), *q = vct_rig_words(b, in_b);
+    CHECK(memcmp(p, q, gpu_buffer_bytes(a->studio.gpu, in_a)) == 0);
+    free(p);
+    free(q);
+}
+
+// A court and slivers, which come to all but nothing in a picture, and what is in their voxels.
+TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
+{
+    struct vct_rig rigs[2];
+    for (int i = 0; i < 2; i++) {
+        struct vct_rig *rig = &rigs[i];
+        struct rng rng = rng_for(12, 0, 0);
+        vct_rig_init(rig, gpu);
+        const int red = studio_matte(&rig->studio, vec3_of(0.7f, 0.3f, 0.1f));
+        studio_box(&rig->studio, vec3_of(0, 0, 0), vec3_of(12, 9, 10), true, red);
+        studio_box(&rig->studio, vec3_of(3, 0, 3), vec3_of(4.1f, 5.3f, 5.7f), false, red);
+        for (int k = 0; k < 200; k++) {
+            vec3s corners[3];
+            random_triangle(&rng, k % 3, corners);
+            if (k % 2 == 0) corners[2] = glms_vec3_lerp(corners[1], corners[2], 1e-3f);
+            add_triangle(rig, corners, red);
+        }
+        vct_rig_open(rig, i == 0 ? "resolution=32" : "resolution=32,voxels=raster");
+        studio_render(&rig->studio);
+    }
+    check_same_words(&rigs[0], rigs[0].vct->rest.mask, &rigs[1], rigs[1].vct->rest.mask);
+    check_same_words(&rigs[0], rigs[0].vct->rest.sums, &rigs[1], rigs[1].vct->rest.sums);
+    for (int i = 0; i < 2; i++) vct_rig_finish(&rigs[i]);
 }
 
 TEST_GPU(what_is_no_triangle_touches_nothing)

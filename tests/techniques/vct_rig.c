@@ -42,12 +42,17 @@ void vct_rig_finish(struct vct_rig *rig)
     studio_finish(&rig->studio);
 }
 
+uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer)
+{
+    const size_t bytes = gpu_buffer_bytes(rig->studio.gpu, buffer);
+    uint32_t *words = malloc(bytes);
+    CHECK(gpu_buffer_download(rig->studio.gpu, buffer, 0, words, bytes));
+    return words;
+}
+
 uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set)
 {
-    const size_t bytes = gpu_buffer_bytes(rig->studio.gpu, set->mask);
-    uint32_t *mask = malloc(bytes);
-    CHECK(gpu_buffer_download(rig->studio.gpu, set->mask, 0, mask, bytes));
-    return mask;
+    return vct_rig_words(rig, set->mask);
 }
 
 bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z)

@@ -15,6 +15,8 @@ void vct_rig_init(struct vct_rig *rig, struct gpu *gpu);
 void vct_rig_open(struct vct_rig *rig, const char *options);
 void vct_rig_finish(struct vct_rig *rig);
 
+// All words of a buffer. To be freed.
+uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer);
 // One word for each 32 voxels of a set, as many as resolution³ need. To be freed.
 uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set);
 bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z);

@@ -171,23 +171,54 @@ struct pipeline_plan {
     int constant_count;
 };
 
-enum { PIPELINES = 22 };
+// Of both walks, which the rasteriser may make as well.
+enum { WALKS = 8 };
 
-static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
+static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
 {
     struct vct_walk *plain = &vct->add[VCT_PLAIN], *maps = &vct->add[VCT_MAPPED],
                     *masks = &vct->add[VCT_MASKED];
+    const bool raster = vct->options.voxels == VCT_BY_RASTER;
+    const struct gpu_shader *mark = raster ? &shader_vct_mark_frag : &shader_vct_mark_comp,
+                            *add = raster ? &shader_vct_add_frag : &shader_vct_add_comp,
+                            *mark_large = raster ? NULL : &shader_vct_mark_large_comp,
+                            *add_large = raster ? NULL : &shader_vct_add_large_comp;
+    const struct pipeline_plan plan[WALKS] = {
+        { &vct->mark.small, "vct.mark", mark, NULL, 0 },
+        { &vct->mark.large, "vct.mark_large", mark_large, NULL, 0 },
+        { &plain->small, "vct.add", add, NULL, 0 },
+        { &plain->large, "vct.add_large", add_large, NULL, 0 },
+        { &maps->small, "vct.add_mapped", add, mapped, 1 },
+        { &maps->large, "vct.add_mapped_large", add_large, mapped, 1 },
+        { &masks->small, "vct.add_masked", add, masked, 2 },
+        { &masks->large, "vct.add_masked_large", add_large, masked, 2 },
+    };
+    memcpy(out, plan, sizeof plan);
+}
+
+static bool create_compute_pipeline(struct vct *vct, const struct pipeline_plan *plan)
+{
+    return gpu_compute_pipeline_create(vct->gpu, plan->name, plan->shader, plan->constants,
+                                       plan->constant_count, plan->out);
+}
+
+static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *plan)
+{
+    const struct gpu_graphics_desc desc = { .name = plan->name,
+                                            .vertex = &shader_vct_raster_vert,
+                                            .fragment = plan->shader,
+                                            .constants = plan->constants,
+                                            .constant_count = plan->constant_count };
+    return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
+}
+
+enum { PIPELINES = 14 };
+
+static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
+{
     const struct gpu_constant *ways = vct->options.anisotropic ? NULL : isotropic;
     const int way_count = vct->options.anisotropic ? 0 : 1;
     const struct pipeline_plan plan[PIPELINES] = {
-        { &vct->mark.small, "vct.mark", &shader_vct_mark_comp, NULL, 0 },
-        { &vct->mark.large, "vct.mark_large", &shader_vct_mark_large_comp, NULL, 0 },
-        { &plain->small, "vct.add", &shader_vct_add_comp, NULL, 0 },
-        { &plain->large, "vct.add_large", &shader_vct_add_large_comp, NULL, 0 },
-        { &maps->small, "vct.add_mapped", &shader_vct_add_comp, mapped, 1 },
-        { &maps->large, "vct.add_mapped_large", &shader_vct_add_large_comp, mapped, 1 },
-        { &masks->small, "vct.add_masked", &shader_vct_add_comp, masked, 2 },
-        { &masks->large, "vct.add_masked_large", &shader_vct_add_large_comp, masked, 2 },
         { &vct->count, "vct.count", &shader_vct_count_comp, NULL, 0 },
         { &vct->scan, "vct.scan", &shader_vct_scan_comp, NULL, 0 },
         { &vct->list, "vct.list", &shader_vct_list_comp, NULL, 0 },
@@ -208,13 +239,17 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 
 bool vct_create_pipelines(struct vct *vct)
 {
-    struct pipeline_plan plan[PIPELINES];
+    struct pipeline_plan walks[WALKS], plan[PIPELINES];
+    plan_walks(vct, walks);
     plan_pipelines(vct, plan);
-    for (int i = 0; i < PIPELINES; i++)
-        if (!gpu_compute_pipeline_create(vct->gpu, plan[i].name, plan[i].shader, plan[i].constants,
-                                         plan[i].constant_count, plan[i].out))
-            return false;
-    return true;
+    bool ok = true;
+    for (int i = 0; i < WALKS && ok; i++) {
+        if (!walks[i].shader) continue;
+        ok = vct->options.voxels == VCT_BY_RASTER ? create_raster_pipeline(vct, &walks[i])
+                                                  : create_compute_pipeline(vct, &walks[i]);
+    }
+    for (int i = 0; i < PIPELINES && ok; i++) ok = create_compute_pipeline(vct, &plan[i]);
+    return ok;
 }
 
 // ---- End and bytes ------------------------------------------------------------------------------
@@ -224,7 +259,9 @@ void vct_destroy_resources(struct vct *vct)
     struct buffer_plan buffers[BUFFERS];
     plan_buffers(&vct->options, vct, buffers);
     for (int i = 0; i < BUFFERS; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
-    struct pipeline_plan pipelines[PIPELINES];
+    struct pipeline_plan walks[WALKS], pipelines[PIPELINES];
+    plan_walks(vct, walks);
+    for (int i = 0; i < WALKS; i++) gpu_pipeline_destroy(vct->gpu, walks[i].out);
     plan_pipelines(vct, pipelines);
     for (int i = 0; i < PIPELINES; i++) gpu_pipeline_destroy(vct->gpu, pipelines[i].out);
     gpu_image_destroy(vct->gpu, &vct->light);

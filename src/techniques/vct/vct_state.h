@@ -23,7 +23,9 @@ struct vct_set {
 // Draws by what their materials read; maps that one of a kind lacks are white.
 enum vct_kind { VCT_PLAIN, VCT_MAPPED, VCT_MASKED, VCT_KINDS };
 
-struct vct_walk { // pipelines for small and for large triangles
+enum vct_voxels { VCT_BY_COMPUTE, VCT_BY_RASTER };
+
+struct vct_walk { // pipelines for small and for large triangles; by raster one for all
     gpu_pipeline small, large;
 };
 

@@ -53,22 +53,31 @@ struct gpu_binding vct_grid_binding(struct vct *vct, struct gpu_cmd *cmd)
 }
 
 // The draws that move, or those that stand, over their voxels: small triangles, then the tiles of
-// large ones that these have put into the queue.
+// large ones that these have put into the queue; or all by raster, a pixel for each column.
 static void walk(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view, bool moving,
                  bool add, const struct gpu_binding *bindings, int count)
 {
+    const bool raster = vct->options.voxels == VCT_BY_RASTER;
+    const uint32_t dim = (uint32_t)vct->options.resolution;
+    if (raster)
+        gpu_render_begin(cmd, &(struct gpu_render_desc){ .width = dim,
+                                                         .height = dim,
+                                                         .reads = view->scene->reads,
+                                                         .read_count = view->scene->read_count });
     for (int i = 0; i < view->scene->draw_count; i++) {
         const struct scene_draw *draw = &view->scene->draws[i];
         if (draw->moves != moving) continue;
         const struct vct_walk *pipelines = add ? &vct->add[kind_of(draw)] : &vct->mark;
         scene_gpu_dispatch(view->scene, cmd,
                            &(struct scene_dispatch_call){ .pipeline = pipelines->small,
+                                                          .drawn = raster,
                                                           .draw = draw,
                                                           .bindings = bindings,
                                                           .binding_count = count,
                                                           .rest = pipelines->large,
                                                           .rest_groups = vct->queue_state });
     }
+    if (raster) gpu_render_end(cmd);
 }
 
 static void mark(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,

@@ -3,11 +3,13 @@
 // where it is at most a few voxels deep. Small triangles take one invocation; large ones are cut into tiles of columns
 // that wait in a queue for a workgroup each.
 //
-// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_visit().
+// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_visit(). Where it defines VCT_RASTER instead,
+// columns are what the rasteriser says they are (vct_raster.glsl).
 #include "frame/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/vct_overlap.glsl"
 
+#ifndef VCT_RASTER
 // x, y, z of an indirect dispatch; how many tiles were asked for.
 layout(set = 0, binding = 14, scalar) buffer vct_queue_state { uint queue_groups[3]; uint queue_asked; };
 layout(set = 0, binding = 15, scalar) buffer vct_queue { uvec2 queue[]; };
@@ -16,6 +18,7 @@ layout(set = 0, binding = 15, scalar) buffer vct_queue { uvec2 queue[]; };
 layout(local_size_x = VCT_TILE, local_size_y = VCT_TILE) in;
 #else
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
+#endif
 #endif
 
 struct vct_triangle
@@ -95,7 +98,8 @@ void walk_column(vct_triangle t, ivec2 column)
     }
 }
 
-#if VCT_LARGE
+#ifdef VCT_RASTER
+#elif VCT_LARGE
 
 void main()
 {

@@ -1,0 +1,16 @@
+// One column of a triangle.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define VCT_RASTER
+#include "vct_mark.glsl"
+
+layout(location = 0) flat in uint vary_triangle;
+
+void main()
+{
+    vct_triangle t;
+    ivec2 column = ivec2(gl_FragCoord.xy);
+    if (triangle_at(vary_triangle, t) && all(greaterThanEqual(column, t.low.xy)) &&
+        all(lessThanEqual(column, t.high.xy)))
+        walk_column(t, column);
+}
