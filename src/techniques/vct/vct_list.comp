@@ -1,5 +1,4 @@
-// The list of occupied voxels, in the order of their numbers, with their sums set to 0; and the voxels before each
-// word.
+// The list of occupied voxels, in the order of their numbers; and the voxels before each word.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -12,7 +11,6 @@ layout(set = 0, binding = 0, scalar) readonly buffer vct_mask { uint mask[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer vct_blocks { uint blocks[]; };
 layout(set = 0, binding = 2, scalar) writeonly buffer vct_before { uint before[]; };
 layout(set = 0, binding = 3, scalar) writeonly buffer vct_list { uint list[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer vct_sums { uint sums[]; };
 
 void main()
 {
@@ -25,7 +23,6 @@ void main()
         for (uint bits = mask[i]; bits != 0u; bits &= bits - 1u, slot++) {
             if (slot >= vct.capacity) continue;
             list[slot] = i * 32u + uint(findLSB(bits));
-            for (uint k = 0u; k < VCT_SUM_WORDS; k++) sums[slot * VCT_SUM_WORDS + k] = 0u;
         }
     }
 }

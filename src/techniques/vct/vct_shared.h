@@ -9,7 +9,7 @@
 #define VCT_TILE          8 // side of the square of columns that one workgroup takes of a large triangle
 #define VCT_SMALL_COLUMNS 64 // a triangle over at most so many columns is walked by one invocation
 #define VCT_QUEUE         65535 // tiles of large triangles that wait for a workgroup each
-#define VCT_BLOCK_WORDS   32    // words of the mask that one invocation counts and lists
+#define VCT_BLOCK_WORDS   8    // words of the mask that one invocation counts and lists
 #define VCT_SCAN_LOCAL    256
 
 // Words of vct_sums for a voxel: integers, so that no order of triangles changes a bit.

@@ -111,8 +111,7 @@ static void make_list(struct vct *vct, struct gpu_cmd *cmd, const struct vct_set
                  GPU_BIND(grid, { .name = "vct_mask", .buffer = set->mask },
                           { .name = "vct_blocks", .buffer = set->blocks },
                           { .name = "vct_before", .buffer = set->before },
-                          { .name = "vct_list", .buffer = set->list },
-                          { .name = "vct_sums", .buffer = set->sums }),
+                          { .name = "vct_list", .buffer = set->list }),
                  NULL, 0, gpu_groups(blocks, VCT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
 }
@@ -128,6 +127,7 @@ static void add(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *v
                                             { .name = "vct_before", .buffer = set->before },
                                             { .name = "vct_sums", .buffer = set->sums } };
     gpu_scope_begin(cmd, "vct.add");
+    gpu_fill_buffer(cmd, set->sums, 0, gpu_buffer_bytes(vct->gpu, set->sums), 0);
     walk(vct, cmd, view, moving, true, bindings, 6);
     gpu_scope_end(cmd);
 }
