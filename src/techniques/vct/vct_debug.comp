@@ -21,8 +21,8 @@ layout(push_constant, scalar) uniform push_block
 {
     vct_view_push push;
 };
-layout(set = 0, binding = 5, scalar) readonly buffer static_records { uint static_record_words[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer dynamic_records { uint dynamic_record_words[]; };
+layout(set = 0, binding = 5) uniform usampler2D static_records;
+layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D picture;
 
 vec3 shown(vct_record r, vec3 direction)
@@ -34,16 +34,14 @@ vec3 shown(vct_record r, vec3 direction)
 
 bool voxel_at(ivec3 voxel, out vct_record r)
 {
-    uint words[VCT_RECORD_WORDS];
     uint index = vct_index(voxel), slot = dynamic_slot(index);
     if (slot != VCT_NO_SLOT) {
-        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = dynamic_record_words[slot * VCT_RECORD_WORDS + k];
-    } else {
-        slot = static_slot(index);
-        if (slot == VCT_NO_SLOT) return false;
-        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = static_record_words[slot * VCT_RECORD_WORDS + k];
+        r = vct_record_at(dynamic_records, slot);
+        return true;
     }
-    r = vct_unpack(words);
+    slot = static_slot(index);
+    if (slot == VCT_NO_SLOT) return false;
+    r = vct_record_at(static_records, slot);
     return true;
 }
 

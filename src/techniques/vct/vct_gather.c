@@ -88,10 +88,10 @@ void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
                  GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding,
                           { .name = "static_mask", .buffer = vct->rest.mask },
                           { .name = "static_before", .buffer = vct->rest.before },
-                          { .name = "static_records", .buffer = vct->rest.records },
+                          { .name = "static_records", .image = vct->rest.records },
                           { .name = "dynamic_mask", .buffer = vct->moving.mask },
                           { .name = "dynamic_before", .buffer = vct->moving.before },
-                          { .name = "dynamic_records", .buffer = vct->moving.records },
+                          { .name = "dynamic_records", .image = vct->moving.records },
                           { .name = "picture", .image = out }),
                  &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);

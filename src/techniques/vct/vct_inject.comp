@@ -19,11 +19,13 @@ layout(local_size_x = VCT_LOCAL) in;
 layout(set = 0, binding = 1, scalar) readonly buffer frame_lights { frame_light frame_light_table[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer vct_list { uint list[]; };
 layout(set = 0, binding = 6, scalar) readonly buffer vct_sums { uint sums[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer vct_records { uint records[]; };
+layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_records;
 layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments { uint groups[3]; uint listed; uint left_out; };
 layout(set = 0, binding = 9, scalar) readonly buffer vct_brought { uint brought[]; };
 
 #include "techniques/vct/vct_sums.glsl"
+
+layout(constant_id = 0) const bool HAS_LIGHTS = true;
 
 const float PI = 3.14159265;
 const float SHADOW_LIFT = 0.25; // voxels: a surface lies that far from where its voxel thinks, if it is curved
@@ -74,7 +76,7 @@ void main()
     r.emitted_back = min(vct_sum(at + VCT_SUM_BACK) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
 
     vec3 front = vec3(0.0), back = vec3(0.0);
-    for (uint i = 0; i < kept(vct.light_count); i++) {
+    for (uint i = 0; HAS_LIGHTS && i < kept(vct.light_count); i++) {
         bool at_front;
         vec3 e = irradiance(frame_light_table[i], sheet.position, sheet.normal, at_front);
         if (at_front) front += e;
@@ -88,7 +90,9 @@ void main()
     }
     r.front = min(front * r.reflectance / PI, vec3(HALF_MAX));
     r.back = min(back * r.reflectance / PI, vec3(HALF_MAX));
-    uint words[VCT_RECORD_WORDS];
-    vct_pack(r, words);
-    for (uint k = 0u; k < VCT_RECORD_WORDS; k++) records[slot * VCT_RECORD_WORDS + k] = words[k];
+    uvec4 first, second;
+    vct_pack(r, first, second);
+    ivec2 to = vct_record_place(slot);
+    imageStore(vct_records, to, first);
+    imageStore(vct_records, to + ivec2(1, 0), second);
 }

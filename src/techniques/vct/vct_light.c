@@ -9,14 +9,14 @@ static void inject(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view
                    const struct vct_set *set)
 {
     gpu_dispatch_indirect(
-        cmd, vct->inject,
+        cmd, vct->inject[vct->params.light_count > 0],
         GPU_BIND(
             vct_grid_binding(vct, cmd), view->constants_binding, view->lights_binding,
             view->shadow_faces_binding,
             { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
             { .name = "vct_list", .buffer = set->list },
             { .name = "vct_sums", .buffer = set->sums },
-            { .name = "vct_records", .buffer = set->records },
+            { .name = "vct_records", .image = set->records },
             { .name = "vct_brought", .buffer = set->brought },
             { .name = "vct_arguments", .buffer = set->arguments }),
         NULL, 0, set->arguments, 0);
@@ -29,10 +29,10 @@ static void fill(struct vct *vct, struct gpu_cmd *cmd)
                           GPU_BIND(vct_grid_binding(vct, cmd),
                                    { .name = "static_mask", .buffer = rest->mask },
                                    { .name = "static_before", .buffer = rest->before },
-                                   { .name = "static_records", .buffer = rest->records },
+                                   { .name = "static_records", .image = rest->records },
                                    { .name = "dynamic_mask", .buffer = moving->mask },
                                    { .name = "dynamic_before", .buffer = moving->before },
-                                   { .name = "dynamic_records", .buffer = moving->records },
+                                   { .name = "dynamic_records", .image = moving->records },
                                    { .name = "light", .image = vct->light },
                                    { .name = "vct_texels", .buffer = vct->texels },
                                    { .name = "vct_texel_state", .buffer = vct->texel_state }),

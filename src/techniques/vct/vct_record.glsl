@@ -1,5 +1,6 @@
 // What a lit voxel is, as 8 words: what its two sides send out, and what light on them would add. Half floats and
-// bytes.
+// bytes, in two texels of an image that is filled row by row: software drivers fetch texels several times as fast as
+// words of buffers.
 #ifndef AG_VCT_RECORD_GLSL
 #define AG_VCT_RECORD_GLSL
 
@@ -14,34 +15,44 @@ struct vct_record
     vec3 normal;                        // unit, of the front; 0 where the sides cannot be told apart
 };
 
-void vct_pack(vct_record r, out uint words[VCT_RECORD_WORDS])
+// Of the first of the two texels.
+ivec2 vct_record_place(uint slot)
 {
-    words[0] = packHalf2x16(r.front.rg);
-    words[1] = packHalf2x16(vec2(r.front.b, r.back.r));
-    words[2] = packHalf2x16(r.back.gb);
-    words[3] = packHalf2x16(r.emitted_front.rg);
-    words[4] = packHalf2x16(vec2(r.emitted_front.b, r.emitted_back.r));
-    words[5] = packHalf2x16(r.emitted_back.gb);
-    words[6] = packUnorm4x8(vec4(r.reflectance, r.opacity.x));
-    // 12 + 12 + 8 bits. Fronts turn to one half of all ways (vct_add.glsl), and none of these has the code 0.
-    uvec2 normal = uvec2(roundEven((octahedral_encode(r.normal) * 0.5 + 0.5) * 4095.0));
-    words[7] = (r.normal == vec3(0.0) ? 0u : normal.x | normal.y << 12) | uint(roundEven(r.opacity.y * 255.0)) << 24;
+    return ivec2(2u * (slot % VCT_RECORD_ROW), slot / VCT_RECORD_ROW);
 }
 
-vct_record vct_unpack(uint words[VCT_RECORD_WORDS])
+void vct_pack(vct_record r, out uvec4 first, out uvec4 second)
 {
-    vec2 a = unpackHalf2x16(words[1]), b = unpackHalf2x16(words[4]);
-    vec4 c = unpackUnorm4x8(words[6]);
+    first = uvec4(packHalf2x16(r.front.rg), packHalf2x16(vec2(r.front.b, r.back.r)), packHalf2x16(r.back.gb),
+                  packHalf2x16(r.emitted_front.rg));
+    second.x = packHalf2x16(vec2(r.emitted_front.b, r.emitted_back.r));
+    second.y = packHalf2x16(r.emitted_back.gb);
+    second.z = packUnorm4x8(vec4(r.reflectance, r.opacity.x));
+    // 12 + 12 + 8 bits. Fronts turn to one half of all ways (vct_add.glsl), and none of these has the code 0.
+    uvec2 normal = uvec2(roundEven((octahedral_encode(r.normal) * 0.5 + 0.5) * 4095.0));
+    second.w = (r.normal == vec3(0.0) ? 0u : normal.x | normal.y << 12) | uint(roundEven(r.opacity.y * 255.0)) << 24;
+}
+
+vct_record vct_unpack(uvec4 first, uvec4 second)
+{
+    vec2 a = unpackHalf2x16(first.y), b = unpackHalf2x16(second.x);
+    vec4 c = unpackUnorm4x8(second.z);
     vct_record r;
-    r.front = vec3(unpackHalf2x16(words[0]), a.x);
-    r.back = vec3(a.y, unpackHalf2x16(words[2]));
-    r.emitted_front = vec3(unpackHalf2x16(words[3]), b.x);
-    r.emitted_back = vec3(b.y, unpackHalf2x16(words[5]));
+    r.front = vec3(unpackHalf2x16(first.x), a.x);
+    r.back = vec3(a.y, unpackHalf2x16(first.z));
+    r.emitted_front = vec3(unpackHalf2x16(first.w), b.x);
+    r.emitted_back = vec3(b.y, unpackHalf2x16(second.y));
     r.reflectance = c.rgb;
-    r.opacity = vec2(c.a, float(words[7] >> 24) / 255.0);
-    uint normal = words[7] & 0xffffffu;
+    r.opacity = vec2(c.a, float(second.w >> 24) / 255.0);
+    uint normal = second.w & 0xffffffu;
     r.normal = normal == 0u ? vec3(0.0) : octahedral_decode(vec2(normal & 4095u, normal >> 12) / 4095.0 * 2.0 - 1.0);
     return r;
+}
+
+vct_record vct_record_at(usampler2D records, uint slot)
+{
+    ivec2 place = vct_record_place(slot);
+    return vct_unpack(texelFetch(records, place, 0), texelFetch(records, place + ivec2(1, 0), 0));
 }
 
 #endif

@@ -58,7 +58,7 @@ struct buffer_plan {
     uint32_t usage;
 };
 
-enum { SET_BUFFERS = 8 };
+enum { SET_BUFFERS = 7 };
 
 static void plan_set(const struct vct_options *options, bool moving, struct vct_set *set,
                      struct buffer_plan out[SET_BUFFERS])
@@ -71,7 +71,6 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
         { NAME("blocks"), &set->blocks, block_count(options), 0 },
         { NAME("list"), &set->list, capacity, 0 },
         { NAME("sums"), &set->sums, capacity * VCT_SUM_WORDS, 0 },
-        { NAME("records"), &set->records, capacity * VCT_RECORD_WORDS, 0 },
         { NAME("brought"), &set->brought, capacity * VCT_BROUGHT_WORDS, 0 },
         { NAME("arguments"), &set->arguments, 5, GPU_BUFFER_INDIRECT },
     };
@@ -110,6 +109,15 @@ static struct gpu_image_desc volume_desc(const struct vct_options *options)
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
+static struct gpu_image_desc records_desc(const struct vct_options *options, bool moving)
+{
+    return (struct gpu_image_desc){ .name = moving ? "vct.moving_records" : "vct.rest_records",
+                                    .format = GPU_RGBA32U,
+                                    .width = 2 * VCT_RECORD_ROW,
+                                    .height = gpu_groups(vct_capacity(options), VCT_RECORD_ROW),
+                                    .usage = GPU_SAMPLED | GPU_STORAGE };
+}
+
 // ---- Images and buffers -------------------------------------------------------------------------
 
 static bool create_image_2d(struct vct *vct, const char *name, enum gpu_format format,
@@ -143,14 +151,18 @@ bool vct_create_resources(struct vct *vct)
                                               .usage = GPU_BUFFER_STORAGE | plan[i].usage };
         if (!gpu_buffer_create(vct->gpu, &desc, plan[i].out)) return false;
     }
-    const struct gpu_image_desc light = volume_desc(&vct->options);
+    const struct gpu_image_desc light = volume_desc(&vct->options),
+                                rest = records_desc(&vct->options, false),
+                                moving = records_desc(&vct->options, true);
     const struct gpu_sampler_desc linear = { .name = "vct.linear",
                                              .filter = GPU_LINEAR,
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
     return gpu_sampler_get(vct->gpu, &linear, &vct->linear) &&
-           gpu_image_create(vct->gpu, &light, &vct->light);
+           gpu_image_create(vct->gpu, &light, &vct->light) &&
+           gpu_image_create(vct->gpu, &rest, &vct->rest.records) &&
+           gpu_image_create(vct->gpu, &moving, &vct->moving.records);
 }
 
 // ---- Pipelines ----------------------------------------------------------------------------------
@@ -159,6 +171,8 @@ bool vct_create_resources(struct vct *vct)
 static const struct gpu_constant mapped[] = { { 0, 1 } };
 static const struct gpu_constant masked[] = { { 0, 1 }, { 4, 1 } };
 static const struct gpu_constant columns[] = { { 0, 1 } };
+// See vct_inject.comp.
+static const struct gpu_constant unlit[] = { { 0, 0 } };
 // See vct_ways.glsl and vct_seen.glsl.
 static const struct gpu_constant isotropic[] = { { 10, 0 } };
 static const struct gpu_constant still[] = { { 11, 0 }, { 10, 0 } };
@@ -212,7 +226,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 14 };
+enum { PIPELINES = 15 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -223,7 +237,8 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->scan, "vct.scan", &shader_vct_scan_comp, NULL, 0 },
         { &vct->list, "vct.list", &shader_vct_list_comp, NULL, 0 },
         { &vct->texel_lists, "vct.texels", &shader_vct_texels_comp, NULL, 0 },
-        { &vct->inject, "vct.inject", &shader_vct_inject_comp, NULL, 0 },
+        { &vct->inject[0], "vct.inject_unlit", &shader_vct_inject_comp, unlit, 1 },
+        { &vct->inject[1], "vct.inject", &shader_vct_inject_comp, NULL, 0 },
         { &vct->bounce, "vct.bounce", &shader_vct_bounce_mips_comp, ways, way_count },
         { &vct->fill[0], "vct.fill_still", &shader_vct_fill_comp, still, 1 + way_count },
         { &vct->fill[1], "vct.fill", &shader_vct_fill_comp, ways, way_count },
@@ -265,6 +280,8 @@ void vct_destroy_resources(struct vct *vct)
     plan_pipelines(vct, pipelines);
     for (int i = 0; i < PIPELINES; i++) gpu_pipeline_destroy(vct->gpu, pipelines[i].out);
     gpu_image_destroy(vct->gpu, &vct->light);
+    gpu_image_destroy(vct->gpu, &vct->rest.records);
+    gpu_image_destroy(vct->gpu, &vct->moving.records);
     gpu_image_destroy(vct->gpu, &vct->edge_image);
     gpu_image_destroy(vct->gpu, &vct->traced);
     gpu_image_destroy(vct->gpu, &vct->gathered);
@@ -281,6 +298,8 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
     for (uint32_t mip = 0; mip < light.mips; mip++)
         bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
                  (uint64_t)gpu_format_bytes(GPU_RGBA16F);
+    const struct gpu_image_desc records = records_desc(options, false);
+    bytes += 2 * (uint64_t)records.width * records.height * (uint64_t)gpu_format_bytes(GPU_RGBA32U);
     const int pixel = gpu_format_bytes(GPU_R8) + 2 * gpu_format_bytes(GPU_RGBA16F);
     return bytes + (uint64_t)width * height * (uint64_t)pixel;
 }

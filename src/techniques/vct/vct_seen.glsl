@@ -23,8 +23,8 @@
 #define VCT_SLOTS_BINDING 3
 #include "techniques/vct/vct_slots.glsl"
 
-layout(set = 0, binding = 5, scalar) readonly buffer static_records { uint static_record_words[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer dynamic_records { uint dynamic_record_words[]; };
+layout(set = 0, binding = 5) uniform usampler2D static_records;
+layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
 
 layout(constant_id = 11) const bool VCT_HAS_MOVING = true; // false: the second set is empty
 
@@ -59,15 +59,8 @@ void look_at(vct_record r, inout seen s)
 void look(uint static_at, uint dynamic_at, out seen s)
 {
     for (int i = 0; i < 6; i++) s.along[i] = vec4(0.0);
-    uint words[VCT_RECORD_WORDS];
-    if (static_at != VCT_NO_SLOT) {
-        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = static_record_words[static_at * VCT_RECORD_WORDS + k];
-        look_at(vct_unpack(words), s);
-    }
-    if (VCT_HAS_MOVING && dynamic_at != VCT_NO_SLOT) {
-        for (uint k = 0u; k < VCT_RECORD_WORDS; k++) words[k] = dynamic_record_words[dynamic_at * VCT_RECORD_WORDS + k];
-        look_at(vct_unpack(words), s);
-    }
+    if (static_at != VCT_NO_SLOT) look_at(vct_record_at(static_records, static_at), s);
+    if (VCT_HAS_MOVING && dynamic_at != VCT_NO_SLOT) look_at(vct_record_at(dynamic_records, dynamic_at), s);
 }
 
 void look_in_block(ivec3 from, ivec3 at, ivec3 size, out seen s)

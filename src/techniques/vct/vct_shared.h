@@ -31,8 +31,8 @@
 #define VCT_POSITION_ONE    127.0 // of a whole voxel
 #define VCT_EMISSION_ONE    256.0 // of the strongest emission of the scene
 
-// Words of vct_records for a voxel: what its two sides emit and reflect.
-#define VCT_RECORD_WORDS 8
+// Voxels in a row of vct_records: what their two sides emit and reflect, in two texels.
+#define VCT_RECORD_ROW 1024
 // Words of vct_brought: irradiance on the front and the back.
 #define VCT_BROUGHT_WORDS 3
 

@@ -17,7 +17,8 @@ enum { VCT_LOCAL_2D = 8 }; // of shaders over pixels or texels, in x and y
 
 // Voxels of a part of the scene: which, in what order, what they are, what they send out.
 struct vct_set {
-    gpu_buffer mask, before, blocks, list, sums, records, brought, arguments;
+    gpu_buffer mask, before, blocks, list, sums, brought, arguments;
+    gpu_image records; // RGBA32U
 };
 
 // Draws by what their materials read; maps that one of a kind lacks are white.
@@ -39,8 +40,9 @@ struct vct {
     struct gpu *gpu;
     struct vct_options options;
     struct vct_walk mark, add[VCT_KINDS];
-    gpu_pipeline fill[2]; // without and with what moves
-    gpu_pipeline count, scan, list, texel_lists, inject, bounce, mip, cones, edges, gather_rows,
+    gpu_pipeline fill[2];   // without and with what moves
+    gpu_pipeline inject[2]; // without and with lights
+    gpu_pipeline count, scan, list, texel_lists, bounce, mip, cones, edges, gather_rows,
         gather_columns, debug;
     struct vct_set rest, moving; // what stands still; what has moved
     gpu_buffer queue, queue_state;
