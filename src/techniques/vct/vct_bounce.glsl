@@ -1,6 +1,6 @@
 // Light that other voxels and the sky bring to each voxel, by cones: irradiance on both sides of its sheet. What
 // surfaces that glow bring on their straight way, and with more bounces all that the voxels sent out in the last
-// frame. Voxels of one texel that are parts of one sheet get what is brought to their middle.
+// frame. Voxels of one block that are parts of one sheet get what is brought to their middle.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -39,27 +39,57 @@ vec3 irradiance(vec3 position, vec3 normal)
 }
 
 const float ONE_SHEET = 0.9; // least cosine of the normals of voxels that are one sheet: 26 degrees
+const float ONE_PLANE = 1.0; // voxels: how far they lie at most from the plane of the first
 
-// The voxels of a texel: a bit each, and the slot of the first.
-struct eight
+// The voxels of a block of 4 × 4 × 4: those of two texels along x have 16 bits and follow on each other.
+struct block
 {
-    uint bits, first;
+    ivec3 corner;
+    uvec2 bits;
+    uvec4 first; // slots
 };
 
-eight voxels_of(ivec3 texel)
+void read_texels(ivec3 texel, out uint bits, out uint first)
 {
     uint index = vct_texel_index(texel), shift = 8u * (index & 3u), word = mask[index >> 2];
-    eight e;
-    e.bits = word >> shift & 255u;
-    e.first = before[index >> 2] + uint(bitCount(word & ((1u << shift) - 1u)));
-    uint room = vct.capacity - min(e.first, vct.capacity);
-    while (uint(bitCount(e.bits)) > room) e.bits ^= 1u << findMSB(e.bits); // the last ones have no slots
-    return e;
+    bits = word >> shift & 0xffffu;
+    first = before[index >> 2] + uint(bitCount(word & ((1u << shift) - 1u)));
 }
 
-uint slot_of(eight e, uint bit)
+block block_at(ivec3 place)
 {
-    return e.first + uint(bitCount(e.bits & ((1u << bit) - 1u)));
+    ivec3 texel = 2 * place;
+    uvec4 bits, first;
+    read_texels(texel, bits.x, first.x);
+    read_texels(texel + ivec3(0, 1, 0), bits.y, first.y);
+    read_texels(texel + ivec3(0, 0, 1), bits.z, first.z);
+    read_texels(texel + ivec3(0, 1, 1), bits.w, first.w);
+    return block(4 * place, bits.xz | bits.yw << 16u, first);
+}
+
+// Voxels are named by their bits, 0 to 63.
+uint first_of(uvec2 bits)
+{
+    return uint(bits.x != 0u ? findLSB(bits.x) : 32 + findLSB(bits.y));
+}
+
+uvec2 bit_of(uint voxel)
+{
+    return uvec2(voxel < 32u ? 1u << voxel : 0u, voxel < 32u ? 0u : 1u << (voxel - 32u));
+}
+
+ivec3 place_of(block b, uint voxel)
+{
+    ivec3 low = ivec3(voxel) >> ivec3(0, 1, 2) & 1, high = ivec3(voxel) >> ivec3(3, 4, 5) & 1;
+    return b.corner + 2 * high + low;
+}
+
+uint slot_of(block b, uint voxel)
+{
+    uint row = voxel >> 4;
+    uint bits = (row < 2u ? b.bits.x : b.bits.y) >> (16u * (row & 1u)) & 0xffffu;
+    uint first = row == 0u ? b.first.x : row == 1u ? b.first.y : row == 2u ? b.first.z : b.first.w;
+    return min(first + uint(bitCount(bits & ((1u << (voxel & 15u)) - 1u))), vct.capacity);
 }
 
 vec3 signed_sum(uint at)
@@ -67,31 +97,47 @@ vec3 signed_sum(uint at)
     return vec3(int(sums[at]), int(sums[at + 1u]), int(sums[at + 2u]));
 }
 
-// Voxels of one texel that are parts of one sheet.
+// Voxels of one block that are parts of one sheet.
 struct vct_part
 {
-    uint bits;
-    vec3 normal, position; // voxels from the grid's corner; sums with weights
+    uvec2 bits;
+    vec3 normal;
+    vec3 position; // voxels from the block's corner × weight
     float weight;
-    bvec2 covers;          // whether there is a front, a back
+    bvec2 covers; // whether there is a front, a back
 };
 
-// Those of `left` whose normals are near to that of the first.
-vct_part part_of(eight e, uint left, ivec3 corner)
+// Those of `left` that have the normal of the first of them and lie in its plane.
+vct_part part_of(block b, uvec2 left)
 {
-    vct_part part = vct_part(0u, vec3(0.0), vec3(0.0), 0.0, bvec2(false));
-    uint lead = uint(findLSB(left));
-    vec3 first = signed_sum(slot_of(e, lead) * VCT_SUM_WORDS + VCT_SUM_NORMAL);
-    for (uint bits = left; bits != 0u; bits &= bits - 1u) {
-        uint bit = uint(findLSB(bits)), at = slot_of(e, bit) * VCT_SUM_WORDS;
-        vec3 normal = signed_sum(at + VCT_SUM_NORMAL);
-        float cosine = dot(normal, first) * inversesqrt(max(dot(normal, normal) * dot(first, first), 1.0));
-        if (bit != lead && cosine < ONE_SHEET) continue;
+    vct_part part = vct_part(uvec2(0u), vec3(0.0), vec3(0.0), 0.0, bvec2(false));
+    vec3 first_normal = vec3(0.0), first_position = vec3(0.0);
+    bool first = true;
+    for (uvec2 rest = left; rest != uvec2(0u);) {
+        uint voxel = first_of(rest), slot = slot_of(b, voxel);
+        rest &= ~bit_of(voxel);
+        if (slot == vct.capacity) { // it has none
+            part.bits |= bit_of(voxel);
+            continue;
+        }
+        uint at = slot * VCT_SUM_WORDS;
         float weight = max(float(sums[at + VCT_SUM_WEIGHT]), 1.0);
-        vec3 centre = vec3(corner + (ivec3(bit) >> ivec3(0, 1, 2) & 1)) + 0.5;
-        part.bits |= 1u << bit;
+        vec3 normal = signed_sum(at + VCT_SUM_NORMAL);
+        float length2 = dot(normal, normal);
+        vec3 unit = length2 > 0.0 ? normal * inversesqrt(length2) : vec3(0.0);
+        vec3 position = vec3(place_of(b, voxel) - b.corner) + 0.5 +
+                        signed_sum(at + VCT_SUM_POSITION) / (weight * VCT_POSITION_ONE);
+        if (first) {
+            first_normal = unit;
+            first_position = position;
+        } else if (dot(unit, first_normal) < ONE_SHEET ||
+                   abs(dot(position - first_position, first_normal)) > ONE_PLANE) {
+            continue;
+        }
+        first = false;
+        part.bits |= bit_of(voxel);
         part.normal += normal;
-        part.position += weight * centre + signed_sum(at + VCT_SUM_POSITION) / VCT_POSITION_ONE;
+        part.position += weight * position;
         part.weight += weight;
         part.covers.x = part.covers.x || sums[at + VCT_SUM_FRONTS] > 0u;
         part.covers.y = part.covers.y || sums[at + VCT_SUM_BACKS] > 0u;
@@ -100,11 +146,12 @@ vct_part part_of(eight e, uint left, ivec3 corner)
 }
 
 // One side after the other, in a loop that ends where no invocation of a group has a second one.
-void gather(vct_part part, out vec3 front, out vec3 back)
+void gather(block b, vct_part part, out vec3 front, out vec3 back)
 {
     front = back = vec3(0.0);
     if (part.normal == vec3(0.0)) return;
-    vec3 position = vct_world_from_voxels(part.position / part.weight), normal = normalize(part.normal);
+    vec3 position = vct_world_from_voxels(vec3(b.corner) + part.position / part.weight);
+    vec3 normal = normalize(part.normal);
     for (int side = part.covers.x ? 0 : 1; side < (part.covers.y ? 2 : 1); side++) {
         vec3 e = irradiance(position, side == 0 ? normal : -normal);
         if (side == 0) front = e;
@@ -115,16 +162,19 @@ void gather(vct_part part, out vec3 front, out vec3 back)
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= state.count[0]) return;
-    ivec3 texel = vct_unpack_texel(texels[i]);
-    eight e = voxels_of(texel);
-    for (uint left = e.bits; left != 0u;) {
-        vct_part part = part_of(e, left, 2 * texel);
+    if (i >= state.count[1]) return;
+    uint second_level = uint(vct.volume_dim * vct.volume_dim * vct.volume_dim);
+    block b = block_at(vct_unpack_texel(texels[second_level + i]));
+    for (uvec2 left = b.bits; left != uvec2(0u);) {
+        vct_part part = part_of(b, left);
         vec3 front, back;
-        gather(part, front, back);
+        gather(b, part, front, back);
         left &= ~part.bits;
-        for (uint bits = part.bits; bits != 0u; bits &= bits - 1u) {
-            uint to = slot_of(e, uint(findLSB(bits))) * VCT_BROUGHT_WORDS;
+        while (part.bits != uvec2(0u)) {
+            uint voxel = first_of(part.bits), slot = slot_of(b, voxel);
+            part.bits &= ~bit_of(voxel);
+            if (slot == vct.capacity) continue;
+            uint to = slot * VCT_BROUGHT_WORDS;
             brought[to] = packHalf2x16(front.rg);
             brought[to + 1u] = packHalf2x16(vec2(front.b, back.r));
             brought[to + 2u] = packHalf2x16(back.gb);

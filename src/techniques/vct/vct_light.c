@@ -96,7 +96,8 @@ static void bring(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view 
                                    { .name = "vct_before", .buffer = set->before },
                                    { .name = "vct_sums", .buffer = set->sums },
                                    { .name = "vct_brought", .buffer = set->brought }),
-                          NULL, 0, vct->texel_state, vct_level_groups(0));
+                          NULL, 0, vct->texel_state,
+                          offsetof(struct vct_texel_levels, block_groups));
 }
 
 static bool has_sky(const struct frame_view *view)

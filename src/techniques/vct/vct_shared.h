@@ -76,7 +76,8 @@ struct vct_cone_params {
 
 // Buffer "vct_texel_state": dispatches over the lists of texels, how many there are in each.
 struct vct_texel_levels {
-    uint32_t groups[3 * VCT_MAX_LEVELS]; // x, y, z
+    uint32_t groups[3 * VCT_MAX_LEVELS]; // x, y, z; of coarser levels for each way
+    uint32_t block_groups[3];            // of the second level, for each texel
     uint32_t count[VCT_MAX_LEVELS];
 };
 
@@ -117,7 +118,7 @@ struct vct_view_push {
 _Static_assert(sizeof(struct vct_params) == 18 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_texel_levels) == 4 * VCT_MAX_LEVELS * 4,
+_Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,
                "layout is shared with GLSL");
