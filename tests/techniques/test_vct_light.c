@@ -50,13 +50,6 @@ static bool in_use(const struct volume *v, const int at[3])
     return at[0] < v->size[0] && at[1] < v->size[1] && at[2] < v->size[2];
 }
 
-// See vct_over.glsl.
-static double shown(double left, double alpha, double sheet)
-{
-    const double by_chance = left * fmin(alpha, 1.0), next_to = fmin(alpha, left);
-    return by_chance + pow(sheet, 4.0) * (next_to - by_chance);
-}
-
 // Four columns along the way, each the nearer texel over the farther, averaged over what is in use.
 static void coarser(const struct volume *v, int way, const int at[3], double out[4])
 {
@@ -76,7 +69,7 @@ static void coarser(const struct volume *v, int way, const int at[3], double out
         const float *first = way % 2 == 0 ? low : high, *second = way % 2 == 0 ? high : low;
         const double nearer = (double)first[3], farther = (double)second[3];
         const double seen =
-            shown(1.0 - fmin(nearer, 1.0), farther, fmin(nearer + farther, 1.0));
+            vct_rig_shown(1.0 - fmin(nearer, 1.0), farther, fmin(nearer + farther, 1.0));
         const double part = farther > 0.0 ? seen / farther : 0.0;
         for (int k = 0; k < 4; k++) out[k] += (double)first[k] + part * (double)second[k];
     }
@@ -162,7 +155,7 @@ static void cover(double sum[4], const struct sample *here, const struct sample 
     double sheet = 0.0;
     for (int a = 0; a < 3; a++) sheet = fmax(sheet, before->axes[a] + here->axes[a]);
     if (alpha <= 0.0) return;
-    const double covered = shown(1.0 - sum[3], alpha, fmin(sheet, 1.0));
+    const double covered = vct_rig_shown(1.0 - sum[3], alpha, fmin(sheet, 1.0));
     for (int k = 0; k < 3; k++) sum[k] += covered * here->light[k] / alpha;
     sum[3] += covered;
 }
@@ -214,8 +207,7 @@ static void trace(const struct volume *levels, int level_count, const double fro
         if (middle > end && (middle - end) * speed > length) return;
         double at[3];
         for (int a = 0; a < 3; a++) at[a] = (from[a] + direction[a] * fmin(middle, end)) / length;
-        struct sample here =
-            look(&levels[level], at, direction, middle > end ? out_of : direction);
+        struct sample here = look(&levels[level], at, direction, middle > end ? out_of : direction);
         if (i == 0) before = behind(&levels[0], from, normal, direction, here.light);
         cover(sum, &here, &before);
         before = here;
@@ -268,7 +260,8 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
                 trace(levels, mips, from, normal, direction, wide, sum);
                 for (int k = 0; k < 3; k++) {
                     const double sky = (double)rig.studio.input.sky.raw[k];
-                    expected[k] += (double)cones[i].weight * (sum[k] / scale + (1.0 - sum[3]) * sky);
+                    expected[k] +=
+                        (double)cones[i].weight * (sum[k] / scale + (1.0 - sum[3]) * sky);
                 }
             }
             for (int k = 0; k < 3; k++) {

@@ -1,5 +1,6 @@
 #include "techniques/vct_rig.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 void vct_rig_init(struct vct_rig *rig, struct gpu *gpu)
@@ -71,4 +72,10 @@ float *vct_rig_light(const struct vct_rig *rig, uint32_t level)
     float *light = malloc(floats * sizeof *light);
     CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->light, level, 0, light, 4, floats));
     return light;
+}
+
+double vct_rig_shown(double left, double alpha, double sheet)
+{
+    const double by_chance = left * fmin(alpha, 1.0), next_to = fmin(alpha, left);
+    return by_chance + pow(sheet, 4.0) * (next_to - by_chance);
 }

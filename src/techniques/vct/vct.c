@@ -21,6 +21,7 @@ static const struct technique_debug_view debug_views[] = {
     { "reflectance", "the voxels that the eye sees, by what they reflect" },
     { "normals", "the voxels that the eye sees, by the way of their front" },
     { "radiance", "the voxels that the eye sees, by the light that they send to it" },
+    { "room", "the voxels that the eye sees, red where there was no room for their light" },
     { NULL, NULL },
 };
 
@@ -30,8 +31,9 @@ static bool vct_check(const struct technique_create *how)
     if (options->resolution % 16 != 0)
         return host_fail(how->host, FAIL_ARGUMENT, "gi vct: resolution=%d is not a multiple of 16",
                          (int)options->resolution);
+    const struct gpu_image_desc light = vct_light_desc(options);
     const uint32_t most = gpu_limits(how->gpu)->max_image_3d,
-                   width = vct_ways(options) * vct_volume_dim(options);
+                   width = light.width > light.depth ? light.width : light.depth;
     if (most < width)
         return host_fail(
             how->host, FAIL_UNSUPPORTED,
@@ -65,6 +67,7 @@ static void vct_set_options(void *state, const void *options)
     vct->options = *(const struct vct_options *)options;
     vct->options.resolution = had.resolution; // what the buffers and pipelines are for
     vct->options.anisotropic = had.anisotropic;
+    vct->options.storage = had.storage;
     vct->options.temporal = had.temporal;
     vct_temporal_forget(&vct->temporal);
 }
@@ -105,6 +108,7 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
     vct_record_debug(vct, cmd, view,
                      strcmp(name, "normals") == 0    ? VCT_VIEW_NORMAL
                      : strcmp(name, "radiance") == 0 ? VCT_VIEW_RADIANCE
+                     : strcmp(name, "room") == 0     ? VCT_VIEW_ROOM
                                                      : VCT_VIEW_REFLECTANCE,
                      out);
 }

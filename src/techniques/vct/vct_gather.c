@@ -57,7 +57,8 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     gpu_dispatch(cmd, vct->cones,
                  GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, cones, depth, normal,
                           { .name = "light", .image = vct->light, .sampler = vct->linear },
-                          { .name = "gathered", .image = vct->traced }),
+                          { .name = "gathered", .image = vct->traced }, vct_svo_binding(vct, cmd),
+                          { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  NULL, 0, gpu_groups(params.sub_width, VCT_LOCAL_2D),
                  gpu_groups(params.sub_height, VCT_LOCAL_2D),
                  params.interleave * params.interleave);
@@ -92,7 +93,8 @@ void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
                           { .name = "dynamic_mask", .buffer = vct->moving.mask },
                           { .name = "dynamic_before", .buffer = vct->moving.before },
                           { .name = "dynamic_records", .image = vct->moving.records },
-                          { .name = "picture", .image = out }),
+                          { .name = "picture", .image = out }, vct_svo_binding(vct, cmd),
+                          { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);
     gpu_scope_end(cmd);

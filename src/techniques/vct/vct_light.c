@@ -76,6 +76,10 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     inject(vct, cmd, view, &vct->rest);
     if (vct->moving_draws > 0) inject(vct, cmd, view, &vct->moving);
     gpu_scope_end(cmd);
+    if (vct_has_svo(&vct->options)) {
+        vct_svo_record_light(vct, cmd);
+        return;
+    }
     gpu_scope_begin(cmd, "vct.fill");
     fill(vct, cmd);
     gpu_scope_end(cmd);
@@ -87,17 +91,18 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
 static void bring(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                   const struct vct_set *set, struct gpu_binding cones)
 {
-    gpu_dispatch_indirect(cmd, vct->bounce,
-                          GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, cones,
-                                   { .name = "light", .image = vct->light, .sampler = vct->linear },
-                                   { .name = "vct_texels", .buffer = vct->texels },
-                                   { .name = "vct_texel_state", .buffer = vct->texel_state },
-                                   { .name = "vct_mask", .buffer = set->mask },
-                                   { .name = "vct_before", .buffer = set->before },
-                                   { .name = "vct_sums", .buffer = set->sums },
-                                   { .name = "vct_brought", .buffer = set->brought }),
-                          NULL, 0, vct->texel_state,
-                          offsetof(struct vct_texel_levels, block_groups));
+    gpu_dispatch_indirect(
+        cmd, vct->bounce,
+        GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, cones,
+                 { .name = "light", .image = vct->light, .sampler = vct->linear },
+                 { .name = "vct_texels", .buffer = vct->texels },
+                 { .name = "vct_texel_state", .buffer = vct->texel_state },
+                 { .name = "vct_mask", .buffer = set->mask },
+                 { .name = "vct_before", .buffer = set->before },
+                 { .name = "vct_sums", .buffer = set->sums },
+                 { .name = "vct_brought", .buffer = set->brought }, vct_svo_binding(vct, cmd),
+                 { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
+        NULL, 0, vct->texel_state, offsetof(struct vct_texel_levels, block_groups));
 }
 
 static bool has_sky(const struct frame_view *view)

@@ -4,12 +4,6 @@
 
 #include "techniques/vct/vct_ways.glsl"
 
-struct vct_met
-{
-    vec4 light; // premultiplied radiance, opacity
-    vec3 axes;  // opacity along each axis that is looked along
-};
-
 // What light comes against `direction`, or the part of it that is `counted`, at a place in texels of level 0. Six
 // volumes lie side by side along x: what is filtered keeps half a texel away from its neighbour. One volume for all
 // ways knows no direction: whatever fills its texels stands in every way.

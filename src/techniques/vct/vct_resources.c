@@ -78,14 +78,30 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
     memcpy(out, plan, sizeof plan);
 }
 
-enum { BUFFERS = 2 * SET_BUFFERS + 5 };
+enum { SVO_BUFFERS = 4, MOST_BUFFERS = 2 * SET_BUFFERS + 5 + SVO_BUFFERS };
 
-static void plan_buffers(const struct vct_options *options, struct vct *vct,
-                         struct buffer_plan out[BUFFERS])
+static void plan_svo(const struct vct_options *options, struct vct_svo *svo,
+                     struct buffer_plan out[SVO_BUFFERS])
+{
+    const struct vct_svo_params params = vct_svo_params(options);
+    const size_t nodes = vct_svo_nodes(options);
+    const struct buffer_plan plan[SVO_BUFFERS] = {
+        { "vct.svo_nodes", &svo->nodes, nodes, 0 },
+        { "vct.svo_places", &svo->places, params.bricks, 0 },
+        { "vct.svo_blocks", &svo->blocks, (nodes + VCT_SVO_BLOCK - 1) / VCT_SVO_BLOCK, 0 },
+        { "vct.svo_levels", &svo->levels,
+          params.depths * sizeof(struct vct_svo_level) / sizeof(uint32_t), GPU_BUFFER_INDIRECT },
+    };
+    memcpy(out, plan, sizeof plan);
+}
+
+// Returns how many.
+static int plan_buffers(const struct vct_options *options, struct vct *vct,
+                        struct buffer_plan out[MOST_BUFFERS])
 {
     plan_set(options, false, &vct->rest, out);
     plan_set(options, true, &vct->moving, out + SET_BUFFERS);
-    const struct buffer_plan plan[BUFFERS - 2 * SET_BUFFERS] = {
+    const struct buffer_plan plan[] = {
         { "vct.queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 },
         { "vct.queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT },
         { "vct.texels", &vct->texels, vct_texel_words(options), 0 },
@@ -94,10 +110,14 @@ static void plan_buffers(const struct vct_options *options, struct vct *vct,
           GPU_BUFFER_INDIRECT },
     };
     memcpy(out + 2 * SET_BUFFERS, plan, sizeof plan);
+    if (!vct_has_svo(options)) return MOST_BUFFERS - SVO_BUFFERS;
+    plan_svo(options, &vct->svo, out + MOST_BUFFERS - SVO_BUFFERS);
+    return MOST_BUFFERS;
 }
 
-static struct gpu_image_desc volume_desc(const struct vct_options *options)
+struct gpu_image_desc vct_light_desc(const struct vct_options *options)
 {
+    if (vct_has_svo(options)) return vct_svo_pool(options);
     const uint32_t dim = vct_volume_dim(options);
     return (struct gpu_image_desc){ .name = "vct.light",
                                     .dimension = GPU_3D,
@@ -143,15 +163,16 @@ bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
 
 bool vct_create_resources(struct vct *vct)
 {
-    struct buffer_plan plan[BUFFERS];
-    plan_buffers(&vct->options, vct, plan);
-    for (int i = 0; i < BUFFERS; i++) {
+    struct buffer_plan plan[MOST_BUFFERS];
+    const int count = plan_buffers(&vct->options, vct, plan);
+    for (int i = 0; i < count; i++) {
         const struct gpu_buffer_desc desc = { .name = plan[i].name,
                                               .bytes = plan[i].words * sizeof(uint32_t),
                                               .usage = GPU_BUFFER_STORAGE | plan[i].usage };
         if (!gpu_buffer_create(vct->gpu, &desc, plan[i].out)) return false;
     }
-    const struct gpu_image_desc light = volume_desc(&vct->options),
+    vct->svo.params = vct_svo_params(&vct->options);
+    const struct gpu_image_desc light = vct_light_desc(&vct->options),
                                 rest = records_desc(&vct->options, false),
                                 moving = records_desc(&vct->options, true);
     const struct gpu_sampler_desc linear = { .name = "vct.linear",
@@ -226,12 +247,10 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 15 };
+enum { PIPELINES = 9, MIP_PIPELINES = 6, MOST_STORAGE_PIPELINES = 11 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
-    const struct gpu_constant *ways = vct->options.anisotropic ? NULL : isotropic;
-    const int way_count = vct->options.anisotropic ? 0 : 1;
     const struct pipeline_plan plan[PIPELINES] = {
         { &vct->count, "vct.count", &shader_vct_count_comp, NULL, 0 },
         { &vct->scan, "vct.scan", &shader_vct_scan_comp, NULL, 0 },
@@ -239,31 +258,60 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->texel_lists, "vct.texels", &shader_vct_texels_comp, NULL, 0 },
         { &vct->inject[0], "vct.inject_unlit", &shader_vct_inject_comp, unlit, 1 },
         { &vct->inject[1], "vct.inject", &shader_vct_inject_comp, NULL, 0 },
-        { &vct->bounce, "vct.bounce", &shader_vct_bounce_mips_comp, ways, way_count },
-        { &vct->fill[0], "vct.fill_still", &shader_vct_fill_comp, still, 1 + way_count },
-        { &vct->fill[1], "vct.fill", &shader_vct_fill_comp, ways, way_count },
-        { &vct->mip, "vct.mip", &shader_vct_mip_comp, ways, way_count },
-        { &vct->cones, "vct.cones", &shader_vct_cones_mips_comp, ways, way_count },
         { &vct->edges, "vct.edges", &shader_vct_edges_comp, NULL, 0 },
         { &vct->gather_rows, "vct.gather_rows", &shader_vct_gather_comp, NULL, 0 },
         { &vct->gather_columns, "vct.gather_columns", &shader_vct_gather_comp, columns, 1 },
-        { &vct->debug, "vct.debug", &shader_vct_debug_comp, NULL, 0 },
     };
     memcpy(out, plan, sizeof plan);
 }
 
+// What fills the light's storage and looks into it. Returns how many.
+static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST_STORAGE_PIPELINES])
+{
+    struct vct_svo *svo = &vct->svo;
+    const struct gpu_constant *ways = vct->options.anisotropic ? NULL : isotropic;
+    const int way_count = vct->options.anisotropic ? 0 : 1;
+    const struct pipeline_plan mips[MIP_PIPELINES] = {
+        { &vct->bounce, "vct.bounce", &shader_vct_bounce_mips_comp, ways, way_count },
+        { &vct->cones, "vct.cones", &shader_vct_cones_mips_comp, ways, way_count },
+        { &vct->fill[0], "vct.fill_still", &shader_vct_fill_comp, still, 1 + way_count },
+        { &vct->fill[1], "vct.fill", &shader_vct_fill_comp, ways, way_count },
+        { &vct->mip, "vct.mip", &shader_vct_mip_comp, ways, way_count },
+        { &vct->debug, "vct.debug", &shader_vct_debug_mips_comp, NULL, 0 },
+    };
+    const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
+        { &vct->bounce, "vct.bounce", &shader_vct_bounce_svo_comp, ways, way_count },
+        { &vct->cones, "vct.cones", &shader_vct_cones_svo_comp, ways, way_count },
+        { &svo->mark, "vct.svo_mark", &shader_vct_svo_mark_comp, NULL, 0 },
+        { &svo->count, "vct.svo_count", &shader_vct_svo_count_comp, NULL, 0 },
+        { &svo->scan, "vct.svo_scan", &shader_vct_svo_scan_comp, NULL, 0 },
+        { &svo->divide, "vct.svo_divide", &shader_vct_svo_divide_comp, NULL, 0 },
+        { &svo->fill[0], "vct.svo_fill_still", &shader_vct_svo_fill_comp, still, 1 + way_count },
+        { &svo->fill[1], "vct.svo_fill", &shader_vct_svo_fill_comp, ways, way_count },
+        { &svo->join, "vct.svo_join", &shader_vct_svo_join_comp, ways, way_count },
+        { &svo->mip, "vct.svo_mip", &shader_vct_svo_mip_comp, ways, way_count },
+        { &vct->debug, "vct.debug", &shader_vct_debug_svo_comp, NULL, 0 },
+    };
+    if (vct_has_svo(&vct->options))
+        memcpy(out, octree, sizeof octree);
+    else
+        memcpy(out, mips, sizeof mips);
+    return vct_has_svo(&vct->options) ? MOST_STORAGE_PIPELINES : MIP_PIPELINES;
+}
+
 bool vct_create_pipelines(struct vct *vct)
 {
-    struct pipeline_plan walks[WALKS], plan[PIPELINES];
+    struct pipeline_plan walks[WALKS], plan[PIPELINES + MOST_STORAGE_PIPELINES];
     plan_walks(vct, walks);
     plan_pipelines(vct, plan);
+    const int count = PIPELINES + plan_storage_pipelines(vct, plan + PIPELINES);
     bool ok = true;
     for (int i = 0; i < WALKS && ok; i++) {
         if (!walks[i].shader) continue;
         ok = vct->options.voxels == VCT_BY_RASTER ? create_raster_pipeline(vct, &walks[i])
                                                   : create_compute_pipeline(vct, &walks[i]);
     }
-    for (int i = 0; i < PIPELINES && ok; i++) ok = create_compute_pipeline(vct, &plan[i]);
+    for (int i = 0; i < count && ok; i++) ok = create_compute_pipeline(vct, &plan[i]);
     return ok;
 }
 
@@ -271,14 +319,15 @@ bool vct_create_pipelines(struct vct *vct)
 
 void vct_destroy_resources(struct vct *vct)
 {
-    struct buffer_plan buffers[BUFFERS];
-    plan_buffers(&vct->options, vct, buffers);
-    for (int i = 0; i < BUFFERS; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
-    struct pipeline_plan walks[WALKS], pipelines[PIPELINES];
+    struct buffer_plan buffers[MOST_BUFFERS];
+    const int buffer_count = plan_buffers(&vct->options, vct, buffers);
+    for (int i = 0; i < buffer_count; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
+    struct pipeline_plan walks[WALKS], pipelines[PIPELINES + MOST_STORAGE_PIPELINES];
     plan_walks(vct, walks);
     for (int i = 0; i < WALKS; i++) gpu_pipeline_destroy(vct->gpu, walks[i].out);
     plan_pipelines(vct, pipelines);
-    for (int i = 0; i < PIPELINES; i++) gpu_pipeline_destroy(vct->gpu, pipelines[i].out);
+    const int count = PIPELINES + plan_storage_pipelines(vct, pipelines + PIPELINES);
+    for (int i = 0; i < count; i++) gpu_pipeline_destroy(vct->gpu, pipelines[i].out);
     gpu_image_destroy(vct->gpu, &vct->light);
     gpu_image_destroy(vct->gpu, &vct->rest.records);
     gpu_image_destroy(vct->gpu, &vct->moving.records);
@@ -290,11 +339,11 @@ void vct_destroy_resources(struct vct *vct)
 uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, uint32_t height)
 {
     struct vct none = { 0 };
-    struct buffer_plan plan[BUFFERS];
-    plan_buffers(options, &none, plan);
+    struct buffer_plan plan[MOST_BUFFERS];
+    const int count = plan_buffers(options, &none, plan);
     uint64_t bytes = 0;
-    for (int i = 0; i < BUFFERS; i++) bytes += plan[i].words * sizeof(uint32_t);
-    const struct gpu_image_desc light = volume_desc(options);
+    for (int i = 0; i < count; i++) bytes += plan[i].words * sizeof(uint32_t);
+    const struct gpu_image_desc light = vct_light_desc(options);
     for (uint32_t mip = 0; mip < light.mips; mip++)
         bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
                  (uint64_t)gpu_format_bytes(GPU_RGBA16F);

@@ -105,9 +105,36 @@ struct vct_mip_push {
     uint32_t first; // of the list of texels
 };
 
+// Sparse voxel octree.
+#define VCT_SVO_BLOCK 32  // nodes that one invocation counts and divides
+#define VCT_SVO_LOCAL 128 // invocations of a workgroup over bricks
+
+// Uniform block "vct_svo".
+struct vct_svo_params {
+    uint32_t depths; // levels of nodes, the root's and the leaves' included
+    uint32_t bricks; // that there is room for
+    uint32_t tiles;  // of eight children each, that there is room for
+    int32_t row;     // bricks along x and y of the pool
+};
+
+// Storage block "vct_svo_levels", one for each depth.
+struct vct_svo_level {
+    uint32_t first, count;    // bricks, which are numbered from the root down
+    uint32_t left_out;        // for want of room
+    uint32_t node_groups[3];  // of a dispatch over blocks of the children
+    uint32_t texel_groups[3]; // over 32 invocations a brick
+    uint32_t side_groups[3];  // over 16
+};
+
+struct vct_svo_push {
+    uint32_t depth;
+    uint32_t axis; // along which neighbours are joined
+};
+
 #define VCT_VIEW_REFLECTANCE 0
 #define VCT_VIEW_NORMAL      1
 #define VCT_VIEW_RADIANCE    2
+#define VCT_VIEW_ROOM        3
 
 struct vct_view_push {
     uint32_t view;
@@ -124,6 +151,9 @@ _Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_history_params) == 13 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_mip_push) == 28, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_svo_params) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_svo_level) == 12 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_svo_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_view_push) == 8, "layout is shared with GLSL");
 #endif
 

@@ -13,6 +13,8 @@ struct vct_options {
 #undef OPTION
 };
 
+enum vct_storage { VCT_MIPS, VCT_SVO }; // the option's choices
+
 enum { VCT_LOCAL_2D = 8 }; // of shaders over pixels or texels, in x and y
 
 // Voxels of a part of the scene: which, in what order, what they are, what they send out.
@@ -28,6 +30,14 @@ enum vct_voxels { VCT_BY_COMPUTE, VCT_BY_RASTER };
 
 struct vct_walk { // pipelines for small and for large triangles; by raster one for all
     gpu_pipeline small, large;
+};
+
+// The sparse voxel octree: see vct_svo.glsl.
+struct vct_svo {
+    gpu_buffer nodes, places, blocks, levels;
+    gpu_pipeline mark, count, scan, divide, join, mip;
+    gpu_pipeline fill[2]; // without what moves, and with it
+    struct vct_svo_params params;
 };
 
 // What light that glowing surfaces and the sky bring to voxels depends on besides these.
@@ -48,8 +58,9 @@ struct vct {
     gpu_buffer queue, queue_state;
     gpu_buffer texels, texel_mask, texel_state; // of the light volume: which hold something
     gpu_sampler linear;
-    gpu_image light;            // RGBA16F, mips: six volumes side by side
-    gpu_image edge_image;       // R8
+    struct vct_svo svo;   // with storage=svo
+    gpu_image light;      // RGBA16F: six volumes side by side with mips, or the pool of bricks
+    gpu_image edge_image; // R8
     gpu_image traced, gathered; // RGBA16F: Σ radiance × weight, Σ weight
     struct vct_temporal temporal; // empty without the option
     uint32_t width, height;
@@ -76,6 +87,11 @@ struct vct_texels_push vct_texels_push(const struct vct_options *options);
 size_t vct_texel_words(const struct vct_options *options);
 size_t vct_texel_mask_words(const struct vct_options *options);
 size_t vct_level_groups(uint32_t level); // where a level's dispatch is in texel_state
+bool vct_has_svo(const struct vct_options *options);
+struct vct_svo_params vct_svo_params(const struct vct_options *options);
+size_t vct_svo_nodes(const struct vct_options *options); // with room for
+struct gpu_image_desc vct_svo_pool(const struct vct_options *options);
+struct gpu_image_desc vct_light_desc(const struct vct_options *options); // mips, or that pool
 
 // What there is on the GPU. Each may stop half-way; vct_destroy_resources takes what there is.
 bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height); // of that many pixels
@@ -95,6 +111,11 @@ void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_texels(struct vct *vct, struct gpu_cmd *cmd);
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+// In place of fill and mips: the tree, where voxels have come anew; and the light in it.
+void vct_svo_record_tree(struct vct *vct, struct gpu_cmd *cmd);
+void vct_svo_record_light(struct vct *vct, struct gpu_cmd *cmd);
+// For shaders that trace cones, which ignore them where there is no octree.
+struct gpu_binding vct_svo_binding(struct vct *vct, struct gpu_cmd *cmd);
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                       uint32_t what, gpu_image out);

@@ -21,7 +21,17 @@
 #ifndef AG_VCT_TRACE_GLSL
 #define AG_VCT_TRACE_GLSL
 
+struct vct_met
+{
+    vec4 light; // premultiplied radiance, opacity
+    vec3 axes;  // opacity along each axis that is looked along
+};
+
+#if VCT_SVO
+#include "techniques/vct/vct_svo_look.glsl"
+#else
 #include "techniques/vct/vct_look.glsl"
+#endif
 #include "techniques/vct/vct_over.glsl"
 
 const float VCT_OPAQUE = 0.98; // a cone that has met so much ends there, as if it had met all

@@ -151,4 +151,5 @@ void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     vct->rest_valid = true;
     vct->moving_draws = moving;
     if (vct->remade) vct_record_texels(vct, cmd);
+    if (vct->remade && vct_has_svo(&vct->options)) vct_svo_record_tree(vct, cmd);
 }

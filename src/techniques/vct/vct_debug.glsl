@@ -1,5 +1,4 @@
 // Debug views: the first voxel that the eye's ray meets.
-#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -25,6 +24,24 @@ layout(set = 0, binding = 5) uniform usampler2D static_records;
 layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D picture;
 
+#if VCT_SVO
+layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes { uint nodes[]; };
+#include "techniques/vct/vct_svo.glsl"
+#endif
+
+// Whether a voxel holds a surface, and whether there was room for its light.
+bool surface_at(ivec3 voxel, out bool room)
+{
+    uint index = vct_index(voxel), bit = index & 31u, word = index >> 5;
+    bool still = (static_mask_words[word] >> bit & 1u) != 0u, moving = (dynamic_mask_words[word] >> bit & 1u) != 0u;
+    room = (!still || static_slot(index) != VCT_NO_SLOT) && (!moving || dynamic_slot(index) != VCT_NO_SLOT);
+#if VCT_SVO
+    ivec3 leaf = min((voxel + 1) >> 2, svo_nodes_in_use(0) - 1);
+    room = room && svo_find(leaf, svo.depths - 1u) != SVO_NONE;
+#endif
+    return still || moving;
+}
+
 vec3 shown(vct_record r, vec3 direction)
 {
     if (push.view == VCT_VIEW_REFLECTANCE) return r.reflectance * push.reflectance_shown;
@@ -45,6 +62,13 @@ bool voxel_at(ivec3 voxel, out vct_record r)
     return true;
 }
 
+vec3 shown_room(ivec3 voxel, bool room)
+{
+    vct_record r;
+    float grey = voxel_at(voxel, r) ? 0.2 * dot(r.reflectance, vec3(0.2126, 0.7152, 0.0722)) : 0.0;
+    return (room ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_shown;
+}
+
 // From voxel to voxel along the ray (Amanatides & Woo 1987).
 vec3 march(vec3 from, vec3 direction)
 {
@@ -56,7 +80,10 @@ vec3 march(vec3 from, vec3 direction)
     vec3 next = (vec3(voxel) + max(vec3(step), vec3(0.0)) - at) * inverse;
     for (int i = 0; i < 3 * vct.dim && vct_inside(voxel); i++) {
         vct_record r;
-        if (voxel_at(voxel, r)) return shown(r, direction);
+        bool room;
+        if (push.view == VCT_VIEW_ROOM) {
+            if (surface_at(voxel, room)) return shown_room(voxel, room);
+        } else if (voxel_at(voxel, r)) return shown(r, direction);
         if (next.x <= next.y && next.x <= next.z) {
             voxel.x += step.x;
             next.x += abs(inverse.x);

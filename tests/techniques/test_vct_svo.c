@@ -1,0 +1,177 @@
+// The nodes of the sparse voxel octree: the exact set of a plain C twin, the same each time, and
+// what becomes of those that there is no room for.
+#include "techniques/svo_tree.h"
+
+#include "core/rng.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- The twin of its nodes: a node is there where a voxel's point lies in or on it.
+
+static bool *nodes_of_twin(const struct vct_rig *rig, const uint32_t *rest, const uint32_t *moving,
+                           int depths, int depth)
+{
+    const int dim = 1 << depth, width = 2 << (depths - 1 - depth); // points over a node
+    const int resolution = rig->vct->options.resolution;
+    bool *there = calloc((size_t)(dim * dim * dim), sizeof *there);
+    for (int z = 0; z < resolution; z++)
+        for (int y = 0; y < resolution; y++)
+            for (int x = 0; x < resolution; x++) {
+                if (!vct_rig_has(rig, rest, x, y, z) && !vct_rig_has(rig, moving, x, y, z))
+                    continue;
+                const int point[3] = { (x + 1) / 2, (y + 1) / 2, (z + 1) / 2 };
+                for (int i = 0; i < 8; i++) {
+                    int node[3];
+                    bool inside = true;
+                    for (int a = 0; a < 3; a++) {
+                        node[a] = point[a] / width - (i >> a & 1);
+                        // On the lower side of a node a point is in the node before it too.
+                        inside = inside && (!(i >> a & 1) || point[a] % width == 0) &&
+                                 node[a] >= 0 &&
+                                 4 * node[a] * (width / 2) < rig->vct->grid.cells[a];
+                    }
+                    if (inside) there[(node[2] * dim + node[1]) * dim + node[0]] = true;
+                }
+            }
+    return there;
+}
+
+static void check_nodes(const struct vct_rig *rig, const struct svo_tree *tree)
+{
+    uint32_t *rest = vct_rig_mask(rig, &rig->vct->rest),
+             *moving = vct_rig_mask(rig, &rig->vct->moving);
+    uint32_t bricks = 0;
+    for (uint32_t depth = 0; depth < tree->params.depths; depth++) {
+        const int dim = 1 << depth;
+        bool *there = nodes_of_twin(rig, rest, moving, (int)tree->params.depths, (int)depth);
+        uint32_t count = 0;
+        for (int z = 0; z < dim; z++)
+            for (int y = 0; y < dim; y++)
+                for (int x = 0; x < dim; x++) {
+                    const int node[3] = { x, y, z }, brick = svo_tree_find(tree, node, depth);
+                    if ((brick >= 0) != there[(z * dim + y) * dim + x])
+                        fail_msg("depth %u, node %d %d %d: brick %d", depth, x, y, z, brick);
+                    if (brick < 0) continue;
+                    count++;
+                    int place[3];
+                    svo_tree_place(tree, brick, place);
+                    CHECK(place[0] == x && place[1] == y && place[2] == z);
+                    CHECK((uint32_t)brick >= bricks); // bricks of one level stand together
+                }
+        CHECK(tree->levels[depth].first == bricks && tree->levels[depth].count == count);
+        CHECK(tree->levels[depth].left_out == 0);
+        bricks += count;
+        free(there);
+    }
+    CHECK(bricks <= tree->params.bricks);
+    free(rest);
+    free(moving);
+}
+
+static int add_triangle(struct vct_rig *rig, struct rng *rng, float part)
+{
+    vec3s p[3];
+    for (int i = 0; i < 3; i++)
+        p[i] = vec3_of(11.3f * rng_float(rng), 8.1f * rng_float(rng), 9.7f * rng_float(rng));
+    for (int i = 1; i < 3; i++) p[i] = glms_vec3_lerp(p[0], p[i], part);
+    vec3s normals[3] = { vec3_of(0, 1, 0), vec3_of(0, 1, 0), vec3_of(0, 1, 0) };
+    uint32_t indices[3] = { 0, 1, 2 };
+    const int mesh =
+        scene_add_mesh(rig->studio.scene,
+                       &(struct mesh){ .name = "triangle",
+                                       .vertex_count = 3,
+                                       .index_count = 3,
+                                       .positions = p,
+                                       .normals = normals,
+                                       .indices = indices,
+                                       .material = studio_matte(&rig->studio, vec3_of(1, 1, 1)) });
+    CHECK(mesh >= 0);
+    return studio_instance(&rig->studio, mesh, NULL);
+}
+
+TEST_GPU(nodes_are_those_of_the_twin)
+{
+    static const char *const options[] = { "storage=svo,resolution=16",
+                                           "storage=svo,resolution=48" };
+    for (int i = 0; i < 2; i++) {
+        struct vct_rig rig;
+        struct rng rng = rng_for(5, 0, 0);
+        vct_rig_init(&rig, gpu);
+        for (int k = 0; k < 9; k++) add_triangle(&rig, &rng, k % 3 == 0 ? 0.7f : 0.1f);
+        const int moves = add_triangle(&rig, &rng, 0.2f);
+        vct_rig_open(&rig, options[i]);
+        studio_render(&rig.studio);
+        struct svo_tree tree = svo_tree_of(&rig);
+        check_nodes(&rig, &tree);
+        svo_tree_finish(&tree);
+        mat4s *world = &rig.studio.pose.world_from_node[rig.studio.scene->instances[moves].node];
+        *world = glms_translate(*world, vec3_of(0.5f, -0.3f, 1));
+        studio_render(&rig.studio);
+        studio_render(&rig.studio);
+        tree = svo_tree_of(&rig);
+        check_nodes(&rig, &tree);
+        svo_tree_finish(&tree);
+        vct_rig_finish(&rig);
+    }
+}
+
+TEST_GPU(the_tree_is_the_same_each_time_it_is_built)
+{
+    struct vct_rig rig;
+    struct rng rng = rng_for(6, 0, 0);
+    vct_rig_init(&rig, gpu);
+    for (int k = 0; k < 12; k++) add_triangle(&rig, &rng, 0.5f);
+    vct_rig_open(&rig, "storage=svo,resolution=48,keep_static=false");
+    studio_render(&rig.studio);
+    struct svo_tree first = svo_tree_of(&rig);
+    studio_render(&rig.studio);
+    struct svo_tree second = svo_tree_of(&rig);
+    const uint32_t leaves = first.params.depths - 1;
+    const uint32_t bricks = first.levels[leaves].first + first.levels[leaves].count;
+    CHECK(bricks > 100);
+    CHECK(memcmp(first.levels, second.levels, (leaves + 1) * sizeof *first.levels) == 0);
+    CHECK(memcmp(first.places, second.places, bricks * sizeof(uint32_t)) == 0);
+    CHECK(memcmp(first.nodes, second.nodes,
+                 8 * (first.levels[leaves].first + 1) * sizeof(uint32_t)) == 0);
+    svo_tree_finish(&first);
+    svo_tree_finish(&second);
+    vct_rig_finish(&rig);
+}
+
+// ---- No room
+
+TEST_GPU(a_tree_that_does_not_fit_leaves_nodes_out_and_says_how_many)
+{
+    static const uint32_t room[] = { 0, 1, 5, 100, 300 };
+    for (int i = 0; i < 5; i++) {
+        struct vct_rig rig;
+        svo_furnish(&rig, gpu, true);
+        vct_rig_open(&rig, "storage=svo,resolution=48,keep_static=false");
+        rig.vct->svo.params.bricks = room[i];
+        studio_render(&rig.studio);
+        studio_render(&rig.studio);
+        struct svo_tree tree = svo_tree_of(&rig);
+        uint32_t bricks = 0, left_out = 0;
+        for (uint32_t depth = 0; depth < tree.params.depths; depth++) {
+            const struct vct_svo_level *level = &tree.levels[depth];
+            CHECK(level->first == bricks);
+            bricks += level->count;
+            left_out += level->left_out;
+            // Groups for all of them and at least one, which finds nothing to do.
+            CHECK(level->texel_groups[0] >= 1 && level->side_groups[0] >= 1);
+            CHECK(level->texel_groups[0] <= room[i] / 4 + 1);
+            CHECK(level->side_groups[0] <= room[i] / 8 + 1);
+            CHECK(level->node_groups[0] >= 1 && level->node_groups[0] <= room[i] / 256 + 1);
+            CHECK(level->texel_groups[1] == 1 && level->side_groups[2] == 1);
+        }
+        CHECK(bricks <= room[i]);
+        CHECK(left_out > 0);
+        float *e = studio_read(&rig.studio, READ_IRRADIANCE);
+        for (int k = 0; k < 32 * 32 * 3; k++) CHECK(isfinite(e[k]) && e[k] >= 0.0f);
+        free(e);
+        svo_tree_finish(&tree);
+        vct_rig_finish(&rig);
+    }
+}
