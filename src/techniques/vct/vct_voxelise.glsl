@@ -15,7 +15,7 @@ layout(set = 0, binding = 14, scalar) buffer vct_queue_state { uint queue_groups
 layout(set = 0, binding = 15, scalar) buffer vct_queue { uvec2 queue[]; };
 
 #if VCT_LARGE
-layout(local_size_x = VCT_TILE, local_size_y = VCT_TILE) in;
+layout(local_size_x = VCT_TILE, local_size_y = VCT_TILE_ROWS) in;
 #else
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 #endif
@@ -108,8 +108,10 @@ void main()
     if (!triangle_at(job.x, t)) return;
     uint across = uint(t.high.x - t.low.x) / VCT_TILE + 1u;
     ivec2 tile = ivec2(job.y % across, job.y / across);
-    ivec2 column = t.low.xy + tile * VCT_TILE + ivec2(gl_LocalInvocationID.xy);
-    if (all(lessThanEqual(column, t.high.xy))) walk_column(t, column);
+    ivec2 first = t.low.xy + tile * VCT_TILE, last = min(first + VCT_TILE - 1, t.high.xy);
+    ivec2 column = first + ivec2(gl_LocalInvocationID.xy);
+    if (column.x > last.x) return;
+    for (; column.y <= last.y; column.y += VCT_TILE_ROWS) walk_column(t, column);
 }
 
 #else
