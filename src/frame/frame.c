@@ -190,6 +190,7 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .constants = f->constants_binding,
         .lights = f->lights_binding,
         .shadow_faces = f->view.shadow_faces_binding,
+        .light_count = f->light_count,
         .width = f->width,
         .height = f->height,
     };

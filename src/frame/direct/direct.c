@@ -7,13 +7,16 @@
 
 bool direct_init(struct direct *d, struct gpu *gpu)
 {
+    static const struct gpu_constant unlit[] = { { 0, 0 } }; // HAS_LIGHTS
     *d = (struct direct){ .gpu = gpu };
     struct gpu_sampler_desc nearest = {
         .name = "frame.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
     };
     return gpu_sampler_get(gpu, &nearest, &d->nearest) &&
            gpu_compute_pipeline_create(gpu, "frame.direct", &shader_direct_comp, NULL, 0,
-                                       &d->pipeline);
+                                       &d->lit) &&
+           gpu_compute_pipeline_create(gpu, "frame.direct_unlit", &shader_direct_comp, unlit, 1,
+                                       &d->unlit);
 }
 
 void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct direct_input *in,
@@ -22,7 +25,7 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
     struct direct_push push = { (float)in->shadow_size, in->shadow_radius };
     gpu_scope_begin(cmd, "direct");
     gpu_dispatch(
-        cmd, d->pipeline,
+        cmd, in->light_count > 0 ? d->lit : d->unlit,
         GPU_BIND(in->constants, in->lights, in->shadow_faces,
                  { "shadow_maps", .image = in->shadow_maps, .sampler = in->shadow_sampler },
                  { "depth_layer", .image = in->depth, .sampler = d->nearest },
@@ -37,6 +40,9 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
 
 void direct_finish(struct direct *d)
 {
-    if (d->gpu) gpu_pipeline_destroy(d->gpu, &d->pipeline);
+    if (d->gpu) {
+        gpu_pipeline_destroy(d->gpu, &d->lit);
+        gpu_pipeline_destroy(d->gpu, &d->unlit);
+    }
     *d = (struct direct){ 0 };
 }

@@ -25,6 +25,10 @@ layout(push_constant, scalar) uniform push_block
     direct_push push;
 };
 
+// Without it nothing is read but depth and emission: software drivers run the body of a loop once even where it has no
+// turns.
+layout(constant_id = 0) const bool HAS_LIGHTS = true;
+
 struct surface
 {
     vec3 position, normal, to_eye;
@@ -110,9 +114,11 @@ void main()
     float depth = texelFetch(depth_layer, pixel, 0).r;
     vec3 radiance = frame.sky;
     if (depth > 0.0) {
-        surface s = read_surface(pixel, depth);
         radiance = texelFetch(emissive_layer, pixel, 0).rgb;
-        for (uint i = 0; i < frame.light_count; i++) radiance += reflected(s, frame_light_table[i]);
+        if (HAS_LIGHTS) {
+            surface s = read_surface(pixel, depth);
+            for (uint i = 0; i < frame.light_count; i++) radiance += reflected(s, frame_light_table[i]);
+        }
     }
     imageStore(direct_layer, pixel, vec4(min(radiance, vec3(HALF_MAX)), 1.0));
 }

@@ -5,7 +5,7 @@
 
 struct direct {
     struct gpu *gpu;
-    gpu_pipeline pipeline;
+    gpu_pipeline lit, unlit; // for frames with lights and without
     gpu_sampler nearest;
 };
 
@@ -16,6 +16,7 @@ struct direct_input {
     uint32_t shadow_size;
     int shadow_radius; // of the filter, texels
     struct gpu_binding constants, lights, shadow_faces;
+    int light_count;
     uint32_t width, height;
 };
 
