@@ -1,10 +1,13 @@
-// Hong 2015, section 4.2, figures 70 and 71: what interleaved sampling of voxel cone tracing saves, and what it changes.
+// Hong 2015, section 4.2, figures 70 and 71: what interleaved sampling of voxel cone tracing saves,
+// and what it changes.
 //
-//     interleave [--options KEY=VALUE,…] [--resolution N]… [--frames N] [--size WxH] [--maps DIR] [--device NAME] [SCENE]…
+//     interleave [--options KEY=VALUE,…] [--resolution N]… [--frames N] [--size WxH] [--maps DIR]
+//     [--device NAME] [SCENE]…
 //
-// For each scene and resolution one frame whose pixels trace all 25 cones, and one whose blocks of 5 × 5 pixels share them. The time
-// of each is that of all its passes over pixels, the least of the frames, which are rendered in turns; the difference is that of
-// irradiance: the mean of |interleaved − raw| over the mean of raw, and the difference of the means.
+// For each scene and resolution one frame whose pixels trace all 25 cones, and one whose blocks of
+// 5 × 5 pixels share them. The time of each is that of all its passes over pixels, the least of the
+// frames, which are rendered in turns; the difference is that of irradiance: the mean of
+// |interleaved − raw| over the mean of raw, and the difference of the means.
 #include "command_line.h"
 
 #include <afterglow/afterglow.h>
@@ -113,13 +116,15 @@ static void print_result(const struct way both[WAYS])
             if (both[w].ms[s] > 0.0) printf(" %s %.2f", stages[s] + strlen("vct."), both[w].ms[s]);
         putchar('\n');
     }
-    printf("  %.1f times faster; mean |difference| %.2f %% of the mean, difference of the means %+.2f %%\n",
+    printf("  %.1f times faster; mean |difference| %.2f %% of the mean, difference of the means "
+           "%+.2f %%\n",
            whole(&both[RAW]) / fmax(whole(&both[INTERLEAVED]), 1e-9), 100.0 * d.absolute / mean,
            100.0 * d.bias / mean);
     fflush(stdout);
 }
 
-// The difference, relative to the mean, saturated at a quarter; and both pictures of irradiance as a white surface shows it.
+// The difference, relative to the mean, saturated at a quarter; and both pictures of irradiance as
+// a white surface shows it.
 static enum ag_result write_maps(const struct bench *bench, const char *scene, int resolution,
                                  const struct way both[WAYS])
 {
@@ -219,7 +224,8 @@ int main(int argc, char **argv)
 {
     static struct bench bench = { .width = 640, .height = 360, .frames = 5 };
     if (!parse(&bench, argc, argv)) {
-        fprintf(stderr, "usage: interleave [--options KEY=VALUE,...] [--resolution N]... [--frames N] [--size WxH] "
+        fprintf(stderr, "usage: interleave [--options KEY=VALUE,...] [--resolution N]... [--frames "
+                        "N] [--size WxH] "
                         "[--maps DIR] [--device NAME] [SCENE]...\n");
         return 2;
     }

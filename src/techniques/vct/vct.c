@@ -55,6 +55,7 @@ static bool vct_create(void *state, const struct technique_create *how)
     if (how->pose) vct_remark_on_scene(how->host, how->options, how->pose);
     vct->gpu = how->gpu;
     vct->options = *(const struct vct_options *)how->options;
+    vct_cone_lines(vct->options.cones, vct->lines);
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
            vct_create_pipelines(vct) &&
            (!vct->options.temporal || vct_temporal_create(&vct->temporal, vct->gpu));

@@ -1,8 +1,13 @@
-// The cones of each pixel, or its part of them: radiance × solid angle × cosine, and the sum of the latter two.
+// The cones of each pixel, or its part of them.
 //
 // Pixels that share a set of cones are one sub-image (Hong 2015, sec. 4.2): every workgroup takes pixels of one alone,
 // so that all its invocations go the same way through the volume. That is what the paper's splitting and translation
 // of blocks is for; in compute the addresses are enough, and nothing is copied.
+//
+// Cones point along lines that are the same all over the world, each to the side on which the normal is: neighbours
+// complete each other's set however their normals differ. What they found is kept as vectors, Σ L d of each colour
+// with Σ d, which any normal n near theirs can turn into irradiance:
+//     E(n) = π n·(Σ L d) / n·(Σ d).                                                                    (1)
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -11,8 +16,8 @@
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
-#include "techniques/vct/vct_axes.glsl"
 #include "techniques/vct/vct_trace.glsl"
+#include "techniques/vct/vct_vectors.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -23,28 +28,38 @@ layout(set = 0, binding = 2, scalar) uniform vct_cones
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler3D light;
-layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D gathered;
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D red; // Σ L d, Σ d.x
+layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D green; // Σ d.y
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D blue;  // Σ d.z
+layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D irradiance; // where pixels trace all cones
 
 void main()
 {
-    uint side = set.interleave, part = gl_GlobalInvocationID.z;
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy * side + uvec2(part % side, part / side));
-    if (any(greaterThanEqual(gl_GlobalInvocationID.xy, uvec2(set.sub_width, set.sub_height))) ||
-        any(greaterThanEqual(pixel, ivec2(set.width, set.height))))
-        return;
+    // Workgroups that follow each other take the parts of the same blocks: what they read and write stays in caches.
+    uint side = set.interleave, parts = side * side, part = gl_WorkGroupID.x % parts;
+    uvec2 block = uvec2(gl_WorkGroupID.x / parts, gl_WorkGroupID.y) * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy;
+    ivec2 pixel = ivec2(block * side + uvec2(part % side, part / side));
+    if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
-    vec4 sum = vec4(0.0);
+    vct_vectors sum = vct_vectors(mat3(0.0), vec3(0.0));
+    vec3 n = vec3(0.0);
     if (z > 0.0) {
-        vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-        mat3 world_from_local = vct_axes_about(n);
+        n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
         vec3 from = (frame_world_position(frame_uv(uvec2(pixel)), z) - vct.origin_m) / set.texel_m + set.offset * n;
         // Parts that neighbours have are far apart in the set: 7 has no factor in common with 4, 9, 16 and 25.
-        uint first = part * 7u % (side * side) % set.cone_count;
-        for (uint i = first; i < set.cone_count; i += side * side) {
-            vec3 direction = world_from_local * set.cones[i].xyz;
+        uint first = part * 7u % parts % set.cone_count;
+        for (uint i = first; i < set.cone_count; i += parts) {
+            vec3 direction = set.cone_count == 1u ? n : set.cones[i].xyz;
+            direction = dot(direction, n) < 0.0 ? -direction : direction;
             vec4 met = vct_trace(light, from, n, direction, set.width_per_m, set.last_mip);
-            sum += set.cones[i].w * vec4(met.rgb + (1.0 - met.a) * frame.sky, 1.0);
+            vct_add_cone(sum, met.rgb + (1.0 - met.a) * frame.sky, set.cones[i].w * direction);
         }
     }
-    imageStore(gathered, pixel, min(sum, vec4(HALF_MAX)));
+    if (side == 1u) {
+        imageStore(irradiance, pixel, vec4(vct_irradiance(sum, n, set.gain), 1.0));
+        return;
+    }
+    imageStore(red, pixel, clamp(vec4(sum.light[0], sum.way.x), -HALF_MAX, HALF_MAX));
+    imageStore(green, pixel, clamp(vec4(sum.light[1], sum.way.y), -HALF_MAX, HALF_MAX));
+    imageStore(blue, pixel, clamp(vec4(sum.light[2], sum.way.z), -HALF_MAX, HALF_MAX));
 }

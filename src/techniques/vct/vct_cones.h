@@ -15,8 +15,10 @@ int vct_cone_count(int choice);
 // The hemisphere in parts of equal solid angle 2π/count: a cap and rings, whose parts are equal.
 // Weights sum to π.
 void vct_cone_set(int choice, struct vct_cone *out);
-// The same, number 0, and others with other directions within the same parts, each cone's own; means over many numbers
-// are over nearly all of the hemisphere.
-void vct_cone_set_turned(int choice, uint32_t number, struct vct_cone *out);
 // Width over distance of a cone of solid angle 2π/count: 2 tan of its half-angle.
 float vct_cone_width(int choice);
+// As many lines through the sphere's centre, spread evenly: unit vectors of which it does not matter to which side they
+// point. On every hemisphere they are a set of cones of nearly equal solid angles, whatever its normal.
+void vct_cone_lines(int choice, vec3s *out);
+// Turns them all by the same rotation, number 0 by none; many numbers turn a line to everywhere evenly.
+void vct_turn_lines(uint32_t number, int count, vec3s *lines);

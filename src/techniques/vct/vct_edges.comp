@@ -19,7 +19,7 @@ layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5, r8) uniform writeonly image2D edges;
 
-const float LEAST_COSINE = 0.9; // of two normals of one surface: 26 degrees
+const float LEAST_COSINE = 0.7; // of normals next to each other on one surface: 45 degrees
 
 struct point
 {

@@ -11,72 +11,122 @@ static int parts_with(uint32_t cone, uint32_t parts, uint32_t cones)
     return count;
 }
 
-struct vct_cone_params vct_cone_params(const struct vct *vct, const struct frame_view *view,
-                                       int choice, uint32_t side)
+static struct vct_cone_params params_of(const struct vct *vct, const struct frame_view *view,
+                                        int choice, uint32_t side)
 {
     const struct vct_options *options = &vct->options;
-    const uint32_t count = (uint32_t)vct_cone_count(choice);
-    struct vct_cone_params params = {
-        .cone_count = count,
+    return (struct vct_cone_params){
+        .cone_count = (uint32_t)vct_cone_count(choice),
         .interleave = side,
         .width = view->width,
         .height = view->height,
-        .sub_width = gpu_groups(view->width, side),
-        .sub_height = gpu_groups(view->height, side),
         .width_per_m = options->stride * vct_cone_width(choice),
         .offset = options->offset,
         .gain = options->gain,
         .texel_m = 2.0f * vct->grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
     };
+}
+
+struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view)
+{
+    struct vct_cone_params params = params_of(vct, view, VCT_CONES_6, 1);
     struct vct_cone cones[VCT_MAX_CONES];
-    vct_cone_set(choice, cones);
-    for (uint32_t i = 0; i < count; i++) {
-        const vec3s d = cones[i].direction;
-        const float weight = cones[i].weight / (float)parts_with(i, side * side, count);
-        params.cones[i] = (vec4s){ { d.x, d.y, d.z, weight } };
-    }
+    vct_cone_set(VCT_CONES_6, cones);
+    for (uint32_t i = 0; i < params.cone_count; i++)
+        params.cones[i] = vec4_of(cones[i].direction, cones[i].weight);
     return params;
+}
+
+// Those of the picture: lines of the world, each with its share of the hemisphere.
+static struct vct_cone_params pixel_cones(const struct vct *vct, const struct frame_view *view)
+{
+    const uint32_t side = (uint32_t)vct->options.interleave;
+    struct vct_cone_params params = params_of(vct, view, vct->options.cones, side);
+    const uint32_t count = params.cone_count;
+    for (uint32_t i = 0; i < count; i++)
+        params.cones[i] = vec4_of(
+            vct->lines[i], 1.0f / (float)(count * (uint32_t)parts_with(i, side * side, count)));
+    return params;
+}
+
+// Bindings that the stages over pixels share.
+struct pixels {
+    struct gpu_binding cones, depth, normal, edges;
+    uint32_t across, down; // workgroups of one invocation a pixel
+};
+
+static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                        const struct pixels *p, gpu_image result)
+{
+    const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
+    gpu_scope_begin(cmd, "vct.cones");
+    gpu_dispatch(cmd, vct->cones,
+                 GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, p->cones, p->depth,
+                          p->normal,
+                          { .name = "light", .image = vct->light, .sampler = vct->linear },
+                          { .name = "red", .image = vct->traced[0] },
+                          { .name = "green", .image = vct->traced[1] },
+                          { .name = "blue", .image = vct->traced[2] },
+                          { .name = "irradiance", .image = result }, vct_svo_binding(vct, cmd),
+                          { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
+                 NULL, 0, side * side * gpu_groups(gpu_groups(view->width, side), VCT_LOCAL_2D),
+                 gpu_groups(gpu_groups(view->height, side), VCT_LOCAL_2D), 1);
+    gpu_scope_end(cmd);
+}
+
+static void gather(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p,
+                   gpu_pipeline pipeline, gpu_image from[3], gpu_image to[3], uint32_t across,
+                   uint32_t down)
+{
+    gpu_dispatch(
+        cmd, pipeline,
+        GPU_BIND(p->cones, p->normal, p->edges, { .name = "red", .image = from[0] },
+                 { .name = "green", .image = from[1] }, { .name = "blue", .image = from[2] },
+                 { .name = "red_sum", .image = to[0] }, { .name = "green_sum", .image = to[1] },
+                 { .name = "blue_sum", .image = to[2] },
+                 { .name = "irradiance", .image = vct->found }),
+        NULL, 0, across, down, 1);
+}
+
+static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                        const struct pixels *p, gpu_image result)
+{
+    gpu_scope_begin(cmd, "vct.edges");
+    gpu_dispatch(cmd, vct->edges,
+                 GPU_BIND(view->constants_binding, p->cones, p->depth, p->normal, p->edges), NULL,
+                 0, p->across, p->down, 1);
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "vct.gather");
+    gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
+           gpu_groups(view->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
+    // The last one has no sums to write: what it is bound to is not used.
+    gather(vct, cmd, p, vct->gather_columns, vct->gathered, vct->traced, p->across,
+           gpu_groups(view->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "vct.blur");
+    gpu_dispatch(cmd, vct->blur,
+                 GPU_BIND(view->constants_binding, p->cones, p->depth, p->normal,
+                          { .name = "gathered", .image = vct->found },
+                          { .name = "irradiance", .image = result }),
+                 NULL, 0, p->across, p->down, 1);
+    gpu_scope_end(cmd);
 }
 
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool temporal = vct->options.temporal;
-    struct vct_cone_params params =
-        vct_cone_params(vct, view, vct->options.cones, (uint32_t)vct->options.interleave);
-    if (temporal) vct_temporal_turn(&vct->temporal, vct->options.cones, &params);
+    struct vct_cone_params params = pixel_cones(vct, view);
+    if (temporal) vct_temporal_turn(&vct->temporal, &params);
     const gpu_image result = temporal ? vct->temporal.now : view->layers[FRAME_IRRADIANCE];
-    const struct gpu_binding cones = gpu_transient(cmd, "vct_cones", &params, sizeof params);
-    const struct gpu_binding depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] };
-    const struct gpu_binding normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] };
-    const uint32_t across = gpu_groups(view->width, VCT_LOCAL_2D),
-                   down = gpu_groups(view->height, VCT_LOCAL_2D);
-    const struct gpu_binding edges = { .name = "edges", .image = vct->edge_image };
-
-    gpu_scope_begin(cmd, "vct.cones");
-    gpu_dispatch(cmd, vct->cones,
-                 GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, cones, depth, normal,
-                          { .name = "light", .image = vct->light, .sampler = vct->linear },
-                          { .name = "gathered", .image = vct->traced }, vct_svo_binding(vct, cmd),
-                          { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
-                 NULL, 0, gpu_groups(params.sub_width, VCT_LOCAL_2D),
-                 gpu_groups(params.sub_height, VCT_LOCAL_2D),
-                 params.interleave * params.interleave);
-    gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "vct.edges");
-    gpu_dispatch(cmd, vct->edges, GPU_BIND(view->constants_binding, cones, depth, normal, edges),
-                 NULL, 0, across, down, 1);
-    gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "vct.gather");
-    gpu_dispatch(cmd, vct->gather_rows,
-                 GPU_BIND(cones, edges, { .name = "gathered", .image = vct->traced },
-                          { .name = "result", .image = vct->gathered }),
-                 NULL, 0, across, down, 1);
-    gpu_dispatch(cmd, vct->gather_columns,
-                 GPU_BIND(cones, edges, { .name = "gathered", .image = vct->gathered },
-                          { .name = "result", .image = result }),
-                 NULL, 0, across, down, 1);
-    gpu_scope_end(cmd);
+    const struct pixels p = { .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
+                              .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                              .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                              .edges = { .name = "edges", .image = vct->edge_image },
+                              .across = gpu_groups(view->width, VCT_LOCAL_2D),
+                              .down = gpu_groups(view->height, VCT_LOCAL_2D) };
+    trace_cones(vct, cmd, view, &p, result);
+    if (params.interleave > 1) share_cones(vct, cmd, view, &p, result);
 }
 
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,

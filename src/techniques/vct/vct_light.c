@@ -124,7 +124,7 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     const uint32_t lights = vct->params.light_count;
     vct->params.brought = more || has_sky(view) || view->scene->max_emissive > 0.0f;
     if (!vct->params.brought || (!more && brings_the_same(vct, &by))) return;
-    const struct vct_cone_params params = vct_cone_params(vct, view, VCT_CONES_6, 1);
+    const struct vct_cone_params params = vct_voxel_cones(vct, view);
     const struct gpu_binding cones = gpu_transient(cmd, "vct_cones", &params, sizeof params);
     vct->params.light_scale = view->constants->previous_scale_ratio;
     if (!more || vct->remade || !vct->light_valid) {

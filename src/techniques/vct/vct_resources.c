@@ -152,13 +152,21 @@ static bool create_image_2d(struct vct *vct, const char *name, enum gpu_format f
     return gpu_image_create(vct->gpu, &desc, out);
 }
 
+static bool create_vectors(struct vct *vct, const char *name, gpu_image out[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (!create_image_2d(vct, name, GPU_RGBA16F, &out[i])) return false;
+    return true;
+}
+
 bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
 {
     vct->width = width;
     vct->height = height;
     return create_image_2d(vct, "vct.edges", GPU_R8, &vct->edge_image) &&
-           create_image_2d(vct, "vct.traced", GPU_RGBA16F, &vct->traced) &&
-           create_image_2d(vct, "vct.gathered", GPU_RGBA16F, &vct->gathered);
+           create_image_2d(vct, "vct.found", GPU_RGBA16F, &vct->found) &&
+           create_vectors(vct, "vct.traced", vct->traced) &&
+           create_vectors(vct, "vct.gathered", vct->gathered);
 }
 
 bool vct_create_resources(struct vct *vct)
@@ -247,7 +255,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 9, MIP_PIPELINES = 6, MOST_STORAGE_PIPELINES = 11 };
+enum { PIPELINES = 10, MIP_PIPELINES = 6, MOST_STORAGE_PIPELINES = 11 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -261,6 +269,7 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->edges, "vct.edges", &shader_vct_edges_comp, NULL, 0 },
         { &vct->gather_rows, "vct.gather_rows", &shader_vct_gather_comp, NULL, 0 },
         { &vct->gather_columns, "vct.gather_columns", &shader_vct_gather_comp, columns, 1 },
+        { &vct->blur, "vct.blur", &shader_vct_blur_comp, NULL, 0 },
     };
     memcpy(out, plan, sizeof plan);
 }
@@ -332,8 +341,11 @@ void vct_destroy_resources(struct vct *vct)
     gpu_image_destroy(vct->gpu, &vct->rest.records);
     gpu_image_destroy(vct->gpu, &vct->moving.records);
     gpu_image_destroy(vct->gpu, &vct->edge_image);
-    gpu_image_destroy(vct->gpu, &vct->traced);
-    gpu_image_destroy(vct->gpu, &vct->gathered);
+    gpu_image_destroy(vct->gpu, &vct->found);
+    for (int i = 0; i < 3; i++) {
+        gpu_image_destroy(vct->gpu, &vct->traced[i]);
+        gpu_image_destroy(vct->gpu, &vct->gathered[i]);
+    }
 }
 
 uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, uint32_t height)
@@ -349,6 +361,6 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
                  (uint64_t)gpu_format_bytes(GPU_RGBA16F);
     const struct gpu_image_desc records = records_desc(options, false);
     bytes += 2 * (uint64_t)records.width * records.height * (uint64_t)gpu_format_bytes(GPU_RGBA32U);
-    const int pixel = gpu_format_bytes(GPU_R8) + 2 * gpu_format_bytes(GPU_RGBA16F);
+    const int pixel = gpu_format_bytes(GPU_R8) + 7 * gpu_format_bytes(GPU_RGBA16F);
     return bytes + (uint64_t)width * height * (uint64_t)pixel;
 }

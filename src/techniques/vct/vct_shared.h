@@ -57,14 +57,14 @@ struct vct_params {
 
 #define VCT_MAX_CONES      25
 #define VCT_MAX_INTERLEAVE 5
+#define VCT_GATHER_ROW     4 // pixels that one invocation gathers for
 
 // Uniform block "vct_cones".
 struct vct_cone_params {
-    vec4s cones[VCT_MAX_CONES]; // direction about +z; weight in sr, Σ = π
+    vec4s cones[VCT_MAX_CONES]; // direction; weight: of voxels about +z, in sr, Σ = π; of pixels in the world, Σ = 1
     uint32_t cone_count;
     uint32_t interleave;
-    uint32_t width, height;         // of the frame, pixels
-    uint32_t sub_width, sub_height; // of a sub-image
+    uint32_t width, height; // of the frame, pixels
     float width_per_m;              // width of the texels that a cone meets over the distance
     float offset;                   // texels of the light volume
     float gain;
@@ -144,7 +144,7 @@ struct vct_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct vct_params) == 18 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
+_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 9 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
                "layout is shared with GLSL");

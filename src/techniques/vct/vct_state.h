@@ -53,7 +53,7 @@ struct vct {
     gpu_pipeline fill[2];   // without and with what moves
     gpu_pipeline inject[2]; // without and with lights
     gpu_pipeline count, scan, list, texel_lists, bounce, mip, cones, edges, gather_rows,
-        gather_columns, debug;
+        gather_columns, blur, debug;
     struct vct_set rest, moving; // what stands still; what has moved
     gpu_buffer queue, queue_state;
     gpu_buffer texels, texel_mask, texel_state; // of the light volume: which hold something
@@ -61,7 +61,9 @@ struct vct {
     struct vct_svo svo;   // with storage=svo
     gpu_image light;      // RGBA16F: six volumes side by side with mips, or the pool of bricks
     gpu_image edge_image; // R8
-    gpu_image traced, gathered; // RGBA16F: Σ radiance × weight, Σ weight
+    gpu_image traced[3], gathered[3]; // RGBA16F: what cones found as vectors, of each colour
+    gpu_image found;            // RGBA16F: irradiance, share of the cones
+    vec3s lines[VCT_MAX_CONES]; // along which the picture's cones point
     struct vct_temporal temporal; // empty without the option
     uint32_t width, height;
 
@@ -103,9 +105,8 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
 // Places the grid; false where there is nothing to voxelise.
 bool vct_prepare(struct vct *vct, const struct frame_view *view);
 struct gpu_binding vct_grid_binding(struct vct *vct, struct gpu_cmd *cmd);
-// The cones of one choice, of which `side` × `side` pixels share each set.
-struct vct_cone_params vct_cone_params(const struct vct *vct, const struct frame_view *view,
-                                       int choice, uint32_t side);
+// The cones of a voxel, about its normal.
+struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view);
 // The stages, in order. Each reads vct->params.
 void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);

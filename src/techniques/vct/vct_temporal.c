@@ -146,18 +146,16 @@ static int step_through(int count)
     return step > 1 ? step : 1;
 }
 
-void vct_temporal_turn(const struct vct_temporal *t, int choice, struct vct_cone_params *params)
+void vct_temporal_turn(const struct vct_temporal *t, struct vct_cone_params *params)
 {
-    const int count = vct_cone_count(choice);
-    struct vct_cone own[VCT_MAX_CONES], turned[VCT_MAX_CONES];
-    vct_cone_set(choice, own);
-    vct_cone_set_turned(choice, t->number, turned);
+    const int count = (int)params->cone_count;
+    vec3s lines[VCT_MAX_CONES];
+    for (int i = 0; i < count; i++)
+        lines[i] = vec3_of(params->cones[i].x, params->cones[i].y, params->cones[i].z);
+    vct_turn_lines(t->number, count, lines);
     const int first = (int)((uint64_t)t->number * (uint64_t)step_through(count) % (uint64_t)count);
-    for (int i = 0; i < count; i++) {
-        const struct vct_cone *cone = &turned[(first + i) % count];
-        const float share = params->cones[i].w / own[i].weight; // of the pixels that trace it
-        params->cones[i] = vec4_of(cone->direction, cone->weight * share);
-    }
+    for (int i = 0; i < count; i++) // each keeps its share of the pixels that trace it
+        params->cones[i] = vec4_of(lines[(first + i) % count], params->cones[i].w);
 }
 
 void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view)

@@ -27,8 +27,8 @@ void vct_temporal_forget(struct vct_temporal *t);
 
 // Once a frame, before its cones: sees what is left of the last one. most: weight of the history where things move.
 void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, int32_t most, float clamp);
-// Gives this frame other cones of the choice than the last one's, and each pixel others of them. The first frame after
-// a cut has the choice's own.
-void vct_temporal_turn(const struct vct_temporal *t, int choice, struct vct_cone_params *params);
+// Gives this frame other cones than the last one's, and each pixel others of them. The first frame after a cut has the
+// cones as they are.
+void vct_temporal_turn(const struct vct_temporal *t, struct vct_cone_params *params);
 // From `now` to the frame's irradiance.
 void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view);
