@@ -6,7 +6,7 @@
 #include "frame/scene_gpu.h"
 #include "technique_shaders.h"
 
-enum { CELL_BYTES = 6 * 3 * 4 };
+enum { CELL_BYTES = 6 * 4 * 4 };
 
 bool lpv_surfaces_create(struct lpv *lpv)
 {
@@ -97,6 +97,7 @@ void lpv_record_surfaces(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
 bool lpv_bounces_after(const struct lpv *lpv, int left)
 {
     const int steps = lpv->options.steps, bounces = lpv->options.bounces, done = steps - left;
+    if (lpv->coarser) return false; // it begins with light that has bounced
     // Bounce k of n follows step ⌊k steps / (n + 1)⌋.
     const int parts = bounces + 1;
     return left > 0 && done * parts / steps > (done - 1) * parts / steps;

@@ -14,23 +14,24 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 1, scalar) readonly buffer lpv_surfaces
 {
-    uint reflecting[];
+    uvec4 surfaces[]; // [cell][direction]
 };
 layout(set = 0, binding = 2) uniform sampler3D injected; // by lamps and emissive surfaces
 layout(set = 0, binding = 3) uniform sampler3D arrived; // accumulated so far
 layout(set = 0, binding = 4) uniform writeonly image3D reflected;
 layout(set = 0, binding = 5) uniform writeonly image3D sent; // both together
 
-// Reflectance × area in cells².
+// Reflectance × area in cells². Together a cell's surfaces that look one way receive no more than what comes through its side.
 vec3 reflecting_area(int at)
 {
-    return vec3(reflecting[at], reflecting[at + 1], reflecting[at + 2]) / LPV_SURFACE_UNIT;
+    vec4 sums = vec4(surfaces[at]) / LPV_SURFACE_UNIT;
+    return sums.rgb / max(sums.a, 1.0);
 }
 
 // Flux: irradiance is w / a² times the integral, area a² times the number.
 vec3 reflected_flux(ivec3 cell, vec3 area, vec3 n)
 {
-    vec3 at = vec3(cell) + 0.5 + (lpv.offset_m / lpv.cell_m - 0.5) * n; // the surface is half a cell behind
+    vec3 at = vec3(cell) + 0.5 + (lpv.bounce_offset - 0.5) * n; // the surface is half a cell behind
     return lpv.mean_way * area * lpv_irradiance(lpv_sample(arrived, at), n);
 }
 
@@ -40,7 +41,7 @@ void main()
     if (!lpv_inside(cell)) return;
     vec4 before[7], slabs[7] = vec4[7](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     for (int side = 0; side < 6; side++) {
-        vec3 area = reflecting_area(18 * lpv_index(cell) + 3 * side), n = vec3(0.0);
+        vec3 area = reflecting_area(6 * lpv_index(cell) + side), n = vec3(0.0);
         if (area == vec3(0.0)) continue;
         n[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
         vec3 flux = reflected_flux(cell, area, n);

@@ -68,8 +68,7 @@ bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view)
     return true;
 }
 
-gpu_image lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image injected,
-                                gpu_image to)
+void lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image to)
 {
     const struct lpv_grid *grid = &lpv->grid, *coarser = &lpv->coarser->grid;
     const struct lpv_refine_push push = {
@@ -79,7 +78,6 @@ gpu_image lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image 
         .cells_y = coarser->cells[1],
         .cells_z = coarser->cells[2],
     };
-    if (injected.id != lpv->injected.id) gpu_copy_image(cmd, lpv->injected, injected);
     gpu_dispatch(
         cmd, lpv->refine,
         GPU_BIND(lpv_grid_binding(lpv, cmd),
@@ -87,5 +85,4 @@ gpu_image lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image 
                  { .name = "refined", .image = to }),
         &push, sizeof push, gpu_groups((uint32_t)grid->cells[0], LPV_LOCAL),
         gpu_groups((uint32_t)grid->cells[1], LPV_LOCAL), (uint32_t)grid->cells[2]);
-    return lpv->injected;
 }

@@ -54,6 +54,7 @@ struct lpv_params {
     float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
     float mean_way;         // of light in a step, cells
     float offset_m;         // of the look-up, along the normal
+    float bounce_offset;    // of the look-up of what surfaces send on, cells: that of the light that has arrived there
     float window;           // weight of the bands above the first at the look-up
     float blocking;         // factor on what the geometry volume says is blocked
     float damping;          // of light that is less a cell further along the normal
@@ -93,7 +94,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 54 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 55 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");

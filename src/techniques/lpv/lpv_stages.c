@@ -54,6 +54,7 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
             options->gain * mean_way / (grid->cell_m * grid->cell_m * scale->grid_from_flux),
         .mean_way = mean_way,
         .offset_m = options->offset * grid->cell_m,
+        .bounce_offset = options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
         .window = options->window,
         .blocking = options->blocking,
         .damping = options->damping,
@@ -191,24 +192,51 @@ static gpu_image record_bounce(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image a
     return bounce->sent;
 }
 
-void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
+// One of the finer cascades begins with the coarser one's light, `before`, which has bounced as often as
+// it may. What surfaces here reflect of it is sent out with what was injected.
+static gpu_image record_reflection(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image before)
 {
-    const int first = lpv->options.steps - 1;
-    gpu_image before = lpv->injected, source = before;
-    gpu_scope_begin(cmd, lpv->names->propagate);
-    gpu_image injected = record_held(lpv, cmd, first);
-    if (lpv->coarser) {
-        before = step_target(lpv, first + 1);
-        injected = lpv_record_refinement(lpv, cmd, injected, before);
-    }
-    for (int left = first; left >= 0; left--) {
+    const struct lpv_bounce *bounce = &lpv->bounce;
+    lpv_record_bounce(lpv, cmd, before);
+    if (lpv->options.geometry == LPV_GEOMETRY_OFF) return bounce->sent;
+    record_step(lpv, cmd, lpv->propagate_held, bounce->sent, bounce->sent, bounce->reflected);
+    return bounce->reflected;
+}
+
+static void record_steps(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image before, gpu_image source)
+{
+    for (int left = lpv->options.steps - 1; left >= 0; left--) {
         const gpu_image after = step_target(lpv, left);
-        record_step(lpv, cmd, lpv->propagate, left == first ? injected : source, before, after);
-        if (left == first && injected.id != lpv->injected.id)
-            gpu_copy_image(cmd, lpv->injected, injected);
+        record_step(lpv, cmd, lpv->propagate, source, before, after);
+        // What is to last is no target of later steps.
+        if (source.id == step_target(lpv, left + 1).id || source.id == step_target(lpv, left).id) {
+            gpu_copy_image(cmd, lpv->injected, source);
+            source = lpv->injected;
+        }
         before = after;
         if (lpv_bounces_after(lpv, left)) source = record_bounce(lpv, cmd, after);
     }
+}
+
+void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
+{
+    const int first = lpv->options.steps - 1;
+    gpu_image before = lpv->injected, source;
+    gpu_scope_begin(cmd, lpv->names->propagate);
+    if (lpv->coarser && lpv->options.bounces > 0) {
+        before = step_target(lpv, first + 1);
+        lpv_record_refinement(lpv, cmd, before);
+        source = record_reflection(lpv, cmd, before);
+    } else {
+        source = record_held(lpv, cmd, first);
+        if (lpv->coarser) {
+            if (source.id != lpv->injected.id) gpu_copy_image(cmd, lpv->injected, source);
+            source = lpv->injected;
+            before = step_target(lpv, first + 1);
+            lpv_record_refinement(lpv, cmd, before);
+        }
+    }
+    record_steps(lpv, cmd, before, source);
     gpu_scope_end(cmd);
 }
 

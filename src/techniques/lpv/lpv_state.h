@@ -91,9 +91,8 @@ void lpv_dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipel
 // The stages, in order. Each reads lpv->params.
 void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd);
-// Puts the light of the coarser cascade into `to`, which the first step reads. What is injected may be in there and is moved to
-// its own image, which is returned.
-gpu_image lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image injected, gpu_image to);
+// Puts the light of the coarser cascade into `to`, which the first step reads.
+void lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image to);
 // Of all cascades.
 void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 // Draws the view LPV_VIEW_… into `out` (RGBA16F of the frame's size).

@@ -1,5 +1,5 @@
-// What reflects light, by cell: Σ ρ A n_a² over the surfaces that inject into the cell, for each of the six directions ±a that
-// their normals n look to, in RGB. ρ is diffuse reflectance, A area in cells²; the three n_a² sum to 1, and a surface of normal n
+// What reflects light, by cell: Σ ρ A n_a² and Σ A n_a² over the surfaces that inject into the cell, for each of the six directions
+// ±a that their normals n look to, ρ in RGB. ρ is diffuse reflectance, A area in cells²; the three n_a² sum to 1, and a surface of normal n
 // is taken as three that look along the axes.
 //
 // A triangle is sampled where lines along its largest axis cross it, LPV_SURFACE_LINES² of them to a face of a cell. Sums are
@@ -17,7 +17,7 @@ layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
 layout(set = 0, binding = 12, scalar) buffer lpv_surfaces
 {
-    uint reflecting[]; // [cell][direction +x −x +y −y +z −z][colour], in units of 1/LPV_SURFACE_UNIT cells²
+    uint surfaces[]; // [cell][direction +x −x +y −y +z −z][red, green, blue, area], in units of 1/LPV_SURFACE_UNIT cells²
 };
 
 const int LINES = LPV_SURFACE_LINES;
@@ -84,11 +84,10 @@ bool triangle_of(uint i, out triangle t)
     return true;
 }
 
-// Diffuse reflectance, as reflective shadow maps hold it; nothing where a mask cuts it away.
+// Diffuse reflectance, as reflective shadow maps hold it.
 vec3 reflectance_at(triangle t, vec3 weight)
 {
     scene_material material = scene_material_table[push.draw.material];
-    if (!scene_triangle_solid(t.vertices, weight)) return vec3(0.0);
     vec2 uv = vec2(0.0), metallic_uv = vec2(0.0);
     vec3 colour = vec3(0.0);
     for (int k = 0; k < 3; k++) {
@@ -100,15 +99,15 @@ vec3 reflectance_at(triangle t, vec3 weight)
     return colour * (1.0 - material.metallic * textureLod(metallic_roughness_map, metallic_uv, t.lod).b);
 }
 
-void add_side(vec3 position, vec3 normal, vec3 amount)
+void add_side(vec3 position, vec3 normal, vec4 amount)
 {
     ivec3 cell = ivec3(floor(position + 0.5 * normal));
     if (!lpv_inside(cell)) return;
     for (int axis = 0; axis < 3; axis++) {
-        int at = 18 * lpv_index(cell) + 3 * (2 * axis + (normal[axis] < 0.0 ? 1 : 0));
-        uvec3 whole = uvec3(round(amount * normal[axis] * normal[axis] * LPV_SURFACE_UNIT));
-        for (int c = 0; c < 3; c++)
-            if (whole[c] > 0u) atomicAdd(reflecting[at + c], whole[c]);
+        int at = 24 * lpv_index(cell) + 4 * (2 * axis + (normal[axis] < 0.0 ? 1 : 0));
+        uvec4 whole = uvec4(round(amount * normal[axis] * normal[axis] * LPV_SURFACE_UNIT));
+        for (int c = 0; c < 4; c++)
+            if (whole[c] > 0u) atomicAdd(surfaces[at + c], whole[c]);
     }
 }
 
@@ -120,7 +119,8 @@ void add_line(triangle t, ivec2 line)
     if (!all(greaterThanEqual(weight, vec3(0.0))) && !all(lessThanEqual(weight, vec3(0.0)))) return;
     weight /= weight.x + weight.y + weight.z;
     vec3 position = t.corners * weight;
-    vec3 amount = reflectance_at(t, weight) / (float(LINES * LINES) * abs(t.normal[t.axis]));
+    if (!scene_triangle_solid(t.vertices, weight)) return; // a mask cuts it away
+    vec4 amount = vec4(reflectance_at(t, weight), 1.0) / (float(LINES * LINES) * abs(t.normal[t.axis]));
     add_side(position, t.normal, amount);
     if ((scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u) add_side(position, -t.normal, amount);
 }
