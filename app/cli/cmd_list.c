@@ -81,6 +81,15 @@ static json_t *options_json(option_getter *get, int owner)
     return array;
 }
 
+static json_t *presets_json(int technique)
+{
+    json_t *array = json_array();
+    const char *name, *options;
+    for (int i = 0; array && ag_technique_preset_get(technique, i, &name, &options); i++)
+        json_array_append_new(array, json_pack("{s:s, s:s}", "name", name, "options", options));
+    return array;
+}
+
 static json_t *debug_views_json(int technique)
 {
     json_t *array = json_array();
@@ -97,12 +106,12 @@ static json_t *techniques_json(void)
     for (int i = 0; array && ag_technique_get(i, &t); i++)
         json_array_append_new(
             array,
-            json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:b, s:b, s:b, s:o, s:o}", "name", t.name,
-                      "title", t.title, "paper", t.paper, "role", t.role, "moving_geometry",
+            json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:b, s:b, s:b, s:o, s:o, s:o}", "name",
+                      t.name, "title", t.title, "paper", t.paper, "role", t.role, "moving_geometry",
                       t.moving_geometry, "moving_lights", t.moving_lights, "needs_bake",
                       t.needs_bake, "makes_specular", t.makes_specular, "publishes_probes",
                       t.publishes_probes, "options", options_json(ag_technique_option_get, i),
-                      "debug_views", debug_views_json(i)));
+                      "presets", presets_json(i), "debug_views", debug_views_json(i)));
     return array;
 }
 
@@ -166,6 +175,13 @@ static void print_options(option_getter *get, int owner)
     for (int i = 0; get(owner, i, &option); i++) print_option(&option);
 }
 
+static void print_presets(int technique)
+{
+    const char *name, *options;
+    for (int i = 0; ag_technique_preset_get(technique, i, &name, &options); i++)
+        printf("      quality=%-10s %s\n", name, options[0] ? options : "the defaults");
+}
+
 static void print_techniques(void)
 {
     struct ag_technique_info t;
@@ -177,6 +193,7 @@ static void print_techniques(void)
                t.moving_lights ? ", moving lights" : "", t.needs_bake ? ", needs a bake" : "");
         if (t.paper && t.paper[0]) printf("             %s\n", t.paper);
         print_options(ag_technique_option_get, i);
+        print_presets(i);
         for (int k = 0; ag_technique_debug_view_get(i, k, &name, &help); k++)
             printf("      --debug-view %-16s %s\n", name, help);
     }

@@ -66,6 +66,13 @@ static int debug_view_count(const struct technique *technique)
     return count;
 }
 
+static int preset_count(const struct technique *technique)
+{
+    int count = 0;
+    while (technique->presets && technique->presets[count].name) count++;
+    return count;
+}
+
 bool ag_technique_get(int index, struct ag_technique_info *out)
 {
     static const char *const role_names[] = {
@@ -84,6 +91,7 @@ bool ag_technique_get(int index, struct ag_technique_info *out)
                                        .makes_specular = can & MAKES_SPECULAR,
                                        .publishes_probes = can & PUBLISHES_PROBES,
                                        .option_count = (int)technique->options.count,
+                                       .preset_count = preset_count(technique),
                                        .debug_view_count = debug_view_count(technique) };
     return true;
 }
@@ -92,6 +100,15 @@ bool ag_technique_option_get(int technique, int index, struct ag_option_info *ou
 {
     const struct technique *found = technique_at(technique);
     return found && option_get(&found->options, index, out);
+}
+
+bool ag_technique_preset_get(int technique, int index, const char **name, const char **options)
+{
+    const struct technique *found = technique_at(technique);
+    if (!found || index < 0 || index >= preset_count(found)) return false;
+    if (name) *name = found->presets[index].name;
+    if (options) *options = found->presets[index].options;
+    return true;
 }
 
 bool ag_technique_debug_view_get(int technique, int index, const char **name, const char **help)

@@ -1,4 +1,4 @@
-// A running sum of techniques from its spelling: "lpv:steps=8,dim=32+vo". It is the frame's indirect hook.
+// A running sum of techniques from its spelling: "lpv:steps=8,dim=32+vo", "lpv:quality=low". It is the frame's indirect hook.
 #pragma once
 
 #include "techniques/technique.h"

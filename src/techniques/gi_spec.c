@@ -1,6 +1,7 @@
 // Reading and writing "source+delta+visibility".
 #include "techniques/gi.h"
 
+#include "techniques/gi_preset.h"
 #include "techniques/gi_spec.h"
 #include "techniques/registry.h"
 
@@ -74,8 +75,7 @@ static bool add_technique(struct gi_spec *spec, const struct technique *techniqu
                              technique->name, spec->technique[i]->name, role_name(technique->role));
     void *values = host_alloc(host, 1, technique->options.size);
     if (!values) return false;
-    option_defaults(&technique->options, values);
-    if (!option_parse(host, &technique->options, technique->name, options, values)) {
+    if (!gi_options_read(host, technique, options, values)) {
         host_free(host, values);
         return false;
     }

@@ -2,6 +2,7 @@
 #include "techniques/registry.h"
 
 #include "techniques/ambient/ambient.h"
+#include "techniques/gi_preset.h"
 #include "techniques/hbao/hbao.h"
 #include "techniques/lpv/lpv.h"
 #include "techniques/none/none.h"
@@ -12,9 +13,9 @@
 #include <assert.h>
 #include <string.h>
 
-const struct technique *const techniques[] = { &technique_none, &technique_ambient, &technique_lpv,
-                                               &technique_holpv, &technique_vct, &technique_vo,
-                                               &technique_ssao, &technique_hbao, NULL };
+const struct technique *const techniques[] = { &technique_none,  &technique_ambient, &technique_lpv,
+                                               &technique_holpv, &technique_vct,     &technique_vo,
+                                               &technique_ssao,  &technique_hbao,    NULL };
 
 bool technique_is_sound(const struct technique *technique)
 {
@@ -26,6 +27,8 @@ bool technique_is_sound(const struct technique *technique)
     if (technique->debug_views && !technique->debug_view) return false;
     if ((technique->bake_version != 0) != ((technique->capabilities & NEEDS_BAKE) != 0))
         return false;
+    for (size_t i = 0; i < technique->options.count; i++)
+        if (strcmp(technique->options.rows[i].name, GI_QUALITY) == 0) return false;
     return technique->bake_version == 0 || (technique->bake && technique->load);
 }
 

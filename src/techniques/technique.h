@@ -30,6 +30,10 @@ enum technique_change {
 struct technique_debug_view {
     const char *name, *help;
 };
+// What `quality=NAME` sets before the options that are given beside it, written as they are: "steps=4,dim=16". "": the defaults.
+struct technique_preset {
+    const char *name, *options;
+};
 // A view of this name of a technique that publishes probes is drawn from them by gi.c; debug_view is not called.
 #define PROBES_VIEW "probes"
 #define PROBES_VIEW_HELP "white balls where probes stand, before surfaces lit by the probes; with probes=true"
@@ -68,6 +72,7 @@ struct technique {
     uint32_t needs;        // frame_need bits
     int bake_version;      // 0: no bake
     struct option_table options;
+    const struct technique_preset *presets;                // from cheap to dear; ends with a NULL name; may be NULL
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
     size_t state_size;     // of the private state, allocated zeroed by the host
 

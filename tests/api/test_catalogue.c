@@ -31,6 +31,9 @@ TEST(techniques_and_their_options_can_be_counted)
             check_option(&option);
         }
         CHECK(!ag_technique_option_get(count, technique.option_count, &option));
+        for (int i = 0; i < technique.preset_count; i++)
+            CHECK(ag_technique_preset_get(count, i, &name, &help) && name[0] && help);
+        CHECK(!ag_technique_preset_get(count, technique.preset_count, &name, &help));
         for (int i = 0; i < technique.debug_view_count; i++)
             CHECK(ag_technique_debug_view_get(count, i, &name, &help) && name[0] && help[0]);
         CHECK(!ag_technique_debug_view_get(count, technique.debug_view_count, &name, &help));
@@ -39,6 +42,7 @@ TEST(techniques_and_their_options_can_be_counted)
     CHECK(!ag_technique_get(-1, &technique));
     CHECK(!ag_technique_get(0, NULL));
     CHECK(!ag_technique_option_get(count, 0, &option));
+    CHECK(!ag_technique_preset_get(-1, 0, &name, &help));
     CHECK(!ag_technique_debug_view_get(-1, 0, &name, &help));
 }
 

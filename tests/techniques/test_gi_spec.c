@@ -27,6 +27,10 @@ struct fake_options {
 static const struct option_row fake_rows[] = { OPTION_ROW(struct fake_options, float32, bias, 1,
                                                           -1e6, 1e6, "", LIVE, "a number") };
 
+static const struct technique_preset fake_presets[] = { { "low", "bias=0.5" },
+                                                        { "high", "bias=8" },
+                                                        { NULL, NULL } };
+
 #define FAKE(name_, role_)                                                                         \
     {                                                                                              \
         .name = name_, .title = "fake", .paper = "none", .role = role_, .create = fake_create,     \
@@ -39,7 +43,18 @@ static const struct option_row fake_rows[] = { OPTION_ROW(struct fake_options, f
 static const struct technique still = FAKE("still", ROLE_SOURCE), glow = FAKE("glow", ROLE_SOURCE),
                               change = FAKE("change", ROLE_DELTA),
                               shade = FAKE("shade", ROLE_VISIBILITY);
-static const struct technique *const fakes[] = { &still, &glow, &change, &shade, NULL };
+static const struct technique graded = {
+    .name = "graded",
+    .title = "fake",
+    .paper = "none",
+    .role = ROLE_SOURCE,
+    .create = fake_create,
+    .record = fake_record,
+    .destroy = fake_destroy,
+    .options = { fake_rows, 1, sizeof(struct fake_options) },
+    .presets = fake_presets,
+};
+static const struct technique *const fakes[] = { &still, &glow, &change, &shade, &graded, NULL };
 
 static void parses_as(const char *text, const char *printed)
 {
@@ -97,7 +112,7 @@ TEST(gi_spec_prints_what_it_reads)
 TEST(gi_spec_errors_name_what_is_wrong_and_what_was_meant)
 {
     fails_with("glov", "unknown technique glov: did you mean glow?");
-    fails_with("xyzzyxyzzy", "known are still, glow, change, shade");
+    fails_with("xyzzyxyzzy", "known are still, glow, change, shade, graded");
     fails_with("glow:bais=1", "bias");
     fails_with("glow:bias=x", "glow:bias");
     fails_with("glow+still", "at most one source");
@@ -113,6 +128,48 @@ TEST(gi_spec_errors_name_what_is_wrong_and_what_was_meant)
     memset(longest, 'a', sizeof longest - 1);
     longest[sizeof longest - 1] = 0;
     fails_with(longest, "longer than");
+}
+
+TEST(gi_spec_presets_come_before_what_is_said_beside_them)
+{
+    parses_as("graded", "graded:bias=1");
+    parses_as("graded:quality=low", "graded:bias=0.5");
+    parses_as("graded:quality=high,bias=3", "graded:bias=3");
+    parses_as("graded:bias=3,quality=high", "graded:bias=3");
+    parses_as("graded:quality=high,quality=low+shade", "graded:bias=0.5+shade:bias=1");
+}
+
+TEST(gi_spec_errors_of_presets_name_what_there_is)
+{
+    fails_with("graded:quality=hihg", "did you mean high? (one of low|high)");
+    fails_with("graded:quality=ultimate",
+               "cannot set graded:quality to \"ultimate\": it must be one of low|high");
+    fails_with("graded:quality=", "graded:quality: no value is given");
+    fails_with("graded:quality", "graded:quality: no value is given");
+    fails_with("graded:qualty=low", "unknown option graded:qualty: did you mean quality?");
+    fails_with("graded:quality=low,,bias=1", "a name is missing");
+    fails_with("graded:quality=low,", "a name is missing");
+    fails_with("graded:quality=low,bias=x", "graded:bias");
+    fails_with("glow:quality=low", "glow has no presets");
+}
+
+// From cheap to dear, of known names; the middle one is what there is without.
+TEST(presets_of_techniques_can_be_read)
+{
+    static const char *const names[] = { "low", "medium", "high" };
+    for (size_t i = 0; techniques[i]; i++) {
+        const struct technique_preset *preset = techniques[i]->presets;
+        for (int k = 0; preset && k < 3; k++) {
+            struct gi_spec spec;
+            char text[64];
+            CHECK_STRING(preset[k].name, names[k]);
+            snprintf(text, sizeof text, "%s:quality=%s", techniques[i]->name, preset[k].name);
+            CHECK(gi_spec_parse(&spec, test_host(), text));
+            CHECK((preset[k].options[0] != 0) == (k != 1));
+            gi_spec_finish(&spec);
+        }
+        CHECK(!preset || !preset[3].name);
+    }
 }
 
 TEST(gi_spec_cut_anywhere_is_read_or_refused)
@@ -149,6 +206,11 @@ TEST(registry_refuses_a_technique_that_lacks_something)
     bad = glow;
     bad.bake_version = 1;
     CHECK(!technique_is_sound(&bad));
+    struct option_row named_quality = fake_rows[0];
+    named_quality.name = "quality";
+    bad = glow;
+    bad.options.rows = &named_quality;
+    CHECK(!technique_is_sound(&bad));
     const struct technique_debug_view views[] = { { "a", "b" }, { NULL, NULL } };
     bad = glow;
     bad.debug_views = views;
@@ -165,6 +227,11 @@ TEST(every_option_and_view_is_in_the_readme_of_its_technique)
         CHECK(file_read(test_host(), path, 0, &text));
         for (size_t k = 0; k < techniques[i]->options.count; k++) {
             snprintf(quoted, sizeof quoted, "`%s`", techniques[i]->options.rows[k].name);
+            if (!strstr((const char *)text.data, quoted)) fail_msg("%s lacks %s", path, quoted);
+        }
+        const struct technique_preset *preset = techniques[i]->presets;
+        for (; preset && preset->name; preset++) {
+            snprintf(quoted, sizeof quoted, "quality=%s", preset->name);
             if (!strstr((const char *)text.data, quoted)) fail_msg("%s lacks %s", path, quoted);
         }
         const struct technique_debug_view *view = techniques[i]->debug_views;

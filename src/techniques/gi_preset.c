@@ -1,0 +1,105 @@
+// Options of a technique as a term of a sum spells them: a preset, and what is said beside it.
+#include "techniques/gi_preset.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_PRESETS = 8, LIST_SIZE = 256 };
+
+static bool fail_unknown(struct host *host, const struct technique *technique, const char *name)
+{
+    const char *names[MAX_PRESETS];
+    char list[LIST_SIZE] = "";
+    size_t count = 0, used = 0;
+    for (; count < MAX_PRESETS && technique->presets[count].name; count++) {
+        names[count] = technique->presets[count].name;
+        const int written =
+            snprintf(list + used, sizeof list - used, "%s%s", count ? "|" : "", names[count]);
+        if (written > 0 && (size_t)written < sizeof list - used) used += (size_t)written;
+    }
+    const char *nearest = nearest_name(name, names, count);
+    if (nearest)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot set %s:" GI_QUALITY " to \"%s\": did you mean %s? (one of %s)",
+                         technique->name, name, nearest, list);
+    return host_fail(host, FAIL_ARGUMENT,
+                     "cannot set %s:" GI_QUALITY " to \"%s\": it must be one of %s",
+                     technique->name, name, list);
+}
+
+static bool apply(struct host *host, const struct technique *technique, const char *name,
+                  void *values)
+{
+    if (!technique->presets)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot set %s:" GI_QUALITY ": %s has no presets, only single options",
+                         technique->name, technique->name);
+    if (!name[0])
+        return host_fail(host, FAIL_ARGUMENT, "cannot set %s:" GI_QUALITY ": no value is given",
+                         technique->name);
+    for (const struct technique_preset *preset = technique->presets; preset->name; preset++)
+        if (strcmp(preset->name, name) == 0)
+            return option_parse(host, &technique->options, technique->name, preset->options,
+                                values);
+    return fail_unknown(host, technique, name);
+}
+
+// Whether a key that no option has was meant to be this one; option_parse does not know of it.
+static bool is_misspelt(const struct technique *technique, const char *key)
+{
+    static const char *const quality[] = { GI_QUALITY };
+    if (!technique->presets || !nearest_name(key, quality, 1)) return false;
+    for (size_t i = 0; i < technique->options.count; i++)
+        if (strcmp(technique->options.rows[i].name, key) == 0) return false;
+    return true;
+}
+
+// Takes "quality=NAME" where an item is one. Others are left as they are, for option_parse.
+static bool read_item(struct host *host, const struct technique *technique, char *item, bool *taken,
+                      void *values)
+{
+    char *equals = strchr(item, '=');
+    if (equals) *equals = 0;
+    *taken = strcmp(item, GI_QUALITY) == 0;
+    if (*taken) return apply(host, technique, equals ? equals + 1 : "", values);
+    if (is_misspelt(technique, item))
+        return host_fail(host, FAIL_ARGUMENT, "unknown option %s:%s: did you mean " GI_QUALITY "?",
+                         technique->name, item);
+    if (equals) *equals = '=';
+    return true;
+}
+
+// Sets what presets say, the last one last, and leaves in `rest`, longer than the text, the other
+// items.
+static bool read_presets(struct host *host, const struct technique *technique, char *text,
+                         char *rest, void *values)
+{
+    size_t used = 0;
+    bool taken = false, first = true;
+    for (char *item = text, *next; item; item = next) {
+        next = strchr(item, ',');
+        if (next) *next++ = 0;
+        if (!read_item(host, technique, item, &taken, values)) return false;
+        if (taken) continue;
+        const size_t length = strlen(item);
+        if (!first || length == 0) rest[used++] = ','; // an item that is missing stays an error
+        memcpy(rest + used, item, length);
+        used += length;
+        first = false;
+    }
+    rest[used] = 0;
+    return true;
+}
+
+bool gi_options_read(struct host *host, const struct technique *technique, const char *text,
+                     void *values)
+{
+    option_defaults(&technique->options, values);
+    if (!text[0]) return true;
+    char *items = host_strdup(host, text), *rest = host_sprintf(host, "%s,", text);
+    const bool ok = items && rest && read_presets(host, technique, items, rest, values) &&
+                    option_parse(host, &technique->options, technique->name, rest, values);
+    host_free(host, items);
+    host_free(host, rest);
+    return ok;
+}
