@@ -34,9 +34,10 @@ static void name_techniques(const struct measure *measure, const struct paper_sc
     for (int i = 0; i < MEASURE_TECHNIQUES; i++) {
         if (!has_technique(names[i])) continue;
         struct measured *m = &line->techniques[line->technique_count++];
-        char settings[64] = "";
+        char settings[96] = "";
         if (measure->paper_settings)
-            snprintf(settings, sizeof settings, "dim=%d,steps=%d", scene->dim, scene->steps);
+            snprintf(settings, sizeof settings, "cascades=1,bounces=0,dim=%d,steps=%d", scene->dim,
+                     scene->steps);
         const char *more = measure->options ? measure->options : "";
         m->technique = names[i];
         snprintf(m->gi, sizeof m->gi, "%s%s%s%s%s", names[i], settings[0] || more[0] ? ":" : "",

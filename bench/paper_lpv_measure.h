@@ -10,7 +10,7 @@ struct measure {
     struct ag_context *context;
     struct ag_device *device;
     int frames, spp, picture_spp, picture_width;
-    bool paper_settings; // the scene's dim and steps; else what the techniques take by themselves
+    bool paper_settings; // the scene's dim and steps, one grid and one bounce; else what the techniques take by themselves
     const char *options; // more of them for both techniques, "key=value,…"; may be NULL
     int width, height;   // of the last frames measured
 };

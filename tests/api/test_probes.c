@@ -38,7 +38,8 @@ static double mean(const struct ag_image *image)
 // of coefficients and results to half floats (11 bits, nine terms of which some cancel).
 TEST(strangers_are_lit_as_surfaces_are)
 {
-    const char *gi[] = { "lpv:probes=true,dim=16,offset=0", "holpv:probes=true,dim=16,offset=0" };
+    const char *gi[] = { "lpv:probes=true,dim=16,offset=0,cascades=1",
+                         "holpv:probes=true,dim=16,offset=0,cascades=1" };
     for (int k = 0; k < 2; k++) {
         struct stage s = stage_open(gi[k], NULL);
         struct ag_probes *probes = render_probes(&s);

@@ -10,9 +10,9 @@ wrong() { echo "$1"; exit 1; }
 "$1" --out "$folder/out" --only diagonal --frames 1 --spp 4 --picture-spp 1 --picture-width 32 > "$folder/said" 2> "$folder/notes"
 head -n 1 "$folder/out/table.csv" | grep -q '^scene,section,technique,' || wrong "table.csv has no head"
 columns=$(awk -F, 'NR == 1 { print NF }' "$folder/out/table.csv")
-# The options stand in quotes and have one comma.
-grep '^diagonal,5.2,lpv,"lpv:dim=16,steps=20",900,900,1,' "$folder/out/table.csv" |
-    awk -F, -v n="$columns" '{ exit !(NF == n + 1 && $9 > 0 && $13 > $9 && $15 > 1000) }' || wrong "the row of lpv is wrong"
+# The options stand in quotes and have three commas.
+grep '^diagonal,5.2,lpv,"lpv:cascades=1,bounces=0,dim=16,steps=20",900,900,1,' "$folder/out/table.csv" |
+    awk -F, -v n="$columns" '{ exit !(NF == n + 3 && $9 > 0 && $13 > $9 && $15 > 1000) }' || wrong "the row of lpv is wrong"
 grep -q '^diagonal  *lpv ' "$folder/said" || wrong "nothing was said"
 awk -F, 'NR == 1 && $1 != "metres" { wrong++ } NR > 1 { lit += $2 > 0 && $3 > 0; wrong += $1 > 6.3 } END { exit !(NR == 481 && lit > 300 && !wrong) }' \
     "$folder/out/diagonal.csv" || wrong "diagonal.csv has no light"

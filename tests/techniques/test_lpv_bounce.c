@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDES = 6, NUMBERS = SIDES * RIG_COLOURS };
+enum { SIDES = 6, SIDE_NUMBERS = RIG_COLOURS + 1, NUMBERS = SIDES * SIDE_NUMBERS };
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
@@ -19,7 +19,7 @@ static void use(struct studio *s, struct lpv *lpv)
     s->indirect = (struct frame_indirect){ record, lpv, technique_lpv.needs };
 }
 
-// Σ reflectance × area over all cells, in m²: [side][colour].
+// Σ reflectance × area over all cells, and Σ area, in m²: [side][colour or area].
 static void read_areas(struct lpv *lpv, double out[NUMBERS])
 {
     const int32_t *cells = lpv->grid.cells;
@@ -70,7 +70,7 @@ TEST_GPU(lpv_surfaces_have_the_area_and_colour_of_the_scene)
     const double albedo[RIG_COLOURS] = { 0.2, 0.5, 0.8 };
     for (int side = 0; side < SIDES; side++)
         for (int c = 0; c < RIG_COLOURS; c++)
-            CHECK_RELATIVE(areas[RIG_COLOURS * side + c], albedo[c] * expected[side], 0.06);
+            CHECK_RELATIVE(areas[SIDE_NUMBERS * side + c], albedo[c] * expected[side], 0.06);
     rig_destroy(lpv);
     studio_finish(&s);
 }
@@ -102,7 +102,7 @@ TEST_GPU(lpv_surfaces_respect_masks_and_sides)
     read_areas(lpv, areas);
     const double expected[SIDES] = { 0, 0, 8, 8, 8, 0 };
     for (int side = 0; side < SIDES; side++)
-        CHECK_NEAR(areas[RIG_COLOURS * side], expected[side], 0.06 * 8);
+        CHECK_NEAR(areas[SIDE_NUMBERS * side], expected[side], 0.06 * 8);
     rig_destroy(lpv);
     studio_finish(&s);
 }
@@ -137,26 +137,39 @@ static double closed_box(struct gpu *gpu, const char *gi, float albedo)
 
 // A lamp in the middle of a closed box: of its flux Φ all walls get Φ ρ by one bounce, Φ ρ / (1 −
 // ρ) by all of them.
+static void bounces_are_near_the_geometric_series(struct gpu *gpu, const char *gi, double least)
+{
+    static const float albedos[] = { 0.3f, 0.6f };
+    for (int i = 0; i < 2; i++) {
+        char text[64];
+        double mean[3];
+        static const int bounces[3] = { 0, 1, 8 };
+        for (int k = 0; k < 3; k++) {
+            snprintf(text, sizeof text, "%s,bounces=%d", gi, bounces[k]);
+            mean[k] = closed_box(gpu, text, albedos[i]);
+        }
+        const double rho = (double)albedos[i], all = mean[2] / mean[0];
+        print_message("%s, albedo %.1f: by one more %.3f (%.3f), by eight more %.3f (%.3f)\n", gi,
+                      rho, mean[1] / mean[0], 1 + rho, all, 1 / (1 - rho));
+        CHECK(mean[1] > 1.1 * mean[0] && mean[2] > mean[1]);
+        CHECK(all - 1 > least * rho / (1 - rho) && all - 1 < 1.4 * rho / (1 - rho));
+    }
+}
+
+// The far wall gets a part of its share alone, and a wall some of its own.
 TEST_GPU(lpv_bounces_are_near_the_geometric_series)
 {
-    static const char *const techniques[] = { "lpv", "holpv" };
-    static const float albedos[] = { 0.3f, 0.6f };
-    for (int t = 0; t < 2; t++)
-        for (int i = 0; i < 2; i++) {
-            char gi[64];
-            double mean[3];
-            static const int bounces[3] = { 0, 1, 8 };
-            for (int k = 0; k < 3; k++) {
-                snprintf(gi, sizeof gi, "%s:dim=16,steps=64,bounces=%d", techniques[t], bounces[k]);
-                mean[k] = closed_box(gpu, gi, albedos[i]);
-            }
-            const double rho = (double)albedos[i], all = mean[2] / mean[0];
-            print_message("%s, albedo %.1f: by one more %.3f (%.3f), by eight more %.3f (%.3f)\n",
-                          techniques[t], rho, mean[1] / mean[0], 1 + rho, all, 1 / (1 - rho));
-            // The far wall gets a part of its share alone, and a wall some of its own.
-            CHECK(mean[1] > 1.1 * mean[0] && mean[2] > mean[1]);
-            CHECK(all - 1 > 0.6 * rho / (1 - rho) && all - 1 < 1.4 * rho / (1 - rho));
-        }
+    bounces_are_near_the_geometric_series(gpu, "lpv:dim=16,steps=64", 0.6);
+    bounces_are_near_the_geometric_series(gpu, "holpv:dim=16,steps=64", 0.6);
+}
+
+// Finer cascades go on with the light that bounced in the coarsest, and send on what of it comes to
+// their surfaces. The coarsest makes only as many steps as light needs to cross it, so that the
+// last of eight bounces come too late to get far.
+TEST_GPU(lpv_bounces_of_cascades_are_near_the_geometric_series)
+{
+    bounces_are_near_the_geometric_series(gpu, "lpv:dim=16,cascades=3,steps=8", 0.4);
+    bounces_are_near_the_geometric_series(gpu, "holpv:dim=16,cascades=3,steps=5", 0.4);
 }
 
 TEST_GPU(lpv_bounces_are_linear)
@@ -211,7 +224,7 @@ TEST_GPU(lpv_surfaces_follow_what_moves)
     const double turned = render_mean(&s);
     double areas[NUMBERS];
     read_areas(kept, areas);
-    CHECK(areas[0] > 1.0 && areas[3 * 4] < 0.1);
+    CHECK(areas[0] > 1.0 && areas[4 * SIDE_NUMBERS] < 0.1);
     rig_destroy(kept);
     struct lpv *fresh = rig_create(gpu, "lpv:dim=16,steps=16,bounces=1");
     use(&s, fresh);

@@ -37,16 +37,16 @@ uint64_t lpv_probes_bytes(const struct lpv_options *options)
     return dim * dim * dim * FRAME_PROBE_SLABS * (uint64_t)gpu_format_bytes(GPU_RGBA16F);
 }
 
-// The cascade that covers all of the scene.
-static const struct lpv *coarsest_of(const struct lpv *lpv)
+// The finest cascade that covers all of the scene.
+static const struct lpv *whole_of(const struct lpv *lpv)
 {
-    while (lpv->coarser) lpv = lpv->coarser;
+    while (lpv->grid.open && lpv->coarser) lpv = lpv->coarser;
     return lpv;
 }
 
 static struct frame_probes place_of(const struct lpv *lpv)
 {
-    const struct lpv_grid *grid = &coarsest_of(lpv)->grid;
+    const struct lpv_grid *grid = &whole_of(lpv)->grid;
     if (!lpv->lit)
         return (struct frame_probes){
             .spacing_m = 1, .count_x = 1, .count_y = 1, .count_z = 1, .slab = lpv->options.dim
@@ -69,7 +69,7 @@ void lpv_record_probes(struct lpv *lpv, struct gpu_cmd *cmd)
         return;
     }
     const struct frame_probes place = place_of(lpv);
-    const struct lpv *from = coarsest_of(lpv);
+    const struct lpv *from = whole_of(lpv);
     gpu_scope_begin(cmd, lpv->names->probes);
     gpu_dispatch(cmd, lpv->probes.pipeline,
                  GPU_BIND(gpu_transient(cmd, "lpv_grid", &from->params, sizeof from->params),

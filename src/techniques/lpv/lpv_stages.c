@@ -54,7 +54,8 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
             options->gain * mean_way / (grid->cell_m * grid->cell_m * scale->grid_from_flux),
         .mean_way = mean_way,
         .offset_m = options->offset * grid->cell_m,
-        .bounce_offset = options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
+        .bounce_offset =
+            options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
         .window = options->window,
         .blocking = options->blocking,
         .damping = options->damping,
@@ -192,8 +193,8 @@ static gpu_image record_bounce(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image a
     return bounce->sent;
 }
 
-// One of the finer cascades begins with the coarser one's light, `before`, which has bounced as often as
-// it may. What surfaces here reflect of it is sent out with what was injected.
+// One of the finer cascades begins with the coarser one's light, `before`, which has bounced as
+// often as it may. What surfaces here reflect of it is sent out with what was injected.
 static gpu_image record_reflection(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image before)
 {
     const struct lpv_bounce *bounce = &lpv->bounce;
