@@ -12,7 +12,7 @@ head -n 1 "$folder/out/table.csv" | grep -q '^scene,section,technique,' || wrong
 columns=$(awk -F, 'NR == 1 { print NF }' "$folder/out/table.csv")
 # The options stand in quotes and have three commas.
 grep '^diagonal,5.2,lpv,"lpv:cascades=1,bounces=0,dim=16,steps=20",900,900,1,' "$folder/out/table.csv" |
-    awk -F, -v n="$columns" '{ exit !(NF == n + 3 && $9 > 0 && $13 > $9 && $15 > 1000) }' || wrong "the row of lpv is wrong"
+    awk -F, -v n="$columns" '{ exit !(NF == n + 3 && $11 > 0 && $15 > $11 && $17 > 1000) }' || wrong "the row of lpv is wrong"
 grep -q '^diagonal  *lpv ' "$folder/said" || wrong "nothing was said"
 awk -F, 'NR == 1 && $1 != "metres" { wrong++ } NR > 1 { lit += $2 > 0 && $3 > 0; wrong += $1 > 6.3 } END { exit !(NR == 481 && lit > 300 && !wrong) }' \
     "$folder/out/diagonal.csv" || wrong "diagonal.csv has no light"

@@ -209,8 +209,7 @@ static void record_steps(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image before,
     for (int left = lpv->options.steps - 1; left >= 0; left--) {
         const gpu_image after = step_target(lpv, left);
         record_step(lpv, cmd, lpv->propagate, source, before, after);
-        // What is to last is no target of later steps.
-        if (source.id == step_target(lpv, left + 1).id || source.id == step_target(lpv, left).id) {
+        if (source.id == step_target(lpv, left + 1).id) { // where the next step writes
             gpu_copy_image(cmd, lpv->injected, source);
             source = lpv->injected;
         }
