@@ -4,24 +4,47 @@
 
 #include "techniques/lpv/lpv_state.h"
 
+#include <stdio.h>
+
 // Rooms, streets and trees are larger than this, and their light with them; not much else is.
 static const float COARSE_M = 2.0f;
+
+// Of the finest cascade, or the only grid. `side` is what one grid over the scene would have.
+static double finest_cell(const struct lpv_options *options, double side)
+{
+    if (options->cascades == 1) return side;
+    return options->cell > 0.0f ? (double)options->cell : 0.5 * side;
+}
+
+// With all cascades, the coarsest of which is one grid over the scene, cells may be this small.
+static double smallest_cell(double side)
+{
+    return side / (1 << (LPV_MAX_CASCADES - 1));
+}
 
 static void remark_on_cells(struct host *host, const char *technique,
                             const struct lpv_options *options, const struct lpv_grid *grid,
                             const char *scene)
 {
     const int32_t *cells = grid->cells;
-    const double side = (double)grid->cell_m;
-    if (grid->cell_m <= COARSE_M)
-        host_log(host, LOG_INFO, "gi %s: %s: %d x %d x %d cells of %.3g m", technique, scene,
-                 (int)cells[0], (int)cells[1], (int)cells[2], side);
-    else
-        host_log(
-            host, LOG_WARNING,
-            "gi %s: %s is %.3g m long: with dim=%d a cell is %.3g m, and indirect light has no "
-            "finer detail",
-            technique, scene, side * (double)options->dim, (int)options->dim, side);
+    const double side = (double)grid->cell_m, finest = finest_cell(options, side);
+    char cascades[64] = "", remedy[96] = "";
+    if (options->cascades > 1)
+        snprintf(cascades, sizeof cascades, ", in %d cascades from %.3g m near the camera",
+                 (int)options->cascades, finest);
+    if (finest <= (double)COARSE_M) {
+        host_log(host, LOG_INFO, "gi %s: %s: %d x %d x %d cells of %.3g m%s", technique, scene,
+                 (int)cells[0], (int)cells[1], (int)cells[2], side, cascades);
+        return;
+    }
+    if (finest > 1.01 * smallest_cell(side))
+        snprintf(remedy, sizeof remedy, "; cascades=%d,cell=%.3g has smaller ones near the camera",
+                 LPV_MAX_CASCADES, smallest_cell(side));
+    host_log(host, LOG_WARNING,
+             "gi %s: %s is %.3g m long: with dim=%d a cell is %.3g m%s, and indirect light has no "
+             "finer detail%s",
+             technique, scene, side * (double)options->dim, (int)options->dim, side, cascades,
+             remedy);
 }
 
 static bool is_inside(const struct lpv_grid *grid, vec3s position)
