@@ -82,20 +82,49 @@ bool triangle_at(uint triangle, out vct_triangle t)
     return true;
 }
 
-// All voxels of one column that the triangle touches. Its plane is within half a voxel in both directions of the
-// height at the column's centre, as the slopes along the dominant axis are at most 1.
-void walk_column(vct_triangle t, ivec2 column)
+// First and last voxel of a column that the triangle may touch. Its plane is within half a voxel in both directions of
+// the height at the column's centre, as the slopes along the dominant axis are at most 1.
+ivec2 depths_of(vct_triangle t, ivec2 column)
 {
     vec2 centre = vec2(column) + 0.5;
     float height = t.u.z - dot(t.normal.xy, centre - t.u.xy) / t.normal.z;
     float reach = 0.5 * (abs(t.normal.x) + abs(t.normal.y)) / abs(t.normal.z) + 0.01;
     float low = clamp(height - reach, -1.0, float(vct.dim)), high = clamp(height + reach, -1.0, float(vct.dim));
-    int last = min(int(floor(high)), t.high.z);
-    for (int depth = max(int(floor(low)), t.low.z); depth <= last; depth++) {
-        precise vec3 middle = vec3(column, depth) + 0.5;
-        precise vec3 u = t.u - middle, v = t.v - middle, w = t.w - middle;
-        if (vct_overlaps(u, v, w, t.normal)) vct_visit(turned_back(ivec3(column, depth), t.turn), t);
+    return ivec2(max(int(floor(low)), t.low.z), min(int(floor(high)), t.high.z));
+}
+
+bool touches(vct_triangle t, ivec3 voxel)
+{
+    precise vec3 middle = vec3(voxel) + 0.5;
+    precise vec3 u = t.u - middle, v = t.v - middle, w = t.w - middle;
+    return vct_overlaps(u, v, w, t.normal);
+}
+
+// All voxels that the triangle touches in columns from `first` to `last`. What is touched is looked for in a loop of its
+// own: invocations of a group that have found something wait there for the others, and then visit together.
+void walk_columns(vct_triangle t, ivec2 first, ivec2 last, ivec2 step)
+{
+    ivec2 column = first, depths = depths_of(t, first);
+    for (;;) {
+        ivec3 voxel = ivec3(0);
+        bool found = false;
+        while (!found && column.y <= last.y) {
+            voxel = ivec3(column, depths.x);
+            found = depths.x <= depths.y && touches(t, voxel);
+            depths.x++;
+            if (depths.x <= depths.y) continue;
+            column.x += step.x;
+            if (column.x > last.x) column = ivec2(first.x, column.y + step.y);
+            depths = depths_of(t, column);
+        }
+        if (!found) return;
+        vct_visit(turned_back(voxel, t.turn), t);
     }
+}
+
+void walk_column(vct_triangle t, ivec2 column)
+{
+    walk_columns(t, column, column, ivec2(1));
 }
 
 #ifdef VCT_RASTER
@@ -111,42 +140,36 @@ void main()
     ivec2 first = t.low.xy + tile * VCT_TILE, last = min(first + VCT_TILE - 1, t.high.xy);
     ivec2 column = first + ivec2(gl_LocalInvocationID.xy);
     if (column.x > last.x) return;
-    for (; column.y <= last.y; column.y += VCT_TILE_ROWS) walk_column(t, column);
+    walk_columns(t, column, ivec2(column.x, last.y), ivec2(1, VCT_TILE_ROWS));
 }
 
 #else
 
-void walk_columns(vct_triangle t, ivec2 first, ivec2 last)
+// Puts tiles of a triangle into the queue, as many as there is room for, and returns how many.
+uint queue_tiles(uint triangle, uint count)
 {
-    for (int y = first.y; y <= last.y; y++)
-        for (int x = first.x; x <= last.x; x++) walk_column(t, ivec2(x, y));
-}
-
-// Puts tiles into the queue; those for which there is no room are walked here.
-void queue_tiles(uint triangle, vct_triangle t)
-{
-    uvec2 tiles = uvec2(t.high.xy - t.low.xy) / VCT_TILE + 1u;
-    uint count = tiles.x * tiles.y;
     uint first = atomicAdd(queue_asked, count);
     uint fitting = first < VCT_QUEUE ? min(count, VCT_QUEUE - first) : 0u;
     for (uint i = 0u; i < fitting; i++) queue[first + i] = uvec2(triangle, i);
     if (fitting > 0u) atomicMax(queue_groups[0], first + fitting);
-    for (uint i = fitting; i < count; i++) {
-        ivec2 corner = t.low.xy + ivec2(i % tiles.x, i / tiles.x) * VCT_TILE;
-        walk_columns(t, corner, min(corner + VCT_TILE - 1, t.high.xy));
-    }
+    return fitting;
 }
 
+// A small triangle is one tile, and walked here; so are tiles of large ones for which the queue has no room.
 void main()
 {
     uint triangle = gl_GlobalInvocationID.x;
     vct_triangle t;
     if (triangle >= push.triangle_count || !triangle_at(triangle, t)) return;
     ivec2 size = t.high.xy - t.low.xy + 1;
-    if (size.x * size.y <= VCT_SMALL_COLUMNS)
-        walk_columns(t, t.low.xy, t.high.xy);
-    else
-        queue_tiles(triangle, t);
+    bool small = size.x * size.y <= VCT_SMALL_COLUMNS;
+    ivec2 tile = small ? size : ivec2(VCT_TILE), tiles = (size - 1) / tile + 1;
+    uint count = uint(tiles.x * tiles.y), queued = 0u;
+    if (!small) queued = queue_tiles(triangle, count);
+    for (uint i = queued; i < count; i++) {
+        ivec2 corner = t.low.xy + ivec2(int(i) % tiles.x, int(i) / tiles.x) * tile;
+        walk_columns(t, corner, min(corner + tile - 1, t.high.xy), ivec2(1));
+    }
 }
 
 #endif
