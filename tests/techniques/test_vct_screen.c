@@ -92,6 +92,25 @@ TEST_GPU(blocks_that_share_cones_find_what_each_pixel_would)
     free(raw.irradiance);
 }
 
+// Options that change while it lives do what they do from the start.
+TEST_GPU(cones_change_while_it_lives)
+{
+    struct look due = look_with(gpu, "resolution=32,cones=9,interleave=3");
+    struct vct_rig rig;
+    furnish(&rig, gpu);
+    vct_rig_open(&rig, "resolution=32,cones=25,interleave=5");
+    studio_render(&rig.studio);
+    struct vct_options options = rig.vct->options;
+    options.cones = VCT_CONES_9;
+    options.interleave = 3;
+    technique_vct.set_options(rig.vct, &options);
+    studio_render(&rig.studio);
+    float *got = studio_read(&rig.studio, READ_IRRADIANCE);
+    assert_memory_equal(got, due.irradiance, VALUES * sizeof *got);
+    free(got), free(due.irradiance);
+    vct_rig_finish(&rig);
+}
+
 // ---- Lines
 
 // Whatever the normal: the mean of |n·d| is a half, as it is over all directions.

@@ -56,6 +56,7 @@ static bool vct_create(void *state, const struct technique_create *how)
     vct->gpu = how->gpu;
     vct->options = *(const struct vct_options *)how->options;
     vct_cone_lines(vct->options.cones, vct->lines);
+    if (vct->options.specular) vct_fill_shares(&vct->shares);
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
            vct_create_pipelines(vct) &&
            (!vct->options.temporal || vct_temporal_create(&vct->temporal, vct->gpu));
@@ -70,6 +71,8 @@ static void vct_set_options(void *state, const void *options)
     vct->options.anisotropic = had.anisotropic;
     vct->options.storage = had.storage;
     vct->options.temporal = had.temporal;
+    vct->options.specular = had.specular;
+    vct_cone_lines(vct->options.cones, vct->lines);
     vct_temporal_forget(&vct->temporal);
 }
 
@@ -86,6 +89,9 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     if (!vct_prepare(vct, view)) {
         gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+        if (vct->options.specular)
+            gpu_clear_image(cmd, view->layers[FRAME_SPECULAR],
+                            (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
         vct_temporal_forget(&vct->temporal);
         return;
     }
@@ -95,6 +101,7 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     vct_record_bounce(vct, cmd, view);
     vct_record_light(vct, cmd, view);
     vct_record_cones(vct, cmd, view);
+    if (vct->options.specular) vct_record_specular(vct, cmd, view);
     if (vct->options.temporal) vct_temporal_record(&vct->temporal, cmd, view);
 }
 
@@ -124,7 +131,8 @@ static void vct_destroy(void *state)
 
 static uint32_t vct_more_needs(const void *options)
 {
-    return ((const struct vct_options *)options)->temporal ? FRAME_NEEDS_MOTION : 0;
+    const struct vct_options *o = options;
+    return (o->temporal ? FRAME_NEEDS_MOTION : 0) | (o->specular ? FRAME_WRITES_SPECULAR : 0);
 }
 
 static uint64_t vct_memory_estimate(const void *options, uint32_t width, uint32_t height)
@@ -140,7 +148,7 @@ const struct technique technique_vct = {
     .paper = "Hong 2015, Temporal Voxel Cone Tracing with Interleaved Sample Patterns, ch. 2.5.3, "
              "4; Crassin et al. 2011",
     .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | GATHERS_EMISSION,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE,
     .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
                  sizeof(struct vct_options) },

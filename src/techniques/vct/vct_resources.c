@@ -255,7 +255,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 10, MIP_PIPELINES = 6, MOST_STORAGE_PIPELINES = 11 };
+enum { PIPELINES = 10, MIP_PIPELINES = 7, MOST_STORAGE_PIPELINES = 12 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -283,6 +283,7 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     const struct pipeline_plan mips[MIP_PIPELINES] = {
         { &vct->bounce, "vct.bounce", &shader_vct_bounce_mips_comp, ways, way_count },
         { &vct->cones, "vct.cones", &shader_vct_cones_mips_comp, ways, way_count },
+        { &vct->specular, "vct.specular", &shader_vct_specular_mips_comp, ways, way_count },
         { &vct->fill[0], "vct.fill_still", &shader_vct_fill_comp, still, 1 + way_count },
         { &vct->fill[1], "vct.fill", &shader_vct_fill_comp, ways, way_count },
         { &vct->mip, "vct.mip", &shader_vct_mip_comp, ways, way_count },
@@ -291,6 +292,7 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
         { &vct->bounce, "vct.bounce", &shader_vct_bounce_svo_comp, ways, way_count },
         { &vct->cones, "vct.cones", &shader_vct_cones_svo_comp, ways, way_count },
+        { &vct->specular, "vct.specular", &shader_vct_specular_svo_comp, ways, way_count },
         { &svo->mark, "vct.svo_mark", &shader_vct_svo_mark_comp, NULL, 0 },
         { &svo->count, "vct.svo_count", &shader_vct_svo_count_comp, NULL, 0 },
         { &svo->scan, "vct.svo_scan", &shader_vct_svo_scan_comp, NULL, 0 },

@@ -99,6 +99,22 @@ struct vct_history_params {
     uint32_t known; // 0: there is no last frame
 };
 
+// Uniform block "vct_specular".
+struct vct_specular_params {
+    float tan_half; // of each cone's half-angle; 0: as the roughness says
+    float stride;
+    float offset;   // texels of the light volume
+    float gain;
+    float texel_m;  // of the light volume
+    uint32_t last_mip;
+};
+
+// Uniform block "vct_shares": what GGX reflects of even light is F0 · first + second; nodes evenly in n·v, then roughness.
+#define VCT_SHARE_NODES 16
+struct vct_share_table {
+    float pairs[VCT_SHARE_NODES * VCT_SHARE_NODES * 2];
+};
+
 struct vct_mip_push {
     int32_t source_x, source_y, source_z; // of the level that is read
     int32_t source_tile, target_tile; // texels between directions
@@ -151,6 +167,7 @@ _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
 _Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_history_params) == 13 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_specular_params) == 6 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_mip_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_svo_params) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_svo_level) == 12 * 4, "layout is shared with GLSL");

@@ -53,7 +53,7 @@ struct vct {
     gpu_pipeline fill[2];   // without and with what moves
     gpu_pipeline inject[2]; // without and with lights
     gpu_pipeline count, scan, list, texel_lists, bounce, mip, cones, edges, gather_rows,
-        gather_columns, blur, debug;
+        gather_columns, blur, specular, debug;
     struct vct_set rest, moving; // what stands still; what has moved
     gpu_buffer queue, queue_state;
     gpu_buffer texels, texel_mask, texel_state; // of the light volume: which hold something
@@ -64,6 +64,7 @@ struct vct {
     gpu_image traced[3], gathered[3]; // RGBA16F: what cones found as vectors, of each colour
     gpu_image found;            // RGBA16F: irradiance, share of the cones
     vec3s lines[VCT_MAX_CONES]; // along which the picture's cones point
+    struct vct_share_table shares; // with specular
     struct vct_temporal temporal; // empty without the option
     uint32_t width, height;
 
@@ -118,5 +119,7 @@ void vct_svo_record_light(struct vct *vct, struct gpu_cmd *cmd);
 // For shaders that trace cones, which ignore them where there is no octree.
 struct gpu_binding vct_svo_binding(struct vct *vct, struct gpu_cmd *cmd);
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+void vct_fill_shares(struct vct_share_table *out); // once
+void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                       uint32_t what, gpu_image out);

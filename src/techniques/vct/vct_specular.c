@@ -1,0 +1,71 @@
+// Reflections: a cone for each pixel.
+#include "techniques/vct/vct_state.h"
+
+#include <math.h>
+
+// The share of even light that frame/brdf.glsl reflects, ∫ D V F cos dω: what of it goes with F0,
+// and what does not. Half-vectors of even weight have tan² θ = α² u/(1 − u) for even u; the
+// integrand there is 4 V F (n·l) (v·h)/(n·h).
+static void share_of(double n_v, double roughness, float out[2])
+{
+    enum { STEPS = 32 };
+    const double alpha = roughness * roughness, a2 = alpha * alpha;
+    const double across = sqrt(1.0 - n_v * n_v);
+    double with = 0.0, without = 0.0;
+    for (int i = 0; i < STEPS; i++)
+        for (int k = 0; k < STEPS; k++) {
+            // The other half is the mirror image.
+            const double u = (i + 0.5) / STEPS, phi = GLM_PI * (k + 0.5) / STEPS;
+            const double n_h = sqrt((1.0 - u) / (1.0 + (a2 - 1.0) * u));
+            const double v_h = across * sqrt(1.0 - n_h * n_h) * cos(phi) + n_v * n_h;
+            const double n_l = 2.0 * v_h * n_h - n_v;
+            if (v_h <= 0.0 || n_l <= 0.0) continue;
+            const double smith =
+                n_l * sqrt(n_v * n_v * (1.0 - a2) + a2) + n_v * sqrt(n_l * n_l * (1.0 - a2) + a2);
+            const double part = 2.0 * n_l * v_h / (smith * n_h) / (STEPS * STEPS);
+            const double fresnel = pow(1.0 - v_h, 5.0);
+            with += part * (1.0 - fresnel);
+            without += part * fresnel;
+        }
+    out[0] = (float)with;
+    out[1] = (float)without;
+}
+
+void vct_fill_shares(struct vct_share_table *out)
+{
+    // BRDF_MIN_ROUGHNESS, and of n·v: at 0 there is nothing to divide by.
+    const double least = 0.045;
+    for (int r = 0; r < VCT_SHARE_NODES; r++)
+        for (int v = 0; v < VCT_SHARE_NODES; v++)
+            share_of(fmax((double)v / (VCT_SHARE_NODES - 1), least),
+                     fmax((double)r / (VCT_SHARE_NODES - 1), least),
+                     &out->pairs[2 * (r * VCT_SHARE_NODES + v)]);
+}
+
+void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const struct vct_options *options = &vct->options;
+    const struct vct_specular_params params = {
+        .tan_half = tanf(options->aperture * (GLM_PIf / 180.0f)),
+        .stride = options->stride,
+        .offset = options->offset,
+        .gain = options->gain,
+        .texel_m = 2.0f * vct->grid.cell_m,
+        .last_mip = vct_volume_mips(options) - 1,
+    };
+    gpu_scope_begin(cmd, "vct.specular");
+    gpu_dispatch(
+        cmd, vct->specular,
+        GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding,
+                 gpu_transient(cmd, "vct_specular", &params, sizeof params),
+                 gpu_transient(cmd, "vct_shares", &vct->shares, sizeof vct->shares),
+                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                 { .name = "albedo", .image = view->layers[FRAME_ALBEDO] },
+                 { .name = "material", .image = view->layers[FRAME_MATERIAL] },
+                 { .name = "light", .image = vct->light, .sampler = vct->linear },
+                 { .name = "specular", .image = view->layers[FRAME_SPECULAR] },
+                 vct_svo_binding(vct, cmd), { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
+        NULL, 0, gpu_groups(view->width, VCT_LOCAL_2D), gpu_groups(view->height, VCT_LOCAL_2D), 1);
+    gpu_scope_end(cmd);
+}
