@@ -28,18 +28,22 @@ struct program {
 
 static const char TABLE_HEAD[] =
     "scene,section,technique,options,width,height,frames,inject_ms,propagate_ms,apply_ms,other_ms,"
-    "technique_ms,frame_ms,technique_bytes,scanline_error,paper_frame_ms,paper_bytes\n";
+    "technique_ms,frame_ms,technique_bytes,scanline_error,scanline_relmse,picture_relmse,paper_"
+    "frame_ms,paper_bytes\n";
 
 static void table_row(const struct program *program, const struct paper_scene *scene,
                       const struct measured *m)
 {
     const struct technique_cost *cost = &m->cost;
     bool higher = strcmp(m->technique, "holpv") == 0;
-    fprintf(program->table, "%s,%s,%s,\"%s\",%d,%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%llu,%.4f,",
-            scene->name, scene->section, m->technique, m->gi, program->measure.width,
-            program->measure.height, program->measure.frames, cost->inject_ms, cost->propagate_ms,
-            cost->apply_ms, cost->other_ms, cost->technique_ms, cost->frame_ms,
-            (unsigned long long)cost->bytes, m->error);
+    fprintf(program->table,
+            "%s,%s,%s,\"%s\",%d,%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%llu,%.4f,%.6f,", scene->name,
+            scene->section, m->technique, m->gi, program->measure.width, program->measure.height,
+            program->measure.frames, cost->inject_ms, cost->propagate_ms, cost->apply_ms,
+            cost->other_ms, cost->technique_ms, cost->frame_ms, (unsigned long long)cost->bytes,
+            m->error, m->relmse);
+    if (m->picture_relmse >= 0) fprintf(program->table, "%.6f", m->picture_relmse);
+    fputc(',', program->table);
     if (scene->lpv_ms > 0)
         fprintf(program->table, "%.1f", higher ? scene->holpv_ms : scene->lpv_ms);
     // Three volumes of light, one of geometry, and the reflective shadow map: section 5.8.
@@ -50,9 +54,13 @@ static void table_row(const struct program *program, const struct paper_scene *s
 static void print_row(const struct paper_scene *scene, const struct measured *m, bool first)
 {
     const struct technique_cost *cost = &m->cost;
-    printf("%-16s %-6s %9.2f %9.2f %9.2f %9.2f %9.2f %8.2f %7.2f", first ? scene->name : "",
+    printf("%-16s %-6s %9.2f %9.2f %9.2f %9.2f %9.2f %8.2f %7.2f %7.3f", first ? scene->name : "",
            m->technique, cost->inject_ms, cost->propagate_ms, cost->apply_ms, cost->technique_ms,
-           cost->frame_ms, (double)cost->bytes / 1048576, m->error);
+           cost->frame_ms, (double)cost->bytes / 1048576, m->error, m->relmse);
+    if (m->picture_relmse >= 0)
+        printf(" %8.3f", m->picture_relmse);
+    else
+        printf(" %8s", "-");
     double paper = strcmp(m->technique, "holpv") == 0 ? scene->holpv_ms : scene->lpv_ms;
     if (paper > 0)
         printf(" %8.1f\n", paper);
@@ -163,11 +171,12 @@ static void print_head(const struct program *program)
 {
     struct ag_device_info device;
     ag_device_get_info(program->measure.device, &device);
-    printf("%s; median ms of %d frames; error: mean of |E - reference| over the reference's mean; "
-           "paper: ms of a frame on a GTX 460\n",
+    printf("%s; median ms of %d frames; error: mean of |E - reference| over the reference's mean, "
+           "relmse "
+           "beside it, of the line and of the whole picture; paper: ms of a frame on a GTX 460\n",
            device.name, program->measure.frames);
-    printf("%-16s %-6s %9s %9s %9s %9s %9s %8s %7s %8s\n", "", "", "inject", "propagate", "apply",
-           "technique", "frame", "MiB", "error", "paper");
+    printf("%-16s %-6s %9s %9s %9s %9s %9s %8s %7s %7s %8s %8s\n", "", "", "inject", "propagate",
+           "apply", "technique", "frame", "MiB", "error", "relmse", "picture", "paper");
 }
 
 static enum ag_result run(struct program *program)

@@ -113,6 +113,19 @@ static double error_of(const double *lux, const double *reference, int count)
     return sum > 0 ? difference / sum : 0;
 }
 
+// docs/metrics.md.
+static double relmse_of(const double *lux, const double *reference, int count)
+{
+    double mean = 0, sum = 0;
+    for (int i = 0; i < count; i++) mean += reference[i] / count;
+    const double floor = mean > 0 ? 0.01 * mean * mean : 0.01;
+    for (int i = 0; i < count; i++) {
+        const double difference = lux[i] - reference[i];
+        sum += difference * difference / (reference[i] * reference[i] + floor);
+    }
+    return sum / count;
+}
+
 enum ag_result measure_scanline(struct measure *measure, const struct paper_scene *scene,
                                 struct ag_scene *loaded, struct scanline *out)
 {
@@ -131,6 +144,8 @@ enum ag_result measure_scanline(struct measure *measure, const struct paper_scen
         struct measured *m = &out->techniques[t];
         result = render_line(measure, loaded, &camera, out->count, m);
         m->error = error_of(m->lux, out->reference, out->count);
+        m->relmse = relmse_of(m->lux, out->reference, out->count);
+        m->picture_relmse = -1;
     }
     return result;
 }
@@ -248,22 +263,42 @@ static enum ag_result append(struct ag_context *context, struct ag_image **all,
     return result;
 }
 
+static enum ag_result compare_picture(struct ag_context *context, const struct ag_image *picture,
+                                      const struct ag_image *reference, double *relmse)
+{
+    struct ag_compare_desc desc;
+    struct ag_metrics metrics;
+    ag_compare_desc_default(&desc);
+    desc.radiance = true;
+    const enum ag_result result = ag_image_metrics(context, picture, reference, &desc, &metrics);
+    if (result == AG_OK) *relmse = metrics.relmse;
+    return result;
+}
+
 enum ag_result measure_picture(struct measure *measure, const struct paper_scene *scene,
-                               struct ag_scene *loaded, const struct scanline *line,
+                               struct ag_scene *loaded, struct scanline *line,
                                struct ag_image **out)
 {
     int height = measure->picture_width * scene->height / scene->width;
     struct ag_camera camera;
-    struct ag_image *all = NULL, *picture = NULL;
+    struct ag_image *all = NULL, *pictures[1 + MEASURE_TECHNIQUES] = { NULL };
     float ev = 0;
     *out = NULL;
     enum ag_result result = paper_scene_camera(scene, loaded, &camera);
-    if (result == AG_OK) result = trace_picture(measure, scene, loaded, &camera, height, &picture);
-    if (result == AG_OK) result = append(measure->context, &all, picture);
+    if (result == AG_OK)
+        result = trace_picture(measure, scene, loaded, &camera, height, &pictures[0]);
     for (int t = 0; t < line->technique_count && result == AG_OK; t++) {
-        result =
-            render_picture(measure, loaded, &camera, height, line->techniques[t].gi, &ev, &picture);
-        if (result == AG_OK) result = append(measure->context, &all, picture);
+        struct measured *m = &line->techniques[t];
+        result = render_picture(measure, loaded, &camera, height, m->gi, &ev, &pictures[1 + t]);
+        if (result == AG_OK)
+            result =
+                compare_picture(measure->context, pictures[1 + t], pictures[0], &m->picture_relmse);
+    }
+    for (int i = 0; i <= line->technique_count; i++) {
+        if (result == AG_OK)
+            result = append(measure->context, &all, pictures[i]);
+        else
+            ag_image_destroy(measure->context, pictures[i]);
     }
     if (result == AG_OK) result = ag_image_tonemap(measure->context, all, ev, out);
     ag_image_destroy(measure->context, all);

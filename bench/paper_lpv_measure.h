@@ -26,6 +26,8 @@ struct measured {
     char gi[256];
     double lux[MEASURE_COLUMNS]; // the irradiance's luminance
     double error;                // the mean of |lux - reference| over the reference's mean
+    double relmse;               // of the line, as ag_image_metrics has it
+    double picture_relmse;       // of the picture's radiance; negative: there is none
     struct technique_cost cost;
 };
 
@@ -42,4 +44,4 @@ enum ag_result measure_costs(struct measure *measure, const struct paper_scene *
                              struct scanline *line);
 // The reference and the techniques from left to right, at one exposure.
 enum ag_result measure_picture(struct measure *measure, const struct paper_scene *scene, struct ag_scene *loaded,
-                               const struct scanline *line, struct ag_image **out);
+                               struct scanline *line, struct ag_image **out);
