@@ -11,4 +11,4 @@ endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique: a minute alone, more beside others.
-set_tests_properties(techniques.technique_smoke PROPERTIES TIMEOUT 600)
+set_tests_properties(techniques.technique_smoke techniques.technique_invariants PROPERTIES TIMEOUT 600)
