@@ -1,7 +1,8 @@
 // Loos 2015, table 6.1, with the error beside the time: volumetric obscurance by 5 and 9 lines and by 12 and 33 points, the
 // point samples and the horizons that it is compared with, and what the chapter says of areas, two radii and moving cameras.
 //
-//     paper-vo [--gi TERM]… [--frames N] [--size WxH] [--radius SHARE] [--spp N] [--device NAME] [SCENE]…
+//     paper-vo [--gi TERM]… [--frames N] [--size WxH] [--radius SHARE] [--spp N] [--device NAME]
+//     [--scenes DIR] [SCENE]…
 //
 // A technique's time is its own passes': the pyramid, the estimate, and all that follows. Its error is the difference from the
 // traced obscurance of the same radius, where there is a surface. TERM* looks with a second radius of a quarter.
@@ -9,9 +10,10 @@
 #include "paper_vo_measure.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { MAX_TERMS = 24, TEXT = 256 };
+enum { MAX_TERMS = 24, TEXT = 256, PATH = 1024 };
 
 // The first are held against each other below the table.
 enum { LINES_5, POINTS_12, SSAO_12, LINE, AREA, HELD_TERMS };
@@ -38,7 +40,7 @@ struct bench {
     struct bench_scenes scenes;
     struct vo_view view; // what all scenes share
     double radius_share;
-    const char *device_name;
+    const char *device_name, *folder;
 };
 
 static void print_result(const char *term, const struct vo_result *r)
@@ -106,9 +108,28 @@ static bool parse_option(void *user, const char *name, const char *value)
         return sscanf(value, "%lf%c", &bench->radius_share, &rest) == 1 && bench->radius_share > 0.0;
     else if (strcmp(name, "--device") == 0)
         bench->device_name = value;
+    else if (strcmp(name, "--scenes") == 0)
+        bench->folder = value;
     else
         return false;
     return true;
+}
+
+// An open court, a built one with drapes and carvings, and an object: those of the files that are there.
+static void take_usual_scenes(struct bench *bench)
+{
+    static const char *const files[] = { "sponza.glb", "bunny.glb" };
+    static char paths[2][PATH];
+    bench->scenes.names[bench->scenes.count++] = "@atrium";
+    for (int i = 0; i < 2; i++) {
+        snprintf(paths[i], PATH, "%s/%s", bench->folder, files[i]);
+        FILE *file = fopen(paths[i], "rb");
+        if (file)
+            bench->scenes.names[bench->scenes.count++] = paths[i];
+        else
+            fprintf(stderr, "paper-vo: without %s, which is not there\n", paths[i]);
+        if (file) fclose(file);
+    }
 }
 
 static bool parse(struct bench *bench, int argc, char **argv)
@@ -116,7 +137,7 @@ static bool parse(struct bench *bench, int argc, char **argv)
     if (!command_line_parse(argc, argv, parse_option, bench, &bench->scenes)) return false;
     if (bench->term_count == 0)
         for (int i = 0; i < USUAL_TERMS; i++) bench->terms[bench->term_count++] = usual_terms[i];
-    command_line_usual_scenes(&bench->scenes, "@atrium", "@cornell:light=point");
+    if (bench->scenes.count == 0) take_usual_scenes(bench);
     return true;
 }
 
@@ -124,9 +145,11 @@ int main(int argc, char **argv)
 {
     static struct bench bench = { .view = { .width = 640, .height = 360, .frames = 20, .spp = 64 },
                                   .radius_share = 0.02 };
+    const char *folder = getenv("AFTERGLOW_SCENES");
+    bench.folder = folder && folder[0] ? folder : "scenes";
     if (!parse(&bench, argc, argv)) {
         fprintf(stderr, "usage: paper-vo [--gi TERM]... [--frames N] [--size WxH] [--radius SHARE] "
-                        "[--spp N] [--device NAME] [SCENE]...\n");
+                        "[--spp N] [--device NAME] [--scenes DIR] [SCENE]...\n");
         return 2;
     }
     struct vo_view *view = &bench.view;

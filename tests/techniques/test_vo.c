@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { WIDTH = 96, HEIGHT = 64 };
+enum { WIDTH = 96, HEIGHT = 61 }; // rows are taken in eights: some are left over
 
 static const int counts[] = { 5, 6, 7, 9, 12, 13, 16, 33 };
 enum { COUNTS = sizeof counts / sizeof counts[0] };

@@ -66,17 +66,31 @@ static bool make_pipeline(struct screen_ao *ao, const char *thing, const struct 
     return gpu_compute_pipeline_create(ao->gpu, name, shader, &step, 1, out);
 }
 
+static bool needs_fit(const struct screen_ao_options *options)
+{
+    return options->half || !options->blur;
+}
+
+// Those that the options need.
+static bool make_pipelines(struct screen_ao *ao)
+{
+    const struct screen_ao_options *o = &ao->options;
+    const struct gpu_shader *blur_y =
+        o->half ? &shader_screen_ao_blur_y_half_comp : &shader_screen_ao_blur_y_comp;
+    if (o->blur && !(make_pipeline(ao, "blur_x", &shader_screen_ao_blur_x_comp, &ao->blur_x) &&
+                     make_pipeline(ao, "blur_y", blur_y, &ao->blur_y)))
+        return false;
+    if (needs_fit(o) && !make_pipeline(ao, "fit", &shader_screen_ao_fit_comp, &ao->fit))
+        return false;
+    return !o->temporal ||
+           make_pipeline(ao, "temporal", &shader_screen_ao_temporal_comp, &ao->temporal);
+}
+
 bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const char *owner,
                     const struct screen_ao_options *options, uint32_t width, uint32_t height)
 {
     *ao = (struct screen_ao){ .gpu = gpu, .owner = owner, .options = *options };
-    const struct gpu_shader *blur_y =
-        options->half ? &shader_screen_ao_blur_y_half_comp : &shader_screen_ao_blur_y_comp;
-    return make_pipeline(ao, "blur_x", &shader_screen_ao_blur_x_comp, &ao->blur_x) &&
-           make_pipeline(ao, "blur_y", blur_y, &ao->blur_y) &&
-           make_pipeline(ao, "fit", &shader_screen_ao_fit_comp, &ao->fit) &&
-           make_pipeline(ao, "temporal", &shader_screen_ao_temporal_comp, &ao->temporal) &&
-           screen_ao_resize(ao, width, height);
+    return make_pipelines(ao) && screen_ao_resize(ao, width, height);
 }
 
 void screen_ao_finish(struct screen_ao *ao)
@@ -154,6 +168,7 @@ void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct 
     assert(more_count <= SCREEN_AO_MORE);
     memcpy(bindings + 4, more, (size_t)more_count * sizeof *more);
     gpu_scope_begin(cmd, name);
+    gpu_clear_image(cmd, ao->estimate, (const float[4]){ 1.0f }); // where there is no surface
     gpu_dispatch(cmd, pipeline, bindings, 4 + more_count, NULL, 0,
                  gpu_groups(ao->work_width, LOCAL),
                  gpu_groups(ao->work_height, LOCAL * SCREEN_AO_ROWS), 1);
@@ -220,5 +235,5 @@ void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct fr
 {
     if (ao->options.temporal) record_temporal(ao, cmd, view);
     if (ao->options.blur) record_blur(ao, cmd, view->layers[FRAME_VISIBILITY]);
-    if (ao->options.half || !ao->options.blur) record_fit(ao, cmd, view);
+    if (needs_fit(&ao->options)) record_fit(ao, cmd, view);
 }

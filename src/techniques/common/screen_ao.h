@@ -18,7 +18,7 @@ struct screen_ao {
     struct screen_ao_options options;
     uint32_t width, height, work_width, work_height;
     gpu_image
-        estimate; // RG32F: visibility, depth of the frame's pixel; the technique writes every pixel
+        estimate; // RG32F: visibility, depth of the frame's pixel; (1, 0) where there is no surface
     gpu_image scratch; // RG32F
     gpu_image history[2]; // RGBA32F: visibility, depth, frames; the last frame's and this one's in turn
     int newest;           // of the two

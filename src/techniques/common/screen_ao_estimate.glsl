@@ -1,8 +1,8 @@
 // The pass that fills the estimate. A shader includes this file and says in screen_ao_visibility how it looks round a pixel's
 // point; bindings from 4 on are its own.
 //
-// One invocation does SCREEN_AO_ROWS pixels below each other and goes over those without a surface in a loop of its own:
-// software drivers run through what is not wanted of a body, but not through a loop that is done.
+// One invocation does SCREEN_AO_ROWS pixels below each other and goes over those without a surface, which were cleared before,
+// in a loop of its own: software drivers run through what is not wanted of a body, but not through a loop that is done.
 #extension GL_EXT_control_flow_attributes : require
 
 #include "frame/octahedral.glsl"
@@ -39,7 +39,6 @@ void main()
         [[dont_unroll]] for (; work.y < end; work.y++) {
             here = texelFetch(depth, work * SCREEN_AO_STEP, 0).r;
             if (here > 0.0) break;
-            imageStore(estimate, work, vec4(1.0, 0.0, 0.0, 0.0));
         }
         if (work.y >= end) break;
         float visibility = screen_ao_visibility(place_at(work, here));
