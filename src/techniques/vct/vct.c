@@ -126,6 +126,7 @@ static void vct_destroy(void *state)
     struct vct *vct = state;
     if (!vct->gpu) return;
     vct_temporal_destroy(&vct->temporal, vct->gpu);
+    vct_destroy_pipelines(vct);
     vct_destroy_resources(vct);
 }
 

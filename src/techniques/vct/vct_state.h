@@ -101,6 +101,7 @@ bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height); // of 
 bool vct_create_resources(struct vct *vct);                               // buffers, light volume
 bool vct_create_pipelines(struct vct *vct);
 void vct_destroy_resources(struct vct *vct);
+void vct_destroy_pipelines(struct vct *vct);
 uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, uint32_t height);
 
 // Places the grid; false where there is nothing to voxelise.
