@@ -25,6 +25,14 @@ static const struct technique_debug_view debug_views[] = {
     { NULL, NULL },
 };
 
+// Chosen by measured error and time, see README.md.
+static const struct technique_preset presets[] = {
+    { "low", "resolution=32" },
+    { "medium", "" },
+    { "high", "resolution=128,bounces=2,temporal=true,specular=true" },
+    { NULL, NULL },
+};
+
 static bool vct_check(const struct technique_create *how)
 {
     const struct vct_options *options = how->options;
@@ -153,6 +161,7 @@ const struct technique technique_vct = {
     .needs = FRAME_WRITES_IRRADIANCE,
     .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
                  sizeof(struct vct_options) },
+    .presets = presets,
     .debug_views = debug_views,
     .state_size = sizeof(struct vct),
     .more_needs = vct_more_needs,
