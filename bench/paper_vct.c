@@ -154,7 +154,7 @@ static enum ag_result measure_figure(struct bench *bench, const char *name, stru
                                    .stages = figure->stages,
                                    .stage_count = figure->stage_count };
     for (int k = 0; k < VCT_METHODS; k++) {
-        snprintf(gi[k], sizeof gi[k], "vct:resolution=%d,keep_static=false,%s%s%s", resolution,
+        snprintf(gi[k], sizeof gi[k], "vct:resolution=%d,bounces=1,keep_static=false,%s%s%s", resolution,
                  figure->options[k], bench->options ? "," : "",
                  bench->options ? bench->options : "");
         how.gi[k] = gi[k];

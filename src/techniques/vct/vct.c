@@ -29,7 +29,7 @@ static const struct technique_debug_view debug_views[] = {
 static const struct technique_preset presets[] = {
     { "low", "resolution=32" },
     { "medium", "" },
-    { "high", "resolution=128,bounces=2,temporal=true,specular=true" },
+    { "high", "resolution=128,temporal=true,specular=true" },
     { NULL, NULL },
 };
 
@@ -80,6 +80,7 @@ static void vct_set_options(void *state, const void *options)
     vct->options.storage = had.storage;
     vct->options.temporal = had.temporal;
     vct->options.specular = had.specular;
+    vct->light_valid = vct->brought_valid = false;
     vct_cone_lines(vct->options.cones, vct->lines);
     vct_temporal_forget(&vct->temporal);
 }

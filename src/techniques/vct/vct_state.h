@@ -73,8 +73,10 @@ struct vct {
     bool ready;               // there is something to voxelise
     bool remade;              // voxels have come anew in this frame
     bool light_valid;         // `light` is last frame's, of this grid
+    bool light_outdated;      // it has texels that hold nothing any more
     bool brought_valid;       // so is what the voxels got from each other
     struct vct_brought_by brought_by;
+    int rounds_left;           // of frames that bring what was sent out in the last one, until all is as it stays
     bool rest_valid;           // `rest` is of the scene as it stands
     const struct scene *scene; // that it is of
     int moving_draws;          // then

@@ -58,7 +58,6 @@ void vct_record_texels(struct vct *vct, struct gpu_cmd *cmd)
                           { .name = "vct_texels", .buffer = vct->texels },
                           { .name = "vct_texel_state", .buffer = vct->texel_state }),
                  &push, sizeof push, gpu_groups((uint32_t)words, VCT_LOCAL), 1, 1);
-    if (!vct_has_svo(&vct->options))
-        gpu_clear_image(cmd, vct->light, (const float[4]){ 0.0f, 0.0f, 0.0f, 0.0f });
+    vct->light_outdated = true;
     gpu_scope_end(cmd);
 }
