@@ -154,8 +154,8 @@ static enum ag_result measure_figure(struct bench *bench, const char *name, stru
                                    .stages = figure->stages,
                                    .stage_count = figure->stage_count };
     for (int k = 0; k < VCT_METHODS; k++) {
-        snprintf(gi[k], sizeof gi[k], "vct:resolution=%d,bounces=1,keep_static=false,%s%s%s", resolution,
-                 figure->options[k], bench->options ? "," : "",
+        snprintf(gi[k], sizeof gi[k], "vct:resolution=%d,bounces=1,keep_static=false,%s%s%s",
+                 resolution, figure->options[k], bench->options ? "," : "",
                  bench->options ? bench->options : "");
         how.gi[k] = gi[k];
     }

@@ -1,11 +1,13 @@
-// Loos 2015, table 6.1, with the error beside the time: volumetric obscurance by 5 and 9 lines and by 12 and 33 points, the
-// point samples and the horizons that it is compared with, and what the chapter says of areas, two radii and moving cameras.
+// Loos 2015, table 6.1, with the error beside the time: volumetric obscurance by 5 and 9 lines and
+// by 12 and 33 points, the point samples and the horizons that it is compared with, and what the
+// chapter says of areas, two radii and moving cameras.
 //
 //     paper-vo [--gi TERM]… [--frames N] [--size WxH] [--radius SHARE] [--spp N] [--device NAME]
 //     [--scenes DIR] [SCENE]…
 //
-// A technique's time is its own passes': the pyramid, the estimate, and all that follows. Its error is the difference from the
-// traced obscurance of the same radius, where there is a surface. TERM* looks with a second radius of a quarter.
+// A technique's time is its own passes': the pyramid, the estimate, and all that follows. Its error
+// is the difference from the traced obscurance of the same radius, where there is a surface. TERM*
+// looks with a second radius of a quarter.
 #include "command_line.h"
 #include "paper_vo_measure.h"
 
@@ -105,7 +107,8 @@ static bool parse_option(void *user, const char *name, const char *value)
     else if (strcmp(name, "--size") == 0)
         return sscanf(value, "%dx%d%c", &view->width, &view->height, &rest) == 2;
     else if (strcmp(name, "--radius") == 0)
-        return sscanf(value, "%lf%c", &bench->radius_share, &rest) == 1 && bench->radius_share > 0.0;
+        return sscanf(value, "%lf%c", &bench->radius_share, &rest) == 1 &&
+               bench->radius_share > 0.0;
     else if (strcmp(name, "--device") == 0)
         bench->device_name = value;
     else if (strcmp(name, "--scenes") == 0)
@@ -115,7 +118,8 @@ static bool parse_option(void *user, const char *name, const char *value)
     return true;
 }
 
-// An open court, a built one with drapes and carvings, and an object: those of the files that are there.
+// An open court, a built one with drapes and carvings, and an object: those of the files that are
+// there.
 static void take_usual_scenes(struct bench *bench)
 {
     static const char *const files[] = { "sponza.glb", "bunny.glb" };

@@ -16,10 +16,10 @@ bool kept_map_stands(struct kept_map *map, const struct scene_gpu *scene,
 {
     const struct kept_map now = { shape_of(light), clip_from_world, scene->updates };
     // A map that was left out in the last frame does not know what moved then.
-    const bool stands = map->updates + 1 == now.updates &&
-                        memcmp(&map->light, &now.light, sizeof now.light) == 0 &&
-                        memcmp(&map->clip_from_world, &clip_from_world, sizeof clip_from_world) == 0 &&
-                        scene_gpu_still_in(scene, clip_from_world);
+    const bool stands =
+        map->updates + 1 == now.updates && memcmp(&map->light, &now.light, sizeof now.light) == 0 &&
+        memcmp(&map->clip_from_world, &clip_from_world, sizeof clip_from_world) == 0 &&
+        scene_gpu_still_in(scene, clip_from_world);
     *map = now;
     return stands;
 }

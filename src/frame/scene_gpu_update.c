@@ -95,7 +95,8 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
 bool scene_gpu_still_in(const struct scene_gpu *s, mat4s clip_from_world)
 {
     for (int i = 0; i < s->draw_count && s->moved; i++)
-        if (s->draws[i].moved && projection_may_see(clip_from_world, s->draws[i].swept)) return false;
+        if (s->draws[i].moved && projection_may_see(clip_from_world, s->draws[i].swept))
+            return false;
     return true;
 }
 

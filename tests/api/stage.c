@@ -58,7 +58,8 @@ struct stage stage_open(const char *gi, const struct ag_device_adopt *adopt)
 void stage_close(struct stage *s)
 {
     ag_renderer_destroy(s->renderer);
-    if (ag_device_validation_messages(s->device)) fail_msg("validation says: %s", stage_last_warning);
+    if (ag_device_validation_messages(s->device))
+        fail_msg("validation says: %s", stage_last_warning);
     ag_scene_destroy(s->scene);
     ag_device_destroy(s->device);
     ag_context_destroy(s->context);

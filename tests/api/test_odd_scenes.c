@@ -105,7 +105,8 @@ TEST(a_scene_that_suits_the_grid_is_told_its_cells)
 {
     for (int i = 0; i < VOLUMES; i++) {
         CHECK(render_floor(volumes[i], 8, 2) > 0);
-        check_said(AG_LOG_INFO, volumes[i], strcmp(volumes[i], "vct") == 0 ? "scene: 60 x " : "scene: 32 x ");
+        check_said(AG_LOG_INFO, volumes[i],
+                   strcmp(volumes[i], "vct") == 0 ? "scene: 60 x " : "scene: 32 x ");
         CHECK(!strstr(said, "0 gi") && !strstr(said, "1 gi")); // no error, no warning
     }
 }
@@ -133,7 +134,8 @@ TEST(a_light_outside_of_the_grid_lights_as_others_do)
 {
     for (int i = 0; i < VOLUMES; i++) {
         CHECK(render_floor(volumes[i], 8, 100) > 0);
-        if (strcmp(volumes[i], "vct") != 0) // every voxel asks the shadow maps, wherever the light is
+        if (strcmp(volumes[i], "vct") !=
+            0) // every voxel asks the shadow maps, wherever the light is
             check_said(AG_LOG_INFO, volumes[i], "light 0 of scene is outside of the grid");
     }
 }

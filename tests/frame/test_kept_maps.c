@@ -15,7 +15,8 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
     *(int *)user = view->maps_drawn;
 }
 
-// A box over a floor, in the light of a sun (3 maps), a point (6) and a spot (1) that looks at the floor's far end.
+// A box over a floor, in the light of a sun (3 maps), a point (6) and a spot (1) that looks at the
+// floor's far end.
 static void open(struct watched *w, struct gpu *gpu, bool keep, uint32_t needs)
 {
     struct studio *s = &w->studio;

@@ -1,4 +1,5 @@
-// Light from voxel to voxel: how much of it there is, and that it follows what changes and then stands still.
+// Light from voxel to voxel: how much of it there is, and that it follows what changes and then
+// stands still.
 #include "techniques/vct_rig.h"
 
 #include <math.h>
@@ -57,7 +58,8 @@ TEST_GPU(bounces_add_up_to_what_a_closed_room_has)
     CHECK(got[1] / got[0] > 2.0 && got[1] / got[0] < 2.55);
 }
 
-// The old light dies away by a bounce in each frame, as the new one grows; then nothing changes any more.
+// The old light dies away by a bounce in each frame, as the new one grows; then nothing changes any
+// more.
 TEST_GPU(bounces_follow_a_light_and_stand_still_with_it)
 {
     struct vct_rig rig, fresh;

@@ -204,7 +204,7 @@ TEST_GPU(leaves_have_the_light_of_the_finest_mip)
         struct vct_rig rig;
         svo_furnish(&rig, gpu, false);
         vct_rig_open(&rig, svo ? "storage=svo,resolution=48,bounces=1"
-                                : "storage=mips,resolution=48,bounces=1");
+                               : "storage=mips,resolution=48,bounces=1");
         studio_render(&rig.studio);
         for (int way = 0; way < 6; way++)
             (svo ? sum_of_leaves : sum_of_mip)(&rig, way, sums[svo][way]);

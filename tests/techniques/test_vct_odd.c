@@ -1,4 +1,5 @@
-// Scenes that do not suit voxels: nothing hangs, everything is finite, and what is left out is said.
+// Scenes that do not suit voxels: nothing hangs, everything is finite, and what is left out is
+// said.
 #include "techniques/vct_rig.h"
 
 #include "techniques/vct/vct_remarks.h"
@@ -93,8 +94,7 @@ static void add_field(struct vct_rig *rig, int squares)
                          .index_count = 6 * (uint32_t)squares * (uint32_t)squares,
                          .positions = malloc(vertices * sizeof(vec3s)),
                          .normals = malloc(vertices * sizeof(vec3s)),
-                         .material =
-                             studio_matte(&rig->studio, vec3_of(0.5f, 0.5f, 0.5f)) };
+                         .material = studio_matte(&rig->studio, vec3_of(0.5f, 0.5f, 0.5f)) };
     mesh.indices = malloc(mesh.index_count * sizeof *mesh.indices);
     CHECK(mesh.positions && mesh.normals && mesh.indices);
     for (uint32_t i = 0; i < vertices; i++) {
@@ -107,7 +107,7 @@ static void add_field(struct vct_rig *rig, int squares)
     for (uint32_t y = 0; y + 1 < across; y++)
         for (uint32_t x = 0; x + 1 < across; x++, at += 6) {
             const uint32_t first = y * across + x;
-            const uint32_t square[] = { first, first + across, first + across + 1,
+            const uint32_t square[] = { first, first + across,     first + across + 1,
                                         first, first + across + 1, first + 1 };
             memcpy(at, square, sizeof square);
         }
@@ -176,7 +176,8 @@ static void stack(struct vct_rig *rig, int sheets)
 
 TEST_GPU(voxels_without_room_are_left_out_and_said_to_be)
 {
-    const int sheets[] = { 26, 28 }; // of 784 voxels: 20 384 and 21 952, where there is room for 20 480
+    const int sheets[] = { 26,
+                           28 }; // of 784 voxels: 20 384 and 21 952, where there is room for 20 480
     for (int i = 0; i < 2; i++) {
         struct vct_rig rig;
         vct_rig_init(&rig, gpu);

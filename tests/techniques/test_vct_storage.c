@@ -239,8 +239,8 @@ TEST_GPU(mips_are_built_faster_than_the_octree)
     for (int i = 0; i < 2; i++) {
         char options[96];
         furnish(&builds[i].rig, gpu);
-        snprintf(options, sizeof options, "resolution=64,cones=1,bounces=1,keep_static=false,storage=%s",
-                 storages[i]);
+        snprintf(options, sizeof options,
+                 "resolution=64,cones=1,bounces=1,keep_static=false,storage=%s", storages[i]);
         vct_rig_open(&builds[i].rig, options);
         builds[i].all = builds[i].filter = INFINITY;
     }

@@ -46,7 +46,8 @@ static struct look look_begin(struct studio *s, const char *way, double radius_m
     char text[160];
     struct look look;
     snprintf(text, sizeof text, "%s,radius=%g", way, radius_m);
-    if (!gi_spec_parse(&look.spec, test_host(), text)) fail_msg("%s: %s", text, test_last_message());
+    if (!gi_spec_parse(&look.spec, test_host(), text))
+        fail_msg("%s: %s", text, test_last_message());
     look.gi = gi_create(test_host(), s->gpu, &look.spec, &s->pose, s->width, s->height);
     assert_non_null(look.gi);
     s->indirect = gi_hook(look.gi);
@@ -119,8 +120,8 @@ TEST_GPU(a_sphere_of_no_size_is_open_and_one_beyond_the_scene_is_a_number)
     studio_finish(&s);
 }
 
-// Up to the horizon, where a pixel's neighbours are as far from each other as from the eye; and nothing changes while the
-// eye moves.
+// Up to the horizon, where a pixel's neighbours are as far from each other as from the eye; and
+// nothing changes while the eye moves.
 TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_eye_moves)
 {
     struct studio s;
@@ -136,8 +137,8 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_eye_moves)
             studio_look(&s, vec3_of(x, 1.5f, x), vec3_of(x + 0.2f, 1.5f - 0.02f * (float)k, x - 1));
             studio_render(&s);
             float *v = studio_read(&s, READ_VISIBILITY);
-            // Beside the picture's middle the plane's slope is beyond its bound while spheres are still two pixels large: an
-            // area looks farther from its pixel than a line there.
+            // Beside the picture's middle the plane's slope is beyond its bound while spheres are
+            // still two pixels large: an area looks farther from its pixel than a line there.
             check_all(ways[i], v, 1.0 - (strstr(ways[i], "areas") ? 5 : 1) * STEP, 1.0);
             for (int p = 0; p < PIXELS; p++) {
                 least = fmin(least, (double)v[p]);
@@ -153,8 +154,8 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_eye_moves)
     studio_finish(&s);
 }
 
-// Two walls along the y axis, z = 0 and x = 0, seen from between them. A wall at the distance a (radii) leaves
-// (2 + 3a − a³)/4 of the hemisphere over the other.
+// Two walls along the y axis, z = 0 and x = 0, seen from between them. A wall at the distance a
+// (radii) leaves (2 + 3a − a³)/4 of the hemisphere over the other.
 TEST_GPU(beside_a_wall_as_much_is_seen_as_the_wall_leaves)
 {
     struct studio s;
@@ -183,9 +184,11 @@ TEST_GPU(beside_a_wall_as_much_is_seen_as_the_wall_leaves)
         const double mean = sum / count, rms = sqrt(squares / count);
         print_message("%-36s mean %+.3f, rms %.3f\n", ways[i], mean, rms);
         CHECK(count > 500);
-        // The few samples' own bias is up to 0.042 (5 points); without the wall the mean would be 0.2.
+        // The few samples' own bias is up to 0.042 (5 points); without the wall the mean would be
+        // 0.2.
         CHECK(fabs(mean) < 0.042);
-        // The blur takes the crease together with what is two pixels off, 0.2 radii, at half size 0.4.
+        // The blur takes the crease together with what is two pixels off, 0.2 radii, at half size
+        // 0.4.
         const bool half = strstr(ways[i], "half") != NULL, blur = !strstr(ways[i], "blur=false");
         CHECK(rms < (!blur ? 0.12 : half ? 0.08 : 0.05));
         free(v);
@@ -220,7 +223,8 @@ TEST_GPU(silhouettes_have_no_halo_on_what_is_far_behind_them)
     for (int i = 0; i < WAYS; i++) {
         const double least = darkest_background(&s, ways[i]);
         print_message("%-36s %.3f\n", ways[i], least);
-        // A box spreads board and wall over all that is between them, of which the thickness closes a part.
+        // A box spreads board and wall over all that is between them, of which the thickness closes
+        // a part.
         CHECK(least >= (strstr(ways[i], "areas") ? 0.9 : 1.0 - 2 * STEP));
     }
     // What would be there if occluders had no end:
@@ -255,8 +259,8 @@ static double change_in_pan(struct studio *s, const char *way)
     return sum;
 }
 
-// Loos 2015, sec. 6.3.1: lines change as the depths beside them do, points jump. Ridges and grooves without silhouettes, so
-// that depth is continuous; at silhouettes both jump.
+// Loos 2015, sec. 6.3.1: lines change as the depths beside them do, points jump. Ridges and grooves
+// without silhouettes, so that depth is continuous; at silhouettes both jump.
 TEST_GPU(five_lines_change_less_than_twelve_points_while_the_eye_turns)
 {
     struct studio s;
@@ -272,8 +276,8 @@ TEST_GPU(five_lines_change_less_than_twelve_points_while_the_eye_turns)
                  points = change_in_pan(&s, "ssao:samples=12"),
                  same = change_in_pan(&s, "vo:mode=points,samples=12"),
                  still = change_in_pan(&s, "vo:samples=5,temporal=true");
-    print_message("five lines %.5f, ssao's points %.5f, vo's points %.5f, with history %.5f\n", lines,
-                  points, same, still);
+    print_message("five lines %.5f, ssao's points %.5f, vo's points %.5f, with history %.5f\n",
+                  lines, points, same, still);
     CHECK(lines < points && lines < 0.9 * same && still < lines);
     studio_finish(&s);
 }
@@ -296,7 +300,8 @@ TEST_GPU(history_takes_the_noise_out_of_a_still_picture)
         look_end(&look);
     }
     print_message("without history %.4f, with it %.4f\n", noise[0], noise[1]);
-    CHECK(noise[1] < 0.8 * noise[0]); // the rest is bias and what the blur of `exact` takes together
+    CHECK(noise[1] <
+          0.8 * noise[0]); // the rest is bias and what the blur of `exact` takes together
     free(exact);
     studio_finish(&s);
 }
@@ -306,7 +311,8 @@ TEST_GPU(two_radii_see_the_mean_of_each)
 {
     struct studio s;
     box_on_floor(&s, gpu);
-    float *a = seen(&s, "vo:samples=5,blur=false", 0.5), *b = seen(&s, "vo:samples=5,blur=false", 0.2),
+    float *a = seen(&s, "vo:samples=5,blur=false", 0.5),
+          *b = seen(&s, "vo:samples=5,blur=false", 0.2),
           *both = seen(&s, "vo:samples=5,blur=false,radius2=0.2", 0.5);
     for (int i = 0; i < PIXELS; i++) CHECK_NEAR(both[i], 0.5f * (a[i] + b[i]), 1.01 * STEP);
     free(a);

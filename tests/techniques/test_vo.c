@@ -70,12 +70,14 @@ TEST_GPU(vo_leaves_a_plane_exactly_half_of_its_sphere)
             char options[96];
             // The sphere's radius is 0.1 of the height, 6.4 pixels, at most: seven from the edge no
             // line is cut off.
-            snprintf(options, sizeof options,
-                     "samples=%d,radius=0.3,reach=0.1,normal=false", counts[k]);
+            snprintf(options, sizeof options, "samples=%d,radius=0.3,reach=0.1,normal=false",
+                     counts[k]);
             most = fmax(most, off(&s, options, 0.5f, 11));
         }
-        const double areas = off(&s, "mode=areas,samples=1,radius=0.3,reach=0.1,normal=false", 0.5f, 24);
-        print_message("slant %2.0f: half to %.1e, an area to %.1e\n", (double)slants[i], most, areas);
+        const double areas =
+            off(&s, "mode=areas,samples=1,radius=0.3,reach=0.1,normal=false", 0.5f, 24);
+        print_message("slant %2.0f: half to %.1e, an area to %.1e\n", (double)slants[i], most,
+                      areas);
         CHECK(most < 1e-4);
         CHECK(areas < 1e-4);
         studio_finish(&s);

@@ -30,10 +30,10 @@ void vct_rig_open(struct vct_rig *rig, const char *text)
     rig->vct = calloc(1, technique_vct.state_size);
     CHECK(technique_vct.check(&how));
     CHECK(technique_vct.create(rig->vct, &how));
-    s->indirect =
-        (struct frame_indirect){ .record = record,
-                                 .user = rig->vct,
-                                 .needs = technique_vct.needs | technique_vct.more_needs(&options) };
+    s->indirect = (struct frame_indirect){ .record = record,
+                                           .user = rig->vct,
+                                           .needs = technique_vct.needs |
+                                                    technique_vct.more_needs(&options) };
 }
 
 void vct_rig_finish(struct vct_rig *rig)

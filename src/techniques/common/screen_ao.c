@@ -1,4 +1,5 @@
-// The estimate, and the way from it to the frame's visibility: history, blur, fit to the frame's size.
+// The estimate, and the way from it to the frame's visibility: history, blur, fit to the frame's
+// size.
 #include "techniques/common/screen_ao.h"
 
 #include "technique_shaders.h"

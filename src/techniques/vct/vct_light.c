@@ -81,7 +81,8 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
         return;
     }
     gpu_scope_begin(cmd, "vct.fill");
-    // Only what holds something is filled. Until here the last frame's light was there to be brought.
+    // Only what holds something is filled. Until here the last frame's light was there to be
+    // brought.
     if (vct->light_outdated)
         gpu_clear_image(cmd, vct->light, (const float[4]){ 0.0f, 0.0f, 0.0f, 0.0f });
     vct->light_outdated = false;
@@ -121,7 +122,8 @@ static bool brings_the_same(const struct vct *vct, const struct vct_brought_by *
     return vct->brought_valid && !vct->remade && memcmp(by, &vct->brought_by, sizeof *by) == 0;
 }
 
-// Rounds of light from voxel to voxel. Of a surface that reflects 0.7 a 17th bounce is 0.3 % of the first.
+// Rounds of light from voxel to voxel. Of a surface that reflects 0.7 a 17th bounce is 0.3 % of the
+// first.
 enum {
     ROUNDS_AT_ONCE = 8,       // where there is no light yet
     ROUNDS_AFTER_CHANGE = 16, // one in each frame: as many until what was there before is gone
@@ -156,7 +158,8 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     const bool more = vct->options.bounces > 1;
     const struct vct_brought_by by = { view->constants->sky, view->constants->radiance_scale };
     const uint32_t lights = vct->params.light_count;
-    // Nothing from the last frame can be used: what goes straight comes first. Bricks come with their tree.
+    // Nothing from the last frame can be used: what goes straight comes first. Bricks come with
+    // their tree.
     const bool anew = !more || !vct->light_valid || (vct->remade && vct_has_svo(&vct->options));
     vct->params.brought = more || has_sky(view) || view->scene->max_emissive > 0.0f;
     const int rounds = vct->params.brought ? rounds_now(vct, view, &by, anew) : 0;

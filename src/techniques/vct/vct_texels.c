@@ -10,8 +10,7 @@ static size_t level_texels(const struct vct_options *options, uint32_t level)
 
 struct vct_texels_push vct_texels_push(const struct vct_options *options)
 {
-    struct vct_texels_push push = { .levels = vct_volume_mips(options),
-                                    .ways = vct_ways(options) };
+    struct vct_texels_push push = { .levels = vct_volume_mips(options), .ways = vct_ways(options) };
     size_t first = 0;
     for (uint32_t level = 0; level < push.levels; level++) {
         push.first[level] = (uint32_t)first;

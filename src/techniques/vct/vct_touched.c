@@ -46,8 +46,7 @@ static bool overlaps(const vec3s at[3], vec3s normal)
 
 static void enter(struct count *c, const int voxel[3])
 {
-    const size_t index =
-        ((size_t)voxel[2] * c->dim + (size_t)voxel[1]) * c->dim + (size_t)voxel[0];
+    const size_t index = ((size_t)voxel[2] * c->dim + (size_t)voxel[1]) * c->dim + (size_t)voxel[0];
     const uint32_t bit = 1u << (index % 32);
     if (c->mask[index / 32] & bit) return;
     c->mask[index / 32] |= bit;

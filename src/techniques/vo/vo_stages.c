@@ -28,21 +28,24 @@ static const struct sample_set *set_of(const struct vo_options *options)
     return options->mode == VO_MODE_AREAS && set->count == 1 ? &one_area : set;
 }
 
-// At the centre the surface is where it is looked at from: such a sample needs no look, unless it stands for more.
+// At the centre the surface is where it is looked at from: such a sample needs no look, unless it
+// stands for more.
 static bool needs_no_look(const struct sample *s, int mode)
 {
     return mode != VO_MODE_AREAS && s->x == 0.0f && s->y == 0.0f &&
            (mode != VO_MODE_POINTS || s->z == 0.0f);
 }
 
-// Of half the side of the square that is as large as the sample's share of the disk: the patterns move texels over it.
+// Of half the side of the square that is as large as the sample's share of the disk: the patterns
+// move texels over it.
 static float level_of(const struct sample *s)
 {
     return 0.5f * log2f(GLM_PIf * s->share) - 1.0f;
 }
 
-// The looks of a set but its centre are pairs of opposite ones, first and second by turns: of lines the shader takes both from
-// the first, with the weight that they have in the mean (the tables' come from cells of a grid).
+// The looks of a set but its centre are pairs of opposite ones, first and second by turns: of lines
+// the shader takes both from the first, with the weight that they have in the mean (the tables'
+// come from cells of a grid).
 static void even_out_pairs(struct vo_samples *table, int looks)
 {
     for (int i = 0; i + 1 < looks; i += 2)
