@@ -3,6 +3,7 @@
 //
 //     frame [--gi SUM]… [--frames N] [--size WxH] [--device NAME] [--csv FILE] [SCENE]…
 #include "command_line.h"
+#include "csv.h"
 #include "passes.h"
 
 #include <afterglow/afterglow.h>
@@ -89,25 +90,15 @@ static void print_table(const struct bench *bench, const char *scene)
     fflush(stdout);
 }
 
-static void write_csv_text(FILE *file, const char *text)
-{
-    fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"') fputc('"', file);
-        fputc(*text, file);
-    }
-    fputs("\",", file);
-}
-
 static void write_csv(const struct bench *bench, const char *scene)
 {
     for (int s = 0; s < bench->sum_count; s++) {
         for (int p = 0; p < bench->pass_count; p++) {
             const struct pass *pass = &bench->passes[p];
             if (pass->by_sum[s].count == 0) continue;
-            write_csv_text(bench->csv, scene);
-            write_csv_text(bench->csv, bench->sums[s]);
-            write_csv_text(bench->csv, pass->name);
+            csv_text(bench->csv, scene);
+            csv_text(bench->csv, bench->sums[s]);
+            csv_text(bench->csv, pass->name);
             fprintf(bench->csv, "%d,%d,%d,%.6f,%.6f\n", bench->width, bench->height,
                     pass->by_sum[s].count, pass->by_sum[s].median_ms, pass->by_sum[s].p95_ms);
         }
@@ -187,10 +178,7 @@ int main(int argc, char **argv)
                 PASSES_MAX_FRAMES);
         return 2;
     }
-    if (bench.csv_path && !(bench.csv = fopen(bench.csv_path, "w"))) {
-        perror(bench.csv_path);
-        return 1;
-    }
+    if (!csv_open(bench.csv_path, &bench.csv)) return 1;
     enum ag_result result = ag_context_create(NULL, &bench.context);
     if (result == AG_OK) result = run(&bench);
     if (result != AG_OK)
@@ -198,9 +186,6 @@ int main(int argc, char **argv)
                 ag_result_string(result));
     ag_device_destroy(bench.device);
     ag_context_destroy(bench.context);
-    if (bench.csv && (ferror(bench.csv) | fclose(bench.csv))) {
-        perror(bench.csv_path);
-        return 1;
-    }
-    return result == AG_OK ? 0 : 1;
+    const bool written = csv_close(bench.csv, bench.csv_path);
+    return result == AG_OK && written ? 0 : 1;
 }

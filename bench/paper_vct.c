@@ -5,6 +5,7 @@
 //     paper-vct [--resolution N]… [--only FIGURES] [--options KEY=VALUE,…] [--frames N]
 //     [--size WxH] [--csv FILE] [--device NAME] [SCENE]…
 #include "command_line.h"
+#include "csv.h"
 #include "paper_vct_measure.h"
 
 #include <stdio.h>
@@ -131,10 +132,12 @@ static void write_rows(const struct bench *bench, const char *scene, int resolut
     for (int k = 0; k < VCT_METHODS; k++)
         for (int s = 0; s <= figure->stage_count; s++) {
             bool all = s == figure->stage_count;
-            fprintf(bench->csv, "\"%s\",\"%s\",%d,%s,\"%s\",%d,%d,%d,%.6f,%llu\n", figure->numbers,
-                    scene, resolution, figure->methods[k],
-                    all ? "together" : figure->stages[s].name, bench->width, bench->height,
-                    bench->frames, all ? m[k].all_ms : m[k].ms[s], (unsigned long long)m[k].bytes);
+            csv_text(bench->csv, figure->numbers);
+            csv_text(bench->csv, scene);
+            fprintf(bench->csv, "%d,%s,", resolution, figure->methods[k]);
+            csv_text(bench->csv, all ? "together" : figure->stages[s].name);
+            fprintf(bench->csv, "%d,%d,%d,%.6f,%llu\n", bench->width, bench->height, bench->frames,
+                    all ? m[k].all_ms : m[k].ms[s], (unsigned long long)m[k].bytes);
         }
 }
 
@@ -253,10 +256,7 @@ int main(int argc, char **argv)
                         "[SCENE]...\n");
         return 2;
     }
-    if (bench.csv_path && !(bench.csv = fopen(bench.csv_path, "w"))) {
-        perror(bench.csv_path);
-        return 1;
-    }
+    if (!csv_open(bench.csv_path, &bench.csv)) return 1;
     enum ag_result result = ag_context_create(NULL, &bench.context);
     if (result == AG_OK) result = run(&bench);
     if (result != AG_OK)
@@ -264,9 +264,6 @@ int main(int argc, char **argv)
                 ag_result_string(result));
     ag_device_destroy(bench.device);
     ag_context_destroy(bench.context);
-    if (bench.csv && (ferror(bench.csv) | fclose(bench.csv))) {
-        perror(bench.csv_path);
-        return 1;
-    }
-    return result == AG_OK ? 0 : 1;
+    const bool written = csv_close(bench.csv, bench.csv_path);
+    return result == AG_OK && written ? 0 : 1;
 }
