@@ -80,7 +80,10 @@ static void vct_set_options(void *state, const void *options)
     vct->options.storage = had.storage;
     vct->options.temporal = had.temporal;
     vct->options.specular = had.specular;
-    vct->light_valid = vct->brought_valid = false;
+    // What shapes the light from voxel to voxel; what only shapes pixels leaves it as it is.
+    if (vct->options.bounces != had.bounces || vct->options.offset != had.offset ||
+        vct->options.stride != had.stride)
+        vct->light_valid = vct->brought_valid = false;
     vct_cone_lines(vct->options.cones, vct->lines);
     vct_temporal_forget(&vct->temporal);
 }

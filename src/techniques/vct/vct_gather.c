@@ -136,13 +136,7 @@ void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     const struct vct_view_push push = { .view = what, .reflectance_shown = 4.0f };
     gpu_scope_begin(cmd, "vct.debug");
     gpu_dispatch(cmd, vct->debug,
-                 GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding,
-                          { .name = "static_mask", .buffer = vct->rest.mask },
-                          { .name = "static_before", .buffer = vct->rest.before },
-                          { .name = "static_records", .image = vct->rest.records },
-                          { .name = "dynamic_mask", .buffer = vct->moving.mask },
-                          { .name = "dynamic_before", .buffer = vct->moving.before },
-                          { .name = "dynamic_records", .image = vct->moving.records },
+                 GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, VCT_BOTH_SETS(vct),
                           { .name = "picture", .image = out }, vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),

@@ -24,15 +24,8 @@ static void inject(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view
 
 static void fill(struct vct *vct, struct gpu_cmd *cmd)
 {
-    const struct vct_set *rest = &vct->rest, *moving = &vct->moving;
     gpu_dispatch_indirect(cmd, vct->fill[vct->moving_draws > 0],
-                          GPU_BIND(vct_grid_binding(vct, cmd),
-                                   { .name = "static_mask", .buffer = rest->mask },
-                                   { .name = "static_before", .buffer = rest->before },
-                                   { .name = "static_records", .image = rest->records },
-                                   { .name = "dynamic_mask", .buffer = moving->mask },
-                                   { .name = "dynamic_before", .buffer = moving->before },
-                                   { .name = "dynamic_records", .image = moving->records },
+                          GPU_BIND(vct_grid_binding(vct, cmd), VCT_BOTH_SETS(vct),
                                    { .name = "light", .image = vct->light },
                                    { .name = "vct_texels", .buffer = vct->texels },
                                    { .name = "vct_texel_state", .buffer = vct->texel_state }),

@@ -23,6 +23,17 @@ struct vct_set {
     gpu_image records; // RGBA32U
 };
 
+// For lists of bindings: the voxels of both sets, as vct_seen.glsl reads them.
+#define VCT_BOTH_SETS(vct)                                                                         \
+    { .name = "static_mask", .buffer = (vct)->rest.mask },                                         \
+        { .name = "static_before", .buffer = (vct)->rest.before },                                 \
+        { .name = "static_records", .image = (vct)->rest.records },                                \
+        { .name = "dynamic_mask", .buffer = (vct)->moving.mask },                                  \
+        { .name = "dynamic_before", .buffer = (vct)->moving.before },                              \
+    {                                                                                              \
+        .name = "dynamic_records", .image = (vct)->moving.records                                  \
+    }
+
 // Draws by what their materials read; maps that one of a kind lacks are white.
 enum vct_kind { VCT_PLAIN, VCT_MAPPED, VCT_MASKED, VCT_KINDS };
 

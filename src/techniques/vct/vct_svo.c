@@ -118,16 +118,9 @@ void vct_svo_record_tree(struct vct *vct, struct gpu_cmd *cmd)
 static void over_bricks(struct vct *vct, struct gpu_cmd *cmd, gpu_pipeline pipeline,
                         struct vct_svo_push push, size_t groups)
 {
-    const struct vct_set *rest = &vct->rest, *moving = &vct->moving;
     gpu_dispatch_indirect(cmd, pipeline,
                           GPU_BIND(vct_grid_binding(vct, cmd), vct_svo_binding(vct, cmd),
-                                   { .name = "static_mask", .buffer = rest->mask },
-                                   { .name = "static_before", .buffer = rest->before },
-                                   { .name = "static_records", .image = rest->records },
-                                   { .name = "dynamic_mask", .buffer = moving->mask },
-                                   { .name = "dynamic_before", .buffer = moving->before },
-                                   { .name = "dynamic_records", .image = moving->records },
-                                   { .name = "light", .image = vct->light },
+                                   VCT_BOTH_SETS(vct), { .name = "light", .image = vct->light },
                                    { .name = "vct_svo_nodes", .buffer = vct->svo.nodes },
                                    { .name = "vct_svo_places", .buffer = vct->svo.places },
                                    { .name = "vct_svo_levels", .buffer = vct->svo.levels }),
