@@ -192,7 +192,7 @@ TEST_GPU(voxels_without_room_are_left_out_and_said_to_be)
         struct host host = *test_host();
         host.log = listen;
         warnings = 0;
-        vct_remark_on_scene(&host, &rig.vct->options, &rig.studio.pose);
+        vct_remark_on_scene(&host, "vct", &rig.vct->options, &rig.studio.pose);
         CHECK(warnings == (all > room));
         vct_rig_finish(&rig);
     }

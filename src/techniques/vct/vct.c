@@ -33,21 +33,26 @@ static const struct technique_preset presets[] = {
     { NULL, NULL },
 };
 
-static bool vct_check(const struct technique_create *how)
+static bool check(const char *name, const struct technique_create *how)
 {
     const struct vct_options *options = how->options;
     if (options->resolution % 16 != 0)
-        return host_fail(how->host, FAIL_ARGUMENT, "gi vct: resolution=%d is not a multiple of 16",
-                         (int)options->resolution);
+        return host_fail(how->host, FAIL_ARGUMENT, "gi %s: resolution=%d is not a multiple of 16",
+                         name, (int)options->resolution);
     const struct gpu_image_desc light = vct_light_desc(options);
     const uint32_t most = gpu_limits(how->gpu)->max_image_3d,
                    width = light.width > light.depth ? light.width : light.depth;
     if (most < width)
         return host_fail(
             how->host, FAIL_UNSUPPORTED,
-            "gi vct: resolution=%d: the device has 3D images of at most %u, %u are needed",
+            "gi %s: resolution=%d: the device has 3D images of at most %u, %u are needed", name,
             (int)options->resolution, most, width);
     return true;
+}
+
+static bool vct_check(const struct technique_create *how)
+{
+    return check("vct", how);
 }
 
 static bool vct_resize(void *state, uint32_t width, uint32_t height)
@@ -57,10 +62,10 @@ static bool vct_resize(void *state, uint32_t width, uint32_t height)
            (!vct->options.temporal || vct_temporal_resize(&vct->temporal, vct->gpu, width, height));
 }
 
-static bool vct_create(void *state, const struct technique_create *how)
+static bool create(struct vct *vct, const char *name, const struct technique_create *how)
 {
-    struct vct *vct = state;
-    if (how->pose) vct_remark_on_scene(how->host, how->options, how->pose);
+    if (how->pose) vct_remark_on_scene(how->host, name, how->options, how->pose);
+    vct->name = vct->temporal.owner = name;
     vct->gpu = how->gpu;
     vct->options = *(const struct vct_options *)how->options;
     vct_cone_lines(vct->options.cones, vct->lines);
@@ -68,6 +73,11 @@ static bool vct_create(void *state, const struct technique_create *how)
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
            vct_create_pipelines(vct) &&
            (!vct->options.temporal || vct_temporal_create(&vct->temporal, vct->gpu));
+}
+
+static bool vct_create(void *state, const struct technique_create *how)
+{
+    return create(state, "vct", how);
 }
 
 static void vct_set_options(void *state, const void *options)

@@ -60,7 +60,7 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
                         const struct pixels *p, gpu_image result)
 {
     const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
-    gpu_scope_begin(cmd, "vct.cones");
+    vct_pass_begin(vct->name, cmd, "cones");
     gpu_dispatch(cmd, vct->cones,
                  GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, p->cones, p->depth,
                           p->normal,
@@ -92,19 +92,19 @@ static void gather(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p,
 static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                         const struct pixels *p, gpu_image result)
 {
-    gpu_scope_begin(cmd, "vct.edges");
+    vct_pass_begin(vct->name, cmd, "edges");
     gpu_dispatch(cmd, vct->edges,
                  GPU_BIND(view->constants_binding, p->cones, p->depth, p->normal, p->edges), NULL,
                  0, p->across, p->down, 1);
     gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "vct.gather");
+    vct_pass_begin(vct->name, cmd, "gather");
     gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
            gpu_groups(view->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
     // The last one has no sums to write: what it is bound to is not used.
     gather(vct, cmd, p, vct->gather_columns, vct->gathered, vct->traced, p->across,
            gpu_groups(view->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
     gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "vct.blur");
+    vct_pass_begin(vct->name, cmd, "blur");
     gpu_dispatch(cmd, vct->blur,
                  GPU_BIND(view->constants_binding, p->cones, p->depth, p->normal,
                           { .name = "gathered", .image = vct->found },
@@ -134,7 +134,7 @@ void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
 {
     // Reflectance and normals are shown as bright as a surface in the strongest light is.
     const struct vct_view_push push = { .view = what, .reflectance_shown = 4.0f };
-    gpu_scope_begin(cmd, "vct.debug");
+    vct_pass_begin(vct->name, cmd, "debug");
     gpu_dispatch(cmd, vct->debug,
                  GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, VCT_BOTH_SETS(vct),
                           { .name = "picture", .image = out }, vct_svo_binding(vct, cmd),

@@ -65,7 +65,7 @@ static void filter(struct vct *vct, struct gpu_cmd *cmd)
 
 static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    gpu_scope_begin(cmd, "vct.inject");
+    vct_pass_begin(vct->name, cmd, "inject");
     inject(vct, cmd, view, &vct->rest);
     if (vct->moving_draws > 0) inject(vct, cmd, view, &vct->moving);
     gpu_scope_end(cmd);
@@ -73,7 +73,7 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
         vct_svo_record_light(vct, cmd);
         return;
     }
-    gpu_scope_begin(cmd, "vct.fill");
+    vct_pass_begin(vct->name, cmd, "fill");
     // Only what holds something is filled. Until here the last frame's light was there to be
     // brought.
     if (vct->light_outdated)
@@ -81,7 +81,7 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     vct->light_outdated = false;
     fill(vct, cmd);
     gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "vct.mips");
+    vct_pass_begin(vct->name, cmd, "mips");
     filter(vct, cmd);
     gpu_scope_end(cmd);
 }
@@ -139,7 +139,7 @@ static int rounds_now(struct vct *vct, const struct frame_view *view,
 static void bring_to_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                          struct gpu_binding cones)
 {
-    gpu_scope_begin(cmd, "vct.bounce");
+    vct_pass_begin(vct->name, cmd, "bounce");
     bring(vct, cmd, view, &vct->rest, cones);
     if (vct->moving_draws > 0) bring(vct, cmd, view, &vct->moving, cones);
     gpu_scope_end(cmd);

@@ -37,27 +37,28 @@ static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
                             *mark_large = raster ? NULL : &shader_vct_mark_large_comp,
                             *add_large = raster ? NULL : &shader_vct_add_large_comp;
     const struct pipeline_plan plan[WALKS] = {
-        { &vct->mark.small, "vct.mark", mark, NULL, 0 },
-        { &vct->mark.large, "vct.mark_large", mark_large, NULL, 0 },
-        { &plain->small, "vct.add", add, NULL, 0 },
-        { &plain->large, "vct.add_large", add_large, NULL, 0 },
-        { &maps->small, "vct.add_mapped", add, mapped, 1 },
-        { &maps->large, "vct.add_mapped_large", add_large, mapped, 1 },
-        { &masks->small, "vct.add_masked", add, masked, 2 },
-        { &masks->large, "vct.add_masked_large", add_large, masked, 2 },
+        { &vct->mark.small, "mark", mark, NULL, 0 },
+        { &vct->mark.large, "mark_large", mark_large, NULL, 0 },
+        { &plain->small, "add", add, NULL, 0 },
+        { &plain->large, "add_large", add_large, NULL, 0 },
+        { &maps->small, "add_mapped", add, mapped, 1 },
+        { &maps->large, "add_mapped_large", add_large, mapped, 1 },
+        { &masks->small, "add_masked", add, masked, 2 },
+        { &masks->large, "add_masked_large", add_large, masked, 2 },
     };
     memcpy(out, plan, sizeof plan);
 }
 
 static bool create_compute_pipeline(struct vct *vct, const struct pipeline_plan *plan)
 {
-    return gpu_compute_pipeline_create(vct->gpu, plan->name, plan->shader, plan->constants,
-                                       plan->constant_count, plan->out);
+    return vct_create_compute(vct->name, vct->gpu, plan->name, plan->shader, plan->constants,
+                              plan->constant_count, plan->out);
 }
 
 static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *plan)
 {
-    const struct gpu_graphics_desc desc = { .name = plan->name,
+    char name[VCT_NAME_SIZE];
+    const struct gpu_graphics_desc desc = { .name = vct_name(vct->name, plan->name, name),
                                             .vertex = &shader_vct_raster_vert,
                                             .fragment = plan->shader,
                                             .constants = plan->constants,
@@ -70,16 +71,16 @@ enum { PIPELINES = 10, MIP_PIPELINES = 7, MOST_STORAGE_PIPELINES = 12 };
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
     const struct pipeline_plan plan[PIPELINES] = {
-        { &vct->count, "vct.count", &shader_vct_count_comp, NULL, 0 },
-        { &vct->scan, "vct.scan", &shader_vct_scan_comp, NULL, 0 },
-        { &vct->list, "vct.list", &shader_vct_list_comp, NULL, 0 },
-        { &vct->texel_lists, "vct.texels", &shader_vct_texels_comp, NULL, 0 },
-        { &vct->inject[0], "vct.inject_unlit", &shader_vct_inject_comp, unlit, 1 },
-        { &vct->inject[1], "vct.inject", &shader_vct_inject_comp, NULL, 0 },
-        { &vct->edges, "vct.edges", &shader_vct_edges_comp, NULL, 0 },
-        { &vct->gather_rows, "vct.gather_rows", &shader_vct_gather_comp, NULL, 0 },
-        { &vct->gather_columns, "vct.gather_columns", &shader_vct_gather_comp, columns, 1 },
-        { &vct->blur, "vct.blur", &shader_vct_blur_comp, NULL, 0 },
+        { &vct->count, "count", &shader_vct_count_comp, NULL, 0 },
+        { &vct->scan, "scan", &shader_vct_scan_comp, NULL, 0 },
+        { &vct->list, "list", &shader_vct_list_comp, NULL, 0 },
+        { &vct->texel_lists, "texels", &shader_vct_texels_comp, NULL, 0 },
+        { &vct->inject[0], "inject_unlit", &shader_vct_inject_comp, unlit, 1 },
+        { &vct->inject[1], "inject", &shader_vct_inject_comp, NULL, 0 },
+        { &vct->edges, "edges", &shader_vct_edges_comp, NULL, 0 },
+        { &vct->gather_rows, "gather_rows", &shader_vct_gather_comp, NULL, 0 },
+        { &vct->gather_columns, "gather_columns", &shader_vct_gather_comp, columns, 1 },
+        { &vct->blur, "blur", &shader_vct_blur_comp, NULL, 0 },
     };
     memcpy(out, plan, sizeof plan);
 }
@@ -91,27 +92,27 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     const struct gpu_constant *ways = vct->options.anisotropic ? NULL : isotropic;
     const int way_count = vct->options.anisotropic ? 0 : 1;
     const struct pipeline_plan mips[MIP_PIPELINES] = {
-        { &vct->bounce, "vct.bounce", &shader_vct_bounce_mips_comp, ways, way_count },
-        { &vct->cones, "vct.cones", &shader_vct_cones_mips_comp, ways, way_count },
-        { &vct->specular, "vct.specular", &shader_vct_specular_mips_comp, ways, way_count },
-        { &vct->fill[0], "vct.fill_still", &shader_vct_fill_comp, still, 1 + way_count },
-        { &vct->fill[1], "vct.fill", &shader_vct_fill_comp, ways, way_count },
-        { &vct->mip, "vct.mip", &shader_vct_mip_comp, ways, way_count },
-        { &vct->debug, "vct.debug", &shader_vct_debug_mips_comp, NULL, 0 },
+        { &vct->bounce, "bounce", &shader_vct_bounce_mips_comp, ways, way_count },
+        { &vct->cones, "cones", &shader_vct_cones_mips_comp, ways, way_count },
+        { &vct->specular, "specular", &shader_vct_specular_mips_comp, ways, way_count },
+        { &vct->fill[0], "fill_still", &shader_vct_fill_comp, still, 1 + way_count },
+        { &vct->fill[1], "fill", &shader_vct_fill_comp, ways, way_count },
+        { &vct->mip, "mip", &shader_vct_mip_comp, ways, way_count },
+        { &vct->debug, "debug", &shader_vct_debug_mips_comp, NULL, 0 },
     };
     const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
-        { &vct->bounce, "vct.bounce", &shader_vct_bounce_svo_comp, ways, way_count },
-        { &vct->cones, "vct.cones", &shader_vct_cones_svo_comp, ways, way_count },
-        { &vct->specular, "vct.specular", &shader_vct_specular_svo_comp, ways, way_count },
-        { &svo->mark, "vct.svo_mark", &shader_vct_svo_mark_comp, NULL, 0 },
-        { &svo->count, "vct.svo_count", &shader_vct_svo_count_comp, NULL, 0 },
-        { &svo->scan, "vct.svo_scan", &shader_vct_svo_scan_comp, NULL, 0 },
-        { &svo->divide, "vct.svo_divide", &shader_vct_svo_divide_comp, NULL, 0 },
-        { &svo->fill[0], "vct.svo_fill_still", &shader_vct_svo_fill_comp, still, 1 + way_count },
-        { &svo->fill[1], "vct.svo_fill", &shader_vct_svo_fill_comp, ways, way_count },
-        { &svo->join, "vct.svo_join", &shader_vct_svo_join_comp, ways, way_count },
-        { &svo->mip, "vct.svo_mip", &shader_vct_svo_mip_comp, ways, way_count },
-        { &vct->debug, "vct.debug", &shader_vct_debug_svo_comp, NULL, 0 },
+        { &vct->bounce, "bounce", &shader_vct_bounce_svo_comp, ways, way_count },
+        { &vct->cones, "cones", &shader_vct_cones_svo_comp, ways, way_count },
+        { &vct->specular, "specular", &shader_vct_specular_svo_comp, ways, way_count },
+        { &svo->mark, "svo_mark", &shader_vct_svo_mark_comp, NULL, 0 },
+        { &svo->count, "svo_count", &shader_vct_svo_count_comp, NULL, 0 },
+        { &svo->scan, "svo_scan", &shader_vct_svo_scan_comp, NULL, 0 },
+        { &svo->divide, "svo_divide", &shader_vct_svo_divide_comp, NULL, 0 },
+        { &svo->fill[0], "svo_fill_still", &shader_vct_svo_fill_comp, still, 1 + way_count },
+        { &svo->fill[1], "svo_fill", &shader_vct_svo_fill_comp, ways, way_count },
+        { &svo->join, "svo_join", &shader_vct_svo_join_comp, ways, way_count },
+        { &svo->mip, "svo_mip", &shader_vct_svo_mip_comp, ways, way_count },
+        { &vct->debug, "debug", &shader_vct_debug_svo_comp, NULL, 0 },
     };
     if (vct_has_svo(&vct->options))
         memcpy(out, octree, sizeof octree);

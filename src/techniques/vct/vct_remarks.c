@@ -7,44 +7,47 @@
 // Doors, furniture and people are larger than this, and their light with them.
 static const float COARSE_M = 1.0f;
 
-static void remark_on_voxels(struct host *host, const struct vct_options *options,
-                             const struct vct_grid *grid, const char *scene)
+static void remark_on_voxels(struct host *host, const char *technique,
+                             const struct vct_options *options, const struct vct_grid *grid,
+                             const char *scene)
 {
     const int32_t *cells = grid->cells;
     const double side = (double)grid->cell_m;
     if (grid->cell_m <= COARSE_M)
-        host_log(host, LOG_INFO, "gi vct: %s: %d x %d x %d voxels of %.3g m", scene, (int)cells[0],
-                 (int)cells[1], (int)cells[2], side);
+        host_log(host, LOG_INFO, "gi %s: %s: %d x %d x %d voxels of %.3g m", technique, scene,
+                 (int)cells[0], (int)cells[1], (int)cells[2], side);
     else
         host_log(host, LOG_WARNING,
-                 "gi vct: %s is %.3g m long: with resolution=%d a voxel is %.3g m, and indirect "
+                 "gi %s: %s is %.3g m long: with resolution=%d a voxel is %.3g m, and indirect "
                  "light has no finer detail",
-                 scene, side * (double)options->resolution, (int)options->resolution, side);
+                 technique, scene, side * (double)options->resolution, (int)options->resolution,
+                 side);
 }
 
-static void remark_on_room(struct host *host, const struct vct_options *options,
-                           const struct vct_grid *grid, const struct scene_pose *pose)
+static void remark_on_room(struct host *host, const char *technique,
+                           const struct vct_options *options, const struct vct_grid *grid,
+                           const struct scene_pose *pose)
 {
     const uint32_t room = vct_capacity(options);
     uint32_t touched = 0;
     if (!vct_count_touched(host, pose, grid, options->resolution, room, &touched)) return;
     if (touched > room)
         host_log(host, LOG_WARNING,
-                 "gi vct: surfaces of %s fill more than %u voxels, for which there is room: what "
+                 "gi %s: surfaces of %s fill more than %u voxels, for which there is room: what "
                  "lies beyond them along z is left out; with a lower resolution it is less",
-                 pose->scene->name, (unsigned)room);
+                 technique, pose->scene->name, (unsigned)room);
 }
 
-void vct_remark_on_scene(struct host *host, const struct vct_options *options,
-                         const struct scene_pose *pose)
+void vct_remark_on_scene(struct host *host, const char *technique,
+                         const struct vct_options *options, const struct scene_pose *pose)
 {
     struct vct_grid grid;
     if (!vct_grid_fit(pose->bounds, options->resolution, &grid)) {
         host_log(host, LOG_WARNING,
-                 "gi vct: %s has no extent that a grid could cover: there is no indirect light",
-                 pose->scene->name);
+                 "gi %s: %s has no extent that a grid could cover: there is no indirect light",
+                 technique, pose->scene->name);
         return;
     }
-    remark_on_voxels(host, options, &grid, pose->scene->name);
-    remark_on_room(host, options, &grid, pose);
+    remark_on_voxels(host, technique, options, &grid, pose->scene->name);
+    remark_on_room(host, technique, options, &grid, pose);
 }

@@ -62,7 +62,7 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
                      struct buffer_plan out[SET_BUFFERS])
 {
     const size_t capacity = vct_capacity(options);
-#define NAME(thing) (moving ? "vct.moving_" thing : "vct.rest_" thing)
+#define NAME(thing) (moving ? "moving_" thing : "rest_" thing)
     const struct buffer_plan plan[SET_BUFFERS] = {
         { NAME("mask"), &set->mask, mask_words(options), 0 },
         { NAME("before"), &set->before, mask_words(options), 0 },
@@ -84,10 +84,10 @@ static void plan_svo(const struct vct_options *options, struct vct_svo *svo,
     const struct vct_svo_params params = vct_svo_params(options);
     const size_t nodes = vct_svo_nodes(options);
     const struct buffer_plan plan[SVO_BUFFERS] = {
-        { "vct.svo_nodes", &svo->nodes, nodes, 0 },
-        { "vct.svo_places", &svo->places, params.bricks, 0 },
-        { "vct.svo_blocks", &svo->blocks, (nodes + VCT_SVO_BLOCK - 1) / VCT_SVO_BLOCK, 0 },
-        { "vct.svo_levels", &svo->levels,
+        { "svo_nodes", &svo->nodes, nodes, 0 },
+        { "svo_places", &svo->places, params.bricks, 0 },
+        { "svo_blocks", &svo->blocks, (nodes + VCT_SVO_BLOCK - 1) / VCT_SVO_BLOCK, 0 },
+        { "svo_levels", &svo->levels,
           params.depths * sizeof(struct vct_svo_level) / sizeof(uint32_t), GPU_BUFFER_INDIRECT },
     };
     memcpy(out, plan, sizeof plan);
@@ -100,11 +100,11 @@ static int plan_buffers(const struct vct_options *options, struct vct *vct,
     plan_set(options, false, &vct->rest, out);
     plan_set(options, true, &vct->moving, out + SET_BUFFERS);
     const struct buffer_plan plan[] = {
-        { "vct.queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 },
-        { "vct.queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT },
-        { "vct.texels", &vct->texels, vct_texel_words(options), 0 },
-        { "vct.texel_mask", &vct->texel_mask, vct_texel_mask_words(options), 0 },
-        { "vct.texel_state", &vct->texel_state, sizeof(struct vct_texel_levels) / sizeof(uint32_t),
+        { "queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 },
+        { "queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT },
+        { "texels", &vct->texels, vct_texel_words(options), 0 },
+        { "texel_mask", &vct->texel_mask, vct_texel_mask_words(options), 0 },
+        { "texel_state", &vct->texel_state, sizeof(struct vct_texel_levels) / sizeof(uint32_t),
           GPU_BUFFER_INDIRECT },
     };
     memcpy(out + 2 * SET_BUFFERS, plan, sizeof plan);
@@ -117,7 +117,7 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
 {
     if (vct_has_svo(options)) return vct_svo_pool(options);
     const uint32_t dim = vct_volume_dim(options);
-    return (struct gpu_image_desc){ .name = "vct.light",
+    return (struct gpu_image_desc){ .name = "light",
                                     .dimension = GPU_3D,
                                     .format = GPU_RGBA16F,
                                     .width = vct_ways(options) * dim,
@@ -129,7 +129,7 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
 
 static struct gpu_image_desc records_desc(const struct vct_options *options, bool moving)
 {
-    return (struct gpu_image_desc){ .name = moving ? "vct.moving_records" : "vct.rest_records",
+    return (struct gpu_image_desc){ .name = moving ? "moving_records" : "rest_records",
                                     .format = GPU_RGBA32U,
                                     .width = 2 * VCT_RECORD_ROW,
                                     .height = gpu_groups(vct_capacity(options), VCT_RECORD_ROW),
@@ -146,8 +146,7 @@ static bool create_image_2d(struct vct *vct, const char *name, enum gpu_format f
                                          .width = vct->width,
                                          .height = vct->height,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    gpu_image_destroy(vct->gpu, out);
-    return gpu_image_create(vct->gpu, &desc, out);
+    return vct_create_image(vct->name, vct->gpu, desc, out);
 }
 
 static bool create_vectors(struct vct *vct, const char *name, gpu_image out[3])
@@ -161,10 +160,10 @@ bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
 {
     vct->width = width;
     vct->height = height;
-    return create_image_2d(vct, "vct.edges", GPU_R8, &vct->edge_image) &&
-           create_image_2d(vct, "vct.found", GPU_RGBA16F, &vct->found) &&
-           create_vectors(vct, "vct.traced", vct->traced) &&
-           create_vectors(vct, "vct.gathered", vct->gathered);
+    return create_image_2d(vct, "edges", GPU_R8, &vct->edge_image) &&
+           create_image_2d(vct, "found", GPU_RGBA16F, &vct->found) &&
+           create_vectors(vct, "traced", vct->traced) &&
+           create_vectors(vct, "gathered", vct->gathered);
 }
 
 bool vct_create_resources(struct vct *vct)
@@ -172,24 +171,24 @@ bool vct_create_resources(struct vct *vct)
     struct buffer_plan plan[MOST_BUFFERS];
     const int count = plan_buffers(&vct->options, vct, plan);
     for (int i = 0; i < count; i++) {
-        const struct gpu_buffer_desc desc = { .name = plan[i].name,
+        char name[VCT_NAME_SIZE];
+        const struct gpu_buffer_desc desc = { .name = vct_name(vct->name, plan[i].name, name),
                                               .bytes = plan[i].words * sizeof(uint32_t),
                                               .usage = GPU_BUFFER_STORAGE | plan[i].usage };
         if (!gpu_buffer_create(vct->gpu, &desc, plan[i].out)) return false;
     }
     vct->svo.params = vct_svo_params(&vct->options);
-    const struct gpu_image_desc light = vct_light_desc(&vct->options),
-                                rest = records_desc(&vct->options, false),
-                                moving = records_desc(&vct->options, true);
     const struct gpu_sampler_desc linear = { .name = "vct.linear",
                                              .filter = GPU_LINEAR,
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
     return gpu_sampler_get(vct->gpu, &linear, &vct->linear) &&
-           gpu_image_create(vct->gpu, &light, &vct->light) &&
-           gpu_image_create(vct->gpu, &rest, &vct->rest.records) &&
-           gpu_image_create(vct->gpu, &moving, &vct->moving.records);
+           vct_create_image(vct->name, vct->gpu, vct_light_desc(&vct->options), &vct->light) &&
+           vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, false),
+                            &vct->rest.records) &&
+           vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, true),
+                            &vct->moving.records);
 }
 
 // ---- End and bytes ------------------------------------------------------------------------------

@@ -53,7 +53,7 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
         .texel_m = 2.0f * vct->grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
     };
-    gpu_scope_begin(cmd, "vct.specular");
+    vct_pass_begin(vct->name, cmd, "specular");
     gpu_dispatch(
         cmd, vct->specular,
         GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding,

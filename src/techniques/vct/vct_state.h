@@ -4,6 +4,7 @@
 #include "techniques/technique.h"
 #include "techniques/vct/vct_cones.h"
 #include "techniques/vct/vct_grid.h"
+#include "techniques/vct/vct_names.h"
 #include "techniques/vct/vct_shared.h"
 #include "techniques/vct/vct_temporal.h"
 
@@ -58,6 +59,7 @@ struct vct_brought_by {
 };
 
 struct vct {
+    const char *name; // of the technique
     struct gpu *gpu;
     struct vct_options options;
     struct vct_walk mark, add[VCT_KINDS];

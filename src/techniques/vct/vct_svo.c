@@ -40,7 +40,7 @@ struct gpu_image_desc vct_svo_pool(const struct vct_options *options)
 {
     const struct vct_svo_params params = vct_svo_params(options);
     const uint32_t row = (uint32_t)params.row;
-    return (struct gpu_image_desc){ .name = "vct.bricks",
+    return (struct gpu_image_desc){ .name = "bricks",
                                     .dimension = GPU_3D,
                                     .format = GPU_RGBA16F,
                                     .width = 3 * vct_ways(options) * row,
@@ -103,7 +103,7 @@ static void divide(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
 
 void vct_svo_record_tree(struct vct *vct, struct gpu_cmd *cmd)
 {
-    gpu_scope_begin(cmd, "vct.nodes");
+    vct_pass_begin(vct->name, cmd, "nodes");
     gpu_fill_buffer(cmd, vct->svo.nodes, 0, 8 * sizeof(uint32_t), 0); // an empty root
     for (uint32_t depth = 0; depth < vct->svo.params.depths; depth++) {
         mark(vct, cmd, &vct->rest, depth);
@@ -129,7 +129,7 @@ static void over_bricks(struct vct *vct, struct gpu_cmd *cmd, gpu_pipeline pipel
 
 static void join(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
 {
-    gpu_scope_begin(cmd, "vct.borders");
+    vct_pass_begin(vct->name, cmd, "borders");
     for (uint32_t axis = 0; axis < 3; axis++)
         over_bricks(vct, cmd, vct->svo.join, (struct vct_svo_push){ .depth = depth, .axis = axis },
                     offsetof(struct vct_svo_level, side_groups));
@@ -140,13 +140,13 @@ void vct_svo_record_light(struct vct *vct, struct gpu_cmd *cmd)
 {
     const uint32_t leaves = vct->svo.params.depths - 1;
     const size_t texels = offsetof(struct vct_svo_level, texel_groups);
-    gpu_scope_begin(cmd, "vct.leaves");
+    vct_pass_begin(vct->name, cmd, "leaves");
     over_bricks(vct, cmd, vct->svo.fill[vct->moving_draws > 0],
                 (struct vct_svo_push){ .depth = leaves }, texels);
     gpu_scope_end(cmd);
     join(vct, cmd, leaves);
     for (uint32_t depth = leaves; depth-- > 0;) {
-        gpu_scope_begin(cmd, "vct.mips");
+        vct_pass_begin(vct->name, cmd, "mips");
         over_bricks(vct, cmd, vct->svo.mip, (struct vct_svo_push){ .depth = depth }, texels);
         gpu_scope_end(cmd);
         join(vct, cmd, depth);

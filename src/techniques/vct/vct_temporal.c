@@ -23,30 +23,29 @@ static const float STILL_FRAMES = 4096.0f; // weight at most, while nothing chan
 
 bool vct_temporal_create(struct vct_temporal *t, struct gpu *gpu)
 {
-    return gpu_compute_pipeline_create(gpu, "vct.temporal", &shader_vct_temporal_comp, NULL, 0,
-                                       &t->filter);
+    return vct_create_compute(t->owner, gpu, "temporal", &shader_vct_temporal_comp, NULL, 0,
+                              &t->filter);
 }
 
-static bool create_image(struct gpu *gpu, const char *name, enum gpu_format format, uint32_t width,
-                         uint32_t height, gpu_image *out)
+static bool create_image(const struct vct_temporal *t, struct gpu *gpu, const char *name,
+                         enum gpu_format format, uint32_t width, uint32_t height, gpu_image *out)
 {
     const struct gpu_image_desc desc = { .name = name,
                                          .format = format,
                                          .width = width,
                                          .height = height,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    gpu_image_destroy(gpu, out);
-    return gpu_image_create(gpu, &desc, out);
+    return vct_create_image(t->owner, gpu, desc, out);
 }
 
 bool vct_temporal_resize(struct vct_temporal *t, struct gpu *gpu, uint32_t width, uint32_t height)
 {
     vct_temporal_forget(t);
     for (int i = 0; i < 2; i++)
-        if (!create_image(gpu, "vct.history", LIGHT_FORMAT, width, height, &t->light[i]) ||
-            !create_image(gpu, "vct.seen", SURFACE_FORMAT, width, height, &t->surface[i]))
+        if (!create_image(t, gpu, "history", LIGHT_FORMAT, width, height, &t->light[i]) ||
+            !create_image(t, gpu, "seen", SURFACE_FORMAT, width, height, &t->surface[i]))
             return false;
-    return create_image(gpu, "vct.now", NOW_FORMAT, width, height, &t->now);
+    return create_image(t, gpu, "now", NOW_FORMAT, width, height, &t->now);
 }
 
 void vct_temporal_destroy(struct vct_temporal *t, struct gpu *gpu)
@@ -161,7 +160,7 @@ void vct_temporal_turn(const struct vct_temporal *t, struct vct_cone_params *par
 void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const int newest = t->newest, last = 1 - newest;
-    gpu_scope_begin(cmd, "vct.temporal");
+    vct_pass_begin(t->owner, cmd, "temporal");
     gpu_dispatch(cmd, t->filter,
                  GPU_BIND(view->constants_binding,
                           gpu_transient(cmd, "vct_history", &t->params, sizeof t->params),

@@ -5,6 +5,7 @@
 #include "techniques/vct/vct_shared.h"
 
 struct vct_temporal {
+    const char *owner; // the technique, whose name passes and images have; set before all else
     gpu_pipeline filter;
     gpu_image now;        // RGBA16F: irradiance as this frame alone has it
     gpu_image light[2];   // RGBA32F: irradiance, frames in it; the last frame's and this one's in turn

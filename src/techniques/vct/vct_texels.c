@@ -44,7 +44,7 @@ void vct_record_texels(struct vct *vct, struct gpu_cmd *cmd)
     const struct vct_texels_push push = vct_texels_push(&vct->options);
     const size_t counts = offsetof(struct vct_texel_levels, count);
     const size_t words = gpu_buffer_bytes(vct->gpu, vct->rest.mask) / sizeof(uint32_t);
-    gpu_scope_begin(cmd, "vct.texels");
+    vct_pass_begin(vct->name, cmd, "texels");
     // At least one group each: a dispatch is never empty.
     gpu_fill_buffer(cmd, vct->texel_state, 0, counts, 1);
     gpu_fill_buffer(cmd, vct->texel_state, counts, sizeof(struct vct_texel_levels) - counts, 0);

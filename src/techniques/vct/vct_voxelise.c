@@ -88,7 +88,7 @@ static void mark(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
                                               .buffer = vct->queue_state },
                                             { .name = "vct_queue", .buffer = vct->queue },
                                             { .name = "vct_mask", .buffer = set->mask } };
-    gpu_scope_begin(cmd, "vct.mark");
+    vct_pass_begin(vct->name, cmd, "mark");
     gpu_fill_buffer(cmd, set->mask, 0, gpu_buffer_bytes(vct->gpu, set->mask), 0);
     walk(vct, cmd, view, moving, false, bindings, 4);
     gpu_scope_end(cmd);
@@ -98,7 +98,7 @@ static void make_list(struct vct *vct, struct gpu_cmd *cmd, const struct vct_set
 {
     const uint32_t blocks = (uint32_t)(gpu_buffer_bytes(vct->gpu, set->blocks) / sizeof(uint32_t));
     const struct gpu_binding grid = vct_grid_binding(vct, cmd);
-    gpu_scope_begin(cmd, "vct.list");
+    vct_pass_begin(vct->name, cmd, "list");
     gpu_dispatch(cmd, vct->count,
                  GPU_BIND({ .name = "vct_mask", .buffer = set->mask },
                           { .name = "vct_blocks", .buffer = set->blocks }),
@@ -126,7 +126,7 @@ static void add(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *v
                                             { .name = "vct_mask", .buffer = set->mask },
                                             { .name = "vct_before", .buffer = set->before },
                                             { .name = "vct_sums", .buffer = set->sums } };
-    gpu_scope_begin(cmd, "vct.add");
+    vct_pass_begin(vct->name, cmd, "add");
     gpu_fill_buffer(cmd, set->sums, 0, gpu_buffer_bytes(vct->gpu, set->sums), 0);
     walk(vct, cmd, view, moving, true, bindings, 6);
     gpu_scope_end(cmd);
