@@ -90,7 +90,7 @@ TEST_GPU(bricks_of_each_level_are_those_of_the_twin)
         const int height = (int)(tree.params.depths - 2 - depth); // of the children
         int last[3];
         for (int a = 0; a < 3; a++)
-            last[a] = (rig.vct->grid.cells[a] / 2 + (1 << height) - 1) >> height;
+            last[a] = (rig.vct->clips[0].grid.cells[a] / 2 + (1 << height) - 1) >> height;
         brick_values *expected = calloc((size_t)count, sizeof *expected);
         for (int way = 0; way < pool.ways; way++) {
             for (int i = 0; i < count; i++)
@@ -171,7 +171,7 @@ static void sum_of_leaves(const struct vct_rig *rig, int way, double sum[4])
             svo_tree_place(&tree, brick, node);
             double weight = 1.0;
             for (int a = 0; a < 3; a++) {
-                const int at = 2 * node[a] + point[a], last = rig->vct->grid.cells[a] / 2;
+                const int at = 2 * node[a] + point[a], last = rig->vct->clips[0].grid.cells[a] / 2;
                 if (point[a] == 2 && at < last)
                     weight = 0.0; // the next leaf has it, or nothing is there
                 if (a != way / 2 && (at == 0 || at == last)) weight *= 0.5;

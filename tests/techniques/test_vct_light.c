@@ -34,7 +34,7 @@ static struct volume volume_of(const struct vct_rig *rig, uint32_t level)
     struct volume v = { .light = vct_rig_light(rig, level),
                         .dim = (int)vct_volume_dim(&rig->vct->options) >> level };
     for (int a = 0; a < 3; a++)
-        v.size[a] = (rig->vct->grid.cells[a] / 2 + (1 << level) - 1) >> level;
+        v.size[a] = (rig->vct->clips[0].grid.cells[a] / 2 + (1 << level) - 1) >> level;
     return v;
 }
 
@@ -229,7 +229,7 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
     struct volume levels[8];
     for (int i = 0; i < mips; i++) levels[i] = volume_of(&rig, (uint32_t)i);
     const double scale = (double)frame_radiance_scale(rig.studio.frame);
-    const double texel_m = 2.0 * (double)vct->grid.cell_m;
+    const double texel_m = 2.0 * (double)vct->clips[0].grid.cell_m;
     const double wide = 0.5 * (double)vct_cone_width(VCT_CONES_5);
     vec3s lines[VCT_MAX_CONES];
     vct_cone_lines(VCT_CONES_5, lines);
@@ -242,7 +242,8 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
             double from[3], normal[3], expected[3] = { 0 }, cosines = 0.0;
             for (int a = 0; a < 3; a++) {
                 normal[a] = (double)n.raw[a];
-                from[a] = (double)(p.raw[a] - vct->grid.origin_m.raw[a]) / texel_m + normal[a];
+                from[a] =
+                    (double)(p.raw[a] - vct->clips[0].grid.origin_m.raw[a]) / texel_m + normal[a];
             }
             for (int i = 0; i < vct_cone_count(VCT_CONES_5); i++) {
                 double direction[3], sum[4];

@@ -28,7 +28,7 @@ static double mean_irradiance(struct vct_rig *rig)
 static uint32_t argument(const struct vct_rig *rig, int which)
 {
     uint32_t arguments[5];
-    CHECK(gpu_buffer_download(rig->studio.gpu, rig->vct->rest.arguments, 0, arguments,
+    CHECK(gpu_buffer_download(rig->studio.gpu, rig->vct->clips[0].rest.arguments, 0, arguments,
                               sizeof arguments));
     return arguments[which];
 }
@@ -132,7 +132,7 @@ static double field(struct gpu *gpu, int squares, uint32_t *mask, size_t mask_by
     studio_look(&rig.studio, vec3_of(6, 5, 10), vec3_of(6, 4, 0));
     vct_rig_open(&rig, "resolution=16");
     const double e = mean_irradiance(&rig);
-    uint32_t *now = vct_rig_mask(&rig, &rig.vct->rest);
+    uint32_t *now = vct_rig_mask(&rig, &rig.vct->clips[0].rest);
     memcpy(mask, now, mask_bytes);
     free(now);
     vct_rig_finish(&rig);
@@ -186,7 +186,7 @@ TEST_GPU(voxels_without_room_are_left_out_and_said_to_be)
         const uint32_t room = vct_capacity(&rig.vct->options), all = 784 * (uint32_t)sheets[i];
         const double e = mean_irradiance(&rig);
         CHECK(e > 0.0);
-        CHECK(rig.vct->grid.cell_m == 1.0f);
+        CHECK(rig.vct->clips[0].grid.cell_m == 1.0f);
         CHECK(listed(&rig) == (all < room ? all : room));
         CHECK(left_out(&rig) == (all > room ? all - room : 0));
         struct host host = *test_host();

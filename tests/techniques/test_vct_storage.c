@@ -98,7 +98,7 @@ TEST_GPU(one_volume_for_all_ways_has_the_mean_of_what_it_holds)
         float *fine = vct_rig_light(&rig, level - 1), *coarse = vct_rig_light(&rig, level);
         int size[3], checked = 0;
         for (int a = 0; a < 3; a++)
-            size[a] = (rig.vct->grid.cells[a] / 2 + (1 << (level - 1)) - 1) >> (level - 1);
+            size[a] = (rig.vct->clips[0].grid.cells[a] / 2 + (1 << (level - 1)) - 1) >> (level - 1);
         for (int z = 0; 2 * z + 1 < size[2]; z++)
             for (int y = 0; 2 * y + 1 < size[1]; y++)
                 for (int x = 0; 2 * x + 1 < size[0]; x++)

@@ -30,7 +30,7 @@ static bool *nodes_of_twin(const struct vct_rig *rig, const uint32_t *rest, cons
                         // On the lower side of a node a point is in the node before it too.
                         inside = inside && (!(i >> a & 1) || point[a] % width == 0) &&
                                  node[a] >= 0 &&
-                                 4 * node[a] * (width / 2) < rig->vct->grid.cells[a];
+                                 4 * node[a] * (width / 2) < rig->vct->clips[0].grid.cells[a];
                     }
                     if (inside) there[(node[2] * dim + node[1]) * dim + node[0]] = true;
                 }
@@ -40,8 +40,8 @@ static bool *nodes_of_twin(const struct vct_rig *rig, const uint32_t *rest, cons
 
 static void check_nodes(const struct vct_rig *rig, const struct svo_tree *tree)
 {
-    uint32_t *rest = vct_rig_mask(rig, &rig->vct->rest),
-             *moving = vct_rig_mask(rig, &rig->vct->moving);
+    uint32_t *rest = vct_rig_mask(rig, &rig->vct->clips[0].rest),
+             *moving = vct_rig_mask(rig, &rig->vct->clips[0].moving);
     uint32_t bricks = 0;
     for (uint32_t depth = 0; depth < tree->params.depths; depth++) {
         const int dim = 1 << depth;

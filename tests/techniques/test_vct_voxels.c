@@ -137,13 +137,13 @@ static void check_random_triangles(struct gpu *gpu, const char *options)
     }
     vct_rig_open(&rig, options);
     studio_render(&rig.studio);
-    for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, &rig.vct->grid, triangles[i]);
-    const int count = check_same(&rig, &twin, &rig.vct->rest);
+    for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, &rig.vct->clips[0].grid, triangles[i]);
+    const int count = check_same(&rig, &twin, &rig.vct->clips[0].rest);
     CHECK(count > 200 && count < DIM * DIM * DIM / 2); // neither all nor nothing
     // The count on the CPU, but for triangles that touch a face exactly.
     uint32_t counted = 0;
-    CHECK(vct_count_touched(test_host(), &rig.studio.pose, &rig.vct->grid, DIM, UINT32_MAX - 1,
-                            &counted));
+    CHECK(vct_count_touched(test_host(), &rig.studio.pose, &rig.vct->clips[0].grid, DIM,
+                            UINT32_MAX - 1, &counted));
     CHECK(abs((int)counted - count) <= 2);
     vct_rig_finish(&rig);
 }
@@ -187,8 +187,10 @@ TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
         vct_rig_open(rig, i == 0 ? "resolution=32" : "resolution=32,voxels=raster");
         studio_render(&rig->studio);
     }
-    check_same_words(&rigs[0], rigs[0].vct->rest.mask, &rigs[1], rigs[1].vct->rest.mask);
-    check_same_words(&rigs[0], rigs[0].vct->rest.sums, &rigs[1], rigs[1].vct->rest.sums);
+    check_same_words(&rigs[0], rigs[0].vct->clips[0].rest.mask, &rigs[1],
+                     rigs[1].vct->clips[0].rest.mask);
+    check_same_words(&rigs[0], rigs[0].vct->clips[0].rest.sums, &rigs[1],
+                     rigs[1].vct->clips[0].rest.sums);
     for (int i = 0; i < 2; i++) vct_rig_finish(&rigs[i]);
 }
 
@@ -206,8 +208,8 @@ TEST_GPU(what_is_no_triangle_touches_nothing)
     add_triangle(&rig, point, matte);
     vct_rig_open(&rig, "resolution=16");
     studio_render(&rig.studio);
-    twin_add(&twin, &rig.vct->grid, real);
-    CHECK(check_same(&rig, &twin, &rig.vct->rest) > 0);
+    twin_add(&twin, &rig.vct->clips[0].grid, real);
+    CHECK(check_same(&rig, &twin, &rig.vct->clips[0].rest) > 0);
     vct_rig_finish(&rig);
 }
 
@@ -220,9 +222,9 @@ TEST_GPU(walls_on_the_border_of_the_grid_are_kept)
                studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f)));
     vct_rig_open(&rig, "resolution=16");
     studio_render(&rig.studio);
-    CHECK(rig.vct->grid.cell_m == 1.0f && rig.vct->grid.origin_m.x == 0.0f);
-    for (int axis = 0; axis < 3; axis++) CHECK(rig.vct->grid.cells[axis] == 12);
-    uint32_t *mask = vct_rig_mask(&rig, &rig.vct->rest);
+    CHECK(rig.vct->clips[0].grid.cell_m == 1.0f && rig.vct->clips[0].grid.origin_m.x == 0.0f);
+    for (int axis = 0; axis < 3; axis++) CHECK(rig.vct->clips[0].grid.cells[axis] == 12);
+    uint32_t *mask = vct_rig_mask(&rig, &rig.vct->clips[0].rest);
     for (int z = 0; z < DIM; z++)
         for (int y = 0; y < DIM; y++)
             for (int x = 0; x < DIM; x++) {
@@ -252,9 +254,9 @@ TEST_GPU(what_moves_is_voxelised_anew_and_what_stands_is_kept)
     studio_render(&rig.studio);
     studio_render(&rig.studio);
     for (int i = 0; i < 3; i++) other[i] = glms_vec3_add(other[i], step);
-    twin_add(&still, &rig.vct->grid, one);
-    twin_add(&moving, &rig.vct->grid, other);
-    CHECK(check_same(&rig, &still, &rig.vct->rest) > 0);
-    CHECK(check_same(&rig, &moving, &rig.vct->moving) > 0);
+    twin_add(&still, &rig.vct->clips[0].grid, one);
+    twin_add(&moving, &rig.vct->clips[0].grid, other);
+    CHECK(check_same(&rig, &still, &rig.vct->clips[0].rest) > 0);
+    CHECK(check_same(&rig, &moving, &rig.vct->clips[0].moving) > 0);
     vct_rig_finish(&rig);
 }

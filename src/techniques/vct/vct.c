@@ -68,6 +68,7 @@ static bool create(struct vct *vct, const char *name, const struct technique_cre
     vct->name = vct->temporal.owner = name;
     vct->gpu = how->gpu;
     vct->options = *(const struct vct_options *)how->options;
+    vct->clip_count = vct_clip_count(&vct->options);
     vct_cone_lines(vct->options.cones, vct->lines);
     if (vct->options.specular) vct_fill_shares(&vct->shares);
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
@@ -101,7 +102,8 @@ static void vct_set_options(void *state, const void *options)
 static void vct_invalidate(void *state, uint32_t changes)
 {
     struct vct *vct = state;
-    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) vct->rest_valid = false;
+    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL))
+        for (int i = 0; i < vct->clip_count; i++) vct->clips[i].rest_valid = false;
     vct_temporal_forget(&vct->temporal);
 }
 

@@ -23,7 +23,7 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
         .width_per_m = options->stride * vct_cone_width(choice),
         .offset = options->offset,
         .gain = options->gain,
-        .texel_m = 2.0f * vct->grid.cell_m,
+        .texel_m = 2.0f * vct->clips[0].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
     };
 }
@@ -62,8 +62,8 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
     const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
     vct_pass_begin(vct->name, cmd, "cones");
     gpu_dispatch(cmd, vct->cones,
-                 GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, p->cones, p->depth,
-                          p->normal,
+                 GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), view->constants_binding,
+                          p->cones, p->depth, p->normal,
                           { .name = "light", .image = vct->light, .sampler = vct->linear },
                           { .name = "red", .image = vct->traced[0] },
                           { .name = "green", .image = vct->traced[1] },
@@ -136,8 +136,9 @@ void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     const struct vct_view_push push = { .view = what, .reflectance_shown = 4.0f };
     vct_pass_begin(vct->name, cmd, "debug");
     gpu_dispatch(cmd, vct->debug,
-                 GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, VCT_BOTH_SETS(vct),
-                          { .name = "picture", .image = out }, vct_svo_binding(vct, cmd),
+                 GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), view->constants_binding,
+                          VCT_BOTH_SETS(&vct->clips[0]), { .name = "picture", .image = out },
+                          vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);

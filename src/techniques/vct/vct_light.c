@@ -5,13 +5,13 @@
 
 #include <string.h>
 
-static void inject(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                   const struct vct_set *set)
+static void inject(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                   const struct frame_view *view, const struct vct_set *set)
 {
     gpu_dispatch_indirect(
         cmd, vct->inject[vct->params.light_count > 0],
         GPU_BIND(
-            vct_grid_binding(vct, cmd), view->constants_binding, view->lights_binding,
+            vct_grid_binding(vct, clip, cmd), view->constants_binding, view->lights_binding,
             view->shadow_faces_binding,
             { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
             { .name = "vct_list", .buffer = set->list },
@@ -22,14 +22,14 @@ static void inject(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view
         NULL, 0, set->arguments, 0);
 }
 
-static void fill(struct vct *vct, struct gpu_cmd *cmd)
+static void fill(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd)
 {
     gpu_dispatch_indirect(cmd, vct->fill[vct->moving_draws > 0],
-                          GPU_BIND(vct_grid_binding(vct, cmd), VCT_BOTH_SETS(vct),
+                          GPU_BIND(vct_grid_binding(vct, clip, cmd), VCT_BOTH_SETS(clip),
                                    { .name = "light", .image = vct->light },
-                                   { .name = "vct_texels", .buffer = vct->texels },
-                                   { .name = "vct_texel_state", .buffer = vct->texel_state }),
-                          NULL, 0, vct->texel_state, vct_level_groups(0));
+                                   { .name = "vct_texels", .buffer = clip->texels },
+                                   { .name = "vct_texel_state", .buffer = clip->texel_state }),
+                          NULL, 0, clip->texel_state, vct_level_groups(0));
 }
 
 static int32_t level_size(int32_t cells, uint32_t level)
@@ -38,10 +38,10 @@ static int32_t level_size(int32_t cells, uint32_t level)
     return size > 1 ? size : 1;
 }
 
-static void filter(struct vct *vct, struct gpu_cmd *cmd)
+static void filter(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd)
 {
     const struct vct_texels_push lists = vct_texels_push(&vct->options);
-    const int32_t dim = (int32_t)vct_volume_dim(&vct->options), *cells = vct->grid.cells;
+    const int32_t dim = (int32_t)vct_volume_dim(&vct->options), *cells = clip->grid.cells;
     for (uint32_t level = 1; level < lists.levels; level++) {
         const struct vct_mip_push push = {
             .source_x = level_size(cells[0], level - 1),
@@ -56,18 +56,21 @@ static void filter(struct vct *vct, struct gpu_cmd *cmd)
             cmd, vct->mip,
             GPU_BIND({ .name = "source", .image = vct->light, .mip = level - 1, .one_mip = true },
                      { .name = "target", .image = vct->light, .mip = level },
-                     { .name = "vct_texels", .buffer = vct->texels },
-                     { .name = "vct_texel_state", .buffer = vct->texel_state },
-                     vct_grid_binding(vct, cmd)),
-            &push, sizeof push, vct->texel_state, vct_level_groups(level));
+                     { .name = "vct_texels", .buffer = clip->texels },
+                     { .name = "vct_texel_state", .buffer = clip->texel_state },
+                     vct_grid_binding(vct, clip, cmd)),
+            &push, sizeof push, clip->texel_state, vct_level_groups(level));
     }
 }
 
 static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     vct_pass_begin(vct->name, cmd, "inject");
-    inject(vct, cmd, view, &vct->rest);
-    if (vct->moving_draws > 0) inject(vct, cmd, view, &vct->moving);
+    for (int i = 0; i < vct->clip_count; i++) {
+        const struct vct_clip *clip = &vct->clips[i];
+        inject(vct, clip, cmd, view, &clip->rest);
+        if (vct->moving_draws > 0) inject(vct, clip, cmd, view, &clip->moving);
+    }
     gpu_scope_end(cmd);
     if (vct_has_svo(&vct->options)) {
         vct_svo_record_light(vct, cmd);
@@ -79,28 +82,29 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     if (vct->light_outdated)
         gpu_clear_image(cmd, vct->light, (const float[4]){ 0.0f, 0.0f, 0.0f, 0.0f });
     vct->light_outdated = false;
-    fill(vct, cmd);
+    for (int i = 0; i < vct->clip_count; i++) fill(vct, &vct->clips[i], cmd);
     gpu_scope_end(cmd);
     vct_pass_begin(vct->name, cmd, "mips");
-    filter(vct, cmd);
+    filter(vct, &vct->clips[0], cmd);
     gpu_scope_end(cmd);
 }
 
-static void bring(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                  const struct vct_set *set, struct gpu_binding cones)
+static void bring(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                  const struct frame_view *view, const struct vct_set *set,
+                  struct gpu_binding cones)
 {
     gpu_dispatch_indirect(
         cmd, vct->bounce,
-        GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding, cones,
+        GPU_BIND(vct_grid_binding(vct, clip, cmd), view->constants_binding, cones,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
-                 { .name = "vct_texels", .buffer = vct->texels },
-                 { .name = "vct_texel_state", .buffer = vct->texel_state },
+                 { .name = "vct_texels", .buffer = clip->texels },
+                 { .name = "vct_texel_state", .buffer = clip->texel_state },
                  { .name = "vct_mask", .buffer = set->mask },
                  { .name = "vct_before", .buffer = set->before },
                  { .name = "vct_sums", .buffer = set->sums },
                  { .name = "vct_brought", .buffer = set->brought }, vct_svo_binding(vct, cmd),
                  { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
-        NULL, 0, vct->texel_state, offsetof(struct vct_texel_levels, block_groups));
+        NULL, 0, clip->texel_state, offsetof(struct vct_texel_levels, block_groups));
 }
 
 static bool has_sky(const struct frame_view *view)
@@ -140,8 +144,11 @@ static void bring_to_all(struct vct *vct, struct gpu_cmd *cmd, const struct fram
                          struct gpu_binding cones)
 {
     vct_pass_begin(vct->name, cmd, "bounce");
-    bring(vct, cmd, view, &vct->rest, cones);
-    if (vct->moving_draws > 0) bring(vct, cmd, view, &vct->moving, cones);
+    for (int i = 0; i < vct->clip_count; i++) {
+        const struct vct_clip *clip = &vct->clips[i];
+        bring(vct, clip, cmd, view, &clip->rest, cones);
+        if (vct->moving_draws > 0) bring(vct, clip, cmd, view, &clip->moving, cones);
+    }
     gpu_scope_end(cmd);
     vct->params.brought = true;
 }

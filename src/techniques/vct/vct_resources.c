@@ -6,6 +6,12 @@
 
 // ---- Sizes --------------------------------------------------------------------------------------
 
+int vct_clip_count(const struct vct_options *options)
+{
+    (void)options;
+    return 1;
+}
+
 static uint32_t voxel_count(const struct vct_options *options)
 {
     const uint32_t dim = (uint32_t)options->resolution;
@@ -76,7 +82,25 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
     memcpy(out, plan, sizeof plan);
 }
 
-enum { SVO_BUFFERS = 4, MOST_BUFFERS = 2 * SET_BUFFERS + 5 + SVO_BUFFERS };
+enum {
+    SVO_BUFFERS = 4,
+    CLIP_BUFFERS = 2 * SET_BUFFERS + 3,
+    MOST_BUFFERS = VCT_MAX_CLIPS * CLIP_BUFFERS + 2 + SVO_BUFFERS
+};
+
+static void plan_clip(const struct vct_options *options, struct vct_clip *clip,
+                      struct buffer_plan out[CLIP_BUFFERS])
+{
+    const struct buffer_plan lists[] = {
+        { "texels", &clip->texels, vct_texel_words(options), 0 },
+        { "texel_mask", &clip->texel_mask, vct_texel_mask_words(options), 0 },
+        { "texel_state", &clip->texel_state, sizeof(struct vct_texel_levels) / sizeof(uint32_t),
+          GPU_BUFFER_INDIRECT },
+    };
+    plan_set(options, false, &clip->rest, out);
+    plan_set(options, true, &clip->moving, out + SET_BUFFERS);
+    memcpy(out + 2 * SET_BUFFERS, lists, sizeof lists);
+}
 
 static void plan_svo(const struct vct_options *options, struct vct_svo *svo,
                      struct buffer_plan out[SVO_BUFFERS])
@@ -97,20 +121,18 @@ static void plan_svo(const struct vct_options *options, struct vct_svo *svo,
 static int plan_buffers(const struct vct_options *options, struct vct *vct,
                         struct buffer_plan out[MOST_BUFFERS])
 {
-    plan_set(options, false, &vct->rest, out);
-    plan_set(options, true, &vct->moving, out + SET_BUFFERS);
-    const struct buffer_plan plan[] = {
+    int count = 0;
+    for (int i = 0; i < vct_clip_count(options); i++, count += CLIP_BUFFERS)
+        plan_clip(options, &vct->clips[i], out + count);
+    const struct buffer_plan queue[] = {
         { "queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 },
         { "queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT },
-        { "texels", &vct->texels, vct_texel_words(options), 0 },
-        { "texel_mask", &vct->texel_mask, vct_texel_mask_words(options), 0 },
-        { "texel_state", &vct->texel_state, sizeof(struct vct_texel_levels) / sizeof(uint32_t),
-          GPU_BUFFER_INDIRECT },
     };
-    memcpy(out + 2 * SET_BUFFERS, plan, sizeof plan);
-    if (!vct_has_svo(options)) return MOST_BUFFERS - SVO_BUFFERS;
-    plan_svo(options, &vct->svo, out + MOST_BUFFERS - SVO_BUFFERS);
-    return MOST_BUFFERS;
+    memcpy(out + count, queue, sizeof queue);
+    count += 2;
+    if (!vct_has_svo(options)) return count;
+    plan_svo(options, &vct->svo, out + count);
+    return count + SVO_BUFFERS;
 }
 
 struct gpu_image_desc vct_light_desc(const struct vct_options *options)
@@ -166,6 +188,14 @@ bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
            create_vectors(vct, "gathered", vct->gathered);
 }
 
+static bool create_records(struct vct *vct, struct vct_clip *clip)
+{
+    return vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, false),
+                            &clip->rest.records) &&
+           vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, true),
+                            &clip->moving.records);
+}
+
 bool vct_create_resources(struct vct *vct)
 {
     struct buffer_plan plan[MOST_BUFFERS];
@@ -183,12 +213,10 @@ bool vct_create_resources(struct vct *vct)
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
+    for (int i = 0; i < vct->clip_count; i++)
+        if (!create_records(vct, &vct->clips[i])) return false;
     return gpu_sampler_get(vct->gpu, &linear, &vct->linear) &&
-           vct_create_image(vct->name, vct->gpu, vct_light_desc(&vct->options), &vct->light) &&
-           vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, false),
-                            &vct->rest.records) &&
-           vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, true),
-                            &vct->moving.records);
+           vct_create_image(vct->name, vct->gpu, vct_light_desc(&vct->options), &vct->light);
 }
 
 // ---- End and bytes ------------------------------------------------------------------------------
@@ -199,8 +227,10 @@ void vct_destroy_resources(struct vct *vct)
     const int count = plan_buffers(&vct->options, vct, buffers);
     for (int i = 0; i < count; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
     gpu_image_destroy(vct->gpu, &vct->light);
-    gpu_image_destroy(vct->gpu, &vct->rest.records);
-    gpu_image_destroy(vct->gpu, &vct->moving.records);
+    for (int i = 0; i < vct->clip_count; i++) {
+        gpu_image_destroy(vct->gpu, &vct->clips[i].rest.records);
+        gpu_image_destroy(vct->gpu, &vct->clips[i].moving.records);
+    }
     gpu_image_destroy(vct->gpu, &vct->edge_image);
     gpu_image_destroy(vct->gpu, &vct->found);
     for (int i = 0; i < 3; i++) {
@@ -221,7 +251,8 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
         bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
                  (uint64_t)gpu_format_bytes(GPU_RGBA16F);
     const struct gpu_image_desc records = records_desc(options, false);
-    bytes += 2 * (uint64_t)records.width * records.height * (uint64_t)gpu_format_bytes(GPU_RGBA32U);
+    bytes += 2 * (uint64_t)vct_clip_count(options) * records.width * records.height *
+             (uint64_t)gpu_format_bytes(GPU_RGBA32U);
     const int pixel = gpu_format_bytes(GPU_R8) + 7 * gpu_format_bytes(GPU_RGBA16F);
     return bytes + (uint64_t)width * height * (uint64_t)pixel;
 }

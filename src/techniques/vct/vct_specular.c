@@ -50,13 +50,13 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
         .stride = options->stride,
         .offset = options->offset,
         .gain = options->gain,
-        .texel_m = 2.0f * vct->grid.cell_m,
+        .texel_m = 2.0f * vct->clips[0].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
     };
     vct_pass_begin(vct->name, cmd, "specular");
     gpu_dispatch(
         cmd, vct->specular,
-        GPU_BIND(vct_grid_binding(vct, cmd), view->constants_binding,
+        GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), view->constants_binding,
                  gpu_transient(cmd, "vct_specular", &params, sizeof params),
                  gpu_transient(cmd, "vct_shares", &vct->shares, sizeof vct->shares),
                  { .name = "depth", .image = view->layers[FRAME_DEPTH] },

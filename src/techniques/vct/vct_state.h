@@ -24,15 +24,25 @@ struct vct_set {
     gpu_image records; // RGBA32U
 };
 
+// A grid and what is in its voxels.
+struct vct_clip {
+    struct vct_grid grid;
+    struct vct_set rest, moving;                // what stands still; what has moved
+    gpu_buffer texels, texel_mask, texel_state; // of the light volume: which hold something
+    bool rest_valid;                            // `rest` is of the scene as it stands
+};
+
+enum { VCT_MAX_CLIPS = 1 };
+
 // For lists of bindings: the voxels of both sets, as vct_seen.glsl reads them.
-#define VCT_BOTH_SETS(vct)                                                                         \
-    { .name = "static_mask", .buffer = (vct)->rest.mask },                                         \
-        { .name = "static_before", .buffer = (vct)->rest.before },                                 \
-        { .name = "static_records", .image = (vct)->rest.records },                                \
-        { .name = "dynamic_mask", .buffer = (vct)->moving.mask },                                  \
-        { .name = "dynamic_before", .buffer = (vct)->moving.before },                              \
+#define VCT_BOTH_SETS(clip)                                                                        \
+    { .name = "static_mask", .buffer = (clip)->rest.mask },                                        \
+        { .name = "static_before", .buffer = (clip)->rest.before },                                \
+        { .name = "static_records", .image = (clip)->rest.records },                               \
+        { .name = "dynamic_mask", .buffer = (clip)->moving.mask },                                 \
+        { .name = "dynamic_before", .buffer = (clip)->moving.before },                             \
     {                                                                                              \
-        .name = "dynamic_records", .image = (vct)->moving.records                                  \
+        .name = "dynamic_records", .image = (clip)->moving.records                                 \
     }
 
 // Draws by what their materials read; maps that one of a kind lacks are white.
@@ -67,9 +77,9 @@ struct vct {
     gpu_pipeline inject[2]; // without and with lights
     gpu_pipeline count, scan, list, texel_lists, bounce, mip, cones, edges, gather_rows,
         gather_columns, blur, specular, debug;
-    struct vct_set rest, moving; // what stands still; what has moved
+    struct vct_clip clips[VCT_MAX_CLIPS];
+    int clip_count;
     gpu_buffer queue, queue_state;
-    gpu_buffer texels, texel_mask, texel_state; // of the light volume: which hold something
     gpu_sampler linear;
     struct vct_svo svo;   // with storage=svo
     gpu_image light;      // RGBA16F: six volumes side by side with mips, or the pool of bricks
@@ -81,8 +91,7 @@ struct vct {
     struct vct_temporal temporal; // empty without the option
     uint32_t width, height;
 
-    struct vct_grid grid;
-    struct vct_params params; // of the frame being recorded
+    struct vct_params params; // of the frame being recorded; vct_grid_binding adds the place of a grid
     bool ready;               // there is something to voxelise
     bool remade;              // voxels have come anew in this frame
     bool light_valid;         // `light` is last frame's, of this grid
@@ -90,11 +99,11 @@ struct vct {
     bool brought_valid;       // so is what the voxels got from each other
     struct vct_brought_by brought_by;
     int rounds_left;           // of frames that bring what was sent out in the last one, until all is as it stays
-    bool rest_valid;           // `rest` is of the scene as it stands
-    const struct scene *scene; // that it is of
+    const struct scene *scene; // that voxels are of
     int moving_draws;          // then
 };
 
+int vct_clip_count(const struct vct_options *options);
 uint32_t vct_capacity(const struct vct_options *options); // voxels of a set
 uint32_t vct_volume_dim(const struct vct_options *options);
 uint32_t vct_volume_mips(const struct vct_options *options);
@@ -121,13 +130,14 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
 
 // Places the grid; false where there is nothing to voxelise.
 bool vct_prepare(struct vct *vct, const struct frame_view *view);
-struct gpu_binding vct_grid_binding(struct vct *vct, struct gpu_cmd *cmd);
+struct gpu_binding vct_grid_binding(const struct vct *vct, const struct vct_clip *clip,
+                                    struct gpu_cmd *cmd);
 // The cones of a voxel, about its normal.
 struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view);
 // The stages, in order. Each reads vct->params.
 void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
-void vct_record_texels(struct vct *vct, struct gpu_cmd *cmd);
+void vct_record_texels(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd);
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 // In place of fill and mips: the tree, where voxels have come anew; and the light in it.
 void vct_svo_record_tree(struct vct *vct, struct gpu_cmd *cmd);

@@ -66,7 +66,8 @@ static void mark(struct vct *vct, struct gpu_cmd *cmd, const struct vct_set *set
 {
     const struct vct_svo_push push = { .depth = depth };
     gpu_dispatch_indirect(cmd, vct->svo.mark,
-                          GPU_BIND(vct_grid_binding(vct, cmd), vct_svo_binding(vct, cmd),
+                          GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd),
+                                   vct_svo_binding(vct, cmd),
                                    { .name = "vct_list", .buffer = set->list },
                                    { .name = "vct_arguments", .buffer = set->arguments },
                                    { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
@@ -89,7 +90,7 @@ static void divide(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
 {
     const struct vct_svo *svo = &vct->svo;
     const struct vct_svo_push push = { .depth = depth };
-    const struct gpu_binding bindings[] = { vct_grid_binding(vct, cmd),
+    const struct gpu_binding bindings[] = { vct_grid_binding(vct, &vct->clips[0], cmd),
                                             vct_svo_binding(vct, cmd),
                                             { .name = "vct_svo_nodes", .buffer = svo->nodes },
                                             { .name = "vct_svo_blocks", .buffer = svo->blocks },
@@ -106,8 +107,8 @@ void vct_svo_record_tree(struct vct *vct, struct gpu_cmd *cmd)
     vct_pass_begin(vct->name, cmd, "nodes");
     gpu_fill_buffer(cmd, vct->svo.nodes, 0, 8 * sizeof(uint32_t), 0); // an empty root
     for (uint32_t depth = 0; depth < vct->svo.params.depths; depth++) {
-        mark(vct, cmd, &vct->rest, depth);
-        if (vct->moving_draws > 0) mark(vct, cmd, &vct->moving, depth);
+        mark(vct, cmd, &vct->clips[0].rest, depth);
+        if (vct->moving_draws > 0) mark(vct, cmd, &vct->clips[0].moving, depth);
         divide(vct, cmd, depth);
     }
     gpu_scope_end(cmd);
@@ -119,8 +120,9 @@ static void over_bricks(struct vct *vct, struct gpu_cmd *cmd, gpu_pipeline pipel
                         struct vct_svo_push push, size_t groups)
 {
     gpu_dispatch_indirect(cmd, pipeline,
-                          GPU_BIND(vct_grid_binding(vct, cmd), vct_svo_binding(vct, cmd),
-                                   VCT_BOTH_SETS(vct), { .name = "light", .image = vct->light },
+                          GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd),
+                                   vct_svo_binding(vct, cmd), VCT_BOTH_SETS(&vct->clips[0]),
+                                   { .name = "light", .image = vct->light },
                                    { .name = "vct_svo_nodes", .buffer = vct->svo.nodes },
                                    { .name = "vct_svo_places", .buffer = vct->svo.places },
                                    { .name = "vct_svo_levels", .buffer = vct->svo.levels }),

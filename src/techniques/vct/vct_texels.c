@@ -39,23 +39,23 @@ size_t vct_level_groups(uint32_t level)
     return offsetof(struct vct_texel_levels, groups) + 3 * sizeof(uint32_t) * level;
 }
 
-void vct_record_texels(struct vct *vct, struct gpu_cmd *cmd)
+void vct_record_texels(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd)
 {
     const struct vct_texels_push push = vct_texels_push(&vct->options);
     const size_t counts = offsetof(struct vct_texel_levels, count);
-    const size_t words = gpu_buffer_bytes(vct->gpu, vct->rest.mask) / sizeof(uint32_t);
+    const size_t words = gpu_buffer_bytes(vct->gpu, clip->rest.mask) / sizeof(uint32_t);
     vct_pass_begin(vct->name, cmd, "texels");
     // At least one group each: a dispatch is never empty.
-    gpu_fill_buffer(cmd, vct->texel_state, 0, counts, 1);
-    gpu_fill_buffer(cmd, vct->texel_state, counts, sizeof(struct vct_texel_levels) - counts, 0);
-    gpu_fill_buffer(cmd, vct->texel_mask, 0, gpu_buffer_bytes(vct->gpu, vct->texel_mask), 0);
+    gpu_fill_buffer(cmd, clip->texel_state, 0, counts, 1);
+    gpu_fill_buffer(cmd, clip->texel_state, counts, sizeof(struct vct_texel_levels) - counts, 0);
+    gpu_fill_buffer(cmd, clip->texel_mask, 0, gpu_buffer_bytes(vct->gpu, clip->texel_mask), 0);
     gpu_dispatch(cmd, vct->texel_lists,
-                 GPU_BIND(vct_grid_binding(vct, cmd),
-                          { .name = "static_mask", .buffer = vct->rest.mask },
-                          { .name = "dynamic_mask", .buffer = vct->moving.mask },
-                          { .name = "vct_texel_mask", .buffer = vct->texel_mask },
-                          { .name = "vct_texels", .buffer = vct->texels },
-                          { .name = "vct_texel_state", .buffer = vct->texel_state }),
+                 GPU_BIND(vct_grid_binding(vct, clip, cmd),
+                          { .name = "static_mask", .buffer = clip->rest.mask },
+                          { .name = "dynamic_mask", .buffer = clip->moving.mask },
+                          { .name = "vct_texel_mask", .buffer = clip->texel_mask },
+                          { .name = "vct_texels", .buffer = clip->texels },
+                          { .name = "vct_texel_state", .buffer = clip->texel_state }),
                  &push, sizeof push, gpu_groups((uint32_t)words, VCT_LOCAL), 1, 1);
     vct->light_outdated = true;
     gpu_scope_end(cmd);

@@ -13,45 +13,6 @@ static enum vct_kind kind_of(const struct scene_draw *draw)
     return draw->variant & maps ? VCT_MAPPED : VCT_PLAIN;
 }
 
-bool vct_prepare(struct vct *vct, const struct frame_view *view)
-{
-    const struct vct_grid before = vct->grid;
-    vct->ready = vct_grid_fit(view->bounds, vct->options.resolution, &vct->grid);
-    if (!vct->ready) return false;
-    const struct vct_grid *grid = &vct->grid;
-    bool same = grid->cell_m == before.cell_m && view->index > 0 && view->pose->scene == vct->scene;
-    for (int axis = 0; axis < 3; axis++)
-        same = same && grid->cells[axis] == before.cells[axis] &&
-               grid->origin_m.raw[axis] == before.origin_m.raw[axis];
-    if (!same) vct->rest_valid = vct->light_valid = vct->brought_valid = false;
-    vct->scene = view->pose->scene;
-    const float brightest = view->scene->max_emissive;
-    const float emission_fixed = brightest > 0.0f ? (float)VCT_EMISSION_ONE / brightest : 0.0f;
-    vct->params = (struct vct_params){
-        .origin_m = grid->origin_m,
-        .cell_m = grid->cell_m,
-        .cells_x = grid->cells[0],
-        .cells_y = grid->cells[1],
-        .cells_z = grid->cells[2],
-        .dim = vct->options.resolution,
-        .cells_per_m = 1.0f / grid->cell_m,
-        .capacity = vct_capacity(&vct->options),
-        .emission_fixed = emission_fixed,
-        .emission_scaled = brightest / (float)VCT_EMISSION_ONE * view->constants->radiance_scale,
-        .shadow_size = (float)view->shadow_size,
-        .shadow_radius = view->shadow_radius,
-        .volume_dim = (int32_t)vct_volume_dim(&vct->options),
-        .light_count = view->constants->light_count,
-        .light_scale = 1.0f,
-    };
-    return true;
-}
-
-struct gpu_binding vct_grid_binding(struct vct *vct, struct gpu_cmd *cmd)
-{
-    return gpu_transient(cmd, "vct_grid", &vct->params, sizeof vct->params);
-}
-
 // The draws that move, or those that stand, over their voxels: small triangles, then the tiles of
 // large ones that these have put into the queue; or all by raster, a pixel for each column.
 static void walk(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view, bool moving,
@@ -80,10 +41,10 @@ static void walk(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
     if (raster) gpu_render_end(cmd);
 }
 
-static void mark(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                 const struct vct_set *set, bool moving)
+static void mark(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                 const struct frame_view *view, const struct vct_set *set, bool moving)
 {
-    const struct gpu_binding bindings[] = { vct_grid_binding(vct, cmd),
+    const struct gpu_binding bindings[] = { vct_grid_binding(vct, clip, cmd),
                                             { .name = "vct_queue_state",
                                               .buffer = vct->queue_state },
                                             { .name = "vct_queue", .buffer = vct->queue },
@@ -94,10 +55,11 @@ static void mark(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
     gpu_scope_end(cmd);
 }
 
-static void make_list(struct vct *vct, struct gpu_cmd *cmd, const struct vct_set *set)
+static void make_list(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                      const struct vct_set *set)
 {
     const uint32_t blocks = (uint32_t)(gpu_buffer_bytes(vct->gpu, set->blocks) / sizeof(uint32_t));
-    const struct gpu_binding grid = vct_grid_binding(vct, cmd);
+    const struct gpu_binding grid = vct_grid_binding(vct, clip, cmd);
     vct_pass_begin(vct->name, cmd, "list");
     gpu_dispatch(cmd, vct->count,
                  GPU_BIND({ .name = "vct_mask", .buffer = set->mask },
@@ -116,10 +78,10 @@ static void make_list(struct vct *vct, struct gpu_cmd *cmd, const struct vct_set
     gpu_scope_end(cmd);
 }
 
-static void add(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                const struct vct_set *set, bool moving)
+static void add(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                const struct frame_view *view, const struct vct_set *set, bool moving)
 {
-    const struct gpu_binding bindings[] = { vct_grid_binding(vct, cmd),
+    const struct gpu_binding bindings[] = { vct_grid_binding(vct, clip, cmd),
                                             { .name = "vct_queue_state",
                                               .buffer = vct->queue_state },
                                             { .name = "vct_queue", .buffer = vct->queue },
@@ -132,24 +94,34 @@ static void add(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *v
     gpu_scope_end(cmd);
 }
 
-static void voxelise(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                     const struct vct_set *set, bool moving)
+static void voxelise(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                     const struct frame_view *view, const struct vct_set *set, bool moving)
 {
-    mark(vct, cmd, view, set, moving);
-    make_list(vct, cmd, set);
-    add(vct, cmd, view, set, moving);
+    mark(vct, clip, cmd, view, set, moving);
+    make_list(vct, clip, cmd, set);
+    add(vct, clip, cmd, view, set, moving);
+}
+
+// Voxels of one grid, where they are not kept. Whether there are new ones.
+static bool make_voxels(struct vct *vct, struct vct_clip *clip, struct gpu_cmd *cmd,
+                        const struct frame_view *view)
+{
+    const int moving = view->scene->moving_count;
+    const bool rest = !clip->rest_valid || !vct->options.keep_static || moving != vct->moving_draws;
+    // A set that has become empty is emptied once more.
+    const bool anew = rest || moving > 0 || vct->moving_draws > 0;
+    if (rest) voxelise(vct, clip, cmd, view, &clip->rest, false);
+    if (anew) voxelise(vct, clip, cmd, view, &clip->moving, true);
+    clip->rest_valid = true;
+    if (anew) vct_record_texels(vct, clip, cmd);
+    return anew;
 }
 
 void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const int moving = view->scene->moving_count;
-    const bool rest = !vct->rest_valid || !vct->options.keep_static || moving != vct->moving_draws;
-    if (rest) voxelise(vct, cmd, view, &vct->rest, false);
-    // A set that has become empty is emptied once more.
-    if (moving > 0 || vct->moving_draws > 0 || rest) voxelise(vct, cmd, view, &vct->moving, true);
-    vct->remade = rest || moving > 0 || vct->moving_draws > 0;
-    vct->rest_valid = true;
-    vct->moving_draws = moving;
-    if (vct->remade) vct_record_texels(vct, cmd);
+    vct->remade = false;
+    for (int i = 0; i < vct->clip_count; i++)
+        if (make_voxels(vct, &vct->clips[i], cmd, view)) vct->remade = true;
+    vct->moving_draws = view->scene->moving_count;
     if (vct->remade && vct_has_svo(&vct->options)) vct_svo_record_tree(vct, cmd);
 }
