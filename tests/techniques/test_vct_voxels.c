@@ -184,7 +184,8 @@ TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
             if (k % 2 == 0) corners[2] = glms_vec3_lerp(corners[1], corners[2], 1e-3f);
             add_triangle(rig, corners, red);
         }
-        vct_rig_open(rig, i == 0 ? "resolution=32" : "resolution=32,voxels=raster");
+        // More than one tile of columns for what is large.
+        vct_rig_open(rig, i == 0 ? "resolution=48" : "resolution=48,voxels=raster");
         studio_render(&rig->studio);
     }
     check_same_words(&rigs[0], rigs[0].vct->clips[0].rest.mask, &rigs[1],

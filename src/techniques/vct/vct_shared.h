@@ -6,8 +6,7 @@
 
 // Voxelisation.
 #define VCT_LOCAL         64 // invocations of a workgroup that has one dimension
-#define VCT_TILE          16 // side of the square of columns that one workgroup takes of a large triangle
-#define VCT_TILE_ROWS     4  // of invocations in it: each takes every fourth column
+#define VCT_TILE          32 // side of the square of columns that one workgroup takes of a large triangle
 #define VCT_SMALL_COLUMNS 64 // a triangle over at most so many columns is walked by one invocation
 #define VCT_QUEUE         65535 // tiles of large triangles that wait for a workgroup each
 #define VCT_BLOCK_WORDS   8    // words of the mask that one invocation counts and lists

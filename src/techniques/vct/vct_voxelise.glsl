@@ -15,7 +15,7 @@ layout(set = 0, binding = 14, scalar) buffer vct_queue_state { uint queue_groups
 layout(set = 0, binding = 15, scalar) buffer vct_queue { uvec2 queue[]; };
 
 #if VCT_LARGE
-layout(local_size_x = VCT_TILE, local_size_y = VCT_TILE_ROWS) in;
+layout(local_size_x = VCT_TILE) in;
 #else
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 #endif
@@ -102,7 +102,7 @@ bool touches(vct_triangle t, ivec3 voxel)
 
 // All voxels that the triangle touches in columns from `first` to `last`. What is touched is looked for in a loop of its
 // own: invocations of a group that have found something wait there for the others, and then visit together.
-void walk_columns(vct_triangle t, ivec2 first, ivec2 last, ivec2 step)
+void walk_columns(vct_triangle t, ivec2 first, ivec2 last)
 {
     ivec2 column = first, depths = depths_of(t, first);
     for (;;) {
@@ -113,8 +113,8 @@ void walk_columns(vct_triangle t, ivec2 first, ivec2 last, ivec2 step)
             found = depths.x <= depths.y && touches(t, voxel);
             depths.x++;
             if (depths.x <= depths.y) continue;
-            column.x += step.x;
-            if (column.x > last.x) column = ivec2(first.x, column.y + step.y);
+            column.x++;
+            if (column.x > last.x) column = ivec2(first.x, column.y + 1);
             depths = depths_of(t, column);
         }
         if (!found) return;
@@ -124,11 +124,32 @@ void walk_columns(vct_triangle t, ivec2 first, ivec2 last, ivec2 step)
 
 void walk_column(vct_triangle t, ivec2 column)
 {
-    walk_columns(t, column, column, ivec2(1));
+    walk_columns(t, column, column);
 }
 
 #ifdef VCT_RASTER
 #elif VCT_LARGE
+
+// How far an edge reaches up and down between two places along x; nothing where it does not come there.
+vec2 reach_of(vec2 from, vec2 to, float left, float right)
+{
+    vec2 a = from.x <= to.x ? from : to, b = from.x <= to.x ? to : from;
+    if (b.x < left || a.x > right) return vec2(1e6, -1e6);
+    float slope = (b.y - a.y) / max(b.x - a.x, 1e-6);
+    float first = a.x < left ? clamp(a.y + slope * (left - a.x), min(a.y, b.y), max(a.y, b.y)) : a.y;
+    float last = b.x > right ? clamp(b.y + slope * (right - b.x), min(a.y, b.y), max(a.y, b.y)) : b.y;
+    return vec2(min(first, last), max(first, last));
+}
+
+// First and last of the columns along y that the triangle may touch at x: the others of a tile are not looked at.
+ivec2 rows_of(vct_triangle t, int x)
+{
+    float left = float(x) - 0.01, right = float(x) + 1.01;
+    vec2 a = reach_of(t.u.xy, t.v.xy, left, right), b = reach_of(t.v.xy, t.w.xy, left, right),
+         c = reach_of(t.w.xy, t.u.xy, left, right);
+    float low = min(a.x, min(b.x, c.x)) - 0.01, high = max(a.y, max(b.y, c.y)) + 0.01;
+    return ivec2(max(int(floor(low)), t.low.y), min(int(floor(high)), t.high.y));
+}
 
 void main()
 {
@@ -138,9 +159,10 @@ void main()
     uint across = uint(t.high.x - t.low.x) / VCT_TILE + 1u;
     ivec2 tile = ivec2(job.y % across, job.y / across);
     ivec2 first = t.low.xy + tile * VCT_TILE, last = min(first + VCT_TILE - 1, t.high.xy);
-    ivec2 column = first + ivec2(gl_LocalInvocationID.xy);
-    if (column.x > last.x) return;
-    walk_columns(t, column, ivec2(column.x, last.y), ivec2(1, VCT_TILE_ROWS));
+    int x = first.x + int(gl_LocalInvocationID.x);
+    if (x > last.x) return;
+    ivec2 rows = rows_of(t, x);
+    walk_columns(t, ivec2(x, max(first.y, rows.x)), ivec2(x, min(last.y, rows.y)));
 }
 
 #else
@@ -168,7 +190,7 @@ void main()
     if (!small) queued = queue_tiles(triangle, count);
     for (uint i = queued; i < count; i++) {
         ivec2 corner = t.low.xy + ivec2(int(i) % tiles.x, int(i) / tiles.x) * tile;
-        walk_columns(t, corner, min(corner + tile - 1, t.high.xy), ivec2(1));
+        walk_columns(t, corner, min(corner + tile - 1, t.high.xy));
     }
 }
 
