@@ -229,6 +229,13 @@ static bool set_obscurance_radius(struct arguments *a, const char *value, const 
            a->obscurance_radius_m <= 1e6f;
 }
 
+static bool set_occlusion_decay(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be 0 to 1000000 1/m";
+    return value_floats(value, 1, &a->occlusion_decay_per_m) && a->occlusion_decay_per_m >= 0.0f &&
+           a->occlusion_decay_per_m <= 1e6f;
+}
+
 static bool set_obscurance_sphere(struct arguments *a, const char *value, const char **why)
 {
     (void)value, (void)why;

@@ -35,7 +35,7 @@ struct arguments {
     // reference
     int spp, bounces;
     bool has_spp, direct_only, indirect_only, antialias, resume;
-    float obscurance_radius_m;
+    float obscurance_radius_m, occlusion_decay_per_m;
     bool obscurance_sphere;
     // compare
     const char *methods[MAX_METHODS]; // each a --gi

@@ -43,6 +43,7 @@ enum status tracing_begin(struct tracing *t, struct session *session,
     desc.indirect_only = a->indirect_only;
     desc.antialias = a->antialias;
     desc.obscurance_radius_m = a->obscurance_radius_m;
+    desc.occlusion_decay_per_m = a->occlusion_decay_per_m;
     desc.obscurance_sphere = a->obscurance_sphere;
     desc.seed = a->seed;
     enum ag_result result = ag_reference_create(session->scene, &desc, &t->reference);

@@ -20,6 +20,7 @@ struct ag_reference_desc {
     bool indirect_only; ///< color holds indirect light alone; default false
     bool antialias;     ///< samples all over each pixel; default false: at its centre, as a renderer's
     float obscurance_radius_m; ///< of the layers obscurance and ambient_occlusion; default 0.5
+    float occlusion_decay_per_m; ///< ambient_occlusion: what is met at the distance r hides 1/(1 + this · r); default 0: all
     bool obscurance_sphere; ///< obscurance of the whole sphere, not of the hemisphere above the surface; default false
     uint64_t seed;      ///< default 0
 };

@@ -41,6 +41,7 @@ static bool build(struct ag_reference *r, const struct ag_scene *scene,
                                          .indirect_only = desc->indirect_only,
                                          .antialias = desc->antialias,
                                          .obscurance_radius_m = desc->obscurance_radius_m,
+                                         .occlusion_decay_per_m = desc->occlusion_decay_per_m,
                                          .obscurance_sphere = desc->obscurance_sphere,
                                          .seed = desc->seed };
     r->reference = reference_create(host, &pose, &camera, desc->width, desc->height, &options);
@@ -70,6 +71,9 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
                "direct_only and indirect_only exclude each other");
     AG_REQUIRE(context, desc->obscurance_radius_m > 0.0f && isfinite(desc->obscurance_radius_m),
                "obscurance_radius_m %g is not more than 0", (double)desc->obscurance_radius_m);
+    AG_REQUIRE(context,
+               desc->occlusion_decay_per_m >= 0.0f && isfinite(desc->occlusion_decay_per_m),
+               "occlusion_decay_per_m %g is less than 0", (double)desc->occlusion_decay_per_m);
     AG_REQUIRE(context, api_animation_exists(scene, desc->animation),
                "animation %d is not one of %d", desc->animation, scene->scene->animation_count);
     AG_REQUIRE(context, isfinite(desc->time_s), "time_s is not finite");

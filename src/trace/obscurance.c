@@ -10,7 +10,9 @@
 // since that is what a depth buffer shows of it.
 //
 // Ambient occlusion is 1/π ∫ cos θ dω over the directions above the shading normal in which nothing
-// is met up to R.
+// is met up to R. With a decay γ (1/m) what is met at the distance r hides 1/(1 + γ r) of what is
+// behind it (Hong 2015, sec. 2.5.3.3.8), so that it is 1/π ∫ cos θ (1 − 1/(1 + γ r)) dω over those
+// in which something is met, besides.
 #include "trace/obscurance.h"
 
 #include "core/rng.h"
@@ -59,8 +61,8 @@ static bool cross(const struct trace_scene *scene, vec3s from, vec3s direction, 
 }
 
 struct stretch {
-    float open; // share of the cone's volume
-    bool met;   // any surface, up to the radius
+    float open;   // share of the cone's volume
+    float hidden; // share of what lies beyond the radius
 };
 
 // What is open along a direction. What is open on one side of the surface is matter on the other.
@@ -69,7 +71,7 @@ static struct stretch open_along(const struct obscurance_rules *rules, const str
 {
     bool open = glms_vec3_dot(direction, s->geometric) > 0.0f;
     vec3s from = surface_leave(s, direction);
-    struct stretch out = { 0.0f, !open };
+    struct stretch out = { 0.0f, open ? 0.0f : 1.0f };
     float begun = 0.0f; // in radii
     for (int i = 0; i < MOST_CROSSINGS && begun < 1.0f; i++) {
         struct crossing at;
@@ -78,7 +80,8 @@ static struct stretch open_along(const struct obscurance_rules *rules, const str
         const float end = met ? begun + at.distance_m / rules->radius_m : 1.0f;
         if (open) out.open += cube(end) - cube(begun);
         if (!met) break;
-        out.met = true;
+        if (out.hidden == 0.0f)
+            out.hidden = 1.0f / (1.0f + rules->decay_per_m * end * rules->radius_m);
         open = at.ends_matter;
         begun = end;
         from = at.beyond;
@@ -94,7 +97,8 @@ void obscurance_add(const struct obscurance_rules *rules, const struct surface *
         const vec2s u = sobol_2d((uint32_t)sums->samples, scramble);
         const vec3s local = sample_hemisphere_uniform(u);
         const struct stretch above = open_along(rules, surface, around(surface->normal, local));
-        if (!above.met) sums->ambient += 2.0 * (double)local.z; // cos θ/π over the density 1/(2π)
+        // cos θ/π over the density 1/(2π)
+        sums->ambient += 2.0 * (double)local.z * (double)(1.0f - above.hidden);
         sums->volume += (double)above.open;
         if (!rules->sphere) continue;
         const vec3s down = glms_vec3_negate(around(surface->normal, local));

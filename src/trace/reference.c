@@ -107,6 +107,10 @@ static bool check(struct host *host, int width, int height, const struct referen
         return host_fail(host, FAIL_ARGUMENT,
                          "reference with an obscurance radius of %g m: more than 0 is wanted",
                          (double)options->obscurance_radius_m);
+    if (!(options->occlusion_decay_per_m >= 0.0f) || !isfinite(options->occlusion_decay_per_m))
+        return host_fail(host, FAIL_ARGUMENT,
+                         "reference with an occlusion decay of %g 1/m: 0 or more is wanted",
+                         (double)options->occlusion_decay_per_m);
     return true;
 }
 
@@ -374,8 +378,11 @@ static void read_obscurance(const struct reference *r, enum reference_layer laye
     struct path_start start = centre_of(r, x, y);
     *out = 1.0f;
     if (!start.hit) return;
-    const struct obscurance_rules rules = { r->scene, r->options.obscurance_radius_m,
-                                            r->options.obscurance_sphere, r->rules.seed };
+    const struct obscurance_rules rules = { .scene = r->scene,
+                                            .radius_m = r->options.obscurance_radius_m,
+                                            .sphere = r->options.obscurance_sphere,
+                                            .decay_per_m = r->options.occlusion_decay_per_m,
+                                            .seed = r->rules.seed };
     uint32_t pixel = (uint32_t)y * (uint32_t)r->width + (uint32_t)x;
     struct obscurance_sums *sums = &r->obscurance[pixel];
     obscurance_add(&rules, &start.surface, pixel, samples_of(r, x, y), sums);

@@ -50,6 +50,7 @@ struct reference_options {
     bool diffuse_only;  // surfaces do not gloss: Lambert's term alone
     bool antialias;     // samples all over the pixel; false: at its centre, as in the frame
     float obscurance_radius_m; // of the layers obscurance and ambient_occlusion: > 0
+    float occlusion_decay_per_m; // of ambient_occlusion with the distance (obscurance.c); ≥ 0
     bool obscurance_sphere;    // obscurance of the whole sphere, else of the hemisphere above the surface
     uint64_t seed;
 };
@@ -72,7 +73,7 @@ enum reference_layer {
     REFERENCE_ERROR,      // standard error of color, per channel, cd/m²; infinite for less than 2 samples
     REFERENCE_SAMPLES,    // how many there are so far; 1 channel
     REFERENCE_OBSCURANCE, // open share of the volume of a (hemi)sphere round the pixel's centre (obscurance.c); 1 channel
-    REFERENCE_AMBIENT_OCCLUSION, // open share of the sky up to that radius, by the cosine; 1 channel; both 1 where there is
+    REFERENCE_AMBIENT_OCCLUSION, // open share of the sky up to that radius, by the cosine, and by the decay; 1 channel; both 1 where there is
                                  // no surface, from as many rays as there are samples
     REFERENCE_LAYER_COUNT
 };

@@ -137,6 +137,27 @@ TEST(behind_a_sheet_all_counts_as_matter_and_behind_a_lone_back_nothing)
     }
 }
 
+// A ceiling at the height h over all: a ray with the cosine μ meets it at r = h/μ, so that with c =
+// γ h
+//     1 − 2 ∫ μ/(1 + c/μ) dμ = 2c − 2c² ln(1 + 1/c).
+TEST(with_a_decay_a_ceiling_hides_the_less_the_higher_it_is)
+{
+    for (int i = 0; i < 3; i++) {
+        const double decay = 0.25 * (double)(1 << 2 * i), h = 0.5; // 1/m, m
+        const double c = decay * h, due = 2 * c - 2 * c * c * log(1 + 1 / c);
+        struct stage s;
+        floor_below(&s);
+        s.options.obscurance_radius_m = 1e6f;
+        s.options.occlusion_decay_per_m = (float)decay;
+        shelf(&s, (float)h / R, false, 0);
+        const double found = stage_mean(&s, REFERENCE_AMBIENT_OCCLUSION).mean[0];
+        print_message("decay %g 1/m: %.4f, due %.4f\n", decay, found, due);
+        // The ceiling ends at 50 m, 100 times its height: of the sky (h/50 m)² is open.
+        CHECK_NEAR(found, due, TOLERANCE);
+        stage_finish(&s);
+    }
+}
+
 static struct image layer_of(struct reference *r)
 {
     struct image image = { 0 };
@@ -166,7 +187,7 @@ TEST(obscurance_has_as_many_rays_as_samples_however_often_it_is_read)
     stage_finish(&s);
 }
 
-TEST(a_radius_of_nothing_is_refused)
+TEST(a_radius_of_nothing_and_a_decay_below_it_are_refused)
 {
     struct stage s;
     floor_below(&s);
@@ -177,6 +198,14 @@ TEST(a_radius_of_nothing_is_refused)
         test_forget_messages();
         CHECK(!reference_create(test_host(), &s.pose, &s.camera, 4, 4, &s.options));
         CHECK(strstr(test_last_message(), "radius"));
+    }
+    s.options.obscurance_radius_m = R;
+    const float wrong_decays[] = { -1.0f, INFINITY, NAN };
+    for (int i = 0; i < 3; i++) {
+        s.options.occlusion_decay_per_m = wrong_decays[i];
+        test_forget_messages();
+        CHECK(!reference_create(test_host(), &s.pose, &s.camera, 4, 4, &s.options));
+        CHECK(strstr(test_last_message(), "decay"));
     }
     stage_finish(&s);
 }
