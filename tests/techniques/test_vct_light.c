@@ -1,10 +1,8 @@
 // The light volume and the cones through it against plain C twins, and closed forms.
-#include "techniques/vct_rig.h"
+#include "techniques/vct_twin.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-enum { WAYS = 6 };
 
 static const double PI = 3.14159265358979323846;
 
@@ -23,35 +21,8 @@ static void furnish(struct vct_rig *rig, struct gpu *gpu)
 
 // ---- Mips
 
-struct volume {
-    float *light;
-    int dim;     // texels along a side of one way
-    int size[3]; // in use
-};
-
-static struct volume volume_of(const struct vct_rig *rig, uint32_t level)
-{
-    struct volume v = { .light = vct_rig_light(rig, level),
-                        .dim = (int)vct_volume_dim(&rig->vct->options) >> level };
-    for (int a = 0; a < 3; a++)
-        v.size[a] = (rig->vct->clips[0].grid.cells[a] / 2 + (1 << level) - 1) >> level;
-    return v;
-}
-
-static const float *texel(const struct volume *v, int way, const int at[3])
-{
-    return v->light +
-           4 * (((size_t)at[2] * (size_t)v->dim + (size_t)at[1]) * WAYS * (size_t)v->dim +
-                (size_t)(way * v->dim + at[0]));
-}
-
-static bool in_use(const struct volume *v, const int at[3])
-{
-    return at[0] < v->size[0] && at[1] < v->size[1] && at[2] < v->size[2];
-}
-
 // Four columns along the way, each the nearer texel over the farther, averaged over what is in use.
-static void coarser(const struct volume *v, int way, const int at[3], double out[4])
+static void coarser(const struct vct_twin_volume *v, int way, const int at[3], double out[4])
 {
     const int axis = way / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;
     int columns = 0;
@@ -62,10 +33,11 @@ static void coarser(const struct volume *v, int way, const int at[3], double out
         near[c] += i >> 1;
         for (int a = 0; a < 3; a++) far[a] = near[a];
         far[axis]++;
-        if (!in_use(v, near)) continue;
+        if (!vct_twin_in_use(v, near)) continue;
         columns++;
         static const float none[4] = { 0 };
-        const float *low = texel(v, way, near), *high = in_use(v, far) ? texel(v, way, far) : none;
+        const float *low = vct_twin_texel(v, way, near),
+                    *high = vct_twin_in_use(v, far) ? vct_twin_texel(v, way, far) : none;
         const float *first = way % 2 == 0 ? low : high, *second = way % 2 == 0 ? high : low;
         const double nearer = (double)first[3], farther = (double)second[3];
         const double seen =
@@ -86,15 +58,16 @@ TEST_GPU(each_level_of_the_light_volume_is_that_of_the_twin)
     CHECK(mips >= 3);
     double most = 0.0;
     for (uint32_t level = 1; level < mips; level++) {
-        struct volume fine = volume_of(&rig, level - 1), coarse = volume_of(&rig, level);
-        for (int way = 0; way < WAYS; way++)
+        struct vct_twin_volume fine = vct_twin_volume(&rig, level - 1),
+                               coarse = vct_twin_volume(&rig, level);
+        for (int way = 0; way < VCT_TWIN_WAYS; way++)
             for (int z = 0; z < coarse.size[2]; z++)
                 for (int y = 0; y < coarse.size[1]; y++)
                     for (int x = 0; x < coarse.size[0]; x++) {
                         const int at[3] = { x, y, z };
                         double expected[4];
                         coarser(&fine, way, at, expected);
-                        const float *got = texel(&coarse, way, at);
+                        const float *got = vct_twin_texel(&coarse, way, at);
                         // A half float has 11 bits.
                         for (int k = 0; k < 4; k++)
                             CHECK_NEAR((double)got[k], expected[k],
@@ -110,113 +83,6 @@ TEST_GPU(each_level_of_the_light_volume_is_that_of_the_twin)
 
 // ---- A cone
 
-static void filtered(const struct volume *v, int way, const double at[3], double out[4])
-{
-    int low[3], high[3];
-    double f[3];
-    for (int a = 0; a < 3; a++) {
-        const double clamped = fmin(fmax(at[a], 0.5), v->size[a] - 0.5) - 0.5;
-        low[a] = (int)floor(clamped);
-        if (low[a] > v->size[a] - 1) low[a] = v->size[a] - 1;
-        high[a] = low[a] + 1 < v->size[a] ? low[a] + 1 : low[a];
-        f[a] = clamped - low[a];
-    }
-    for (int k = 0; k < 4; k++) out[k] = 0.0;
-    for (int i = 0; i < 8; i++) {
-        const int corner[3] = { i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1],
-                                i & 4 ? high[2] : low[2] };
-        const double weight =
-            (i & 1 ? f[0] : 1 - f[0]) * (i & 2 ? f[1] : 1 - f[1]) * (i & 4 ? f[2] : 1 - f[2]);
-        const float *t = texel(v, way, corner);
-        for (int k = 0; k < 4; k++) out[k] += weight * (double)t[k];
-    }
-}
-
-struct sample {
-    double light[4], axes[3];
-};
-
-static struct sample look(const struct volume *v, const double at[3], const double direction[3],
-                          const double counted[3])
-{
-    struct sample s = { 0 };
-    for (int a = 0; a < 3; a++) {
-        double t[4];
-        filtered(v, 2 * a + (direction[a] < 0.0), at, t);
-        for (int k = 0; k < 4; k++) s.light[k] += fabs(counted[a]) * t[k];
-        if (fabs(counted[a]) > 0.0) s.axes[a] = t[3];
-    }
-    return s;
-}
-
-static void cover(double sum[4], const struct sample *here, const struct sample *before)
-{
-    const double alpha = here->light[3];
-    double sheet = 0.0;
-    for (int a = 0; a < 3; a++) sheet = fmax(sheet, before->axes[a] + here->axes[a]);
-    if (alpha <= 0.0) return;
-    const double covered = vct_rig_shown(1.0 - sum[3], alpha, fmin(sheet, 1.0));
-    for (int k = 0; k < 3; k++) sum[k] += covered * here->light[k] / alpha;
-    sum[3] += covered;
-}
-
-static double smooth(double low, double high, double x)
-{
-    const double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
-// What lies half a texel back along the surface, to which `here` is added.
-static struct sample behind(const struct volume *fine, const double from[3], const double normal[3],
-                            const double direction[3], double add[4])
-{
-    double along = 0.0, level_with[3], at[3];
-    for (int a = 0; a < 3; a++) along += direction[a] * normal[a];
-    for (int a = 0; a < 3; a++) {
-        level_with[a] = direction[a] - along * normal[a];
-        at[a] = from[a] - 0.5 * level_with[a];
-    }
-    const struct sample s = look(fine, at, direction, level_with);
-    const double ahead = smooth(0.25, 0.5, add[3] / fmax(add[3] + s.light[3], 1e-6));
-    for (int k = 0; k < 4; k++) add[k] += s.light[k];
-    for (int k = 0; k < 3; k++) add[k] *= ahead;
-    return s;
-}
-
-// As vct_trace.glsl says it, step by step.
-static void trace(const struct volume *levels, int level_count, const double from[3],
-                  const double normal[3], const double direction[3], double wide, double sum[4])
-{
-    double end = 1e6, out_of[3] = { 0 }, speed = 0.0;
-    for (int a = 0; a < 3; a++) {
-        if (fabs(direction[a]) < 1e-6) continue;
-        const double until =
-            ((direction[a] > 0.0 ? levels[0].size[a] : 0.0) - from[a]) / direction[a];
-        if (until >= end) continue;
-        end = until;
-        speed = fabs(direction[a]);
-        for (int b = 0; b < 3; b++) out_of[b] = b == a ? direction[a] : 0.0;
-    }
-    double t = 0.0;
-    struct sample before = { 0 };
-    for (int k = 0; k < 4; k++) sum[k] = 0.0;
-    for (int i = 0; i < 256 && sum[3] <= 0.98; i++) {
-        int level = (int)(log2(fmax(wide * t, 1.0)) + 0.5);
-        if (level >= level_count) level = level_count - 1;
-        const double length = (double)(1 << level), middle = t + 0.5 * length;
-        if (middle > end && (middle - end) * speed > length) return;
-        double at[3];
-        for (int a = 0; a < 3; a++) at[a] = (from[a] + direction[a] * fmin(middle, end)) / length;
-        struct sample here = look(&levels[level], at, direction, middle > end ? out_of : direction);
-        if (i == 0) before = behind(&levels[0], from, normal, direction, here.light);
-        cover(sum, &here, &before);
-        before = here;
-        t += length;
-    }
-    if (sum[3] <= 0.98) return;
-    for (int k = 0; k < 4; k++) sum[k] /= sum[3];
-}
-
 TEST_GPU(cones_bring_what_those_of_the_twin_do)
 {
     struct vct_rig rig;
@@ -225,9 +91,7 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
     vct_rig_open(&rig, "resolution=48,cones=5,interleave=1,stride=0.5");
     studio_render(&rig.studio);
     const struct vct *vct = rig.vct;
-    const int mips = (int)vct_volume_mips(&vct->options);
-    struct volume levels[8];
-    for (int i = 0; i < mips; i++) levels[i] = volume_of(&rig, (uint32_t)i);
+    struct vct_twin twin = vct_twin_of(&rig);
     const double scale = (double)frame_radiance_scale(rig.studio.frame);
     const double texel_m = 2.0 * (double)vct->clips[0].grid.cell_m;
     const double wide = 0.5 * (double)vct_cone_width(VCT_CONES_5);
@@ -250,7 +114,7 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
                 const double cosine = (double)glms_vec3_dot(n, lines[i]);
                 for (int a = 0; a < 3; a++)
                     direction[a] = (cosine < 0.0 ? -1.0 : 1.0) * (double)lines[i].raw[a];
-                trace(levels, mips, from, normal, direction, wide, sum);
+                vct_twin_trace(&twin, from, normal, direction, wide, sum);
                 for (int k = 0; k < 3; k++) {
                     const double sky = (double)rig.studio.input.sky.raw[k];
                     expected[k] += fabs(cosine) * (sum[k] / scale + (1.0 - sum[3]) * sky);
@@ -265,7 +129,7 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
             }
         }
     CHECK(lit > 20);
-    for (int i = 0; i < mips; i++) free(levels[i].light);
+    vct_twin_finish(&twin);
     vct_rig_finish(&rig);
 }
 

@@ -1,0 +1,146 @@
+#include "techniques/vct_twin.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct vct_twin_volume vct_twin_volume(const struct vct_rig *rig, uint32_t level)
+{
+    struct vct_twin_volume v = { .light = vct_rig_light(rig, level),
+                                 .dim = (int)vct_volume_dim(&rig->vct->options) >> level };
+    for (int a = 0; a < 3; a++)
+        v.size[a] = (rig->vct->clips[0].grid.cells[a] / 2 + (1 << level) - 1) >> level;
+    return v;
+}
+
+const float *vct_twin_texel(const struct vct_twin_volume *v, int way, const int at[3])
+{
+    return v->light +
+           4 * (((size_t)at[2] * (size_t)v->dim + (size_t)at[1]) * VCT_TWIN_WAYS * (size_t)v->dim +
+                (size_t)(way * v->dim + at[0]));
+}
+
+bool vct_twin_in_use(const struct vct_twin_volume *v, const int at[3])
+{
+    return at[0] < v->size[0] && at[1] < v->size[1] && at[2] < v->size[2];
+}
+
+struct vct_twin vct_twin_of(const struct vct_rig *rig)
+{
+    struct vct_twin twin = { .level_count = (int)vct_volume_mips(&rig->vct->options) };
+    for (int i = 0; i < twin.level_count; i++) twin.levels[i] = vct_twin_volume(rig, (uint32_t)i);
+    return twin;
+}
+
+void vct_twin_finish(struct vct_twin *twin)
+{
+    for (int i = 0; i < twin->level_count; i++) free(twin->levels[i].light);
+}
+
+static void filtered(const struct vct_twin_volume *v, int way, const double at[3], double out[4])
+{
+    int low[3], high[3];
+    double f[3];
+    for (int a = 0; a < 3; a++) {
+        const double clamped = fmin(fmax(at[a], 0.5), v->size[a] - 0.5) - 0.5;
+        low[a] = (int)floor(clamped);
+        if (low[a] > v->size[a] - 1) low[a] = v->size[a] - 1;
+        high[a] = low[a] + 1 < v->size[a] ? low[a] + 1 : low[a];
+        f[a] = clamped - low[a];
+    }
+    for (int k = 0; k < 4; k++) out[k] = 0.0;
+    for (int i = 0; i < 8; i++) {
+        const int corner[3] = { i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1],
+                                i & 4 ? high[2] : low[2] };
+        const double weight =
+            (i & 1 ? f[0] : 1 - f[0]) * (i & 2 ? f[1] : 1 - f[1]) * (i & 4 ? f[2] : 1 - f[2]);
+        const float *t = vct_twin_texel(v, way, corner);
+        for (int k = 0; k < 4; k++) out[k] += weight * (double)t[k];
+    }
+}
+
+struct sample {
+    double light[4], axes[3];
+};
+
+static struct sample look(const struct vct_twin_volume *v, const double at[3],
+                          const double direction[3], const double counted[3])
+{
+    struct sample s = { 0 };
+    for (int a = 0; a < 3; a++) {
+        double t[4];
+        filtered(v, 2 * a + (direction[a] < 0.0), at, t);
+        for (int k = 0; k < 4; k++) s.light[k] += fabs(counted[a]) * t[k];
+        if (fabs(counted[a]) > 0.0) s.axes[a] = t[3];
+    }
+    return s;
+}
+
+static void cover(double sum[4], const struct sample *here, const struct sample *before)
+{
+    const double alpha = here->light[3];
+    double sheet = 0.0;
+    for (int a = 0; a < 3; a++) sheet = fmax(sheet, before->axes[a] + here->axes[a]);
+    if (alpha <= 0.0) return;
+    const double covered = vct_rig_shown(1.0 - sum[3], alpha, fmin(sheet, 1.0));
+    for (int k = 0; k < 3; k++) sum[k] += covered * here->light[k] / alpha;
+    sum[3] += covered;
+}
+
+static double smooth(double low, double high, double x)
+{
+    const double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// What lies half a texel back along the surface, to which `here` is added.
+static struct sample behind(const struct vct_twin_volume *fine, const double from[3],
+                            const double normal[3], const double direction[3], double add[4])
+{
+    double along = 0.0, level_with[3], at[3];
+    for (int a = 0; a < 3; a++) along += direction[a] * normal[a];
+    for (int a = 0; a < 3; a++) {
+        level_with[a] = direction[a] - along * normal[a];
+        at[a] = from[a] - 0.5 * level_with[a];
+    }
+    const struct sample s = look(fine, at, direction, level_with);
+    const double ahead = smooth(0.25, 0.5, add[3] / fmax(add[3] + s.light[3], 1e-6));
+    for (int k = 0; k < 4; k++) add[k] += s.light[k];
+    for (int k = 0; k < 3; k++) add[k] *= ahead;
+    return s;
+}
+
+// As vct_trace.glsl says it, step by step.
+void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
+                    const double direction[3], double wide, double sum[4])
+{
+    const struct vct_twin_volume *levels = twin->levels;
+    const int level_count = twin->level_count;
+    double end = 1e6, out_of[3] = { 0 }, speed = 0.0;
+    for (int a = 0; a < 3; a++) {
+        if (fabs(direction[a]) < 1e-6) continue;
+        const double until =
+            ((direction[a] > 0.0 ? levels[0].size[a] : 0.0) - from[a]) / direction[a];
+        if (until >= end) continue;
+        end = until;
+        speed = fabs(direction[a]);
+        for (int b = 0; b < 3; b++) out_of[b] = b == a ? direction[a] : 0.0;
+    }
+    double t = 0.0;
+    struct sample before = { 0 };
+    for (int k = 0; k < 4; k++) sum[k] = 0.0;
+    for (int i = 0; i < 256 && sum[3] <= 0.98; i++) {
+        int level = (int)(log2(fmax(wide * t, 1.0)) + 0.5);
+        if (level >= level_count) level = level_count - 1;
+        const double length = (double)(1 << level), middle = t + 0.5 * length;
+        if (middle > end && (middle - end) * speed > length) return;
+        double at[3];
+        for (int a = 0; a < 3; a++) at[a] = (from[a] + direction[a] * fmin(middle, end)) / length;
+        struct sample here = look(&levels[level], at, direction, middle > end ? out_of : direction);
+        if (i == 0) before = behind(&levels[0], from, normal, direction, here.light);
+        cover(sum, &here, &before);
+        before = here;
+        t += length;
+    }
+    if (sum[3] <= 0.98) return;
+    for (int k = 0; k < 4; k++) sum[k] /= sum[3];
+}
