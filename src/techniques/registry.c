@@ -13,9 +13,10 @@
 #include <assert.h>
 #include <string.h>
 
-const struct technique *const techniques[] = { &technique_none,  &technique_ambient, &technique_lpv,
-                                               &technique_holpv, &technique_vct,     &technique_vo,
-                                               &technique_ssao,  &technique_hbao,    NULL };
+const struct technique *const techniques[] = {
+    &technique_none, &technique_ambient, &technique_lpv,  &technique_holpv, &technique_vct,
+    &technique_vo,   &technique_ssao,    &technique_hbao, &technique_vctao, NULL
+};
 
 bool technique_is_sound(const struct technique *technique)
 {

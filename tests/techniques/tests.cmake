@@ -5,7 +5,7 @@ target_link_libraries(ag_test_techniques PUBLIC ag_test_studio ag_techniques PRI
 
 foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_math lpv_occlusion lpv_sky lpv_twin
     technique_invariants technique_smoke vct_bounces vct_light vct_odd vct_screen vct_specular vct_storage vct_temporal vct_voxels visibility vo
-    vct_svo vct_bricks)
+    vct_svo vct_bricks vctao)
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_studio)
 endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")

@@ -5,40 +5,41 @@
 
 void vct_rig_init(struct vct_rig *rig, struct gpu *gpu)
 {
-    *rig = (struct vct_rig){ 0 };
+    *rig = (struct vct_rig){ .technique = &technique_vct };
     studio_init(&rig->studio, gpu);
 }
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    technique_vct.record(user, cmd, view);
+    technique_vct.record(user, cmd, view); // vctao has the same
 }
 
 void vct_rig_open(struct vct_rig *rig, const char *text)
 {
     struct studio *s = &rig->studio;
+    const struct technique *technique = rig->technique;
     studio_open(s);
-    struct vct_options options;
-    option_defaults(&technique_vct.options, &options);
-    CHECK(option_parse(test_host(), &technique_vct.options, "vct", text, &options));
+    struct vct_options options = { 0 };
+    option_defaults(&technique->options, &options);
+    CHECK(option_parse(test_host(), &technique->options, technique->name, text, &options));
     const struct technique_create how = { .host = test_host(),
                                           .gpu = s->gpu,
                                           .pose = &s->pose,
                                           .options = &options,
                                           .width = s->width,
                                           .height = s->height };
-    rig->vct = calloc(1, technique_vct.state_size);
-    CHECK(technique_vct.check(&how));
-    CHECK(technique_vct.create(rig->vct, &how));
-    s->indirect = (struct frame_indirect){ .record = record,
-                                           .user = rig->vct,
-                                           .needs = technique_vct.needs |
-                                                    technique_vct.more_needs(&options) };
+    rig->vct = calloc(1, technique->state_size);
+    CHECK(technique->check(&how));
+    CHECK(technique->create(rig->vct, &how));
+    s->indirect =
+        (struct frame_indirect){ .record = record,
+                                 .user = rig->vct,
+                                 .needs = technique->needs | technique->more_needs(&options) };
 }
 
 void vct_rig_finish(struct vct_rig *rig)
 {
-    technique_vct.destroy(rig->vct);
+    rig->technique->destroy(rig->vct);
     free(rig->vct);
     studio_finish(&rig->studio);
 }
@@ -71,6 +72,8 @@ float *vct_rig_light(const struct vct_rig *rig, uint32_t level)
     const size_t floats = vct_ways(&rig->vct->options) * dim * dim * dim * 4;
     float *light = malloc(floats * sizeof *light);
     CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->light, level, 0, light, 4, floats));
+    // Of occlusion there is opacity alone, in the first channel.
+    for (size_t i = 0; rig->vct->options.occlusion && i < floats; i++) light[i] = light[i / 4 * 4];
     return light;
 }
 

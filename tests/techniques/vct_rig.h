@@ -1,4 +1,4 @@
-// Voxel cone tracing in a studio, with its voxels and its light volume open to the tests.
+// Voxel cone tracing, of light or of occlusion, in a studio, with its voxels and its light volume open to the tests.
 #pragma once
 
 #include "frame/studio.h"
@@ -7,6 +7,7 @@
 
 struct vct_rig {
     struct studio studio; // vct_rig_open takes it over
+    const struct technique *technique; // technique_vct unless it is set before it is opened
     struct vct *vct;
 };
 

@@ -26,7 +26,13 @@ bool vct_twin_in_use(const struct vct_twin_volume *v, const int at[3])
 
 struct vct_twin vct_twin_of(const struct vct_rig *rig)
 {
-    struct vct_twin twin = { .level_count = (int)vct_volume_mips(&rig->vct->options) };
+    const struct vct_options *o = &rig->vct->options;
+    struct vct_twin twin = {
+        .level_count = (int)vct_volume_mips(o),
+        .occlusion = o->occlusion,
+        .decay = 2.0 * (double)rig->vct->clips[0].grid.cell_m * (double)o->decay,
+        .offset = (double)o->offset,
+    };
     for (int i = 0; i < twin.level_count; i++) twin.levels[i] = vct_twin_volume(rig, (uint32_t)i);
     return twin;
 }
@@ -109,7 +115,17 @@ static struct sample behind(const struct vct_twin_volume *fine, const double fro
     return s;
 }
 
-// As vct_trace.glsl says it, step by step.
+// As much of what is behind it as a sample hides, in place of what it shows.
+static void hide(const struct vct_twin *twin, const double normal[3], const double direction[3],
+                 double middle, double light[4])
+{
+    double r = middle;
+    for (int a = 0; a < 3; a++) r += twin->offset * normal[a] * direction[a];
+    for (int k = 0; k < 3; k++) light[k] = light[3] / (1.0 + twin->decay * r);
+}
+
+// As vct_trace.glsl says it, step by step. Where it ends since the rest can hide next to nothing
+// this goes on.
 void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
                     const double direction[3], double wide, double sum[4])
 {
@@ -137,6 +153,7 @@ void vct_twin_trace(const struct vct_twin *twin, const double from[3], const dou
         for (int a = 0; a < 3; a++) at[a] = (from[a] + direction[a] * fmin(middle, end)) / length;
         struct sample here = look(&levels[level], at, direction, middle > end ? out_of : direction);
         if (i == 0) before = behind(&levels[0], from, normal, direction, here.light);
+        if (twin->occlusion) hide(twin, normal, direction, middle, here.light);
         cover(sum, &here, &before);
         before = here;
         t += length;

@@ -21,12 +21,14 @@ bool vct_twin_in_use(const struct vct_twin_volume *v, const int at[3]);
 struct vct_twin {
     struct vct_twin_volume levels[VCT_TWIN_LEVELS];
     int level_count;
+    bool occlusion;
+    double decay, offset; // per texel; texels
 };
 
 struct vct_twin vct_twin_of(const struct vct_rig *rig);
 void vct_twin_finish(struct vct_twin *twin);
 
 // Premultiplied radiance and opacity along a cone. Lengths in texels; from: where it starts, off a surface of that
-// normal; wide: width of texels over the distance.
+// normal; wide: width of texels over the distance. Of a rig of occlusion what is hidden is in place of the radiance.
 void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
                     const double direction[3], double wide, double sum[4]);

@@ -19,7 +19,7 @@ layout(set = 0, binding = 2, scalar) uniform vct_cones
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler2D gathered; // irradiance, share of the cones
-layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 6) uniform writeonly image2D irradiance;
 
 const float ENOUGH = 0.9; // of the cones
 const int RINGS = 4;

@@ -31,7 +31,7 @@ layout(set = 0, binding = 5) uniform sampler3D light;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D red; // Σ L d, Σ d.x
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D green; // Σ d.y
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D blue;  // Σ d.z
-layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D irradiance; // where pixels trace all cones
+layout(set = 0, binding = 9) uniform writeonly image2D irradiance; // where pixels trace all cones
 
 void main()
 {
@@ -52,7 +52,9 @@ void main()
             vec3 direction = set.cone_count == 1u ? n : set.cones[i].xyz;
             direction = dot(direction, n) < 0.0 ? -direction : direction;
             vec4 met = vct_trace(light, from, n, direction, set.width_per_m, set.last_mip);
-            vct_add_cone(sum, met.rgb + (1.0 - met.a) * frame.sky, set.cones[i].w * direction);
+            vec3 found = met.rgb + (1.0 - met.a) * frame.sky;
+            if (VCT_OCCLUSION) found = 1.0 - met.rgb;
+            vct_add_cone(sum, found, set.cones[i].w * direction);
         }
     }
     if (side == 1u) {

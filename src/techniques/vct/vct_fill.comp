@@ -11,7 +11,7 @@
 
 layout(local_size_x = VCT_LOCAL) in;
 
-layout(set = 0, binding = 7, rgba16f) uniform writeonly image3D light;
+layout(set = 0, binding = 7) uniform writeonly image3D light;
 layout(set = 0, binding = 8, scalar) readonly buffer vct_texels { uint texels[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
 
@@ -22,6 +22,9 @@ void main()
     ivec3 texel = vct_unpack_texel(texels[i]);
     vec4 sum[6];
     vct_see(2 * texel, ivec3(2), sum);
-    for (int k = 0; k < VCT_WAYS; k++)
-        imageStore(light, texel + ivec3(k * vct.volume_dim, 0, 0), min(sum[k], vec4(HALF_MAX)));
+    for (int k = 0; k < VCT_WAYS; k++) {
+        vec4 value = min(sum[k], vec4(HALF_MAX));
+        if (VCT_OCCLUSION) value = value.aaaa;
+        imageStore(light, texel + ivec3(k * vct.volume_dim, 0, 0), value);
+    }
 }

@@ -113,12 +113,17 @@ static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
     gpu_scope_end(cmd);
 }
 
+gpu_image vct_result(const struct vct *vct, const struct frame_view *view)
+{
+    return view->layers[vct->options.occlusion ? FRAME_VISIBILITY : FRAME_IRRADIANCE];
+}
+
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool temporal = vct->options.temporal;
     struct vct_cone_params params = pixel_cones(vct, view);
     if (temporal) vct_temporal_turn(&vct->temporal, &params);
-    const gpu_image result = temporal ? vct->temporal.now : view->layers[FRAME_IRRADIANCE];
+    const gpu_image result = temporal ? vct->temporal.now : vct_result(vct, view);
     const struct pixels p = { .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
                               .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                               .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },

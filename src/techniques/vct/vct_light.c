@@ -185,6 +185,8 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
 
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
+    // What surfaces cover changes with them alone.
+    if (vct->options.occlusion && vct->light_valid && !vct->remade) return;
     put_light(vct, cmd, view);
     vct->light_valid = true;
 }

@@ -15,12 +15,18 @@ vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int lev
     vec3 uv = clamp(at / float(vct.volume_dim), vec3(half_texel), size - half_texel);
     if (!VCT_ANISOTROPIC) {
         vec4 all = textureLod(light, uv, float(level));
+        if (VCT_OCCLUSION) all = all.rrrr;
         return vct_met(all, vec3(all.a));
     }
     vec3 way = (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
     vec4 x = textureLod(light, vec3(way.x, uv.yz), float(level));
     vec4 y = textureLod(light, vec3(way.y, uv.yz), float(level));
     vec4 z = textureLod(light, vec3(way.z, uv.yz), float(level));
+    if (VCT_OCCLUSION) {
+        x = x.rrrr;
+        y = y.rrrr;
+        z = z.rrrr;
+    }
     vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
     return vct_met(share.x * x + share.y * y + share.z * z, met);
 }

@@ -17,7 +17,7 @@ layout(push_constant, scalar) uniform push_block
     vct_mip_push push;
 };
 layout(set = 0, binding = 1) uniform sampler3D source;
-layout(set = 0, binding = 2, rgba16f) uniform writeonly image3D target;
+layout(set = 0, binding = 2) uniform writeonly image3D target;
 layout(set = 0, binding = 3, scalar) readonly buffer vct_texels { uint texels[]; };
 layout(set = 0, binding = 4, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
 
@@ -39,6 +39,10 @@ void main()
         bool whole = all(lessThan(2 * texel + side + along, size));
         ivec3 at = from + side;
         vec4 first = texelFetch(source, at, 0), second = whole ? texelFetch(source, at + along, 0) : vec4(0.0);
+        if (VCT_OCCLUSION) {
+            first = first.rrrr;
+            second = second.rrrr;
+        }
         if (VCT_ANISOTROPIC) sum += (way & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
         else sum += whole ? 0.5 * (first + second) : first;
         columns++;

@@ -39,8 +39,10 @@ bool vct_prepare(struct vct *vct, const struct frame_view *view)
         .shadow_size = (float)view->shadow_size,
         .shadow_radius = view->shadow_radius,
         .volume_dim = (int32_t)vct_volume_dim(&vct->options),
-        .light_count = view->constants->light_count,
+        .light_count = vct->options.occlusion ? 0 : view->constants->light_count,
         .light_scale = 1.0f,
+        .decay_per_m = vct->options.decay,
+        .offset = vct->options.offset,
     };
     return true;
 }

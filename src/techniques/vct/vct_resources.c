@@ -68,6 +68,8 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
                      struct buffer_plan out[SET_BUFFERS])
 {
     const size_t capacity = vct_capacity(options);
+    // Without light there is none that voxels could bring to each other.
+    const size_t brought = options->occlusion ? 1 : capacity * VCT_BROUGHT_WORDS;
 #define NAME(thing) (moving ? "moving_" thing : "rest_" thing)
     const struct buffer_plan plan[SET_BUFFERS] = {
         { NAME("mask"), &set->mask, mask_words(options), 0 },
@@ -75,7 +77,7 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
         { NAME("blocks"), &set->blocks, block_count(options), 0 },
         { NAME("list"), &set->list, capacity, 0 },
         { NAME("sums"), &set->sums, capacity * VCT_SUM_WORDS, 0 },
-        { NAME("brought"), &set->brought, capacity * VCT_BROUGHT_WORDS, 0 },
+        { NAME("brought"), &set->brought, brought, 0 },
         { NAME("arguments"), &set->arguments, 5, GPU_BUFFER_INDIRECT },
     };
 #undef NAME
@@ -141,7 +143,7 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
     const uint32_t dim = vct_volume_dim(options);
     return (struct gpu_image_desc){ .name = "light",
                                     .dimension = GPU_3D,
-                                    .format = GPU_RGBA16F,
+                                    .format = options->occlusion ? GPU_R16F : GPU_RGBA16F,
                                     .width = vct_ways(options) * dim,
                                     .height = dim,
                                     .depth = dim,
@@ -249,7 +251,7 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
     const struct gpu_image_desc light = vct_light_desc(options);
     for (uint32_t mip = 0; mip < light.mips; mip++)
         bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
-                 (uint64_t)gpu_format_bytes(GPU_RGBA16F);
+                 (uint64_t)gpu_format_bytes(light.format);
     const struct gpu_image_desc records = records_desc(options, false);
     bytes += 2 * (uint64_t)vct_clip_count(options) * records.width * records.height *
              (uint64_t)gpu_format_bytes(GPU_RGBA32U);

@@ -52,6 +52,8 @@ struct vct_params {
     uint32_t light_count;  // of the frame's lights that are injected
     uint32_t brought;      // whether light that voxels got from others is injected
     float light_scale;     // the frame's unit over that of the light volume
+    float decay_per_m;     // of occlusion: see vct_trace.glsl
+    float offset;          // along the normal at which the pixels' cones start, texels of the light volume
 };
 
 #define VCT_MAX_CONES      25
@@ -95,6 +97,7 @@ struct vct_history_params {
     float pixel;    // width of a pixel over the distance
     float most;     // weight of the history at most, in frames
     float clamp;    // standard deviations; 0: none
+    float scale;    // this frame's unit over the last one's
     uint32_t known; // 0: there is no last frame
 };
 
@@ -158,14 +161,14 @@ struct vct_view_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct vct_params) == 18 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_params) == 20 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 9 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_history_params) == 13 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 14 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_specular_params) == 6 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_mip_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_svo_params) == 16, "layout is shared with GLSL");

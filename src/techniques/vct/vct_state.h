@@ -8,10 +8,16 @@
 #include "techniques/vct/vct_shared.h"
 #include "techniques/vct/vct_temporal.h"
 
+// Of both techniques. What one of them lacks is as vct.c fills it in.
 struct vct_options {
 #define OPTION OPTION_FIELD
+#define VCT_OPTION OPTION_FIELD
+#define VCTAO_OPTION OPTION_FIELD
 #include "techniques/vct/vct_options.def"
+#undef VCTAO_OPTION
+#undef VCT_OPTION
 #undef OPTION
+    bool occlusion; // vctao: cones find how open it is about a surface, and no light
 };
 
 enum vct_storage { VCT_MIPS, VCT_SVO }; // the option's choices
@@ -82,7 +88,7 @@ struct vct {
     gpu_buffer queue, queue_state;
     gpu_sampler linear;
     struct vct_svo svo;   // with storage=svo
-    gpu_image light;      // RGBA16F: six volumes side by side with mips, or the pool of bricks
+    gpu_image light;      // six volumes side by side with mips, or the pool of bricks: RGBA16F; mips of occlusion R16F
     gpu_image edge_image; // R8
     gpu_image traced[3], gathered[3]; // RGBA16F: what cones found as vectors, of each colour
     gpu_image found;            // RGBA16F: irradiance, share of the cones
@@ -145,6 +151,8 @@ void vct_svo_record_light(struct vct *vct, struct gpu_cmd *cmd);
 // For shaders that trace cones, which ignore them where there is no octree.
 struct gpu_binding vct_svo_binding(struct vct *vct, struct gpu_cmd *cmd);
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+// The layer that the last stage fills: irradiance or visibility.
+gpu_image vct_result(const struct vct *vct, const struct frame_view *view);
 void vct_fill_shares(struct vct_share_table *out); // once
 void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,

@@ -85,8 +85,9 @@ static bool same_camera(const struct world_camera *a, const struct world_camera 
 
 static bool stands_still(const struct vct_temporal *t, const struct frame_view *view)
 {
-    return !view->geometry_moved && !view->lights_changed &&
-           same_camera(&t->camera, &view->camera) && same(t->sky, view->constants->sky);
+    const bool same_light = !view->lights_changed && same(t->sky, view->constants->sky);
+    return !view->geometry_moved && same_camera(&t->camera, &view->camera) &&
+           (t->unlit || same_light);
 }
 
 // The last picture's geometry: the point at the distance d along the axis that is seen at a pixel
@@ -118,6 +119,7 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
     t->number = known ? t->number + 1 : 0;
     t->still = known && stands_still(t, view) ? t->still + 1 : 0;
     t->params = (struct vct_history_params){ .known = known, .clamp = clamp };
+    t->params.scale = t->unlit ? 1.0f : view->constants->previous_scale_ratio;
     t->params.most = weight_at_rest(t->still, most);
     place_picture(&t->camera, view->width, view->height, &t->params);
     t->known = true;
@@ -157,7 +159,8 @@ void vct_temporal_turn(const struct vct_temporal *t, struct vct_cone_params *par
         params->cones[i] = vec4_of(lines[(first + i) % count], params->cones[i].w);
 }
 
-void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view)
+void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view,
+                         gpu_image result)
 {
     const int newest = t->newest, last = 1 - newest;
     vct_pass_begin(t->owner, cmd, "temporal");
@@ -172,7 +175,7 @@ void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const stru
                           { .name = "last_surface", .image = t->surface[last] },
                           { .name = "light", .image = t->light[newest] },
                           { .name = "surface", .image = t->surface[newest] },
-                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+                          { .name = "irradiance", .image = result }),
                  NULL, 0, gpu_groups(view->width, VCT_LOCAL_2D),
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);
     gpu_scope_end(cmd);

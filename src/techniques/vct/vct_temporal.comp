@@ -26,7 +26,7 @@ layout(set = 0, binding = 6) uniform sampler2D last_light;   // irradiance, fram
 layout(set = 0, binding = 7) uniform sampler2D last_surface; // distance along the view axis, 0: none; normal
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D light;
 layout(set = 0, binding = 9, rg32f) uniform writeonly image2D surface;
-layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 10) uniform writeonly image2D irradiance;
 
 const float LEAST_COSINE = 0.9;  // of two normals of one surface: 26 degrees
 const float TOLERANCE_PX = 4.0;  // off the plane, in widths of a pixel there
@@ -121,7 +121,7 @@ void main()
         vec4 old = vec4(0.0);
         if (set.known != 0u && distance_before > 0.0)
             old = remembered(reproject_place(moved, pixel, vec2(frame.width, frame.height)), distance_before, n);
-        old.rgb *= frame.previous_scale_ratio;
+        old.rgb *= set.scale;
         if (set.clamp > 0.0 && old.w > 0.0)
             old.rgb = clamped(old.rgb, pixel, position(pixel, z), n, TOLERANCE_PX * set.pixel * distance_m);
         float weight = min(old.w, set.most);

@@ -11,6 +11,7 @@ struct vct_temporal {
     gpu_image light[2];   // RGBA32F: irradiance, frames in it; the last frame's and this one's in turn
     gpu_image surface[2]; // RG32F: what was seen, see vct_temporal.comp
     int newest;           // of the two
+    bool unlit;           // what is filtered depends on no light and has no unit
     bool known;           // there is a last frame
     uint64_t index;       // of that frame
     uint32_t number;      // frames since there was none
@@ -31,5 +32,6 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
 // Gives this frame other cones than the last one's, and each pixel others of them. The first frame after a cut has the
 // cones as they are.
 void vct_temporal_turn(const struct vct_temporal *t, struct vct_cone_params *params);
-// From `now` to the frame's irradiance.
-void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view);
+// From `now` to `result`.
+void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view,
+                         gpu_image result);

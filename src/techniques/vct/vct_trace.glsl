@@ -34,6 +34,7 @@ struct vct_met
 #endif
 #include "techniques/vct/vct_over.glsl"
 
+const float VCT_UNSEEN = 0.005; // of occlusion: a cone that can add no more than that ends
 const float VCT_OPAQUE = 0.98; // a cone that has met so much ends there, as if it had met all
 
 // Radiance in xyz, premultiplied, and opacity. Lengths in texels of level 0; `from`: where the cone starts, of width 0
@@ -50,7 +51,7 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wi
     vec3 level_with = direction - dot(direction, normal) * normal;
     vct_met behind = vct_look(light, from - 0.5 * level_with, direction, level_with, 0);
     vec3 before = behind.axes;
-    float t = 0.0;
+    float t = 0.0, decay = 2.0 * vct.cell_m * vct.decay_per_m, ahead_of_surface = vct.offset * dot(normal, direction);
     for (int i = 0; i < 256; i++) {
         int level = min(int(log2(max(wide * t, 1.0)) + 0.5), int(last_mip));
         float texel = float(1 << level), middle = t + 0.5 * texel;
@@ -65,12 +66,14 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wi
             here.light.rgb *= ahead;
         }
         float alpha = here.light.a;
+        if (VCT_OCCLUSION) here.light.rgb = vec3(alpha / (1.0 + decay * (ahead_of_surface + t + 0.5 * texel)));
         if (alpha > 0.0) {
             vec3 two = before + here.axes;
             float sheet = min(max(two.x, max(two.y, two.z)), 1.0);
             sum += vct_shown(1.0 - sum.a, alpha, sheet) * vec4(here.light.rgb / alpha, 1.0);
             if (sum.a > VCT_OPAQUE) return vec4(sum.rgb / sum.a, 1.0);
         }
+        if (VCT_OCCLUSION && 1.0 - sum.a < VCT_UNSEEN * (1.0 + decay * (ahead_of_surface + t))) break;
         before = here.axes;
         t += texel;
     }

@@ -2,6 +2,8 @@
 #ifndef AG_VCT_VECTORS_GLSL
 #define AG_VCT_VECTORS_GLSL
 
+#include "techniques/vct/vct_ways.glsl"
+
 const float VCT_PI = 3.14159265;
 
 struct vct_vectors
@@ -19,7 +21,8 @@ void vct_add_cone(inout vct_vectors v, vec3 radiance, vec3 weighted_direction)
 vec3 vct_irradiance(vct_vectors v, vec3 n, float gain)
 {
     float share = dot(n, v.way);
-    return share > 0.0 ? clamp(n * v.light * (VCT_PI * gain / share), 0.0, HALF_MAX) : vec3(0.0);
+    float nothing = VCT_OCCLUSION ? 1.0 : 0.0; // where no cone says anything, as where there is no surface
+    return share > 0.0 ? clamp(n * v.light * (VCT_PI * gain / share), 0.0, HALF_MAX) : vec3(nothing);
 }
 
 #endif

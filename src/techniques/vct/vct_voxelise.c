@@ -5,9 +5,10 @@
 
 #include "frame/scene_gpu.h"
 
-static enum vct_kind kind_of(const struct scene_draw *draw)
+static enum vct_kind kind_of(const struct vct *vct, const struct scene_draw *draw)
 {
     if (draw->variant & VARIANT_MASKED) return VCT_MASKED;
+    if (vct->options.occlusion) return VCT_PLAIN; // whatever its colour
     const uint32_t maps =
         VARIANT_BASE_COLOR_MAP | VARIANT_METALLIC_ROUGHNESS_MAP | VARIANT_EMISSIVE_MAP;
     return draw->variant & maps ? VCT_MAPPED : VCT_PLAIN;
@@ -28,7 +29,7 @@ static void walk(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
     for (int i = 0; i < view->scene->draw_count; i++) {
         const struct scene_draw *draw = &view->scene->draws[i];
         if (draw->moves != moving) continue;
-        const struct vct_walk *pipelines = add ? &vct->add[kind_of(draw)] : &vct->mark;
+        const struct vct_walk *pipelines = add ? &vct->add[kind_of(vct, draw)] : &vct->mark;
         scene_gpu_dispatch(view->scene, cmd,
                            &(struct scene_dispatch_call){ .pipeline = pipelines->small,
                                                           .drawn = raster,
