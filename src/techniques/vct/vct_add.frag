@@ -10,7 +10,7 @@ void main()
 {
     vct_triangle t;
     ivec2 column = ivec2(gl_FragCoord.xy);
-    if (triangle_at(vary_triangle, t) && all(greaterThanEqual(column, t.low.xy)) &&
-        all(lessThanEqual(column, t.high.xy)))
-        walk_column(t, column);
+    if (!triangle_at(vary_triangle, t) || any(lessThan(column, t.low.xy)) || any(greaterThan(column, t.high.xy))) return;
+    vct_meet(t, column);
+    walk_column(t, column);
 }

@@ -18,12 +18,13 @@ layout(set = 0, binding = 2, scalar) uniform vct_cones
 layout(set = 0, binding = 3) uniform sampler3D light;
 layout(set = 0, binding = 4, scalar) readonly buffer vct_texels { uint texels[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
-layout(set = 0, binding = 6, scalar) readonly buffer vct_sums { uint sums[]; };
+layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
 layout(set = 0, binding = 7, scalar) writeonly buffer vct_brought { uint brought[]; };
 layout(set = 0, binding = 8, scalar) readonly buffer vct_mask { uint mask[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer vct_before { uint before[]; };
 
 #include "techniques/vct/vct_axes.glsl"
+#include "techniques/vct/vct_surface.glsl"
 #include "techniques/vct/vct_trace.glsl"
 
 vec3 irradiance(vec3 position, vec3 normal)
@@ -92,11 +93,6 @@ uint slot_of(block b, uint voxel)
     return min(first + uint(bitCount(bits & ((1u << (voxel & 15u)) - 1u))), vct.capacity);
 }
 
-vec3 signed_sum(uint at)
-{
-    return vec3(int(sums[at]), int(sums[at + 1u]), int(sums[at + 2u]));
-}
-
 // Voxels of one block that are parts of one sheet.
 struct vct_part
 {
@@ -120,27 +116,22 @@ vct_part part_of(block b, uvec2 left)
             part.bits |= bit_of(voxel);
             continue;
         }
-        uint at = slot * VCT_SUM_WORDS;
-        float weight = max(float(sums[at + VCT_SUM_WEIGHT]), 1.0);
-        vec3 normal = signed_sum(at + VCT_SUM_NORMAL);
-        float length2 = dot(normal, normal);
-        vec3 unit = length2 > 0.0 ? normal * inversesqrt(length2) : vec3(0.0);
-        vec3 position = vec3(place_of(b, voxel) - b.corner) + 0.5 +
-                        signed_sum(at + VCT_SUM_POSITION) / (weight * VCT_POSITION_ONE);
+        vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, vct_record_place(slot), 0));
+        vec3 position = vec3(place_of(b, voxel) - b.corner) + 0.5 + surface.position;
         if (first) {
-            first_normal = unit;
+            first_normal = surface.normal;
             first_position = position;
-        } else if (dot(unit, first_normal) < ONE_SHEET ||
+        } else if (dot(surface.normal, first_normal) < ONE_SHEET ||
                    abs(dot(position - first_position, first_normal)) > ONE_PLANE) {
             continue;
         }
         first = false;
         part.bits |= bit_of(voxel);
-        part.normal += normal;
-        part.position += weight * position;
-        part.weight += weight;
-        part.covers.x = part.covers.x || sums[at + VCT_SUM_FRONTS] > 0u;
-        part.covers.y = part.covers.y || sums[at + VCT_SUM_BACKS] > 0u;
+        part.normal += surface.weight * surface.normal;
+        part.position += surface.weight * position;
+        part.weight += surface.weight;
+        part.covers.x = part.covers.x || surface.covers.x;
+        part.covers.y = part.covers.y || surface.covers.y;
     }
     return part;
 }

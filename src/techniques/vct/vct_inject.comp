@@ -12,18 +12,16 @@
 #include "frame/shadow/shadow.glsl"
 #define VCT_GRID_BINDING 4
 #include "techniques/vct/vct_grid.glsl"
-#include "techniques/vct/vct_record.glsl"
+#include "techniques/vct/vct_surface.glsl"
 
 layout(local_size_x = VCT_LOCAL) in;
 
 layout(set = 0, binding = 1, scalar) readonly buffer frame_lights { frame_light frame_light_table[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer vct_list { uint list[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer vct_sums { uint sums[]; };
+layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
 layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_records;
-layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments { uint groups[3]; uint listed; uint left_out; };
+layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments { vct_voxel_counts counts; };
 layout(set = 0, binding = 9, scalar) readonly buffer vct_brought { uint brought[]; };
-
-#include "techniques/vct/vct_sums.glsl"
 
 layout(constant_id = 0) const bool HAS_LIGHTS = true;
 
@@ -64,21 +62,23 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
 void main()
 {
     uint slot = gl_GlobalInvocationID.x;
-    if (slot >= listed) return;
-    uint at = slot * VCT_SUM_WORDS;
-    float per_opaque = 1.0 / max(float(sums[at + VCT_SUM_OPACITY]), 1.0);
-    vct_sheet sheet = vct_sheet_of(slot);
+    if (slot >= counts.listed) return;
+    ivec2 to = vct_record_place(slot);
+    vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, to, 0));
+    vec3 position = vct_world_from_voxels(vec3(vct_voxel(list[slot])) + 0.5 + surface.position);
     vct_record r;
-    r.opacity = sheet.opacity;
-    r.normal = sheet.normal;
-    r.reflectance = min(vct_sum(at + VCT_SUM_REFLECTANCE) * (per_opaque / VCT_COLOUR_ONE), vec3(1.0));
-    r.emitted_front = min(vct_sum(at + VCT_SUM_FRONT) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
-    r.emitted_back = min(vct_sum(at + VCT_SUM_BACK) * (per_opaque * vct.emission_scaled), vec3(HALF_MAX));
+    r.opacity = surface.opacity;
+    r.normal = surface.normal;
+    r.reflectance = surface.reflectance;
+    vct_unpack_emission(texelFetch(vct_surfaces, to + ivec2(1, 0), 0), r.emitted_front, r.emitted_back);
+    float emission_scaled = surface.emits ? vct.emission_scaled : 0.0;
+    r.emitted_front = min(r.emitted_front * emission_scaled, vec3(HALF_MAX));
+    r.emitted_back = min(r.emitted_back * emission_scaled, vec3(HALF_MAX));
 
     vec3 front = vec3(0.0), back = vec3(0.0);
     for (uint i = 0; HAS_LIGHTS && i < kept(vct.light_count); i++) {
         bool at_front;
-        vec3 e = irradiance(frame_light_table[i], sheet.position, sheet.normal, at_front);
+        vec3 e = irradiance(frame_light_table[i], position, surface.normal, at_front);
         if (at_front) front += e;
         else back += e;
     }
@@ -92,7 +92,6 @@ void main()
     r.back = min(back * r.reflectance / PI, vec3(HALF_MAX));
     uvec4 first, second;
     vct_pack(r, first, second);
-    ivec2 to = vct_record_place(slot);
     imageStore(vct_records, to, first);
     imageStore(vct_records, to + ivec2(1, 0), second);
 }

@@ -15,7 +15,7 @@ static void inject(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
             view->shadow_faces_binding,
             { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
             { .name = "vct_list", .buffer = set->list },
-            { .name = "vct_sums", .buffer = set->sums },
+            { .name = "vct_surfaces", .image = set->surfaces },
             { .name = "vct_records", .image = set->records },
             { .name = "vct_brought", .buffer = set->brought },
             { .name = "vct_arguments", .buffer = set->arguments }),
@@ -101,7 +101,7 @@ static void bring(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *
                  { .name = "vct_texel_state", .buffer = clip->texel_state },
                  { .name = "vct_mask", .buffer = set->mask },
                  { .name = "vct_before", .buffer = set->before },
-                 { .name = "vct_sums", .buffer = set->sums },
+                 { .name = "vct_surfaces", .image = set->surfaces },
                  { .name = "vct_brought", .buffer = set->brought }, vct_svo_binding(vct, cmd),
                  { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
         NULL, 0, clip->texel_state, offsetof(struct vct_texel_levels, block_groups));

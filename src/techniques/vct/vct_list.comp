@@ -1,4 +1,5 @@
-// The list of occupied voxels, in the order of their numbers; and the voxels before each word.
+// The list of occupied voxels, in the order of their numbers, and the voxels before each word; and, in no order, the places
+// of those whose sums are added up.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -11,18 +12,38 @@ layout(set = 0, binding = 0, scalar) readonly buffer vct_mask { uint mask[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer vct_blocks { uint blocks[]; };
 layout(set = 0, binding = 2, scalar) writeonly buffer vct_before { uint before[]; };
 layout(set = 0, binding = 3, scalar) writeonly buffer vct_list { uint list[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer vct_again { uint again[]; };
+layout(set = 0, binding = 5, scalar) writeonly buffer vct_again_list { uint again_list[]; };
+layout(set = 0, binding = 6, scalar) buffer vct_arguments { vct_voxel_counts counts; };
+
+// The first bits of a word, as many as there is room for from a slot on.
+uint with_room(uint word, uint slot)
+{
+    for (uint room = vct.capacity - min(slot, vct.capacity); uint(bitCount(word)) > room;)
+        word &= ~(1u << uint(findMSB(word)));
+    return word;
+}
 
 void main()
 {
     uint block = gl_GlobalInvocationID.x;
     if (block >= blocks.length()) return;
     uint first = block * VCT_BLOCK_WORDS, end = min(first + VCT_BLOCK_WORDS, mask.length());
-    uint slot = blocks[block];
+    uint slot = blocks[block], again_count = 0u;
     for (uint i = first; i < end; i++) {
         before[i] = slot;
-        for (uint bits = mask[i]; bits != 0u; bits &= bits - 1u, slot++) {
-            if (slot >= vct.capacity) continue;
-            list[slot] = i * 32u + uint(findLSB(bits));
-        }
+        uint word = with_room(mask[i], slot);
+        again_count += uint(bitCount(again[i] & word));
+        for (; word != 0u; word &= word - 1u, slot++) list[slot] = i * 32u + uint(findLSB(word));
+    }
+    if (again_count == 0u) return;
+    uint to = atomicAdd(counts.again, again_count);
+    atomicMax(counts.again_groups[0], (to + again_count + VCT_LOCAL - 1u) / VCT_LOCAL);
+    slot = blocks[block];
+    for (uint i = first; i < end; i++) {
+        uint word = with_room(mask[i], slot);
+        for (uint rest = again[i] & word; rest != 0u; rest &= rest - 1u, to++)
+            again_list[to] = slot + uint(bitCount(word & ((rest & -rest) - 1u)));
+        slot += uint(bitCount(word));
     }
 }

@@ -15,9 +15,10 @@ enum {
     ONE_WAY = 16,   // vct_ways.glsl
     STILL = 32,     // vct_seen.glsl
     OCCLUSION = 64, // vct_ways.glsl
+    NO_GLOW = 128,  // vct_add.glsl
 };
 static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 }, { 0, 0 },
-                                                       { 10, 0 }, { 11, 0 }, { 12, 1 } };
+                                                       { 10, 0 }, { 11, 0 }, { 12, 1 }, { 5, 0 } };
 enum { CONSTANT_BITS = sizeof constant_of_bit / sizeof constant_of_bit[0] };
 
 struct pipeline_plan {
@@ -36,12 +37,12 @@ static int constants_of(uint32_t bits, struct gpu_constant out[CONSTANT_BITS])
 }
 
 // Of both walks, which the rasteriser may make as well.
-enum { WALKS = 8 };
+enum { WALKS = 10 };
 
 static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
 {
-    struct vct_walk *plain = &vct->add[VCT_PLAIN], *maps = &vct->add[VCT_MAPPED],
-                    *masks = &vct->add[VCT_MASKED];
+    struct vct_walk *plain = &vct->add[VCT_PLAIN], *glow = &vct->add[VCT_GLOWING],
+                    *maps = &vct->add[VCT_MAPPED], *masks = &vct->add[VCT_MASKED];
     const bool raster = vct->options.voxels == VCT_BY_RASTER;
     const struct gpu_shader *mark = raster ? &shader_vct_mark_frag : &shader_vct_mark_comp,
                             *add = raster ? &shader_vct_add_frag : &shader_vct_add_comp,
@@ -50,8 +51,10 @@ static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
     const struct pipeline_plan plan[WALKS] = {
         { &vct->mark.small, "mark", mark, 0 },
         { &vct->mark.large, "mark_large", mark_large, 0 },
-        { &plain->small, "add", add, 0 },
-        { &plain->large, "add_large", add_large, 0 },
+        { &plain->small, "add", add, NO_GLOW },
+        { &plain->large, "add_large", add_large, NO_GLOW },
+        { &glow->small, "add_glowing", add, 0 },
+        { &glow->large, "add_glowing_large", add_large, 0 },
         { &maps->small, "add_mapped", add, MAPPED },
         { &maps->large, "add_mapped_large", add_large, MAPPED },
         { &masks->small, "add_masked", add, MAPPED | MASKED },
@@ -81,7 +84,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 10, MIP_PIPELINES = 7, MOST_STORAGE_PIPELINES = 12 };
+enum { PIPELINES = 12, MIP_PIPELINES = 7, MOST_STORAGE_PIPELINES = 12 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -91,6 +94,8 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->count, "count", &shader_vct_count_comp, 0 },
         { &vct->scan, "scan", &shader_vct_scan_comp, 0 },
         { &vct->list, "list", &shader_vct_list_comp, 0 },
+        { &vct->zero, "zero", &shader_vct_zero_comp, 0 },
+        { &vct->surfaces, "surfaces", &shader_vct_surfaces_comp, 0 },
         { &vct->texel_lists, "texels", &shader_vct_texels_comp, 0 },
         { &vct->inject[0], "inject_unlit", &shader_vct_inject_comp, UNLIT },
         { &vct->inject[1], "inject", inject_lit, 0 },

@@ -8,6 +8,10 @@
 
 layout(location = 0) flat out uint vary_triangle;
 
+void vct_meet(vct_triangle t, ivec2 first)
+{
+}
+
 void vct_visit(ivec3 voxel, vct_triangle t)
 {
 }

@@ -21,6 +21,18 @@ ivec2 vct_record_place(uint slot)
     return ivec2(2u * (slot % VCT_RECORD_ROW), slot / VCT_RECORD_ROW);
 }
 
+// 12 + 12 bits. Fronts turn to one half of all ways (vct_add.glsl), and none of these has the code 0.
+uint vct_pack_normal(vec3 normal)
+{
+    uvec2 code = uvec2(roundEven((octahedral_encode(normal) * 0.5 + 0.5) * 4095.0));
+    return normal == vec3(0.0) ? 0u : code.x | code.y << 12;
+}
+
+vec3 vct_unpack_normal(uint bits)
+{
+    return bits == 0u ? vec3(0.0) : octahedral_decode(vec2(bits & 4095u, bits >> 12) / 4095.0 * 2.0 - 1.0);
+}
+
 void vct_pack(vct_record r, out uvec4 first, out uvec4 second)
 {
     first = uvec4(packHalf2x16(r.front.rg), packHalf2x16(vec2(r.front.b, r.back.r)), packHalf2x16(r.back.gb),
@@ -28,9 +40,7 @@ void vct_pack(vct_record r, out uvec4 first, out uvec4 second)
     second.x = packHalf2x16(vec2(r.emitted_front.b, r.emitted_back.r));
     second.y = packHalf2x16(r.emitted_back.gb);
     second.z = packUnorm4x8(vec4(r.reflectance, r.opacity.x));
-    // 12 + 12 + 8 bits. Fronts turn to one half of all ways (vct_add.glsl), and none of these has the code 0.
-    uvec2 normal = uvec2(roundEven((octahedral_encode(r.normal) * 0.5 + 0.5) * 4095.0));
-    second.w = (r.normal == vec3(0.0) ? 0u : normal.x | normal.y << 12) | uint(roundEven(r.opacity.y * 255.0)) << 24;
+    second.w = vct_pack_normal(r.normal) | uint(roundEven(r.opacity.y * 255.0)) << 24;
 }
 
 vct_record vct_unpack(uvec4 first, uvec4 second)
@@ -44,8 +54,7 @@ vct_record vct_unpack(uvec4 first, uvec4 second)
     r.emitted_back = vec3(b.y, unpackHalf2x16(second.y));
     r.reflectance = c.rgb;
     r.opacity = vec2(c.a, float(second.w >> 24) / 255.0);
-    uint normal = second.w & 0xffffffu;
-    r.normal = normal == 0u ? vec3(0.0) : octahedral_decode(vec2(normal & 4095u, normal >> 12) / 4095.0 * 2.0 - 1.0);
+    r.normal = vct_unpack_normal(second.w & 0xffffffu);
     return r;
 }
 

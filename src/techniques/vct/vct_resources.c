@@ -62,7 +62,7 @@ struct buffer_plan {
     uint32_t usage;
 };
 
-enum { SET_BUFFERS = 7 };
+enum { SET_BUFFERS = 9 };
 
 static void plan_set(const struct vct_options *options, bool moving, struct vct_set *set,
                      struct buffer_plan out[SET_BUFFERS])
@@ -76,9 +76,12 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
         { NAME("before"), &set->before, mask_words(options), 0 },
         { NAME("blocks"), &set->blocks, block_count(options), 0 },
         { NAME("list"), &set->list, capacity, 0 },
+        { NAME("again"), &set->again, mask_words(options), 0 },
+        { NAME("again_list"), &set->again_list, capacity, 0 },
         { NAME("sums"), &set->sums, capacity * VCT_SUM_WORDS, 0 },
         { NAME("brought"), &set->brought, brought, 0 },
-        { NAME("arguments"), &set->arguments, 5, GPU_BUFFER_INDIRECT },
+        { NAME("arguments"), &set->arguments, sizeof(struct vct_voxel_counts) / sizeof(uint32_t),
+          GPU_BUFFER_INDIRECT },
     };
 #undef NAME
     memcpy(out, plan, sizeof plan);
@@ -151,9 +154,10 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
-static struct gpu_image_desc records_desc(const struct vct_options *options, bool moving)
+// Two texels for each voxel.
+static struct gpu_image_desc voxel_image_desc(const struct vct_options *options, const char *name)
 {
-    return (struct gpu_image_desc){ .name = moving ? "moving_records" : "rest_records",
+    return (struct gpu_image_desc){ .name = name,
                                     .format = GPU_RGBA32U,
                                     .width = 2 * VCT_RECORD_ROW,
                                     .height = gpu_groups(vct_capacity(options), VCT_RECORD_ROW),
@@ -190,12 +194,17 @@ bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
            create_vectors(vct, "gathered", vct->gathered);
 }
 
-static bool create_records(struct vct *vct, struct vct_clip *clip)
+static bool create_voxel_image(struct vct *vct, const char *name, gpu_image *out)
 {
-    return vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, false),
-                            &clip->rest.records) &&
-           vct_create_image(vct->name, vct->gpu, records_desc(&vct->options, true),
-                            &clip->moving.records);
+    return vct_create_image(vct->name, vct->gpu, voxel_image_desc(&vct->options, name), out);
+}
+
+static bool create_voxel_images(struct vct *vct, struct vct_clip *clip)
+{
+    return create_voxel_image(vct, "rest_surfaces", &clip->rest.surfaces) &&
+           create_voxel_image(vct, "moving_surfaces", &clip->moving.surfaces) &&
+           create_voxel_image(vct, "rest_records", &clip->rest.records) &&
+           create_voxel_image(vct, "moving_records", &clip->moving.records);
 }
 
 bool vct_create_resources(struct vct *vct)
@@ -216,7 +225,7 @@ bool vct_create_resources(struct vct *vct)
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
     for (int i = 0; i < vct->clip_count; i++)
-        if (!create_records(vct, &vct->clips[i])) return false;
+        if (!create_voxel_images(vct, &vct->clips[i])) return false;
     return gpu_sampler_get(vct->gpu, &linear, &vct->linear) &&
            vct_create_image(vct->name, vct->gpu, vct_light_desc(&vct->options), &vct->light);
 }
@@ -230,8 +239,11 @@ void vct_destroy_resources(struct vct *vct)
     for (int i = 0; i < count; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
     gpu_image_destroy(vct->gpu, &vct->light);
     for (int i = 0; i < vct->clip_count; i++) {
-        gpu_image_destroy(vct->gpu, &vct->clips[i].rest.records);
-        gpu_image_destroy(vct->gpu, &vct->clips[i].moving.records);
+        struct vct_set *sets[] = { &vct->clips[i].rest, &vct->clips[i].moving };
+        for (int k = 0; k < 2; k++) {
+            gpu_image_destroy(vct->gpu, &sets[k]->surfaces);
+            gpu_image_destroy(vct->gpu, &sets[k]->records);
+        }
     }
     gpu_image_destroy(vct->gpu, &vct->edge_image);
     gpu_image_destroy(vct->gpu, &vct->found);
@@ -252,8 +264,8 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
     for (uint32_t mip = 0; mip < light.mips; mip++)
         bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
                  (uint64_t)gpu_format_bytes(light.format);
-    const struct gpu_image_desc records = records_desc(options, false);
-    bytes += 2 * (uint64_t)vct_clip_count(options) * records.width * records.height *
+    const struct gpu_image_desc voxels = voxel_image_desc(options, "");
+    bytes += 4 * (uint64_t)vct_clip_count(options) * voxels.width * voxels.height *
              (uint64_t)gpu_format_bytes(GPU_RGBA32U);
     const int pixel = gpu_format_bytes(GPU_R8) + 7 * gpu_format_bytes(GPU_RGBA16F);
     return bytes + (uint64_t)width * height * (uint64_t)pixel;

@@ -8,8 +8,7 @@
 layout(local_size_x = VCT_SCAN_LOCAL) in;
 
 layout(set = 0, binding = 0, scalar) buffer vct_blocks { uint blocks[]; };
-// x, y, z of a dispatch over the voxels; how many there are; how many have no room.
-layout(set = 0, binding = 1, scalar) writeonly buffer vct_arguments { uint groups[3]; uint listed; uint left_out; };
+layout(set = 0, binding = 1, scalar) writeonly buffer vct_arguments { vct_voxel_counts counts; };
 
 shared uint before[VCT_SCAN_LOCAL];
 
@@ -36,10 +35,12 @@ void main()
         running += here;
     }
     if (me == VCT_SCAN_LOCAL - 1u) {
-        listed = min(running, vct.capacity);
-        left_out = running - min(running, vct.capacity);
-        groups[0] = (min(running, vct.capacity) + VCT_LOCAL - 1u) / VCT_LOCAL;
-        groups[1] = 1u;
-        groups[2] = 1u;
+        uint listed = min(running, vct.capacity);
+        counts.listed = listed;
+        counts.left_out = running - listed;
+        counts.again = 0u; // vct_list.comp counts them
+        counts.groups[0] = (listed + VCT_LOCAL - 1u) / VCT_LOCAL;
+        counts.again_groups[0] = 1u;
+        for (int i = 1; i < 3; i++) counts.groups[i] = counts.again_groups[i] = 1u;
     }
 }

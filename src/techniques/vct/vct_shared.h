@@ -6,13 +6,13 @@
 
 // Voxelisation.
 #define VCT_LOCAL         64 // invocations of a workgroup that has one dimension
-#define VCT_TILE          32 // side of the square of columns that one workgroup takes of a large triangle
+#define VCT_TILE          32 // side of the square of columns that one workgroup takes of a large triangle; bits of a word
 #define VCT_SMALL_COLUMNS 64 // a triangle over at most so many columns is walked by one invocation
 #define VCT_QUEUE         65535 // tiles of large triangles that wait for a workgroup each
 #define VCT_BLOCK_WORDS   8    // words of the mask that one invocation counts and lists
 #define VCT_SCAN_LOCAL    256
 
-// Words of vct_sums for a voxel: integers, so that no order of triangles changes a bit.
+// Words of vct_sum_words for a voxel: see vct_surface.glsl.
 #define VCT_SUM_WEIGHT      0
 #define VCT_SUM_OPACITY     1
 #define VCT_SUM_REFLECTANCE 2  // 3 words, × opacity
@@ -31,10 +31,19 @@
 #define VCT_POSITION_ONE    127.0 // of a whole voxel
 #define VCT_EMISSION_ONE    256.0 // of the strongest emission of the scene
 
-// Voxels in a row of vct_records: what their two sides emit and reflect, in two texels.
+// Voxels in a row of vct_surfaces and vct_records, with two texels each.
 #define VCT_RECORD_ROW 1024
 // Words of vct_brought: irradiance on the front and the back.
 #define VCT_BROUGHT_WORDS 3
+
+// Buffer "vct_arguments" of a set of voxels.
+struct vct_voxel_counts {
+    uint32_t groups[3]; // x, y, z of a dispatch over all
+    uint32_t listed;
+    uint32_t left_out;        // for want of room
+    uint32_t again_groups[3]; // over those whose sums are added up
+    uint32_t again;
+};
 
 // Uniform block "vct_grid".
 struct vct_params {
@@ -161,6 +170,7 @@ struct vct_view_push {
 };
 
 #ifndef AG_GLSL
+_Static_assert(sizeof(struct vct_voxel_counts) == 9 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_params) == 20 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 9 * 4,
                "layout is shared with GLSL");

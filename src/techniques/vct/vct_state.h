@@ -26,8 +26,9 @@ enum { VCT_LOCAL_2D = 8 }; // of shaders over pixels or texels, in x and y
 
 // Voxels of a part of the scene: which, in what order, what they are, what they send out.
 struct vct_set {
-    gpu_buffer mask, before, blocks, list, sums, brought, arguments;
-    gpu_image records; // RGBA32U
+    gpu_buffer mask, before, blocks, list, brought, arguments;
+    gpu_buffer again, again_list, sums; // of those where several triangles, or small ones, are added up
+    gpu_image surfaces, records;        // RGBA32U
 };
 
 // A grid and what is in its voxels.
@@ -51,8 +52,9 @@ enum { VCT_MAX_CLIPS = 1 };
         .name = "dynamic_records", .image = (clip)->moving.records                                 \
     }
 
-// Draws by what their materials read; maps that one of a kind lacks are white.
-enum vct_kind { VCT_PLAIN, VCT_MAPPED, VCT_MASKED, VCT_KINDS };
+// Draws by what their materials read; maps that one of a kind lacks are white. Those with
+// maps may glow, too.
+enum vct_kind { VCT_PLAIN, VCT_GLOWING, VCT_MAPPED, VCT_MASKED, VCT_KINDS };
 
 enum vct_voxels { VCT_BY_COMPUTE, VCT_BY_RASTER };
 
@@ -81,7 +83,7 @@ struct vct {
     struct vct_walk mark, add[VCT_KINDS];
     gpu_pipeline fill[2];   // without and with what moves
     gpu_pipeline inject[2]; // without and with lights
-    gpu_pipeline count, scan, list, texel_lists, bounce, mip, cones, edges, gather_rows,
+    gpu_pipeline count, scan, list, zero, surfaces, texel_lists, bounce, mip, cones, edges, gather_rows,
         gather_columns, blur, specular, debug;
     struct vct_clip clips[VCT_MAX_CLIPS];
     int clip_count;

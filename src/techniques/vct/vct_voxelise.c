@@ -1,17 +1,20 @@
 // Voxelisation: what stands still once, what moves in every frame. Each set of draws is walked
-// twice, to see which voxels it touches and then to add up what is in them; between, the touched
-// voxels get their places in compact lists.
+// twice, to see which voxels it touches and then what is in them; between, the touched voxels get
+// their places in compact lists.
 #include "techniques/vct/vct_state.h"
 
 #include "frame/scene_gpu.h"
 
-static enum vct_kind kind_of(const struct vct *vct, const struct scene_draw *draw)
+static enum vct_kind kind_of(const struct vct *vct, const struct scene *scene,
+                             const struct scene_draw *draw)
 {
+    const vec3s glow = scene->materials[draw->material].emissive;
     if (draw->variant & VARIANT_MASKED) return VCT_MASKED;
     if (vct->options.occlusion) return VCT_PLAIN; // whatever its colour
     const uint32_t maps =
         VARIANT_BASE_COLOR_MAP | VARIANT_METALLIC_ROUGHNESS_MAP | VARIANT_EMISSIVE_MAP;
-    return draw->variant & maps ? VCT_MAPPED : VCT_PLAIN;
+    if (draw->variant & maps) return VCT_MAPPED;
+    return glow.x > 0.0f || glow.y > 0.0f || glow.z > 0.0f ? VCT_GLOWING : VCT_PLAIN;
 }
 
 // The draws that move, or those that stand, over their voxels: small triangles, then the tiles of
@@ -29,7 +32,8 @@ static void walk(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
     for (int i = 0; i < view->scene->draw_count; i++) {
         const struct scene_draw *draw = &view->scene->draws[i];
         if (draw->moves != moving) continue;
-        const struct vct_walk *pipelines = add ? &vct->add[kind_of(vct, draw)] : &vct->mark;
+        const enum vct_kind kind = kind_of(vct, view->scene->scene, draw);
+        const struct vct_walk *pipelines = add ? &vct->add[kind] : &vct->mark;
         scene_gpu_dispatch(view->scene, cmd,
                            &(struct scene_dispatch_call){ .pipeline = pipelines->small,
                                                           .drawn = raster,
@@ -49,10 +53,12 @@ static void mark(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *c
                                             { .name = "vct_queue_state",
                                               .buffer = vct->queue_state },
                                             { .name = "vct_queue", .buffer = vct->queue },
-                                            { .name = "vct_mask", .buffer = set->mask } };
+                                            { .name = "vct_mask", .buffer = set->mask },
+                                            { .name = "vct_again", .buffer = set->again } };
     vct_pass_begin(vct->name, cmd, "mark");
     gpu_fill_buffer(cmd, set->mask, 0, gpu_buffer_bytes(vct->gpu, set->mask), 0);
-    walk(vct, cmd, view, moving, false, bindings, 4);
+    gpu_fill_buffer(cmd, set->again, 0, gpu_buffer_bytes(vct->gpu, set->again), 0);
+    walk(vct, cmd, view, moving, false, bindings, 5);
     gpu_scope_end(cmd);
 }
 
@@ -74,9 +80,23 @@ static void make_list(struct vct *vct, const struct vct_clip *clip, struct gpu_c
                  GPU_BIND(grid, { .name = "vct_mask", .buffer = set->mask },
                           { .name = "vct_blocks", .buffer = set->blocks },
                           { .name = "vct_before", .buffer = set->before },
-                          { .name = "vct_list", .buffer = set->list }),
+                          { .name = "vct_list", .buffer = set->list },
+                          { .name = "vct_again", .buffer = set->again },
+                          { .name = "vct_again_list", .buffer = set->again_list },
+                          { .name = "vct_arguments", .buffer = set->arguments }),
                  NULL, 0, gpu_groups(blocks, VCT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
+}
+
+// A pass over the voxels that have sums.
+static void each_again(struct gpu_cmd *cmd, const struct vct_set *set, gpu_pipeline pipeline)
+{
+    gpu_dispatch_indirect(cmd, pipeline,
+                          GPU_BIND({ .name = "vct_arguments", .buffer = set->arguments },
+                                   { .name = "vct_again_list", .buffer = set->again_list },
+                                   { .name = "vct_sum_words", .buffer = set->sums },
+                                   { .name = "vct_surfaces", .image = set->surfaces }),
+                          NULL, 0, set->arguments, offsetof(struct vct_voxel_counts, again_groups));
 }
 
 static void add(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
@@ -88,10 +108,13 @@ static void add(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cm
                                             { .name = "vct_queue", .buffer = vct->queue },
                                             { .name = "vct_mask", .buffer = set->mask },
                                             { .name = "vct_before", .buffer = set->before },
-                                            { .name = "vct_sums", .buffer = set->sums } };
+                                            { .name = "vct_again", .buffer = set->again },
+                                            { .name = "vct_sum_words", .buffer = set->sums },
+                                            { .name = "vct_surfaces", .image = set->surfaces } };
     vct_pass_begin(vct->name, cmd, "add");
-    gpu_fill_buffer(cmd, set->sums, 0, gpu_buffer_bytes(vct->gpu, set->sums), 0);
-    walk(vct, cmd, view, moving, true, bindings, 6);
+    each_again(cmd, set, vct->zero);
+    walk(vct, cmd, view, moving, true, bindings, 8);
+    each_again(cmd, set, vct->surfaces);
     gpu_scope_end(cmd);
 }
 

@@ -3,8 +3,8 @@
 // where it is at most a few voxels deep. Small triangles take one invocation; large ones are cut into tiles of columns
 // that wait in a queue for a workgroup each.
 //
-// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_visit(). Where it defines VCT_RASTER instead,
-// columns are what the rasteriser says they are (vct_raster.glsl).
+// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_meet() and vct_visit(). Where it defines VCT_RASTER
+// instead, columns are what the rasteriser says they are (vct_raster.glsl).
 #include "frame/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/vct_overlap.glsl"
@@ -31,7 +31,13 @@ struct vct_triangle
     ivec3 low, high;   // turned: voxels that its box touches
 };
 
+void vct_meet(vct_triangle t, ivec2 first); // before its voxels, from a column on
 void vct_visit(ivec3 voxel, vct_triangle t);
+#ifdef VCT_PUTS_OFF
+// Rows in which vct_visit() has left voxels to vct_visit_put_off(), a bit for each of the tile.
+uint vct_put_off = 0u;
+void vct_visit_put_off(ivec3 voxel, vct_triangle t);
+#endif
 
 // What lies on the grid's border but for rounding belongs to the last voxel, and is not lost.
 vec3 kept_inside(vec3 at)
@@ -151,6 +157,40 @@ ivec2 rows_of(vct_triangle t, int x)
     return ivec2(max(int(floor(low)), t.low.y), min(int(floor(high)), t.high.y));
 }
 
+#ifdef VCT_PUTS_OFF
+shared uint put_off_count, put_off_columns[VCT_TILE * VCT_TILE];
+
+// What invocations have left is shared out among all of them: there is little of it, in lines along the triangle's
+// sides, and one that has a whole line would keep the others waiting.
+void walk_put_off(vct_triangle t, ivec2 first)
+{
+    if (gl_LocalInvocationID.x == 0u) put_off_count = 0u;
+    barrier();
+    uint to = atomicAdd(put_off_count, uint(bitCount(vct_put_off)));
+    for (; vct_put_off != 0u; vct_put_off &= vct_put_off - 1u)
+        put_off_columns[to++] = gl_LocalInvocationID.x | uint(findLSB(vct_put_off)) << 16;
+    barrier();
+    uint i = gl_LocalInvocationID.x;
+    ivec2 column = ivec2(0), depths = ivec2(0, -1);
+    for (;;) {
+        ivec3 voxel = ivec3(0);
+        bool found = false;
+        while (!found && (depths.x <= depths.y || i < put_off_count)) {
+            if (depths.x > depths.y) {
+                column = first + ivec2(put_off_columns[i] & 0xffffu, put_off_columns[i] >> 16);
+                depths = depths_of(t, column);
+                i += VCT_TILE;
+            }
+            voxel = ivec3(column, depths.x);
+            found = depths.x <= depths.y && touches(t, voxel);
+            depths.x++;
+        }
+        if (!found) return;
+        vct_visit_put_off(turned_back(voxel, t.turn), t);
+    }
+}
+#endif
+
 void main()
 {
     uvec2 job = queue[gl_WorkGroupID.x];
@@ -160,9 +200,13 @@ void main()
     ivec2 tile = ivec2(job.y % across, job.y / across);
     ivec2 first = t.low.xy + tile * VCT_TILE, last = min(first + VCT_TILE - 1, t.high.xy);
     int x = first.x + int(gl_LocalInvocationID.x);
-    if (x > last.x) return;
     ivec2 rows = rows_of(t, x);
-    walk_columns(t, ivec2(x, max(first.y, rows.x)), ivec2(x, min(last.y, rows.y)));
+    rows = ivec2(max(first.y, rows.x), x > last.x ? first.y - 1 : min(last.y, rows.y));
+    vct_meet(t, first);
+    walk_columns(t, ivec2(x, rows.x), ivec2(x, rows.y));
+#ifdef VCT_PUTS_OFF
+    walk_put_off(t, first);
+#endif
 }
 
 #else
@@ -188,6 +232,7 @@ void main()
     ivec2 tile = small ? size : ivec2(VCT_TILE), tiles = (size - 1) / tile + 1;
     uint count = uint(tiles.x * tiles.y), queued = 0u;
     if (!small) queued = queue_tiles(triangle, count);
+    vct_meet(t, t.low.xy);
     for (uint i = queued; i < count; i++) {
         ivec2 corner = t.low.xy + ivec2(int(i) % tiles.x, int(i) / tiles.x) * tile;
         walk_columns(t, corner, min(corner + tile - 1, t.high.xy));
