@@ -44,8 +44,13 @@ struct twin {
     bool voxels[DIM][DIM][DIM]; // z, y, x
 };
 
+static int within(int at, int low, int high)
+{
+    return at < low ? low : at > high ? high : at;
+}
+
 // A coordinate on the border between two voxels belongs to the upper one as a start, to the lower
-// one as an end.
+// one as an end; on that of the scene to the one that there is.
 static void twin_add(struct twin *twin, const struct vct_grid *grid, const vec3s world[3])
 {
     vec3s at[3];
@@ -58,12 +63,15 @@ static void twin_add(struct twin *twin, const struct vct_grid *grid, const vec3s
     for (int a = 0; a < 3; a++) {
         const float low = fminf(at[0].raw[a], fminf(at[1].raw[a], at[2].raw[a]));
         const float high = fmaxf(at[0].raw[a], fmaxf(at[1].raw[a], at[2].raw[a]));
-        const int end = grid->cells[a] - 1;
+        const int begin = -grid->first[a], end = begin + grid->scene[a] - 1;
         first[a] = (int)floorf(low);
         last[a] = (int)ceilf(high) - 1;
         if (last[a] < first[a]) last[a] = first[a];
-        if (first[a] > end) first[a] = end;
-        if (last[a] > end) last[a] = end;
+        first[a] = within(first[a], begin, end);
+        last[a] = within(last[a], begin, end);
+        if (last[a] < 0 || first[a] >= grid->cells[a]) return;
+        first[a] = within(first[a], 0, grid->cells[a] - 1);
+        last[a] = within(last[a], 0, grid->cells[a] - 1);
     }
     for (int z = first[2]; z <= last[2]; z++)
         for (int y = first[1]; y <= last[1]; y++)
@@ -122,11 +130,11 @@ static void random_triangle(struct rng *rng, int kind, vec3s out[3])
     }
 }
 
+// In every level of the clip map.
 static void check_random_triangles(struct gpu *gpu, const char *options)
 {
     enum { TRIANGLES = 45 };
     struct vct_rig rig;
-    struct twin twin = { 0 };
     vec3s triangles[TRIANGLES][3];
     struct rng rng = rng_for(11, 0, 0);
     vct_rig_init(&rig, gpu);
@@ -135,27 +143,32 @@ static void check_random_triangles(struct gpu *gpu, const char *options)
         random_triangle(&rng, i % 3, triangles[i]);
         add_triangle(&rig, triangles[i], matte);
     }
+    studio_look(&rig.studio, vec3_of(5, 4, 6), vec3_of(6, 4, 4));
     vct_rig_open(&rig, options);
     studio_render(&rig.studio);
-    for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, &rig.vct->clips[0].grid, triangles[i]);
-    const int count = check_same(&rig, &twin, &rig.vct->clips[0].rest);
-    CHECK(count > 200 && count < DIM * DIM * DIM / 2); // neither all nor nothing
-    // The count on the CPU, but for triangles that touch a face exactly.
-    uint32_t counted = 0;
-    CHECK(vct_count_touched(test_host(), &rig.studio.pose, &rig.vct->clips[0].grid, DIM,
-                            UINT32_MAX - 1, &counted));
-    CHECK(abs((int)counted - count) <= 2);
+    for (int clip = 0; clip < rig.vct->clip_count; clip++) {
+        const struct vct_grid *grid = &rig.vct->clips[clip].grid;
+        struct twin twin = { 0 };
+        for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, grid, triangles[i]);
+        const int count = check_same(&rig, &twin, &rig.vct->clips[clip].rest);
+        CHECK(count > 100 && count < DIM * DIM * DIM / 2); // neither all nor nothing
+        // The count on the CPU, but for triangles that touch a face exactly.
+        uint32_t counted = 0;
+        CHECK(
+            vct_count_touched(test_host(), &rig.studio.pose, grid, DIM, UINT32_MAX - 1, &counted));
+        CHECK(abs((int)counted - count) <= 2);
+    }
     vct_rig_finish(&rig);
 }
 
 TEST_GPU(voxels_are_those_that_a_triangle_touches)
 {
-    check_random_triangles(gpu, "resolution=16");
+    check_random_triangles(gpu, "resolution=16,levels=3");
 }
 
 TEST_GPU(the_rasteriser_finds_the_same_voxels)
 {
-    check_random_triangles(gpu, "resolution=16,voxels=raster");
+    check_random_triangles(gpu, "resolution=16,levels=3,voxels=raster");
 }
 
 static void check_same_words(const struct vct_rig *a, gpu_buffer in_a, const struct vct_rig *b,

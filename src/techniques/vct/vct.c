@@ -35,12 +35,14 @@ static const struct technique_debug_view debug_views[] = {
     { "reflectance", "the voxels that the eye sees, by what they reflect" },
     { "normals", "the voxels that the eye sees, by the way of their front" },
     { "radiance", "the voxels that the eye sees, by the light that they send to it" },
+    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red" },
     { "room", "the voxels that the eye sees, red where there was no room for their light" },
     { NULL, NULL },
 };
 
 static const struct technique_debug_view occlusion_views[] = {
     { "normals", "the voxels that the eye sees, by the way of their front" },
+    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red" },
     { "room", "the voxels that the eye sees, red where there was no room for what they cover" },
     { NULL, NULL },
 };
@@ -87,14 +89,18 @@ static bool check(const char *name, const struct technique_create *how,
     if (options->resolution % 16 != 0)
         return host_fail(how->host, FAIL_ARGUMENT, "gi %s: resolution=%d is not a multiple of 16",
                          name, (int)options->resolution);
+    if (options->levels > 1 && vct_has_svo(options))
+        return host_fail(how->host, FAIL_ARGUMENT,
+                         "gi %s: levels=%d needs storage=mips: with storage=svo there is one grid",
+                         name, (int)options->levels);
     const struct gpu_image_desc light = vct_light_desc(options);
     const uint32_t most = gpu_limits(how->gpu)->max_image_3d,
                    width = light.width > light.depth ? light.width : light.depth;
     if (most < width)
-        return host_fail(
-            how->host, FAIL_UNSUPPORTED,
-            "gi %s: resolution=%d: the device has 3D images of at most %u, %u are needed", name,
-            (int)options->resolution, most, width);
+        return host_fail(how->host, FAIL_UNSUPPORTED,
+                         "gi %s: resolution=%d, levels=%d: the device has 3D images of at most %u, "
+                         "%u are needed",
+                         name, (int)options->resolution, (int)options->levels, most, width);
     return true;
 }
 
@@ -150,6 +156,7 @@ static void set_options(struct vct *vct, struct vct_options options)
     const struct vct_options had = vct->options;
     vct->options = options;
     vct->options.resolution = had.resolution; // what the buffers and pipelines are for
+    vct->options.levels = had.levels;
     vct->options.anisotropic = had.anisotropic;
     vct->options.storage = had.storage;
     vct->options.temporal = had.temporal;
@@ -223,6 +230,7 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
                      strcmp(name, "normals") == 0    ? VCT_VIEW_NORMAL
                      : strcmp(name, "radiance") == 0 ? VCT_VIEW_RADIANCE
                      : strcmp(name, "room") == 0     ? VCT_VIEW_ROOM
+                     : strcmp(name, "levels") == 0   ? VCT_VIEW_LEVELS
                                                      : VCT_VIEW_REFLECTANCE,
                      out);
 }

@@ -140,7 +140,7 @@ uint covered_lines(ivec3 voxel, vct_triangle t)
         vec2 at = vec2(cell.xy) + (vec2(i, (i * 7u + 3u) % VCT_LINES) + 0.5) / float(VCT_LINES);
         vec2 u = at - t.u.xy, v = at - t.v.xy, w = at - t.w.xy;
         bool inside = ab.x * u.y >= ab.y * u.x && bc.x * v.y >= bc.y * v.x && ca.x * w.y >= ca.y * w.x;
-        float depth = clamp(floor(t.u.z - dot(slope, u)), float(t.low.z), float(t.high.z));
+        float depth = clamp(floor(t.u.z - dot(slope, u)), float(t.depths.x), float(t.depths.y));
         lines += inside && depth == float(cell.z) ? 1u : 0u;
     }
     return lines;

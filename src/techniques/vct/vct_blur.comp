@@ -8,7 +8,7 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/vct_clipmap.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -30,13 +30,13 @@ vec3 position_of(ivec2 pixel, float z)
 }
 
 // How much a pixel says about another: its share of the cones, if it looks the same way from the same plane.
-float like(ivec2 there, vec3 position, vec3 n, float share)
+float like(ivec2 there, vec3 position, vec3 n, float share, float texel_m)
 {
     float z = texelFetch(depth, there, 0).r;
     if (z <= 0.0) return 0.0;
     vec3 off = position_of(there, z) - position;
     float cosine = max(dot(n, octahedral_decode(texelFetch(normal, there, 0).rg)), 0.0);
-    float near = clamp(1.0 - length(off) / set.texel_m, 0.0, 1.0);
+    float near = clamp(1.0 - length(off) / texel_m, 0.0, 1.0);
     float c4 = cosine * cosine * cosine * cosine;
     return share * share * c4 * c4 * near;
 }
@@ -45,6 +45,7 @@ vec3 borrowed(ivec2 pixel, vec4 own)
 {
     vec3 position = position_of(pixel, texelFetch(depth, pixel, 0).r);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+    float texel_m = set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m);
     vec4 sum = own.a * own.a * vec4(own.rgb, 1.0);
     for (int ring = 0; ring < RINGS; ring++) {
         int step = 1 << ring;
@@ -55,7 +56,7 @@ vec3 borrowed(ivec2 pixel, vec4 own)
             ivec2 there = pixel + step * ((ring & 1) == 0 ? side : corner);
             if (any(lessThan(there, ivec2(0))) || any(greaterThanEqual(there, ivec2(set.width, set.height)))) continue;
             vec4 other = texelFetch(gathered, there, 0);
-            if (other.a > 0.0) sum += like(there, position, n, other.a) * vec4(other.rgb, 1.0);
+            if (other.a > 0.0) sum += like(there, position, n, other.a, texel_m) * vec4(other.rgb, 1.0);
         }
     }
     return sum.a > 0.0 ? sum.rgb / sum.a : own.rgb;

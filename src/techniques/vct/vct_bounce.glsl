@@ -30,10 +30,11 @@ layout(set = 0, binding = 9, scalar) readonly buffer vct_before { uint before[];
 vec3 irradiance(vec3 position, vec3 normal)
 {
     mat3 world_from_local = vct_axes_about(normal);
-    vec3 from = (position - vct.origin_m) / set.texel_m + set.offset * normal;
+    vec3 at = (position - clips.origin_m) / set.texel_m;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < set.cone_count; i++) {
-        vec4 met = vct_trace(light, from, normal, world_from_local * set.cones[i].xyz, set.width_per_m, set.last_mip);
+        vec4 met = vct_cone(light, at, normal, world_from_local * set.cones[i].xyz, set.offset, set.width_per_m,
+                            set.last_mip, vct_start(vct.level, 0.0));
         sum += set.cones[i].w * (met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky);
     }
     return min(sum, vec3(HALF_MAX));

@@ -45,13 +45,14 @@ void main()
     vec3 n = vec3(0.0);
     if (z > 0.0) {
         n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-        vec3 from = (frame_world_position(frame_uv(uvec2(pixel)), z) - vct.origin_m) / set.texel_m + set.offset * n;
+        vec3 at = (frame_world_position(frame_uv(uvec2(pixel)), z) - clips.origin_m) / set.texel_m;
+        vct_start start = vct_start_at(at);
         // Parts that neighbours have are far apart in the set: 7 has no factor in common with 4, 9, 16 and 25.
         uint first = part * 7u % parts % set.cone_count;
         for (uint i = first; i < set.cone_count; i += parts) {
             vec3 direction = set.cone_count == 1u ? n : set.cones[i].xyz;
             direction = dot(direction, n) < 0.0 ? -direction : direction;
-            vec4 met = vct_trace(light, from, n, direction, set.width_per_m, set.last_mip);
+            vec4 met = vct_cone(light, at, n, direction, set.offset, set.width_per_m, set.last_mip, start);
             vec3 found = met.rgb + (1.0 - met.a) * frame.sky;
             if (VCT_OCCLUSION) found = 1.0 - met.rgb;
             vct_add_cone(sum, found, set.cones[i].w * direction);

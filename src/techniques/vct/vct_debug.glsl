@@ -1,4 +1,5 @@
-// Debug views: the first voxel that the eye's ray meets.
+// Debug views: the first voxel that the eye's ray meets. A grid shows the parts of the ray in which cones look into it,
+// before and behind the next finer one.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -6,6 +7,7 @@
 #include "frame/frame.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/vct_clipmap.glsl"
 #include "techniques/vct/vct_record.glsl"
 #define VCT_SLOTS(name) static_##name
 #define VCT_SLOTS_BINDING 1
@@ -22,7 +24,7 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 5) uniform usampler2D static_records;
 layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
-layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D picture;
+layout(set = 0, binding = 7, rgba16f) uniform image2D picture; // alpha: what is seen has been found
 
 #if VCT_SVO
 layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes { uint nodes[]; };
@@ -69,21 +71,69 @@ vec3 shown_room(ivec3 voxel, bool room)
     return (room ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_shown;
 }
 
+vec3 shown_level(vct_record r, vec3 direction)
+{
+    const vec3 colours[VCT_MAX_CLIPS] = vec3[](vec3(0.9, 0.2, 0.15), vec3(0.9, 0.6, 0.1), vec3(0.4, 0.75, 0.2),
+                                               vec3(0.1, 0.65, 0.8), vec3(0.25, 0.35, 0.9), vec3(0.7, 0.3, 0.8));
+    return colours[vct.level] * ((0.3 + 0.7 * abs(dot(r.normal, direction))) * push.reflectance_shown);
+}
+
+// What is shown of a voxel; false where it is empty.
+bool shows(ivec3 voxel, vec3 direction, out vec3 colour)
+{
+    vct_record r;
+    bool room;
+    if (push.view == VCT_VIEW_ROOM) {
+        if (!surface_at(voxel, room)) return false;
+        colour = shown_room(voxel, room);
+        return true;
+    }
+    if (!voxel_at(voxel, r)) return false;
+    colour = push.view == VCT_VIEW_LEVELS ? shown_level(r, direction) : shown(r, direction);
+    return true;
+}
+
+// Where a ray enters a box and leaves it.
+vec2 passage(vec3 low, vec3 high, vec3 from, vec3 inverse)
+{
+    vec3 a = (low - from) * inverse, b = (high - from) * inverse, near = min(a, b), far = max(a, b);
+    return vec2(max(max(near.x, max(near.y, near.z)), 0.0), min(far.x, min(far.y, far.z)));
+}
+
+// A grid's box for cones, in voxels of this one. The coarsest one is looked into everywhere.
+vec2 passage_of(int level, vec3 from, vec3 inverse)
+{
+    if (level == VCT_CLIPS - 1) return passage(vec3(0.0), vec3(vct_cells()), from, inverse);
+    float voxels = 2.0 / float(1 << vct.level);
+    return passage(clips.levels[level].low * voxels + vct.scene_low, clips.levels[level].high * voxels + vct.scene_low,
+                   from, inverse);
+}
+
+// The part of the ray that is this grid's: before the next finer one, or behind it.
+vec2 part_of(vec3 from, vec3 inverse)
+{
+    vec2 own = passage_of(vct.level, from, inverse), finer = vec2(0.0);
+    own = vec2(max(own.x, passage(vec3(0.0), vec3(vct_cells()), from, inverse).x), own.y);
+    if (vct.level == 0) return own;
+    finer = passage_of(vct.level - 1, from, inverse);
+    bool crosses = finer.x < finer.y;
+    if ((push.march & VCT_MARCH_INTO) != 0u) return vec2(own.x, crosses ? min(own.y, finer.x) : own.y);
+    return vec2(max(own.x, finer.y), crosses ? own.y : 0.0);
+}
+
 // From voxel to voxel along the ray (Amanatides & Woo 1987).
-vec3 march(vec3 from, vec3 direction)
+bool march(vec3 from, vec3 direction, out vec3 colour)
 {
     vec3 inverse = 1.0 / mix(direction, vec3(1e-12), lessThan(abs(direction), vec3(1e-12)));
-    vec3 near = min(-from * inverse, (vec3(vct_cells()) - from) * inverse);
-    float start = max(max(near.x, max(near.y, near.z)), 0.0) + 1e-3;
+    vec2 part = part_of(from, inverse);
+    float start = part.x + 1e-3;
     vec3 at = from + direction * start;
     ivec3 voxel = ivec3(floor(at)), step = ivec3(sign(direction));
     vec3 next = (vec3(voxel) + max(vec3(step), vec3(0.0)) - at) * inverse;
     for (int i = 0; i < 3 * vct.dim && vct_inside(voxel); i++) {
-        vct_record r;
-        bool room;
-        if (push.view == VCT_VIEW_ROOM) {
-            if (surface_at(voxel, room)) return shown_room(voxel, room);
-        } else if (voxel_at(voxel, r)) return shown(r, direction);
+        if (shows(voxel, direction, colour)) return true;
+        float soonest = min(next.x, min(next.y, next.z));
+        if (VCT_CLIPS > 1 && start + soonest >= part.y) return false;
         if (next.x <= next.y && next.x <= next.z) {
             voxel.x += step.x;
             next.x += abs(inverse.x);
@@ -95,14 +145,17 @@ vec3 march(vec3 from, vec3 direction)
             next.z += abs(inverse.z);
         }
     }
-    return vec3(0.0);
+    return false;
 }
 
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0);
-    vec3 colour = march(vct_voxels_from_world(frame.eye), normalize(through - frame.eye));
-    imageStore(picture, pixel, vec4(clamp(colour, 0.0, HALF_MAX), 1.0));
+    vec4 before = (push.march & VCT_MARCH_FIRST) != 0u ? vec4(0.0) : imageLoad(picture, pixel);
+    if (before.a > 0.0) return;
+    vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0), colour = vec3(0.0);
+    bool found = march(vct_voxels_from_world(frame.eye), normalize(through - frame.eye), colour);
+    bool done = found || (push.march & VCT_MARCH_LAST) != 0u;
+    imageStore(picture, pixel, vec4(found ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));
 }

@@ -7,7 +7,7 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/vct_clipmap.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -42,7 +42,8 @@ point point_at(ivec2 pixel)
 bool apart(point a, point b)
 {
     return !a.valid || !b.valid || dot(a.normal, b.normal) < LEAST_COSINE ||
-           abs(dot(a.normal, b.position - a.position)) > 0.5 * set.texel_m;
+           abs(dot(a.normal, b.position - a.position)) >
+               0.5 * set.texel_m * vct_texel_at((a.position - clips.origin_m) / set.texel_m);
 }
 
 void main()

@@ -25,6 +25,6 @@ void main()
     for (int k = 0; k < VCT_WAYS; k++) {
         vec4 value = min(sum[k], vec4(HALF_MAX));
         if (VCT_OCCLUSION) value = value.aaaa;
-        imageStore(light, texel + ivec3(k * vct.volume_dim, 0, 0), value);
+        imageStore(light, texel + ivec3(k * vct.volume_dim, 0, vct.volume_first), value);
     }
 }

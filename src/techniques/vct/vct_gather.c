@@ -23,7 +23,7 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
         .width_per_m = options->stride * vct_cone_width(choice),
         .offset = options->offset,
         .gain = options->gain,
-        .texel_m = 2.0f * vct->clips[0].grid.cell_m,
+        .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
     };
 }
@@ -52,7 +52,7 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
 
 // Bindings that the stages over pixels share.
 struct pixels {
-    struct gpu_binding cones, depth, normal, edges;
+    struct gpu_binding clipmap, cones, depth, normal, edges;
     uint32_t across, down; // workgroups of one invocation a pixel
 };
 
@@ -62,8 +62,8 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
     const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
     vct_pass_begin(vct->name, cmd, "cones");
     gpu_dispatch(cmd, vct->cones,
-                 GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), view->constants_binding,
-                          p->cones, p->depth, p->normal,
+                 GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap,
+                          view->constants_binding, p->cones, p->depth, p->normal,
                           { .name = "light", .image = vct->light, .sampler = vct->linear },
                           { .name = "red", .image = vct->traced[0] },
                           { .name = "green", .image = vct->traced[1] },
@@ -93,9 +93,10 @@ static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
                         const struct pixels *p, gpu_image result)
 {
     vct_pass_begin(vct->name, cmd, "edges");
-    gpu_dispatch(cmd, vct->edges,
-                 GPU_BIND(view->constants_binding, p->cones, p->depth, p->normal, p->edges), NULL,
-                 0, p->across, p->down, 1);
+    gpu_dispatch(
+        cmd, vct->edges,
+        GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal, p->edges),
+        NULL, 0, p->across, p->down, 1);
     gpu_scope_end(cmd);
     vct_pass_begin(vct->name, cmd, "gather");
     gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
@@ -106,7 +107,7 @@ static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
     gpu_scope_end(cmd);
     vct_pass_begin(vct->name, cmd, "blur");
     gpu_dispatch(cmd, vct->blur,
-                 GPU_BIND(view->constants_binding, p->cones, p->depth, p->normal,
+                 GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
                           { .name = "gathered", .image = vct->found },
                           { .name = "irradiance", .image = result }),
                  NULL, 0, p->across, p->down, 1);
@@ -124,7 +125,8 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     struct vct_cone_params params = pixel_cones(vct, view);
     if (temporal) vct_temporal_turn(&vct->temporal, &params);
     const gpu_image result = temporal ? vct->temporal.now : vct_result(vct, view);
-    const struct pixels p = { .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
+    const struct pixels p = { .clipmap = vct_clipmap_binding(vct, cmd),
+                              .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
                               .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                               .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                               .edges = { .name = "edges", .image = vct->edge_image },
@@ -132,20 +134,4 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
                               .down = gpu_groups(view->height, VCT_LOCAL_2D) };
     trace_cones(vct, cmd, view, &p, result);
     if (params.interleave > 1) share_cones(vct, cmd, view, &p, result);
-}
-
-void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                      uint32_t what, gpu_image out)
-{
-    // Reflectance and normals are shown as bright as a surface in the strongest light is.
-    const struct vct_view_push push = { .view = what, .reflectance_shown = 4.0f };
-    vct_pass_begin(vct->name, cmd, "debug");
-    gpu_dispatch(cmd, vct->debug,
-                 GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), view->constants_binding,
-                          VCT_BOTH_SETS(&vct->clips[0]), { .name = "picture", .image = out },
-                          vct_svo_binding(vct, cmd),
-                          { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
-                 &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
-                 gpu_groups(view->height, VCT_LOCAL_2D), 1);
-    gpu_scope_end(cmd);
 }

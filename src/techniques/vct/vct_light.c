@@ -40,7 +40,8 @@ static int32_t level_size(int32_t cells, uint32_t level)
 
 static void filter(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd)
 {
-    const struct vct_texels_push lists = vct_texels_push(&vct->options);
+    const struct vct_texels_push lists =
+        vct_texels_push(&vct->options, vct_volume_mips(&vct->options));
     const int32_t dim = (int32_t)vct_volume_dim(&vct->options), *cells = clip->grid.cells;
     for (uint32_t level = 1; level < lists.levels; level++) {
         const struct vct_mip_push push = {
@@ -83,6 +84,7 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
         gpu_clear_image(cmd, vct->light, (const float[4]){ 0.0f, 0.0f, 0.0f, 0.0f });
     vct->light_outdated = false;
     for (int i = 0; i < vct->clip_count; i++) fill(vct, &vct->clips[i], cmd);
+    for (int i = 0; i < vct->clip_count; i++) vct->clips[i].lit = vct->clips[i].grid;
     gpu_scope_end(cmd);
     vct_pass_begin(vct->name, cmd, "mips");
     filter(vct, &vct->clips[0], cmd);
@@ -95,7 +97,8 @@ static void bring(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *
 {
     gpu_dispatch_indirect(
         cmd, vct->bounce,
-        GPU_BIND(vct_grid_binding(vct, clip, cmd), view->constants_binding, cones,
+        GPU_BIND(vct_grid_binding(vct, clip, cmd), vct_lit_clipmap_binding(vct, cmd),
+                 view->constants_binding, cones,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
                  { .name = "vct_texels", .buffer = clip->texels },
                  { .name = "vct_texel_state", .buffer = clip->texel_state },

@@ -16,9 +16,11 @@ enum {
     STILL = 32,     // vct_seen.glsl
     OCCLUSION = 64, // vct_ways.glsl
     NO_GLOW = 128,  // vct_add.glsl
+    GRIDS = 256,    // vct_clipmap.glsl
 };
-static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 }, { 0, 0 },
-                                                       { 10, 0 }, { 11, 0 }, { 12, 1 }, { 5, 0 } };
+static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 },
+                                                       { 0, 0 },  { 10, 0 }, { 11, 0 },
+                                                       { 12, 1 }, { 5, 0 },  { 13, 0 } };
 enum { CONSTANT_BITS = sizeof constant_of_bit / sizeof constant_of_bit[0] };
 
 struct pipeline_plan {
@@ -28,11 +30,16 @@ struct pipeline_plan {
     uint32_t constants;
 };
 
-static int constants_of(uint32_t bits, struct gpu_constant out[CONSTANT_BITS])
+static int constants_of(const struct vct *vct, uint32_t bits,
+                        struct gpu_constant out[CONSTANT_BITS])
 {
     int count = 0;
-    for (int i = 0; i < CONSTANT_BITS; i++)
-        if (bits >> i & 1) out[count++] = constant_of_bit[i];
+    for (int i = 0; i < CONSTANT_BITS; i++) {
+        if (!(bits >> i & 1)) continue;
+        out[count] = constant_of_bit[i];
+        if (1 << i == GRIDS) out[count].value = (uint32_t)vct->clip_count;
+        count++;
+    }
     return count;
 }
 
@@ -66,7 +73,7 @@ static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
 static bool create_compute_pipeline(struct vct *vct, const struct pipeline_plan *plan)
 {
     struct gpu_constant constants[CONSTANT_BITS];
-    const int count = constants_of(plan->constants, constants);
+    const int count = constants_of(vct, plan->constants, constants);
     return vct_create_compute(vct->name, vct->gpu, plan->name, plan->shader, constants, count,
                               plan->out);
 }
@@ -75,7 +82,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
 {
     char name[VCT_NAME_SIZE];
     struct gpu_constant constants[CONSTANT_BITS];
-    const int count = constants_of(plan->constants, constants);
+    const int count = constants_of(vct, plan->constants, constants);
     const struct gpu_graphics_desc desc = { .name = vct_name(vct->name, plan->name, name),
                                             .vertex = &shader_vct_raster_vert,
                                             .fragment = plan->shader,
@@ -99,10 +106,10 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->texel_lists, "texels", &shader_vct_texels_comp, 0 },
         { &vct->inject[0], "inject_unlit", &shader_vct_inject_comp, UNLIT },
         { &vct->inject[1], "inject", inject_lit, 0 },
-        { &vct->edges, "edges", &shader_vct_edges_comp, 0 },
+        { &vct->edges, "edges", &shader_vct_edges_comp, GRIDS },
         { &vct->gather_rows, "gather_rows", &shader_vct_gather_comp, kind },
         { &vct->gather_columns, "gather_columns", &shader_vct_gather_comp, kind | COLUMNS },
-        { &vct->blur, "blur", &shader_vct_blur_comp, 0 },
+        { &vct->blur, "blur", &shader_vct_blur_comp, GRIDS },
     };
     memcpy(out, plan, sizeof plan);
 }
@@ -115,18 +122,18 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     const uint32_t ways = vct->options.anisotropic ? 0 : ONE_WAY,
                    kind = ways | (lit ? 0 : (uint32_t)OCCLUSION);
     const struct pipeline_plan mips[MIP_PIPELINES] = {
-        { &vct->bounce, "bounce", lit ? &shader_vct_bounce_mips_comp : NULL, ways },
-        { &vct->cones, "cones", &shader_vct_cones_mips_comp, kind },
-        { &vct->specular, "specular", lit ? &shader_vct_specular_mips_comp : NULL, ways },
+        { &vct->bounce, "bounce", lit ? &shader_vct_bounce_mips_comp : NULL, ways | GRIDS },
+        { &vct->cones, "cones", &shader_vct_cones_mips_comp, kind | GRIDS },
+        { &vct->specular, "specular", lit ? &shader_vct_specular_mips_comp : NULL, ways | GRIDS },
         { &vct->fill[0], "fill_still", &shader_vct_fill_comp, kind | STILL },
         { &vct->fill[1], "fill", &shader_vct_fill_comp, kind },
         { &vct->mip, "mip", &shader_vct_mip_comp, kind },
-        { &vct->debug, "debug", &shader_vct_debug_mips_comp, 0 },
+        { &vct->debug, "debug", &shader_vct_debug_mips_comp, GRIDS },
     };
     const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
-        { &vct->bounce, "bounce", lit ? &shader_vct_bounce_svo_comp : NULL, ways },
-        { &vct->cones, "cones", &shader_vct_cones_svo_comp, kind },
-        { &vct->specular, "specular", lit ? &shader_vct_specular_svo_comp : NULL, ways },
+        { &vct->bounce, "bounce", lit ? &shader_vct_bounce_svo_comp : NULL, ways | GRIDS },
+        { &vct->cones, "cones", &shader_vct_cones_svo_comp, kind | GRIDS },
+        { &vct->specular, "specular", lit ? &shader_vct_specular_svo_comp : NULL, ways | GRIDS },
         { &svo->mark, "svo_mark", &shader_vct_svo_mark_comp, 0 },
         { &svo->count, "svo_count", &shader_vct_svo_count_comp, 0 },
         { &svo->scan, "svo_scan", &shader_vct_svo_scan_comp, 0 },
@@ -135,7 +142,7 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
         { &svo->fill[1], "svo_fill", &shader_vct_svo_fill_comp, ways },
         { &svo->join, "svo_join", &shader_vct_svo_join_comp, ways },
         { &svo->mip, "svo_mip", &shader_vct_svo_mip_comp, ways },
-        { &vct->debug, "debug", &shader_vct_debug_svo_comp, 0 },
+        { &vct->debug, "debug", &shader_vct_debug_svo_comp, GRIDS },
     };
     if (vct_has_svo(&vct->options))
         memcpy(out, octree, sizeof octree);

@@ -38,6 +38,29 @@ static void remark_on_room(struct host *host, const char *technique,
                  technique, pose->scene->name, (unsigned)room);
 }
 
+// About the first camera: where the eye will go is not known.
+static void remark_on_parts(struct host *host, const char *technique,
+                            const struct vct_options *options, const struct vct_grid *scene,
+                            const struct scene_pose *pose)
+{
+    const uint32_t room = vct_capacity(options);
+    const vec3s eye =
+        pose->scene->camera_count > 0 ? pose_camera(pose, 0).eye : box3_centre(pose->bounds);
+    for (int i = 1; i < options->levels; i++) {
+        const struct vct_grid grid = vct_grid_about(scene, options->resolution, i, eye);
+        uint32_t touched = 0;
+        if (!vct_count_touched(host, pose, &grid, options->resolution, room, &touched)) return;
+        host_log(host, LOG_INFO, "gi %s: level %d has voxels of %.3g m", technique, i + 1,
+                 (double)grid.cell_m);
+        if (touched > room)
+            host_log(host, LOG_WARNING,
+                     "gi %s: in level %d, voxels of %.3g m, surfaces of %s about its first camera "
+                     "fill more than %u voxels, for which there is room: what lies beyond them "
+                     "along z is left out there",
+                     technique, i + 1, (double)grid.cell_m, pose->scene->name, (unsigned)room);
+    }
+}
+
 void vct_remark_on_scene(struct host *host, const char *technique,
                          const struct vct_options *options, const struct scene_pose *pose)
 {
@@ -50,4 +73,5 @@ void vct_remark_on_scene(struct host *host, const char *technique,
     }
     remark_on_voxels(host, technique, options, &grid, pose->scene->name);
     remark_on_room(host, technique, options, &grid, pose);
+    remark_on_parts(host, technique, options, &grid, pose);
 }

@@ -8,8 +8,7 @@
 
 int vct_clip_count(const struct vct_options *options)
 {
-    (void)options;
-    return 1;
+    return options->levels;
 }
 
 static uint32_t voxel_count(const struct vct_options *options)
@@ -149,7 +148,7 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
                                     .format = options->occlusion ? GPU_R16F : GPU_RGBA16F,
                                     .width = vct_ways(options) * dim,
                                     .height = dim,
-                                    .depth = dim,
+                                    .depth = (uint32_t)vct_clip_count(options) * dim,
                                     .mips = vct_volume_mips(options),
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }

@@ -45,6 +45,9 @@ struct vct_voxel_counts {
     uint32_t again;
 };
 
+// Levels of the clip map: grids, of which the first one has the whole scene.
+#define VCT_MAX_CLIPS 6
+
 // Uniform block "vct_grid".
 struct vct_params {
     vec3s origin_m;                    // corner of voxel 0, world space
@@ -63,6 +66,24 @@ struct vct_params {
     float light_scale;     // the frame's unit over that of the light volume
     float decay_per_m;     // of occlusion: see vct_trace.glsl
     float offset;          // along the normal at which the pixels' cones start, texels of the light volume
+    vec3s scene_low, scene_high; // the whole scene's grid, in these voxels
+    int32_t volume_first;        // texel of the light volume along z at which this grid's part begins
+    int32_t level;               // of the clip map, as vct_clipmap counts them
+};
+
+// What cones know of a grid. Texels of the finest grid are the unit, the corner of the scene's grid is the origin.
+struct vct_clip_level {
+    vec3s corner;    // of its first texel
+    vec3s size;      // texels of its own that are in use
+    vec3s low, high; // the box in which it is looked into
+};
+
+// Uniform block "vct_clipmap".
+struct vct_clip_table {
+    vec3s origin_m; // corner of the scene's grid, world space
+    vec3s size;     // of the scene's grid
+    float fade;     // texels of a grid, within its box, over which it gives way to the next coarser one
+    AG_STRUCT(vct_clip_level) levels[VCT_MAX_CLIPS]; // the finest one first
 };
 
 #define VCT_MAX_CONES      25
@@ -78,7 +99,7 @@ struct vct_cone_params {
     float width_per_m;              // width of the texels that a cone meets over the distance
     float offset;                   // texels of the light volume
     float gain;
-    float texel_m; // of the light volume
+    float texel_m; // of the light volume, of the finest grid
     uint32_t last_mip;
 };
 
@@ -116,7 +137,7 @@ struct vct_specular_params {
     float stride;
     float offset;   // texels of the light volume
     float gain;
-    float texel_m;  // of the light volume
+    float texel_m;  // of the light volume, of the finest grid
     uint32_t last_mip;
 };
 
@@ -163,15 +184,24 @@ struct vct_svo_push {
 #define VCT_VIEW_NORMAL      1
 #define VCT_VIEW_RADIANCE    2
 #define VCT_VIEW_ROOM        3
+#define VCT_VIEW_LEVELS      4
+
+#define VCT_MARCH_INTO    1 // up to the next finer grid, or to the end
+#define VCT_MARCH_OUT     2 // from there on
+#define VCT_MARCH_FIRST   4 // nothing is in the picture yet
+#define VCT_MARCH_LAST    8
 
 struct vct_view_push {
     uint32_t view;
+    uint32_t march; // of those bits
     float reflectance_shown; // scaled radiance that a reflectance of 1 is shown as
 };
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct vct_voxel_counts) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_params) == 20 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_params) == 28 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_clip_table) == (7 + 12 * VCT_MAX_CLIPS) * 4,
+               "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 9 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
@@ -184,7 +214,7 @@ _Static_assert(sizeof(struct vct_mip_push) == 28, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_svo_params) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_svo_level) == 12 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_svo_push) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_view_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_view_push) == 12, "layout is shared with GLSL");
 #endif
 
 #endif

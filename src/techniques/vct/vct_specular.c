@@ -50,13 +50,14 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
         .stride = options->stride,
         .offset = options->offset,
         .gain = options->gain,
-        .texel_m = 2.0f * vct->clips[0].grid.cell_m,
+        .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
     };
     vct_pass_begin(vct->name, cmd, "specular");
     gpu_dispatch(
         cmd, vct->specular,
         GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), view->constants_binding,
+                 vct_clipmap_binding(vct, cmd),
                  gpu_transient(cmd, "vct_specular", &params, sizeof params),
                  gpu_transient(cmd, "vct_shares", &vct->shares, sizeof vct->shares),
                  { .name = "depth", .image = view->layers[FRAME_DEPTH] },

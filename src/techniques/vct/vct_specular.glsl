@@ -72,9 +72,9 @@ vec3 reflected(ivec2 pixel, float z)
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg), to_eye = normalize(frame.eye - position);
     vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
-    vec3 from = (position - vct.origin_m) / set.texel_m + set.offset * n;
+    vec3 at = (position - clips.origin_m) / set.texel_m;
     float wide = 2.0 * set.stride * tan_half_angle(brdf_alpha(roughness_metallic.x));
-    vec4 met = vct_trace(light, from, n, mirrored(to_eye, n), wide, set.last_mip);
+    vec4 met = vct_cone(light, at, n, mirrored(to_eye, n), set.offset, wide, set.last_mip, vct_start_at(at));
     vec3 f0 = brdf_f0(texelFetch(albedo, pixel, 0).rgb, roughness_metallic.y);
     vec3 share = share_of(f0, dot(n, to_eye), roughness_metallic.x);
     return set.gain * share * (met.rgb + (1.0 - met.a) * frame.sky);

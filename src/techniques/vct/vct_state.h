@@ -31,15 +31,14 @@ struct vct_set {
     gpu_image surfaces, records;        // RGBA32U
 };
 
-// A grid and what is in its voxels.
+// A level of the clip map: a grid and what is in its voxels. The first one has the whole scene.
 struct vct_clip {
-    struct vct_grid grid;
+    struct vct_grid grid, lit;                  // now; as it was when its light was filled in
+    struct box3 used;                           // in which cones look into it: see vct_grid_used
     struct vct_set rest, moving;                // what stands still; what has moved
     gpu_buffer texels, texel_mask, texel_state; // of the light volume: which hold something
     bool rest_valid;                            // `rest` is of the scene as it stands
 };
-
-enum { VCT_MAX_CLIPS = 1 };
 
 // For lists of bindings: the voxels of both sets, as vct_seen.glsl reads them.
 #define VCT_BOTH_SETS(clip)                                                                        \
@@ -118,7 +117,7 @@ uint32_t vct_volume_mips(const struct vct_options *options);
 uint32_t vct_ways(const struct vct_options *options); // volumes side by side: 6, or 1 for all ways
 
 // Lists of texels of the light volume, one for each level; see vct_texels.comp.
-struct vct_texels_push vct_texels_push(const struct vct_options *options);
+struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32_t levels);
 size_t vct_texel_words(const struct vct_options *options);
 size_t vct_texel_mask_words(const struct vct_options *options);
 size_t vct_level_groups(uint32_t level); // where a level's dispatch is in texel_state
@@ -136,10 +135,13 @@ void vct_destroy_resources(struct vct *vct);
 void vct_destroy_pipelines(struct vct *vct);
 uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, uint32_t height);
 
-// Places the grid; false where there is nothing to voxelise.
+// Places the grids; false where there is nothing to voxelise.
 bool vct_prepare(struct vct *vct, const struct frame_view *view);
 struct gpu_binding vct_grid_binding(const struct vct *vct, const struct vct_clip *clip,
                                     struct gpu_cmd *cmd);
+// The grids for cones: of pixels, about the eye; of voxels, as far as they reach and as they were when light was filled in.
+struct gpu_binding vct_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd);
+struct gpu_binding vct_lit_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd);
 // The cones of a voxel, about its normal.
 struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view);
 // The stages, in order. Each reads vct->params.

@@ -141,6 +141,7 @@ static void join(struct vct *vct, struct gpu_cmd *cmd, uint32_t depth)
 void vct_svo_record_light(struct vct *vct, struct gpu_cmd *cmd)
 {
     const uint32_t leaves = vct->svo.params.depths - 1;
+    vct->clips[0].lit = vct->clips[0].grid;
     const size_t texels = offsetof(struct vct_svo_level, texel_groups);
     vct_pass_begin(vct->name, cmd, "leaves");
     over_bricks(vct, cmd, vct->svo.fill[vct->moving_draws > 0],

@@ -8,9 +8,9 @@ static size_t level_texels(const struct vct_options *options, uint32_t level)
     return dim * dim * dim;
 }
 
-struct vct_texels_push vct_texels_push(const struct vct_options *options)
+struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32_t levels)
 {
-    struct vct_texels_push push = { .levels = vct_volume_mips(options), .ways = vct_ways(options) };
+    struct vct_texels_push push = { .levels = levels, .ways = vct_ways(options) };
     size_t first = 0;
     for (uint32_t level = 0; level < push.levels; level++) {
         push.first[level] = (uint32_t)first;
@@ -41,7 +41,10 @@ size_t vct_level_groups(uint32_t level)
 
 void vct_record_texels(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd)
 {
-    const struct vct_texels_push push = vct_texels_push(&vct->options);
+    // Grids but the first have no mips; light is brought to blocks, which are texels of the second
+    // level.
+    const uint32_t levels = clip == &vct->clips[0] ? vct_volume_mips(&vct->options) : 2;
+    const struct vct_texels_push push = vct_texels_push(&vct->options, levels);
     const size_t counts = offsetof(struct vct_texel_levels, count);
     const size_t words = gpu_buffer_bytes(vct->gpu, clip->rest.mask) / sizeof(uint32_t);
     vct_pass_begin(vct->name, cmd, "texels");

@@ -53,6 +53,13 @@ static void enter(struct count *c, const int voxel[3])
     c->touched++;
 }
 
+// A coordinate in voxels of a grid, or with rim = 1 a voxel, kept within the scene's grid.
+static float clamp_to_scene(const struct vct_grid *grid, int axis, float at, float rim)
+{
+    const float low = (float)-grid->first[axis], high = low + (float)grid->scene[axis] - rim;
+    return fminf(fmaxf(at, low), high);
+}
+
 // Columns along the axis to which the plane is nearest to perpendicular, a few voxels in each.
 static void walk(struct count *c, const vec3s at[3])
 {
@@ -63,13 +70,16 @@ static void walk(struct count *c, const vec3s at[3])
     int first[3], last[3], voxel[3];
     if (!(n.raw[axis] > 0.0f)) return;
     for (int i = 0; i < 3; i++) {
-        const float low = floorf(fminf(at[0].raw[i], fminf(at[1].raw[i], at[2].raw[i])));
-        const float high =
+        float low = floorf(fminf(at[0].raw[i], fminf(at[1].raw[i], at[2].raw[i])));
+        float high =
             fmaxf(ceilf(fmaxf(at[0].raw[i], fmaxf(at[1].raw[i], at[2].raw[i]))) - 1.0f, low);
-        const float end = (float)c->grid->cells[i] - 1.0f;
         if (!(fmaxf(fabsf(low), fabsf(high)) < 1e6f)) return;
-        first[i] = (int)fminf(fmaxf(low, 0.0f), end);
-        last[i] = (int)fminf(fmaxf(high, 0.0f), end);
+        const float end = (float)c->grid->cells[i] - 1.0f;
+        low = clamp_to_scene(c->grid, i, low, 1.0f);
+        high = clamp_to_scene(c->grid, i, high, 1.0f);
+        if (low > end || high < 0.0f) return;
+        first[i] = (int)fmaxf(low, 0.0f);
+        last[i] = (int)fminf(high, end);
     }
     const float slope_a = normal.raw[a] / normal.raw[axis],
                 slope_b = normal.raw[b] / normal.raw[axis];
@@ -91,12 +101,12 @@ static void walk(struct count *c, const vec3s at[3])
         }
 }
 
-// World to voxels; what lies on the border but for rounding is inside.
+// World to voxels; what lies on the scene's border but for rounding is inside.
 static vec3s voxels_from_world(const struct vct_grid *grid, vec3s world)
 {
     vec3s at = glms_vec3_scale(glms_vec3_sub(world, grid->origin_m), 1.0f / grid->cell_m);
     for (int i = 0; i < 3; i++) {
-        const float inside = fminf(fmaxf(at.raw[i], 0.0f), (float)grid->cells[i]);
+        const float inside = clamp_to_scene(grid, i, at.raw[i], 0.0f);
         if (fabsf(at.raw[i] - inside) < 0.01f) at.raw[i] = inside;
     }
     return at;

@@ -18,8 +18,13 @@
 // is, half a texel from its place at most: from a wall's foot a floor would be seen through. So what lies half a texel
 // back stands in the way too, along the surface alone: off it are the surface itself and, behind, the other side of a
 // thin wall. Its light counts where it is rather ahead than behind.
+//
+// Grids. A cone goes on in the grid that it starts in, as long as that one has what comes (vct_clipmap.glsl), and its
+// width asks for no coarser one.
 #ifndef AG_VCT_TRACE_GLSL
 #define AG_VCT_TRACE_GLSL
+
+#include "techniques/vct/vct_clipmap.glsl"
 
 struct vct_met
 {
@@ -37,23 +42,39 @@ struct vct_met
 const float VCT_UNSEEN = 0.005; // of occlusion: a cone that can add no more than that ends
 const float VCT_OPAQUE = 0.98; // a cone that has met so much ends there, as if it had met all
 
-// Radiance in xyz, premultiplied, and opacity. Lengths in texels of level 0; `from`: where the cone starts, of width 0
-// there; `normal`: of the surface that it leaves; wide: width of a texel over distance.
-vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wide, uint last_mip)
+// How far it is along each axis until a box ends.
+vec3 vct_until(vec3 low, vec3 high, vec3 from, vec3 direction)
 {
-    vec3 ends = mix(vec3(0.0), vec3(vct_cells() / 2), greaterThan(direction, vec3(0.0)));
+    vec3 ends = mix(low, high, greaterThan(direction, vec3(0.0)));
     bvec3 across = lessThan(abs(direction), vec3(1e-6));
-    vec3 until = mix((ends - from) / mix(direction, vec3(1.0), across), vec3(1e6), across);
+    return mix((ends - from) / mix(direction, vec3(1.0), across), vec3(1e6), across);
+}
+
+// Radiance in xyz, premultiplied, and opacity. Lengths in texels of level 0; `from`: where the cone starts, of width 0
+// there; `normal`: of the surface that it leaves; wide: width of a texel over distance; first: the finest level that is
+// looked at.
+vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wide, uint last_mip, int first)
+{
+    vec3 until = vct_until(vec3(0.0), clips.size, from, direction);
     float end = min(until.x, min(until.y, until.z));
     vec3 out_of = vec3(lessThanEqual(until, vec3(end))) * direction;
     float out_speed = max(abs(out_of.x), max(abs(out_of.y), abs(out_of.z)));
     vec4 sum = vec4(0.0);
     vec3 level_with = direction - dot(direction, normal) * normal;
-    vct_met behind = vct_look(light, from - 0.5 * level_with, direction, level_with, 0);
+    vct_met behind = vct_look(light, from - 0.5 * float(1 << first) * level_with, direction, level_with, first);
     vec3 before = behind.axes;
-    float t = 0.0, decay = 2.0 * vct.cell_m * vct.decay_per_m, ahead_of_surface = vct.offset * dot(normal, direction);
-    for (int i = 0; i < 256; i++) {
-        int level = min(int(log2(max(wide * t, 1.0)) + 0.5), int(last_mip));
+    float leaves[VCT_MAX_CLIPS]; // grids but the coarsest one
+    for (int k = 0; k < VCT_CLIPS - 1; k++) {
+        vec3 there = vct_until(clips.levels[k].low, clips.levels[k].high, from, direction);
+        leaves[k] = min(there.x, min(there.y, there.z));
+    }
+    // In distances of level 0; the offset is in texels of the first.
+    float t = 0.0, decay = 2.0 * vct.cell_m * vct.decay_per_m / float(1 << (VCT_CLIPS - 1)),
+          ahead_of_surface = vct.offset * float(1 << first) * dot(normal, direction);
+    for (int i = 0; i < 256 * VCT_CLIPS; i++) {
+        int level = max(min(int(log2(max(wide * t, 1.0)) + 0.5), int(last_mip) + VCT_CLIPS - 1), first);
+        for (int k = 0; k < VCT_CLIPS - 1; k++)
+            if (t + 0.5 * float(1 << k) > leaves[k]) level = max(level, k + 1);
         float texel = float(1 << level), middle = t + 0.5 * texel;
         // The side through which the cone leaves may be a wall, which is filtered out to a texel beyond it.
         bool left_grid = middle > end;
@@ -76,6 +97,21 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wi
         if (VCT_OCCLUSION && 1.0 - sum.a < VCT_UNSEEN * (1.0 + decay * (ahead_of_surface + t))) break;
         before = here.axes;
         t += texel;
+    }
+    return sum;
+}
+
+// What a cone brings to a place on a surface. offset: along the normal, in texels of the level that it starts with.
+vec4 vct_cone(sampler3D light, vec3 at, vec3 normal, vec3 direction, float offset, float wide, uint last_mip,
+              vct_start start)
+{
+    bool changes = VCT_CLIPS > 1 && start.next > 0.0;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < (changes ? 2 : 1); i++) {
+        int level = start.level + i;
+        vec3 from = at + offset * float(1 << level) * normal;
+        vec4 met = vct_trace(light, from, normal, direction, wide, last_mip, level);
+        sum += (changes ? (i == 0 ? 1.0 - start.next : start.next) : 1.0) * met;
     }
     return sum;
 }

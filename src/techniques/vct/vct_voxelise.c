@@ -17,10 +17,26 @@ static enum vct_kind kind_of(const struct vct *vct, const struct scene *scene,
     return glow.x > 0.0f || glow.y > 0.0f || glow.z > 0.0f ? VCT_GLOWING : VCT_PLAIN;
 }
 
+// Whether something of a draw may be in a grid. All of it is in the whole scene's.
+static bool meets(const struct scene_draw *draw, const struct vct_grid *grid)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const float low = grid->origin_m.raw[axis],
+                    high = low + (float)grid->cells[axis] * grid->cell_m;
+        const bool begins = grid->first[axis] == 0,
+                   ends = grid->first[axis] + grid->cells[axis] == grid->scene[axis];
+        // A voxel more: for rounding.
+        if (!begins && draw->bounds.max.raw[axis] < low - grid->cell_m) return false;
+        if (!ends && draw->bounds.min.raw[axis] > high + grid->cell_m) return false;
+    }
+    return true;
+}
+
 // The draws that move, or those that stand, over their voxels: small triangles, then the tiles of
 // large ones that these have put into the queue; or all by raster, a pixel for each column.
-static void walk(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view, bool moving,
-                 bool add, const struct gpu_binding *bindings, int count)
+static void walk(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                 const struct frame_view *view, bool moving, bool add,
+                 const struct gpu_binding *bindings, int count)
 {
     const bool raster = vct->options.voxels == VCT_BY_RASTER;
     const uint32_t dim = (uint32_t)vct->options.resolution;
@@ -31,7 +47,7 @@ static void walk(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
                                                          .read_count = view->scene->read_count });
     for (int i = 0; i < view->scene->draw_count; i++) {
         const struct scene_draw *draw = &view->scene->draws[i];
-        if (draw->moves != moving) continue;
+        if (draw->moves != moving || !meets(draw, &clip->grid)) continue;
         const enum vct_kind kind = kind_of(vct, view->scene->scene, draw);
         const struct vct_walk *pipelines = add ? &vct->add[kind] : &vct->mark;
         scene_gpu_dispatch(view->scene, cmd,
@@ -58,7 +74,7 @@ static void mark(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *c
     vct_pass_begin(vct->name, cmd, "mark");
     gpu_fill_buffer(cmd, set->mask, 0, gpu_buffer_bytes(vct->gpu, set->mask), 0);
     gpu_fill_buffer(cmd, set->again, 0, gpu_buffer_bytes(vct->gpu, set->again), 0);
-    walk(vct, cmd, view, moving, false, bindings, 5);
+    walk(vct, clip, cmd, view, moving, false, bindings, 5);
     gpu_scope_end(cmd);
 }
 
@@ -113,7 +129,7 @@ static void add(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cm
                                             { .name = "vct_surfaces", .image = set->surfaces } };
     vct_pass_begin(vct->name, cmd, "add");
     each_again(cmd, set, vct->zero);
-    walk(vct, cmd, view, moving, true, bindings, 8);
+    walk(vct, clip, cmd, view, moving, true, bindings, 8);
     each_again(cmd, set, vct->surfaces);
     gpu_scope_end(cmd);
 }

@@ -29,6 +29,7 @@ struct vct_triangle
     vec3 u, v, w;      // a, b, c with axes turned so that the third is the columns'
     vec3 normal;       // turned; not unit: its length is twice the area in faces of a voxel
     ivec3 low, high;   // turned: voxels that its box touches
+    ivec2 depths;      // the first and the last of them in a column, also beyond this grid
 };
 
 void vct_meet(vct_triangle t, ivec2 first); // before its voxels, from a column on
@@ -39,10 +40,10 @@ uint vct_put_off = 0u;
 void vct_visit_put_off(ivec3 voxel, vct_triangle t);
 #endif
 
-// What lies on the grid's border but for rounding belongs to the last voxel, and is not lost.
+// What lies on the border of the scene's grid but for rounding belongs to the last voxel, and is not lost.
 vec3 kept_inside(vec3 at)
 {
-    vec3 inside = clamp(at, vec3(0.0), vec3(vct_cells()));
+    vec3 inside = clamp(at, vct.scene_low, vct.scene_high);
     return mix(at, inside, lessThan(abs(at - inside), vec3(0.01)));
 }
 
@@ -63,13 +64,20 @@ ivec3 turned_back(ivec3 v, int turn)
     return turn == 0 ? v : turn == 1 ? v.zxy : v.yzx;
 }
 
-// False where it has no area or is not finite.
+// False where it has no area, is not finite or not in this grid.
 bool triangle_at(uint triangle, out vct_triangle t)
 {
     t.vertices = scene_triangle(triangle);
     t.a = vertex_at(t.vertices.x);
     t.b = vertex_at(t.vertices.y);
     t.c = vertex_at(t.vertices.z);
+    // What only touches a border from below is not in the voxel above; what lies in the border is in that one alone.
+    vec3 low = floor(min(min(t.a, t.b), t.c)), high = max(ceil(max(max(t.a, t.b), t.c)) - 1.0, low);
+    if (!all(lessThan(max(abs(low), abs(high)), vec3(1e6)))) return false;
+    low = clamp(low, vct.scene_low, vct.scene_high - 1.0);
+    high = clamp(high, vct.scene_low, vct.scene_high - 1.0);
+    vec3 end = vec3(vct_cells()) - 1.0;
+    if (any(greaterThan(low, end)) || any(lessThan(high, vec3(0.0)))) return false;
     precise vec3 p = t.b - t.a, q = t.c - t.b;
     precise vec3 n = p.yzx * q.zxy - p.zxy * q.yzx;
     vec3 length = abs(n);
@@ -78,14 +86,10 @@ bool triangle_at(uint triangle, out vct_triangle t)
     t.u = turned(t.a, t.turn);
     t.v = turned(t.b, t.turn);
     t.w = turned(t.c, t.turn);
-    // What only touches a border from below is not in the voxel above; what lies in the border is in that one alone.
-    vec3 low = floor(min(min(t.u, t.v), t.w));
-    vec3 high = max(ceil(max(max(t.u, t.v), t.w)) - 1.0, low);
-    vec3 end = turned(vec3(vct_cells()), t.turn) - 1.0;
-    if (!(abs(t.normal.z) > 0.0) || !all(lessThan(max(abs(low), abs(high)), vec3(1e6)))) return false;
-    t.low = ivec3(clamp(low, vec3(0.0), end));
-    t.high = ivec3(clamp(high, vec3(0.0), end));
-    return true;
+    t.low = ivec3(turned(max(low, vec3(0.0)), t.turn));
+    t.high = ivec3(turned(min(high, end), t.turn));
+    t.depths = ivec2(turned(low, t.turn).z, turned(high, t.turn).z);
+    return abs(t.normal.z) > 0.0;
 }
 
 // First and last voxel of a column that the triangle may touch. Its plane is within half a voxel in both directions of
