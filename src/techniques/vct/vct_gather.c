@@ -1,6 +1,8 @@
 // Cones of the pixels, and the gathering of what neighbours have traced.
 #include "techniques/vct/vct_state.h"
 
+#include <math.h>
+
 // Parts of a block that trace cone `cone`, see vct_cones.glsl. A cone that several trace counts
 // once.
 static int parts_with(uint32_t cone, uint32_t parts, uint32_t cones)
@@ -25,6 +27,7 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
         .gain = options->gain,
         .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
+        .pixel = 2.0f * tanf(0.5f * view->camera.vertical_fov_rad) / (float)view->height,
     };
 }
 
@@ -52,7 +55,7 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
 
 // Bindings that the stages over pixels share.
 struct pixels {
-    struct gpu_binding clipmap, cones, depth, normal, edges;
+    struct gpu_binding clipmap, cones, depth, normal, edges, start;
     uint32_t across, down; // workgroups of one invocation a pixel
 };
 
@@ -63,7 +66,7 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
     vct_pass_begin(vct->name, cmd, "cones");
     gpu_dispatch(cmd, vct->cones,
                  GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap,
-                          view->constants_binding, p->cones, p->depth, p->normal,
+                          view->constants_binding, p->cones, p->depth, p->normal, p->start,
                           { .name = "light", .image = vct->light, .sampler = vct->linear },
                           { .name = "red", .image = vct->traced[0] },
                           { .name = "green", .image = vct->traced[1] },
@@ -89,15 +92,21 @@ static void gather(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p,
         NULL, 0, across, down, 1);
 }
 
-static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                        const struct pixels *p, gpu_image result)
+static void find_edges(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                       const struct pixels *p)
 {
     vct_pass_begin(vct->name, cmd, "edges");
     gpu_dispatch(
         cmd, vct->edges,
-        GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal, p->edges),
+        GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal, p->edges,
+                 p->start),
         NULL, 0, p->across, p->down, 1);
     gpu_scope_end(cmd);
+}
+
+static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                        const struct pixels *p, gpu_image result)
+{
     vct_pass_begin(vct->name, cmd, "gather");
     gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
            gpu_groups(view->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
@@ -130,8 +139,10 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
                               .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                               .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                               .edges = { .name = "edges", .image = vct->edge_image },
+                              .start = { .name = "start", .image = vct->start_image },
                               .across = gpu_groups(view->width, VCT_LOCAL_2D),
                               .down = gpu_groups(view->height, VCT_LOCAL_2D) };
+    find_edges(vct, cmd, view, &p);
     trace_cones(vct, cmd, view, &p, result);
     if (params.interleave > 1) share_cones(vct, cmd, view, &p, result);
 }

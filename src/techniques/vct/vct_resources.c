@@ -188,6 +188,7 @@ bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
     vct->width = width;
     vct->height = height;
     return create_image_2d(vct, "edges", GPU_R8, &vct->edge_image) &&
+           create_image_2d(vct, "start", GPU_RG16F, &vct->start_image) &&
            create_image_2d(vct, "found", GPU_RGBA16F, &vct->found) &&
            create_vectors(vct, "traced", vct->traced) &&
            create_vectors(vct, "gathered", vct->gathered);
@@ -245,6 +246,7 @@ void vct_destroy_resources(struct vct *vct)
         }
     }
     gpu_image_destroy(vct->gpu, &vct->edge_image);
+    gpu_image_destroy(vct->gpu, &vct->start_image);
     gpu_image_destroy(vct->gpu, &vct->found);
     for (int i = 0; i < 3; i++) {
         gpu_image_destroy(vct->gpu, &vct->traced[i]);
@@ -266,6 +268,6 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
     const struct gpu_image_desc voxels = voxel_image_desc(options, "");
     bytes += 4 * (uint64_t)vct_clip_count(options) * voxels.width * voxels.height *
              (uint64_t)gpu_format_bytes(GPU_RGBA32U);
-    const int pixel = gpu_format_bytes(GPU_R8) + 7 * gpu_format_bytes(GPU_RGBA16F);
+    const int pixel = gpu_format_bytes(GPU_R8) + gpu_format_bytes(GPU_RG16F) + 7 * gpu_format_bytes(GPU_RGBA16F);
     return bytes + (uint64_t)width * height * (uint64_t)pixel;
 }

@@ -101,6 +101,7 @@ struct vct_cone_params {
     float gain;
     float texel_m; // of the light volume, of the finest grid
     uint32_t last_mip;
+    float pixel; // width of a pixel over the distance
 };
 
 // Of the light volume: enough for resolution 256.
@@ -202,7 +203,7 @@ _Static_assert(sizeof(struct vct_voxel_counts) == 9 * 4, "layout is shared with 
 _Static_assert(sizeof(struct vct_params) == 28 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_clip_table) == (7 + 12 * VCT_MAX_CLIPS) * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 9 * 4,
+_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 10 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
                "layout is shared with GLSL");

@@ -90,7 +90,8 @@ struct vct {
     gpu_sampler linear;
     struct vct_svo svo;   // with storage=svo
     gpu_image light;      // six volumes side by side with mips, or the pool of bricks: RGBA16F; mips of occlusion R16F
-    gpu_image edge_image; // R8
+    gpu_image edge_image;  // R8: where surfaces end
+    gpu_image start_image; // RG16F: octahedral, the normal that cones start along
     gpu_image traced[3], gathered[3]; // RGBA16F: what cones found as vectors, of each colour
     gpu_image found;            // RGBA16F: irradiance, share of the cones
     vec3s lines[VCT_MAX_CONES]; // along which the picture's cones point
