@@ -79,6 +79,7 @@ static struct vct_options occlusion_options(const void *options)
     out.aperture = 0.0f;
     out.gain = GLM_1_PIf;
     out.bounces = 1;
+    out.lamps = false;
     out.occlusion = true;
     return out;
 }
@@ -151,6 +152,12 @@ static bool vctao_create(void *state, const struct technique_create *how)
     return create(state, "vctao", how, occlusion_options(how->options));
 }
 
+static void forget_voxels(struct vct *vct)
+{
+    for (int i = 0; i < vct->clip_count; i++) vct->clips[i].rest_valid = false;
+    vct->lamps.chosen = false;
+}
+
 static void set_options(struct vct *vct, struct vct_options options)
 {
     const struct vct_options had = vct->options;
@@ -161,6 +168,7 @@ static void set_options(struct vct *vct, struct vct_options options)
     vct->options.storage = had.storage;
     vct->options.temporal = had.temporal;
     vct->options.specular = had.specular;
+    if (vct->options.lamps != had.lamps) forget_voxels(vct);
     // What shapes the light from voxel to voxel; what only shapes pixels leaves it as it is.
     if (vct->options.bounces != had.bounces || vct->options.offset != had.offset ||
         vct->options.stride != had.stride)
@@ -182,8 +190,7 @@ static void vctao_set_options(void *state, const void *options)
 static void vct_invalidate(void *state, uint32_t changes)
 {
     struct vct *vct = state;
-    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL))
-        for (int i = 0; i < vct->clip_count; i++) vct->clips[i].rest_valid = false;
+    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) forget_voxels(vct);
     vct_temporal_forget(&vct->temporal);
 }
 
@@ -199,6 +206,17 @@ static void clear(const struct vct *vct, struct gpu_cmd *cmd, const struct frame
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
 }
 
+// Lamps are mirrored as they lie in the light volume, and then taken out of it.
+static void record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const bool specular = vct->options.specular, lamps = vct->lamps.count > 0;
+    vct->params.lamps_shown = specular && lamps;
+    vct_record_light(vct, cmd, view);
+    if (specular) vct_record_specular(vct, cmd, view);
+    vct->params.lamps_shown = false;
+    if (specular && lamps) vct_record_fill(vct, cmd);
+}
+
 static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vct *vct = state;
@@ -209,11 +227,14 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     }
     if (vct->options.temporal)
         vct_temporal_begin(&vct->temporal, view, vct->options.frames, vct->options.clamp);
+    if (vct->options.lamps)
+        vct_lamps_update(&vct->lamps, view, vct->temporal.number);
+    else
+        vct->lamps.count = 0;
     vct_record_voxels(vct, cmd, view);
     if (!vct->options.occlusion) vct_record_bounce(vct, cmd, view);
-    vct_record_light(vct, cmd, view);
+    record_light(vct, cmd, view);
     vct_record_cones(vct, cmd, view);
-    if (vct->options.specular) vct_record_specular(vct, cmd, view);
     if (vct->options.temporal)
         vct_temporal_record(&vct->temporal, cmd, view, vct_result(vct, view));
 }

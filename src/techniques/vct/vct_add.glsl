@@ -25,6 +25,8 @@ layout(set = 0, binding = 19, scalar) readonly buffer vct_again { uint again[]; 
 layout(set = 0, binding = 20, rgba32ui) uniform writeonly uimage2D vct_surfaces;
 #endif
 
+// What lamps emit is negative: who looks for lamps one by one passes over it (vct_lamps.glsl).
+layout(constant_id = 14) const bool IS_LAMP = false;
 layout(constant_id = 5) const bool GLOWS = true; // false: no surface of the draw emits
 
 // Barycentric coordinates of the point of a triangle that is nearest to the origin (Ericson 2005, sec. 5.1.5).
@@ -164,6 +166,7 @@ vct_sums part_of(ivec3 voxel, vct_triangle t)
     float covered = float(covered_lines(voxel, t)) * VCT_WEIGHT_LINE, weight = max(covered, 1.0);
     float opaque = weight * s.color.a;
     uvec3 emission = GLOWS ? uvec3(whole(s.emission * vct.emission_fixed * opaque, 1.0)) : uvec3(0u);
+    if (IS_LAMP) emission = uvec3(-ivec3(emission));
     vct_sums sums;
     sums.weight = uint(weight);
     sums.opacity = uint(opaque);

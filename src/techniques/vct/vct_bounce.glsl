@@ -27,6 +27,21 @@ layout(set = 0, binding = 9, scalar) readonly buffer vct_before { uint before[];
 #include "techniques/vct/vct_surface.glsl"
 #include "techniques/vct/vct_trace.glsl"
 
+#define VCT_LAMPS_BINDING 10
+#include "techniques/vct/vct_lamps.glsl"
+
+const uint LAMP_SAMPLES = 4u; // of the points that a lamp has
+
+vec3 lamps_at(vec3 at, vec3 normal)
+{
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < LAMP_SAMPLES; i++) {
+        vec3 to, found = vct_lamp_light(light, i * (VCT_LAMP_POINTS / LAMP_SAMPLES), at, normal, vct.level, to);
+        sum += found * dot(normal, to);
+    }
+    return sum * (float(VCT_LAMP_POINTS) / float(LAMP_SAMPLES));
+}
+
 vec3 irradiance(vec3 position, vec3 normal)
 {
     mat3 world_from_local = vct_axes_about(normal);
@@ -37,6 +52,7 @@ vec3 irradiance(vec3 position, vec3 normal)
                             set.last_mip, vct_start(vct.level, 0.0));
         sum += set.cones[i].w * (met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky);
     }
+    if (VCT_HAS_LAMPS) sum += lamps_at(at, normal);
     return min(sum, vec3(HALF_MAX));
 }
 

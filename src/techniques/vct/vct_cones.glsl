@@ -34,6 +34,19 @@ layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D blue;  // Σ d.z
 layout(set = 0, binding = 9) uniform writeonly image2D irradiance; // where pixels trace all cones
 layout(set = 0, binding = 12) uniform sampler2D start; // the way in which they start
 
+#define VCT_LAMPS_BINDING 10
+#include "techniques/vct/vct_lamps.glsl"
+
+// Irradiance from one direction, as a part of (1): a whole set of cones has the share n·(Σ d) = ½, one alone has 1.
+void add_lamps(inout vct_vectors sum, uint part, uint parts, vec3 at, vec3 up, int first)
+{
+    float share = set.cone_count == 1u ? 1.0 : 0.5;
+    for (uint i = part * 7u % parts; i < VCT_LAMP_POINTS; i += parts) {
+        vec3 to, found = vct_lamp_light(light, i, at, up, first, to);
+        sum.light += outerProduct(to, found * (share / VCT_PI));
+    }
+}
+
 void main()
 {
     // Workgroups that follow each other take the parts of the same blocks: what they read and write stays in caches.
@@ -60,6 +73,7 @@ void main()
             if (VCT_OCCLUSION) found = 1.0 - met.rgb;
             vct_add_cone(sum, found, set.cones[i].w * direction);
         }
+        if (VCT_HAS_LAMPS) add_lamps(sum, part, parts, at, up, first_grid.level);
     }
     if (side == 1u) {
         imageStore(irradiance, pixel, vec4(vct_irradiance(sum, n, set.gain), 1.0));

@@ -48,7 +48,8 @@ vec3 shown(vct_record r, vec3 direction)
 {
     if (push.view == VCT_VIEW_REFLECTANCE) return r.reflectance * push.reflectance_shown;
     if (push.view == VCT_VIEW_NORMAL) return (r.normal * 0.5 + 0.5) * push.reflectance_shown;
-    return dot(r.normal, direction) < 0.0 ? r.front + r.emitted_front : r.back + r.emitted_back;
+    return dot(r.normal, direction) < 0.0 ? r.front + vct_emitted(r.emitted_front, true)
+                                          : r.back + vct_emitted(r.emitted_back, true);
 }
 
 bool voxel_at(ivec3 voxel, out vct_record r)

@@ -64,14 +64,15 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
 {
     const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
     vct_pass_begin(vct->name, cmd, "cones");
-    gpu_dispatch(cmd, vct->cones,
+    gpu_dispatch(cmd, vct->cones[vct->lamps.count > 0],
                  GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap,
                           view->constants_binding, p->cones, p->depth, p->normal, p->start,
                           { .name = "light", .image = vct->light, .sampler = vct->linear },
                           { .name = "red", .image = vct->traced[0] },
                           { .name = "green", .image = vct->traced[1] },
                           { .name = "blue", .image = vct->traced[2] },
-                          { .name = "irradiance", .image = result }, vct_svo_binding(vct, cmd),
+                          { .name = "irradiance", .image = result },
+                          vct_lamps_binding(&vct->lamps, cmd), vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  NULL, 0, side * side * gpu_groups(gpu_groups(view->width, side), VCT_LOCAL_2D),
                  gpu_groups(gpu_groups(view->height, side), VCT_LOCAL_2D), 1);

@@ -72,8 +72,8 @@ void main()
     r.reflectance = surface.reflectance;
     vct_unpack_emission(texelFetch(vct_surfaces, to + ivec2(1, 0), 0), r.emitted_front, r.emitted_back);
     float emission_scaled = surface.emits ? vct.emission_scaled : 0.0;
-    r.emitted_front = min(r.emitted_front * emission_scaled, vec3(HALF_MAX));
-    r.emitted_back = min(r.emitted_back * emission_scaled, vec3(HALF_MAX));
+    r.emitted_front = clamp(r.emitted_front * emission_scaled, -HALF_MAX, HALF_MAX);
+    r.emitted_back = clamp(r.emitted_back * emission_scaled, -HALF_MAX, HALF_MAX);
 
     vec3 front = vec3(0.0), back = vec3(0.0);
     for (uint i = 0; HAS_LIGHTS && i < kept(vct.light_count); i++) {

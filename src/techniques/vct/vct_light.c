@@ -64,15 +64,8 @@ static void filter(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
     }
 }
 
-static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+void vct_record_fill(struct vct *vct, struct gpu_cmd *cmd)
 {
-    vct_pass_begin(vct->name, cmd, "inject");
-    for (int i = 0; i < vct->clip_count; i++) {
-        const struct vct_clip *clip = &vct->clips[i];
-        inject(vct, clip, cmd, view, &clip->rest);
-        if (vct->moving_draws > 0) inject(vct, clip, cmd, view, &clip->moving);
-    }
-    gpu_scope_end(cmd);
     if (vct_has_svo(&vct->options)) {
         vct_svo_record_light(vct, cmd);
         return;
@@ -91,12 +84,24 @@ static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     gpu_scope_end(cmd);
 }
 
+static void put_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    vct_pass_begin(vct->name, cmd, "inject");
+    for (int i = 0; i < vct->clip_count; i++) {
+        const struct vct_clip *clip = &vct->clips[i];
+        inject(vct, clip, cmd, view, &clip->rest);
+        if (vct->moving_draws > 0) inject(vct, clip, cmd, view, &clip->moving);
+    }
+    gpu_scope_end(cmd);
+    vct_record_fill(vct, cmd);
+}
+
 static void bring(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
                   const struct frame_view *view, const struct vct_set *set,
                   struct gpu_binding cones)
 {
     gpu_dispatch_indirect(
-        cmd, vct->bounce,
+        cmd, vct->bounce[vct->lamps.count > 0],
         GPU_BIND(vct_grid_binding(vct, clip, cmd), vct_lit_clipmap_binding(vct, cmd),
                  view->constants_binding, cones,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
@@ -105,7 +110,8 @@ static void bring(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *
                  { .name = "vct_mask", .buffer = set->mask },
                  { .name = "vct_before", .buffer = set->before },
                  { .name = "vct_surfaces", .image = set->surfaces },
-                 { .name = "vct_brought", .buffer = set->brought }, vct_svo_binding(vct, cmd),
+                 { .name = "vct_brought", .buffer = set->brought },
+                 vct_lamps_binding(&vct->lamps, cmd), vct_svo_binding(vct, cmd),
                  { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
         NULL, 0, clip->texel_state, offsetof(struct vct_texel_levels, block_groups));
 }

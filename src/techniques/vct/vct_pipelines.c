@@ -17,10 +17,11 @@ enum {
     OCCLUSION = 64, // vct_ways.glsl
     NO_GLOW = 128,  // vct_add.glsl
     GRIDS = 256,    // vct_clipmap.glsl
+    LAMPS = 512,    // vct_add.glsl, vct_lamps.glsl
 };
-static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 },
-                                                       { 0, 0 },  { 10, 0 }, { 11, 0 },
-                                                       { 12, 1 }, { 5, 0 },  { 13, 0 } };
+static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 },  { 0, 0 },
+                                                       { 10, 0 }, { 11, 0 }, { 12, 1 }, { 5, 0 },
+                                                       { 13, 0 }, { 14, 1 } };
 enum { CONSTANT_BITS = sizeof constant_of_bit / sizeof constant_of_bit[0] };
 
 struct pipeline_plan {
@@ -44,12 +45,13 @@ static int constants_of(const struct vct *vct, uint32_t bits,
 }
 
 // Of both walks, which the rasteriser may make as well.
-enum { WALKS = 10 };
+enum { WALKS = 12 };
 
 static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
 {
     struct vct_walk *plain = &vct->add[VCT_PLAIN], *glow = &vct->add[VCT_GLOWING],
-                    *maps = &vct->add[VCT_MAPPED], *masks = &vct->add[VCT_MASKED];
+                    *lamp = &vct->add[VCT_LAMP], *maps = &vct->add[VCT_MAPPED],
+                    *masks = &vct->add[VCT_MASKED];
     const bool raster = vct->options.voxels == VCT_BY_RASTER;
     const struct gpu_shader *mark = raster ? &shader_vct_mark_frag : &shader_vct_mark_comp,
                             *add = raster ? &shader_vct_add_frag : &shader_vct_add_comp,
@@ -62,6 +64,8 @@ static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
         { &plain->large, "add_large", add_large, NO_GLOW },
         { &glow->small, "add_glowing", add, 0 },
         { &glow->large, "add_glowing_large", add_large, 0 },
+        { &lamp->small, "add_lamp", add, LAMPS },
+        { &lamp->large, "add_lamp_large", add_large, LAMPS },
         { &maps->small, "add_mapped", add, MAPPED },
         { &maps->large, "add_mapped_large", add_large, MAPPED },
         { &masks->small, "add_masked", add, MAPPED | MASKED },
@@ -91,7 +95,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 12, MIP_PIPELINES = 7, MOST_STORAGE_PIPELINES = 12 };
+enum { PIPELINES = 12, MIP_PIPELINES = 9, MOST_STORAGE_PIPELINES = 14 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -122,8 +126,12 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     const uint32_t ways = vct->options.anisotropic ? 0 : ONE_WAY,
                    kind = ways | (lit ? 0 : (uint32_t)OCCLUSION);
     const struct pipeline_plan mips[MIP_PIPELINES] = {
-        { &vct->bounce, "bounce", lit ? &shader_vct_bounce_mips_comp : NULL, ways | GRIDS },
-        { &vct->cones, "cones", &shader_vct_cones_mips_comp, kind | GRIDS },
+        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_mips_comp : NULL, ways | GRIDS },
+        { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_bounce_mips_comp : NULL,
+          ways | GRIDS | LAMPS },
+        { &vct->cones[0], "cones", &shader_vct_cones_mips_comp, kind | GRIDS },
+        { &vct->cones[1], "cones_lamps", lit ? &shader_vct_cones_mips_comp : NULL,
+          ways | GRIDS | LAMPS },
         { &vct->specular, "specular", lit ? &shader_vct_specular_mips_comp : NULL, ways | GRIDS },
         { &vct->fill[0], "fill_still", &shader_vct_fill_comp, kind | STILL },
         { &vct->fill[1], "fill", &shader_vct_fill_comp, kind },
@@ -131,8 +139,12 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
         { &vct->debug, "debug", &shader_vct_debug_mips_comp, GRIDS },
     };
     const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
-        { &vct->bounce, "bounce", lit ? &shader_vct_bounce_svo_comp : NULL, ways | GRIDS },
-        { &vct->cones, "cones", &shader_vct_cones_svo_comp, kind | GRIDS },
+        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_svo_comp : NULL, ways | GRIDS },
+        { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_bounce_svo_comp : NULL,
+          ways | GRIDS | LAMPS },
+        { &vct->cones[0], "cones", &shader_vct_cones_svo_comp, kind | GRIDS },
+        { &vct->cones[1], "cones_lamps", lit ? &shader_vct_cones_svo_comp : NULL,
+          ways | GRIDS | LAMPS },
         { &vct->specular, "specular", lit ? &shader_vct_specular_svo_comp : NULL, ways | GRIDS },
         { &svo->mark, "svo_mark", &shader_vct_svo_mark_comp, 0 },
         { &svo->count, "svo_count", &shader_vct_svo_count_comp, 0 },

@@ -43,6 +43,7 @@ static bool place_grids(struct vct *vct, const struct frame_view *view)
     const bool known = view->index > 0 && view->pose->scene == vct->scene;
     vct->scene = view->pose->scene;
     place_about_eye(vct, view);
+    if (!known) vct->lamps.chosen = false;
     if (known && same_grid(&vct->clips[0].grid, &before)) return true;
     for (int i = 0; i < vct->clip_count; i++) vct->clips[i].rest_valid = false;
     vct->light_valid = vct->brought_valid = false;

@@ -9,7 +9,7 @@
 struct vct_record
 {
     vec3 front, back;                   // scaled cd/m²: reflected light of lights
-    vec3 emitted_front, emitted_back;   // scaled cd/m²
+    vec3 emitted_front, emitted_back;   // scaled cd/m²; negative: a lamp's
     vec3 reflectance;
     vec2 opacity;                       // to ways that meet the front, the back
     vec3 normal;                        // unit, of the front; 0 where the sides cannot be told apart
@@ -56,6 +56,12 @@ vct_record vct_unpack(uvec4 first, uvec4 second)
     r.opacity = vec2(c.a, float(second.w >> 24) / 255.0);
     r.normal = vct_unpack_normal(second.w & 0xffffffu);
     return r;
+}
+
+// What of it is seen, with or without lamps.
+vec3 vct_emitted(vec3 emitted, bool lamps)
+{
+    return lamps ? abs(emitted) : max(emitted, vec3(0.0));
 }
 
 vct_record vct_record_at(usampler2D records, uint slot)

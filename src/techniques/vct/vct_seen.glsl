@@ -37,8 +37,9 @@ void look_at(vct_record r, inout seen s)
 {
     vec3 slopes = abs(r.normal);
     float steepest = max(slopes.x, max(slopes.y, slopes.z));
-    vec4 front = vec4(r.front + r.emitted_front, 1.0) * r.opacity.x;
-    vec4 back = vec4(r.back + r.emitted_back, 1.0) * r.opacity.y;
+    bool lamps = vct.lamps_shown != 0u;
+    vec4 front = vec4(r.front + vct_emitted(r.emitted_front, lamps), 1.0) * r.opacity.x;
+    vec4 back = vec4(r.back + vct_emitted(r.emitted_back, lamps), 1.0) * r.opacity.y;
     if (!VCT_ANISOTROPIC) {
         vec4 both = (front + back) * (max(front.a, back.a) / max(front.a + back.a, 1e-6));
         s.along[0] = both.a > s.along[0].a ? both : s.along[0];

@@ -18,7 +18,7 @@
 #define VCT_SUM_REFLECTANCE 2  // 3 words, × opacity
 #define VCT_SUM_NORMAL      5  // 3 words, signed
 #define VCT_SUM_POSITION    8  // 3 words, signed: from the voxel's centre
-#define VCT_SUM_FRONT       11 // 3 words: emission to the side of the normal
+#define VCT_SUM_FRONT       11 // 3 words, signed: emission to the side of the normal; negative: a lamp's
 #define VCT_SUM_BACK        14 // 3 words: emission to the other side
 #define VCT_SUM_FRONTS 17        // weight of what is covered by fronts to the side of the normal
 #define VCT_SUM_BACKS 18         // and to the other side
@@ -64,6 +64,7 @@ struct vct_params {
     uint32_t light_count;  // of the frame's lights that are injected
     uint32_t brought;      // whether light that voxels got from others is injected
     float light_scale;     // the frame's unit over that of the light volume
+    uint32_t lamps_shown;  // whether lamps are part of the light volume
     float decay_per_m;     // of occlusion: see vct_trace.glsl
     float offset;          // along the normal at which the pixels' cones start, texels of the light volume
     vec3s scene_low, scene_high; // the whole scene's grid, in these voxels
@@ -119,6 +120,17 @@ struct vct_texels_push {
     uint32_t ways;                       // volumes side by side
     uint32_t first[VCT_MAX_LEVELS];      // of each level in the buffer of lists
     uint32_t mask_first[VCT_MAX_LEVELS]; // its first bit
+};
+
+// Storage block "vct_lamps", one for each.
+#define VCT_LAMPS_MAX   16
+#define VCT_LAMP_POINTS 12
+struct vct_lamp {
+    vec3s radiance; // scaled
+    float area_m2;  // that each of its points stands for
+    uint32_t both_sides;
+    vec3s positions[VCT_LAMP_POINTS]; // world space
+    vec3s normals[VCT_LAMP_POINTS];   // unit, of the front
 };
 
 // Uniform block "vct_history": the last frame's picture, of which the pixel (x, y) shows what lies at
@@ -200,11 +212,12 @@ struct vct_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct vct_voxel_counts) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_params) == 28 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_params) == 29 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_clip_table) == (7 + 12 * VCT_MAX_CLIPS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 10 * 4,
                "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_lamp) == (5 + 6 * VCT_LAMP_POINTS) * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,

@@ -4,6 +4,7 @@
 #include "techniques/technique.h"
 #include "techniques/vct/vct_cones.h"
 #include "techniques/vct/vct_grid.h"
+#include "techniques/vct/vct_lamps.h"
 #include "techniques/vct/vct_names.h"
 #include "techniques/vct/vct_shared.h"
 #include "techniques/vct/vct_temporal.h"
@@ -53,7 +54,7 @@ struct vct_clip {
 
 // Draws by what their materials read; maps that one of a kind lacks are white. Those with
 // maps may glow, too.
-enum vct_kind { VCT_PLAIN, VCT_GLOWING, VCT_MAPPED, VCT_MASKED, VCT_KINDS };
+enum vct_kind { VCT_PLAIN, VCT_GLOWING, VCT_LAMP, VCT_MAPPED, VCT_MASKED, VCT_KINDS };
 
 enum vct_voxels { VCT_BY_COMPUTE, VCT_BY_RASTER };
 
@@ -82,8 +83,10 @@ struct vct {
     struct vct_walk mark, add[VCT_KINDS];
     gpu_pipeline fill[2];   // without and with what moves
     gpu_pipeline inject[2]; // without and with lights
-    gpu_pipeline count, scan, list, zero, surfaces, texel_lists, bounce, mip, cones, edges, gather_rows,
+    gpu_pipeline cones[2], bounce[2]; // without and with lamps
+    gpu_pipeline count, scan, list, zero, surfaces, texel_lists, mip, edges, gather_rows,
         gather_columns, blur, specular, debug;
+    struct vct_lamps lamps;
     struct vct_clip clips[VCT_MAX_CLIPS];
     int clip_count;
     gpu_buffer queue, queue_state;
@@ -150,6 +153,7 @@ void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_texels(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd);
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+void vct_record_fill(struct vct *vct, struct gpu_cmd *cmd); // its last part: with lit voxels as they are
 // In place of fill and mips: the tree, where voxels have come anew; and the light in it.
 void vct_svo_record_tree(struct vct *vct, struct gpu_cmd *cmd);
 void vct_svo_record_light(struct vct *vct, struct gpu_cmd *cmd);

@@ -12,7 +12,7 @@ struct vct_sums
     uvec3 reflectance;  // × opacity
     ivec3 normal;       // of the front
     ivec3 position;     // from the voxel's centre
-    uvec3 front, back;  // emission of both sides × opacity
+    uvec3 front, back;  // emission of both sides × opacity; signed, negative: a lamp's
     uint fronts, backs; // weight of what is covered to the side of the normal, to the other side
 };
 
@@ -38,7 +38,7 @@ void vct_pack_sums(vct_sums s, out uvec4 first, out uvec4 second)
     precise vec3 reflectance = vec3(s.reflectance) * (per_opaque / VCT_COLOUR_ONE);
     precise vec3 position = vec3(s.position) * (per_weight / VCT_POSITION_ONE);
     precise vec2 opacity = vec2(s.fronts, s.backs) / VCT_WEIGHT_ONE;
-    precise vec3 front = vec3(s.front) * per_opaque, back = vec3(s.back) * per_opaque;
+    precise vec3 front = vec3(ivec3(s.front)) * per_opaque, back = vec3(ivec3(s.back)) * per_opaque;
     uvec3 place = uvec3(roundEven((clamp(position, -1.0, 1.0) * 0.5 + 0.5) * 1022.0)); // the middle is whole
     uint weight = min((s.weight + uint(VCT_SURFACE_WEIGHT) - 1u) / uint(VCT_SURFACE_WEIGHT), 127u);
     first.x = packUnorm2x16(reflectance.rg);

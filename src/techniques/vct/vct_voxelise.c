@@ -5,15 +5,16 @@
 
 #include "frame/scene_gpu.h"
 
-static enum vct_kind kind_of(const struct vct *vct, const struct scene *scene,
-                             const struct scene_draw *draw)
+static enum vct_kind kind_of(const struct vct *vct, const struct scene_gpu *scene, int index)
 {
-    const vec3s glow = scene->materials[draw->material].emissive;
+    const struct scene_draw *draw = &scene->draws[index];
+    const vec3s glow = scene->scene->materials[draw->material].emissive;
     if (draw->variant & VARIANT_MASKED) return VCT_MASKED;
     if (vct->options.occlusion) return VCT_PLAIN; // whatever its colour
     const uint32_t maps =
         VARIANT_BASE_COLOR_MAP | VARIANT_METALLIC_ROUGHNESS_MAP | VARIANT_EMISSIVE_MAP;
     if (draw->variant & maps) return VCT_MAPPED;
+    if (vct_lamps_have(&vct->lamps, index)) return VCT_LAMP;
     return glow.x > 0.0f || glow.y > 0.0f || glow.z > 0.0f ? VCT_GLOWING : VCT_PLAIN;
 }
 
@@ -48,7 +49,7 @@ static void walk(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *c
     for (int i = 0; i < view->scene->draw_count; i++) {
         const struct scene_draw *draw = &view->scene->draws[i];
         if (draw->moves != moving || !meets(draw, &clip->grid)) continue;
-        const enum vct_kind kind = kind_of(vct, view->scene->scene, draw);
+        const enum vct_kind kind = kind_of(vct, view->scene, i);
         const struct vct_walk *pipelines = add ? &vct->add[kind] : &vct->mark;
         scene_gpu_dispatch(view->scene, cmd,
                            &(struct scene_dispatch_call){ .pipeline = pipelines->small,
