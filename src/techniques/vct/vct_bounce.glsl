@@ -1,6 +1,6 @@
 // Light that other voxels and the sky bring to each voxel, by cones: irradiance on both sides of its sheet. What
 // surfaces that glow bring on their straight way, and with more bounces all that the voxels sent out in the last
-// frame. Voxels of one block that are parts of one sheet get what is brought to their middle.
+// frame. Voxels of one block that are parts of one sheet get what is brought to their middle: such light changes slowly.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -9,7 +9,9 @@
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
 
-layout(local_size_x = VCT_LOCAL) in;
+layout(local_size_x = VCT_BOUNCE_LOCAL) in;
+
+layout(constant_id = 15) const uint VCT_BLOCK = 2u; // texels along a block: 2 or 4
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
@@ -19,7 +21,7 @@ layout(set = 0, binding = 3) uniform sampler3D light;
 layout(set = 0, binding = 4, scalar) readonly buffer vct_texels { uint texels[]; };
 layout(set = 0, binding = 5, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
 layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
-layout(set = 0, binding = 7, scalar) writeonly buffer vct_brought { uint brought[]; };
+layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_brought;
 layout(set = 0, binding = 8, scalar) readonly buffer vct_mask { uint mask[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer vct_before { uint before[]; };
 
@@ -57,108 +59,114 @@ vec3 irradiance(vec3 position, vec3 normal)
 }
 
 const float ONE_SHEET = 0.9; // least cosine of the normals of voxels that are one sheet: 26 degrees
-const float ONE_PLANE = 1.0; // voxels: how far they lie at most from the plane of the first
 
-// The voxels of a block of 4 × 4 × 4: those of two texels along x have 16 bits and follow on each other.
-struct block
+// How far they lie at most from the plane of the first: a quarter of the block, in voxels.
+float one_plane()
 {
-    ivec3 corner;
-    uvec2 bits;
-    uvec4 first; // slots
-};
-
-void read_texels(ivec3 texel, out uint bits, out uint first)
-{
-    uint index = vct_texel_index(texel), shift = 8u * (index & 3u), word = mask[index >> 2];
-    bits = word >> shift & 0xffffu;
-    first = before[index >> 2] + uint(bitCount(word & ((1u << shift) - 1u)));
+    return 0.5 * float(VCT_BLOCK);
 }
 
-block block_at(ivec3 place)
+// A block's voxels lie in rows of texels along x, whose voxels have 8 bits each and follow on each other: their bits, those
+// that are in no sheet yet, those of the sheet at hand, and the first one's slot. Each invocation has its own.
+const uint ROWS = VCT_BLOCK * VCT_BLOCK, MOST_ROWS = 16u;
+shared uint rows_all[MOST_ROWS * VCT_BOUNCE_LOCAL], rows_left[MOST_ROWS * VCT_BOUNCE_LOCAL],
+    rows_part[MOST_ROWS * VCT_BOUNCE_LOCAL], rows_first[MOST_ROWS * VCT_BOUNCE_LOCAL];
+
+uint own(uint row)
 {
-    ivec3 texel = 2 * place;
-    uvec4 bits, first;
-    read_texels(texel, bits.x, first.x);
-    read_texels(texel + ivec3(0, 1, 0), bits.y, first.y);
-    read_texels(texel + ivec3(0, 0, 1), bits.z, first.z);
-    read_texels(texel + ivec3(0, 1, 1), bits.w, first.w);
-    return block(4 * place, bits.xz | bits.yw << 16u, first);
+    return row * VCT_BOUNCE_LOCAL + gl_LocalInvocationID.x;
 }
 
-// Voxels are named by their bits, 0 to 63.
-uint first_of(uvec2 bits)
+void read_rows(ivec3 first_texel)
 {
-    return uint(bits.x != 0u ? findLSB(bits.x) : 32 + findLSB(bits.y));
+    for (uint row = 0u; row < ROWS; row++) {
+        uint index = vct_texel_index(first_texel + ivec3(0, row % VCT_BLOCK, row / VCT_BLOCK));
+        uint shift = 8u * (index & 3u), word = mask[index >> 2];
+        uint bits = word >> shift & (VCT_BLOCK == 4u ? ~0u : 0xffffu);
+        uint first = before[index >> 2] + uint(bitCount(word & ((1u << shift) - 1u)));
+        // Those that there was no room for are none.
+        for (uint room = vct.capacity - min(first, vct.capacity); uint(bitCount(bits)) > room;)
+            bits &= ~(1u << uint(findMSB(bits)));
+        rows_all[own(row)] = rows_left[own(row)] = bits;
+        rows_first[own(row)] = first;
+    }
 }
 
-uvec2 bit_of(uint voxel)
+// Bit of a voxel in its row to its place in the block.
+vec3 place_of(uint row, uint bit)
 {
-    return uvec2(voxel < 32u ? 1u << voxel : 0u, voxel < 32u ? 0u : 1u << (voxel - 32u));
+    return vec3(uvec3(bit >> 3, row % VCT_BLOCK, row / VCT_BLOCK) * 2u + (uvec3(bit) >> uvec3(0u, 1u, 2u) & 1u));
 }
 
-ivec3 place_of(block b, uint voxel)
+uint slot_of(uint row, uint bit)
 {
-    ivec3 low = ivec3(voxel) >> ivec3(0, 1, 2) & 1, high = ivec3(voxel) >> ivec3(3, 4, 5) & 1;
-    return b.corner + 2 * high + low;
-}
-
-uint slot_of(block b, uint voxel)
-{
-    uint row = voxel >> 4;
-    uint bits = (row < 2u ? b.bits.x : b.bits.y) >> (16u * (row & 1u)) & 0xffffu;
-    uint first = row == 0u ? b.first.x : row == 1u ? b.first.y : row == 2u ? b.first.z : b.first.w;
-    return min(first + uint(bitCount(bits & ((1u << (voxel & 15u)) - 1u))), vct.capacity);
+    return rows_first[own(row)] + uint(bitCount(rows_all[own(row)] & ((1u << bit) - 1u)));
 }
 
 // Voxels of one block that are parts of one sheet.
 struct vct_part
 {
-    uvec2 bits;
     vec3 normal;
     vec3 position; // voxels from the block's corner × weight
     float weight;
     bvec2 covers; // whether there is a front, a back
 };
 
-// Those of `left` that have the normal of the first of them and lie in its plane.
-vct_part part_of(block b, uvec2 left)
+// Takes those that are left and have the normal of the first of them and lie in its plane. False: there was none.
+bool take_part(out vct_part part)
 {
-    vct_part part = vct_part(uvec2(0u), vec3(0.0), vec3(0.0), 0.0, bvec2(false));
+    part = vct_part(vec3(0.0), vec3(0.0), 0.0, bvec2(false));
     vec3 first_normal = vec3(0.0), first_position = vec3(0.0);
     bool first = true;
-    for (uvec2 rest = left; rest != uvec2(0u);) {
-        uint voxel = first_of(rest), slot = slot_of(b, voxel);
-        rest &= ~bit_of(voxel);
-        if (slot == vct.capacity) { // it has none
-            part.bits |= bit_of(voxel);
-            continue;
+    uint row = 0u, rest = rows_left[own(0u)], taken = 0u;
+    for (;;) {
+        while (rest == 0u && row < ROWS) {
+            rows_part[own(row)] = taken;
+            rows_left[own(row)] &= ~taken;
+            taken = 0u;
+            row++;
+            rest = row < ROWS ? rows_left[own(min(row, ROWS - 1u))] : 0u;
         }
-        vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, vct_record_place(slot), 0));
-        vec3 position = vec3(place_of(b, voxel) - b.corner) + 0.5 + surface.position;
+        if (rest == 0u) return !first;
+        uint bit = uint(findLSB(rest));
+        rest &= rest - 1u;
+        vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, vct_record_place(slot_of(row, bit)), 0));
+        vec3 position = place_of(row, bit) + 0.5 + surface.position;
         if (first) {
             first_normal = surface.normal;
             first_position = position;
         } else if (dot(surface.normal, first_normal) < ONE_SHEET ||
-                   abs(dot(position - first_position, first_normal)) > ONE_PLANE) {
+                   abs(dot(position - first_position, first_normal)) > one_plane()) {
             continue;
         }
         first = false;
-        part.bits |= bit_of(voxel);
+        taken |= 1u << bit;
         part.normal += surface.weight * surface.normal;
         part.position += surface.weight * position;
         part.weight += surface.weight;
         part.covers.x = part.covers.x || surface.covers.x;
         part.covers.y = part.covers.y || surface.covers.y;
     }
-    return part;
+}
+
+void bring_to_part(vec3 front, vec3 back)
+{
+    uint row = 0u, rest = rows_part[own(0u)];
+    uvec4 texel = uvec4(packHalf2x16(front.rg), packHalf2x16(vec2(front.b, back.r)), packHalf2x16(back.gb), 0u);
+    for (;;) {
+        while (rest == 0u && ++row < ROWS) rest = rows_part[own(row)];
+        if (rest == 0u) return;
+        imageStore(vct_brought, vct_brought_place(slot_of(row, uint(findLSB(rest)))), texel);
+        rest &= rest - 1u;
+    }
 }
 
 // One side after the other, in a loop that ends where no invocation of a group has a second one.
-void gather(block b, vct_part part, out vec3 front, out vec3 back)
+void gather(ivec3 corner, vct_part part, out vec3 front, out vec3 back)
 {
     front = back = vec3(0.0);
     if (part.normal == vec3(0.0)) return;
-    vec3 position = vct_world_from_voxels(vec3(b.corner) + part.position / part.weight);
+    vec3 position = vct_world_from_voxels(vec3(corner) + part.position / part.weight);
     vec3 normal = normalize(part.normal);
     for (int side = part.covers.x ? 0 : 1; side < (part.covers.y ? 2 : 1); side++) {
         vec3 e = irradiance(position, side == 0 ? normal : -normal);
@@ -169,23 +177,16 @@ void gather(block b, vct_part part, out vec3 front, out vec3 back)
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= state.count[1]) return;
-    uint second_level = uint(vct.volume_dim * vct.volume_dim * vct.volume_dim);
-    block b = block_at(vct_unpack_texel(texels[second_level + i]));
-    for (uvec2 left = b.bits; left != uvec2(0u);) {
-        vct_part part = part_of(b, left);
+    uint i = gl_GlobalInvocationID.x, level = VCT_BLOCK == 4u ? 2u : 1u;
+    if (i >= state.count[level]) return;
+    uint dim = uint(vct.volume_dim), half_dim = dim / 2u;
+    uint first = dim * dim * dim + (level == 2u ? half_dim * half_dim * half_dim : 0u);
+    ivec3 texel = int(VCT_BLOCK) * vct_unpack_texel(texels[first + i]);
+    read_rows(texel);
+    vct_part part;
+    while (take_part(part)) {
         vec3 front, back;
-        gather(b, part, front, back);
-        left &= ~part.bits;
-        while (part.bits != uvec2(0u)) {
-            uint voxel = first_of(part.bits), slot = slot_of(b, voxel);
-            part.bits &= ~bit_of(voxel);
-            if (slot == vct.capacity) continue;
-            uint to = slot * VCT_BROUGHT_WORDS;
-            brought[to] = packHalf2x16(front.rg);
-            brought[to + 1u] = packHalf2x16(vec2(front.b, back.r));
-            brought[to + 2u] = packHalf2x16(back.gb);
-        }
+        gather(2 * texel, part, front, back);
+        bring_to_part(front, back);
     }
 }

@@ -21,7 +21,7 @@ layout(set = 0, binding = 5, scalar) readonly buffer vct_list { uint list[]; };
 layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
 layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_records;
 layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments { vct_voxel_counts counts; };
-layout(set = 0, binding = 9, scalar) readonly buffer vct_brought { uint brought[]; };
+layout(set = 0, binding = 9) uniform usampler2D vct_brought;
 
 layout(constant_id = 0) const bool HAS_LIGHTS = true;
 
@@ -83,10 +83,10 @@ void main()
         else back += e;
     }
     if (kept(vct.brought) != 0u) {
-        uint from = slot * VCT_BROUGHT_WORDS;
-        vec2 middle = unpackHalf2x16(brought[from + 1u]);
-        front += vec3(unpackHalf2x16(brought[from]), middle.x);
-        back += vec3(middle.y, unpackHalf2x16(brought[from + 2u]));
+        uvec4 brought = texelFetch(vct_brought, vct_brought_place(slot), 0);
+        vec2 middle = unpackHalf2x16(brought.y);
+        front += vec3(unpackHalf2x16(brought.x), middle.x);
+        back += vec3(middle.y, unpackHalf2x16(brought.z));
     }
     r.front = min(front * r.reflectance / PI, vec3(HALF_MAX));
     r.back = min(back * r.reflectance / PI, vec3(HALF_MAX));

@@ -17,7 +17,7 @@ static void inject(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
             { .name = "vct_list", .buffer = set->list },
             { .name = "vct_surfaces", .image = set->surfaces },
             { .name = "vct_records", .image = set->records },
-            { .name = "vct_brought", .buffer = set->brought },
+            { .name = "vct_brought", .image = set->brought },
             { .name = "vct_arguments", .buffer = set->arguments }),
         NULL, 0, set->arguments, 0);
 }
@@ -110,7 +110,7 @@ static void bring(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *
                  { .name = "vct_mask", .buffer = set->mask },
                  { .name = "vct_before", .buffer = set->before },
                  { .name = "vct_surfaces", .image = set->surfaces },
-                 { .name = "vct_brought", .buffer = set->brought },
+                 { .name = "vct_brought", .image = set->brought },
                  vct_lamps_binding(&vct->lamps, cmd), vct_svo_binding(vct, cmd),
                  { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
         NULL, 0, clip->texel_state, offsetof(struct vct_texel_levels, block_groups));

@@ -10,18 +10,19 @@
 enum {
     MAPPED = 1, // scene.glsl
     MASKED = 2,
-    COLUMNS = 4,    // vct_gather.comp
-    UNLIT = 8,      // vct_inject.comp
-    ONE_WAY = 16,   // vct_ways.glsl
-    STILL = 32,     // vct_seen.glsl
-    OCCLUSION = 64, // vct_ways.glsl
-    NO_GLOW = 128,  // vct_add.glsl
-    GRIDS = 256,    // vct_clipmap.glsl
-    LAMPS = 512,    // vct_add.glsl, vct_lamps.glsl
+    COLUMNS = 4,         // vct_gather.comp
+    UNLIT = 8,           // vct_inject.comp
+    ONE_WAY = 16,        // vct_ways.glsl
+    STILL = 32,          // vct_seen.glsl
+    OCCLUSION = 64,      // vct_ways.glsl
+    NO_GLOW = 128,       // vct_add.glsl
+    GRIDS = 256,         // vct_clipmap.glsl
+    LAMPS = 512,         // vct_add.glsl, vct_lamps.glsl
+    LARGE_BLOCKS = 1024, // vct_bounce.glsl
 };
 static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 },  { 0, 0 },
                                                        { 10, 0 }, { 11, 0 }, { 12, 1 }, { 5, 0 },
-                                                       { 13, 0 }, { 14, 1 } };
+                                                       { 13, 0 }, { 14, 1 }, { 15, 4 } };
 enum { CONSTANT_BITS = sizeof constant_of_bit / sizeof constant_of_bit[0] };
 
 struct pipeline_plan {
@@ -124,11 +125,13 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     struct vct_svo *svo = &vct->svo;
     const bool lit = !vct->options.occlusion;
     const uint32_t ways = vct->options.anisotropic ? 0 : ONE_WAY,
-                   kind = ways | (lit ? 0 : (uint32_t)OCCLUSION);
+                   kind = ways | (lit ? 0 : (uint32_t)OCCLUSION),
+                   blocks = vct_block_level(&vct->options) == 2 ? (uint32_t)LARGE_BLOCKS : 0;
     const struct pipeline_plan mips[MIP_PIPELINES] = {
-        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_mips_comp : NULL, ways | GRIDS },
+        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_mips_comp : NULL,
+          ways | blocks | GRIDS },
         { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_bounce_mips_comp : NULL,
-          ways | GRIDS | LAMPS },
+          ways | blocks | GRIDS | LAMPS },
         { &vct->cones[0], "cones", &shader_vct_cones_mips_comp, kind | GRIDS },
         { &vct->cones[1], "cones_lamps", lit ? &shader_vct_cones_mips_comp : NULL,
           ways | GRIDS | LAMPS },
@@ -139,9 +142,10 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
         { &vct->debug, "debug", &shader_vct_debug_mips_comp, GRIDS },
     };
     const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
-        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_svo_comp : NULL, ways | GRIDS },
+        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_svo_comp : NULL,
+          ways | blocks | GRIDS },
         { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_bounce_svo_comp : NULL,
-          ways | GRIDS | LAMPS },
+          ways | blocks | GRIDS | LAMPS },
         { &vct->cones[0], "cones", &shader_vct_cones_svo_comp, kind | GRIDS },
         { &vct->cones[1], "cones_lamps", lit ? &shader_vct_cones_svo_comp : NULL,
           ways | GRIDS | LAMPS },

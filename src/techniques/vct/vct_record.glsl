@@ -21,6 +21,12 @@ ivec2 vct_record_place(uint slot)
     return ivec2(2u * (slot % VCT_RECORD_ROW), slot / VCT_RECORD_ROW);
 }
 
+// Of irradiance on the front and the back, as six half floats.
+ivec2 vct_brought_place(uint slot)
+{
+    return ivec2(slot % VCT_RECORD_ROW, slot / VCT_RECORD_ROW);
+}
+
 // 12 + 12 bits. Fronts turn to one half of all ways (vct_add.glsl), and none of these has the code 0.
 uint vct_pack_normal(vec3 normal)
 {

@@ -61,14 +61,12 @@ struct buffer_plan {
     uint32_t usage;
 };
 
-enum { SET_BUFFERS = 9 };
+enum { SET_BUFFERS = 8 };
 
 static void plan_set(const struct vct_options *options, bool moving, struct vct_set *set,
                      struct buffer_plan out[SET_BUFFERS])
 {
     const size_t capacity = vct_capacity(options);
-    // Without light there is none that voxels could bring to each other.
-    const size_t brought = options->occlusion ? 1 : capacity * VCT_BROUGHT_WORDS;
 #define NAME(thing) (moving ? "moving_" thing : "rest_" thing)
     const struct buffer_plan plan[SET_BUFFERS] = {
         { NAME("mask"), &set->mask, mask_words(options), 0 },
@@ -78,7 +76,6 @@ static void plan_set(const struct vct_options *options, bool moving, struct vct_
         { NAME("again"), &set->again, mask_words(options), 0 },
         { NAME("again_list"), &set->again_list, capacity, 0 },
         { NAME("sums"), &set->sums, capacity * VCT_SUM_WORDS, 0 },
-        { NAME("brought"), &set->brought, brought, 0 },
         { NAME("arguments"), &set->arguments, sizeof(struct vct_voxel_counts) / sizeof(uint32_t),
           GPU_BUFFER_INDIRECT },
     };
@@ -153,13 +150,38 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
-// Two texels for each voxel.
-static struct gpu_image_desc voxel_image_desc(const struct vct_options *options, const char *name)
+// What is kept of a set's voxels in images: so many texels for each.
+struct image_plan {
+    const char *name;
+    gpu_image *out;
+    uint32_t texels;
+};
+
+enum { CLIP_IMAGES = 6 };
+
+static void plan_images(struct vct_clip *clip, struct image_plan out[CLIP_IMAGES])
 {
-    return (struct gpu_image_desc){ .name = name,
+    const struct image_plan plan[CLIP_IMAGES] = {
+        { "rest_surfaces", &clip->rest.surfaces, 2 },
+        { "rest_records", &clip->rest.records, 2 },
+        { "rest_brought", &clip->rest.brought, 1 },
+        { "moving_surfaces", &clip->moving.surfaces, 2 },
+        { "moving_records", &clip->moving.records, 2 },
+        { "moving_brought", &clip->moving.brought, 1 },
+    };
+    memcpy(out, plan, sizeof plan);
+}
+
+static struct gpu_image_desc image_desc(const struct vct_options *options,
+                                        const struct image_plan *plan)
+{
+    // Without light there is none that voxels could bring to each other.
+    const bool none = options->occlusion && plan->texels == 1;
+    const uint32_t rows = gpu_groups(vct_capacity(options), VCT_RECORD_ROW);
+    return (struct gpu_image_desc){ .name = plan->name,
                                     .format = GPU_RGBA32U,
-                                    .width = 2 * VCT_RECORD_ROW,
-                                    .height = gpu_groups(vct_capacity(options), VCT_RECORD_ROW),
+                                    .width = plan->texels * VCT_RECORD_ROW,
+                                    .height = none ? 1 : rows,
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 
@@ -194,17 +216,15 @@ bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
            create_vectors(vct, "gathered", vct->gathered);
 }
 
-static bool create_voxel_image(struct vct *vct, const char *name, gpu_image *out)
-{
-    return vct_create_image(vct->name, vct->gpu, voxel_image_desc(&vct->options, name), out);
-}
-
 static bool create_voxel_images(struct vct *vct, struct vct_clip *clip)
 {
-    return create_voxel_image(vct, "rest_surfaces", &clip->rest.surfaces) &&
-           create_voxel_image(vct, "moving_surfaces", &clip->moving.surfaces) &&
-           create_voxel_image(vct, "rest_records", &clip->rest.records) &&
-           create_voxel_image(vct, "moving_records", &clip->moving.records);
+    struct image_plan plan[CLIP_IMAGES];
+    plan_images(clip, plan);
+    for (int i = 0; i < CLIP_IMAGES; i++)
+        if (!vct_create_image(vct->name, vct->gpu, image_desc(&vct->options, &plan[i]),
+                              plan[i].out))
+            return false;
+    return true;
 }
 
 bool vct_create_resources(struct vct *vct)
@@ -239,11 +259,9 @@ void vct_destroy_resources(struct vct *vct)
     for (int i = 0; i < count; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
     gpu_image_destroy(vct->gpu, &vct->light);
     for (int i = 0; i < vct->clip_count; i++) {
-        struct vct_set *sets[] = { &vct->clips[i].rest, &vct->clips[i].moving };
-        for (int k = 0; k < 2; k++) {
-            gpu_image_destroy(vct->gpu, &sets[k]->surfaces);
-            gpu_image_destroy(vct->gpu, &sets[k]->records);
-        }
+        struct image_plan images[CLIP_IMAGES];
+        plan_images(&vct->clips[i], images);
+        for (int k = 0; k < CLIP_IMAGES; k++) gpu_image_destroy(vct->gpu, images[k].out);
     }
     gpu_image_destroy(vct->gpu, &vct->edge_image);
     gpu_image_destroy(vct->gpu, &vct->start_image);
@@ -265,9 +283,14 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
     for (uint32_t mip = 0; mip < light.mips; mip++)
         bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
                  (uint64_t)gpu_format_bytes(light.format);
-    const struct gpu_image_desc voxels = voxel_image_desc(options, "");
-    bytes += 4 * (uint64_t)vct_clip_count(options) * voxels.width * voxels.height *
-             (uint64_t)gpu_format_bytes(GPU_RGBA32U);
-    const int pixel = gpu_format_bytes(GPU_R8) + gpu_format_bytes(GPU_RG16F) + 7 * gpu_format_bytes(GPU_RGBA16F);
+    struct image_plan images[CLIP_IMAGES];
+    plan_images(&none.clips[0], images);
+    for (int i = 0; i < CLIP_IMAGES; i++) {
+        const struct gpu_image_desc desc = image_desc(options, &images[i]);
+        bytes += (uint64_t)vct_clip_count(options) * desc.width * desc.height *
+                 (uint64_t)gpu_format_bytes(GPU_RGBA32U);
+    }
+    const int pixel =
+        gpu_format_bytes(GPU_R8) + gpu_format_bytes(GPU_RG16F) + 7 * gpu_format_bytes(GPU_RGBA16F);
     return bytes + (uint64_t)width * height * (uint64_t)pixel;
 }

@@ -11,6 +11,7 @@
 #define VCT_QUEUE         65535 // tiles of large triangles that wait for a workgroup each
 #define VCT_BLOCK_WORDS   8    // words of the mask that one invocation counts and lists
 #define VCT_SCAN_LOCAL    256
+#define VCT_BOUNCE_LOCAL  32 // blocks that a workgroup brings light to
 
 // Words of vct_sum_words for a voxel: see vct_surface.glsl.
 #define VCT_SUM_WEIGHT      0
@@ -31,10 +32,8 @@
 #define VCT_POSITION_ONE    127.0 // of a whole voxel
 #define VCT_EMISSION_ONE    256.0 // of the strongest emission of the scene
 
-// Voxels in a row of vct_surfaces and vct_records, with two texels each.
+// Voxels in a row of vct_surfaces and vct_records, with two texels each, and of vct_brought with one.
 #define VCT_RECORD_ROW 1024
-// Words of vct_brought: irradiance on the front and the back.
-#define VCT_BROUGHT_WORDS 3
 
 // Buffer "vct_arguments" of a set of voxels.
 struct vct_voxel_counts {
@@ -111,13 +110,14 @@ struct vct_cone_params {
 // Buffer "vct_texel_state": dispatches over the lists of texels, how many there are in each.
 struct vct_texel_levels {
     uint32_t groups[3 * VCT_MAX_LEVELS]; // x, y, z; of coarser levels for each way
-    uint32_t block_groups[3];            // of the second level, for each texel
+    uint32_t block_groups[3];            // of VCT_BOUNCE_LOCAL blocks
     uint32_t count[VCT_MAX_LEVELS];
 };
 
 struct vct_texels_push {
     uint32_t levels;
     uint32_t ways;                       // volumes side by side
+    uint32_t block_level;                // of which a texel is a block: see vct_bounce.glsl
     uint32_t first[VCT_MAX_LEVELS];      // of each level in the buffer of lists
     uint32_t mask_first[VCT_MAX_LEVELS]; // its first bit
 };
@@ -220,7 +220,7 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 10 * 4,
 _Static_assert(sizeof(struct vct_lamp) == (5 + 6 * VCT_LAMP_POINTS) * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_texels_push) == 8 + 2 * VCT_MAX_LEVELS * 4,
+_Static_assert(sizeof(struct vct_texels_push) == 12 + 2 * VCT_MAX_LEVELS * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_history_params) == 14 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_specular_params) == 6 * 4, "layout is shared with GLSL");

@@ -27,9 +27,9 @@ enum { VCT_LOCAL_2D = 8 }; // of shaders over pixels or texels, in x and y
 
 // Voxels of a part of the scene: which, in what order, what they are, what they send out.
 struct vct_set {
-    gpu_buffer mask, before, blocks, list, brought, arguments;
+    gpu_buffer mask, before, blocks, list, arguments;
     gpu_buffer again, again_list, sums; // of those where several triangles, or small ones, are added up
-    gpu_image surfaces, records;        // RGBA32U
+    gpu_image surfaces, records, brought; // RGBA32U
 };
 
 // A level of the clip map: a grid and what is in its voxels. The first one has the whole scene.
@@ -122,6 +122,9 @@ uint32_t vct_ways(const struct vct_options *options); // volumes side by side: 6
 
 // Lists of texels of the light volume, one for each level; see vct_texels.comp.
 struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32_t levels);
+// Of which a texel is a block that gets one irradiance: 8 voxels along a side, not 4, where they are no larger than those of
+// the default resolution.
+uint32_t vct_block_level(const struct vct_options *options);
 size_t vct_texel_words(const struct vct_options *options);
 size_t vct_texel_mask_words(const struct vct_options *options);
 size_t vct_level_groups(uint32_t level); // where a level's dispatch is in texel_state

@@ -10,7 +10,9 @@ static size_t level_texels(const struct vct_options *options, uint32_t level)
 
 struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32_t levels)
 {
-    struct vct_texels_push push = { .levels = levels, .ways = vct_ways(options) };
+    struct vct_texels_push push = { .levels = levels,
+                                    .ways = vct_ways(options),
+                                    .block_level = vct_block_level(options) };
     size_t first = 0;
     for (uint32_t level = 0; level < push.levels; level++) {
         push.first[level] = (uint32_t)first;
@@ -19,6 +21,11 @@ struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32
         push.mask_first[level] = push.first[level] - (level > 0 ? push.first[1] : 0);
     }
     return push;
+}
+
+uint32_t vct_block_level(const struct vct_options *options)
+{
+    return options->resolution >= 128 ? 2 : 1;
 }
 
 size_t vct_texel_words(const struct vct_options *options)
@@ -41,9 +48,9 @@ size_t vct_level_groups(uint32_t level)
 
 void vct_record_texels(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd)
 {
-    // Grids but the first have no mips; light is brought to blocks, which are texels of the second
-    // level.
-    const uint32_t levels = clip == &vct->clips[0] ? vct_volume_mips(&vct->options) : 2;
+    // Grids but the first have no mips, but blocks that light is brought to.
+    const uint32_t levels = clip == &vct->clips[0] ? vct_volume_mips(&vct->options)
+                                                   : vct_block_level(&vct->options) + 1;
     const struct vct_texels_push push = vct_texels_push(&vct->options, levels);
     const size_t counts = offsetof(struct vct_texel_levels, count);
     const size_t words = gpu_buffer_bytes(vct->gpu, clip->rest.mask) / sizeof(uint32_t);

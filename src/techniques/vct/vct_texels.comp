@@ -24,7 +24,7 @@ void enter(uint level, uint place, ivec3 texel)
     texels[push.first[level] + place] = vct_pack_texel(texel);
     uint each = level == 0u ? 1u : push.ways; // invocations for a texel: see vct_mip.comp
     atomicMax(state.groups[3u * level], ((place + 1u) * each + VCT_LOCAL - 1u) / VCT_LOCAL);
-    if (level == 1u) atomicMax(state.block_groups[0], place / VCT_LOCAL + 1u);
+    if (level == push.block_level) atomicMax(state.block_groups[0], place / VCT_BOUNCE_LOCAL + 1u);
 }
 
 void enter_above(ivec3 texel)
