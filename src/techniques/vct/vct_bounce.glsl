@@ -47,7 +47,8 @@ vec3 lamps_at(vec3 at, vec3 normal)
 vec3 irradiance(vec3 position, vec3 normal)
 {
     mat3 world_from_local = vct_axes_about(normal);
-    vec3 at = (position - clips.origin_m) / set.texel_m;
+    // With one grid both are the same, and the origin that is in the position goes out again without rounding.
+    vec3 at = (position - (VCT_CLIPS > 1 ? clips.origin_m : vct.origin_m)) / set.texel_m;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < set.cone_count; i++) {
         vec4 met = vct_cone(light, at, normal, world_from_local * set.cones[i].xyz, set.offset, set.width_per_m,

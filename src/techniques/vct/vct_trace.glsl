@@ -105,13 +105,13 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wi
 vec4 vct_cone(sampler3D light, vec3 at, vec3 normal, vec3 direction, float offset, float wide, uint last_mip,
               vct_start start)
 {
-    bool changes = VCT_CLIPS > 1 && start.next > 0.0;
+    if (VCT_CLIPS == 1) return vct_trace(light, at + offset * normal, normal, direction, wide, last_mip, 0);
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < (changes ? 2 : 1); i++) {
+    for (int i = 0; i < (start.next > 0.0 ? 2 : 1); i++) {
         int level = start.level + i;
         vec3 from = at + offset * float(1 << level) * normal;
         vec4 met = vct_trace(light, from, normal, direction, wide, last_mip, level);
-        sum += (changes ? (i == 0 ? 1.0 - start.next : start.next) : 1.0) * met;
+        sum += (i == 0 ? 1.0 - start.next : start.next) * met;
     }
     return sum;
 }
