@@ -390,6 +390,25 @@ TEST_GPU(what_moves_takes_its_shade_along)
     }
 }
 
+// Opacity is kept from frame to frame, but for grids that follow the eye.
+TEST_GPU(occlusion_is_where_the_eye_has_gone)
+{
+    struct vct_rig rig, fresh;
+    court(&rig, gpu);
+    vct_rig_open(&rig, "resolution=32,levels=3");
+    float *before = seen(&rig);
+    court(&fresh, gpu);
+    vct_rig_open(&fresh, "resolution=32,levels=3");
+    studio_look(&rig.studio, vec3_of(1, 3, 8), vec3_of(3, 0, 1));
+    studio_look(&fresh.studio, vec3_of(1, 3, 8), vec3_of(3, 0, 1));
+    float *gone = seen(&rig), *due = seen(&fresh);
+    CHECK(memcmp(before, gone, PIXELS * sizeof *gone) != 0);
+    assert_memory_equal(gone, due, PIXELS * sizeof *gone);
+    free(before), free(gone), free(due);
+    vct_rig_finish(&rig);
+    vct_rig_finish(&fresh);
+}
+
 // The exposure follows the light, and with it the frame's unit; what is open has none.
 TEST_GPU(history_of_occlusion_does_not_know_of_light)
 {
