@@ -261,6 +261,7 @@ static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct f
         .direct = f->layers[FRAME_DIRECT],
         .albedo = f->layers[FRAME_ALBEDO],
         .material = f->layers[FRAME_MATERIAL],
+        .scratch = f->layers[FRAME_COLOR], // not written yet
         .emitted = f->emitted_irradiance,
         .fallback = f->unlit_luminance,
         .width = f->width,

@@ -18,10 +18,13 @@ bool exposure_init(struct exposure *e, struct gpu *gpu)
                                      GPU_BUFFER_STORAGE };
     struct gpu_buffer_desc sums = { "frame.exposure_sums", EXPOSURE_MAX_GROUPS * sizeof(vec2s),
                                     GPU_BUFFER_STORAGE };
+    const struct gpu_constant second_round[] = { { 0, 1 } }; // see exposure_sum.comp
     return gpu_sampler_get(gpu, &nearest, &e->nearest) &&
            gpu_buffer_create(gpu, &state, &e->state) && gpu_buffer_create(gpu, &sums, &e->sums) &&
            gpu_compute_pipeline_create(gpu, "frame.exposure_sum", &shader_exposure_sum_comp, NULL,
-                                       0, &e->sum) &&
+                                       0, &e->sum[0]) &&
+           gpu_compute_pipeline_create(gpu, "frame.exposure_sum_again", &shader_exposure_sum_comp,
+                                       second_round, 1, &e->sum[1]) &&
            gpu_compute_pipeline_create(gpu, "frame.exposure_finish", &shader_exposure_finish_comp,
                                        NULL, 0, &e->finish);
 }
@@ -31,7 +34,7 @@ void exposure_finish(struct exposure *e)
     if (!e->gpu) return;
     gpu_buffer_destroy(e->gpu, &e->state);
     gpu_buffer_destroy(e->gpu, &e->sums);
-    gpu_pipeline_destroy(e->gpu, &e->sum);
+    for (int i = 0; i < 2; i++) gpu_pipeline_destroy(e->gpu, &e->sum[i]);
     gpu_pipeline_destroy(e->gpu, &e->finish);
     *e = (struct exposure){ 0 };
 }
@@ -59,12 +62,13 @@ void exposure_record_auto(const struct exposure *e, struct gpu_cmd *cmd,
                                   .fallback = in->fallback };
     gpu_scope_begin(cmd, "exposure");
     for (push.round_index = 0; push.round_index < 2; push.round_index++) {
-        gpu_dispatch(cmd, e->sum,
+        gpu_dispatch(cmd, e->sum[push.round_index],
                      GPU_BIND(constants, { "exposure_state", .buffer = e->state },
                               { "exposure_sums", .buffer = e->sums },
                               { "direct_layer", .image = in->direct, .sampler = e->nearest },
                               { "albedo_layer", .image = in->albedo, .sampler = e->nearest },
-                              { "material_layer", .image = in->material, .sampler = e->nearest }),
+                              { "material_layer", .image = in->material, .sampler = e->nearest },
+                              { "metered_layer", .image = in->scratch }),
                      &push, sizeof push, push.groups, 1, 1);
         gpu_dispatch(cmd, e->finish,
                      GPU_BIND(constants, { "exposure_state", .buffer = e->state },

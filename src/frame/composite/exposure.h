@@ -7,7 +7,7 @@
 
 struct exposure {
     struct gpu *gpu;
-    gpu_pipeline sum, finish;
+    gpu_pipeline sum[2], finish; // of each round
     gpu_buffer state; // struct exposure_values
     gpu_buffer sums;
     gpu_sampler nearest;
@@ -20,6 +20,7 @@ void exposure_record_fixed(const struct exposure *exposure, struct gpu_cmd *cmd,
 // `emitted` (scaled lux); where nothing of it is lit, `fallback` (scaled luminance, 0: EV 0).
 struct exposure_input {
     gpu_image direct, albedo, material;
+    gpu_image scratch; // RGBA16F, as large; what is in it is lost
     vec3s emitted;
     float fallback;
     uint32_t width, height;

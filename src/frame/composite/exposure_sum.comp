@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // A sum of log2 luminances for each group of threads. The order of additions depends on the image's size alone, so equal
-// images give equal bits.
+// images give equal bits. The first round leaves what it has metered for the second one.
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/composite/exposure_shared.h"
@@ -16,6 +16,12 @@ layout(set = 0, binding = 2, scalar) writeonly buffer exposure_sums { vec2 sums[
 layout(set = 0, binding = 3) uniform sampler2D direct_layer;
 layout(set = 0, binding = 4) uniform sampler2D albedo_layer;
 layout(set = 0, binding = 5) uniform sampler2D material_layer;
+// The logarithm as two half floats, 22 bits; what the pixel is.
+layout(set = 0, binding = 6, rgba16f) uniform image2D metered_layer;
+
+layout(constant_id = 0) const bool SECOND_ROUND = false;
+
+const float NO_SURFACE = 0.0, UNLIT = 1.0, LIT = 2.0;
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -31,15 +37,27 @@ vec3 metered(ivec2 pixel)
     return radiance + brdf_diffuse(texelFetch(albedo_layer, pixel, 0).rgb, metallic) * push.emitted;
 }
 
-// x: log2 of what the pixel counts as; y: 1 where it counts. The sky and the void behind the scene do not.
-vec2 pixel_term(ivec2 pixel)
+// x: log2 of the luminance, y: what the pixel is. The sky and the void behind the scene do not count.
+vec2 meter(ivec2 pixel)
 {
-    if (texelFetch(albedo_layer, pixel, 0).a == 0.0) return vec2(0.0);
     float l = dot(metered(pixel), vec3(0.2126, 0.7152, 0.0722));
     bool lit = l > 0.0 && !isinf(l);
-    float value = lit ? log2(l) : 0.0;
-    if (push.round_index == 0) return vec2(value, lit ? 1.0 : 0.0);
-    return vec2(lit ? max(value, state.floor_log2) : state.floor_log2, 1.0);
+    float kind = texelFetch(albedo_layer, pixel, 0).a == 0.0 ? NO_SURFACE : lit ? LIT : UNLIT;
+    return vec2(kind == LIT ? log2(l) : 0.0, kind);
+}
+
+// x: log2 of what the pixel counts as; y: 1 where it counts. Of lit pixels first, then of all, with the floor.
+vec2 pixel_term(ivec2 pixel)
+{
+    if (SECOND_ROUND) {
+        vec4 left = imageLoad(metered_layer, pixel);
+        float value = left.z == LIT ? max(left.x + left.y, state.floor_log2) : state.floor_log2;
+        return left.z == NO_SURFACE ? vec2(0.0) : vec2(value, 1.0);
+    }
+    vec2 found = meter(pixel);
+    float high = unpackHalf2x16(packHalf2x16(vec2(found.x, 0.0))).x;
+    imageStore(metered_layer, pixel, vec4(high, found.x - high, found.y, 0.0));
+    return vec2(found.x, found.y == LIT ? 1.0 : 0.0);
 }
 
 void main()
