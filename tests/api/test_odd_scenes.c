@@ -129,6 +129,14 @@ TEST(a_scene_without_extent_is_said_to_have_no_indirect_light)
     }
 }
 
+TEST(occlusion_by_cones_says_the_same_of_itself)
+{
+    render_floor("vctao", 4000, 1000);
+    check_said(AG_LOG_WARNING, "vctao", "ambient occlusion has no finer detail");
+    render_floor("vctao", 0, 2);
+    check_said(AG_LOG_WARNING, "vctao", "there is no ambient occlusion");
+}
+
 // The wall is half as high as the floor is long.
 TEST(a_light_outside_of_the_grid_lights_as_others_do)
 {

@@ -7,6 +7,11 @@
 // Doors, furniture and people are larger than this, and their light with them.
 static const float COARSE_M = 1.0f;
 
+static const char *what_is_found(const struct vct_options *options)
+{
+    return options->occlusion ? "ambient occlusion" : "indirect light";
+}
+
 static void remark_on_voxels(struct host *host, const char *technique,
                              const struct vct_options *options, const struct vct_grid *grid,
                              const char *scene)
@@ -18,10 +23,10 @@ static void remark_on_voxels(struct host *host, const char *technique,
                  (int)cells[0], (int)cells[1], (int)cells[2], side);
     else
         host_log(host, LOG_WARNING,
-                 "gi %s: %s is %.3g m long: with resolution=%d a voxel is %.3g m, and indirect "
-                 "light has no finer detail",
+                 "gi %s: %s is %.3g m long: with resolution=%d a voxel is %.3g m, and %s "
+                 "has no finer detail",
                  technique, scene, side * (double)options->resolution, (int)options->resolution,
-                 side);
+                 side, what_is_found(options));
 }
 
 static void remark_on_room(struct host *host, const char *technique,
@@ -67,8 +72,8 @@ void vct_remark_on_scene(struct host *host, const char *technique,
     struct vct_grid grid;
     if (!vct_grid_fit(pose->bounds, options->resolution, &grid)) {
         host_log(host, LOG_WARNING,
-                 "gi %s: %s has no extent that a grid could cover: there is no indirect light",
-                 technique, pose->scene->name);
+                 "gi %s: %s has no extent that a grid could cover: there is no %s", technique,
+                 pose->scene->name, what_is_found(options));
         return;
     }
     remark_on_voxels(host, technique, options, &grid, pose->scene->name);
