@@ -10,5 +10,5 @@ foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps
 endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
-# Every option of every technique: minutes alone, more beside others.
-set_tests_properties(techniques.technique_smoke techniques.technique_invariants PROPERTIES TIMEOUT 900)
+# Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
+set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clips PROPERTIES TIMEOUT 900)
