@@ -4,11 +4,11 @@ add_library(ag_test_techniques STATIC techniques/geometry_rig.c techniques/geome
 target_link_libraries(ag_test_techniques PUBLIC ag_test_studio ag_techniques PRIVATE afterglow_flags m)
 
 foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_math lpv_occlusion lpv_sky lpv_twin
-    technique_invariants technique_smoke vct_bounces vct_clips vct_lamps vct_light vct_odd vct_screen vct_specular vct_storage vct_temporal vct_voxels visibility vo
+    technique_invariants technique_smoke vct_bounces vct_clips vct_clip_light vct_lamps vct_light vct_odd vct_screen vct_specular vct_storage vct_temporal vct_voxels visibility vo
     vct_svo vct_bricks vctao)
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_studio)
 endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
-set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clips PROPERTIES TIMEOUT 900)
+set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clip_light PROPERTIES TIMEOUT 900)

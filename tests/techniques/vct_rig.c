@@ -44,6 +44,19 @@ void vct_rig_finish(struct vct_rig *rig)
     studio_finish(&rig->studio);
 }
 
+void vct_rig_hall(struct vct_rig *rig, struct gpu *gpu)
+{
+    vct_rig_init(rig, gpu);
+    struct studio *s = &rig->studio;
+    studio_box(s, vec3_of(0, 0, 0), vec3_of(27, 12, 20), true,
+               studio_matte(s, vec3_of(0.7f, 0.6f, 0.5f)));
+    for (int i = 0; i < 5; i++)
+        studio_box(s, vec3_of(3.0f + 5.0f * (float)i, 0, 8), vec3_of(4.1f + 5.0f * (float)i, 9, 9),
+                   false, studio_matte(s, vec3_of(0.3f, 0.5f, 0.8f)));
+    studio_add_point(s, vec3_of(9, 9, 15), vec3_of(900, 900, 900));
+    studio_look(s, vec3_of(12, 5, 15), vec3_of(13, 4, 4));
+}
+
 uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer)
 {
     const size_t bytes = gpu_buffer_bytes(rig->studio.gpu, buffer);

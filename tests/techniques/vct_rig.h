@@ -15,6 +15,8 @@ struct vct_rig {
 void vct_rig_init(struct vct_rig *rig, struct gpu *gpu);
 void vct_rig_open(struct vct_rig *rig, const char *options);
 void vct_rig_finish(struct vct_rig *rig);
+// In place of vct_rig_init: a closed hall, 27 by 12 by 20 m, with pillars, a light and an eye in it.
+void vct_rig_hall(struct vct_rig *rig, struct gpu *gpu);
 
 // All words of a buffer. To be freed.
 uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer);
