@@ -4,10 +4,11 @@
 //     interleave [--options KEY=VALUE,…] [--resolution N]… [--frames N] [--size WxH] [--maps DIR]
 //     [--device NAME] [SCENE]…
 //
-// For each scene and resolution one frame whose pixels trace all 25 cones, and one whose blocks of
-// 5 × 5 pixels share them. The time of each is that of all its passes over pixels, the least of the
-// frames, which are rendered in turns; the difference is that of irradiance: the mean of
-// |interleaved − raw| over the mean of raw, and the difference of the means.
+// For each scene and resolution one frame whose pixels trace all 25 cones, one whose blocks of
+// 5 × 5 pixels share them, and one in which every second pixel of every second row does. The time
+// of each is that of all its passes over pixels, the least of the frames, which are rendered in
+// turns; the difference is that of irradiance: the mean of |shared − raw| over the mean of raw, and
+// the difference of the means.
 #include "command_line.h"
 
 #include <afterglow/afterglow.h>
@@ -18,11 +19,12 @@
 
 enum { MAX_RESOLUTIONS = 8, MAX_PASSES = 64, TEXT = 256 };
 
-enum { RAW, INTERLEAVED, WAYS };
-static const char *const ways[WAYS] = { "interleave=1", "interleave=5" };
+enum { RAW, INTERLEAVED, HALF, WAYS };
+static const char *const ways[WAYS] = { "interleave=1", "interleave=5", "interleave=5,half=true" };
 
 // The passes over pixels; those before them make voxels and are the same for both.
-static const char *const stages[] = { "vct.cones", "vct.edges", "vct.gather", "vct.blur" };
+static const char *const stages[] = { "vct.cones", "vct.edges", "vct.gather", "vct.blur",
+                                      "vct.fit" };
 enum { STAGES = sizeof stages / sizeof stages[0] };
 
 struct bench {
@@ -108,23 +110,24 @@ static struct difference compare(const struct ag_image *raw, const struct ag_ima
 
 static void print_result(const struct way both[WAYS])
 {
-    const struct difference d = compare(both[RAW].irradiance, both[INTERLEAVED].irradiance);
-    const double mean = fmax(d.mean, 1e-30);
     for (int w = 0; w < WAYS; w++) {
-        printf("  %-14s %9.2f ms:", ways[w], whole(&both[w]));
+        printf("  %-22s %9.2f ms:", ways[w], whole(&both[w]));
         for (int s = 0; s < STAGES; s++)
             if (both[w].ms[s] > 0.0) printf(" %s %.2f", stages[s] + strlen("vct."), both[w].ms[s]);
         putchar('\n');
+        if (w == RAW) continue;
+        const struct difference d = compare(both[RAW].irradiance, both[w].irradiance);
+        const double mean = fmax(d.mean, 1e-30);
+        printf("    %.1f times faster; mean |difference| %.2f %% of the mean, difference of the "
+               "means %+.2f %%\n",
+               whole(&both[RAW]) / fmax(whole(&both[w]), 1e-9), 100.0 * d.absolute / mean,
+               100.0 * d.bias / mean);
     }
-    printf("  %.1f times faster; mean |difference| %.2f %% of the mean, difference of the means "
-           "%+.2f %%\n",
-           whole(&both[RAW]) / fmax(whole(&both[INTERLEAVED]), 1e-9), 100.0 * d.absolute / mean,
-           100.0 * d.bias / mean);
     fflush(stdout);
 }
 
-// The difference, relative to the mean, saturated at a quarter; and both pictures of irradiance as
-// a white surface shows it.
+// The difference of what blocks share, relative to the mean, saturated at a quarter; and all
+// pictures of irradiance as a white surface shows it.
 static enum ag_result write_maps(const struct bench *bench, const char *scene, int resolution,
                                  const struct way both[WAYS])
 {

@@ -167,6 +167,7 @@ static void set_options(struct vct *vct, struct vct_options options)
     vct->options.anisotropic = had.anisotropic;
     vct->options.storage = had.storage;
     vct->options.temporal = had.temporal;
+    vct->options.half = had.half;
     vct->options.specular = had.specular;
     if (vct->options.lamps != had.lamps) forget_voxels(vct);
     // What shapes the light from voxel to voxel; what only shapes pixels leaves it as it is.

@@ -55,12 +55,13 @@ void main()
     // In each row of blocks they are shifted by one: what is thin and upright has other cones from block to block.
     ivec2 pixel = ivec2(block * side + uvec2((part + block.y) % side, part / side));
     if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
-    float z = texelFetch(depth, pixel, 0).r;
+    ivec2 seen = pixel * int(set.step);
+    float z = texelFetch(depth, seen, 0).r;
     vct_vectors sum = vct_vectors(mat3(0.0), vec3(0.0));
     vec3 n = vec3(0.0);
     if (z > 0.0) {
-        n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-        vec3 at = (frame_world_position(frame_uv(uvec2(pixel)), z) - clips.origin_m) / set.texel_m;
+        n = octahedral_decode(texelFetch(normal, seen, 0).rg);
+        vec3 at = (frame_world_position(frame_uv(uvec2(seen)), z) - clips.origin_m) / set.texel_m;
         vec3 up = octahedral_decode(texelFetch(start, pixel, 0).rg);
         vct_start first_grid = vct_start_at(at);
         // Parts that neighbours have are far apart in the set: 7 has no factor in common with 4, 9, 16 and 25.
@@ -75,7 +76,7 @@ void main()
         }
         if (VCT_HAS_LAMPS) add_lamps(sum, part, parts, at, up, first_grid.level);
     }
-    if (side == 1u) {
+    if (side == 1u && set.step == 1u) {
         imageStore(irradiance, pixel, vec4(vct_irradiance(sum, n, set.gain), 1.0));
         return;
     }

@@ -37,7 +37,7 @@ struct point
 
 point point_at(ivec2 pixel)
 {
-    pixel = clamp(pixel, ivec2(0), ivec2(set.width, set.height) - 1);
+    pixel = int(set.step) * clamp(pixel, ivec2(0), ivec2(set.width, set.height) - 1);
     float z = texelFetch(depth, pixel, 0).r;
     vec2 from_middle = vec2(pixel) + 0.5 - 0.5 * vec2(frame.width, frame.height);
     point p;
@@ -50,6 +50,7 @@ point point_at(ivec2 pixel)
 // Of the light volume where the pixel's point is, m.
 float texel_at(ivec2 pixel)
 {
+    pixel *= int(set.step);
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), max(texelFetch(depth, pixel, 0).r, 1e-12));
     return set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m);
 }
@@ -69,7 +70,8 @@ bool apart(point here, vec3 normal_seen, point there, float texel_m)
 // Of a pixel's normal in the mean about another: what faces it by more than a few degrees is another side.
 float share_of(point there, point here, float texel_m)
 {
-    float near = clamp(1.0 - length(there.position - here.position) / texel_m, 0.0, 1.0);
+    vec3 off = there.position - here.position;
+    float near = clamp(1.0 - dot(off, off) / (texel_m * texel_m), 0.0, 1.0);
     return there.valid ? near * clamp(0.2 + 2.0 * dot(here.normal, there.normal), 0.0, 1.0) : 0.0;
 }
 

@@ -20,6 +20,7 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
     return (struct vct_cone_params){
         .cone_count = (uint32_t)vct_cone_count(choice),
         .interleave = side,
+        .step = 1,
         .width = view->width,
         .height = view->height,
         .width_per_m = options->stride * vct_cone_width(choice),
@@ -47,6 +48,9 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
     const uint32_t side = (uint32_t)vct->options.interleave;
     struct vct_cone_params params = params_of(vct, view, vct->options.cones, side);
     const uint32_t count = params.cone_count;
+    params.step = vct_step(&vct->options);
+    params.width = vct->width;
+    params.height = vct->height;
     for (uint32_t i = 0; i < count; i++)
         params.cones[i] = vec4_of(
             vct->lines[i], 1.0f / (float)(count * (uint32_t)parts_with(i, side * side, count)));
@@ -56,7 +60,7 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
 // Bindings that the stages over pixels share.
 struct pixels {
     struct gpu_binding clipmap, cones, depth, normal, edges, start;
-    uint32_t across, down; // workgroups of one invocation a pixel
+    uint32_t across, down; // workgroups of one invocation for each pixel that traces cones
 };
 
 static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -74,8 +78,8 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
                           { .name = "irradiance", .image = result },
                           vct_lamps_binding(&vct->lamps, cmd), vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
-                 NULL, 0, side * side * gpu_groups(gpu_groups(view->width, side), VCT_LOCAL_2D),
-                 gpu_groups(gpu_groups(view->height, side), VCT_LOCAL_2D), 1);
+                 NULL, 0, side * side * gpu_groups(gpu_groups(vct->width, side), VCT_LOCAL_2D),
+                 gpu_groups(gpu_groups(vct->height, side), VCT_LOCAL_2D), 1);
     gpu_scope_end(cmd);
 }
 
@@ -97,28 +101,46 @@ static void find_edges(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
                        const struct pixels *p)
 {
     vct_pass_begin(vct->name, cmd, "edges");
-    gpu_dispatch(
-        cmd, vct->edges,
-        GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal, p->edges,
-                 p->start),
-        NULL, 0, p->across, p->down, 1);
+    gpu_dispatch(cmd, vct->edges,
+                 GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
+                          p->edges, p->start),
+                 NULL, 0, p->across, p->down, 1);
     gpu_scope_end(cmd);
 }
 
-static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                        const struct pixels *p, gpu_image result)
+static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p)
 {
     vct_pass_begin(vct->name, cmd, "gather");
     gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
-           gpu_groups(view->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
-    // The last one has no sums to write: what it is bound to is not used.
+           gpu_groups(vct->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
     gather(vct, cmd, p, vct->gather_columns, vct->gathered, vct->traced, p->across,
-           gpu_groups(view->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
+           gpu_groups(vct->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
     gpu_scope_end(cmd);
+}
+
+// For the pixels that found few of the cones, where each traces some.
+static void blur(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                 const struct pixels *p, gpu_image result)
+{
     vct_pass_begin(vct->name, cmd, "blur");
     gpu_dispatch(cmd, vct->blur,
                  GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
                           { .name = "gathered", .image = vct->found },
+                          { .name = "irradiance", .image = result }),
+                 NULL, 0, p->across, p->down, 1);
+    gpu_scope_end(cmd);
+}
+
+// For the pixels between those that trace cones, and for these.
+static void fit(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                const struct pixels *p, gpu_image result)
+{
+    vct_pass_begin(vct->name, cmd, "fit");
+    gpu_dispatch(cmd, vct->fit,
+                 GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
+                          p->start, { .name = "red", .image = vct->traced[0] },
+                          { .name = "green", .image = vct->traced[1] },
+                          { .name = "blue", .image = vct->traced[2] },
                           { .name = "irradiance", .image = result }),
                  NULL, 0, p->across, p->down, 1);
     gpu_scope_end(cmd);
@@ -141,9 +163,14 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
                               .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                               .edges = { .name = "edges", .image = vct->edge_image },
                               .start = { .name = "start", .image = vct->start_image },
-                              .across = gpu_groups(view->width, VCT_LOCAL_2D),
-                              .down = gpu_groups(view->height, VCT_LOCAL_2D) };
+                              .across = gpu_groups(vct->width, VCT_LOCAL_2D),
+                              .down = gpu_groups(vct->height, VCT_LOCAL_2D) };
     find_edges(vct, cmd, view, &p);
     trace_cones(vct, cmd, view, &p, result);
-    if (params.interleave > 1) share_cones(vct, cmd, view, &p, result);
+    const bool shared = params.interleave > 1;
+    if (shared) share_cones(vct, cmd, &p);
+    if (params.step > 1)
+        fit(vct, cmd, view, &p, result);
+    else if (shared)
+        blur(vct, cmd, view, &p, result);
 }

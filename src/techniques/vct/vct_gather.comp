@@ -18,7 +18,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool FINISH = false; // columns: write irradiance
+layout(constant_id = 0) const bool COLUMNS = false;
+layout(constant_id = 1) const bool EACH = true; // pixel of the frame traces cones: columns write irradiance
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
@@ -49,7 +50,7 @@ uint ends_of(ivec2 first, ivec2 along, int here, int count)
         int at = here + i - REACH;
         bool inside = at >= 0 && at < count - 1;
         uint bits = inside ? uint(texelFetch(edges, first + (i - REACH) * along, 0).r * 255.0 + 0.5) : 3u;
-        ends |= (bits & (FINISH ? 2u : 1u)) != 0u ? 1u << i : 0u;
+        ends |= (bits & (COLUMNS ? 2u : 1u)) != 0u ? 1u << i : 0u;
     }
     return ends;
 }
@@ -88,13 +89,13 @@ void keep(ivec2 pixel, sums s)
 
 void main()
 {
-    // Not FINISH ? ivec2(…) : ivec2(…): a vector chosen by a specialisation constant comes out as the second one on
+    // Not COLUMNS ? ivec2(…) : ivec2(…): a vector chosen by a specialisation constant comes out as the second one on
     // Mesa 22.3.
-    ivec2 along = ivec2(FINISH ? 0 : 1, FINISH ? 1 : 0);
+    ivec2 along = ivec2(COLUMNS ? 0 : 1, COLUMNS ? 1 : 0);
     ivec2 size = ivec2(set.width, set.height);
     ivec2 first = ivec2(gl_GlobalInvocationID.xy) * (ivec2(1) + along * (ROW - 1));
     if (any(greaterThanEqual(first, size))) return;
-    int n = int(set.interleave), here = FINISH ? first.y : first.x, count = FINISH ? size.y : size.x;
+    int n = int(set.interleave), here = COLUMNS ? first.y : first.x, count = COLUMNS ? size.y : size.x;
     uint ends = ends_of(first, along, here, count);
     ivec2 reach[ROW];
     sums s[ROW];
@@ -115,7 +116,7 @@ void main()
     for (int o = 0; o < ROW; o++) {
         ivec2 pixel = first + o * along;
         if (any(greaterThanEqual(pixel, size))) continue;
-        if (FINISH) finish(pixel, s[o]);
+        if (COLUMNS && EACH) finish(pixel, s[o]);
         else keep(pixel, s[o]);
     }
 }

@@ -19,10 +19,11 @@ enum {
     GRIDS = 256,         // vct_clipmap.glsl
     LAMPS = 512,         // vct_add.glsl, vct_lamps.glsl
     LARGE_BLOCKS = 1024, // vct_bounce.glsl
+    HALF = 2048,         // vct_gather.comp
 };
 static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 },  { 0, 0 },
                                                        { 10, 0 }, { 11, 0 }, { 12, 1 }, { 5, 0 },
-                                                       { 13, 0 }, { 14, 1 }, { 15, 4 } };
+                                                       { 13, 0 }, { 14, 1 }, { 15, 4 }, { 1, 0 } };
 enum { CONSTANT_BITS = sizeof constant_of_bit / sizeof constant_of_bit[0] };
 
 struct pipeline_plan {
@@ -96,11 +97,12 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 12, MIP_PIPELINES = 9, MOST_STORAGE_PIPELINES = 14 };
+enum { PIPELINES = 13, MIP_PIPELINES = 9, MOST_STORAGE_PIPELINES = 14 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
-    const uint32_t kind = vct->options.occlusion ? OCCLUSION : 0;
+    const uint32_t kind = vct->options.occlusion ? OCCLUSION : 0,
+                   half = vct->options.half ? HALF : 0;
     const struct gpu_shader *inject_lit = vct->options.occlusion ? NULL : &shader_vct_inject_comp;
     const struct pipeline_plan plan[PIPELINES] = {
         { &vct->count, "count", &shader_vct_count_comp, 0 },
@@ -113,8 +115,9 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->inject[1], "inject", inject_lit, 0 },
         { &vct->edges, "edges", &shader_vct_edges_comp, GRIDS },
         { &vct->gather_rows, "gather_rows", &shader_vct_gather_comp, kind },
-        { &vct->gather_columns, "gather_columns", &shader_vct_gather_comp, kind | COLUMNS },
+        { &vct->gather_columns, "gather_columns", &shader_vct_gather_comp, kind | COLUMNS | half },
         { &vct->blur, "blur", &shader_vct_blur_comp, GRIDS },
+        { &vct->fit, "fit", half ? &shader_vct_fit_comp : NULL, kind | GRIDS },
     };
     memcpy(out, plan, sizeof plan);
 }

@@ -39,6 +39,11 @@ uint32_t vct_volume_mips(const struct vct_options *options)
     return mips;
 }
 
+uint32_t vct_step(const struct vct_options *options)
+{
+    return options->half ? 2 : 1;
+}
+
 uint32_t vct_ways(const struct vct_options *options)
 {
     return options->anisotropic ? 6 : 1;
@@ -207,8 +212,8 @@ static bool create_vectors(struct vct *vct, const char *name, gpu_image out[3])
 
 bool vct_create_images(struct vct *vct, uint32_t width, uint32_t height)
 {
-    vct->width = width;
-    vct->height = height;
+    vct->width = gpu_groups(width, vct_step(&vct->options));
+    vct->height = gpu_groups(height, vct_step(&vct->options));
     return create_image_2d(vct, "edges", GPU_R8, &vct->edge_image) &&
            create_image_2d(vct, "start", GPU_RG16F, &vct->start_image) &&
            create_image_2d(vct, "found", GPU_RGBA16F, &vct->found) &&
@@ -292,5 +297,6 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
     }
     const int pixel =
         gpu_format_bytes(GPU_R8) + gpu_format_bytes(GPU_RG16F) + 7 * gpu_format_bytes(GPU_RGBA16F);
-    return bytes + (uint64_t)width * height * (uint64_t)pixel;
+    const uint32_t step = vct_step(options);
+    return bytes + (uint64_t)gpu_groups(width, step) * gpu_groups(height, step) * (uint64_t)pixel;
 }

@@ -95,7 +95,8 @@ struct vct_cone_params {
     vec4s cones[VCT_MAX_CONES]; // direction; weight: of voxels about +z, in sr, Σ = π; of pixels in the world, Σ = 1
     uint32_t cone_count;
     uint32_t interleave;
-    uint32_t width, height; // of the frame, pixels
+    uint32_t step;          // pixels of the frame, across and down, to each that traces cones
+    uint32_t width, height; // those that do
     float width_per_m;              // width of the texels that a cone meets over the distance
     float offset;                   // texels of the light volume
     float gain;
@@ -215,7 +216,7 @@ _Static_assert(sizeof(struct vct_voxel_counts) == 9 * 4, "layout is shared with 
 _Static_assert(sizeof(struct vct_params) == 29 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_clip_table) == (7 + 12 * VCT_MAX_CLIPS) * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 10 * 4,
+_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_lamp) == (5 + 6 * VCT_LAMP_POINTS) * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,

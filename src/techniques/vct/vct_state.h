@@ -85,7 +85,7 @@ struct vct {
     gpu_pipeline inject[2]; // without and with lights
     gpu_pipeline cones[2], bounce[2]; // without and with lamps
     gpu_pipeline count, scan, list, zero, surfaces, texel_lists, mip, edges, gather_rows,
-        gather_columns, blur, specular, debug;
+        gather_columns, blur, fit, specular, debug;
     struct vct_lamps lamps;
     struct vct_clip clips[VCT_MAX_CLIPS];
     int clip_count;
@@ -100,7 +100,7 @@ struct vct {
     vec3s lines[VCT_MAX_CONES]; // along which the picture's cones point
     struct vct_share_table shares; // with specular
     struct vct_temporal temporal; // empty without the option
-    uint32_t width, height;
+    uint32_t width, height; // of these images
 
     struct vct_params params; // of the frame being recorded; vct_grid_binding adds the place of a grid
     bool ready;               // there is something to voxelise
@@ -118,6 +118,7 @@ int vct_clip_count(const struct vct_options *options);
 uint32_t vct_capacity(const struct vct_options *options); // voxels of a set
 uint32_t vct_volume_dim(const struct vct_options *options);
 uint32_t vct_volume_mips(const struct vct_options *options);
+uint32_t vct_step(const struct vct_options *options); // pixels, across and down, to each that traces cones
 uint32_t vct_ways(const struct vct_options *options); // volumes side by side: 6, or 1 for all ways
 
 // Lists of texels of the light volume, one for each level; see vct_texels.comp.
