@@ -98,21 +98,9 @@ static void add_rubble(struct vct_rig *rig, int count)
     for (int i = 0; i < count; i++) {
         const vec3s middle = lattice_point(&rng, vec3_of(13.5f, 13.5f, 13.5f), 13.5f);
         const float reach = i % 3 == 0 ? 9.0f : i % 3 == 1 ? 2.0f : 0.2f;
-        vec3s positions[3], normals[3];
-        uint32_t indices[3] = { 0, 1, 2 };
-        for (int k = 0; k < 3; k++) {
-            positions[k] = lattice_point(&rng, middle, reach);
-            normals[k] = vec3_of(0, 1, 0);
-        }
-        const int mesh = scene_add_mesh(rig->studio.scene, &(struct mesh){ .name = "triangle",
-                                                                           .vertex_count = 3,
-                                                                           .index_count = 3,
-                                                                           .positions = positions,
-                                                                           .normals = normals,
-                                                                           .indices = indices,
-                                                                           .material = red });
-        CHECK(mesh >= 0);
-        studio_instance(&rig->studio, mesh, NULL);
+        vec3s corners[3];
+        for (int k = 0; k < 3; k++) corners[k] = lattice_point(&rng, middle, reach);
+        vct_rig_add_triangle(rig, corners, red);
     }
 }
 

@@ -99,22 +99,6 @@ static int check_same(const struct vct_rig *rig, const struct twin *twin, const 
 
 // ---- Scenes
 
-static int add_triangle(struct vct_rig *rig, const vec3s corners[3], int material)
-{
-    vec3s positions[3] = { corners[0], corners[1], corners[2] };
-    vec3s normals[3] = { vec3_of(0, 1, 0), vec3_of(0, 1, 0), vec3_of(0, 1, 0) };
-    uint32_t indices[3] = { 0, 1, 2 };
-    const int mesh = scene_add_mesh(rig->studio.scene, &(struct mesh){ .name = "triangle",
-                                                                       .vertex_count = 3,
-                                                                       .index_count = 3,
-                                                                       .positions = positions,
-                                                                       .normals = normals,
-                                                                       .indices = indices,
-                                                                       .material = material });
-    assert_true(mesh >= 0);
-    return studio_instance(&rig->studio, mesh, NULL);
-}
-
 static vec3s random_point(struct rng *rng)
 {
     return vec3_of(11.3f * rng_float(rng), 8.1f * rng_float(rng), 9.7f * rng_float(rng));
@@ -141,7 +125,7 @@ static void check_random_triangles(struct gpu *gpu, const char *options)
     const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
     for (int i = 0; i < TRIANGLES; i++) {
         random_triangle(&rng, i % 3, triangles[i]);
-        add_triangle(&rig, triangles[i], matte);
+        vct_rig_add_triangle(&rig, triangles[i], matte);
     }
     studio_look(&rig.studio, vec3_of(5, 4, 6), vec3_of(6, 4, 4));
     vct_rig_open(&rig, options);
@@ -200,8 +184,8 @@ static void check_same_texels(const struct vct_rig *a, gpu_image in_a, const str
     free(q);
 }
 
-// A court and slivers, which come to all but nothing in a picture, and what is in their voxels. By raster all of it is
-// summed up; by compute what a large triangle has alone is written at once.
+// A court and slivers, which come to all but nothing in a picture, and what is in their voxels. By
+// raster all of it is summed up; by compute what a large triangle has alone is written at once.
 TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
 {
     struct vct_rig rigs[2];
@@ -216,7 +200,7 @@ TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
             vec3s corners[3];
             random_triangle(&rng, k % 3, corners);
             if (k % 2 == 0) corners[2] = glms_vec3_lerp(corners[1], corners[2], 1e-3f);
-            add_triangle(rig, corners, red);
+            vct_rig_add_triangle(rig, corners, red);
         }
         // More than one tile of columns for what is large.
         vct_rig_open(rig, i == 0 ? "resolution=48" : "resolution=48,voxels=raster");
@@ -238,9 +222,9 @@ TEST_GPU(what_is_no_triangle_touches_nothing)
     const vec3s real[3] = { vec3_of(0, 0, 0), vec3_of(2, 0, 0.5f), vec3_of(0.3f, 2, 1) };
     const vec3s line[3] = { vec3_of(0, 0, 0), vec3_of(4, 4, 4), vec3_of(8, 8, 8) };
     const vec3s point[3] = { vec3_of(7, 7, 7), vec3_of(7, 7, 7), vec3_of(7, 7, 7) };
-    add_triangle(&rig, real, matte);
-    add_triangle(&rig, line, matte);
-    add_triangle(&rig, point, matte);
+    vct_rig_add_triangle(&rig, real, matte);
+    vct_rig_add_triangle(&rig, line, matte);
+    vct_rig_add_triangle(&rig, point, matte);
     vct_rig_open(&rig, "resolution=16");
     studio_render(&rig.studio);
     twin_add(&twin, &rig.vct->clips[0].grid, real);
@@ -279,8 +263,8 @@ TEST_GPU(what_moves_is_voxelised_anew_and_what_stands_is_kept)
     const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
     const vec3s one[3] = { vec3_of(0, 0, 0), vec3_of(12, 0, 0), vec3_of(0, 0.3f, 12) };
     vec3s other[3] = { vec3_of(3, 5.2f, 3), vec3_of(8, 5.4f, 3), vec3_of(3, 9.7f, 3.3f) };
-    add_triangle(&rig, one, matte);
-    const int instance = add_triangle(&rig, other, matte);
+    vct_rig_add_triangle(&rig, one, matte);
+    const int instance = vct_rig_add_triangle(&rig, other, matte);
     vct_rig_open(&rig, "resolution=16");
     studio_render(&rig.studio);
     const vec3s step = vec3_of(1.5f, -1, 2);

@@ -57,6 +57,22 @@ void vct_rig_hall(struct vct_rig *rig, struct gpu *gpu)
     studio_look(s, vec3_of(12, 5, 15), vec3_of(13, 4, 4));
 }
 
+int vct_rig_add_triangle(struct vct_rig *rig, const vec3s corners[3], int material)
+{
+    vec3s positions[3] = { corners[0], corners[1], corners[2] };
+    vec3s normals[3] = { vec3_of(0, 1, 0), vec3_of(0, 1, 0), vec3_of(0, 1, 0) };
+    uint32_t indices[3] = { 0, 1, 2 };
+    const int mesh = scene_add_mesh(rig->studio.scene, &(struct mesh){ .name = "triangle",
+                                                                       .vertex_count = 3,
+                                                                       .index_count = 3,
+                                                                       .positions = positions,
+                                                                       .normals = normals,
+                                                                       .indices = indices,
+                                                                       .material = material });
+    CHECK(mesh >= 0);
+    return studio_instance(&rig->studio, mesh, NULL);
+}
+
 uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer)
 {
     const size_t bytes = gpu_buffer_bytes(rig->studio.gpu, buffer);

@@ -13,6 +13,8 @@ struct vct_rig {
 
 // Fill the studio between these two.
 void vct_rig_init(struct vct_rig *rig, struct gpu *gpu);
+// Between the two: a triangle of its own mesh; returns its instance.
+int vct_rig_add_triangle(struct vct_rig *rig, const vec3s corners[3], int material);
 void vct_rig_open(struct vct_rig *rig, const char *options);
 void vct_rig_finish(struct vct_rig *rig);
 // In place of vct_rig_init: a closed hall, 27 by 12 by 20 m, with pillars, a light and an eye in it.
