@@ -75,17 +75,15 @@ float share_of(point there, point here, float texel_m)
     return there.valid ? near * clamp(0.2 + 2.0 * dot(here.normal, there.normal), 0.0, 1.0) : 0.0;
 }
 
-// Twelve of the pixels about it: four at their corners of 1 and of 3 pixels, four beside it at 2.
+// Eight of the pixels about it: beside it at 2, at their corners at 3.
 vec3 start_of(ivec2 pixel, point here, float texel_m)
 {
     vec3 sum = here.normal;
     for (int i = 0; i < 4; i++) {
-        ivec2 corner = ivec2((i & 1) * 2 - 1, (i & 2) - 1);
         ivec2 side = (i & 1) == 0 ? ivec2((i & 2) - 1, 0) : ivec2(0, (i & 2) - 1);
-        point inner = point_at(pixel + corner), middle = point_at(pixel + 2 * side),
-              outer = point_at(pixel + 3 * corner);
-        sum += share_of(inner, here, texel_m) * inner.normal + share_of(middle, here, texel_m) * middle.normal +
-               share_of(outer, here, texel_m) * outer.normal;
+        ivec2 corner = ivec2((i & 1) * 2 - 1, (i & 2) - 1);
+        point beside = point_at(pixel + 2 * side), across = point_at(pixel + 3 * corner);
+        sum += share_of(beside, here, texel_m) * beside.normal + share_of(across, here, texel_m) * across.normal;
     }
     return normalize(sum);
 }
