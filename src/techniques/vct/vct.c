@@ -49,7 +49,7 @@ static const struct technique_debug_view occlusion_views[] = {
 
 // Chosen by measured error and time, see README.md.
 static const struct technique_preset presets[] = {
-    { "low", "resolution=32" },
+    { "low", "resolution=32,half=true" },
     { "medium", "" },
     { "high", "resolution=128,temporal=true,specular=true" },
     { NULL, NULL },
