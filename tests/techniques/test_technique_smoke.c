@@ -85,33 +85,53 @@ TEST_GPU(techniques_live_through_frames_sizes_and_views)
     studio_finish(&s);
 }
 
+// "technique:option=value" with the least or the largest value.
+static void print_end(const struct technique *technique, const struct option_row *row, bool largest,
+                      char *text, size_t size)
+{
+    struct gi_spec spec;
+    CHECK(gi_spec_parse(&spec, test_host(), technique->name));
+    char value[64];
+    void *options = spec.options[spec.count - 1]; // a source may stand before it
+    const double end = largest ? row->max : row->min;
+    if (row->type == OPTION_TYPE_float32)
+        *(float *)((char *)options + row->offset) = (float)end;
+    else if (row->type == OPTION_TYPE_bool8)
+        *(bool *)((char *)options + row->offset) = largest;
+    else
+        *(int32_t *)((char *)options + row->offset) = (int32_t)end;
+    option_print(row, options, value, sizeof value);
+    snprintf(text, size, "%s:%s=%s", technique->name, row->name, value);
+    gi_spec_finish(&spec);
+}
+
+// Options that may change while a technique lives do so in `living`; others make a new one.
+static void run_with(struct studio *s, struct gi *living, const char *text)
+{
+    struct gi_spec spec;
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    const bool live = gi_set_options(living, &spec);
+    gi_spec_finish(&spec);
+    struct gi *gi = live ? living : create(s, text);
+    s->indirect = gi_hook(gi);
+    finite_frames(s, 1);
+    if (!live) gi_destroy(gi);
+}
+
 TEST_GPU(techniques_run_with_every_option_at_both_ends)
 {
     struct studio s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
-        for (size_t k = 0; k < techniques[i]->options.count; k++) {
-            const struct option_row *row = &techniques[i]->options.rows[k];
+        struct gi *living = create(&s, techniques[i]->name);
+        for (size_t k = 0; k < techniques[i]->options.count; k++)
             for (int end = 0; end < 2; end++) {
-                struct gi_spec spec;
-                CHECK(gi_spec_parse(&spec, test_host(), techniques[i]->name));
-                char text[128], value[64];
-                void *options = spec.options[spec.count - 1]; // a source may stand before it
-                if (row->type == OPTION_TYPE_float32)
-                    *(float *)((char *)options + row->offset) = (float)(end ? row->max : row->min);
-                else if (row->type == OPTION_TYPE_bool8)
-                    *(bool *)((char *)options + row->offset) = end != 0;
-                else
-                    *(int32_t *)((char *)options + row->offset) =
-                        (int32_t)(end ? row->max : row->min);
-                option_print(row, options, value, sizeof value);
-                snprintf(text, sizeof text, "%s:%s=%s", techniques[i]->name, row->name, value);
-                gi_spec_finish(&spec);
-                struct gi *gi = create(&s, text);
-                finite_frames(&s, 1);
-                gi_destroy(gi);
+                char text[128];
+                print_end(techniques[i], &techniques[i]->options.rows[k], end != 0, text,
+                          sizeof text);
+                run_with(&s, living, text);
             }
-        }
+        gi_destroy(living);
     }
     studio_finish(&s);
 }
