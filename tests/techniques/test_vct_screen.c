@@ -63,7 +63,7 @@ static struct look look_at_room(struct gpu *gpu, const char *options, bool curta
     if (curtain) hang_curtain(&rig);
     vct_rig_open(&rig, options);
     struct look look = { .ms = 1e30 };
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 10; f++) {
         studio_render(&rig.studio);
         look.ms = fmin(look.ms, stages_ms(gpu));
     }
@@ -142,7 +142,8 @@ TEST_GPU(half_the_size_is_as_good_nearly)
     for (int i = 0; i < VALUES; i++) dark += half.irradiance[i] < 0.1f * full.irradiance[i];
     print_message("%d of %d values dark\n", dark, VALUES);
     CHECK(dark < VALUES / 1000);
-    // Four times less of everything but the last step, which is for all pixels.
+    // Four times less of everything but the last step, which is for all pixels: 0.3 of the time. Of
+    // four frames all may meet other work, of ten hardly.
     CHECK(half.ms < 0.6 * full.ms);
     free(full.irradiance);
     free(half.irradiance);
