@@ -10,3 +10,5 @@ foreach(name device hazard memory)
   ag_test(gpu/${name} USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders Vulkan::Vulkan)
 endforeach()
 ag_test(gpu/adopt USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders ag_test_own_device)
+# It compares times.
+set_tests_properties(gpu.scope PROPERTIES RUN_SERIAL TRUE)

@@ -12,3 +12,5 @@ target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMA
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
 set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clip_light PROPERTIES TIMEOUT 900)
+# It compares times.
+set_tests_properties(techniques.vct_screen PROPERTIES RUN_SERIAL TRUE)
