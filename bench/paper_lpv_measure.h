@@ -1,4 +1,5 @@
-// What is measured of a scene of the paper: a line of irradiance beside the reference's, costs, a picture.
+// What is measured of a scene of the paper: a line of irradiance beside the reference's, costs, a
+// picture.
 #pragma once
 
 #include "paper_lpv_scenes.h"
@@ -10,13 +11,15 @@ struct measure {
     struct ag_context *context;
     struct ag_device *device;
     int frames, spp, picture_spp, picture_width;
-    bool paper_settings; // the scene's dim and steps, one grid and one bounce; else what the techniques take by themselves
+    bool paper_settings; // the scene's dim and steps, one grid and one bounce; else what the
+                         // techniques take by themselves
     const char *options; // more of them for both techniques, "key=value,…"; may be NULL
     int width, height;   // of the last frames measured
 };
 
 struct technique_cost {
-    // Sums over the technique's own passes, by the stage in their names; the medians of several frames.
+    // Sums over the technique's own passes, by the stage in their names; the medians of several
+    // frames.
     double inject_ms, propagate_ms, apply_ms, other_ms, technique_ms, frame_ms;
     uint64_t bytes; // of GPU memory that is the technique's own
 };
@@ -38,10 +41,11 @@ struct scanline {
 };
 
 // Fills the line anew: the reference and all of `lpv` and `holpv` that the library has.
-enum ag_result measure_scanline(struct measure *measure, const struct paper_scene *scene, struct ag_scene *loaded,
-                                struct scanline *out);
-enum ag_result measure_costs(struct measure *measure, const struct paper_scene *scene, struct ag_scene *loaded,
-                             struct scanline *line);
+enum ag_result measure_scanline(struct measure *measure, const struct paper_scene *scene,
+                                struct ag_scene *loaded, struct scanline *out);
+enum ag_result measure_costs(struct measure *measure, const struct paper_scene *scene,
+                             struct ag_scene *loaded, struct scanline *line);
 // The reference and the techniques from left to right, at one exposure.
-enum ag_result measure_picture(struct measure *measure, const struct paper_scene *scene, struct ag_scene *loaded,
-                               struct scanline *line, struct ag_image **out);
+enum ag_result measure_picture(struct measure *measure, const struct paper_scene *scene,
+                               struct ag_scene *loaded, struct scanline *line,
+                               struct ag_image **out);

@@ -50,7 +50,8 @@ static const struct vct_stage pipeline[] = {
     { "light injection", BOTH("vct.inject") },
     { "mips", BOTH("vct.texels", "vct.fill", "vct.mips") },
     { "light of sky and glow", BOTH("vct.bounce") },
-    { "cone tracing", BOTH("vct.cones", "vct.edges", "vct.gather", "vct.blur", "vct.fit", "vct.specular") },
+    { "cone tracing",
+      BOTH("vct.cones", "vct.edges", "vct.gather", "vct.blur", "vct.fit", "vct.specular") },
     { "direct light, picture", BOTH("direct", "exposure", "composite") },
 };
 enum { PIPELINE = sizeof pipeline / sizeof pipeline[0] };

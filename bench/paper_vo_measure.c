@@ -131,8 +131,8 @@ static void collect(struct ag_renderer *renderer, const char *gi, struct vo_resu
         const char *name = timings[i].name, *pass = name + length + 1;
         if (strcmp(name, "gbuffer") == 0) geometry = timings[i].ms;
         if (strncmp(name, gi, length) != 0 || name[length] != '.') continue;
-        const bool follows = strcmp(pass, "temporal") == 0 || strcmp(pass, "blur") == 0 ||
-                             strcmp(pass, "fit") == 0;
+        const bool follows =
+            strcmp(pass, "temporal") == 0 || strcmp(pass, "blur") == 0 || strcmp(pass, "fit") == 0;
         *(strcmp(pass, "pyramid") == 0 ? &pyramid : follows ? &after : &estimate) += timings[i].ms;
     }
     out->geometry_ms = keep_least(out->geometry_ms, geometry);

@@ -10,7 +10,8 @@ struct vo_view {
     float radius_m;
     struct ag_scene *scene;
     struct ag_frame_desc frame;
-    // Traced: obscurance of that radius, and with a second of a quarter of it; the sky that is open so far.
+    // Traced: obscurance of that radius, and with a second of a quarter of it; the sky that is open
+    // so far.
     struct ag_image *obscurance, *of_two_radii, *ambient, *depth;
 };
 
@@ -21,8 +22,8 @@ struct vo_result {
     double change; // mean difference from frame to frame in a pan of half a pixel a frame
 };
 
-// radius_share: of the diagonal of the scene's bounds. The caller fills context … spp. vo_view_close
-// frees what was made, also after a failure.
+// radius_share: of the diagonal of the scene's bounds. The caller fills context … spp.
+// vo_view_close frees what was made, also after a failure.
 enum ag_result vo_view_open(struct vo_view *view, const char *scene, double radius_share);
 void vo_view_close(struct vo_view *view);
 // gi: "vo:samples=5", whose radius is the view's. twice: with the second radius.

@@ -1,6 +1,6 @@
 // What the reference makes of the rays that Embree can trace: millions a second of the path tracer,
-// and of Embree alone with the very same rays, in turns. Seconds are those of the processor's cores,
-// all together, so that what else the machine does hardly counts.
+// and of Embree alone with the very same rays, in turns. Seconds are those of the processor's
+// cores, all together, so that what else the machine does hardly counts.
 //
 //     rays [--size WxH] [--spp N] [--rounds N] [SCENE]…
 #include "command_line.h"
@@ -238,8 +238,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: rays [--size WxH] [--spp N] [--rounds N] [SCENE]...\n");
         return 2;
     }
-    printf("%-32s %10s %10s %11s %11s\n", "million rays a core and second", "reference", "Embree", "of it",
-           "shadow rays");
+    printf("%-32s %10s %10s %11s %11s\n", "million rays a core and second", "reference", "Embree",
+           "of it", "shadow rays");
     for (int i = 0; i < bench.scenes.count; i++)
         if (!measure_scene(&bench, bench.scenes.names[i])) return 1;
     return 0;

@@ -3,4 +3,5 @@
 
 #include "arguments.h"
 
-extern const struct command command_render, command_reference, command_compare, command_info, command_list, command_diff;
+extern const struct command command_render, command_reference, command_compare, command_info,
+    command_list, command_diff;

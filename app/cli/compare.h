@@ -21,7 +21,7 @@ struct method {
     const char *gi;       // as it was given
     char stem[STEM_SIZE]; // of its files' names: "2-lpv-steps-8"
     struct ag_image *color, *indirect, *irradiance;
-    char *spelled;        // the sum with every option written out
+    char *spelled;                                // the sum with every option written out
     json_t *options, *passes, *frame_ms, *memory; // as in --stats
     struct measured picture, gathered;            // gathered: where the truth has it
 };
@@ -32,13 +32,14 @@ struct truth {
     struct picture kept;        // the layers of its files
     char cache_path[PATH_SIZE]; // "": it is not cached
     struct ag_image *color;
-    struct ag_image *gathered;  // what techniques add to a frame's direct light; NULL: the given file lacks it
-    int spp;                    // 0: not known
-    int bounces;                // or UNLIMITED, or NOT_KNOWN
-    double seconds, rays;       // of all runs that it took; NaN: not known
-    double noise;               // relative standard error; NaN: not known
-    double noise_relmse;        // that a perfect picture would have for that noise; likewise
-    bool cached;                // nothing was left to trace
+    struct ag_image
+        *gathered; // what techniques add to a frame's direct light; NULL: the given file lacks it
+    int spp;       // 0: not known
+    int bounces;   // or UNLIMITED, or NOT_KNOWN
+    double seconds, rays; // of all runs that it took; NaN: not known
+    double noise;         // relative standard error; NaN: not known
+    double noise_relmse;  // that a perfect picture would have for that noise; likewise
+    bool cached;          // nothing was left to trace
 };
 
 struct comparison {
@@ -62,7 +63,8 @@ enum status method_render(struct comparison *c, int index);
 void methods_finish(struct comparison *c);
 
 // compare_truth.c
-// Reads the file that was given and refuses one of another picture, or looks for samples in the cache.
+// Reads the file that was given and refuses one of another picture, or looks for samples in the
+// cache.
 enum status truth_begin(struct comparison *c);
 // Traces what is missing; --reference: nothing. Fills the rest of c->truth.
 enum status truth_complete(struct comparison *c);

@@ -10,8 +10,9 @@ struct folder {
     bool (*is_ours)(const char *name);
 };
 
-// Could it be written there? What is there already must be an empty folder or one that holds `mark` and else nothing but
-// files whose names are ours, so that replacing it loses nothing of anybody else's. Says why not.
+// Could it be written there? What is there already must be an empty folder or one that holds `mark`
+// and else nothing but files whose names are ours, so that replacing it loses nothing of anybody
+// else's. Says why not.
 enum status folder_plan(struct folder *folder, const char *path, const char *mark,
                         bool (*is_ours)(const char *name));
 // Makes the folder beside. A signal that ends the program removes it.

@@ -8,11 +8,13 @@ enum status { DONE = 0, FAILED = 1, WRONG_USAGE = 2 }; // exit statuses, a contr
 // --quiet leaves errors alone; --verbose adds the library's own notes.
 void messages_init(bool quiet, bool verbose);
 
-// Each prints one line "afterglow: …" and returns its status, so that `return fail(…)` reads well. The text is
+// Each prints one line "afterglow: …" and returns its status, so that `return fail(…)` reads well.
+// The text is
 // "<what> <where>: <why>"; line breaks in it (from file names) become question marks.
 enum status fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 enum status wrong_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// The library's last error. Wrong arguments are wrong usage: the command line was forwarded as it stands.
+// The library's last error. Wrong arguments are wrong usage: the command line was forwarded as it
+// stands.
 enum status fail_library(const struct ag_context *context, enum ag_result result);
 // A line that --quiet leaves out.
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -16,13 +16,14 @@ struct picture {
     char names[256]; // what `layers` points into
 };
 
-// Unknown layers, and several layers of a PNG, are wrong usage. layer_name: the names that there are, NULL past the end;
-// fallback: the list where the command line has none.
-enum status picture_plan(const struct arguments *arguments, const char *path, const char *(*layer_name)(int),
-                         const char *fallback, struct picture *out);
+// Unknown layers, and several layers of a PNG, are wrong usage. layer_name: the names that there
+// are, NULL past the end; fallback: the list where the command line has none.
+enum status picture_plan(const struct arguments *arguments, const char *path,
+                         const char *(*layer_name)(int), const char *fallback, struct picture *out);
 bool picture_needs(const struct picture *picture, const char *layer);
 // Brings a layer's values to display values 0…1, as a PNG has them; ev is for what is radiance.
-enum ag_result picture_show(struct session *session, const char *layer, float ev, struct ag_image **image);
+enum ag_result picture_show(struct session *session, const char *layer, float ev,
+                            struct ag_image **image);
 // "shots/house.glb" and "@house:lit=1" give "house" + ending.
 void output_default(const char *scene, const char *ending, char out[PATH_SIZE]);
 // Reads the layers of the newest frame and writes them.

@@ -3,7 +3,8 @@
 
 #include "json.h"
 
-// Writes folder/report.html from the document of compare (docs/cli.md), whole or not at all. The pictures that it names
-// under "images", of the reference and of each method, are PNG files in `folder`; any of them may be missing from the
-// document, but none that is named from the folder. The page needs no network and no other file.
+// Writes folder/report.html from the document of compare (docs/cli.md), whole or not at all. The
+// pictures that it names under "images", of the reference and of each method, are PNG files in
+// `folder`; any of them may be missing from the document, but none that is named from the folder.
+// The page needs no network and no other file.
 enum status report_page_write(const char *folder, const json_t *report);

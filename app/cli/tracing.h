@@ -1,5 +1,5 @@
-// The path tracer at work, as reference and compare use it: begun as the options say, until there are enough samples or
-// Ctrl-C, into an EXR that can be gone on with.
+// The path tracer at work, as reference and compare use it: begun as the options say, until there
+// are enough samples or Ctrl-C, into an EXR that can be gone on with.
 #pragma once
 
 #include "output.h"
@@ -16,7 +16,8 @@ struct tracing {
 extern const char tracing_kept_layers[];
 
 // The scene is loaded and lit; its reference has no sample yet.
-enum status tracing_begin(struct tracing *tracing, struct session *session, const struct ag_camera *camera, int wanted);
+enum status tracing_begin(struct tracing *tracing, struct session *session,
+                          const struct ag_camera *camera, int wanted);
 void tracing_end(struct tracing *tracing); // accepts zero
 // Goes on from a file of the same picture.
 enum ag_result tracing_resume(struct tracing *tracing, const char *path);
@@ -28,10 +29,10 @@ struct tracing_keeper {
     double every_s;
     bool first; // also after the first samples
 };
-// Renders with a bar. The keeper comes now and then and in the end, if the first Ctrl-C ends the work, too; then
-// done is less than wanted. A second one ends the program.
+// Renders with a bar. The keeper comes now and then and in the end, if the first Ctrl-C ends the
+// work, too; then done is less than wanted. A second one ends the program.
 enum status tracing_converge(struct tracing *tracing, const struct tracing_keeper *keeper);
 
 // An EXR of these layers; its attributes say how it was made, `more` adds some.
-enum ag_result tracing_write_exr(const struct tracing *tracing, const struct picture *picture, const char *path,
-                                 const struct ag_attribute *more, int more_count);
+enum ag_result tracing_write_exr(const struct tracing *tracing, const struct picture *picture,
+                                 const char *path, const struct ag_attribute *more, int more_count);

@@ -1,12 +1,13 @@
-// What stands behind an option's name, as numbers. Each function is false where the text is anything else, with *why
-// (a static string, or NULL) for the error. The program never leaves the "C" locale, so that a dot is a dot.
+// What stands behind an option's name, as numbers. Each function is false where the text is
+// anything else, with *why (a static string, or NULL) for the error. The program never leaves the
+// "C" locale, so that a dot is a dot.
 #pragma once
 
 #include <afterglow/scene.h>
 
 bool value_int(const char *text, long low, long high, long *out);
-bool value_seed(const char *text, uint64_t *out);  // decimal or 0x…
-bool value_number(const char *text, double *out);  // finite
+bool value_seed(const char *text, uint64_t *out);           // decimal or 0x…
+bool value_number(const char *text, double *out);           // finite
 bool value_floats(const char *text, int count, float *out); // "x,y,z", finite
 // "WxH", each 1…16384.
 bool value_size(const char *text, int *width, int *height);
@@ -21,7 +22,8 @@ struct light_value {
 bool value_light(const char *text, struct light_value *out, const char **why);
 // The lower-case part after the last dot of a path's last part: is it that?
 bool has_extension(const char *path, const char *extension);
-// "" where the path has none of "%d", "%4d", "%04d"; the path of that frame else. False: more than one, or too long.
+// "" where the path has none of "%d", "%4d", "%04d"; the path of that frame else. False: more than
+// one, or too long.
 bool value_frame_path(const char *pattern, int frame, char *out, size_t size, bool *is_pattern);
 
 static inline float radians(double degrees)

@@ -10,5 +10,6 @@
 // whole.
 enum status whole_file_write(const char *path, enum status (*write)(FILE *file, const void *what),
                              const void *what);
-// The name beside `path` under which it is written before it is renamed; the caller frees it. NULL: out of memory.
+// The name beside `path` under which it is written before it is renamed; the caller frees it. NULL:
+// out of memory.
 char *whole_file_beside(const char *path);

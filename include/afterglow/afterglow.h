@@ -1,4 +1,5 @@
-/// Everything: real-time global illumination on any Vulkan 1.3 device. See examples/minimal.c for a first program.
+/// Everything: real-time global illumination on any Vulkan 1.3 device. See examples/minimal.c for a
+/// first program.
 #ifndef AFTERGLOW_H
 #define AFTERGLOW_H
 

@@ -25,7 +25,8 @@ struct ag_technique_info {
 /// Each returns false past the end. Strings live for ever.
 AG_API bool ag_technique_get(int index, struct ag_technique_info *out);
 AG_API bool ag_technique_option_get(int technique, int index, struct ag_option_info *out);
-/// What `name:quality=PRESET` sets, as "key=value,key=value", before the options that stand beside it; "" is the defaults.
+/// What `name:quality=PRESET` sets, as "key=value,key=value", before the options that stand beside
+/// it; "" is the defaults.
 AG_API bool ag_technique_preset_get(int technique, int index, const char **name,
                                     const char **options);
 AG_API bool ag_technique_debug_view_get(int technique, int index, const char **name,

@@ -1,5 +1,5 @@
-/// A context: the log and the memory that the program lends to the library. Everything hangs from one; two can live
-/// side by side.
+/// A context: the log and the memory that the program lends to the library. Everything hangs from
+/// one; two can live side by side.
 #ifndef AFTERGLOW_CONTEXT_H
 #define AFTERGLOW_CONTEXT_H
 
@@ -23,7 +23,8 @@ struct ag_context_desc {
 
 AG_API void ag_context_desc_default(struct ag_context_desc *desc);
 /// desc may be NULL for the defaults. *out is NULL on failure.
-AG_API enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_context **out);
+AG_API enum ag_result ag_context_create(const struct ag_context_desc *desc,
+                                        struct ag_context **out);
 AG_API void ag_context_destroy(struct ag_context *context);
 /// The newest error's sentence, "" if there was none. Valid until the next call on the context.
 AG_API const char *ag_context_last_error(const struct ag_context *context);

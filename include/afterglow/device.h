@@ -19,8 +19,9 @@ struct ag_device_info {
 AG_API enum ag_result ag_device_list(struct ag_context *context, struct ag_device_info *out,
                                      int capacity, int *count);
 
-/// A caller's Vulkan objects, as their handles. The device has Vulkan 1.3, VK_KHR_push_descriptor and the features that
-/// ag_device_required_features lists enabled. The caller keeps them alive until ag_device_destroy.
+/// A caller's Vulkan objects, as their handles. The device has Vulkan 1.3, VK_KHR_push_descriptor
+/// and the features that ag_device_required_features lists enabled. The caller keeps them alive
+/// until ag_device_destroy.
 struct ag_device_adopt {
     void *instance, *physical_device, *device, *queue;
     uint32_t queue_family;
@@ -37,8 +38,8 @@ struct ag_device_desc {
 
 AG_API void ag_device_desc_default(struct ag_device_desc *desc);
 /// desc may be NULL for the defaults.
-AG_API enum ag_result ag_device_create(struct ag_context *context, const struct ag_device_desc *desc,
-                                       struct ag_device **out);
+AG_API enum ag_result ag_device_create(struct ag_context *context,
+                                       const struct ag_device_desc *desc, struct ag_device **out);
 AG_API void ag_device_destroy(struct ag_device *device);
 AG_API void ag_device_get_info(const struct ag_device *device, struct ag_device_info *out);
 /// Vulkan features that an adopted device must have enabled, one name a line.

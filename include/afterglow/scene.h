@@ -1,4 +1,5 @@
-/// Scenes: loaded from a file, built in, or built by calls. World space is right-handed, +Y up, metres.
+/// Scenes: loaded from a file, built in, or built by calls. World space is right-handed, +Y up,
+/// metres.
 #ifndef AFTERGLOW_SCENE_H
 #define AFTERGLOW_SCENE_H
 
@@ -8,8 +9,9 @@ AG_BEGIN
 
 struct ag_scene;
 
-/// Loads a file (glTF 2.0 first; OBJ, PLY, FBX, X) or a built-in scene, "@name" or "@name:key=value,…".
-/// Files are untrusted. What is not supported is left out and named once in a warning.
+/// Loads a file (glTF 2.0 first; OBJ, PLY, FBX, X) or a built-in scene, "@name" or
+/// "@name:key=value,…". Files are untrusted. What is not supported is left out and named once in a
+/// warning.
 AG_API enum ag_result ag_scene_load(struct ag_context *context, const char *name,
                                     struct ag_scene **out);
 /// An empty scene to be filled by ag_scene_add_*.
@@ -45,8 +47,8 @@ struct ag_light_desc {
 /// Downwards from the origin, intensity 1, a spot from 0 to π/4.
 AG_API void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type);
 
-/// Each sets *index (which may be NULL) to the new object's index. While a renderer uses the scene, only lights can be
-/// added and removed.
+/// Each sets *index (which may be NULL) to the new object's index. While a renderer uses the scene,
+/// only lights can be added and removed.
 AG_API enum ag_result ag_scene_add_material(struct ag_scene *scene,
                                             const struct ag_material_desc *desc, int *index);
 AG_API enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_desc *desc,
@@ -56,13 +58,15 @@ AG_API enum ag_result ag_scene_add_instance(struct ag_scene *scene, int mesh,
                                             const float *world_from_mesh, int *index);
 AG_API enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_desc *desc,
                                          int *index);
-/// A rectangle that glows evenly on its front, as a panel or a window does. It is part of the geometry: seen, in the way
-/// of other light, and it lights others through the techniques that gather emission. The back is dark.
+/// A rectangle that glows evenly on its front, as a panel or a window does. It is part of the
+/// geometry: seen, in the way of other light, and it lights others through the techniques that
+/// gather emission. The back is dark.
 struct ag_area_light_desc {
     float position[3];   ///< its centre, metres
     float direction[3];  ///< of its front; need not be unit
     float width, height; ///< metres, > 0; the width lies level (along x where it faces up or down)
-    float radiance[3];   ///< linear Rec. 709, cd/m²; the rectangle shines π · radiance · width · height lumens
+    float radiance[3]; ///< linear Rec. 709, cd/m²; the rectangle shines π · radiance · width ·
+                       ///< height lumens
 };
 /// A square metre at the origin that faces down, radiance 1.
 AG_API void ag_area_light_desc_default(struct ag_area_light_desc *desc);
@@ -81,18 +85,22 @@ struct ag_camera {
     float near_m;            ///< > 0; the far plane is at infinity
 };
 /// "Looking from eye at target": up is +y; near suits the scene's size.
-AG_API enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye, const float *target,
-                                       float vertical_fov_rad, struct ag_camera *out);
+AG_API enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye,
+                                       const float *target, float vertical_fov_rad,
+                                       struct ag_camera *out);
 AG_API int ag_scene_camera_count(const struct ag_scene *scene);
-AG_API const char *ag_scene_camera_name(const struct ag_scene *scene, int index); ///< NULL out of range
-/// Questions about a moment name an animation and a time in seconds, which wraps around the animation's duration.
-/// Animations are numbered from 0; 0 is allowed where there is none, -1 is the rest pose.
+AG_API const char *ag_scene_camera_name(const struct ag_scene *scene,
+                                        int index); ///< NULL out of range
+/// Questions about a moment name an animation and a time in seconds, which wraps around the
+/// animation's duration. Animations are numbered from 0; 0 is allowed where there is none, -1 is
+/// the rest pose.
 ///
 /// The named camera at a moment; an unknown name is an error that names those present.
 AG_API enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int animation,
                                       double time_s, struct ag_camera *out);
-/// The first camera of the scene or, where it has none, one that suits it: from outside where the scene is an object,
-/// from inside where geometry surrounds its middle. *made_up (may be NULL) says which.
+/// The first camera of the scene or, where it has none, one that suits it: from outside where the
+/// scene is an object, from inside where geometry surrounds its middle. *made_up (may be NULL) says
+/// which.
 AG_API enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animation, double time_s,
                                               struct ag_camera *out, bool *made_up);
 
@@ -105,7 +113,8 @@ struct ag_default_lighting {
 /// What a dark scene would get.
 AG_API enum ag_result ag_scene_default_lighting(struct ag_scene *scene,
                                                 struct ag_default_lighting *out);
-/// Adds a sun and a faint sky to a scene that is dark; does nothing to another. out (may be NULL) says what.
+/// Adds a sun and a faint sky to a scene that is dark; does nothing to another. out (may be NULL)
+/// says what.
 AG_API enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,
                                                     struct ag_default_lighting *out);
 

@@ -1,8 +1,9 @@
 /// Results, versions and the rules that hold for every call.
 ///
-/// Ownership: an object is destroyed by the function that carries its name, before the object it was made from; every
-/// destroy function accepts NULL. Descriptions are structs that a function ag_…_desc_default() fills; they need only
-/// live until the call returns. Strings are UTF-8 and copied. Threads: one thread at a time per context.
+/// Ownership: an object is destroyed by the function that carries its name, before the object it
+/// was made from; every destroy function accepts NULL. Descriptions are structs that a function
+/// ag_…_desc_default() fills; they need only live until the call returns. Strings are UTF-8 and
+/// copied. Threads: one thread at a time per context.
 #ifndef AFTERGLOW_TYPES_H
 #define AFTERGLOW_TYPES_H
 
@@ -12,7 +13,7 @@
 
 #ifdef __cplusplus
 #define AG_BEGIN extern "C" {
-#define AG_END }
+#define AG_END   }
 #else
 #define AG_BEGIN
 #define AG_END

@@ -1,5 +1,5 @@
-// What stands behind the public handles, and what every public function does at its door: check the caller's
-// arguments, forward, turn the module's failure into an ag_result.
+// What stands behind the public handles, and what every public function does at its door: check the
+// caller's arguments, forward, turn the module's failure into an ag_result.
 #pragma once
 
 #include <afterglow/afterglow.h>
@@ -38,9 +38,10 @@ struct ag_scene {
     int renderers;          // that use the scene
 };
 
-// Makes `pose` the scene's at a moment: from scratch where *pose_version is not the scene's. False: out of memory.
-bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t *pose_version, int animation,
-                 double time_s);
+// Makes `pose` the scene's at a moment: from scratch where *pose_version is not the scene's. False:
+// out of memory.
+bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t *pose_version,
+                 int animation, double time_s);
 // The index that pose_update takes: 0 stands for the first animation, if there is one.
 bool api_animation_exists(const struct ag_scene *scene, int animation);
 
@@ -50,8 +51,10 @@ enum ag_result api_done(struct ag_context *context, bool ok);
 enum ag_result api_refuse(struct ag_context *context, const char *function, const char *why, ...)
     __attribute__((format(printf, 3, 4)));
 
-// At the door of every function: returns AG_ERROR_ARGUMENT unless the condition holds. `context` may be NULL.
-#define AG_REQUIRE(context, condition, ...) AG_REQUIRE_FOR(__func__, context, condition, __VA_ARGS__)
+// At the door of every function: returns AG_ERROR_ARGUMENT unless the condition holds. `context`
+// may be NULL.
+#define AG_REQUIRE(context, condition, ...)                                                        \
+    AG_REQUIRE_FOR(__func__, context, condition, __VA_ARGS__)
 // The same in a part of a public function, which the message names.
 #define AG_REQUIRE_FOR(function, context, condition, ...)                                          \
     do {                                                                                           \
@@ -60,11 +63,13 @@ enum ag_result api_refuse(struct ag_context *context, const char *function, cons
 
 // Forward and up, unit and orthogonal; where the camera's up says nothing, any.
 struct world_camera api_camera(const struct ag_camera *camera);
-enum ag_result api_camera_check(struct ag_context *context, const char *function, const struct ag_camera *camera);
+enum ag_result api_camera_check(struct ag_context *context, const char *function,
+                                const struct ag_camera *camera);
 
 // Hands a finished image over to the caller; takes *image in any case.
 struct image;
-enum ag_result api_give_image(struct ag_context *context, bool ok, struct image *image, struct ag_image **out);
+enum ag_result api_give_image(struct ag_context *context, bool ok, struct image *image,
+                              struct ag_image **out);
 
 static inline bool api_finite(const float *values, int count)
 {

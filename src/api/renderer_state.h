@@ -1,4 +1,5 @@
-// What a public renderer holds, shared by renderer.c (its life and frames) and layers.c (what is read from it).
+// What a public renderer holds, shared by renderer.c (its life and frames) and layers.c (what is
+// read from it).
 #pragma once
 
 #include "api/objects.h"

@@ -1,6 +1,7 @@
 // What the program around the library lends it: a log, memory, and a place for the last failure.
-// Every create function takes a `struct host *`, which must outlive the object. Nothing in the library
-// prints, exits or reads the environment; a failure is a `false` or NULL plus one sentence here.
+// Every create function takes a `struct host *`, which must outlive the object. Nothing in the
+// library prints, exits or reads the environment; a failure is a `false` or NULL plus one sentence
+// here.
 #pragma once
 
 #include <stdarg.h>
@@ -23,7 +24,7 @@ enum fail_kind {
 
 struct host {
     void (*log)(void *user, enum log_level level, const char *message); // NULL: silent
-    void *(*reallocate)(void *user, void *old, size_t bytes);          // NULL: libc; 0 bytes frees
+    void *(*reallocate)(void *user, void *old, size_t bytes);           // NULL: libc; 0 bytes frees
     void *user;
     enum log_level log_up_to; // messages above are not formatted
     enum fail_kind failure;   // kind of the last host_fail
@@ -39,15 +40,18 @@ bool host_fail(struct host *host, enum fail_kind kind, const char *format, ...)
 void host_log(struct host *host, enum log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// Zeroed memory for count × size bytes; NULL (with FAIL_MEMORY recorded and logged) when that overflows or
-// cannot be had. count or size 0 gives a unique pointer. Free with host_free, which accepts NULL.
+// Zeroed memory for count × size bytes; NULL (with FAIL_MEMORY recorded and logged) when that
+// overflows or cannot be had. count or size 0 gives a unique pointer. Free with host_free, which
+// accepts NULL.
 void *host_alloc(struct host *host, size_t count, size_t size);
-// Grows or shrinks; contents are kept, new bytes are not zeroed. NULL leaves the old block as it was.
+// Grows or shrinks; contents are kept, new bytes are not zeroed. NULL leaves the old block as it
+// was.
 void *host_realloc(struct host *host, void *old, size_t count, size_t size);
 void host_free(struct host *host, void *pointer);
 char *host_strdup(struct host *host, const char *text);
 // A new string, printf style; NULL when out of memory. Owned by the caller.
-char *host_sprintf(struct host *host, const char *format, ...) __attribute__((format(printf, 2, 3)));
+char *host_sprintf(struct host *host, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 // Checked sizes: false when the result does not fit, *out is then untouched.
 bool size_mul(size_t a, size_t b, size_t *out);

@@ -2,8 +2,9 @@
 //
 //     OPTION(type, name, default, min, max, "unit or choices", EFFECT, "help")
 //
-// type is int32, float32, bool8 or choice (an int32 that indexes the '|'-separated names in the unit column).
-// From the table come the struct, the defaults, parsing, printing, documentation and the range tests:
+// type is int32, float32, bool8 or choice (an int32 that indexes the '|'-separated names in the
+// unit column). From the table come the struct, the defaults, parsing, printing, documentation and
+// the range tests:
 //
 //     struct lpv_options {
 //     #define OPTION OPTION_FIELD
@@ -49,15 +50,21 @@ struct option_table {
 
 #define OPTION_FIELD(type, name, ...) option_##type name;
 #define OPTION_ROW(struct_type, type_, name_, initial_, min_, max_, unit_, effect_, help_)         \
-    { .type = OPTION_TYPE_##type_, .name = #name_, .initial = (initial_), .min = (min_),           \
-      .max = (max_), .unit = (unit_), .effect = (effect_), .help = (help_),                        \
+    { .type = OPTION_TYPE_##type_,                                                                 \
+      .name = #name_,                                                                              \
+      .initial = (initial_),                                                                       \
+      .min = (min_),                                                                               \
+      .max = (max_),                                                                               \
+      .unit = (unit_),                                                                             \
+      .effect = (effect_),                                                                         \
+      .help = (help_),                                                                             \
       .offset = offsetof(struct_type, name_) },
 
 void option_defaults(const struct option_table *table, void *options);
 
-// Sets what "key=value,key=value" says on top of what is there; "" sets nothing. `owner` is named in errors.
-// An unknown key names the nearest known one; a value out of range names the range. On failure *options
-// is unchanged.
+// Sets what "key=value,key=value" says on top of what is there; "" sets nothing. `owner` is named
+// in errors. An unknown key names the nearest known one; a value out of range names the range. On
+// failure *options is unchanged.
 bool option_parse(struct host *host, const struct option_table *table, const char *owner,
                   const char *text, void *options);
 // The value as text, as option_parse would read it.

@@ -1,6 +1,7 @@
-// Random numbers as arguments: a generator is seeded from (pixel, sample, dimension), never from a clock.
-// PCG32 (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
-// Number Generation"), and the R2 low-discrepancy sequence (Roberts 2018). The GLSL twin is rng.glsl.
+// Random numbers as arguments: a generator is seeded from (pixel, sample, dimension), never from a
+// clock. PCG32 (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good
+// Algorithms for Random Number Generation"), and the R2 low-discrepancy sequence (Roberts 2018).
+// The GLSL twin is rng.glsl.
 #pragma once
 
 #include "core/vec.h"

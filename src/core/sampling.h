@@ -1,30 +1,33 @@
-// Warps of the unit square with their densities. Every sample_x has a density pdf_x that integrates to 1
-// over its domain (solid angle in sr for directions, area in m² or unit area for surfaces).
+// Warps of the unit square with their densities. Every sample_x has a density pdf_x that integrates
+// to 1 over its domain (solid angle in sr for directions, area in m² or unit area for surfaces).
 #pragma once
 
 #include "core/vec.h"
 
 #include <math.h>
 
-vec3s sample_sphere(vec2s u);                           // uniform, pdf 1/(4π)
+vec3s sample_sphere(vec2s u); // uniform, pdf 1/(4π)
 float pdf_sphere(void);
-static inline vec3s sample_hemisphere_cosine(vec2s u);  // around +z, pdf cosθ/π
+static inline vec3s sample_hemisphere_cosine(vec2s u); // around +z, pdf cosθ/π
 float pdf_hemisphere_cosine(float cos_theta);
-vec3s sample_hemisphere_uniform(vec2s u);               // around +z, pdf 1/(2π)
+vec3s sample_hemisphere_uniform(vec2s u); // around +z, pdf 1/(2π)
 float pdf_hemisphere_uniform(void);
-vec3s sample_cone_uniform(vec2s u, float cos_max);      // around +z
+vec3s sample_cone_uniform(vec2s u, float cos_max); // around +z
 float pdf_cone_uniform(float cos_max);
-static inline vec2s sample_disk(vec2s u);               // concentric (Shirley & Chiu 1997), unit disk
-static inline vec2s sample_triangle(vec2s u);           // barycentric b1, b2, uniform by area
+static inline vec2s sample_disk(vec2s u);     // concentric (Shirley & Chiu 1997), unit disk
+static inline vec2s sample_triangle(vec2s u); // barycentric b1, b2, uniform by area
 
 // ---- what a path tracer calls for every ray
 
-// cos x and sin x for |x| ≤ π/4 by their series, to the last bits of a float; the C library's ask first how large x is.
+// cos x and sin x for |x| ≤ π/4 by their series, to the last bits of a float; the C library's ask
+// first how large x is.
 static inline vec2s eighth_turn(float x)
 {
     float s = x * x;
-    return (vec2s){ { 1.0f - s * (1.0f / 2 - s * (1.0f / 24 - s * (1.0f / 720 - s * (1.0f / 40320)))),
-                      x * (1.0f - s * (1.0f / 6 - s * (1.0f / 120 - s * (1.0f / 5040 - s * (1.0f / 362880))))) } };
+    return (vec2s){
+        { 1.0f - s * (1.0f / 2 - s * (1.0f / 24 - s * (1.0f / 720 - s * (1.0f / 40320)))),
+          x * (1.0f - s * (1.0f / 6 - s * (1.0f / 120 - s * (1.0f / 5040 - s * (1.0f / 362880))))) }
+    };
 }
 
 static inline vec2s sample_disk(vec2s u)
@@ -42,7 +45,8 @@ static inline vec2s sample_disk(vec2s u)
 // area, and near points stay near, which the square-root map does not do.
 static inline vec2s sample_triangle(vec2s u)
 {
-    float half = 0.5f * (u.x < u.y ? u.x : u.y); // the smaller is halved, and the other loses as much
+    float half =
+        0.5f * (u.x < u.y ? u.x : u.y); // the smaller is halved, and the other loses as much
     return (vec2s){ { u.x - half, u.y - half } };
 }
 

@@ -1,6 +1,7 @@
 // The GLSL twin of sh.h, bands 0 to 2: real, orthonormal, no Condon–Shortley sign, in the order
-// Y00, y, z, x, xy, yz, 3z² − 1, xz, x² − y². sh4_… works on bands 0 and 1 in a vec4, sh9_… on bands 0 to 2 in an
-// array of floats, or of RGB triples. Directions are unit vectors; coefficients have the unit of the function.
+// Y00, y, z, x, xy, yz, 3z² − 1, xz, x² − y². sh4_… works on bands 0 and 1 in a vec4, sh9_… on
+// bands 0 to 2 in an array of floats, or of RGB triples. Directions are unit vectors; coefficients
+// have the unit of the function.
 //
 // Sources: Ramamoorthi & Hanrahan 2001 (irradiance), Sloan 2008 (zonal harmonics).
 #ifndef CORE_SH_GLSL

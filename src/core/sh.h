@@ -1,15 +1,17 @@
 // Real spherical harmonics, orthonormal, index i = l(l+1)+m, no Condon–Shortley sign, so that
-// Y1,-1 ∝ +y, Y1,0 ∝ +z, Y1,1 ∝ +x. Bands 0…5 (order 5: 36 coefficients). The GLSL twin, bands 0…2, is sh.glsl.
+// Y1,-1 ∝ +y, Y1,0 ∝ +z, Y1,1 ∝ +x. Bands 0…5 (order 5: 36 coefficients). The GLSL twin, bands 0…2,
+// is sh.glsl.
 //
-// Sources: Ramamoorthi & Hanrahan 2001 (irradiance), Sloan 2008 "Stupid Spherical Harmonics Tricks" (zonal
-// harmonics, products), Ivanic & Ruedenberg 1996/1998 (rotation). Unit of coefficients: that of the function.
+// Sources: Ramamoorthi & Hanrahan 2001 (irradiance), Sloan 2008 "Stupid Spherical Harmonics Tricks"
+// (zonal harmonics, products), Ivanic & Ruedenberg 1996/1998 (rotation). Unit of coefficients: that
+// of the function.
 #pragma once
 
 #include "core/vec.h"
 
-#define SH_MAX_BANDS 6
+#define SH_MAX_BANDS    6
 #define SH_COUNT(bands) ((bands) * (bands))
-#define SH_MAX_COUNT SH_COUNT(SH_MAX_BANDS)
+#define SH_MAX_COUNT    SH_COUNT(SH_MAX_BANDS)
 
 // Y_i(direction) for all i below bands²; direction is a unit vector.
 void sh_eval(int bands, vec3s direction, float *out);
@@ -21,12 +23,15 @@ float sh_dot(int bands, const float *coefficients, vec3s direction);
 void zh_clamped_cosine(int bands, float *out);
 // A zonal function turned from +z to `direction`: c_lm = √(4π/(2l+1)) z_l Y_lm(direction).
 void zh_rotate(int bands, const float *zonal, vec3s direction, float *out);
-// Convolution with a zonal kernel: c_lm · √(4π/(2l+1)) z_l. With the clamped cosine, radiance becomes irradiance.
+// Convolution with a zonal kernel: c_lm · √(4π/(2l+1)) z_l. With the clamped cosine, radiance
+// becomes irradiance.
 void sh_convolve(int bands, const float *coefficients, const float *zonal, float *out);
-// Irradiance coefficients of radiance coefficients: the bands weighted by π, 2π/3, π/4, 0, −π/24, 0.
+// Irradiance coefficients of radiance coefficients: the bands weighted by π, 2π/3, π/4, 0, −π/24,
+// 0.
 void sh_irradiance(int bands, const float *radiance, float *out);
 
-// Rotation of a function by the rotation matrix `to_from`: out(to_from · ω) = in(ω). out may not be in.
+// Rotation of a function by the rotation matrix `to_from`: out(to_from · ω) = in(ω). out may not be
+// in.
 void sh_rotate(int bands, mat3s to_from, const float *in, float *out);
 // Product of two functions projected back onto `bands` bands (the triple-product tensor, exact).
 void sh_product(int bands, const float *a, const float *b, float *out);

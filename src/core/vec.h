@@ -36,7 +36,8 @@ static inline vec3s mat4_direction(mat4s to_from, vec3s d)
     return glms_mat4_mulv3(to_from, d, 0.0f);
 }
 
-// The unit vector along v, whatever v's length: nothing overflows or vanishes on the way. 0 where v is 0 or not finite.
+// The unit vector along v, whatever v's length: nothing overflows or vanishes on the way. 0 where v
+// is 0 or not finite.
 vec3s vec3_unit(vec3s v);
 // The unit vector from one point to another; 0 where they are the same.
 vec3s vec3_towards(vec3s from, vec3s to);
@@ -60,8 +61,8 @@ bool box3_is_empty(struct box3 box);
 vec3s box3_centre(struct box3 box);
 vec3s box3_size(struct box3 box);
 
-// Any two unit vectors that make a right-handed frame (tangent, bitangent, n) with the unit vector n
-// (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+// Any two unit vectors that make a right-handed frame (tangent, bitangent, n) with the unit vector
+// n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
 static inline void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent)
 {
     float sign = copysignf(1.0f, n.z);

@@ -1,7 +1,8 @@
-// The frame's uniform block and what every pass computes from it. Include this instead of frame_shared.h: GLSL lets
-// no struct bear the name of a block, so the struct is renamed here.
+// The frame's uniform block and what every pass computes from it. Include this instead of
+// frame_shared.h: GLSL lets no struct bear the name of a block, so the struct is renamed here.
 //
-// Binding number: FRAME_CONSTANTS_BINDING, 0 unless defined before the inclusion. Needs GL_EXT_scalar_block_layout.
+// Binding number: FRAME_CONSTANTS_BINDING, 0 unless defined before the inclusion. Needs
+// GL_EXT_scalar_block_layout.
 #ifndef AG_FRAME_GLSL
 #define AG_FRAME_GLSL
 

@@ -54,7 +54,8 @@ static float typical_irradiance(const struct scale_input *in)
     return most;
 }
 
-// A surface of albedo ½ that gets a fiftieth of the light that others get directly, or the sky alone.
+// A surface of albedo ½ that gets a fiftieth of the light that others get directly, or the sky
+// alone.
 float frame_unlit_luminance(const struct scale_input *in)
 {
     static const float INDIRECT_SHARE = 0.02f, ALBEDO = 0.5f;

@@ -1,4 +1,5 @@
-// What a frame holds. Only the files of this folder that make up the frame itself include it; passes do not.
+// What a frame holds. Only the files of this folder that make up the frame itself include it;
+// passes do not.
 #pragma once
 
 #include "frame/frame.h"
@@ -35,7 +36,7 @@ struct frame {
     bool prepared;
 
     // Of the newest recorded frame.
-    uint64_t index;    // of the next one
+    uint64_t index; // of the next one
     struct frame_constants constants;
     struct frame_light lights[FRAME_MAX_LIGHTS];
     int light_count;

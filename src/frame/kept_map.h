@@ -1,5 +1,5 @@
-// A light's map that would come out as it is need not be drawn again: nothing moves where it looks, and it looks from where
-// it did in the last frame.
+// A light's map that would come out as it is need not be drawn again: nothing moves where it looks,
+// and it looks from where it did in the last frame.
 #pragma once
 
 #include "frame/frame_shared.h"
@@ -11,6 +11,7 @@ struct kept_map { // zero: nothing is kept
     uint64_t updates; // of the scene when it was last as it should be; 0: never
 };
 
-// Whether the map stands as it was. Call once a frame, before it is drawn: it counts as drawn from then on.
-bool kept_map_stands(struct kept_map *map, const struct scene_gpu *scene, const struct frame_light *light,
-                     mat4s clip_from_world);
+// Whether the map stands as it was. Call once a frame, before it is drawn: it counts as drawn from
+// then on.
+bool kept_map_stands(struct kept_map *map, const struct scene_gpu *scene,
+                     const struct frame_light *light, mat4s clip_from_world);

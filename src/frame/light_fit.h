@@ -5,8 +5,8 @@
 
 // Light space of a sun: a rotation; −z is the way the light shines. The same for equal directions.
 mat4s light_space(vec3s direction);
-// A square of half-width half_m around the light-space point (x, y), as deep as `bounds` (world space).
-// depth_m: distance between depth 1 and depth 0.
+// A square of half-width half_m around the light-space point (x, y), as deep as `bounds` (world
+// space). depth_m: distance between depth 1 and depth 0.
 mat4s light_orthographic(vec3s direction, float x, float y, float half_m, struct box3 bounds,
                          float *depth_m);
 // One face of a point light's cube (0…5), or a spot's map.

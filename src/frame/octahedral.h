@@ -1,5 +1,5 @@
-// Unit vectors on the octahedron, unfolded to −1…1 squared (Cigolle et al. 2014, "A Survey of Efficient
-// Representations for Independent Unit Vectors", oct). GLSL twin: octahedral.glsl.
+// Unit vectors on the octahedron, unfolded to −1…1 squared (Cigolle et al. 2014, "A Survey of
+// Efficient Representations for Independent Unit Vectors", oct). GLSL twin: octahedral.glsl.
 #pragma once
 
 #include "core/vec.h"

@@ -1,13 +1,16 @@
-// A probe volume: irradiance at the points of a grid, for what the frame has no pixel of — dynamic objects, particles, techniques that
-// come later. Include after core/sh.glsl and frame/frame_shared.h.
+// A probe volume: irradiance at the points of a grid, for what the frame has no pixel of — dynamic
+// objects, particles, techniques that come later. Include after core/sh.glsl and
+// frame/frame_shared.h.
 //
-// Each probe holds scaled irradiance E(n) = Σ c_i Y_i(n), n the receiver's normal, in nine coefficients for each of R, G, B. They lie in
-// one RGBA16F image of FRAME_PROBE_SLABS slabs, one behind the other along z: number 3 i + colour stands in component
-// (3 i + colour) mod 4 of slab (3 i + colour) div 4; the last number is 0.
+// Each probe holds scaled irradiance E(n) = Σ c_i Y_i(n), n the receiver's normal, in nine
+// coefficients for each of R, G, B. They lie in one RGBA16F image of FRAME_PROBE_SLABS slabs, one
+// behind the other along z: number 3 i + colour stands in component (3 i + colour) mod 4 of slab (3
+// i + colour) div 4; the last number is 0.
 #ifndef AG_FRAME_PROBES_GLSL
 #define AG_FRAME_PROBES_GLSL
 
-// Of a point of the world, filtered between the eight probes around it; outside of the grid the nearest face's.
+// Of a point of the world, filtered between the eight probes around it; outside of the grid the
+// nearest face's.
 vec3 probes_irradiance(sampler3D volume, frame_probes place, vec3 position, vec3 normal)
 {
     vec3 last = vec3(place.count_x, place.count_y, place.count_z) - 1.0;

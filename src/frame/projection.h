@@ -1,4 +1,5 @@
-// Cameras and lights as matrices. Vulkan's clip space: x right, y down, depth reversed (1 near, 0 far).
+// Cameras and lights as matrices. Vulkan's clip space: x right, y down, depth reversed (1 near, 0
+// far).
 #pragma once
 
 #include "scene/pose.h"
@@ -7,7 +8,8 @@
 mat4s projection_view_from_world(vec3s eye, vec3s forward, vec3s up);
 // Infinite far plane: depth = near_m / distance along the axis.
 mat4s projection_perspective(float tan_half_x, float tan_half_y, float near_m);
-// half_m: half the edge of the square in metres. Depth is 1 at near_m along the axis and 0 at far_m.
+// half_m: half the edge of the square in metres. Depth is 1 at near_m along the axis and 0 at
+// far_m.
 mat4s projection_orthographic(float half_m, float near_m, float far_m);
 mat4s projection_of_camera(const struct world_camera *camera, uint32_t width, uint32_t height);
 

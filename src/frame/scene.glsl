@@ -1,5 +1,7 @@
-// Vertex pulling: the scene's buffers and maps. Bindings 1…7 are the buffers, 8…11 the maps; 0 is frame_constants,
-// 12 and up are the pass's own. Compute shaders include it through scene_triangles.glsl. A pass declares its push block, `push`, with a scene_push named `draw` in it.
+// Vertex pulling: the scene's buffers and maps. Bindings 1…7 are the buffers, 8…11 the maps; 0 is
+// frame_constants, 12 and up are the pass's own. Compute shaders include it through
+// scene_triangles.glsl. A pass declares its push block, `push`, with a scene_push named `draw` in
+// it.
 #ifndef AG_FRAME_SCENE_GLSL
 #define AG_FRAME_SCENE_GLSL
 
@@ -15,8 +17,14 @@ layout(constant_id = 4) const bool IS_MASKED = false;
 #ifdef SCENE_VERTEX
 
 // Scalar arrays: a vec3 stride of 12 bytes.
-layout(set = 0, binding = 1, scalar) readonly buffer scene_positions { vec3 scene_position_table[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer scene_instances { scene_instance scene_instance_table[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer scene_positions
+{
+    vec3 scene_position_table[];
+};
+layout(set = 0, binding = 4, scalar) readonly buffer scene_instances
+{
+    scene_instance scene_instance_table[];
+};
 
 vec3 scene_position(uint vertex)
 {
@@ -29,37 +37,49 @@ mat4 scene_world_from_instance()
 }
 
 #ifdef SCENE_VERTEX_SURFACE
-layout(set = 0, binding = 3, scalar) readonly buffer scene_surfaces { scene_surface scene_surface_table[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer scene_surfaces
+{
+    scene_surface scene_surface_table[];
+};
 
 scene_surface scene_surface_of(uint vertex)
 {
     return scene_surface_table[push.draw.surface_base + vertex];
 }
 
-layout(set = 0, binding = 6, scalar) readonly buffer scene_materials { scene_material scene_material_table[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer scene_materials
+{
+    scene_material scene_material_table[];
+};
 
-// Where a map is read. Done for vertices: where a fragment is derived from its neighbours outside of the triangle, their
-// loads from buffers may give 0 on some drivers, and with it a wrong mip.
+// Where a map is read. Done for vertices: where a fragment is derived from its neighbours outside
+// of the triangle, their loads from buffers may give 0 on some drivers, and with it a wrong mip.
 vec2 scene_map_uv(uint map, scene_surface surface)
 {
     uint m = push.draw.material;
-    vec3 uv = vec3((scene_material_table[m].flags >> map & 1u) != 0u ? surface.uv1 : surface.uv0, 1.0);
-    return vec2(dot(scene_material_table[m].map_u[map], uv), dot(scene_material_table[m].map_v[map], uv));
+    vec3 uv =
+        vec3((scene_material_table[m].flags >> map & 1u) != 0u ? surface.uv1 : surface.uv0, 1.0);
+    return vec2(dot(scene_material_table[m].map_u[map], uv),
+                dot(scene_material_table[m].map_v[map], uv));
 }
 #endif
 
 #ifdef SCENE_VERTEX_FRAME
 #include "frame/octahedral.glsl"
-// x: octahedral normal; y: octahedral tangent, its lowest bit set where the bitangent is −cross(normal, tangent).
-layout(set = 0, binding = 2, scalar) readonly buffer scene_frames { uvec2 scene_frame_table[]; };
-
-struct scene_frame
+// x: octahedral normal; y: octahedral tangent, its lowest bit set where the bitangent is
+// −cross(normal, tangent).
+layout(set = 0, binding = 2, scalar) readonly buffer scene_frames
 {
+    uvec2 scene_frame_table[];
+};
+
+struct scene_frame {
     vec3 normal;
     vec4 tangent; // w = ±1, for world space: mirrored transforms included
 };
 
-// World-space normal and tangent. Normals go through the cofactor matrix: the inverse transpose but for a factor.
+// World-space normal and tangent. Normals go through the cofactor matrix: the inverse transpose but
+// for a factor.
 scene_frame scene_frame_of(uint vertex, mat4 world_from_instance)
 {
     uvec2 bits = scene_frame_table[push.draw.vertex_base + vertex];
@@ -77,12 +97,16 @@ scene_frame scene_frame_of(uint vertex, mat4 world_from_instance)
 #endif
 
 #ifdef SCENE_VERTEX_MOTION
-layout(set = 0, binding = 5, scalar) readonly buffer scene_previous_positions { vec3 scene_previous_table[]; };
+layout(set = 0, binding = 5, scalar) readonly buffer scene_previous_positions
+{
+    vec3 scene_previous_table[];
+};
 
 vec3 scene_previous_world_position(uint vertex)
 {
     vec3 p = scene_previous_table[push.draw.vertex_base + vertex];
-    return (scene_instance_table[push.draw.instance].previous_world_from_instance * vec4(p, 1.0)).xyz;
+    return (scene_instance_table[push.draw.instance].previous_world_from_instance * vec4(p, 1.0))
+        .xyz;
 }
 #endif
 
@@ -90,7 +114,10 @@ vec3 scene_previous_world_position(uint vertex)
 
 #ifdef SCENE_FRAGMENT
 
-layout(set = 0, binding = 6, scalar) readonly buffer scene_materials { scene_material scene_material_table[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer scene_materials
+{
+    scene_material scene_material_table[];
+};
 layout(set = 0, binding = 8) uniform sampler2D base_color_map;
 layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
 

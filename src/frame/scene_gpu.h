@@ -1,5 +1,6 @@
-// The scene on the GPU: vertex streams, materials, textures, and the draws that show it. Passes that rasterise, and
-// techniques that walk the triangles in compute, share it. One draw is one instance of one mesh, which has one material.
+// The scene on the GPU: vertex streams, materials, textures, and the draws that show it. Passes
+// that rasterise, and techniques that walk the triangles in compute, share it. One draw is one
+// instance of one mesh, which has one material.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -21,10 +22,10 @@ struct scene_draw {
     int instance, mesh, material;
     uint32_t variant; // scene_variant bits
     struct scene_push push;
-    bool deformed;     // vertices come anew each frame, in world space
-    bool mirrored;     // this frame's transform turns triangles over
-    bool moves;        // its vertices have moved since the scene was set; what has not is still
-    bool moved;        // since the last frame
+    bool deformed;      // vertices come anew each frame, in world space
+    bool mirrored;      // this frame's transform turns triangles over
+    bool moves;         // its vertices have moved since the scene was set; what has not is still
+    bool moved;         // since the last frame
     struct box3 bounds; // this frame's, world space
     struct box3 swept;  // this frame's and the last one's
 };
@@ -35,12 +36,13 @@ struct scene_gpu {
     const struct scene *scene;
     float max_emissive; // the strongest channel of any instanced material, cd/m²
 
-    // Static: positions (vec3), tangent frames (two words, see scene.glsl), surfaces, indices, materials.
+    // Static: positions (vec3), tangent frames (two words, see scene.glsl), surfaces, indices,
+    // materials.
     gpu_buffer positions, frames, surfaces, indices, materials;
     size_t *index_offset; // [mesh_count] bytes
     // Textures: [image_count] as colours (sRGB) and as data; none where no material uses them so.
     gpu_image *color_textures, *data_textures;
-    gpu_image white, flat_normal; // 1×1 stand-ins
+    gpu_image white, flat_normal;                // 1×1 stand-ins
     struct gpu_binding (*maps)[SCENE_MAP_COUNT]; // [material_count]
     struct gpu_binding *reads;                   // all textures, to be announced to renderings
     int read_count;
@@ -63,10 +65,12 @@ struct scene_gpu {
 };
 
 // The scene must outlive this. False after a failure; scene_gpu_finish accepts the half-built rest.
-bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu, const struct scene *scene);
+bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu,
+                    const struct scene *scene);
 void scene_gpu_finish(struct scene_gpu *scene); // accepts zero
 
-// Uploads a moment. With `forget`, everything counts as having stood where it is. Sets `moved`, and that and `moves` of the draws.
+// Uploads a moment. With `forget`, everything counts as having stood where it is. Sets `moved`, and
+// that and `moves` of the draws.
 void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct scene_pose *pose,
                       bool forget);
 
@@ -86,15 +90,18 @@ struct scene_draw_call {
 void scene_gpu_draw(const struct scene_gpu *scene, struct gpu_cmd *cmd,
                     const struct scene_draw_call *call);
 
-// Records a compute dispatch over the triangles of one draw; the shader includes scene_triangles.glsl.
+// Records a compute dispatch over the triangles of one draw; the shader includes
+// scene_triangles.glsl.
 struct scene_dispatch_call {
     gpu_pipeline pipeline;
-    bool drawn; // it is a graphics pipeline instead: three vertices for each triangle, into the rendering that is open
+    bool drawn; // it is a graphics pipeline instead: three vertices for each triangle, into the
+                // rendering that is open
     const struct scene_draw *draw;
     const struct gpu_binding *bindings; // the pass's own
     int binding_count;                  // ≤ 8
-    // What `pipeline` puts off, if it does: `rest` follows with the same bindings, in as many workgroups as `pipeline` says in
-    // rest_groups: x, y, z, which are 0, 1, 1 before it, and a word of the pass's own, which is 0.
+    // What `pipeline` puts off, if it does: `rest` follows with the same bindings, in as many
+    // workgroups as `pipeline` says in rest_groups: x, y, z, which are 0, 1, 1 before it, and a
+    // word of the pass's own, which is 0.
     gpu_pipeline rest;
     gpu_buffer rest_groups;
 };

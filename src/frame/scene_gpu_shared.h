@@ -10,15 +10,16 @@ struct scene_surface {
     uint32_t color; // linear RGBA, 8 bits each, red lowest
 };
 
-#define SCENE_MAP_BASE_COLOR 0
+#define SCENE_MAP_BASE_COLOR         0
 #define SCENE_MAP_METALLIC_ROUGHNESS 1
-#define SCENE_MAP_NORMAL 2
-#define SCENE_MAP_EMISSIVE 3
-#define SCENE_MAP_COUNT 4
+#define SCENE_MAP_NORMAL             2
+#define SCENE_MAP_EMISSIVE           3
+#define SCENE_MAP_COUNT              4
 
-// Bits of scene_material.flags; bit m (m < SCENE_MAP_COUNT): map m reads the second texture coordinates.
+// Bits of scene_material.flags; bit m (m < SCENE_MAP_COUNT): map m reads the second texture
+// coordinates.
 #define SCENE_DOUBLE_SIDED 16
-#define SCENE_UNLIT 32
+#define SCENE_UNLIT        32
 
 struct scene_material {
     vec4s base_color;
@@ -42,7 +43,8 @@ struct scene_push {
     uint32_t surface_base; // into surfaces
 };
 
-#define SCENE_TRIANGLES_LOCAL 64 // invocations of a workgroup of a dispatch over triangles: one for each
+#define SCENE_TRIANGLES_LOCAL                                                                      \
+    64 // invocations of a workgroup of a dispatch over triangles: one for each
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct scene_surface) == 20, "layout is shared with GLSL");

@@ -1,5 +1,6 @@
-// Triangles for compute: dispatched by scene_gpu_dispatch, in workgroups of SCENE_TRIANGLES_LOCAL invocations. The
-// bindings are those of scene.glsl; 7 holds the indices, 0 and 12 and up are the pass's own. IS_MASKED is a variant.
+// Triangles for compute: dispatched by scene_gpu_dispatch, in workgroups of SCENE_TRIANGLES_LOCAL
+// invocations. The bindings are those of scene.glsl; 7 holds the indices, 0 and 12 and up are the
+// pass's own. IS_MASKED is a variant.
 #ifndef AG_FRAME_SCENE_TRIANGLES_GLSL
 #define AG_FRAME_SCENE_TRIANGLES_GLSL
 
@@ -10,13 +11,17 @@ layout(push_constant, scalar) uniform push_block
     scene_push draw;
     uint first_index, triangle_count;
     uint mirrored; // this frame's transform turns triangles over
-} push;
+}
+push;
 
 #define SCENE_VERTEX
 #define SCENE_VERTEX_SURFACE
 #include "frame/scene.glsl"
 
-layout(set = 0, binding = 7, scalar) readonly buffer scene_indices { uint scene_index_table[]; };
+layout(set = 0, binding = 7, scalar) readonly buffer scene_indices
+{
+    uint scene_index_table[];
+};
 layout(set = 0, binding = 8) uniform sampler2D base_color_map;
 
 // Vertices of triangle i of the dispatch.
@@ -30,11 +35,13 @@ uvec3 scene_triangle(uint i)
 mat3 scene_triangle_positions(uvec3 vertices)
 {
     mat4x3 world = mat4x3(scene_world_from_instance());
-    return mat3(world * vec4(scene_position(vertices.x), 1.0), world * vec4(scene_position(vertices.y), 1.0),
+    return mat3(world * vec4(scene_position(vertices.x), 1.0),
+                world * vec4(scene_position(vertices.y), 1.0),
                 world * vec4(scene_position(vertices.z), 1.0));
 }
 
-// Whether there is a surface at a point of the triangle: what the mask cuts away is none, as in a frame.
+// Whether there is a surface at a point of the triangle: what the mask cuts away is none, as in a
+// frame.
 bool scene_triangle_solid(uvec3 vertices, vec3 barycentric)
 {
     if (!IS_MASKED) return true;
@@ -46,7 +53,8 @@ bool scene_triangle_solid(uvec3 vertices, vec3 barycentric)
         alpha += barycentric[k] * unpackUnorm4x8(surface.color).a;
     }
     scene_material material = scene_material_table[push.draw.material];
-    return alpha * material.base_color.a * textureLod(base_color_map, uv, 0.0).a >= material.alpha_cutoff;
+    return alpha * material.base_color.a * textureLod(base_color_map, uv, 0.0).a >=
+           material.alpha_cutoff;
 }
 
 #endif

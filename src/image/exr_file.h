@@ -1,5 +1,5 @@
-// One open OpenEXR file, for exr_read.c and exr_write.c: the library's context, the callbacks that tie it to the host,
-// and its errors as sentences.
+// One open OpenEXR file, for exr_read.c and exr_write.c: the library's context, the callbacks that
+// tie it to the host, and its errors as sentences.
 #pragma once
 
 #include "image/exr.h"

@@ -1,6 +1,7 @@
-// The difference that is seen when two images are flipped back and forth on one spot of the screen: LDR-FLIP (Andersson,
-// Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild 2020, "FLIP: A Difference Evaluator for Alternating Images") and
-// HDR-FLIP (Andersson, Nilsson, Shirley & Akenine-Möller 2021, "Visualizing Errors in Rendered High Dynamic Range Images").
+// The difference that is seen when two images are flipped back and forth on one spot of the screen:
+// LDR-FLIP (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild 2020, "FLIP: A
+// Difference Evaluator for Alternating Images") and HDR-FLIP (Andersson, Nilsson, Shirley &
+// Akenine-Möller 2021, "Visualizing Errors in Rendered High Dynamic Range Images").
 #pragma once
 
 #include "image/image.h"
@@ -10,7 +11,8 @@
 #define FLIP_PIXELS_PER_DEGREE_MIN 1.0f
 #define FLIP_PIXELS_PER_DEGREE_MAX 1000.0f
 
-// Both: images of one size, at least 3 channels, finite; out: same size, 1 channel, 0 (no difference) … 1.
+// Both: images of one size, at least 3 channels, finite; out: same size, 1 channel, 0 (no
+// difference) … 1.
 
 // Display-linear values, clamped to 0…1. Symmetric in a and b.
 bool flip_map(struct host *host, const struct image *a, const struct image *b,
@@ -21,11 +23,12 @@ struct flip_exposures {
     double start, stop;
     int count;
 };
-// From the reference's brightest pixel to its median (2021, section 3.2), over the pixels where counts[] is not 0 (NULL:
-// all).
-bool flip_exposures_of(struct host *host, const struct image *reference, const unsigned char *counts,
-                       struct flip_exposures *out);
-// Radiance in any unit; negative values are black. The largest LDR-FLIP of all exposures, pixel by pixel.
+// From the reference's brightest pixel to its median (2021, section 3.2), over the pixels where
+// counts[] is not 0 (NULL: all).
+bool flip_exposures_of(struct host *host, const struct image *reference,
+                       const unsigned char *counts, struct flip_exposures *out);
+// Radiance in any unit; negative values are black. The largest LDR-FLIP of all exposures, pixel by
+// pixel.
 bool flip_map_hdr(struct host *host, const struct image *a, const struct image *b,
                   const struct flip_exposures *exposures, float pixels_per_degree,
                   struct image *out);

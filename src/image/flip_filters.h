@@ -3,8 +3,9 @@
 
 #include "image/filter.h"
 
-// What the eye's contrast sensitivity leaves of lightness and the two chromatic channels (blue-yellow is a sum of two
-// Gaussians), and the Gaussian with its derivatives that finds edges and points.
+// What the eye's contrast sensitivity leaves of lightness and the two chromatic channels
+// (blue-yellow is a sum of two Gaussians), and the Gaussian with its derivatives that finds edges
+// and points.
 enum flip_filter {
     FLIP_LIGHTNESS,
     FLIP_RED_GREEN,

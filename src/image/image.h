@@ -1,4 +1,5 @@
-// An image in memory: 32-bit floats, interleaved, top row first, linear Rec. 709 where it is colour.
+// An image in memory: 32-bit floats, interleaved, top row first, linear Rec. 709 where it is
+// colour.
 #pragma once
 
 #include "core/host.h"

@@ -10,8 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Of the reference's mean luminance. Its square is the 0.01 by which Rousselle, Knaus & Zwicker 2011 keep dark pixels from
-// ruling the mean, for pictures of mean 1: with less, the noise of a reference's darkest pixels outweighs all else.
+// Of the reference's mean luminance. Its square is the 0.01 by which Rousselle, Knaus & Zwicker
+// 2011 keep dark pixels from ruling the mean, for pictures of mean 1: with less, the noise of a
+// reference's darkest pixels outweighs all else.
 static const double RELMSE_FLOOR = 0.1;
 
 static const struct metrics_options NO_OPTIONS = { 0 };

@@ -19,6 +19,6 @@ void rest_pose(const struct scene *scene, struct node_local *local, float *morph
 void animate(const struct scene *scene, const struct animation *animation, float time_s,
              struct node_local *local, float *morph_weights, const size_t *morph_offset);
 
-// One channel's value at a time, `count` ≤ width floats: the first key's before it, the last one's after it.
-// Rotations come out as unit quaternions.
+// One channel's value at a time, `count` ≤ width floats: the first key's before it, the last one's
+// after it. Rotations come out as unit quaternions.
 void channel_sample(const struct animation_channel *channel, float time_s, int count, float *out);

@@ -4,16 +4,17 @@
 
 #include "scene/builtin_parts.h"
 
-// Metres. The court is open to the sky; aisles run along both sides of it on two storeys. The long axis is x.
-#define ATRIUM_HALF_LENGTH   12.0f // inner face of the end walls
-#define ATRIUM_COLONNADE     3.5f  // z of the columns' axes
-#define ATRIUM_HALF_WIDTH    7.0f  // inner face of the long walls
-#define ATRIUM_GALLERY       5.1f  // floor of the upper storey
-#define ATRIUM_BAY           3.0f  // between columns
-#define ATRIUM_BAYS          8
-#define ATRIUM_ARCH_LOW      3.2f  // top of the lower columns
-#define ATRIUM_ARCH_HIGH     7.7f  // top of the upper ones
-#define ATRIUM_ROOF          9.2f  // underside of the aisles' roof
+// Metres. The court is open to the sky; aisles run along both sides of it on two storeys. The long
+// axis is x.
+#define ATRIUM_HALF_LENGTH 12.0f // inner face of the end walls
+#define ATRIUM_COLONNADE   3.5f  // z of the columns' axes
+#define ATRIUM_HALF_WIDTH  7.0f  // inner face of the long walls
+#define ATRIUM_GALLERY     5.1f  // floor of the upper storey
+#define ATRIUM_BAY         3.0f  // between columns
+#define ATRIUM_BAYS        8
+#define ATRIUM_ARCH_LOW    3.2f // top of the lower columns
+#define ATRIUM_ARCH_HIGH   7.7f // top of the upper ones
+#define ATRIUM_ROOF        9.2f // underside of the aisles' roof
 
 enum atrium_material {
     ATRIUM_WALL,

@@ -1,5 +1,5 @@
-// Vertices that bend: morph targets, then linear-blend skinning (glTF 2.0, sections 3.7.2.2 and 3.7.3), in world
-// space, on the CPU.
+// Vertices that bend: morph targets, then linear-blend skinning (glTF 2.0, sections 3.7.2.2
+// and 3.7.3), in world space, on the CPU.
 #pragma once
 
 #include "scene/pose.h"

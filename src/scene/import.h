@@ -1,4 +1,5 @@
-// Scene files: glTF 2.0 and PLY by our own readers, OBJ, FBX and X through Assimp's C API. Files are untrusted.
+// Scene files: glTF 2.0 and PLY by our own readers, OBJ, FBX and X through Assimp's C API. Files
+// are untrusted.
 #pragma once
 
 #include "scene/scene.h"

@@ -18,7 +18,7 @@ bool assimp_check_input(struct import *import, const struct file_bytes *bytes,
                         const char *extension);
 
 bool assimp_load_materials(struct assimp *assimp);
-bool assimp_load_skins(struct assimp *assimp);      // after the nodes
-bool assimp_load_animations(struct assimp *assimp); // after the nodes
+bool assimp_load_skins(struct assimp *assimp);                                  // after the nodes
+bool assimp_load_animations(struct assimp *assimp);                             // after the nodes
 int assimp_find_node(const struct assimp *assimp, const struct aiString *name); // -1: none
 mat4s assimp_matrix(const struct aiMatrix4x4 *m);

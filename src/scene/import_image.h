@@ -11,7 +11,8 @@ struct image_source {
     bool is_tga; // which cannot be told from the bytes
 };
 
-// Appends the images to the scene in their order; scene_image[i] is the index of source i, -1 where it cannot be
-// decoded (that is noted, not a failure). False when memory is out, or more than the file justifies.
+// Appends the images to the scene in their order; scene_image[i] is the index of source i, -1 where
+// it cannot be decoded (that is noted, not a failure). False when memory is out, or more than the
+// file justifies.
 bool import_images(struct import *import, const struct image_source *sources, int count,
                    int *scene_image);

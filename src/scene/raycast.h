@@ -1,6 +1,6 @@
-// Rays against a pose's triangles, for choosing a camera and a sun. Small and own, so that the scene module needs no
-// ray tracing library; everything that makes pictures uses src/trace. All triangles count, whatever their material,
-// from both sides.
+// Rays against a pose's triangles, for choosing a camera and a sun. Small and own, so that the
+// scene module needs no ray tracing library; everything that makes pictures uses src/trace. All
+// triangles count, whatever their material, from both sides.
 #pragma once
 
 #include "scene/pose.h"
@@ -26,7 +26,8 @@ bool raycast_init(struct raycast *raycast, struct host *host, const struct scene
 void raycast_finish(struct raycast *raycast);
 
 // The nearest triangle with 0 < distance < max_distance, in units of the direction's length.
-bool raycast_closest(const struct raycast *raycast, vec3s origin, vec3s direction, float max_distance,
-                     struct raycast_hit *hit);
+bool raycast_closest(const struct raycast *raycast, vec3s origin, vec3s direction,
+                     float max_distance, struct raycast_hit *hit);
 // Whether there is any.
-bool raycast_blocked(const struct raycast *raycast, vec3s origin, vec3s direction, float max_distance);
+bool raycast_blocked(const struct raycast *raycast, vec3s origin, vec3s direction,
+                     float max_distance);

@@ -1,6 +1,7 @@
 // A scene: meshes, materials, textures, nodes, instances, lights, cameras, skins, animations.
-// Plain arrays owned by the scene's arena; indices refer to them, -1 is none. Immutable after loading but for
-// scene_add_*. World space is right-handed, +Y up, metres. Colours are linear Rec. 709.
+// Plain arrays owned by the scene's arena; indices refer to them, -1 is none. Immutable after
+// loading but for scene_add_*. World space is right-handed, +Y up, metres. Colours are linear Rec.
+// 709.
 #pragma once
 
 #include "core/arena.h"
@@ -10,7 +11,8 @@
 
 enum texture_wrap { WRAP_REPEAT, WRAP_MIRROR, WRAP_CLAMP };
 
-// Decoded pixels, 8 bits, 4 channels, top row first, encoded as in the file (base colour and emissive: sRGB).
+// Decoded pixels, 8 bits, 4 channels, top row first, encoded as in the file (base colour and
+// emissive: sRGB).
 struct scene_image {
     const char *name;
     int width, height; // both ≤ SCENE_MAX_IMAGE_SIZE
@@ -19,12 +21,13 @@ struct scene_image {
 };
 #define SCENE_MAX_IMAGE_SIZE 8192
 
-// Use of an image by a material: which texture coordinates, how they are moved (KHR_texture_transform), the sampler.
+// Use of an image by a material: which texture coordinates, how they are moved
+// (KHR_texture_transform), the sampler.
 struct texture_use {
     int image; // -1: none
     int uv_set;
     enum texture_wrap wrap_u, wrap_v;
-    bool nearest;            // no filtering (magnification)
+    bool nearest;                                     // no filtering (magnification)
     float uv_offset[2], uv_scale[2], uv_rotation_rad; // identity: 0 0, 1 1, 0
 };
 
@@ -35,7 +38,7 @@ struct material {
     const char *name;
     vec4s base_color;
     float metallic, roughness;
-    vec3s emissive;     // cd/m², strength included
+    vec3s emissive; // cd/m², strength included
     float normal_scale;
     float alpha_cutoff; // for ALPHA_MASK; ALPHA_BLEND is drawn as a mask at 0.5
     enum alpha_mode alpha_mode;
@@ -50,12 +53,14 @@ struct morph_target {
 // One primitive: triangles with one material. Arrays of vertex_count but for indices.
 struct mesh {
     const char *name;
-    uint32_t vertex_count, index_count; // index_count is a multiple of 3, every index < vertex_count
+    uint32_t vertex_count,
+        index_count; // index_count is a multiple of 3, every index < vertex_count
     vec3s *positions;
-    vec3s *normals;    // unit; made flat where the file has none
-    vec4s *tangents;   // w = ±1: bitangent = w · cross(normal, tangent); made where a normal map needs them, else NULL
-    vec2s *uv[2];      // NULL where absent; v grows downwards as in glTF
-    vec4s *colors;     // linear RGBA that multiplies base_color, NULL where absent
+    vec3s *normals;  // unit; made flat where the file has none
+    vec4s *tangents; // w = ±1: bitangent = w · cross(normal, tangent); made where a normal map
+                     // needs them, else NULL
+    vec2s *uv[2];    // NULL where absent; v grows downwards as in glTF
+    vec4s *colors;   // linear RGBA that multiplies base_color, NULL where absent
     uint16_t (*joints)[4]; // skinned meshes: indices into the skin's joints; NULL else
     vec4s *weights;        // sum 1
     uint32_t *indices;     // counter-clockwise from outside
@@ -88,9 +93,9 @@ struct light {
     const char *name;
     enum light_type type;
     int node;
-    vec3s intensity; // colour × intensity: lux for suns, candela for points and spots
+    vec3s intensity;            // colour × intensity: lux for suns, candela for points and spots
     float inner_rad, outer_rad; // half-angles of a spot, inner < outer ≤ π/2
-    float range_m;   // 0: unlimited
+    float range_m;              // 0: unlimited
 };
 
 struct camera {
@@ -125,8 +130,8 @@ struct animation {
     int channel_count;
 };
 
-// Room in the scene's arrays, kept by scene_add_*. Whoever sets an array itself may leave its room at 0:
-// the array is then copied before anything is appended.
+// Room in the scene's arrays, kept by scene_add_*. Whoever sets an array itself may leave its room
+// at 0: the array is then copied before anything is appended.
 struct scene_room {
     int images, materials, meshes, nodes, instances, lights, cameras;
 };
@@ -136,16 +141,25 @@ struct scene {
     struct arena arena;
     struct scene_room room;
     const char *name; // file name or "@builtin:…"
-    struct scene_image *images;       int image_count;
-    struct material *materials;       int material_count;
-    struct mesh *meshes;              int mesh_count;
-    struct node *nodes;               int node_count;
-    struct instance *instances;       int instance_count;
-    struct light *lights;             int light_count;
-    struct camera *cameras;           int camera_count;
-    struct skin *skins;               int skin_count;
-    struct animation *animations;     int animation_count;
-    vec3s sky;            // uniform radiance from outside, cd/m²
+    struct scene_image *images;
+    int image_count;
+    struct material *materials;
+    int material_count;
+    struct mesh *meshes;
+    int mesh_count;
+    struct node *nodes;
+    int node_count;
+    struct instance *instances;
+    int instance_count;
+    struct light *lights;
+    int light_count;
+    struct camera *cameras;
+    int camera_count;
+    struct skin *skins;
+    int skin_count;
+    struct animation *animations;
+    int animation_count;
+    vec3s sky;             // uniform radiance from outside, cd/m²
     uint64_t content_hash; // of the file's bytes or of the built-in's name
 };
 
@@ -160,7 +174,8 @@ void scene_destroy(struct scene *scene);
 // (bad index, not finite, out of memory).
 int scene_add_image(struct scene *scene, const struct scene_image *image);
 int scene_add_material(struct scene *scene, const struct material *material);
-int scene_add_mesh(struct scene *scene, const struct mesh *mesh); // makes normals, tangents and bounds where missing
+int scene_add_mesh(struct scene *scene,
+                   const struct mesh *mesh); // makes normals, tangents and bounds where missing
 int scene_add_node(struct scene *scene, const struct node *node);
 int scene_add_instance(struct scene *scene, const struct instance *instance);
 int scene_add_light(struct scene *scene, const struct light *light);
@@ -174,5 +189,5 @@ struct node node_default(void);
 struct texture_use texture_use_none(void);
 
 size_t scene_triangle_count(const struct scene *scene); // over instances
-bool scene_has_emission(const struct scene *scene);     // some instanced mesh has an emissive material
+bool scene_has_emission(const struct scene *scene); // some instanced mesh has an emissive material
 size_t scene_memory_bytes(const struct scene *scene);

@@ -1,5 +1,5 @@
-// What scene_add_* refuses: numbers that are not finite, indices that lead nowhere. Shared by the files that
-// fill a scene.
+// What scene_add_* refuses: numbers that are not finite, indices that lead nowhere. Shared by the
+// files that fill a scene.
 #pragma once
 
 #include "scene/scene.h"
@@ -43,5 +43,6 @@ static inline const char *name_or_empty(const char *name)
 // A copy of count × size bytes in the scene's arena; NULL when out of memory.
 void *scene_copy(struct scene *scene, const void *source, size_t count, size_t size);
 
-// Makes room for one more element in an array of `count`. False when out of memory or full; then nothing changed.
+// Makes room for one more element in an array of `count`. False when out of memory or full; then
+// nothing changed.
 bool scene_reserve(struct scene *scene, void **array, int count, int *room, size_t size);

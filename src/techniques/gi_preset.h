@@ -5,6 +5,8 @@
 
 #define GI_QUALITY "quality" // a key beside the technique's options, none of which has this name
 
-// Fills `values` with the defaults, what the preset named in the text sets, and the text's other items, in this order, wherever the
-// name stands. false says which name or value is wrong, and what there is.
-bool gi_options_read(struct host *host, const struct technique *technique, const char *text, void *values);
+// Fills `values` with the defaults, what the preset named in the text sets, and the text's other
+// items, in this order, wherever the name stands. false says which name or value is wrong, and what
+// there is.
+bool gi_options_read(struct host *host, const struct technique *technique, const char *text,
+                     void *values);

@@ -3,7 +3,8 @@
 
 #include "techniques/technique.h"
 
-extern const struct technique *const techniques[]; // ends with NULL
+extern const struct technique *const techniques[];        // ends with NULL
 const struct technique *technique_find(const char *name); // NULL: unknown
-// Has the required members and a name of [a-z0-9]+; every registered technique does, and names are unique (asserted).
+// Has the required members and a name of [a-z0-9]+; every registered technique does, and names are
+// unique (asserted).
 bool technique_is_sound(const struct technique *technique);

@@ -1,5 +1,6 @@
-// The interface of a technique: one const struct, data first, functions second, in the order of life.
-// A frame is lit by a sum written as "source+delta+visibility", for example "lpv" or "mrt+dnrt+vo".
+// The interface of a technique: one const struct, data first, functions second, in the order of
+// life. A frame is lit by a sum written as "source+delta+visibility", for example "lpv" or
+// "mrt+dnrt+vo".
 #pragma once
 
 #include "core/option.h"
@@ -30,15 +31,19 @@ enum technique_change {
 struct technique_debug_view {
     const char *name, *help;
 };
-// What `quality=NAME` sets before the options that are given beside it, written as they are: "steps=4,dim=16". "": the defaults.
+// What `quality=NAME` sets before the options that are given beside it, written as they are:
+// "steps=4,dim=16". "": the defaults.
 struct technique_preset {
     const char *name, *options;
 };
-// A view of this name of a technique that publishes probes is drawn from them by gi.c; debug_view is not called.
+// A view of this name of a technique that publishes probes is drawn from them by gi.c; debug_view
+// is not called.
 #define PROBES_VIEW "probes"
-#define PROBES_VIEW_HELP "white balls where probes stand, before surfaces lit by the probes; with probes=true"
+#define PROBES_VIEW_HELP                                                                           \
+    "white balls where probes stand, before surfaces lit by the probes; with probes=true"
 
-// Irradiance at the points of a grid: an image of the format in frame/probes.glsl and its place. Each frame's record fills it.
+// Irradiance at the points of a grid: an image of the format in frame/probes.glsl and its place.
+// Each frame's record fills it.
 struct probe_volume {
     gpu_image image; // RGBA16F
     struct frame_probes place;
@@ -57,24 +62,25 @@ struct technique_bake {
     const struct scene_pose *pose;
     const void *options;
     uint64_t seed;
-    const char *path; // the bake file to write
+    const char *path;                                                 // the bake file to write
     bool (*progress)(void *user, double fraction, const char *stage); // false cancels
     void *user;
 };
 
 struct technique {
-    const char *name;  // stable, [a-z0-9]+
-    const char *title; // a few words
-    const char *paper; // one-line citation
+    const char *name;   // stable, [a-z0-9]+
+    const char *title;  // a few words
+    const char *paper;  // one-line citation
     const char *folder; // that it shares with another technique; NULL: that of its name
     enum technique_role role;
     uint32_t capabilities; // technique_capability bits
     uint32_t needs;        // frame_need bits
     int bake_version;      // 0: no bake
     struct option_table options;
-    const struct technique_preset *presets;                // from cheap to dear; ends with a NULL name; may be NULL
+    const struct technique_preset
+        *presets; // from cheap to dear; ends with a NULL name; may be NULL
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
-    size_t state_size;     // of the private state, allocated zeroed by the host
+    size_t state_size; // of the private state, allocated zeroed by the host
 
     // All but create, record and destroy may be NULL. `state` is the private state.
     // frame_need bits that these options ask for beside `needs`.
@@ -87,8 +93,10 @@ struct technique {
     bool (*resize)(void *state, uint32_t width, uint32_t height);
     void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
     void (*invalidate)(void *state, uint32_t changes);     // technique_change bits
-    void (*record)(void *state, struct gpu_cmd *cmd, const struct frame_view *view); // no allocation, no wait, no failure
-    void (*debug_view)(void *state, struct gpu_cmd *cmd, const struct frame_view *view, const char *name,
+    void (*record)(void *state, struct gpu_cmd *cmd,
+                   const struct frame_view *view); // no allocation, no wait, no failure
+    void (*debug_view)(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
+                       const char *name,
                        gpu_image out); // RGBA16F of the frame's size, scaled radiance
     // With PUBLISHES_PROBES: what the newest record filled. false: its option `probes` is off.
     bool (*probes)(void *state, struct probe_volume *out);

@@ -1,7 +1,9 @@
-// How a surface reflects: the frame's brdf.glsl on the CPU, with a sampler for it. Lambert plus GGX; the glossy lobe is
-// sampled by the distribution of visible normals (bsdf.c), the diffuse one by the cosine.
+// How a surface reflects: the frame's brdf.glsl on the CPU, with a sampler for it. Lambert plus
+// GGX; the glossy lobe is sampled by the distribution of visible normals (bsdf.c), the diffuse one
+// by the cosine.
 //
-// What every ray asks for is inline: three vectors handed from function to function cost more than the work.
+// What every ray asks for is inline: three vectors handed from function to function cost more than
+// the work.
 #pragma once
 
 #include "core/sampling.h"
@@ -14,23 +16,25 @@ struct bsdf {
     float alpha, alpha2;              // roughness², at least 0.045², and its square
     float gloss_share;                // probability of sampling the glossy lobe; 0: there is none
     float n_v, smith_v;               // |n·v| and the root of Smith's term for the viewer
-    vec3s eye;                        // to_eye, or where `turned` its mirror image on the normal's side
-    bool turned;                      // an interpolated normal turns away from the viewer
+    vec3s eye;   // to_eye, or where `turned` its mirror image on the normal's side
+    bool turned; // an interpolated normal turns away from the viewer
 };
 
 // normal and to_eye: unit. diffuse_only: Lambert's term alone.
-static inline struct bsdf bsdf_of(vec3s normal, vec3s to_eye, vec3s albedo, float metallic, float roughness,
-                                  bool diffuse_only);
-// At least `share` of the samples go to Lambert's lobe, whatever the surface reflects: for those who measure irradiance.
+static inline struct bsdf bsdf_of(vec3s normal, vec3s to_eye, vec3s albedo, float metallic,
+                                  float roughness, bool diffuse_only);
+// At least `share` of the samples go to Lambert's lobe, whatever the surface reflects: for those
+// who measure irradiance.
 static inline void bsdf_sample_evenly(struct bsdf *bsdf, float share);
 
 struct reflection {
     vec3s f;   // 1/sr, without the cosine; 0 below the horizon
     float pdf; // of bsdf_sample, 1/sr
 };
-static inline struct reflection bsdf_reflect(const struct bsdf *bsdf, vec3s to_light); // to_light: unit
-// A direction; choice picks the lobe, both from the unit interval and square. Below the horizon now and then: the light is
-// lost there.
+static inline struct reflection bsdf_reflect(const struct bsdf *bsdf,
+                                             vec3s to_light); // to_light: unit
+// A direction; choice picks the lobe, both from the unit interval and square. Below the horizon now
+// and then: the light is lost there.
 static inline vec3s bsdf_sample(const struct bsdf *bsdf, float choice, vec2s u);
 
 // ---- how
@@ -67,8 +71,8 @@ static inline vec3s bsdf_to_world(const struct bsdf *b, vec3s v)
     return glms_vec3_muladds(b->normal, v.z, p);
 }
 
-static inline struct bsdf bsdf_of(vec3s normal, vec3s to_eye, vec3s albedo, float metallic, float roughness,
-                                  bool diffuse_only)
+static inline struct bsdf bsdf_of(vec3s normal, vec3s to_eye, vec3s albedo, float metallic,
+                                  float roughness, bool diffuse_only)
 {
     float rough = bsdf_larger(roughness, BSDF_MIN_ROUGHNESS), alpha = rough * rough;
     struct bsdf b = { .normal = normal, .to_eye = to_eye, .alpha = alpha, .alpha2 = alpha * alpha };
@@ -86,7 +90,8 @@ static inline struct bsdf bsdf_of(vec3s normal, vec3s to_eye, vec3s albedo, floa
     float matte = luminance(albedo) * (1.0f - metallic);
     b.gloss_share = 1.0f;
     if (matte > 0.0f)
-        b.gloss_share = bsdf_clamped(gloss / (gloss + matte), BSDF_MIN_SHARE, 1.0f - BSDF_MIN_SHARE);
+        b.gloss_share =
+            bsdf_clamped(gloss / (gloss + matte), BSDF_MIN_SHARE, 1.0f - BSDF_MIN_SHARE);
     return b;
 }
 
@@ -95,8 +100,8 @@ static inline void bsdf_sample_evenly(struct bsdf *b, float share)
     if (b->gloss_share > 1.0f - share) b->gloss_share = 1.0f - share;
 }
 
-// D of GGX at the half vector along `sum`, the sum of two unit vectors, of length² `sum2`: α² / (π (sin² + α² cos²)²), whose
-// sine from the cross product keeps its digits (brdf.glsl).
+// D of GGX at the half vector along `sum`, the sum of two unit vectors, of length² `sum2`: α² / (π
+// (sin² + α² cos²)²), whose sine from the cross product keeps its digits (brdf.glsl).
 static inline float bsdf_distribution(const struct bsdf *b, vec3s sum, float sum2)
 {
     float cosine = bsdf_larger(glms_vec3_dot(b->normal, sum), 0.0f);
@@ -108,7 +113,8 @@ static inline float bsdf_distribution(const struct bsdf *b, vec3s sum, float sum
 static inline struct reflection bsdf_reflect(const struct bsdf *b, vec3s to_light)
 {
     float cosine = glms_vec3_dot(b->normal, to_light);
-    struct reflection r = { .pdf = (1.0f - b->gloss_share) * bsdf_larger(cosine, 0.0f) * BSDF_INV_PI };
+    struct reflection r = { .pdf =
+                                (1.0f - b->gloss_share) * bsdf_larger(cosine, 0.0f) * BSDF_INV_PI };
     if (cosine > 0.0f) r.f = b->diffuse;
     if (!(b->gloss_share > 0.0f)) return r;
     vec3s sum = glms_vec3_add(b->eye, to_light);
@@ -116,7 +122,8 @@ static inline struct reflection bsdf_reflect(const struct bsdf *b, vec3s to_ligh
     if (!(sum2 > 0.0f)) return r; // light from straight behind
     float d = bsdf_distribution(b, sum, sum2);
     // Heitz 2018, eq. 17: D_v(h) / (4 v·h) = G1(v) D(h) / (4 n·v).
-    if (glms_vec3_dot(b->normal, sum) > 0.0f) r.pdf += b->gloss_share * d / (2.0f * (b->n_v + b->smith_v));
+    if (glms_vec3_dot(b->normal, sum) > 0.0f)
+        r.pdf += b->gloss_share * d / (2.0f * (b->n_v + b->smith_v));
     if (!(cosine > 0.0f)) return r;
     if (b->turned) {
         sum = glms_vec3_add(b->to_eye, to_light);

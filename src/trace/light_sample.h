@@ -34,8 +34,8 @@ struct light_table {
 bool light_table_init(struct trace_scene *scene, const struct scene_pose *pose);
 void light_table_finish(struct trace_scene *scene);
 
-// From a point towards a punctual light: the unit direction to it, its distance (infinite for suns) and the illuminance of
-// a surface there that faces it, lux (light.glsl).
+// From a point towards a punctual light: the unit direction to it, its distance (infinite for suns)
+// and the illuminance of a surface there that faces it, lux (light.glsl).
 struct punctual_light {
     vec3s to_light;
     float distance_m;
@@ -50,7 +50,8 @@ struct emitter_sample {
     vec3s radiance; // cd/m²; 0 where it does not glow that way
     float pdf;      // of the direction, 1/sr
 };
-struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3s from, float choice, vec2s u);
+struct emitter_sample light_sample_emitter(const struct trace_scene *scene, vec3s from,
+                                           float choice, vec2s u);
 // The density, 1/sr, with which light_sample_emitter would have given this point.
-float light_emitter_pdf(const struct trace_scene *scene, uint32_t mesh, uint32_t triangle, float distance_m,
-                        float cosine);
+float light_emitter_pdf(const struct trace_scene *scene, uint32_t mesh, uint32_t triangle,
+                        float distance_m, float cosine);

@@ -6,8 +6,8 @@
 
 struct obscurance_rules {
     const struct trace_scene *scene;
-    float radius_m; // of the sphere; > 0
-    bool sphere;    // the whole sphere, else the hemisphere above the shading normal
+    float radius_m;    // of the sphere; > 0
+    bool sphere;       // the whole sphere, else the hemisphere above the shading normal
     float decay_per_m; // what is met at the distance r hides 1/(1 + decay · r) of the sky behind it
     uint32_t seed;
 };

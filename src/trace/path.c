@@ -118,8 +118,8 @@ static void collect_gathered(struct walk *w, const struct gathered *g)
 }
 
 // What numbers are drawn for at each surface. They are independent, so that the spread of a pixel's
-// samples says how far their mean is off; evenly spread ones (Owen-scrambled Sobol points) are off by
-// a tenth less and can no longer tell.
+// samples says how far their mean is off; evenly spread ones (Owen-scrambled Sobol points) are off
+// by a tenth less and can no longer tell.
 enum draw { DRAW_CHOICES, DRAW_LIGHT, DRAW_STEP, DRAW_LATER, DRAW_COUNT };
 
 // Words of SplitMix64, each in its place of the sequence that the sample's key begins.
@@ -146,7 +146,8 @@ static void ask_lights(struct walk *w, float choice)
     const struct trace_scene *scene = w->rules->scene;
     if (w->depth == 0 && !w->rules->direct) return;
     if (w->depth > 0 && scene->lights.punctual_count > 0)
-        collect(w, gather_one_punctual(scene, &w->surface, &w->bsdf, draw(w, DRAW_LATER).x, w->rays));
+        collect(w,
+                gather_one_punctual(scene, &w->surface, &w->bsdf, draw(w, DRAW_LATER).x, w->rays));
     if (!scene->lights.has_emitters) return;
     struct gathered g =
         gather_one_emitter(scene, &w->surface, &w->bsdf, choice, draw(w, DRAW_LIGHT), w->rays);

@@ -11,16 +11,18 @@ struct path_rules {
     uint32_t seed;
 };
 
-// What all samples through one point of a pixel share: the surface there and the light on it that needs no chance.
+// What all samples through one point of a pixel share: the surface there and the light on it that
+// needs no chance.
 struct path_start {
     bool hit;
     struct surface surface;
     struct bsdf bsdf;
-    vec3s seen; // cd/m²: the sky, or emission and the reflection of punctual lights; 0 where not wanted
+    vec3s seen; // cd/m²: the sky, or emission and the reflection of punctual lights; 0 where not
+                // wanted
 };
 
-// Radiance towards the eye, cd/m², and irradiance, lux. Gathered is indirect light and what emitters and the sky throw
-// straight on the surface seen.
+// Radiance towards the eye, cd/m², and irradiance, lux. Gathered is indirect light and what
+// emitters and the sky throw straight on the surface seen.
 struct path_light {
     vec3s direct, indirect, gathered;
     vec3s irradiance, gathered_irradiance; // by indirect and by gathered light
@@ -40,5 +42,7 @@ struct path_sample {
     struct path_light light;
 };
 enum { PATH_BATCH = 64 };
-// At most PATH_BATCH at a time. They go step by step together: what one needs from memory is on its way while others compute.
-void path_trace(const struct path_rules *rules, struct path_sample *samples, int count, uint64_t *rays);
+// At most PATH_BATCH at a time. They go step by step together: what one needs from memory is on its
+// way while others compute.
+void path_trace(const struct path_rules *rules, struct path_sample *samples, int count,
+                uint64_t *rays);

@@ -51,14 +51,13 @@ struct reference_options reference_options_default(void)
 }
 
 static const char *const layer_names[REFERENCE_LAYER_COUNT] = {
-    [REFERENCE_COLOR] = "color",       [REFERENCE_DIRECT] = "direct",
-    [REFERENCE_INDIRECT] = "indirect", [REFERENCE_IRRADIANCE] = "irradiance",
-    [REFERENCE_GATHERED] = "gathered", [REFERENCE_GATHERED_IRRADIANCE] = "gathered_irradiance",
-    [REFERENCE_ALBEDO] = "albedo",     [REFERENCE_NORMAL] = "normal",
-    [REFERENCE_DEPTH] = "depth",       [REFERENCE_POSITION] = "position",
-    [REFERENCE_ERROR] = "error",       [REFERENCE_SAMPLES] = "samples",
-    [REFERENCE_OBSCURANCE] = "obscurance",
-    [REFERENCE_AMBIENT_OCCLUSION] = "ambient_occlusion",
+    [REFERENCE_COLOR] = "color",           [REFERENCE_DIRECT] = "direct",
+    [REFERENCE_INDIRECT] = "indirect",     [REFERENCE_IRRADIANCE] = "irradiance",
+    [REFERENCE_GATHERED] = "gathered",     [REFERENCE_GATHERED_IRRADIANCE] = "gathered_irradiance",
+    [REFERENCE_ALBEDO] = "albedo",         [REFERENCE_NORMAL] = "normal",
+    [REFERENCE_DEPTH] = "depth",           [REFERENCE_POSITION] = "position",
+    [REFERENCE_ERROR] = "error",           [REFERENCE_SAMPLES] = "samples",
+    [REFERENCE_OBSCURANCE] = "obscurance", [REFERENCE_AMBIENT_OCCLUSION] = "ambient_occlusion",
 };
 
 const char *reference_layer_name(int layer)

@@ -4,7 +4,8 @@
 #include "trace/bsdf.h"
 #include "trace/trace_scene.h"
 
-// How a ray of the camera changes from one pixel to the next; the ray's direction is 1 along the view axis.
+// How a ray of the camera changes from one pixel to the next; the ray's direction is 1 along the
+// view axis.
 struct pixel_footprint {
     vec3s direction, dx, dy;
     vec3s origin;
@@ -25,7 +26,8 @@ struct surface {
 // footprint NULL: maps at their full resolution.
 void surface_at(const struct trace_scene *scene, const struct ray *ray, const struct ray_hit *hit,
                 const struct pixel_footprint *footprint, struct surface *out);
-// What surface_at will read of a hit is asked for from memory, each of three steps after the one before has had its time.
+// What surface_at will read of a hit is asked for from memory, each of three steps after the one
+// before has had its time.
 void surface_expect(const struct trace_scene *scene, const struct ray_hit *hit);
 void surface_expect_corners(const struct trace_scene *scene, const struct ray_hit *hit);
 void surface_expect_texels(const struct trace_scene *scene, const struct ray_hit *hit);

@@ -1,4 +1,5 @@
-// A scene as the path tracer has it: every instance's triangles in world space, materials with their maps, lights.
+// A scene as the path tracer has it: every instance's triangles in world space, materials with
+// their maps, lights.
 #pragma once
 
 #include "trace/embree.h"
@@ -13,7 +14,8 @@ struct trace_material {
     struct texture_map base_color_map, metallic_roughness_map, normal_map, emissive_map;
 };
 
-// A corner of triangles, in world space. What a hit asks for lies side by side: a few cache lines, not one per attribute.
+// A corner of triangles, in world space. What a hit asks for lies side by side: a few cache lines,
+// not one per attribute.
 struct trace_vertex {
     vec3s position, normal; // normal: unit
     vec4s tangent;          // as glTF's; 0 where the mesh has none
@@ -31,11 +33,12 @@ struct trace_mesh {
     const struct mesh *mesh;
     const struct trace_material *material;
     int instance;
-    bool mirrored;     // its transform turns triangles over
+    bool mirrored; // its transform turns triangles over
     bool has_tangents;
     struct trace_vertex *vertices; // [mesh->vertex_count]
     struct trace_facet *facets;    // [mesh->index_count / 3]
-    uint32_t emitter_first;        // of its triangles, see light_sample.h; NO_EMITTER where it does not glow
+    uint32_t
+        emitter_first; // of its triangles, see light_sample.h; NO_EMITTER where it does not glow
     struct embree_geometry geometry;
 };
 
@@ -45,14 +48,15 @@ struct trace_scene {
     struct embree *embree;
     struct trace_mesh *meshes; // [mesh_count]; the index is Embree's geometry
     uint32_t mesh_count;
-    struct trace_material *materials; // [scene->material_count]
+    struct trace_material *materials;               // [scene->material_count]
     struct texture *color_textures, *data_textures; // [scene->image_count], made where used
     struct light_table lights;
     uint64_t key; // of all that light depends on
 };
 
 // The corners of a triangle in the order that faces its front.
-static inline void trace_corners(const struct trace_mesh *mesh, uint32_t triangle, uint32_t corner[3])
+static inline void trace_corners(const struct trace_mesh *mesh, uint32_t triangle,
+                                 uint32_t corner[3])
 {
     const uint32_t *i = &mesh->mesh->indices[3 * (size_t)triangle];
     corner[0] = i[0];
@@ -61,7 +65,8 @@ static inline void trace_corners(const struct trace_mesh *mesh, uint32_t triangl
 }
 
 // The point of a triangle with the weights u and v of its second and third corner.
-static inline vec3s trace_point(const struct trace_mesh *mesh, const uint32_t corner[3], float u, float v)
+static inline vec3s trace_point(const struct trace_mesh *mesh, const uint32_t corner[3], float u,
+                                float v)
 {
     vec3s p = glms_vec3_scale(mesh->vertices[corner[0]].position, 1.0f - u - v);
     p = glms_vec3_muladds(mesh->vertices[corner[1]].position, u, p);

@@ -22,7 +22,8 @@ extern char stage_last_warning[512];
 
 struct ag_context *stage_context(void);
 struct ag_renderer_desc stage_renderer_desc(const char *gi);
-// Not rendered yet. On a device of the library's own, or where `adopt` is given on that one, which its owner validates.
+// Not rendered yet. On a device of the library's own, or where `adopt` is given on that one, which
+// its owner validates.
 struct stage stage_open(const char *gi, const struct ag_device_adopt *adopt);
 // Fails where validation has said something.
 void stage_close(struct stage *stage);

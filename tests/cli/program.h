@@ -11,8 +11,9 @@ struct run {
     char err[16384];
 };
 
-// Fails the test unless the program ends with that status. The first text is split at blanks, the others are taken as they
-// stand: run_expect(0, "render @cornell -o", path, NULL). The result is valid until the next call.
+// Fails the test unless the program ends with that status. The first text is split at blanks, the
+// others are taken as they stand: run_expect(0, "render @cornell -o", path, NULL). The result is
+// valid until the next call.
 const struct run *run_expect(int status, const char *words, ...) __attribute__((sentinel));
 // One line, "afterglow: …", and nothing else anywhere.
 void check_one_error_line(const struct run *result);

@@ -93,8 +93,8 @@ TEST(neighbouring_pixels_samples_and_dimensions_are_independent)
     check_neighbours(0, 0, 1);
 }
 
-// The path tracer's numbers: of one word the two, and of neighbouring words the first, fill the square
-// evenly.
+// The path tracer's numbers: of one word the two, and of neighbouring words the first, fill the
+// square evenly.
 TEST(mixed_words_have_independent_halves_and_neighbours)
 {
     enum { CELLS = 32, PAIRS = 200000 };

@@ -82,8 +82,7 @@ static const char *scene_of(const struct quality_case *c)
 static json_t *compare(const struct quality_case *c)
 {
     char words[16384];
-    int length =
-        snprintf(words, sizeof words, "compare %s --json %s", scene_of(c), c->options);
+    int length = snprintf(words, sizeof words, "compare %s --json %s", scene_of(c), c->options);
     for (int i = 0; i < c->method_count; i++)
         length +=
             snprintf(words + length, sizeof words - (size_t)length, " --gi %s", c->methods[i]);

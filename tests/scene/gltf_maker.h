@@ -12,7 +12,7 @@
 #define ASSET "'asset':{'version':'2.0'}"
 // 2 x 2 texels: red, green; blue, transparent white.
 #define PNG_2X2                                                                                    \
-    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAE0lE"   \
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAYAAABytg0kAAAAE0lE"                   \
     "QVR42mP4z8DwHwyBNAgwAABIyQj4xTT9BQAAAABJRU5ErkJggg=="
 
 static inline void write_bytes(const char *name, const void *data, size_t size)

@@ -8,7 +8,8 @@ enum { GEOMETRY_SIZE = 24, GEOMETRY_WIDTH = 20, GEOMETRY_HEIGHT = 12 }; // of ma
 
 // A sun's map and a point light's, of two lights, texels scattered over a box and somewhat beyond.
 void geometry_scatter(struct stage *stage, struct gpu *gpu);
-// The volume's texels in use, four numbers each, [z][y][x]; to be freed. And how many numbers these are.
+// The volume's texels in use, four numbers each, [z][y][x]; to be freed. And how many numbers these
+// are.
 float *geometry_read(struct lpv *lpv);
 size_t geometry_floats(const struct lpv *lpv);
 // The volume is the twin's.

@@ -8,7 +8,8 @@
 
 enum { RIG_COLOURS = 3 };
 
-// `gi` is "lpv:options" or "holpv:options", on top of one grid, one bounce and steps enough to cross it.
+// `gi` is "lpv:options" or "holpv:options", on top of one grid, one bounce and steps enough to
+// cross it.
 struct lpv *rig_create(struct gpu *gpu, const char *gi);
 void rig_destroy(struct lpv *lpv);
 // One frame, waited for.

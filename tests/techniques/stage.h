@@ -1,4 +1,5 @@
-// A stage for techniques without a frame: a wall that the camera sees, and reflective shadow maps set texel by texel.
+// A stage for techniques without a frame: a wall that the camera sees, and reflective shadow maps
+// set texel by texel.
 #pragma once
 
 #include "frame/frame.h"
@@ -6,10 +7,11 @@
 
 enum { STAGE_MAX_FACES = 4 };
 
-// One texel of a reflective shadow map before it is encoded. Normals are rounded as the GPU will see them.
+// One texel of a reflective shadow map before it is encoded. Normals are rounded as the GPU will
+// see them.
 struct stage_texel {
-    float depth;   // in the face's clip space; 0: nothing
-    vec3s normal;  // unit
+    float depth;  // in the face's clip space; 0: nothing
+    vec3s normal; // unit
     uint8_t reflectance[3];
 };
 
@@ -24,13 +26,15 @@ struct stage {
     struct frame_view view; // fill in bounds; the rest is kept by the functions below
 };
 
-void stage_init(struct stage *stage, struct gpu *gpu, uint32_t width, uint32_t height, uint32_t rsm_size,
-                int face_count);
+void stage_init(struct stage *stage, struct gpu *gpu, uint32_t width, uint32_t height,
+                uint32_t rsm_size, int face_count);
 void stage_finish(struct stage *stage);
 // The camera sees the parallelogram corner + [0,1] across + [0,1] down, of this normal.
 void stage_show_wall(struct stage *stage, vec3s corner, vec3s across, vec3s down, vec3s normal);
-// Face `face` is a sun's: its texels lie on corner + [0,1] across + [0,1] down + depth · away, `lumen` through each.
-void stage_set_face(struct stage *stage, int face, vec3s corner, vec3s across, vec3s down, vec3s away, vec3s lumen);
+// Face `face` is a sun's: its texels lie on corner + [0,1] across + [0,1] down + depth · away,
+// `lumen` through each.
+void stage_set_face(struct stage *stage, int face, vec3s corner, vec3s across, vec3s down,
+                    vec3s away, vec3s lumen);
 struct stage_texel *stage_texel(struct stage *stage, int face, uint32_t x, uint32_t y);
 void stage_fill_face(struct stage *stage, int face, struct stage_texel texel);
 vec3s stage_texel_position(const struct stage *stage, int face, uint32_t x, uint32_t y);

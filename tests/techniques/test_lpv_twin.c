@@ -251,8 +251,8 @@ static double mebibytes(struct gpu *gpu, gpu_image image)
            (1 << 20);
 }
 
-// Martin 2012, sec. 5.8: 0.75 MiB for a grid of 32³ cells in two bands, 1.75 in three; three grids; and a
-// geometry volume of 0.25.
+// Martin 2012, sec. 5.8: 0.75 MiB for a grid of 32³ cells in two bands, 1.75 in three; three grids;
+// and a geometry volume of 0.25.
 TEST_GPU(lpv_volumes_of_half_floats_are_as_large_as_the_papers)
 {
     const struct {

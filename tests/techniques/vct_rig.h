@@ -1,4 +1,5 @@
-// Voxel cone tracing, of light or of occlusion, in a studio, with its voxels and its light volume open to the tests.
+// Voxel cone tracing, of light or of occlusion, in a studio, with its voxels and its light volume
+// open to the tests.
 #pragma once
 
 #include "frame/studio.h"
@@ -6,7 +7,7 @@
 #include "techniques/vct/vct_state.h"
 
 struct vct_rig {
-    struct studio studio; // vct_rig_open takes it over
+    struct studio studio;              // vct_rig_open takes it over
     const struct technique *technique; // technique_vct unless it is set before it is opened
     struct vct *vct;
 };
@@ -17,7 +18,8 @@ void vct_rig_init(struct vct_rig *rig, struct gpu *gpu);
 int vct_rig_add_triangle(struct vct_rig *rig, const vec3s corners[3], int material);
 void vct_rig_open(struct vct_rig *rig, const char *options);
 void vct_rig_finish(struct vct_rig *rig);
-// In place of vct_rig_init: a closed hall, 27 by 12 by 20 m, with pillars, a light and an eye in it.
+// In place of vct_rig_init: a closed hall, 27 by 12 by 20 m, with pillars, a light and an eye in
+// it.
 void vct_rig_hall(struct vct_rig *rig, struct gpu *gpu);
 
 // All words of a buffer. To be freed.

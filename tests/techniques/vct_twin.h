@@ -1,4 +1,5 @@
-// Cones through the light volume in plain C, as vct_trace.glsl and vct_look.glsl say them. Six ways, mips.
+// Cones through the light volume in plain C, as vct_trace.glsl and vct_look.glsl say them. Six
+// ways, mips.
 #pragma once
 
 #include "techniques/vct_rig.h"
@@ -28,7 +29,8 @@ struct vct_twin {
 struct vct_twin vct_twin_of(const struct vct_rig *rig);
 void vct_twin_finish(struct vct_twin *twin);
 
-// Premultiplied radiance and opacity along a cone. Lengths in texels; from: where it starts, off a surface of that
-// normal; wide: width of texels over the distance. Of a rig of occlusion what is hidden is in place of the radiance.
+// Premultiplied radiance and opacity along a cone. Lengths in texels; from: where it starts, off a
+// surface of that normal; wide: width of texels over the distance. Of a rig of occlusion what is
+// hidden is in place of the radiance.
 void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
                     const double direction[3], double wide, double sum[4]);

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// The contract's sum: L = direct (with emission and sky) + albedo·(1−metallic)/π · E · visibility + specular; and what
-// a screen shows of it.
+// The contract's sum: L = direct (with emission and sky) + albedo·(1−metallic)/π · E · visibility +
+// specular; and what a screen shows of it.
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/composite/exposure_shared.h"
@@ -26,7 +26,10 @@ layout(set = 0, binding = 6) uniform sampler2D visibility_layer;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D color_layer;
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D indirect_layer;
 layout(set = 0, binding = 9, rgba8) uniform writeonly image2D display_layer;
-layout(set = 0, binding = 10, scalar) readonly buffer exposure_state { exposure_values state; };
+layout(set = 0, binding = 10, scalar) readonly buffer exposure_state
+{
+    exposure_values state;
+};
 
 vec3 indirect_light(ivec2 pixel)
 {
@@ -44,7 +47,8 @@ vec3 indirect_light(ivec2 pixel)
 // IEC 61966-2-1.
 vec3 srgb_encoded(vec3 linear)
 {
-    return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
+    return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear,
+               lessThanEqual(linear, vec3(0.0031308)));
 }
 
 void main()
@@ -58,7 +62,8 @@ void main()
     imageStore(color_layer, pixel, vec4(radiance, 1.0));
     if (WRITES_INDIRECT) imageStore(indirect_layer, pixel, vec4(indirect, 1.0));
     if (WRITES_DISPLAY) {
-        vec3 shown = tonemap_pbr_neutral(radiance * (exposure_scale(state.ev) / frame.radiance_scale));
+        vec3 shown =
+            tonemap_pbr_neutral(radiance * (exposure_scale(state.ev) / frame.radiance_scale));
         imageStore(display_layer, pixel, vec4(srgb_encoded(clamp(shown, 0.0, 1.0)), 1.0));
     }
 }

@@ -3,7 +3,8 @@
 
 #include "gpu/gpu.h"
 
-// What a frame's composite reads and writes besides the direct image; the bits are the constant_id's in composite.comp.
+// What a frame's composite reads and writes besides the direct image; the bits are the
+// constant_id's in composite.comp.
 enum composite_variant {
     COMPOSITE_IRRADIANCE = 1,
     COMPOSITE_SPECULAR = 2,

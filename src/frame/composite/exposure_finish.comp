@@ -3,15 +3,22 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // From the groups' sums to the floor (round 0) and to the exposure value (round 1): the GPU twin of
-// auto_exposure in image/tonemap.c. A pixel counts as at least DARK_SHARE of the lit pixels' log-average.
+// auto_exposure in image/tonemap.c. A pixel counts as at least DARK_SHARE of the lit pixels'
+// log-average.
 #include "frame/frame.glsl"
 #include "frame/composite/exposure_shared.h"
 #include "frame/composite/exposure_reduce.glsl"
 
 layout(local_size_x = EXPOSURE_THREADS) in;
 
-layout(set = 0, binding = 1, scalar) buffer exposure_state { exposure_values state; };
-layout(set = 0, binding = 2, scalar) readonly buffer exposure_sums { vec2 sums[]; };
+layout(set = 0, binding = 1, scalar) buffer exposure_state
+{
+    exposure_values state;
+};
+layout(set = 0, binding = 2, scalar) readonly buffer exposure_sums
+{
+    vec2 sums[];
+};
 
 layout(push_constant, scalar) uniform push_block
 {

@@ -4,8 +4,8 @@
 
 #include "core/shared.h"
 
-#define EXPOSURE_THREADS 64    // of a group
-#define EXPOSURE_PIXELS 16     // that a thread adds up, until there are EXPOSURE_MAX_GROUPS
+#define EXPOSURE_THREADS    64 // of a group
+#define EXPOSURE_PIXELS     16 // that a thread adds up, until there are EXPOSURE_MAX_GROUPS
 #define EXPOSURE_MAX_GROUPS 1024
 
 // What storage block "exposure_state" holds.

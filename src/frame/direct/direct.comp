@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Direct light: emission, and the reflection of all punctual lights with their shadows. Where there is no surface, the sky.
+// Direct light: emission, and the reflection of all punctual lights with their shadows. Where there
+// is no surface, the sky.
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/direct/direct_shared.h"
@@ -12,7 +13,10 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 1, scalar) readonly buffer frame_lights { frame_light frame_light_table[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer frame_lights
+{
+    frame_light frame_light_table[];
+};
 layout(set = 0, binding = 4) uniform sampler2D depth_layer;
 layout(set = 0, binding = 5) uniform sampler2D normal_layer;
 layout(set = 0, binding = 6) uniform sampler2D albedo_layer;
@@ -25,12 +29,11 @@ layout(push_constant, scalar) uniform push_block
     direct_push push;
 };
 
-// Without it nothing is read but depth and emission: software drivers run the body of a loop once even where it has no
-// turns.
+// Without it nothing is read but depth and emission: software drivers run the body of a loop once
+// even where it has no turns.
 layout(constant_id = 0) const bool HAS_LIGHTS = true;
 
-struct surface
-{
+struct surface {
     vec3 position, normal, to_eye;
     vec3 plane; // normal of the triangle, towards the eye
     vec3 diffuse, f0;
@@ -40,18 +43,21 @@ struct surface
 // Depth at a pixel, kept within the picture.
 float depth_at(ivec2 pixel)
 {
-    return texelFetch(depth_layer, clamp(pixel, ivec2(0), ivec2(frame.width, frame.height) - 1), 0).r;
+    return texelFetch(depth_layer, clamp(pixel, ivec2(0), ivec2(frame.width, frame.height) - 1), 0)
+        .r;
 }
 
-// Position of the neighbour along `axis` that lies on the pixel's own plane. Depth is affine in the picture on a plane:
-// that side is taken where the two next pixels foretell this one's depth best, so that creases do not mix.
+// Position of the neighbour along `axis` that lies on the pixel's own plane. Depth is affine in the
+// picture on a plane: that side is taken where the two next pixels foretell this one's depth best,
+// so that creases do not mix.
 vec3 neighbour_on_plane(ivec2 pixel, ivec2 axis, float depth)
 {
     float before = depth_at(pixel - axis), after = depth_at(pixel + axis);
     float miss_before = abs(2.0 * before - depth_at(pixel - 2 * axis) - depth);
     float miss_after = abs(2.0 * after - depth_at(pixel + 2 * axis) - depth);
     float side = miss_before < miss_after ? -1.0 : 1.0;
-    // At the picture's rim the depth that was kept within is none of that place: the other side is true.
+    // At the picture's rim the depth that was kept within is none of that place: the other side is
+    // true.
     ivec2 end = ivec2(frame.width, frame.height) - 1;
     if (any(lessThan(pixel - 2 * axis, ivec2(0)))) side = 1.0;
     if (any(greaterThan(pixel + 2 * axis, end))) side = -1.0;
@@ -101,7 +107,8 @@ vec3 reflected(surface s, frame_light light)
     float cosine = dot(s.normal, to_light);
     bool facing = cosine > 0.0 && attenuation > 0.0;
     if (light.shadow_first >= 0)
-        attenuation *= shadow_of(light, s.position, s.plane, to_light, facing, push.shadow_size, push.shadow_radius);
+        attenuation *= shadow_of(light, s.position, s.plane, to_light, facing, push.shadow_size,
+                                 push.shadow_radius);
     if (!facing) return vec3(0.0);
     vec3 brdf = s.diffuse + brdf_specular(s.normal, s.to_eye, to_light, s.alpha, s.f0);
     return brdf * light.intensity * (attenuation * cosine);
@@ -117,7 +124,8 @@ void main()
         radiance = texelFetch(emissive_layer, pixel, 0).rgb;
         if (HAS_LIGHTS) {
             surface s = read_surface(pixel, depth);
-            for (uint i = 0; i < frame.light_count; i++) radiance += reflected(s, frame_light_table[i]);
+            for (uint i = 0; i < frame.light_count; i++)
+                radiance += reflected(s, frame_light_table[i]);
         }
     }
     imageStore(direct_layer, pixel, vec4(min(radiance, vec3(HALF_MAX)), 1.0));

@@ -16,7 +16,7 @@ struct gbuffer_targets {
 
 // Makes the pipelines for these variants (bit v: variant v) that are not there yet.
 bool gbuffer_prepare(struct gbuffer *gbuffer, struct gpu *gpu, uint32_t variants, bool motion);
-void gbuffer_record(const struct gbuffer *gbuffer, struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                    const struct gbuffer_targets *targets, mat4s clip_from_world,
-                    struct gpu_binding constants);
+void gbuffer_record(const struct gbuffer *gbuffer, struct gpu_cmd *cmd,
+                    const struct scene_gpu *scene, const struct gbuffer_targets *targets,
+                    mat4s clip_from_world, struct gpu_binding constants);
 void gbuffer_finish(struct gbuffer *gbuffer); // accepts zero

@@ -1,7 +1,8 @@
 // Fragments of the G-buffer. Formats: frame.h.
 //
-// Unlit materials (KHR_materials_unlit) are diffuse surfaces of their base colour, without gloss or metal: they neither
-// glow, which would add light that the scene does not have, nor stay dark to the light around them.
+// Unlit materials (KHR_materials_unlit) are diffuse surfaces of their base colour, without gloss or
+// metal: they neither glow, which would add light that the scene does not have, nor stay dark to
+// the light around them.
 #define GBUFFER_FRAGMENT
 #define SCENE_FRAGMENT
 #include "frame/frame.glsl"
@@ -20,15 +21,16 @@ layout(location = 3) out vec4 out_emissive;
 layout(location = 4) out vec4 out_motion; // see FRAME_MOTION
 #endif
 
-// glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w; the back of a double-sided surface has the
-// normal reversed, that of the map included.
+// glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w; the back of a double-sided
+// surface has the normal reversed, that of the map included.
 vec3 shading_normal()
 {
     vec3 n = vary_normal;
     if (HAS_NORMAL_MAP) {
         vec3 local = texture(normal_map, vary_normal_uv).xyz * 2.0 - 1.0;
         local.xy *= scene_material_table[push.draw.material].normal_scale;
-        n = vary_tangent.xyz * local.x + cross(n, vary_tangent.xyz) * (vary_tangent.w * local.y) + n * local.z;
+        n = vary_tangent.xyz * local.x + cross(n, vary_tangent.xyz) * (vary_tangent.w * local.y) +
+            n * local.z;
     }
     float length2 = dot(n, n);
     n = length2 > 1e-12 ? n * inversesqrt(length2) : vec3(0.0, 1.0, 0.0);
@@ -50,7 +52,8 @@ void main()
     out_emissive = vec4(emitted_radiance(), 0.0);
 #ifdef GBUFFER_MOTION
     vec2 now = vary_now.xy / vary_now.z;
-    // Behind the last frame's eye there is no position to come from: as far outside as the format can say.
+    // Behind the last frame's eye there is no position to come from: as far outside as the format
+    // can say.
     vec2 before = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z : vec2(-HALF_MAX);
     float farther = max(vary_previous.z, 0.0) / vary_now.z - 1.0;
     out_motion = vec4(clamp(vec3((now - before) * 0.5, farther), -HALF_MAX, HALF_MAX), 1.0);

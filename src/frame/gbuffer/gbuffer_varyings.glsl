@@ -13,8 +13,8 @@ layout(location = 4) VARY vec2 vary_metallic_roughness_uv;
 layout(location = 5) VARY vec2 vary_normal_uv;
 layout(location = 6) VARY vec2 vary_emissive_uv;
 #ifdef GBUFFER_MOTION
-// Clip positions, x y w, of this frame and the last. Both are interpolated, so that what stands still has a motion
-// of exactly 0.
+// Clip positions, x y w, of this frame and the last. Both are interpolated, so that what stands
+// still has a motion of exactly 0.
 layout(location = 7) VARY vec3 vary_now;
 layout(location = 8) VARY vec3 vary_previous;
 #endif
@@ -22,4 +22,5 @@ layout(location = 8) VARY vec3 vary_previous;
 layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
-} push;
+}
+push;

@@ -18,14 +18,17 @@ void main()
     vary_normal = f.normal;
     vary_tangent = f.tangent;
     scene_surface surface = scene_surface_of(vertex);
-    vary_base_color_uv = HAS_BASE_COLOR_MAP ? scene_map_uv(SCENE_MAP_BASE_COLOR, surface) : vec2(0.0);
-    vary_metallic_roughness_uv =
-        HAS_METALLIC_ROUGHNESS_MAP ? scene_map_uv(SCENE_MAP_METALLIC_ROUGHNESS, surface) : vec2(0.0);
+    vary_base_color_uv =
+        HAS_BASE_COLOR_MAP ? scene_map_uv(SCENE_MAP_BASE_COLOR, surface) : vec2(0.0);
+    vary_metallic_roughness_uv = HAS_METALLIC_ROUGHNESS_MAP
+                                     ? scene_map_uv(SCENE_MAP_METALLIC_ROUGHNESS, surface)
+                                     : vec2(0.0);
     vary_normal_uv = HAS_NORMAL_MAP ? scene_map_uv(SCENE_MAP_NORMAL, surface) : vec2(0.0);
     vary_emissive_uv = HAS_EMISSIVE_MAP ? scene_map_uv(SCENE_MAP_EMISSIVE, surface) : vec2(0.0);
     vary_color = unpackUnorm4x8(surface.color);
 #ifdef GBUFFER_MOTION
-    vec4 previous = frame.previous_clip_from_world * vec4(scene_previous_world_position(vertex), 1.0);
+    vec4 previous =
+        frame.previous_clip_from_world * vec4(scene_previous_world_position(vertex), 1.0);
     vary_now = clip.xyw;
     vary_previous = previous.xyw;
 #endif

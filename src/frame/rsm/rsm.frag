@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Normal and reflectance of a texel of a reflective shadow map (formats: frame.h). Normals are those of the vertices:
-// a texel stands for more surface than one texel of a normal map.
+// Normal and reflectance of a texel of a reflective shadow map (formats: frame.h). Normals are
+// those of the vertices: a texel stands for more surface than one texel of a normal map.
 #define RSM_FRAGMENT
 #define SCENE_FRAGMENT
 #include "frame/frame.glsl"
@@ -12,7 +12,10 @@
 #include "frame/rsm/rsm_varyings.glsl"
 #include "frame/scene.glsl"
 
-layout(set = 0, binding = 13, scalar) readonly buffer frame_lights { frame_light frame_light_table[]; };
+layout(set = 0, binding = 13, scalar) readonly buffer frame_lights
+{
+    frame_light frame_light_table[];
+};
 
 layout(location = 0) out vec2 out_normal;
 layout(location = 1) out vec4 out_flux;
@@ -27,7 +30,8 @@ void main()
     float distance2 = dot(from_light, from_light);
     float reach = 1.0;
     if (light.type != FRAME_LIGHT_SUN)
-        reach = light_window(light, distance2) * light_cone(light, from_light * inversesqrt(max(distance2, 1e-12)));
+        reach = light_window(light, distance2) *
+                light_cone(light, from_light * inversesqrt(max(distance2, 1e-12)));
 
     float length2 = dot(vary_normal, vary_normal);
     vec3 n = length2 > 1e-12 ? vary_normal * inversesqrt(length2) : -from_light;

@@ -1,15 +1,16 @@
-// Reading reflective shadow maps (Dachsbacher & Stamminger 2005). Include after frame.glsl; the caller declares
-// the bindings: buffer rsm_faces, sampler2DArray for depth, normal and flux (nearest).
+// Reading reflective shadow maps (Dachsbacher & Stamminger 2005). Include after frame.glsl; the
+// caller declares the bindings: buffer rsm_faces, sampler2DArray for depth, normal and flux
+// (nearest).
 //
-// Flux of a texel. A texel of a sun's map is a beam of perpendicular area A, and E⊥·A lumens go through it whatever
-// the slope of the surface behind: the surface is then larger, and E is smaller, by the same cosine. A texel of a
-// point's or spot's map is a cone of solid angle Ω with I·Ω lumens. Martin 2012, sec. 3.1, multiplies by
-// another (n·l): that would count the slope twice, so there is no such factor here.
+// Flux of a texel. A texel of a sun's map is a beam of perpendicular area A, and E⊥·A lumens go
+// through it whatever the slope of the surface behind: the surface is then larger, and E is
+// smaller, by the same cosine. A texel of a point's or spot's map is a cone of solid angle Ω with
+// I·Ω lumens. Martin 2012, sec. 3.1, multiplies by another (n·l): that would count the slope twice,
+// so there is no such factor here.
 #ifndef AG_FRAME_RSM_GLSL
 #define AG_FRAME_RSM_GLSL
 
-struct rsm_texel
-{
+struct rsm_texel {
     bool valid;    // something was hit
     vec3 position; // world, m
     vec3 normal;   // unit, towards the light
@@ -28,8 +29,8 @@ vec3 rsm_position(rsm_face face, ivec2 texel, uint size, float depth)
     return h.xyz / h.w;
 }
 
-// Solid angle of a texel of a perspective face, sr: area on the plane at distance 1 × cosine / distance²,
-// with both at the texel's centre.
+// Solid angle of a texel of a perspective face, sr: area on the plane at distance 1 × cosine /
+// distance², with both at the texel's centre.
 float rsm_solid_angle(rsm_face face, ivec2 texel, uint size)
 {
     vec2 p = rsm_clip(texel, size) * face.tan_half;
@@ -38,7 +39,8 @@ float rsm_solid_angle(rsm_face face, ivec2 texel, uint size)
     return edge * edge / (r2 * sqrt(r2));
 }
 
-// Flux through a texel, scaled lumen. Times the reflectance from the flux image it is the reflected flux.
+// Flux through a texel, scaled lumen. Times the reflectance from the flux image it is the reflected
+// flux.
 vec3 rsm_flux_through(rsm_face face, ivec2 texel, uint size)
 {
     if (face.type == FRAME_LIGHT_SUN) return face.intensity;

@@ -1,5 +1,5 @@
-// Reflective shadow maps of all lights (Dachsbacher & Stamminger 2005): what each light sees. Suns and spots have
-// one face, points six. How to read them: rsm.glsl.
+// Reflective shadow maps of all lights (Dachsbacher & Stamminger 2005): what each light sees. Suns
+// and spots have one face, points six. How to read them: rsm.glsl.
 #pragma once
 
 #include "frame/frame_shared.h"
@@ -22,10 +22,13 @@ struct rsm {
 bool rsm_init(struct rsm *rsm, struct host *host, struct gpu *gpu, uint32_t size);
 void rsm_finish(struct rsm *rsm); // accepts zero
 int rsm_faces_of(uint32_t light_type);
-// Room for so many faces (0: frees the images), and pipelines for these variants (bit v: variant v).
+// Room for so many faces (0: frees the images), and pipelines for these variants (bit v: variant
+// v).
 bool rsm_prepare(struct rsm *rsm, int face_count, uint32_t variants);
 // Places the faces of these lights, in their order. Lights that find no room get none.
-void rsm_place(struct rsm *rsm, const struct frame_light *lights, int light_count, struct box3 bounds);
-// bindings: frame_constants, frame_lights and rsm_faces. keep: maps that would come out as they are stay as they are.
-void rsm_record(struct rsm *rsm, struct gpu_cmd *cmd, const struct scene_gpu *scene, const struct frame_light *lights,
-                const struct gpu_binding bindings[3], bool keep);
+void rsm_place(struct rsm *rsm, const struct frame_light *lights, int light_count,
+               struct box3 bounds);
+// bindings: frame_constants, frame_lights and rsm_faces. keep: maps that would come out as they are
+// stay as they are.
+void rsm_record(struct rsm *rsm, struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                const struct frame_light *lights, const struct gpu_binding bindings[3], bool keep);

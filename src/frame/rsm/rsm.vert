@@ -18,8 +18,10 @@ void main()
     gl_Position = rsm_face_table[push.face].clip_from_world * vec4(vary_world, 1.0);
     vary_normal = scene_frame_of(vertex, world_from_instance).normal;
     scene_surface surface = scene_surface_of(vertex);
-    vary_base_color_uv = HAS_BASE_COLOR_MAP ? scene_map_uv(SCENE_MAP_BASE_COLOR, surface) : vec2(0.0);
-    vary_metallic_roughness_uv =
-        HAS_METALLIC_ROUGHNESS_MAP ? scene_map_uv(SCENE_MAP_METALLIC_ROUGHNESS, surface) : vec2(0.0);
+    vary_base_color_uv =
+        HAS_BASE_COLOR_MAP ? scene_map_uv(SCENE_MAP_BASE_COLOR, surface) : vec2(0.0);
+    vary_metallic_roughness_uv = HAS_METALLIC_ROUGHNESS_MAP
+                                     ? scene_map_uv(SCENE_MAP_METALLIC_ROUGHNESS, surface)
+                                     : vec2(0.0);
     vary_color = unpackUnorm4x8(surface.color);
 }

@@ -17,6 +17,10 @@ layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
     uint face; // index in rsm_faces
-} push;
+}
+push;
 
-layout(set = 0, binding = 12, scalar) readonly buffer rsm_faces { rsm_face rsm_face_table[]; };
+layout(set = 0, binding = 12, scalar) readonly buffer rsm_faces
+{
+    rsm_face rsm_face_table[];
+};

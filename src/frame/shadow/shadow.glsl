@@ -1,5 +1,6 @@
-// Reading shadow maps: which map of a light holds a point, how far the receiver is moved, how the map is filtered.
-// Include after frame.glsl. Binding numbers: SHADOW_FACES_BINDING and SHADOW_MAPS_BINDING, 2 and 3 unless defined before.
+// Reading shadow maps: which map of a light holds a point, how far the receiver is moved, how the
+// map is filtered. Include after frame.glsl. Binding numbers: SHADOW_FACES_BINDING and
+// SHADOW_MAPS_BINDING, 2 and 3 unless defined before.
 #ifndef AG_FRAME_SHADOW_GLSL
 #define AG_FRAME_SHADOW_GLSL
 
@@ -7,18 +8,24 @@
 
 #ifndef SHADOW_FACES_BINDING
 #define SHADOW_FACES_BINDING 2
-#define SHADOW_MAPS_BINDING 3
+#define SHADOW_MAPS_BINDING  3
 #endif
 
-layout(set = 0, binding = SHADOW_FACES_BINDING, scalar) readonly buffer shadow_faces { shadow_face shadow_face_table[]; };
-layout(set = 0, binding = SHADOW_MAPS_BINDING) uniform sampler2DArrayShadow shadow_maps; // passes where the reference ≥ the texel
+layout(set = 0, binding = SHADOW_FACES_BINDING, scalar) readonly buffer shadow_faces
+{
+    shadow_face shadow_face_table[];
+};
+layout(set = 0, binding = SHADOW_MAPS_BINDING) uniform sampler2DArrayShadow
+    shadow_maps; // passes where the reference ≥ the texel
 
-// The first, finest cascade that holds the point and the filter around it. The last one holds everything.
+// The first, finest cascade that holds the point and the filter around it. The last one holds
+// everything.
 int shadow_cascade(frame_light light, vec3 world, float inside)
 {
     int chosen = light.shadow_count - 1;
     for (int i = light.shadow_count - 2; i >= 0; i--) {
-        vec2 clip = (shadow_face_table[light.shadow_first + i].clip_from_world * vec4(world, 1.0)).xy;
+        vec2 clip =
+            (shadow_face_table[light.shadow_first + i].clip_from_world * vec4(world, 1.0)).xy;
         if (max(abs(clip.x), abs(clip.y)) < inside) chosen = i;
     }
     return chosen;
@@ -33,10 +40,11 @@ int shadow_cube_face(vec3 from_light)
     return from_light.z >= 0.0 ? 4 : 5;
 }
 
-// The share of a box of (2·radius+1)² texels around `at` (in 0…1) that lets light through to `depth`. A texel's
-// weight is its overlap with the box. Two neighbours are one bilinear fetch that stands between them
-// where it weighs both right: (radius+1)² fetches in all. rows: 0 skips the fetches. slope: change of the receiver's depth
-// with the map's coordinates, so that each fetch is held against the receiver's plane where it is made.
+// The share of a box of (2·radius+1)² texels around `at` (in 0…1) that lets light through to
+// `depth`. A texel's weight is its overlap with the box. Two neighbours are one bilinear fetch that
+// stands between them where it weighs both right: (radius+1)² fetches in all. rows: 0 skips the
+// fetches. slope: change of the receiver's depth with the map's coordinates, so that each fetch is
+// held against the receiver's plane where it is made.
 float shadow_filtered(vec2 at, int layer, float depth, vec2 slope, float size, int radius, int rows)
 {
     vec2 start = at * size - (float(radius) + 0.5);
@@ -59,32 +67,40 @@ float shadow_filtered(vec2 at, int layer, float depth, vec2 slope, float size, i
     return sum / (width * width);
 }
 
-const float SHADOW_TEXEL_REACH = 1.5;     // texels that the depth of one is wrong by: rasterisation, bilinear comparison
-const float SHADOW_LEAST_COSINE = 0.1;    // the slope of planes that graze the light more is not followed
+const float SHADOW_TEXEL_REACH =
+    1.5; // texels that the depth of one is wrong by: rasterisation, bilinear comparison
+const float SHADOW_LEAST_COSINE =
+    0.1; // the slope of planes that graze the light more is not followed
 
-// Change of NDC depth with NDC x and y on the plane with this normal, which projections keep a plane.
+// Change of NDC depth with NDC x and y on the plane with this normal, which projections keep a
+// plane.
 vec2 shadow_slope(mat4 clip_from_world, vec3 ndc, vec3 normal)
 {
-    vec3 a = normalize(abs(normal.y) < 0.7 ? cross(normal, vec3(0, 1, 0)) : cross(normal, vec3(1, 0, 0)));
+    vec3 a = normalize(abs(normal.y) < 0.7 ? cross(normal, vec3(0, 1, 0))
+                                           : cross(normal, vec3(1, 0, 0)));
     vec4 ca = clip_from_world * vec4(a, 0.0), cb = clip_from_world * vec4(cross(normal, a), 0.0);
-    vec3 da = ca.xyz - ndc * ca.w, db = cb.xyz - ndc * cb.w; // along the plane, up to a common factor
+    vec3 da = ca.xyz - ndc * ca.w,
+         db = cb.xyz - ndc * cb.w; // along the plane, up to a common factor
     float area = da.x * db.y - da.y * db.x;
     if (abs(area) < 1e-20) return vec2(0.0);
     return vec2(da.z * db.y - db.z * da.y, da.x * db.z - db.x * da.z) / area;
 }
 
-// 0 (in shadow) … 1. plane: unit normal of the receiver's plane, towards the eye; to_light: unit; facing: whether the light
-// shines on the front at all.
+// 0 (in shadow) … 1. plane: unit normal of the receiver's plane, towards the eye; to_light: unit;
+// facing: whether the light shines on the front at all.
 //
-// What is left after each fetch follows the plane is the error of a texel: the receiver is moved along its normal by
-// d·sin θ, where d is that reach: at distance d the depth of a plane differs by d·tan θ, and a step o along the
-// normal gains o/cos θ. So a plane never shadows itself, and a shadow's edge moves by less than two texels across
-// the light, whatever the filter's width.
-float shadow_of(frame_light light, vec3 world, vec3 plane, vec3 to_light, bool facing, float size, int radius)
+// What is left after each fetch follows the plane is the error of a texel: the receiver is moved
+// along its normal by d·sin θ, where d is that reach: at distance d the depth of a plane differs by
+// d·tan θ, and a step o along the normal gains o/cos θ. So a plane never shadows itself, and a
+// shadow's edge moves by less than two texels across the light, whatever the filter's width.
+float shadow_of(frame_light light, vec3 world, vec3 plane, vec3 to_light, bool facing, float size,
+                int radius)
 {
-    float reach = float(radius) + 1.5; // texels: the filter, half a texel of rasterisation, and the bilinear rim
+    float reach = float(radius) +
+                  1.5; // texels: the filter, half a texel of rasterisation, and the bilinear rim
     int face = 0;
-    if (light.type == FRAME_LIGHT_SUN) face = shadow_cascade(light, world, 1.0 - 2.0 * (2.0 * reach + 1.0) / size);
+    if (light.type == FRAME_LIGHT_SUN)
+        face = shadow_cascade(light, world, 1.0 - 2.0 * (2.0 * reach + 1.0) / size);
     if (light.type == FRAME_LIGHT_POINT) face = shadow_cube_face(world - light.position);
     int layer = light.shadow_first + face;
 
@@ -101,8 +117,10 @@ float shadow_of(frame_light light, vec3 world, vec3 plane, vec3 to_light, bool f
     float depth_scale = shadow_face_table[layer].depth_scale;
     float depth = at.z * depth_scale + shadow_face_table[layer].depth_offset;
     float followed = clamp(abs(cosine) / SHADOW_LEAST_COSINE, 0.0, 1.0);
-    vec2 slope = shadow_slope(clip_from_world, at, plane) * (2.0 * depth_scale * followed); // NDC is twice as wide
-    return shadow_filtered(at.xy * 0.5 + 0.5, layer, depth, slope, size, radius, facing ? radius + 1 : 0);
+    vec2 slope = shadow_slope(clip_from_world, at, plane) *
+                 (2.0 * depth_scale * followed); // NDC is twice as wide
+    return shadow_filtered(at.xy * 0.5 + 0.5, layer, depth, slope, size, radius,
+                           facing ? radius + 1 : 0);
 }
 
 #endif

@@ -10,7 +10,8 @@ layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
     mat4 clip_from_world;
-} push;
+}
+push;
 
 #include "frame/scene.glsl"
 

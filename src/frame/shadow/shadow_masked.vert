@@ -11,7 +11,8 @@ layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
     mat4 clip_from_world;
-} push;
+}
+push;
 
 #include "frame/scene.glsl"
 
@@ -24,6 +25,7 @@ void main()
     vec4 world = scene_world_from_instance() * vec4(scene_position(vertex), 1.0);
     gl_Position = push.clip_from_world * vec4(world.xyz, 1.0);
     scene_surface surface = scene_surface_of(vertex);
-    vary_base_color_uv = HAS_BASE_COLOR_MAP ? scene_map_uv(SCENE_MAP_BASE_COLOR, surface) : vec2(0.0);
+    vary_base_color_uv =
+        HAS_BASE_COLOR_MAP ? scene_map_uv(SCENE_MAP_BASE_COLOR, surface) : vec2(0.0);
     vary_color = unpackUnorm4x8(surface.color);
 }

@@ -4,14 +4,15 @@
 
 #include "core/shared.h"
 
-#define AMBIENT_LOCAL 64  // invocations of a summing workgroup
+#define AMBIENT_LOCAL  64 // invocations of a summing workgroup
 #define AMBIENT_GROUPS 64 // summing workgroups, and partial sums
 #define AMBIENT_TEXELS 4  // side of a block of texels
 
 // Push constants of all passes.
 struct ambient_push {
-    vec3s evenly;           // scaled irradiance of what falls on everything: the sky, and emissive surfaces
-    float per_way;          // 1/m³: irradiance per flux and metre to the exit; 0 where the bounds have no volume
+    vec3s evenly;  // scaled irradiance of what falls on everything: the sky, and emissive surfaces
+    float per_way; // 1/m³: irradiance per flux and metre to the exit; 0 where the bounds have no
+                   // volume
     vec3s box_min, box_max; // the bounds
     float strength;
     uint32_t rsm_size;      // texels

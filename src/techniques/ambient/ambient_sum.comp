@@ -1,5 +1,6 @@
-// Reflected flux times its way to the box's exit (scaled lumen · m) of all reflective shadow maps, as AMBIENT_GROUPS partial sums. Every sum has a fixed
-// order, so that a frame gives the same bits each time.
+// Reflected flux times its way to the box's exit (scaled lumen · m) of all reflective shadow maps,
+// as AMBIENT_GROUPS partial sums. Every sum has a fixed order, so that a frame gives the same bits
+// each time.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -32,7 +33,9 @@ const float FAR = 1e30;
 // m; emitters.c has the same for emissive surfaces.
 float distance_to_exit(vec3 from, vec3 direction)
 {
-    vec3 way = max((mix(push.box_min, push.box_max, greaterThan(direction, vec3(0.0))) - from) / direction, vec3(0.0));
+    vec3 way =
+        max((mix(push.box_min, push.box_max, greaterThan(direction, vec3(0.0))) - from) / direction,
+            vec3(0.0));
     way = mix(way, vec3(FAR), equal(direction, vec3(0.0)));
     return min(way.x, min(way.y, way.z));
 }
@@ -48,7 +51,8 @@ vec3 block_flux(uint block)
     vec3 sum = vec3(0.0);
     for (int y = first.y; y < last.y; y++) {
         for (int x = first.x; x < last.x; x++) {
-            rsm_texel light = rsm_fetch(face, ivec2(x, y), layer, push.rsm_size, rsm_depth, rsm_normal, rsm_flux);
+            rsm_texel light =
+                rsm_fetch(face, ivec2(x, y), layer, push.rsm_size, rsm_depth, rsm_normal, rsm_flux);
             if (light.valid) sum += light.flux * distance_to_exit(light.position, light.normal);
         }
     }
@@ -58,7 +62,8 @@ vec3 block_flux(uint block)
 void main()
 {
     vec3 sum = vec3(0.0);
-    for (uint i = gl_GlobalInvocationID.x; i < push.blocks; i += AMBIENT_LOCAL * AMBIENT_GROUPS) sum += block_flux(i);
+    for (uint i = gl_GlobalInvocationID.x; i < push.blocks; i += AMBIENT_LOCAL * AMBIENT_GROUPS)
+        sum += block_flux(i);
     vec3 total = workgroup_sum(sum);
     if (gl_LocalInvocationIndex == 0u) partials[gl_WorkGroupID.x] = total;
 }

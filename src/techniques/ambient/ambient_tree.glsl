@@ -1,4 +1,5 @@
-// The sum over a workgroup in a fixed order: a binary tree in shared memory, the same for every subgroup size.
+// The sum over a workgroup in a fixed order: a binary tree in shared memory, the same for every
+// subgroup size.
 #ifndef AG_AMBIENT_TREE_GLSL
 #define AG_AMBIENT_TREE_GLSL
 

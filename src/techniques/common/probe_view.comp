@@ -1,4 +1,5 @@
-// Walks from ball to ball along each pixel's line of sight (Amanatides & Woo 1987), up to the surface.
+// Walks from ball to ball along each pixel's line of sight (Amanatides & Woo 1987), up to the
+// surface.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -23,7 +24,8 @@ layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D picture;
 
 const float PI = 3.14159265, RADIUS = 0.12, DIM = 0.3;
 
-// The nearest point of the unit ball's like around `centre`, radius RADIUS; false: the ray passes by.
+// The nearest point of the unit ball's like around `centre`, radius RADIUS; false: the ray passes
+// by.
 bool meets_ball(vec3 from, vec3 way, vec3 centre, out float distance)
 {
     vec3 to = from - centre;
@@ -32,18 +34,20 @@ bool meets_ball(vec3 from, vec3 way, vec3 centre, out float distance)
     return d >= 0.0 && distance > 0.0;
 }
 
-// In units of the balls' distance, a ball in the middle of each cell. The radiance of a white ball, or less than 0 where there is
-// none up to `limit`.
+// In units of the balls' distance, a ball in the middle of each cell. The radiance of a white ball,
+// or less than 0 where there is none up to `limit`.
 vec3 ball_along(vec3 from, vec3 way, float limit, ivec3 balls)
 {
     vec3 inverse = 1.0 / way;
     vec3 low = -from * inverse, high = (vec3(balls) - from) * inverse;
     vec3 near = min(low, high), far = max(low, high);
-    float begin = max(max(near.x, near.y), max(near.z, 0.0)), end = min(min(far.x, far.y), min(far.z, limit));
+    float begin = max(max(near.x, near.y), max(near.z, 0.0)),
+          end = min(min(far.x, far.y), min(far.z, limit));
     if (begin >= end) return vec3(-1.0);
     ivec3 cell = clamp(ivec3(floor(from + way * begin)), ivec3(0), balls - 1);
     ivec3 one = ivec3(sign(way));
-    vec3 step_length = abs(inverse), next = (vec3(cell) + vec3(greaterThan(one, ivec3(0))) - from) * inverse;
+    vec3 step_length = abs(inverse),
+         next = (vec3(cell) + vec3(greaterThan(one, ivec3(0))) - from) * inverse;
     while (begin < end && all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, balls))) {
         float distance;
         vec3 centre = vec3(cell) + 0.5;
@@ -71,11 +75,16 @@ void main()
     if (z > 0.0) {
         vec3 n = octahedral_decode(texelFetch(normal, ivec2(pixel), 0).rg);
         vec3 reflected = texelFetch(albedo, ivec2(pixel), 0).rgb / PI;
-        colour = DIM * reflected * probes_irradiance(probes, push.place, position + 0.5 * push.place.spacing_m * n, n);
+        colour =
+            DIM * reflected *
+            probes_irradiance(probes, push.place, position + 0.5 * push.place.spacing_m * n, n);
     }
     float unit = float(push.every) * push.place.spacing_m;
-    vec3 from = (frame.eye - push.place.first_m) / unit + 0.5, to = (position - push.place.first_m) / unit + 0.5;
-    ivec3 balls = (ivec3(push.place.count_x, push.place.count_y, push.place.count_z) + push.every - 1) / push.every;
+    vec3 from = (frame.eye - push.place.first_m) / unit + 0.5,
+         to = (position - push.place.first_m) / unit + 0.5;
+    ivec3 balls =
+        (ivec3(push.place.count_x, push.place.count_y, push.place.count_z) + push.every - 1) /
+        push.every;
     float limit = distance(from, to);
     vec3 way = (to - from) / limit;
     way = mix(way, vec3(1e-6), lessThan(abs(way), vec3(1e-6)));

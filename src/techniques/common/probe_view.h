@@ -1,5 +1,5 @@
-// A debug view of any probe volume: surfaces dimly, as the probes would light them, and before them a white ball at each
-// probe, or at each of every so many, as bright as its irradiance makes it.
+// A debug view of any probe volume: surfaces dimly, as the probes would light them, and before them
+// a white ball at each probe, or at each of every so many, as bright as its irradiance makes it.
 #pragma once
 
 #include "frame/frame.h"
@@ -12,5 +12,6 @@ struct probe_view {
 bool probe_view_create(struct probe_view *view, struct gpu *gpu);
 void probe_view_destroy(struct probe_view *view, struct gpu *gpu); // accepts zero
 // Draws into `out`, RGBA16F of the frame's size, scaled radiance.
-void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd, const struct frame_view *frame,
-                       gpu_image probes, struct frame_probes place, gpu_image out);
+void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd,
+                       const struct frame_view *frame, gpu_image probes, struct frame_probes place,
+                       gpu_image out);

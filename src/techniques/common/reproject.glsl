@@ -1,6 +1,6 @@
-// Where a pixel's surface was in the last frame's picture, whatever moved, for what goes on from it (reverse
-// reprojection). `motion` is a texel of FRAME_MOTION. Which of the four pixels about the place show that surface, too,
-// the caller decides: each has its own history.
+// Where a pixel's surface was in the last frame's picture, whatever moved, for what goes on from it
+// (reverse reprojection). `motion` is a texel of FRAME_MOTION. Which of the four pixels about the
+// place show that surface, too, the caller decides: each has its own history.
 #ifndef AG_REPROJECT_GLSL
 #define AG_REPROJECT_GLSL
 
@@ -10,7 +10,8 @@ vec2 reproject_place(vec4 motion, ivec2 pixel, vec2 size)
     return vec2(pixel) - motion.xy * size;
 }
 
-// Along that frame's view axis, of what is at distance_m along this one's; 0 where it was behind the eye.
+// Along that frame's view axis, of what is at distance_m along this one's; 0 where it was behind
+// the eye.
 float reproject_distance(vec4 motion, float distance_m)
 {
     return distance_m * (1.0 + motion.z);

@@ -1,14 +1,16 @@
 // The sphere round a pixel's point, as a disk of lines through the depth buffer.
 //
-// Frame of a point P at the distance d along the view axis: the direction to it is w = (m, 1), m in units of the focal length,
-// x right and y down. Perspective is undone by a projective map, which keeps planes plane: a point seen at the offset o pixels
-// from P and at the distance dᵢ has the lateral position q = o d/f and the depth δ = d (1 − d/dᵢ); near P that is where it
-// is, and the depth buffer's D = n/dᵢ is linear in δ, so no distance need be computed. A plane through P is exactly as
-// far behind P on one side as it is before it on the other.
+// Frame of a point P at the distance d along the view axis: the direction to it is w = (m, 1), m in
+// units of the focal length, x right and y down. Perspective is undone by a projective map, which
+// keeps planes plane: a point seen at the offset o pixels from P and at the distance dᵢ has the
+// lateral position q = o d/f and the depth δ = d (1 − d/dᵢ); near P that is where it is, and the
+// depth buffer's D = n/dᵢ is linear in δ, so no distance need be computed. A plane through P is
+// exactly as far behind P on one side as it is before it on the other.
 //
-// The sphere of the radius R about P, to first order in R/d: with ℓ = |w| and B = I + m mᵀ/(ℓ + 1), which stretches
-// along m by ℓ, the point s of the unit disk lies at q = R B s, the middle of its line at δ = −R (s·m)/ℓ, and half its
-// length is R √(1 − s²)/ℓ. In radii along the line from its middle: z = ℓ δ/R + s·m.
+// The sphere of the radius R about P, to first order in R/d: with ℓ = |w| and B = I + m mᵀ/(ℓ + 1),
+// which stretches along m by ℓ, the point s of the unit disk lies at q = R B s, the middle of its
+// line at δ = −R (s·m)/ℓ, and half its length is R √(1 − s²)/ℓ. In radii along the line from its
+// middle: z = ℓ δ/R + s·m.
 #ifndef AG_SCREEN_AO_GLSL
 #define AG_SCREEN_AO_GLSL
 
@@ -28,9 +30,10 @@ layout(set = 0, binding = SCREEN_AO_BINDING, scalar) uniform screen_ao
 // Pixels of the frame per pixel of the estimate, across and down.
 layout(constant_id = 0) const int SCREEN_AO_STEP = 1;
 
-const float LEAST_PX = 0.01;       // a radius of 0 has no disk
-const float GRAZING = 0.05;        // cosine towards the eye, at least
-const float NORMAL_STEP = 1.0 / 1024.0; // of the G-buffer's 16-bit octahedral normals, as an angle, generously
+const float LEAST_PX = 0.01; // a radius of 0 has no disk
+const float GRAZING = 0.05;  // cosine towards the eye, at least
+const float NORMAL_STEP =
+    1.0 / 1024.0; // of the G-buffer's 16-bit octahedral normals, as an angle, generously
 
 struct screen_sphere {
     float depth;       // D at P
@@ -64,8 +67,8 @@ vec2 screen_stretch(screen_sphere p, vec2 v)
     return v + p.bend * dot(p.m, v);
 }
 
-// A surface through P: z of it is on_disk · s at the point s of the disk, and its part of z that comes from D at an offset in
-// pixels is on_screen · offset.
+// A surface through P: z of it is on_disk · s at the point s of the disk, and its part of z that
+// comes from D at an offset in pixels is on_screen · offset.
 struct screen_plane {
     vec2 on_disk, on_screen;
     float tolerance; // z, for what the normal is rounded by
@@ -74,7 +77,8 @@ struct screen_plane {
 // n: towards the eye; x right, y down, z away.
 screen_plane screen_plane_of(screen_sphere p, vec3 n)
 {
-    float towards = min(dot(n, vec3(p.m, 1.0)), -GRAZING * p.l); // bounded: the slope grows without end
+    float towards =
+        min(dot(n, vec3(p.m, 1.0)), -GRAZING * p.l); // bounded: the slope grows without end
     float steep = p.l / towards;
     vec2 slope = n.xy * -steep;
     screen_plane plane;
@@ -84,8 +88,9 @@ screen_plane screen_plane_of(screen_sphere p, vec3 n)
     return plane;
 }
 
-// Depth of a surface behind the plane, z. It is measured where the pixel is that was looked at, `step` pixels away, so that
-// rounding to pixels costs nothing on slopes; added to the plane's depth elsewhere it tells the surface's there.
+// Depth of a surface behind the plane, z. It is measured where the pixel is that was looked at,
+// `step` pixels away, so that rounding to pixels costs nothing on slopes; added to the plane's
+// depth elsewhere it tells the surface's there.
 float screen_behind(screen_sphere p, screen_plane plane, vec2 step, float depth)
 {
     return p.z_per_depth * (p.depth - depth) - dot(plane.on_screen, step);
@@ -96,7 +101,8 @@ vec3 screen_normal(vec3 world)
     return vec3(dot(world, view.right), dot(world, view.down), dot(world, view.forward));
 }
 
-// Patterns repeat every 4 by 4 pixels, which the blur takes together; neighbours get numbers far apart (Bayer's matrix).
+// Patterns repeat every 4 by 4 pixels, which the blur takes together; neighbours get numbers far
+// apart (Bayer's matrix).
 uint screen_pattern(uvec2 pixel)
 {
     uint x = pixel.x ^ pixel.y;

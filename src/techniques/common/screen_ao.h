@@ -7,8 +7,8 @@
 #include "techniques/common/screen_ao_shared.h"
 
 struct screen_ao_options {
-    bool blur; // evens the estimate out over 4 × 4 pixels, not across edges
-    bool half; // the estimate has half the frame's size
+    bool blur;     // evens the estimate out over 4 × 4 pixels, not across edges
+    bool half;     // the estimate has half the frame's size
     bool temporal; // estimates of frames are averaged; the owner needs FRAME_NEEDS_MOTION
 };
 
@@ -20,8 +20,9 @@ struct screen_ao {
     gpu_image
         estimate; // RG32F: visibility, depth of the frame's pixel; (1, 0) where there is no surface
     gpu_image scratch; // RG32F
-    gpu_image history[2]; // RGBA32F: visibility, depth, frames; the last frame's and this one's in turn
-    int newest;           // of the two
+    gpu_image
+        history[2]; // RGBA32F: visibility, depth, frames; the last frame's and this one's in turn
+    int newest;     // of the two
     float before_near_m; // of the last frame's camera; 0: forget the history
     gpu_pipeline temporal, blur_x, blur_y, fit;
     struct screen_ao_params params; // of the frame being recorded
@@ -43,8 +44,8 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
                      float reach);
 // The block "screen_ao".
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd);
-// The estimate: `pipeline` with a shader that includes screen_ao_estimate.glsl. more: its own bindings, one at least and
-// SCREEN_AO_MORE at most. name: of the pass, "vo.lines".
+// The estimate: `pipeline` with a shader that includes screen_ao_estimate.glsl. more: its own
+// bindings, one at least and SCREEN_AO_MORE at most. name: of the pass, "vo.lines".
 enum { SCREEN_AO_MORE = 2 };
 void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view,
                         const char *name, gpu_pipeline pipeline, const struct gpu_binding *more,

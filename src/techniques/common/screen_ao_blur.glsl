@@ -1,8 +1,10 @@
-// Mean of an estimate over five pixels in a row, the outer two by half, so that a pattern of four pixels is evened out
-// wholly, and not across edges: a pixel counts the less the farther it is, in radii of the sphere, from the straight line
-// through its neighbours in depth. One direction after the other makes the mean over 4 by 4 pixels.
+// Mean of an estimate over five pixels in a row, the outer two by half, so that a pattern of four
+// pixels is evened out wholly, and not across edges: a pixel counts the less the farther it is, in
+// radii of the sphere, from the straight line through its neighbours in depth. One direction after
+// the other makes the mean over 4 by 4 pixels.
 //
-// One invocation does four pixels in a row: they share what they read. DOWN: ivec2(1, 0) or ivec2(0, 1), the row's direction.
+// One invocation does four pixels in a row: they share what they read. DOWN: ivec2(1, 0) or
+// ivec2(0, 1), the row's direction.
 #include "techniques/common/screen_ao.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -12,7 +14,8 @@ layout(set = 0, binding = 1) uniform sampler2D before; // visibility, depth
 const int ROW = 4, REACH = 2;
 const float EDGE = 4.0; // a pixel a quarter of a radius off does not count
 
-// The part of a pixel `offset` steps away in the mean around one of depth `here`; slope: of the depth per step.
+// The part of a pixel `offset` steps away in the mean around one of depth `here`; slope: of the
+// depth per step.
 float weight_of(float depth, float here, float slope, float offset, float per_depth)
 {
     return clamp(1.0 - abs(depth - here - slope * offset) * per_depth, 0.0, 1.0);

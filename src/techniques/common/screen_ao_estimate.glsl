@@ -1,8 +1,9 @@
-// The pass that fills the estimate. A shader includes this file and says in screen_ao_visibility how it looks round a pixel's
-// point; bindings from 4 on are its own.
+// The pass that fills the estimate. A shader includes this file and says in screen_ao_visibility
+// how it looks round a pixel's point; bindings from 4 on are its own.
 //
-// One invocation does SCREEN_AO_ROWS pixels below each other and goes over those without a surface, which were cleared before,
-// in a loop of its own: software drivers run through what is not wanted of a body, but not through a loop that is done.
+// One invocation does SCREEN_AO_ROWS pixels below each other and goes over those without a surface,
+// which were cleared before, in a loop of its own: software drivers run through what is not wanted
+// of a body, but not through a loop that is done.
 #extension GL_EXT_control_flow_attributes : require
 
 #include "frame/octahedral.glsl"
@@ -33,10 +34,13 @@ screen_place place_at(ivec2 work, float depth)
 void main()
 {
     ivec2 work = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, SCREEN_AO_ROWS);
-    int end = work.x < int(view.work_width) ? min(work.y + SCREEN_AO_ROWS, int(view.work_height)) : 0;
-    [[dont_unroll]] for (;; work.y++) {
+    int end =
+        work.x < int(view.work_width) ? min(work.y + SCREEN_AO_ROWS, int(view.work_height)) : 0;
+    [[dont_unroll]] for (;; work.y++)
+    {
         float here = 0.0;
-        [[dont_unroll]] for (; work.y < end; work.y++) {
+        [[dont_unroll]] for (; work.y < end; work.y++)
+        {
             here = texelFetch(depth, work * SCREEN_AO_STEP, 0).r;
             if (here > 0.0) break;
         }

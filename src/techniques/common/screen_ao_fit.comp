@@ -1,5 +1,5 @@
-// An estimate as the frame's visibility: as it is, or, from every second pixel of every second row, the mean of the up to
-// four neighbours whose surface is the pixel's own.
+// An estimate as the frame's visibility: as it is, or, from every second pixel of every second row,
+// the mean of the up to four neighbours whose surface is the pixel's own.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

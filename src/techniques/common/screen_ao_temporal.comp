@@ -1,5 +1,6 @@
-// Goes on from the last frames' estimates: the mean over up to 16 frames in which the pixel's surface was seen. A frame that
-// is new to it starts again; a tap of the last frame counts the less the farther its surface is from where the pixel's was.
+// Goes on from the last frames' estimates: the mean over up to 16 frames in which the pixel's
+// surface was seen. A frame that is new to it starts again; a tap of the last frame counts the less
+// the farther its surface is from where the pixel's was.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -21,13 +22,16 @@ const float FRAMES = 16.0;
 // Visibility and frames at a place of the estimate, in its pixels; (0, 0): none.
 vec2 remembered(vec2 place, float depth)
 {
-    float radius_px = clamp(view.radius_m * view.focal_px * depth / view.before_near_m, LEAST_PX, view.most_px);
+    float radius_px =
+        clamp(view.radius_m * view.focal_px * depth / view.before_near_m, LEAST_PX, view.most_px);
     float per_depth = EDGE * view.focal_px / (radius_px * depth);
     vec2 sum = vec2(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; i++) {
         ivec2 at = reproject_tap(place, i);
-        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(view.work_width, view.work_height)))) continue;
+        if (any(lessThan(at, ivec2(0))) ||
+            any(greaterThanEqual(at, ivec2(view.work_width, view.work_height))))
+            continue;
         vec3 tap = texelFetch(history, at, 0).rgb;
         float near = max(1.0 - abs(tap.y - depth) * per_depth, 0.0);
         float w = tap.y > 0.0 ? reproject_share(place, i) * near : 0.0;
@@ -46,7 +50,8 @@ void main()
     if (now.y > 0.0 && view.before_near_m > 0.0) {
         ivec2 pixel = work * SCREEN_AO_STEP;
         vec4 moved = texelFetch(motion, pixel, 0);
-        vec2 place = reproject_place(moved, pixel, vec2(view.width, view.height)) / float(SCREEN_AO_STEP);
+        vec2 place =
+            reproject_place(moved, pixel, vec2(view.width, view.height)) / float(SCREEN_AO_STEP);
         float distance_m = reproject_distance(moved, view.near_m / now.y);
         if (distance_m > 0.0) past = remembered(place, view.before_near_m / distance_m);
     }

@@ -1,8 +1,10 @@
-// Ambient occlusion by horizons (Bavoil & Sainz 2008): along each of some directions on the screen the horizon rises from the
-// tangent plane. With elevations α measured from the plane across the line of sight, what lies between the tangent t and the
-// horizon h is 1/2π ∫ (sin h − sin t) dθ of the hemisphere, each rise weighted with the fall-off at the sample that makes it.
+// Ambient occlusion by horizons (Bavoil & Sainz 2008): along each of some directions on the screen
+// the horizon rises from the tangent plane. With elevations α measured from the plane across the
+// line of sight, what lies between the tangent t and the horizon h is 1/2π ∫ (sin h − sin t) dθ of
+// the hemisphere, each rise weighted with the fall-off at the sample that makes it.
 //
-// Samples are in radii, in the sphere's frame of screen_ao.glsl: x and y across the line of sight, z along it.
+// Samples are in radii, in the sphere's frame of screen_ao.glsl: x and y across the line of sight,
+// z along it.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -29,8 +31,11 @@ float occlusion(ivec2 pixel, screen_sphere sphere, screen_plane plane, vec2 dire
     for (int i = 0; i < table.steps; i++) {
         float across = (float(i) + first) / float(table.steps);
         ivec2 there = pixel + ivec2(round(pixels * across));
-        if (any(lessThan(there, ivec2(0))) || any(greaterThanEqual(there, ivec2(view.width, view.height)))) break;
-        float behind = screen_behind(sphere, plane, vec2(there - pixel), texelFetch(depth, there, 0).r);
+        if (any(lessThan(there, ivec2(0))) ||
+            any(greaterThanEqual(there, ivec2(view.width, view.height))))
+            break;
+        float behind =
+            screen_behind(sphere, plane, vec2(there - pixel), texelFetch(depth, there, 0).r);
         float up = slope * across - min(behind + plane.tolerance, 0.0);
         float r = sqrt(across * across + up * up);
         float elevation = up / r;

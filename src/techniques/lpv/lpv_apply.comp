@@ -1,22 +1,26 @@
-// Irradiance at each pixel from the accumulated intensity (Martin 2012, sec. 3.2.4, without the albedo of eq. 3.4).
+// Irradiance at each pixel from the accumulated intensity (Martin 2012, sec. 3.2.4, without the
+// albedo of eq. 3.4).
 //
-// From intensity to irradiance. The flux I(ω) dω that a step finds in a cell of side a goes a way w a in that step, w = 2/3
-// with six neighbours and 1.203 with 26 (lpv_mean_way). A flux density of paths per volume is radiance: L(ω) = I(ω) (w a) / a³,
-// and E = ∫ L(ω) (−n·ω)₊ dω. Hence irradiance_scale = w / a²; the tests print how near that comes to form factors.
+// From intensity to irradiance. The flux I(ω) dω that a step finds in a cell of side a goes a way w
+// a in that step, w = 2/3 with six neighbours and 1.203 with 26 (lpv_mean_way). A flux density of
+// paths per volume is radiance: L(ω) = I(ω) (w a) / a³, and E = ∫ L(ω) (−n·ω)₊ dω. Hence
+// irradiance_scale = w / a²; the tests print how near that comes to form factors.
 //
-// The window. Light with the direction ω, c = −n·ω, has the irradiance ∝ 1 + w 2 c in two bands and ∝ 1 + w (2 c + 5/4 P2(c))
-// in three, w being the weight of the bands above the first: exact for w = 1, but it comes out negative behind the surface (−1
-// at c = −1; −0.158 at c = −8/15), and beside a bright wall, whose light all leaves it, it takes other light away, in the
-// wall's complementary colour. 1/2 in two bands and 0.863 in three are the largest weights with which no light of positive
-// intensity becomes negative.
+// The window. Light with the direction ω, c = −n·ω, has the irradiance ∝ 1 + w 2 c in two bands and
+// ∝ 1 + w (2 c + 5/4 P2(c)) in three, w being the weight of the bands above the first: exact for w
+// = 1, but it comes out negative behind the surface (−1 at c = −1; −0.158 at c = −8/15), and beside
+// a bright wall, whose light all leaves it, it takes other light away, in the wall's complementary
+// colour. 1/2 in two bands and 0.863 in three are the largest weights with which no light of
+// positive intensity becomes negative.
 //
-// Damping. Light from elsewhere is there further along the normal too; what a surface sends out itself, or what comes through
-// it from behind, is less there, and the two bands take a part of it for light that arrives. So what irradiance loses over a
-// cell along the normal, h ∂E/∂n < 0, is taken off (the directional derivative of Martin 2012, sec. 3.2.4, for which the paper
-// gives no formula).
+// Damping. Light from elsewhere is there further along the normal too; what a surface sends out
+// itself, or what comes through it from behind, is less there, and the two bands take a part of it
+// for light that arrives. So what irradiance loses over a cell along the normal, h ∂E/∂n < 0, is
+// taken off (the directional derivative of Martin 2012, sec. 3.2.4, for which the paper gives no
+// formula).
 //
-// Reconstruction. Between cells trilinear, whose kinks show where light changes fast (sec. 6.4); or a cubic B-spline, smooth and
-// broader.
+// Reconstruction. Between cells trilinear, whose kinks show where light changes fast (sec. 6.4); or
+// a cubic B-spline, smooth and broader.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -48,7 +52,8 @@ bool covered_by_finer(vec3 surface)
 {
     if (push.finer_cell_m == 0.0) return false;
     ivec3 cells = ivec3(push.finer_cells_x, push.finer_cells_y, push.finer_cells_z);
-    return lpv_cascade_weight((surface - push.finer_origin_m) / push.finer_cell_m, cells, push.finer_open) == 1.0;
+    return lpv_cascade_weight((surface - push.finer_origin_m) / push.finer_cell_m, cells,
+                              push.finer_open) == 1.0;
 }
 
 vec3 linear_irradiance(vec3 at, vec3 n)
@@ -56,12 +61,13 @@ vec3 linear_irradiance(vec3 at, vec3 n)
     return lpv_irradiance(lpv_sample(light, at), n);
 }
 
-// A cubic B-spline over 4³ cells in eight filtered look-ups (Sigg & Hadwiger 2005): along an axis, the weights of two cells
-// are one filtered look-up between them.
+// A cubic B-spline over 4³ cells in eight filtered look-ups (Sigg & Hadwiger 2005): along an axis,
+// the weights of two cells are one filtered look-up between them.
 vec3 cubic_irradiance(vec3 at, vec3 n)
 {
     vec3 first = floor(at - 0.5), f = at - 0.5 - first, g = 1.0 - f;
-    vec3 w0 = g * g * g / 6.0, w1 = 2.0 / 3.0 - 0.5 * f * f * (1.0 + g), w3 = f * f * f / 6.0, w2 = 1.0 - w0 - w1 - w3;
+    vec3 w0 = g * g * g / 6.0, w1 = 2.0 / 3.0 - 0.5 * f * f * (1.0 + g), w3 = f * f * f / 6.0,
+         w2 = 1.0 - w0 - w1 - w3;
     vec3 low = first - 0.5 + w1 / (w0 + w1), high = first + 1.5 + w3 / (w2 + w3);
     vec3 sum = vec3(0.0);
     for (int corner = 0; corner < 8; corner++) {
@@ -92,7 +98,8 @@ vec3 lit(vec3 surface, vec3 n)
     return min(lpv.irradiance_scale * damped_irradiance(at, n), vec3(HALF_MAX));
 }
 
-// From the coarsest cascade to the finest, each over what the one before left. Outside of the coarsest there is no light.
+// From the coarsest cascade to the finest, each over what the one before left. Outside of the
+// coarsest there is no light.
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -104,7 +111,9 @@ void main()
         float weight = lpv_cascade_weight(lpv_cells_from_world(surface), lpv_cells(), push.open);
         if (covered_by_finer(surface) || (weight == 0.0 && push.coarsest == 0u)) return;
         if (weight > 0.0) result = lit(surface, octahedral_decode(texelFetch(normal, pixel, 0).rg));
-        if (weight < 1.0) result = mix(push.coarsest != 0u ? vec3(0.0) : imageLoad(irradiance, pixel).rgb, result, weight);
+        if (weight < 1.0)
+            result = mix(push.coarsest != 0u ? vec3(0.0) : imageLoad(irradiance, pixel).rgb, result,
+                         weight);
     }
     imageStore(irradiance, pixel, vec4(result, 1.0));
 }

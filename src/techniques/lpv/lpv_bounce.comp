@@ -1,6 +1,6 @@
-// A bounce: what surfaces reflect of the light that has come to them so far joins what was injected. A cell's surfaces are
-// six, one for each direction ±a, with the reflectance times area of lpv_surfaces.comp; each receives E(±a) and sends it on
-// as a clamped cosine around ±a.
+// A bounce: what surfaces reflect of the light that has come to them so far joins what was
+// injected. A cell's surfaces are six, one for each direction ±a, with the reflectance times area
+// of lpv_surfaces.comp; each receives E(±a) and sends it on as a clamped cosine around ±a.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -17,11 +17,12 @@ layout(set = 0, binding = 1, scalar) readonly buffer lpv_surfaces
     uvec4 surfaces[]; // [cell][direction]
 };
 layout(set = 0, binding = 2) uniform sampler3D injected; // by lamps and emissive surfaces
-layout(set = 0, binding = 3) uniform sampler3D arrived; // accumulated so far
+layout(set = 0, binding = 3) uniform sampler3D arrived;  // accumulated so far
 layout(set = 0, binding = 4) uniform writeonly image3D reflected;
 layout(set = 0, binding = 5) uniform writeonly image3D sent; // both together
 
-// Reflectance × area in cells². Together a cell's surfaces that look one way receive no more than what comes through its side.
+// Reflectance × area in cells². Together a cell's surfaces that look one way receive no more than
+// what comes through its side.
 vec3 reflecting_area(int at)
 {
     vec4 sums = vec4(surfaces[at]) / LPV_SURFACE_UNIT;
@@ -39,7 +40,8 @@ void main()
 {
     ivec3 cell = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(cell)) return;
-    vec4 before[7], slabs[7] = vec4[7](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+    vec4 before[7], slabs[7] = vec4[7](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0),
+                                       vec4(0.0), vec4(0.0));
     for (int side = 0; side < 6; side++) {
         vec3 area = reflecting_area(6 * lpv_index(cell) + side), n = vec3(0.0);
         if (area == vec3(0.0)) continue;

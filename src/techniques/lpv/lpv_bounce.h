@@ -1,5 +1,5 @@
-// Further bounces: surfaces send on what has come to them, while the light is still on its way. All of it does nothing where the
-// option `bounces` is 0.
+// Further bounces: surfaces send on what has come to them, while the light is still on its way. All
+// of it does nothing where the option `bounces` is 0.
 #pragma once
 
 #include "techniques/lpv/lpv_grid.h"
@@ -15,7 +15,7 @@ struct lpv_bounce {
     gpu_image reflected; // what surfaces send on
     gpu_image sent;      // that, and what was injected
     gpu_pipeline opaque, masked, bounce;
-    bool kept;             // the surfaces are those of `grid`
+    bool kept; // the surfaces are those of `grid`
     struct lpv_grid grid;
 };
 

@@ -1,4 +1,5 @@
-// Debug views. The slices of the grid as tiles, from z = 0 at the top left, +y up; or the surfaces, coloured by cell.
+// Debug views. The slices of the grid as tiles, from z = 0 at the top left, +y up; or the surfaces,
+// coloured by cell.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -36,7 +37,8 @@ vec3 held_back(ivec3 cell)
     for (int axis = 0; axis < 3; axis++) {
         ivec3 low = ivec3(0);
         low[axis] = -1;
-        if (lpv_inside(cell + low)) held[axis] = 1.0 - min(lpv_passing(cell, low), lpv_passing(cell + low, -low));
+        if (lpv_inside(cell + low))
+            held[axis] = 1.0 - min(lpv_passing(cell, low), lpv_passing(cell + low, -low));
     }
     return held;
 }
@@ -55,13 +57,15 @@ vec3 slices(ivec2 pixel)
     return push.view == LPV_VIEW_GEOMETRY ? held_back(cell) : shown(cell);
 }
 
-// A colour for the cell into which a surface injects, half a cell along its normal: full where there is light, dim where not.
+// A colour for the cell into which a surface injects, half a cell along its normal: full where
+// there is light, dim where not.
 vec3 cells_on_surfaces(ivec2 pixel)
 {
     float z = texelFetch(depth, pixel, 0).r;
     if (z == 0.0) return vec3(0.0);
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-    vec3 at = lpv_cells_from_world(position) + 0.5 * octahedral_decode(texelFetch(normal, pixel, 0).rg);
+    vec3 at =
+        lpv_cells_from_world(position) + 0.5 * octahedral_decode(texelFetch(normal, pixel, 0).rg);
     ivec3 cell = clamp(ivec3(floor(at)), ivec3(0), lpv_cells() - 1);
     vec3 colour = 0.25 + 0.5 * vec3(cell & 1);
     return colour * (any(greaterThan(shown(cell), vec3(0.0))) ? 1.0 : 0.1);

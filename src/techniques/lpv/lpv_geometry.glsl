@@ -1,15 +1,19 @@
-// The geometry volume as propagation reads it: which share of the light on its way from a cell to a neighbour meets a
-// surface. Include after core/sh.glsl and lpv_grid.glsl; define LPV_GEOMETRY_BINDING.
+// The geometry volume as propagation reads it: which share of the light on its way from a cell to a
+// neighbour meets a surface. Include after core/sh.glsl and lpv_grid.glsl; define
+// LPV_GEOMETRY_BINDING.
 //
-// LPV_GEOMETRY_MAPS (Martin 2012, sec. 3.2.2, 3.2.3): four coefficients of the blocking potential B(ω) at each corner of the
-// cells, B = Σ A/S² (n·ω)₊ with A the area of a surfel (m²), S the side of a cell (m): as many surfaces there are on a way of
-// S along −ω. Between the corners around the place where the light crosses over (four of a face, two of an edge, a corner)
-// they are interpolated; light that goes d cells is blocked by what faces it, |d| B(−d/|d|). Two bands of a clamped cosine are
-// 3/4 at the peak, which is made good: a wall across the way blocks all. Texel i is the corner i + 1 cells from the grid's: half
-// a cell further than cell i's centre. Corners on the grid's border are left out; those next to them stand for them.
+// LPV_GEOMETRY_MAPS (Martin 2012, sec. 3.2.2, 3.2.3): four coefficients of the blocking potential
+// B(ω) at each corner of the cells, B = Σ A/S² (n·ω)₊ with A the area of a surfel (m²), S the side
+// of a cell (m): as many surfaces there are on a way of S along −ω. Between the corners around the
+// place where the light crosses over (four of a face, two of an edge, a corner) they are
+// interpolated; light that goes d cells is blocked by what faces it, |d| B(−d/|d|). Two bands of a
+// clamped cosine are 3/4 at the peak, which is made good: a wall across the way blocks all. Texel i
+// is the corner i + 1 cells from the grid's: half a cell further than cell i's centre. Corners on
+// the grid's border are left out; those next to them stand for them.
 //
-// LPV_GEOMETRY_SCENE: of each cell's low faces (−x, −y, −z) the share that surfaces cover, seen along the face's normal. Over
-// an edge or a corner light goes along two or three axes, and all of these must be free.
+// LPV_GEOMETRY_SCENE: of each cell's low faces (−x, −y, −z) the share that surfaces cover, seen
+// along the face's normal. Over an edge or a corner light goes along two or three axes, and all of
+// these must be free.
 #ifndef AG_LPV_GEOMETRY_GLSL
 #define AG_LPV_GEOMETRY_GLSL
 
@@ -36,7 +40,8 @@ float lpv_free(float blocked)
     return 1.0 - clamp(lpv.blocking * blocked, 0.0, 1.0);
 }
 
-// The share of the light from `cell` that reaches the neighbour at `offset`, 0…1. Both must be inside of the grid.
+// The share of the light from `cell` that reaches the neighbour at `offset`, 0…1. Both must be
+// inside of the grid.
 float lpv_passing(ivec3 cell, ivec3 offset)
 {
     if (LPV_GEOMETRY == LPV_GEOMETRY_OFF) return 1.0;

@@ -1,9 +1,9 @@
-// The surfels that the camera sees (Martin 2012, sec. 3.2.2): every pixel of the G-buffer. One invocation takes a block of
-// LPV_TEXELS² pixels.
+// The surfels that the camera sees (Martin 2012, sec. 3.2.2): every pixel of the G-buffer. One
+// invocation takes a block of LPV_TEXELS² pixels.
 //
-// Area of a surfel. A pixel's rectangle on the plane of its depth has the area |u × v| (m²); the beam to the eye, at the
-// angle θ to the camera's axis, has cos θ of it across, and the surface behind is larger by the cosine between its normal and the
-// way to the eye.
+// Area of a surfel. A pixel's rectangle on the plane of its depth has the area |u × v| (m²); the
+// beam to the eye, at the angle θ to the camera's axis, has cos θ of it across, and the surface
+// behind is larger by the cosine between its normal and the way to the eye.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -27,8 +27,10 @@ void add(inout lpv_run run, ivec2 pixel)
     if (z == 0.0) return;
     vec2 uv = frame_uv(uvec2(pixel)), half_pixel = 0.5 / vec2(lpv.width, lpv.height);
     vec3 position = frame_world_position(uv, z);
-    vec3 u = frame_world_position(uv + vec2(half_pixel.x, 0.0), z) - frame_world_position(uv - vec2(half_pixel.x, 0.0), z);
-    vec3 v = frame_world_position(uv + vec2(0.0, half_pixel.y), z) - frame_world_position(uv - vec2(0.0, half_pixel.y), z);
+    vec3 u = frame_world_position(uv + vec2(half_pixel.x, 0.0), z) -
+             frame_world_position(uv - vec2(half_pixel.x, 0.0), z);
+    vec3 v = frame_world_position(uv + vec2(0.0, half_pixel.y), z) -
+             frame_world_position(uv - vec2(0.0, half_pixel.y), z);
     vec3 way = frame.eye - position;
     vec3 to_eye = way * inversesqrt(max(dot(way, way), 1e-20));
     float across = abs(dot(cross(u, v), to_eye)); // |u × v| cos θ

@@ -1,4 +1,5 @@
-// From lines to the geometry volume: of each cell's low faces the share of the lines that something still or moving crosses.
+// From lines to the geometry volume: of each cell's low faces the share of the lines that something
+// still or moving crosses.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -24,6 +25,7 @@ void main()
     int at = 3 * lpv_index(cell);
     vec3 blocked = vec3(0.0);
     for (int axis = 0; axis < 3; axis++)
-        blocked[axis] = float(bitCount(still[at + axis] | moving[at + axis])) / float(LPV_LINES * LPV_LINES);
+        blocked[axis] =
+            float(bitCount(still[at + axis] | moving[at + axis])) / float(LPV_LINES * LPV_LINES);
     imageStore(geometry, cell, vec4(blocked, 0.0));
 }

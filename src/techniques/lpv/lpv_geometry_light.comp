@@ -1,9 +1,10 @@
-// The surfels that one light sees (Martin 2012, sec. 3.2.2): every texel of its reflective shadow maps. One invocation takes
-// a block of LPV_TEXELS² texels.
+// The surfels that one light sees (Martin 2012, sec. 3.2.2): every texel of its reflective shadow
+// maps. One invocation takes a block of LPV_TEXELS² texels.
 //
-// Area of a surfel. The texel of a sun's map is a beam of perpendicular area (2 w / size)², w its half-width (m); that of a
-// point's or spot's map is a cone of solid angle Ω (sr), at the distance r (m) of the area Ω r². The surface behind it is
-// larger by the cosine between its normal and the way to the light.
+// Area of a surfel. The texel of a sun's map is a beam of perpendicular area (2 w / size)², w its
+// half-width (m); that of a point's or spot's map is a cone of solid angle Ω (sr), at the distance
+// r (m) of the area Ω r². The surface behind it is larger by the cosine between its normal and the
+// way to the light.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -21,7 +22,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform push_block
 {
     uint first_face;
-} push;
+}
+push;
 layout(set = 0, binding = 1, scalar) readonly buffer rsm_faces
 {
     rsm_face faces[];

@@ -1,6 +1,7 @@
-// Surfaces across lines. Each face between two cells has LPV_LINES² lines through it, from the middle of the one cell to that
-// of the other; a line that a triangle crosses has its bit set. What is set is set whatever comes first, and twice is once:
-// neither the order of triangles nor which of them are drawn together changes anything.
+// Surfaces across lines. Each face between two cells has LPV_LINES² lines through it, from the
+// middle of the one cell to that of the other; a line that a triangle crosses has its bit set. What
+// is set is set whatever comes first, and twice is once: neither the order of triangles nor which
+// of them are drawn together changes anything.
 //
 // One invocation looks at one triangle. Where it may cross many lines the whole workgroup helps.
 #version 460
@@ -22,7 +23,8 @@ const int FEW = 64; // lines that one invocation looks at alone
 shared uint large[SCENE_TRIANGLES_LOCAL];
 shared uint large_count;
 
-// The lines along an axis that a triangle's box meets: those from `first`, `count` of them each way.
+// The lines along an axis that a triangle's box meets: those from `first`, `count` of them each
+// way.
 struct patch_of_lines {
     ivec2 first, count;
 };
@@ -48,7 +50,8 @@ patch_of_lines lines_of(mat3 corners, int axis)
 {
     vec2 a = across(corners[0], axis), b = across(corners[1], axis), c = across(corners[2], axis);
     // Line i stands at (i + 1/2) / LPV_LINES cells.
-    vec2 low = min(a, min(b, c)) * float(LPV_LINES) - 0.5, high = max(a, max(b, c)) * float(LPV_LINES) - 0.5;
+    vec2 low = min(a, min(b, c)) * float(LPV_LINES) - 0.5,
+         high = max(a, max(b, c)) * float(LPV_LINES) - 0.5;
     ivec3 cells = lpv_cells();
     ivec2 end = ivec2(cells[(axis + 1) % 3], cells[(axis + 2) % 3]) * LPV_LINES - 1;
     patch_of_lines lines;
@@ -57,7 +60,8 @@ patch_of_lines lines_of(mat3 corners, int axis)
     return lines;
 }
 
-// Twice the area of (p, a, b), its sign flipped exactly when a and b are: neighbours leave no gap between them.
+// Twice the area of (p, a, b), its sign flipped exactly when a and b are: neighbours leave no gap
+// between them.
 float side_of(vec2 p, vec2 a, vec2 b)
 {
     precise vec2 u = a - p, v = b - p;
@@ -91,7 +95,8 @@ void cross_lines(uvec3 vertices, mat3 corners, int first, int stride)
     for (int axis = 0; axis < 3; axis++) {
         patch_of_lines lines = lines_of(corners, axis);
         for (int i = first; i < lines.count.x * lines.count.y; i += stride)
-            cross_line(vertices, corners, axis, lines.first + ivec2(i % lines.count.x, i / lines.count.x));
+            cross_line(vertices, corners, axis,
+                       lines.first + ivec2(i % lines.count.x, i / lines.count.x));
     }
 }
 
@@ -123,6 +128,7 @@ void main()
     barrier();
     for (uint i = 0u; i < large_count; i++) {
         uvec3 vertices = scene_triangle(large[i]);
-        if (corners_of(vertices, corners)) cross_lines(vertices, corners, int(lane), SCENE_TRIANGLES_LOCAL);
+        if (corners_of(vertices, corners))
+            cross_lines(vertices, corners, int(lane), SCENE_TRIANGLES_LOCAL);
     }
 }

@@ -1,4 +1,5 @@
-// From the geometry volume to the shares of light that reach each neighbour (lpv_shares.glsl): once, not in each step.
+// From the geometry volume to the shares of light that reach each neighbour (lpv_shares.glsl):
+// once, not in each step.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,7 +9,7 @@
 #define LPV_GEOMETRY_BINDING 1
 #include "techniques/lpv/lpv_geometry.glsl"
 #define LPV_SHARES_BINDING 2
-#define LPV_SHARES_ACCESS writeonly
+#define LPV_SHARES_ACCESS  writeonly
 #include "techniques/lpv/lpv_shares.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -27,7 +28,8 @@ uint along_axis(ivec3 cell, int axis)
 
 uint in_column(ivec3 cell, ivec2 step)
 {
-    return packUnorm4x8(vec4(share(cell, ivec3(step, -1)), share(cell, ivec3(step, 0)), share(cell, ivec3(step, 1)), 0.0));
+    return packUnorm4x8(vec4(share(cell, ivec3(step, -1)), share(cell, ivec3(step, 0)),
+                             share(cell, ivec3(step, 1)), 0.0));
 }
 
 void main()
@@ -36,5 +38,6 @@ void main()
     if (!lpv_inside(cell)) return;
     int first = LPV_WORDS * lpv_index(cell);
     for (int i = 0; i < LPV_WORDS; i++)
-        share_words[first + i] = LPV_NEIGHBOURS == 26 ? in_column(cell, ivec2(i % 3, i / 3) - 1) : along_axis(cell, i);
+        share_words[first + i] =
+            LPV_NEIGHBOURS == 26 ? in_column(cell, ivec2(i % 3, i / 3) - 1) : along_axis(cell, i);
 }

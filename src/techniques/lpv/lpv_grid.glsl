@@ -36,13 +36,15 @@ bool lpv_outermost(ivec3 cell, uint sides)
     return false;
 }
 
-// The weight of a cascade at a place in its cells, against the next coarser one: 1, but before open sides it falls to 0.
+// The weight of a cascade at a place in its cells, against the next coarser one: 1, but before open
+// sides it falls to 0.
 float lpv_cascade_weight(vec3 at, ivec3 cells, uint open)
 {
     float inside = LPV_TRANSITION; // cells from the outermost ones
     for (int axis = 0; axis < 3; axis++) {
         if ((open & LPV_OPEN(axis, 0)) != 0u) inside = min(inside, at[axis] - 1.0);
-        if ((open & LPV_OPEN(axis, 1)) != 0u) inside = min(inside, float(cells[axis]) - 1.0 - at[axis]);
+        if ((open & LPV_OPEN(axis, 1)) != 0u)
+            inside = min(inside, float(cells[axis]) - 1.0 - at[axis]);
     }
     return smoothstep(0.0, LPV_TRANSITION, inside);
 }

@@ -1,4 +1,5 @@
-// Where the grid lies in the scene, and the powers of two that keep its numbers in range. Pure functions, no state.
+// Where the grid lies in the scene, and the powers of two that keep its numbers in range. Pure
+// functions, no state.
 #pragma once
 
 #include "core/vec.h"
@@ -7,7 +8,8 @@
 
 #include <stdint.h>
 
-// Cubic cells; cell (i, j, k) covers origin_m + cell_m · [i, i+1] × …. Every count is at least 1 and at most the dimension.
+// Cubic cells; cell (i, j, k) covers origin_m + cell_m · [i, i+1] × …. Every count is at least 1
+// and at most the dimension.
 struct lpv_grid {
     vec3s origin_m;
     float cell_m;
@@ -15,22 +17,27 @@ struct lpv_grid {
     uint32_t open; // sides beyond which the scene goes on: bits LPV_OPEN(axis, high)
 };
 
-// Fits the bounds with `margin` (in cells) around them. The cell's size is a power of 2^(1/16) m and the origin a whole
-// number of cells, so that the grid stands still in the world while something moves the bounds a little. Larger scenes get larger
-// cells: nothing is ever left out. false: the bounds are empty, a point or not finite.
+// Fits the bounds with `margin` (in cells) around them. The cell's size is a power of 2^(1/16) m
+// and the origin a whole number of cells, so that the grid stands still in the world while
+// something moves the bounds a little. Larger scenes get larger cells: nothing is ever left out.
+// false: the bounds are empty, a point or not finite.
 bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *out);
 
-// One of several cascades, with cells of cell_m: the bounds where they need no more than `dim` cells along an axis, else the part
-// around `eye`. It moves by two cells at a time, one of the next coarser cascade.
-void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s eye, struct lpv_grid *out);
+// One of several cascades, with cells of cell_m: the bounds where they need no more than `dim`
+// cells along an axis, else the part around `eye`. It moves by two cells at a time, one of the next
+// coarser cascade.
+void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s eye,
+                     struct lpv_grid *out);
 bool lpv_grid_equal(const struct lpv_grid *a, const struct lpv_grid *b);
 
-// Injection adds whole numbers, so that its order does not matter. A block of LPV_TEXELS² texels of a reflective shadow
-// map, or a point of an emissive surface, adds at most 2^30 to a coefficient; sums are 64 bits wide and cannot overflow.
+// Injection adds whole numbers, so that its order does not matter. A block of LPV_TEXELS² texels of
+// a reflective shadow map, or a point of an emissive surface, adds at most 2^30 to a coefficient;
+// sums are 64 bits wide and cannot overflow.
 
 struct lpv_scale {
     float fixed_from_flux; // integer per scaled lumen, a power of two
-    float grid_from_flux;  // the grid's unit per scaled lumen, a power of two: all light together is less than 8192
+    float grid_from_flux; // the grid's unit per scaled lumen, a power of two: all light together is
+                          // less than 8192
 };
 struct lpv_lights {
     const struct rsm_face *faces;

@@ -1,7 +1,7 @@
 // Injection: every texel of every reflective shadow map is a virtual point light with the intensity
-// I(ω) = Φ/π (n·ω)₊ lumen/sr (Martin 2012, sec. 3.2.1; flux Φ, so the 1/π), added to the cell half a cell along its
-// normal as coefficients of two or three bands. One invocation takes a block of LPV_TEXELS² texels and adds once per run of texels
-// that meet in one cell.
+// I(ω) = Φ/π (n·ω)₊ lumen/sr (Martin 2012, sec. 3.2.1; flux Φ, so the 1/π), added to the cell half
+// a cell along its normal as coefficients of two or three bands. One invocation takes a block of
+// LPV_TEXELS² texels and adds once per run of texels that meet in one cell.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

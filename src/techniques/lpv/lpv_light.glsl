@@ -1,16 +1,20 @@
-// The directed light of a cell, and how a volume holds it. Include after core/sh.glsl and lpv_grid.glsl.
+// The directed light of a cell, and how a volume holds it. Include after core/sh.glsl and
+// lpv_grid.glsl.
 //
-// A volume is one image: slabs of dim³ texels, one behind the other along z. Numbers 3 i + colour, four to a slab, are the
-// coefficients i of red, green and blue: 3 slabs hold two bands, 7 slabs hold three bands and a number to spare.
+// A volume is one image: slabs of dim³ texels, one behind the other along z. Numbers 3 i + colour,
+// four to a slab, are the coefficients i of red, green and blue: 3 slabs hold two bands, 7 slabs
+// hold three bands and a number to spare.
 //
 // Three bands of an intensity are a polynomial of the direction ω,
-//     I(ω) = Y0 mean + Y1 Σ along_a ω_a + Σ square_a ω_a² + Yxy Σ product_a ω_b ω_c,   Σ square_a = 0,
+//     I(ω) = Y0 mean + Y1 Σ along_a ω_a + Σ square_a ω_a² + Yxy Σ product_a ω_b ω_c,   Σ square_a =
+//     0,
 // which treats the axes alike: `square` is what the bands' 3z² − 1 and x² − y² are together.
 #ifndef AG_LPV_LIGHT_GLSL
 #define AG_LPV_LIGHT_GLSL
 
 layout(constant_id = LPV_CONSTANT_BANDS) const int LPV_BANDS = 2;
-layout(constant_id = LPV_CONSTANT_HALF) const bool LPV_HALF = true; // volumes are written as half floats
+layout(constant_id = LPV_CONSTANT_HALF) const
+    bool LPV_HALF = true; // volumes are written as half floats
 
 const int LPV_SLABS = LPV_BANDS == 3 ? 7 : 3;
 const int LPV_NUMBERS = 4 * LPV_SLABS; // of a cell
@@ -48,11 +52,13 @@ void lpv_fetch_slabs(sampler3D volume, ivec3 cell, out vec4 slabs[7])
 {
     for (int i = 0; i < 3; i++) slabs[i] = texelFetch(volume, cell + ivec3(0, 0, i * lpv.dim), 0);
     for (int i = 3; i < 7; i++)
-        slabs[i] = LPV_BANDS == 3 ? texelFetch(volume, cell + ivec3(0, 0, i * lpv.dim), 0) : vec4(0.0);
+        slabs[i] =
+            LPV_BANDS == 3 ? texelFetch(volume, cell + ivec3(0, 0, i * lpv.dim), 0) : vec4(0.0);
 }
 
-// The nearest half float: what a driver makes of others need not be, and cutting off takes a part of the light in every step.
-// Below 2^-14 half floats are multiples of 2^-24, as floats around 3/4 are.
+// The nearest half float: what a driver makes of others need not be, and cutting off takes a part
+// of the light in every step. Below 2^-14 half floats are multiples of 2^-24, as floats around 3/4
+// are.
 vec4 lpv_rounded(vec4 value)
 {
     uvec4 bits = floatBitsToUint(value);
@@ -62,10 +68,12 @@ vec4 lpv_rounded(vec4 value)
 }
 
 // Macros: not every driver takes images that are written alone as parameters of functions.
-#define lpv_store_slab(volume, cell, slab, value) \
-    imageStore(volume, (cell) + ivec3(0, 0, (slab) * lpv.dim), LPV_HALF ? lpv_rounded(value) : (value))
-#define lpv_store_slabs(volume, cell, slabs) \
-    for (int slab_ = 0; slab_ < (LPV_BANDS == 3 ? 7 : 3); slab_++) lpv_store_slab(volume, cell, slab_, slabs[slab_])
+#define lpv_store_slab(volume, cell, slab, value)                                                  \
+    imageStore(volume, (cell) + ivec3(0, 0, (slab)*lpv.dim),                                       \
+               LPV_HALF ? lpv_rounded(value) : (value))
+#define lpv_store_slabs(volume, cell, slabs)                                                       \
+    for (int slab_ = 0; slab_ < (LPV_BANDS == 3 ? 7 : 3); slab_++)                                 \
+    lpv_store_slab(volume, cell, slab_, slabs[slab_])
 
 lpv_light lpv_fetch(sampler3D volume, ivec3 cell)
 {
@@ -74,14 +82,17 @@ lpv_light lpv_fetch(sampler3D volume, ivec3 cell)
     return lpv_unpack(slabs);
 }
 
-// Filtered, `at` in cells from the corner of a grid of so many cells; half a cell inside of it at least, so that slabs do not
-// mix.
+// Filtered, `at` in cells from the corner of a grid of so many cells; half a cell inside of it at
+// least, so that slabs do not mix.
 void lpv_sample_slabs(sampler3D volume, vec3 at, ivec3 cells, out vec4 slabs[7])
 {
     vec3 texel = clamp(at, vec3(0.5), vec3(cells) - 0.5), size = vec3(textureSize(volume, 0));
-    for (int i = 0; i < 3; i++) slabs[i] = textureLod(volume, (texel + vec3(0, 0, i * lpv.dim)) / size, 0.0);
+    for (int i = 0; i < 3; i++)
+        slabs[i] = textureLod(volume, (texel + vec3(0, 0, i * lpv.dim)) / size, 0.0);
     for (int i = 3; i < 7; i++)
-        slabs[i] = LPV_BANDS == 3 ? textureLod(volume, (texel + vec3(0, 0, i * lpv.dim)) / size, 0.0) : vec4(0.0);
+        slabs[i] = LPV_BANDS == 3
+                       ? textureLod(volume, (texel + vec3(0, 0, i * lpv.dim)) / size, 0.0)
+                       : vec4(0.0);
 }
 
 lpv_light lpv_sample(sampler3D volume, vec3 at)

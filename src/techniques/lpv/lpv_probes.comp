@@ -1,6 +1,7 @@
-// The probe volume: what the light of each cell brings to a surface of any normal n that stood in its middle,
-// E(n) = ∫ I(ω) (−n·ω)₊ dω as in lpv_apply.comp. In spherical harmonics a factor for each band, and as light comes from where n
-// looks to, another sign for band 1. It is not clamped: where light comes from one side alone, E may be a little negative.
+// The probe volume: what the light of each cell brings to a surface of any normal n that stood in
+// its middle, E(n) = ∫ I(ω) (−n·ω)₊ dω as in lpv_apply.comp. In spherical harmonics a factor for
+// each band, and as light comes from where n looks to, another sign for band 1. It is not clamped:
+// where light comes from one side alone, E may be a little negative.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -30,10 +31,12 @@ void main()
     lpv_fetch_slabs(light, cell, slabs);
     vec3 coefficients[9];
     for (int i = 0; i < 9; i++) {
-        float weight = sh9_cosine_weight(i) * lpv.irradiance_scale * (i == 0 ? 1.0 : lpv.window) * (i > 0 && i < 4 ? -1.0 : 1.0);
+        float weight = sh9_cosine_weight(i) * lpv.irradiance_scale * (i == 0 ? 1.0 : lpv.window) *
+                       (i > 0 && i < 4 ? -1.0 : 1.0);
         for (int colour = 0; colour < 3; colour++) {
             int number = 3 * i + colour;
-            coefficients[i][colour] = clamp(weight * slabs[number / 4][number % 4], -HALF_MAX, HALF_MAX);
+            coefficients[i][colour] =
+                clamp(weight * slabs[number / 4][number % 4], -HALF_MAX, HALF_MAX);
         }
     }
     for (int s = 0; s < FRAME_PROBE_SLABS; s++)

@@ -1,5 +1,5 @@
-// The probe volume of the grid: a probe in the middle of each cell (frame/probes.glsl), of the coarsest where there are cascades. All of it does nothing where the option
-// `probes` is off.
+// The probe volume of the grid: a probe in the middle of each cell (frame/probes.glsl), of the
+// coarsest where there are cascades. All of it does nothing where the option `probes` is off.
 #pragma once
 
 #include "gpu/gpu.h"

@@ -1,13 +1,15 @@
-// One step: light goes from each cell into its 6 or 26 neighbours, gathered by the receiver (Martin 2012, sec. 3.2.3, 3.3
-// and 4.2).
+// One step: light goes from each cell into its 6 or 26 neighbours, gathered by the receiver (Martin
+// 2012, sec. 3.2.3, 3.3 and 4.2).
 //
-// What accumulates over the steps is A = S + TS + T²S + …, S what was injected, T the step. T is linear (nothing is
-// clamped), so the accumulation needs no pass and no third grid of its own: A' = S + T A.
+// What accumulates over the steps is A = S + TS + T²S + …, S what was injected, T the step. T is
+// linear (nothing is clamped), so the accumulation needs no pass and no third grid of its own: A' =
+// S + T A.
 //
-// T sends the flux Φ = Ω I(ω) through each face of a neighbour, of direction ω and solid angle Ω, and re-projects it as a
-// lobe around an axis n: the coefficients of a lobe are those of the band's polynomials at n. So a receiver adds up Φ, Φ n
-// and the products of Φ n nᵀ (struct sums), which one multiplication for each coefficient makes light of. Directions are
-// (p, q, q) in the order of a neighbour's axes, its signs aside; terms that the faces of one neighbour share are taken out.
+// T sends the flux Φ = Ω I(ω) through each face of a neighbour, of direction ω and solid angle Ω,
+// and re-projects it as a lobe around an axis n: the coefficients of a lobe are those of the band's
+// polynomials at n. So a receiver adds up Φ, Φ n and the products of Φ n nᵀ (struct sums), which
+// one multiplication for each coefficient makes light of. Directions are (p, q, q) in the order of
+// a neighbour's axes, its signs aside; terms that the faces of one neighbour share are taken out.
 // test_lpv_twin holds this to the plain sum over faces.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
@@ -18,7 +20,7 @@
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
 #define LPV_SHARES_BINDING 4
-#define LPV_SHARES_ACCESS readonly
+#define LPV_SHARES_ACCESS  readonly
 #include "techniques/lpv/lpv_shares.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -43,8 +45,9 @@ sums nothing()
     return sums(vec3(0.0), none, none, none);
 }
 
-// The shares of the light from `cell` that arrive where it goes: four neighbours, as lpv_shares.glsl has them. Light
-// that does not arrive is gone. What comes from outside of the grid finds nothing in its way.
+// The shares of the light from `cell` that arrive where it goes: four neighbours, as
+// lpv_shares.glsl has them. Light that does not arrive is gone. What comes from outside of the grid
+// finds nothing in its way.
 vec4 reach(ivec3 cell, int word)
 {
     if (!lpv_inside(cell)) return vec4(LPV_HELD ? 0.0 : 1.0);
@@ -57,24 +60,31 @@ vec4 reach(ivec3 cell, int word)
 void send_ahead(inout sums to, lpv_light light, int a, float side, float share)
 {
     lpv_reprojection face = lpv.ahead;
-    vec3 flux = share * (face.flux_0 * light.mean + side * face.flux_p * light.along[a] + face.flux_pp * light.square[a]);
+    vec3 flux = share * (face.flux_0 * light.mean + side * face.flux_p * light.along[a] +
+                         face.flux_pp * light.square[a]);
     to.flux += flux;
     to.along[a] += side * flux;
     to.square[a] += flux;
 }
 
-// The same with its four side faces, (±p, ±q, 0) and (±p, 0, ±q): pairs, whose sums and differences are what is needed.
+// The same with its four side faces, (±p, ±q, 0) and (±p, 0, ±q): pairs, whose sums and differences
+// are what is needed.
 void send_through_five(inout sums to, lpv_light light, int a, float side, float share)
 {
     int b = (a + 1) % 3, c = (a + 2) % 3;
     lpv_reprojection face = lpv.beside;
     float p = side * face.lobe_p, q = face.lobe_q;
     send_ahead(to, light, a, side, share);
-    vec3 even = face.flux_0 * light.mean + side * face.flux_p * light.along[a] + face.flux_pp * light.square[a];
+    vec3 even = face.flux_0 * light.mean + side * face.flux_p * light.along[a] +
+                face.flux_pp * light.square[a];
     vec3 sum_b = 2.0 * share * (even + face.flux_qq * light.square[b]);
     vec3 sum_c = 2.0 * share * (even + face.flux_qq * light.square[c]);
-    vec3 difference_b = 2.0 * share * (face.flux_q * light.along[b] + side * face.flux_product_pq * light.product[c]);
-    vec3 difference_c = 2.0 * share * (face.flux_q * light.along[c] + side * face.flux_product_pq * light.product[b]);
+    vec3 difference_b =
+        2.0 * share *
+        (face.flux_q * light.along[b] + side * face.flux_product_pq * light.product[c]);
+    vec3 difference_c =
+        2.0 * share *
+        (face.flux_q * light.along[c] + side * face.flux_product_pq * light.product[b]);
     vec3 all = sum_b + sum_c;
     to.flux += all;
     to.along[a] += p * all;
@@ -94,10 +104,12 @@ void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float s
     lpv_reprojection face = lpv.beside;
     float p = face.lobe_p, q = face.lobe_q, sides = side_a * side_b;
     vec3 shared_part = face.flux_0 * light.mean + sides * face.flux_product_pq * light.product[c];
-    vec3 flux_a = share * (shared_part + side_a * face.flux_p * light.along[a] + side_b * face.flux_q * light.along[b] +
-                           face.flux_pp * light.square[a] + face.flux_qq * light.square[b]);
-    vec3 flux_b = share * (shared_part + side_a * face.flux_q * light.along[a] + side_b * face.flux_p * light.along[b] +
-                           face.flux_qq * light.square[a] + face.flux_pp * light.square[b]);
+    vec3 flux_a = share * (shared_part + side_a * face.flux_p * light.along[a] +
+                           side_b * face.flux_q * light.along[b] + face.flux_pp * light.square[a] +
+                           face.flux_qq * light.square[b]);
+    vec3 flux_b = share * (shared_part + side_a * face.flux_q * light.along[a] +
+                           side_b * face.flux_p * light.along[b] + face.flux_qq * light.square[a] +
+                           face.flux_pp * light.square[b]);
     to.flux += flux_a + flux_b;
     to.along[a] += side_a * (p * flux_a + q * flux_b);
     to.along[b] += side_b * (q * flux_a + p * flux_b);
@@ -106,8 +118,8 @@ void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float s
     to.product[c] += sides * p * q * (flux_a + flux_b);
 }
 
-// The neighbour across a corner: its three outer faces, (±p, ±q, ±q) and so on. Squares may leave out what is the same for
-// all axes.
+// The neighbour across a corner: its three outer faces, (±p, ±q, ±q) and so on. Squares may leave
+// out what is the same for all axes.
 void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
 {
     lpv_reprojection face = lpv.diagonal;
@@ -115,12 +127,14 @@ void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
     vec3 sides = side.yzx * side.zxy; // of the products
     vec3 shared_part = face.flux_0 * light.mean;
     for (int a = 0; a < 3; a++)
-        shared_part += side[a] * face.flux_q * light.along[a] + sides[a] * face.flux_product_pq * light.product[a];
+        shared_part += side[a] * face.flux_q * light.along[a] +
+                       sides[a] * face.flux_product_pq * light.product[a];
     vec3 all = vec3(0.0), flux[3];
     for (int a = 0; a < 3; a++) {
-        flux[a] = share * (shared_part + side[a] * (face.flux_p - face.flux_q) * light.along[a] +
-                           sides[a] * (face.flux_product_qq - face.flux_product_pq) * light.product[a] +
-                           (face.flux_pp - face.flux_qq) * light.square[a]);
+        flux[a] =
+            share * (shared_part + side[a] * (face.flux_p - face.flux_q) * light.along[a] +
+                     sides[a] * (face.flux_product_qq - face.flux_product_pq) * light.product[a] +
+                     (face.flux_pp - face.flux_qq) * light.square[a]);
         all += flux[a];
     }
     to.flux += all;
@@ -131,8 +145,8 @@ void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
     }
 }
 
-// What a receiver has with what was injected into it. At the sides of a cascade where light comes in from the next coarser one
-// that one's light stays.
+// What a receiver has with what was injected into it. At the sides of a cascade where light comes
+// in from the next coarser one that one's light stays.
 void store(ivec3 cell, sums sum)
 {
     vec4 slabs[7];
@@ -184,7 +198,8 @@ void gather_six(ivec3 cell)
     store(cell, sum);
 }
 
-// ---- 26 neighbours. An invocation goes along z and takes each source once, for the receivers below, beside and above it.
+// ---- 26 neighbours. An invocation goes along z and takes each source once, for the receivers
+// below, beside and above it.
 
 struct receivers {
     sums below, level, above;
@@ -219,8 +234,8 @@ void gather_twenty_six(ivec3 first)
 {
     receivers to = receivers(nothing(), nothing(), nothing());
     for (int z = first.z - 1; z <= first.z + LPV_RUN; z++) {
-        [[unroll]] for (int y = -1; y <= 1; y++)
-            [[unroll]] for (int x = -1; x <= 1; x++) from_column(to, ivec3(first.xy - ivec2(x, y), z), ivec2(x, y));
+        [[unroll]] for (int y = -1; y <= 1; y++) [[unroll]] for (int x = -1; x <= 1; x++)
+            from_column(to, ivec3(first.xy - ivec2(x, y), z), ivec2(x, y));
         if (z > first.z && z - 1 < lpv.cells_z) store(ivec3(first.xy, z - 1), to.below);
         to = receivers(to.level, to.above, nothing());
     }

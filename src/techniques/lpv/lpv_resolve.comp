@@ -1,4 +1,5 @@
-// From whole numbers to coefficients: intensity in the grid's unit (scaled lumen/sr × a power of two).
+// From whole numbers to coefficients: intensity in the grid's unit (scaled lumen/sr × a power of
+// two).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -15,7 +16,8 @@ layout(set = 0, binding = 1, scalar) readonly buffer lpv_sums
 };
 layout(set = 0, binding = 2) uniform writeonly image3D injected;
 
-// A 64-bit two's complement number. Negated first where negative: −1 as 2^32 · (2^32 − 1) + … would cancel to nothing.
+// A 64-bit two's complement number. Negated first where negative: −1 as 2^32 · (2^32 − 1) + … would
+// cancel to nothing.
 float number(int at)
 {
     uint low = words[at], high = words[at + 1];
@@ -34,5 +36,6 @@ void main()
     if (!lpv_inside(cell)) return;
     int at = 2 * LPV_NUMBERS * lpv_index(cell);
     for (int i = 0; i < LPV_SLABS; i++, at += 8)
-        lpv_store_slab(injected, cell, i, vec4(number(at), number(at + 2), number(at + 4), number(at + 6)));
+        lpv_store_slab(injected, cell, i,
+                       vec4(number(at), number(at + 2), number(at + 4), number(at + 6)));
 }

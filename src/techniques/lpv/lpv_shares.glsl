@@ -1,8 +1,9 @@
-// Which share of a cell's light reaches each of its neighbours: what geometry lets through, of each step the same. Include after
-// lpv_grid.glsl; define LPV_SHARES_BINDING, and LPV_SHARES_ACCESS (readonly or writeonly).
+// Which share of a cell's light reaches each of its neighbours: what geometry lets through, of each
+// step the same. Include after lpv_grid.glsl; define LPV_SHARES_BINDING, and LPV_SHARES_ACCESS
+// (readonly or writeonly).
 //
-// A word has four shares of 8 bits. With six neighbours those along axis a are in word a: −, +. With 26 those at the offset
-// (x, y, z) are in word 3 (y + 1) + x + 1, at z + 1.
+// A word has four shares of 8 bits. With six neighbours those along axis a are in word a: −, +.
+// With 26 those at the offset (x, y, z) are in word 3 (y + 1) + x + 1, at z + 1.
 #ifndef AG_LPV_SHARES_GLSL
 #define AG_LPV_SHARES_GLSL
 

@@ -15,8 +15,8 @@ struct lpv_options {
 #undef OPTION
 };
 
-#define LPV_LOCAL 8 // of shaders of cells or pixels, in x and y
-#define LPV_AREA_BYTES (4 * 4) // of a corner's sums
+#define LPV_LOCAL       8       // of shaders of cells or pixels, in x and y
+#define LPV_AREA_BYTES  (4 * 4) // of a corner's sums
 #define LPV_LINES_BYTES (3 * 4) // of a cell's low faces
 
 enum lpv_reconstruction { LPV_LINEAR, LPV_CUBIC };
@@ -57,8 +57,8 @@ struct lpv {
     gpu_sampler linear;
     gpu_pipeline inject, inject_emitters, resolve, refine, propagate, apply, apply_damped, debug;
     gpu_pipeline propagate_held; // what geometry holds back; none without geometry
-    gpu_buffer sums;    // [cell][coefficient][colour] 64-bit integers
-    gpu_image injected; // volumes: dim² × slabs · dim texels
+    gpu_buffer sums;             // [cell][coefficient][colour] 64-bit integers
+    gpu_image injected;          // volumes: dim² × slabs · dim texels
     gpu_image steps[2]; // in turn; with half precision only the first, and `light` is the other
     gpu_image light;    // RGBA16F: accumulated over all steps
     struct lpv_geometry geometry;
@@ -84,7 +84,8 @@ bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view);
 
 // Places the grid and chooses the scales; false where there is nothing to do.
 bool lpv_prepare(struct lpv *lpv, const struct frame_view *view);
-// Grid and parameters as the shaders read them; a dispatch whose invocations take `run` cells along z each.
+// Grid and parameters as the shaders read them; a dispatch whose invocations take `run` cells along
+// z each.
 struct gpu_binding lpv_grid_binding(struct lpv *lpv, struct gpu_cmd *cmd);
 void lpv_dispatch_cells(struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline, uint32_t run,
                         const struct gpu_binding *bindings, int count);
@@ -98,6 +99,7 @@ void lpv_record_application(struct lpv *lpv, struct gpu_cmd *cmd, const struct f
 // Draws the view LPV_VIEW_… into `out` (RGBA16F of the frame's size).
 void lpv_record_debug(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view,
                       uint32_t what, gpu_image out);
-// The two ways to fill the geometry volume; that from the scene says whether it is another than it was.
+// The two ways to fill the geometry volume; that from the scene says whether it is another than it
+// was.
 void lpv_record_geometry_maps(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 bool lpv_record_geometry_scene(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -1,7 +1,9 @@
-// Adding virtual lights to the grid. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl; define LPV_SUMS_BINDING.
+// Adding virtual lights to the grid. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl;
+// define LPV_SUMS_BINDING.
 //
-// Sums are whole numbers, so that no order of the invocations changes a bit: each coefficient has 64 bits in two words.
-// The carry out of the low word is added to the high one; modulo 2^64 the total is exact whatever the order.
+// Sums are whole numbers, so that no order of the invocations changes a bit: each coefficient has
+// 64 bits in two words. The carry out of the low word is added to the high one; modulo 2^64 the
+// total is exact whatever the order.
 #ifndef AG_LPV_SUMS_GLSL
 #define AG_LPV_SUMS_GLSL
 
@@ -32,7 +34,8 @@ void lpv_add(int cell, vec3 lobe[9])
     if (cell == LPV_NO_CELL) return;
     int at = 2 * LPV_NUMBERS * cell;
     for (int i = 0; i < LPV_BANDS * LPV_BANDS; i++)
-        for (int colour = 0; colour < 3; colour++) lpv_add_number(at + 2 * (3 * i + colour), lobe[i][colour]);
+        for (int colour = 0; colour < 3; colour++)
+            lpv_add_number(at + 2 * (3 * i + colour), lobe[i][colour]);
 }
 
 // Half a cell in front of its surface, so that a virtual light is on the side that it shines to.

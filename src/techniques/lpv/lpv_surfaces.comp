@@ -1,10 +1,11 @@
-// What reflects light, by cell: Σ ρ A n_a² and Σ A n_a² over the surfaces that inject into the cell, for each of the six directions
-// ±a that their normals n look to, ρ in RGB. ρ is diffuse reflectance, A area in cells²; the three n_a² sum to 1, and a surface of normal n
-// is taken as three that look along the axes.
+// What reflects light, by cell: Σ ρ A n_a² and Σ A n_a² over the surfaces that inject into the
+// cell, for each of the six directions ±a that their normals n look to, ρ in RGB. ρ is diffuse
+// reflectance, A area in cells²; the three n_a² sum to 1, and a surface of normal n is taken as
+// three that look along the axes.
 //
-// A triangle is sampled where lines along its largest axis cross it, LPV_SURFACE_LINES² of them to a face of a cell. Sums are
-// whole numbers: no order of triangles changes a bit. One invocation takes one triangle; where many lines may cross it the whole
-// workgroup helps.
+// A triangle is sampled where lines along its largest axis cross it, LPV_SURFACE_LINES² of them to
+// a face of a cell. Sums are whole numbers: no order of triangles changes a bit. One invocation
+// takes one triangle; where many lines may cross it the whole workgroup helps.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -17,7 +18,8 @@ layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
 layout(set = 0, binding = 12, scalar) buffer lpv_surfaces
 {
-    uint surfaces[]; // [cell][direction +x −x +y −y +z −z][red, green, blue, area], in units of 1/LPV_SURFACE_UNIT cells²
+    uint surfaces[]; // [cell][direction +x −x +y −y +z −z][red, green, blue, area], in units of
+                     // 1/LPV_SURFACE_UNIT cells²
 };
 
 const int LINES = LPV_SURFACE_LINES;
@@ -28,11 +30,11 @@ shared uint large_count;
 
 struct triangle {
     uvec3 vertices;
-    mat3 corners;      // in cells from the grid's corner
-    vec3 normal;       // of the front
-    int axis;          // that the normal is nearest to
+    mat3 corners;       // in cells from the grid's corner
+    vec3 normal;        // of the front
+    int axis;           // that the normal is nearest to
     ivec2 first, count; // lines of its box
-    float lod;         // of the base colour map at the distance of lines
+    float lod;          // of the base colour map at the distance of lines
 };
 
 vec2 across(vec3 v, int axis)
@@ -53,9 +55,11 @@ vec2 map_uv(uint map, uint vertex)
 float lod_of(uvec3 vertices, float area)
 {
     vec2 size = vec2(textureSize(base_color_map, 0));
-    vec2 a = map_uv(SCENE_MAP_BASE_COLOR, vertices.x) * size, b = map_uv(SCENE_MAP_BASE_COLOR, vertices.y) * size;
+    vec2 a = map_uv(SCENE_MAP_BASE_COLOR, vertices.x) * size,
+         b = map_uv(SCENE_MAP_BASE_COLOR, vertices.y) * size;
     vec2 c = map_uv(SCENE_MAP_BASE_COLOR, vertices.z) * size;
-    float texels = 0.5 * abs(cross_2d(b - a, c - a)) / max(area * float(LINES * LINES), 1e-12); // of one sample
+    float texels = 0.5 * abs(cross_2d(b - a, c - a)) /
+                   max(area * float(LINES * LINES), 1e-12); // of one sample
     return 0.5 * log2(max(texels, 1.0));
 }
 
@@ -74,9 +78,11 @@ bool triangle_of(uint i, out triangle t)
     if (determinant(mat3(scene_world_from_instance())) < 0.0) t.normal = -t.normal;
     vec3 size = abs(t.normal);
     t.axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-    vec2 a = across(t.corners[0], t.axis), b = across(t.corners[1], t.axis), c = across(t.corners[2], t.axis);
+    vec2 a = across(t.corners[0], t.axis), b = across(t.corners[1], t.axis),
+         c = across(t.corners[2], t.axis);
     // Line i stands at (i + 1/2) / LINES cells.
-    vec2 low = min(a, min(b, c)) * float(LINES) - 0.5, high = max(a, max(b, c)) * float(LINES) - 0.5;
+    vec2 low = min(a, min(b, c)) * float(LINES) - 0.5,
+         high = max(a, max(b, c)) * float(LINES) - 0.5;
     ivec2 end = ivec2(lpv_cells()[(t.axis + 1) % 3], lpv_cells()[(t.axis + 2) % 3]) * LINES - 1;
     t.first = max(ivec2(ceil(low)), ivec2(0));
     t.count = max(min(ivec2(floor(high)), end) - t.first + 1, ivec2(0));
@@ -96,7 +102,8 @@ vec3 reflectance_at(triangle t, vec3 weight)
         colour += weight[k] * unpackUnorm4x8(scene_surface_of(t.vertices[k]).color).rgb;
     }
     colour *= material.base_color.rgb * textureLod(base_color_map, uv, t.lod).rgb;
-    return colour * (1.0 - material.metallic * textureLod(metallic_roughness_map, metallic_uv, t.lod).b);
+    return colour *
+           (1.0 - material.metallic * textureLod(metallic_roughness_map, metallic_uv, t.lod).b);
 }
 
 void add_side(vec3 position, vec3 normal, vec4 amount)
@@ -114,21 +121,25 @@ void add_side(vec3 position, vec3 normal, vec4 amount)
 void add_line(triangle t, ivec2 line)
 {
     vec2 p = (vec2(line) + 0.5) / float(LINES);
-    vec2 a = across(t.corners[0], t.axis) - p, b = across(t.corners[1], t.axis) - p, c = across(t.corners[2], t.axis) - p;
+    vec2 a = across(t.corners[0], t.axis) - p, b = across(t.corners[1], t.axis) - p,
+         c = across(t.corners[2], t.axis) - p;
     vec3 weight = vec3(cross_2d(b, c), cross_2d(c, a), cross_2d(a, b));
     if (!all(greaterThanEqual(weight, vec3(0.0))) && !all(lessThanEqual(weight, vec3(0.0)))) return;
     weight /= weight.x + weight.y + weight.z;
     vec3 position = t.corners * weight;
     if (!scene_triangle_solid(t.vertices, weight)) return; // a mask cuts it away
-    vec4 amount = vec4(reflectance_at(t, weight), 1.0) / (float(LINES * LINES) * abs(t.normal[t.axis]));
+    vec4 amount =
+        vec4(reflectance_at(t, weight), 1.0) / (float(LINES * LINES) * abs(t.normal[t.axis]));
     add_side(position, t.normal, amount);
-    if ((scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u) add_side(position, -t.normal, amount);
+    if ((scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u)
+        add_side(position, -t.normal, amount);
 }
 
 // Every `stride`th line from number `first`.
 void add_lines(triangle t, int first, int stride)
 {
-    for (int i = first; i < t.count.x * t.count.y; i += stride) add_line(t, t.first + ivec2(i % t.count.x, i / t.count.x));
+    for (int i = first; i < t.count.x * t.count.y; i += stride)
+        add_line(t, t.first + ivec2(i % t.count.x, i / t.count.x));
 }
 
 void main()
@@ -145,5 +156,6 @@ void main()
     }
     barrier();
     for (uint k = 0u; k < large_count; k++)
-        if (triangle_of(large[k], t)) add_lines(t, int(gl_LocalInvocationIndex), SCENE_TRIANGLES_LOCAL);
+        if (triangle_of(large[k], t))
+            add_lines(t, int(gl_LocalInvocationIndex), SCENE_TRIANGLES_LOCAL);
 }

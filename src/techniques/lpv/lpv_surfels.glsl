@@ -1,7 +1,9 @@
-// Adding surfels to one source's geometry volume. Include after core/sh.glsl and lpv_grid.glsl; define LPV_AREAS_BINDING.
+// Adding surfels to one source's geometry volume. Include after core/sh.glsl and lpv_grid.glsl;
+// define LPV_AREAS_BINDING.
 //
-// A surfel of area A (m²) and normal n adds A/S² (n·ω)₊, S the side of a cell (m), to the corner of the cells that is nearest:
-// the share of a cell's face that it covers, seen along ω. Sums are whole numbers, so that their order changes no bit.
+// A surfel of area A (m²) and normal n adds A/S² (n·ω)₊, S the side of a cell (m), to the corner of
+// the cells that is nearest: the share of a cell's face that it covers, seen along ω. Sums are
+// whole numbers, so that their order changes no bit.
 #ifndef AG_LPV_SURFELS_GLSL
 #define AG_LPV_SURFELS_GLSL
 
@@ -12,22 +14,25 @@ layout(set = 0, binding = LPV_AREAS_BINDING, scalar) buffer lpv_areas
 };
 
 const int LPV_NO_CORNER = -1;
-// What 1 is as a whole number. The surfels of a source around a corner are what one eye sees within one cell: with the
-// bound on the slope below the sum of their areas is less than 120 faces, and 2^31/2^23 = 256.
+// What 1 is as a whole number. The surfels of a source around a corner are what one eye sees within
+// one cell: with the bound on the slope below the sum of their areas is less than 120 faces, and
+// 2^31/2^23 = 256.
 const float LPV_AREA_FIXED = 8388608.0; // 2^23
-// Least cosine between a surfel's normal and the way to the eye: beyond it the normal says less about the slope than the
-// shading does.
+// Least cosine between a surfel's normal and the way to the eye: beyond it the normal says less
+// about the slope than the shading does.
 const float LPV_LEAST_COSINE = 0.1;
 
 // Texel of the corner next to a position; LPV_NO_CORNER on the grid's border and outside.
 int lpv_corner(vec3 position)
 {
     ivec3 corner = ivec3(floor(lpv_cells_from_world(position) + 0.5));
-    if (any(lessThan(corner, ivec3(1))) || any(greaterThanEqual(corner, lpv_cells()))) return LPV_NO_CORNER;
+    if (any(lessThan(corner, ivec3(1))) || any(greaterThanEqual(corner, lpv_cells())))
+        return LPV_NO_CORNER;
     return lpv_index(corner - 1);
 }
 
-// Coefficients of what a surfel blocks: `across` is the area (m²) of its picture's texel at its place, `to_eye` a unit vector.
+// Coefficients of what a surfel blocks: `across` is the area (m²) of its picture's texel at its
+// place, `to_eye` a unit vector.
 vec4 lpv_surfel(vec3 normal, vec3 to_eye, float across)
 {
     float area = across / max(dot(normal, to_eye), LPV_LEAST_COSINE);

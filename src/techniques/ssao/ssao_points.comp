@@ -1,5 +1,6 @@
-// Ambient occlusion by points in a sphere (Mittring 2007; with the normal as Filion & McNaughton 2008): each is projected to
-// the picture and is visible where the surface there is not before it. A surface far before the pixel's own says nothing.
+// Ambient occlusion by points in a sphere (Mittring 2007; with the normal as Filion & McNaughton
+// 2008): each is projected to the picture and is visible where the surface there is not before it.
+// A surface far before the pixel's own says nothing.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -27,11 +28,13 @@ float before(float surface, float distance_m, float radius_m)
 float visible(screen_place place, screen_sphere sphere, screen_plane plane, vec3 point)
 {
     float distance_m = view.near_m / place.depth;
-    float radius_m = sphere.radius_px * distance_m / view.focal_px; // `reach` may have made it smaller
+    float radius_m =
+        sphere.radius_px * distance_m / view.focal_px; // `reach` may have made it smaller
     vec3 at = vec3(sphere.m, 1.0) * distance_m + radius_m * point;
     at.z = max(at.z, NEAREST * distance_m);
     vec2 offset = view.focal_px * (at.xy / at.z - sphere.m);
-    ivec2 there = clamp(place.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
+    ivec2 there =
+        clamp(place.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
     float surface = texelFetch(depth, there, 0).r, tolerance = 0.0;
     if (WITH_NORMAL) {
         // The surface goes on from the pixel's centre to the point as the tangent plane does.

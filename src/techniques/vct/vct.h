@@ -1,4 +1,5 @@
-// Voxel cone tracing: surfaces as lit voxels, gathered along cones; and ambient occlusion by the same cones (README.md).
+// Voxel cone tracing: surfaces as lit voxels, gathered along cones; and ambient occlusion by the
+// same cones (README.md).
 #pragma once
 
 #include "techniques/technique.h"

@@ -10,7 +10,9 @@ void main()
 {
     vct_triangle t;
     ivec2 column = ivec2(gl_FragCoord.xy);
-    if (!triangle_at(vary_triangle, t) || any(lessThan(column, t.low.xy)) || any(greaterThan(column, t.high.xy))) return;
+    if (!triangle_at(vary_triangle, t) || any(lessThan(column, t.low.xy)) ||
+        any(greaterThan(column, t.high.xy)))
+        return;
     vct_meet(t, column);
     walk_column(t, column);
 }

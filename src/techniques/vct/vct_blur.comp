@@ -1,6 +1,7 @@
-// The blur (Hong 2015, sec. 4.2): pixels that have found few of the cones, on surfaces too small for a whole block,
-// borrow from others that look the same way from about the same plane. Bilateral, with a step that grows with the
-// distance. Where all cones were found there is nothing to smooth, since sub-images have been interpolated.
+// The blur (Hong 2015, sec. 4.2): pixels that have found few of the cones, on surfaces too small
+// for a whole block, borrow from others that look the same way from about the same plane.
+// Bilateral, with a step that grows with the distance. Where all cones were found there is nothing
+// to smooth, since sub-images have been interpolated.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -29,7 +30,8 @@ vec3 position_of(ivec2 pixel, float z)
     return frame_world_position(frame_uv(uvec2(pixel)), z);
 }
 
-// How much a pixel says about another: its share of the cones, if it looks the same way from the same plane.
+// How much a pixel says about another: its share of the cones, if it looks the same way from the
+// same plane.
 float like(ivec2 there, vec3 position, vec3 n, float share, float texel_m)
 {
     float z = texelFetch(depth, there, 0).r;
@@ -54,9 +56,12 @@ vec3 borrowed(ivec2 pixel, vec4 own)
             ivec2 side = (i & 1) == 0 ? ivec2(1 - (i & 2), 0) : ivec2(0, 1 - (i & 2));
             ivec2 corner = ivec2(1 - (i & 2), 1 - 2 * (i & 1));
             ivec2 there = pixel + step * ((ring & 1) == 0 ? side : corner);
-            if (any(lessThan(there, ivec2(0))) || any(greaterThanEqual(there, ivec2(set.width, set.height)))) continue;
+            if (any(lessThan(there, ivec2(0))) ||
+                any(greaterThanEqual(there, ivec2(set.width, set.height))))
+                continue;
             vec4 other = texelFetch(gathered, there, 0);
-            if (other.a > 0.0) sum += like(there, position, n, other.a, texel_m) * vec4(other.rgb, 1.0);
+            if (other.a > 0.0)
+                sum += like(there, position, n, other.a, texel_m) * vec4(other.rgb, 1.0);
         }
     }
     return sum.a > 0.0 ? sum.rgb / sum.a : own.rgb;

@@ -1,6 +1,7 @@
-// Light that other voxels and the sky bring to each voxel, by cones: irradiance on both sides of its sheet. What
-// surfaces that glow bring on their straight way, and with more bounces all that the voxels sent out in the last
-// frame. Voxels of one block that are parts of one sheet get what is brought to their middle: such light changes slowly.
+// Light that other voxels and the sky bring to each voxel, by cones: irradiance on both sides of
+// its sheet. What surfaces that glow bring on their straight way, and with more bounces all that
+// the voxels sent out in the last frame. Voxels of one block that are parts of one sheet get what
+// is brought to their middle: such light changes slowly.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -18,12 +19,24 @@ layout(set = 0, binding = 2, scalar) uniform vct_cones
     vct_cone_params set;
 };
 layout(set = 0, binding = 3) uniform sampler3D light;
-layout(set = 0, binding = 4, scalar) readonly buffer vct_texels { uint texels[]; };
-layout(set = 0, binding = 5, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
+layout(set = 0, binding = 4, scalar) readonly buffer vct_texels
+{
+    uint texels[];
+};
+layout(set = 0, binding = 5, scalar) readonly buffer vct_texel_state
+{
+    vct_texel_levels state;
+};
 layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
 layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_brought;
-layout(set = 0, binding = 8, scalar) readonly buffer vct_mask { uint mask[]; };
-layout(set = 0, binding = 9, scalar) readonly buffer vct_before { uint before[]; };
+layout(set = 0, binding = 8, scalar) readonly buffer vct_mask
+{
+    uint mask[];
+};
+layout(set = 0, binding = 9, scalar) readonly buffer vct_before
+{
+    uint before[];
+};
 
 #include "techniques/vct/vct_axes.glsl"
 #include "techniques/vct/vct_surface.glsl"
@@ -38,7 +51,8 @@ vec3 lamps_at(vec3 at, vec3 normal)
 {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < LAMP_SAMPLES; i++) {
-        vec3 to, found = vct_lamp_light(light, i * (VCT_LAMP_POINTS / LAMP_SAMPLES), at, normal, vct.level, to);
+        vec3 to, found = vct_lamp_light(light, i * (VCT_LAMP_POINTS / LAMP_SAMPLES), at, normal,
+                                        vct.level, to);
         sum += found * dot(normal, to);
     }
     return sum * (float(VCT_LAMP_POINTS) / float(LAMP_SAMPLES));
@@ -47,12 +61,13 @@ vec3 lamps_at(vec3 at, vec3 normal)
 vec3 irradiance(vec3 position, vec3 normal)
 {
     mat3 world_from_local = vct_axes_about(normal);
-    // With one grid both are the same, and the origin that is in the position goes out again without rounding.
+    // With one grid both are the same, and the origin that is in the position goes out again
+    // without rounding.
     vec3 at = (position - (VCT_CLIPS > 1 ? clips.origin_m : vct.origin_m)) / set.texel_m;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < set.cone_count; i++) {
-        vec4 met = vct_cone(light, at, normal, world_from_local * set.cones[i].xyz, set.offset, set.width_per_m,
-                            set.last_mip, vct_start(vct.level, 0.0));
+        vec4 met = vct_cone(light, at, normal, world_from_local * set.cones[i].xyz, set.offset,
+                            set.width_per_m, set.last_mip, vct_start(vct.level, 0.0));
         sum += set.cones[i].w * (met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky);
     }
     if (VCT_HAS_LAMPS) sum += lamps_at(at, normal);
@@ -67,8 +82,9 @@ float one_plane()
     return 0.5 * float(VCT_BLOCK);
 }
 
-// A block's voxels lie in rows of texels along x, whose voxels have 8 bits each and follow on each other: their bits, those
-// that are in no sheet yet, those of the sheet at hand, and the first one's slot. Each invocation has its own.
+// A block's voxels lie in rows of texels along x, whose voxels have 8 bits each and follow on each
+// other: their bits, those that are in no sheet yet, those of the sheet at hand, and the first
+// one's slot. Each invocation has its own.
 const uint ROWS = VCT_BLOCK * VCT_BLOCK, MOST_ROWS = 16u;
 shared uint rows_all[MOST_ROWS * VCT_BOUNCE_LOCAL], rows_left[MOST_ROWS * VCT_BOUNCE_LOCAL],
     rows_part[MOST_ROWS * VCT_BOUNCE_LOCAL], rows_first[MOST_ROWS * VCT_BOUNCE_LOCAL];
@@ -96,7 +112,8 @@ void read_rows(ivec3 first_texel)
 // Bit of a voxel in its row to its place in the block.
 vec3 place_of(uint row, uint bit)
 {
-    return vec3(uvec3(bit >> 3, row % VCT_BLOCK, row / VCT_BLOCK) * 2u + (uvec3(bit) >> uvec3(0u, 1u, 2u) & 1u));
+    return vec3(uvec3(bit >> 3, row % VCT_BLOCK, row / VCT_BLOCK) * 2u +
+                (uvec3(bit) >> uvec3(0u, 1u, 2u) & 1u));
 }
 
 uint slot_of(uint row, uint bit)
@@ -105,15 +122,15 @@ uint slot_of(uint row, uint bit)
 }
 
 // Voxels of one block that are parts of one sheet.
-struct vct_part
-{
+struct vct_part {
     vec3 normal;
     vec3 position; // voxels from the block's corner × weight
     float weight;
     bvec2 covers; // whether there is a front, a back
 };
 
-// Takes those that are left and have the normal of the first of them and lie in its plane. False: there was none.
+// Takes those that are left and have the normal of the first of them and lie in its plane. False:
+// there was none.
 bool take_part(out vct_part part)
 {
     part = vct_part(vec3(0.0), vec3(0.0), 0.0, bvec2(false));
@@ -131,7 +148,8 @@ bool take_part(out vct_part part)
         if (rest == 0u) return !first;
         uint bit = uint(findLSB(rest));
         rest &= rest - 1u;
-        vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, vct_record_place(slot_of(row, bit)), 0));
+        vct_surface surface =
+            vct_unpack_surface(texelFetch(vct_surfaces, vct_record_place(slot_of(row, bit)), 0));
         vec3 position = place_of(row, bit) + 0.5 + surface.position;
         if (first) {
             first_normal = surface.normal;
@@ -153,7 +171,8 @@ bool take_part(out vct_part part)
 void bring_to_part(vec3 front, vec3 back)
 {
     uint row = 0u, rest = rows_part[own(0u)];
-    uvec4 texel = uvec4(packHalf2x16(front.rg), packHalf2x16(vec2(front.b, back.r)), packHalf2x16(back.gb), 0u);
+    uvec4 texel = uvec4(packHalf2x16(front.rg), packHalf2x16(vec2(front.b, back.r)),
+                        packHalf2x16(back.gb), 0u);
     for (;;) {
         while (rest == 0u && ++row < ROWS) rest = rows_part[own(row)];
         if (rest == 0u) return;
@@ -171,8 +190,10 @@ void gather(ivec3 corner, vct_part part, out vec3 front, out vec3 back)
     vec3 normal = normalize(part.normal);
     for (int side = part.covers.x ? 0 : 1; side < (part.covers.y ? 2 : 1); side++) {
         vec3 e = irradiance(position, side == 0 ? normal : -normal);
-        if (side == 0) front = e;
-        else back = e;
+        if (side == 0)
+            front = e;
+        else
+            back = e;
     }
 }
 

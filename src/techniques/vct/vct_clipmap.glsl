@@ -1,9 +1,9 @@
-// Grids about the eye, each with voxels half as large as the last one's: which of them has what is looked for at a place.
-// Cones count levels from the finest grid's texels on, of which the coarsest grid's mips go on; places are in texels of
-// level 0 from the corner of the scene's grid.
+// Grids about the eye, each with voxels half as large as the last one's: which of them has what is
+// looked for at a place. Cones count levels from the finest grid's texels on, of which the coarsest
+// grid's mips go on; places are in texels of level 0 from the corner of the scene's grid.
 //
-// The boxes in which grids are looked into move with the eye, and lie within the grids, which move in steps: a picture
-// does not show the steps.
+// The boxes in which grids are looked into move with the eye, and lie within the grids, which move
+// in steps: a picture does not show the steps.
 #ifndef AG_VCT_CLIPMAP_GLSL
 #define AG_VCT_CLIPMAP_GLSL
 
@@ -16,10 +16,9 @@ layout(set = 0, binding = 22, scalar) uniform vct_clipmap
     vct_clip_table clips;
 };
 
-// Cones that leave a place do so from the finest grid there. By its border they also leave it from the next one, and
-// what they find changes over.
-struct vct_start
-{
+// Cones that leave a place do so from the finest grid there. By its border they also leave it from
+// the next one, and what they find changes over.
+struct vct_start {
     int level;
     float next; // share of the next level, 0…1
 };

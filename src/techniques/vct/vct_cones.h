@@ -17,8 +17,10 @@ int vct_cone_count(int choice);
 void vct_cone_set(int choice, struct vct_cone *out);
 // Width over distance of a cone of solid angle 2π/count: 2 tan of its half-angle.
 float vct_cone_width(int choice);
-// As many lines through the sphere's centre, spread evenly: unit vectors of which it does not matter to which side they
-// point. On every hemisphere they are a set of cones of nearly equal solid angles, whatever its normal.
+// As many lines through the sphere's centre, spread evenly: unit vectors of which it does not
+// matter to which side they point. On every hemisphere they are a set of cones of nearly equal
+// solid angles, whatever its normal.
 void vct_cone_lines(int choice, vec3s *out);
-// Turns them all by the same rotation, number 0 by none; many numbers turn a line to everywhere evenly.
+// Turns them all by the same rotation, number 0 by none; many numbers turn a line to everywhere
+// evenly.
 void vct_turn_lines(uint32_t number, int count, vec3s *lines);

@@ -7,8 +7,14 @@
 
 layout(local_size_x = VCT_LOCAL) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer vct_mask { uint mask[]; };
-layout(set = 0, binding = 1, scalar) writeonly buffer vct_blocks { uint blocks[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer vct_mask
+{
+    uint mask[];
+};
+layout(set = 0, binding = 1, scalar) writeonly buffer vct_blocks
+{
+    uint blocks[];
+};
 
 void main()
 {

@@ -1,5 +1,5 @@
-// Debug views: the first voxel that the eye's ray meets. A grid shows the parts of the ray in which cones look into it,
-// before and behind the next finer one.
+// Debug views: the first voxel that the eye's ray meets. A grid shows the parts of the ray in which
+// cones look into it, before and behind the next finer one.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -9,10 +9,10 @@
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/vct_clipmap.glsl"
 #include "techniques/vct/vct_record.glsl"
-#define VCT_SLOTS(name) static_##name
+#define VCT_SLOTS(name)   static_##name
 #define VCT_SLOTS_BINDING 1
 #include "techniques/vct/vct_slots.glsl"
-#define VCT_SLOTS(name) dynamic_##name
+#define VCT_SLOTS(name)   dynamic_##name
 #define VCT_SLOTS_BINDING 3
 #include "techniques/vct/vct_slots.glsl"
 
@@ -27,7 +27,10 @@ layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
 layout(set = 0, binding = 7, rgba16f) uniform image2D picture; // alpha: what is seen has been found
 
 #if VCT_SVO
-layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes { uint nodes[]; };
+layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes
+{
+    uint nodes[];
+};
 #include "techniques/vct/vct_svo.glsl"
 #endif
 
@@ -35,8 +38,10 @@ layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes { uint nodes[
 bool surface_at(ivec3 voxel, out bool room)
 {
     uint index = vct_index(voxel), bit = index & 31u, word = index >> 5;
-    bool still = (static_mask_words[word] >> bit & 1u) != 0u, moving = (dynamic_mask_words[word] >> bit & 1u) != 0u;
-    room = (!still || static_slot(index) != VCT_NO_SLOT) && (!moving || dynamic_slot(index) != VCT_NO_SLOT);
+    bool still = (static_mask_words[word] >> bit & 1u) != 0u,
+         moving = (dynamic_mask_words[word] >> bit & 1u) != 0u;
+    room = (!still || static_slot(index) != VCT_NO_SLOT) &&
+           (!moving || dynamic_slot(index) != VCT_NO_SLOT);
 #if VCT_SVO
     ivec3 leaf = min((voxel + 1) >> 2, svo_nodes_in_use(0) - 1);
     room = room && svo_find(leaf, svo.depths - 1u) != SVO_NONE;
@@ -74,9 +79,11 @@ vec3 shown_room(ivec3 voxel, bool room)
 
 vec3 shown_level(vct_record r, vec3 direction)
 {
-    const vec3 colours[VCT_MAX_CLIPS] = vec3[](vec3(0.9, 0.2, 0.15), vec3(0.9, 0.6, 0.1), vec3(0.4, 0.75, 0.2),
-                                               vec3(0.1, 0.65, 0.8), vec3(0.25, 0.35, 0.9), vec3(0.7, 0.3, 0.8));
-    return colours[vct.level] * ((0.3 + 0.7 * abs(dot(r.normal, direction))) * push.reflectance_shown);
+    const vec3 colours[VCT_MAX_CLIPS] =
+        vec3[](vec3(0.9, 0.2, 0.15), vec3(0.9, 0.6, 0.1), vec3(0.4, 0.75, 0.2),
+               vec3(0.1, 0.65, 0.8), vec3(0.25, 0.35, 0.9), vec3(0.7, 0.3, 0.8));
+    return colours[vct.level] *
+           ((0.3 + 0.7 * abs(dot(r.normal, direction))) * push.reflectance_shown);
 }
 
 // What is shown of a voxel; false where it is empty.
@@ -106,8 +113,8 @@ vec2 passage_of(int level, vec3 from, vec3 inverse)
 {
     if (level == VCT_CLIPS - 1) return passage(vec3(0.0), vec3(vct_cells()), from, inverse);
     float voxels = 2.0 / float(1 << vct.level);
-    return passage(clips.levels[level].low * voxels + vct.scene_low, clips.levels[level].high * voxels + vct.scene_low,
-                   from, inverse);
+    return passage(clips.levels[level].low * voxels + vct.scene_low,
+                   clips.levels[level].high * voxels + vct.scene_low, from, inverse);
 }
 
 // The part of the ray that is this grid's: before the next finer one, or behind it.
@@ -118,7 +125,8 @@ vec2 part_of(vec3 from, vec3 inverse)
     if (vct.level == 0) return own;
     finer = passage_of(vct.level - 1, from, inverse);
     bool crosses = finer.x < finer.y;
-    if ((push.march & VCT_MARCH_INTO) != 0u) return vec2(own.x, crosses ? min(own.y, finer.x) : own.y);
+    if ((push.march & VCT_MARCH_INTO) != 0u)
+        return vec2(own.x, crosses ? min(own.y, finer.x) : own.y);
     return vec2(max(own.x, finer.y), crosses ? own.y : 0.0);
 }
 
@@ -158,5 +166,6 @@ void main()
     vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0), colour = vec3(0.0);
     bool found = march(vct_voxels_from_world(frame.eye), normalize(through - frame.eye), colour);
     bool done = found || (push.march & VCT_MARCH_LAST) != 0u;
-    imageStore(picture, pixel, vec4(found ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));
+    imageStore(picture, pixel,
+               vec4(found ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));
 }

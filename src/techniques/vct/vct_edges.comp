@@ -1,10 +1,10 @@
-// The discontinuity buffer (Hong 2015, sec. 4.2): where a surface ends between a pixel and the next one to the right
-// (1) or below (2). And the way in which the pixel's cones start.
+// The discontinuity buffer (Hong 2015, sec. 4.2): where a surface ends between a pixel and the next
+// one to the right (1) or below (2). And the way in which the pixel's cones start.
 //
-// Cones leave their surface as the light volume has it, with what is smaller than its texels evened out: folds and
-// bumps would else send cones of neighbours off from places that lie a texel apart, and into the next fold. So they
-// start along the mean of the normals of what lies about the pixel, within a texel and within the reach of what
-// neighbours share.
+// Cones leave their surface as the light volume has it, with what is smaller than its texels evened
+// out: folds and bumps would else send cones of neighbours off from places that lie a texel apart,
+// and into the next fold. So they start along the mean of the normals of what lies about the pixel,
+// within a texel and within the reach of what neighbours share.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -28,8 +28,7 @@ layout(set = 0, binding = 6, rg16f) uniform writeonly image2D start;
 const float LEAST_COSINE = 0.4; // of normals next to each other on one surface: 66 degrees
 
 // In the eye's space: x right, y down, z away.
-struct point
-{
+struct point {
     bool valid;
     vec3 position; // m
     vec3 normal;   // world
@@ -51,7 +50,8 @@ point point_at(ivec2 pixel)
 float texel_at(ivec2 pixel)
 {
     pixel *= int(set.step);
-    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), max(texelFetch(depth, pixel, 0).r, 1e-12));
+    vec3 position =
+        frame_world_position(frame_uv(uvec2(pixel)), max(texelFetch(depth, pixel, 0).r, 1e-12));
     return set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m);
 }
 
@@ -67,7 +67,8 @@ bool apart(point here, vec3 normal_seen, point there, float texel_m)
            abs(dot(normal_seen, there.position - here.position)) > 0.5 * texel_m;
 }
 
-// Of a pixel's normal in the mean about another: what faces it by more than a few degrees is another side.
+// Of a pixel's normal in the mean about another: what faces it by more than a few degrees is
+// another side.
 float share_of(point there, point here, float texel_m)
 {
     vec3 off = there.position - here.position;
@@ -83,7 +84,8 @@ vec3 start_of(ivec2 pixel, point here, float texel_m)
         ivec2 side = (i & 1) == 0 ? ivec2((i & 2) - 1, 0) : ivec2(0, (i & 2) - 1);
         ivec2 corner = ivec2((i & 1) * 2 - 1, (i & 2) - 1);
         point beside = point_at(pixel + 2 * side), across = point_at(pixel + 3 * corner);
-        sum += share_of(beside, here, texel_m) * beside.normal + share_of(across, here, texel_m) * across.normal;
+        sum += share_of(beside, here, texel_m) * beside.normal +
+               share_of(across, here, texel_m) * across.normal;
     }
     return normalize(sum);
 }

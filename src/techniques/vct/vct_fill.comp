@@ -1,6 +1,7 @@
-// The finest level of the light volume, from the lit voxels of both sets: 2 × 2 × 2 of them make a texel of six
-// volumes, one for each way along an axis that light is looked for (anisotropic voxels: Crassin et al. 2011; Hong
-// 2015, sec. 2.5.3.3.10). vct_seen.glsl says what voxels show and hide. Texels without a voxel are not here, and stay 0.
+// The finest level of the light volume, from the lit voxels of both sets: 2 × 2 × 2 of them make a
+// texel of six volumes, one for each way along an axis that light is looked for (anisotropic
+// voxels: Crassin et al. 2011; Hong 2015, sec. 2.5.3.3.10). vct_seen.glsl says what voxels show and
+// hide. Texels without a voxel are not here, and stay 0.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -12,8 +13,14 @@
 layout(local_size_x = VCT_LOCAL) in;
 
 layout(set = 0, binding = 7) uniform writeonly image3D light;
-layout(set = 0, binding = 8, scalar) readonly buffer vct_texels { uint texels[]; };
-layout(set = 0, binding = 9, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
+layout(set = 0, binding = 8, scalar) readonly buffer vct_texels
+{
+    uint texels[];
+};
+layout(set = 0, binding = 9, scalar) readonly buffer vct_texel_state
+{
+    vct_texel_levels state;
+};
 
 void main()
 {

@@ -1,6 +1,6 @@
-// From what was found at every second pixel of every second row to the irradiance of all: of the vectors at the four
-// places about a pixel, as near as they are in the picture and as alike as their surfaces are, with the pixel's own
-// normal, so that normal maps stay sharp.
+// From what was found at every second pixel of every second row to the irradiance of all: of the
+// vectors at the four places about a pixel, as near as they are in the picture and as alike as
+// their surfaces are, with the pixel's own normal, so that normal maps stay sharp.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -36,8 +36,8 @@ float share_in_picture(int of, int pixel)
     return share.x * share.y;
 }
 
-// Where none of the four shows the pixel's surface: places farther off; and where they do not either, what each place
-// about has for itself.
+// Where none of the four shows the pixel's surface: places farther off; and where they do not
+// either, what each place about has for itself.
 vec3 found_farther(ivec2 at, vct_point here)
 {
     vct_vectors sum = vct_vectors(mat3(0.0), vec3(0.0));
@@ -52,7 +52,8 @@ vec3 found_farther(ivec2 at, vct_point here)
         vct_add(sum, found, near * vct_like(p, here) * vct_share_of(found, p.up));
         if (p.valid) any += near * vec4(vct_irradiance(found, p.up, set.gain), 1.0);
     }
-    if (vct_share_of(sum, here.normal) > LEAST_LIKE) return vct_irradiance(sum, here.normal, set.gain);
+    if (vct_share_of(sum, here.normal) > LEAST_LIKE)
+        return vct_irradiance(sum, here.normal, set.gain);
     return any.rgb / max(any.a, 1e-6);
 }
 
@@ -79,15 +80,18 @@ void main()
         vct_vectors sum = vct_vectors(mat3(0.0), vec3(0.0));
         for (int k = 0; k < 4; k++)
             vct_add(sum, found[k], share_in_picture(k, i) * share[k] * vct_like(near[k], here));
-        if (z <= 0.0) sum.way = vec3(0.0);
-        else if (vct_share_of(sum, here.normal) < LEAST_LIKE) lost |= 1u << i;
+        if (z <= 0.0)
+            sum.way = vec3(0.0);
+        else if (vct_share_of(sum, here.normal) < LEAST_LIKE)
+            lost |= 1u << i;
         imageStore(irradiance, pixel, vec4(vct_irradiance(sum, here.normal, set.gain), 1.0));
     }
     for (; lost != 0u; lost &= lost - 1u) {
         int i = findLSB(lost);
         ivec2 pixel = 2 * at + ivec2(i & 1, i >> 1);
-        vct_point here = vct_point_at(frame_world_position(frame_uv(uvec2(pixel)), texelFetch(depth, pixel, 0).r),
-                                      octahedral_decode(texelFetch(normal, pixel, 0).rg));
+        vct_point here = vct_point_at(
+            frame_world_position(frame_uv(uvec2(pixel)), texelFetch(depth, pixel, 0).r),
+            octahedral_decode(texelFetch(normal, pixel, 0).rg));
         imageStore(irradiance, pixel, vec4(found_farther(at, here), 1.0));
     }
 }

@@ -1,9 +1,10 @@
-// Half of the gathering stage (Hong 2015, sec. 4.2): each pixel adds up what the pixels beside it in a row (or, then, a
-// column) have traced, as far as one surface reaches. After rows and columns each has the light of all cones.
+// Half of the gathering stage (Hong 2015, sec. 4.2): each pixel adds up what the pixels beside it
+// in a row (or, then, a column) have traced, as far as one surface reaches. After rows and columns
+// each has the light of all cones.
 //
-// Of the pixels that trace the same part of the cones the two next to a pixel, before and after it, are interpolated:
-// each sub-image is magnified bilinearly, and no lattice of the blocks' size is left. Where the surface ends on one side
-// the other stands for both.
+// Of the pixels that trace the same part of the cones the two next to a pixel, before and after it,
+// are interpolated: each sub-image is magnified bilinearly, and no lattice of the blocks' size is
+// left. Where the surface ends on one side the other stands for both.
 //
 // One invocation does four pixels in a row: they share what they read.
 #version 460
@@ -19,7 +20,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool COLUMNS = false;
-layout(constant_id = 1) const bool EACH = true; // pixel of the frame traces cones: columns write irradiance
+layout(constant_id = 1) const
+    bool EACH = true; // pixel of the frame traces cones: columns write irradiance
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
@@ -33,12 +35,12 @@ layout(set = 0, binding = 7) uniform sampler2D normal;
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D red_sum;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D green_sum;
 layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D blue_sum;
-layout(set = 0, binding = 11, rgba16f) uniform writeonly image2D irradiance; // alpha: share of the cones
+layout(set = 0, binding = 11,
+       rgba16f) uniform writeonly image2D irradiance; // alpha: share of the cones
 
 const int ROW = VCT_GATHER_ROW, REACH = VCT_MAX_INTERLEAVE - 1;
 
-struct sums
-{
+struct sums {
     vec4 red, green, blue;
 };
 
@@ -49,7 +51,8 @@ uint ends_of(ivec2 first, ivec2 along, int here, int count)
     for (int i = 0; i < ROW + 2 * REACH - 1; i++) {
         int at = here + i - REACH;
         bool inside = at >= 0 && at < count - 1;
-        uint bits = inside ? uint(texelFetch(edges, first + (i - REACH) * along, 0).r * 255.0 + 0.5) : 3u;
+        uint bits =
+            inside ? uint(texelFetch(edges, first + (i - REACH) * along, 0).r * 255.0 + 0.5) : 3u;
         ends |= (bits & (COLUMNS ? 2u : 1u)) != 0u ? 1u << i : 0u;
     }
     return ends;
@@ -75,9 +78,11 @@ float weight_of(int step, ivec2 reach, int n)
 void finish(ivec2 pixel, sums s)
 {
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-    vct_vectors v = vct_vectors(mat3(s.red.xyz, s.green.xyz, s.blue.xyz), vec3(s.red.w, s.green.w, s.blue.w));
+    vct_vectors v =
+        vct_vectors(mat3(s.red.xyz, s.green.xyz, s.blue.xyz), vec3(s.red.w, s.green.w, s.blue.w));
     // A whole set has the mean of |n·d| over the sphere, a half.
-    imageStore(irradiance, pixel, vec4(vct_irradiance(v, n, set.gain), clamp(2.0 * dot(n, v.way), 0.0, 1.0)));
+    imageStore(irradiance, pixel,
+               vec4(vct_irradiance(v, n, set.gain), clamp(2.0 * dot(n, v.way), 0.0, 1.0)));
 }
 
 void keep(ivec2 pixel, sums s)
@@ -89,13 +94,14 @@ void keep(ivec2 pixel, sums s)
 
 void main()
 {
-    // Not COLUMNS ? ivec2(…) : ivec2(…): a vector chosen by a specialisation constant comes out as the second one on
-    // Mesa 22.3.
+    // Not COLUMNS ? ivec2(…) : ivec2(…): a vector chosen by a specialisation constant comes out as
+    // the second one on Mesa 22.3.
     ivec2 along = ivec2(COLUMNS ? 0 : 1, COLUMNS ? 1 : 0);
     ivec2 size = ivec2(set.width, set.height);
     ivec2 first = ivec2(gl_GlobalInvocationID.xy) * (ivec2(1) + along * (ROW - 1));
     if (any(greaterThanEqual(first, size))) return;
-    int n = int(set.interleave), here = COLUMNS ? first.y : first.x, count = COLUMNS ? size.y : size.x;
+    int n = int(set.interleave), here = COLUMNS ? first.y : first.x,
+        count = COLUMNS ? size.y : size.x;
     uint ends = ends_of(first, along, here, count);
     ivec2 reach[ROW];
     sums s[ROW];
@@ -105,7 +111,8 @@ void main()
     }
     for (int i = REACH + 1 - n; i < ROW + REACH - 1 + n; i++) {
         ivec2 from = clamp(first + (i - REACH) * along, ivec2(0), size - 1);
-        vec4 r = texelFetch(red, from, 0), g = texelFetch(green, from, 0), b = texelFetch(blue, from, 0);
+        vec4 r = texelFetch(red, from, 0), g = texelFetch(green, from, 0),
+             b = texelFetch(blue, from, 0);
         for (int o = 0; o < ROW; o++) {
             float weight = weight_of(i - REACH - o, reach[o], n);
             s[o].red += weight * r;
@@ -116,7 +123,9 @@ void main()
     for (int o = 0; o < ROW; o++) {
         ivec2 pixel = first + o * along;
         if (any(greaterThanEqual(pixel, size))) continue;
-        if (COLUMNS && EACH) finish(pixel, s[o]);
-        else keep(pixel, s[o]);
+        if (COLUMNS && EACH)
+            finish(pixel, s[o]);
+        else
+            keep(pixel, s[o]);
     }
 }

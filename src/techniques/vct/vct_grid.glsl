@@ -1,4 +1,5 @@
-// The grid's uniform block and where things lie in it. Binding: VCT_GRID_BINDING, 13 unless defined before.
+// The grid's uniform block and where things lie in it. Binding: VCT_GRID_BINDING, 13 unless defined
+// before.
 #ifndef AG_VCT_GRID_GLSL
 #define AG_VCT_GRID_GLSL
 

@@ -1,5 +1,5 @@
-// The list of occupied voxels, in the order of their numbers, and the voxels before each word; and, in no order, the places
-// of those whose sums are added up.
+// The list of occupied voxels, in the order of their numbers, and the voxels before each word; and,
+// in no order, the places of those whose sums are added up.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,13 +8,34 @@
 
 layout(local_size_x = VCT_LOCAL) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer vct_mask { uint mask[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer vct_blocks { uint blocks[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer vct_before { uint before[]; };
-layout(set = 0, binding = 3, scalar) writeonly buffer vct_list { uint list[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer vct_again { uint again[]; };
-layout(set = 0, binding = 5, scalar) writeonly buffer vct_again_list { uint again_list[]; };
-layout(set = 0, binding = 6, scalar) buffer vct_arguments { vct_voxel_counts counts; };
+layout(set = 0, binding = 0, scalar) readonly buffer vct_mask
+{
+    uint mask[];
+};
+layout(set = 0, binding = 1, scalar) readonly buffer vct_blocks
+{
+    uint blocks[];
+};
+layout(set = 0, binding = 2, scalar) writeonly buffer vct_before
+{
+    uint before[];
+};
+layout(set = 0, binding = 3, scalar) writeonly buffer vct_list
+{
+    uint list[];
+};
+layout(set = 0, binding = 4, scalar) readonly buffer vct_again
+{
+    uint again[];
+};
+layout(set = 0, binding = 5, scalar) writeonly buffer vct_again_list
+{
+    uint again_list[];
+};
+layout(set = 0, binding = 6, scalar) buffer vct_arguments
+{
+    vct_voxel_counts counts;
+};
 
 // The first bits of a word, as many as there is room for from a slot on.
 uint with_room(uint word, uint slot)

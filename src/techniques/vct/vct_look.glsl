@@ -4,13 +4,15 @@
 
 #include "techniques/vct/vct_ways.glsl"
 
-// What light comes against `direction`, or the part of it that is `counted`, at a place in texels of level 0. Six
-// volumes lie side by side along x, grids along z: what is filtered keeps half a texel away from its neighbour. One
-// volume for all ways knows no direction: whatever fills its texels stands in every way.
+// What light comes against `direction`, or the part of it that is `counted`, at a place in texels
+// of level 0. Six volumes lie side by side along x, grids along z: what is filtered keeps half a
+// texel away from its neighbour. One volume for all ways knows no direction: whatever fills its
+// texels stands in every way.
 vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int level)
 {
     vec3 share = abs(counted);
-    int grid = min(level, VCT_CLIPS - 1), mip = level - grid; // grids but the coarsest one have no mips
+    int grid = min(level, VCT_CLIPS - 1),
+        mip = level - grid; // grids but the coarsest one have no mips
     vec3 own = VCT_CLIPS > 1 ? (at - clips.levels[grid].corner) / float(1 << grid) : at;
     float dim = float(vct.volume_dim >> mip), half_texel = 0.5 / dim;
     vec3 size = vec3((ivec3(clips.levels[grid].size) + (1 << mip) - 1) >> mip) / dim;

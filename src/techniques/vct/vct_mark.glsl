@@ -1,12 +1,18 @@
-// First walk: a bit for each voxel that a triangle touches; and one more for those that are not a single large
-// triangle's, whose parts have to be added up. Define VCT_LARGE.
+// First walk: a bit for each voxel that a triangle touches; and one more for those that are not a
+// single large triangle's, whose parts have to be added up. Define VCT_LARGE.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/vct/vct_voxelise.glsl"
 
-layout(set = 0, binding = 16, scalar) buffer vct_mask { uint mask[]; };
-layout(set = 0, binding = 17, scalar) buffer vct_again { uint again[]; };
+layout(set = 0, binding = 16, scalar) buffer vct_mask
+{
+    uint mask[];
+};
+layout(set = 0, binding = 17, scalar) buffer vct_again
+{
+    uint again[];
+};
 
 void vct_meet(vct_triangle t, ivec2 first)
 {

@@ -1,6 +1,7 @@
-// The next level of the light volume. Of each of the six volumes 2 × 2 × 2 texels make one: of two that lie one
-// behind the other on the volume's way the nearer covers the farther, and four such pairs are averaged. One volume for
-// all ways is averaged over all eight. Texels in which there is nothing are not here, and stay 0.
+// The next level of the light volume. Of each of the six volumes 2 × 2 × 2 texels make one: of two
+// that lie one behind the other on the volume's way the nearer covers the farther, and four such
+// pairs are averaged. One volume for all ways is averaged over all eight. Texels in which there is
+// nothing are not here, and stay 0.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -18,8 +19,14 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 1) uniform sampler3D source;
 layout(set = 0, binding = 2) uniform writeonly image3D target;
-layout(set = 0, binding = 3, scalar) readonly buffer vct_texels { uint texels[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer vct_texel_state { vct_texel_levels state; };
+layout(set = 0, binding = 3, scalar) readonly buffer vct_texels
+{
+    uint texels[];
+};
+layout(set = 0, binding = 4, scalar) readonly buffer vct_texel_state
+{
+    vct_texel_levels state;
+};
 
 void main()
 {
@@ -34,17 +41,22 @@ void main()
     vec4 sum = vec4(0.0);
     float columns = 0.0;
     for (int i = 0; i < 4; i++) {
-        ivec3 side = (way < 2 ? ivec3(0, i & 1, i >> 1) : way < 4 ? ivec3(i & 1, 0, i >> 1) : ivec3(i & 1, i >> 1, 0));
+        ivec3 side = (way < 2   ? ivec3(0, i & 1, i >> 1)
+                      : way < 4 ? ivec3(i & 1, 0, i >> 1)
+                                : ivec3(i & 1, i >> 1, 0));
         if (any(greaterThanEqual(2 * texel + side, size))) continue;
         bool whole = all(lessThan(2 * texel + side + along, size));
         ivec3 at = from + side;
-        vec4 first = texelFetch(source, at, 0), second = whole ? texelFetch(source, at + along, 0) : vec4(0.0);
+        vec4 first = texelFetch(source, at, 0),
+             second = whole ? texelFetch(source, at + along, 0) : vec4(0.0);
         if (VCT_OCCLUSION) {
             first = first.rrrr;
             second = second.rrrr;
         }
-        if (VCT_ANISOTROPIC) sum += (way & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
-        else sum += whole ? 0.5 * (first + second) : first;
+        if (VCT_ANISOTROPIC)
+            sum += (way & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
+        else
+            sum += whole ? 0.5 * (first + second) : first;
         columns++;
     }
     imageStore(target, texel + ivec3(way * push.target_tile, 0, 0), sum / columns);

@@ -1,5 +1,5 @@
-// Whether a triangle and a voxel touch: the separating axes of a box and a triangle (Akenine-Möller 2001). Touching
-// counts. `precise`: the C twin gives the same set, to the voxel.
+// Whether a triangle and a voxel touch: the separating axes of a box and a triangle (Akenine-Möller
+// 2001). Touching counts. `precise`: the C twin gives the same set, to the voxel.
 #ifndef AG_VCT_OVERLAP_GLSL
 #define AG_VCT_OVERLAP_GLSL
 
@@ -21,7 +21,8 @@ bool vct_overlaps(vec3 a, vec3 b, vec3 c, vec3 normal)
     precise float reach = 0.5 * (abs(normal.x) + abs(normal.y) + abs(normal.z));
     if (abs(height) > reach) return false;
     precise vec3 ab = b - a, bc = c - b, ca = a - c;
-    return !vct_edge_separates(ab, a, c) && !vct_edge_separates(bc, b, a) && !vct_edge_separates(ca, c, b);
+    return !vct_edge_separates(ab, a, c) && !vct_edge_separates(bc, b, a) &&
+           !vct_edge_separates(ca, c, b);
 }
 
 #endif

@@ -1,15 +1,13 @@
-// Where cones have been traced: what was found there, as vectors, and what the surface is like. The shader that
-// includes this has the frame's constants, the block `set` and the images depth, start, red, green and blue.
+// Where cones have been traced: what was found there, as vectors, and what the surface is like. The
+// shader that includes this has the frame's constants, the block `set` and the images depth, start,
+// red, green and blue.
 #ifndef AG_VCT_PLACES_GLSL
 #define AG_VCT_PLACES_GLSL
 
 #include "techniques/vct/vct_clipmap.glsl"
 #include "techniques/vct/vct_vectors.glsl"
 
-
-
-struct vct_place
-{
+struct vct_place {
     bool valid;
     vec3 position, up; // up: the normal that its cones start along
 };
@@ -37,8 +35,7 @@ vct_place vct_place_at(ivec2 at)
 }
 
 // A point that something is looked for at.
-struct vct_point
-{
+struct vct_point {
     vec3 position, normal;
     float texel_m; // of the light volume there
 };

@@ -21,6 +21,7 @@ void main()
     vary_triangle = uint(gl_VertexIndex) / 3u;
     vct_triangle t;
     vec2 corner = vec2(-4.0); // outside, as are the other two
-    if (triangle_at(vary_triangle, t)) corner = vct_raster_corner(t, uint(gl_VertexIndex) % 3u) * (2.0 / vct.dim) - 1.0;
+    if (triangle_at(vary_triangle, t))
+        corner = vct_raster_corner(t, uint(gl_VertexIndex) % 3u) * (2.0 / vct.dim) - 1.0;
     gl_Position = vec4(corner, 0.5, 1.0);
 }

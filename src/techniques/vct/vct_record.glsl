@@ -1,18 +1,17 @@
-// What a lit voxel is, as 8 words: what its two sides send out, and what light on them would add. Half floats and
-// bytes, in two texels of an image that is filled row by row: software drivers fetch texels several times as fast as
-// words of buffers.
+// What a lit voxel is, as 8 words: what its two sides send out, and what light on them would add.
+// Half floats and bytes, in two texels of an image that is filled row by row: software drivers
+// fetch texels several times as fast as words of buffers.
 #ifndef AG_VCT_RECORD_GLSL
 #define AG_VCT_RECORD_GLSL
 
 #include "frame/octahedral.glsl"
 
-struct vct_record
-{
-    vec3 front, back;                   // scaled cd/m²: reflected light of lights
-    vec3 emitted_front, emitted_back;   // scaled cd/m²; negative: a lamp's
+struct vct_record {
+    vec3 front, back;                 // scaled cd/m²: reflected light of lights
+    vec3 emitted_front, emitted_back; // scaled cd/m²; negative: a lamp's
     vec3 reflectance;
-    vec2 opacity;                       // to ways that meet the front, the back
-    vec3 normal;                        // unit, of the front; 0 where the sides cannot be told apart
+    vec2 opacity; // to ways that meet the front, the back
+    vec3 normal;  // unit, of the front; 0 where the sides cannot be told apart
 };
 
 // Of the first of the two texels.
@@ -27,7 +26,8 @@ ivec2 vct_brought_place(uint slot)
     return ivec2(slot % VCT_RECORD_ROW, slot / VCT_RECORD_ROW);
 }
 
-// 12 + 12 bits. Fronts turn to one half of all ways (vct_add.glsl), and none of these has the code 0.
+// 12 + 12 bits. Fronts turn to one half of all ways (vct_add.glsl), and none of these has the code
+// 0.
 uint vct_pack_normal(vec3 normal)
 {
     uvec2 code = uvec2(roundEven((octahedral_encode(normal) * 0.5 + 0.5) * 4095.0));
@@ -36,13 +36,14 @@ uint vct_pack_normal(vec3 normal)
 
 vec3 vct_unpack_normal(uint bits)
 {
-    return bits == 0u ? vec3(0.0) : octahedral_decode(vec2(bits & 4095u, bits >> 12) / 4095.0 * 2.0 - 1.0);
+    return bits == 0u ? vec3(0.0)
+                      : octahedral_decode(vec2(bits & 4095u, bits >> 12) / 4095.0 * 2.0 - 1.0);
 }
 
 void vct_pack(vct_record r, out uvec4 first, out uvec4 second)
 {
-    first = uvec4(packHalf2x16(r.front.rg), packHalf2x16(vec2(r.front.b, r.back.r)), packHalf2x16(r.back.gb),
-                  packHalf2x16(r.emitted_front.rg));
+    first = uvec4(packHalf2x16(r.front.rg), packHalf2x16(vec2(r.front.b, r.back.r)),
+                  packHalf2x16(r.back.gb), packHalf2x16(r.emitted_front.rg));
     second.x = packHalf2x16(vec2(r.emitted_front.b, r.emitted_back.r));
     second.y = packHalf2x16(r.emitted_back.gb);
     second.z = packUnorm4x8(vec4(r.reflectance, r.opacity.x));

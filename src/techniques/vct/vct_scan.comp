@@ -1,4 +1,5 @@
-// From the voxels in each block to the voxels before it, by one workgroup; and how many groups shade them.
+// From the voxels in each block to the voxels before it, by one workgroup; and how many groups
+// shade them.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -7,8 +8,14 @@
 
 layout(local_size_x = VCT_SCAN_LOCAL) in;
 
-layout(set = 0, binding = 0, scalar) buffer vct_blocks { uint blocks[]; };
-layout(set = 0, binding = 1, scalar) writeonly buffer vct_arguments { vct_voxel_counts counts; };
+layout(set = 0, binding = 0, scalar) buffer vct_blocks
+{
+    uint blocks[];
+};
+layout(set = 0, binding = 1, scalar) writeonly buffer vct_arguments
+{
+    vct_voxel_counts counts;
+};
 
 shared uint before[VCT_SCAN_LOCAL];
 

@@ -1,13 +1,13 @@
-// What the lit voxels of both sets send and hide along the ways of the light volume. Premultiplied with opacity. Include
-// after vct_grid.glsl; takes the bindings 1 to 6.
+// What the lit voxels of both sets send and hide along the ways of the light volume. Premultiplied
+// with opacity. Include after vct_grid.glsl; takes the bindings 1 to 6.
 //
-// A voxel is a sheet: on a way that meets its front it shows what the front sends out and hides what is behind, as
-// much of it as the sheet covers when it is seen along the axis. A side that is the back of a surface of one side
-// neither shows nor hides anything: what is looked for from a floor is not hidden by the floor, however coarse its
-// texels are.
+// A voxel is a sheet: on a way that meets its front it shows what the front sends out and hides
+// what is behind, as much of it as the sheet covers when it is seen along the axis. A side that is
+// the back of a surface of one side neither shows nor hides anything: what is looked for from a
+// floor is not hidden by the floor, however coarse its texels are.
 //
-// One volume for all ways has the mean of what both sides send out, and of the voxels: the isotropic pyramid of figure
-// 49, through whose thin walls light leaks.
+// One volume for all ways has the mean of what both sides send out, and of the voxels: the
+// isotropic pyramid of figure 49, through whose thin walls light leaks.
 #ifndef AG_VCT_SEEN_GLSL
 #define AG_VCT_SEEN_GLSL
 
@@ -16,10 +16,10 @@
 #include "techniques/vct/vct_over.glsl"
 #include "techniques/vct/vct_record.glsl"
 #include "techniques/vct/vct_ways.glsl"
-#define VCT_SLOTS(name) static_##name
+#define VCT_SLOTS(name)   static_##name
 #define VCT_SLOTS_BINDING 1
 #include "techniques/vct/vct_slots.glsl"
-#define VCT_SLOTS(name) dynamic_##name
+#define VCT_SLOTS(name)   dynamic_##name
 #define VCT_SLOTS_BINDING 3
 #include "techniques/vct/vct_slots.glsl"
 
@@ -28,8 +28,7 @@ layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
 
 layout(constant_id = 11) const bool VCT_HAS_MOVING = true; // false: the second set is empty
 
-struct seen
-{
+struct seen {
     vec4 along[6]; // +x −x +y −y +z −z: premultiplied radiance and opacity
 };
 
@@ -61,7 +60,8 @@ void look(uint static_at, uint dynamic_at, out seen s)
 {
     for (int i = 0; i < 6; i++) s.along[i] = vec4(0.0);
     if (static_at != VCT_NO_SLOT) look_at(vct_record_at(static_records, static_at), s);
-    if (VCT_HAS_MOVING && dynamic_at != VCT_NO_SLOT) look_at(vct_record_at(dynamic_records, dynamic_at), s);
+    if (VCT_HAS_MOVING && dynamic_at != VCT_NO_SLOT)
+        look_at(vct_record_at(dynamic_records, dynamic_at), s);
 }
 
 void look_in_block(ivec3 from, ivec3 at, ivec3 size, out seen s)
@@ -79,8 +79,9 @@ void pair(seen low, seen high, const int axis, float column, inout vec4 sum[6])
     sum[2 * axis + 1] += column * vct_over(high.along[2 * axis + 1], low.along[2 * axis + 1]);
 }
 
-// A block of at most 2 × 2 × 2 voxels as one texel: along each axis the nearer of two covers the farther, and columns
-// are averaged. Written out, as drivers keep in memory what loops that they do not unroll have in arrays.
+// A block of at most 2 × 2 × 2 voxels as one texel: along each axis the nearer of two covers the
+// farther, and columns are averaged. Written out, as drivers keep in memory what loops that they do
+// not unroll have in arrays.
 void vct_see(ivec3 from, ivec3 size, out vec4 sum[6])
 {
     seen a, b, c, d, e, f, g, h;
@@ -95,8 +96,8 @@ void vct_see(ivec3 from, ivec3 size, out vec4 sum[6])
     sum = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     float each = 1.0 / float(size.x * size.y * size.z);
     if (!VCT_ANISOTROPIC) {
-        sum[0] = each * (a.along[0] + b.along[0] + c.along[0] + d.along[0] + e.along[0] + f.along[0] + g.along[0] +
-                         h.along[0]);
+        sum[0] = each * (a.along[0] + b.along[0] + c.along[0] + d.along[0] + e.along[0] +
+                         f.along[0] + g.along[0] + h.along[0]);
         return;
     }
     vec3 column = each * vec3(size);

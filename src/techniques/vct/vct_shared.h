@@ -5,34 +5,37 @@
 #include "core/shared.h"
 
 // Voxelisation.
-#define VCT_LOCAL         64 // invocations of a workgroup that has one dimension
-#define VCT_TILE          32 // side of the square of columns that one workgroup takes of a large triangle; bits of a word
+#define VCT_LOCAL 64 // invocations of a workgroup that has one dimension
+#define VCT_TILE                                                                                   \
+    32 // side of the square of columns that one workgroup takes of a large triangle; bits of a word
 #define VCT_SMALL_COLUMNS 64 // a triangle over at most so many columns is walked by one invocation
 #define VCT_QUEUE         65535 // tiles of large triangles that wait for a workgroup each
-#define VCT_BLOCK_WORDS   8    // words of the mask that one invocation counts and lists
+#define VCT_BLOCK_WORDS   8     // words of the mask that one invocation counts and lists
 #define VCT_SCAN_LOCAL    256
 #define VCT_BOUNCE_LOCAL  32 // blocks that a workgroup brings light to
 
 // Words of vct_sum_words for a voxel: see vct_surface.glsl.
 #define VCT_SUM_WEIGHT      0
 #define VCT_SUM_OPACITY     1
-#define VCT_SUM_REFLECTANCE 2  // 3 words, × opacity
-#define VCT_SUM_NORMAL      5  // 3 words, signed
-#define VCT_SUM_POSITION    8  // 3 words, signed: from the voxel's centre
+#define VCT_SUM_REFLECTANCE 2 // 3 words, × opacity
+#define VCT_SUM_NORMAL      5 // 3 words, signed
+#define VCT_SUM_POSITION    8 // 3 words, signed: from the voxel's centre
 #define VCT_SUM_FRONT       11 // 3 words, signed: emission to the side of the normal; negative: a lamp's
 #define VCT_SUM_BACK        14 // 3 words: emission to the other side
-#define VCT_SUM_FRONTS 17        // weight of what is covered by fronts to the side of the normal
-#define VCT_SUM_BACKS 18         // and to the other side
-#define VCT_SUM_WORDS 19
-#define VCT_LINES           16 // along an axis through each voxel, of which those that a triangle crosses are counted
-#define VCT_WEIGHT_LINE     64.0
-#define VCT_WEIGHT_ONE      1024.0 // weight of what covers a voxel's face: of all lines
-#define VCT_COLOUR_ONE      255.0
-#define VCT_NORMAL_ONE      127.0
-#define VCT_POSITION_ONE    127.0 // of a whole voxel
-#define VCT_EMISSION_ONE    256.0 // of the strongest emission of the scene
+#define VCT_SUM_FRONTS      17 // weight of what is covered by fronts to the side of the normal
+#define VCT_SUM_BACKS       18 // and to the other side
+#define VCT_SUM_WORDS       19
+#define VCT_LINES                                                                                  \
+    16 // along an axis through each voxel, of which those that a triangle crosses are counted
+#define VCT_WEIGHT_LINE  64.0
+#define VCT_WEIGHT_ONE   1024.0 // weight of what covers a voxel's face: of all lines
+#define VCT_COLOUR_ONE   255.0
+#define VCT_NORMAL_ONE   127.0
+#define VCT_POSITION_ONE 127.0 // of a whole voxel
+#define VCT_EMISSION_ONE 256.0 // of the strongest emission of the scene
 
-// Voxels in a row of vct_surfaces and vct_records, with two texels each, and of vct_brought with one.
+// Voxels in a row of vct_surfaces and vct_records, with two texels each, and of vct_brought with
+// one.
 #define VCT_RECORD_ROW 1024
 
 // Buffer "vct_arguments" of a set of voxels.
@@ -65,13 +68,14 @@ struct vct_params {
     float light_scale;     // the frame's unit over that of the light volume
     uint32_t lamps_shown;  // whether lamps are part of the light volume
     float decay_per_m;     // of occlusion: see vct_trace.glsl
-    float offset;          // along the normal at which the pixels' cones start, texels of the light volume
+    float offset; // along the normal at which the pixels' cones start, texels of the light volume
     vec3s scene_low, scene_high; // the whole scene's grid, in these voxels
-    int32_t volume_first;        // texel of the light volume along z at which this grid's part begins
-    int32_t level;               // of the clip map, as vct_clipmap counts them
+    int32_t volume_first; // texel of the light volume along z at which this grid's part begins
+    int32_t level;        // of the clip map, as vct_clipmap counts them
 };
 
-// What cones know of a grid. Texels of the finest grid are the unit, the corner of the scene's grid is the origin.
+// What cones know of a grid. Texels of the finest grid are the unit, the corner of the scene's grid
+// is the origin.
 struct vct_clip_level {
     vec3s corner;    // of its first texel
     vec3s size;      // texels of its own that are in use
@@ -82,7 +86,7 @@ struct vct_clip_level {
 struct vct_clip_table {
     vec3s origin_m; // corner of the scene's grid, world space
     vec3s size;     // of the scene's grid
-    float fade;     // texels of a grid, within its box, over which it gives way to the next coarser one
+    float fade; // texels of a grid, within its box, over which it gives way to the next coarser one
     AG_STRUCT(vct_clip_level) levels[VCT_MAX_CLIPS]; // the finest one first
 };
 
@@ -92,13 +96,14 @@ struct vct_clip_table {
 
 // Uniform block "vct_cones".
 struct vct_cone_params {
-    vec4s cones[VCT_MAX_CONES]; // direction; weight: of voxels about +z, in sr, Σ = π; of pixels in the world, Σ = 1
+    vec4s cones[VCT_MAX_CONES]; // direction; weight: of voxels about +z, in sr, Σ = π; of pixels in
+                                // the world, Σ = 1
     uint32_t cone_count;
     uint32_t interleave;
     uint32_t step;          // pixels of the frame, across and down, to each that traces cones
     uint32_t width, height; // those that do
-    float width_per_m;              // width of the texels that a cone meets over the distance
-    float offset;                   // texels of the light volume
+    float width_per_m;      // width of the texels that a cone meets over the distance
+    float offset;           // texels of the light volume
     float gain;
     float texel_m; // of the light volume, of the finest grid
     uint32_t last_mip;
@@ -134,8 +139,8 @@ struct vct_lamp {
     vec3s normals[VCT_LAMP_POINTS];   // unit, of the front
 };
 
-// Uniform block "vct_history": the last frame's picture, of which the pixel (x, y) shows what lies at
-// forward + x · right + y · down from its eye, per distance along the view axis; world space.
+// Uniform block "vct_history": the last frame's picture, of which the pixel (x, y) shows what lies
+// at forward + x · right + y · down from its eye, per distance along the view axis; world space.
 struct vct_history_params {
     vec3s right, down, forward;
     float pixel;    // width of a pixel over the distance
@@ -149,13 +154,14 @@ struct vct_history_params {
 struct vct_specular_params {
     float tan_half; // of each cone's half-angle; 0: as the roughness says
     float stride;
-    float offset;   // texels of the light volume
+    float offset; // texels of the light volume
     float gain;
-    float texel_m;  // of the light volume, of the finest grid
+    float texel_m; // of the light volume, of the finest grid
     uint32_t last_mip;
 };
 
-// Uniform block "vct_shares": what GGX reflects of even light is F0 · first + second; nodes evenly in n·v, then roughness.
+// Uniform block "vct_shares": what GGX reflects of even light is F0 · first + second; nodes evenly
+// in n·v, then roughness.
 #define VCT_SHARE_NODES 16
 struct vct_share_table {
     float pairs[VCT_SHARE_NODES * VCT_SHARE_NODES * 2];
@@ -163,7 +169,7 @@ struct vct_share_table {
 
 struct vct_mip_push {
     int32_t source_x, source_y, source_z; // of the level that is read
-    int32_t source_tile, target_tile; // texels between directions
+    int32_t source_tile, target_tile;     // texels between directions
     uint32_t level;
     uint32_t first; // of the list of texels
 };
@@ -200,14 +206,14 @@ struct vct_svo_push {
 #define VCT_VIEW_ROOM        3
 #define VCT_VIEW_LEVELS      4
 
-#define VCT_MARCH_INTO    1 // up to the next finer grid, or to the end
-#define VCT_MARCH_OUT     2 // from there on
-#define VCT_MARCH_FIRST   4 // nothing is in the picture yet
-#define VCT_MARCH_LAST    8
+#define VCT_MARCH_INTO  1 // up to the next finer grid, or to the end
+#define VCT_MARCH_OUT   2 // from there on
+#define VCT_MARCH_FIRST 4 // nothing is in the picture yet
+#define VCT_MARCH_LAST  8
 
 struct vct_view_push {
     uint32_t view;
-    uint32_t march; // of those bits
+    uint32_t march;          // of those bits
     float reflectance_shown; // scaled radiance that a reflectance of 1 is shown as
 };
 
@@ -218,7 +224,8 @@ _Static_assert(sizeof(struct vct_clip_table) == (7 + 12 * VCT_MAX_CLIPS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_lamp) == (5 + 6 * VCT_LAMP_POINTS) * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_lamp) == (5 + 6 * VCT_LAMP_POINTS) * 4,
+               "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texel_levels) == (4 * VCT_MAX_LEVELS + 3) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_texels_push) == 12 + 2 * VCT_MAX_LEVELS * 4,

@@ -1,6 +1,7 @@
-// Which voxels hold a surface: a bit each, and for each word of bits the number of voxels before it. Together they
-// give every occupied voxel a slot in compact buffers. Define VCT_SLOTS(name) as what a block or variable of this set
-// is called, and VCT_SLOTS_BINDING as the first of two bindings; may be included for several sets.
+// Which voxels hold a surface: a bit each, and for each word of bits the number of voxels before
+// it. Together they give every occupied voxel a slot in compact buffers. Define VCT_SLOTS(name) as
+// what a block or variable of this set is called, and VCT_SLOTS_BINDING as the first of two
+// bindings; may be included for several sets.
 layout(set = 0, binding = VCT_SLOTS_BINDING, scalar) readonly buffer VCT_SLOTS(mask)
 {
     uint VCT_SLOTS(mask_words)[];

@@ -1,12 +1,12 @@
-// One cone the way a pixel's surface reflects the eye's ray, as wide as the roughness says (Hong 2015, sec. 2.5.3.3.7;
-// Crassin et al. 2011), times the share that GGX reflects of even light.
+// One cone the way a pixel's surface reflects the eye's ray, as wide as the roughness says (Hong
+// 2015, sec. 2.5.3.3.7; Crassin et al. 2011), times the share that GGX reflects of even light.
 //
-// The paper's lobe is Phong's; ours is glTF's GGX. Of its half-vectors, seen along the normal, those with tan θ < α have
-// half of the weight: D cos θ dω is in tan² θ the share t²/(t² + α²). A reflected direction is twice as far off, so that
-// half of what is reflected comes from within
-//     2 atan α                                                                                        (1)
-// of the mirror's direction. An even cone of this half-angle also has the lobe's peak, D(0)/4 = 1/(4πα²) per sr, up to
-// the powers of α beyond: it has 1/(π (2α)²).
+// The paper's lobe is Phong's; ours is glTF's GGX. Of its half-vectors, seen along the normal,
+// those with tan θ < α have half of the weight: D cos θ dω is in tan² θ the share t²/(t² + α²). A
+// reflected direction is twice as far off, so that half of what is reflected comes from within
+//     2 atan α (1)
+// of the mirror's direction. An even cone of this half-angle also has the lobe's peak, D(0)/4 =
+// 1/(4πα²) per sr, up to the powers of α beyond: it has 1/(π (2α)²).
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -36,7 +36,8 @@ layout(set = 0, binding = 9, scalar) uniform vct_shares
     vct_share_table shares;
 };
 
-const float WIDEST = 1.0; // tangent of the half-angle: beyond 45° a cone says no more than its texels
+const float WIDEST =
+    1.0; // tangent of the half-angle: beyond 45° a cone says no more than its texels
 
 float tan_half_angle(float alpha)
 {
@@ -70,11 +71,13 @@ vec3 mirrored(vec3 to_eye, vec3 n)
 vec3 reflected(ivec2 pixel, float z)
 {
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg), to_eye = normalize(frame.eye - position);
+    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg),
+         to_eye = normalize(frame.eye - position);
     vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
     vec3 at = (position - clips.origin_m) / set.texel_m;
     float wide = 2.0 * set.stride * tan_half_angle(brdf_alpha(roughness_metallic.x));
-    vec4 met = vct_cone(light, at, n, mirrored(to_eye, n), set.offset, wide, set.last_mip, vct_start_at(at));
+    vec4 met = vct_cone(light, at, n, mirrored(to_eye, n), set.offset, wide, set.last_mip,
+                        vct_start_at(at));
     vec3 f0 = brdf_f0(texelFetch(albedo, pixel, 0).rgb, roughness_metallic.y);
     vec3 share = share_of(f0, dot(n, to_eye), roughness_metallic.x);
     return set.gain * share * (met.rgb + (1.0 - met.a) * frame.sky);

@@ -11,8 +11,8 @@
 
 // Of both techniques. What one of them lacks is as vct.c fills it in.
 struct vct_options {
-#define OPTION OPTION_FIELD
-#define VCT_OPTION OPTION_FIELD
+#define OPTION       OPTION_FIELD
+#define VCT_OPTION   OPTION_FIELD
 #define VCTAO_OPTION OPTION_FIELD
 #include "techniques/vct/vct_options.def"
 #undef VCTAO_OPTION
@@ -28,7 +28,8 @@ enum { VCT_LOCAL_2D = 8 }; // of shaders over pixels or texels, in x and y
 // Voxels of a part of the scene: which, in what order, what they are, what they send out.
 struct vct_set {
     gpu_buffer mask, before, blocks, list, arguments;
-    gpu_buffer again, again_list, sums; // of those where several triangles, or small ones, are added up
+    gpu_buffer again, again_list,
+        sums; // of those where several triangles, or small ones, are added up
     gpu_image surfaces, records, brought; // RGBA32U
 };
 
@@ -81,8 +82,8 @@ struct vct {
     struct gpu *gpu;
     struct vct_options options;
     struct vct_walk mark, add[VCT_KINDS];
-    gpu_pipeline fill[2];   // without and with what moves
-    gpu_pipeline inject[2]; // without and with lights
+    gpu_pipeline fill[2];             // without and with what moves
+    gpu_pipeline inject[2];           // without and with lights
     gpu_pipeline cones[2], bounce[2]; // without and with lamps
     gpu_pipeline count, scan, list, zero, surfaces, texel_lists, mip, edges, gather_rows,
         gather_columns, blur, fit, specular, debug;
@@ -91,25 +92,28 @@ struct vct {
     int clip_count;
     gpu_buffer queue, queue_state;
     gpu_sampler linear;
-    struct vct_svo svo;   // with storage=svo
-    gpu_image light;      // six volumes side by side with mips, or the pool of bricks: RGBA16F; mips of occlusion R16F
-    gpu_image edge_image;  // R8: where surfaces end
-    gpu_image start_image; // RG16F: octahedral, the normal that cones start along
+    struct vct_svo svo; // with storage=svo
+    gpu_image light; // six volumes side by side with mips, or the pool of bricks: RGBA16F; mips of
+                     // occlusion R16F
+    gpu_image edge_image;             // R8: where surfaces end
+    gpu_image start_image;            // RG16F: octahedral, the normal that cones start along
     gpu_image traced[3], gathered[3]; // RGBA16F: what cones found as vectors, of each colour
-    gpu_image found;            // RGBA16F: irradiance, share of the cones
-    vec3s lines[VCT_MAX_CONES]; // along which the picture's cones point
-    struct vct_share_table shares; // with specular
-    struct vct_temporal temporal; // empty without the option
-    uint32_t width, height; // of these images
+    gpu_image found;                  // RGBA16F: irradiance, share of the cones
+    vec3s lines[VCT_MAX_CONES];       // along which the picture's cones point
+    struct vct_share_table shares;    // with specular
+    struct vct_temporal temporal;     // empty without the option
+    uint32_t width, height;           // of these images
 
-    struct vct_params params; // of the frame being recorded; vct_grid_binding adds the place of a grid
-    bool ready;               // there is something to voxelise
-    bool remade;              // voxels have come anew in this frame
-    bool light_valid;         // `light` is last frame's, of this grid
-    bool light_outdated;      // it has texels that hold nothing any more
-    bool brought_valid;       // so is what the voxels got from each other
+    struct vct_params
+        params;          // of the frame being recorded; vct_grid_binding adds the place of a grid
+    bool ready;          // there is something to voxelise
+    bool remade;         // voxels have come anew in this frame
+    bool light_valid;    // `light` is last frame's, of this grid
+    bool light_outdated; // it has texels that hold nothing any more
+    bool brought_valid;  // so is what the voxels got from each other
     struct vct_brought_by brought_by;
-    int rounds_left;           // of frames that bring what was sent out in the last one, until all is as it stays
+    int rounds_left; // of frames that bring what was sent out in the last one, until all is as it
+                     // stays
     const struct scene *scene; // that voxels are of
     int moving_draws;          // then
 };
@@ -118,13 +122,14 @@ int vct_clip_count(const struct vct_options *options);
 uint32_t vct_capacity(const struct vct_options *options); // voxels of a set
 uint32_t vct_volume_dim(const struct vct_options *options);
 uint32_t vct_volume_mips(const struct vct_options *options);
-uint32_t vct_step(const struct vct_options *options); // pixels, across and down, to each that traces cones
+uint32_t
+vct_step(const struct vct_options *options); // pixels, across and down, to each that traces cones
 uint32_t vct_ways(const struct vct_options *options); // volumes side by side: 6, or 1 for all ways
 
 // Lists of texels of the light volume, one for each level; see vct_texels.comp.
 struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32_t levels);
-// Of which a texel is a block that gets one irradiance: 8 voxels along a side, not 4, where they are no larger than those of
-// the default resolution.
+// Of which a texel is a block that gets one irradiance: 8 voxels along a side, not 4, where they
+// are no larger than those of the default resolution.
 uint32_t vct_block_level(const struct vct_options *options);
 size_t vct_texel_words(const struct vct_options *options);
 size_t vct_texel_mask_words(const struct vct_options *options);
@@ -147,7 +152,8 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
 bool vct_prepare(struct vct *vct, const struct frame_view *view);
 struct gpu_binding vct_grid_binding(const struct vct *vct, const struct vct_clip *clip,
                                     struct gpu_cmd *cmd);
-// The grids for cones: of pixels, about the eye; of voxels, as far as they reach and as they were when light was filled in.
+// The grids for cones: of pixels, about the eye; of voxels, as far as they reach and as they were
+// when light was filled in.
 struct gpu_binding vct_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd);
 struct gpu_binding vct_lit_clipmap_binding(const struct vct *vct, struct gpu_cmd *cmd);
 // The cones of a voxel, about its normal.
@@ -157,7 +163,8 @@ void vct_record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 void vct_record_texels(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd);
 void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
-void vct_record_fill(struct vct *vct, struct gpu_cmd *cmd); // its last part: with lit voxels as they are
+void vct_record_fill(struct vct *vct,
+                     struct gpu_cmd *cmd); // its last part: with lit voxels as they are
 // In place of fill and mips: the tree, where voxels have come anew; and the light in it.
 void vct_svo_record_tree(struct vct *vct, struct gpu_cmd *cmd);
 void vct_svo_record_light(struct vct *vct, struct gpu_cmd *cmd);

@@ -8,9 +8,18 @@
 
 layout(local_size_x = VCT_LOCAL) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer vct_arguments { vct_voxel_counts counts; };
-layout(set = 0, binding = 1, scalar) readonly buffer vct_again_list { uint again_list[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer vct_sum_words { uint sums[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer vct_arguments
+{
+    vct_voxel_counts counts;
+};
+layout(set = 0, binding = 1, scalar) readonly buffer vct_again_list
+{
+    uint again_list[];
+};
+layout(set = 0, binding = 2, scalar) readonly buffer vct_sum_words
+{
+    uint sums[];
+};
 layout(set = 0, binding = 3, rgba32ui) uniform writeonly uimage2D vct_surfaces;
 
 uvec3 three(uint at)

@@ -1,13 +1,15 @@
-// The sparse voxel octree: nodes by pointers, bricks of light in a pool (Crassin et al. 2011; Hong 2015, sec. 2.5.3.2).
-// Include after vct_grid.glsl; declare vct_svo_nodes with `nodes` before.
+// The sparse voxel octree: nodes by pointers, bricks of light in a pool (Crassin et al. 2011; Hong
+// 2015, sec. 2.5.3.2). Include after vct_grid.glsl; declare vct_svo_nodes with `nodes` before.
 //
-// Points stand two voxels apart, as texels of the finest mip do, but on the corners of nodes: point q has the voxels
-// 2q − 1 and 2q along each axis. A leaf is two distances of points wide, and a node's brick has the 3³ points in and on
-// it, so that what lies between points is filtered within one brick. Nodes of a level are twice as wide as those below,
-// and so are the distances of their points.
+// Points stand two voxels apart, as texels of the finest mip do, but on the corners of nodes: point
+// q has the voxels 2q − 1 and 2q along each axis. A leaf is two distances of points wide, and a
+// node's brick has the 3³ points in and on it, so that what lies between points is filtered within
+// one brick. Nodes of a level are twice as wide as those below, and so are the distances of their
+// points.
 //
-// Nodes come in tiles of eight. A node is 0 where it is empty; else it is 1 + the number of its brick, which also is
-// the tile of its children: both are given out together. The root is node 0, alone in its tile.
+// Nodes come in tiles of eight. A node is 0 where it is empty; else it is 1 + the number of its
+// brick, which also is the tile of its children: both are given out together. The root is node 0,
+// alone in its tile.
 #ifndef AG_VCT_SVO_GLSL
 #define AG_VCT_SVO_GLSL
 
@@ -29,7 +31,8 @@ ivec3 svo_unpack(uint packed)
     return ivec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20);
 }
 
-// Points in use at a height over the leaves, 0: theirs. What lies beyond the last one is outside of the grid.
+// Points in use at a height over the leaves, 0: theirs. What lies beyond the last one is outside of
+// the grid.
 ivec3 svo_last_point(int height)
 {
     return (vct_cells() / 2 + (1 << height) - 1) >> height;

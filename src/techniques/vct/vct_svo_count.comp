@@ -11,10 +11,16 @@ layout(push_constant, scalar) uniform push_block
 {
     vct_svo_push push;
 };
-layout(set = 0, binding = 0, scalar) readonly buffer vct_svo_nodes { uint nodes[]; };
-layout(set = 0, binding = 1, scalar) writeonly buffer vct_svo_blocks { uint blocks[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer vct_svo_nodes
+{
+    uint nodes[];
+};
+layout(set = 0, binding = 1, scalar) writeonly buffer vct_svo_blocks
+{
+    uint blocks[];
+};
 #define VCT_SVO_LEVELS_BINDING 2
-#define VCT_SVO_LEVELS_ACCESS readonly
+#define VCT_SVO_LEVELS_ACCESS  readonly
 #include "techniques/vct/vct_svo_levels.glsl"
 
 void main()

@@ -1,5 +1,5 @@
-// Marked nodes get a brick each, in the order of their places, and empty children but for the leaves. Those that there
-// is no room for become empty.
+// Marked nodes get a brick each, in the order of their places, and empty children but for the
+// leaves. Those that there is no room for become empty.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,11 +13,20 @@ layout(push_constant, scalar) uniform push_block
 {
     vct_svo_push push;
 };
-layout(set = 0, binding = 1, scalar) buffer vct_svo_nodes { uint nodes[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_blocks { uint blocks[]; };
-layout(set = 0, binding = 3, scalar) buffer vct_svo_places { uint places[]; }; // of the node that a brick is of
+layout(set = 0, binding = 1, scalar) buffer vct_svo_nodes
+{
+    uint nodes[];
+};
+layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_blocks
+{
+    uint blocks[];
+};
+layout(set = 0, binding = 3, scalar) buffer vct_svo_places
+{
+    uint places[];
+}; // of the node that a brick is of
 #define VCT_SVO_LEVELS_BINDING 4
-#define VCT_SVO_LEVELS_ACCESS readonly
+#define VCT_SVO_LEVELS_ACCESS  readonly
 #include "techniques/vct/vct_svo_levels.glsl"
 #include "techniques/vct/vct_svo.glsl"
 

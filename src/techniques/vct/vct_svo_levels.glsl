@@ -1,5 +1,6 @@
 // What there is at each depth of the octree. Binding: VCT_SVO_LEVELS_BINDING.
-layout(set = 0, binding = VCT_SVO_LEVELS_BINDING, scalar) VCT_SVO_LEVELS_ACCESS buffer vct_svo_levels
+layout(set = 0, binding = VCT_SVO_LEVELS_BINDING,
+       scalar) VCT_SVO_LEVELS_ACCESS buffer vct_svo_levels
 {
     vct_svo_level levels[];
 };

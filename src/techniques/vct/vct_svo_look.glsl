@@ -1,11 +1,14 @@
-// A look into the octree, as vct_look.glsl is one into the mips: down from the root to the node of the level that has
-// the place, and into its brick. There is nothing where the tree has no node.
+// A look into the octree, as vct_look.glsl is one into the mips: down from the root to the node of
+// the level that has the place, and into its brick. There is nothing where the tree has no node.
 #ifndef AG_VCT_SVO_LOOK_GLSL
 #define AG_VCT_SVO_LOOK_GLSL
 
 #include "techniques/vct/vct_ways.glsl"
 
-layout(set = 0, binding = 21, scalar) readonly buffer vct_svo_nodes { uint nodes[]; };
+layout(set = 0, binding = 21, scalar) readonly buffer vct_svo_nodes
+{
+    uint nodes[];
+};
 
 #include "techniques/vct/vct_svo.glsl"
 
@@ -22,7 +25,8 @@ vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int lev
         vec4 all = textureLod(light, uv, 0.0);
         return vct_met(all, vec3(all.a));
     }
-    vec3 share = abs(counted), way = uv.x + (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0)))) / 6.0;
+    vec3 share = abs(counted),
+         way = uv.x + (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0)))) / 6.0;
     vec4 x = textureLod(light, vec3(way.x, uv.yz), 0.0);
     vec4 y = textureLod(light, vec3(way.y, uv.yz), 0.0);
     vec4 z = textureLod(light, vec3(way.z, uv.yz), 0.0);

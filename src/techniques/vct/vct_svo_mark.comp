@@ -1,5 +1,6 @@
-// Which nodes at a depth have something in their bricks: every voxel marks those that its point lies in or on
-// (Hong 2015, sec. 2.5.3.2.4). A point on a border is in up to eight bricks, and all of them get what is there.
+// Which nodes at a depth have something in their bricks: every voxel marks those that its point
+// lies in or on (Hong 2015, sec. 2.5.3.2.4). A point on a border is in up to eight bricks, and all
+// of them get what is there.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,9 +14,20 @@ layout(push_constant, scalar) uniform push_block
 {
     vct_svo_push push;
 };
-layout(set = 0, binding = 1, scalar) readonly buffer vct_list { uint list[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer vct_arguments { uint groups[3]; uint listed; uint left_out; };
-layout(set = 0, binding = 3, scalar) buffer vct_svo_nodes { uint nodes[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer vct_list
+{
+    uint list[];
+};
+layout(set = 0, binding = 2, scalar) readonly buffer vct_arguments
+{
+    uint groups[3];
+    uint listed;
+    uint left_out;
+};
+layout(set = 0, binding = 3, scalar) buffer vct_svo_nodes
+{
+    uint nodes[];
+};
 
 #include "techniques/vct/vct_svo.glsl"
 

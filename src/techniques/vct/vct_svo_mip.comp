@@ -1,11 +1,12 @@
-// The bricks of a level from those of their nodes' children (Hong 2015, sec. 2.5.3.3.3): an octant of a child's brick,
-// 2 × 2 × 2 points, makes one as 2 × 2 × 2 texels of a mip do, and a point is the mean of the octants about it. As
-// octants overlap in the points that they share, this weighs 3 × 3 × 3 points with 1 2 1 along each axis, which is the
-// paper's Gaussian. Along the way of one of six volumes the nearer point covers the farther, so that a thin wall stays
-// as opaque as it is.
+// The bricks of a level from those of their nodes' children (Hong 2015, sec. 2.5.3.3.3): an octant
+// of a child's brick, 2 × 2 × 2 points, makes one as 2 × 2 × 2 texels of a mip do, and a point is
+// the mean of the octants about it. As octants overlap in the points that they share, this weighs 3
+// × 3 × 3 points with 1 2 1 along each axis, which is the paper's Gaussian. Along the way of one of
+// six volumes the nearer point covers the farther, so that a thin wall stays as opaque as it is.
 //
-// Of a point on a side only the octants within are known here: its half of the Gaussian, doubled. vct_svo_join.comp
-// makes it whole. Where there is no neighbour it stays: nothing is lost where the tree ends.
+// Of a point on a side only the octants within are known here: its half of the Gaussian, doubled.
+// vct_svo_join.comp makes it whole. Where there is no neighbour it stays: nothing is lost where the
+// tree ends.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -22,10 +23,16 @@ layout(push_constant, scalar) uniform push_block
     vct_svo_push push;
 };
 layout(set = 0, binding = 1, rgba16f) uniform image3D light;
-layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_nodes { uint nodes[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_places { uint places[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_nodes
+{
+    uint nodes[];
+};
+layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_places
+{
+    uint places[];
+};
 #define VCT_SVO_LEVELS_BINDING 4
-#define VCT_SVO_LEVELS_ACCESS readonly
+#define VCT_SVO_LEVELS_ACCESS  readonly
 #include "techniques/vct/vct_svo_levels.glsl"
 #include "techniques/vct/vct_svo.glsl"
 
@@ -43,8 +50,10 @@ vec4 octant(ivec3 from, int way, ivec3 size)
         if (size[axis] == 2) {
             at[axis] = 1;
             vec4 far = imageLoad(light, from + at);
-            if (!VCT_ANISOTROPIC) near = 0.5 * (near + far);
-            else near = (way & 1) == 0 ? vct_over(near, far) : vct_over(far, near);
+            if (!VCT_ANISOTROPIC)
+                near = 0.5 * (near + far);
+            else
+                near = (way & 1) == 0 ? vct_over(near, far) : vct_over(far, near);
         }
         sum += near;
     }
@@ -64,14 +73,17 @@ void main()
         ivec3 choice = ivec3(k & 1, k >> 1 & 1, k >> 2), inner = point & 1;
         if (any(greaterThan(choice, inner))) continue;
         ivec3 child = mix(point >> 1, choice, equal(inner, ivec3(1)));
-        ivec3 first = mix(point >> 1, 1 - choice, equal(inner, ivec3(1))); // point of the child's brick
+        ivec3 first =
+            mix(point >> 1, 1 - choice, equal(inner, ivec3(1))); // point of the child's brick
         ivec3 at = 2 * node + child;
         if (any(greaterThanEqual(2 * at, last))) continue; // outside of the grid
         octants++;
         uint word = nodes[8u * (brick + 1u) + uint(child.x | child.y << 1 | child.z << 2)];
         if (word == 0u) continue;
-        ivec3 from = svo_brick_texel(word - 1u) + first, size = min(last - (2 * at + first) + 1, ivec3(2));
-        for (int way = 0; way < VCT_WAYS; way++) sum[way] += octant(from + ivec3(3 * way * svo.row, 0, 0), way, size);
+        ivec3 from = svo_brick_texel(word - 1u) + first,
+              size = min(last - (2 * at + first) + 1, ivec3(2));
+        for (int way = 0; way < VCT_WAYS; way++)
+            sum[way] += octant(from + ivec3(3 * way * svo.row, 0, 0), way, size);
     }
     ivec3 to = svo_brick_texel(brick) + point;
     for (int way = 0; way < VCT_WAYS; way++)

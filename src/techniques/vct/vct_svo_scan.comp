@@ -1,5 +1,5 @@
-// From the marked nodes in each block to those before it, by one workgroup; which bricks they get, how many there is no
-// room for, and how many groups the passes over them have.
+// From the marked nodes in each block to those before it, by one workgroup; which bricks they get,
+// how many there is no room for, and how many groups the passes over them have.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,8 +13,14 @@ layout(push_constant, scalar) uniform push_block
 {
     vct_svo_push push;
 };
-layout(set = 0, binding = 1, scalar) readonly buffer vct_svo_nodes { uint nodes[]; };
-layout(set = 0, binding = 2, scalar) buffer vct_svo_blocks { uint blocks[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer vct_svo_nodes
+{
+    uint nodes[];
+};
+layout(set = 0, binding = 2, scalar) buffer vct_svo_blocks
+{
+    uint blocks[];
+};
 #define VCT_SVO_LEVELS_BINDING 3
 #define VCT_SVO_LEVELS_ACCESS
 #include "techniques/vct/vct_svo_levels.glsl"
@@ -50,7 +56,8 @@ void main()
         running += here;
     }
     if (me != VCT_SCAN_LOCAL - 1u) return;
-    uint taken = push.depth == 0u ? 0u : levels[push.depth - 1u].first + levels[push.depth - 1u].count;
+    uint taken =
+        push.depth == 0u ? 0u : levels[push.depth - 1u].first + levels[push.depth - 1u].count;
     // What has children needs a tile for them too.
     uint most = push.depth + 1u < svo.depths ? min(svo.bricks, svo.tiles) : svo.bricks;
     uint kept = min(running, most - min(taken, most));

@@ -1,5 +1,5 @@
-// Which texels of the light volume hold something: a list for each of its levels. Of a coarser texel the first of its
-// children to come here enters it; the order of a list changes nothing.
+// Which texels of the light volume hold something: a list for each of its levels. Of a coarser
+// texel the first of its children to come here enters it; the order of a list changes nothing.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,11 +13,26 @@ layout(push_constant, scalar) uniform push_block
 {
     vct_texels_push push;
 };
-layout(set = 0, binding = 1, scalar) readonly buffer static_mask { uint static_mask_words[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer dynamic_mask { uint dynamic_mask_words[]; };
-layout(set = 0, binding = 3, scalar) buffer vct_texel_mask { uint entered[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer vct_texels { uint texels[]; };
-layout(set = 0, binding = 5, scalar) buffer vct_texel_state { vct_texel_levels state; };
+layout(set = 0, binding = 1, scalar) readonly buffer static_mask
+{
+    uint static_mask_words[];
+};
+layout(set = 0, binding = 2, scalar) readonly buffer dynamic_mask
+{
+    uint dynamic_mask_words[];
+};
+layout(set = 0, binding = 3, scalar) buffer vct_texel_mask
+{
+    uint entered[];
+};
+layout(set = 0, binding = 4, scalar) writeonly buffer vct_texels
+{
+    uint texels[];
+};
+layout(set = 0, binding = 5, scalar) buffer vct_texel_state
+{
+    vct_texel_levels state;
+};
 
 void enter(uint level, uint place, ivec3 texel)
 {
@@ -32,7 +47,8 @@ void enter_above(ivec3 texel)
     for (uint level = 1u; level < push.levels; level++) {
         texel >>= 1;
         uint dim = uint(vct.volume_dim) >> level;
-        uint index = push.mask_first[level] + (uint(texel.z) * dim + uint(texel.y)) * dim + uint(texel.x);
+        uint index =
+            push.mask_first[level] + (uint(texel.z) * dim + uint(texel.y)) * dim + uint(texel.x);
         uint bit = 1u << (index & 31u);
         if ((atomicOr(entered[index >> 5], bit) & bit) != 0u) return;
         enter(level, atomicAdd(state.count[level], 1u), texel);

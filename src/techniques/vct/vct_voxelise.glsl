@@ -1,18 +1,27 @@
-// Walking the triangles of a draw over the voxels that they touch. A triangle is walked in columns along the axis to
-// which its plane is nearest to perpendicular (the dominant axis of Crassin & Green 2012; Hong 2015, sec. 2.5.3.1),
-// where it is at most a few voxels deep. Small triangles take one invocation; large ones are cut into tiles of columns
-// that wait in a queue for a workgroup each.
+// Walking the triangles of a draw over the voxels that they touch. A triangle is walked in columns
+// along the axis to which its plane is nearest to perpendicular (the dominant axis of Crassin &
+// Green 2012; Hong 2015, sec. 2.5.3.1), where it is at most a few voxels deep. Small triangles take
+// one invocation; large ones are cut into tiles of columns that wait in a queue for a workgroup
+// each.
 //
-// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_meet() and vct_visit(). Where it defines VCT_RASTER
-// instead, columns are what the rasteriser says they are (vct_raster.glsl).
+// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_meet() and vct_visit().
+// Where it defines VCT_RASTER instead, columns are what the rasteriser says they are
+// (vct_raster.glsl).
 #include "frame/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/vct_overlap.glsl"
 
 #ifndef VCT_RASTER
 // x, y, z of an indirect dispatch; how many tiles were asked for.
-layout(set = 0, binding = 14, scalar) buffer vct_queue_state { uint queue_groups[3]; uint queue_asked; };
-layout(set = 0, binding = 15, scalar) buffer vct_queue { uvec2 queue[]; };
+layout(set = 0, binding = 14, scalar) buffer vct_queue_state
+{
+    uint queue_groups[3];
+    uint queue_asked;
+};
+layout(set = 0, binding = 15, scalar) buffer vct_queue
+{
+    uvec2 queue[];
+};
 
 #if VCT_LARGE
 layout(local_size_x = VCT_TILE) in;
@@ -21,15 +30,14 @@ layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 #endif
 #endif
 
-struct vct_triangle
-{
+struct vct_triangle {
     uvec3 vertices;
-    vec3 a, b, c;      // in voxels from the grid's corner
-    int turn;          // 0…2: the axis along which columns run is (turn + 2) % 3
-    vec3 u, v, w;      // a, b, c with axes turned so that the third is the columns'
-    vec3 normal;       // turned; not unit: its length is twice the area in faces of a voxel
-    ivec3 low, high;   // turned: voxels that its box touches
-    ivec2 depths;      // the first and the last of them in a column, also beyond this grid
+    vec3 a, b, c;    // in voxels from the grid's corner
+    int turn;        // 0…2: the axis along which columns run is (turn + 2) % 3
+    vec3 u, v, w;    // a, b, c with axes turned so that the third is the columns'
+    vec3 normal;     // turned; not unit: its length is twice the area in faces of a voxel
+    ivec3 low, high; // turned: voxels that its box touches
+    ivec2 depths;    // the first and the last of them in a column, also beyond this grid
 };
 
 void vct_meet(vct_triangle t, ivec2 first); // before its voxels, from a column on
@@ -40,7 +48,8 @@ uint vct_put_off = 0u;
 void vct_visit_put_off(ivec3 voxel, vct_triangle t);
 #endif
 
-// What lies on the border of the scene's grid but for rounding belongs to the last voxel, and is not lost.
+// What lies on the border of the scene's grid but for rounding belongs to the last voxel, and is
+// not lost.
 vec3 kept_inside(vec3 at)
 {
     vec3 inside = clamp(at, vct.scene_low, vct.scene_high);
@@ -71,7 +80,8 @@ bool triangle_at(uint triangle, out vct_triangle t)
     t.a = vertex_at(t.vertices.x);
     t.b = vertex_at(t.vertices.y);
     t.c = vertex_at(t.vertices.z);
-    // What only touches a border from below is not in the voxel above; what lies in the border is in that one alone.
+    // What only touches a border from below is not in the voxel above; what lies in the border is
+    // in that one alone.
     vec3 low = floor(min(min(t.a, t.b), t.c)), high = max(ceil(max(max(t.a, t.b), t.c)) - 1.0, low);
     if (!all(lessThan(max(abs(low), abs(high)), vec3(1e6)))) return false;
     low = clamp(low, vct.scene_low, vct.scene_high - 1.0);
@@ -92,14 +102,16 @@ bool triangle_at(uint triangle, out vct_triangle t)
     return abs(t.normal.z) > 0.0;
 }
 
-// First and last voxel of a column that the triangle may touch. Its plane is within half a voxel in both directions of
-// the height at the column's centre, as the slopes along the dominant axis are at most 1.
+// First and last voxel of a column that the triangle may touch. Its plane is within half a voxel in
+// both directions of the height at the column's centre, as the slopes along the dominant axis are
+// at most 1.
 ivec2 depths_of(vct_triangle t, ivec2 column)
 {
     vec2 centre = vec2(column) + 0.5;
     float height = t.u.z - dot(t.normal.xy, centre - t.u.xy) / t.normal.z;
     float reach = 0.5 * (abs(t.normal.x) + abs(t.normal.y)) / abs(t.normal.z) + 0.01;
-    float low = clamp(height - reach, -1.0, float(vct.dim)), high = clamp(height + reach, -1.0, float(vct.dim));
+    float low = clamp(height - reach, -1.0, float(vct.dim)),
+          high = clamp(height + reach, -1.0, float(vct.dim));
     return ivec2(max(int(floor(low)), t.low.z), min(int(floor(high)), t.high.z));
 }
 
@@ -110,8 +122,9 @@ bool touches(vct_triangle t, ivec3 voxel)
     return vct_overlaps(u, v, w, t.normal);
 }
 
-// All voxels that the triangle touches in columns from `first` to `last`. What is touched is looked for in a loop of its
-// own: invocations of a group that have found something wait there for the others, and then visit together.
+// All voxels that the triangle touches in columns from `first` to `last`. What is touched is looked
+// for in a loop of its own: invocations of a group that have found something wait there for the
+// others, and then visit together.
 void walk_columns(vct_triangle t, ivec2 first, ivec2 last)
 {
     ivec2 column = first, depths = depths_of(t, first);
@@ -140,18 +153,22 @@ void walk_column(vct_triangle t, ivec2 column)
 #ifdef VCT_RASTER
 #elif VCT_LARGE
 
-// How far an edge reaches up and down between two places along x; nothing where it does not come there.
+// How far an edge reaches up and down between two places along x; nothing where it does not come
+// there.
 vec2 reach_of(vec2 from, vec2 to, float left, float right)
 {
     vec2 a = from.x <= to.x ? from : to, b = from.x <= to.x ? to : from;
     if (b.x < left || a.x > right) return vec2(1e6, -1e6);
     float slope = (b.y - a.y) / max(b.x - a.x, 1e-6);
-    float first = a.x < left ? clamp(a.y + slope * (left - a.x), min(a.y, b.y), max(a.y, b.y)) : a.y;
-    float last = b.x > right ? clamp(b.y + slope * (right - b.x), min(a.y, b.y), max(a.y, b.y)) : b.y;
+    float first =
+        a.x < left ? clamp(a.y + slope * (left - a.x), min(a.y, b.y), max(a.y, b.y)) : a.y;
+    float last =
+        b.x > right ? clamp(b.y + slope * (right - b.x), min(a.y, b.y), max(a.y, b.y)) : b.y;
     return vec2(min(first, last), max(first, last));
 }
 
-// First and last of the columns along y that the triangle may touch at x: the others of a tile are not looked at.
+// First and last of the columns along y that the triangle may touch at x: the others of a tile are
+// not looked at.
 ivec2 rows_of(vct_triangle t, int x)
 {
     float left = float(x) - 0.01, right = float(x) + 1.01;
@@ -164,8 +181,8 @@ ivec2 rows_of(vct_triangle t, int x)
 #ifdef VCT_PUTS_OFF
 shared uint put_off_count, put_off_columns[VCT_TILE * VCT_TILE];
 
-// What invocations have left is shared out among all of them: there is little of it, in lines along the triangle's
-// sides, and one that has a whole line would keep the others waiting.
+// What invocations have left is shared out among all of them: there is little of it, in lines along
+// the triangle's sides, and one that has a whole line would keep the others waiting.
 void walk_put_off(vct_triangle t, ivec2 first)
 {
     if (gl_LocalInvocationID.x == 0u) put_off_count = 0u;
@@ -225,7 +242,8 @@ uint queue_tiles(uint triangle, uint count)
     return fitting;
 }
 
-// A small triangle is one tile, and walked here; so are tiles of large ones for which the queue has no room.
+// A small triangle is one tile, and walked here; so are tiles of large ones for which the queue has
+// no room.
 void main()
 {
     uint triangle = gl_GlobalInvocationID.x;

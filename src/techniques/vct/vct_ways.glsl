@@ -1,4 +1,5 @@
-// Ways along the axes for which the light volume has what is seen on them: six, or one volume for all.
+// Ways along the axes for which the light volume has what is seen on them: six, or one volume for
+// all.
 #ifndef AG_VCT_WAYS_GLSL
 #define AG_VCT_WAYS_GLSL
 

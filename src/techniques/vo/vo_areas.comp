@@ -1,8 +1,9 @@
-// Volumetric obscurance by areas (Loos 2015, sec. 6.3.2): the depths in the part of the picture that a sample stands for are
-// spread evenly over a box with the mean and the variance that the pyramid has there.
+// Volumetric obscurance by areas (Loos 2015, sec. 6.3.2): the depths in the part of the picture
+// that a sample stands for are spread evenly over a box with the mean and the variance that the
+// pyramid has there.
 //
-// One texel is looked up, half as wide as the part. The patterns move the place over a texel, and by a level: the blur makes of
-// that what many taps would.
+// One texel is looked up, half as wide as the part. The patterns move the place over a texel, and
+// by a level: the blur makes of that what many taps would.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -12,7 +13,7 @@
 layout(set = 0, binding = 5) uniform sampler2D moments; // level 0 has half the picture's size
 
 const vec4 WHOLE = vec4(0.0, 0.0, 1.0, 0.5); // an area alone stands for the whole disk
-const float THINNEST = 1.0e-4; // half-width of a box, radii
+const float THINNEST = 1.0e-4;               // half-width of a box, radii
 
 // Of the tangent plane's own depths over a texel.
 float plane_variance(vec2 slope, float texel_px)
@@ -24,13 +25,16 @@ struct vo_box {
     float middle, half_width;
 };
 
-// Depths beside the tangent plane round an offset in pixels. The variance is what is left beside the plane's.
+// Depths beside the tangent plane round an offset in pixels. The variance is what is left beside
+// the plane's.
 vo_box box_at(vo_place p, vec2 offset, int level)
 {
     float texel_px = float(1 << level);
     vec2 jitter = (vec2(p.pattern & 3u, p.pattern >> 2u) - 1.5) / 4.0; // texels
-    // Not textureSize: software drivers have taken its level from one invocation for its neighbours too.
-    vec2 here = vec2(p.pixel) + 0.5, last = vec2(max(ivec2(view.width, view.height) >> level, 1) - 1);
+    // Not textureSize: software drivers have taken its level from one invocation for its neighbours
+    // too.
+    vec2 here = vec2(p.pixel) + 0.5,
+         last = vec2(max(ivec2(view.width, view.height) >> level, 1) - 1);
     vec2 texel = clamp(floor((here + offset) * (1.0 / texel_px) + jitter), vec2(0.0), last);
     vec2 seen = texelFetch(moments, ivec2(texel), level - 1).rg;
     vec2 step = (texel + 0.5) * texel_px - here;
@@ -43,8 +47,8 @@ vo_box box_at(vo_place p, vec2 offset, int level)
                   max(sqrt(3.0 * max(variance, 0.0)), THINNEST));
 }
 
-// From far before the box up to z the integral of the share of depths that are behind z: all before the box, none behind it.
-// z may be several.
+// From far before the box up to z the integral of the share of depths that are behind z: all before
+// the box, none behind it. z may be several.
 vec4 open_up_to(vo_box box, vec4 z)
 {
     vec4 u = clamp((z - box.middle) * (0.5 / box.half_width) + 0.5, 0.0, 1.0);
@@ -60,9 +64,11 @@ float open_between(vo_box box, float from, float to, float thickness)
 float vo_visibility(vo_place p)
 {
     mat2 turn = COUNT == 1 ? mat2(1.0) : screen_reflection(p.pattern);
-    mat2 pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) * p.sphere.radius_px;
+    mat2 pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) *
+                  p.sphere.radius_px;
     vec2 slope = turn * p.plane.on_disk;
-    float dither = (float((p.pattern * 7u) & 15u) + 0.5) / 16.0, level = log2(p.sphere.radius_px) + dither;
+    float dither = (float((p.pattern * 7u) & 15u) + 0.5) / 16.0,
+          level = log2(p.sphere.radius_px) + dither;
     float visible = 0.0, full = 0.0;
     for (int i = 0; i < COUNT; i++) {
         vec4 line = COUNT == 1 ? WHOLE : table.at[i];

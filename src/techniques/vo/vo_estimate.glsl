@@ -1,8 +1,9 @@
-// What the ways to look into the sphere round a pixel's point have in common. A shader includes this file and says in
-// vo_visibility how much it sees.
+// What the ways to look into the sphere round a pixel's point have in common. A shader includes
+// this file and says in vo_visibility how much it sees.
 //
-// Depths are in radii along a line of sight, z as in screen_ao.glsl. With the normal only what is before the surface's tangent
-// plane counts, and what is visible is divided by all there is up to there, so that a plane is visible in full.
+// Depths are in radii along a line of sight, z as in screen_ao.glsl. With the normal only what is
+// before the surface's tangent plane counts, and what is visible is divided by all there is up to
+// there, so that a plane is visible in full.
 #include "techniques/common/screen_ao_estimate.glsl"
 #include "techniques/vo/vo_shared.h"
 
@@ -25,20 +26,22 @@ struct vo_place {
 
 float vo_visibility(vo_place p);
 
-// How much of a line from `from` to `to` is open beside a surface at z; what is behind that by more than the thickness is empty.
+// How much of a line from `from` to `to` is open beside a surface at z; what is behind that by more
+// than the thickness is empty.
 float vo_open(float z, float from, float to, float thickness)
 {
     float before = clamp(z, from, to);
     return before - from + to - clamp(z + thickness, before, to);
 }
 
-// Depth behind the tangent plane of the surface at an offset in pixels. What lies beside the picture goes on as the plane from
-// its edge on.
+// Depth behind the tangent plane of the surface at an offset in pixels. What lies beside the
+// picture goes on as the plane from its edge on.
 float vo_behind(vo_place p, vec2 offset)
 {
     vec2 first = -vec2(p.pixel), last = vec2(view.width, view.height) - 1.0 + first;
     vec2 step = clamp(roundEven(offset), first, last);
-    float behind = screen_behind(p.sphere, p.plane, step, texelFetch(depth, p.pixel + ivec2(step), 0).r);
+    float behind =
+        screen_behind(p.sphere, p.plane, step, texelFetch(depth, p.pixel + ivec2(step), 0).r);
     return WITH_NORMAL ? min(behind + p.plane.tolerance, 0.0) : behind;
 }
 
@@ -49,8 +52,10 @@ float vo_of_radius(screen_place place, float radius_m)
     p.pattern = place.pattern;
     p.sphere = screen_sphere_at(place.pixel, place.depth, radius_m);
     p.plane = screen_plane_of(p.sphere, place.n);
-    // Without the normal the surface's own plane must close its half of the sphere: its thickness is across, not along lines.
-    p.thickness = table.thickness * (WITH_NORMAL ? 1.0 : sqrt(1.0 + dot(p.plane.on_disk, p.plane.on_disk)));
+    // Without the normal the surface's own plane must close its half of the sphere: its thickness
+    // is across, not along lines.
+    p.thickness =
+        table.thickness * (WITH_NORMAL ? 1.0 : sqrt(1.0 + dot(p.plane.on_disk, p.plane.on_disk)));
     return mix(WITH_NORMAL ? 1.0 : 0.5, vo_visibility(p), screen_fade(p.sphere));
 }
 

@@ -1,5 +1,6 @@
-// Volumetric obscurance by lines (Loos 2015, sec. 6.3.1, 6.3.3, 6.3.4): of each line through the sphere, the length that is
-// visible over its length, weighted with the volume that the line stands for.
+// Volumetric obscurance by lines (Loos 2015, sec. 6.3.1, 6.3.3, 6.3.4): of each line through the
+// sphere, the length that is visible over its length, weighted with the volume that the line stands
+// for.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -12,18 +13,21 @@ struct vo_disk {
     vec2 slope;
 };
 
-// What is open of a line through the disk, from the sphere's front to its back or the tangent plane.
+// What is open of a line through the disk, from the sphere's front to its back or the tangent
+// plane.
 float open_on(vo_place p, vo_disk disk, vec2 at, float tangent, float half_length)
 {
     float top = WITH_NORMAL ? clamp(tangent, -half_length, half_length) : half_length;
     return vo_open(tangent + vo_behind(p, disk.pixels * at), -half_length, top, p.thickness);
 }
 
-// Of two lines on both sides of the centre. With the normal what one has more of below the plane, the other has less of.
+// Of two lines on both sides of the centre. With the normal what one has more of below the plane,
+// the other has less of.
 float open_on_both(vo_place p, vo_disk disk, vec4 line)
 {
     float tangent = dot(disk.slope, line.xy);
-    return line.w * (open_on(p, disk, line.xy, tangent, line.z) + open_on(p, disk, -line.xy, -tangent, line.z));
+    return line.w * (open_on(p, disk, line.xy, tangent, line.z) +
+                     open_on(p, disk, -line.xy, -tangent, line.z));
 }
 
 float open_on_one(vo_place p, vo_disk disk, vec4 line)
@@ -37,7 +41,8 @@ float vo_visibility(vo_place p)
 {
     mat2 turn = screen_reflection(p.pattern);
     vo_disk disk;
-    disk.pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) * p.sphere.radius_px;
+    disk.pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) *
+                  p.sphere.radius_px;
     disk.slope = turn * p.plane.on_disk;
     if (COUNT == 1) return open_on_one(p, disk, table.at[0]);
     float full = WITH_NORMAL ? 0.5 : 1.0; // of the sphere, by the set's symmetry

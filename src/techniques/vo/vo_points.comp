@@ -1,5 +1,6 @@
-// Volumetric obscurance by points (Loos 2015, sec. 6.3, 6.3.4; Mittring 2007; Filion & McNaughton 2008), to be held against
-// lines: which points in the sphere are before the surface, or behind it by more than its thickness.
+// Volumetric obscurance by points (Loos 2015, sec. 6.3, 6.3.4; Mittring 2007; Filion & McNaughton
+// 2008), to be held against lines: which points in the sphere are before the surface, or behind it
+// by more than its thickness.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +14,8 @@ float vo_visibility(vo_place p)
     mat3 turn = screen_reflection_of_ball(p.pattern);
     vec3 outwards = normalize(vec3(p.plane.on_disk, -1.0));
     float visible = table.centre * (WITH_NORMAL ? 1.0 : 0.5);
-    [[unroll]] for (int i = 0; i < COUNT; i++) {
+    [[unroll]] for (int i = 0; i < COUNT; i++)
+    {
         vec3 point = turn * table.at[i].xyz;
         // Points below the tangent plane are mirrored to above it.
         if (WITH_NORMAL) point -= 2.0 * min(dot(point, outwards), 0.0) * outwards;

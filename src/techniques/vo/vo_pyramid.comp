@@ -1,12 +1,14 @@
-// A level of the pyramid of moments (Loos 2015, sec. 6.3.2): mean and variance of the depth buffer's value over twice as many
-// pixels each way as in the level below, which the depth buffer itself is at first. Variances and not second moments, which
-// would differ from the mean's square by less than their rounding.
+// A level of the pyramid of moments (Loos 2015, sec. 6.3.2): mean and variance of the depth
+// buffer's value over twice as many pixels each way as in the level below, which the depth buffer
+// itself is at first. Variances and not second moments, which would differ from the mean's square
+// by less than their rounding.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0) uniform sampler2D before; // mean, variance; of depth the latter reads 0
+layout(set = 0,
+       binding = 0) uniform sampler2D before; // mean, variance; of depth the latter reads 0
 layout(set = 0, binding = 1, rg32f) uniform writeonly image2D after;
 
 void main()

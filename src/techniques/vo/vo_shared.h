@@ -13,9 +13,10 @@ struct vo_samples {
     vec4s at[VO_MOST_SAMPLES];
     float levels[VO_MOST_SAMPLES]; // areas: of the pyramid, log2 of the side in radii
     int32_t level_count;           // of the pyramid, those in use
-    vec2s radii_m;   // the second 0: there is but the first
-    float thickness; // of occluders, radii
-    float centre;    // weight of the sample at the sphere's centre, which needs no look; 0: there is none
+    vec2s radii_m;                 // the second 0: there is but the first
+    float thickness;               // of occluders, radii
+    float centre; // weight of the sample at the sphere's centre, which needs no look; 0: there is
+                  // none
 };
 
 #ifndef AG_GLSL

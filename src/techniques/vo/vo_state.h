@@ -19,7 +19,8 @@ struct vo {
     struct vo_options options;
     struct screen_ao ao;
     gpu_pipeline estimate;
-    gpu_image moments; // areas: RG32F, mean and variance of depth; level 0 has half the frame's size
+    gpu_image
+        moments; // areas: RG32F, mean and variance of depth; level 0 has half the frame's size
     gpu_pipeline pyramid;
     struct vo_samples table;
 };

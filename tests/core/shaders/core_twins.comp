@@ -1,4 +1,5 @@
-// Runs every function of sh.glsl and rng.glsl, one invocation per direction; test_twins.c compares them with C.
+// Runs every function of sh.glsl and rng.glsl, one invocation per direction; test_twins.c compares
+// them with C.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -18,9 +19,18 @@ struct twin {
     uint hash;
 };
 
-layout(scalar, binding = 0) readonly buffer Directions { vec3 directions[]; };
-layout(scalar, binding = 1) readonly buffer Coefficients { float coefficients[9]; };
-layout(scalar, binding = 2) writeonly buffer Twins { twin twins[]; };
+layout(scalar, binding = 0) readonly buffer Directions
+{
+    vec3 directions[];
+};
+layout(scalar, binding = 1) readonly buffer Coefficients
+{
+    float coefficients[9];
+};
+layout(scalar, binding = 2) writeonly buffer Twins
+{
+    twin twins[];
+};
 
 void main()
 {

@@ -2,13 +2,16 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// What techniques see of the triangles of a draw: how many there are, how many are solid at their middle, and their area in
-// whole 1/1024 m², which sums in any order.
+// What techniques see of the triangles of a draw: how many there are, how many are solid at their
+// middle, and their area in whole 1/1024 m², which sums in any order.
 #include "frame/scene_triangles.glsl"
 
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 
-layout(set = 0, binding = 12, scalar) buffer totals { uint total[]; };
+layout(set = 0, binding = 12, scalar) buffer totals
+{
+    uint total[];
+};
 
 void main()
 {

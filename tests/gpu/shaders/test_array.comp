@@ -2,7 +2,10 @@
 // An array of bindings, which the layer does not offer.
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 0) uniform sampler2D images[2];
-layout(set = 0, binding = 2, std430) writeonly buffer Values { vec4 values[]; };
+layout(set = 0, binding = 2, std430) writeonly buffer Values
+{
+    vec4 values[];
+};
 
 void main()
 {

@@ -2,7 +2,10 @@
 // The six faces of a cube along the axes, in the order +x, −x, +y, −y, +z, −z.
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 0) uniform samplerCube cube;
-layout(set = 0, binding = 1, std430) writeonly buffer Faces { float faces[]; };
+layout(set = 0, binding = 1, std430) writeonly buffer Faces
+{
+    float faces[];
+};
 
 void main()
 {

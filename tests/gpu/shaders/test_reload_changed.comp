@@ -1,8 +1,15 @@
 #version 460
 // What test_reload.comp is changed to: another value, and another binding.
 layout(local_size_x = 8) in;
-layout(set = 0, binding = 1, std430) writeonly buffer Values { uint values[]; };
-layout(push_constant) uniform Push { uint unused, value; } push;
+layout(set = 0, binding = 1, std430) writeonly buffer Values
+{
+    uint values[];
+};
+layout(push_constant) uniform Push
+{
+    uint unused, value;
+}
+push;
 
 void main()
 {

@@ -1,8 +1,14 @@
 #version 460
 // Total += the sum of some words: a chain through transient data.
 layout(local_size_x = 8) in;
-layout(set = 0, binding = 0, std430) readonly buffer Words { uint words[]; };
-layout(set = 0, binding = 1, std430) buffer Total { uint total; };
+layout(set = 0, binding = 0, std430) readonly buffer Words
+{
+    uint words[];
+};
+layout(set = 0, binding = 1, std430) buffer Total
+{
+    uint total;
+};
 
 void main()
 {

@@ -1,6 +1,12 @@
 #version 460
 // A triangle that covers the screen, at the pushed depth; counter-clockwise in the image.
-layout(push_constant) uniform Push { vec4 color; float depth; float size; } push;
+layout(push_constant) uniform Push
+{
+    vec4 color;
+    float depth;
+    float size;
+}
+push;
 
 void main()
 {
