@@ -2,7 +2,7 @@
 #include "api/objects.h"
 
 #include "frame/frame.h"
-#include "scene/builtin.h"
+#include "scene/builtin/builtin.h"
 #include "techniques/registry.h"
 
 static const char *type_name(enum option_type type)

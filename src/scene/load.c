@@ -1,6 +1,6 @@
 // The one door for scene names: built-in scenes are written "@name", everything else is a file.
-#include "scene/builtin.h"
-#include "scene/import.h"
+#include "scene/builtin/builtin.h"
+#include "scene/import/import.h"
 
 struct scene *scene_load(struct host *host, const char *name)
 {

@@ -4,7 +4,7 @@
 
 #include "image/png_file.h"
 #include "image/tonemap.h"
-#include "scene/builtin.h"
+#include "scene/builtin/builtin.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // Laws that every built-in scene keeps, and the published facts of single ones.
 #include "framework/test.h"
 
-#include "scene/builtin.h"
+#include "scene/builtin/builtin.h"
 #include "scene/pose.h"
 #include "scene/raycast.h"
 

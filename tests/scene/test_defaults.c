@@ -1,8 +1,8 @@
 // The camera and the sun of scenes that bring none.
 #include "framework/test.h"
 
-#include "scene/builtin_shapes.h"
-#include "scene/builtin.h"
+#include "scene/builtin/shapes.h"
+#include "scene/builtin/builtin.h"
 #include "scene/defaults.h"
 #include "scene/raycast.h"
 

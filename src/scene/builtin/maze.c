@@ -1,0 +1,211 @@
+// @maze: cubes on a square plan, each joined to an earlier one by a whole missing face (the
+// two-dimensional mazes of Loos 2015, chapter 3). Neighbours that are not joined have a wall
+// between them. The light is in the first block.
+#include "scene/builtin/parts.h"
+
+#include "core/rng.h"
+
+#include <math.h>
+#include <string.h>
+
+struct maze_options {
+#define OPTION OPTION_FIELD
+#include "maze_options.def"
+#undef OPTION
+};
+
+#define OPTION(...) OPTION_ROW(struct maze_options, __VA_ARGS__)
+static const struct option_row rows[] = {
+#include "maze_options.def"
+};
+#undef OPTION
+
+static const float WALL_PART = 0.08f; // of a block's edge
+
+enum { MAX_BLOCKS = 64, PLAN = 2 * MAX_BLOCKS + 1, MAX_PLANES = 2 * PLAN + 2 };
+
+struct maze {
+    int count;
+    int x[MAX_BLOCKS], z[MAX_BLOCKS], parent[MAX_BLOCKS]; // parent[0] is -1
+    // The plan as cells and walls take turns: block (x, z) at [2 x + 1][2 z + 1]; 1 where it is
+    // open.
+    bool open[2 * PLAN + 1][2 * PLAN + 1];
+    int low[2], high[2]; // the part of `open` that is used, walls included
+};
+
+static bool is_block(const struct maze *maze, int x, int z)
+{
+    return maze->open[2 * x + 1][2 * z + 1];
+}
+
+static void add_block(struct maze *maze, int x, int z, int parent)
+{
+    int b = maze->count++;
+    maze->x[b] = x;
+    maze->z[b] = z;
+    maze->parent[b] = parent;
+    maze->open[2 * x + 1][2 * z + 1] = true;
+    if (parent >= 0) maze->open[x + maze->x[parent] + 1][z + maze->z[parent] + 1] = true;
+}
+
+// Grows from the middle: an earlier block and a side are drawn until that side is free.
+static void lay_maze(struct maze *maze, int blocks, uint32_t seed)
+{
+    static const int sides[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
+    struct rng rng = rng_for(seed, 0, 0);
+    add_block(maze, MAX_BLOCKS, MAX_BLOCKS, -1);
+    while (maze->count < blocks) {
+        int from = (int)(rng_u32(&rng) % (uint32_t)maze->count);
+        const int *side = sides[rng_u32(&rng) % 4u];
+        int x = maze->x[from] + side[0], z = maze->z[from] + side[1];
+        if (!is_block(maze, x, z)) add_block(maze, x, z, from);
+    }
+    for (int axis = 0; axis < 2; axis++) {
+        const int *at = axis ? maze->z : maze->x;
+        maze->low[axis] = maze->high[axis] = 2 * at[0] + 1;
+        for (int b = 0; b < blocks; b++) {
+            int cell = 2 * at[b] + 1;
+            if (cell - 1 < maze->low[axis]) maze->low[axis] = cell - 1;
+            if (cell + 1 > maze->high[axis]) maze->high[axis] = cell + 1;
+        }
+    }
+}
+
+enum part { FLOOR = 1, CEILING, WALLS, FIRST_COLOUR, PART_COUNT = FIRST_COLOUR + 4 };
+
+// Something of the maze is here or right beside it.
+static bool near_open(const struct maze *maze, int i, int k)
+{
+    for (int di = -1; di <= 1; di++) {
+        for (int dk = -1; dk <= 1; dk++) {
+            int x = i + di, z = k + dk;
+            if (x < 0 || z < 0 || x > 2 * PLAN || z > 2 * PLAN) continue;
+            if (maze->open[x][z]) return true;
+        }
+    }
+    return false;
+}
+
+// A wall or a post stands where the plan is not open but touches what is; blocks that are not of
+// the maze stay empty, and so does all around it.
+static bool is_covered(const struct maze *maze, int i, int k)
+{
+    if (maze->open[i][k]) return true;
+    bool between_blocks = i % 2 == 0 || k % 2 == 0;
+    return between_blocks && near_open(maze, i, k);
+}
+
+static int maze_part(const void *user, int i, int j, int k)
+{
+    const struct maze *maze = user;
+    i += maze->low[0];
+    k += maze->low[1];
+    if (!is_covered(maze, i, k)) return 0;
+    if (j == 0) return FLOOR;
+    if (j == 2) return CEILING;
+    if (maze->open[i][k]) return 0;
+    bool post = i % 2 == 0 && k % 2 == 0;
+    // Every third wall is coloured.
+    uint32_t hash = pcg_hash((uint32_t)(i * 4099 + k));
+    return post || hash % 3u != 0 ? WALLS : FIRST_COLOUR + (int)((hash >> 8) % 4u);
+}
+
+// Planes of the used part along one axis, around the first block's middle.
+static int lay_planes(const struct maze *maze, int axis, float size, float *plane)
+{
+    int middle = axis ? maze->z[0] : maze->x[0], count = 0;
+    float half_wall = 0.5f * WALL_PART * size;
+    for (int cell = maze->low[axis]; cell <= maze->high[axis] + 1; cell++) {
+        // Even cells are walls around the border before block cell / 2, odd ones the blocks
+        // between.
+        float border = ((float)(cell / 2 - middle) - 0.5f) * size;
+        plane[count++] = cell % 2 == 0 ? border - half_wall : border + half_wall;
+    }
+    return count - 1;
+}
+
+static bool build_walls(struct scene *scene, const struct maze *maze, float size)
+{
+    static const struct {
+        const char *name;
+        vec3s colour;
+    } parts[PART_COUNT] = {
+        [FLOOR] = { "floor", { { 0.45f, 0.43f, 0.40f } } },
+        [CEILING] = { "ceiling", { { 0.78f, 0.78f, 0.78f } } },
+        [WALLS] = { "walls", { { 0.73f, 0.71f, 0.68f } } },
+        [FIRST_COLOUR] = { "red walls", { { 0.65f, 0.10f, 0.08f } } },
+        { "green walls", { { 0.14f, 0.48f, 0.12f } } },
+        { "blue walls", { { 0.12f, 0.22f, 0.65f } } },
+        { "yellow walls", { { 0.70f, 0.55f, 0.12f } } },
+    };
+    float x[MAX_PLANES], z[MAX_PLANES];
+    float wall = WALL_PART * size;
+    const float y[4] = { -wall, 0, size - wall, size };
+    struct shape_grid grid = { .x = x, .y = y, .z = z, .ny = 3, .part = maze_part, .user = maze };
+    grid.nx = lay_planes(maze, 0, size, x);
+    grid.nz = lay_planes(maze, 1, size, z);
+    struct shape_builder builder;
+    shape_begin(&builder, scene);
+    for (int part = FLOOR; part < PART_COUNT; part++) {
+        shape_blocks(&builder, &grid, part);
+        if (builder.index_count == 0) { // a small maze may lack a colour
+            shape_discard(&builder);
+            continue;
+        }
+        int material = builtin_diffuse(scene, parts[part].name, parts[part].colour);
+        if (material < 0 || shape_emit(&builder, parts[part].name, material) < 0) {
+            shape_discard(&builder);
+            return false;
+        }
+    }
+    return true;
+}
+
+static vec3s block_middle(const struct maze *maze, int block, float size, float height)
+{
+    return vec3_of((float)(maze->x[block] - maze->x[0]) * size, height * size,
+                   (float)(maze->z[block] - maze->z[0]) * size);
+}
+
+// `main` stands at the far side of the second block and looks into the first one; `far` stands in
+// the last block and looks towards the one before it.
+static bool build_cameras(struct scene *scene, const struct maze *maze, float size)
+{
+    vec3s light_block = block_middle(maze, 0, size, 0.45f);
+    vec3s eye = vec3_of(0.35f * size, 0.5f * size, 0.35f * size);
+    if (maze->count > 1) {
+        vec3s beside = block_middle(maze, 1, size, 0.5f);
+        vec3s away = glms_vec3_sub(beside, block_middle(maze, 0, size, 0.5f));
+        eye = glms_vec3_muladds(away, 0.38f, beside);
+    }
+    if (!builtin_camera(scene, "main", eye, light_block, glm_rad(70.0f))) return false;
+    if (maze->count == 1) return true;
+    int last = maze->count - 1;
+    vec3s end = block_middle(maze, last, size, 0.5f);
+    vec3s towards = block_middle(maze, maze->parent[last], size, 0.45f);
+    vec3s back = glms_vec3_sub(end, towards);
+    struct camera camera = { .name = "far", .vertical_fov_rad = glm_rad(70.0f), .near_m = 0.01f };
+    camera.node = scene_add_node_looking(scene, "far", glms_vec3_muladds(back, 0.38f, end),
+                                         glms_vec3_negate(back));
+    return camera.node >= 0 && scene_add_camera(scene, &camera) >= 0;
+}
+
+static bool build_maze(struct scene *scene, const void *options)
+{
+    const struct maze_options *o = options;
+    struct maze *maze = host_alloc(scene->host, 1, sizeof *maze);
+    if (!maze) return false;
+    lay_maze(maze, o->blocks, (uint32_t)o->seed);
+    bool ok = build_walls(scene, maze, o->size) &&
+              builtin_ball(scene, vec3_of(0, 0.62f * o->size, 0), o->light == 1, o->lumens) &&
+              build_cameras(scene, maze, o->size);
+    host_free(scene->host, maze);
+    return ok;
+}
+
+const struct builtin_scene builtin_maze = {
+    .name = "maze",
+    .title = "cubes joined by missing faces, the light in one of them",
+    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct maze_options) },
+    .build = build_maze,
+};

@@ -1,0 +1,112 @@
+// A glTF 2.0 file being read. Internal to src/scene: gltf_file.c opens it, gltf_check.c decides
+// whether we can read it, gltf_accessor.c gives arrays, the others fill the scene in the order of
+// `import_gltf`.
+#pragma once
+
+#include "scene/import/import_context.h"
+
+#include <jansson.h>
+
+struct gltf_buffer {
+    const uint8_t *data;
+    size_t size;
+    char *path;  // of an external file, else NULL; buffers of one path share data
+    void *owned; // to be freed, NULL where data is another's
+};
+
+struct gltf_cached { // an accessor's array, decoded once
+    void *array;
+    int width;
+};
+
+struct gltf {
+    struct import *import;
+    json_t *root;
+    json_t *empty; // an array, for what is absent
+    json_t *accessors, *views, *nodes, *meshes, *materials, *textures, *images, *samplers, *skins,
+        *cameras, *lights, *animations; // arrays, empty where absent; borrowed from root
+    const uint8_t *binary;              // the GLB's second chunk, NULL where there is none
+    size_t binary_size;
+    struct gltf_buffer *buffers;
+    size_t buffer_count;
+    struct gltf_cached *cached;   // per accessor
+    uint32_t *scene_node;         // glTF node → scene node (parents first)
+    uint8_t *in_scene;            // glTF node → 1 when the default scene shows it
+    int *first_mesh, *mesh_parts; // glTF mesh → its scene meshes (one per triangle primitive)
+    int *image_of;                // glTF image → scene image, -1
+    int default_material;         // scene material for primitives without, -1 until needed
+    bool failed;                  // a value was wrong; the message is out
+};
+
+// --- gltf_json.c: values with their checks. A wrong type or range fails once, with `where` (see
+// gltf_at) and the key, and sets `failed`; the answer is then the fallback, so that a caller may
+// look at `failed` at the end.
+
+struct gltf_object {
+    struct gltf *gltf;
+    json_t *json; // an object, or NULL: then everything is absent
+    const char *kind;
+    size_t index; // "materials", 3
+};
+
+struct gltf_object gltf_element(struct gltf *gltf, json_t *array, const char *kind, size_t i);
+struct gltf_object gltf_child(struct gltf_object object, const char *key);
+struct gltf_object gltf_extension(struct gltf_object object, const char *name);
+bool gltf_has(struct gltf_object object, const char *key);
+json_t *gltf_array(struct gltf_object object, const char *key); // never NULL
+// Fails with the object's name before the sentence. False, always; a macro, so that analyzers see
+// that.
+#define gltf_wrong(...) gltf_false(gltf_set_wrong(__VA_ARGS__))
+bool gltf_set_wrong(struct gltf_object object, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static inline bool gltf_false(bool failed)
+{
+    (void)failed;
+    return false;
+}
+int gltf_index(struct gltf_object object, const char *key, json_t *of); // -1: absent
+int gltf_index_value(struct gltf_object object, const char *key, json_t *value, json_t *of);
+size_t gltf_size(struct gltf_object object, const char *key, size_t fallback, size_t max);
+float gltf_float(struct gltf_object object, const char *key, float fallback, float min, float max);
+bool gltf_bool(struct gltf_object object, const char *key, bool fallback);
+// True when present and right.
+bool gltf_floats(struct gltf_object object, const char *key, int count, float *out);
+const char *gltf_string(struct gltf_object object, const char *key); // NULL: absent
+
+// --- gltf_file.c
+bool gltf_open(struct gltf *gltf, struct import *import, const struct file_bytes *bytes);
+void gltf_close(struct gltf *gltf);
+bool gltf_load_buffers(struct gltf *gltf);
+// The bytes of the base64 payload of a data URI of `object`, owned by the caller; NULL after a
+// failure.
+uint8_t *gltf_data_uri(struct gltf_object object, const char *uri, size_t *size);
+
+// --- gltf_check.c
+bool gltf_check_asset(struct gltf *gltf); // version, extensions
+bool gltf_order_nodes(struct gltf *gltf); // fills scene_node and in_scene; refuses loops
+
+// --- gltf_accessor.c
+struct gltf_view {
+    const uint8_t *data;
+    size_t size, stride; // stride 0: tight
+};
+bool gltf_view(struct gltf *gltf, int index, struct gltf_view *out);
+// The number of elements, 0 on failure.
+size_t gltf_accessor_count(struct gltf *gltf, int accessor);
+// Components per element: 1, 2, 3, 4, 16; 0 on failure.
+int gltf_accessor_width(struct gltf *gltf, int accessor);
+// All elements as floats, normalised integers as their fractions, sparse values put in; from the
+// scene's arena, shared by all who ask for the same. `width`: the components asked for. NULL on
+// failure.
+float *gltf_floats_of(struct gltf *gltf, int accessor, int width);
+// Unsigned integers (indices, joints). NULL on failure. From the scene's arena, not shared.
+uint32_t *gltf_integers_of(struct gltf *gltf, int accessor, int width);
+
+// --- the scene's parts, in this order
+bool gltf_load_materials(struct gltf *gltf); // and the images that they use
+int gltf_material_default(
+    struct gltf *gltf); // index of a scene material for primitives without; -1 on failure
+bool gltf_load_meshes(struct gltf *gltf);
+bool gltf_load_nodes(struct gltf *gltf); // nodes, instances, lights, cameras
+bool gltf_load_skins(struct gltf *gltf);
+bool gltf_load_animations(struct gltf *gltf);

@@ -1,0 +1,225 @@
+// Materials, textures, samplers and images of a glTF file (glTF 2.0, sections 3.8 and 3.9).
+#include "scene/import/gltf/gltf.h"
+
+#include "scene/import/import_image.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    FILTER_NEAREST = 9728,
+    WRAP_GL_CLAMP = 33071,
+    WRAP_GL_MIRROR = 33648,
+    WRAP_GL_REPEAT = 10497
+};
+
+static enum texture_wrap wrap_of(struct gltf_object sampler, const char *key)
+{
+    size_t wrap = gltf_size(sampler, key, WRAP_GL_REPEAT, 65535);
+    if (wrap == WRAP_GL_CLAMP) return WRAP_CLAMP;
+    if (wrap == WRAP_GL_MIRROR) return WRAP_MIRROR;
+    if (wrap != WRAP_GL_REPEAT) gltf_wrong(sampler, "%s %zu is unknown", key, wrap);
+    return WRAP_REPEAT;
+}
+
+// `info` is the material's textureInfo. image: the glTF image until link_images.
+static struct texture_use texture_use_of(struct gltf *gltf, struct gltf_object info)
+{
+    struct texture_use use = texture_use_none();
+    int texture_index = gltf_index(info, "index", gltf->textures);
+    if (texture_index < 0) return use;
+    struct gltf_object texture =
+        gltf_element(gltf, gltf->textures, "texture", (size_t)texture_index);
+    int image = gltf_index(texture, "source", gltf->images);
+    if (image < 0) {
+        import_note(gltf->import, "textures without a JPEG or PNG image");
+        return use;
+    }
+    struct gltf_object transform = gltf_extension(info, "KHR_texture_transform");
+    size_t uv_set = gltf_size(info, "texCoord", 0, 65535);
+    uv_set = gltf_size(transform, "texCoord", uv_set, 65535);
+    if (uv_set > 1) {
+        import_note(gltf->import, "textures on texture coordinate sets above 1");
+        return use;
+    }
+    use.image = image;
+    use.uv_set = (int)uv_set;
+    gltf_floats(transform, "offset", 2, use.uv_offset);
+    gltf_floats(transform, "scale", 2, use.uv_scale);
+    use.uv_rotation_rad = gltf_float(transform, "rotation", 0.0f, -FLT_MAX, FLT_MAX);
+    int sampler_index = gltf_index(texture, "sampler", gltf->samplers);
+    if (sampler_index < 0) return use;
+    struct gltf_object sampler =
+        gltf_element(gltf, gltf->samplers, "sampler", (size_t)sampler_index);
+    use.wrap_u = wrap_of(sampler, "wrapS");
+    use.wrap_v = wrap_of(sampler, "wrapT");
+    use.nearest = gltf_size(sampler, "magFilter", 0, 65535) == FILTER_NEAREST;
+    return use;
+}
+
+static void load_alpha_mode(struct gltf_object object, struct material *material)
+{
+    const char *mode = gltf_string(object, "alphaMode");
+    if (!mode || strcmp(mode, "OPAQUE") == 0)
+        material->alpha_mode = ALPHA_OPAQUE;
+    else if (strcmp(mode, "MASK") == 0)
+        material->alpha_mode = ALPHA_MASK;
+    else if (strcmp(mode, "BLEND") == 0)
+        material->alpha_mode = ALPHA_BLEND;
+    else
+        gltf_wrong(object, "alphaMode is none of OPAQUE, MASK, BLEND");
+    material->alpha_cutoff = gltf_float(object, "alphaCutoff", 0.5f, 0.0f, FLT_MAX);
+}
+
+// The material as glTF's defaults have it: white, metallic 1, rough 1.
+static struct material gltf_default(void)
+{
+    struct material material = material_default();
+    material.base_color = vec4_of(vec3_of(1.0f, 1.0f, 1.0f), 1.0f);
+    material.metallic = material.roughness = 1.0f;
+    return material;
+}
+
+static bool load_material(struct gltf *gltf, size_t i, struct material *out)
+{
+    struct gltf_object object = gltf_element(gltf, gltf->materials, "material", i);
+    struct gltf_object pbr = gltf_child(object, "pbrMetallicRoughness");
+    struct gltf_object normal = gltf_child(object, "normalTexture");
+    struct material m = gltf_default();
+    m.name = import_name(gltf->import, gltf_string(object, "name"), "material", i);
+    gltf_floats(pbr, "baseColorFactor", 4, m.base_color.raw);
+    for (int k = 0; k < 4; k++) m.base_color.raw[k] = fminf(fmaxf(m.base_color.raw[k], 0.0f), 1.0f);
+    m.metallic = gltf_float(pbr, "metallicFactor", 1.0f, 0.0f, 1.0f);
+    m.roughness = gltf_float(pbr, "roughnessFactor", 1.0f, 0.0f, 1.0f);
+    m.emissive = vec3_of(0.0f, 0.0f, 0.0f);
+    gltf_floats(object, "emissiveFactor", 3, m.emissive.raw);
+    // Emission of strength 1 is 1 cd/m² (KHR_materials_emissive_strength).
+    float strength = gltf_float(gltf_extension(object, "KHR_materials_emissive_strength"),
+                                "emissiveStrength", 1.0f, 0.0f, 1e18f);
+    for (int k = 0; k < 3; k++)
+        m.emissive.raw[k] = fminf(fmaxf(m.emissive.raw[k], 0.0f), 1e18f) * strength;
+    m.normal_scale = gltf_float(normal, "scale", 1.0f, -FLT_MAX, FLT_MAX);
+    load_alpha_mode(object, &m);
+    m.double_sided = gltf_bool(object, "doubleSided", false);
+    m.unlit = gltf_extension(object, "KHR_materials_unlit").json != NULL;
+    m.base_color_map = texture_use_of(gltf, gltf_child(pbr, "baseColorTexture"));
+    m.metallic_roughness_map = texture_use_of(gltf, gltf_child(pbr, "metallicRoughnessTexture"));
+    m.normal_map = texture_use_of(gltf, normal);
+    m.emissive_map = texture_use_of(gltf, gltf_child(object, "emissiveTexture"));
+    *out = m;
+    return m.name && !gltf->failed;
+}
+
+static struct texture_use *map_of(struct material *material, int k)
+{
+    struct texture_use *maps[] = { &material->base_color_map, &material->metallic_roughness_map,
+                                   &material->normal_map, &material->emissive_map };
+    return maps[k];
+}
+
+// The encoded bytes of an image: in a buffer, in a data URI, or in a file beside. *owned is to be
+// freed.
+static bool find_image(struct gltf *gltf, size_t i, struct image_source *source, void **owned)
+{
+    struct import *import = gltf->import;
+    struct gltf_object object = gltf_element(gltf, gltf->images, "image", i);
+    const char *uri = gltf_string(object, "uri"), *name = gltf_string(object, "name");
+    int view_index = gltf_index(object, "bufferView", gltf->views);
+    bool is_data = uri && strncmp(uri, "data:", 5) == 0;
+    source->jpeg_and_png_only = true;
+    source->name = import_name(import, !name && !is_data ? uri : name, "image", i);
+    if (gltf->failed || !source->name) return false;
+    if (view_index >= 0) {
+        struct gltf_view view;
+        if (!gltf_view(gltf, view_index, &view)) return false;
+        source->data = view.data;
+        source->size = view.size;
+        return true;
+    }
+    if (!uri) return gltf_wrong(object, "has neither uri nor bufferView");
+    if (is_data) {
+        *owned = gltf_data_uri(object, uri, &source->size);
+        source->data = *owned;
+        return source->data != NULL;
+    }
+    char *path = import_resolve(import, uri);
+    if (!path) return false;
+    struct file_bytes bytes = { 0 };
+    bool there = access(path, R_OK) == 0;
+    bool ok = !there || file_read(import->host, path, 0, &bytes);
+    if (!there) import_note(import, "image %s (no such file)", import_printable(source->name).s);
+    host_free(import->host, path);
+    import->source_bytes += bytes.size;
+    *owned = bytes.data;
+    source->data = bytes.data;
+    source->size = bytes.size;
+    return ok;
+}
+
+// Reads and decodes the images that some material uses; image_of[glTF image] is the scene's.
+static bool load_used_images(struct gltf *gltf)
+{
+    struct import *import = gltf->import;
+    size_t count = json_array_size(gltf->images);
+    struct image_source *sources = host_alloc(import->host, count, sizeof *sources);
+    void **owned = host_alloc(import->host, count, sizeof *owned);
+    int *index = host_alloc(import->host, count, sizeof *index); // source → scene image
+    bool ok = sources && owned && index;
+    int used = 0;
+    for (size_t i = 0; ok && i < count; i++) {
+        if (gltf->image_of[i] < 0) continue;
+        gltf->image_of[i] = used;
+        ok = find_image(gltf, i, &sources[used], &owned[used]);
+        used++;
+    }
+    ok = ok && import_images(import, sources, used, index);
+    for (size_t i = 0; ok && i < count; i++) {
+        if (gltf->image_of[i] >= 0) gltf->image_of[i] = index[gltf->image_of[i]];
+    }
+    for (int i = 0; owned && i < used; i++) host_free(import->host, owned[i]);
+    host_free(import->host, owned);
+    host_free(import->host, sources);
+    host_free(import->host, index);
+    return ok;
+}
+
+bool gltf_load_materials(struct gltf *gltf)
+{
+    struct scene *scene = gltf->import->scene;
+    size_t count = json_array_size(gltf->materials), images = json_array_size(gltf->images);
+    // One more for primitives without a material.
+    scene->materials = import_alloc(gltf->import, count + 1, sizeof *scene->materials);
+    gltf->image_of = host_alloc(gltf->import->host, images, sizeof *gltf->image_of);
+    if (!scene->materials || !gltf->image_of) return false;
+    for (size_t i = 0; i < images; i++) gltf->image_of[i] = -1;
+    for (size_t i = 0; i < count; i++) {
+        if (!load_material(gltf, i, &scene->materials[i])) return false;
+        scene->material_count++;
+        for (int k = 0; k < 4; k++) {
+            int image = map_of(&scene->materials[i], k)->image;
+            if (image >= 0) gltf->image_of[image] = 0;
+        }
+    }
+    if (!load_used_images(gltf)) return false;
+    for (int i = 0; i < scene->material_count; i++) {
+        for (int k = 0; k < 4; k++) {
+            struct texture_use *use = map_of(&scene->materials[i], k);
+            if (use->image >= 0) use->image = gltf->image_of[use->image];
+        }
+    }
+    return count > 0 || gltf_material_default(gltf) >= 0;
+}
+
+int gltf_material_default(struct gltf *gltf)
+{
+    struct scene *scene = gltf->import->scene;
+    if (gltf->default_material >= 0) return gltf->default_material;
+    struct material material = gltf_default();
+    material.name = import_name(gltf->import, "default", "", 0);
+    if (!material.name) return -1;
+    scene->materials[scene->material_count] = material;
+    gltf->default_material = scene->material_count++;
+    return gltf->default_material;
+}

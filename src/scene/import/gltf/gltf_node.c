@@ -1,0 +1,253 @@
+// Nodes, instances, lights, cameras and skins of a glTF file.
+#include "scene/import/gltf/gltf.h"
+
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const float PI = 3.14159265358979f;
+
+static bool load_node(struct gltf *gltf, size_t i)
+{
+    struct gltf_object object = gltf_element(gltf, gltf->nodes, "node", i);
+    struct node *node = &gltf->import->scene->nodes[gltf->scene_node[i]];
+    int parent = node->parent; // set by its parent already
+    *node = node_default();
+    node->parent = parent;
+    node->name = import_name(gltf->import, gltf_string(object, "name"), "node", i);
+    gltf_floats(object, "translation", 3, node->translation.raw);
+    gltf_floats(object, "scale", 3, node->scale.raw);
+    if (gltf_floats(object, "rotation", 4, node->rotation.raw)) {
+        float length = glms_quat_norm(node->rotation);
+        if (!(length > 0.0f) || !isfinite(length)) {
+            return gltf_wrong(object, "its rotation is no unit quaternion");
+        }
+        node->rotation = glms_quat_normalize(node->rotation);
+    }
+    float matrix[16];
+    if (gltf_floats(object, "matrix", 16, matrix)) {
+        node->has_matrix = true;
+        memcpy(&node->matrix, matrix, sizeof matrix);
+        // Affine by definition: what rounding put into the last row goes.
+        for (int k = 0; k < 4; k++) node->matrix.raw[k][3] = k == 3 ? 1.0f : 0.0f;
+    }
+    return node->name && !gltf->failed;
+}
+
+static void set_children(struct gltf *gltf, size_t i)
+{
+    json_t *children = json_object_get(json_array_get(gltf->nodes, i), "children"), *value;
+    size_t k;
+    json_array_foreach(children, k, value)
+    {
+        struct node *child =
+            &gltf->import->scene->nodes[gltf->scene_node[json_integer_value(value)]];
+        child->parent = (int)gltf->scene_node[i];
+    }
+}
+
+// Rest weights: the node's, else the mesh's, else zero.
+static bool rest_weights(struct gltf *gltf, struct gltf_object node, int gltf_mesh,
+                         struct instance *instance)
+{
+    int count = gltf->import->scene->meshes[instance->mesh].morph_count;
+    if (count == 0) return true;
+    instance->morph_weights = import_alloc(gltf->import, (size_t)count, sizeof(float));
+    if (!instance->morph_weights) return false;
+    struct gltf_object mesh = gltf_element(gltf, gltf->meshes, "mesh", (size_t)gltf_mesh);
+    if (!gltf_floats(node, "weights", count, instance->morph_weights)) {
+        gltf_floats(mesh, "weights", count, instance->morph_weights);
+    }
+    return !gltf->failed;
+}
+
+static bool load_instances(struct gltf *gltf, size_t i)
+{
+    struct scene *scene = gltf->import->scene;
+    struct gltf_object object = gltf_element(gltf, gltf->nodes, "node", i);
+    int mesh = gltf_index(object, "mesh", gltf->meshes);
+    int skin = gltf_index(object, "skin", gltf->skins);
+    if (mesh < 0) return !gltf->failed;
+    for (int k = 0; k < gltf->mesh_parts[mesh]; k++) {
+        struct instance *instance = &scene->instances[scene->instance_count++];
+        *instance = (struct instance){ .node = (int)gltf->scene_node[i],
+                                       .mesh = gltf->first_mesh[mesh] + k,
+                                       .skin = skin };
+        if (!scene->meshes[instance->mesh].joints) instance->skin = -1;
+        if (!rest_weights(gltf, object, mesh, instance)) return false;
+    }
+    return !gltf->failed;
+}
+
+static bool load_spot(struct gltf_object object, struct light *light)
+{
+    struct gltf_object spot = gltf_child(object, "spot");
+    light->outer_rad = gltf_float(spot, "outerConeAngle", PI / 4.0f, 1e-4f, PI / 2.0f + 1e-4f);
+    light->inner_rad = gltf_float(spot, "innerConeAngle", 0.0f, 0.0f, PI);
+    light->outer_rad = fminf(light->outer_rad, PI / 2.0f);
+    // A hard edge is written as two equal angles; the fall-off needs some width.
+    light->inner_rad = fminf(light->inner_rad, 0.999f * light->outer_rad);
+    return !object.gltf->failed;
+}
+
+// KHR_lights_punctual.
+static bool load_light(struct gltf *gltf, size_t i)
+{
+    struct scene *scene = gltf->import->scene;
+    struct gltf_object node = gltf_element(gltf, gltf->nodes, "node", i);
+    int index = gltf_index(gltf_extension(node, "KHR_lights_punctual"), "light", gltf->lights);
+    if (index < 0) return !gltf->failed;
+    struct gltf_object object = gltf_element(gltf, gltf->lights, "light", (size_t)index);
+    const char *type = gltf_string(object, "type");
+    struct light *light = &scene->lights[scene->light_count];
+    *light = (struct light){ .node = (int)gltf->scene_node[i] };
+    light->name = import_name(gltf->import, gltf_string(object, "name"), "light", (size_t)index);
+    light->intensity = vec3_of(1.0f, 1.0f, 1.0f);
+    gltf_floats(object, "color", 3, light->intensity.raw);
+    float intensity = gltf_float(object, "intensity", 1.0f, 0.0f, 1e18f);
+    for (int k = 0; k < 3; k++) {
+        light->intensity.raw[k] = fminf(fmaxf(light->intensity.raw[k], 0.0f), 1e18f) * intensity;
+    }
+    light->range_m = gltf_float(object, "range", 0.0f, 0.0f, FLT_MAX);
+    if (gltf->failed || !light->name) return false;
+    if (type && strcmp(type, "directional") == 0)
+        light->type = LIGHT_SUN;
+    else if (type && strcmp(type, "point") == 0)
+        light->type = LIGHT_POINT;
+    else if (type && strcmp(type, "spot") == 0)
+        light->type = LIGHT_SPOT;
+    else
+        return gltf_wrong(object, "its type is none of directional, point, spot");
+    if (light->type == LIGHT_SPOT && !load_spot(object, light)) return false;
+    scene->light_count++;
+    return true;
+}
+
+static bool load_camera(struct gltf *gltf, size_t i)
+{
+    struct scene *scene = gltf->import->scene;
+    struct gltf_object node = gltf_element(gltf, gltf->nodes, "node", i);
+    int index = gltf_index(node, "camera", gltf->cameras);
+    if (index < 0) return !gltf->failed;
+    struct gltf_object object = gltf_element(gltf, gltf->cameras, "camera", (size_t)index);
+    struct gltf_object perspective = gltf_child(object, "perspective");
+    if (!perspective.json) {
+        import_note(gltf->import, "orthographic cameras");
+        return !gltf->failed;
+    }
+    struct camera *camera = &scene->cameras[scene->camera_count];
+    *camera = (struct camera){ .node = (int)gltf->scene_node[i] };
+    camera->name = import_name(gltf->import, gltf_string(object, "name"), "camera", (size_t)index);
+    camera->vertical_fov_rad = gltf_float(perspective, "yfov", 1.0f, 1e-3f, PI - 1e-3f);
+    camera->near_m = gltf_float(perspective, "znear", 0.01f, 1e-6f, FLT_MAX);
+    scene->camera_count++;
+    return camera->name && !gltf->failed;
+}
+
+// Room for what the default scene's nodes show.
+static bool reserve(struct gltf *gltf)
+{
+    struct scene *scene = gltf->import->scene;
+    size_t nodes = json_array_size(gltf->nodes), instances = 0, lights = 0, cameras = 0;
+    for (size_t i = 0; i < nodes; i++) {
+        struct gltf_object object = gltf_element(gltf, gltf->nodes, "node", i);
+        int mesh = gltf_index(object, "mesh", gltf->meshes);
+        if (mesh >= 0) instances += (size_t)gltf->mesh_parts[mesh];
+        lights += gltf_has(gltf_extension(object, "KHR_lights_punctual"), "light");
+        cameras += gltf_has(object, "camera");
+    }
+    if (instances > INT_MAX || gltf->failed)
+        return gltf_wrong(gltf_element(gltf, gltf->nodes, "node", 0), "too many instances");
+    scene->nodes = import_alloc(gltf->import, nodes, sizeof *scene->nodes);
+    scene->instances = import_alloc(gltf->import, instances, sizeof *scene->instances);
+    scene->lights = import_alloc(gltf->import, lights, sizeof *scene->lights);
+    scene->cameras = import_alloc(gltf->import, cameras, sizeof *scene->cameras);
+    return scene->nodes && scene->instances && scene->lights && scene->cameras;
+}
+
+bool gltf_load_nodes(struct gltf *gltf)
+{
+    struct scene *scene = gltf->import->scene;
+    size_t count = json_array_size(gltf->nodes);
+    if (!reserve(gltf)) return false;
+    scene->node_count = (int)count;
+    for (size_t i = 0; i < count; i++) scene->nodes[i].parent = -1;
+    for (size_t i = 0; i < count; i++) set_children(gltf, i);
+    for (size_t i = 0; i < count; i++) {
+        if (!load_node(gltf, i)) return false;
+        if (!gltf->in_scene[i]) continue;
+        if (!load_instances(gltf, i) || !load_light(gltf, i) || !load_camera(gltf, i)) return false;
+    }
+    return true;
+}
+
+static bool load_skin(struct gltf *gltf, size_t i)
+{
+    struct import *import = gltf->import;
+    struct gltf_object object = gltf_element(gltf, gltf->skins, "skin", i);
+    struct skin *skin = &import->scene->skins[i];
+    json_t *joints = gltf_array(object, "joints");
+    size_t count = json_array_size(joints);
+    int matrices = gltf_index(object, "inverseBindMatrices", gltf->accessors);
+    if (gltf->failed) return false;
+    if (count == 0 || count > UINT16_MAX + 1) return gltf_wrong(object, "has %zu joints", count);
+    skin->joints = import_alloc(import, count, sizeof *skin->joints);
+    skin->joint_from_mesh = import_alloc(import, count, sizeof *skin->joint_from_mesh);
+    if (!skin->joints || !skin->joint_from_mesh) return false;
+    for (size_t k = 0; k < count; k++) {
+        int node = gltf_index_value(object, "joints", json_array_get(joints, k), gltf->nodes);
+        if (node < 0) return false;
+        skin->joints[k] = (int)gltf->scene_node[node];
+        skin->joint_from_mesh[k] = glms_mat4_identity();
+    }
+    skin->joint_count = (int)count;
+    if (matrices < 0) return true;
+    size_t given = gltf_accessor_count(gltf, matrices);
+    const float *values = given ? gltf_floats_of(gltf, matrices, 16) : NULL;
+    if (!values) return false;
+    if (given < count) return gltf_wrong(object, "%zu joints and %zu matrices", count, given);
+    for (size_t k = 0; k < 16 * count; k++) {
+        if (!isfinite(values[k])) return gltf_wrong(object, "a matrix is not finite");
+    }
+    memcpy(skin->joint_from_mesh, values, count * sizeof *skin->joint_from_mesh);
+    return true;
+}
+
+// Every joint that a vertex of a skinned instance refers to is one of its skin's.
+static bool check_joints(struct gltf *gltf)
+{
+    const struct scene *scene = gltf->import->scene;
+    for (int i = 0; i < scene->instance_count; i++) {
+        const struct instance *instance = &scene->instances[i];
+        if (instance->skin < 0) continue;
+        const struct mesh *mesh = &scene->meshes[instance->mesh];
+        int joint_count = scene->skins[instance->skin].joint_count;
+        // One walk over the vertices for each instance: many instances of one mesh are work to be
+        // justified.
+        if (!import_charge(gltf->import, mesh->vertex_count, 1)) return false;
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            for (int k = 0; k < 4; k++) {
+                if (mesh->joints[v][k] < joint_count) continue;
+                struct gltf_object skin =
+                    gltf_element(gltf, gltf->skins, "skin", (size_t)instance->skin);
+                return gltf_wrong(skin, "mesh %s uses joint %u of %d",
+                                  import_printable(mesh->name).s, mesh->joints[v][k], joint_count);
+            }
+        }
+    }
+    return true;
+}
+
+bool gltf_load_skins(struct gltf *gltf)
+{
+    struct scene *scene = gltf->import->scene;
+    size_t count = json_array_size(gltf->skins);
+    scene->skins = import_alloc(gltf->import, count, sizeof *scene->skins);
+    if (!scene->skins) return false;
+    for (size_t i = 0; i < count; i++) {
+        if (!load_skin(gltf, i)) return false;
+        scene->skin_count++;
+    }
+    return check_joints(gltf);
+}

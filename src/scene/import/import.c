@@ -1,0 +1,62 @@
+// Scene files.
+//
+// glTF 2.0 is read from its JSON and accessors (gltf/), PLY by ply.c; OBJ, FBX and X go through
+// Assimp's C API (assimp/). Assimp reads glTF too, but what its scene
+// structure cannot hold is what this library needs, and a second reading of the JSON could not be
+// matched to its result:
+//
+// - its bones and animation channels refer to nodes by name, which glTF requires to be neither
+//   present nor unique, and its order of nodes and meshes is its own;
+// - its animation keys are linear: step and cubic interpolation are lost;
+// - its lights have no range, and no way to tell candela from lux;
+// - it trusts its input more than we may: index values, node loops, sparse accessors.
+//
+// Accessors with our own bounds checks are less code than that repair, and all of it is tested with
+// hostile files.
+#include "scene/import/import.h"
+
+#include "scene/import/importers.h"
+
+#include "core/hash.h"
+
+#include <string.h>
+
+static const size_t MAX_FILE_BYTES = (size_t)4 << 30;
+
+static bool dispatch(struct import *import, const struct file_bytes *bytes)
+{
+    char extension[16];
+    file_extension(import->path, extension);
+    if (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0) {
+        return import_gltf(import, bytes);
+    }
+    if (strcmp(extension, "ply") == 0) return import_ply(import, bytes);
+    static const char *const through_assimp[] = { "obj", "fbx", "x" };
+    for (size_t i = 0; i < sizeof through_assimp / sizeof *through_assimp; i++) {
+        if (strcmp(extension, through_assimp[i]) == 0) {
+            return import_assimp(import, bytes, extension);
+        }
+    }
+    return host_fail(import->host, FAIL_UNSUPPORTED,
+                     "%s: unknown kind of scene file; glTF, GLB, OBJ, PLY, FBX and X are read",
+                     import->path);
+}
+
+struct scene *import_file(struct host *host, const char *path)
+{
+    struct import import = { .host = host, .path = path };
+    struct file_bytes bytes = { 0 };
+    if (!file_read(host, path, MAX_FILE_BYTES, &bytes)) return NULL;
+    import.source_bytes = bytes.size;
+    import.scene = scene_create(host, path);
+    if (!import.scene) goto fail;
+    import.scene->content_hash = hash_bytes(bytes.data, bytes.size, 0);
+    if (!dispatch(&import, &bytes)) goto fail;
+    import_log_notes(&import);
+    file_bytes_finish(host, &bytes);
+    return import.scene;
+fail:
+    file_bytes_finish(host, &bytes);
+    scene_destroy(import.scene);
+    return NULL;
+}

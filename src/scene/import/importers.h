@@ -1,0 +1,9 @@
+// The importers that import_file chooses from. Internal to src/scene/import.
+#pragma once
+
+#include "scene/import/import_context.h"
+
+// Importers: fill import->scene from the file's bytes.
+bool import_gltf(struct import *import, const struct file_bytes *bytes);
+bool import_ply(struct import *import, const struct file_bytes *bytes);
+bool import_assimp(struct import *import, const struct file_bytes *bytes, const char *extension);
