@@ -3,28 +3,91 @@
 # Compiles every *.comp, *.vert and *.frag below the current folder to SPIR-V and embeds it in ag_<module>:
 # `#include "<header>"` declares `extern const struct gpu_shader shader_<name>_<stage>` for each.
 # The .spv files also land in <build>/shaders, the folder to give as AFTERGLOW_SHADER_DIR for reloading.
+#
+# The name is the path below the current folder with '_' for '/'. A folder that the next part of the path repeats is
+# left out: lpv/lpv_inject.comp is lpv_inject, vct/cones/edges.comp is vct_cones_edges.
+#
+# Permutations: a file shader_variants.txt beside the shaders has one line for each, "FILE SUFFIX [DEFINITION...]".
+# "trace.comp svo VCT_SVO=1" compiles trace.comp with -DVCT_SVO=1 as <name of trace>_svo. A suffix may name the stage,
+# so that stages share a .glsl file: "add.glsl raster.frag VCT_RASTER=1". A shader that is listed is compiled only as
+# its lines say.
 function(ag_shaders module header)
   ag_shaders_for(ag_${module} ${header} ${CMAKE_CURRENT_SOURCE_DIR})
+endfunction()
+
+# ag_shader_name(result path): the name of the shader at a relative path, without its extension.
+function(ag_shader_name result path)
+  string(REGEX REPLACE "\\.[a-z]+$" "" path ${path})
+  string(REPLACE "/" ";" parts ${path})
+  set(name "")
+  set(previous "")
+  foreach(part ${parts})
+    if(previous AND NOT "${part}_" MATCHES "^${previous}_")
+      string(APPEND name ${previous}_)
+    endif()
+    set(previous ${part})
+  endforeach()
+  set(${result} ${name}${previous} PARENT_SCOPE)
+endfunction()
+
+# ag_shader_units(result folder): all compilations, as "path|name.stage|definitions", definitions separated by commas.
+function(ag_shader_units result folder)
+  file(GLOB_RECURSE shaders CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.comp ${folder}/*.vert ${folder}/*.frag)
+  file(GLOB_RECURSE lists CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/shader_variants.txt)
+  set(units "")
+  foreach(list ${lists})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/${list})
+    get_filename_component(subfolder ${list} DIRECTORY)
+    file(STRINGS ${folder}/${list} lines REGEX "^[^#]")
+    foreach(line ${lines})
+      separate_arguments(words UNIX_COMMAND "${line}")
+      list(POP_FRONT words file suffix)
+      set(path ${subfolder}/${file})
+      if(NOT EXISTS ${folder}/${path})
+        message(FATAL_ERROR "${folder}/${list}: there is no ${file}")
+      endif()
+      ag_shader_name(name ${path})
+      if(NOT suffix MATCHES "[.]")
+        string(REGEX MATCH "[.][a-z]+$" stage ${file})
+        string(APPEND suffix ${stage})
+      endif()
+      list(JOIN words "," definitions)
+      list(APPEND units "${path}|${name}_${suffix}|${definitions}")
+      list(REMOVE_ITEM shaders ${path})
+    endforeach()
+  endforeach()
+  foreach(path ${shaders})
+    ag_shader_name(name ${path})
+    string(REGEX MATCH "[.][a-z]+$" stage ${path})
+    list(APPEND units "${path}|${name}${stage}|")
+  endforeach()
+  set(${result} ${units} PARENT_SCOPE)
 endfunction()
 
 # ag_shaders_for(target header folder): the same for any target and folder. The target's property AFTERGLOW_SPIRV lists the
 # .spv files.
 function(ag_shaders_for target header folder)
-  file(GLOB_RECURSE shaders CONFIGURE_DEPENDS ${folder}/*.comp ${folder}/*.vert ${folder}/*.frag)
+  ag_shader_units(units ${folder})
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(declarations "#pragma once\n#include \"gpu/gpu.h\"\n")
   set(definitions "#include \"${header}\"\n")
   set(words "")
   set(spirv "")
-  foreach(shader ${shaders})
-    get_filename_component(name ${shader} NAME)
-    string(REPLACE "." "_" symbol ${name})
+  foreach(unit ${units})
+    string(REGEX MATCH "^([^|]*)[|](([^|]*)[.]([a-z]+))[|](.*)$" unit ${unit})
+    set(shader ${folder}/${CMAKE_MATCH_1})
+    set(name ${CMAKE_MATCH_2})
+    set(stage ${CMAKE_MATCH_4})
+    set(symbol ${CMAKE_MATCH_3}_${CMAKE_MATCH_4})
+    string(REPLACE "," ";" defines "${CMAKE_MATCH_5}")
+    list(TRANSFORM defines PREPEND -D)
     set(inc ${generated}/${name}.inc)
     set(spv ${CMAKE_BINARY_DIR}/shaders/${name}.spv)
     add_custom_command(OUTPUT ${inc} ${spv}
-      COMMAND ${GLSLC} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 -I${CMAKE_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc}
-              -mfmt=c -o ${inc} ${shader}
-      COMMAND ${GLSLC} --target-env=vulkan1.3 -DAG_GLSL=1 -I${CMAKE_SOURCE_DIR}/src -o ${spv} ${shader}
+      COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 ${defines}
+              -I${CMAKE_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc} -mfmt=c -o ${inc} ${shader}
+      COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -DAG_GLSL=1 ${defines}
+              -I${CMAKE_SOURCE_DIR}/src -o ${spv} ${shader}
       DEPENDS ${shader} DEPFILE ${inc}.d COMMENT "GLSL ${name}" VERBATIM)
     list(APPEND words ${inc})
     list(APPEND spirv ${spv})

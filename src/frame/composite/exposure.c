@@ -21,12 +21,13 @@ bool exposure_init(struct exposure *e, struct gpu *gpu)
     const struct gpu_constant second_round[] = { { 0, 1 } }; // see exposure_sum.comp
     return gpu_sampler_get(gpu, &nearest, &e->nearest) &&
            gpu_buffer_create(gpu, &state, &e->state) && gpu_buffer_create(gpu, &sums, &e->sums) &&
-           gpu_compute_pipeline_create(gpu, "frame.exposure_sum", &shader_exposure_sum_comp, NULL,
-                                       0, &e->sum[0]) &&
-           gpu_compute_pipeline_create(gpu, "frame.exposure_sum_again", &shader_exposure_sum_comp,
-                                       second_round, 1, &e->sum[1]) &&
-           gpu_compute_pipeline_create(gpu, "frame.exposure_finish", &shader_exposure_finish_comp,
-                                       NULL, 0, &e->finish);
+           gpu_compute_pipeline_create(gpu, "frame.exposure_sum",
+                                       &shader_composite_exposure_sum_comp, NULL, 0, &e->sum[0]) &&
+           gpu_compute_pipeline_create(gpu, "frame.exposure_sum_again",
+                                       &shader_composite_exposure_sum_comp, second_round, 1,
+                                       &e->sum[1]) &&
+           gpu_compute_pipeline_create(gpu, "frame.exposure_finish",
+                                       &shader_composite_exposure_finish_comp, NULL, 0, &e->finish);
 }
 
 void exposure_finish(struct exposure *e)

@@ -77,14 +77,15 @@ static bool make_pipelines(struct screen_ao *ao)
 {
     const struct screen_ao_options *o = &ao->options;
     const struct gpu_shader *blur_y =
-        o->half ? &shader_screen_ao_blur_y_half_comp : &shader_screen_ao_blur_y_comp;
-    if (o->blur && !(make_pipeline(ao, "blur_x", &shader_screen_ao_blur_x_comp, &ao->blur_x) &&
-                     make_pipeline(ao, "blur_y", blur_y, &ao->blur_y)))
+        o->half ? &shader_common_screen_ao_blur_y_half_comp : &shader_common_screen_ao_blur_y_comp;
+    if (o->blur &&
+        !(make_pipeline(ao, "blur_x", &shader_common_screen_ao_blur_x_comp, &ao->blur_x) &&
+          make_pipeline(ao, "blur_y", blur_y, &ao->blur_y)))
         return false;
-    if (needs_fit(o) && !make_pipeline(ao, "fit", &shader_screen_ao_fit_comp, &ao->fit))
+    if (needs_fit(o) && !make_pipeline(ao, "fit", &shader_common_screen_ao_fit_comp, &ao->fit))
         return false;
     return !o->temporal ||
-           make_pipeline(ao, "temporal", &shader_screen_ao_temporal_comp, &ao->temporal);
+           make_pipeline(ao, "temporal", &shader_common_screen_ao_temporal_comp, &ao->temporal);
 }
 
 bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const char *owner,

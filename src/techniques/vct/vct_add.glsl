@@ -1,10 +1,11 @@
 // Second walk: what the surfaces in each voxel are, weighted with the triangle's size. What a large
 // triangle has alone is written at once; elsewhere whole numbers are summed up, and
-// vct_surfaces.comp makes the same of them. Define VCT_LARGE.
+// vct_surfaces.comp makes the same of them.
 //
 // A voxel is taken for a sheet with two sides. Which side of a triangle is the voxel's front
 // follows from its plane alone, so that the two faces of a thin wall, which turn opposite ways,
 // agree on the sheet and do not cancel.
+#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// Parts of a block that trace cone `cone`, see vct_cones.glsl. A cone that several trace counts
+// Parts of a block that trace cone `cone`, see vct_cones.comp. A cone that several trace counts
 // once.
 static int parts_with(uint32_t cone, uint32_t parts, uint32_t cones)
 {

@@ -1,5 +1,6 @@
 // First walk: a bit for each voxel that a triangle touches; and one more for those that are not a
-// single large triangle's, whose parts have to be added up. Define VCT_LARGE.
+// single large triangle's, whose parts have to be added up.
+#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

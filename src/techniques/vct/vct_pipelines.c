@@ -18,7 +18,7 @@ enum {
     NO_GLOW = 128,       // vct_add.glsl
     GRIDS = 256,         // vct_clipmap.glsl
     LAMPS = 512,         // vct_add.glsl, vct_lamps.glsl
-    LARGE_BLOCKS = 1024, // vct_bounce.glsl
+    LARGE_BLOCKS = 1024, // vct_bounce.comp
     HALF = 2048,         // vct_gather.comp
 };
 static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 },  { 0, 0 },
@@ -55,8 +55,10 @@ static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
                     *lamp = &vct->add[VCT_LAMP], *maps = &vct->add[VCT_MAPPED],
                     *masks = &vct->add[VCT_MASKED];
     const bool raster = vct->options.voxels == VCT_BY_RASTER;
-    const struct gpu_shader *mark = raster ? &shader_vct_mark_frag : &shader_vct_mark_comp,
-                            *add = raster ? &shader_vct_add_frag : &shader_vct_add_comp,
+    const struct gpu_shader *mark =
+                                raster ? &shader_vct_mark_raster_frag : &shader_vct_mark_small_comp,
+                            *add =
+                                raster ? &shader_vct_add_raster_frag : &shader_vct_add_small_comp,
                             *mark_large = raster ? NULL : &shader_vct_mark_large_comp,
                             *add_large = raster ? NULL : &shader_vct_add_large_comp;
     const struct pipeline_plan plan[WALKS] = {

@@ -123,7 +123,7 @@ struct vct_texel_levels {
 struct vct_texels_push {
     uint32_t levels;
     uint32_t ways;                       // volumes side by side
-    uint32_t block_level;                // of which a texel is a block: see vct_bounce.glsl
+    uint32_t block_level;                // of which a texel is a block: see vct_bounce.comp
     uint32_t first[VCT_MAX_LEVELS];      // of each level in the buffer of lists
     uint32_t mask_first[VCT_MAX_LEVELS]; // its first bit
 };

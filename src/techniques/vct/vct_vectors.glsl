@@ -1,4 +1,4 @@
-// What cones found, as vectors: see (1) in vct_cones.glsl. Include after core/half.glsl.
+// What cones found, as vectors: see (1) in vct_cones.comp. Include after core/half.glsl.
 #ifndef AG_VCT_VECTORS_GLSL
 #define AG_VCT_VECTORS_GLSL
 

@@ -4,9 +4,9 @@
 // one invocation; large ones are cut into tiles of columns that wait in a queue for a workgroup
 // each.
 //
-// The includer defines VCT_LARGE as 0 or 1 and, after the inclusion, vct_meet() and vct_visit().
-// Where it defines VCT_RASTER instead, columns are what the rasteriser says they are
-// (vct_raster.glsl).
+// Permutations: VCT_LARGE is 0 for small triangles and 1 for the queued tiles of large ones;
+// VCT_RASTER takes the columns from the rasteriser (vct_raster.glsl), in its fragment stage with
+// VCT_FRAGMENT. The includer defines vct_meet() and vct_visit() after the inclusion.
 #include "frame/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/vct_overlap.glsl"
@@ -145,12 +145,23 @@ void walk_columns(vct_triangle t, ivec2 first, ivec2 last)
     }
 }
 
-void walk_column(vct_triangle t, ivec2 column)
+#ifdef VCT_RASTER
+#ifdef VCT_FRAGMENT
+
+layout(location = 0) flat in uint vary_triangle;
+
+void main()
 {
+    vct_triangle t;
+    ivec2 column = ivec2(gl_FragCoord.xy);
+    if (!triangle_at(vary_triangle, t) || any(lessThan(column, t.low.xy)) ||
+        any(greaterThan(column, t.high.xy)))
+        return;
+    vct_meet(t, column);
     walk_columns(t, column, column);
 }
 
-#ifdef VCT_RASTER
+#endif
 #elif VCT_LARGE
 
 // How far an edge reaches up and down between two places along x; nothing where it does not come

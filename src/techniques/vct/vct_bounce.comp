@@ -2,6 +2,7 @@
 // its sheet. What surfaces that glow bring on their straight way, and with more bounces all that
 // the voxels sent out in the last frame. Voxels of one block that are parts of one sheet get what
 // is brought to their middle: such light changes slowly.
+#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

@@ -10,6 +10,7 @@
 // normal that they start along). What they found is kept as vectors, Σ L d of each colour with Σ d,
 // which any normal n near theirs can turn into irradiance:
 //     E(n) = π n·(Σ L d) / n·(Σ d). (1)
+#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

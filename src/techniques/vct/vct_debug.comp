@@ -1,5 +1,6 @@
 // Debug views: the first voxel that the eye's ray meets. A grid shows the parts of the ray in which
 // cones look into it, before and behind the next finer one.
+#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

@@ -7,6 +7,7 @@
 //     2 atan α (1)
 // of the mirror's direction. An even cone of this half-angle also has the lobe's peak, D(0)/4 =
 // 1/(4πα²) per sr, up to the powers of α beyond: it has 1/(π (2α)²).
+#version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 

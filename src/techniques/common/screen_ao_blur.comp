@@ -3,13 +3,34 @@
 // radii of the sphere, from the straight line through its neighbours in depth. One direction after
 // the other makes the mean over 4 by 4 pixels.
 //
-// One invocation does four pixels in a row: they share what they read. DOWN: ivec2(1, 0) or
-// ivec2(0, 1), the row's direction.
+// One invocation does four pixels in a row: they share what they read.
+//
+// Permutations: ALONG_Y, the row's direction; TO_VISIBILITY, the second pass writes the frame's
+// visibility, otherwise visibility and depth.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
 #include "techniques/common/screen_ao.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 1) uniform sampler2D before; // visibility, depth
+#if TO_VISIBILITY
+layout(set = 0, binding = 2, r8) uniform writeonly image2D visibility;
+void store(ivec2 at, vec2 value)
+{
+    imageStore(visibility, at, vec4(value.x));
+}
+#else
+layout(set = 0, binding = 2, rg32f) uniform writeonly image2D after;
+void store(ivec2 at, vec2 value)
+{
+    imageStore(after, at, vec4(value, 0.0, 0.0));
+}
+#endif
+
+const ivec2 DOWN = ALONG_Y ? ivec2(0, 1) : ivec2(1, 0);
 
 const int ROW = 4, REACH = 2;
 const float EDGE = 4.0; // a pixel a quarter of a radius off does not count
@@ -45,7 +66,7 @@ vec2 mean_around(vec2 row[ROW + 2 * REACH], int i)
     return vec2(sum / weights, here);
 }
 
-void blur()
+void main()
 {
     ivec2 size = ivec2(view.work_width, view.work_height);
     ivec2 first = ivec2(gl_GlobalInvocationID.xy) * (ivec2(1) + DOWN * (ROW - 1));

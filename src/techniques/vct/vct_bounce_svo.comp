@@ -1,5 +1,0 @@
-// Light that voxels get from each other, through the octree.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#define VCT_SVO 1
-#include "vct_bounce.glsl"

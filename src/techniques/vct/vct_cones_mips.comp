@@ -1,5 +1,0 @@
-// The cones of each pixel, through the mips.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#define VCT_SVO 0
-#include "vct_cones.glsl"
