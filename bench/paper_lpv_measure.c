@@ -80,7 +80,7 @@ static enum ag_result trace_line(const struct measure *measure, const struct pap
     say(scene, "path tracing the scanline");
     enum ag_result result = ag_reference_create(loaded, &desc, &reference);
     if (result == AG_OK) result = ag_reference_render(reference, measure->spp, NULL, NULL);
-    if (result == AG_OK) result = ag_reference_read(reference, "gathered_irradiance", &image);
+    if (result == AG_OK) result = ag_reference_read(reference, "irradiance_emitters_sky", &image);
     if (result == AG_OK) take_line(measure, image, line->reference);
     ag_reference_destroy(reference);
     return result;

@@ -23,7 +23,7 @@ struct method {
     struct ag_image *color, *indirect, *irradiance;
     char *spelled;                                // the sum with every option written out
     json_t *options, *passes, *frame_ms, *memory; // as in --stats
-    struct measured picture, gathered;            // gathered: where the truth has it
+    struct measured picture, indirect_error;      // indirect_error: where the truth has it
 };
 
 // The reference: traced, from the cache, or a file that was given.
@@ -32,14 +32,13 @@ struct truth {
     struct picture kept;        // the layers of its files
     char cache_path[PATH_SIZE]; // "": it is not cached
     struct ag_image *color;
-    struct ag_image
-        *gathered; // what techniques add to a frame's direct light; NULL: the given file lacks it
-    int spp;       // 0: not known
-    int bounces;   // or UNLIMITED, or NOT_KNOWN
-    double seconds, rays; // of all runs that it took; NaN: not known
-    double noise;         // relative standard error; NaN: not known
-    double noise_relmse;  // that a perfect picture would have for that noise; likewise
-    bool cached;          // nothing was left to trace
+    struct ag_image *indirect; // layer indirect_emitters_sky; NULL: absent in the given file
+    int spp;                   // 0: not known
+    int bounces;               // or UNLIMITED, or NOT_KNOWN
+    double seconds, rays;      // of all runs that it took; NaN: not known
+    double noise;              // relative standard error; NaN: not known
+    double noise_relmse;       // that a perfect picture would have for that noise; likewise
+    bool cached;               // nothing was left to trace
 };
 
 struct comparison {

@@ -106,7 +106,7 @@ static int by_value(const void *a, const void *b)
 // brightest twentieth of the lit pixels.
 static bool find_full_indirect(struct comparison *c)
 {
-    const struct ag_image *truth = c->truth.gathered;
+    const struct ag_image *truth = c->truth.indirect;
     size_t pixels = (size_t)truth->width * (size_t)truth->height, lit = 0;
     float *values = malloc(pixels * sizeof *values);
     if (!values) return false;
@@ -129,8 +129,8 @@ static enum status write_method(struct comparison *c, const struct method *m)
         status =
             write_map(c, m->color, truth->color, AG_DIFFERENCE_FLIP, 0.0f, m->stem, "-flip.png");
     if (status == DONE) status = write_picture(c, m->indirect, m->stem, "-indirect.png");
-    if (status == DONE && truth->gathered)
-        status = write_map(c, m->indirect, truth->gathered, AG_DIFFERENCE_ABSOLUTE,
+    if (status == DONE && truth->indirect)
+        status = write_map(c, m->indirect, truth->indirect, AG_DIFFERENCE_ABSOLUTE,
                            c->full_indirect, m->stem, "-indirect-error.png");
     return status == DONE ? write_method_exr(c, m) : status;
 }
@@ -139,15 +139,15 @@ static enum status write_truth(struct comparison *c)
 {
     char path[PATH_SIZE];
     enum status status = write_picture(c, c->truth.color, "reference", ".png");
-    if (status == DONE && c->truth.gathered)
-        status = write_picture(c, c->truth.gathered, "reference", "-indirect.png");
+    if (status == DONE && c->truth.indirect)
+        status = write_picture(c, c->truth.indirect, "reference", "-indirect.png");
     if (status == DONE) status = path_of(c, "reference", ".exr", path);
     return status == DONE ? truth_write_exr(c, path) : status;
 }
 
 enum status files_write(struct comparison *c)
 {
-    if (c->truth.gathered && !find_full_indirect(c))
+    if (c->truth.indirect && !find_full_indirect(c))
         return fail("cannot compare %s: out of memory", c->arguments->positional[0]);
     enum status status = write_truth(c);
     for (int i = 0; i < c->method_count && status == DONE; i++) {

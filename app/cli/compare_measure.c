@@ -40,21 +40,21 @@ static enum status measure_method(struct comparison *c, struct method *m)
     snprintf(name, sizeof name, "%s", m->gi);
     enum status status = image_check(&c->session, m->color, NULL, name);
     if (status == DONE) status = measure(c, m->color, c->truth.color, &desc, &m->picture);
-    if (status != DONE || !c->truth.gathered) return status;
+    if (status != DONE || !c->truth.indirect) return status;
     desc.radiance =
         false; // of indirect light relmse, mae and energy alone are said, which do not depend on it
     snprintf(name, sizeof name, "the indirect light of %s", m->gi);
     status = image_check(&c->session, m->indirect, NULL, name);
-    return status == DONE ? measure(c, m->indirect, c->truth.gathered, &desc, &m->gathered)
+    return status == DONE ? measure(c, m->indirect, c->truth.indirect, &desc, &m->indirect_error)
                           : status;
 }
 
 enum status methods_measure(struct comparison *c)
 {
     enum status status = image_check(&c->session, c->truth.color, NULL, "the reference");
-    if (status == DONE && c->truth.gathered)
+    if (status == DONE && c->truth.indirect)
         status =
-            image_check(&c->session, c->truth.gathered, NULL, "the reference's indirect light");
+            image_check(&c->session, c->truth.indirect, NULL, "the reference's indirect light");
     for (int i = 0; i < c->method_count && status == DONE; i++) {
         progress("measuring", i, c->method_count);
         status = measure_method(c, &c->methods[i]);

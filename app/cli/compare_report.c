@@ -18,17 +18,17 @@ static json_t *method_images(const struct comparison *c, const struct method *m)
     json_t *images =
         json_pack("{s:o, s:o, s:o}", "picture", file_name(m->stem, ".png"), "error",
                   file_name(m->stem, "-flip.png"), "indirect", file_name(m->stem, "-indirect.png"));
-    if (images && c->truth.gathered)
+    if (images && c->truth.indirect)
         json_object_set_new(images, "indirect_error", file_name(m->stem, "-indirect-error.png"));
     return images;
 }
 
 static json_t *indirect_json(const struct comparison *c, const struct method *m)
 {
-    if (!c->truth.gathered) return json_null();
-    return json_pack("{s:o, s:o, s:o}", "relmse", json_double(m->gathered.metrics.relmse), "mae",
-                     json_double(m->gathered.metrics.mae), "energy",
-                     json_double(m->gathered.energy));
+    if (!c->truth.indirect) return json_null();
+    return json_pack("{s:o, s:o, s:o}", "relmse", json_double(m->indirect_error.metrics.relmse),
+                     "mae", json_double(m->indirect_error.metrics.mae), "energy",
+                     json_double(m->indirect_error.energy));
 }
 
 static json_t *method_json(const struct comparison *c, const struct method *m)
@@ -66,7 +66,7 @@ static json_t *whole_or_null(double value)
 static json_t *truth_json(const struct truth *t)
 {
     json_t *images = json_pack("{s:s}", "picture", "reference.png");
-    if (images && t->gathered)
+    if (images && t->indirect)
         json_object_set_new(images, "indirect", json_string("reference-indirect.png"));
     json_t *object = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o}", "spp",
                                t->spp > 0 ? json_integer(t->spp) : json_null(), "bounces",
@@ -154,14 +154,14 @@ static int widest_name(const struct comparison *c)
 
 static void print_row(const struct comparison *c, const struct method *m, int width)
 {
-    double nothing = c->truth.gathered ? 0.0 : (double)NAN;
+    double nothing = c->truth.indirect ? 0.0 : (double)NAN;
     printf("%-*s", width, m->gi);
     print_any(8, m->picture.metrics.relmse);
     print_cell(6, 4, m->picture.metrics.flip);
     print_cell(7, 4, m->picture.metrics.ssim);
     print_cell(6, 3, m->picture.energy);
-    print_any(8, m->gathered.metrics.mae + nothing);
-    print_cell(6, 3, m->gathered.energy + nothing);
+    print_any(8, m->indirect_error.metrics.mae + nothing);
+    print_cell(6, 3, m->indirect_error.energy + nothing);
     print_cell(9, 3, number_in(m->frame_ms, "median"));
     print_cell(9, 3, number_in(m->frame_ms, "p95"));
     print_cell(8, 1, sum_of(m->memory) / (1 << 20));

@@ -17,7 +17,7 @@ static const char SECONDS[] = "afterglow.seconds", RAYS[] = "afterglow.rays"; //
 
 // What holds against a frame's layer indirect: there, and not in direct, is the light that emissive
 // surfaces and the sky throw on others.
-static const char GATHERED[] = "gathered";
+static const char INDIRECT[] = "indirect_emitters_sky";
 
 // The root of the mean square of the luminance's standard error, over the mean luminance: as
 // reference says it.
@@ -147,16 +147,16 @@ static enum status take_given(struct comparison *c)
     if (status == DONE) status = check_picture(c);
     if (status == DONE) status = read_bounces(c);
     if (status != DONE) return status;
-    truth->gathered = load_if_there(c, GATHERED, 3);
+    truth->indirect = load_if_there(c, INDIRECT, 3);
     struct ag_image *error = load_if_there(c, "error", 3),
                     *samples = load_if_there(c, "samples", 1);
     enum ag_result result = error ? find_noise(c, error) : AG_OK;
     if (samples) truth->spp = least_of(samples);
     ag_image_destroy(c->session.context, error);
     ag_image_destroy(c->session.context, samples);
-    if (!truth->gathered)
+    if (!truth->indirect)
         note("%s has no layer %s of the size of color: indirect light is not measured",
-             c->arguments->reference, GATHERED);
+             c->arguments->reference, INDIRECT);
     return result == AG_OK ? DONE : fail_library(c->session.context, result);
 }
 
@@ -262,7 +262,7 @@ static enum status take_traced(struct comparison *c)
     struct ag_reference *reference = truth->tracing.reference;
     struct ag_image *error = NULL;
     enum ag_result result = ag_reference_read(reference, "color", &truth->color);
-    if (result == AG_OK) result = ag_reference_read(reference, GATHERED, &truth->gathered);
+    if (result == AG_OK) result = ag_reference_read(reference, INDIRECT, &truth->indirect);
     if (result == AG_OK) result = ag_reference_read(reference, "error", &error);
     if (result == AG_OK) result = find_noise(c, error);
     ag_image_destroy(c->session.context, error);
@@ -296,6 +296,6 @@ enum status truth_write_exr(struct comparison *c, const char *path)
 void truth_finish(struct comparison *c)
 {
     ag_image_destroy(c->session.context, c->truth.color);
-    ag_image_destroy(c->session.context, c->truth.gathered);
+    ag_image_destroy(c->session.context, c->truth.indirect);
     tracing_end(&c->truth.tracing);
 }

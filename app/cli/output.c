@@ -65,9 +65,28 @@ static bool layer_exists(const char *name, const char *(*layer_name)(int))
     return false;
 }
 
+// Layers of a reference keep their former names for one release.
+static const char *current_name(const char *name)
+{
+    static const struct {
+        const char *old_name, *name;
+    } aliases[] = {
+        { "gathered", "indirect_emitters_sky" },
+        { "gathered_irradiance", "irradiance_emitters_sky" },
+    };
+    for (size_t i = 0; i < sizeof aliases / sizeof aliases[0]; i++) {
+        if (strcmp(aliases[i].old_name, name) != 0) continue;
+        note("warning: --aov: layer %s is now %s; the old name will be removed in the next release",
+             name, aliases[i].name);
+        return aliases[i].name;
+    }
+    return name;
+}
+
 static enum status add_layer(struct picture *picture, const char *name,
                              const char *(*layer_name)(int))
 {
+    if (!layer_exists(name, layer_name)) name = current_name(name);
     if (!layer_exists(name, layer_name)) return unknown_layer(name, layer_name);
     for (int i = 0; i < picture->layer_count; i++)
         if (strcmp(picture->layers[i], name) == 0)
@@ -196,7 +215,7 @@ static enum look look_of(const char *layer)
         { "motion", MOTION },         { "depth", DEPTH },
         { "obscurance", AS_IT_IS },   { "ambient_occlusion", AS_IT_IS },
         { "position", RANGE },        { "samples", RANGE },
-        { "irradiance", IRRADIANCE }, { "gathered_irradiance", IRRADIANCE },
+        { "irradiance", IRRADIANCE }, { "irradiance_emitters_sky", IRRADIANCE },
     };
     for (size_t i = 0; i < sizeof looks / sizeof looks[0]; i++)
         if (strcmp(looks[i].layer, layer) == 0) return looks[i].look;

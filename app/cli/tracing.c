@@ -10,7 +10,7 @@ static const double LONGEST_STEP_S = 2.0; // between two looks at the clock
 enum { MAX_ATTRIBUTES = 16 };
 
 const char tracing_kept_layers[] =
-    "color,direct,indirect,gathered,irradiance,gathered_irradiance,error,samples";
+    "color,direct,indirect,indirect_emitters_sky,irradiance,irradiance_emitters_sky,error,samples";
 
 static double now_s(void)
 {

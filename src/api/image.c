@@ -132,7 +132,7 @@ enum ag_result ag_image_read(struct ag_context *context, const char *path, const
     struct image image = { 0 };
     bool ok;
     if (strcmp(extension, "exr") == 0)
-        ok = exr_read(host, path, layer, &image);
+        ok = api_read_layer(context, path, layer, &image);
     else if (strcmp(extension, "png") != 0)
         ok = host_fail(host, FAIL_UNSUPPORTED, "cannot read %s: images are .exr or .png", path);
     else if (layer)

@@ -17,8 +17,9 @@ struct ag_context {
     void *(*reallocate)(void *user, void *old, size_t bytes);
     void *user;
     enum ag_log_level log_up_to;
-    bool validation;  // AFTERGLOW_VALIDATION
-    char *shader_dir; // AFTERGLOW_SHADER_DIR, NULL: embedded shaders
+    bool validation;        // AFTERGLOW_VALIDATION
+    char *shader_dir;       // AFTERGLOW_SHADER_DIR, NULL: embedded shaders
+    bool warned_layer_name; // a former layer name was used
     char last_error[API_MESSAGE_SIZE];
 };
 
@@ -70,6 +71,12 @@ enum ag_result api_camera_check(struct ag_context *context, const char *function
 struct image;
 enum ag_result api_give_image(struct ag_context *context, bool ok, struct image *image,
                               struct ag_image **out);
+
+// Reference layers keep their former names for one release; each context warns once.
+const char *api_layer_name(struct ag_context *context, const char *name); // the present name
+// exr_read by either name of a layer, from files that have either.
+bool api_read_layer(struct ag_context *context, const char *path, const char *layer,
+                    struct image *out);
 
 static inline bool api_finite(const float *values, int count)
 {

@@ -130,6 +130,7 @@ enum ag_result ag_reference_read(struct ag_reference *r, const char *layer, stru
     *out = NULL;
     AG_REQUIRE(context, r, "reference is NULL");
     AG_REQUIRE(context, layer, "layer is NULL");
+    layer = api_layer_name(context, layer);
     int index = 0;
     while (index < REFERENCE_LAYER_COUNT && strcmp(reference_layer_name(index), layer) != 0)
         index++;
@@ -175,7 +176,8 @@ static bool resume(struct ag_reference *r, const char *path)
     host->failure = FAIL_NONE;
     bool ok = is_of_this(r, path);
     for (int i = 0; i < REFERENCE_KEPT_COUNT && ok; i++)
-        ok = exr_read(host, path, reference_layer_name(reference_kept_layers[i]), &layers[i]);
+        ok = api_read_layer(r->context, path, reference_layer_name(reference_kept_layers[i]),
+                            &layers[i]);
     ok = ok && reference_restore(r->reference, layers);
     for (int i = 0; i < REFERENCE_KEPT_COUNT; i++) image_finish(&layers[i], host);
     return ok;

@@ -100,9 +100,9 @@ static void collect(struct walk *w, vec3s light)
     vec3s seen = glms_vec3_mul(w->share, arriving);
     vec3s falling = glms_vec3_scale(arriving, w->irradiance_share);
     add_to(&w->sample->light.indirect, seen);
-    add_to(&w->sample->light.gathered, seen);
+    add_to(&w->sample->light.indirect_emitters_sky, seen);
     add_to(&w->sample->light.irradiance, falling);
-    add_to(&w->sample->light.gathered_irradiance, falling);
+    add_to(&w->sample->light.irradiance_emitters_sky, falling);
 }
 
 // Light straight from an emitter or the sky, at any surface.
@@ -112,8 +112,8 @@ static void collect_gathered(struct walk *w, const struct gathered *g)
         collect(w, g->radiance);
     } else if (w->rules->direct) {
         add_to(&w->sample->light.direct, g->radiance);
-        add_to(&w->sample->light.gathered, g->radiance);
-        add_to(&w->sample->light.gathered_irradiance, g->irradiance);
+        add_to(&w->sample->light.indirect_emitters_sky, g->radiance);
+        add_to(&w->sample->light.irradiance_emitters_sky, g->irradiance);
     }
 }
 

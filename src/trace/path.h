@@ -24,8 +24,8 @@ struct path_start {
 // Radiance towards the eye, cd/m², and irradiance, lux. Gathered is indirect light and what
 // emitters and the sky throw straight on the surface seen.
 struct path_light {
-    vec3s direct, indirect, gathered;
-    vec3s irradiance, gathered_irradiance; // by indirect and by gathered light
+    vec3s direct, indirect, indirect_emitters_sky;
+    vec3s irradiance, irradiance_emitters_sky; // lux, of the same light
 };
 
 // Where in its pixel a sample is, 0…1 each way.

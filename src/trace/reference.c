@@ -21,8 +21,8 @@ enum {
 };
 
 struct pixel_sums {
-    double direct[3], indirect[3], gathered[3];
-    double irradiance[3], gathered_irradiance[3];
+    double direct[3], indirect[3], indirect_emitters_sky[3];
+    double irradiance[3], irradiance_emitters_sky[3];
     double squares[3]; // of direct + indirect
 };
 
@@ -51,13 +51,20 @@ struct reference_options reference_options_default(void)
 }
 
 static const char *const layer_names[REFERENCE_LAYER_COUNT] = {
-    [REFERENCE_COLOR] = "color",           [REFERENCE_DIRECT] = "direct",
-    [REFERENCE_INDIRECT] = "indirect",     [REFERENCE_IRRADIANCE] = "irradiance",
-    [REFERENCE_GATHERED] = "gathered",     [REFERENCE_GATHERED_IRRADIANCE] = "gathered_irradiance",
-    [REFERENCE_ALBEDO] = "albedo",         [REFERENCE_NORMAL] = "normal",
-    [REFERENCE_DEPTH] = "depth",           [REFERENCE_POSITION] = "position",
-    [REFERENCE_ERROR] = "error",           [REFERENCE_SAMPLES] = "samples",
-    [REFERENCE_OBSCURANCE] = "obscurance", [REFERENCE_AMBIENT_OCCLUSION] = "ambient_occlusion",
+    [REFERENCE_COLOR] = "color",
+    [REFERENCE_DIRECT] = "direct",
+    [REFERENCE_INDIRECT] = "indirect",
+    [REFERENCE_IRRADIANCE] = "irradiance",
+    [REFERENCE_INDIRECT_EMITTERS_SKY] = "indirect_emitters_sky",
+    [REFERENCE_IRRADIANCE_EMITTERS_SKY] = "irradiance_emitters_sky",
+    [REFERENCE_ALBEDO] = "albedo",
+    [REFERENCE_NORMAL] = "normal",
+    [REFERENCE_DEPTH] = "depth",
+    [REFERENCE_POSITION] = "position",
+    [REFERENCE_ERROR] = "error",
+    [REFERENCE_SAMPLES] = "samples",
+    [REFERENCE_OBSCURANCE] = "obscurance",
+    [REFERENCE_AMBIENT_OCCLUSION] = "ambient_occlusion",
 };
 
 const char *reference_layer_name(int layer)
@@ -190,9 +197,9 @@ static void add_sample(struct pixel_sums *sums, const struct path_light *light)
         double direct = (double)light->direct.raw[c], indirect = (double)light->indirect.raw[c];
         sums->direct[c] += direct;
         sums->indirect[c] += indirect;
-        sums->gathered[c] += (double)light->gathered.raw[c];
+        sums->indirect_emitters_sky[c] += (double)light->indirect_emitters_sky.raw[c];
         sums->irradiance[c] += (double)light->irradiance.raw[c];
-        sums->gathered_irradiance[c] += (double)light->gathered_irradiance.raw[c];
+        sums->irradiance_emitters_sky[c] += (double)light->irradiance_emitters_sky.raw[c];
         sums->squares[c] += (direct + indirect) * (direct + indirect);
     }
 }
@@ -355,8 +362,10 @@ static void read_sums(const struct reference *r, enum reference_layer layer, int
         if (layer == REFERENCE_DIRECT) out[c] = direct;
         if (layer == REFERENCE_INDIRECT) out[c] = indirect;
         if (layer == REFERENCE_IRRADIANCE) out[c] = mean_of(s->irradiance[c], n);
-        if (layer == REFERENCE_GATHERED) out[c] = mean_of(s->gathered[c], n);
-        if (layer == REFERENCE_GATHERED_IRRADIANCE) out[c] = mean_of(s->gathered_irradiance[c], n);
+        if (layer == REFERENCE_INDIRECT_EMITTERS_SKY)
+            out[c] = mean_of(s->indirect_emitters_sky[c], n);
+        if (layer == REFERENCE_IRRADIANCE_EMITTERS_SKY)
+            out[c] = mean_of(s->irradiance_emitters_sky[c], n);
         if (layer == REFERENCE_ERROR)
             out[c] = (float)sqrt(variance_of_mean(s->direct[c] + s->indirect[c], s->squares[c], n));
     }
@@ -489,9 +498,9 @@ struct reference_info reference_info(const struct reference *r)
 const enum reference_layer reference_kept_layers[REFERENCE_KEPT_COUNT] = {
     [KEPT_DIRECT] = REFERENCE_DIRECT,
     [KEPT_INDIRECT] = REFERENCE_INDIRECT,
-    [KEPT_GATHERED] = REFERENCE_GATHERED,
+    [KEPT_INDIRECT_EMITTERS_SKY] = REFERENCE_INDIRECT_EMITTERS_SKY,
     [KEPT_IRRADIANCE] = REFERENCE_IRRADIANCE,
-    [KEPT_GATHERED_IRRADIANCE] = REFERENCE_GATHERED_IRRADIANCE,
+    [KEPT_IRRADIANCE_EMITTERS_SKY] = REFERENCE_IRRADIANCE_EMITTERS_SKY,
     [KEPT_ERROR] = REFERENCE_ERROR,
     [KEPT_SAMPLES] = REFERENCE_SAMPLES,
 };
@@ -526,11 +535,12 @@ static bool restore_pixel(struct reference *r, int x, int y,
 {
     struct pixel_sums *s = &r->sums[(size_t)y * (size_t)r->width + (size_t)x];
     int n = samples_of(r, x, y);
-    bool ok = restore_sums(&layers[KEPT_DIRECT], x, y, n, s->direct) &&
-              restore_sums(&layers[KEPT_INDIRECT], x, y, n, s->indirect) &&
-              restore_sums(&layers[KEPT_GATHERED], x, y, n, s->gathered) &&
-              restore_sums(&layers[KEPT_IRRADIANCE], x, y, n, s->irradiance) &&
-              restore_sums(&layers[KEPT_GATHERED_IRRADIANCE], x, y, n, s->gathered_irradiance);
+    bool ok =
+        restore_sums(&layers[KEPT_DIRECT], x, y, n, s->direct) &&
+        restore_sums(&layers[KEPT_INDIRECT], x, y, n, s->indirect) &&
+        restore_sums(&layers[KEPT_INDIRECT_EMITTERS_SKY], x, y, n, s->indirect_emitters_sky) &&
+        restore_sums(&layers[KEPT_IRRADIANCE], x, y, n, s->irradiance) &&
+        restore_sums(&layers[KEPT_IRRADIANCE_EMITTERS_SKY], x, y, n, s->irradiance_emitters_sky);
     const float *error = image_at(&layers[KEPT_ERROR], x, y);
     for (int c = 0; ok && c < 3; c++) {
         double sum = s->direct[c] + s->indirect[c], deviation = (double)error[c];

@@ -67,12 +67,13 @@ enum reference_layer {
     REFERENCE_COLOR,  // cd/m²: direct + indirect, to the bit
     REFERENCE_DIRECT, // cd/m²: emission and sky as seen, and what is reflected of light that comes
                       // straight from a light, an emitter or the sky
-    REFERENCE_INDIRECT, // cd/m²: the rest
-    REFERENCE_GATHERED, // cd/m²: indirect light, and what emitters and the sky throw straight on
-                        // the surface seen: all that techniques add to the frame's direct light.
-                        // With direct_only the latter alone, with indirect_only the former
-    REFERENCE_IRRADIANCE,          // lux: of the indirect light; 0 with direct_only
-    REFERENCE_GATHERED_IRRADIANCE, // lux: of the gathered light, as a technique's irradiance
+    REFERENCE_INDIRECT,              // cd/m²: the rest
+    REFERENCE_INDIRECT_EMITTERS_SKY, // cd/m²: indirect light, and what emitters and the sky throw
+                                     // straight on the surface seen: all that techniques add to the
+                                     // frame's direct light. With direct_only the latter alone,
+                                     // with indirect_only the former
+    REFERENCE_IRRADIANCE,              // lux: of the indirect light; 0 with direct_only
+    REFERENCE_IRRADIANCE_EMITTERS_SKY, // lux: of that light, as a technique's irradiance
     REFERENCE_ALBEDO,   // of the pixel's centre, as all from here on but error and samples
     REFERENCE_NORMAL,   // shading normal, world space; 0 where there is no surface, as are the next
                         // two
@@ -128,9 +129,9 @@ uint64_t reference_key(const struct reference *reference);
 enum reference_kept {
     KEPT_DIRECT,
     KEPT_INDIRECT,
-    KEPT_GATHERED,
+    KEPT_INDIRECT_EMITTERS_SKY,
     KEPT_IRRADIANCE,
-    KEPT_GATHERED_IRRADIANCE,
+    KEPT_IRRADIANCE_EMITTERS_SKY,
     KEPT_ERROR,
     KEPT_SAMPLES,
     REFERENCE_KEPT_COUNT

@@ -19,15 +19,20 @@ struct fixture {
     struct ag_reference_desc desc;
 };
 
-static void open(struct fixture *f, const char *name)
+static void open_scene(struct fixture *f, const char *name)
 {
-    assert_int_equal(ag_context_create(NULL, &f->context), AG_OK);
     assert_int_equal(ag_scene_load(f->context, name, &f->scene), AG_OK);
     ag_reference_desc_default(&f->desc);
     assert_int_equal(f->desc.bounces, -1);
     f->desc.width = 24;
     f->desc.height = 18;
     assert_int_equal(ag_scene_camera(f->scene, "main", 0, 0, &f->desc.camera), AG_OK);
+}
+
+static void open(struct fixture *f, const char *name)
+{
+    assert_int_equal(ag_context_create(NULL, &f->context), AG_OK);
+    open_scene(f, name);
 }
 
 static void close(struct fixture *f)
@@ -162,21 +167,30 @@ TEST(progress_can_cancel)
     close(&f);
 }
 
-static void write_checkpoint(struct fixture *f, struct ag_reference *r, const char *path)
+enum { KEPT_LAYERS = 7 };
+static const char *const kept_layers[KEPT_LAYERS] = {
+    "direct", "indirect", "indirect_emitters_sky", "irradiance", "irradiance_emitters_sky",
+    "error",  "samples"
+};
+
+static void write_layers(struct fixture *f, struct ag_reference *r, const char *path,
+                         const char *const names[KEPT_LAYERS])
 {
-    static const char *const names[] = {
-        "direct", "indirect", "gathered", "irradiance", "gathered_irradiance", "error", "samples"
-    };
-    enum { COUNT = sizeof names / sizeof names[0] };
-    struct ag_image_layer layers[COUNT];
-    struct ag_image *images[COUNT];
-    for (int i = 0; i < COUNT; i++) {
+    struct ag_image_layer layers[KEPT_LAYERS];
+    struct ag_image *images[KEPT_LAYERS];
+    for (int i = 0; i < KEPT_LAYERS; i++) {
         images[i] = read_layer(r, names[i]);
         layers[i] = (struct ag_image_layer){ names[i], images[i] };
     }
     struct ag_attribute attribute = { AG_REFERENCE_CHECKPOINT, ag_reference_checkpoint(r) };
-    assert_int_equal(ag_image_write_exr(f->context, path, layers, COUNT, &attribute, 1), AG_OK);
-    for (int i = 0; i < COUNT; i++) ag_image_destroy(f->context, images[i]);
+    assert_int_equal(ag_image_write_exr(f->context, path, layers, KEPT_LAYERS, &attribute, 1),
+                     AG_OK);
+    for (int i = 0; i < KEPT_LAYERS; i++) ag_image_destroy(f->context, images[i]);
+}
+
+static void write_checkpoint(struct fixture *f, struct ag_reference *r, const char *path)
+{
+    write_layers(f, r, path, kept_layers);
 }
 
 TEST(an_attribute_of_a_file_is_read_back)
@@ -239,6 +253,52 @@ TEST(a_file_of_the_same_picture_is_gone_on_with_and_no_other)
     ag_reference_destroy(first);
     ag_reference_destroy(second);
     ag_reference_destroy(other);
+    close(&f);
+}
+
+static void count_warnings(void *user, enum ag_log_level level, const char *message)
+{
+    if (level == AG_LOG_WARNING && strstr(message, "is now")) ++*(int *)user;
+}
+
+static bool images_are_equal(const struct ag_image *a, const struct ag_image *b)
+{
+    return float_count(a) == float_count(b) &&
+           memcmp(a->pixels, b->pixels, float_count(a) * sizeof *a->pixels) == 0;
+}
+
+TEST(former_layer_names_are_accepted_with_one_warning)
+{
+    static const char *const former[KEPT_LAYERS] = {
+        "direct", "indirect", "gathered", "irradiance", "gathered_irradiance", "error", "samples"
+    };
+    struct fixture f;
+    int warnings = 0;
+    struct ag_context_desc desc;
+    ag_context_desc_default(&desc);
+    desc.log = count_warnings;
+    desc.user = &warnings;
+    assert_int_equal(ag_context_create(&desc, &f.context), AG_OK);
+    open_scene(&f, "@cornell");
+    char path[512];
+    snprintf(path, sizeof path, "%s", test_path("former.exr"));
+    struct ag_reference *first = create(&f), *second = create(&f);
+    assert_int_equal(ag_reference_render(first, 2, NULL, NULL), AG_OK);
+    write_layers(&f, first, path, former);
+    assert_int_equal(warnings, 1);
+    assert_int_equal(ag_reference_resume(second, path), AG_OK);
+    struct ag_image *a = NULL, *b = read_layer(first, "indirect_emitters_sky");
+    assert_int_equal(ag_image_read(f.context, path, "indirect_emitters_sky", &a), AG_OK);
+    CHECK(images_are_equal(a, b));
+    ag_image_destroy(f.context, a);
+    write_checkpoint(&f, first, path);
+    assert_int_equal(ag_image_read(f.context, path, "gathered", &a), AG_OK);
+    CHECK(images_are_equal(a, b));
+    assert_int_equal(warnings, 1);
+    ag_image_destroy(f.context, a);
+    ag_image_destroy(f.context, b);
+    ag_reference_destroy(first);
+    ag_reference_destroy(second);
     close(&f);
 }
 

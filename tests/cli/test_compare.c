@@ -176,7 +176,8 @@ static const char *frame_as_reference(const char *name, float scale, float first
     struct image color = read_layer(frame, NULL), indirect = read_layer(frame, "indirect");
     for (int i = 0; i < 24 * 18 * 3; i++) color.pixels[i] *= scale, indirect.pixels[i] *= scale;
     if (first != 0.0f) color.pixels[0] = first;
-    const struct exr_layer layers[] = { { "color", &color }, { "gathered", &indirect } };
+    const struct exr_layer layers[] = { { "color", &color },
+                                        { "indirect_emitters_sky", &indirect } };
     assert_true(exr_write(test_host(), path, layers, 2, NULL, 0));
     image_finish(&color, test_host());
     image_finish(&indirect, test_host());

@@ -94,9 +94,8 @@ TEST(layers_are_those_that_resuming_needs)
     run_expect(0, SMALL, "--spp", "4", "-o", path, NULL);
     char *names = exr_layer_names(test_host(), path);
     assert_non_null(names);
-    CHECK_STRING(
-        names,
-        "color\ndirect\nerror\ngathered\ngathered_irradiance\nindirect\nirradiance\nsamples");
+    CHECK_STRING(names, "color\ndirect\nerror\nindirect\nindirect_emitters_"
+                        "sky\nirradiance\nirradiance_emitters_sky\nsamples");
     host_free(test_host(), names);
     struct image color = read_layer(path, NULL), direct = read_layer(path, "direct"),
                  indirect = read_layer(path, "indirect");
@@ -106,6 +105,20 @@ TEST(layers_are_those_that_resuming_needs)
     image_finish(&direct, test_host());
     image_finish(&indirect, test_host());
     CHECK_NEAR(mean_of(path, "samples"), 4, 0);
+}
+
+TEST(former_layer_names_are_accepted_with_a_warning)
+{
+    const char *path = path_of("former.exr");
+    const struct run *run =
+        run_expect(0, "reference @cornell --size 8x6 --spp 1 --aov gathered,gathered_irradiance -o",
+                   path, NULL);
+    CHECK(strstr(run->err, "layer gathered is now indirect_emitters_sky"));
+    char *names = exr_layer_names(test_host(), path);
+    assert_non_null(names);
+    CHECK_STRING(names, "indirect_emitters_sky\nirradiance_emitters_sky");
+    host_free(test_host(), names);
+    run_expect(0, "diff --layer gathered", path, path, NULL);
 }
 
 TEST(parts_of_the_light_are_what_they_are_called)
@@ -217,9 +230,12 @@ TEST(json_says_what_was_traced)
 
 TEST(each_layer_makes_a_picture)
 {
-    static const char *const layers[] = { "color",  "gathered", "irradiance", "gathered_irradiance",
-                                          "albedo", "normal",   "depth",      "position",
-                                          "error",  "samples",  "obscurance", "ambient_occlusion" };
+    static const char *const layers[] = { "color",      "indirect_emitters_sky",
+                                          "irradiance", "irradiance_emitters_sky",
+                                          "albedo",     "normal",
+                                          "depth",      "position",
+                                          "error",      "samples",
+                                          "obscurance", "ambient_occlusion" };
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++)
         run_expect(0, SMALL " --spp 2 --aov", layers[i], "-o", path_of("layer.png"), NULL);
 }

@@ -43,9 +43,9 @@ TEST(without_emitters_and_sky_it_is_the_indirect_light_to_the_bit)
     struct stage s;
     stage_builtin(&s, "@cornell:light=point");
     struct layers l = render(&s);
-    CHECK(image_mean(&l.image[REFERENCE_GATHERED], 1) > 0);
-    CHECK(are_equal(&l.image[REFERENCE_GATHERED], &l.image[REFERENCE_INDIRECT]));
-    CHECK(are_equal(&l.image[REFERENCE_GATHERED_IRRADIANCE], &l.image[REFERENCE_IRRADIANCE]));
+    CHECK(image_mean(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], 1) > 0);
+    CHECK(are_equal(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], &l.image[REFERENCE_INDIRECT]));
+    CHECK(are_equal(&l.image[REFERENCE_IRRADIANCE_EMITTERS_SKY], &l.image[REFERENCE_IRRADIANCE]));
     finish(&l);
     stage_finish(&s);
 }
@@ -69,7 +69,7 @@ TEST(what_is_left_of_the_picture_is_the_emission_seen)
     int lamp = 0, lit = 0;
     for (int i = 0; i < s.width * s.height; i++) {
         double color = (double)l.image[REFERENCE_COLOR].pixels[3 * i];
-        double left = color - (double)l.image[REFERENCE_GATHERED].pixels[3 * i];
+        double left = color - (double)l.image[REFERENCE_INDIRECT_EMITTERS_SKY].pixels[3 * i];
         bool glows = left > 0.5 * (double)emission.x;
         // Color is a sum of two rounded values, each of them to 2⁻²⁴.
         CHECK_NEAR(left, glows ? (double)emission.x : 0, 2e-7 * color);
@@ -90,9 +90,10 @@ TEST(a_diffuse_surface_shows_its_albedo_times_the_gathered_irradiance)
     struct layers l = render(&s);
     for (int i = 0; i < s.width * s.height * 3; i++) {
         double albedo = (double)l.image[REFERENCE_ALBEDO].pixels[i];
-        double irradiance = (double)l.image[REFERENCE_GATHERED_IRRADIANCE].pixels[i];
+        double irradiance = (double)l.image[REFERENCE_IRRADIANCE_EMITTERS_SKY].pixels[i];
         double expected = albedo * irradiance / PI;
-        CHECK_NEAR(l.image[REFERENCE_GATHERED].pixels[i], expected, 1e-5 * expected + 1e-6);
+        CHECK_NEAR(l.image[REFERENCE_INDIRECT_EMITTERS_SKY].pixels[i], expected,
+                   1e-5 * expected + 1e-6);
         CHECK(irradiance >= (double)l.image[REFERENCE_IRRADIANCE].pixels[i]);
     }
     finish(&l);
@@ -135,7 +136,7 @@ TEST(rectangle_light_gives_its_closed_form_irradiance_on_any_floor)
                    vec3_of(-0.5f, h, 1), stage_matte(&s, grey(0), vec3_of(5, 2, 1)));
         stage_look(&s, vec3_of(0.3f, 0.1f, 0.1f), vec3_of(0, 0, 0), 0.01f);
         double expected = 4 * corner_factor(0.5 / (double)h, 1.0 / (double)h) * PI;
-        struct stage_mean m = stage_mean(&s, REFERENCE_GATHERED_IRRADIANCE);
+        struct stage_mean m = stage_mean(&s, REFERENCE_IRRADIANCE_EMITTERS_SKY);
         CHECK_RELATIVE(m.mean[0], 5 * expected, 0.005);
         CHECK_RELATIVE(m.mean[1], 2 * expected, 0.005);
         // The standard error is that of the colour, E/π on the white floor.
@@ -157,7 +158,7 @@ TEST(open_sky_gives_pi_times_its_radiance)
         s.scene->sky = vec3_of(2, 4, 8);
         add_floor(&s, floors[i][0], floors[i][1]);
         stage_look(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);
-        struct stage_mean m = stage_mean(&s, REFERENCE_GATHERED_IRRADIANCE);
+        struct stage_mean m = stage_mean(&s, REFERENCE_IRRADIANCE_EMITTERS_SKY);
         // By the cosine there is no noise at all; a metal's samples go elsewhere.
         for (int c = 0; c < 3; c++)
             CHECK_RELATIVE(m.mean[c], PI * (double)s.scene->sky.raw[c], i == 0 ? 1e-5 : 0.005);
@@ -173,16 +174,16 @@ TEST(parts_of_the_light_leave_their_part)
     s.options.indirect_only = true;
     struct layers l = render(&s);
     CHECK(image_mean(&l.image[REFERENCE_INDIRECT], 0) > 0);
-    CHECK(are_equal(&l.image[REFERENCE_GATHERED], &l.image[REFERENCE_INDIRECT]));
-    CHECK(are_equal(&l.image[REFERENCE_GATHERED_IRRADIANCE], &l.image[REFERENCE_IRRADIANCE]));
+    CHECK(are_equal(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], &l.image[REFERENCE_INDIRECT]));
+    CHECK(are_equal(&l.image[REFERENCE_IRRADIANCE_EMITTERS_SKY], &l.image[REFERENCE_IRRADIANCE]));
     finish(&l);
     stage_finish(&s);
     stage_init(&s);
     s.scene->sky = grey(1);
     l = render(&s);
     CHECK_NEAR(image_mean(&l.image[REFERENCE_COLOR], 0), 1, 0);
-    CHECK_NEAR(image_mean(&l.image[REFERENCE_GATHERED], 0), 0, 0);
-    CHECK_NEAR(image_mean(&l.image[REFERENCE_GATHERED_IRRADIANCE], 0), 0, 0);
+    CHECK_NEAR(image_mean(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], 0), 0, 0);
+    CHECK_NEAR(image_mean(&l.image[REFERENCE_IRRADIANCE_EMITTERS_SKY], 0), 0, 0);
     finish(&l);
     stage_finish(&s);
 }
