@@ -73,11 +73,28 @@ static void set_value(const struct option_row *row, void *options, double value)
     }
 }
 
+// -1: not an old name.
+static int find_alias(const struct option_table *table, const char *name)
+{
+    for (int i = 0; table->aliases && table->aliases[i].old_name; i++)
+        if (strcmp(table->aliases[i].old_name, name) == 0) return i;
+    return -1;
+}
+
 void option_defaults(const struct option_table *table, void *options)
 {
     memset(options, 0, table->size);
     for (size_t i = 0; i < table->count; i++)
         set_value(&table->rows[i], options, table->rows[i].initial);
+}
+
+const struct option_row *option_find(const struct option_table *table, const char *name)
+{
+    const int alias = find_alias(table, name);
+    if (alias >= 0) name = table->aliases[alias].name;
+    for (size_t i = 0; i < table->count; i++)
+        if (strcmp(table->rows[i].name, name) == 0) return &table->rows[i];
+    return NULL;
 }
 
 // ---- choices: "first|second|…"
@@ -184,8 +201,19 @@ struct parse {
     struct host *host;
     const struct option_table *table;
     const char *owner;
-    void *options; // a copy, until all is well
+    void *options;   // a copy until all items are valid
+    uint32_t warned; // a bit for each alias
 };
+
+static void warn_of_old_name(struct parse *parse, const char *key)
+{
+    const int alias = find_alias(parse->table, key);
+    if (alias < 0 || parse->warned & (1u << alias)) return;
+    parse->warned |= 1u << alias;
+    host_log(parse->host, LOG_WARNING,
+             "%s: option %s is now %s; the old name will be removed in the next release",
+             parse->owner, key, parse->table->aliases[alias].name);
+}
 
 static bool fail_value(const struct parse *parse, const struct option_row *row, const char *text,
                        const char *why)
@@ -303,7 +331,7 @@ static bool fail_unknown(const struct parse *parse, const char *key)
 }
 
 // One "key=value".
-static bool parse_item(const struct parse *parse, char *item)
+static bool parse_item(struct parse *parse, char *item)
 {
     char *equals = strchr(item, '=');
     if (equals) *equals = 0;
@@ -311,14 +339,12 @@ static bool parse_item(const struct parse *parse, char *item)
         return host_fail(parse->host, FAIL_ARGUMENT,
                          "cannot read the options of %s: a name is missing (key=value,key=value)",
                          parse->owner);
-    for (size_t i = 0; i < parse->table->count; i++) {
-        const struct option_row *row = &parse->table->rows[i];
-        if (strcmp(row->name, item) != 0) continue;
-        if (equals && equals[1]) return parse_value(parse, row, equals + 1);
-        return host_fail(parse->host, FAIL_ARGUMENT, "cannot set %s:%s: no value is given",
-                         parse->owner, item);
-    }
-    return fail_unknown(parse, item);
+    const struct option_row *row = option_find(parse->table, item);
+    if (!row) return fail_unknown(parse, item);
+    warn_of_old_name(parse, item);
+    if (equals && equals[1]) return parse_value(parse, row, equals + 1);
+    return host_fail(parse->host, FAIL_ARGUMENT, "cannot set %s:%s: no value is given",
+                     parse->owner, item);
 }
 
 bool option_parse(struct host *host, const struct option_table *table, const char *owner,
@@ -330,7 +356,7 @@ bool option_parse(struct host *host, const struct option_table *table, const cha
     bool ok = words && copy;
     if (ok) {
         memcpy(copy, options, table->size);
-        struct parse parse = { host, table, owner, copy };
+        struct parse parse = { .host = host, .table = table, .owner = owner, .options = copy };
         struct c_locale scope = c_locale_enter();
         char *rest = words;
         while (ok && rest) ok = parse_item(&parse, strsep(&rest, ","));

@@ -15,6 +15,7 @@
 //     static const struct option_row rows[] = {
 //     #include "lpv_options.def"
 //     };
+//     static const struct option_table table = OPTION_TABLE(struct lpv_options, rows, NULL);
 #pragma once
 
 #include "core/host.h"
@@ -42,10 +43,18 @@ struct option_row {
     size_t offset;
 };
 
+// The name that an option had in the last release. It still works, with a warning.
+struct option_alias {
+    const char *old_name, *name;
+};
+
+enum { OPTION_MAX_ALIASES = 32 };
+
 struct option_table {
     const struct option_row *rows;
     size_t count;
-    size_t size; // of the options struct
+    size_t size;                        // of the options struct
+    const struct option_alias *aliases; // ends with a NULL old_name; may be NULL
 };
 
 #define OPTION_FIELD(type, name, ...) option_##type name;
@@ -59,12 +68,19 @@ struct option_table {
       .effect = (effect_),                                                                         \
       .help = (help_),                                                                             \
       .offset = offsetof(struct_type, name_) },
+#define OPTION_TABLE(struct_type, rows_, aliases_)                                                 \
+    {                                                                                              \
+        .rows = (rows_), .count = sizeof(rows_) / sizeof(*(rows_)), .size = sizeof(struct_type),   \
+        .aliases = (aliases_)                                                                      \
+    }
 
 void option_defaults(const struct option_table *table, void *options);
+// The row of this name or old name; NULL: none.
+const struct option_row *option_find(const struct option_table *table, const char *name);
 
-// Sets what "key=value,key=value" says on top of what is there; "" sets nothing. `owner` is named
-// in errors. An unknown key names the nearest known one; a value out of range names the range. On
-// failure *options is unchanged.
+// Applies "key=value,key=value" to *options; "" changes nothing. Messages name `owner`. Errors name
+// the nearest known key or the range of the value, and leave *options unchanged. An old name logs
+// one warning.
 bool option_parse(struct host *host, const struct option_table *table, const char *owner,
                   const char *text, void *options);
 // The value as text, as option_parse would read it.

@@ -7,11 +7,8 @@ static const struct option_row option_rows[] = {
 #include "frame/frame_options.def"
 #undef OPTION
 };
-const struct option_table frame_option_table = {
-    option_rows,
-    sizeof option_rows / sizeof *option_rows,
-    sizeof(struct frame_options),
-};
+const struct option_table frame_option_table =
+    OPTION_TABLE(struct frame_options, option_rows, NULL);
 
 static const uint32_t MAX_SIZE = 16384;
 

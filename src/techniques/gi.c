@@ -3,6 +3,7 @@
 
 #include "techniques/common/probe_view.h"
 #include "techniques/gi_spec.h"
+#include "techniques/registry.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -178,23 +179,25 @@ struct frame_indirect gi_hook(struct gi *gi)
     return (struct frame_indirect){ .record = gi_record, .user = gi, .needs = needs };
 }
 
-// "view", or "technique.view" where two techniques have one of that name.
-static bool is_named(const struct technique *technique, const char *view, const char *name)
-{
-    const size_t length = strlen(technique->name);
-    if (strncmp(name, technique->name, length) == 0 && name[length] == '.') name += length + 1;
-    return strcmp(view, name) == 0;
-}
-
-static const char *find_debug_view(const struct gi *gi, const char *name, int *term)
+static const struct technique_debug_view *find_debug_view(const struct gi *gi, const char *name,
+                                                          int *term)
 {
     for (*term = 0; *term < gi->spec.count; ++*term) {
-        const struct technique *technique = gi->spec.technique[*term];
-        const struct technique_debug_view *view = technique->debug_views;
-        for (; view && view->name; view++)
-            if (is_named(technique, view->name, name)) return view->name;
+        const struct technique_debug_view *view =
+            technique_find_view(gi->spec.technique[*term], name);
+        if (view) return view;
     }
     return NULL;
+}
+
+static void warn_of_old_name(const struct gi *gi, int term, const struct technique_debug_view *view,
+                             const char *name)
+{
+    const char *dot = strchr(name, '.');
+    if (strcmp(view->name, dot ? dot + 1 : name) == 0) return;
+    host_log(gi->host, LOG_WARNING,
+             "%s: debug view %s is now %s; the old name will be removed in the next release",
+             gi->spec.technique[term]->name, view->old_name, view->name);
 }
 
 static bool fail_debug_view(const struct gi *gi, const char *name)
@@ -233,10 +236,11 @@ bool gi_set_debug_view(struct gi *gi, const char *name)
         gpu_image_destroy(gi->gpu, &gi->debug_image);
         return true;
     }
-    const char *view = find_debug_view(gi, name, &term);
+    const struct technique_debug_view *view = find_debug_view(gi, name, &term);
     if (!view) return fail_debug_view(gi, name);
-    if (!make_debug_view(gi, view, term)) return false;
-    gi->debug_name = view;
+    warn_of_old_name(gi, term, view, name);
+    if (!make_debug_view(gi, view->name, term)) return false;
+    gi->debug_name = view->name;
     gi->debug_term = term;
     return true;
 }

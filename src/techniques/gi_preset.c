@@ -44,14 +44,12 @@ static bool apply(struct host *host, const struct technique *technique, const ch
     return fail_unknown(host, technique, name);
 }
 
-// Whether a key that no option has was meant to be this one; option_parse does not know of it.
+// option_parse does not know the key `quality`, so that a misspelt one is found here.
 static bool is_misspelt(const struct technique *technique, const char *key)
 {
     static const char *const quality[] = { GI_QUALITY };
-    if (!technique->presets || !nearest_name(key, quality, 1)) return false;
-    for (size_t i = 0; i < technique->options.count; i++)
-        if (strcmp(technique->options.rows[i].name, key) == 0) return false;
-    return true;
+    return technique->presets && nearest_name(key, quality, 1) &&
+           !option_find(&technique->options, key);
 }
 
 // Takes "quality=NAME" where an item is one. Others are left as they are, for option_parse.

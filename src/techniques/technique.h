@@ -30,6 +30,7 @@ enum technique_change {
 
 struct technique_debug_view {
     const char *name, *help;
+    const char *old_name; // of the last release, still accepted with a warning; NULL: none
 };
 // What `quality=NAME` sets before the options that are given beside it, written as they are:
 // "steps=4,dim=16". "": the defaults.

@@ -22,8 +22,10 @@ static const struct option_row rows[] = {
 };
 #undef OPTION
 
-static const struct option_table table = { rows, sizeof rows / sizeof *rows,
-                                           sizeof(struct options) };
+static const struct option_alias aliases[] = { { "factor", "gain" },
+                                               { "smooth", "blur" },
+                                               { NULL, NULL } };
+static const struct option_table table = OPTION_TABLE(struct options, rows, aliases);
 
 static struct options defaults(void)
 {
@@ -148,6 +150,45 @@ TEST(error_after_good_values_leaves_all_unchanged)
                   "cannot set lpv:steps to \"99\": it must be from 1 to 32 steps");
 }
 
+TEST(old_name_sets_the_option_and_warns)
+{
+    struct options options = defaults();
+    CHECK(parse("factor=2.5", &options));
+    CHECK(options.gain == 2.5f);
+    CHECK_STRING(
+        test_last_message(),
+        "lpv: option factor is now gain; the old name will be removed in the next release");
+    CHECK(parse("gain=3,blur=off", &options));
+    CHECK_STRING(test_last_message(), "");
+    CHECK(option_find(&table, "factor") == option_find(&table, "gain"));
+    CHECK(option_find(&table, "gain") == &rows[1] && !option_find(&table, "zebra"));
+}
+
+static void count_warnings(void *count, enum log_level level, const char *message)
+{
+    (void)message;
+    if (level == LOG_WARNING) ++*(int *)count;
+}
+
+TEST(old_name_warns_once_per_parse)
+{
+    int warnings = 0;
+    struct host host = { .log = count_warnings, .user = &warnings, .log_up_to = LOG_WARNING };
+    struct options options = defaults();
+    CHECK(option_parse(&host, &table, "lpv", "factor=2,factor=3,gain=1", &options));
+    assert_int_equal(warnings, 1);
+    CHECK(option_parse(&host, &table, "lpv", "factor=2,smooth=on", &options));
+    assert_int_equal(warnings, 3);
+}
+
+TEST(old_name_is_refused_like_the_new_one)
+{
+    check_refused("factor=much", "cannot set lpv:gain to \"much\": it must be a number");
+    check_refused("factor", "cannot set lpv:factor: no value is given");
+    check_refused("facto=1",
+                  "unknown option lpv:facto: known are steps, gain, blur, quality, dim, bias");
+}
+
 TEST(very_long_text_fails_with_a_sentence)
 {
     enum { LONG = 100000 };
@@ -177,7 +218,7 @@ TEST(failing_memory_fails_the_parse)
 {
     struct options options = defaults();
     struct host host = host_default();
-    struct option_table huge = { rows, table.count, SIZE_MAX };
+    struct option_table huge = { rows, table.count, SIZE_MAX, NULL };
     CHECK(!option_parse(&host, &huge, "lpv", "steps=9", &options));
     assert_int_equal(host.failure, FAIL_MEMORY);
     assert_int_equal(options.steps, 8);

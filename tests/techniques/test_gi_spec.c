@@ -27,6 +27,8 @@ struct fake_options {
 static const struct option_row fake_rows[] = { OPTION_ROW(struct fake_options, float32, bias, 1,
                                                           -1e6, 1e6, "", LIVE, "a number") };
 
+static const struct option_alias fake_aliases[] = { { "offset", "bias" }, { NULL, NULL } };
+
 static const struct technique_preset fake_presets[] = { { "low", "bias=0.5" },
                                                         { "high", "bias=8" },
                                                         { NULL, NULL } };
@@ -34,11 +36,8 @@ static const struct technique_preset fake_presets[] = { { "low", "bias=0.5" },
 #define FAKE(name_, role_)                                                                         \
     {                                                                                              \
         .name = name_, .title = "fake", .paper = "none", .role = role_, .create = fake_create,     \
-        .record = fake_record, .destroy = fake_destroy, .options = {                               \
-            fake_rows,                                                                             \
-            1,                                                                                     \
-            sizeof(struct fake_options)                                                            \
-        }                                                                                          \
+        .record = fake_record, .destroy = fake_destroy,                                            \
+        .options = OPTION_TABLE(struct fake_options, fake_rows, NULL)                              \
     }
 static const struct technique still = FAKE("still", ROLE_SOURCE), glow = FAKE("glow", ROLE_SOURCE),
                               change = FAKE("change", ROLE_DELTA),
@@ -51,7 +50,7 @@ static const struct technique graded = {
     .create = fake_create,
     .record = fake_record,
     .destroy = fake_destroy,
-    .options = { fake_rows, 1, sizeof(struct fake_options) },
+    .options = OPTION_TABLE(struct fake_options, fake_rows, fake_aliases),
     .presets = fake_presets,
 };
 static const struct technique *const fakes[] = { &still, &glow, &change, &shade, &graded, NULL };
@@ -139,6 +138,16 @@ TEST(gi_spec_presets_come_before_what_is_said_beside_them)
     parses_as("graded:quality=high,quality=low+shade", "graded:bias=0.5+shade:bias=1");
 }
 
+TEST(gi_spec_accepts_old_names_of_options)
+{
+    test_forget_messages();
+    parses_as("graded:offset=3", "graded:bias=3");
+    CHECK_STRING(
+        test_last_message(),
+        "graded: option offset is now bias; the old name will be removed in the next release");
+    parses_as("graded:quality=low,offset=4+shade", "graded:bias=4+shade:bias=1");
+}
+
 TEST(gi_spec_errors_of_presets_name_what_there_is)
 {
     fails_with("graded:quality=hihg", "did you mean high? (one of low|high)");
@@ -211,10 +220,18 @@ TEST(registry_refuses_a_technique_that_lacks_something)
     bad = glow;
     bad.options.rows = &named_quality;
     CHECK(!technique_is_sound(&bad));
-    const struct technique_debug_view views[] = { { "a", "b" }, { NULL, NULL } };
+    const struct technique_debug_view views[] = { { "a", "b", NULL }, { NULL, NULL, NULL } };
     bad = glow;
     bad.debug_views = views;
     CHECK(!technique_is_sound(&bad));
+    const struct option_alias of_nothing[] = { { "offset", "bais" }, { NULL, NULL } };
+    bad = glow;
+    bad.options.aliases = of_nothing;
+    CHECK(!technique_is_sound(&bad));
+    const struct option_alias of_a_row[] = { { "bias", "bias" }, { NULL, NULL } };
+    bad.options.aliases = of_a_row;
+    CHECK(!technique_is_sound(&bad));
+    CHECK(technique_is_sound(&graded));
 }
 
 TEST(every_option_and_view_is_in_the_readme_of_its_technique)

@@ -204,6 +204,65 @@ TEST_GPU(gi_changes_live_options_in_place_and_asks_for_a_new_one_else)
     studio_finish(&s);
 }
 
+static bool fake_create(void *state, const struct technique_create *how)
+{
+    return state && how;
+}
+
+static void fake_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    (void)state, (void)cmd, (void)view;
+}
+
+static void fake_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
+                            const char *name, gpu_image out)
+{
+    (void)state, (void)view;
+    CHECK_STRING(name, "overflow");
+    gpu_clear_image(cmd, out, (const float[4]){ 1, 1, 1, 1 });
+}
+
+static void fake_destroy(void *state)
+{
+    (void)state;
+}
+
+static const struct technique_debug_view fake_views[] = {
+    { "overflow", "voxels that did not fit", "room" }, { NULL, NULL, NULL }
+};
+static const struct technique fake = { .name = "fake",
+                                       .role = ROLE_SOURCE,
+                                       .state_size = 1,
+                                       .debug_views = fake_views,
+                                       .create = fake_create,
+                                       .record = fake_record,
+                                       .debug_view = fake_debug_view,
+                                       .destroy = fake_destroy };
+
+TEST_GPU(gi_accepts_the_old_name_of_a_debug_view)
+{
+    struct studio s;
+    room(&s, gpu);
+    const struct gi_spec spec = {
+        .host = test_host(), .count = 1, .technique = { &fake }, .options = { NULL }
+    };
+    struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);
+    assert_non_null(gi);
+    s.indirect = gi_hook(gi);
+    static const char *const names[] = { "room", "fake.room" };
+    for (int i = 0; i < 2; i++) {
+        CHECK(gi_set_debug_view(gi, names[i]));
+        CHECK_STRING(test_last_message(), "fake: debug view room is now overflow; the old name "
+                                          "will be removed in the next release");
+        studio_render(&s);
+        test_forget_messages();
+    }
+    CHECK(gi_set_debug_view(gi, "overflow") && gi_set_debug_view(gi, "fake.overflow"));
+    CHECK_STRING(test_last_message(), "");
+    gi_destroy(gi);
+    studio_finish(&s);
+}
+
 TEST_GPU(lpv_refuses_a_dimension_that_does_not_fit_its_workgroups)
 {
     struct studio s;

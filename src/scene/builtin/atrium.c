@@ -258,6 +258,6 @@ static bool build_atrium(struct scene *scene, const void *options)
 const struct builtin_scene builtin_atrium = {
     .name = "atrium",
     .title = "a colonnaded two-storey court with coloured drapes, sunlit from above",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct atrium_options) },
+    .options = OPTION_TABLE(struct atrium_options, rows, NULL),
     .build = build_atrium,
 };

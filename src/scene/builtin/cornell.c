@@ -210,6 +210,6 @@ static bool build_cornell(struct scene *scene, const void *options)
 const struct builtin_scene builtin_cornell = {
     .name = "cornell",
     .title = "the Cornell box, published measurements at 5.56 m",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct cornell_options) },
+    .options = OPTION_TABLE(struct cornell_options, rows, NULL),
     .build = build_cornell,
 };

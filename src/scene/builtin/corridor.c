@@ -160,6 +160,6 @@ static bool build_corridor(struct scene *scene, const void *options)
 const struct builtin_scene builtin_corridor = {
     .name = "corridor",
     .title = "two crossing corridors and one bright ball in the middle",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct corridor_options) },
+    .options = OPTION_TABLE(struct corridor_options, rows, NULL),
     .build = build_corridor,
 };

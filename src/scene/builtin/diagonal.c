@@ -64,6 +64,6 @@ static bool build_diagonal(struct scene *scene, const void *options)
 const struct builtin_scene builtin_diagonal = {
     .name = "diagonal",
     .title = "a square floor lit along its diagonal by an upright area light",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct diagonal_options) },
+    .options = OPTION_TABLE(struct diagonal_options, rows, NULL),
     .build = build_diagonal,
 };

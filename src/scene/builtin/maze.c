@@ -206,6 +206,6 @@ static bool build_maze(struct scene *scene, const void *options)
 const struct builtin_scene builtin_maze = {
     .name = "maze",
     .title = "cubes joined by missing faces, the light in one of them",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct maze_options) },
+    .options = OPTION_TABLE(struct maze_options, rows, NULL),
     .build = build_maze,
 };

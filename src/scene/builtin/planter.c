@@ -262,6 +262,6 @@ static bool build_scene(struct scene *scene, const void *options)
 const struct builtin_scene builtin_planter = {
     .name = "planter",
     .title = "a planter in the shade of an arcade, lit by a drape in the sun",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct planter_options) },
+    .options = OPTION_TABLE(struct planter_options, rows, NULL),
     .build = build_scene,
 };

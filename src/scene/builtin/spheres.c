@@ -112,6 +112,6 @@ static bool build_spheres(struct scene *scene, const void *options)
 const struct builtin_scene builtin_spheres = {
     .name = "spheres",
     .title = "a chart of metallic and roughness, or a furnace",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct spheres_options) },
+    .options = OPTION_TABLE(struct spheres_options, rows, NULL),
     .build = build_spheres,
 };

@@ -138,6 +138,6 @@ static bool build_tunnel(struct scene *scene, const void *options)
 const struct builtin_scene builtin_tunnel = {
     .name = "tunnel",
     .title = "straight and bent pipes in a row, one light",
-    .options = { rows, sizeof rows / sizeof *rows, sizeof(struct tunnel_options) },
+    .options = OPTION_TABLE(struct tunnel_options, rows, NULL),
     .build = build_tunnel,
 };

@@ -44,15 +44,17 @@ static const struct option_row higher_order_rows[] = {
 static const struct lpv_names names = NAMES("lpv"), higher_order_names = NAMES("holpv");
 
 static const struct technique_debug_view debug_views[] = {
-    { "injected", "slices of the grid: the light that lit and emissive surfaces put in" },
-    { "propagated", "slices of the grid: the light accumulated over all steps" },
+    { "injected", "slices of the grid: the light that lit and emissive surfaces put in", NULL },
+    { "propagated", "slices of the grid: the light accumulated over all steps", NULL },
     { "cells",
-      "the surfaces coloured by the cell they inject into, bright where light was injected" },
-    { "geometry", "slices of the grid: what is held back along x, y, z at each cell's low faces, "
-                  "as red, green, "
-                  "blue" },
-    { PROBES_VIEW, PROBES_VIEW_HELP },
-    { NULL, NULL },
+      "the surfaces coloured by the cell they inject into, bright where light was injected", NULL },
+    { "geometry",
+      "slices of the grid: what is held back along x, y, z at each cell's low faces, "
+      "as red, green, "
+      "blue",
+      NULL },
+    { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
+    { NULL, NULL, NULL },
 };
 
 // Chosen by measured error and time, see README.md.
@@ -306,8 +308,8 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     .name = name_, .title = title_, .paper = paper_, .folder = "lpv", .role = ROLE_SOURCE,         \
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | PUBLISHES_PROBES | GATHERS_EMISSION,     \
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
-    .options = { rows_, sizeof rows_ / sizeof rows_[0], sizeof(struct lpv_options) },              \
-    .presets = presets_, .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),    \
+    .options = OPTION_TABLE(struct lpv_options, rows_, NULL), .presets = presets_,                 \
+    .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),                         \
     .set_options = lpv_set_options, .invalidate = lpv_invalidate, .record = lpv_record,            \
     .debug_view = lpv_debug_view, .probes = lpv_probes, .destroy = lpv_destroy,                    \
     .memory_estimate = lpv_memory_estimate

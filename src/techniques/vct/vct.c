@@ -32,19 +32,22 @@ static const struct option_row occlusion_rows[] = {
 #undef OPTION
 
 static const struct technique_debug_view debug_views[] = {
-    { "reflectance", "the voxels that the eye sees, by what they reflect" },
-    { "normals", "the voxels that the eye sees, by the way of their front" },
-    { "radiance", "the voxels that the eye sees, by the light that they send to it" },
-    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red" },
-    { "room", "the voxels that the eye sees, red where there was no room for their light" },
-    { NULL, NULL },
+    { "reflectance", "the voxels that the eye sees, by what they reflect", NULL },
+    { "normals", "the voxels that the eye sees, by the way of their front", NULL },
+    { "radiance", "the voxels that the eye sees, by the light that they send to it", NULL },
+    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red",
+      NULL },
+    { "room", "the voxels that the eye sees, red where there was no room for their light", NULL },
+    { NULL, NULL, NULL },
 };
 
 static const struct technique_debug_view occlusion_views[] = {
-    { "normals", "the voxels that the eye sees, by the way of their front" },
-    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red" },
-    { "room", "the voxels that the eye sees, red where there was no room for what they cover" },
-    { NULL, NULL },
+    { "normals", "the voxels that the eye sees, by the way of their front", NULL },
+    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red",
+      NULL },
+    { "room", "the voxels that the eye sees, red where there was no room for what they cover",
+      NULL },
+    { NULL, NULL, NULL },
 };
 
 // Chosen by measured error and time, see README.md.
@@ -302,8 +305,7 @@ const struct technique technique_vct = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE,
-    .options = { option_rows, sizeof option_rows / sizeof option_rows[0],
-                 sizeof(struct vct_options) },
+    .options = OPTION_TABLE(struct vct_options, option_rows, NULL),
     .presets = presets,
     .debug_views = debug_views,
     .state_size = sizeof(struct vct),
@@ -328,8 +330,7 @@ const struct technique technique_vctao = {
     .role = ROLE_VISIBILITY,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
     .needs = FRAME_WRITES_VISIBILITY,
-    .options = { occlusion_rows, sizeof occlusion_rows / sizeof occlusion_rows[0],
-                 sizeof(struct vct_options) },
+    .options = OPTION_TABLE(struct vct_options, occlusion_rows, NULL),
     .presets = occlusion_presets,
     .debug_views = occlusion_views,
     .state_size = sizeof(struct vct),
