@@ -45,11 +45,11 @@ static enum status check_debug_view(const char *wanted)
     const char *known[256];
     int count = 0;
     struct ag_technique_info info;
-    for (int i = 0; ag_technique_get(i, &info); i++)
+    for (int i = 0; ag_technique_get(i, &info); i++) {
+        if (ag_technique_debug_view_find(i, wanted) >= 0) return DONE;
         for (int k = 0; k < info.debug_view_count && count < 256; k++)
             ag_technique_debug_view_get(i, k, &known[count++], NULL);
-    for (int i = 0; i < count; i++)
-        if (strcmp(known[i], wanted) == 0) return DONE;
+    }
     const char *nearest = ag_nearest_name(wanted, known, count);
     if (nearest) return wrong_usage("unknown debug view %s: did you mean %s?", wanted, nearest);
     return wrong_usage("unknown debug view %s: see afterglow list", wanted);

@@ -31,6 +31,8 @@ AG_API bool ag_technique_preset_get(int technique, int index, const char **name,
                                     const char **options);
 AG_API bool ag_technique_debug_view_get(int technique, int index, const char **name,
                                         const char **help);
+/// Index of the debug view of this name, or of this name in the last release; -1: none.
+AG_API int ag_technique_debug_view_find(int technique, const char *name);
 AG_API bool ag_frame_option_get(int index, struct ag_option_info *out);
 
 struct ag_builtin_scene_info {

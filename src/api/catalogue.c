@@ -120,6 +120,14 @@ bool ag_technique_debug_view_get(int technique, int index, const char **name, co
     return true;
 }
 
+int ag_technique_debug_view_find(int technique, const char *name)
+{
+    const struct technique *within = technique_at(technique);
+    const struct technique_debug_view *view =
+        within && name ? technique_find_view(within, name) : NULL;
+    return view ? (int)(view - within->debug_views) : -1;
+}
+
 bool ag_frame_option_get(int index, struct ag_option_info *out)
 {
     return option_get(&frame_option_table, index, out);

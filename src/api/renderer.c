@@ -54,7 +54,11 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
     if (checked != AG_OK) return checked;
     struct gi_spec spec = { 0 };
     struct frame_options options;
-    bool ok = parse_options(&context->host, desc, &spec, &options);
+    struct host *host = &context->host;
+    const enum log_level log_up_to = host->log_up_to;
+    host->log_up_to = LOG_ERROR; // ag_renderer_create logs the warnings of the same texts
+    bool ok = parse_options(host, desc, &spec, &options);
+    host->log_up_to = log_up_to;
     uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
     if (light_count > FRAME_MAX_LIGHTS) light_count = FRAME_MAX_LIGHTS;
     if (ok)

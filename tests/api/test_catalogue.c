@@ -35,7 +35,9 @@ TEST(techniques_and_their_options_can_be_counted)
             CHECK(ag_technique_preset_get(count, i, &name, &help) && name[0] && help);
         CHECK(!ag_technique_preset_get(count, technique.preset_count, &name, &help));
         for (int i = 0; i < technique.debug_view_count; i++)
-            CHECK(ag_technique_debug_view_get(count, i, &name, &help) && name[0] && help[0]);
+            CHECK(ag_technique_debug_view_get(count, i, &name, &help) && name[0] && help[0] &&
+                  ag_technique_debug_view_find(count, name) == i);
+        CHECK(ag_technique_debug_view_find(count, "nonesuch") == -1);
         CHECK(!ag_technique_debug_view_get(count, technique.debug_view_count, &name, &help));
     }
     CHECK(count >= 3 && has_none);
@@ -44,6 +46,8 @@ TEST(techniques_and_their_options_can_be_counted)
     CHECK(!ag_technique_option_get(count, 0, &option));
     CHECK(!ag_technique_preset_get(-1, 0, &name, &help));
     CHECK(!ag_technique_debug_view_get(-1, 0, &name, &help));
+    CHECK(ag_technique_debug_view_find(-1, "a") == -1);
+    CHECK(ag_technique_debug_view_find(0, NULL) == -1);
 }
 
 TEST(every_technique_can_be_asked_for_with_its_defaults)
