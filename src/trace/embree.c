@@ -1,4 +1,4 @@
-// Embree, versions 3 and 4. They differ in how a query's flags and context are handed over.
+// Wrapper of Embree 3 and 4, which pass a query's flags and context differently.
 #include "trace/embree.h"
 
 #if AG_EMBREE == 4
@@ -26,7 +26,7 @@ static bool fail(const struct embree *embree, const char *doing)
     bool memory = code == RTC_ERROR_OUT_OF_MEMORY;
     return host_fail(embree->host, memory ? FAIL_MEMORY : FAIL_UNSUPPORTED,
                      "cannot %s for rays: %s (Embree's error %d)", doing,
-                     memory ? "out of memory" : "the library refuses", (int)code);
+                     memory ? "out of memory" : "refused by the library", (int)code);
 }
 
 struct embree *embree_create(struct host *host)
@@ -54,7 +54,7 @@ void embree_destroy(struct embree *embree)
     host_free(embree->host, embree);
 }
 
-// ---- what is solid where
+// ---- alpha-masked geometry
 
 struct query {
 #if AG_EMBREE == 4
@@ -174,7 +174,7 @@ bool embree_occluded(const struct embree *embree, const struct ray *ray)
     rtcInitIntersectContext(&query.context);
     rtcOccluded1(embree->scene, &query.context, &r);
 #endif
-    return r.tfar < 0.0f; // −∞ where something was met
+    return r.tfar < 0.0f; // −∞ when occluded
 }
 
 // ---- the floating-point unit

@@ -1,4 +1,4 @@
-// Embree, versions 3 and 4: the one place that knows it, and the difference.
+// Ray queries by Embree 3 or 4; the only header over Embree.
 #pragma once
 
 #include "core/host.h"
@@ -20,19 +20,18 @@ struct ray_hit {
     float u, v; // weights of the triangle's second and third corner
 };
 
-// Whether a triangle is there at a point. `view`: what the ray was shot with.
+// Alpha test of a hit. view: as given to the query.
 typedef bool embree_solid(const void *geometry, uint32_t triangle, float u, float v,
                           const void *view);
 
 struct embree_geometry {
-    const vec3s
-        *positions; // the first of them; 4 more bytes follow the last: Embree reads 16 at a time
-    size_t stride;  // from one to the next, bytes
+    const vec3s *positions; // followed by 4 readable bytes: Embree loads 16 at a time
+    size_t stride;          // bytes
     uint32_t vertex_count;
     const uint32_t *indices;
     uint32_t triangle_count;
-    embree_solid *solid; // NULL: everywhere
-    const void *user;    // given to `solid`
+    embree_solid *solid; // NULL: opaque
+    const void *user;    // argument of `solid`
 };
 
 struct embree *embree_create(struct host *host);
@@ -42,8 +41,7 @@ bool embree_add(struct embree *embree, const struct embree_geometry *geometry);
 bool embree_commit(struct embree *embree);
 void embree_destroy(struct embree *embree); // accepts NULL
 
-// Queries as they were made, for those who measure. From many threads at a time; what there is no
-// room for is only counted.
+// A record of queries, for benchmarks. Thread-safe; queries beyond the capacity are only counted.
 struct logged_ray {
     struct ray ray;
     bool occlusion;
@@ -53,14 +51,14 @@ struct ray_log {
     size_t capacity;
     atomic_size_t count;
 };
-void embree_log(struct embree *embree, struct ray_log *log); // NULL: no longer
+void embree_log(struct embree *embree, struct ray_log *log); // NULL: stop
 
-// view is handed to the `solid` of what the ray meets. Nearest first.
+// Nearest hit. view is passed to `solid`.
 bool embree_closest(const struct embree *embree, const struct ray *ray, const void *view,
                     bool coherent, struct ray_hit *hit);
 bool embree_occluded(const struct embree *embree, const struct ray *ray);
 
-// Numbers too small for a normal float become 0 on this thread: they cost a hundred times as much
-// and carry nothing. Returns what embree_restore_denormals takes.
+// Flushes denormals to 0 on this thread: they cost a hundred times as much. Returns the argument of
+// embree_restore_denormals.
 unsigned embree_flush_denormals(void);
 void embree_restore_denormals(unsigned before);

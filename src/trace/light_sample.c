@@ -1,8 +1,7 @@
-// Lights: punctual ones as light.glsl has them, and triangles that glow, chosen by power through an
-// alias table.
+// Light sampling: punctual lights as in light.glsl, emissive triangles by power with an alias
+// table.
 //
-// The sky is uniform. Sampling what a surface reflects finds it as well as any sampler of its own
-// could, so it has none.
+// The sky is uniform: BSDF sampling alone finds it well, so that it has no sampler.
 #include "trace/light_sample.h"
 
 #include "trace/surface.h"
@@ -11,17 +10,17 @@
 
 #include <math.h>
 
-static const float MIN_DISTANCE_M = 0.01f; // light.glsl: 1/r² is cut off there
+static const float MIN_DISTANCE_M = 0.01f; // light.glsl: 1/r² is clamped there
 
-// ---- the table
+// ---- light table
 
-static bool glows(const struct trace_mesh *mesh)
+static bool is_emissive(const struct trace_mesh *mesh)
 {
     return mesh->material->emissive && mesh->mesh->index_count > 0;
 }
 
-// The mean luminance over a triangle, from a lattice of points. What the lattice misses is still
-// chosen now and then: the least weight is a hundredth of the factor's.
+// Mean luminance over a triangle from a lattice of points, at least a hundredth of the factor's, so
+// that texels between the points are sampled too.
 static float mean_emission(const struct trace_mesh *mesh, uint32_t triangle)
 {
     enum { SIDE = 4 };
@@ -36,8 +35,7 @@ static float mean_emission(const struct trace_mesh *mesh, uint32_t triangle)
     return fmaxf(sum / (SIDE * SIDE), 0.01f * factor);
 }
 
-// Vose 1991: those with less than the mean are filled up from those with more. `scaled` has the
-// weights over their mean.
+// Alias table of Vose 1991. scaled: weights divided by their mean.
 static void build_alias(struct emitter *emitters, uint32_t count, double *scaled, uint32_t *work)
 {
     uint32_t small = 0, large = count;
@@ -57,7 +55,7 @@ static void build_alias(struct emitter *emitters, uint32_t count, double *scaled
         large++;
         work[small++] = l;
     }
-    // What is left is full but for rounding.
+    // The remaining entries differ from 1 by rounding alone.
     while (large < count) emitters[work[large++]].stay = 1.0f;
     while (small > 0) emitters[work[--small]].stay = 1.0f;
 }
@@ -119,11 +117,11 @@ static bool list_emitters(struct trace_scene *scene)
     size_t count = 0;
     for (uint32_t m = 0; m < scene->mesh_count; m++) {
         struct trace_mesh *mesh = &scene->meshes[m];
-        mesh->emitter_first = glows(mesh) ? (uint32_t)count : NO_EMITTER;
-        if (glows(mesh)) count += mesh->mesh->index_count / 3;
+        mesh->emitter_first = is_emissive(mesh) ? (uint32_t)count : NO_EMITTER;
+        if (is_emissive(mesh)) count += mesh->mesh->index_count / 3;
         if (count >= NO_EMITTER)
-            return host_fail(scene->host, FAIL_UNSUPPORTED, "light of %s: too many triangles glow",
-                             scene->scene->name);
+            return host_fail(scene->host, FAIL_UNSUPPORTED,
+                             "light of %s: too many emissive triangles", scene->scene->name);
     }
     if (count == 0) return true;
     t->emitters = host_alloc(scene->host, count, sizeof *t->emitters);

@@ -1,14 +1,14 @@
-// How much of a sphere's volume round a surface is open, and how much of the sky above it: what the
-// techniques that look into the depth buffer estimate, by rays.
+// Volumetric obscurance and ambient occlusion at a surface point by rays: the reference of the
+// screen-space visibility techniques.
 #pragma once
 
 #include "trace/surface.h"
 
-struct obscurance_rules {
+struct obscurance_settings {
     const struct trace_scene *scene;
     float radius_m;    // of the sphere; > 0
-    bool sphere;       // the whole sphere, else the hemisphere above the shading normal
-    float decay_per_m; // what is met at the distance r hides 1/(1 + decay · r) of the sky behind it
+    bool sphere;       // full sphere, else the hemisphere above the shading normal
+    float decay_per_m; // an occluder at the distance r has the opacity 1/(1 + decay · r)
     uint32_t seed;
 };
 
@@ -17,7 +17,7 @@ struct obscurance_sums {
     int samples;
 };
 
-// Adds samples up to `samples` of them at pixel `pixel`, a surface: the same arguments give the
-// same sums, however they are spread over calls.
-void obscurance_add(const struct obscurance_rules *rules, const struct surface *surface,
+// Adds samples at a surface until there are `samples`. The sums do not depend on how samples are
+// split over calls.
+void obscurance_add(const struct obscurance_settings *settings, const struct surface *surface,
                     uint32_t pixel, int samples, struct obscurance_sums *sums);

@@ -1,67 +1,68 @@
-// A path tracer with next-event estimation (Kajiya 1986, "The Rendering Equation"): at each surface
-// the punctual lights and a point on an emitter are asked for their light (gather.c), then a
-// direction is sampled. What glows is found both ways, weighted by the power heuristic (Veach 1997,
-// sec. 9.2.4). Chance ends paths by what they still carry (Arvo & Kirk 1990).
+// A path tracer (Kajiya 1986, "The Rendering Equation") with next-event estimation of punctual
+// lights and emitters (next_event.c) and BSDF sampling, combined by the power heuristic (Veach
+// 1997, sec. 9.2.4). Russian roulette ends paths by their throughput (Arvo & Kirk 1990).
 #include "trace/path.h"
 
-#include "trace/gather.h"
+#include "trace/next_event.h"
 
 #include "core/rng.h"
 
 #include <math.h>
 
-enum { FIRST_ROULETTE = 3 };                 // bounces that always happen
-static const float MAX_SURVIVAL = 0.95f;     // so that every path ends, in a furnace too
-static const float IRRADIANCE_SHARE = 0.25f; // of samples that go by the cosine at the surface seen
-static const float STEP_THROUGH = 0x1p-20f;  // relative, beyond a surface that the eye does not see
+enum { ROULETTE_DEPTH = 3 };                  // bounces before Russian roulette
+static const float MAX_SURVIVAL = 0.95f;      // so that paths end in a furnace, too
+static const float DIFFUSE_SHARE = 0.25f;     // least share of diffuse samples at the primary hit
+static const float BACK_FACE_STEP = 0x1p-20f; // relative step past a culled back face
 
-// ---- the surface that the eye sees
+// ---- primary hit
 
-static bool is_seen(const struct trace_scene *scene, const struct surface *s)
+static bool is_visible_to_camera(const struct trace_scene *scene, const struct surface *s)
 {
     return s->front || scene->meshes[s->mesh].material->double_sided;
 }
 
-static bool first_surface(const struct path_rules *rules, struct ray ray,
+static bool first_surface(const struct path_settings *settings, struct ray ray,
                           const struct pixel_footprint *footprint, struct surface *out,
                           uint64_t *rays)
 {
     struct ray_hit hit;
     for (;;) {
         ++*rays;
-        if (!embree_closest(rules->scene->embree, &ray, footprint, true, &hit)) return false;
-        surface_at(rules->scene, &ray, &hit, footprint, out);
-        if (is_seen(rules->scene, out)) return true;
-        ray.near = nextafterf(hit.distance * (1.0f + STEP_THROUGH), INFINITY);
+        if (!embree_closest(settings->scene->embree, &ray, footprint, true, &hit)) return false;
+        surface_at(settings->scene, &ray, &hit, footprint, out);
+        if (is_visible_to_camera(settings->scene, out)) return true;
+        ray.near = nextafterf(hit.distance * (1.0f + BACK_FACE_STEP), INFINITY);
     }
 }
 
-static struct bsdf bsdf_at(const struct path_rules *rules, const struct surface *s, vec3s to_eye)
+static struct bsdf bsdf_at(const struct path_settings *settings, const struct surface *s,
+                           vec3s to_viewer)
 {
-    return bsdf_of(s->normal, to_eye, s->albedo, s->metallic, s->roughness, rules->diffuse_only);
+    return bsdf_of(s->normal, to_viewer, s->albedo, s->metallic, s->roughness,
+                   settings->diffuse_only);
 }
 
-struct path_start path_begin(const struct path_rules *rules, const struct ray *ray,
+struct path_start path_begin(const struct path_settings *settings, const struct ray *ray,
                              const struct pixel_footprint *footprint, uint64_t *rays)
 {
-    struct path_start start = { .seen = rules->scene->lights.sky };
-    start.hit = first_surface(rules, *ray, footprint, &start.surface, rays);
+    struct path_start start = { .radiance = settings->scene->lights.sky };
+    start.hit = first_surface(settings, *ray, footprint, &start.surface, rays);
     if (start.hit) {
-        vec3s to_eye = glms_vec3_normalize(glms_vec3_negate(ray->direction));
-        start.bsdf = bsdf_at(rules, &start.surface, to_eye);
-        bsdf_sample_evenly(&start.bsdf, IRRADIANCE_SHARE);
-        if (rules->direct)
-            start.seen =
-                glms_vec3_add(start.surface.emission,
-                              gather_all_punctual(rules->scene, &start.surface, &start.bsdf, rays));
+        vec3s to_viewer = glms_vec3_normalize(glms_vec3_negate(ray->direction));
+        start.bsdf = bsdf_at(settings, &start.surface, to_viewer);
+        bsdf_reserve_diffuse_samples(&start.bsdf, DIFFUSE_SHARE);
+        if (settings->direct)
+            start.radiance = glms_vec3_add(
+                start.surface.emission,
+                next_event_all_punctual(settings->scene, &start.surface, &start.bsdf, rays));
     }
-    if (!rules->direct) start.seen = vec3_of(0, 0, 0);
+    if (!settings->direct) start.radiance = vec3_of(0, 0, 0);
     return start;
 }
 
-// ---- the walk
+// ---- path state
 
-// A step of the path and what it reflects of the light that will arrive along it.
+// A sampled direction at a path vertex, with the BSDF of the light arriving along it.
 struct step {
     struct ray ray;
     vec3s f;     // 1/sr
@@ -69,23 +70,22 @@ struct step {
     float pdf;   // 1/sr
 };
 
-// Radiance at the surface seen is `share` times what arrives along the first sampled direction;
-// `carried` is what of it comes from further on. The two shares are the same light as seen by the
-// eye and as irradiance.
-struct walk {
-    const struct path_rules *rules;
+// The throughput to the camera is first_weight · throughput, that to the irradiance at the primary
+// hit is first_irradiance_weight · throughput.
+struct path {
+    const struct path_settings *settings;
     struct path_sample *sample;
     uint64_t *rays;
-    uint64_t key; // of its numbers
+    uint64_t key; // of the random sequence
     struct surface surface;
     struct bsdf bsdf;
     struct step step;
-    struct ray_hit hit;     // of the step
-    bool met;               // there is a hit
-    vec3s share;            // of the first step, for the eye
-    float irradiance_share; // and for irradiance
-    vec3s carried;          // of all later steps
-    int depth;              // bounces so far
+    struct ray_hit hit;            // of the step
+    bool has_hit;                  // the step hit a surface
+    vec3s first_weight;            // f · cosine / pdf of the first step
+    float first_irradiance_weight; // cosine / pdf of the first step, sr
+    vec3s throughput;              // of all later steps
+    int depth;                     // bounces so far
 };
 
 static void add_to(vec3s *sum, vec3s light)
@@ -93,198 +93,199 @@ static void add_to(vec3s *sum, vec3s light)
     *sum = glms_vec3_add(*sum, light);
 }
 
-// Light reflected at a later surface towards where the walk came from.
-static void collect(struct walk *w, vec3s light)
+// Radiance reflected at a secondary vertex back along the path.
+static void add_reflected(struct path *p, vec3s light)
 {
-    vec3s arriving = glms_vec3_mul(w->carried, light);
-    vec3s seen = glms_vec3_mul(w->share, arriving);
-    vec3s falling = glms_vec3_scale(arriving, w->irradiance_share);
-    add_to(&w->sample->light.indirect, seen);
-    add_to(&w->sample->light.indirect_emitters_sky, seen);
-    add_to(&w->sample->light.irradiance, falling);
-    add_to(&w->sample->light.irradiance_emitters_sky, falling);
+    vec3s arriving = glms_vec3_mul(p->throughput, light);
+    vec3s radiance = glms_vec3_mul(p->first_weight, arriving);
+    vec3s irradiance = glms_vec3_scale(arriving, p->first_irradiance_weight);
+    add_to(&p->sample->light.indirect, radiance);
+    add_to(&p->sample->light.indirect_emitters_sky, radiance);
+    add_to(&p->sample->light.irradiance, irradiance);
+    add_to(&p->sample->light.irradiance_emitters_sky, irradiance);
 }
 
-// Light straight from an emitter or the sky, at any surface.
-static void collect_gathered(struct walk *w, const struct gathered *g)
+// Light arriving directly from an emitter or the sky.
+static void add_arriving(struct path *p, const struct arriving_light *g)
 {
-    if (w->depth > 0) {
-        collect(w, g->radiance);
-    } else if (w->rules->direct) {
-        add_to(&w->sample->light.direct, g->radiance);
-        add_to(&w->sample->light.indirect_emitters_sky, g->radiance);
-        add_to(&w->sample->light.irradiance_emitters_sky, g->irradiance);
+    if (p->depth > 0) {
+        add_reflected(p, g->radiance);
+    } else if (p->settings->direct) {
+        add_to(&p->sample->light.direct, g->radiance);
+        add_to(&p->sample->light.indirect_emitters_sky, g->radiance);
+        add_to(&p->sample->light.irradiance_emitters_sky, g->irradiance);
     }
 }
 
-// What numbers are drawn for at each surface. They are independent, so that the spread of a pixel's
-// samples says how far their mean is off; evenly spread ones (Owen-scrambled Sobol points) are off
-// by a tenth less and can no longer tell.
-enum draw { DRAW_CHOICES, DRAW_LIGHT, DRAW_STEP, DRAW_LATER, DRAW_COUNT };
+// Random dimensions per vertex. Samples are independent, so that their variance gives the standard
+// error of the mean; Owen-scrambled Sobol points have a tenth less error but no such estimate.
+enum dimension { DIM_CHOICES, DIM_LIGHT, DIM_STEP, DIM_LATER, DIM_COUNT };
 
-// Words of SplitMix64, each in its place of the sequence that the sample's key begins.
-static const uint64_t STRIDE = UINT64_C(0x9e3779b97f4a7c15);
+// Increment of SplitMix64; the sample's key is its initial state.
+static const uint64_t SPLITMIX_INCREMENT = UINT64_C(0x9e3779b97f4a7c15);
 
-static uint64_t key_of(const struct path_rules *rules, uint32_t pixel, uint32_t sample)
+static uint64_t key_of(const struct path_settings *settings, uint32_t pixel, uint32_t sample)
 {
-    return rng_mix(rng_mix((uint64_t)rules->seed << 32 | pixel) + sample);
+    return rng_mix(rng_mix((uint64_t)settings->seed << 32 | pixel) + sample);
 }
 
-vec2s path_place(const struct path_rules *rules, uint32_t pixel, uint32_t sample)
+vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32_t sample)
 {
-    return rng_pair(rng_mix(key_of(rules, pixel, sample)));
+    return rng_pair(rng_mix(key_of(settings, pixel, sample)));
 }
 
-static vec2s draw(const struct walk *w, enum draw what)
+static vec2s random_pair(const struct path *p, enum dimension dimension)
 {
-    uint64_t number = (uint64_t)(DRAW_COUNT * w->depth + (int)what) + 1;
-    return rng_pair(rng_mix(w->key + number * STRIDE));
+    uint64_t number = (uint64_t)(DIM_COUNT * p->depth + (int)dimension) + 1;
+    return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
 }
 
-static void ask_lights(struct walk *w, float choice)
+static void sample_lights(struct path *p, float choice)
 {
-    const struct trace_scene *scene = w->rules->scene;
-    if (w->depth == 0 && !w->rules->direct) return;
-    if (w->depth > 0 && scene->lights.punctual_count > 0)
-        collect(w,
-                gather_one_punctual(scene, &w->surface, &w->bsdf, draw(w, DRAW_LATER).x, w->rays));
+    const struct trace_scene *scene = p->settings->scene;
+    if (p->depth == 0 && !p->settings->direct) return;
+    if (p->depth > 0 && scene->lights.punctual_count > 0)
+        add_reflected(p, next_event_one_punctual(scene, &p->surface, &p->bsdf,
+                                                 random_pair(p, DIM_LATER).x, p->rays));
     if (!scene->lights.has_emitters) return;
-    struct gathered g =
-        gather_one_emitter(scene, &w->surface, &w->bsdf, choice, draw(w, DRAW_LIGHT), w->rays);
-    collect_gathered(w, &g);
+    struct arriving_light g = next_event_one_emitter(scene, &p->surface, &p->bsdf, choice,
+                                                     random_pair(p, DIM_LIGHT), p->rays);
+    add_arriving(p, &g);
 }
 
-static bool choose_step(struct walk *w, float choice)
+static bool sample_direction(struct path *p, float choice)
 {
-    vec3s to_light = bsdf_sample(&w->bsdf, choice, draw(w, DRAW_STEP));
-    float cosine = glms_vec3_dot(w->bsdf.normal, to_light);
-    if (!(cosine > 0.0f) || !(glms_vec3_dot(w->surface.geometric, to_light) > 0.0f)) return false;
-    struct reflection r = bsdf_reflect(&w->bsdf, to_light);
+    vec3s to_light = bsdf_sample(&p->bsdf, choice, random_pair(p, DIM_STEP));
+    float cosine = glms_vec3_dot(p->bsdf.normal, to_light);
+    if (!(cosine > 0.0f) || !(glms_vec3_dot(p->surface.geometric, to_light) > 0.0f)) return false;
+    struct reflection r = bsdf_reflect(&p->bsdf, to_light);
     if (!(r.pdf > 0.0f)) return false;
-    struct ray ray = { surface_leave(&w->surface, to_light), to_light, 0.0f, INFINITY };
-    w->step = (struct step){ .ray = ray, .f = r.f, .scale = cosine / r.pdf, .pdf = r.pdf };
+    struct ray ray = { surface_leave(&p->surface, to_light), to_light, 0.0f, INFINITY };
+    p->step = (struct step){ .ray = ray, .f = r.f, .scale = cosine / r.pdf, .pdf = r.pdf };
     return true;
 }
 
-// The last surface of a path: only what its sampled direction meets still counts.
-static bool is_last(const struct walk *w)
+// The last vertex: the sampled direction only adds the emission it hits.
+static bool is_last(const struct path *p)
 {
-    return w->depth == (w->rules->indirect ? w->rules->bounces : 0);
+    return p->depth == (p->settings->indirect ? p->settings->bounces : 0);
 }
 
-// What lies at the surface, and where to go on from it; false where the path ends.
-static bool leave(struct walk *w)
+// Samples lights and the next direction; false where the path ends.
+static bool sample_vertex(struct path *p)
 {
-    const struct light_table *lights = &w->rules->scene->lights;
-    vec2s choices = draw(w, DRAW_CHOICES);
-    ask_lights(w, choices.x);
-    if (is_last(w) && !lights->has_emitters && !lights->has_sky) return false;
-    return choose_step(w, choices.y);
+    const struct light_table *lights = &p->settings->scene->lights;
+    vec2s choices = random_pair(p, DIM_CHOICES);
+    sample_lights(p, choices.x);
+    if (is_last(p) && !lights->has_emitters && !lights->has_sky) return false;
+    return sample_direction(p, choices.y);
 }
 
-static void trace_step(struct walk *w)
+static void trace_step(struct path *p)
 {
-    ++*w->rays;
-    w->met = embree_closest(w->rules->scene->embree, &w->step.ray, NULL, false, &w->hit);
-    if (w->met) surface_expect(w->rules->scene, &w->hit);
+    ++*p->rays;
+    p->has_hit = embree_closest(p->settings->scene->embree, &p->step.ray, NULL, false, &p->hit);
+    if (p->has_hit) surface_prefetch(p->settings->scene, &p->hit);
 }
 
-// Light that the step meets at its end: the sky, or what the surface there emits.
-static vec3s met_light(const struct walk *w)
+// Radiance of the sky or emitter at the end of the step, weighted against next-event estimation.
+static vec3s hit_radiance(const struct path *p)
 {
-    const struct surface *end = &w->surface;
-    if (!w->met) return w->rules->scene->lights.sky;
-    if (gather_is_black(end->emission)) return end->emission;
-    float cosine = -glms_vec3_dot(end->geometric, w->step.ray.direction);
+    const struct surface *end = &p->surface;
+    if (!p->has_hit) return p->settings->scene->lights.sky;
+    if (is_black(end->emission)) return end->emission;
+    float cosine = -glms_vec3_dot(end->geometric, p->step.ray.direction);
     float other =
-        light_emitter_pdf(w->rules->scene, end->mesh, end->triangle, w->hit.distance, cosine);
-    return glms_vec3_scale(end->emission, gather_weight(w->step.pdf, other));
+        light_emitter_pdf(p->settings->scene, end->mesh, end->triangle, p->hit.distance, cosine);
+    return glms_vec3_scale(end->emission, power_heuristic(p->step.pdf, other));
 }
 
-// Survives with a chance of what it carries, and carries the more.
-static bool survives(struct walk *w)
+// Russian roulette; the survivor's throughput is divided by its probability.
+static bool survives(struct path *p)
 {
-    if (w->depth < FIRST_ROULETTE) return true;
-    float choice = draw(w, DRAW_LATER).y;
-    float most = glms_vec3_max(w->carried);
-    float chance = fminf(most, MAX_SURVIVAL);
-    if (!(choice < chance)) return false;
-    w->carried = glms_vec3_scale(w->carried, 1.0f / chance);
+    if (p->depth < ROULETTE_DEPTH) return true;
+    float choice = random_pair(p, DIM_LATER).y;
+    float largest = glms_vec3_max(p->throughput);
+    float probability = fminf(largest, MAX_SURVIVAL);
+    if (!(choice < probability)) return false;
+    p->throughput = glms_vec3_scale(p->throughput, 1.0f / probability);
     return true;
 }
 
-static void advance(struct walk *w)
+static void advance(struct path *p)
 {
-    vec3s weight = glms_vec3_scale(w->step.f, w->step.scale);
-    if (w->depth == 0) {
-        w->share = weight;
-        w->irradiance_share = w->step.scale;
+    vec3s weight = glms_vec3_scale(p->step.f, p->step.scale);
+    if (p->depth == 0) {
+        p->first_weight = weight;
+        p->first_irradiance_weight = p->step.scale;
     } else {
-        w->carried = glms_vec3_mul(w->carried, weight);
+        p->throughput = glms_vec3_mul(p->throughput, weight);
     }
-    w->depth++;
-    w->bsdf = bsdf_at(w->rules, &w->surface, glms_vec3_negate(w->step.ray.direction));
+    p->depth++;
+    p->bsdf = bsdf_at(p->settings, &p->surface, glms_vec3_negate(p->step.ray.direction));
 }
 
-// At the step's end; false where the path does.
-static bool arrive(struct walk *w)
+// Moves to the end of the step; false where the path ends.
+static bool arrive(struct path *p)
 {
-    bool last = is_last(w);
-    if (w->met) surface_at(w->rules->scene, &w->step.ray, &w->hit, NULL, &w->surface);
-    struct gathered g = gather_arriving(w->step.f, met_light(w), w->step.scale);
-    collect_gathered(w, &g);
-    if (last || !w->met) return false;
-    advance(w);
-    return survives(w);
+    bool last = is_last(p);
+    if (p->has_hit) surface_at(p->settings->scene, &p->step.ray, &p->hit, NULL, &p->surface);
+    struct arriving_light g = light_arriving(p->step.f, hit_radiance(p), p->step.scale);
+    add_arriving(p, &g);
+    if (last || !p->has_hit) return false;
+    advance(p);
+    return survives(p);
 }
 
-// ---- many together
+// ---- batches
 
 struct batch {
-    struct walk walks[PATH_BATCH];
-    struct walk *going[PATH_BATCH]; // those that have not ended
+    struct path paths[PATH_BATCH];
+    struct path *active[PATH_BATCH]; // paths that have not ended
     int count;
 };
 
-static void keep_those(struct batch *batch, bool (*go_on)(struct walk *walk))
+static void keep_active(struct batch *batch, bool (*go_on)(struct path *path))
 {
     int kept = 0;
     for (int i = 0; i < batch->count; i++)
-        if (go_on(batch->going[i])) batch->going[kept++] = batch->going[i];
+        if (go_on(batch->active[i])) batch->active[kept++] = batch->active[i];
     batch->count = kept;
 }
 
-static void begin(struct batch *batch, const struct path_rules *rules, struct path_sample *sample,
-                  uint64_t *rays)
+static void begin(struct batch *batch, const struct path_settings *settings,
+                  struct path_sample *sample, uint64_t *rays)
 {
     const struct path_start *start = sample->start;
-    sample->light = (struct path_light){ .direct = start->seen };
+    sample->light = (struct path_light){ .direct = start->radiance };
     if (!start->hit) return;
-    struct walk *w = batch->going[batch->count] = &batch->walks[batch->count];
-    w->rules = rules;
-    w->sample = sample;
-    w->rays = rays;
-    w->surface = start->surface;
-    w->bsdf = start->bsdf;
-    w->key = key_of(rules, sample->pixel, sample->sample);
-    w->carried = vec3_of(1, 1, 1);
-    w->depth = 0;
+    struct path *p = batch->active[batch->count] = &batch->paths[batch->count];
+    p->settings = settings;
+    p->sample = sample;
+    p->rays = rays;
+    p->surface = start->surface;
+    p->bsdf = start->bsdf;
+    p->key = key_of(settings, sample->pixel, sample->sample);
+    p->throughput = vec3_of(1, 1, 1);
+    p->depth = 0;
     batch->count++;
 }
 
-void path_trace(const struct path_rules *rules, struct path_sample *samples, int count,
+void path_trace(const struct path_settings *settings, struct path_sample *samples, int count,
                 uint64_t *rays)
 {
     struct batch batch;
     batch.count = 0;
-    for (int i = 0; i < count; i++) begin(&batch, rules, &samples[i], rays);
+    for (int i = 0; i < count; i++) begin(&batch, settings, &samples[i], rays);
     while (batch.count > 0) {
-        keep_those(&batch, leave);
-        for (int i = 0; i < batch.count; i++) trace_step(batch.going[i]);
+        keep_active(&batch, sample_vertex);
+        for (int i = 0; i < batch.count; i++) trace_step(batch.active[i]);
         for (int i = 0; i < batch.count; i++)
-            if (batch.going[i]->met) surface_expect_corners(rules->scene, &batch.going[i]->hit);
+            if (batch.active[i]->has_hit)
+                surface_prefetch_corners(settings->scene, &batch.active[i]->hit);
         for (int i = 0; i < batch.count; i++)
-            if (batch.going[i]->met) surface_expect_texels(rules->scene, &batch.going[i]->hit);
-        keep_those(&batch, arrive);
+            if (batch.active[i]->has_hit)
+                surface_prefetch_texels(settings->scene, &batch.active[i]->hit);
+        keep_active(&batch, arrive);
     }
 }

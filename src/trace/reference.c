@@ -1,8 +1,7 @@
-// The reference: passes of samples over the tiles of a picture, their sums, and what is read from
-// them.
+// The reference renderer: passes of samples over image tiles, their sums, and the layers.
 //
-// A pixel's samples depend on its number and theirs alone and are added in their order, so that
-// neither threads nor the way the samples are spread over calls change a bit.
+// A sample depends on its pixel and sample index alone, and sums are added in sample order: results
+// are bit-identical for any number of threads and any split of the samples over calls.
 #include "trace/path.h"
 
 #include "trace/obscurance.h"
@@ -15,9 +14,9 @@
 #include <string.h>
 
 enum {
-    TILE = 16,     // pixels: rays of neighbours meet the same triangles
-    CHUNK = 128,   // tiles between two reports
-    MAX_STEP = 16, // samples of a pixel between two reports
+    TILE = 16,     // pixels: neighbouring rays hit the same triangles
+    CHUNK = 128,   // tiles between progress reports
+    MAX_STEP = 16, // samples of a pixel between progress reports
 };
 
 struct pixel_sums {
@@ -27,21 +26,21 @@ struct pixel_sums {
 };
 
 struct tile {
-    int samples; // done, of each pixel
+    int samples; // per pixel so far
     uint64_t rays;
 };
 
 struct reference {
     struct host *host;
     struct trace_scene *scene;
-    struct path_rules rules;
+    struct path_settings settings;
     struct reference_options options;
     int width, height, tiles_x, tiles_y;
-    vec3s eye, forward, right, up; // right and up: to the picture's edge at a distance of 1
+    vec3s camera_position, forward, right, up; // right, up: to the image's edge at distance 1
     float near_m;
     struct pixel_sums *sums;            // [height][width]
     struct tile *tiles;                 // [tiles_y][tiles_x]
-    struct obscurance_sums *obscurance; // [height][width]; NULL: nobody asked yet
+    struct obscurance_sums *obscurance; // [height][width]; NULL before the first read
     uint64_t key;
 };
 
@@ -72,14 +71,14 @@ const char *reference_layer_name(int layer)
     return layer >= 0 && layer < REFERENCE_LAYER_COUNT ? layer_names[layer] : NULL;
 }
 
-// ---- life
+// ---- creation and destruction
 
-static void aim(struct reference *r, const struct world_camera *camera)
+static void set_camera(struct reference *r, const struct world_camera *camera)
 {
     float tan_y = tanf(0.5f * camera->vertical_fov_rad);
     float tan_x = tan_y * (float)r->width / (float)r->height;
     vec3s right = glms_vec3_normalize(glms_vec3_cross(camera->forward, camera->up));
-    r->eye = camera->eye;
+    r->camera_position = camera->eye;
     r->forward = camera->forward;
     r->right = glms_vec3_scale(right, tan_x);
     r->up = glms_vec3_scale(glms_vec3_cross(right, camera->forward), tan_y);
@@ -92,7 +91,8 @@ static uint64_t key_of(const struct reference *r)
     const int words[] = { r->width,         r->height,       o->bounces,  o->direct_only,
                           o->indirect_only, o->diffuse_only, o->antialias };
     uint64_t key = hash_bytes(words, sizeof words, r->scene->key);
-    const vec3s camera[] = { r->eye, r->forward, r->right, r->up, vec3_of(r->near_m, 0, 0) };
+    const vec3s camera[] = { r->camera_position, r->forward, r->right, r->up,
+                             vec3_of(r->near_m, 0, 0) };
     key = hash_bytes(camera, sizeof camera, key);
     return hash_bytes(&o->seed, sizeof o->seed, key);
 }
@@ -104,18 +104,18 @@ static bool check(struct host *host, int width, int height, const struct referen
                          height, IMAGE_MAX_SIZE);
     if (options->bounces < -1)
         return host_fail(host, FAIL_ARGUMENT,
-                         "reference with %d bounces: 0 is the least, -1 no limit",
+                         "reference with %d bounces: must be 0 or more, or -1 for no limit",
                          options->bounces);
     if (options->direct_only && options->indirect_only)
         return host_fail(host, FAIL_ARGUMENT,
                          "reference of direct light only and of indirect light only: choose one");
     if (!(options->obscurance_radius_m > 0.0f) || !isfinite(options->obscurance_radius_m))
         return host_fail(host, FAIL_ARGUMENT,
-                         "reference with an obscurance radius of %g m: more than 0 is wanted",
+                         "reference with an obscurance radius of %g m: must be above 0",
                          (double)options->obscurance_radius_m);
     if (!(options->occlusion_decay_per_m >= 0.0f) || !isfinite(options->occlusion_decay_per_m))
         return host_fail(host, FAIL_ARGUMENT,
-                         "reference with an occlusion decay of %g 1/m: 0 or more is wanted",
+                         "reference with an occlusion decay of %g 1/m: must be 0 or more",
                          (double)options->occlusion_decay_per_m);
     return true;
 }
@@ -140,10 +140,10 @@ struct reference *reference_create(struct host *host, const struct scene_pose *p
         reference_destroy(r);
         return NULL;
     }
-    aim(r, camera);
+    set_camera(r, camera);
     r->key = key_of(r);
     uint32_t low = (uint32_t)options->seed, high = (uint32_t)(options->seed >> 32);
-    r->rules = (struct path_rules){
+    r->settings = (struct path_settings){
         .scene = r->scene,
         .bounces = options->bounces,
         .direct = !options->indirect_only,
@@ -171,24 +171,24 @@ uint64_t reference_key(const struct reference *reference)
 
 // ---- rendering
 
-// The ray through a point of the picture, in pixels; its direction is 1 along the view axis.
-static struct ray eye_ray(const struct reference *r, float x, float y)
+// The ray through an image point in pixels; its direction has the length 1 along the view axis.
+static struct ray camera_ray(const struct reference *r, float x, float y)
 {
     vec3s d = glms_vec3_muladds(r->right, 2.0f * x / (float)r->width - 1.0f, r->forward);
     d = glms_vec3_muladds(r->up, 1.0f - 2.0f * y / (float)r->height, d);
-    return (struct ray){ r->eye, d, r->near_m, INFINITY };
+    return (struct ray){ r->camera_position, d, r->near_m, INFINITY };
 }
 
 static struct path_start start_at(const struct reference *r, float x, float y, uint64_t *rays)
 {
-    struct ray ray = eye_ray(r, x, y);
+    struct ray ray = camera_ray(r, x, y);
     struct pixel_footprint footprint = {
         .direction = ray.direction,
         .origin = ray.origin,
         .dx = glms_vec3_scale(r->right, 2.0f / (float)r->width),
         .dy = glms_vec3_scale(r->up, -2.0f / (float)r->height),
     };
-    return path_begin(&r->rules, &ray, &footprint, rays);
+    return path_begin(&r->settings, &ray, &footprint, rays);
 }
 
 static void add_sample(struct pixel_sums *sums, const struct path_light *light)
@@ -204,14 +204,14 @@ static void add_sample(struct pixel_sums *sums, const struct path_light *light)
     }
 }
 
-// Some pixels beside each other, and up to MAX_STEP samples of each: as many as a batch holds. What
-// the samples of a pixel's centre share is found once for all of them.
-struct run {
+// Adjacent pixels with up to MAX_STEP samples each, filling one batch. Without antialiasing,
+// samples of a pixel share one path_start.
+struct pixel_run {
     int x, y, width;
     int from, to; // samples
 };
 
-static void start_run(const struct reference *r, const struct run *run,
+static void start_run(const struct reference *r, const struct pixel_run *run,
                       struct path_start starts[PATH_BATCH], struct path_sample *samples,
                       uint64_t *rays)
 {
@@ -219,11 +219,11 @@ static void start_run(const struct reference *r, const struct run *run,
     for (int x = run->x; x < run->x + run->width; x++) {
         uint32_t pixel = (uint32_t)run->y * (uint32_t)r->width + (uint32_t)x;
         for (int i = run->from; i < run->to; i++, count++) {
-            bool another = r->options.antialias;
+            bool jittered = r->options.antialias;
             vec2s u = { { 0.5f, 0.5f } };
-            if (another) u = path_place(&r->rules, pixel, (uint32_t)i);
-            int start = another ? count : x - run->x;
-            if (another || i == run->from)
+            if (jittered) u = path_subpixel(&r->settings, pixel, (uint32_t)i);
+            int start = jittered ? count : x - run->x;
+            if (jittered || i == run->from)
                 starts[start] = start_at(r, (float)x + u.x, (float)run->y + u.y, rays);
             samples[count] = (struct path_sample){ .start = &starts[start],
                                                    .pixel = pixel,
@@ -232,23 +232,23 @@ static void start_run(const struct reference *r, const struct run *run,
     }
 }
 
-static void render_run(const struct reference *r, const struct run *run, uint64_t *rays)
+static void render_run(const struct reference *r, const struct pixel_run *run, uint64_t *rays)
 {
     struct path_start starts[PATH_BATCH];
     struct path_sample samples[PATH_BATCH];
     int count = run->width * (run->to - run->from);
     start_run(r, run, starts, samples, rays);
-    path_trace(&r->rules, samples, count, rays);
+    path_trace(&r->settings, samples, count, rays);
     for (int i = 0; i < count; i++) add_sample(&r->sums[samples[i].pixel], &samples[i].light);
 }
 
 struct pass {
     struct reference *reference;
     size_t first_tile;
-    int samples; // that every tile has afterwards
+    int samples; // target per pixel
 };
 
-static int least_of(int a, int b)
+static int min_int(int a, int b)
 {
     return a < b ? a : b;
 }
@@ -265,10 +265,10 @@ static void render_tile(void *user, size_t i)
     unsigned before = embree_flush_denormals();
     uint64_t rays = 0;
     for (int from = tile->samples; from < pass->samples; from += MAX_STEP) {
-        int to = least_of(from + MAX_STEP, pass->samples), width = PATH_BATCH / (to - from);
-        for (int y = top; y < least_of(top + TILE, r->height); y++)
-            for (int x = left, end = least_of(left + TILE, r->width); x < end; x += width) {
-                struct run run = { x, y, least_of(width, end - x), from, to };
+        int to = min_int(from + MAX_STEP, pass->samples), width = PATH_BATCH / (to - from);
+        for (int y = top; y < min_int(top + TILE, r->height); y++)
+            for (int x = left, end = min_int(left + TILE, r->width); x < end; x += width) {
+                struct pixel_run run = { x, y, min_int(width, end - x), from, to };
                 render_run(r, &run, &rays);
             }
     }
@@ -282,7 +282,7 @@ static size_t tile_count(const struct reference *r)
     return (size_t)r->tiles_x * (size_t)r->tiles_y;
 }
 
-static int least_samples(const struct reference *r)
+static int min_samples(const struct reference *r)
 {
     int least = r->tiles[0].samples;
     for (size_t i = 1; i < tile_count(r); i++)
@@ -290,28 +290,29 @@ static int least_samples(const struct reference *r)
     return least;
 }
 
-// Steps grow from 1, so that a first picture is there soon.
+// Steps grow from 1, so that a first image is available early.
 static int next_step(int done, int left)
 {
-    return least_of(done < 1 ? 1 : least_of(done, MAX_STEP), left);
+    return min_int(done < 1 ? 1 : min_int(done, MAX_STEP), left);
 }
 
 bool reference_render(struct reference *r, int samples, bool (*progress)(void *user, double done),
                       void *user)
 {
-    int begun = least_samples(r);
-    if (samples < 1 || samples > INT32_MAX - begun)
+    int done_before = min_samples(r);
+    if (samples < 1 || samples > INT32_MAX - done_before)
         return host_fail(r->host, FAIL_ARGUMENT,
-                         "reference with %d more samples than %d: 1 is the least", samples, begun);
+                         "reference with %d samples after %d: must be 1 or more", samples,
+                         done_before);
     size_t count = tile_count(r);
-    for (int done = begun; done < begun + samples;) {
-        int step = next_step(done, begun + samples - done);
+    for (int done = done_before; done < done_before + samples;) {
+        int step = next_step(done, done_before + samples - done);
         for (size_t first = 0; first < count; first += CHUNK) {
             size_t chunk = count - first < CHUNK ? count - first : CHUNK;
             struct pass pass = { r, first, done + step };
             parallel_for(chunk, 1, render_tile, &pass);
             double share = (double)(first + chunk) / (double)count;
-            double all = ((double)(done - begun) + share * (double)step) / (double)samples;
+            double all = ((double)(done - done_before) + share * (double)step) / (double)samples;
             if (progress && !progress(user, all))
                 return host_fail(r->host, FAIL_CANCELLED, "reference of %s: cancelled",
                                  r->scene->scene->name);
@@ -343,7 +344,7 @@ static float mean_of(double sum, int samples)
     return samples > 0 ? (float)(sum / samples) : 0.0f;
 }
 
-// Standard error of the mean: the samples' unbiased variance over their number.
+// Squared standard error of the mean: the unbiased sample variance over n.
 static double variance_of_mean(double sum, double squares, int samples)
 {
     if (samples < 2) return INFINITY;
@@ -376,7 +377,7 @@ static struct path_start centre_of(const struct reference *r, int x, int y)
 {
     uint64_t rays = 0;
     struct reference bare = *r;
-    bare.rules.direct = false;
+    bare.settings.direct = false;
     return start_at(&bare, (float)x + 0.5f, (float)y + 0.5f, &rays);
 }
 
@@ -386,14 +387,14 @@ static void read_obscurance(const struct reference *r, enum reference_layer laye
     struct path_start start = centre_of(r, x, y);
     *out = 1.0f;
     if (!start.hit) return;
-    const struct obscurance_rules rules = { .scene = r->scene,
-                                            .radius_m = r->options.obscurance_radius_m,
-                                            .sphere = r->options.obscurance_sphere,
-                                            .decay_per_m = r->options.occlusion_decay_per_m,
-                                            .seed = r->rules.seed };
+    const struct obscurance_settings settings = { .scene = r->scene,
+                                                  .radius_m = r->options.obscurance_radius_m,
+                                                  .sphere = r->options.obscurance_sphere,
+                                                  .decay_per_m = r->options.occlusion_decay_per_m,
+                                                  .seed = r->settings.seed };
     uint32_t pixel = (uint32_t)y * (uint32_t)r->width + (uint32_t)x;
     struct obscurance_sums *sums = &r->obscurance[pixel];
-    obscurance_add(&rules, &start.surface, pixel, samples_of(r, x, y), sums);
+    obscurance_add(&settings, &start.surface, pixel, samples_of(r, x, y), sums);
     if (sums->samples == 0) return;
     const double sum = layer == REFERENCE_OBSCURANCE ? sums->volume : sums->ambient;
     *out = (float)(sum / sums->samples);
@@ -408,7 +409,8 @@ static void read_surface(const struct reference *r, enum reference_layer layer, 
               : layer == REFERENCE_NORMAL ? start.surface.normal
                                           : start.surface.position;
     if (layer == REFERENCE_DEPTH) {
-        out[0] = glms_vec3_dot(glms_vec3_sub(start.surface.position, r->eye), r->forward);
+        out[0] =
+            glms_vec3_dot(glms_vec3_sub(start.surface.position, r->camera_position), r->forward);
         return;
     }
     for (int c = 0; c < 3; c++) out[c] = v.raw[c];
@@ -425,7 +427,7 @@ static bool is_obscurance(enum reference_layer layer)
     return layer == REFERENCE_OBSCURANCE || layer == REFERENCE_AMBIENT_OCCLUSION;
 }
 
-struct reading {
+struct read_job {
     const struct reference *reference;
     enum reference_layer layer;
     const struct image *out;
@@ -433,17 +435,17 @@ struct reading {
 
 static void read_row(void *user, size_t y)
 {
-    const struct reading *reading = user;
-    const struct reference *r = reading->reference;
+    const struct read_job *job = user;
+    const struct reference *r = job->reference;
     unsigned before = embree_flush_denormals();
     for (int x = 0; x < r->width; x++) {
-        float *out = image_at(reading->out, x, (int)y);
-        if (is_obscurance(reading->layer))
-            read_obscurance(r, reading->layer, x, (int)y, out);
-        else if (is_of_surface(reading->layer))
-            read_surface(r, reading->layer, x, (int)y, out);
+        float *out = image_at(job->out, x, (int)y);
+        if (is_obscurance(job->layer))
+            read_obscurance(r, job->layer, x, (int)y, out);
+        else if (is_of_surface(job->layer))
+            read_surface(r, job->layer, x, (int)y, out);
         else
-            read_sums(r, reading->layer, x, (int)y, out);
+            read_sums(r, job->layer, x, (int)y, out);
     }
     embree_restore_denormals(before);
 }
@@ -456,29 +458,29 @@ static int channels_of(enum reference_layer layer)
 bool reference_read(struct reference *r, enum reference_layer layer, struct image *out)
 {
     if ((unsigned)layer >= REFERENCE_LAYER_COUNT)
-        return host_fail(r->host, FAIL_ARGUMENT, "reference's layer %d: there is none", (int)layer);
+        return host_fail(r->host, FAIL_ARGUMENT, "reference layer %d: unknown", (int)layer);
     if (is_obscurance(layer) && !r->obscurance) {
         r->obscurance =
             host_alloc(r->host, (size_t)r->width * (size_t)r->height, sizeof *r->obscurance);
         if (!r->obscurance) return false;
     }
     if (!image_init(out, r->host, r->width, r->height, channels_of(layer))) return false;
-    struct reading reading = { r, layer, out };
-    parallel_for((size_t)r->height, 4, read_row, &reading);
+    struct read_job job = { r, layer, out };
+    parallel_for((size_t)r->height, 4, read_row, &job);
     return true;
 }
 
 struct reference_info reference_info(const struct reference *r)
 {
     static const double weights[3] = { 0.2126, 0.7152, 0.0722 };
-    struct reference_info info = { .samples = least_samples(r) };
+    struct reference_info info = { .samples = min_samples(r) };
     for (size_t i = 0; i < tile_count(r); i++) info.rays += r->tiles[i].rays;
     double variance = 0.0;
     for (int y = 0; y < r->height; y++) {
         for (int x = 0; x < r->width; x++) {
             const struct pixel_sums *s = sums_of(r, x, y);
             int n = samples_of(r, x, y);
-            double error = 0.0; // of channels that rise and fall together: an upper bound
+            double error = 0.0; // for fully correlated channels: an upper bound
             for (int c = 0; c < 3; c++) {
                 double sum = s->direct[c] + s->indirect[c];
                 info.mean += n > 0 ? weights[c] * sum / n : 0.0;
@@ -493,7 +495,7 @@ struct reference_info reference_info(const struct reference *r)
     return info;
 }
 
-// ---- going on
+// ---- resuming
 
 const enum reference_layer reference_kept_layers[REFERENCE_KEPT_COUNT] = {
     [KEPT_DIRECT] = REFERENCE_DIRECT,
@@ -505,7 +507,7 @@ const enum reference_layer reference_kept_layers[REFERENCE_KEPT_COUNT] = {
     [KEPT_SAMPLES] = REFERENCE_SAMPLES,
 };
 
-// Samples must be whole numbers, the same for all pixels of a tile.
+// Sample counts must be integers, equal within a tile.
 static bool restore_tile(struct reference *r, size_t index, const struct image *samples)
 {
     int left = (int)(index % (size_t)r->tiles_x) * TILE,
@@ -556,8 +558,7 @@ bool reference_restore(struct reference *r, const struct image layers[REFERENCE_
     for (int i = 0; i < REFERENCE_KEPT_COUNT; i++)
         if (layers[i].width != r->width || layers[i].height != r->height ||
             layers[i].channels != channels_of(reference_kept_layers[i]))
-            return host_fail(r->host, FAIL_FORMAT,
-                             "reference to go on with: its layer %s is not %dx%d",
+            return host_fail(r->host, FAIL_FORMAT, "reference to resume: layer %s is not %dx%d",
                              layer_names[reference_kept_layers[i]], r->width, r->height);
     bool ok = true;
     for (size_t i = 0; ok && i < tile_count(r); i++) ok = restore_tile(r, i, &layers[KEPT_SAMPLES]);
@@ -566,5 +567,5 @@ bool reference_restore(struct reference *r, const struct image layers[REFERENCE_
     if (ok) return true;
     memset(r->sums, 0, (size_t)r->width * (size_t)r->height * sizeof *r->sums);
     memset(r->tiles, 0, tile_count(r) * sizeof *r->tiles);
-    return host_fail(r->host, FAIL_FORMAT, "reference to go on with: its layers are damaged");
+    return host_fail(r->host, FAIL_FORMAT, "reference to resume: damaged layers");
 }

@@ -1,17 +1,17 @@
-// What a ray meets, as the frame's G-buffer would have it (scene.glsl, gbuffer_fragment.glsl).
+// Surface attributes at a hit, equal to the frame's G-buffer (scene.glsl, gbuffer_fragment.glsl).
 #include "trace/surface.h"
 
 #include <math.h>
 
-// One point of one triangle, and how its weights change from pixel to pixel.
-struct spot {
+// A point of a triangle with barycentric weights and their screen-space derivatives.
+struct triangle_point {
     const struct trace_mesh *mesh;
     const struct trace_facet *facet;
     uint32_t corner[3];
-    const struct trace_vertex *a, *b, *c; // there
+    const struct trace_vertex *a, *b, *c; // vertices of the corners
     float w[3];
-    bool wide;          // a pixel's worth, not a point
-    float dx[2], dy[2]; // of the second and third weight
+    bool has_derivatives; // the derivatives are set
+    float dx[2], dy[2];   // of the second and third weight per pixel
 };
 
 static inline vec3s weighted3(const float w[3], vec3s a, vec3s b, vec3s c)
@@ -26,7 +26,7 @@ static inline vec4s weighted4(const float w[3], vec4s a, vec4s b, vec4s c)
                    w[0] * a.w + w[1] * b.w + w[2] * c.w);
 }
 
-// The step along the triangle that a step of the ray's direction makes, as weights of its edges.
+// Barycentric derivative for a change `step` of the ray direction (ray differentials, Igehy 1999).
 static void weight_step(const struct pixel_footprint *f, vec3s normal, vec3s e1, vec3s e2, float t,
                         vec3s step, float out[2])
 {
@@ -42,10 +42,12 @@ static void weight_step(const struct pixel_footprint *f, vec3s normal, vec3s e1,
     out[1] = (a * q - b * p) / determinant;
 }
 
-static inline struct spot spot_of(const struct trace_mesh *mesh, uint32_t triangle, float u,
-                                  float v)
+static inline struct triangle_point triangle_point_at(const struct trace_mesh *mesh,
+                                                      uint32_t triangle, float u, float v)
 {
-    struct spot s = { .mesh = mesh, .facet = &mesh->facets[triangle], .w = { 1.0f - u - v, u, v } };
+    struct triangle_point s = { .mesh = mesh,
+                                .facet = &mesh->facets[triangle],
+                                .w = { 1.0f - u - v, u, v } };
     trace_corners(mesh, triangle, s.corner);
     s.a = &mesh->vertices[s.corner[0]];
     s.b = &mesh->vertices[s.corner[1]];
@@ -53,7 +55,7 @@ static inline struct spot spot_of(const struct trace_mesh *mesh, uint32_t triang
     return s;
 }
 
-static void spot_widen(struct spot *s, const struct pixel_footprint *f)
+static void set_derivatives(struct triangle_point *s, const struct pixel_footprint *f)
 {
     vec3s e1 = glms_vec3_sub(s->b->position, s->a->position);
     vec3s e2 = glms_vec3_sub(s->c->position, s->a->position);
@@ -63,7 +65,7 @@ static void spot_widen(struct spot *s, const struct pixel_footprint *f)
     float t = glms_vec3_dot(away, f->direction) / glms_vec3_norm2(f->direction);
     weight_step(f, normal, e1, e2, t, f->dx, s->dx);
     weight_step(f, normal, e1, e2, t, f->dy, s->dy);
-    s->wide = true;
+    s->has_derivatives = true;
 }
 
 static inline vec2s step_of(const float weights[2], vec2s e1, vec2s e2)
@@ -71,8 +73,8 @@ static inline vec2s step_of(const float weights[2], vec2s e1, vec2s e2)
     return glms_vec2_add(glms_vec2_scale(e1, weights[0]), glms_vec2_scale(e2, weights[1]));
 }
 
-// Of the second set where there is one, else of the first.
-static void corner_uv(const struct spot *s, const struct texture_map *map, vec2s out[3])
+// The second uv set if the map uses it and the mesh has one, else the first.
+static void corner_uv(const struct triangle_point *s, const struct texture_map *map, vec2s out[3])
 {
     const vec2s *second = map->uv_set == 1 ? s->mesh->mesh->uv[1] : NULL;
     out[0] = second ? second[s->corner[0]] : s->a->uv;
@@ -86,27 +88,27 @@ static inline vec2s weighted2(const float w[3], const vec2s uv[3])
                       w[0] * uv[0].y + w[1] * uv[1].y + w[2] * uv[2].y } };
 }
 
-static vec4s sample_map(const struct spot *s, const struct texture_map *map)
+static vec4s sample_map(const struct triangle_point *s, const struct texture_map *map)
 {
     vec2s uv[3];
     corner_uv(s, map, uv);
     vec2s at = weighted2(s->w, uv);
-    if (!s->wide) return texture_sample(map, at, 0.0f);
+    if (!s->has_derivatives) return texture_sample(map, at, 0.0f);
     vec2s e1 = glms_vec2_sub(uv[1], uv[0]), e2 = glms_vec2_sub(uv[2], uv[0]);
     float level = texture_level(map, step_of(s->dx, e1, e2), step_of(s->dy, e1, e2));
     return texture_sample(map, at, level);
 }
 
-static void expect_map(const struct spot *s, const struct texture_map *map)
+static void prefetch_map(const struct triangle_point *s, const struct texture_map *map)
 {
     vec2s uv[3];
     if (!map->texture) return;
     corner_uv(s, map, uv);
-    texture_expect(map, weighted2(s->w, uv));
+    texture_prefetch(map, weighted2(s->w, uv));
 }
 
 // Factor × vertex colour × map, as scene_base_color.
-static vec4s base_color(const struct spot *s)
+static vec4s base_color(const struct triangle_point *s)
 {
     const struct trace_material *m = s->mesh->material;
     vec4s base = vec4_of(m->base_color, m->alpha);
@@ -122,12 +124,12 @@ static vec4s base_color(const struct spot *s)
 bool surface_is_solid(const void *user, uint32_t triangle, float u, float v, const void *view)
 {
     const struct trace_mesh *mesh = user;
-    struct spot s = spot_of(mesh, triangle, u, v);
-    if (view) spot_widen(&s, view);
+    struct triangle_point s = triangle_point_at(mesh, triangle, u, v);
+    if (view) set_derivatives(&s, view);
     return !(base_color(&s).w < mesh->material->alpha_cutoff);
 }
 
-static vec3s emission_of(const struct spot *s)
+static vec3s emission_of(const struct triangle_point *s)
 {
     const struct trace_material *m = s->mesh->material;
     if (!m->emissive || !m->emissive_map.texture) return m->emission;
@@ -136,12 +138,12 @@ static vec3s emission_of(const struct spot *s)
 
 vec3s surface_emission(const struct trace_mesh *mesh, uint32_t triangle, float u, float v)
 {
-    struct spot s = spot_of(mesh, triangle, u, v);
+    struct triangle_point s = triangle_point_at(mesh, triangle, u, v);
     return emission_of(&s);
 }
 
-// glTF 2.0, sec. 3.9.3, on the front's side.
-static vec3s shading_normal(const struct spot *s)
+// glTF 2.0, sec. 3.9.3, on the front side.
+static vec3s shading_normal(const struct triangle_point *s)
 {
     const struct trace_material *m = s->mesh->material;
     vec3s n = weighted3(s->w, s->a->normal, s->b->normal, s->c->normal);
@@ -159,10 +161,10 @@ static vec3s shading_normal(const struct spot *s)
     return length2 > 1e-12f ? glms_vec3_scale(n, 1.0f / sqrtf(length2)) : s->facet->normal;
 }
 
-static void read_maps(const struct spot *s, struct surface *out)
+static void read_maps(const struct triangle_point *s, struct surface *out)
 {
     const struct trace_material *m = s->mesh->material;
-    // The G-buffer's albedo cannot say more than 1 either.
+    // Clamped as the G-buffer's 8-bit albedo.
     out->albedo = glms_vec3_clamp(vec3_xyz(base_color(s)), 0.0f, 1.0f);
     out->metallic = m->metallic;
     out->roughness = m->roughness;
@@ -175,16 +177,16 @@ static void read_maps(const struct spot *s, struct surface *out)
         out->roughness = 1.0f;
         out->metallic = 0.0f;
     }
-    bool glows = m->emissive && (out->front || m->double_sided);
-    out->emission = glows ? emission_of(s) : vec3_of(0, 0, 0);
+    bool emits = m->emissive && (out->front || m->double_sided);
+    out->emission = emits ? emission_of(s) : vec3_of(0, 0, 0);
 }
 
 void surface_at(const struct trace_scene *scene, const struct ray *ray, const struct ray_hit *hit,
                 const struct pixel_footprint *footprint, struct surface *out)
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
-    struct spot s = spot_of(mesh, hit->triangle, hit->u, hit->v);
-    if (footprint) spot_widen(&s, footprint);
+    struct triangle_point s = triangle_point_at(mesh, hit->triangle, hit->u, hit->v);
+    if (footprint) set_derivatives(&s, footprint);
     vec3s geometric = s.facet->normal, normal = shading_normal(&s);
     out->front = glms_vec3_dot(geometric, ray->direction) < 0.0f;
     out->position = weighted3(s.w, s.a->position, s.b->position, s.c->position);
@@ -196,38 +198,38 @@ void surface_at(const struct trace_scene *scene, const struct ray *ray, const st
     read_maps(&s, out);
 }
 
-// ---- ahead of time
+// ---- prefetch
 
-void surface_expect(const struct trace_scene *scene, const struct ray_hit *hit)
+void surface_prefetch(const struct trace_scene *scene, const struct ray_hit *hit)
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     __builtin_prefetch(&mesh->mesh->indices[3 * (size_t)hit->triangle]);
     __builtin_prefetch(&mesh->facets[hit->triangle]);
 }
 
-// A vertex may lie across two cache lines.
-static void expect_vertex(const struct trace_vertex *vertex)
+// A vertex may span two cache lines.
+static void prefetch_vertex(const struct trace_vertex *vertex)
 {
     __builtin_prefetch(vertex);
     __builtin_prefetch((const char *)(vertex + 1) - 1);
 }
 
-void surface_expect_corners(const struct trace_scene *scene, const struct ray_hit *hit)
+void surface_prefetch_corners(const struct trace_scene *scene, const struct ray_hit *hit)
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     uint32_t corner[3];
     trace_corners(mesh, hit->triangle, corner);
-    for (int i = 0; i < 3; i++) expect_vertex(&mesh->vertices[corner[i]]);
+    for (int i = 0; i < 3; i++) prefetch_vertex(&mesh->vertices[corner[i]]);
 }
 
-void surface_expect_texels(const struct trace_scene *scene, const struct ray_hit *hit)
+void surface_prefetch_texels(const struct trace_scene *scene, const struct ray_hit *hit)
 {
     const struct trace_mesh *mesh = &scene->meshes[hit->geometry];
     const struct trace_material *m = mesh->material;
     if (!m->mapped) return;
-    struct spot s = spot_of(mesh, hit->triangle, hit->u, hit->v);
-    expect_map(&s, &m->base_color_map);
-    expect_map(&s, &m->metallic_roughness_map);
-    expect_map(&s, &m->normal_map);
-    if (m->emissive) expect_map(&s, &m->emissive_map);
+    struct triangle_point s = triangle_point_at(mesh, hit->triangle, hit->u, hit->v);
+    prefetch_map(&s, &m->base_color_map);
+    prefetch_map(&s, &m->metallic_roughness_map);
+    prefetch_map(&s, &m->normal_map);
+    if (m->emissive) prefetch_map(&s, &m->emissive_map);
 }

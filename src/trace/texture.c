@@ -1,4 +1,4 @@
-// Maps of materials: mip chains and trilinear filtering.
+// Material textures: mip chains and trilinear filtering.
 #include "trace/texture.h"
 
 #include "image/png_file.h"
@@ -25,7 +25,7 @@ static vec4s fetch(const struct texture *t, int level, int x, int y)
     return (vec4s){ { t->decode[p[0]], t->decode[p[1]], t->decode[p[2]], t->unit[p[3]] } };
 }
 
-// cglm's clamps the weight, which is not asked for here.
+// glms_vec4_lerp also clamps the weight.
 static vec4s mix(vec4s a, vec4s b, float t)
 {
     return (vec4s){ { a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z),
@@ -56,7 +56,7 @@ static vec4s blend(const struct texture *t, int level, const int x[2], const int
     return mix(top, low, fy);
 }
 
-// A level from the one above it, as a linear blit makes it: the mean of 2 × 2 where sizes are even.
+// Downsamples a level as a linear blit does: the mean of 2 × 2 texels for even sizes.
 static void fill_level(const struct texture *t, int level, uint8_t *out)
 {
     int width = level_size(t->width, level), height = level_size(t->height, level);
@@ -131,28 +131,28 @@ struct texture_map texture_map_of(const struct texture_use *use, const struct te
 }
 
 // floorf without a call, for |x| < 2³¹.
-static inline int whole(float x)
+static inline int floor_int(float x)
 {
     int i = (int)x;
     return i - (x < (float)i);
 }
 
-// A coordinate brought near 0, where its texel index is an int: repeated ones to 0…1, mirrored ones
-// to 0…2, so that an index is at most one texel outside.
-static float tame(float u, enum texture_wrap how)
+// Brings a coordinate into 0…1 (repeat) or 0…2 (mirror), so that its texel index is an int at most
+// one texel outside.
+static float normalized_coordinate(float u, enum texture_wrap how)
 {
     if (how == WRAP_CLAMP) return u > -1.0f ? u < 2.0f ? u : 2.0f : -1.0f;
-    if (!(fabsf(u) < 0x1p24f)) return 0.0f; // there floats are whole, or no numbers
-    if (how == WRAP_MIRROR) return u - 2.0f * (float)whole(0.5f * u);
-    return u - (float)whole(u);
+    if (!(fabsf(u) < 0x1p24f)) return 0.0f; // integers from here on, or NaN
+    if (how == WRAP_MIRROR) return u - 2.0f * (float)floor_int(0.5f * u);
+    return u - (float)floor_int(u);
 }
 
-// The texel that stands for index i of a tamed coordinate.
+// Wraps the texel index of a normalized coordinate.
 static inline int wrap(int i, int size, enum texture_wrap how)
 {
     if (how == WRAP_REPEAT) return i < 0 ? i + size : i >= size ? i - size : i;
     if (how == WRAP_CLAMP) return i < 0 ? 0 : i >= size ? size - 1 : i;
-    i = i < 0 ? -1 - i : i; // mirrored at 0 and at `size`, and again at twice that
+    i = i < 0 ? -1 - i : i; // mirrored at 0, `size` and 2 · `size`
     if (i >= 2 * size) i -= 2 * size;
     return i < size ? i : 2 * size - 1 - i;
 }
@@ -163,11 +163,11 @@ static vec4s sample_level(const struct texture_map *map, int level, float u, flo
     int width = level_size(t->width, level), height = level_size(t->height, level);
     float x = u * (float)width, y = v * (float)height;
     if (map->nearest)
-        return fetch(t, level, wrap(whole(x), width, map->wrap_u),
-                     wrap(whole(y), height, map->wrap_v));
+        return fetch(t, level, wrap(floor_int(x), width, map->wrap_u),
+                     wrap(floor_int(y), height, map->wrap_v));
     x -= 0.5f;
     y -= 0.5f;
-    int left = whole(x), top = whole(y);
+    int left = floor_int(x), top = floor_int(y);
     int tx[2] = { wrap(left, width, map->wrap_u), wrap(left + 1, width, map->wrap_u) };
     int ty[2] = { wrap(top, height, map->wrap_v), wrap(top + 1, height, map->wrap_v) };
     return blend(t, level, tx, ty, x - (float)left, y - (float)top);
@@ -179,7 +179,7 @@ static vec2s transformed(const struct texture_map *map, vec2s uv, float one)
     return (vec2s){ { glms_vec3_dot(map->row_u, p), glms_vec3_dot(map->row_v, p) } };
 }
 
-// Vulkan 1.3, sec. 16.5.6: log2 of the longer of the pixel's two steps in texels.
+// Vulkan 1.3, sec. 16.5.6: log2 of the longer pixel footprint axis in texels.
 float texture_level(const struct texture_map *map, vec2s dx, vec2s dy)
 {
     const struct texture *t = map->texture;
@@ -194,7 +194,8 @@ float texture_level(const struct texture_map *map, vec2s dx, vec2s dy)
 vec4s texture_sample(const struct texture_map *map, vec2s uv, float level)
 {
     vec2s at = transformed(map, uv, 1.0f);
-    float u = tame(at.x, map->wrap_u), v = tame(at.y, map->wrap_v);
+    float u = normalized_coordinate(at.x, map->wrap_u),
+          v = normalized_coordinate(at.y, map->wrap_v);
     if (map->nearest) return sample_level(map, (int)(level + 0.5f), u, v);
     int low = (int)level;
     vec4s a = sample_level(map, low, u, v);
@@ -207,14 +208,14 @@ static const uint8_t *texel(const struct texture *t, int x, int y)
     return t->texels[0] + 4 * ((size_t)y * (size_t)t->width + (size_t)x);
 }
 
-// The two rows; a neighbour in the next cache line is left to chance.
-void texture_expect(const struct texture_map *map, vec2s uv)
+// Prefetches both rows, but not a right neighbour in the next cache line.
+void texture_prefetch(const struct texture_map *map, vec2s uv)
 {
     const struct texture *t = map->texture;
     vec2s at = transformed(map, uv, 1.0f);
-    float x = tame(at.x, map->wrap_u) * (float)t->width - 0.5f,
-          y = tame(at.y, map->wrap_v) * (float)t->height - 0.5f;
-    int left = wrap(whole(x), t->width, map->wrap_u), top = whole(y);
+    float x = normalized_coordinate(at.x, map->wrap_u) * (float)t->width - 0.5f,
+          y = normalized_coordinate(at.y, map->wrap_v) * (float)t->height - 0.5f;
+    int left = wrap(floor_int(x), t->width, map->wrap_u), top = floor_int(y);
     __builtin_prefetch(texel(t, left, wrap(top, t->height, map->wrap_v)));
     __builtin_prefetch(texel(t, left, wrap(top + 1, t->height, map->wrap_v)));
 }

@@ -1,26 +1,25 @@
-// Maps of materials, read as the frame's samplers do: wrapped, filtered linearly between texels and
-// between mips.
+// Material textures with the filtering of the frame's samplers: wrap modes, trilinear.
 #pragma once
 
 #include "scene/scene.h"
 
 enum { TEXTURE_LEVELS = 16 };
 
-// An image as colours (sRGB, decoded before filtering) or as data. Smaller mips have 8 bits too, as
-// on the GPU.
+// An image as sRGB colour, decoded before filtering, or as linear data. All mips have 8 bits, as on
+// the GPU.
 struct texture {
     int width, height, levels;
     bool srgb;
-    const uint8_t *texels[TEXTURE_LEVELS]; // the first is the scene's own
-    uint8_t *owned;                        // the others
-    float decode[256], unit[256];          // of a byte of R, G, B; of A: n / 255
+    const uint8_t *texels[TEXTURE_LEVELS]; // level 0 points into the scene
+    uint8_t *owned;                        // memory of the other levels
+    float decode[256], unit[256];          // decode: a byte of R, G, B; unit: of A
 };
 
 bool texture_init(struct texture *texture, struct host *host, const struct scene_image *image,
                   bool srgb);
 void texture_finish(struct texture *texture, struct host *host); // accepts zero
 
-// A texture as a material uses it. texture NULL: no map.
+// A texture with its transform and sampler. texture NULL: no map.
 struct texture_map {
     const struct texture *texture;
     int uv_set;
@@ -30,10 +29,9 @@ struct texture_map {
 };
 struct texture_map texture_map_of(const struct texture_use *use, const struct texture *texture);
 
-// RGBA, decoded. uv: of the vertex attribute. level: of the mips, 0 … levels − 1; between two both
-// are mixed.
+// Decoded RGBA. uv: vertex attribute. level: mip level, 0 … levels − 1, may be fractional.
 vec4s texture_sample(const struct texture_map *map, vec2s uv, float level);
-// What texture_sample will read at level 0 is asked for from memory.
-void texture_expect(const struct texture_map *map, vec2s uv);
-// The level for a pixel, in which uv changes by dx to the right and by dy downwards.
+// Prefetches the texels of texture_sample at level 0.
+void texture_prefetch(const struct texture_map *map, vec2s uv);
+// Mip level of a pixel with the uv derivatives dx (to the right) and dy (down).
 float texture_level(const struct texture_map *map, vec2s dx, vec2s dy);

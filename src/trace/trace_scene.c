@@ -1,4 +1,4 @@
-// A scene at a moment as triangles in world space; the rays that others shoot through it.
+// World-space triangles of a posed scene, and the ray queries of other modules.
 #include "trace/trace_scene.h"
 
 #include "trace/surface.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-static const float BLEND_CUTOFF = 0.5f; // blended materials are masks, as in the frame
+static const float BLEND_CUTOFF = 0.5f; // alpha blending is treated as masking, as in the frame
 
 // ---- materials
 
@@ -26,8 +26,8 @@ static bool texture_of(struct trace_scene *s, const struct texture_use *use, boo
     return true;
 }
 
-static bool make_material(struct trace_scene *s, const struct material *m,
-                          struct trace_material *out)
+static bool create_material(struct trace_scene *s, const struct material *m,
+                            struct trace_material *out)
 {
     *out = (struct trace_material){
         .base_color = vec3_xyz(m->base_color),
@@ -50,7 +50,7 @@ static bool make_material(struct trace_scene *s, const struct material *m,
            texture_of(s, &m->emissive_map, true, &out->emissive_map);
 }
 
-static bool make_materials(struct trace_scene *s)
+static bool create_materials(struct trace_scene *s)
 {
     size_t images = (size_t)s->scene->image_count, materials = (size_t)s->scene->material_count;
     s->color_textures = host_alloc(s->host, images, sizeof *s->color_textures);
@@ -58,7 +58,7 @@ static bool make_materials(struct trace_scene *s)
     s->materials = host_alloc(s->host, materials, sizeof *s->materials);
     if (!s->color_textures || !s->data_textures || !s->materials) return false;
     for (size_t i = 0; i < materials; i++)
-        if (!make_material(s, &s->scene->materials[i], &s->materials[i])) return false;
+        if (!create_material(s, &s->scene->materials[i], &s->materials[i])) return false;
     return true;
 }
 
@@ -71,7 +71,7 @@ static vec3s unit_or_zero(vec3s v)
 }
 
 // scene.glsl: scene_frame_of. Normals go through the cofactor matrix.
-static void move_rigid(struct trace_mesh *out, mat4s m)
+static void transform_vertices(struct trace_mesh *out, mat4s m)
 {
     vec3s c0 = vec3_xyz(m.col[0]), c1 = vec3_xyz(m.col[1]), c2 = vec3_xyz(m.col[2]);
     vec3s k0 = glms_vec3_cross(c1, c2), k1 = glms_vec3_cross(c2, c0), k2 = glms_vec3_cross(c0, c1);
@@ -80,10 +80,10 @@ static void move_rigid(struct trace_mesh *out, mat4s m)
         struct trace_vertex *vertex = &out->vertices[v];
         vertex->position = mat4_point(m, out->mesh->positions[v]);
         vec3s n = out->mesh->normals[v];
-        vec3s moved = glms_vec3_scale(k0, n.x);
-        moved = glms_vec3_muladds(k1, n.y, moved);
-        moved = glms_vec3_muladds(k2, n.z, moved);
-        vertex->normal = glms_vec3_scale(unit_or_zero(moved), side);
+        vec3s transformed = glms_vec3_scale(k0, n.x);
+        transformed = glms_vec3_muladds(k1, n.y, transformed);
+        transformed = glms_vec3_muladds(k2, n.z, transformed);
+        vertex->normal = glms_vec3_scale(unit_or_zero(transformed), side);
         if (!out->has_tangents) continue;
         vec4s t = out->mesh->tangents[v];
         vec3s tangent = unit_or_zero(mat4_direction(m, vec3_xyz(t)));
@@ -103,8 +103,7 @@ static void copy_deformed(struct trace_mesh *out, const struct deformed_mesh *fr
     }
 }
 
-// Rounding errors of a position are a few units in the last place (2⁻²⁴) of the corners that it is
-// interpolated from.
+// The rounding error of an interpolated position is a few ulp (2⁻²⁴) of its corners.
 static float reach_of(const struct trace_mesh *mesh, const uint32_t corner[3])
 {
     static const float REACH = 0x1p-19f;
@@ -114,7 +113,7 @@ static float reach_of(const struct trace_mesh *mesh, const uint32_t corner[3])
     return REACH * size + 1e-9f;
 }
 
-static void make_facets(struct trace_mesh *out)
+static void compute_facets(struct trace_mesh *out)
 {
     for (uint32_t i = 0; i < out->mesh->index_count / 3; i++) {
         uint32_t corner[3];
@@ -126,8 +125,8 @@ static void make_facets(struct trace_mesh *out)
     }
 }
 
-static bool make_mesh(struct trace_scene *s, const struct scene_pose *pose, int instance,
-                      struct trace_mesh *out)
+static bool create_mesh(struct trace_scene *s, const struct scene_pose *pose, int instance,
+                        struct trace_mesh *out)
 {
     const struct mesh *mesh = &s->scene->meshes[s->scene->instances[instance].mesh];
     const struct deformed_mesh *deformed = &pose->deformed[instance];
@@ -143,10 +142,10 @@ static bool make_mesh(struct trace_scene *s, const struct scene_pose *pose, int 
     if (deformed->positions)
         copy_deformed(out, deformed);
     else
-        move_rigid(out, pose_world_from_instance(pose, instance));
+        transform_vertices(out, pose_world_from_instance(pose, instance));
     for (uint32_t v = 0; mesh->uv[0] && v < mesh->vertex_count; v++)
         out->vertices[v].uv = mesh->uv[0][v];
-    make_facets(out);
+    compute_facets(out);
     out->geometry = (struct embree_geometry){
         .positions = &out->vertices->position,
         .stride = sizeof *out->vertices,
@@ -159,7 +158,7 @@ static bool make_mesh(struct trace_scene *s, const struct scene_pose *pose, int 
     return true;
 }
 
-static bool make_meshes(struct trace_scene *s, const struct scene_pose *pose)
+static bool create_meshes(struct trace_scene *s, const struct scene_pose *pose)
 {
     s->meshes = host_alloc(s->host, (size_t)s->scene->instance_count, sizeof *s->meshes);
     s->embree = embree_create(s->host);
@@ -167,12 +166,12 @@ static bool make_meshes(struct trace_scene *s, const struct scene_pose *pose)
     for (int i = 0; i < s->scene->instance_count; i++) {
         if (s->scene->meshes[s->scene->instances[i].mesh].index_count == 0) continue;
         struct trace_mesh *mesh = &s->meshes[s->mesh_count++];
-        if (!make_mesh(s, pose, i, mesh) || !embree_add(s->embree, &mesh->geometry)) return false;
+        if (!create_mesh(s, pose, i, mesh) || !embree_add(s->embree, &mesh->geometry)) return false;
     }
     return embree_commit(s->embree);
 }
 
-// ---- the key
+// ---- hash key
 
 static uint64_t add(uint64_t key, const void *data, size_t count, size_t size)
 {
@@ -236,7 +235,7 @@ static uint64_t key_of(const struct trace_scene *s)
     return key;
 }
 
-// ---- life
+// ---- creation and destruction
 
 struct trace_scene *trace_scene_create(struct host *host, const struct scene_pose *pose)
 {
@@ -244,7 +243,7 @@ struct trace_scene *trace_scene_create(struct host *host, const struct scene_pos
     if (!s) return NULL;
     s->host = host;
     s->scene = pose->scene;
-    if (!make_materials(s) || !make_meshes(s, pose) || !light_table_init(s, pose)) {
+    if (!create_materials(s) || !create_meshes(s, pose) || !light_table_init(s, pose)) {
         trace_scene_destroy(s);
         return NULL;
     }

@@ -1,5 +1,4 @@
-// A scene as the path tracer has it: every instance's triangles in world space, materials with
-// their maps, lights.
+// The scene of the path tracer: world-space triangles per instance, materials with maps, lights.
 #pragma once
 
 #include "trace/embree.h"
@@ -10,22 +9,21 @@
 struct trace_material {
     vec3s base_color, emission; // emission: cd/m²
     float alpha, alpha_cutoff, metallic, roughness, normal_scale;
-    bool masked, double_sided, unlit, emissive, mapped; // mapped: has a map
+    bool masked, double_sided, unlit, emissive, mapped; // mapped: has a texture
     struct texture_map base_color_map, metallic_roughness_map, normal_map, emissive_map;
 };
 
-// A corner of triangles, in world space. What a hit asks for lies side by side: a few cache lines,
-// not one per attribute.
+// A vertex in world space. Interleaved, so that a hit touches few cache lines.
 struct trace_vertex {
     vec3s position, normal; // normal: unit
-    vec4s tangent;          // as glTF's; 0 where the mesh has none
-    vec2s uv;               // of the first set; 0 where there is none
+    vec4s tangent;          // as in glTF; 0 without tangents
+    vec2s uv;               // first set; 0 without uv
 };
 
 // The plane of a triangle.
 struct trace_facet {
     vec3s normal; // unit, of the front
-    float reach;  // how far to leave the triangle by, so that a ray does not meet it again, m
+    float reach;  // offset of rays that leave the triangle, against self-intersection, m
 };
 
 // One instance.
@@ -33,12 +31,11 @@ struct trace_mesh {
     const struct mesh *mesh;
     const struct trace_material *material;
     int instance;
-    bool mirrored; // its transform turns triangles over
+    bool mirrored; // the transform reverses the winding
     bool has_tangents;
     struct trace_vertex *vertices; // [mesh->vertex_count]
     struct trace_facet *facets;    // [mesh->index_count / 3]
-    uint32_t
-        emitter_first; // of its triangles, see light_sample.h; NO_EMITTER where it does not glow
+    uint32_t emitter_first;        // index of its first emitter; NO_EMITTER if not emissive
     struct embree_geometry geometry;
 };
 
@@ -49,12 +46,12 @@ struct trace_scene {
     struct trace_mesh *meshes; // [mesh_count]; the index is Embree's geometry
     uint32_t mesh_count;
     struct trace_material *materials;               // [scene->material_count]
-    struct texture *color_textures, *data_textures; // [scene->image_count], made where used
+    struct texture *color_textures, *data_textures; // [scene->image_count], created on use
     struct light_table lights;
-    uint64_t key; // of all that light depends on
+    uint64_t key; // hash of everything that affects the light
 };
 
-// The corners of a triangle in the order that faces its front.
+// The vertex indices of a triangle, counter-clockwise from the front.
 static inline void trace_corners(const struct trace_mesh *mesh, uint32_t triangle,
                                  uint32_t corner[3])
 {
@@ -64,7 +61,7 @@ static inline void trace_corners(const struct trace_mesh *mesh, uint32_t triangl
     corner[2] = i[2];
 }
 
-// The point of a triangle with the weights u and v of its second and third corner.
+// The point with the barycentric weights u and v of the second and third corner.
 static inline vec3s trace_point(const struct trace_mesh *mesh, const uint32_t corner[3], float u,
                                 float v)
 {

@@ -1,4 +1,4 @@
-// Samplers against their densities, and the laws of reflection.
+// BSDF samplers against their densities, reciprocity, directional albedo.
 #include "framework/test.h"
 
 #include "core/rng.h"
@@ -8,15 +8,15 @@
 
 static const double PI = 3.14159265358979323846;
 
-static vec3s eye_at(float cos_v)
+static vec3s viewer_at(float cos_v)
 {
     return vec3_of(0.6f * sqrtf(1 - cos_v * cos_v), 0.8f * sqrtf(1 - cos_v * cos_v), cos_v);
 }
 
 static struct bsdf make(float cos_v, float metallic, float roughness)
 {
-    return bsdf_of(vec3_of(0, 0, 1), eye_at(cos_v), vec3_of(0.8f, 0.5f, 0.3f), metallic, roughness,
-                   false);
+    return bsdf_of(vec3_of(0, 0, 1), viewer_at(cos_v), vec3_of(0.8f, 0.5f, 0.3f), metallic,
+                   roughness, false);
 }
 
 enum { Z_BINS = 16, PHI_BINS = 24, BINS = Z_BINS * PHI_BINS };
@@ -27,7 +27,7 @@ static vec3s direction(double z, double phi)
     return vec3_of((float)(r * cos(phi)), (float)(r * sin(phi)), (float)z);
 }
 
-// What the density says of each bin of the whole sphere.
+// Integral of the pdf over each bin of the sphere.
 static void integrate(const struct bsdf *b, double expected[BINS])
 {
     enum { FINE = 24 };
@@ -62,7 +62,7 @@ static void check_sampler(const struct bsdf *b)
     for (int i = 0; i < BINS; i++) {
         double e = expected[i] * SAMPLES;
         total += expected[i];
-        if (e < 20) { // too few for the statistic: all of these are one bin
+        if (e < 20) { // too few for the statistic: pooled in one bin
             rest += e;
             rest_count += counts[i];
             continue;
@@ -72,13 +72,13 @@ static void check_sampler(const struct bsdf *b)
     }
     CHECK_NEAR(total, 1, 2e-3);
     CHECK_NEAR(rest_count, rest, 5 * sqrt(rest) + 10);
-    // 4.5 standard deviations of the chi-square distribution, and 0.1 % for the bins' own
-    // integrals.
+    // 4.5 standard deviations of the chi-square distribution, plus 0.1 % for the quadrature of the
+    // bins.
     double slack = 1e-6 * SAMPLES * BINS / 10;
     CHECK(chi2 < freedom + 4.5 * sqrt(2.0 * freedom) + slack);
 }
 
-TEST(samples_are_distributed_as_the_density_says)
+TEST(samples_follow_their_density)
 {
     static const float cosines[] = { 0.95f, 0.5f, 0.15f };
     static const float roughness[] = { 0.5f, 0.75f, 1.0f };
@@ -87,7 +87,7 @@ TEST(samples_are_distributed_as_the_density_says)
         struct bsdf metal = make(cosines[i % 3], 1, roughness[i / 3]);
         check_sampler(&dielectric);
         check_sampler(&metal);
-        bsdf_sample_evenly(&metal, 0.25f);
+        bsdf_reserve_diffuse_samples(&metal, 0.25f);
         check_sampler(&metal);
     }
 }
@@ -109,8 +109,8 @@ TEST(reflection_is_reciprocal)
     }
 }
 
-// Averages of f cosθ / pdf over samples and over uniform directions: the same directional albedo.
-TEST(sampling_and_plain_integration_agree_on_the_albedo)
+// The mean of f cosθ / pdf over samples equals the integral of f cosθ: the directional albedo.
+TEST(importance_sampling_and_uniform_integration_agree_on_the_albedo)
 {
     static const float roughness[] = { 0.4f, 0.7f, 1.0f };
     for (int i = 0; i < 3; i++) {
@@ -132,7 +132,7 @@ TEST(sampling_and_plain_integration_agree_on_the_albedo)
     }
 }
 
-TEST(nothing_is_reflected_from_below_the_horizon)
+TEST(light_from_below_the_horizon_is_not_reflected)
 {
     struct bsdf b = make(0.5f, 0.5f, 0.5f);
     for (int i = 1; i < 10; i++) {

@@ -1,4 +1,4 @@
-// The reference and the real-time frame show the same direct light.
+// Direct light and surfaces of the real-time frame against the reference.
 #include "frame/studio.h"
 #include "trace/trace.h"
 
@@ -54,8 +54,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Relative differences over pixels of which at least one is not black, in ascending order; how many
-// there are.
+// Sorted relative differences of pixels that are not black in both; returns their number.
 static int differences(struct gpu *gpu, const char *name, enum frame_readback what,
                        enum reference_layer layer, double out[PIXELS])
 {
@@ -78,18 +77,17 @@ static int differences(struct gpu *gpu, const char *name, enum frame_readback wh
     return count;
 }
 
-TEST_GPU(direct_light_of_the_frame_is_the_references)
+TEST_GPU(direct_light_of_the_frame_equals_the_reference)
 {
     static double d[PIXELS];
     int count = differences(gpu, "@cornell:light=point", READ_DIRECT, REFERENCE_DIRECT, d);
     CHECK(count > PIXELS / 4);
-    // Half floats, 8-bit albedo, and drivers that decode sRGB by a polynomial; beyond nine in ten:
-    // edges.
+    // Errors of half floats, 8-bit albedo and approximate sRGB decoding; the last tenth are edges.
     CHECK(d[count / 2] < 0.007);
     CHECK(d[count * 9 / 10] < 0.01);
 }
 
-TEST_GPU(surfaces_of_the_frame_are_the_references)
+TEST_GPU(surfaces_of_the_frame_equal_the_reference)
 {
     static const struct {
         const char *scene;
@@ -102,7 +100,7 @@ TEST_GPU(surfaces_of_the_frame_are_the_references)
         { "@cornell:light=point", READ_POSITION, REFERENCE_POSITION, 1e-3 },
         { "@cornell:light=point", READ_ALBEDO, REFERENCE_ALBEDO, 0.01 },
         { "@atrium", READ_DEPTH, REFERENCE_DEPTH, 1e-4 },
-        // Software drivers make and mix mips in 8 bits: up to 4/255 of a normal map's components.
+        // Software drivers filter mips in 8 bits: errors up to 4/255 in a normal map.
         { "@atrium", READ_NORMAL, REFERENCE_NORMAL, 0.06 },
         { "@atrium", READ_ALBEDO, REFERENCE_ALBEDO, 0.05 },
     };

@@ -1,5 +1,5 @@
-// Closed rooms and open skies, where the light is known in closed form.
-#include "trace/stage.h"
+// Furnaces and open skies with closed-form radiance.
+#include "trace/trace_fixture.h"
 
 #include <math.h>
 
@@ -14,12 +14,12 @@ TEST(furnace_has_the_radiance_of_a_geometric_series)
 {
     static const float albedos[] = { 0.0f, 0.25f, 0.5f, 0.8f, 0.95f };
     for (int i = 0; i < 5; i++) {
-        struct stage s;
-        stage_init(&s);
+        struct trace_fixture s;
+        fixture_init(&s);
         s.samples = 512;
-        stage_room(&s, 1, stage_matte(&s, grey(albedos[i]), vec3_of(3, 1, 0.5f)));
-        stage_look(&s, vec3_of(0.2f, 0.1f, 0.3f), vec3_of(-1, -0.7f, -0.4f), 1.2f);
-        struct stage_mean m = stage_mean(&s, REFERENCE_COLOR);
+        fixture_room(&s, 1, fixture_diffuse(&s, grey(albedos[i]), vec3_of(3, 1, 0.5f)));
+        fixture_aim_camera(&s, vec3_of(0.2f, 0.1f, 0.3f), vec3_of(-1, -0.7f, -0.4f), 1.2f);
+        struct layer_mean m = fixture_mean(&s, REFERENCE_COLOR);
         double gain = 1.0 / (1.0 - (double)albedos[i]);
         CHECK_RELATIVE(m.mean[0], 3.0 * gain, 0.005);
         CHECK_RELATIVE(m.mean[1], 1.0 * gain, 0.005);
@@ -27,7 +27,7 @@ TEST(furnace_has_the_radiance_of_a_geometric_series)
         double luminance = 0.2126 * 3 + 0.7152 + 0.0722 * 0.5;
         double measured = 0.2126 * m.mean[0] + 0.7152 * m.mean[1] + 0.0722 * m.mean[2];
         CHECK_NEAR(measured, luminance * gain, 3.0 * m.error + 1e-5 * luminance * gain);
-        stage_finish(&s);
+        fixture_finish(&s);
     }
 }
 
@@ -35,48 +35,48 @@ TEST(furnace_has_the_radiance_of_a_geometric_series)
 TEST(each_bounce_of_a_furnace_adds_one_term)
 {
     for (int bounces = 0; bounces < 4; bounces++) {
-        struct stage s;
-        stage_init(&s);
+        struct trace_fixture s;
+        fixture_init(&s);
         s.samples = 256;
         s.options.bounces = bounces;
-        stage_room(&s, 1, stage_matte(&s, grey(0.6f), grey(1)));
-        struct stage_mean m = stage_mean(&s, REFERENCE_COLOR);
+        fixture_room(&s, 1, fixture_diffuse(&s, grey(0.6f), grey(1)));
+        struct layer_mean m = fixture_mean(&s, REFERENCE_COLOR);
         double expected = (1.0 - pow(0.6, bounces + 2)) / 0.4;
         CHECK_RELATIVE(m.mean[1], expected, 0.005);
-        stage_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 // E = π L, and a surface of albedo ρ shows ρ L.
-TEST(open_sky_lights_a_plane_with_pi_times_its_radiance)
+TEST(uniform_sky_gives_the_irradiance_pi_times_its_radiance)
 {
-    struct stage s;
-    stage_init(&s);
+    struct trace_fixture s;
+    fixture_init(&s);
     s.scene->sky = vec3_of(2, 4, 8);
-    stage_quad(&s, vec3_of(-9, 0, 9), vec3_of(9, 0, 9), vec3_of(9, 0, -9), vec3_of(-9, 0, -9),
-               stage_matte(&s, grey(0.5f), grey(0)));
-    stage_look(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);
-    struct stage_mean m = stage_mean(&s, REFERENCE_DIRECT);
-    // Sampling by the cosine, and nothing in the way: no noise at all.
+    fixture_quad(&s, vec3_of(-9, 0, 9), vec3_of(9, 0, 9), vec3_of(9, 0, -9), vec3_of(-9, 0, -9),
+                 fixture_diffuse(&s, grey(0.5f), grey(0)));
+    fixture_aim_camera(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);
+    struct layer_mean m = fixture_mean(&s, REFERENCE_DIRECT);
+    // Cosine sampling of an unoccluded uniform sky has no variance.
     CHECK_RELATIVE(m.mean[0], 1.0, 1e-5);
     CHECK_RELATIVE(m.mean[1], 2.0, 1e-5);
     CHECK_RELATIVE(m.mean[2], 4.0, 1e-5);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-// Indirect light alone: everything but the surface's own emission and what it reflects of it.
+// The irradiance layer excludes emission and its first reflection.
 TEST(irradiance_of_a_furnace_is_pi_times_the_light_reflected_in_it)
 {
-    struct stage s;
-    stage_init(&s);
+    struct trace_fixture s;
+    fixture_init(&s);
     s.samples = 512;
-    stage_room(&s, 1, stage_matte(&s, grey(0.5f), grey(1)));
-    struct stage_mean m = stage_mean(&s, REFERENCE_IRRADIANCE);
+    fixture_room(&s, 1, fixture_diffuse(&s, grey(0.5f), grey(1)));
+    struct layer_mean m = fixture_mean(&s, REFERENCE_IRRADIANCE);
     CHECK_RELATIVE(m.mean[1], PI * (2.0 - 1.0), 0.005);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-// Directional albedo by the midpoint rule over half vectors' hemisphere, from the formulas alone.
+// Directional albedo by the midpoint rule over incident directions.
 static double albedo_of(double cos_v, double alpha, double f0)
 {
     enum { STEPS = 400 };
@@ -104,25 +104,25 @@ TEST(white_metal_under_an_open_sky_reflects_its_directional_albedo)
     static const float roughness[] = { 0.3f, 0.6f, 1.0f };
     static const float heights[] = { 5.0f, 0.5f };
     for (int i = 0; i < 6; i++) {
-        struct stage s;
-        stage_init(&s);
+        struct trace_fixture s;
+        fixture_init(&s);
         s.options.diffuse_only = false;
         s.samples = 256;
         s.scene->sky = grey(1);
         struct material m = material_default();
         m.metallic = 1;
         m.roughness = roughness[i / 2];
-        stage_quad(&s, vec3_of(-9, 0, 9), vec3_of(9, 0, 9), vec3_of(9, 0, -9), vec3_of(-9, 0, -9),
-                   stage_material(&s, &m));
-        vec3s eye = vec3_of(1, heights[i % 2], 0);
-        stage_look(&s, eye, vec3_of(0, 0, 0), 0.001f);
+        fixture_quad(&s, vec3_of(-9, 0, 9), vec3_of(9, 0, 9), vec3_of(9, 0, -9), vec3_of(-9, 0, -9),
+                     fixture_material(&s, &m));
+        vec3s camera = vec3_of(1, heights[i % 2], 0);
+        fixture_aim_camera(&s, camera, vec3_of(0, 0, 0), 0.001f);
         double alpha = (double)m.roughness * (double)m.roughness;
         double expected =
-            albedo_of((double)eye.y / sqrt(1 + (double)eye.y * (double)eye.y), alpha, 1);
-        struct stage_mean mean = stage_mean(&s, REFERENCE_COLOR);
+            albedo_of((double)camera.y / sqrt(1 + (double)camera.y * (double)camera.y), alpha, 1);
+        struct layer_mean mean = fixture_mean(&s, REFERENCE_COLOR);
         CHECK(mean.error < 0.01);
         CHECK_NEAR(mean.mean[1], expected, 3 * mean.error + 2e-3);
         CHECK(mean.mean[1] < 1.001);
-        stage_finish(&s);
+        fixture_finish(&s);
     }
 }

@@ -1,5 +1,5 @@
-// Points on emitters: spread by power, and of the density that a path weighs them by.
-#include "trace/stage.h"
+// Emitter sampling: distribution by power, and the pdf of directions.
+#include "trace/trace_fixture.h"
 
 #include "core/rng.h"
 #include "trace/trace_scene.h"
@@ -8,24 +8,25 @@
 
 enum { PANELS = 3, SIDE = 8, BINS = PANELS * SIDE * SIDE, SAMPLES = 200000 };
 
-// Three panels that face the origin, and a dark one.
+// Three emissive panels that face the origin, and a black one.
 static const double areas_m2[PANELS] = { 4, 4, 1 };
 static const double luminances[PANELS] = { 1, 5, 2 * 0.7152 };
 
-static struct trace_scene *panels(struct stage *s)
+static struct trace_scene *panels(struct trace_fixture *s)
 {
-    stage_init(s);
-    int dim = stage_matte(s, vec3_of(0, 0, 0), vec3_of(1, 1, 1));
-    int bright = stage_matte(s, vec3_of(0, 0, 0), vec3_of(5, 5, 5));
-    int green = stage_matte(s, vec3_of(0, 0, 0), vec3_of(0, 2, 0));
-    int dark = stage_matte(s, vec3_of(1, 1, 1), vec3_of(0, 0, 0));
-    stage_quad(s, vec3_of(2, -1, -1), vec3_of(2, -1, 1), vec3_of(2, 1, 1), vec3_of(2, 1, -1), dim);
-    stage_quad(s, vec3_of(-1, -3, 1), vec3_of(1, -3, 1), vec3_of(1, -3, -1), vec3_of(-1, -3, -1),
-               dark);
-    stage_quad(s, vec3_of(-2, -1, -1), vec3_of(-2, 1, -1), vec3_of(-2, 1, 1), vec3_of(-2, -1, 1),
-               bright);
-    stage_quad(s, vec3_of(-0.5f, 3, -0.5f), vec3_of(0.5f, 3, -0.5f), vec3_of(0.5f, 3, 0.5f),
-               vec3_of(-0.5f, 3, 0.5f), green);
+    fixture_init(s);
+    int dim = fixture_diffuse(s, vec3_of(0, 0, 0), vec3_of(1, 1, 1));
+    int bright = fixture_diffuse(s, vec3_of(0, 0, 0), vec3_of(5, 5, 5));
+    int green = fixture_diffuse(s, vec3_of(0, 0, 0), vec3_of(0, 2, 0));
+    int dark = fixture_diffuse(s, vec3_of(1, 1, 1), vec3_of(0, 0, 0));
+    fixture_quad(s, vec3_of(2, -1, -1), vec3_of(2, -1, 1), vec3_of(2, 1, 1), vec3_of(2, 1, -1),
+                 dim);
+    fixture_quad(s, vec3_of(-1, -3, 1), vec3_of(1, -3, 1), vec3_of(1, -3, -1), vec3_of(-1, -3, -1),
+                 dark);
+    fixture_quad(s, vec3_of(-2, -1, -1), vec3_of(-2, 1, -1), vec3_of(-2, 1, 1), vec3_of(-2, -1, 1),
+                 bright);
+    fixture_quad(s, vec3_of(-0.5f, 3, -0.5f), vec3_of(0.5f, 3, -0.5f), vec3_of(0.5f, 3, 0.5f),
+                 vec3_of(-0.5f, 3, 0.5f), green);
     assert_true(pose_init(&s->pose, s->scene, -1, 0));
     struct trace_scene *scene = trace_scene_create(test_host(), &s->pose);
     assert_non_null(scene);
@@ -60,9 +61,9 @@ static int bin_of(vec3s p)
     return (panel * SIDE + y) * SIDE + x;
 }
 
-TEST(points_are_spread_over_emitters_by_power_and_area)
+TEST(points_are_distributed_by_power_and_area)
 {
-    struct stage s;
+    struct trace_fixture s;
     struct trace_scene *scene = panels(&s);
     int counts[BINS] = { 0 }, chosen[PANELS] = { 0 };
     double chi2 = 0;
@@ -82,14 +83,14 @@ TEST(points_are_spread_over_emitters_by_power_and_area)
     }
     CHECK(chi2 < BINS - 1 + 4.5 * sqrt(2.0 * (BINS - 1)));
     trace_scene_destroy(scene);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
 // Power per area over all power, as seen from the origin: times the squared distance over the
 // cosine at the panel.
-TEST(a_point_has_the_density_of_its_direction)
+TEST(sample_pdf_is_a_density_over_solid_angle)
 {
-    struct stage s;
+    struct trace_fixture s;
     struct trace_scene *scene = panels(&s);
     for (uint32_t i = 0; i < 1000; i++) {
         struct emitter_sample e = sample(scene, i);
@@ -101,12 +102,12 @@ TEST(a_point_has_the_density_of_its_direction)
         CHECK_RELATIVE(luminance(e.radiance), luminances[panel], 1e-6);
     }
     trace_scene_destroy(scene);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-TEST(an_emitter_met_by_chance_has_the_density_of_a_sample_there)
+TEST(pdf_of_a_hit_equals_the_pdf_of_a_sample)
 {
-    struct stage s;
+    struct trace_fixture s;
     struct trace_scene *scene = panels(&s);
     for (uint32_t i = 0; i < 1000; i++) {
         struct emitter_sample e = sample(scene, i);
@@ -122,7 +123,8 @@ TEST(an_emitter_met_by_chance_has_the_density_of_a_sample_there)
     struct ray down = { vec3_of(0, 0, 0), vec3_of(0.1f, -1, 0.2f), 0, INFINITY };
     struct ray_hit hit;
     assert_true(embree_closest(scene->embree, &down, NULL, false, &hit));
-    CHECK(light_emitter_pdf(scene, hit.geometry, hit.triangle, hit.distance, 1) == 0); // it is dark
+    CHECK(light_emitter_pdf(scene, hit.geometry, hit.triangle, hit.distance, 1) ==
+          0); // not emissive
     trace_scene_destroy(scene);
-    stage_finish(&s);
+    fixture_finish(&s);
 }

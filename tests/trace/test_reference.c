@@ -1,6 +1,5 @@
-// The reference as a whole: determinism, linearity, how its layers fit together, going on and
-// stopping.
-#include "trace/stage.h"
+// The reference: determinism, linearity, consistency of layers, resuming and cancelling.
+#include "trace/trace_fixture.h"
 
 #include <math.h>
 #include <omp.h>
@@ -33,12 +32,12 @@ TEST(result_does_not_depend_on_the_number_of_threads)
 {
     struct image images[2];
     for (int i = 0; i < 2; i++) {
-        struct stage s;
-        stage_builtin(&s, "@cornell");
-        s.width = 50; // tiles that are cut, too
+        struct trace_fixture s;
+        fixture_builtin(&s, "@cornell");
+        s.width = 50; // partial tiles, too
         omp_set_num_threads(i + 1);
-        images[i] = stage_layer(&s, REFERENCE_COLOR);
-        stage_finish(&s);
+        images[i] = fixture_layer(&s, REFERENCE_COLOR);
+        fixture_finish(&s);
     }
     CHECK(image_mean(&images[0], 1) > 0);
     CHECK(images_are_equal(&images[0], &images[1]));
@@ -46,11 +45,11 @@ TEST(result_does_not_depend_on_the_number_of_threads)
     finish(&images[1]);
 }
 
-TEST(result_does_not_depend_on_how_samples_are_spread_over_calls)
+TEST(result_does_not_depend_on_how_samples_are_split_over_calls)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell:light=point");
-    struct reference *whole = stage_reference(&s), *parts = stage_reference(&s);
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell:light=point");
+    struct reference *whole = fixture_reference(&s), *parts = fixture_reference(&s);
     assert_true(reference_render(whole, 11, NULL, NULL));
     assert_true(reference_render(parts, 1, NULL, NULL));
     assert_true(reference_render(parts, 7, NULL, NULL));
@@ -63,21 +62,21 @@ TEST(result_does_not_depend_on_how_samples_are_spread_over_calls)
     finish(&b);
     reference_destroy(whole);
     reference_destroy(parts);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-TEST(another_seed_is_another_picture_of_the_same_scene)
+TEST(another_seed_gives_other_noise_and_the_same_mean)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
-    struct image a = stage_layer(&s, REFERENCE_COLOR);
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
+    struct image a = fixture_layer(&s, REFERENCE_COLOR);
     s.options.seed = UINT64_C(1) << 40;
-    struct image b = stage_layer(&s, REFERENCE_COLOR);
+    struct image b = fixture_layer(&s, REFERENCE_COLOR);
     CHECK(!images_are_equal(&a, &b));
     CHECK_RELATIVE(image_mean(&a, 1), image_mean(&b, 1), 0.1);
     finish(&a);
     finish(&b);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST(doubled_lights_give_doubled_radiance_to_the_bit)
@@ -88,11 +87,11 @@ TEST(doubled_lights_give_doubled_radiance_to_the_bit)
     for (int i = 0; i < 2; i++) {
         struct image images[2];
         for (int k = 0; k < 2; k++) {
-            struct stage s;
-            stage_builtin(&s, names[i][k]);
+            struct trace_fixture s;
+            fixture_builtin(&s, names[i][k]);
             s.scene->sky = vec3_of(10.0f * (float)(k + 1), 0, 3.0f * (float)(k + 1));
-            images[k] = stage_layer(&s, REFERENCE_COLOR);
-            stage_finish(&s);
+            images[k] = fixture_layer(&s, REFERENCE_COLOR);
+            fixture_finish(&s);
         }
         for (size_t p = 0; p < float_count(&images[0]); p++)
             CHECK(images[1].pixels[p] == 2.0f * images[0].pixels[p]);
@@ -103,9 +102,9 @@ TEST(doubled_lights_give_doubled_radiance_to_the_bit)
 
 TEST(color_is_direct_plus_indirect_to_the_bit)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
-    struct reference *r = stage_reference(&s);
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
+    struct reference *r = fixture_reference(&s);
     assert_true(reference_render(r, 5, NULL, NULL));
     struct image color = read_layer(r, REFERENCE_COLOR), direct = read_layer(r, REFERENCE_DIRECT),
                  indirect = read_layer(r, REFERENCE_INDIRECT);
@@ -116,26 +115,26 @@ TEST(color_is_direct_plus_indirect_to_the_bit)
     finish(&direct);
     finish(&indirect);
     reference_destroy(r);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-static struct stage_mean cornell_mean(int bounces, bool direct_only, bool indirect_only)
+static struct layer_mean cornell_mean(int bounces, bool direct_only, bool indirect_only)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     s.samples = 64;
     s.options.bounces = bounces;
     s.options.direct_only = direct_only;
     s.options.indirect_only = indirect_only;
-    struct stage_mean m = stage_mean(&s, REFERENCE_COLOR);
-    stage_finish(&s);
+    struct layer_mean m = fixture_mean(&s, REFERENCE_COLOR);
+    fixture_finish(&s);
     return m;
 }
 
-TEST(one_bounce_less_direct_light_is_the_first_bounce_alone)
+TEST(one_bounce_minus_direct_light_equals_the_first_bounce)
 {
-    struct stage_mean one = cornell_mean(1, false, false), none = cornell_mean(0, false, false);
-    struct stage_mean alone = cornell_mean(1, false, true), direct = cornell_mean(-1, true, false);
+    struct layer_mean one = cornell_mean(1, false, false), none = cornell_mean(0, false, false);
+    struct layer_mean alone = cornell_mean(1, false, true), direct = cornell_mean(-1, true, false);
     double noise =
         sqrt(one.error * one.error + none.error * none.error + alone.error * alone.error);
     CHECK(alone.mean[1] > 10 * alone.error);
@@ -144,13 +143,13 @@ TEST(one_bounce_less_direct_light_is_the_first_bounce_alone)
     CHECK(cornell_mean(-1, false, false).mean[1] > one.mean[1]);
 }
 
-// A diffuse surface shows albedo · E / π of indirect light.
-TEST(indirect_light_of_a_diffuse_surface_is_its_albedo_times_its_irradiance)
+// The indirect radiance of a diffuse surface is albedo · E / π.
+TEST(indirect_light_of_a_diffuse_surface_is_albedo_over_pi_times_irradiance)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     s.options.diffuse_only = true;
-    struct reference *r = stage_reference(&s);
+    struct reference *r = fixture_reference(&s);
     assert_true(reference_render(r, 16, NULL, NULL));
     struct image indirect = read_layer(r, REFERENCE_INDIRECT),
                  albedo = read_layer(r, REFERENCE_ALBEDO),
@@ -164,38 +163,38 @@ TEST(indirect_light_of_a_diffuse_surface_is_its_albedo_times_its_irradiance)
     finish(&albedo);
     finish(&irradiance);
     reference_destroy(r);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-// The error that the reference states is the one that other seeds show.
-TEST(standard_error_is_the_spread_of_repeated_renderings)
+// The reported standard error equals the deviation over seeds.
+TEST(standard_error_equals_the_deviation_over_seeds)
 {
     enum { RUNS = 24 };
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     s.width = s.height = 16;
-    double sums[16 * 16] = { 0 }, squares[16 * 16] = { 0 }, stated = 0, seen = 0;
+    double sums[16 * 16] = { 0 }, squares[16 * 16] = { 0 }, reported = 0, measured = 0;
     for (int run = 0; run < RUNS; run++) {
         s.options.seed = (uint64_t)run;
-        struct reference *r = stage_reference(&s);
+        struct reference *r = fixture_reference(&s);
         assert_true(reference_render(r, 16, NULL, NULL));
         struct image color = read_layer(r, REFERENCE_COLOR), error = read_layer(r, REFERENCE_ERROR);
         for (size_t i = 0; i < 256; i++) {
             double v = (double)color.pixels[3 * i + 1], e = (double)error.pixels[3 * i + 1];
             sums[i] += v;
             squares[i] += v * v;
-            stated += e * e / RUNS;
+            reported += e * e / RUNS;
         }
         finish(&color);
         finish(&error);
         reference_destroy(r);
     }
-    for (int i = 0; i < 256; i++) seen += (squares[i] - sums[i] * sums[i] / RUNS) / (RUNS - 1);
-    CHECK_RELATIVE(stated, seen, 0.15);
-    stage_finish(&s);
+    for (int i = 0; i < 256; i++) measured += (squares[i] - sums[i] * sums[i] / RUNS) / (RUNS - 1);
+    CHECK_RELATIVE(reported, measured, 0.15);
+    fixture_finish(&s);
 }
 
-static bool stop_at_half(void *user, double done)
+static bool cancel_at_half(void *user, double done)
 {
     double *last = user;
     CHECK(done > *last && done <= 1);
@@ -203,36 +202,36 @@ static bool stop_at_half(void *user, double done)
     return done < 0.5;
 }
 
-TEST(a_stopped_reference_goes_on_to_the_same_picture)
+TEST(a_cancelled_reference_resumes_to_the_same_image)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell:light=point");
-    s.width = 400; // more tiles than one report covers
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell:light=point");
+    s.width = 400; // more tiles than one progress report
     s.height = 200;
-    struct reference *whole = stage_reference(&s), *stopped = stage_reference(&s);
+    struct reference *whole = fixture_reference(&s), *cancelled = fixture_reference(&s);
     double last = 0;
     assert_true(reference_render(whole, 3, NULL, NULL));
-    CHECK(!reference_render(stopped, 3, stop_at_half, &last));
+    CHECK(!reference_render(cancelled, 3, cancel_at_half, &last));
     assert_int_equal(test_host()->failure, FAIL_CANCELLED);
     CHECK(last >= 0.5 && last < 1);
-    int done = reference_info(stopped).samples;
+    int done = reference_info(cancelled).samples;
     CHECK(done >= 1 && done < 3);
-    assert_true(reference_render(stopped, 3 - done, NULL, NULL));
-    struct image a = read_layer(whole, REFERENCE_COLOR), b = read_layer(stopped, REFERENCE_COLOR);
+    assert_true(reference_render(cancelled, 3 - done, NULL, NULL));
+    struct image a = read_layer(whole, REFERENCE_COLOR), b = read_layer(cancelled, REFERENCE_COLOR);
     CHECK(images_are_equal(&a, &b));
     finish(&a);
     finish(&b);
     reference_destroy(whole);
-    reference_destroy(stopped);
-    stage_finish(&s);
+    reference_destroy(cancelled);
+    fixture_finish(&s);
 }
 
-TEST(layers_restore_what_they_came_from)
+TEST(saved_layers_restore_the_sums)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
-    struct reference *whole = stage_reference(&s), *first = stage_reference(&s),
-                     *second = stage_reference(&s);
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
+    struct reference *whole = fixture_reference(&s), *first = fixture_reference(&s),
+                     *second = fixture_reference(&s);
     CHECK(reference_key(whole) == reference_key(second));
     assert_true(reference_render(whole, 12, NULL, NULL));
     assert_true(reference_render(first, 5, NULL, NULL));
@@ -267,21 +266,21 @@ TEST(layers_restore_what_they_came_from)
     reference_destroy(whole);
     reference_destroy(first);
     reference_destroy(second);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-static uint64_t key_of(struct stage *s)
+static uint64_t key_of(struct trace_fixture *s)
 {
-    struct reference *r = stage_reference(s);
+    struct reference *r = fixture_reference(s);
     uint64_t key = reference_key(r);
     reference_destroy(r);
     return key;
 }
 
-TEST(keys_tell_pictures_apart)
+TEST(keys_differ_between_images)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     uint64_t key = key_of(&s);
     CHECK(key == key_of(&s));
     s.options.seed = 1;
@@ -298,13 +297,13 @@ TEST(keys_tell_pictures_apart)
     s.scene->sky.x = 0;
     s.scene->materials[0].roughness *= 0.5f;
     CHECK(key != key_of(&s));
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-TEST(what_cannot_be_rendered_is_refused)
+TEST(invalid_arguments_are_refused)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     struct reference_options wrong = s.options, both = s.options;
     wrong.bounces = -2;
     both.direct_only = both.indirect_only = true;
@@ -313,23 +312,23 @@ TEST(what_cannot_be_rendered_is_refused)
     CHECK(!reference_create(host, &s.pose, &s.camera, 8, IMAGE_MAX_SIZE + 1, &s.options));
     CHECK(!reference_create(host, &s.pose, &s.camera, 8, 8, &wrong));
     CHECK(!reference_create(host, &s.pose, &s.camera, 8, 8, &both));
-    struct reference *r = stage_reference(&s);
+    struct reference *r = fixture_reference(&s);
     CHECK(!reference_render(r, 0, NULL, NULL));
     CHECK(!reference_render(r, -1, NULL, NULL));
     reference_destroy(r);
     reference_destroy(NULL);
     trace_scene_destroy(NULL);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-TEST(an_empty_scene_is_its_sky)
+TEST(an_empty_scene_shows_the_sky)
 {
-    struct stage s;
-    stage_init(&s);
+    struct trace_fixture s;
+    fixture_init(&s);
     s.scene->sky = vec3_of(1, 2, 3);
-    struct stage_mean m = stage_mean(&s, REFERENCE_COLOR);
+    struct layer_mean m = fixture_mean(&s, REFERENCE_COLOR);
     CHECK_NEAR(m.mean[0], 1, 0);
     CHECK_NEAR(m.mean[2], 3, 0);
     CHECK_NEAR(m.error, 0, 0);
-    stage_finish(&s);
+    fixture_finish(&s);
 }

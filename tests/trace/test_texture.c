@@ -1,4 +1,4 @@
-// Maps against values that can be worked out by hand.
+// Texture sampling against values computed by hand.
 #include "framework/test.h"
 
 #include "image/png_file.h"
@@ -39,7 +39,7 @@ static vec4s read_at(struct fixture *f, float x, float y)
     return texture_sample(&map, (vec2s){ { x / SIZE, y / SIZE } }, 0);
 }
 
-TEST(texel_centres_are_the_texels_and_between_them_it_is_linear)
+TEST(filtering_is_linear_between_texel_centres)
 {
     struct fixture f;
     open(&f, false);
@@ -52,7 +52,7 @@ TEST(texel_centres_are_the_texels_and_between_them_it_is_linear)
     texture_finish(&f.texture, test_host());
 }
 
-TEST(colours_are_decoded_before_they_are_mixed)
+TEST(srgb_is_decoded_before_filtering)
 {
     struct fixture f;
     open(&f, true);
@@ -62,7 +62,7 @@ TEST(colours_are_decoded_before_they_are_mixed)
     texture_finish(&f.texture, test_host());
 }
 
-TEST(wraps_repeat_mirror_and_clamp)
+TEST(wrap_modes_repeat_mirror_and_clamp)
 {
     struct fixture f;
     open(&f, false);
@@ -78,7 +78,7 @@ TEST(wraps_repeat_mirror_and_clamp)
     texture_finish(&f.texture, test_host());
 }
 
-TEST(nearest_maps_have_whole_texels)
+TEST(nearest_filter_returns_one_texel)
 {
     struct fixture f;
     open(&f, false);
@@ -88,7 +88,7 @@ TEST(nearest_maps_have_whole_texels)
     texture_finish(&f.texture, test_host());
 }
 
-TEST(transforms_scale_turn_and_move)
+TEST(texture_transform_scales_rotates_and_translates)
 {
     struct fixture f;
     open(&f, false);
@@ -96,13 +96,13 @@ TEST(transforms_scale_turn_and_move)
     f.use.uv_offset[0] = 0.25f;
     CHECK_NEAR(read_at(&f, 1.0f, 2.5f).x, 32 / 255.0, 1e-6); // 0.5 · 1 + 2 = 2.5 texels
     f.use = (struct texture_use){ .uv_scale = { 1, 1 }, .uv_rotation_rad = GLM_PI_2f };
-    // A quarter turn: u' = v, v' = −u.
+    // A rotation by 90 degrees: u' = v, v' = −u.
     CHECK_NEAR(read_at(&f, 1.5f, 2.5f).x, 32 / 255.0, 1e-5);
     CHECK_NEAR(read_at(&f, 1.5f, 2.5f).y, 96 / 255.0, 1e-5);
     texture_finish(&f.texture, test_host());
 }
 
-TEST(a_pixel_as_wide_as_the_image_sees_its_mean)
+TEST(a_footprint_of_the_whole_image_returns_its_mean)
 {
     struct fixture f;
     open(&f, false);
@@ -111,7 +111,7 @@ TEST(a_pixel_as_wide_as_the_image_sees_its_mean)
           zero = { { 0, 0 } };
     CHECK_NEAR(texture_sample(&map, at, texture_level(&map, wide, zero)).x, 56 / 255.0, 1.0 / 255);
     CHECK_NEAR(texture_sample(&map, at, texture_level(&map, zero, wide)).y, 56 / 255.0, 1.0 / 255);
-    // Two texels a pixel: the second level, whose texels are means of two by two.
+    // Two texels per pixel: level 1, the means of 2 × 2 texels.
     vec2s centre = { { 0.125f, 0.125f } };
     CHECK_NEAR(texture_sample(&map, centre, texture_level(&map, narrow, zero)).x, 8 / 255.0, 1e-6);
     texture_finish(&f.texture, test_host());

@@ -1,6 +1,5 @@
-// What techniques are held against: indirect light with that which emitters and the sky throw
-// straight on surfaces.
-#include "trace/stage.h"
+// The reference layers of techniques: indirect light plus direct light of emitters and the sky.
+#include "trace/trace_fixture.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,10 +15,10 @@ struct layers {
     struct image image[REFERENCE_LAYER_COUNT];
 };
 
-static struct layers render(struct stage *s)
+static struct layers render(struct trace_fixture *s)
 {
     struct layers l;
-    struct reference *r = stage_reference(s);
+    struct reference *r = fixture_reference(s);
     assert_true(reference_render(r, s->samples, NULL, NULL));
     for (int i = 0; i < REFERENCE_LAYER_COUNT; i++)
         assert_true(reference_read(r, (enum reference_layer)i, &l.image[i]));
@@ -38,19 +37,19 @@ static bool are_equal(const struct image *a, const struct image *b)
     return memcmp(a->pixels, b->pixels, count * sizeof *a->pixels) == 0;
 }
 
-TEST(without_emitters_and_sky_it_is_the_indirect_light_to_the_bit)
+TEST(without_emitters_and_sky_both_layers_equal_the_indirect_light)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell:light=point");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell:light=point");
     struct layers l = render(&s);
     CHECK(image_mean(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], 1) > 0);
     CHECK(are_equal(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], &l.image[REFERENCE_INDIRECT]));
     CHECK(are_equal(&l.image[REFERENCE_IRRADIANCE_EMITTERS_SKY], &l.image[REFERENCE_IRRADIANCE]));
     finish(&l);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-static vec3s lamp_emission(const struct scene *scene)
+static vec3s emitter_radiance(const struct scene *scene)
 {
     vec3s emission = grey(0);
     for (int i = 0; i < scene->material_count; i++)
@@ -58,33 +57,33 @@ static vec3s lamp_emission(const struct scene *scene)
     return emission;
 }
 
-// All light of @cornell is its lamp's: what is not gathered is the lamp as it is seen.
-TEST(what_is_left_of_the_picture_is_the_emission_seen)
+// @cornell is lit by its emitter alone: the rest of the colour is visible emission.
+TEST(the_rest_of_the_color_is_visible_emission)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     s.options.diffuse_only = false;
     struct layers l = render(&s);
-    vec3s emission = lamp_emission(s.scene);
-    int lamp = 0, lit = 0;
+    vec3s emission = emitter_radiance(s.scene);
+    int emitter = 0, lit = 0;
     for (int i = 0; i < s.width * s.height; i++) {
         double color = (double)l.image[REFERENCE_COLOR].pixels[3 * i];
         double left = color - (double)l.image[REFERENCE_INDIRECT_EMITTERS_SKY].pixels[3 * i];
-        bool glows = left > 0.5 * (double)emission.x;
-        // Color is a sum of two rounded values, each of them to 2⁻²⁴.
-        CHECK_NEAR(left, glows ? (double)emission.x : 0, 2e-7 * color);
-        lamp += glows;
-        lit += color > 0 && !glows;
+        bool emissive = left > 0.5 * (double)emission.x;
+        // Color is a sum of two values rounded to 2⁻²⁴.
+        CHECK_NEAR(left, emissive ? (double)emission.x : 0, 2e-7 * color);
+        emitter += emissive;
+        lit += color > 0 && !emissive;
     }
-    CHECK(lamp > 0 && lit > 16 * lamp);
+    CHECK(emitter > 0 && lit > 16 * emitter);
     finish(&l);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-TEST(a_diffuse_surface_shows_its_albedo_times_the_gathered_irradiance)
+TEST(a_diffuse_surface_reflects_albedo_over_pi_times_the_irradiance)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     s.options.diffuse_only = true;
     s.scene->sky = vec3_of(3, 2, 1);
     struct layers l = render(&s);
@@ -97,17 +96,17 @@ TEST(a_diffuse_surface_shows_its_albedo_times_the_gathered_irradiance)
         CHECK(irradiance >= (double)l.image[REFERENCE_IRRADIANCE].pixels[i]);
     }
     finish(&l);
-    stage_finish(&s);
+    fixture_finish(&s);
 }
 
-static void add_floor(struct stage *s, float albedo, float metallic)
+static void add_floor(struct trace_fixture *s, float albedo, float metallic)
 {
     struct material m = material_default();
     m.base_color = vec4_of(grey(albedo), 1);
     m.metallic = metallic;
     m.roughness = 0.4f;
-    stage_quad(s, vec3_of(-8, 0, 8), vec3_of(8, 0, 8), vec3_of(8, 0, -8), vec3_of(-8, 0, -8),
-               stage_material(s, &m));
+    fixture_quad(s, vec3_of(-8, 0, 8), vec3_of(8, 0, 8), vec3_of(8, 0, -8), vec3_of(-8, 0, -8),
+                 fixture_material(s, &m));
 }
 
 // Form factor of a right-angled corner of a parallel rectangle above the point (Howell, B-3): a, b:
@@ -118,72 +117,71 @@ static double corner_factor(double a, double b)
     return (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * PI);
 }
 
-// Irradiance does not ask what the surface makes of it: a white, a black and a metal floor have the
-// same.
+// Irradiance does not depend on the receiver: a white, a black and a metal floor have the same.
 TEST(rectangle_light_gives_its_closed_form_irradiance_on_any_floor)
 {
     static const float floors[][2] = { { 1, 0 }, { 0, 0 }, { 0.9f, 1 } };
     static const float heights[] = { 0.2f, 1.0f, 4.0f };
     for (int i = 0; i < 9; i++) {
-        struct stage s;
-        stage_init(&s);
+        struct trace_fixture s;
+        fixture_init(&s);
         s.samples = 1024;
         s.options.diffuse_only = i % 3 == 0;
         s.options.direct_only = true;
         add_floor(&s, floors[i % 3][0], floors[i % 3][1]);
         float h = heights[i / 3];
-        stage_quad(&s, vec3_of(-0.5f, h, -1), vec3_of(0.5f, h, -1), vec3_of(0.5f, h, 1),
-                   vec3_of(-0.5f, h, 1), stage_matte(&s, grey(0), vec3_of(5, 2, 1)));
-        stage_look(&s, vec3_of(0.3f, 0.1f, 0.1f), vec3_of(0, 0, 0), 0.01f);
+        fixture_quad(&s, vec3_of(-0.5f, h, -1), vec3_of(0.5f, h, -1), vec3_of(0.5f, h, 1),
+                     vec3_of(-0.5f, h, 1), fixture_diffuse(&s, grey(0), vec3_of(5, 2, 1)));
+        fixture_aim_camera(&s, vec3_of(0.3f, 0.1f, 0.1f), vec3_of(0, 0, 0), 0.01f);
         double expected = 4 * corner_factor(0.5 / (double)h, 1.0 / (double)h) * PI;
-        struct stage_mean m = stage_mean(&s, REFERENCE_IRRADIANCE_EMITTERS_SKY);
+        struct layer_mean m = fixture_mean(&s, REFERENCE_IRRADIANCE_EMITTERS_SKY);
         CHECK_RELATIVE(m.mean[0], 5 * expected, 0.005);
         CHECK_RELATIVE(m.mean[1], 2 * expected, 0.005);
-        // The standard error is that of the colour, E/π on the white floor.
+        // The standard error is that of the color, E/π on the white floor.
         if (i % 3 == 0) CHECK_NEAR(m.mean[1], 2 * expected, 3 * PI * m.error + 1e-4 * expected);
-        m = stage_mean(&s, REFERENCE_IRRADIANCE);
+        m = fixture_mean(&s, REFERENCE_IRRADIANCE);
         CHECK_NEAR(m.mean[1], 0, 0);
-        stage_finish(&s);
+        fixture_finish(&s);
     }
 }
 
-TEST(open_sky_gives_pi_times_its_radiance)
+TEST(uniform_sky_gives_the_irradiance_pi_times_its_radiance)
 {
     static const float floors[][2] = { { 0.5f, 0 }, { 0.9f, 1 } };
     for (int i = 0; i < 2; i++) {
-        struct stage s;
-        stage_init(&s);
+        struct trace_fixture s;
+        fixture_init(&s);
         s.samples = 1024;
         s.options.diffuse_only = i == 0;
         s.scene->sky = vec3_of(2, 4, 8);
         add_floor(&s, floors[i][0], floors[i][1]);
-        stage_look(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);
-        struct stage_mean m = stage_mean(&s, REFERENCE_IRRADIANCE_EMITTERS_SKY);
-        // By the cosine there is no noise at all; a metal's samples go elsewhere.
+        fixture_aim_camera(&s, vec3_of(0, 1, 0), vec3_of(0.01f, 0, 0), 0.5f);
+        struct layer_mean m = fixture_mean(&s, REFERENCE_IRRADIANCE_EMITTERS_SKY);
+        // Cosine sampling has no variance here; a metal also samples its specular lobe.
         for (int c = 0; c < 3; c++)
             CHECK_RELATIVE(m.mean[c], PI * (double)s.scene->sky.raw[c], i == 0 ? 1e-5 : 0.005);
-        stage_finish(&s);
+        fixture_finish(&s);
     }
 }
 
-// The eye sees the sky where there is no surface: nothing is gathered there.
-TEST(parts_of_the_light_leave_their_part)
+// The visible sky is in color alone.
+TEST(restricted_light_is_missing_from_the_layers)
 {
-    struct stage s;
-    stage_builtin(&s, "@cornell");
+    struct trace_fixture s;
+    fixture_builtin(&s, "@cornell");
     s.options.indirect_only = true;
     struct layers l = render(&s);
     CHECK(image_mean(&l.image[REFERENCE_INDIRECT], 0) > 0);
     CHECK(are_equal(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], &l.image[REFERENCE_INDIRECT]));
     CHECK(are_equal(&l.image[REFERENCE_IRRADIANCE_EMITTERS_SKY], &l.image[REFERENCE_IRRADIANCE]));
     finish(&l);
-    stage_finish(&s);
-    stage_init(&s);
+    fixture_finish(&s);
+    fixture_init(&s);
     s.scene->sky = grey(1);
     l = render(&s);
     CHECK_NEAR(image_mean(&l.image[REFERENCE_COLOR], 0), 1, 0);
     CHECK_NEAR(image_mean(&l.image[REFERENCE_INDIRECT_EMITTERS_SKY], 0), 0, 0);
     CHECK_NEAR(image_mean(&l.image[REFERENCE_IRRADIANCE_EMITTERS_SKY], 0), 0, 0);
     finish(&l);
-    stage_finish(&s);
+    fixture_finish(&s);
 }

@@ -1,12 +1,11 @@
-// Next-event estimation: lights and a point on an emitter are asked for their light.
-#include "trace/gather.h"
+// Next-event estimation of punctual lights and emitters.
+#include "trace/next_event.h"
 
 #include "trace/light_sample.h"
 
 #include <math.h>
 
-// The light of a punctual light that a surface would reflect, were nothing between; 0 where it
-// faces away.
+// Unoccluded radiance reflected from a punctual light; 0 where the surface faces away.
 static vec3s reflected(const struct surface *s, const struct bsdf *b,
                        const struct punctual_light *p)
 {
@@ -25,29 +24,27 @@ static bool is_visible(const struct trace_scene *scene, const struct surface *s,
     return !embree_occluded(scene->embree, &ray);
 }
 
-vec3s gather_all_punctual(const struct trace_scene *scene, const struct surface *s,
-                          const struct bsdf *b, uint64_t *rays)
+vec3s next_event_all_punctual(const struct trace_scene *scene, const struct surface *s,
+                              const struct bsdf *b, uint64_t *rays)
 {
     const struct light_table *lights = &scene->lights;
     vec3s sum = vec3_of(0, 0, 0);
     for (int i = 0; i < lights->punctual_count; i++) {
         struct punctual_light p = light_punctual(&lights->punctual[i], s->position);
         vec3s light = reflected(s, b, &p);
-        if (!gather_is_black(light) && is_visible(scene, s, &p, rays))
-            sum = glms_vec3_add(sum, light);
+        if (!is_black(light) && is_visible(scene, s, &p, rays)) sum = glms_vec3_add(sum, light);
     }
     return sum;
 }
 
-vec3s gather_one_punctual(const struct trace_scene *scene, const struct surface *s,
-                          const struct bsdf *b, float choice, uint64_t *rays)
+vec3s next_event_one_punctual(const struct trace_scene *scene, const struct surface *s,
+                              const struct bsdf *b, float choice, uint64_t *rays)
 {
     const struct light_table *lights = &scene->lights;
     struct punctual_light chosen = { 0 };
     vec3s light = vec3_of(0, 0, 0);
     float total = 0.0f, weight = 0.0f;
-    // Reservoir sampling (Chao 1982): each replaces the one before with its share of the sum so
-    // far.
+    // Weighted reservoir sampling (Chao 1982).
     for (int i = 0; i < lights->punctual_count; i++) {
         struct punctual_light p = light_punctual(&lights->punctual[i], s->position);
         vec3s candidate = reflected(s, b, &p);
@@ -68,13 +65,14 @@ vec3s gather_one_punctual(const struct trace_scene *scene, const struct surface 
     return glms_vec3_scale(light, total / weight);
 }
 
-struct gathered gather_one_emitter(const struct trace_scene *scene, const struct surface *s,
-                                   const struct bsdf *b, float choice, vec2s u, uint64_t *rays)
+struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
+                                             const struct surface *s, const struct bsdf *b,
+                                             float choice, vec2s u, uint64_t *rays)
 {
-    struct gathered none = { 0 };
+    struct arriving_light none = { 0 };
     struct emitter_sample e = light_sample_emitter(scene, s->position, choice, u);
     float cosine = glms_vec3_dot(b->normal, e.to_light);
-    if (gather_is_black(e.radiance) || !(e.pdf > 0.0f) || !(cosine > 0.0f) ||
+    if (is_black(e.radiance) || !(e.pdf > 0.0f) || !(cosine > 0.0f) ||
         !(glms_vec3_dot(s->geometric, e.to_light) > 0.0f))
         return none;
     vec3s from = surface_leave(s, e.to_light);
@@ -82,5 +80,5 @@ struct gathered gather_one_emitter(const struct trace_scene *scene, const struct
     ++*rays;
     if (embree_occluded(scene->embree, &ray)) return none;
     struct reflection r = bsdf_reflect(b, e.to_light);
-    return gather_arriving(r.f, e.radiance, cosine / e.pdf * gather_weight(e.pdf, r.pdf));
+    return light_arriving(r.f, e.radiance, cosine / e.pdf * power_heuristic(e.pdf, r.pdf));
 }

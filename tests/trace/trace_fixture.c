@@ -1,22 +1,22 @@
-// A small scene and a reference of it.
-#include "trace/stage.h"
+// Fixture: a small scene and its reference.
+#include "trace/trace_fixture.h"
 
 #include <math.h>
 #include <string.h>
 
-void stage_init(struct stage *s)
+void fixture_init(struct trace_fixture *s)
 {
-    *s = (struct stage){ .width = 16, .height = 16, .samples = 64 };
+    *s = (struct trace_fixture){ .width = 16, .height = 16, .samples = 64 };
     s->options = reference_options_default();
     s->options.diffuse_only = true;
-    s->scene = scene_create(test_host(), "stage");
+    s->scene = scene_create(test_host(), "trace fixture");
     assert_non_null(s->scene);
-    stage_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1), 0.1f);
+    fixture_aim_camera(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1), 0.1f);
 }
 
-void stage_builtin(struct stage *s, const char *name)
+void fixture_builtin(struct trace_fixture *s, const char *name)
 {
-    *s = (struct stage){ .width = 32, .height = 32, .samples = 16 };
+    *s = (struct trace_fixture){ .width = 32, .height = 32, .samples = 16 };
     s->options = reference_options_default();
     s->scene = scene_load(test_host(), name);
     assert_non_null(s->scene);
@@ -24,52 +24,52 @@ void stage_builtin(struct stage *s, const char *name)
     s->camera = pose_camera(&s->pose, 0);
 }
 
-void stage_finish(struct stage *s)
+void fixture_finish(struct trace_fixture *s)
 {
     pose_finish(&s->pose);
     scene_destroy(s->scene);
 }
 
-int stage_material(struct stage *s, const struct material *material)
+int fixture_material(struct trace_fixture *s, const struct material *material)
 {
     int index = scene_add_material(s->scene, material);
     assert_true(index >= 0);
     return index;
 }
 
-int stage_matte(struct stage *s, vec3s albedo, vec3s emission)
+int fixture_diffuse(struct trace_fixture *s, vec3s albedo, vec3s emission)
 {
     struct material m = material_default();
     m.base_color = vec4_of(albedo, 1);
     m.emissive = emission;
-    return stage_material(s, &m);
+    return fixture_material(s, &m);
 }
 
-static void place(struct stage *s, const struct mesh *mesh)
+static void add_instance(struct trace_fixture *s, const struct mesh *mesh)
 {
-    struct node still = node_default();
-    int m = scene_add_mesh(s->scene, mesh), n = scene_add_node(s->scene, &still);
+    struct node node = node_default();
+    int m = scene_add_mesh(s->scene, mesh), n = scene_add_node(s->scene, &node);
     assert_true(m >= 0 && n >= 0);
     struct instance instance = { .node = n, .mesh = m, .skin = -1 };
     assert_true(scene_add_instance(s->scene, &instance) >= 0);
 }
 
-void stage_quad(struct stage *s, vec3s a, vec3s b, vec3s c, vec3s d, int material)
+void fixture_quad(struct trace_fixture *s, vec3s a, vec3s b, vec3s c, vec3s d, int material)
 {
     vec3s positions[4] = { a, b, c, d };
     vec2s uv[4] = { { { 0, 1 } }, { { 1, 1 } }, { { 1, 0 } }, { { 0, 0 } } };
     uint32_t indices[6] = { 0, 1, 2, 0, 2, 3 };
-    place(s, &(struct mesh){ .name = "quad",
-                             .vertex_count = 4,
-                             .index_count = 6,
-                             .positions = positions,
-                             .uv = { uv },
-                             .indices = indices,
-                             .material = material });
+    add_instance(s, &(struct mesh){ .name = "quad",
+                                    .vertex_count = 4,
+                                    .index_count = 6,
+                                    .positions = positions,
+                                    .uv = { uv },
+                                    .indices = indices,
+                                    .material = material });
 }
 
-void stage_disk(struct stage *s, vec3s centre, vec3s normal, float area_m2, int corners,
-                int material)
+void fixture_disk(struct trace_fixture *s, vec3s centre, vec3s normal, float area_m2, int corners,
+                  int material)
 {
     enum { MAX_CORNERS = 512 };
     vec3s positions[MAX_CORNERS + 1], t, b;
@@ -86,15 +86,15 @@ void stage_disk(struct stage *s, vec3s centre, vec3s normal, float area_m2, int 
         indices[3 * i + 1] = (uint32_t)i;
         indices[3 * i + 2] = (uint32_t)((i + 1) % corners);
     }
-    place(s, &(struct mesh){ .name = "disk",
-                             .vertex_count = (uint32_t)corners + 1,
-                             .index_count = 3 * (uint32_t)corners,
-                             .positions = positions,
-                             .indices = indices,
-                             .material = material });
+    add_instance(s, &(struct mesh){ .name = "disk",
+                                    .vertex_count = (uint32_t)corners + 1,
+                                    .index_count = 3 * (uint32_t)corners,
+                                    .positions = positions,
+                                    .indices = indices,
+                                    .material = material });
 }
 
-void stage_room(struct stage *s, float half, int material)
+void fixture_room(struct trace_fixture *s, float half, int material)
 {
     for (int face = 0; face < 6; face++) {
         int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -105,14 +105,14 @@ void stage_room(struct stage *s, float half, int material)
             corner[i].raw[v] = i >= 2 ? half : -half;
         }
         if (face % 2)
-            stage_quad(s, corner[0], corner[3], corner[2], corner[1], material);
+            fixture_quad(s, corner[0], corner[3], corner[2], corner[1], material);
         else
-            stage_quad(s, corner[0], corner[1], corner[2], corner[3], material);
+            fixture_quad(s, corner[0], corner[1], corner[2], corner[3], material);
     }
 }
 
-void stage_light(struct stage *s, enum light_type type, vec3s position, vec3s direction,
-                 vec3s intensity)
+void fixture_light(struct trace_fixture *s, enum light_type type, vec3s position, vec3s direction,
+                   vec3s intensity)
 {
     int node = scene_add_node_looking(s->scene, "light", position, direction);
     struct light light = { .name = "light",
@@ -124,12 +124,12 @@ void stage_light(struct stage *s, enum light_type type, vec3s position, vec3s di
     assert_true(node >= 0 && scene_add_light(s->scene, &light) >= 0);
 }
 
-void stage_look(struct stage *s, vec3s eye, vec3s target, float fov_rad)
+void fixture_aim_camera(struct trace_fixture *s, vec3s position, vec3s target, float fov_rad)
 {
-    s->camera = camera_look_at(eye, target, fov_rad, 0.001f);
+    s->camera = camera_look_at(position, target, fov_rad, 0.001f);
 }
 
-struct reference *stage_reference(struct stage *s)
+struct reference *fixture_reference(struct trace_fixture *s)
 {
     pose_finish(&s->pose);
     assert_true(pose_init(&s->pose, s->scene, -1, 0));
@@ -148,9 +148,9 @@ double image_mean(const struct image *image, int channel)
     return sum / (double)pixels;
 }
 
-struct image stage_layer(struct stage *s, enum reference_layer layer)
+struct image fixture_layer(struct trace_fixture *s, enum reference_layer layer)
 {
-    struct reference *r = stage_reference(s);
+    struct reference *r = fixture_reference(s);
     struct image image = { 0 };
     assert_true(reference_render(r, s->samples, NULL, NULL));
     assert_true(reference_read(r, layer, &image));
@@ -159,13 +159,13 @@ struct image stage_layer(struct stage *s, enum reference_layer layer)
     return image;
 }
 
-struct stage_mean stage_mean(struct stage *s, enum reference_layer layer)
+struct layer_mean fixture_mean(struct trace_fixture *s, enum reference_layer layer)
 {
-    struct reference *r = stage_reference(s);
+    struct reference *r = fixture_reference(s);
     struct image image = { 0 };
     assert_true(reference_render(r, s->samples, NULL, NULL));
     assert_true(reference_read(r, layer, &image));
-    struct stage_mean m = { .error = reference_info(r).error / sqrt(s->width * s->height) };
+    struct layer_mean m = { .error = reference_info(r).error / sqrt(s->width * s->height) };
     for (int c = 0; c < 3 && c < image.channels; c++) m.mean[c] = image_mean(&image, c);
     image_finish(&image, test_host());
     reference_destroy(r);
