@@ -379,6 +379,14 @@ int option_difference(const struct option_table *table, const void *a, const voi
     return strongest;
 }
 
+void option_copy_live(const struct option_table *table, const void *from, void *into)
+{
+    for (size_t i = 0; i < table->count; i++) {
+        const struct option_row *row = &table->rows[i];
+        if (row->effect <= INVALIDATE) set_value(row, into, value_of(row, from));
+    }
+}
+
 // ---- the nearest name
 
 static char lower(char c)

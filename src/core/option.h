@@ -89,6 +89,8 @@ void option_print(const struct option_row *row, const void *options, char *out, 
 json_t *option_json(const struct option_table *table, const void *options);
 // The strongest effect among the options that differ; -1 when all are equal.
 int option_difference(const struct option_table *table, const void *a, const void *b);
+// Copies the options that may change while a technique runs: those of effect LIVE and INVALIDATE.
+void option_copy_live(const struct option_table *table, const void *from, void *into);
 
 // The known name nearest to `name` by edit distance, NULL when none is near enough to suggest.
 const char *nearest_name(const char *name, const char *const *known, size_t count);

@@ -112,7 +112,7 @@ bool gi_set_options(struct gi *gi, const struct gi_spec *spec)
         const int effect =
             option_difference(&technique->options, gi->spec.options[i], spec->options[i]);
         if (effect < 0) continue;
-        memcpy(gi->spec.options[i], spec->options[i], technique->options.size);
+        option_copy_live(&technique->options, spec->options[i], gi->spec.options[i]);
         technique->set_options(gi->state[i], gi->spec.options[i]);
         if (effect == INVALIDATE && technique->invalidate)
             technique->invalidate(gi->state[i], CHANGED_OPTIONS);

@@ -321,6 +321,20 @@ TEST(difference_is_the_strongest_effect_of_what_changed)
     assert_int_equal(option_difference(&table, &b, &a), RECREATE);
 }
 
+TEST(copy_of_live_options_leaves_the_others)
+{
+    struct rng rng = rng_for(2, 0, 0);
+    for (int k = 0; k < 100; k++) {
+        const struct options from = random_options(&rng), before = random_options(&rng);
+        struct options into = before;
+        option_copy_live(&table, &from, &into);
+        CHECK(into.gain == from.gain && into.bias == from.bias && into.blur == from.blur);
+        CHECK(into.steps == from.steps);
+        CHECK(into.quality == before.quality && into.dim == before.dim);
+        CHECK(option_difference(&table, &into, &before) <= INVALIDATE);
+    }
+}
+
 TEST(nearest_name_forgives_slips_and_no_more)
 {
     static const char *const known[] = { "lpv", "vct", "mrt", "iterations", "interleave" };
