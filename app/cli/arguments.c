@@ -36,7 +36,7 @@ static bool add_method(struct arguments *a, const char *value, const char **why)
 
 static bool set_output(struct arguments *a, const char *value, const char **why)
 {
-    *why = "a picture is a .png or an .exr";
+    *why = "an image is a .png or an .exr";
     a->output = value;
     return has_extension(value, "png") || has_extension(value, "exr");
 }

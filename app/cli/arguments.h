@@ -14,7 +14,7 @@ struct arguments {
     const char *positional[MAX_POSITIONAL]; // SCENE, or A and B
     int positional_count;
     bool help, json, quiet, verbose;
-    // picture
+    // image
     const char *gi, *frame_options;
     int width, height, frames;
     const char *output; // NULL: from the scene's name

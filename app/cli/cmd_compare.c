@@ -39,7 +39,7 @@ static enum status prepare(struct comparison *c)
     enum status status = session_load(&c->session, a->positional[0]);
     if (status == DONE) status = session_light(&c->session);
     if (status == DONE) status = session_camera(&c->session, a->time_s, &c->camera);
-    if (status == DONE) status = truth_begin(c);
+    if (status == DONE) status = reference_begin(c);
     if (status == DONE) status = open_device(c);
     if (status == DONE) session_say(&c->session);
     return status;
@@ -95,13 +95,13 @@ static enum status compare(const struct arguments *arguments)
     if (status == DONE) status = prepare(c);
     for (int i = 0; i < c->method_count && status == DONE; i++) status = method_render(c, i);
     if (status == DONE) status = check_device(c);
-    if (status == DONE) status = truth_complete(c);
+    if (status == DONE) status = reference_complete(c);
     if (status == DONE) status = methods_measure(c);
     if (status == DONE) status = publish(c);
 
     folder_abort(&c->folder);
     methods_finish(c);
-    truth_finish(c);
+    reference_finish(c);
     ag_scene_destroy(c->session.scene);
     c->session.scene = NULL;
     ag_device_destroy(c->device);
@@ -117,9 +117,9 @@ const struct command command_compare = {
     .usage = "SCENE [options]",
     .summary = "holds methods of indirect light against the truth: a folder with a report",
     .text =
-        "Renders SCENE with each --gi on the GPU, path-traces the same picture on the CPU,\n"
+        "Renders SCENE with each --gi on the GPU, path-traces the same image on the CPU,\n"
         "measures how far each is from it and what it costs, and writes a folder: report.html,\n"
-        "the pictures, maps of the errors and EXR files. All have one camera, light and exposure.\n"
+        "the images, maps of the errors and EXR files. All have one camera, light and exposure.\n"
         "\n"
         "Nearly all of the time goes into the reference and grows with pixels times --spp: on\n"
         "two cores half a minute for 640x360 of a room, half an hour for 1280x720 of a large\n"
@@ -131,7 +131,7 @@ const struct command command_compare = {
                 "      one method with two settings\n"
                 "  afterglow reference @atrium --size 640x360 --spp 1024 -o court.exr\n"
                 "  afterglow compare @atrium --size 640x360 --reference court.exr\n"
-                "      against a picture that was traced before\n"
+                "      against an image that was traced before\n"
                 "  afterglow compare @cornell --size 160x90 --gi lpv --max-flip 0.4 --quiet\n"
                 "      in a test: the exit status is 1 where lpv is further from the truth\n",
     .run = compare,

@@ -1,4 +1,4 @@
-// afterglow reference: the path-traced picture, better with every pass.
+// afterglow reference: the path-traced image, better with every pass.
 #include "commands.h"
 #include "interrupt.h"
 #include "json.h"
@@ -17,7 +17,7 @@ struct job {
     const struct arguments *arguments;
     struct session session;
     struct tracing tracing;
-    struct picture picture;
+    struct output output;
     char path[PATH_SIZE];
     float exposure_ev;
 };
@@ -36,8 +36,8 @@ static enum status plan(struct job *job)
     bool exr = has_extension(job->path, "exr");
     if (a->resume && !exr)
         return wrong_usage("cannot use --resume with %s: a PNG cannot be gone on with", job->path);
-    return picture_plan(a, job->path, ag_reference_layer_name, exr ? tracing_kept_layers : "color",
-                        &job->picture);
+    return output_plan(a, job->path, ag_reference_layer_name, exr ? tracing_kept_layers : "color",
+                       &job->output);
 }
 
 static enum status prepare(struct job *job)
@@ -59,7 +59,7 @@ static enum status go_on(struct job *job)
     return FAILED; // what the file holds is not the command line's affair
 }
 
-// ---- the picture
+// ---- the image
 
 static enum ag_result find_exposure(struct job *job)
 {
@@ -77,10 +77,10 @@ static enum ag_result find_exposure(struct job *job)
 static enum ag_result write_png(struct job *job)
 {
     struct ag_context *context = job->session.context;
-    const char *layer = job->picture.layers[0];
+    const char *layer = job->output.layers[0];
     struct ag_image *image = NULL;
     enum ag_result result = ag_reference_read(job->tracing.reference, layer, &image);
-    if (result == AG_OK) result = picture_show(&job->session, layer, job->exposure_ev, &image);
+    if (result == AG_OK) result = layer_to_display(&job->session, layer, job->exposure_ev, &image);
     interrupt_hold();
     if (result == AG_OK) result = ag_image_write_png(context, job->path, image);
     interrupt_release();
@@ -93,14 +93,14 @@ static enum ag_result write_exr(struct job *job)
     char exposure[32];
     snprintf(exposure, sizeof exposure, "%.9g", (double)job->exposure_ev);
     const struct ag_attribute more = { "afterglow.exposure_ev", exposure };
-    return tracing_write_exr(&job->tracing, &job->picture, job->path, &more, 1);
+    return tracing_write_exr(&job->tracing, &job->output, job->path, &more, 1);
 }
 
-static enum status write_picture(void *user)
+static enum status write_output(void *user)
 {
     struct job *job = user;
     enum ag_result result = find_exposure(job);
-    if (result == AG_OK) result = job->picture.exr ? write_exr(job) : write_png(job);
+    if (result == AG_OK) result = job->output.exr ? write_exr(job) : write_png(job);
     if (result == AG_OK) return DONE;
     fail_library(job->session.context, result);
     return FAILED;
@@ -109,7 +109,7 @@ static enum status write_picture(void *user)
 // Ctrl-C ends the work with what there is.
 static enum status converge(struct job *job)
 {
-    const struct tracing_keeper keeper = { write_picture, job, WRITE_EVERY_S, true };
+    const struct tracing_keeper keeper = { write_output, job, WRITE_EVERY_S, true };
     enum status status = tracing_converge(&job->tracing, &keeper);
     const struct tracing *t = &job->tracing;
     if (status != DONE || t->done >= t->wanted) return status;
@@ -180,11 +180,11 @@ const struct command command_reference = {
     .bit = REFERENCE,
     .positional_count = 1,
     .usage = "SCENE [options]",
-    .summary = "path-traces the same picture on the CPU, to hold the others against",
+    .summary = "path-traces the same image on the CPU, to hold the others against",
     .text = "Path-traces SCENE on all cores, with the materials, lights, camera and units of "
             "render; what "
             "glows and\n"
-            "the sky light the scene too. The picture is written after the first sample and now "
+            "the sky light the scene too. The image is written after the first sample and now "
             "and then, "
             "better each\n"
             "time; Ctrl-C leaves what there is, and --resume goes on with it. The result depends "
@@ -198,6 +198,6 @@ const struct command command_reference = {
                 "  afterglow reference @cornell --bounces 1 --aov color,irradiance -o one.exr\n"
                 "      direct light and one bounce\n"
                 "  afterglow reference house.glb --spp 256 --antialias -o house.png\n"
-                "      a smooth picture, exposed\n",
+                "      a smooth image, exposed\n",
     .run = reference,
 };

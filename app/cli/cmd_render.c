@@ -13,7 +13,7 @@ struct job {
     struct session session;
     struct ag_device *device;
     struct ag_renderer *renderer;
-    struct picture picture;
+    struct output output;
     struct statistics statistics;
     char pattern[PATH_SIZE]; // of -o
     bool sequence;           // the pattern numbers the frames
@@ -37,7 +37,7 @@ static enum status plan_output(struct job *job)
         return wrong_usage("wrong value -o %s: one frame number (%%04d) is the most", job->pattern);
     bool exr = has_extension(job->pattern, "exr");
     const char *fallback = a->debug_view ? exr ? "color,debug" : "debug" : "color";
-    return picture_plan(a, job->pattern, ag_layer_name, fallback, &job->picture);
+    return output_plan(a, job->pattern, ag_layer_name, fallback, &job->output);
 }
 
 static enum status check_debug_view(const char *wanted)
@@ -63,9 +63,9 @@ static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
     desc->height = a->height;
     desc->gi = a->gi;
     desc->frame_options = a->frame_options;
-    desc->indirect_layer = picture_needs(&job->picture, "indirect");
-    desc->display_layer = picture_needs(&job->picture, "display");
-    desc->motion_layer = picture_needs(&job->picture, "motion");
+    desc->indirect_layer = output_has_layer(&job->output, "indirect");
+    desc->display_layer = output_has_layer(&job->output, "display");
+    desc->motion_layer = output_has_layer(&job->output, "motion");
 }
 
 // All wrong usage is found before a file is opened or a device is woken.
@@ -148,7 +148,7 @@ static enum status write_frame(struct job *job, int frame, char path[PATH_SIZE])
 {
     bool sequence;
     value_frame_path(job->pattern, frame, path, PATH_SIZE, &sequence);
-    return picture_write(&job->session, job->renderer, &job->picture, path);
+    return output_write(&job->session, job->renderer, &job->output, path);
 }
 
 static enum status render_frames(struct job *job, char last_path[PATH_SIZE])
@@ -242,7 +242,7 @@ const struct command command_render = {
     .positional_count = 1,
     .usage = "SCENE [options]",
     .summary = "renders a scene with real-time global illumination, headless",
-    .text = "Renders SCENE in real time on the GPU, without a window, and writes the picture. A "
+    .text = "Renders SCENE in real time on the GPU, without a window, and writes the image. A "
             "scene without\n"
             "light gets a sun and a faint sky, one without a camera gets one; both are said on "
             "standard error.\n"
@@ -258,7 +258,7 @@ const struct command command_render = {
         "sun:1,-2,0.5:100000,95000,90000\n"
         "      in the light of a sun that shines downwards\n"
         "  afterglow render @atrium --gi lpv --aov color,direct,indirect -o parts.exr\n"
-        "      the picture and its parts as layers; afterglow diff compares them\n"
+        "      the image and its parts as layers; afterglow diff compares them\n"
         "  afterglow render fox.glb --gi lpv --frames 48 --time-step 0.0416 -o fox-%04d.png\n"
         "      two seconds of the first animation\n"
         "  afterglow render @atrium --gi lpv --frames 21 --stats times.json\n"

@@ -10,7 +10,7 @@
 
 enum { STEM_SIZE = 64, UNLIMITED = -1, NOT_KNOWN = -2 };
 
-// How far a method's picture, or its indirect light alone, is from the reference's.
+// How far a method's image, or its indirect light alone, is from the reference's.
 struct measured {
     struct ag_metrics metrics;
     double energy; // mean luminance over the reference's; NaN where that is 0
@@ -23,13 +23,13 @@ struct method {
     struct ag_image *color, *indirect, *irradiance;
     char *spelled;                                // the sum with every option written out
     json_t *options, *passes, *frame_ms, *memory; // as in --stats
-    struct measured picture, indirect_error;      // indirect_error: where the truth has it
+    struct measured image_error, indirect_error;  // indirect_error: where the reference has it
 };
 
 // The reference: traced, from the cache, or a file that was given.
-struct truth {
-    struct tracing tracing;     // of the same picture; without samples where a file was given
-    struct picture kept;        // the layers of its files
+struct reference {
+    struct tracing tracing;     // of the same image; without samples where a file was given
+    struct output kept;         // the layers of its files
     char cache_path[PATH_SIZE]; // "": it is not cached
     struct ag_image *color;
     struct ag_image *indirect; // layer indirect_emitters_sky; NULL: absent in the given file
@@ -37,7 +37,7 @@ struct truth {
     int bounces;               // or UNLIMITED, or NOT_KNOWN
     double seconds, rays;      // of all runs that it took; NaN: not known
     double noise;              // relative standard error; NaN: not known
-    double noise_relmse;       // that a perfect picture would have for that noise; likewise
+    double noise_relmse;       // that a perfect image would have for that noise; likewise
     bool cached;               // nothing was left to trace
 };
 
@@ -46,10 +46,10 @@ struct comparison {
     struct session session;
     struct ag_camera camera;
     struct ag_device *device;
-    float exposure_ev; // of all pictures
+    float exposure_ev; // of all images
     struct method methods[MAX_METHODS];
     int method_count;
-    struct truth truth;
+    struct reference reference;
     struct folder folder;
     float full_indirect; // cd/m²: an error that is white in the maps of indirect light
 };
@@ -61,21 +61,21 @@ enum status methods_plan(struct comparison *c);
 enum status method_render(struct comparison *c, int index);
 void methods_finish(struct comparison *c);
 
-// compare_truth.c
-// Reads the file that was given and refuses one of another picture, or looks for samples in the
+// compare_reference.c
+// Reads the file that was given and refuses one of another image, or looks for samples in the
 // cache.
-enum status truth_begin(struct comparison *c);
-// Traces what is missing; --reference: nothing. Fills the rest of c->truth.
-enum status truth_complete(struct comparison *c);
+enum status reference_begin(struct comparison *c);
+// Traces what is missing; --reference: nothing. Fills the rest of c->reference.
+enum status reference_complete(struct comparison *c);
 // reference.exr: what the tracer has, or a copy of the file that was given.
-enum status truth_write_exr(struct comparison *c, const char *path);
-void truth_finish(struct comparison *c);
+enum status reference_write_exr(struct comparison *c, const char *path);
+void reference_finish(struct comparison *c);
 
 // compare_measure.c
 enum status methods_measure(struct comparison *c);
 
 // compare_files.c
-// Pictures and EXR files into the folder that was begun.
+// Images and EXR files into the folder that was begun.
 enum status files_write(struct comparison *c);
 // Is it a name of a file that compare writes?
 bool files_are_named(const char *name);

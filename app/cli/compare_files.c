@@ -1,4 +1,4 @@
-// The folder's pictures: what was rendered, the truth, and maps of the errors, which share their
+// The folder's images: what was rendered, the truth, and maps of the errors, which share their
 // scale so that they can be compared with each other.
 #include "compare.h"
 #include "interrupt.h"
@@ -48,8 +48,8 @@ static enum status write_png(struct comparison *c, enum ag_result result, struct
     return FAILED;
 }
 
-static enum status write_picture(struct comparison *c, const struct ag_image *radiance,
-                                 const char *stem, const char *ending)
+static enum status write_image(struct comparison *c, const struct ag_image *radiance,
+                               const char *stem, const char *ending)
 {
     struct ag_image *display = NULL;
     enum ag_result result =
@@ -106,12 +106,12 @@ static int by_value(const void *a, const void *b)
 // brightest twentieth of the lit pixels.
 static bool find_full_indirect(struct comparison *c)
 {
-    const struct ag_image *truth = c->truth.indirect;
-    size_t pixels = (size_t)truth->width * (size_t)truth->height, lit = 0;
+    const struct ag_image *reference = c->reference.indirect;
+    size_t pixels = (size_t)reference->width * (size_t)reference->height, lit = 0;
     float *values = malloc(pixels * sizeof *values);
     if (!values) return false;
     for (size_t i = 0; i < pixels; i++) {
-        const float *rgb = &truth->pixels[i * (size_t)truth->channels];
+        const float *rgb = &reference->pixels[i * (size_t)reference->channels];
         float mean = (rgb[0] + rgb[1] + rgb[2]) / 3.0f;
         if (mean > 0.0f && isfinite(mean)) values[lit++] = mean;
     }
@@ -123,33 +123,33 @@ static bool find_full_indirect(struct comparison *c)
 
 static enum status write_method(struct comparison *c, const struct method *m)
 {
-    const struct truth *truth = &c->truth;
-    enum status status = write_picture(c, m->color, m->stem, ".png");
+    const struct reference *reference = &c->reference;
+    enum status status = write_image(c, m->color, m->stem, ".png");
     if (status == DONE)
-        status =
-            write_map(c, m->color, truth->color, AG_DIFFERENCE_FLIP, 0.0f, m->stem, "-flip.png");
-    if (status == DONE) status = write_picture(c, m->indirect, m->stem, "-indirect.png");
-    if (status == DONE && truth->indirect)
-        status = write_map(c, m->indirect, truth->indirect, AG_DIFFERENCE_ABSOLUTE,
+        status = write_map(c, m->color, reference->color, AG_DIFFERENCE_FLIP, 0.0f, m->stem,
+                           "-flip.png");
+    if (status == DONE) status = write_image(c, m->indirect, m->stem, "-indirect.png");
+    if (status == DONE && reference->indirect)
+        status = write_map(c, m->indirect, reference->indirect, AG_DIFFERENCE_ABSOLUTE,
                            c->full_indirect, m->stem, "-indirect-error.png");
     return status == DONE ? write_method_exr(c, m) : status;
 }
 
-static enum status write_truth(struct comparison *c)
+static enum status write_reference(struct comparison *c)
 {
     char path[PATH_SIZE];
-    enum status status = write_picture(c, c->truth.color, "reference", ".png");
-    if (status == DONE && c->truth.indirect)
-        status = write_picture(c, c->truth.indirect, "reference", "-indirect.png");
+    enum status status = write_image(c, c->reference.color, "reference", ".png");
+    if (status == DONE && c->reference.indirect)
+        status = write_image(c, c->reference.indirect, "reference", "-indirect.png");
     if (status == DONE) status = path_of(c, "reference", ".exr", path);
-    return status == DONE ? truth_write_exr(c, path) : status;
+    return status == DONE ? reference_write_exr(c, path) : status;
 }
 
 enum status files_write(struct comparison *c)
 {
-    if (c->truth.indirect && !find_full_indirect(c))
+    if (c->reference.indirect && !find_full_indirect(c))
         return fail("cannot compare %s: out of memory", c->arguments->positional[0]);
-    enum status status = write_truth(c);
+    enum status status = write_reference(c);
     for (int i = 0; i < c->method_count && status == DONE; i++) {
         progress("writing", i, c->method_count);
         status = write_method(c, &c->methods[i]);

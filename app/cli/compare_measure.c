@@ -1,4 +1,4 @@
-// How far each method's picture and its indirect light are from the reference's.
+// How far each method's image and its indirect light are from the reference's.
 #include "compare.h"
 #include "images.h"
 
@@ -17,10 +17,11 @@ static double energy_of(const struct ag_metrics *m)
 }
 
 static enum status measure(struct comparison *c, const struct ag_image *image,
-                           const struct ag_image *truth, const struct ag_compare_desc *desc,
+                           const struct ag_image *reference, const struct ag_compare_desc *desc,
                            struct measured *out)
 {
-    enum ag_result result = ag_image_metrics(c->session.context, image, truth, desc, &out->metrics);
+    enum ag_result result =
+        ag_image_metrics(c->session.context, image, reference, desc, &out->metrics);
     if (result != AG_OK) {
         fail_library(c->session.context, result);
         return FAILED;
@@ -39,22 +40,23 @@ static enum status measure_method(struct comparison *c, struct method *m)
     desc.ignore_not_finite = c->arguments->ignore_nan;
     snprintf(name, sizeof name, "%s", m->gi);
     enum status status = image_check(&c->session, m->color, NULL, name);
-    if (status == DONE) status = measure(c, m->color, c->truth.color, &desc, &m->picture);
-    if (status != DONE || !c->truth.indirect) return status;
+    if (status == DONE) status = measure(c, m->color, c->reference.color, &desc, &m->image_error);
+    if (status != DONE || !c->reference.indirect) return status;
     desc.radiance =
         false; // of indirect light relmse, mae and energy alone are said, which do not depend on it
     snprintf(name, sizeof name, "the indirect light of %s", m->gi);
     status = image_check(&c->session, m->indirect, NULL, name);
-    return status == DONE ? measure(c, m->indirect, c->truth.indirect, &desc, &m->indirect_error)
-                          : status;
+    return status == DONE
+               ? measure(c, m->indirect, c->reference.indirect, &desc, &m->indirect_error)
+               : status;
 }
 
 enum status methods_measure(struct comparison *c)
 {
-    enum status status = image_check(&c->session, c->truth.color, NULL, "the reference");
-    if (status == DONE && c->truth.indirect)
+    enum status status = image_check(&c->session, c->reference.color, NULL, "the reference");
+    if (status == DONE && c->reference.indirect)
         status =
-            image_check(&c->session, c->truth.indirect, NULL, "the reference's indirect light");
+            image_check(&c->session, c->reference.indirect, NULL, "the reference's indirect light");
     for (int i = 0; i < c->method_count && status == DONE; i++) {
         progress("measuring", i, c->method_count);
         status = measure_method(c, &c->methods[i]);

@@ -18,14 +18,14 @@ static json_t *method_images(const struct comparison *c, const struct method *m)
     json_t *images =
         json_pack("{s:o, s:o, s:o}", "picture", file_name(m->stem, ".png"), "error",
                   file_name(m->stem, "-flip.png"), "indirect", file_name(m->stem, "-indirect.png"));
-    if (images && c->truth.indirect)
+    if (images && c->reference.indirect)
         json_object_set_new(images, "indirect_error", file_name(m->stem, "-indirect-error.png"));
     return images;
 }
 
 static json_t *indirect_json(const struct comparison *c, const struct method *m)
 {
-    if (!c->truth.indirect) return json_null();
+    if (!c->reference.indirect) return json_null();
     return json_pack("{s:o, s:o, s:o}", "relmse", json_double(m->indirect_error.metrics.relmse),
                      "mae", json_double(m->indirect_error.metrics.mae), "energy",
                      json_double(m->indirect_error.energy));
@@ -33,12 +33,12 @@ static json_t *indirect_json(const struct comparison *c, const struct method *m)
 
 static json_t *method_json(const struct comparison *c, const struct method *m)
 {
-    const struct ag_metrics *p = &m->picture.metrics;
+    const struct ag_metrics *p = &m->image_error.metrics;
     json_t *object =
         json_pack("{s:o, s:O, s:o, s:o, s:o, s:o, s:o, s:o, s:O, s:O, s:O, s:o, s:o}", "gi",
                   json_text(m->gi), "options", m->options, "relmse", json_double(p->relmse), "flip",
                   json_double(p->flip), "mae", json_double(p->mae), "ssim", json_double(p->ssim),
-                  "energy", json_double(m->picture.energy), "indirect", indirect_json(c, m),
+                  "energy", json_double(m->image_error.energy), "indirect", indirect_json(c, m),
                   "frame_ms", m->frame_ms, "passes", m->passes, "memory_bytes", m->memory,
                   "flip_hdr", json_double(p->flip_hdr), "images", method_images(c, m));
     if (object && c->arguments->ignore_nan)
@@ -63,7 +63,7 @@ static json_t *whole_or_null(double value)
 }
 
 // A number of bounces that is not known has no key: null is no limit.
-static json_t *truth_json(const struct truth *t)
+static json_t *reference_json(const struct reference *t)
 {
     json_t *images = json_pack("{s:s}", "picture", "reference.png");
     if (images && t->indirect)
@@ -83,11 +83,12 @@ json_t *report_json(const struct comparison *c)
     const struct arguments *a = c->arguments;
     struct ag_device_info device;
     ag_device_get_info(c->device, &device);
-    return json_pack(
-        "{s:o, s:o, s:[ii], s:o, s:o, s:o, s:o, s:o, s:i}", "scene", json_text(a->positional[0]),
-        "camera", json_text(c->session.camera_name), "size", a->width, a->height, "exposure_ev",
-        json_float(c->exposure_ev), "reference", truth_json(&c->truth), "methods", methods_json(c),
-        "device", json_text(device.name), "driver", json_text(device.driver), "frames", a->frames);
+    return json_pack("{s:o, s:o, s:[ii], s:o, s:o, s:o, s:o, s:o, s:i}", "scene",
+                     json_text(a->positional[0]), "camera", json_text(c->session.camera_name),
+                     "size", a->width, a->height, "exposure_ev", json_float(c->exposure_ev),
+                     "reference", reference_json(&c->reference), "methods", methods_json(c),
+                     "device", json_text(device.name), "driver", json_text(device.driver), "frames",
+                     a->frames);
 }
 
 // ---- the table
@@ -127,7 +128,7 @@ static void print_any(int width, double value)
 static void print_head(const struct comparison *c)
 {
     const struct arguments *a = c->arguments;
-    const struct truth *t = &c->truth;
+    const struct reference *t = &c->reference;
     struct ag_device_info device;
     ag_device_get_info(c->device, &device);
     printf("%s, camera %s, %dx%d, EV %.3f, %d frames on %s\n", a->positional[0],
@@ -154,12 +155,12 @@ static int widest_name(const struct comparison *c)
 
 static void print_row(const struct comparison *c, const struct method *m, int width)
 {
-    double nothing = c->truth.indirect ? 0.0 : (double)NAN;
+    double nothing = c->reference.indirect ? 0.0 : (double)NAN;
     printf("%-*s", width, m->gi);
-    print_any(8, m->picture.metrics.relmse);
-    print_cell(6, 4, m->picture.metrics.flip);
-    print_cell(7, 4, m->picture.metrics.ssim);
-    print_cell(6, 3, m->picture.energy);
+    print_any(8, m->image_error.metrics.relmse);
+    print_cell(6, 4, m->image_error.metrics.flip);
+    print_cell(7, 4, m->image_error.metrics.ssim);
+    print_cell(6, 3, m->image_error.energy);
     print_any(8, m->indirect_error.metrics.mae + nothing);
     print_cell(6, 3, m->indirect_error.energy + nothing);
     print_cell(9, 3, number_in(m->frame_ms, "median"));
@@ -198,8 +199,8 @@ enum status report_gates(const struct comparison *c)
     bool broken = false;
     for (int i = 0; i < c->method_count; i++) {
         const struct method *m = &c->methods[i];
-        broken |= breaks(m->gi, "flip", m->picture.metrics.flip, a->max_flip);
-        broken |= breaks(m->gi, "relmse", m->picture.metrics.relmse, a->max_relmse);
+        broken |= breaks(m->gi, "flip", m->image_error.metrics.flip, a->max_flip);
+        broken |= breaks(m->gi, "relmse", m->image_error.metrics.relmse, a->max_relmse);
         broken |= breaks(m->gi, "ms", number_in(m->frame_ms, "median"), a->max_ms);
     }
     return broken ? FAILED : DONE;

@@ -78,7 +78,7 @@ static enum status run(int count, char **words)
 }
 
 // Where a standard stream is closed, the first file that is opened would become it, and a note
-// would be written into the picture. What stands in for it fails as the closed one does.
+// would be written into the image. What stands in for it fails as the closed one does.
 static void keep_standard_streams_apart(void)
 {
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)

@@ -1,4 +1,4 @@
-// Pictures: which layers, how a layer looks in a PNG, what an EXR says about itself.
+// Images: which layers, how a layer looks in a PNG, what an EXR says about itself.
 #include "output.h"
 #include "interrupt.h"
 #include "values.h"
@@ -83,22 +83,22 @@ static const char *current_name(const char *name)
     return name;
 }
 
-static enum status add_layer(struct picture *picture, const char *name,
+static enum status add_layer(struct output *output, const char *name,
                              const char *(*layer_name)(int))
 {
     if (!layer_exists(name, layer_name)) name = current_name(name);
     if (!layer_exists(name, layer_name)) return unknown_layer(name, layer_name);
-    for (int i = 0; i < picture->layer_count; i++)
-        if (strcmp(picture->layers[i], name) == 0)
+    for (int i = 0; i < output->layer_count; i++)
+        if (strcmp(output->layers[i], name) == 0)
             return wrong_usage("wrong value --aov: layer %s is named twice", name);
-    picture->layers[picture->layer_count++] = name; // at most each of the library's once
+    output->layers[output->layer_count++] = name; // at most each of the library's once
     return DONE;
 }
 
-enum status picture_plan(const struct arguments *a, const char *path,
-                         const char *(*layer_name)(int), const char *fallback, struct picture *out)
+enum status output_plan(const struct arguments *a, const char *path, const char *(*layer_name)(int),
+                        const char *fallback, struct output *out)
 {
-    *out = (struct picture){ .exr = has_extension(path, "exr") };
+    *out = (struct output){ .exr = has_extension(path, "exr") };
     enum status status = DONE;
     int wrote = snprintf(out->names, sizeof out->names, "%s", a->aov ? a->aov : fallback);
     if (wrote >= (int)sizeof out->names)
@@ -109,15 +109,15 @@ enum status picture_plan(const struct arguments *a, const char *path,
     if (!out->exr && out->layer_count > 1)
         return wrong_usage("cannot write %d layers into %s: a PNG holds one, an .exr holds all",
                            out->layer_count, path);
-    if (picture_needs(out, "debug") && !a->debug_view)
+    if (output_has_layer(out, "debug") && !a->debug_view)
         return wrong_usage("cannot write layer debug: it needs --debug-view");
     return DONE;
 }
 
-bool picture_needs(const struct picture *picture, const char *layer)
+bool output_has_layer(const struct output *output, const char *layer)
 {
-    for (int i = 0; i < picture->layer_count; i++)
-        if (strcmp(picture->layers[i], layer) == 0) return true;
+    for (int i = 0; i < output->layer_count; i++)
+        if (strcmp(output->layers[i], layer) == 0) return true;
     return false;
 }
 
@@ -201,7 +201,7 @@ static enum ag_result tonemap(struct session *session, float ev, struct ag_image
     return AG_OK;
 }
 
-// How a layer becomes a picture; what is not named is radiance.
+// How a layer becomes an image; what is not named is radiance.
 enum look { RADIANCE, AS_IT_IS, DIRECTION, MOTION, DEPTH, RANGE, IRRADIANCE };
 
 static enum look look_of(const char *layer)
@@ -222,8 +222,8 @@ static enum look look_of(const char *layer)
     return RADIANCE;
 }
 
-enum ag_result picture_show(struct session *session, const char *layer, float ev,
-                            struct ag_image **image)
+enum ag_result layer_to_display(struct session *session, const char *layer, float ev,
+                                struct ag_image **image)
 {
     switch (look_of(layer)) {
     case AS_IT_IS:
@@ -256,7 +256,7 @@ static enum status write_png(struct session *session, struct ag_renderer *render
     float ev = 0.0f;
     enum ag_result result = ag_renderer_read(renderer, layer, &image);
     if (result == AG_OK) result = ag_renderer_exposure(renderer, &ev);
-    if (result == AG_OK) result = picture_show(session, layer, ev, &image);
+    if (result == AG_OK) result = layer_to_display(session, layer, ev, &image);
     interrupt_hold();
     if (result == AG_OK) result = ag_image_write_png(session->context, path, image);
     interrupt_release();
@@ -296,24 +296,24 @@ static enum ag_result write_exr_layers(struct session *session, struct ag_render
 }
 
 static enum status write_exr(struct session *session, struct ag_renderer *renderer,
-                             const struct picture *picture, const char *path)
+                             const struct output *output, const char *path)
 {
     struct ag_image *images[MAX_LAYERS] = { 0 };
     struct ag_image_layer layers[MAX_LAYERS];
     enum ag_result result = AG_OK;
-    for (int i = 0; i < picture->layer_count && result == AG_OK; i++) {
-        result = ag_renderer_read(renderer, picture->layers[i], &images[i]);
-        layers[i] = (struct ag_image_layer){ picture->layers[i], images[i] };
+    for (int i = 0; i < output->layer_count && result == AG_OK; i++) {
+        result = ag_renderer_read(renderer, output->layers[i], &images[i]);
+        layers[i] = (struct ag_image_layer){ output->layers[i], images[i] };
     }
     if (result == AG_OK)
-        result = write_exr_layers(session, renderer, layers, picture->layer_count, path);
-    for (int i = 0; i < picture->layer_count; i++) ag_image_destroy(session->context, images[i]);
+        result = write_exr_layers(session, renderer, layers, output->layer_count, path);
+    for (int i = 0; i < output->layer_count; i++) ag_image_destroy(session->context, images[i]);
     return result == AG_OK ? DONE : fail_library(session->context, result);
 }
 
-enum status picture_write(struct session *session, struct ag_renderer *renderer,
-                          const struct picture *picture, const char *path)
+enum status output_write(struct session *session, struct ag_renderer *renderer,
+                         const struct output *output, const char *path)
 {
-    if (picture->exr) return write_exr(session, renderer, picture, path);
-    return write_png(session, renderer, picture->layers[0], path);
+    if (output->exr) return write_exr(session, renderer, output, path);
+    return write_png(session, renderer, output->layers[0], path);
 }

@@ -8,8 +8,8 @@ enum { MAX_LAYERS = 32, PATH_SIZE = 4096 };
 // Could a file be written there? Says why not.
 enum status output_check(const char *path);
 
-// What a picture holds, from --aov and --debug-view.
-struct picture {
+// What an image holds, from --aov and --debug-view.
+struct output {
     const char *layers[MAX_LAYERS]; // names of the library's layers
     int layer_count;
     bool exr;
@@ -18,14 +18,14 @@ struct picture {
 
 // Unknown layers, and several layers of a PNG, are wrong usage. layer_name: the names that there
 // are, NULL past the end; fallback: the list where the command line has none.
-enum status picture_plan(const struct arguments *arguments, const char *path,
-                         const char *(*layer_name)(int), const char *fallback, struct picture *out);
-bool picture_needs(const struct picture *picture, const char *layer);
+enum status output_plan(const struct arguments *arguments, const char *path,
+                        const char *(*layer_name)(int), const char *fallback, struct output *out);
+bool output_has_layer(const struct output *output, const char *layer);
 // Brings a layer's values to display values 0…1, as a PNG has them; ev is for what is radiance.
-enum ag_result picture_show(struct session *session, const char *layer, float ev,
-                            struct ag_image **image);
+enum ag_result layer_to_display(struct session *session, const char *layer, float ev,
+                                struct ag_image **image);
 // "shots/house.glb" and "@house:lit=1" give "house" + ending.
 void output_default(const char *scene, const char *ending, char out[PATH_SIZE]);
 // Reads the layers of the newest frame and writes them.
-enum status picture_write(struct session *session, struct ag_renderer *renderer,
-                          const struct picture *picture, const char *path);
+enum status output_write(struct session *session, struct ag_renderer *renderer,
+                         const struct output *output, const char *path);

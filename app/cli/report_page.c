@@ -18,12 +18,12 @@ enum { PATH_SIZE = 4096, SCALE_COLOURS = 33 };
 struct page {
     const char *folder;
     const json_t *report;
-    json_t *pictures; // the names of all files, each once, as keys
+    json_t *images; // the names of all files, each once, as keys
     char scale[SCALE_COLOURS]
               [8]; // the colours of an error map from no error to the largest: "#rrggbb"
 };
 
-// ---- the pictures that the report names
+// ---- the images that the report names
 
 static bool is_inside(const char *name)
 {
@@ -36,7 +36,7 @@ static bool is_inside(const char *name)
     return true;
 }
 
-static enum status picture_path(const char *folder, const char *name, char out[PATH_SIZE])
+static enum status image_path(const char *folder, const char *name, char out[PATH_SIZE])
 {
     if (!is_inside(name)) return fail("cannot embed %s: it does not lie in %s", name, folder);
     if (snprintf(out, PATH_SIZE, "%s/%s", folder, name) >= PATH_SIZE)
@@ -44,7 +44,7 @@ static enum status picture_path(const char *folder, const char *name, char out[P
     return DONE;
 }
 
-static enum status picture_open(const char *path, FILE **out)
+static enum status image_open(const char *path, FILE **out)
 {
     static const char SIGNATURE[8] = "\x89PNG\r\n\x1a\n";
     char head[sizeof SIGNATURE];
@@ -60,18 +60,18 @@ static enum status picture_open(const char *path, FILE **out)
     return DONE;
 }
 
-static enum status check_picture(const char *folder, const char *name)
+static enum status check_image(const char *folder, const char *name)
 {
     char path[PATH_SIZE];
     FILE *file = NULL;
-    enum status status = picture_path(folder, name, path);
-    if (status == DONE) status = picture_open(path, &file);
+    enum status status = image_path(folder, name, path);
+    if (status == DONE) status = image_open(path, &file);
     if (file) fclose(file);
     return status;
 }
 
 // `owner`: the reference or a method.
-static enum status collect_pictures(struct page *page, const json_t *owner)
+static enum status collect_images(struct page *page, const json_t *owner)
 {
     const char *role;
     json_t *value;
@@ -79,25 +79,25 @@ static enum status collect_pictures(struct page *page, const json_t *owner)
     json_object_foreach(images, role, value)
     {
         const char *name = json_string_value(value);
-        if (!name || json_object_get(page->pictures, name)) continue;
-        enum status status = check_picture(page->folder, name);
+        if (!name || json_object_get(page->images, name)) continue;
+        enum status status = check_image(page->folder, name);
         if (status != DONE) return status;
-        if (json_object_set_new(page->pictures, name, json_true()) != 0)
+        if (json_object_set_new(page->images, name, json_true()) != 0)
             return fail("cannot embed %s: out of memory", name);
     }
     return DONE;
 }
 
-static enum status find_pictures(struct page *page)
+static enum status find_images(struct page *page)
 {
     size_t i;
     json_t *method;
-    page->pictures = json_object();
-    if (!page->pictures) return fail("cannot write report.html: out of memory");
-    enum status status = collect_pictures(page, json_object_get(page->report, "reference"));
+    page->images = json_object();
+    if (!page->images) return fail("cannot write report.html: out of memory");
+    enum status status = collect_images(page, json_object_get(page->report, "reference"));
     json_array_foreach(json_object_get(page->report, "methods"), i, method)
     {
-        if (status == DONE) status = collect_pictures(page, method);
+        if (status == DONE) status = collect_images(page, method);
     }
     return status;
 }
@@ -171,9 +171,7 @@ static enum status write_json(FILE *file, const json_t *document)
     return fail("cannot write report.html: out of memory");
 }
 
-enum {
-    CHUNK_SIZE = 3 * 4096
-}; // of a picture: a multiple of 3, so that only the last one is padded
+enum { CHUNK_SIZE = 3 * 4096 }; // of an image: a multiple of 3, so that only the last one is padded
 
 static void write_base64(FILE *file, const unsigned char *bytes, size_t size)
 {
@@ -192,29 +190,29 @@ static void write_base64(FILE *file, const unsigned char *bytes, size_t size)
     fwrite(text, 1, used, file);
 }
 
-static enum status write_picture(FILE *file, const char *path)
+static enum status write_image(FILE *file, const char *path)
 {
     unsigned char bytes[CHUNK_SIZE];
-    FILE *picture = NULL;
-    enum status status = picture_open(path, &picture);
+    FILE *image = NULL;
+    enum status status = image_open(path, &image);
     if (status != DONE) return status;
     fputs("\"data:image/png;base64,", file);
-    for (size_t got; (got = fread(bytes, 1, sizeof bytes, picture)) > 0;)
+    for (size_t got; (got = fread(bytes, 1, sizeof bytes, image)) > 0;)
         write_base64(file, bytes, got);
-    if (ferror(picture)) status = fail("cannot embed %s: it cannot be read", path);
+    if (ferror(image)) status = fail("cannot embed %s: it cannot be read", path);
     fputc('"', file);
-    fclose(picture);
+    fclose(image);
     return status;
 }
 
 // {"reference.png":"data:…", …}
-static enum status write_pictures(FILE *file, const struct page *page)
+static enum status write_images(FILE *file, const struct page *page)
 {
     const char *name;
     json_t *value;
     char path[PATH_SIZE];
     const char *before = "{";
-    json_object_foreach(page->pictures, name, value)
+    json_object_foreach(page->images, name, value)
     {
         fputs(before, file);
         before = ",\n";
@@ -223,11 +221,11 @@ static enum status write_pictures(FILE *file, const struct page *page)
             text ? write_json(file, text) : fail("cannot write report.html: out of memory");
         json_decref(text);
         fputc(':', file);
-        if (status == DONE) status = picture_path(page->folder, name, path);
-        if (status == DONE) status = write_picture(file, path);
+        if (status == DONE) status = image_path(page->folder, name, path);
+        if (status == DONE) status = write_image(file, path);
         if (status != DONE) return status;
     }
-    fputs(json_object_size(page->pictures) ? "}" : "{}", file);
+    fputs(json_object_size(page->images) ? "}" : "{}", file);
     return DONE;
 }
 
@@ -262,7 +260,7 @@ static const struct embedded_file *embedded(struct piece piece)
 static enum status write_piece(FILE *file, const struct page *page, struct piece piece)
 {
     if (is(piece, "report")) return write_json(file, page->report);
-    if (is(piece, "pictures")) return write_pictures(file, page);
+    if (is(piece, "images")) return write_images(file, page);
     if (is(piece, "scale")) return write_scale(file, page);
     const struct embedded_file *held = embedded(piece);
     if (!held)
@@ -296,9 +294,9 @@ enum status report_page_write(const char *folder, const json_t *report)
     char path[PATH_SIZE];
     if (snprintf(path, sizeof path, "%s/report.html", folder) >= (int)sizeof path)
         return fail("cannot write %s/report.html: the path is too long", folder);
-    enum status status = find_pictures(&page);
+    enum status status = find_images(&page);
     if (status == DONE) status = find_scale(&page);
     if (status == DONE) status = whole_file_write(path, write_page, &page);
-    json_decref(page.pictures);
+    json_decref(page.images);
     return status;
 }

@@ -146,16 +146,16 @@ static enum ag_result write_layers(const struct tracing *t, const char *path,
     return ag_image_write_exr(t->session->context, path, layers, count, attributes, used);
 }
 
-enum ag_result tracing_write_exr(const struct tracing *t, const struct picture *picture,
+enum ag_result tracing_write_exr(const struct tracing *t, const struct output *output,
                                  const char *path, const struct ag_attribute *more, int more_count)
 {
     struct ag_image *images[MAX_LAYERS] = { 0 };
     struct ag_image_layer layers[MAX_LAYERS];
     enum ag_result result = AG_OK;
-    int count = picture->layer_count;
+    int count = output->layer_count;
     for (int i = 0; i < count && result == AG_OK; i++) {
-        result = ag_reference_read(t->reference, picture->layers[i], &images[i]);
-        layers[i] = (struct ag_image_layer){ picture->layers[i], images[i] };
+        result = ag_reference_read(t->reference, output->layers[i], &images[i]);
+        layers[i] = (struct ag_image_layer){ output->layers[i], images[i] };
     }
     interrupt_hold();
     if (result == AG_OK) result = write_layers(t, path, layers, count, more, more_count);

@@ -19,7 +19,7 @@ extern const char tracing_kept_layers[];
 enum status tracing_begin(struct tracing *tracing, struct session *session,
                           const struct ag_camera *camera, int wanted);
 void tracing_end(struct tracing *tracing); // accepts zero
-// Goes on from a file of the same picture.
+// Goes on from a file of the same image.
 enum ag_result tracing_resume(struct tracing *tracing, const char *path);
 
 // Puts down what there is.
@@ -34,5 +34,5 @@ struct tracing_keeper {
 enum status tracing_converge(struct tracing *tracing, const struct tracing_keeper *keeper);
 
 // An EXR of these layers; its attributes say how it was made, `more` adds some.
-enum ag_result tracing_write_exr(const struct tracing *tracing, const struct picture *picture,
+enum ag_result tracing_write_exr(const struct tracing *tracing, const struct output *output,
                                  const char *path, const struct ag_attribute *more, int more_count);

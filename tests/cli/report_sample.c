@@ -5,21 +5,21 @@
 #include <stdio.h>
 
 // A ramp across and one down, in a tint of its own.
-static void write_picture(const char *folder, const char *name, int tint)
+static void write_image(const char *folder, const char *name, int tint)
 {
-    struct image picture = { 0 };
+    struct image image = { 0 };
     char path[512];
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    assert_true(image_init(&picture, test_host(), SAMPLE_WIDTH, SAMPLE_HEIGHT, 3));
+    assert_true(image_init(&image, test_host(), SAMPLE_WIDTH, SAMPLE_HEIGHT, 3));
     for (int y = 0; y < SAMPLE_HEIGHT; y++)
         for (int x = 0; x < SAMPLE_WIDTH; x++) {
-            float *pixel = image_at(&picture, x, y);
+            float *pixel = image_at(&image, x, y);
             pixel[0] = (float)x / SAMPLE_WIDTH;
             pixel[1] = (float)y / SAMPLE_HEIGHT;
-            pixel[2] = (float)tint / SAMPLE_PICTURES;
+            pixel[2] = (float)tint / SAMPLE_IMAGES;
         }
-    assert_true(png_write(test_host(), path, &picture));
-    image_finish(&picture, test_host());
+    assert_true(png_write(test_host(), path, &image));
+    image_finish(&image, test_host());
 }
 
 static json_t *passes(double scale)
@@ -37,7 +37,7 @@ static json_t *images(const char *folder, int method)
     for (int i = 0; i < 4; i++) {
         char name[64];
         snprintf(name, sizeof name, "%d-%s.png", method, roles[i]);
-        write_picture(folder, name, 2 + 4 * method + i);
+        write_image(folder, name, 2 + 4 * method + i);
         json_object_set_new(object, roles[i], json_string(name));
     }
     return object;
@@ -61,8 +61,8 @@ static json_t *method(const char *folder, int i, const char *gi, json_t *options
 
 json_t *sample_report(const char *folder, const char *scene, const char *gi)
 {
-    write_picture(folder, "reference.png", 0);
-    write_picture(folder, "reference-indirect.png", 1);
+    write_image(folder, "reference.png", 0);
+    write_image(folder, "reference-indirect.png", 1);
     json_t *methods = json_pack(
         "[o, o, o, o]", method(folder, 0, gi, json_object()),
         method(folder, 1, "ambient:strength=1", json_pack("{s:{s:f}}", "ambient", "strength", 1.0)),

@@ -1,4 +1,4 @@
-// A report as compare writes it, with small pictures, for the tests of its page.
+// A report as compare writes it, with small images, for the tests of its page.
 #pragma once
 
 #include "framework/test.h"
@@ -9,9 +9,9 @@ enum {
     SAMPLE_WIDTH = 64,
     SAMPLE_HEIGHT = 48,
     SAMPLE_METHODS = 4,
-    SAMPLE_PICTURES = 2 + 4 * SAMPLE_METHODS
+    SAMPLE_IMAGES = 2 + 4 * SAMPLE_METHODS
 };
 
-// Scene and spelling of the first method as given; the pictures lie in `folder` afterwards. The
+// Scene and spelling of the first method as given; the images lie in `folder` afterwards. The
 // caller releases it.
 json_t *sample_report(const char *folder, const char *scene, const char *gi);

@@ -166,7 +166,7 @@ static struct image read_layer(const char *path, const char *layer)
     return image;
 }
 
-// A frame's layers as if it were the truth, `scale` times as bright; its first value is `first`
+// A frame's layers as a reference file, `scale` times as bright; its first value is `first`
 // unless that is 0.
 static const char *frame_as_reference(const char *name, float scale, float first)
 {
@@ -184,11 +184,11 @@ static const char *frame_as_reference(const char *name, float scale, float first
     return path;
 }
 
-TEST(a_method_that_is_the_truth_has_no_error)
+TEST(a_method_equal_to_the_reference_has_no_error)
 {
     require_device();
-    const char *truth = frame_as_reference("truth.exr", 1, 0), *folder = path_of("known");
-    run_expect(0, SCENE " --frames 1 --gi ambient --gi none -o", folder, "--reference", truth,
+    const char *given = frame_as_reference("equal.exr", 1, 0), *folder = path_of("known");
+    run_expect(0, SCENE " --frames 1 --gi ambient --gi none -o", folder, "--reference", given,
                NULL);
     json_t *report = report_of(folder), *method = method_of(report, 0);
     CHECK(number(method, "relmse") == 0 && number(method, "mae") == 0 &&
@@ -208,9 +208,9 @@ TEST(a_method_that_is_the_truth_has_no_error)
     CHECK(json_is_null(json_object_get(reference, "spp")) &&
           json_is_null(json_object_get(reference, "noise")));
     json_decref(report);
-    CHECK(files_are_equal(truth, in(folder, "reference.exr")));
-    truth = frame_as_reference("twice.exr", 2, 0);
-    run_expect(0, SCENE " --frames 1 --gi ambient -o", folder, "--reference", truth, NULL);
+    CHECK(files_are_equal(given, in(folder, "reference.exr")));
+    given = frame_as_reference("twice.exr", 2, 0);
+    run_expect(0, SCENE " --frames 1 --gi ambient -o", folder, "--reference", given, NULL);
     report = report_of(folder);
     CHECK_RELATIVE(number(method_of(report, 0), "energy"), 0.5, 1e-6);
     CHECK_RELATIVE(number(json_object_get(method_of(report, 0), "indirect"), "energy"), 0.5, 1e-6);
@@ -220,12 +220,12 @@ TEST(a_method_that_is_the_truth_has_no_error)
 TEST(pixels_that_are_no_numbers_are_an_error_or_left_out)
 {
     require_device();
-    const char *truth = frame_as_reference("nan.exr", 1, NAN), *folder = path_of("nan");
+    const char *given = frame_as_reference("nan.exr", 1, NAN), *folder = path_of("nan");
     const struct run *r =
-        run_expect(1, SCENE " --frames 1 --gi ambient -o", folder, "--reference", truth, NULL);
+        run_expect(1, SCENE " --frames 1 --gi ambient -o", folder, "--reference", given, NULL);
     CHECK(strstr(r->err, "1 of its pixels"));
     CHECK(!file_exists(folder));
-    run_expect(0, SCENE " --frames 1 --gi ambient --ignore-nan -o", folder, "--reference", truth,
+    run_expect(0, SCENE " --frames 1 --gi ambient --ignore-nan -o", folder, "--reference", given,
                NULL);
     json_t *report = report_of(folder);
     CHECK(number(method_of(report, 0), "mae") == 0);
@@ -325,7 +325,7 @@ TEST(a_reference_is_traced_once_and_gone_on_with)
     CHECK(json_is_true(json_object_get(json_object_get(fourth, "reference"), "cached")));
     assert_int_equal((int)of_reference(fourth, "spp"), 5);
     assert_int_equal(count_files(cache), 1);
-    // Another picture has a file of its own, and --no-cache leaves none.
+    // Another image has a file of its own, and --no-cache leaves none.
     run_expect(0, SMALL " --bounces 1 -o", folder, NULL);
     assert_int_equal(count_files(cache), 2);
     run_expect(0, SMALL " --bounces 2 --no-cache -o", folder, NULL);
@@ -344,7 +344,7 @@ TEST(a_cache_that_is_damaged_or_cannot_be_written_costs_time_alone)
     DIR *dir = opendir(cache);
     assert_non_null(dir);
     for (struct dirent *entry; (entry = readdir(dir));)
-        if (entry->d_name[0] == 'r') write_file(in(cache, entry->d_name), "no picture", 10);
+        if (entry->d_name[0] == 'r') write_file(in(cache, entry->d_name), "no image", 10);
     closedir(dir);
     const struct run *r = run_expect(
         0, "compare @cornell --size 24x18 --frames 1 --spp 2 --gi none -o", folder, NULL);
@@ -379,7 +379,7 @@ TEST(the_cache_keeps_within_its_bound_and_to_its_own)
     assert_int_equal(count_files(cache), 2);
 }
 
-TEST(a_reference_of_another_picture_is_refused)
+TEST(a_reference_of_another_image_is_refused)
 {
     require_device();
     own_cache("other-cache");
@@ -406,7 +406,7 @@ TEST(a_reference_of_another_picture_is_refused)
     check_one_error_line(
         run_expect(1, SCENE " -o", folder, "--reference", path_of("none.exr"), NULL));
     CHECK(!file_exists(folder));
-    // Without the layer of indirect light there is the picture to go by.
+    // Without the layer of indirect light there is the image to go by.
     const char *bare = path_of("bare.exr");
     run_expect(0, "reference @cornell --size 24x18 --quiet --spp 2 --aov color -o", bare, NULL);
     run_expect(0, SCENE " --frames 1 --gi none -o", folder, "--reference", bare, NULL);

@@ -101,13 +101,13 @@ TEST(the_error_map_is_dark_where_images_agree)
     snprintf(b, sizeof b, "%s", write_exr("map-b.exr", WIDTH, 1.0f, 1.0f));
     snprintf(map, sizeof map, "%s", test_path("map.png"));
     run_expect(0, "diff --map", map, a, b, NULL);
-    struct image picture = { 0 };
-    assert_true(png_read(test_host(), map, &picture));
-    assert_int_equal(picture.width, WIDTH);
-    vec3s bright = vec3_of(picture.pixels[0], picture.pixels[1], picture.pixels[2]);
-    const float *last = image_at(&picture, WIDTH - 1, HEIGHT - 1);
+    struct image image = { 0 };
+    assert_true(png_read(test_host(), map, &image));
+    assert_int_equal(image.width, WIDTH);
+    vec3s bright = vec3_of(image.pixels[0], image.pixels[1], image.pixels[2]);
+    const float *last = image_at(&image, WIDTH - 1, HEIGHT - 1);
     CHECK(luminance(bright) > 2 * luminance(vec3_of(last[0], last[1], last[2])));
-    image_finish(&picture, test_host());
+    image_finish(&image, test_host());
 }
 
 TEST(a_failed_comparison_writes_no_map)
@@ -164,24 +164,24 @@ TEST(each_metric_has_its_map)
     snprintf(b, sizeof b, "%s", write_exr("pb.exr", WIDTH, 2.0f, 1.0f));
     snprintf(map, sizeof map, "%s", test_path("metric.png"));
     for (int i = 0; i < 6; i++) {
-        struct image picture = { 0 };
+        struct image image = { 0 };
         snprintf(words, sizeof words, "diff --metric %s --map", names[i]);
         run_expect(0, words, map, a, b, NULL);
-        assert_true(png_read(test_host(), map, &picture));
-        assert_int_equal(picture.height, HEIGHT);
-        image_finish(&picture, test_host());
+        assert_true(png_read(test_host(), map, &image));
+        assert_int_equal(image.height, HEIGHT);
+        image_finish(&image, test_host());
     }
     run_expect(2, "diff --metric psnr --map", map, a, b, NULL);
 }
 
-TEST(what_only_radiance_has_is_wrong_usage_of_pictures)
+TEST(what_only_radiance_has_is_wrong_usage_of_images)
 {
     char png[300];
-    struct image picture = { 0 };
-    assert_true(image_init(&picture, test_host(), 8, 4, 3));
+    struct image image = { 0 };
+    assert_true(image_init(&image, test_host(), 8, 4, 3));
     snprintf(png, sizeof png, "%s", test_path("display.png"));
-    assert_true(png_write(test_host(), png, &picture));
-    image_finish(&picture, test_host());
+    assert_true(png_write(test_host(), png, &image));
+    image_finish(&image, test_host());
     run_expect(2, "diff --exposure 3", png, png, NULL);
     run_expect(2, "diff --mask depth", png, png, NULL);
     run_expect(2, "diff --metric flip_hdr --map m.png", png, png, NULL);

@@ -221,14 +221,14 @@ TEST(json_says_what_was_traced)
     CHECK(json_number_value(json_object_get(document, "error")) > 0);
     CHECK_STRING(json_string_value(json_object_get(document, "camera")), "main");
     json_decref(document);
-    struct image picture = { 0 };
-    assert_true(png_read(test_host(), path, &picture));
-    image_finish(&picture, test_host());
+    struct image image = { 0 };
+    assert_true(png_read(test_host(), path, &image));
+    image_finish(&image, test_host());
     r = run_expect(0, "reference @cornell --size 16x16 --spp 2 -o", path, NULL);
     CHECK(strstr(r->err, "million a second") && strstr(r->err, "standard error"));
 }
 
-TEST(each_layer_makes_a_picture)
+TEST(each_layer_makes_an_image)
 {
     static const char *const layers[] = { "color",      "indirect_emitters_sky",
                                           "irradiance", "irradiance_emitters_sky",
@@ -263,7 +263,7 @@ TEST(wrong_usage_is_said_before_the_work)
     check_one_error_line(run_expect(1, SMALL, "--camera", "nobody", "-o", path_of("x.exr"), NULL));
 }
 
-TEST(an_interrupt_leaves_a_picture_to_go_on_with)
+TEST(an_interrupt_leaves_an_image_to_go_on_with)
 {
     const char *path = path_of("interrupted.exr");
     fflush(NULL);

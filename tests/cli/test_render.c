@@ -147,7 +147,7 @@ TEST(a_sky_is_seen_where_there_is_nothing)
 TEST(a_brighter_exposure_is_a_brighter_png_and_the_same_exr)
 {
     require_device();
-    struct image pictures[2] = { 0 };
+    struct image images[2] = { 0 };
     char path[300], exr[2][300];
     snprintf(path, sizeof path, "%s", test_path("ev.png"));
     for (int i = 0; i < 2; i++) {
@@ -155,15 +155,15 @@ TEST(a_brighter_exposure_is_a_brighter_png_and_the_same_exr)
         snprintf(exr[i], sizeof exr[i], "%s", test_path(i ? "ev4.exr" : "ev6.exr"));
         run_expect(0, SMALL, "--exposure", ev, "-o", path, NULL);
         run_expect(0, SMALL, "--exposure", ev, "-o", exr[i], NULL);
-        assert_true(png_read(test_host(), path, &pictures[i]));
+        assert_true(png_read(test_host(), path, &images[i]));
     }
-    CHECK(mean(&pictures[1]) > 1.2 * mean(&pictures[0]));
+    CHECK(mean(&images[1]) > 1.2 * mean(&images[0]));
     CHECK_NEAR(mean_of(exr[0], NULL), mean_of(exr[1], NULL), 0);
-    for (int i = 0; i < 2; i++) image_finish(&pictures[i], test_host());
+    for (int i = 0; i < 2; i++) image_finish(&images[i], test_host());
 }
 
 // A scene without light and camera, and what the program says about it on standard error.
-TEST(the_defaults_that_are_said_give_the_same_picture)
+TEST(the_defaults_that_are_said_give_the_same_image)
 {
     require_device();
     static const char obj[] = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\n"
@@ -246,10 +246,10 @@ TEST(motion_is_of_what_moves_and_begins_with_the_second_frame)
 TEST(statistics_have_the_keys_that_scripts_rely_on)
 {
     require_device();
-    char path[300], picture[300];
+    char path[300], image[300];
     snprintf(path, sizeof path, "%s", test_path("stats.json"));
-    snprintf(picture, sizeof picture, "%s", test_path("stats.png"));
-    run_expect(0, SMALL, "--gi", "lpv:steps=4", "--frames", "4", "--stats", path, "-o", picture,
+    snprintf(image, sizeof image, "%s", test_path("stats.png"));
+    run_expect(0, SMALL, "--gi", "lpv:steps=4", "--frames", "4", "--stats", path, "-o", image,
                NULL);
     json_error_t error;
     json_t *stats = json_load_file(path, 0, &error), *pass, *bytes;
@@ -310,13 +310,13 @@ TEST(every_layer_can_be_a_png)
                                           "depth",      "position", "display",  "motion" };
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
         char path[300];
-        struct image picture = { 0 };
+        struct image image = { 0 };
         snprintf(path, sizeof path, "%s", test_path("layer.png"));
         run_expect(0, SMALL, "--aov", layers[i], "-o", path, NULL);
-        assert_true(png_read(test_host(), path, &picture));
-        assert_int_equal(picture.width, 48);
-        assert_int_equal(picture.height, 32);
-        image_finish(&picture, test_host());
+        assert_true(png_read(test_host(), path, &image));
+        assert_int_equal(image.width, 48);
+        assert_int_equal(image.height, 32);
+        image_finish(&image, test_host());
     }
 }
 
@@ -341,7 +341,7 @@ TEST(a_wrong_device_fails_and_leaves_nothing)
     assert_int_equal(count_files(folder), 0);
 }
 
-TEST(without_a_name_the_picture_is_called_like_the_scene)
+TEST(without_a_name_the_image_is_called_like_the_scene)
 {
     require_device();
     char before[1024];

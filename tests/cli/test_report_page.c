@@ -1,5 +1,5 @@
 // The page of compare as a file: it holds all that it shows, no name in it is more than text, and a
-// picture that is not there is an error that leaves nothing behind. test_report_page_browser.c uses
+// image that is not there is an error that leaves nothing behind. test_report_page_browser.c uses
 // it.
 #include "report_page.h" // before cmocka, whose fail() is a macro
 
@@ -94,7 +94,7 @@ static void check_base64(const char *text, const struct file_bytes *bytes)
     assert_int_equal(used, bytes->size);
 }
 
-TEST(the_page_holds_every_picture_to_the_byte)
+TEST(the_page_holds_every_image_to_the_byte)
 {
     static const char HEAD[] = "data:image/png;base64,";
     char folder[300];
@@ -102,10 +102,10 @@ TEST(the_page_holds_every_picture_to_the_byte)
     json_t *report = sample_report(folder, "@cornell", "none");
     assert_int_equal(report_page_write(folder, report), DONE);
     char *page = page_of(folder);
-    json_t *pictures = data_of(page, "pictures"), *uri;
-    assert_int_equal(json_object_size(pictures), SAMPLE_PICTURES);
+    json_t *images = data_of(page, "images"), *uri;
+    assert_int_equal(json_object_size(images), SAMPLE_IMAGES);
     const char *name;
-    json_object_foreach(pictures, name, uri)
+    json_object_foreach(images, name, uri)
     {
         char path[600];
         struct file_bytes bytes;
@@ -115,7 +115,7 @@ TEST(the_page_holds_every_picture_to_the_byte)
         check_base64(json_string_value(uri) + strlen(HEAD), &bytes);
         file_bytes_finish(test_host(), &bytes);
     }
-    json_decref(pictures);
+    json_decref(images);
     json_decref(report);
     free(page);
 }
@@ -167,7 +167,7 @@ TEST(no_name_ends_the_block_that_it_stands_in)
     free(b);
 }
 
-TEST(a_picture_that_is_not_there_leaves_the_page_as_it_was)
+TEST(an_image_that_is_not_there_leaves_the_page_as_it_was)
 {
     char folder[300], path[400];
     snprintf(folder, sizeof folder, "%s", make_folder("missing"));
@@ -176,21 +176,21 @@ TEST(a_picture_that_is_not_there_leaves_the_page_as_it_was)
     assert_int_equal(unlink(path), 0);
     const char *said = failure(folder, report);
     CHECK(strstr(said, "afterglow: cannot embed ") && strstr(said, "2-error.png: No such file"));
-    assert_int_equal(count_files(folder), SAMPLE_PICTURES - 1);
+    assert_int_equal(count_files(folder), SAMPLE_IMAGES - 1);
 
-    write_file(path, "no picture at all", 17);
+    write_file(path, "no image at all", 17);
     CHECK(strstr(failure(folder, report), "2-error.png: not a PNG file"));
     snprintf(path, sizeof path, "%s/report.html", folder);
     write_file(path, "before", 6);
     failure(folder, report);
     char *page = page_of(folder);
     CHECK_STRING(page, "before");
-    assert_int_equal(count_files(folder), SAMPLE_PICTURES + 1);
+    assert_int_equal(count_files(folder), SAMPLE_IMAGES + 1);
     free(page);
     json_decref(report);
 }
 
-TEST(pictures_from_elsewhere_are_refused)
+TEST(images_from_elsewhere_are_refused)
 {
     static const char *const names[] = {
         "../reference.png", "/reference.png", "a/../../reference.png", "..", "", "a/.."
@@ -205,7 +205,7 @@ TEST(pictures_from_elsewhere_are_refused)
     assert_int_equal(count_files(folder), 0);
 }
 
-TEST(a_report_without_pictures_is_a_page_too)
+TEST(a_report_without_images_is_a_page_too)
 {
     char folder[300];
     snprintf(folder, sizeof folder, "%s", make_folder("bare"));
@@ -213,9 +213,9 @@ TEST(a_report_without_pictures_is_a_page_too)
                                "reference", "images", "methods", "gi", "none", "images", "picture");
     assert_int_equal(report_page_write(folder, report), DONE);
     char *page = page_of(folder);
-    json_t *pictures = data_of(page, "pictures");
-    assert_int_equal(json_object_size(pictures), 0);
-    json_decref(pictures);
+    json_t *images = data_of(page, "images");
+    assert_int_equal(json_object_size(images), 0);
+    json_decref(images);
     json_decref(report);
     free(page);
 }

@@ -73,7 +73,7 @@ static struct box stage_in_sight(struct fixture *f)
     return box_of(f, "#stage");
 }
 
-// The share of the stage that the left picture has, from its clip.
+// The share of the stage that the left image has, from its clip.
 static double split_of(struct fixture *f)
 {
     return 1 - browser_number(
@@ -143,7 +143,7 @@ TEST(the_divider_follows_the_pointer_and_the_arrow_keys)
     end(&f);
 }
 
-// Where the point of the picture is that began at (u, v), both 0…1 of the stage's picture, as a
+// Where the point of the image is that began at (u, v), both 0…1 of the stage's image, as a
 // share of the frame.
 static double place_of(struct fixture *f, const char *frame, char axis, double u)
 {
@@ -154,7 +154,7 @@ static double place_of(struct fixture *f, const char *frame, char axis, double u
                        : (inner.y - outer.y + u * inner.height) / outer.height;
 }
 
-TEST(the_wheel_zooms_about_the_pointer_in_all_pictures_alike)
+TEST(the_wheel_zooms_about_the_pointer_in_all_images_alike)
 {
     struct fixture f = { 0 };
     begin(&f, "zoom");
@@ -175,7 +175,7 @@ TEST(the_wheel_zooms_about_the_pointer_in_all_pictures_alike)
     CHECK(browser_true(
         f.browser,
         "getComputedStyle(document.querySelector('#left-image')).imageRendering === 'pixelated'"));
-    // The place and both values under the pointer: the left picture is of method 3, the right one
+    // The place and both values under the pointer: the left image is of method 3, the right one
     // the reference.
     browser_mouse(f.browser, "mouseMoved", stage.x + u * stage.width + 1,
                   stage.y + v * stage.height, 0);
@@ -275,11 +275,11 @@ static bool stage_shows(struct fixture *f, const char *left, const char *right)
     return browser_true(f->browser,
                         "(p => document.querySelector('#left-image').src === p['%s'] && "
                         "document.querySelector('#right-image').src === p['%s'])"
-                        "(JSON.parse(document.querySelector('#data-pictures').textContent))",
+                        "(JSON.parse(document.querySelector('#data-images').textContent))",
                         left, right);
 }
 
-TEST(any_two_pictures_can_be_held_against_each_other)
+TEST(any_two_images_can_be_held_against_each_other)
 {
     struct fixture f = { 0 };
     begin(&f, "pairs");

@@ -15,16 +15,16 @@ struct wrong {
 
 static void check_wrong(const struct wrong *cases, size_t count, int status)
 {
-    char folder[256], picture[300];
+    char folder[256], image[300];
     static int number;
     char name[32];
     snprintf(name, sizeof name, "wrong-%d", number++);
     snprintf(folder, sizeof folder, "%s", make_folder(name));
-    snprintf(picture, sizeof picture, "%s/out.exr", folder);
+    snprintf(image, sizeof image, "%s/out.exr", folder);
     for (size_t i = 0; i < count; i++) {
         bool renders =
             strncmp(cases[i].words, "render @", 8) == 0 && !strstr(cases[i].words, " -o");
-        const struct run *r = renders ? run_expect(status, cases[i].words, "-o", picture, NULL)
+        const struct run *r = renders ? run_expect(status, cases[i].words, "-o", image, NULL)
                                       : run_expect(status, cases[i].words, NULL);
         check_one_error_line(r);
         if (!strstr(r->err, cases[i].names))
@@ -193,12 +193,12 @@ TEST(a_cut_off_glb_fails_and_leaves_nothing)
 {
     // A header that promises 1000 bytes, and the beginning of its JSON.
     static const char cut[] = "glTF\2\0\0\0\xe8\3\0\0\xd0\3\0\0JSON{\"asset\":{\"vers";
-    char folder[256], scene[300], picture[300];
+    char folder[256], scene[300], image[300];
     snprintf(folder, sizeof folder, "%s", make_folder("cut"));
     snprintf(scene, sizeof scene, "%s/cut.glb", folder);
-    snprintf(picture, sizeof picture, "%s/out.png", folder);
+    snprintf(image, sizeof image, "%s/out.png", folder);
     write_file(scene, cut, sizeof cut - 1);
-    const struct run *r = run_expect(1, "render", scene, "-o", picture, NULL);
+    const struct run *r = run_expect(1, "render", scene, "-o", image, NULL);
     check_one_error_line(r);
     CHECK(strstr(r->err, "cut.glb"));
     check_one_error_line(run_expect(1, "info", scene, NULL));

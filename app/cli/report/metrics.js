@@ -12,23 +12,23 @@ const frames = framesTimed ? ` over ${framesTimed} ${framesTimed === 1 ? 'frame'
 // better: 'low', 'high' or 'one'. plot: the name in the scatter plot, where a metric is an error (asError makes it one).
 const METRICS = [
   {
-    group: 'Picture', name: 'FLIP', better: 'low', unit: 'no unit', plot: 'FLIP', value: m => m.flip,
-    meaning: 'What somebody sees who flips between the picture and the reference on one spot of a screen: 0 is no visible ' +
+    group: 'Image', name: 'FLIP', better: 'low', unit: 'no unit', plot: 'FLIP', value: m => m.flip,
+    meaning: 'What somebody sees who flips between the image and the reference on one spot of a screen: 0 is no visible ' +
       'difference, 1 the largest.',
   }, {
-    group: 'Picture', name: 'relMSE', better: 'low', unit: 'no unit', plot: 'relMSE', value: m => m.relmse,
+    group: 'Image', name: 'relMSE', better: 'low', unit: 'no unit', plot: 'relMSE', value: m => m.relmse,
     meaning: 'Relative mean squared error of the light: the squared error over the squared reference, so that dark parts ' +
       'count as much as bright ones, whatever the exposure.',
   }, {
-    group: 'Picture', name: 'MAE', better: 'low', unit: 'cd/m²', plot: 'MAE (cd/m²)', value: m => m.mae, hidden: true,
+    group: 'Image', name: 'MAE', better: 'low', unit: 'cd/m²', plot: 'MAE (cd/m²)', value: m => m.mae, hidden: true,
     meaning: 'Mean absolute error of the light.',
   }, {
-    group: 'Picture', name: 'SSIM', better: 'high', unit: 'no unit, at most 1', plot: '1 − SSIM', value: m => m.ssim,
+    group: 'Image', name: 'SSIM', better: 'high', unit: 'no unit, at most 1', plot: '1 − SSIM', value: m => m.ssim,
     asError: value => 1 - value,
     meaning: 'Structural similarity: 1 where the structure is the same. Forgives a change of brightness, punishes lost ' +
       'detail and noise.',
   }, {
-    group: 'Picture', name: 'mean ratio', better: 'one', unit: 'ratio', value: m => m.energy,
+    group: 'Image', name: 'mean ratio', better: 'one', unit: 'ratio', value: m => m.energy,
     meaning: 'Mean luminance over the reference’s. Below 1 light is missing, above 1 there is too much.',
   }, {
     group: 'Indirect light', name: 'relMSE', better: 'low', unit: 'no unit', plot: 'relMSE of indirect light',
@@ -37,7 +37,7 @@ const METRICS = [
   }, {
     group: 'Indirect light', name: 'MAE', better: 'low', unit: 'cd/m²', plot: 'MAE of indirect light (cd/m²)',
     value: m => m.indirect?.mae,
-    meaning: 'Mean absolute error of the indirect light alone: what direct light hides in the picture shows here.',
+    meaning: 'Mean absolute error of the indirect light alone: what direct light hides in the image shows here.',
   }, {
     group: 'Indirect light', name: 'mean ratio', better: 'one', unit: 'ratio', value: m => m.indirect?.energy,
     meaning: 'Mean luminance of the indirect light over the reference’s. Below 1 light is missing, above 1 there is too ' +

@@ -50,8 +50,8 @@ function buildReference() {
   const noise = isNumber(reference.noise) ? element('button', { type: 'button', className: 'term' },
     `noise ${numberText(100 * reference.noise, decimalsFor([100 * reference.noise]) ? 1 : 0)} %`) : null;
   if (noise) explain(noise, 'The standard error of the reference, as the root of its mean square over all pixels, over the mean ' +
-    'of the picture. Errors of methods hold this much that is not theirs' + (isNumber(reference.noise_relmse)
-    ? `: a perfect picture would have a relMSE of ${numberText(reference.noise_relmse)}.` : '.') + ' More samples per pixel lessen it.');
+    'of the image. Errors of methods hold this much that is not theirs' + (isNumber(reference.noise_relmse)
+    ? `: a perfect image would have a relMSE of ${numberText(reference.noise_relmse)}.` : '.') + ' More samples per pixel lessen it.');
   byId('reference').append(element('b', {}, 'Reference'), ` path traced${spp}${bounces}`, ...(noise ? [', ', noise] : []),
     cost ? ` (${cost}).` : '.');
 }

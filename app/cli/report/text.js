@@ -2,7 +2,7 @@
 
 const dataOf = id => JSON.parse(document.getElementById(`data-${id}`).textContent);
 const report = dataOf('report');
-const pictures = dataOf('pictures'); // file name → data: URI
+const images = dataOf('images'); // file name → data: URI
 const scale = dataOf('scale'); // colours of the error maps, least to largest error
 const methods = Array.isArray(report.methods) ? report.methods : [];
 const byId = id => document.getElementById(id);

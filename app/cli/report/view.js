@@ -1,7 +1,7 @@
-// Where all pictures look: one zoom and one place for every picture on the page, and the gestures that change them.
-// Lengths are fractions of a picture's frame, so that small and large frames move in step.
+// Where all images look: one zoom and one place for every image on the page, and the gestures that change them.
+// Lengths are fractions of an image's frame, so that small and large frames move in step.
 
-const view = { zoom: 1, x: 0, y: 0, split: 0.5 }; // x, y: the frame's upper left corner, within the zoomed picture
+const view = { zoom: 1, x: 0, y: 0, split: 0.5 }; // x, y: the frame's upper left corner, within the zoomed image
 const [WIDTH, HEIGHT] = Array.isArray(report.size) && report.size.every(isNumber) ? report.size : [16, 9];
 const LARGEST_PIXEL = 64; // on the screen, at full zoom
 const DRAG_STARTS = 4, GRIP_REACH = 24, SAME_GESTURE_MS = 250;
@@ -22,11 +22,11 @@ function showView() {
   byId('viewer').classList.toggle('zoomed', view.zoom > 1);
   byId('zoom').value = `${Math.round(100 * pixelSize())} %`;
   byId('split').value = Math.round(100 * view.split);
-  byId('split').setAttribute('aria-valuetext', `${Math.round(100 * view.split)} % left picture`);
+  byId('split').setAttribute('aria-valuetext', `${Math.round(100 * view.split)} % left image`);
   stage.dataset.side = view.split <= 0 ? 'right' : view.split >= 1 ? 'left' : 'both';
 }
 
-// The picture's point under (px, py) stays there.
+// The image's point under (px, py) stays there.
 function zoomAt(px, py, factor) {
   const most = Math.max(LARGEST_PIXEL * WIDTH / Math.max(stage.clientWidth, 1), 8);
   const zoom = clamp(view.zoom * factor, 1, most);
@@ -80,7 +80,7 @@ function listenToWheel(frame) {
   }, { passive: false });
 }
 
-// ---- pointers: one drags the divider or the picture, two pinch
+// ---- pointers: one drags the divider or the image, two pinch
 
 const nearDivider = (frame, place) => Math.abs(place.x - view.split) * frame.clientWidth <= GRIP_REACH;
 

@@ -1,12 +1,12 @@
-// The pictures: two of them on a stage with a divider between, and a sheet of all.
+// The images: two of them on a stage with a divider between, and a sheet of all.
 
 const LAYERS = [
-  { key: 'picture', error: 'error', name: 'Full picture', tile: 'Picture' },
+  { key: 'picture', error: 'error', name: 'Full image', tile: 'Image' },
   { key: 'indirect', error: 'indirect_error', name: 'Indirect light', tile: 'Indirect light' },
 ];
 const shows = { layer: LAYERS[0], left: '', right: '' }; // left, right: "reference", "0 picture", "0 error"
 
-const uriOf = (owner, role) => pictures[owner?.images?.[role]];
+const uriOf = (owner, role) => images[owner?.images?.[role]];
 const hasLayer = layer => [report.reference, ...methods].some(owner => uriOf(owner, layer.key));
 
 // What a name as above stands for, in the layer that is shown.
@@ -30,7 +30,7 @@ function fillPick(select) {
   select.replaceChildren(...plain, ...(errors.length ? [element('optgroup', { label: 'Error maps' }, ...errors)] : []));
 }
 
-function showPictures() {
+function showImages() {
   for (const side of ['left', 'right']) {
     const select = byId(side);
     fillPick(select);
@@ -49,7 +49,7 @@ function showPictures() {
 function show(side, name, layer = shows.layer) {
   shows[side] = name;
   if (layer !== shows.layer) setLayer(layer);
-  else showPictures();
+  else showImages();
 }
 
 // From a table's row or a chart's point.
@@ -105,8 +105,8 @@ function point(frame, place) {
 
 function showHint() {
   byId('readout').textContent = matchMedia('(pointer: coarse)').matches
-    ? 'Drag to compare, pinch to zoom, double-tap for the whole picture.'
-    : 'Drag to compare, wheel to zoom, double-click for the whole picture. Keys: ← → + − 0, F to flip.';
+    ? 'Drag to compare, pinch to zoom, double-tap for the whole image.'
+    : 'Drag to compare, wheel to zoom, double-click for the whole image. Keys: ← → + − 0, F to flip.';
 }
 
 // ---- the colours of the error maps
@@ -148,7 +148,7 @@ function tile(side, name, layer, caption) {
 
 function sheetRow(i) {
   const layer = shows.layer, other = LAYERS.find(candidate => candidate !== layer);
-  const metric = METRICS.find(candidate => candidate.group === (layer.key === 'picture' ? 'Picture' : 'Indirect light') &&
+  const metric = METRICS.find(candidate => candidate.group === (layer.key === 'picture' ? 'Image' : 'Indirect light') &&
     isNumber(candidate.value(methods[i])) && !candidate.hidden);
   const figure = metric ? element('span', { className: 'figure' }, `${metric.name} ${numberText(metric.value(methods[i]))}`) : null;
   const tiles = [tile('left', `${i} picture`, layer, layer.tile), tile('right', 'reference', layer, 'Reference'),
@@ -166,7 +166,7 @@ function buildSheet() {
 function setLayer(layer) {
   shows.layer = layer;
   for (const input of byId('layers').querySelectorAll('input')) input.checked = input.value === layer.key;
-  showPictures();
+  showImages();
   buildSheet();
   showView();
 }

@@ -33,11 +33,11 @@ static double relative_noise(const struct ag_image *color, const struct ag_image
     return sqrt(variance / (double)count) / (mean / (double)count);
 }
 
-// That of a picture that is off by the standard error everywhere: what a perfect one is to be
+// That of an image that is off by the standard error everywhere: what a perfect one is to be
 // expected to have.
 static enum ag_result find_noise_relmse(struct comparison *c, const struct ag_image *error)
 {
-    const struct ag_image *color = c->truth.color;
+    const struct ag_image *color = c->reference.color;
     struct ag_compare_desc desc;
     struct ag_metrics metrics;
     struct ag_image *off = NULL;
@@ -52,7 +52,7 @@ static enum ag_result find_noise_relmse(struct comparison *c, const struct ag_im
             off->pixels[3 * i + k] = color->pixels[i * (size_t)color->channels + k] +
                                      error->pixels[i * (size_t)error->channels + k];
     result = ag_image_metrics(c->session.context, off, color, &desc, &metrics);
-    if (result == AG_OK) c->truth.noise_relmse = metrics.relmse;
+    if (result == AG_OK) c->reference.noise_relmse = metrics.relmse;
     ag_image_destroy(c->session.context, off);
     return result;
 }
@@ -60,10 +60,10 @@ static enum ag_result find_noise_relmse(struct comparison *c, const struct ag_im
 // One sample alone has an infinite error, and then neither is known.
 static enum ag_result find_noise(struct comparison *c, const struct ag_image *error)
 {
-    struct truth *truth = &c->truth;
-    truth->noise = relative_noise(truth->color, error);
-    truth->noise_relmse = (double)NAN;
-    return isfinite(truth->noise) ? find_noise_relmse(c, error) : AG_OK;
+    struct reference *reference = &c->reference;
+    reference->noise = relative_noise(reference->color, error);
+    reference->noise_relmse = (double)NAN;
+    return isfinite(reference->noise) ? find_noise_relmse(c, error) : AG_OK;
 }
 
 // ---- a file that was given
@@ -81,7 +81,7 @@ static enum status read_attribute(struct comparison *c, const char *name, char *
 static enum status check_size(const struct comparison *c)
 {
     const struct arguments *a = c->arguments;
-    const struct ag_image *image = c->truth.color;
+    const struct ag_image *image = c->reference.color;
     if (image->width != a->width || image->height != a->height)
         return fail("cannot compare with %s: it is %dx%d, not %dx%d (see --size)", a->reference,
                     image->width, image->height, a->width, a->height);
@@ -92,15 +92,15 @@ static enum status check_size(const struct comparison *c)
 }
 
 // Without the attribute nobody knows what the file is of; its size must do.
-static enum status check_picture(struct comparison *c)
+static enum status check_same_image(struct comparison *c)
 {
     const char *path = c->arguments->reference;
     char checkpoint[256];
     enum status status = read_attribute(c, AG_REFERENCE_CHECKPOINT, checkpoint, sizeof checkpoint);
     if (status != DONE) return status;
     if (!checkpoint[0])
-        note("%s does not say what it shows: that it is the same picture is taken on trust", path);
-    else if (strcmp(checkpoint, ag_reference_checkpoint(c->truth.tracing.reference)) != 0)
+        note("%s does not say what it shows: that it is the same image is taken on trust", path);
+    else if (strcmp(checkpoint, ag_reference_checkpoint(c->reference.tracing.reference)) != 0)
         return fail("cannot compare with %s: it is of another scene, light, camera, size or option "
                     "(--bounces, --seed)",
                     path);
@@ -133,28 +133,29 @@ static enum status read_bounces(struct comparison *c)
     char text[32];
     long bounces = -1;
     enum status status = read_attribute(c, "afterglow.bounces", text, sizeof text);
-    if (status == DONE && value_int(text, 0, INT32_MAX, &bounces)) c->truth.bounces = (int)bounces;
+    if (status == DONE && value_int(text, 0, INT32_MAX, &bounces))
+        c->reference.bounces = (int)bounces;
     return status;
 }
 
 static enum status take_given(struct comparison *c)
 {
-    struct truth *truth = &c->truth;
-    truth->bounces = NOT_KNOWN;
-    truth->seconds = truth->rays = truth->noise = truth->noise_relmse = (double)NAN;
-    enum status status = image_load(&c->session, c->arguments->reference, NULL, &truth->color);
+    struct reference *reference = &c->reference;
+    reference->bounces = NOT_KNOWN;
+    reference->seconds = reference->rays = reference->noise = reference->noise_relmse = (double)NAN;
+    enum status status = image_load(&c->session, c->arguments->reference, NULL, &reference->color);
     if (status == DONE) status = check_size(c);
-    if (status == DONE) status = check_picture(c);
+    if (status == DONE) status = check_same_image(c);
     if (status == DONE) status = read_bounces(c);
     if (status != DONE) return status;
-    truth->indirect = load_if_there(c, INDIRECT, 3);
+    reference->indirect = load_if_there(c, INDIRECT, 3);
     struct ag_image *error = load_if_there(c, "error", 3),
                     *samples = load_if_there(c, "samples", 1);
     enum ag_result result = error ? find_noise(c, error) : AG_OK;
-    if (samples) truth->spp = least_of(samples);
+    if (samples) reference->spp = least_of(samples);
     ag_image_destroy(c->session.context, error);
     ag_image_destroy(c->session.context, samples);
-    if (!truth->indirect)
+    if (!reference->indirect)
         note("%s has no layer %s of the size of color: indirect light is not measured",
              c->arguments->reference, INDIRECT);
     return result == AG_OK ? DONE : fail_library(c->session.context, result);
@@ -166,39 +167,41 @@ static double cached_number(struct comparison *c, const char *name)
 {
     char text[64];
     double value = 0.0;
-    enum ag_result result =
-        ag_image_read_attribute(c->session.context, c->truth.cache_path, name, text, sizeof text);
+    enum ag_result result = ag_image_read_attribute(c->session.context, c->reference.cache_path,
+                                                    name, text, sizeof text);
     return result == AG_OK && value_number(text, &value) ? value : (double)NAN;
 }
 
 // A file that is of no use costs the time that it should have saved, no more.
 static void take_cached(struct comparison *c)
 {
-    struct truth *truth = &c->truth;
-    if (!cache_file(ag_reference_checkpoint(truth->tracing.reference), truth->cache_path)) return;
-    if (access(truth->cache_path, F_OK) != 0) return;
-    if (tracing_resume(&truth->tracing, truth->cache_path) != AG_OK) {
+    struct reference *reference = &c->reference;
+    if (!cache_file(ag_reference_checkpoint(reference->tracing.reference), reference->cache_path))
+        return;
+    if (access(reference->cache_path, F_OK) != 0) return;
+    if (tracing_resume(&reference->tracing, reference->cache_path) != AG_OK) {
         note("warning: the reference is traced anew: %s",
              ag_context_last_error(c->session.context));
         return;
     }
-    truth->seconds = cached_number(c, SECONDS);
-    truth->rays = cached_number(c, RAYS);
-    detail("cache: %d samples in %s", truth->tracing.done, truth->cache_path);
-    cache_touch(truth->cache_path);
+    reference->seconds = cached_number(c, SECONDS);
+    reference->rays = cached_number(c, RAYS);
+    detail("cache: %d samples in %s", reference->tracing.done, reference->cache_path);
+    cache_touch(reference->cache_path);
 }
 
 static enum status plan_kept(struct comparison *c)
 {
-    return picture_plan(c->arguments, "kept.exr", ag_reference_layer_name, tracing_kept_layers,
-                        &c->truth.kept);
+    return output_plan(c->arguments, "kept.exr", ag_reference_layer_name, tracing_kept_layers,
+                       &c->reference.kept);
 }
 
-enum status truth_begin(struct comparison *c)
+enum status reference_begin(struct comparison *c)
 {
     const struct arguments *a = c->arguments;
     enum status status = plan_kept(c);
-    if (status == DONE) status = tracing_begin(&c->truth.tracing, &c->session, &c->camera, a->spp);
+    if (status == DONE)
+        status = tracing_begin(&c->reference.tracing, &c->session, &c->camera, a->spp);
     if (status != DONE) return status;
     if (a->reference) return take_given(c);
     if (!a->no_cache) take_cached(c);
@@ -207,49 +210,49 @@ enum status truth_begin(struct comparison *c)
 
 // ---- tracing what is missing
 
-static double rays_so_far(const struct truth *truth)
+static double rays_so_far(const struct reference *reference)
 {
     struct ag_reference_info info = { 0 };
-    ag_reference_get_info(truth->tracing.reference, &info);
-    return truth->rays + (double)info.rays;
+    ag_reference_get_info(reference->tracing.reference, &info);
+    return reference->rays + (double)info.rays;
 }
 
 static enum status keep(void *user)
 {
     struct comparison *c = user;
-    struct truth *truth = &c->truth;
-    if (!truth->cache_path[0]) return DONE;
+    struct reference *reference = &c->reference;
+    if (!reference->cache_path[0]) return DONE;
     char seconds[32], rays[32];
-    snprintf(seconds, sizeof seconds, "%.17g", truth->seconds + truth->tracing.seconds);
-    snprintf(rays, sizeof rays, "%.17g", rays_so_far(truth));
+    snprintf(seconds, sizeof seconds, "%.17g", reference->seconds + reference->tracing.seconds);
+    snprintf(rays, sizeof rays, "%.17g", rays_so_far(reference));
     const struct ag_attribute more[] = { { SECONDS, seconds }, { RAYS, rays } };
     enum ag_result result =
-        tracing_write_exr(&truth->tracing, &truth->kept, truth->cache_path, more, 2);
+        tracing_write_exr(&reference->tracing, &reference->kept, reference->cache_path, more, 2);
     if (result == AG_OK) {
-        cache_trim(truth->cache_path);
+        cache_trim(reference->cache_path);
     } else {
         note("warning: the reference is not cached: %s", ag_context_last_error(c->session.context));
-        truth->cache_path[0] = 0;
+        reference->cache_path[0] = 0;
     }
     return DONE;
 }
 
 static enum status interrupted(const struct comparison *c)
 {
-    const struct tracing *t = &c->truth.tracing;
+    const struct tracing *t = &c->reference.tracing;
     return fail("comparison of %s: interrupted after %d of %d samples of the reference; %s",
                 c->arguments->positional[0], t->done, t->wanted,
-                c->truth.cache_path[0] ? "the same command goes on with them"
-                                       : "they are lost without the cache");
+                c->reference.cache_path[0] ? "the same command goes on with them"
+                                           : "they are lost without the cache");
 }
 
 static enum status trace(struct comparison *c)
 {
-    struct tracing *t = &c->truth.tracing;
+    struct tracing *t = &c->reference.tracing;
     // First once early: what is wrong with the cache shows before hours of work.
     const struct tracing_keeper keeper = { keep, c, KEEP_EVERY_S, true };
-    c->truth.cached = t->done >= t->wanted;
-    if (c->truth.cached) return DONE;
+    c->reference.cached = t->done >= t->wanted;
+    if (c->reference.cached) return DONE;
     if (t->done > 0) note("going on with %d samples of an earlier run", t->done);
     enum status status = tracing_converge(t, &keeper);
     bool stopped = interrupt_let_go() || t->done < t->wanted;
@@ -258,23 +261,23 @@ static enum status trace(struct comparison *c)
 
 static enum status take_traced(struct comparison *c)
 {
-    struct truth *truth = &c->truth;
-    struct ag_reference *reference = truth->tracing.reference;
+    struct reference *reference = &c->reference;
+    struct ag_reference *tracer = reference->tracing.reference;
     struct ag_image *error = NULL;
-    enum ag_result result = ag_reference_read(reference, "color", &truth->color);
-    if (result == AG_OK) result = ag_reference_read(reference, INDIRECT, &truth->indirect);
-    if (result == AG_OK) result = ag_reference_read(reference, "error", &error);
+    enum ag_result result = ag_reference_read(tracer, "color", &reference->color);
+    if (result == AG_OK) result = ag_reference_read(tracer, INDIRECT, &reference->indirect);
+    if (result == AG_OK) result = ag_reference_read(tracer, "error", &error);
     if (result == AG_OK) result = find_noise(c, error);
     ag_image_destroy(c->session.context, error);
     if (result != AG_OK) return fail_library(c->session.context, result);
-    truth->spp = truth->tracing.done;
-    truth->bounces = c->arguments->bounces;
-    truth->seconds += truth->tracing.seconds;
-    truth->rays = rays_so_far(truth);
+    reference->spp = reference->tracing.done;
+    reference->bounces = c->arguments->bounces;
+    reference->seconds += reference->tracing.seconds;
+    reference->rays = rays_so_far(reference);
     return DONE;
 }
 
-enum status truth_complete(struct comparison *c)
+enum status reference_complete(struct comparison *c)
 {
     if (c->arguments->reference) return DONE;
     enum status status = trace(c);
@@ -283,19 +286,20 @@ enum status truth_complete(struct comparison *c)
 
 // ---- its file
 
-enum status truth_write_exr(struct comparison *c, const char *path)
+enum status reference_write_exr(struct comparison *c, const char *path)
 {
     char exposure[32];
     if (c->arguments->reference) return folder_copy(c->arguments->reference, path);
     snprintf(exposure, sizeof exposure, "%.9g", (double)c->exposure_ev);
     const struct ag_attribute more = { "afterglow.exposure_ev", exposure };
-    enum ag_result result = tracing_write_exr(&c->truth.tracing, &c->truth.kept, path, &more, 1);
+    enum ag_result result =
+        tracing_write_exr(&c->reference.tracing, &c->reference.kept, path, &more, 1);
     return result == AG_OK ? DONE : fail_library(c->session.context, result);
 }
 
-void truth_finish(struct comparison *c)
+void reference_finish(struct comparison *c)
 {
-    ag_image_destroy(c->session.context, c->truth.color);
-    ag_image_destroy(c->session.context, c->truth.indirect);
-    tracing_end(&c->truth.tracing);
+    ag_image_destroy(c->session.context, c->reference.color);
+    ag_image_destroy(c->session.context, c->reference.indirect);
+    tracing_end(&c->reference.tracing);
 }
