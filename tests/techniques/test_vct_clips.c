@@ -3,7 +3,7 @@
 #include "techniques/vct_rig.h"
 
 #include "core/rng.h"
-#include "techniques/vct/vct_remarks.h"
+#include "techniques/vct/vct_diagnostics.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 // said.
 #include "techniques/vct_rig.h"
 
-#include "techniques/vct/vct_remarks.h"
+#include "techniques/vct/vct_diagnostics.h"
 
 #include <math.h>
 #include <stdio.h>

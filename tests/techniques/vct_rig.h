@@ -27,7 +27,7 @@ uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer);
 // One word for each 32 voxels of a set, as many as resolution³ need. To be freed.
 uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set);
 bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z);
-// As vct_over.glsl says it.
+// As volume/over.glsl says it.
 double vct_rig_shown(double left, double alpha, double sheet);
 // A level of the light volume, 4 floats a texel, all ways. To be freed.
 float *vct_rig_light(const struct vct_rig *rig, uint32_t level);

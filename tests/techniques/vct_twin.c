@@ -124,7 +124,7 @@ static void hide(const struct vct_twin *twin, const double normal[3], const doub
     for (int k = 0; k < 3; k++) light[k] = light[3] / (1.0 + twin->decay * r);
 }
 
-// As vct_trace.glsl says it, step by step. Where it ends since the rest can hide next to nothing
+// As cones/trace.glsl says it, step by step. Where it ends since the rest can hide next to nothing
 // this goes on.
 void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
                     const double direction[3], double wide, double sum[4])

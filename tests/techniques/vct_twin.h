@@ -1,4 +1,4 @@
-// Cones through the light volume in plain C, as vct_trace.glsl and vct_look.glsl say them. Six
+// Cones through the light volume in plain C, as cones/trace.glsl and volume/sample.glsl say them. Six
 // ways, mips.
 #pragma once
 

@@ -9,7 +9,7 @@
 // (sec. 2.5.3.3.8).
 #include "techniques/vct/vct.h"
 
-#include "techniques/vct/vct_remarks.h"
+#include "techniques/vct/vct_diagnostics.h"
 #include "techniques/vct/vct_state.h"
 
 #include <string.h>

@@ -8,14 +8,14 @@
 #include "frame/frame.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
-#include "techniques/vct/vct_clipmap.glsl"
-#include "techniques/vct/vct_record.glsl"
+#include "techniques/vct/clipmap/clipmap.glsl"
+#include "techniques/vct/volume/lit_voxel.glsl"
 #define VCT_SLOTS(name)   static_##name
 #define VCT_SLOTS_BINDING 1
-#include "techniques/vct/vct_slots.glsl"
+#include "techniques/vct/voxelize/slots.glsl"
 #define VCT_SLOTS(name)   dynamic_##name
 #define VCT_SLOTS_BINDING 3
-#include "techniques/vct/vct_slots.glsl"
+#include "techniques/vct/voxelize/slots.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -32,7 +32,7 @@ layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes
 {
     uint nodes[];
 };
-#include "techniques/vct/vct_svo.glsl"
+#include "techniques/vct/octree/octree.glsl"
 #endif
 
 // Whether a voxel holds a surface, and whether there was room for its light.

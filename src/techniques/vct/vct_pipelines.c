@@ -10,16 +10,16 @@
 enum {
     MAPPED = 1, // scene.glsl
     MASKED = 2,
-    COLUMNS = 4,         // vct_gather.comp
-    UNLIT = 8,           // vct_inject.comp
-    ONE_WAY = 16,        // vct_ways.glsl
-    STILL = 32,          // vct_seen.glsl
-    OCCLUSION = 64,      // vct_ways.glsl
-    NO_GLOW = 128,       // vct_add.glsl
-    GRIDS = 256,         // vct_clipmap.glsl
-    LAMPS = 512,         // vct_add.glsl, vct_lamps.glsl
-    LARGE_BLOCKS = 1024, // vct_bounce.comp
-    HALF = 2048,         // vct_gather.comp
+    COLUMNS = 4,         // cones/gather.comp
+    UNLIT = 8,           // lighting/inject.comp
+    ONE_WAY = 16,        // volume/directions.glsl
+    STILL = 32,          // volume/prefilter.glsl
+    OCCLUSION = 64,      // volume/directions.glsl
+    NO_GLOW = 128,       // voxelize/add.glsl
+    GRIDS = 256,         // clipmap/clipmap.glsl
+    LAMPS = 512,         // voxelize/add.glsl, cones/small_emitters.glsl
+    LARGE_BLOCKS = 1024, // lighting/bounce.comp
+    HALF = 2048,         // cones/gather.comp
 };
 static const struct gpu_constant constant_of_bit[] = { { 0, 1 },  { 4, 1 },  { 0, 1 },  { 0, 0 },
                                                        { 10, 0 }, { 11, 0 }, { 12, 1 }, { 5, 0 },
@@ -55,12 +55,12 @@ static void plan_walks(struct vct *vct, struct pipeline_plan out[WALKS])
                     *lamp = &vct->add[VCT_LAMP], *maps = &vct->add[VCT_MAPPED],
                     *masks = &vct->add[VCT_MASKED];
     const bool raster = vct->options.voxels == VCT_BY_RASTER;
-    const struct gpu_shader *mark =
-                                raster ? &shader_vct_mark_raster_frag : &shader_vct_mark_small_comp,
-                            *add =
-                                raster ? &shader_vct_add_raster_frag : &shader_vct_add_small_comp,
-                            *mark_large = raster ? NULL : &shader_vct_mark_large_comp,
-                            *add_large = raster ? NULL : &shader_vct_add_large_comp;
+    const struct gpu_shader *mark = raster ? &shader_vct_voxelize_mark_raster_frag
+                                           : &shader_vct_voxelize_mark_small_comp,
+                            *add = raster ? &shader_vct_voxelize_add_raster_frag
+                                          : &shader_vct_voxelize_add_small_comp,
+                            *mark_large = raster ? NULL : &shader_vct_voxelize_mark_large_comp,
+                            *add_large = raster ? NULL : &shader_vct_voxelize_add_large_comp;
     const struct pipeline_plan plan[WALKS] = {
         { &vct->mark.small, "mark", mark, 0 },
         { &vct->mark.large, "mark_large", mark_large, 0 },
@@ -92,7 +92,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     struct gpu_constant constants[CONSTANT_BITS];
     const int count = constants_of(vct, plan->constants, constants);
     const struct gpu_graphics_desc desc = { .name = vct_name(vct->name, plan->name, name),
-                                            .vertex = &shader_vct_raster_vert,
+                                            .vertex = &shader_vct_voxelize_raster_vert,
                                             .fragment = plan->shader,
                                             .constants = constants,
                                             .constant_count = count };
@@ -105,21 +105,23 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
     const uint32_t kind = vct->options.occlusion ? OCCLUSION : 0,
                    half = vct->options.half ? HALF : 0;
-    const struct gpu_shader *inject_lit = vct->options.occlusion ? NULL : &shader_vct_inject_comp;
+    const struct gpu_shader *inject_lit =
+        vct->options.occlusion ? NULL : &shader_vct_lighting_inject_comp;
     const struct pipeline_plan plan[PIPELINES] = {
-        { &vct->count, "count", &shader_vct_count_comp, 0 },
-        { &vct->scan, "scan", &shader_vct_scan_comp, 0 },
-        { &vct->list, "list", &shader_vct_list_comp, 0 },
-        { &vct->zero, "zero", &shader_vct_zero_comp, 0 },
-        { &vct->surfaces, "surfaces", &shader_vct_surfaces_comp, 0 },
-        { &vct->texel_lists, "texels", &shader_vct_texels_comp, 0 },
-        { &vct->inject[0], "inject_unlit", &shader_vct_inject_comp, UNLIT },
+        { &vct->count, "count", &shader_vct_voxelize_count_comp, 0 },
+        { &vct->scan, "scan", &shader_vct_voxelize_scan_comp, 0 },
+        { &vct->list, "list", &shader_vct_voxelize_list_comp, 0 },
+        { &vct->zero, "zero", &shader_vct_voxelize_zero_comp, 0 },
+        { &vct->surfaces, "surfaces", &shader_vct_voxelize_surfaces_comp, 0 },
+        { &vct->texel_lists, "texels", &shader_vct_volume_texels_comp, 0 },
+        { &vct->inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT },
         { &vct->inject[1], "inject", inject_lit, 0 },
-        { &vct->edges, "edges", &shader_vct_edges_comp, GRIDS },
-        { &vct->gather_rows, "gather_rows", &shader_vct_gather_comp, kind },
-        { &vct->gather_columns, "gather_columns", &shader_vct_gather_comp, kind | COLUMNS | half },
-        { &vct->blur, "blur", &shader_vct_blur_comp, GRIDS },
-        { &vct->fit, "fit", half ? &shader_vct_fit_comp : NULL, kind | GRIDS },
+        { &vct->edges, "edges", &shader_vct_cones_edges_comp, GRIDS },
+        { &vct->gather_rows, "gather_rows", &shader_vct_cones_gather_comp, kind },
+        { &vct->gather_columns, "gather_columns", &shader_vct_cones_gather_comp,
+          kind | COLUMNS | half },
+        { &vct->blur, "blur", &shader_vct_cones_blur_comp, GRIDS },
+        { &vct->fit, "fit", half ? &shader_vct_cones_upsample_comp : NULL, kind | GRIDS },
     };
     memcpy(out, plan, sizeof plan);
 }
@@ -133,36 +135,38 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
                    kind = ways | (lit ? 0 : (uint32_t)OCCLUSION),
                    blocks = vct_block_level(&vct->options) == 2 ? (uint32_t)LARGE_BLOCKS : 0;
     const struct pipeline_plan mips[MIP_PIPELINES] = {
-        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_mips_comp : NULL,
+        { &vct->bounce[0], "bounce", lit ? &shader_vct_lighting_bounce_mips_comp : NULL,
           ways | blocks | GRIDS },
-        { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_bounce_mips_comp : NULL,
+        { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_lighting_bounce_mips_comp : NULL,
           ways | blocks | GRIDS | LAMPS },
         { &vct->cones[0], "cones", &shader_vct_cones_mips_comp, kind | GRIDS },
         { &vct->cones[1], "cones_lamps", lit ? &shader_vct_cones_mips_comp : NULL,
           ways | GRIDS | LAMPS },
-        { &vct->specular, "specular", lit ? &shader_vct_specular_mips_comp : NULL, ways | GRIDS },
-        { &vct->fill[0], "fill_still", &shader_vct_fill_comp, kind | STILL },
-        { &vct->fill[1], "fill", &shader_vct_fill_comp, kind },
-        { &vct->mip, "mip", &shader_vct_mip_comp, kind },
+        { &vct->specular, "specular", lit ? &shader_vct_cones_specular_mips_comp : NULL,
+          ways | GRIDS },
+        { &vct->fill[0], "fill_still", &shader_vct_volume_fill_comp, kind | STILL },
+        { &vct->fill[1], "fill", &shader_vct_volume_fill_comp, kind },
+        { &vct->mip, "mip", &shader_vct_volume_mip_comp, kind },
         { &vct->debug, "debug", &shader_vct_debug_mips_comp, GRIDS },
     };
     const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
-        { &vct->bounce[0], "bounce", lit ? &shader_vct_bounce_svo_comp : NULL,
+        { &vct->bounce[0], "bounce", lit ? &shader_vct_lighting_bounce_svo_comp : NULL,
           ways | blocks | GRIDS },
-        { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_bounce_svo_comp : NULL,
+        { &vct->bounce[1], "bounce_lamps", lit ? &shader_vct_lighting_bounce_svo_comp : NULL,
           ways | blocks | GRIDS | LAMPS },
         { &vct->cones[0], "cones", &shader_vct_cones_svo_comp, kind | GRIDS },
         { &vct->cones[1], "cones_lamps", lit ? &shader_vct_cones_svo_comp : NULL,
           ways | GRIDS | LAMPS },
-        { &vct->specular, "specular", lit ? &shader_vct_specular_svo_comp : NULL, ways | GRIDS },
-        { &svo->mark, "svo_mark", &shader_vct_svo_mark_comp, 0 },
-        { &svo->count, "svo_count", &shader_vct_svo_count_comp, 0 },
-        { &svo->scan, "svo_scan", &shader_vct_svo_scan_comp, 0 },
-        { &svo->divide, "svo_divide", &shader_vct_svo_divide_comp, 0 },
-        { &svo->fill[0], "svo_fill_still", &shader_vct_svo_fill_comp, ways | STILL },
-        { &svo->fill[1], "svo_fill", &shader_vct_svo_fill_comp, ways },
-        { &svo->join, "svo_join", &shader_vct_svo_join_comp, ways },
-        { &svo->mip, "svo_mip", &shader_vct_svo_mip_comp, ways },
+        { &vct->specular, "specular", lit ? &shader_vct_cones_specular_svo_comp : NULL,
+          ways | GRIDS },
+        { &svo->mark, "svo_mark", &shader_vct_octree_mark_comp, 0 },
+        { &svo->count, "svo_count", &shader_vct_octree_count_comp, 0 },
+        { &svo->scan, "svo_scan", &shader_vct_octree_scan_comp, 0 },
+        { &svo->divide, "svo_divide", &shader_vct_octree_divide_comp, 0 },
+        { &svo->fill[0], "svo_fill_still", &shader_vct_octree_fill_comp, ways | STILL },
+        { &svo->fill[1], "svo_fill", &shader_vct_octree_fill_comp, ways },
+        { &svo->join, "svo_join", &shader_vct_octree_join_comp, ways },
+        { &svo->mip, "svo_mip", &shader_vct_octree_mip_comp, ways },
         { &vct->debug, "debug", &shader_vct_debug_svo_comp, GRIDS },
     };
     if (vct_has_svo(&vct->options))

@@ -14,7 +14,7 @@
 #define VCT_SCAN_LOCAL    256
 #define VCT_BOUNCE_LOCAL  32 // blocks that a workgroup brings light to
 
-// Words of vct_sum_words for a voxel: see vct_surface.glsl.
+// Words of vct_sum_words for a voxel: see voxelize/surface.glsl.
 #define VCT_SUM_WEIGHT      0
 #define VCT_SUM_OPACITY     1
 #define VCT_SUM_REFLECTANCE 2 // 3 words, × opacity
@@ -67,7 +67,7 @@ struct vct_params {
     uint32_t brought;      // whether light that voxels got from others is injected
     float light_scale;     // the frame's unit over that of the light volume
     uint32_t lamps_shown;  // whether lamps are part of the light volume
-    float decay_per_m;     // of occlusion: see vct_trace.glsl
+    float decay_per_m;     // of occlusion: see cones/trace.glsl
     float offset; // along the normal at which the pixels' cones start, texels of the light volume
     vec3s scene_low, scene_high; // the whole scene's grid, in these voxels
     int32_t volume_first; // texel of the light volume along z at which this grid's part begins
@@ -123,7 +123,7 @@ struct vct_texel_levels {
 struct vct_texels_push {
     uint32_t levels;
     uint32_t ways;                       // volumes side by side
-    uint32_t block_level;                // of which a texel is a block: see vct_bounce.comp
+    uint32_t block_level;                // of which a texel is a block: see lighting/bounce.comp
     uint32_t first[VCT_MAX_LEVELS];      // of each level in the buffer of lists
     uint32_t mask_first[VCT_MAX_LEVELS]; // its first bit
 };

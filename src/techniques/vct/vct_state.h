@@ -2,12 +2,12 @@
 #pragma once
 
 #include "techniques/technique.h"
-#include "techniques/vct/vct_cones.h"
-#include "techniques/vct/vct_grid.h"
-#include "techniques/vct/vct_lamps.h"
+#include "techniques/vct/cones/cone_sets.h"
+#include "techniques/vct/clipmap/grid.h"
+#include "techniques/vct/vct_small_emitters.h"
 #include "techniques/vct/vct_names.h"
 #include "techniques/vct/vct_shared.h"
-#include "techniques/vct/vct_temporal.h"
+#include "techniques/vct/cones/temporal.h"
 
 // Of both techniques. What one of them lacks is as vct.c fills it in.
 struct vct_options {
@@ -42,7 +42,7 @@ struct vct_clip {
     bool rest_valid;                            // `rest` is of the scene as it stands
 };
 
-// For lists of bindings: the voxels of both sets, as vct_seen.glsl reads them.
+// For lists of bindings: the voxels of both sets, as volume/prefilter.glsl reads them.
 #define VCT_BOTH_SETS(clip)                                                                        \
     { .name = "static_mask", .buffer = (clip)->rest.mask },                                        \
         { .name = "static_before", .buffer = (clip)->rest.before },                                \
@@ -63,7 +63,7 @@ struct vct_walk { // pipelines for small and for large triangles; by raster one 
     gpu_pipeline small, large;
 };
 
-// The sparse voxel octree: see vct_svo.glsl.
+// The sparse voxel octree: see octree/octree.glsl.
 struct vct_svo {
     gpu_buffer nodes, places, blocks, levels;
     gpu_pipeline mark, count, scan, divide, join, mip;
@@ -126,7 +126,7 @@ uint32_t
 vct_step(const struct vct_options *options); // pixels, across and down, to each that traces cones
 uint32_t vct_ways(const struct vct_options *options); // volumes side by side: 6, or 1 for all ways
 
-// Lists of texels of the light volume, one for each level; see vct_texels.comp.
+// Lists of texels of the light volume, one for each level; see volume/texels.comp.
 struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32_t levels);
 // Of which a texel is a block that gets one irradiance: 8 voxels along a side, not 4, where they
 // are no larger than those of the default resolution.

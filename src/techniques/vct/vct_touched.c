@@ -1,7 +1,8 @@
-// The voxels that surfaces touch, counted on the CPU: vct_voxelise.glsl and vct_overlap.glsl once
-// more, so that it can be said before the first frame what there is no room for.
-#include "techniques/vct/vct_grid.h"
-#include "techniques/vct/vct_remarks.h"
+// The voxels that surfaces touch, counted on the CPU: voxelize/voxelize.glsl and
+// voxelize/overlap.glsl once more, so that it can be said before the first frame what there is no
+// room for.
+#include "techniques/vct/clipmap/grid.h"
+#include "techniques/vct/vct_diagnostics.h"
 
 #include "core/vec.h"
 #include "scene/scene.h"

@@ -1,0 +1,176 @@
+// Cones of the pixels, and the gathering of what neighbours have traced.
+#include "techniques/vct/vct_state.h"
+
+#include <math.h>
+
+// Parts of a block that trace cone `cone`, see cones/cones.comp. A cone that several trace counts
+// once.
+static int parts_with(uint32_t cone, uint32_t parts, uint32_t cones)
+{
+    int count = 0;
+    for (uint32_t part = 0; part < parts; part++)
+        for (uint32_t i = part * 7 % parts % cones; i < cones; i += parts) count += i == cone;
+    return count;
+}
+
+static struct vct_cone_params params_of(const struct vct *vct, const struct frame_view *view,
+                                        int choice, uint32_t side)
+{
+    const struct vct_options *options = &vct->options;
+    return (struct vct_cone_params){
+        .cone_count = (uint32_t)vct_cone_count(choice),
+        .interleave = side,
+        .step = 1,
+        .width = view->width,
+        .height = view->height,
+        .width_per_m = options->stride * vct_cone_width(choice),
+        .offset = options->offset,
+        .gain = options->gain,
+        .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
+        .last_mip = vct_volume_mips(options) - 1,
+        .pixel = 2.0f * tanf(0.5f * view->camera.vertical_fov_rad) / (float)view->height,
+    };
+}
+
+struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view)
+{
+    struct vct_cone_params params = params_of(vct, view, VCT_CONES_6, 1);
+    struct vct_cone cones[VCT_MAX_CONES];
+    vct_cone_set(VCT_CONES_6, cones);
+    for (uint32_t i = 0; i < params.cone_count; i++)
+        params.cones[i] = vec4_of(cones[i].direction, cones[i].weight);
+    return params;
+}
+
+// Those of the picture: lines of the world, each with its share of the hemisphere.
+static struct vct_cone_params pixel_cones(const struct vct *vct, const struct frame_view *view)
+{
+    const uint32_t side = (uint32_t)vct->options.interleave;
+    struct vct_cone_params params = params_of(vct, view, vct->options.cones, side);
+    const uint32_t count = params.cone_count;
+    params.step = vct_step(&vct->options);
+    params.width = vct->width;
+    params.height = vct->height;
+    for (uint32_t i = 0; i < count; i++)
+        params.cones[i] = vec4_of(
+            vct->lines[i], 1.0f / (float)(count * (uint32_t)parts_with(i, side * side, count)));
+    return params;
+}
+
+// Bindings that the stages over pixels share.
+struct pixels {
+    struct gpu_binding clipmap, cones, depth, normal, edges, start;
+    uint32_t across, down; // workgroups of one invocation for each pixel that traces cones
+};
+
+static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                        const struct pixels *p, gpu_image result)
+{
+    const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
+    vct_pass_begin(vct->name, cmd, "cones");
+    gpu_dispatch(cmd, vct->cones[vct->lamps.count > 0],
+                 GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap,
+                          view->constants_binding, p->cones, p->depth, p->normal, p->start,
+                          { .name = "light", .image = vct->light, .sampler = vct->linear },
+                          { .name = "red", .image = vct->traced[0] },
+                          { .name = "green", .image = vct->traced[1] },
+                          { .name = "blue", .image = vct->traced[2] },
+                          { .name = "irradiance", .image = result },
+                          vct_lamps_binding(&vct->lamps, cmd), vct_svo_binding(vct, cmd),
+                          { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
+                 NULL, 0, side * side * gpu_groups(gpu_groups(vct->width, side), VCT_LOCAL_2D),
+                 gpu_groups(gpu_groups(vct->height, side), VCT_LOCAL_2D), 1);
+    gpu_scope_end(cmd);
+}
+
+static void gather(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p,
+                   gpu_pipeline pipeline, gpu_image from[3], gpu_image to[3], uint32_t across,
+                   uint32_t down)
+{
+    gpu_dispatch(
+        cmd, pipeline,
+        GPU_BIND(p->cones, p->normal, p->edges, { .name = "red", .image = from[0] },
+                 { .name = "green", .image = from[1] }, { .name = "blue", .image = from[2] },
+                 { .name = "red_sum", .image = to[0] }, { .name = "green_sum", .image = to[1] },
+                 { .name = "blue_sum", .image = to[2] },
+                 { .name = "irradiance", .image = vct->found }),
+        NULL, 0, across, down, 1);
+}
+
+static void find_edges(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                       const struct pixels *p)
+{
+    vct_pass_begin(vct->name, cmd, "edges");
+    gpu_dispatch(cmd, vct->edges,
+                 GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
+                          p->edges, p->start),
+                 NULL, 0, p->across, p->down, 1);
+    gpu_scope_end(cmd);
+}
+
+static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p)
+{
+    vct_pass_begin(vct->name, cmd, "gather");
+    gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
+           gpu_groups(vct->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
+    gather(vct, cmd, p, vct->gather_columns, vct->gathered, vct->traced, p->across,
+           gpu_groups(vct->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
+    gpu_scope_end(cmd);
+}
+
+// For the pixels that found few of the cones, where each traces some.
+static void blur(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                 const struct pixels *p, gpu_image result)
+{
+    vct_pass_begin(vct->name, cmd, "blur");
+    gpu_dispatch(cmd, vct->blur,
+                 GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
+                          { .name = "gathered", .image = vct->found },
+                          { .name = "irradiance", .image = result }),
+                 NULL, 0, p->across, p->down, 1);
+    gpu_scope_end(cmd);
+}
+
+// For the pixels between those that trace cones, and for these.
+static void fit(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                const struct pixels *p, gpu_image result)
+{
+    vct_pass_begin(vct->name, cmd, "fit");
+    gpu_dispatch(cmd, vct->fit,
+                 GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
+                          p->start, { .name = "red", .image = vct->traced[0] },
+                          { .name = "green", .image = vct->traced[1] },
+                          { .name = "blue", .image = vct->traced[2] },
+                          { .name = "irradiance", .image = result }),
+                 NULL, 0, p->across, p->down, 1);
+    gpu_scope_end(cmd);
+}
+
+gpu_image vct_result(const struct vct *vct, const struct frame_view *view)
+{
+    return view->layers[vct->options.occlusion ? FRAME_VISIBILITY : FRAME_IRRADIANCE];
+}
+
+void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const bool temporal = vct->options.temporal;
+    struct vct_cone_params params = pixel_cones(vct, view);
+    if (temporal) vct_temporal_turn(&vct->temporal, &params);
+    const gpu_image result = temporal ? vct->temporal.now : vct_result(vct, view);
+    const struct pixels p = { .clipmap = vct_clipmap_binding(vct, cmd),
+                              .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
+                              .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                              .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                              .edges = { .name = "edges", .image = vct->edge_image },
+                              .start = { .name = "start", .image = vct->start_image },
+                              .across = gpu_groups(vct->width, VCT_LOCAL_2D),
+                              .down = gpu_groups(vct->height, VCT_LOCAL_2D) };
+    find_edges(vct, cmd, view, &p);
+    trace_cones(vct, cmd, view, &p, result);
+    const bool shared = params.interleave > 1;
+    if (shared) share_cones(vct, cmd, &p);
+    if (params.step > 1)
+        fit(vct, cmd, view, &p, result);
+    else if (shared)
+        blur(vct, cmd, view, &p, result);
+}

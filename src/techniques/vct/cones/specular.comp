@@ -1,0 +1,94 @@
+// One cone the way a pixel's surface reflects the eye's ray, as wide as the roughness says (Hong
+// 2015, sec. 2.5.3.3.7; Crassin et al. 2011), times the share that GGX reflects of even light.
+//
+// The paper's lobe is Phong's; ours is glTF's GGX. Of its half-vectors, seen along the normal,
+// those with tan θ < α have half of the weight: D cos θ dω is in tan² θ the share t²/(t² + α²). A
+// reflected direction is twice as far off, so that half of what is reflected comes from within
+//     2 atan α (1)
+// of the mirror's direction. An even cone of this half-angle also has the lobe's peak, D(0)/4 =
+// 1/(4πα²) per sr, up to the powers of α beyond: it has 1/(π (2α)²).
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#define FRAME_CONSTANTS_BINDING 1
+#include "frame/frame.glsl"
+#include "frame/brdf.glsl"
+#include "frame/octahedral.glsl"
+#define VCT_GRID_BINDING 0
+#include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/cones/trace.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 2, scalar) uniform vct_specular
+{
+    vct_specular_params set;
+};
+layout(set = 0, binding = 3) uniform sampler2D depth;
+layout(set = 0, binding = 4) uniform sampler2D normal;
+layout(set = 0, binding = 5) uniform sampler3D light;
+layout(set = 0, binding = 6) uniform sampler2D albedo;
+layout(set = 0, binding = 7) uniform sampler2D material;
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
+
+layout(set = 0, binding = 9, scalar) uniform vct_shares
+{
+    vct_share_table shares;
+};
+
+const float WIDEST =
+    1.0; // tangent of the half-angle: beyond 45° a cone says no more than its texels
+
+float tan_half_angle(float alpha)
+{
+    if (set.tan_half > 0.0) return min(set.tan_half, WIDEST);
+    return alpha < 1.0 ? min(2.0 * alpha / (1.0 - alpha * alpha), WIDEST) : WIDEST; // (1)
+}
+
+vec2 share_at(ivec2 node)
+{
+    int at = 2 * (node.y * VCT_SHARE_NODES + node.x);
+    return vec2(shares.pairs[at], shares.pairs[at + 1]);
+}
+
+vec3 share_of(vec3 f0, float n_v, float roughness)
+{
+    vec2 at = clamp(vec2(n_v, roughness), 0.0, 1.0) * float(VCT_SHARE_NODES - 1);
+    ivec2 low = min(ivec2(at), ivec2(VCT_SHARE_NODES - 2));
+    vec2 part = at - vec2(low);
+    vec2 ab = mix(mix(share_at(low), share_at(low + ivec2(1, 0)), part.x),
+                  mix(share_at(low + ivec2(0, 1)), share_at(low + ivec2(1, 1)), part.x), part.y);
+    return f0 * ab.x + ab.y;
+}
+
+// The mirrored direction, or where a normal map turns it below the surface the one along it.
+vec3 mirrored(vec3 to_eye, vec3 n)
+{
+    vec3 r = reflect(-to_eye, n);
+    return normalize(r + max(0.0, 0.01 - dot(r, n)) * n);
+}
+
+vec3 reflected(ivec2 pixel, float z)
+{
+    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
+    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg),
+         to_eye = normalize(frame.eye - position);
+    vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
+    vec3 at = (position - clips.origin_m) / set.texel_m;
+    float wide = 2.0 * set.stride * tan_half_angle(brdf_alpha(roughness_metallic.x));
+    vec4 met = vct_cone(light, at, n, mirrored(to_eye, n), set.offset, wide, set.last_mip,
+                        vct_start_at(at));
+    vec3 f0 = brdf_f0(texelFetch(albedo, pixel, 0).rgb, roughness_metallic.y);
+    vec3 share = share_of(f0, dot(n, to_eye), roughness_metallic.x);
+    return set.gain * share * (met.rgb + (1.0 - met.a) * frame.sky);
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
+    float z = texelFetch(depth, pixel, 0).r;
+    vec3 radiance = z > 0.0 ? reflected(pixel, z) : vec3(0.0);
+    imageStore(specular, pixel, vec4(clamp(radiance, 0.0, HALF_MAX), 1.0));
+}

@@ -1,0 +1,114 @@
+// Light on the voxels: what lights make both sides of each reflect, and what they emit.
+//
+// Differs from Hong 2015, sec. 2.5.3.3.9, where the texels of reflective shadow maps are scattered
+// into voxels and leave cracks where these maps are coarser than the voxels (figure 47): here each
+// voxel asks the shadow maps what it gets. There are no cracks and no order of additions, and no
+// reflective shadow map has to be drawn.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame/frame.glsl"
+#include "frame/light.glsl"
+#include "frame/shadow/shadow.glsl"
+#define VCT_GRID_BINDING 4
+#include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/volume/lit_voxel.glsl"
+#include "techniques/vct/voxelize/surface.glsl"
+
+layout(local_size_x = VCT_LOCAL) in;
+
+layout(set = 0, binding = 1, scalar) readonly buffer frame_lights
+{
+    frame_light frame_light_table[];
+};
+layout(set = 0, binding = 5, scalar) readonly buffer vct_list
+{
+    uint list[];
+};
+layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
+layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_records;
+layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments
+{
+    vct_voxel_counts counts;
+};
+layout(set = 0, binding = 9) uniform usampler2D vct_brought;
+
+layout(constant_id = 0) const bool HAS_LIGHTS = true;
+
+const float PI = 3.14159265;
+const float SHADOW_LIFT =
+    0.25; // voxels: a surface lies that far from where its voxel thinks, if it is curved
+
+// A small number that loops or branches depend on. Where it comes from uniforms alone, Mesa 22.3's
+// lavapipe compiles the shader again for its value in each dispatch, which takes longer than the
+// dispatch. The length of a buffer, which is never less, keeps it from that.
+uint kept(uint number)
+{
+    return min(number, list.length());
+}
+
+// Irradiance by one light, scaled lux; `front` says of which side.
+vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
+{
+    vec3 to_light = -light.direction;
+    float attenuation = 1.0;
+    if (light.type != FRAME_LIGHT_SUN) {
+        to_light = light.position - position;
+        float distance2 = dot(to_light, to_light);
+        to_light *= inversesqrt(max(distance2, 1e-12));
+        // A light in a voxel is not nearer to it than its side is long.
+        float nearest = max(LIGHT_MIN_DISTANCE_M, 0.5 * vct.cell_m);
+        attenuation = light_cone(light, -to_light) * light_window(light, distance2) /
+                      max(distance2, nearest * nearest);
+    }
+    float cosine = dot(normal, to_light);
+    front = cosine >= 0.0;
+    if (attenuation == 0.0) return vec3(0.0);
+    vec3 plane = front ? normal : -normal;
+    if (light.shadow_first >= 0)
+        attenuation *=
+            shadow_of(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light, true,
+                      vct.shadow_size, int(kept(uint(vct.shadow_radius))));
+    return light.intensity * (attenuation * abs(cosine));
+}
+
+void main()
+{
+    uint slot = gl_GlobalInvocationID.x;
+    if (slot >= counts.listed) return;
+    ivec2 to = vct_record_place(slot);
+    vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, to, 0));
+    vec3 position = vct_world_from_voxels(vec3(vct_voxel(list[slot])) + 0.5 + surface.position);
+    vct_record r;
+    r.opacity = surface.opacity;
+    r.normal = surface.normal;
+    r.reflectance = surface.reflectance;
+    vct_unpack_emission(texelFetch(vct_surfaces, to + ivec2(1, 0), 0), r.emitted_front,
+                        r.emitted_back);
+    float emission_scaled = surface.emits ? vct.emission_scaled : 0.0;
+    r.emitted_front = clamp(r.emitted_front * emission_scaled, -HALF_MAX, HALF_MAX);
+    r.emitted_back = clamp(r.emitted_back * emission_scaled, -HALF_MAX, HALF_MAX);
+
+    vec3 front = vec3(0.0), back = vec3(0.0);
+    for (uint i = 0; HAS_LIGHTS && i < kept(vct.light_count); i++) {
+        bool at_front;
+        vec3 e = irradiance(frame_light_table[i], position, surface.normal, at_front);
+        if (at_front)
+            front += e;
+        else
+            back += e;
+    }
+    if (kept(vct.brought) != 0u) {
+        uvec4 brought = texelFetch(vct_brought, vct_brought_place(slot), 0);
+        vec2 middle = unpackHalf2x16(brought.y);
+        front += vec3(unpackHalf2x16(brought.x), middle.x);
+        back += vec3(middle.y, unpackHalf2x16(brought.z));
+    }
+    r.front = min(front * r.reflectance / PI, vec3(HALF_MAX));
+    r.back = min(back * r.reflectance / PI, vec3(HALF_MAX));
+    uvec4 first, second;
+    vct_pack(r, first, second);
+    imageStore(vct_records, to, first);
+    imageStore(vct_records, to + ivec2(1, 0), second);
+}

@@ -1,0 +1,73 @@
+// From the marked nodes in each block to those before it, by one workgroup; which bricks they get,
+// how many there is no room for, and how many groups the passes over them have.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#define VCT_GRID_BINDING 0
+#include "techniques/vct/vct_grid.glsl"
+
+layout(local_size_x = VCT_SCAN_LOCAL) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    vct_svo_push push;
+};
+layout(set = 0, binding = 1, scalar) readonly buffer vct_svo_nodes
+{
+    uint nodes[];
+};
+layout(set = 0, binding = 2, scalar) buffer vct_svo_blocks
+{
+    uint blocks[];
+};
+#define VCT_SVO_LEVELS_BINDING 3
+#define VCT_SVO_LEVELS_ACCESS
+#include "techniques/vct/octree/levels.glsl"
+#include "techniques/vct/octree/octree.glsl"
+
+shared uint before[VCT_SCAN_LOCAL];
+
+uint groups_of(uint count, uint local)
+{
+    return max((count + local - 1u) / local, 1u);
+}
+
+void main()
+{
+    uint me = gl_LocalInvocationID.x;
+    uint count = (svo_node_count(push.depth) + VCT_SVO_BLOCK - 1u) / VCT_SVO_BLOCK;
+    uint each = (count + VCT_SCAN_LOCAL - 1u) / VCT_SCAN_LOCAL;
+    uint first = min(me * each, count), end = min(first + each, count);
+    uint sum = 0u;
+    for (uint i = first; i < end; i++) sum += blocks[i];
+    before[me] = sum;
+    barrier();
+    for (uint step = 1u; step < VCT_SCAN_LOCAL; step *= 2u) {
+        uint add = me >= step ? before[me - step] : 0u;
+        barrier();
+        before[me] += add;
+        barrier();
+    }
+    uint running = before[me] - sum;
+    for (uint i = first; i < end; i++) {
+        uint here = blocks[i];
+        blocks[i] = running;
+        running += here;
+    }
+    if (me != VCT_SCAN_LOCAL - 1u) return;
+    uint taken =
+        push.depth == 0u ? 0u : levels[push.depth - 1u].first + levels[push.depth - 1u].count;
+    // What has children needs a tile for them too.
+    uint most = push.depth + 1u < svo.depths ? min(svo.bricks, svo.tiles) : svo.bricks;
+    uint kept = min(running, most - min(taken, most));
+    levels[push.depth].first = taken;
+    levels[push.depth].count = kept;
+    levels[push.depth].left_out = running - kept;
+    levels[push.depth].node_groups[0] = groups_of(8u * kept, VCT_SVO_BLOCK * VCT_LOCAL);
+    levels[push.depth].texel_groups[0] = groups_of(kept, VCT_SVO_LOCAL / 32u);
+    levels[push.depth].side_groups[0] = groups_of(kept, VCT_SVO_LOCAL / 16u);
+    for (int k = 1; k < 3; k++)
+        levels[push.depth].node_groups[k] = levels[push.depth].texel_groups[k] =
+            levels[push.depth].side_groups[k] = 1u;
+}

@@ -1,0 +1,34 @@
+// Images with one row-major entry per occupied voxel, its slot: where the entry lies, and how it
+// packs a normal. Software drivers fetch texels several times as fast as words of buffers.
+#ifndef AG_VCT_VOXEL_IMAGES_GLSL
+#define AG_VCT_VOXEL_IMAGES_GLSL
+
+#include "frame/octahedral.glsl"
+
+// Of the first of the two texels.
+ivec2 vct_record_place(uint slot)
+{
+    return ivec2(2u * (slot % VCT_RECORD_ROW), slot / VCT_RECORD_ROW);
+}
+
+// Of irradiance on the front and the back, as six half floats.
+ivec2 vct_brought_place(uint slot)
+{
+    return ivec2(slot % VCT_RECORD_ROW, slot / VCT_RECORD_ROW);
+}
+
+// 12 + 12 bits. Fronts turn to one half of all ways (voxelize/add.glsl), and none of these has the code
+// 0.
+uint vct_pack_normal(vec3 normal)
+{
+    uvec2 code = uvec2(roundEven((octahedral_encode(normal) * 0.5 + 0.5) * 4095.0));
+    return normal == vec3(0.0) ? 0u : code.x | code.y << 12;
+}
+
+vec3 vct_unpack_normal(uint bits)
+{
+    return bits == 0u ? vec3(0.0)
+                      : octahedral_decode(vec2(bits & 4095u, bits >> 12) / 4095.0 * 2.0 - 1.0);
+}
+
+#endif

@@ -1,0 +1,39 @@
+// A look into the light volume: what is sent against a way by what lies about a place.
+#ifndef AG_VCT_LOOK_GLSL
+#define AG_VCT_LOOK_GLSL
+
+#include "techniques/vct/volume/directions.glsl"
+
+// What light comes against `direction`, or the part of it that is `counted`, at a place in texels
+// of level 0. Six volumes lie side by side along x, grids along z: what is filtered keeps half a
+// texel away from its neighbour. One volume for all ways knows no direction: whatever fills its
+// texels stands in every way.
+vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int level)
+{
+    vec3 share = abs(counted);
+    int grid = min(level, VCT_CLIPS - 1),
+        mip = level - grid; // grids but the coarsest one have no mips
+    vec3 own = VCT_CLIPS > 1 ? (at - clips.levels[grid].corner) / float(1 << grid) : at;
+    float dim = float(vct.volume_dim >> mip), half_texel = 0.5 / dim;
+    vec3 size = vec3((ivec3(clips.levels[grid].size) + (1 << mip) - 1) >> mip) / dim;
+    vec3 uv = clamp(own / float(vct.volume_dim), vec3(half_texel), size - half_texel);
+    uv.z = (uv.z + float(VCT_CLIPS - 1 - grid)) / float(VCT_CLIPS);
+    if (!VCT_ANISOTROPIC) {
+        vec4 all = textureLod(light, uv, float(mip));
+        if (VCT_OCCLUSION) all = all.rrrr;
+        return vct_met(all, vec3(all.a));
+    }
+    vec3 way = (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
+    vec4 x = textureLod(light, vec3(way.x, uv.yz), float(mip));
+    vec4 y = textureLod(light, vec3(way.y, uv.yz), float(mip));
+    vec4 z = textureLod(light, vec3(way.z, uv.yz), float(mip));
+    if (VCT_OCCLUSION) {
+        x = x.rrrr;
+        y = y.rrrr;
+        z = z.rrrr;
+    }
+    vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
+    return vct_met(share.x * x + share.y * y + share.z * z, met);
+}
+
+#endif

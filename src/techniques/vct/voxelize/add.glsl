@@ -1,0 +1,265 @@
+// Second walk: what the surfaces in each voxel are, weighted with the triangle's size. What a large
+// triangle has alone is written at once; elsewhere whole numbers are summed up, and
+// voxelize/surfaces.comp makes the same of them.
+//
+// A voxel is taken for a sheet with two sides. Which side of a triangle is the voxel's front
+// follows from its plane alone, so that the two faces of a thin wall, which turn opposite ways,
+// agree on the sheet and do not cancel.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#ifndef VCT_RASTER
+#if VCT_LARGE
+#define VCT_PUTS_OFF
+#endif
+#endif
+#include "techniques/vct/voxelize/voxelize.glsl"
+#include "techniques/vct/voxelize/surface.glsl"
+#define VCT_SLOTS(name)   vct_##name
+#define VCT_SLOTS_BINDING 16
+#include "techniques/vct/voxelize/slots.glsl"
+
+layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
+layout(set = 0, binding = 11) uniform sampler2D emissive_map;
+layout(set = 0, binding = 18, scalar) buffer vct_sum_words
+{
+    uint sums[];
+};
+#ifdef VCT_PUTS_OFF
+layout(set = 0, binding = 19, scalar) readonly buffer vct_again
+{
+    uint again[];
+};
+layout(set = 0, binding = 20, rgba32ui) uniform writeonly uimage2D vct_surfaces;
+#endif
+
+// What lamps emit is negative: who looks for lamps one by one passes over it (cones/small_emitters.glsl).
+layout(constant_id = 14) const bool IS_LAMP = false;
+layout(constant_id = 5) const bool GLOWS = true; // false: no surface of the draw emits
+
+// Barycentric coordinates of the point of a triangle that is nearest to the origin (Ericson 2005,
+// sec. 5.1.5).
+vec3 nearest_point(vec3 a, vec3 b, vec3 c)
+{
+    vec3 ab = b - a, ac = c - a;
+    float d1 = -dot(ab, a), d2 = -dot(ac, a), d3 = -dot(ab, b), d4 = -dot(ac, b), d5 = -dot(ab, c),
+          d6 = -dot(ac, c);
+    if (d1 <= 0.0 && d2 <= 0.0) return vec3(1, 0, 0);
+    if (d3 >= 0.0 && d4 <= d3) return vec3(0, 1, 0);
+    if (d6 >= 0.0 && d5 <= d6) return vec3(0, 0, 1);
+    float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0)
+        return vec3(0, 1, 0) * (d1 / (d1 - d3)) + vec3(1, 0, 0) * (d3 / (d3 - d1));
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0)
+        return vec3(0, 0, 1) * (d2 / (d2 - d6)) + vec3(1, 0, 0) * (d6 / (d6 - d2));
+    float along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    if (va <= 0.0 && along >= 0.0 && along <= 1.0) return vec3(0, 1.0 - along, along);
+    float sum = va + vb + vc;
+    return sum > 0.0 ? vec3(va, vb, vc) / sum : vec3(1, 0, 0);
+}
+
+// A map's coordinates at the corners, and the mip whose texels are as large as a voxel on the
+// triangle.
+struct map_place {
+    vec2 a, b, c;
+    float lod;
+};
+
+vec2 map_at(map_place map, vec3 at)
+{
+    return map.a * at.x + map.b * at.y + map.c * at.z;
+}
+
+map_place map_place_of(uint map, scene_surface a, scene_surface b, scene_surface c)
+{
+    return map_place(scene_map_uv(map, a), scene_map_uv(map, b), scene_map_uv(map, c), 0.0);
+}
+
+// faces: twice the area of the triangle in faces of a voxel.
+float voxel_lod(sampler2D map, map_place place, float faces)
+{
+    vec2 size = vec2(textureSize(map, 0)), p = (place.b - place.a) * size,
+         q = (place.c - place.a) * size;
+    float texels = abs(p.x * q.y - p.y * q.x);
+    return 0.5 * log2(max(texels, 1e-6) / max(faces, 1e-6));
+}
+
+// What does not change over a triangle: looked up once, before its voxels.
+vec4 corner_a, corner_b, corner_c; // colours
+map_place base_color_place, metallic_place, emissive_place;
+vec3 front_normal; // unit, to the sheet's front
+int first_row;     // of the tile
+bvec2 sides;       // whether there is a surface to the front, the back
+
+// Planes whose normal is all but perpendicular to this are those whose sides cannot be told apart;
+// no usual wall is.
+const vec3 FRONT = vec3(0.4743, 0.8165, 0.3294);
+
+void vct_meet(vct_triangle t, ivec2 first)
+{
+    first_row = first.y;
+    vec3 normal = cross(t.b - t.a, t.c - t.b);
+    float faces = length(normal);
+    normal /= faces;
+    bool turned_over = dot(normal, FRONT) < 0.0;
+    bool front =
+        turned_over == (push.mirrored != 0u); // whether the triangle's front is the sheet's
+    bool both = (scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u;
+    front_normal = turned_over ? -normal : normal;
+    sides = bvec2(front || both, !front || both);
+    scene_surface a = scene_surface_of(t.vertices.x), b = scene_surface_of(t.vertices.y),
+                  c = scene_surface_of(t.vertices.z);
+    corner_a = unpackUnorm4x8(a.color);
+    corner_b = unpackUnorm4x8(b.color);
+    corner_c = unpackUnorm4x8(c.color);
+    if (!HAS_BASE_COLOR_MAP) return;
+    base_color_place = map_place_of(SCENE_MAP_BASE_COLOR, a, b, c);
+    base_color_place.lod = voxel_lod(base_color_map, base_color_place, faces);
+    metallic_place = map_place_of(SCENE_MAP_METALLIC_ROUGHNESS, a, b, c);
+    emissive_place = map_place_of(SCENE_MAP_EMISSIVE, a, b, c);
+    emissive_place.lod = voxel_lod(emissive_map, emissive_place, faces);
+}
+
+struct surface_point {
+    vec4 color;       // opacity in w
+    vec3 reflectance; // diffuse
+    vec3 emission;    // cd/m²
+};
+
+surface_point surface_at(vec3 at)
+{
+    uint m = push.draw.material;
+    surface_point s;
+    s.color =
+        scene_material_table[m].base_color * (corner_a * at.x + corner_b * at.y + corner_c * at.z);
+    float metallic = scene_material_table[m].metallic;
+    s.emission = scene_material_table[m].emissive;
+    if (HAS_BASE_COLOR_MAP) {
+        s.color *= textureLod(base_color_map, map_at(base_color_place, at), base_color_place.lod);
+        metallic *= textureLod(metallic_roughness_map, map_at(metallic_place, at), 4.0).b;
+        s.emission *= textureLod(emissive_map, map_at(emissive_place, at), emissive_place.lod).rgb;
+    }
+    if ((scene_material_table[m].flags & SCENE_UNLIT) != 0u) metallic = 0.0;
+    s.reflectance = s.color.rgb * (1.0 - metallic);
+    return s;
+}
+
+// How much of a voxel's face the triangle covers in it, seen along its dominant axis, in
+// sixteenths: of as many lines along that axis those that cross it there. Lines cross a closed
+// surface in one voxel of their column: what the voxels of a slanted wall cover adds up to all.
+uint covered_lines(ivec3 voxel, vct_triangle t)
+{
+    ivec3 cell = ivec3(turned(vec3(voxel), t.turn));
+    float facing = t.normal.z < 0.0 ? -1.0 : 1.0;
+    vec2 ab = facing * (t.v.xy - t.u.xy), bc = facing * (t.w.xy - t.v.xy),
+         ca = facing * (t.u.xy - t.w.xy);
+    vec2 slope = t.normal.xy / t.normal.z;
+    uint lines = 0u;
+    for (uint i = 0u; i < VCT_LINES; i++) {
+        vec2 at = vec2(cell.xy) + (vec2(i, (i * 7u + 3u) % VCT_LINES) + 0.5) / float(VCT_LINES);
+        vec2 u = at - t.u.xy, v = at - t.v.xy, w = at - t.w.xy;
+        bool inside =
+            ab.x * u.y >= ab.y * u.x && bc.x * v.y >= bc.y * v.x && ca.x * w.y >= ca.y * w.x;
+        float depth = clamp(floor(t.u.z - dot(slope, u)), float(t.depths.x), float(t.depths.y));
+        lines += inside && depth == float(cell.z) ? 1u : 0u;
+    }
+    return lines;
+}
+
+ivec3 whole(vec3 value, float one)
+{
+    return ivec3(roundEven(value * one));
+}
+
+// What the triangle brings to the sums of a voxel.
+vct_sums part_of(ivec3 voxel, vct_triangle t)
+{
+    vec3 centre = vec3(voxel) + 0.5;
+    vec3 a = t.a - centre, b = t.b - centre, c = t.c - centre;
+    vec3 at = nearest_point(a, b, c);
+    vec3 position = a * at.x + b * at.y + c * at.z;
+    surface_point s = surface_at(at);
+    if (IS_MASKED)
+        s.color.a = s.color.a >= scene_material_table[push.draw.material].alpha_cutoff ? 1.0 : 0.0;
+    else
+        s.color.a = 1.0;
+    float covered = float(covered_lines(voxel, t)) * VCT_WEIGHT_LINE, weight = max(covered, 1.0);
+    float opaque = weight * s.color.a;
+    uvec3 emission =
+        GLOWS ? uvec3(whole(s.emission * vct.emission_fixed * opaque, 1.0)) : uvec3(0u);
+    if (IS_LAMP) emission = uvec3(-ivec3(emission));
+    vct_sums sums;
+    sums.weight = uint(weight);
+    sums.opacity = uint(opaque);
+    sums.reflectance = uvec3(whole(clamp(s.reflectance, 0.0, 1.0) * opaque, VCT_COLOUR_ONE));
+    sums.normal = whole(front_normal * weight, VCT_NORMAL_ONE);
+    sums.position = whole(clamp(position, -1.0, 1.0) * weight, VCT_POSITION_ONE);
+    sums.front = sides.x ? emission : uvec3(0u);
+    sums.back = sides.y ? emission : uvec3(0u);
+    sums.fronts = sides.x ? uint(covered * s.color.a) : 0u;
+    sums.backs = sides.y ? uint(covered * s.color.a) : 0u;
+    return sums;
+}
+
+void add(uint at, uvec3 value)
+{
+    if (value.x != 0u) atomicAdd(sums[at], value.x);
+    if (value.y != 0u) atomicAdd(sums[at + 1u], value.y);
+    if (value.z != 0u) atomicAdd(sums[at + 2u], value.z);
+}
+
+void add_part(uint slot, vct_sums part)
+{
+    uint to = slot * VCT_SUM_WORDS;
+    atomicAdd(sums[to + VCT_SUM_WEIGHT], part.weight);
+    atomicAdd(sums[to + VCT_SUM_OPACITY], part.opacity);
+    add(to + VCT_SUM_REFLECTANCE, part.reflectance);
+    add(to + VCT_SUM_NORMAL, uvec3(part.normal));
+    add(to + VCT_SUM_POSITION, uvec3(part.position));
+    if (part.fronts != 0u) atomicAdd(sums[to + VCT_SUM_FRONTS], part.fronts);
+    if (part.backs != 0u) atomicAdd(sums[to + VCT_SUM_BACKS], part.backs);
+    if (!GLOWS || (part.front == uvec3(0u) && part.back == uvec3(0u))) return;
+    add(to + VCT_SUM_FRONT, part.front);
+    add(to + VCT_SUM_BACK, part.back);
+}
+
+#ifdef VCT_PUTS_OFF
+
+bool is_again(uint index)
+{
+    return (again[index >> 5] >> (index & 31u) & 1u) != 0u;
+}
+
+void vct_visit(ivec3 voxel, vct_triangle t)
+{
+    uint index = vct_index(voxel);
+    if (is_again(index)) {
+        vct_put_off |= 1u << uint(ivec3(turned(vec3(voxel), t.turn)).y - first_row);
+        return;
+    }
+    uint slot = vct_slot(index);
+    if (slot == VCT_NO_SLOT) return;
+    uvec4 first, second;
+    vct_pack_sums(part_of(voxel, t), first, second);
+    ivec2 to = vct_record_place(slot);
+    imageStore(vct_surfaces, to, first);
+    if (GLOWS) imageStore(vct_surfaces, to + ivec2(1, 0), second);
+}
+
+void vct_visit_put_off(ivec3 voxel, vct_triangle t)
+{
+    uint index = vct_index(voxel);
+    uint slot = is_again(index) ? vct_slot(index) : VCT_NO_SLOT;
+    if (slot != VCT_NO_SLOT) add_part(slot, part_of(voxel, t));
+}
+
+#else
+
+void vct_visit(ivec3 voxel, vct_triangle t)
+{
+    uint slot = vct_slot(vct_index(voxel));
+    if (slot != VCT_NO_SLOT) add_part(slot, part_of(voxel, t));
+}
+
+#endif

@@ -1,0 +1,53 @@
+// From the voxels in each block to the voxels before it, by one workgroup; and how many groups
+// shade them.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "techniques/vct/vct_grid.glsl"
+
+layout(local_size_x = VCT_SCAN_LOCAL) in;
+
+layout(set = 0, binding = 0, scalar) buffer vct_blocks
+{
+    uint blocks[];
+};
+layout(set = 0, binding = 1, scalar) writeonly buffer vct_arguments
+{
+    vct_voxel_counts counts;
+};
+
+shared uint before[VCT_SCAN_LOCAL];
+
+void main()
+{
+    uint me = gl_LocalInvocationID.x;
+    uint count = blocks.length();
+    uint each = (count + VCT_SCAN_LOCAL - 1u) / VCT_SCAN_LOCAL;
+    uint first = min(me * each, count), end = min(first + each, count);
+    uint sum = 0u;
+    for (uint i = first; i < end; i++) sum += blocks[i];
+    before[me] = sum;
+    barrier();
+    for (uint step = 1u; step < VCT_SCAN_LOCAL; step *= 2u) {
+        uint add = me >= step ? before[me - step] : 0u;
+        barrier();
+        before[me] += add;
+        barrier();
+    }
+    uint running = before[me] - sum;
+    for (uint i = first; i < end; i++) {
+        uint here = blocks[i];
+        blocks[i] = running;
+        running += here;
+    }
+    if (me == VCT_SCAN_LOCAL - 1u) {
+        uint listed = min(running, vct.capacity);
+        counts.listed = listed;
+        counts.left_out = running - listed;
+        counts.again = 0u; // voxelize/list.comp counts them
+        counts.groups[0] = (listed + VCT_LOCAL - 1u) / VCT_LOCAL;
+        counts.again_groups[0] = 1u;
+        for (int i = 1; i < 3; i++) counts.groups[i] = counts.again_groups[i] = 1u;
+    }
+}
