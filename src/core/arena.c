@@ -1,5 +1,5 @@
-// Bump allocation from a list of blocks. Memory is handed out once and never reused, so that the
-// zeros of host_alloc are still there when a caller gets it.
+// Bump allocation from a list of blocks. Memory is never reused before arena_finish, so a block
+// that host_alloc zeroed needs no clearing.
 #include "core/arena.h"
 
 #include <stdint.h>
@@ -27,23 +27,24 @@ void arena_finish(struct arena *arena)
     *arena = (struct arena){ .host = arena->host };
 }
 
-// The address is aligned, not the offset: the host's allocator may align to less than we do.
+// Aligns the address, not the offset: the host's allocator may align to less than 16 bytes.
 static void *block_take(struct arena_block *block, size_t bytes)
 {
     if (!block) return NULL;
     uintptr_t at = (uintptr_t)(block->data + block->used);
     size_t padding = (size_t)(-at & (ARENA_ALIGNMENT - 1));
-    size_t room = block->capacity - block->used;
-    if (padding > room || bytes > room - padding) return NULL;
-    void *taken = block->data + block->used + padding;
+    size_t available = block->capacity - block->used;
+    if (padding > available || bytes > available - padding) return NULL;
+    void *memory = block->data + block->used + padding;
     block->used += padding + bytes;
-    return taken;
+    return memory;
 }
 
 static struct arena_block *block_create(struct host *host, size_t capacity)
 {
     size_t bytes = 0;
-    if (!size_add(capacity, sizeof(struct arena_block), &bytes)) bytes = SIZE_MAX; // is refused
+    if (!size_add(capacity, sizeof(struct arena_block), &bytes))
+        bytes = SIZE_MAX; // host_alloc fails
     struct arena_block *block = host_alloc(host, bytes, 1);
     if (block) block->capacity = capacity;
     return block;
@@ -58,20 +59,20 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
         return NULL;
     }
     if (bytes == 0) bytes = 1;
-    void *taken = block_take(arena->blocks, bytes);
-    if (!taken) {
+    void *memory = block_take(arena->blocks, bytes);
+    if (!memory) {
         bool large = padded > ARENA_BLOCK_BYTES / 4;
         struct arena_block *block =
             block_create(arena->host, large ? padded : (size_t)ARENA_BLOCK_BYTES);
         if (!block) return NULL;
-        // A large request has a block to itself, behind the current one, which still has room.
+        // A large request gets a block of its own behind the current one, which stays in use.
         struct arena_block **link = large && arena->blocks ? &arena->blocks->next : &arena->blocks;
         block->next = *link;
         *link = block;
-        taken = block_take(block, bytes);
+        memory = block_take(block, bytes);
     }
     arena->bytes += bytes;
-    return taken;
+    return memory;
 }
 
 char *arena_strdup(struct arena *arena, const char *text)

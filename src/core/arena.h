@@ -1,4 +1,4 @@
-// Memory that lives and dies together: many small allocations, one release.
+// Arena allocator: many small allocations, released together.
 #pragma once
 
 #include "core/host.h"
@@ -13,6 +13,6 @@ struct arena {
 
 void arena_init(struct arena *arena, struct host *host);
 void arena_finish(struct arena *arena); // accepts a zeroed arena
-// Zeroed, aligned to 16 bytes; NULL as host_alloc. count × size is checked.
+// Zeroed, aligned to 16 bytes; fails as host_alloc does. The product count × size is checked.
 void *arena_alloc(struct arena *arena, size_t count, size_t size);
 char *arena_strdup(struct arena *arena, const char *text);

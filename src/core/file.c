@@ -1,4 +1,4 @@
-// Whole-file reads, and writes that are never seen half done.
+// Whole-file reads and atomic writes (temporary file, then rename).
 #include "core/file.h"
 
 #include <errno.h>
@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 static const uint64_t MAX_BYTES_DEFAULT = UINT64_C(4) << 30;
-// ".tmp-", a process, a number and the zero take less.
+// TEMPORARY_SUFFIX bounds ".tmp-", a process id, a number and the terminating zero.
 enum { TEMPORARY_TRIES = 1000, TEMPORARY_SUFFIX = 32 };
 
 static bool fail_read(struct host *host, const char *path, const char *why)
@@ -23,7 +23,7 @@ static bool fail_write(struct host *host, const char *path, const char *why)
     return host_fail(host, FAIL_FILE, "cannot write %s: %s", path, why);
 }
 
-// Opens without blocking, so that a pipe without a writer is an error and no wait.
+// Opens with O_NONBLOCK, so that a pipe without a writer is refused instead of blocking.
 static bool open_regular(struct host *host, const char *path, uint64_t max_bytes, int *out_fd,
                          size_t *out_size)
 {
@@ -53,7 +53,7 @@ bool file_read(struct host *host, const char *path, size_t max_bytes, struct fil
     size_t size = 0, padded = 0;
     if (!open_regular(host, path, max_bytes ? max_bytes : MAX_BYTES_DEFAULT, &fd, &size))
         return false;
-    if (!size_add(size, 1, &padded)) padded = SIZE_MAX; // is refused
+    if (!size_add(size, 1, &padded)) padded = SIZE_MAX; // host_alloc fails
     out->data = host_alloc(host, padded, 1);
     if (!out->data) goto fail;
     while (out->size < size) {
@@ -63,7 +63,7 @@ bool file_read(struct host *host, const char *path, size_t max_bytes, struct fil
             fail_read(host, path, strerror(errno));
             goto fail;
         }
-        if (got == 0) break; // became shorter while being read: what is there counts
+        if (got == 0) break; // truncated while being read: keep the bytes read so far
         out->size += (size_t)got;
     }
     close(fd);
@@ -80,9 +80,9 @@ void file_bytes_finish(struct host *host, struct file_bytes *bytes)
     *bytes = (struct file_bytes){ 0 };
 }
 
-// Where the content is to go: through symbolic links, which a rename would replace. Refuses what is
-// there and is no regular file, so that writing to /dev/null does not replace the device.
-static bool target_of(struct host *host, const char *path, char **out)
+// Resolves symbolic links, which a rename would replace. Refuses an existing target that is not a
+// regular file, so that writing to /dev/null does not replace the device.
+static bool resolve_target(struct host *host, const char *path, char **out)
 {
     struct stat info;
     bool exists = stat(path, &info) == 0;
@@ -96,8 +96,8 @@ static bool target_of(struct host *host, const char *path, char **out)
     return *out != NULL;
 }
 
-// The part of `target` that its temporary names begin with: all, unless the name, or the path,
-// would become longer than a name, or a path, can be.
+// Length of the prefix of `target` that temporary names share: all of it, unless the suffix would
+// exceed NAME_MAX or PATH_MAX.
 static int temporary_stem(const char *target)
 {
     const char *slash = strrchr(target, '/');
@@ -108,8 +108,8 @@ static int temporary_stem(const char *target)
     return (int)(longest > folder ? longest : folder);
 }
 
-// As mkstemp, but the file's mode comes from the umask, which cannot be asked for without changing
-// it for all threads.
+// As mkstemp, but with the file mode that the umask gives. Reading the umask would change it for
+// all threads.
 static int open_temporary(struct host *host, const char *target, char **out_path)
 {
     for (int i = 0; i < TEMPORARY_TRIES; i++) {
@@ -143,7 +143,7 @@ bool file_begin(struct file_writer *writer, struct host *host, const char *path)
 {
     *writer = (struct file_writer){ .host = host };
     int fd = -1;
-    if (!target_of(host, path, &writer->path)) goto fail;
+    if (!resolve_target(host, path, &writer->path)) goto fail;
     fd = open_temporary(host, writer->path, &writer->temporary_path);
     if (fd < 0) goto fail;
     writer->stream = fdopen(fd, "wb");
@@ -161,12 +161,12 @@ fail:
 bool file_begin_path(struct file_writer *writer, struct host *host, const char *path)
 {
     if (!file_begin(writer, host, path)) return false;
-    fclose(writer->stream); // nothing was written: nothing can be lost
+    fclose(writer->stream); // empty, so closing cannot fail
     writer->stream = NULL;
     return true;
 }
 
-// A write that failed earlier is remembered by the stream, but not its errno.
+// The stream remembers that an earlier write failed, but not its errno.
 static bool stream_close(FILE *stream, const char **why)
 {
     bool failed_before = ferror(stream) != 0;

@@ -1,4 +1,4 @@
-// Files: whole reads, and writes that are never seen half done (written beside, then renamed).
+// Files: whole-file reads and atomic writes (temporary file in the same folder, then rename).
 #pragma once
 
 #include "core/host.h"
@@ -16,23 +16,20 @@ struct file_bytes {
 bool file_read(struct host *host, const char *path, size_t max_bytes, struct file_bytes *out);
 void file_bytes_finish(struct host *host, struct file_bytes *bytes);
 
-// A file being written: `path` gets the content only at file_commit; file_abort leaves nothing
-// behind. Both accept a zeroed writer. Exactly one of them ends it. The temporary file lies in the
-// same folder.
+// A file being written: file_commit replaces `path`, file_abort removes the temporary file. End
+// each writer with exactly one of them; both accept a zeroed writer.
 struct file_writer {
     struct host *host;
     char *path;
     char *temporary_path;
-    FILE *
-        stream; // may be NULL where a library writes to temporary_path itself (see file_begin_path)
+    FILE *stream; // NULL after file_begin_path
 };
 
 bool file_begin(struct file_writer *writer, struct host *host, const char *path);
-// As file_begin, but the stream is closed: a library writes to writer->temporary_path.
+// As file_begin, but without a stream: a library writes to writer->temporary_path itself.
 bool file_begin_path(struct file_writer *writer, struct host *host, const char *path);
 bool file_commit(struct file_writer *writer);
 void file_abort(struct file_writer *writer);
 
-// The part of a path after its last dot, without the dot, lower case, at most 15 characters; "" if
-// none.
+// The file extension: lower case, without the dot, at most 15 characters; "" where there is none.
 void file_extension(const char *path, char out[16]);

@@ -1,4 +1,4 @@
-// Content hashes (xxHash, 64 bits), for caches and for tests of reproducibility.
+// Content hashes (XXH3, 64 bits), for cache keys and reproducibility tests.
 #pragma once
 
 #include <stddef.h>

@@ -1,4 +1,4 @@
-// Memory, messages and the last failure, as the program around the library lends them.
+// Memory, log messages and the last failure, through the callbacks of the host program.
 #include "core/host.h"
 
 #include <stdint.h>
@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #endif
 
-enum { MESSAGE_SIZE = 1024 }; // longer sentences are cut
+enum { MESSAGE_SIZE = 1024 }; // longer messages are truncated
 
 struct host host_default(void)
 {
@@ -44,7 +44,7 @@ void host_log(struct host *host, enum log_level level, const char *format, ...)
     va_end(arguments);
 }
 
-// Objects above PTRDIFF_MAX break pointer subtraction, so that no allocator gives them.
+// Pointer subtraction is undefined in objects above PTRDIFF_MAX, so allocators refuse them.
 static bool block_size(struct host *host, size_t count, size_t size, size_t *out)
 {
     size_t bytes;
@@ -61,9 +61,8 @@ static bool fail_memory(struct host *host, size_t bytes)
     return host_fail(host, FAIL_MEMORY, "cannot allocate %zu bytes: out of memory", bytes);
 }
 
-// Textures and vertices are read at random, and a processor knows the places of some thousand pages
-// only: 4 KB each are too few for them. Systems that take no advice go without.
-static void ask_for_huge_pages(void *block, size_t bytes)
+// Textures and vertices are accessed at random: with 4 KB pages most accesses miss the TLB.
+static void advise_huge_pages(void *block, size_t bytes)
 {
 #ifdef __linux__
     static const uintptr_t HUGE_PAGE = (uintptr_t)2 << 20;
@@ -79,7 +78,7 @@ static void ask_for_huge_pages(void *block, size_t bytes)
 static void *zeroed(size_t bytes)
 {
     void *block = calloc(1, bytes);
-    if (block) ask_for_huge_pages(block, bytes);
+    if (block) advise_huge_pages(block, bytes);
     return block;
 }
 

@@ -1,11 +1,10 @@
-// Parallel loops over OpenMP's threads.
+// Parallel loops on OpenMP threads.
 #include "core/parallel.h"
 
 #include <limits.h>
 
-// GCC's OpenMP library is not built for the thread sanitizer, which therefore sees no order between
-// the caller and its threads. These two tell it: all of the caller comes before each call of the
-// body, all calls before the return.
+// GCC's OpenMP library is not instrumented for the thread sanitizer. These annotations declare its
+// fork and join: the caller happens before each call of the body, and each call before the return.
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #define ORDER_BEFORE(tag) __tsan_release(tag)
@@ -20,7 +19,7 @@
 struct loop {
     void (*body)(void *user, size_t i);
     void *user;
-    char begun, done; // only their addresses count
+    char begun, done; // only their addresses are used
 };
 
 static void begin(struct loop *loop)
@@ -42,7 +41,7 @@ static void end(struct loop *loop)
 
 NOT_INSTRUMENTED static void call_all(struct loop *loop, size_t count, int grain)
 {
-    // Nothing is gained by waking the other threads for one chunk.
+    // A single chunk runs on the calling thread.
 #pragma omp parallel for schedule(dynamic, grain) if (count > (size_t)grain)
     for (size_t i = 0; i < count; i++) call(loop, i);
 }

@@ -1,4 +1,4 @@
-// Random numbers from their arguments alone, and two low-discrepancy sequences in fixed point.
+// Stateless seeding, PCG32, and two low-discrepancy sequences in fixed point.
 #include "core/rng.h"
 
 static const uint64_t PCG_MULTIPLIER = UINT64_C(6364136223846793005);
@@ -18,8 +18,8 @@ uint32_t rng_u32(struct rng *rng)
     uint64_t old = rng->state;
     rng->state = old * PCG_MULTIPLIER + rng->increment;
     uint32_t shifted = (uint32_t)(((old >> 18) ^ old) >> 27); // PCG-XSH-RR
-    uint32_t turn = (uint32_t)(old >> 59);
-    return (shifted >> turn) | (shifted << (-turn & 31));
+    uint32_t rotation = (uint32_t)(old >> 59);
+    return (shifted >> rotation) | (shifted << (-rotation & 31));
 }
 
 float rng_float(struct rng *rng)
@@ -29,7 +29,7 @@ float rng_float(struct rng *rng)
 
 vec2s rng_vec2(struct rng *rng)
 {
-    float x = rng_float(rng); // named, since the order of evaluation in a list is not fixed
+    float x = rng_float(rng); // the order of evaluation in an initializer list is unspecified
     float y = rng_float(rng);
     return (vec2s){ { x, y } };
 }
@@ -41,8 +41,8 @@ uint32_t pcg_hash(uint32_t word)
     return (mixed >> 22) ^ mixed;
 }
 
-// frac(½ + i/g) and frac(½ + i/g²), g the plastic number (g³ = g + 1), in units of 2⁻³²: wrapping
-// is exact for every i, where floats would run out of digits.
+// frac(½ + i/g) and frac(½ + i/g²), g the plastic number (g³ = g + 1), in units of 2⁻³²: integer
+// wrap-around is exact for every i, while floats would lose precision.
 vec2s r2_sequence(uint32_t i)
 {
     static const uint32_t half = 0x80000000u, inverse_g = 3242174889u, inverse_g2 = 2447445414u;
@@ -68,9 +68,8 @@ static uint32_t sobol_second(uint32_t i)
     return x;
 }
 
-// Owen scrambling by a hash in which each bit depends on the bits below it only (Laine & Karras
-// 2011, with the constants of Burley 2020, "Practical Hash-based Owen Scrambling"), applied to the
-// reversed word.
+// Owen scrambling: a hash of the reversed word in which each bit depends only on the bits below it
+// (Laine & Karras 2011, constants of Burley 2020, "Practical Hash-based Owen Scrambling").
 static uint32_t owen_scramble(uint32_t x, uint32_t seed)
 {
     x = reverse_bits(x) + seed;

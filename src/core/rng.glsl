@@ -10,7 +10,7 @@ uint pcg_hash(uint word)
     return (mixed >> 22u) ^ mixed;
 }
 
-// In [0, 1): the upper 24 bits, so that rounding cannot give 1.
+// In [0, 1), from the upper 24 bits: more would round up to 1.
 float unit_float(uint bits)
 {
     return float(bits >> 8u) * (1.0 / 16777216.0);
@@ -22,7 +22,7 @@ float random_float(uint pixel, uint sample_index, uint dimension)
     return unit_float(pcg_hash(pixel + pcg_hash(sample_index + pcg_hash(dimension))));
 }
 
-// Two of them, from dimensions `dimension` and `dimension` + 1.
+// Two numbers in [0, 1), from dimensions `dimension` and `dimension` + 1.
 vec2 random_vec2(uint pixel, uint sample_index, uint dimension)
 {
     return vec2(random_float(pixel, sample_index, dimension),

@@ -1,7 +1,7 @@
-// Random numbers as arguments: a generator is seeded from (pixel, sample, dimension), never from a
-// clock. PCG32 (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good
-// Algorithms for Random Number Generation"), and the R2 low-discrepancy sequence (Roberts 2018).
-// The GLSL twin is rng.glsl.
+// Reproducible random numbers: a generator is seeded from (pixel, sample, dimension). PCG32
+// (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
+// Random Number Generation"), and the R2 low-discrepancy sequence (Roberts 2018). The GLSL twin is
+// rng.glsl.
 #pragma once
 
 #include "core/vec.h"
@@ -23,9 +23,9 @@ vec2s r2_sequence(uint32_t i);
 // Point i of the two-dimensional Sobol sequence, Owen-scrambled by `seed` (0: plain), in [0, 1)².
 vec2s sobol_2d(uint32_t i, uint32_t seed);
 
-// ---- what a path tracer asks for at every ray
+// ---- inline, for the path tracer
 
-// Every input bit reaches every output bit: the finaliser of SplitMix64 (Steele, Lea & Flood 2014).
+// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): a bijective 64-bit hash.
 static inline uint64_t rng_mix(uint64_t x)
 {
     x ^= x >> 30;
@@ -35,13 +35,13 @@ static inline uint64_t rng_mix(uint64_t x)
     return x ^ (x >> 31);
 }
 
-// In [0, 1), from the upper 24 bits: what a float there holds without rounding up to 1.
+// In [0, 1), from the upper 24 bits: more would round up to 1.
 static inline float rng_unit(uint32_t bits)
 {
     return (float)(bits >> 8) * 0x1p-24f;
 }
 
-// Two such numbers from a word's halves.
+// Two numbers in [0, 1), from the halves of a word.
 static inline vec2s rng_pair(uint64_t word)
 {
     return (vec2s){ { rng_unit((uint32_t)(word >> 32)), rng_unit((uint32_t)word) } };

@@ -1,12 +1,12 @@
-// Warps of the unit square. Sines are computed from 1 − cosθ, which small cones would lose to
-// cancellation.
+// Warps of the unit square. Sines are computed from 1 − cosθ: in narrow cones 1 − cos²θ would lose
+// its digits to cancellation.
 #include "core/sampling.h"
 
 #include <math.h>
 
 static const float PI = 3.14159265358979f;
 
-// A direction around +z from 1 − cosθ (0…2) and φ in turns.
+// A direction around +z from 1 − cosθ (0…2) and φ / 2π.
 static vec3s direction_of(float one_minus_cos, float turns)
 {
     float sin_theta = sqrtf(fmaxf(0.0f, one_minus_cos * (2.0f - one_minus_cos)));

@@ -1,5 +1,5 @@
-// Warps of the unit square with their densities. Every sample_x has a density pdf_x that integrates
-// to 1 over its domain (solid angle in sr for directions, area in m² or unit area for surfaces).
+// Warps of the unit square with their densities. Every density pdf_x integrates to 1 over its
+// domain (solid angle in sr for directions, area for surfaces).
 #pragma once
 
 #include "core/vec.h"
@@ -17,11 +17,11 @@ float pdf_cone_uniform(float cos_max);
 static inline vec2s sample_disk(vec2s u);     // concentric (Shirley & Chiu 1997), unit disk
 static inline vec2s sample_triangle(vec2s u); // barycentric b1, b2, uniform by area
 
-// ---- what a path tracer calls for every ray
+// ---- inline, for the path tracer
 
-// cos x and sin x for |x| ≤ π/4 by their series, to the last bits of a float; the C library's ask
-// first how large x is.
-static inline vec2s eighth_turn(float x)
+// cos x and sin x for |x| ≤ π/4 by their Taylor series, to float precision; the C library's
+// functions spend time on range reduction.
+static inline vec2s small_cos_sin(float x)
 {
     float s = x * x;
     return (vec2s){
@@ -37,20 +37,19 @@ static inline vec2s sample_disk(vec2s u)
     bool wide = fabsf(x) > fabsf(y);
     float radius = wide ? x : y;
     // The angle is π/4 · y/x from the x axis, or π/4 · x/y from the y axis.
-    vec2s turn = eighth_turn(GLM_PIf / 4.0f * (wide ? y / x : x / y));
-    return (vec2s){ { radius * (wide ? turn.x : turn.y), radius * (wide ? turn.y : turn.x) } };
+    vec2s unit = small_cos_sin(GLM_PIf / 4.0f * (wide ? y / x : x / y));
+    return (vec2s){ { radius * (wide ? unit.x : unit.y), radius * (wide ? unit.y : unit.x) } };
 }
 
-// Heitz 2019, "A Low-Distortion Map Between Triangle and Square": each half of the square keeps its
-// area, and near points stay near, which the square-root map does not do.
+// Heitz 2019, "A Low-Distortion Map Between Triangle and Square": preserves area, and unlike the
+// square-root map keeps neighbouring points close.
 static inline vec2s sample_triangle(vec2s u)
 {
-    float half =
-        0.5f * (u.x < u.y ? u.x : u.y); // the smaller is halved, and the other loses as much
+    float half = 0.5f * (u.x < u.y ? u.x : u.y);
     return (vec2s){ { u.x - half, u.y - half } };
 }
 
-// Malley's method: the disk, lifted to the hemisphere.
+// Malley's method: a uniform disk sample projected up to the hemisphere.
 static inline vec3s sample_hemisphere_cosine(vec2s u)
 {
     vec2s d = sample_disk(u);

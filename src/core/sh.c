@@ -1,5 +1,4 @@
-// The basis, zonal harmonics and convolution. Rotation is in sh_rotate.c, products are in
-// sh_product.c.
+// The basis, zonal harmonics and convolution. Rotation: sh_rotate.c; products: sh_product.c.
 #include "core/sh_basis.h"
 
 #include <assert.h>
@@ -16,32 +15,32 @@ static const double NORM[SH_MAX_BANDS][SH_MAX_BANDS] = {
       0.0021964680580751762, 0.00069458418713245519 },
 };
 
-// √(4π/(2l+1)): what a zonal coefficient is worth as a convolution kernel (Funk–Hecke).
+// √(4π/(2l+1)): factor of a zonal coefficient as a convolution kernel (Funk–Hecke).
 static const double KERNEL[SH_MAX_BANDS] = { 3.5449077018110318, 2.046653415892977,
                                              1.5853309190424043, 1.3398491713813576,
                                              1.1816359006036774, 1.0688298875771143 };
 
-// Y_lm = K_lm · P_l|m|(z)/sin^|m|θ · sin^|m|θ cos mφ, the sine for negative m. sin^mθ (cos mφ, sin
-// mφ) is (x + iy)^m, so that nothing divides by sinθ; the P_lm without it follow the usual
-// recurrence in l.
+// Y_lm = K_lm · P_l|m|(z)/sin^|m|θ · sin^|m|θ cos mφ, with sin |m|φ for negative m. The pair
+// sin^mθ (cos mφ, sin mφ) is (x + iy)^m, which avoids the division by sinθ; P_lm/sin^mθ follows the
+// recurrence of P_lm in l.
 void sh_eval_double(int bands, const double direction[3], double *out)
 {
     assert(bands >= 1 && bands <= SH_MAX_BANDS);
     double x = direction[0], y = direction[1], z = direction[2];
     double cosine = 1.0, sine = 0.0, diagonal = 1.0; // (x + iy)^m, P_mm
     for (int m = 0; m < bands; m++) {
-        double before = 0.0, legendre = diagonal;
+        double previous = 0.0, legendre = diagonal;
         for (int l = m; l < bands; l++) {
             double value = NORM[l][m] * legendre;
             out[l * (l + 1) + m] = value * cosine;
             if (m > 0) out[l * (l + 1) - m] = value * sine;
-            double next = ((2 * l + 1) * z * legendre - (l + m) * before) / (l - m + 1);
-            before = legendre;
+            double next = ((2 * l + 1) * z * legendre - (l + m) * previous) / (l - m + 1);
+            previous = legendre;
             legendre = next;
         }
-        double turned = x * cosine - y * sine;
+        double next_cosine = x * cosine - y * sine;
         sine = x * sine + y * cosine;
-        cosine = turned;
+        cosine = next_cosine;
         diagonal *= 2 * m + 1;
     }
 }

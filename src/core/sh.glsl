@@ -13,7 +13,7 @@ const float SH_Y2_XY = 1.09254843;    // √(15/4π): xy, yz, xz
 const float SH_Y2_ZZ = 0.31539157;    // √(5/16π): 3z² − 1
 const float SH_Y2_XX_YY = 0.54627422; // √(15/16π): x² − y²
 
-// The clamped cosine: what one coefficient of each band is worth as a convolution kernel.
+// Weights of the bands in the convolution with the clamped cosine.
 const float SH_COSINE_0 = 3.14159265; // π
 const float SH_COSINE_1 = 2.09439510; // 2π/3
 const float SH_COSINE_2 = 0.78539816; // π/4

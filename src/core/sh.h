@@ -21,10 +21,10 @@ float sh_dot(int bands, const float *coefficients, vec3s direction);
 // Zonal coefficients z_l, l < bands, of the clamped cosine around +z: √π/2, √(π/3), √(5π)/8, 0, …
 // (times Y: ∫ (cosθ)₊ Y_l0 dω).
 void zh_clamped_cosine(int bands, float *out);
-// A zonal function turned from +z to `direction`: c_lm = √(4π/(2l+1)) z_l Y_lm(direction).
+// A zonal function rotated from +z to `direction`: c_lm = √(4π/(2l+1)) z_l Y_lm(direction).
 void zh_rotate(int bands, const float *zonal, vec3s direction, float *out);
-// Convolution with a zonal kernel: c_lm · √(4π/(2l+1)) z_l. With the clamped cosine, radiance
-// becomes irradiance.
+// Convolution with a zonal kernel: c_lm · √(4π/(2l+1)) z_l. The clamped cosine turns radiance into
+// irradiance.
 void sh_convolve(int bands, const float *coefficients, const float *zonal, float *out);
 // Irradiance coefficients of radiance coefficients: the bands weighted by π, 2π/3, π/4, 0, −π/24,
 // 0.

@@ -1,5 +1,4 @@
-// For the files of sh.h only: the basis in double precision, which rotation and products start
-// from.
+// Internal to sh*.c: the basis in double precision.
 #pragma once
 
 #include "core/sh.h"

@@ -1,6 +1,6 @@
-// Products of functions given by coefficients, through the integrals ∫ Y_i Y_j Y_k dω (Sloan 2008,
-// "Stupid Spherical Harmonics Tricks", "Product"). The table of those that do not vanish is made
-// once, by a quadrature that is exact for them.
+// Products through the triple-product integrals ∫ Y_i Y_j Y_k dω (Sloan 2008, "Stupid Spherical
+// Harmonics Tricks", "Product"). A quadrature that is exact for them computes the table of non-zero
+// integrals once.
 #include "core/sh_basis.h"
 
 #include <assert.h>
@@ -9,15 +9,14 @@
 #include <stdint.h>
 
 enum {
-    // Three functions of degree 5 make degree 15: eight Gauss–Legendre nodes in z and sixteen equal
-    // steps in
-    // φ integrate it exactly.
+    // Exact for degree 15, the product of three functions of degree 5: eight Gauss–Legendre nodes
+    // in z, sixteen equal steps in φ.
     NODES = 8,
     STEPS = 16,
     MAX_TERMS = SH_MAX_COUNT * (SH_MAX_COUNT + 1) * (SH_MAX_COUNT + 2) / 6, // all i ≤ j ≤ k
 };
 
-// One integral for all its permutations: i ≤ j ≤ k.
+// One integral for all permutations of its indices: i ≤ j ≤ k.
 struct term {
     uint8_t i, j, k;
     float integral;
@@ -25,26 +24,25 @@ struct term {
 
 struct product_table {
     struct term terms[MAX_TERMS];
-    int count[SH_MAX_BANDS + 1]; // the first count[b] terms are those of b bands
+    int count[SH_MAX_BANDS + 1]; // b bands use the first count[b] terms
 };
 
 static struct product_table table;
 static pthread_once_t table_once = PTHREAD_ONCE_INIT;
 
-// Node and weight by Newton's method on P_8, from the usual first guess (Abramowitz &
-// Stegun, 25.4.29, 22.16.6).
+// Node and weight by Newton's method on P_8 (Abramowitz & Stegun, 25.4.29; first guess 22.16.6).
 static void gauss_legendre(int index, double *node, double *weight)
 {
     static const double pi = 3.14159265358979323846;
     double z = cos(pi * (index + 0.75) / (NODES + 0.5)), slope = 1.0;
     for (int step = 0; step < 8; step++) {
-        double before = 1.0, value = z;
+        double previous = 1.0, value = z;
         for (int l = 1; l < NODES; l++) {
-            double next = ((2 * l + 1) * z * value - l * before) / (l + 1);
-            before = value;
+            double next = ((2 * l + 1) * z * value - l * previous) / (l + 1);
+            previous = value;
             value = next;
         }
-        slope = NODES * (z * value - before) / (z * z - 1.0);
+        slope = NODES * (z * value - previous) / (z * z - 1.0);
         z -= value / slope;
     }
     *node = z;
@@ -58,8 +56,7 @@ static void add_terms(double basis[NODES * STEPS][SH_MAX_COUNT], const double *w
             double sum = 0.0;
             for (int p = 0; p < NODES * STEPS; p++)
                 sum += weights[p] * basis[p][i] * basis[p][j] * basis[p][k];
-            // Integrals that do not vanish are above 10⁻³, the rounding of the others is below
-            // 10⁻¹⁴.
+            // Non-zero integrals are above 10⁻³; rounding leaves the others below 10⁻¹⁴.
             if (fabs(sum) < 1e-9) continue;
             int *count = &table.count[SH_MAX_BANDS];
             table.terms[(*count)++] =

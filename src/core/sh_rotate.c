@@ -1,6 +1,6 @@
 // Rotation, band by band: Ivanic & Ruedenberg 1996, "Rotation Matrices for Real Spherical
 // Harmonics. Direct Determination by Recursion", with the corrections of 1998 (J. Phys. Chem. A
-// 102, 9099). Their order of the first band, (y, z, x), and their signs are ours.
+// 102, 9099). Order of the first band, (y, z, x), and signs are those of the paper.
 #include "core/sh.h"
 
 #include <assert.h>
@@ -56,7 +56,8 @@ static double w_term(const struct band *one, const struct band *below, int m, in
     return p_term(one, below, 1, m - 1, n) - p_term(one, below, -1, 1 - m, n);
 }
 
-// One entry: u U + v V + w W. A term whose factor vanishes would read outside the band below.
+// One entry: u U + v V + w W. Terms with a zero factor are skipped: they would read outside the
+// band below.
 static double next_entry(const struct band *one, const struct band *below, int m, int n)
 {
     int l = below->l + 1, k = m < 0 ? -m : m;

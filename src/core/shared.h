@@ -1,6 +1,6 @@
-// Makes one struct readable by C and GLSL: in C the names are cglm's and stdint's, in GLSL they
-// become the built-in types. Shared structs lie in X_shared.h files, use scalar block layout (which
-// equals C's layout for these types) and assert their size in C.
+// Type names for structs shared by C and GLSL: cglm's and stdint's in C, the built-in types in
+// GLSL. Shared structs are in X_shared.h files, use scalar block layout (equal to C's layout for
+// these types) and assert their size in C.
 #ifndef AG_CORE_SHARED_H
 #define AG_CORE_SHARED_H
 

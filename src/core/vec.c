@@ -1,10 +1,10 @@
-// Boxes and frames.
+// Unit vectors and axis-aligned boxes.
 #include "core/vec.h"
 
 #include <float.h>
 #include <math.h>
 
-// Scaled by a power of two first, which is exact.
+// Scaling by a power of two first is exact and avoids overflow and underflow of the squares.
 vec3s vec3_unit(vec3s v)
 {
     float largest = fmaxf(fmaxf(fabsf(v.x), fabsf(v.y)), fabsf(v.z));
@@ -18,9 +18,9 @@ vec3s vec3_unit(vec3s v)
 
 vec3s vec3_towards(vec3s from, vec3s to)
 {
-    vec3s whole = glms_vec3_sub(to, from);
-    if (isfinite(whole.x) && isfinite(whole.y) && isfinite(whole.z)) return vec3_unit(whole);
-    // Farther apart than a float can say; their halves are not.
+    vec3s offset = glms_vec3_sub(to, from);
+    if (isfinite(offset.x) && isfinite(offset.y) && isfinite(offset.z)) return vec3_unit(offset);
+    // The offset overflows; half of it does not.
     return vec3_unit(glms_vec3_sub(glms_vec3_scale(to, 0.5f), glms_vec3_scale(from, 0.5f)));
 }
 
@@ -40,7 +40,7 @@ struct box3 box3_union(struct box3 a, struct box3 b)
     return (struct box3){ glms_vec3_minv(a.min, b.min), glms_vec3_maxv(a.max, b.max) };
 }
 
-// Arvo 1990, "Transforming Axis-Aligned Bounding Boxes": each row's extremes separately.
+// Arvo 1990, "Transforming Axis-Aligned Bounding Boxes": minimum and maximum of each row.
 struct box3 box3_transform(mat4s to_from, struct box3 box)
 {
     if (box3_is_empty(box)) return box3_empty();

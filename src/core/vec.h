@@ -1,6 +1,6 @@
 // Vectors and matrices by value: cglm's struct API, column-major, depth 0…1.
-// Everything in the project includes this file and never cglm itself, so that the alignment
-// and clip-space settings are the same everywhere. Transforms are named `to_from`.
+// Include this file, never cglm itself: it fixes alignment and clip-space settings. Transforms are
+// named `to_from`.
 #pragma once
 
 #define CGLM_ALL_UNALIGNED
@@ -24,22 +24,22 @@ static inline vec4s vec4_of(vec3s v, float w)
     return (vec4s){ { v.x, v.y, v.z, w } };
 }
 
-// A point through an affine transform (w = 1, no division).
+// Affine transform of a point (w = 1, no division).
 static inline vec3s mat4_point(mat4s to_from, vec3s p)
 {
     return glms_mat4_mulv3(to_from, p, 1.0f);
 }
 
-// A direction through an affine transform (w = 0).
+// Affine transform of a direction (w = 0).
 static inline vec3s mat4_direction(mat4s to_from, vec3s d)
 {
     return glms_mat4_mulv3(to_from, d, 0.0f);
 }
 
-// The unit vector along v, whatever v's length: nothing overflows or vanishes on the way. 0 where v
-// is 0 or not finite.
+// The unit vector along v, without intermediate overflow or underflow. 0 where v is 0 or not
+// finite.
 vec3s vec3_unit(vec3s v);
-// The unit vector from one point to another; 0 where they are the same.
+// The unit vector from one point to another; 0 where they coincide.
 vec3s vec3_towards(vec3s from, vec3s to);
 
 // Luminance of linear Rec. 709.
@@ -61,8 +61,8 @@ bool box3_is_empty(struct box3 box);
 vec3s box3_centre(struct box3 box);
 vec3s box3_size(struct box3 box);
 
-// Any two unit vectors that make a right-handed frame (tangent, bitangent, n) with the unit vector
-// n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+// Completes the unit vector n to a right-handed orthonormal basis (tangent, bitangent, n) (Duff et
+// al. 2017, "Building an Orthonormal Basis, Revisited").
 static inline void basis_of(vec3s n, vec3s *tangent, vec3s *bitangent)
 {
     float sign = copysignf(1.0f, n.z);
