@@ -1,4 +1,4 @@
-// The ties between OpenEXR's C core and the host: errors, memory, bounds.
+// Callbacks of OpenEXR's C core: errors, memory, size limits.
 #include "image/exr_file.h"
 
 #include <stdlib.h>
@@ -40,8 +40,8 @@ bool exr_fail_writing(struct exr_file *file, exr_result_t code)
                      file->message[0] ? file->message : exr_get_default_error_message(code));
 }
 
-// Zeroed, so that a chunk that unpacks to less than it should shows no stray memory. (The library
-// hands its allocator no user data, so these few buffers cannot come from the host.)
+// Zeroed, so that a chunk that unpacks to too few bytes exposes no uninitialized memory. The
+// library passes its allocator no user data, so these buffers cannot come from the host.
 static void *zeroed(size_t bytes)
 {
     return calloc(bytes ? bytes : 1, 1);

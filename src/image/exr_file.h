@@ -1,5 +1,5 @@
-// One open OpenEXR file, for exr_read.c and exr_write.c: the library's context, the callbacks that
-// tie it to the host, and its errors as sentences.
+// One open OpenEXR file, for exr_read.c and exr_write.c: the library's context, its callbacks, and
+// its errors as log messages.
 #pragma once
 
 #include "image/exr.h"
@@ -13,7 +13,7 @@ enum {
     EXR_NAME_MAX = 200,      // of a layer; the format allows 255 for a channel
 };
 
-// One open file and what the library's callbacks need.
+// One open file; also the user data of the library's callbacks.
 struct exr_file {
     struct host *host;
     const char *path;
@@ -23,14 +23,14 @@ struct exr_file {
     char message[256];         // the first error that the library reported
 };
 
-// Gives the callbacks and bounds that reading and writing share.
+// Callbacks and size limits shared by reading and writing.
 exr_context_initializer_t exr_initializer(struct exr_file *file);
-// Closes what is open; a file that was being written is left to file_commit or file_abort.
+// Closes the library's context. The writer is left to file_commit or file_abort.
 void exr_file_finish(struct exr_file *file);
-// Both return false, with what the library said or, where it said nothing, what the code means.
+// Log the library's message, or the meaning of the code where there is none; return false.
 bool exr_fail_reading(struct exr_file *file, exr_result_t code);
 bool exr_fail_writing(struct exr_file *file, exr_result_t code);
-// Text from a file or a caller, fit for one line of a log.
+// Copies text for one line of a log: control characters become '?'.
 void exr_copy_printable(char *out, size_t size, const char *text);
-// Whether the layer stands in the plain channels, which have no prefix.
+// Whether the layer is stored in the channels without a prefix.
 bool exr_is_plain(const char *layer);

@@ -1,6 +1,5 @@
-// Reading OpenEXR through its C core. A file is read into memory first, so that the library can ask
-// for no more than there is; single-part scan-line files of any compression are read, tiled, deep
-// and multi-part ones are refused.
+// Reading OpenEXR through its C core. The whole file is read into memory first, which bounds every
+// read of the library.
 #include "image/exr_file.h"
 
 #include <stdio.h>
@@ -8,9 +7,8 @@
 
 enum { EXR_CHUNK_BYTES_MAX = 1 << 30 }; // unpacked
 
-// The channels of one layer, in the image's order, and where their values lie in an unpacked line
-// of the file: all channels one after the other, each with all its values of that line,
-// little-endian.
+// The channels of one layer, in the image's order, and their offsets in an unpacked scan line. A
+// line holds the channels one after the other, little-endian.
 struct layer_channels {
     int count;
     int index[4]; // into the file's list
@@ -19,8 +17,8 @@ struct layer_channels {
     size_t line_bytes;
 };
 
-// Suffixes that make a layer, the first complete set counts. The first five are ours; the others
-// are met in files of other programs: vectors and depths.
+// Channel suffixes that form a layer; the first complete set is used. exr_write makes the first
+// five, other programs the rest: depths and vectors.
 static const char *const suffix_sets[][4] = {
     { "R", "G", "B", "A" }, { "R", "G", "B" }, { "R", "G" }, { "Y" }, { "R" }, { "Z" }, { "V" },
 };
@@ -67,7 +65,7 @@ static bool find_layer(const exr_attr_chlist_t *list, const char *layer, struct 
     return false;
 }
 
-// The layer that a channel belongs to; false when its name is too long to be asked for.
+// The layer of a channel; false when the layer's name is too long.
 static bool layer_of_channel(const char *channel, char out[EXR_NAME_MAX + 1])
 {
     const char *dot = strrchr(channel, '.');
@@ -89,8 +87,7 @@ static bool append_name(struct host *host, char **names, const char *name)
     return true;
 }
 
-// The channels of a layer need not stand in one run: those of "color" do not, capitals sort before
-// the rest.
+// The channels of a layer need not be adjacent: channels are sorted by name, capitals first.
 static bool is_first_of_layer(const exr_attr_chlist_t *list, int channel, const char *layer)
 {
     char other[EXR_NAME_MAX + 1];
@@ -100,7 +97,7 @@ static bool is_first_of_layer(const exr_attr_chlist_t *list, int channel, const 
     return true;
 }
 
-// In the order of the file; NULL when out of memory.
+// In file order; NULL when out of memory.
 static char *join_layer_names(struct host *host, const exr_attr_chlist_t *list)
 {
     char *names = host_strdup(host, "");
@@ -154,7 +151,7 @@ static bool check_kind(struct exr_file *file)
     return true;
 }
 
-// Leaves a half-open file to exr_file_finish.
+// On failure the caller still calls exr_file_finish.
 static bool exr_file_open(struct exr_file *file, struct host *host, const char *path)
 {
     *file = (struct exr_file){ .host = host, .path = path };
@@ -168,7 +165,7 @@ static bool exr_file_open(struct exr_file *file, struct host *host, const char *
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; // a truncated file is an error
     exr_result_t code = exr_start_read(&file->context, path, &init);
     if (code != EXR_ERR_SUCCESS) {
-        file->context = NULL; // released by the library
+        file->context = NULL; // already released by the library
         return exr_fail_reading(file, code);
     }
     return check_kind(file);
@@ -200,7 +197,7 @@ static bool fail_missing_layer(struct exr_file *file, const exr_attr_chlist_t *l
                      file->path, wanted, present[0] ? present : "none that can be shown");
 }
 
-// All channels stand in a line, also those of other layers.
+// A scan line holds the channels of all layers.
 static bool lay_out_line(struct exr_file *file, const exr_attr_chlist_t *list, int width,
                          struct layer_channels *layer)
 {
@@ -284,8 +281,8 @@ static bool check_chunk(struct exr_file *file, const exr_chunk_info_t *chunk, in
                      file->path, row);
 }
 
-// The library unpacks; the values are taken from its buffer here and not by its own conversion,
-// which in some versions writes through the null pointers that stand for unwanted channels.
+// Reads the values from the library's unpacked buffer. Its own conversion writes through the null
+// pointers of unwanted channels in some versions.
 static bool read_chunk(struct exr_file *file, exr_decode_pipeline_t *decode, int first_y, int row,
                        const struct layer_channels *layer, const struct image *out)
 {
@@ -301,7 +298,7 @@ static bool read_chunk(struct exr_file *file, exr_decode_pipeline_t *decode, int
     decode->unpack_and_convert_fn = NULL;
     if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(context, 0, decode);
     if (code != EXR_ERR_SUCCESS) return exr_fail_reading(file, code);
-    bool is_raw = chunk.packed_size == chunk.unpacked_size; // so stored where packing does not help
+    bool is_raw = chunk.packed_size == chunk.unpacked_size; // stored uncompressed
     const uint8_t *lines = is_raw ? decode->packed_buffer : decode->unpacked_buffer;
     size_t held = is_raw ? decode->packed_alloc_size : decode->unpacked_alloc_size;
     if (!lines || held < layer->line_bytes * (size_t)chunk.height)

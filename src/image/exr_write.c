@@ -1,14 +1,13 @@
-// Writing OpenEXR through its C core: one part, scan lines, ZIP, 32-bit floats, channels in the
-// order that the format demands. One thread packs the chunks in turn, so the same layers give the
-// same bytes.
+// Writing OpenEXR through its C core: one part, scan lines, ZIP, 32-bit floats, channels sorted by
+// name. One thread packs the chunks in order, so the same layers give the same bytes.
 #include "image/exr_file.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    EXR_SHORT_NAME = 31, // a file with longer names is marked as such
-    EXR_ZIP_LEVEL = 4,   // what OpenEXR itself settled on: nearly as small as 6, much faster
+    EXR_SHORT_NAME = 31, // longer names need the long-name flag of the header
+    EXR_ZIP_LEVEL = 4,   // OpenEXR's default: nearly as small as 6, much faster
 };
 
 static int64_t write_bytes(exr_const_context_t context, void *user, const void *buffer,
@@ -18,11 +17,11 @@ static int64_t write_bytes(exr_const_context_t context, void *user, const void *
     if (fseeko(file->writer.stream, (off_t)offset, SEEK_SET) == 0 &&
         fwrite(buffer, 1, bytes, file->writer.stream) == bytes)
         return (int64_t)bytes;
-    if (error) error(context, EXR_ERR_WRITE_IO, "the disk does not take it");
+    if (error) error(context, EXR_ERR_WRITE_IO, "a write failed");
     return -1;
 }
 
-// One channel of the file and where its values lie.
+// One channel of the file and the source of its values.
 struct written_channel {
     char name[EXR_NAME_MAX + 3];
     const struct image *image;
@@ -68,7 +67,7 @@ static bool check_layer(struct exr_file *file, const struct exr_layer *layers, i
     return true;
 }
 
-// Attributes that mean something to the format itself, whatever their type would be.
+// Attribute names reserved by the format.
 static bool is_reserved(const char *name)
 {
     static const char *const reserved[] = {
@@ -143,7 +142,7 @@ static int by_name(const void *a, const void *b)
                   ((const struct written_channel *)b)->name);
 }
 
-// In the order of the file, which the format demands to be that of the names' bytes.
+// Sorted by the bytes of the names, as the format requires.
 static bool list_channels(struct exr_file *file, const struct exr_layer *layers, int layer_count,
                           struct channel_list *out)
 {

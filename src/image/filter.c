@@ -1,4 +1,4 @@
-// Separable filters: the sums, and the bands that they run in.
+// Separable filters: the weighted sums, and the bands that bound their memory.
 #include "image/filter.h"
 
 #include "core/parallel.h"

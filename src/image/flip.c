@@ -1,9 +1,8 @@
-// FLIP. Andersson et al. 2020: two pipelines, one for colour (section 4.1) and one for edges and
-// points (section 4.2), joined by a power (eq. 17's form ΔE = ΔEc^(1 − ΔEf)). Andersson et al.
-// 2021: the largest over exposures, through a fit of the ACES tone mapper (Narkowicz 2015, "ACES
-// Filmic Tone Mapping Curve"). Colours are kept as XYZ over the white point W, so that CIELAB and
-// YCxCz are sums of differences; offsets and factors that a linear filter leaves alone are applied
-// after it.
+// FLIP. Andersson et al. 2020: a colour pipeline (section 4.1) and a feature pipeline for edges and
+// points (section 4.2), combined as ΔE = ΔEc^(1 − ΔEf) (eq. 17). Andersson et al. 2021: the maximum
+// over exposures, with a fit of the ACES tone mapper (Narkowicz 2015, "ACES Filmic Tone Mapping
+// Curve"). Colours are stored as XYZ over the white point W, in which CIELAB and YCxCz are linear
+// differences; constant offsets and factors are applied after the linear filters.
 #include "image/flip.h"
 
 #include "image/flip_filters.h"
@@ -12,23 +11,23 @@
 #include <stdlib.h>
 
 enum { BLOCK = 128 };
-enum { LIGHT, RED_GREEN, BLUE_YELLOW, SOURCES }; // Y, X − Y, Y − Z, over white
+enum { LIGHTNESS, RED_GREEN, BLUE_YELLOW, SOURCES }; // Y, X − Y, Y − Z, over white
 
-struct exposed {
-    bool tone_mapped; // or display values
+struct exposure {
+    bool tone_mapped; // false: display values
     float scale;
 };
 
 struct job {
     const struct image *images[2], *out;
-    struct exposed exposed;
+    struct exposure exposure;
     struct flip_filters filters;
-    float largest_difference; // between two colours, to the power of COLOUR_POWER
+    float largest_difference; // of two colours in the unit cube, to the power of COLOUR_POWER
 };
 
 static const float COLOUR_POWER = 0.7f;              // q_c
 static const float KNEE_IN = 0.4f, KNEE_OUT = 0.95f; // p_c, p_t
-static const float BRIGHT = 0.85f; // what the brightest pixel and the median are exposed to (2021)
+static const float BRIGHT = 0.85f; // exposure target of the brightest pixel and the median (2021)
 
 // ---- colours
 
@@ -53,8 +52,7 @@ static float lab_curve(float t)
     return t > delta * delta * delta ? cbrtf(t) : t / (3.0f * delta * delta) + 4.0f / 29.0f;
 }
 
-// CIELAB from XYZ over white, with a* and b* scaled by L*/100: what is dark looks less colourful
-// (Hunt's effect, section 4.1.2).
+// CIELAB from XYZ over white, with a* and b* scaled by L*/100: the Hunt effect (section 4.1.2).
 static vec3s hunt_lab(vec3s xyz)
 {
     float x = lab_curve(xyz.x), y = lab_curve(xyz.y), z = lab_curve(xyz.z);
@@ -70,22 +68,21 @@ static float hyab_power(vec3s p, vec3s q)
     return powf(fabsf(p.x - q.x) + sqrtf(da * da + db * db), COLOUR_POWER);
 }
 
-// The largest distance in the unit cube is that of green and blue.
+// Green and blue have the largest distance in the unit cube.
 static float largest_difference(void)
 {
     return hyab_power(hunt_lab(xyz_from_rgb(vec3_of(0.0f, 1.0f, 0.0f))),
                       hunt_lab(xyz_from_rgb(vec3_of(0.0f, 0.0f, 1.0f))));
 }
 
-// ---- tone mapper of HDR-FLIP: (A x² + B x) / (C x² + D x + E), Narkowicz's fit without his factor
-// 0.6
+// ---- tone mapper of HDR-FLIP: (A x² + B x) / (C x² + D x + E), Narkowicz's fit for 0.6 x
 
 static const double ACES_A = 0.36 * 2.51, ACES_B = 0.6 * 0.03;
 static const double ACES_C = 0.36 * 2.43, ACES_D = 0.6 * 0.59, ACES_E = 0.14;
 
 static float aces(float x)
 {
-    x = fminf(fmaxf(x, 0.0f), 1e6f); // is 1 long before; the square must stay finite
+    x = fminf(fmaxf(x, 0.0f), 1e6f); // saturated far below; keeps the square finite
     float above = (float)ACES_A * x * x + (float)ACES_B * x;
     float below = (float)ACES_C * x * x + (float)ACES_D * x + (float)ACES_E;
     return fminf(above / below, 1.0f);
@@ -98,11 +95,11 @@ static double aces_inverse(double y)
     return (-b + sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
 }
 
-static vec3s display_value(const float *pixel, struct exposed exposed)
+static vec3s display_value(const float *pixel, struct exposure exposure)
 {
-    if (!exposed.tone_mapped)
+    if (!exposure.tone_mapped)
         return glms_vec3_clamp(vec3_of(pixel[0], pixel[1], pixel[2]), 0.0f, 1.0f);
-    float s = exposed.scale;
+    float s = exposure.scale;
     return vec3_of(aces(s * pixel[0]), aces(s * pixel[1]), aces(s * pixel[2]));
 }
 
@@ -115,8 +112,8 @@ static void read_row(const struct band *band, const struct image *image, int fir
     float *planes[SOURCES];
     for (int i = 0; i < SOURCES; i++) planes[i] = band_source(band, first_plane + i, row);
     for (int x = 0; x < band->width; x++) {
-        vec3s xyz = xyz_from_rgb(display_value(image_at(image, x, y), job->exposed));
-        planes[LIGHT][x] = xyz.y;
+        vec3s xyz = xyz_from_rgb(display_value(image_at(image, x, y), job->exposure));
+        planes[LIGHTNESS][x] = xyz.y;
         planes[RED_GREEN][x] = xyz.x - xyz.y;
         planes[BLUE_YELLOW][x] = xyz.y - xyz.z;
     }
@@ -125,8 +122,8 @@ static void read_row(const struct band *band, const struct image *image, int fir
 
 static void first_pass(const struct band *band, int row, int y)
 {
-    static const int source_of[FLIP_FILTERS] = { LIGHT, RED_GREEN, BLUE_YELLOW, BLUE_YELLOW,
-                                                 LIGHT, LIGHT,     LIGHT };
+    static const int source_of[FLIP_FILTERS] = { LIGHTNESS, RED_GREEN, BLUE_YELLOW, BLUE_YELLOW,
+                                                 LIGHTNESS, LIGHTNESS, LIGHTNESS };
     const struct job *job = band->user;
     for (int i = 0; i < 2; i++) {
         read_row(band, job->images[i], i * SOURCES, row, y);
@@ -137,10 +134,10 @@ static void first_pass(const struct band *band, int row, int y)
     }
 }
 
-// What the eye makes of a pixel.
-struct seen {
-    vec3s colour; // Hunt-adjusted CIELAB
-    float edge, point;
+// A pixel after the filters.
+struct filtered {
+    vec3s colour;      // Hunt-adjusted CIELAB
+    float edge, point; // feature magnitudes
 };
 
 enum column {
@@ -155,7 +152,7 @@ enum column {
     COLUMNS
 };
 
-static struct seen see(float columns[COLUMNS][BLOCK], int i, float wide_share)
+static struct filtered filtered_pixel(float columns[COLUMNS][BLOCK], int i, float wide_share)
 {
     float y = columns[COLUMN_LIGHTNESS][i], x = columns[COLUMN_RED_GREEN][i] + y;
     float z = y - (wide_share * columns[COLUMN_WIDE][i] +
@@ -163,15 +160,15 @@ static struct seen see(float columns[COLUMNS][BLOCK], int i, float wide_share)
     vec3s rgb = glms_vec3_clamp(rgb_from_xyz(vec3_of(x, y, z)), 0.0f, 1.0f);
     float edge_x = columns[COLUMN_EDGE_X][i], edge_y = columns[COLUMN_EDGE_Y][i];
     float point_x = columns[COLUMN_POINT_X][i], point_y = columns[COLUMN_POINT_Y][i];
-    return (struct seen){ .colour = hunt_lab(xyz_from_rgb(rgb)),
-                          .edge = sqrtf(edge_x * edge_x + edge_y * edge_y),
-                          .point = sqrtf(point_x * point_x + point_y * point_y) };
+    return (struct filtered){ .colour = hunt_lab(xyz_from_rgb(rgb)),
+                              .edge = sqrtf(edge_x * edge_x + edge_y * edge_y),
+                              .point = sqrtf(point_x * point_x + point_y * point_y) };
 }
 
-static void see_block(const struct band *band, int image, int row, int x0, int count,
-                      struct seen out[BLOCK])
+static void filter_block(const struct band *band, int image, int row, int x0, int count,
+                         struct filtered out[BLOCK])
 {
-    // Along the column: which filter, on what came of which filter along the row.
+    // The horizontal filter (first pass) and the vertical filter applied to its result.
     static const struct {
         enum flip_filter across, along;
     } steps[COLUMNS] = {
@@ -191,10 +188,10 @@ static void see_block(const struct band *band, int image, int row, int x0, int c
         filter_apply(&job->filters.filter[steps[c].along], in, (size_t)band->width, count,
                      columns[c]);
     }
-    for (int i = 0; i < count; i++) out[i] = see(columns, i, job->filters.wide_share);
+    for (int i = 0; i < count; i++) out[i] = filtered_pixel(columns, i, job->filters.wide_share);
 }
 
-// Small differences of colour are spread over most of 0…1 (section 4.1.3).
+// Redistribution: small colour differences take most of the range 0…1 (section 4.1.3).
 static float colour_error(vec3s p, vec3s q, float largest)
 {
     float power = hyab_power(p, q), knee = KNEE_IN * largest;
@@ -202,7 +199,7 @@ static float colour_error(vec3s p, vec3s q, float largest)
     return fminf(KNEE_OUT + (1.0f - KNEE_OUT) * (power - knee) / (largest - knee), 1.0f);
 }
 
-static float feature_error(const struct seen *p, const struct seen *q)
+static float feature_error(const struct filtered *p, const struct filtered *q)
 {
     float largest = fmaxf(fabsf(p->edge - q->edge), fabsf(p->point - q->point));
     return fminf(sqrtf(largest * 0.70710678f), 1.0f); // q_f = 0.5
@@ -212,15 +209,15 @@ static void second_pass(const struct band *band, int row, int y)
 {
     const struct job *job = band->user;
     for (int x0 = 0; x0 < band->width; x0 += BLOCK) {
-        struct seen seen[2][BLOCK];
+        struct filtered filtered[2][BLOCK];
         int count = band->width - x0 < BLOCK ? band->width - x0 : BLOCK;
-        for (int i = 0; i < 2; i++) see_block(band, i, row, x0, count, seen[i]);
+        for (int i = 0; i < 2; i++) filter_block(band, i, row, x0, count, filtered[i]);
         for (int i = 0; i < count; i++) {
-            const struct seen *p = &seen[0][i], *q = &seen[1][i];
+            const struct filtered *p = &filtered[0][i], *q = &filtered[1][i];
             float colour = colour_error(p->colour, q->colour, job->largest_difference);
             float error = colour > 0.0f ? powf(colour, 1.0f - feature_error(p, q)) : 0.0f;
             float *out = image_at(job->out, x0 + i, y);
-            *out = fmaxf(*out, error); // of all exposures
+            *out = fmaxf(*out, error); // maximum over exposures
         }
     }
 }
@@ -278,7 +275,7 @@ static float luminance_of(const float *pixel)
     return luminance(vec3_of(fmaxf(pixel[0], 0.0f), fmaxf(pixel[1], 0.0f), fmaxf(pixel[2], 0.0f)));
 }
 
-// The median, of the pixels that are not black where most are: the paper's has no exposure then.
+// The median; of the non-black pixels where most are black, since log 0 gives no exposure.
 static double median_of(const float *sorted, size_t count)
 {
     double median = 0.5 * ((double)sorted[(count - 1) / 2] + (double)sorted[count / 2]);
@@ -293,9 +290,7 @@ static double median_of(const float *sorted, size_t count)
 bool flip_exposures_of(struct host *host, const struct image *reference,
                        const unsigned char *counts, struct flip_exposures *out)
 {
-    enum {
-        MOST_STOPS = 24
-    }; // between candlelight and the sun's disk; a median close to 0 asks for more
+    enum { MAX_STOPS = 24 }; // the range from candlelight to the sun's disk; bounds dark medians
     *out = (struct flip_exposures){ 0.0, 0.0, 1 };
     size_t pixels = (size_t)reference->width * (size_t)reference->height, count = 0;
     float *sorted = host_alloc(host, pixels, sizeof *sorted);
@@ -309,7 +304,7 @@ bool flip_exposures_of(struct host *host, const struct image *reference,
     if (brightest > 0.0) {
         double x = aces_inverse((double)BRIGHT);
         out->start = log2(x / brightest);
-        out->stop = fmin(log2(x / median_of(sorted, count)), out->start + MOST_STOPS);
+        out->stop = fmin(log2(x / median_of(sorted, count)), out->start + MAX_STOPS);
         if (out->stop > out->start) out->count = (int)fmax(2.0, ceil(out->stop - out->start));
     }
     host_free(host, sorted);
@@ -326,7 +321,7 @@ bool flip_map_hdr(struct host *host, const struct image *a, const struct image *
         exposures->count > 1 ? (exposures->stop - exposures->start) / (exposures->count - 1) : 0.0;
     for (int i = 0; i < exposures->count; i++) {
         double stops = fmin(fmax(exposures->start + step * i, -126.0), 126.0);
-        job.exposed = (struct exposed){ .tone_mapped = true, .scale = (float)exp2(stops) };
+        job.exposure = (struct exposure){ .tone_mapped = true, .scale = (float)exp2(stops) };
         if (!run(host, &job)) goto fail;
     }
     return true;

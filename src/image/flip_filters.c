@@ -1,7 +1,7 @@
-// FLIP's filters, Andersson et al. 2020, sections 4.1.1 and 4.2. Contrast sensitivity over spatial
-// frequency, as sums of Gaussians a·exp(−b f²), turns into filters over visual angle x (degrees)
-// a √(π/b) exp(−π² x²/b); both axes together are a product of two such filters with the weight of
-// one. The square that the filters are cut to, and their normalisation on it, are the paper's.
+// FLIP's filters, Andersson et al. 2020, sections 4.1.1 and 4.2. The contrast sensitivity functions
+// are sums of Gaussians a·exp(−b f²) over spatial frequency f; over visual angle x (degrees) the
+// filters are a √(π/b) exp(−π² x²/b), separable in both axes. Truncation to a square and
+// normalization on it follow the paper.
 #include "image/flip_filters.h"
 
 #include <math.h>
@@ -13,10 +13,10 @@ static const double LIGHTNESS_B = 0.0047, RED_GREEN_B = 0.0053;
 static const double WIDE_A = 34.1, WIDE_B = 0.04, NARROW_A = 13.5, NARROW_B = 0.025;
 static const double FEATURE_WIDTH_DEG = 0.082; // between the extremes of the edge filter: 2 σ
 
-enum { SIGMAS = 3, SIGMAS_KEPT = 6 }; // exp(−6²/2) is below the precision of a float
+enum { SIGMAS = 3, SIGMAS_KEPT = 6 }; // exp(−6²/2) is below float precision
 
-// A Gaussian of standard deviation sigma_px that sums to 1; returns the sum it had. What a float
-// cannot see is left out.
+// A Gaussian of standard deviation sigma_px, normalized to 1 and truncated where weights fall below
+// float precision. Returns the sum before normalization.
 static double make_gaussian(double sigma_px, int radius, struct filter *out)
 {
     int kept = (int)ceil(SIGMAS_KEPT * sigma_px);
@@ -50,8 +50,8 @@ static void make_contrast_sensitivity(double pixels_per_degree, struct flip_filt
     out->radius = radius;
 }
 
-// Derivatives of a Gaussian whose positive weights sum to 1 and whose negative ones to −1, also in
-// two dimensions, across the Gaussian that sums to 1.
+// Derivatives of a Gaussian. Positive weights sum to 1, negative ones to −1; the product with the
+// normalized Gaussian of the other axis keeps these sums.
 static void make_features(double pixels_per_degree, struct flip_filters *out)
 {
     double sigma = 0.5 * FEATURE_WIDTH_DEG * pixels_per_degree, variance = sigma * sigma;
@@ -59,7 +59,7 @@ static void make_features(double pixels_per_degree, struct flip_filters *out)
     make_gaussian(sigma, radius, &out->filter[FLIP_SMOOTH]);
     struct filter slope = { .shape = FILTER_ODD, .radius = radius };
     struct filter curvature = { .shape = FILTER_EVEN_ZERO_SUM, .radius = radius };
-    double slopes = 0.0, positive = 0.0, negative = 1.0; // the weight −1 of the middle
+    double slopes = 0.0, positive = 0.0, negative = 1.0; // the centre's weight is −1
     for (int k = 1; k <= radius; k++) {
         double gaussian = exp(-0.5 * k * k / variance);
         double second = (k * k / variance - 1.0) * gaussian;

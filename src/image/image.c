@@ -1,5 +1,4 @@
-// Images in memory: allocation within bounds, and the few operations that every user of images
-// needs.
+// Images in memory: bounded allocation and basic operations.
 #include "image/image.h"
 
 #include <math.h>

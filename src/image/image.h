@@ -1,5 +1,5 @@
-// An image in memory: 32-bit floats, interleaved, top row first, linear Rec. 709 where it is
-// colour.
+// An image in memory: 32-bit floats, interleaved channels, top row first; colours are linear Rec.
+// 709.
 #pragma once
 
 #include "core/host.h"
@@ -22,7 +22,7 @@ static inline float *image_at(const struct image *image, int x, int y)
     return image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }
 
-// Counts NaN and infinite channel values; a pixel counts once.
+// The number of pixels with a NaN or infinite channel.
 size_t image_count_not_finite(const struct image *image);
 // Two images of equal height side by side, with `gap` black columns between.
 bool image_side_by_side(struct image *out, struct host *host, const struct image *a,

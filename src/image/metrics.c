@@ -1,5 +1,5 @@
-// Error measures between two images, and the picture of the error. Sums run in double, in row
-// order, so that a result is the same on every run.
+// Error metrics between two images, and error maps. Sums are in double and in row order, so results
+// are reproducible.
 #include "image/metrics.h"
 
 #include "image/flip.h"
@@ -10,9 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Of the reference's mean luminance. Its square is the 0.01 by which Rousselle, Knaus & Zwicker
-// 2011 keep dark pixels from ruling the mean, for pictures of mean 1: with less, the noise of a
-// reference's darkest pixels outweighs all else.
+// Relative to the reference's mean luminance. For images of mean 1 its square is the 0.01 of
+// Rousselle, Knaus & Zwicker 2011; with less, noise in the reference's darkest pixels dominates.
 static const double RELMSE_FLOOR = 0.1;
 
 static const struct metrics_options NO_OPTIONS = { 0 };
@@ -92,9 +91,9 @@ static bool difference_errors(struct host *host, const struct metrics_pair *pair
     return true;
 }
 
-// The images as a screen shows them, for ssim and flip.
-static bool shown(struct host *host, const struct metrics_pair *pair,
-                  const struct metrics_options *options, struct image out[2])
+// Both images tone-mapped, for ssim and flip.
+static bool tonemap_pair(struct host *host, const struct metrics_pair *pair,
+                         const struct metrics_options *options, struct image out[2])
 {
     return image_tonemap(&out[0], host, &pair->a, options->ev) &&
            image_tonemap(&out[1], host, &pair->b, options->ev);
@@ -119,7 +118,7 @@ static bool display_errors(struct host *host, const struct metrics_pair *pair,
                            struct image *out)
 {
     struct image displayed[2] = { { 0 } };
-    bool ok = !options->radiance || shown(host, pair, options, displayed);
+    bool ok = !options->radiance || tonemap_pair(host, pair, options, displayed);
     const struct image *a = options->radiance ? &displayed[0] : &pair->a;
     const struct image *b = options->radiance ? &displayed[1] : &pair->b;
     if (ok)
@@ -203,7 +202,7 @@ bool metrics_errors(struct host *host, const struct image *a, const struct image
     return ok;
 }
 
-// ---- the picture of the error
+// ---- error maps
 
 static int ascending(const void *a, const void *b)
 {
@@ -211,8 +210,8 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// The 99th percentile (nearest rank) of all pixels, or the largest error where that is 0.
-static bool usual_error(struct host *host, const float *errors, size_t count, float *out)
+// The 99th percentile (nearest rank) of all pixels, or the maximum where that is 0.
+static bool percentile_error(struct host *host, const float *errors, size_t count, float *out)
 {
     float *sorted = host_alloc(host, count, sizeof *sorted);
     if (!sorted) return false;
@@ -224,11 +223,10 @@ static bool usual_error(struct host *host, const float *errors, size_t count, fl
     return true;
 }
 
-// The colour scale, a path through OKLab (Ottosson 2020, "A perceptual color space for image
-// processing") from black to white: the lightness is that of the grey of CIE L* = 100 t, the hue
-// turns half a circle from blue-violet (280°) by red and orange to yellow (100°), and the chroma is
-// a half wave as high, 0.18, as Rec. 709 can show all the way. So equal steps of error look about
-// equally large and their order survives in grey.
+// A perceptually uniform colour map through OKLab (Ottosson 2020, "A perceptual color space for
+// image processing") from black to white: lightness of CIE L* = 100 t, hue from blue-violet (280°)
+// through red and orange to yellow (100°), chroma a half sine wave with the largest amplitude that
+// stays inside Rec. 709 (0.18). Its order is preserved in grey.
 static vec3s error_colour(float t)
 {
     const float pi = 3.14159265f;
@@ -261,7 +259,7 @@ bool metrics_error_map(struct host *host, const struct image *a, const struct im
 
     size_t count = (size_t)a->width * (size_t)a->height;
     if (!(full > 0.0f) && bounded) full = 1.0f;
-    if (!(full > 0.0f) && !usual_error(host, errors.pixels, count, &full)) goto fail;
+    if (!(full > 0.0f) && !percentile_error(host, errors.pixels, count, &full)) goto fail;
     for (size_t i = 0; i < count; i++) {
         float t = full > 0.0f ? fminf(errors.pixels[i] / full, 1.0f) : 0.0f;
         vec3s colour = error_colour(t);

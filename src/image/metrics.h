@@ -1,24 +1,23 @@
-// How far image `a` is from the reference `b`. docs/metrics.md says what each number means.
+// Error metrics of an image `a` against the reference `b`. docs/metrics.md defines each number.
 #pragma once
 
 #include "image/image.h"
 
-// What the images hold and which pixels count. NULL and zeros: display values, every pixel.
+// Content of the images and selection of pixels. NULL and zeros: display values, every pixel.
 struct metrics_options {
-    bool radiance; // else display-linear values
-    float ev;      // of radiance: both images are exposed with it and tone-mapped for ssim and flip
-    const struct image
-        *mask; // NULL, or of the same size: a pixel counts where any channel is above 0 (not NaN)
-    bool ignore_not_finite;  // NaN and infinite pixels do not count, where they are else an error
-    float pixels_per_degree; // of the screen that flip imagines; 0: FLIP_PIXELS_PER_DEGREE
+    bool radiance;            // false: display-linear values
+    float ev;                 // exposure of radiance before the tone mapping for ssim and flip
+    const struct image *mask; // NULL, or same size: a pixel counts where any channel is above 0
+    bool ignore_not_finite;   // skip NaN and infinite pixels; false: they are an error
+    float pixels_per_degree;  // viewing condition of flip; 0: FLIP_PIXELS_PER_DEGREE
 };
 
 // Over all pixels that count and the three colour channels, in double.
 struct metrics {
     double mse; // mean squared difference
     double mae; // mean absolute difference
-    double
-        relmse; // mean of (a−b)² / (b² + 0.01²·m²), m the mean of b's luminance (1 when that is 0)
+    // Mean of (a−b)² / (b² + 0.1²·m²), m the mean luminance of b (1 when that is 0).
+    double relmse;
     double psnr;     // dB, for images in 0…1: −10 log10(mse); infinite for equal images
     double ssim;     // mean structural similarity; 1 for equal images
     double flip;     // mean LDR-FLIP, 0…1
@@ -28,12 +27,12 @@ struct metrics {
     size_t ignored; // NaN or infinite in either image, within the mask
 };
 
-// Same size and at least 3 channels each. NaN or infinite pixels that count are an error that
-// counts them (see ignore_not_finite), as is a mask that leaves no pixel.
+// Images of the same size with at least 3 channels. NaN or infinite pixels are an error unless
+// ignore_not_finite is set, as is a mask without any pixel.
 bool metrics_compute(struct host *host, const struct image *a, const struct image *b,
                      const struct metrics_options *options, struct metrics *out);
 
-// What an error map shows of each pixel. Means over channels.
+// The per-pixel error of an error map, averaged over channels.
 enum metrics_error {
     METRICS_ABSOLUTE,
     METRICS_SQUARED,
@@ -46,8 +45,8 @@ enum metrics_error {
 bool metrics_errors(struct host *host, const struct image *a, const struct image *b,
                     const struct metrics_options *options, enum metrics_error error,
                     struct image *out);
-// The same through a dark-to-bright colour scale that saturates at `full` (≤ 0: 1 for ssim and
-// flip, else the 99th percentile). 3 channels.
+// The same through a dark-to-bright colour map that saturates at `full` (≤ 0: 1 for ssim and flip,
+// the 99th percentile otherwise). 3 channels.
 bool metrics_error_map(struct host *host, const struct image *a, const struct image *b,
                        const struct metrics_options *options, enum metrics_error error, float full,
                        struct image *out);

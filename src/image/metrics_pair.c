@@ -1,5 +1,5 @@
-// Which pixels of two images count. A pixel that is not finite would spoil its neighbours through
-// the filters of ssim and flip; where it does not count, both images get the same finite value.
+// Selection of the pixels that count. A pixel that is not finite would spread through the filters
+// of ssim and flip; where it does not count, both images get the same finite value.
 #include "image/metrics_pair.h"
 
 #include <math.h>
@@ -38,15 +38,15 @@ static bool is_finite(const struct image *image, size_t i)
     return finite;
 }
 
-// Pixels that are not finite, in the mask and out of it.
-struct census {
-    size_t bad_a, bad_b; // in the mask
-    size_t bad;          // in either image, anywhere
+// Counts of pixels that are not finite.
+struct not_finite {
+    size_t a, b;   // inside the mask
+    size_t either; // in either image, inside or outside the mask
 };
 
 static void count(const struct image *a, const struct image *b,
                   const struct metrics_options *options, struct metrics_pair *out,
-                  struct census *census)
+                  struct not_finite *not_finite)
 {
     size_t pixels = (size_t)a->width * (size_t)a->height;
     for (size_t i = 0; i < pixels; i++) {
@@ -55,24 +55,24 @@ static void count(const struct image *a, const struct image *b,
         out->counts[i] = inside && good;
         out->counted += inside && good;
         out->ignored += inside && !good;
-        census->bad_a += inside && !good_a;
-        census->bad_b += inside && !good_b;
-        census->bad += !good;
+        not_finite->a += inside && !good_a;
+        not_finite->b += inside && !good_b;
+        not_finite->either += !good;
     }
 }
 
-static bool check_census(struct host *host, const struct metrics_options *options,
-                         const struct metrics_pair *pair, const struct census *census)
+static bool check_counts(struct host *host, const struct metrics_options *options,
+                         const struct metrics_pair *pair, const struct not_finite *not_finite)
 {
     size_t inside = pair->counted + pair->ignored;
-    if (!options->ignore_not_finite && census->bad_a)
+    if (!options->ignore_not_finite && not_finite->a)
         return host_fail(host, FAIL_ARGUMENT,
                          "cannot compare images: %zu of %zu pixels of the image are not finite",
-                         census->bad_a, inside);
-    if (!options->ignore_not_finite && census->bad_b)
+                         not_finite->a, inside);
+    if (!options->ignore_not_finite && not_finite->b)
         return host_fail(host, FAIL_ARGUMENT,
                          "cannot compare images: %zu of %zu pixels of the reference are not finite",
-                         census->bad_b, inside);
+                         not_finite->b, inside);
     if (pair->counted) return true;
     return host_fail(host, FAIL_ARGUMENT,
                      "cannot compare images: no pixel is left (%zu are outside the mask, %zu not "
@@ -90,7 +90,7 @@ static bool copy_colour(struct host *host, const struct image *from, struct imag
     return true;
 }
 
-// Puts the reference's value, or else the image's, or else black, in place of what is not finite.
+// Replaces pixels that are not finite: by the reference's value, else the image's, else black.
 static bool patch(struct host *host, const struct image *a, const struct image *b,
                   struct metrics_pair *out)
 {
@@ -112,14 +112,14 @@ static bool patch(struct host *host, const struct image *a, const struct image *
 bool metrics_pair_init(struct host *host, const struct image *a, const struct image *b,
                        const struct metrics_options *options, struct metrics_pair *out)
 {
-    struct census census = { 0 };
+    struct not_finite not_finite = { 0 };
     *out = (struct metrics_pair){ .a = *a, .b = *b };
     if (!check_pair(host, a, b, options->mask)) return false;
     out->counts = host_alloc(host, (size_t)a->width * (size_t)a->height, 1);
     if (!out->counts) goto fail;
-    count(a, b, options, out, &census);
-    if (!check_census(host, options, out, &census)) goto fail;
-    if (census.bad && !patch(host, a, b, out)) goto fail;
+    count(a, b, options, out, &not_finite);
+    if (!check_counts(host, options, out, &not_finite)) goto fail;
+    if (not_finite.either && !patch(host, a, b, out)) goto fail;
     return true;
 fail:
     metrics_pair_finish(out, host);

@@ -1,11 +1,11 @@
-// Two images that can be compared, and which of their pixels count.
+// Two images checked for comparison, and the selection of pixels that count.
 #pragma once
 
 #include "image/metrics.h"
 
 struct metrics_pair {
     struct image a, b;     // finite everywhere: the caller's pixels, or a copy
-    bool copied;           // whose they are
+    bool copied;           // a and b own their pixels
     unsigned char *counts; // [height][width], 0 or 1
     size_t counted, ignored;
 };

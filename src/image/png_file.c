@@ -1,7 +1,6 @@
-// PNG through libpng. libpng reports errors by longjmp: everything that must survive it lies in a
-// struct that the caller of setjmp owns, so that no local variable is modified between setjmp and
-// longjmp, and one place frees it. Whatever gAMA or iCCP say, colours are taken as sRGB, as glTF
-// and the web do in practice.
+// PNG through libpng. libpng reports errors by longjmp, so all state is in a struct of setjmp's
+// caller: no local variable is modified between setjmp and longjmp, and one place frees everything.
+// gAMA and iCCP are ignored and colours are read as sRGB, as glTF requires.
 #include "image/png_file.h"
 
 #include "core/file.h"
@@ -13,10 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    PNG_CHUNK_BYTES_MAX = 64 << 20,
-    PNG_CHUNKS_MAX = 1000
-}; // text and profiles: far above what is in use
+enum { PNG_CHUNK_BYTES_MAX = 64 << 20, PNG_CHUNKS_MAX = 1000 }; // limits of ancillary chunks
 
 struct png_job {
     struct host *host;
@@ -24,9 +20,9 @@ struct png_job {
     png_infop info;
     jmp_buf escape;
     char message[160];
-    enum fail_kind kind;     // of the failure
-    struct file_bytes bytes; // reading: the file, and how far it is used up
-    size_t position;
+    enum fail_kind kind;       // of the failure
+    struct file_bytes bytes;   // reading
+    size_t position;           // read position in `bytes`
     struct file_writer writer; // writing
     uint8_t *pixels;           // encoded, interleaved
     png_bytep *rows;
@@ -81,7 +77,7 @@ static void on_write(png_structp png, png_bytep data, size_t bytes)
 {
     struct png_job *job = png_get_io_ptr(png);
     if (fwrite(data, 1, bytes, job->writer.stream) != bytes)
-        png_error(png, "the disk does not take it");
+        png_error(png, "a write failed");
 }
 
 static void on_flush(png_structp png)
@@ -97,14 +93,14 @@ static void job_finish_reading(struct png_job *job)
     host_free(job->host, job->pixels);
 }
 
-// What libpng said; without a message of libpng's the failure has been told already.
+// Logs libpng's message. Without one the failure has already been logged.
 static bool job_fail(const struct png_job *job, const char *verb, const char *path)
 {
     if (!job->message[0]) return false;
     return host_fail(job->host, job->kind, "cannot %s %s: %s", verb, path, job->message);
 }
 
-// Of png_create_…: NULL comes from lack of memory or from headers of another libpng.
+// After png_create_…, which returns NULL when out of memory or on a version mismatch.
 static bool job_started(struct png_job *job)
 {
     job->info = job->png ? png_create_info_struct(job->png) : NULL;
@@ -114,7 +110,7 @@ static bool job_started(struct png_job *job)
                      png_get_libpng_ver(NULL));
 }
 
-// Rows of `row_bytes` each, and the pointers that libpng wants.
+// Allocates `height` rows of `row_bytes` each and libpng's row pointers.
 static bool job_allocate_rows(struct png_job *job, size_t row_bytes, size_t height)
 {
     job->pixels = host_alloc(job->host, height, row_bytes);
@@ -124,8 +120,8 @@ static bool job_allocate_rows(struct png_job *job, size_t row_bytes, size_t heig
     return true;
 }
 
-// Any colour type becomes RGB or RGBA of 8 bits, or of 16 where the file has 16.
-static void ask_for_rgb(png_structp png, png_infop info)
+// Converts any colour type to RGB or RGBA, with 8 bits or, where the file has them, 16.
+static void request_rgb(png_structp png, png_infop info)
 {
     png_set_expand(png);
     png_set_gray_to_rgb(png);
@@ -145,19 +141,19 @@ static bool job_read(struct png_job *job)
     png_set_chunk_malloc_max(job->png, PNG_CHUNK_BYTES_MAX);
     png_set_chunk_cache_max(job->png, PNG_CHUNKS_MAX);
     png_read_info(job->png, job->info);
-    ask_for_rgb(job->png, job->info);
+    request_rgb(job->png, job->info);
     if (!job_allocate_rows(job, png_get_rowbytes(job->png, job->info),
                            png_get_image_height(job->png, job->info)))
         return false;
     png_read_image(job->png, job->rows);
-    png_read_end(job->png, NULL); // a file without its last chunk is a truncated file
+    png_read_end(job->png, NULL); // a missing end chunk means a truncated file
     return true;
 }
 
 static float sample(const png_byte *row, size_t index, int depth)
 {
     if (depth == 8) return (float)row[index] / 255.0f;
-    return (float)(row[2 * index] << 8 | row[2 * index + 1]) / 65535.0f; // big-endian, as stored
+    return (float)(row[2 * index] << 8 | row[2 * index + 1]) / 65535.0f; // big-endian
 }
 
 static bool job_decode(const struct png_job *job, struct image *out)
@@ -199,7 +195,7 @@ fail:
     return false;
 }
 
-// The nearest code; NaN becomes 0.
+// The nearest 8-bit code; NaN becomes 0.
 static uint8_t code_of(float encoded)
 {
     if (!(encoded > 0.0f)) return 0;

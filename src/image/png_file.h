@@ -4,8 +4,8 @@
 
 #include "image/image.h"
 
-// Encodes with the sRGB curve, clamps to 0…1, NaN becomes 0. 1, 3 or 4 channels. Written beside and
-// renamed.
+// Encodes with the sRGB curve, clamps to 0…1, NaN becomes 0. 1, 3 or 4 channels. The file is
+// replaced atomically.
 bool png_write(struct host *host, const char *path, const struct image *image);
 // 8 or 16 bits of any colour type, decoded to 3 or 4 linear channels. Untrusted input.
 bool png_read(struct host *host, const char *path, struct image *out);

@@ -1,7 +1,7 @@
 // Structural similarity, Wang et al. 2004, eq. 13, with α = β = γ = 1 and the constants of section
-// III.C. Written with complements: with d = a − b, a factor (2xy + C) / (x² + y² + C) is
-// 1 − (x − y)² / (x² + y² + C), and σa² + σb² − 2 σab is the variance of d. So equal images give 1
-// to the last bit, and four planes are filtered in place of five.
+// III.C. With d = a − b, a factor (2xy + C) / (x² + y² + C) is 1 − (x − y)² / (x² + y² + C), and
+// σa² + σb² − 2 σab is the variance of d. In this form equal images give exactly 1, and four planes
+// are filtered instead of five.
 #include "image/ssim.h"
 
 #include "image/filter.h"

@@ -1,19 +1,18 @@
 // Exposure, the Khronos PBR Neutral tone mapper (Khronos 2024, "PBR Neutral Tone Mapper
-// Specification") and the automatic choice of exposure. tonemap.glsl does the first two on the GPU;
-// keep both the same.
+// Specification") and automatic exposure. tonemap.glsl is the GPU twin of the first two.
 #include "image/tonemap.h"
 
 #include <math.h>
 
-static const float FRESNEL_OFFSET = 0.04f;    // what a dielectric reflects; it is taken out again
-static const float COMPRESSION_START = 0.76f; // 0.8 − 0.04: up to here nothing is compressed
-static const float DESATURATION = 0.15f;      // how fast compressed colours go to white
-static const float TOE_END = 0.08f;           // below it the offset shrinks so that 0 stays 0
-static const float EXPOSED_MAX = 1e30f;       // stands for infinity, so that no product overflows
+static const float FRESNEL_OFFSET = 0.04f;    // F0 of a dielectric, subtracted
+static const float COMPRESSION_START = 0.76f; // 0.8 − 0.04: values below are not compressed
+static const float DESATURATION = 0.15f;      // rate at which compressed colours go to white
+static const float TOE_END = 0.08f;           // below it the offset shrinks, so that 0 stays 0
+static const float EXPOSED_MAX = 1e30f;       // replaces infinity, so that no product overflows
 
 static const double MIDDLE_GREY = 0.18;
-static const double DARK_SHARE = 0.25; // a pixel counts as at least this share of the lit mean
-static const double EV_LIMIT = 100.0;  // exposure_scale stays a normal float within it
+static const double DARK_SHARE = 0.25; // luminance floor, relative to the log average of lit pixels
+static const double EV_LIMIT = 100.0;  // keeps exposure_scale a normal float
 
 float exposure_scale(float ev)
 {
@@ -58,9 +57,9 @@ bool image_tonemap(struct image *out, struct host *host, const struct image *in,
     for (int y = 0; y < in->height; y++) {
         for (int x = 0; x < in->width; x++) {
             const float *l = image_at(in, x, y);
-            vec3s shown = tonemap_pbr_neutral(glms_vec3_scale(vec3_of(l[0], l[1], l[2]), scale));
+            vec3s display = tonemap_pbr_neutral(glms_vec3_scale(vec3_of(l[0], l[1], l[2]), scale));
             float *o = image_at(out, x, y);
-            o[0] = shown.x, o[1] = shown.y, o[2] = shown.z;
+            o[0] = display.x, o[1] = display.y, o[2] = display.z;
         }
     }
     return true;
@@ -74,13 +73,13 @@ static double lit_luminance(const struct image *image, int x, int y)
     return value > 0.0f && isfinite(value) ? (double)value : 0.0;
 }
 
-// Whether there is something in the pixel: with an alpha of 0 there is not.
+// Pixels with an alpha of 0 are empty and do not count.
 static bool counts(const struct image *image, int x, int y)
 {
     return image->channels < 4 || image_at(image, x, y)[3] != 0.0f;
 }
 
-// exp of the mean log luminance of the lit pixels; 0 when none is lit.
+// Log-average luminance of the lit pixels; 0 when none is lit.
 static double lit_mean(const struct image *image)
 {
     double sum = 0.0;

@@ -1,5 +1,5 @@
 // The GLSL twin of tonemap.c: exposure, then the Khronos PBR Neutral tone mapper
-// (Khronos 2024, "PBR Neutral Tone Mapper Specification"). Keep both the same.
+// (Khronos 2024, "PBR Neutral Tone Mapper Specification").
 #ifndef AG_IMAGE_TONEMAP_GLSL
 #define AG_IMAGE_TONEMAP_GLSL
 
