@@ -1,5 +1,5 @@
-// The integral over the sphere of polynomials up to degree 15, exact but for rounding: eight
-// Gauss–Legendre nodes in z (Abramowitz & Stegun, table 25.4) times sixteen equal steps in φ.
+// Quadrature over the sphere, exact for polynomials up to degree 15: eight Gauss–Legendre nodes in
+// z (Abramowitz & Stegun, table 25.4) times sixteen equal steps in φ.
 #pragma once
 
 #include <math.h>
@@ -21,7 +21,7 @@ static inline double gauss_weight(int i)
     return i < 4 ? GAUSS_WEIGHTS[3 - i] : GAUSS_WEIGHTS[i - 4];
 }
 
-// Point p of those for z in [low, high] (−1, 1 for the sphere): its direction and its solid angle.
+// Direction and solid angle of point p, for z in [low, high] ([−1, 1] for the whole sphere).
 static inline double quadrature_point(int p, double low, double high, double direction[3])
 {
     static const double pi = 3.14159265358979323846;

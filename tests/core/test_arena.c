@@ -1,4 +1,4 @@
-// Memory that lives and dies together.
+// The arena allocator.
 #include "framework/test.h"
 
 #include "core/arena.h"
@@ -7,26 +7,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-TEST(pieces_are_zeroed_aligned_and_do_not_overlap)
+TEST(blocks_are_zeroed_aligned_and_do_not_overlap)
 {
-    enum { PIECES = 2000 };
-    static unsigned char *pieces[PIECES];
-    static size_t sizes[PIECES];
+    enum { BLOCKS = 2000 };
+    static unsigned char *blocks[BLOCKS];
+    static size_t sizes[BLOCKS];
     struct arena arena;
     arena_init(&arena, test_host());
     struct rng rng = rng_for(1, 0, 0);
     size_t total = 0;
-    for (int i = 0; i < PIECES; i++) {
+    for (int i = 0; i < BLOCKS; i++) {
         sizes[i] = 1 + rng_u32(&rng) % (i % 50 == 0 ? 200000 : 200);
-        pieces[i] = arena_alloc(&arena, sizes[i], 1);
-        assert_non_null(pieces[i]);
-        assert_int_equal((uintptr_t)pieces[i] % 16, 0);
-        for (size_t k = 0; k < sizes[i]; k++) CHECK(pieces[i][k] == 0);
-        memset(pieces[i], i & 255, sizes[i]);
+        blocks[i] = arena_alloc(&arena, sizes[i], 1);
+        assert_non_null(blocks[i]);
+        assert_int_equal((uintptr_t)blocks[i] % 16, 0);
+        for (size_t k = 0; k < sizes[i]; k++) CHECK(blocks[i][k] == 0);
+        memset(blocks[i], i & 255, sizes[i]);
         total += sizes[i];
     }
-    for (int i = 0; i < PIECES; i++)
-        for (size_t k = 0; k < sizes[i]; k++) CHECK(pieces[i][k] == (i & 255));
+    for (int i = 0; i < BLOCKS; i++)
+        for (size_t k = 0; k < sizes[i]; k++) CHECK(blocks[i][k] == (i & 255));
     assert_int_equal(arena.bytes, total);
     arena_finish(&arena);
 }
@@ -68,7 +68,7 @@ TEST(sizes_that_overflow_fail)
     arena_finish(&arena);
 }
 
-// An allocator whose blocks are aligned to 8 bytes only, and which fails when told to.
+// An allocator that aligns to 8 bytes only and fails on request.
 struct misaligned {
     bool fail;
     int live;
@@ -89,7 +89,7 @@ static void *misaligned_reallocate(void *user, void *old, size_t bytes)
     return block + 8;
 }
 
-TEST(pieces_are_aligned_whatever_the_allocator_aligns_to)
+TEST(blocks_are_aligned_for_any_alignment_of_the_allocator)
 {
     struct misaligned source = { 0 };
     struct host host = { .reallocate = misaligned_reallocate, .user = &source };

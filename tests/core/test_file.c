@@ -1,4 +1,4 @@
-// Whole reads, and writes that are seen whole or not at all.
+// Whole-file reads and atomic writes.
 #include "framework/test.h"
 
 #include "core/file.h"
@@ -29,7 +29,7 @@ static const char *read_text(const char *path)
     return text;
 }
 
-// An empty folder of its own.
+// A new, empty folder.
 static const char *fresh_folder(const char *name)
 {
     const char *path = test_path(name);
@@ -76,11 +76,11 @@ static void check_unwritable(const char *path, const char *why)
     CHECK(!file_begin(&writer, test_host(), path));
     CHECK_STRING(test_last_message(), expected);
     assert_int_equal(test_host()->failure, FAIL_FILE);
-    file_abort(&writer); // harmless after a failed begin
+    file_abort(&writer); // no effect after a failed begin
     CHECK(!file_begin_path(&writer, test_host(), path));
 }
 
-TEST(file_is_read_whole_with_a_zero_after_it)
+TEST(file_is_read_whole_with_a_terminating_zero)
 {
     const char *path = test_path("read.bin");
     FILE *f = fopen(path, "wb");
@@ -106,7 +106,7 @@ TEST(empty_file_is_zero_bytes)
     file_bytes_finish(test_host(), &bytes);
 }
 
-TEST(unreadable_things_fail_with_a_sentence)
+TEST(unreadable_files_fail_with_a_message)
 {
     check_unreadable(test_path("missing"), 0, "No such file or directory");
     check_unreadable(fresh_folder("a_folder"), 0, "it is a folder");
@@ -123,7 +123,7 @@ TEST(unreadable_things_fail_with_a_sentence)
     check_unreadable(sparse, 0, "4294967297 bytes are more than the 4294967296 allowed");
 }
 
-TEST(commit_shows_the_whole_content_and_leaves_nothing_else)
+TEST(commit_writes_the_whole_content_and_leaves_no_temporary_file)
 {
     const char *folder = fresh_folder("commit"), *path = in(folder, "out.txt");
     struct file_writer writer;
@@ -153,7 +153,7 @@ TEST(old_content_stays_until_the_commit)
     assert_int_equal(entries_in(folder), 1);
 }
 
-TEST(abort_leaves_nothing_behind)
+TEST(abort_leaves_no_file)
 {
     const char *folder = fresh_folder("abort");
     struct file_writer writer;
@@ -205,7 +205,7 @@ TEST(new_file_has_the_mode_that_the_umask_gives)
     assert_int_equal(info.st_mode & 0777, 0640);
 }
 
-TEST(unwritable_places_fail_with_a_sentence)
+TEST(unwritable_paths_fail_with_a_message)
 {
     char path[600];
     snprintf(path, sizeof path, "%s", test_path("no_such_folder/out.png"));
@@ -221,7 +221,7 @@ TEST(unwritable_places_fail_with_a_sentence)
     CHECK(stat("/dev/null", &info) == 0 && S_ISCHR(info.st_mode));
 }
 
-TEST(read_only_folder_fails_with_a_sentence)
+TEST(read_only_folder_fails_with_a_message)
 {
     if (geteuid() == 0) skip(); // root may write anywhere
     char folder[512];
@@ -249,9 +249,9 @@ TEST(symbolic_link_is_written_through)
     assert_int_equal(entries_in(folder), 2);
 }
 
-// Writes on a disk that is full at 4096 bytes, in effect, and says whether that could be committed;
-// where there is room again before the commit, the loss is known to the stream only.
-static bool commit_on_full_disk(const char *path, bool room_before_commit)
+// Writes with a file size limit of 4096 bytes, which acts as a full disk; returns whether the
+// commit succeeded. With space_before_commit only the stream knows of the failed write.
+static bool commit_on_full_disk(const char *path, bool space_before_commit)
 {
     struct file_writer writer;
     CHECK(file_begin(&writer, test_host(), path));
@@ -261,14 +261,14 @@ static bool commit_on_full_disk(const char *path, bool room_before_commit)
     void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
     for (int i = 0; i < 100000; i++) fputc('x', writer.stream);
-    if (room_before_commit) setrlimit(RLIMIT_FSIZE, &before);
+    if (space_before_commit) setrlimit(RLIMIT_FSIZE, &before);
     bool committed = file_commit(&writer);
     setrlimit(RLIMIT_FSIZE, &before);
     signal(SIGXFSZ, handler);
     return committed;
 }
 
-TEST(longest_name_that_a_folder_takes_can_be_written)
+TEST(file_name_of_maximum_length_can_be_written)
 {
     const char *folder = fresh_folder("long");
     char name[256] = "";
@@ -281,13 +281,13 @@ TEST(longest_name_that_a_folder_takes_can_be_written)
     assert_int_equal(entries_in(folder), 1);
 }
 
-TEST(failed_write_keeps_the_old_file_and_leaves_nothing_else)
+TEST(failed_write_keeps_the_old_file_and_leaves_no_temporary_file)
 {
     const char *folder = fresh_folder("full"), *path = in(folder, "out.txt");
     write_text(path, "old");
-    for (int room = 0; room < 2; room++) {
+    for (int space = 0; space < 2; space++) {
         test_forget_messages();
-        CHECK(!commit_on_full_disk(path, room));
+        CHECK(!commit_on_full_disk(path, space));
         assert_int_equal(test_host()->failure, FAIL_FILE);
         CHECK(strncmp(test_last_message(), "cannot write ", 13) == 0);
         CHECK_STRING(read_text(path), "old");
@@ -295,18 +295,18 @@ TEST(failed_write_keeps_the_old_file_and_leaves_nothing_else)
     }
 }
 
-TEST(failed_rename_leaves_nothing_behind)
+TEST(failed_rename_leaves_no_temporary_file)
 {
     const char *folder = fresh_folder("rename"), *path = in(folder, "out");
     struct file_writer writer;
     CHECK(file_begin(&writer, test_host(), path));
-    assert_int_equal(mkdir(path, 0777), 0); // appears meanwhile
+    assert_int_equal(mkdir(path, 0777), 0); // created between begin and commit
     CHECK(!file_commit(&writer));
     assert_int_equal(test_host()->failure, FAIL_FILE);
     assert_int_equal(entries_in(folder), 1);
 }
 
-TEST(zeroed_writer_can_be_ended_either_way)
+TEST(zeroed_writer_can_be_committed_and_aborted)
 {
     struct file_writer writer = { 0 };
     file_abort(&writer);
@@ -323,7 +323,7 @@ static void *no_memory(void *user, void *old, size_t bytes)
     return (*allowed)-- > 0 ? realloc(old, bytes) : NULL;
 }
 
-TEST(failing_memory_leaves_no_file_behind)
+TEST(out_of_memory_leaves_no_file)
 {
     const char *folder = fresh_folder("memory");
     for (int allowed = 0; allowed < 2; allowed++) {
@@ -336,7 +336,7 @@ TEST(failing_memory_leaves_no_file_behind)
     }
 }
 
-TEST(extension_is_what_follows_the_last_dot)
+TEST(extension_begins_after_the_last_dot)
 {
     static const char *const cases[][2] = {
         { "a.PNG", "png" },  { "x/y.tar.gz", "gz" },

@@ -1,16 +1,16 @@
-// Content hashes against the published ones.
+// Content hashes.
 #include "framework/test.h"
 
 #include "core/hash.h"
 
 #include <string.h>
 
-TEST(hash_of_nothing_is_the_published_one)
+TEST(hash_of_empty_input_is_the_published_value)
 {
     CHECK(hash_bytes(NULL, 0, 0) == UINT64_C(0x2d06800538d394c2));
 }
 
-TEST(each_byte_and_the_seed_count)
+TEST(hash_depends_on_each_byte_the_size_and_the_seed)
 {
     unsigned char bytes[1000];
     for (size_t size = 1; size <= sizeof bytes; size += 37) {

@@ -1,46 +1,46 @@
-// The host's memory, messages and failures, and checked sizes.
+// The host's memory, messages and failures, and checked arithmetic.
 #include "framework/test.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-// A host that counts its blocks and gives no more after `allowed` of them; each block begins dirty.
-struct ledger {
+// Counts its blocks, fails after `allowed` allocations, and fills new blocks with a pattern.
+struct host_fixture {
     int live, allowed;
     char message[2048];
     int messages;
     enum log_level level;
 };
 
-static void *ledger_reallocate(void *user, void *old, size_t bytes)
+static void *fixture_reallocate(void *user, void *old, size_t bytes)
 {
-    struct ledger *ledger = user;
+    struct host_fixture *fixture = user;
     if (bytes == 0) {
-        ledger->live -= old != NULL;
+        fixture->live -= old != NULL;
         free(old);
         return NULL;
     }
-    if (ledger->allowed-- <= 0) return NULL;
+    if (fixture->allowed-- <= 0) return NULL;
     void *block = realloc(old, bytes);
     if (!old) memset(block, 0xcd, bytes);
-    ledger->live += !old;
+    fixture->live += !old;
     return block;
 }
 
-static void ledger_log(void *user, enum log_level level, const char *message)
+static void fixture_log(void *user, enum log_level level, const char *message)
 {
-    struct ledger *ledger = user;
-    strncpy(ledger->message, message, sizeof ledger->message - 1);
-    ledger->level = level;
-    ledger->messages++;
+    struct host_fixture *fixture = user;
+    strncpy(fixture->message, message, sizeof fixture->message - 1);
+    fixture->level = level;
+    fixture->messages++;
 }
 
-static struct host ledger_host(struct ledger *ledger)
+static struct host fixture_host(struct host_fixture *fixture)
 {
-    return (struct host){ ledger_log, ledger_reallocate, ledger, LOG_WARNING, FAIL_NONE };
+    return (struct host){ fixture_log, fixture_reallocate, fixture, LOG_WARNING, FAIL_NONE };
 }
 
-TEST(sizes_multiply_and_add_unless_they_overflow)
+TEST(checked_arithmetic_fails_on_overflow)
 {
     size_t out = 7;
     CHECK(size_mul(0, SIZE_MAX, &out) && out == 0);
@@ -58,16 +58,16 @@ static void check_all_zero(const unsigned char *bytes, size_t size)
     for (size_t i = 0; i < size; i++) CHECK(bytes[i] == 0);
 }
 
-TEST(memory_is_zeroed_wherever_it_comes_from)
+TEST(memory_of_any_allocator_is_zeroed)
 {
-    struct ledger ledger = { .allowed = 1 };
-    struct host ours = ledger_host(&ledger), libc = host_default();
-    unsigned char *a = host_alloc(&ours, 10, 100), *b = host_alloc(&libc, 10, 100);
+    struct host_fixture fixture = { .allowed = 1 };
+    struct host custom = fixture_host(&fixture), libc = host_default();
+    unsigned char *a = host_alloc(&custom, 10, 100), *b = host_alloc(&libc, 10, 100);
     check_all_zero(a, 1000);
     check_all_zero(b, 1000);
-    host_free(&ours, a);
+    host_free(&custom, a);
     host_free(&libc, b);
-    assert_int_equal(ledger.live, 0);
+    assert_int_equal(fixture.live, 0);
 }
 
 TEST(empty_requests_give_distinct_pointers)
@@ -82,35 +82,35 @@ TEST(empty_requests_give_distinct_pointers)
     host_free(&host, NULL);
 }
 
-TEST(sizes_that_overflow_are_refused_before_the_allocator_sees_them)
+TEST(sizes_that_overflow_are_refused_without_calling_the_allocator)
 {
-    struct ledger ledger = { .allowed = 100 };
-    struct host host = ledger_host(&ledger);
+    struct host_fixture fixture = { .allowed = 100 };
+    struct host host = fixture_host(&fixture);
     assert_null(host_alloc(&host, SIZE_MAX / 2 + 1, 2));
     assert_int_equal(host.failure, FAIL_MEMORY);
     assert_null(host_alloc(&host, SIZE_MAX, 1));
     assert_null(host_realloc(&host, NULL, SIZE_MAX / 4, 8));
-    assert_int_equal(ledger.allowed, 100);
-    assert_int_equal(ledger.messages, 3);
-    assert_int_equal(ledger.level, LOG_ERROR);
+    assert_int_equal(fixture.allowed, 100);
+    assert_int_equal(fixture.messages, 3);
+    assert_int_equal(fixture.level, LOG_ERROR);
 }
 
-TEST(failing_allocator_gives_null_and_a_sentence)
+TEST(failing_allocator_gives_null_and_a_message)
 {
-    struct ledger ledger = { .allowed = 0 };
-    struct host host = ledger_host(&ledger);
+    struct host_fixture fixture = { .allowed = 0 };
+    struct host host = fixture_host(&fixture);
     assert_null(host_alloc(&host, 3, 4));
-    CHECK_STRING(ledger.message, "cannot allocate 12 bytes: out of memory");
+    CHECK_STRING(fixture.message, "cannot allocate 12 bytes: out of memory");
     assert_int_equal(host.failure, FAIL_MEMORY);
     assert_null(host_strdup(&host, "text"));
     assert_null(host_sprintf(&host, "%d", 5));
-    assert_int_equal(ledger.live, 0);
+    assert_int_equal(fixture.live, 0);
 }
 
-TEST(block_that_cannot_grow_stays_as_it_was)
+TEST(failed_realloc_keeps_the_old_block)
 {
-    struct ledger ledger = { .allowed = 2 };
-    struct host host = ledger_host(&ledger);
+    struct host_fixture fixture = { .allowed = 2 };
+    struct host host = fixture_host(&fixture);
     char *block = host_alloc(&host, 4, 1);
     memcpy(block, "abc", 4);
     char *grown = host_realloc(&host, block, 1000, 1);
@@ -118,7 +118,7 @@ TEST(block_that_cannot_grow_stays_as_it_was)
     assert_null(host_realloc(&host, grown, 2000, 1));
     CHECK_STRING(grown, "abc");
     host_free(&host, grown);
-    assert_int_equal(ledger.live, 0);
+    assert_int_equal(fixture.live, 0);
 }
 
 TEST(strings_are_copied_and_formatted_at_any_length)
@@ -133,38 +133,38 @@ TEST(strings_are_copied_and_formatted_at_any_length)
     host_free(&host, copy);
 }
 
-TEST(failure_is_false_and_says_its_kind_and_sentence)
+TEST(failure_returns_false_and_stores_kind_and_message)
 {
-    struct ledger ledger = { 0 };
-    struct host host = ledger_host(&ledger);
+    struct host_fixture fixture = { 0 };
+    struct host host = fixture_host(&fixture);
     CHECK(!host_fail(&host, FAIL_FORMAT, "cannot read %s: %d of %d", "a.b", 1, 2));
     assert_int_equal(host.failure, FAIL_FORMAT);
-    CHECK_STRING(ledger.message, "cannot read a.b: 1 of 2");
-    assert_int_equal(ledger.level, LOG_ERROR);
+    CHECK_STRING(fixture.message, "cannot read a.b: 1 of 2");
+    assert_int_equal(fixture.level, LOG_ERROR);
 }
 
 TEST(messages_above_the_level_are_not_sent)
 {
-    struct ledger ledger = { 0 };
-    struct host host = ledger_host(&ledger);
-    host_log(&host, LOG_INFO, "not heard");
-    assert_int_equal(ledger.messages, 0);
-    host_log(&host, LOG_WARNING, "heard");
-    assert_int_equal(ledger.messages, 1);
+    struct host_fixture fixture = { 0 };
+    struct host host = fixture_host(&fixture);
+    host_log(&host, LOG_INFO, "below the level");
+    assert_int_equal(fixture.messages, 0);
+    host_log(&host, LOG_WARNING, "at the level");
+    assert_int_equal(fixture.messages, 1);
     assert_int_equal(host.failure, FAIL_NONE);
 }
 
-TEST(long_messages_are_cut_not_lost)
+TEST(long_messages_are_truncated)
 {
-    struct ledger ledger = { 0 };
-    struct host host = ledger_host(&ledger);
+    struct host_fixture fixture = { 0 };
+    struct host host = fixture_host(&fixture);
     host_fail(&host, FAIL_FILE, "%05000d", 0);
-    CHECK(strlen(ledger.message) > 500 && strlen(ledger.message) < 5000);
+    CHECK(strlen(fixture.message) > 500 && strlen(fixture.message) < 5000);
 }
 
-TEST(silent_host_takes_failures)
+TEST(host_without_log_stores_failures)
 {
     struct host host = { 0 };
-    CHECK(!host_fail(&host, FAIL_DEVICE, "nobody hears this"));
+    CHECK(!host_fail(&host, FAIL_DEVICE, "not logged"));
     assert_int_equal(host.failure, FAIL_DEVICE);
 }

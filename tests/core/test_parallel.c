@@ -1,4 +1,4 @@
-// Parallel loops: each index once, and the same result on any number of threads.
+// Parallel loops: each index exactly once, same result for any number of threads.
 #include "framework/test.h"
 
 #include "core/parallel.h"
@@ -14,7 +14,7 @@ static void count_visit(void *user, size_t i)
     atomic_fetch_add_explicit((atomic_int *)user + i, 1, memory_order_relaxed);
 }
 
-TEST(each_index_is_visited_once_whatever_the_grain)
+TEST(each_index_is_visited_once_for_any_grain)
 {
     static const size_t grains[] = { 0, 1, 7, 1000, COUNT, COUNT + 1, SIZE_MAX };
     for (size_t g = 0; g < sizeof grains / sizeof *grains; g++) {
@@ -37,7 +37,7 @@ static void write_random(void *user, size_t i)
     ((uint32_t *)user)[i] = rng_u32(&rng);
 }
 
-TEST(result_is_that_of_a_plain_loop)
+TEST(result_equals_that_of_a_serial_loop)
 {
     static uint32_t parallel[COUNT], plain[COUNT];
     parallel_for(COUNT, 3, write_random, parallel);

@@ -1,4 +1,4 @@
-// Generators against published outputs, chi-square and discrepancy.
+// Generators against published outputs; chi-square and discrepancy tests.
 #include "framework/test.h"
 
 #include "core/rng.h"
@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// χ² of counts that should be equal, in standard deviations from its mean.
+// χ² for equal expected counts, in standard deviations from its mean.
 static double chi_square_excess(const int *counts, int bins, double expected)
 {
     double sum = 0.0;
@@ -69,8 +69,8 @@ TEST(numbers_are_in_the_unit_interval_and_uniform)
     CHECK(fabs(chi_square_excess(counts, 1000, 1000.0)) < 5.0);
 }
 
-// First numbers of generators that differ in one argument by one, in pairs, must fill the square
-// evenly.
+// Pairs of the first numbers of generators whose seeds differ by one in one argument must be
+// uniform in the unit square.
 static void check_neighbours(uint32_t pixel_step, uint32_t sample_step, uint32_t dimension_step)
 {
     enum { CELLS = 32, PAIRS = 200000 };
@@ -82,7 +82,7 @@ static void check_neighbours(uint32_t pixel_step, uint32_t sample_step, uint32_t
         int x = (int)(rng_float(&a) * (float)CELLS), y = (int)(rng_float(&b) * (float)CELLS);
         counts[y * CELLS + x]++;
     }
-    // Overlapping pairs widen the distribution of χ² a little.
+    // Overlapping pairs widen the distribution of χ² slightly.
     CHECK(fabs(chi_square_excess(counts, CELLS * CELLS, (double)PAIRS / (CELLS * CELLS))) < 6.0);
 }
 
@@ -93,8 +93,8 @@ TEST(neighbouring_pixels_samples_and_dimensions_are_independent)
     check_neighbours(0, 0, 1);
 }
 
-// The path tracer's numbers: of one word the two, and of neighbouring words the first, fill the
-// square evenly.
+// Random numbers of the path tracer: the two halves of a word, and the first halves of neighbouring
+// words, must be uniform in the unit square.
 TEST(mixed_words_have_independent_halves_and_neighbours)
 {
     enum { CELLS = 32, PAIRS = 200000 };
@@ -108,7 +108,7 @@ TEST(mixed_words_have_independent_halves_and_neighbours)
     }
     double expected = (double)PAIRS / (CELLS * CELLS);
     CHECK(fabs(chi_square_excess(halves, CELLS * CELLS, expected)) < 5.0);
-    CHECK(fabs(chi_square_excess(neighbours, CELLS * CELLS, expected)) < 6.0); // they overlap
+    CHECK(fabs(chi_square_excess(neighbours, CELLS * CELLS, expected)) < 6.0); // overlapping pairs
 }
 
 TEST(same_arguments_give_the_same_numbers)
@@ -146,7 +146,7 @@ static int compare_words(const void *a, const void *b)
 
 TEST(hash_is_one_to_one)
 {
-    enum { WORDS = 1 << 20 }; // a random function would have some 128 collisions among so many
+    enum { WORDS = 1 << 20 }; // a random function would have about 128 collisions
     static uint32_t hashes[WORDS];
     for (uint32_t i = 0; i < WORDS; i++) hashes[i] = pcg_hash(i);
     qsort(hashes, WORDS, sizeof *hashes, compare_words);
@@ -197,12 +197,12 @@ TEST(sobol_starts_with_the_known_points)
     }
 }
 
-TEST(sobol_has_one_point_in_each_elementary_interval_however_scrambled)
+TEST(sobol_has_one_point_in_each_elementary_interval_for_any_seed)
 {
     for (uint32_t seed = 0; seed < 4; seed++) {
         for (int a = 0; a <= 8; a++) {
             int counts[256] = { 0 }, width = 1 << a, height = 1 << (8 - a);
-            for (uint32_t i = 256; i < 512; i++) { // any aligned block of 2⁸ points is such a net
+            for (uint32_t i = 256; i < 512; i++) { // aligned blocks of 2⁸ points are (0, 8, 2)-nets
                 vec2s p = sobol_2d(i, seed);
                 counts[(int)(p.y * (float)height) * width + (int)(p.x * (float)width)]++;
             }

@@ -1,4 +1,4 @@
-// Each warp against its density: where samples fall (χ²), and that the density integrates to 1.
+// Each warp against its density: χ² of the samples, and the integral of the density.
 #include "framework/test.h"
 
 #include "core/rng.h"
@@ -14,7 +14,7 @@ static void check_chi_square(const int *counts, const double *expected)
 {
     double sum = 0.0, freedom = -1.0;
     for (int i = 0; i < CELLS; i++) {
-        if (expected[i] < 5.0) { // too few for χ²; they must be few
+        if (expected[i] < 5.0) { // too few for χ²
             CHECK(counts[i] < 20);
             continue;
         }
@@ -113,7 +113,7 @@ TEST(cone_samples_match_their_density)
 
 TEST(narrow_cone_is_uniform_in_solid_angle)
 {
-    // In a narrow cone z has few digits left; the sine has them all, and 1 − z = sin²/(1 + z).
+    // In a narrow cone 1 − z loses its digits; sin²/(1 + z) does not.
     int counts[ROWS] = { 0 };
     struct rng rng = rng_for(4, 5, 6);
     double whole = 1.0 - (double)COS_NARROW;
@@ -155,9 +155,9 @@ TEST(disk_samples_are_uniform_by_area)
 
 TEST(disk_map_is_concentric)
 {
-    // Squares around the middle become circles, and the middle stays.
-    vec2s middle = sample_disk((vec2s){ { 0.5f, 0.5f } });
-    CHECK(middle.x == 0.0f && middle.y == 0.0f);
+    // Concentric squares map to circles, and the centre to itself.
+    vec2s centre = sample_disk((vec2s){ { 0.5f, 0.5f } });
+    CHECK(centre.x == 0.0f && centre.y == 0.0f);
     for (int i = 0; i < 100; i++) {
         float t = (float)i / 100.0f;
         vec2s side[4] = { { { 0.2f, 0.2f + 0.6f * t } },
@@ -195,7 +195,7 @@ TEST(triangle_samples_are_uniform_by_area)
     CHECK_NEAR((sum - freedom) / sqrt(2.0 * freedom), 0.0, 5.0);
 }
 
-TEST(corners_of_the_square_give_finite_unit_directions)
+TEST(corners_of_the_unit_square_give_finite_unit_directions)
 {
     static const float ends[2] = { 0.0f, 0x1.fffffep-1f };
     for (int i = 0; i < 4; i++) {

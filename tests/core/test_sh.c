@@ -1,4 +1,4 @@
-// Spherical harmonics against quadrature and against evaluation.
+// Spherical harmonics against quadrature and pointwise evaluation.
 #include "framework/test.h"
 
 #include "core/quadrature.h"
@@ -34,7 +34,7 @@ static mat3s random_rotation(struct rng *rng)
     return glms_quat_mat3(q);
 }
 
-TEST(first_nine_functions_are_the_known_polynomials_in_our_order)
+TEST(first_nine_functions_are_the_known_polynomials_in_order)
 {
     struct rng rng = rng_for(1, 0, 0);
     for (int k = 0; k < 50; k++) {
@@ -87,7 +87,7 @@ TEST(fewer_bands_are_a_prefix_of_more)
 
 TEST(addition_theorem_holds_in_each_band)
 {
-    // Σ_m Y_lm(a) Y_lm(b) = (2l+1)/4π P_l(a·b): signs, scales and completeness of a band at once.
+    // Σ_m Y_lm(a) Y_lm(b) = (2l+1)/4π P_l(a·b): checks signs, scales and completeness of a band.
     struct rng rng = rng_for(2, 0, 0);
     for (int k = 0; k < 50; k++) {
         vec3s a = sample_sphere(rng_vec2(&rng)), b = sample_sphere(rng_vec2(&rng));
@@ -141,7 +141,7 @@ TEST(clamped_cosine_has_its_zonal_coefficients_by_quadrature)
     CHECK_NEAR(zonal[3], 0.0, 0.0);
 }
 
-TEST(turned_zonal_function_depends_on_the_angle_alone)
+TEST(rotated_zonal_function_depends_on_the_angle_alone)
 {
     struct rng rng = rng_for(4, 0, 0);
     float zonal[SH_MAX_BANDS] = { 0.9f, -0.3f, 0.5f, 0.2f, -0.7f, 0.4f };
@@ -149,11 +149,11 @@ TEST(turned_zonal_function_depends_on_the_angle_alone)
     for (int l = 0; l < SH_MAX_BANDS; l++) upright[l * (l + 1)] = zonal[l];
     for (int k = 0; k < 50; k++) {
         vec3s axis = sample_sphere(rng_vec2(&rng)), d = sample_sphere(rng_vec2(&rng));
-        float turned[SH_MAX_COUNT];
-        zh_rotate(SH_MAX_BANDS, zonal, axis, turned);
+        float rotated[SH_MAX_COUNT];
+        zh_rotate(SH_MAX_BANDS, zonal, axis, rotated);
         float t = glms_vec3_dot(axis, d);
         vec3s same_angle = vec3_of(sqrtf(fmaxf(0.0f, 1.0f - t * t)), 0.0f, t);
-        CHECK_NEAR(sh_dot(SH_MAX_BANDS, turned, d), sh_dot(SH_MAX_BANDS, upright, same_angle),
+        CHECK_NEAR(sh_dot(SH_MAX_BANDS, rotated, d), sh_dot(SH_MAX_BANDS, upright, same_angle),
                    2e-5);
     }
 }
@@ -191,7 +191,7 @@ TEST(irradiance_is_the_cosine_weighted_integral_over_the_hemisphere)
     }
 }
 
-TEST(convolution_is_the_integral_against_the_turned_kernel)
+TEST(convolution_is_the_integral_against_the_rotated_kernel)
 {
     struct rng rng = rng_for(6, 0, 0);
     float zonal[SH_MAX_BANDS] = { 0.3f, 0.8f, -0.2f, 0.6f, 0.1f, -0.5f };

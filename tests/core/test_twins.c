@@ -1,4 +1,4 @@
-// sh.glsl and rng.glsl, run on the GPU, give what sh.c and rng.c give.
+// The GLSL twins sh.glsl and rng.glsl, run on the GPU, against sh.c and rng.c.
 #include "framework/gpu_test.h"
 
 #include "core/rng.h"
@@ -41,7 +41,7 @@ static gpu_buffer make_buffer(struct gpu *gpu, const char *name, const void *dat
     return buffer;
 }
 
-// Once for the whole program; what it gave is kept.
+// Runs once per program; `twins` keeps the results.
 static void run_shader(struct gpu *gpu)
 {
     static bool ran;
@@ -74,7 +74,7 @@ static void check_floats(const float *a, const float *b, int count)
     for (int i = 0; i < count; i++) CHECK_NEAR(a[i], b[i], 3e-6);
 }
 
-TEST_GPU(basis_and_clamped_cosine_of_glsl_are_those_of_c)
+TEST_GPU(basis_and_clamped_cosine_equal_those_of_c)
 {
     run_shader(gpu);
     float zonal[3];
@@ -90,7 +90,7 @@ TEST_GPU(basis_and_clamped_cosine_of_glsl_are_those_of_c)
     }
 }
 
-TEST_GPU(evaluation_and_irradiance_of_glsl_are_those_of_c)
+TEST_GPU(evaluation_and_irradiance_equal_those_of_c)
 {
     run_shader(gpu);
     float irradiance[9];
@@ -110,7 +110,7 @@ TEST_GPU(evaluation_and_irradiance_of_glsl_are_those_of_c)
     }
 }
 
-TEST_GPU(hash_and_sequence_of_glsl_have_the_bits_of_c)
+TEST_GPU(hash_and_sequence_equal_those_of_c_to_the_bit)
 {
     run_shader(gpu);
     for (uint32_t i = 0; i < COUNT; i++) {

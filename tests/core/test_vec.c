@@ -1,4 +1,4 @@
-// Boxes, frames and transforms.
+// Boxes, orthonormal bases and transforms.
 #include "framework/test.h"
 
 #include "core/rng.h"
@@ -18,7 +18,7 @@ static vec3s random_point(struct rng *rng)
     return vec3_of(20.0f * x - 10.0f, 20.0f * y - 10.0f, 20.0f * z - 10.0f);
 }
 
-TEST(empty_box_takes_the_first_point)
+TEST(empty_box_grows_to_its_first_point)
 {
     struct box3 box = box3_empty();
     CHECK(box3_is_empty(box));
@@ -29,7 +29,7 @@ TEST(empty_box_takes_the_first_point)
     check_vec3(box.max, vec3_of(1.0f, -2.0f, 3.0f), 0.0);
 }
 
-TEST(box_is_the_smallest_around_its_points)
+TEST(box_is_the_smallest_that_contains_its_points)
 {
     struct box3 box = box3_empty();
     box = box3_add_point(box, vec3_of(1.0f, 5.0f, -3.0f));
@@ -103,7 +103,7 @@ TEST(basis_is_orthonormal_and_right_handed_everywhere)
     check_basis(glms_vec3_normalize(vec3_of(1e-4f, -1e-4f, -1.0f)));
 }
 
-TEST(unit_vectors_have_length_one_whatever_the_vector_had)
+TEST(unit_vectors_have_length_one_for_any_input_length)
 {
     static const float lengths[] = { 1e-44f, 1e-38f, 1e-20f, 1.0f, 1e20f, 3e38f };
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
@@ -118,7 +118,7 @@ TEST(unit_vectors_have_length_one_whatever_the_vector_had)
     CHECK(far.x == 1.0f && far.y == 0.0f && far.z == 0.0f);
 }
 
-TEST(points_move_with_a_translation_and_directions_do_not)
+TEST(translation_moves_points_but_not_directions)
 {
     mat4s move = glms_translate_make(vec3_of(1.0f, 2.0f, 3.0f));
     check_vec3(mat4_point(move, vec3_of(1.0f, 1.0f, 1.0f)), vec3_of(2.0f, 3.0f, 4.0f), 0.0);
