@@ -1,6 +1,6 @@
-// Image files are untrusted: cut anywhere or with bytes changed, they are refused with a message or
-// read as a whole picture, without a leak (under the address sanitizer) and without a wait.
-#include "pictures.h"
+// Image files are untrusted: truncated or corrupted, they are refused with a message or read as a
+// complete image, without leaks (under the address sanitizer) or hangs.
+#include "test_images.h"
 
 #include "image/exr.h"
 #include "image/png_file.h"
@@ -30,8 +30,8 @@ static bool read_png(const char *path, struct image *out)
 static void make_exr(const char *path)
 {
     struct image color, normal;
-    noise_picture(&color, 13, 35, 3);
-    flat_picture(&normal, 13, 35, 3, 0.5f); // packs well, beside chunks that do not
+    noise_image(&color, 13, 35, 3);
+    flat_image(&normal, 13, 35, 3, 0.5f); // compressible, unlike the noise
     const struct exr_layer layers[] = { { "color", &color }, { "normal", &normal } };
     const struct exr_attribute attribute = { "scene", "@cornell" };
     CHECK(exr_write(test_host(), path, layers, 2, &attribute, 1));
@@ -42,7 +42,7 @@ static void make_exr(const char *path)
 static void make_png(const char *path)
 {
     struct image image;
-    noise_picture(&image, 23, 11, 4);
+    noise_image(&image, 23, 11, 4);
     CHECK(png_write(test_host(), path, &image));
     image_finish(&image, test_host());
 }
@@ -69,7 +69,7 @@ static void check_cut_everywhere(const char *path, reader read)
     file_bytes_finish(test_host(), &whole);
 }
 
-// Either outcome is right, but a failure has a message and leaves nothing.
+// Both outcomes are valid, but a failure logs a message and allocates nothing.
 static void check_changed(const char *path, const uint8_t *data, size_t size, reader read)
 {
     struct image image;
@@ -87,8 +87,7 @@ static void check_changed(const char *path, const uint8_t *data, size_t size, re
     host_free(test_host(), value);
 }
 
-// Every byte of the header and table in turn, and a spread of those behind, gets each of a few
-// values.
+// Flips bits of each byte of the header and table, and of every 17th byte behind them.
 static void check_changed_everywhere(const char *path, size_t dense, reader read)
 {
     static const uint8_t masks[] = { 0xff, 0x01, 0x80 };

@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "test_images.h"
 
 #include "image/exr.h"
 
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool same_picture(const struct image *a, const struct image *b)
+static bool same_image(const struct image *a, const struct image *b)
 {
     return a->width == b->width && a->height == b->height && a->channels == b->channels &&
            memcmp(a->pixels, b->pixels,
@@ -28,14 +28,14 @@ TEST(floats_survive_exactly_for_every_channel_count_and_height)
     for (int channels = 1; channels <= 4; channels++) {
         for (size_t i = 0; i < sizeof heights / sizeof heights[0]; i++) {
             struct image image, back;
-            noise_picture(&image, 21, heights[i], channels);
-            image.pixels[0] = 1e-42f; // denormal, and all that is not finite
+            noise_image(&image, 21, heights[i], channels);
+            image.pixels[0] = 1e-42f; // denormal, then values that are not finite
             if (channels > 1) image.pixels[1] = -INFINITY;
             if (channels > 2) image.pixels[2] = NAN;
             const char *path = test_path("float.exr");
             CHECK(write_one(path, "color", &image));
             CHECK(exr_read(test_host(), path, NULL, &back));
-            CHECK(same_picture(&image, &back));
+            CHECK(same_image(&image, &back));
             image_finish(&image, test_host());
             image_finish(&back, test_host());
         }
@@ -44,14 +44,14 @@ TEST(floats_survive_exactly_for_every_channel_count_and_height)
 
 static const char LONG_NAME[] = "a.layer.whose.name.is.longer.than.thirty.one.characters";
 
-// Layers of every kind of name, in an order that is not the file's.
+// Layers of every kind of name, not in file order.
 static void write_layers(const char *path, struct image images[5])
 {
     static const int channels[5] = { 3, 1, 4, 2, 1 };
     static const char *const names[5] = { "normal", "depth", "color", LONG_NAME, "albedo" };
     struct exr_layer layers[5];
     for (int i = 0; i < 5; i++) {
-        noise_picture(&images[i], 19, 37, channels[i]);
+        noise_image(&images[i], 19, 37, channels[i]);
         images[i].pixels[7] = (float)i;
         layers[i] = (struct exr_layer){ names[i], &images[i] };
     }
@@ -71,7 +71,7 @@ TEST(every_layer_comes_back_by_its_name)
     write_layers(path, images);
     for (int i = 0; i < 5; i++) {
         CHECK(exr_read(test_host(), path, names[i], &back));
-        CHECK(same_picture(&images[i], &back));
+        CHECK(same_image(&images[i], &back));
         image_finish(&back, test_host());
         image_finish(&images[i], test_host());
     }
@@ -136,7 +136,7 @@ TEST(text_attributes_come_back_and_absent_ones_are_no_failure)
     host_free(test_host(), value);
     test_forget_messages();
     CHECK(!exr_attribute_value(test_host(), path, "nothing"));
-    CHECK(!exr_attribute_value(test_host(), path, "dataWindow")); // no text
+    CHECK(!exr_attribute_value(test_host(), path, "dataWindow")); // not a text attribute
     CHECK_STRING(test_last_message(), "");
     CHECK(!exr_attribute_value(test_host(), "/nowhere/at.exr", "technique"));
     CHECK(strstr(test_last_message(), "/nowhere/at.exr"));
@@ -159,7 +159,7 @@ TEST(the_same_layers_give_the_same_bytes)
     file_bytes_finish(test_host(), &second);
 }
 
-TEST(a_missing_layer_names_those_present)
+TEST(the_error_for_a_missing_layer_lists_those_present)
 {
     struct image images[5], back;
     const char *path = test_path("layers.exr");
@@ -173,11 +173,11 @@ TEST(a_missing_layer_names_those_present)
     for (int i = 0; i < 5; i++) image_finish(&images[i], test_host());
 }
 
-TEST(layers_that_cannot_be_stored_are_refused)
+TEST(invalid_layers_are_refused)
 {
     struct image a, b;
-    noise_picture(&a, 4, 4, 3);
-    noise_picture(&b, 5, 4, 3);
+    noise_image(&a, 4, 4, 3);
+    noise_image(&b, 5, 4, 3);
     const char *path = test_path("refused.exr");
     struct exr_layer two[2] = { { "color", &a }, { "normal", &b } };
     CHECK(!exr_write(test_host(), path, two, 2, NULL, 0));
@@ -195,15 +195,15 @@ TEST(layers_that_cannot_be_stored_are_refused)
         CHECK(strstr(test_last_message(), "attribute"));
     }
     struct file_bytes none;
-    CHECK(!file_read(test_host(), path, 0, &none)); // nothing half written is left behind
+    CHECK(!file_read(test_host(), path, 0, &none)); // no partial file
     image_finish(&a, test_host());
     image_finish(&b, test_host());
 }
 
-TEST(a_file_that_cannot_be_made_is_a_failure_that_names_it)
+TEST(a_file_that_cannot_be_created_is_a_failure_that_names_it)
 {
     struct image a;
-    noise_picture(&a, 4, 4, 3);
+    noise_image(&a, 4, 4, 3);
     CHECK(!write_one("/nowhere/out.exr", "color", &a));
     CHECK(strstr(test_last_message(), "/nowhere/out.exr"));
     CHECK(test_host()->failure == FAIL_FILE);
@@ -220,16 +220,16 @@ struct foreign {
     int channels;
     exr_attr_box2i_t window;
     int sampling;
-    bool raw_halves; // the value of pixel i is the half with the bits i
+    bool raw_halves; // pixel i is the half with the bits i
 };
 
-// Value of channel c at (x, y), the same in all three types.
+// Value of channel c at (x, y), exact in all three types.
 static unsigned foreign_value(int c, int x, int y)
 {
     return (unsigned)(64 * c + 8 * y + x);
 }
 
-// The bits of a half that holds a small integer exactly.
+// The bits of a half with the value of a small integer.
 static uint16_t half_of(unsigned value)
 {
     if (value == 0) return 0;
@@ -348,7 +348,7 @@ TEST(halves_floats_and_integers_of_every_lossless_compression_are_read)
     }
 }
 
-// The line order says in which order the chunks lie; where each is stands in the file's table.
+// The line order gives the order of the chunks in the file; the offset table locates each chunk.
 TEST(a_window_away_from_the_origin_and_any_line_order_are_read)
 {
     struct foreign f = foreign_rgb(EXR_PIXEL_FLOAT, EXR_COMPRESSION_ZIPS);
@@ -379,7 +379,7 @@ TEST(vectors_and_depths_of_other_programs_are_layers_too)
     CHECK(strstr(test_last_message(), "View.Depth View.Mist"));
 }
 
-// One channel of four, and three of four: nothing is written for the others.
+// Reading one channel of four, and three of four.
 TEST(one_layer_is_read_from_among_others)
 {
     static const exr_pixel_type_t types[] = { EXR_PIXEL_HALF, EXR_PIXEL_FLOAT, EXR_PIXEL_UINT };
@@ -403,8 +403,8 @@ TEST(one_layer_is_read_from_among_others)
     }
 }
 
-// Every half: the decoder is ours.
-TEST(all_halves_are_read_as_the_floats_that_they_are)
+// All 65536 halves, since exr_read.c has its own decoder.
+TEST(all_halves_are_read_exactly)
 {
     struct foreign f = foreign_rgb(EXR_PIXEL_HALF, EXR_COMPRESSION_NONE);
     f.names[0] = "Y";
@@ -443,7 +443,7 @@ TEST(subsampled_channels_are_refused)
     CHECK(test_host()->failure == FAIL_UNSUPPORTED);
 }
 
-TEST(tiled_files_are_refused_by_that_name)
+TEST(tiled_files_are_refused_and_called_tiled)
 {
     const char *path = test_path("tiled.exr");
     exr_context_t context = NULL;

@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "test_images.h"
 
 #include "image/flip.h"
 
@@ -45,8 +45,8 @@ static void fill_rgb(struct image *image, const double rgb[3])
         for (size_t c = 0; c < 3; c++) image->pixels[3 * i + c] = (float)rgb[c];
 }
 
-// ---- FLIP once more, in double, as the papers print it: convolutions in two dimensions, colours
-// by way of XYZ from the chromaticities of Rec. 709
+// ---- twin of FLIP in double, straight from the papers: two-dimensional convolutions, XYZ from the
+// chromaticities of Rec. 709
 
 struct twin {
     double xyz_from_rgb[3][3], rgb_from_xyz[3][3], white[3], largest;
@@ -117,7 +117,7 @@ static double redistribute(const struct twin *t, double distance)
     return power < knee ? 0.95 / knee * power : 0.95 + 0.05 * (power - knee) / (t->largest - knee);
 }
 
-// Y, Cx and Cz of a pixel; beyond the border those of the nearest.
+// Y, Cx and Cz of a pixel, clamped to the border.
 static void opponent(struct twin *t, const struct image *image, int x, int y, double out[3])
 {
     x = x < 0 ? 0 : x >= image->width ? image->width - 1 : x;
@@ -164,7 +164,7 @@ static void twin_colour(struct twin *t, const struct image *image, int x, int y,
     hunt(t, rgb, out);
 }
 
-// The magnitude of the edge (order 1) or point (order 2) filter's answer.
+// The magnitude of the edge (order 1) or point (order 2) filter's response.
 static double twin_feature(struct twin *t, const struct image *image, int x, int y, double ppd,
                            int order)
 {
@@ -199,7 +199,7 @@ static double twin_flip(struct twin *t, const struct image *a, const struct imag
     return pow(redistribute(t, hyab(p, q)), 1 - feature);
 }
 
-TEST(every_pixel_is_as_the_paper_prints_it_with_filters_in_two_dimensions)
+TEST(every_pixel_equals_the_twin_with_two_dimensional_filters)
 {
     const struct {
         int width, height;
@@ -210,8 +210,8 @@ TEST(every_pixel_is_as_the_paper_prints_it_with_filters_in_two_dimensions)
     struct twin t = make_twin();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct image a, b, map;
-        display_picture(&a, cases[i].width, cases[i].height, 3, 1);
-        display_picture(&b, cases[i].width, cases[i].height, 4, 2);
+        display_image(&a, cases[i].width, cases[i].height, 3, 1);
+        display_image(&b, cases[i].width, cases[i].height, 4, 2);
         map_of(&a, &b, cases[i].ppd, &map);
         for (int y = 0; y < map.height; y++)
             for (int x = 0; x < map.width; x++)
@@ -231,8 +231,8 @@ TEST(flat_colours_differ_by_their_hyab_distance_alone)
         for (size_t j = 0; j < i; j++) {
             struct image a, b;
             double p[3], q[3];
-            flat_picture(&a, 5, 4, 3, 0.0f);
-            flat_picture(&b, 5, 4, 3, 0.0f);
+            flat_image(&a, 5, 4, 3, 0.0f);
+            flat_image(&b, 5, 4, 3, 0.0f);
             fill_rgb(&a, colours[i]);
             fill_rgb(&b, colours[j]);
             hunt(&t, colours[i], p);
@@ -242,21 +242,21 @@ TEST(flat_colours_differ_by_their_hyab_distance_alone)
         }
 }
 
-TEST(green_and_blue_are_the_largest_difference_there_is)
+TEST(green_and_blue_have_the_largest_difference)
 {
     struct image a, b;
-    flat_picture(&a, 3, 3, 3, 0.0f);
-    flat_picture(&b, 3, 3, 3, 0.0f);
+    flat_image(&a, 3, 3, 3, 0.0f);
+    flat_image(&b, 3, 3, 3, 0.0f);
     fill_rgb(&a, (const double[]){ 0, 1, 0 });
     fill_rgb(&b, (const double[]){ 0, 0, 1 });
     CHECK_NEAR(mean_flip(&a, &b, PPD), 1.0, 1e-6);
     FINISH(&a, &b);
 }
 
-TEST(equal_images_do_not_differ_to_the_last_bit)
+TEST(equal_images_have_a_difference_of_exactly_zero)
 {
     struct image a;
-    display_picture(&a, 150, 140, 3, 3);
+    display_image(&a, 150, 140, 3, 3);
     CHECK(mean_flip(&a, &a, PPD) == 0.0);
     FINISH(&a);
 }
@@ -264,8 +264,8 @@ TEST(equal_images_do_not_differ_to_the_last_bit)
 TEST(the_difference_is_symmetric_and_between_0_and_1)
 {
     struct image a, b, ab, ba;
-    noise_picture(&a, 40, 30, 3); // far outside of what a screen shows
-    display_picture(&b, 40, 30, 3, 4);
+    noise_image(&a, 40, 30, 3); // far outside the display range
+    display_image(&b, 40, 30, 3, 4);
     map_of(&a, &b, PPD, &ab);
     map_of(&b, &a, PPD, &ba);
     CHECK(memcmp(ab.pixels, ba.pixels, 40 * 30 * sizeof(float)) == 0);
@@ -292,19 +292,19 @@ static void mirror(const struct image *in, struct image *out)
 
 TEST(a_mirrored_or_transposed_pair_has_the_map_mirrored_or_transposed)
 {
-    struct image a, b, map, turned, a2, b2, map2;
-    display_picture(&a, 300, 31, 3, 1); // several blocks; transposed, several bands
-    display_picture(&b, 300, 31, 3, 2);
+    struct image a, b, map, expected, a2, b2, map2;
+    display_image(&a, 300, 31, 3, 1); // several blocks; transposed, several bands
+    display_image(&b, 300, 31, 3, 2);
     map_of(&a, &b, PPD, &map);
     for (int kind = 0; kind < 2; kind++) {
-        void (*turn)(const struct image *, struct image *) = kind ? mirror : transpose;
-        turn(&a, &a2);
-        turn(&b, &b2);
-        turn(&map, &turned);
+        void (*transform)(const struct image *, struct image *) = kind ? mirror : transpose;
+        transform(&a, &a2);
+        transform(&b, &b2);
+        transform(&map, &expected);
         map_of(&a2, &b2, PPD, &map2);
         for (int i = 0; i < 300 * 31; i++)
-            CHECK_NEAR((double)map2.pixels[i], (double)turned.pixels[i], 1e-3);
-        FINISH(&a2, &b2, &map2, &turned);
+            CHECK_NEAR((double)map2.pixels[i], (double)expected.pixels[i], 1e-3);
+        FINISH(&a2, &b2, &map2, &expected);
     }
     FINISH(&a, &b, &map);
 }
@@ -312,10 +312,10 @@ TEST(a_mirrored_or_transposed_pair_has_the_map_mirrored_or_transposed)
 TEST(stronger_noise_is_a_larger_difference)
 {
     struct image a, noise;
-    display_picture(&a, 48, 32, 3, 1);
+    display_image(&a, 48, 32, 3, 1);
     double last = 0.0;
     for (int step = 1; step <= 5; step++) {
-        display_picture(&noise, 48, 32, 3, 9);
+        display_image(&noise, 48, 32, 3, 9);
         blend(&noise, &a, 1.0f - 0.2f * (float)step);
         double now = mean_flip(&noise, &a, PPD);
         CHECK(now > last + 0.005);
@@ -325,10 +325,10 @@ TEST(stronger_noise_is_a_larger_difference)
     FINISH(&a);
 }
 
-// Stripes of 8 pixels, whose edges are `shift` pixels to the right and `blur` pixels wide.
+// Stripes of 8 pixels, shifted right by `shift` pixels and box-blurred with radius `blur`.
 static void stripes(struct image *out, int shift, int blur)
 {
-    flat_picture(out, 64, 24, 3, 0.0f);
+    flat_image(out, 64, 24, 3, 0.0f);
     for (int i = 0; i < 64 * 24; i++)
         for (int k = -blur; k <= blur; k++)
             for (int c = 0; c < 3; c++)
@@ -351,7 +351,7 @@ TEST(a_stronger_blur_is_a_larger_difference)
     FINISH(&sharp);
 }
 
-TEST(a_larger_shift_is_a_larger_difference_and_none_at_all_is_none)
+TEST(a_larger_shift_is_a_larger_difference_and_no_shift_is_none)
 {
     struct image still, moved;
     stripes(&still, 0, 0);
@@ -370,9 +370,9 @@ TEST(a_larger_shift_is_a_larger_difference_and_none_at_all_is_none)
 TEST(a_fine_pattern_disappears_with_distance_and_a_flat_difference_does_not)
 {
     struct image pattern, mean, other, map;
-    flat_picture(&pattern, 65, 65, 3, 0.0f);
-    flat_picture(&mean, 65, 65, 3, 0.5f);
-    flat_picture(&other, 65, 65, 3, 0.6f);
+    flat_image(&pattern, 65, 65, 3, 0.0f);
+    flat_image(&mean, 65, 65, 3, 0.5f);
+    flat_image(&other, 65, 65, 3, 0.6f);
     for (int i = 0; i < 65 * 65 * 3; i++)
         pattern.pixels[i] = (i / 3 % 65 + i / 195) % 2 ? 0.8f : 0.2f;
     const float ppd[] = { 10.0f, 25.0f, 40.0f, 100.0f };
@@ -389,45 +389,45 @@ TEST(a_fine_pattern_disappears_with_distance_and_a_flat_difference_does_not)
     FINISH(&pattern, &mean, &other);
 }
 
-// The difference in the middle of a grey field of a square of 2·radius + 1 pixels that is white.
+// The difference at the centre of a white square of 2·radius + 1 pixels on a grey field.
 static double middle_of_square(int radius, float ppd)
 {
     struct image a, b, map;
-    flat_picture(&a, 61, 61, 3, 0.2f);
-    flat_picture(&b, 61, 61, 3, 0.2f);
+    flat_image(&a, 61, 61, 3, 0.2f);
+    flat_image(&b, 61, 61, 3, 0.2f);
     for (int y = 30 - radius; y <= 30 + radius; y++)
         for (int x = 30 - radius; x <= 30 + radius; x++)
             for (int c = 0; c < 3; c++) image_at(&a, x, y)[c] = 1.0f;
     map_of(&a, &b, ppd, &map);
     double value = (double)*image_at(&map, 30, 30);
-    CHECK(*image_at(&map, 0, 0) == 0.0f); // as far as the filters reach and no farther
+    CHECK(*image_at(&map, 0, 0) == 0.0f); // outside the filters' support
     FINISH(&a, &b, &map);
     return value;
 }
 
-TEST(a_dot_is_seen_less_than_a_patch_and_the_less_the_farther_away)
+TEST(a_dot_differs_less_than_a_patch_and_less_from_farther_away)
 {
     double dot = middle_of_square(0, PPD), patch = middle_of_square(15, PPD);
     CHECK(dot > 0.1 && patch > dot + 0.1);
     CHECK(middle_of_square(0, 30.0f) > dot && dot > middle_of_square(0, 120.0f));
 }
 
-TEST(one_pixel_is_judged_as_a_field_of_its_colour)
+TEST(an_image_of_one_pixel_equals_a_flat_field_of_its_colour)
 {
     struct image one, field, black, dark;
-    flat_picture(&one, 1, 1, 3, 0.7f);
-    flat_picture(&black, 1, 1, 3, 0.1f);
-    flat_picture(&field, 20, 20, 3, 0.7f);
-    flat_picture(&dark, 20, 20, 3, 0.1f);
+    flat_image(&one, 1, 1, 3, 0.7f);
+    flat_image(&black, 1, 1, 3, 0.1f);
+    flat_image(&field, 20, 20, 3, 0.7f);
+    flat_image(&dark, 20, 20, 3, 0.1f);
     CHECK_NEAR(mean_flip(&one, &black, PPD), mean_flip(&field, &dark, PPD), 1e-5);
     FINISH(&one, &black, &field, &dark);
 }
 
-TEST(an_impossible_screen_is_refused)
+TEST(pixels_per_degree_out_of_range_are_refused)
 {
     const float wrong[] = { 0.0f, -67.0f, 0.5f, 2000.0f, NAN, INFINITY };
     struct image a, map;
-    flat_picture(&a, 2, 2, 3, 0.5f);
+    flat_image(&a, 2, 2, 3, 0.5f);
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         CHECK(!flip_map(test_host(), &a, &a, wrong[i], &map) && !map.pixels);
         CHECK(test_host()->failure == FAIL_ARGUMENT);
@@ -438,8 +438,8 @@ TEST(an_impossible_screen_is_refused)
 TEST(the_map_does_not_depend_on_the_number_of_threads)
 {
     struct image a, b, first, again;
-    display_picture(&a, 200, 150, 3, 1);
-    display_picture(&b, 200, 150, 3, 2);
+    display_image(&a, 200, 150, 3, 1);
+    display_image(&b, 200, 150, 3, 2);
     omp_set_num_threads(1);
     map_of(&a, &b, PPD, &first);
     for (int i = 0; i < 3; i++) {
@@ -453,8 +453,8 @@ TEST(the_map_does_not_depend_on_the_number_of_threads)
 
 // ---- HDR-FLIP
 
-// What the fit of the ACES tone mapper brings to 0.85, from the printed formula by bisection.
-static double exposed_to_85(void)
+// The value that the ACES fit maps to 0.85, by bisection of the published formula.
+static double aces_inverse_85(void)
 {
     double low = 0, high = 100;
     for (int i = 0; i < 100; i++) {
@@ -469,9 +469,9 @@ TEST(exposures_go_from_the_brightest_pixel_to_the_median)
 {
     struct image image;
     struct flip_exposures e;
-    double x = exposed_to_85();
-    // The range that the authors publish for their example, −12.5423 to 0.9427 in 14 exposures.
-    flat_picture(&image, 11, 1, 3, (float)(x / exp2(0.9427)));
+    double x = aces_inverse_85();
+    // The authors' published example: −12.5423 to 0.9427 in 14 exposures.
+    flat_image(&image, 11, 1, 3, (float)(x / exp2(0.9427)));
     for (int c = 0; c < 3; c++) {
         image_at(&image, 3, 0)[c] = (float)(x / exp2(-12.5423));
         image_at(&image, 4, 0)[c] = -5.0f; // counts as black
@@ -480,7 +480,7 @@ TEST(exposures_go_from_the_brightest_pixel_to_the_median)
     CHECK_NEAR(e.start, -12.5423, 1e-4);
     CHECK_NEAR(e.stop, 0.9427, 1e-4);
     assert_int_equal(e.count, 14);
-    // Only the pixels that count.
+    // With a mask.
     unsigned char counts[11] = { [0] = 1, [1] = 1 };
     CHECK(flip_exposures_of(test_host(), &image, counts, &e));
     CHECK(e.count == 1 && e.start == e.stop);
@@ -488,11 +488,11 @@ TEST(exposures_go_from_the_brightest_pixel_to_the_median)
     FINISH(&image);
 }
 
-TEST(mostly_black_pictures_are_exposed_for_what_is_lit)
+TEST(mostly_black_images_are_exposed_for_their_lit_pixels)
 {
     struct image image;
     struct flip_exposures e;
-    flat_picture(&image, 10, 1, 3, 0.0f);
+    flat_image(&image, 10, 1, 3, 0.0f);
     CHECK(flip_exposures_of(test_host(), &image, NULL, &e) && e.count == 1);
     for (int c = 0; c < 3; c++)
         image_at(&image, 2, 0)[c] = 1.0f, image_at(&image, 5, 0)[c] = 1.0f,
@@ -513,10 +513,10 @@ static void hdr_map_of(const struct image *a, const struct image *b, struct flip
     CHECK(flip_map_hdr(test_host(), a, b, e, PPD, map));
 }
 
-// Shade on the left, five stops brighter light on the right.
+// Five stops brighter on the right.
 static void sun_and_shade(struct image *out, int seed)
 {
-    display_picture(out, 64, 20, 3, seed);
+    display_image(out, 64, 20, 3, seed);
     for (int i = 0; i < 64 * 20 * 3; i++) out->pixels[i] *= i / 3 % 64 < 32 ? 3.0f : 96.0f;
 }
 
@@ -528,7 +528,7 @@ TEST(the_hdr_difference_is_the_largest_over_its_exposures)
     sun_and_shade(&b, 2);
     hdr_map_of(&a, &b, &e, &map);
     CHECK(e.count > 3);
-    flat_picture(&largest, 64, 20, 1, 0.0f);
+    flat_image(&largest, 64, 20, 1, 0.0f);
     for (int i = 0; i < e.count; i++) {
         double stops = e.start + (e.stop - e.start) / (e.count - 1) * i;
         struct flip_exposures single = { stops, stops, 1 };
@@ -541,7 +541,7 @@ TEST(the_hdr_difference_is_the_largest_over_its_exposures)
     FINISH(&a, &b, &map, &largest);
 }
 
-TEST(the_hdr_difference_does_not_change_with_the_unit_of_light)
+TEST(the_hdr_difference_does_not_depend_on_the_unit_of_radiance)
 {
     struct image a, b, map, scaled;
     struct flip_exposures e;
@@ -555,7 +555,7 @@ TEST(the_hdr_difference_does_not_change_with_the_unit_of_light)
     FINISH(&a, &b, &map, &scaled);
 }
 
-TEST(equal_radiance_does_not_differ_also_where_there_is_none)
+TEST(equal_radiance_has_no_difference_even_when_black)
 {
     struct image a, map;
     struct flip_exposures e;
@@ -563,20 +563,20 @@ TEST(equal_radiance_does_not_differ_also_where_there_is_none)
     hdr_map_of(&a, &a, &e, &map);
     CHECK(mean_of(&map) == 0.0);
     FINISH(&a, &map);
-    flat_picture(&a, 4, 4, 3, 0.0f);
+    flat_image(&a, 4, 4, 3, 0.0f);
     hdr_map_of(&a, &a, &e, &map);
     CHECK(mean_of(&map) == 0.0);
     FINISH(&a, &map);
 }
 
-TEST(a_difference_in_the_shade_and_one_in_the_sun_are_both_seen)
+TEST(differences_in_shadow_and_in_sunlight_are_both_detected)
 {
     for (int side = 0; side < 2; side++) {
         struct image a, b, map, bright;
         struct flip_exposures e;
-        flat_picture(&b, 64, 20, 3, 0.0f);
+        flat_image(&b, 64, 20, 3, 0.0f);
         for (int i = 0; i < 64 * 20 * 3; i++) b.pixels[i] = i / 3 % 64 < 36 ? 1.0f : 4000.0f;
-        flat_picture(&a, 64, 20, 3, 0.0f);
+        flat_image(&a, 64, 20, 3, 0.0f);
         for (int i = 0; i < 64 * 20 * 3; i++)
             a.pixels[i] = b.pixels[i] * ((i / 3 % 64 < 36) == (side == 0) ? 0.5f : 1.0f);
         hdr_map_of(&a, &b, &e, &map);

@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "test_images.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,7 +10,7 @@ TEST(image_init_gives_zeroed_pixels)
     for (int i = 0; i < 7 * 3 * 4; i++) CHECK(image.pixels[i] == 0.0f);
     image_finish(&image, test_host());
     CHECK(!image.pixels);
-    image_finish(&image, test_host()); // a zeroed image too
+    image_finish(&image, test_host()); // accepts a zeroed image
 }
 
 TEST(image_init_refuses_sizes_outside_its_bounds)
@@ -33,7 +33,7 @@ TEST(image_init_refuses_sizes_outside_its_bounds)
     image_finish(&widest, test_host());
 }
 
-TEST(image_at_walks_rows_from_the_top_with_channels_together)
+TEST(image_at_addresses_rows_from_the_top_with_interleaved_channels)
 {
     struct image image;
     CHECK(image_init(&image, test_host(), 5, 4, 3));
@@ -46,7 +46,7 @@ TEST(image_at_walks_rows_from_the_top_with_channels_together)
 TEST(image_count_not_finite_counts_a_pixel_once)
 {
     struct image image;
-    flat_picture(&image, 4, 4, 3, 1.0f);
+    flat_image(&image, 4, 4, 3, 1.0f);
     CHECK(image_count_not_finite(&image) == 0);
     image_at(&image, 1, 1)[0] = NAN;
     image_at(&image, 1, 1)[2] = INFINITY;
@@ -55,11 +55,11 @@ TEST(image_count_not_finite_counts_a_pixel_once)
     image_finish(&image, test_host());
 }
 
-TEST(image_side_by_side_keeps_both_and_leaves_a_black_gap)
+TEST(image_side_by_side_copies_both_with_a_black_gap)
 {
     struct image a, b, both;
-    noise_picture(&a, 3, 2, 3);
-    noise_picture(&b, 5, 2, 3);
+    noise_image(&a, 3, 2, 3);
+    noise_image(&b, 5, 2, 3);
     CHECK(image_side_by_side(&both, test_host(), &a, &b, 2));
     CHECK(both.width == 10 && both.height == 2 && both.channels == 3);
     for (int y = 0; y < 2; y++) {
@@ -77,11 +77,11 @@ TEST(image_side_by_side_keeps_both_and_leaves_a_black_gap)
     image_finish(&b, test_host());
 }
 
-TEST(image_side_by_side_names_what_differs)
+TEST(image_side_by_side_reports_both_sizes_on_a_mismatch)
 {
     struct image a, b, both;
-    flat_picture(&a, 3, 2, 3, 0.0f);
-    flat_picture(&b, 3, 4, 3, 0.0f);
+    flat_image(&a, 3, 2, 3, 0.0f);
+    flat_image(&b, 3, 4, 3, 0.0f);
     CHECK(!image_side_by_side(&both, test_host(), &a, &b, 0));
     CHECK(strstr(test_last_message(), "3x2") && strstr(test_last_message(), "3x4"));
     CHECK(!image_side_by_side(&both, test_host(), &a, &a, -1));

@@ -1,11 +1,11 @@
-// Pictures for the image tests.
+// Images for the image tests.
 #pragma once
 
 #include "framework/test.h"
 #include "image/image.h"
 
-// Values that no 16-bit format holds: all of [-1000, 1000], with a few zeros.
-static inline void noise_picture(struct image *out, int width, int height, int channels)
+// Noise in [-1000, 1000] with a few zeros; no 16-bit format represents it exactly.
+static inline void noise_image(struct image *out, int width, int height, int channels)
 {
     CHECK(image_init(out, test_host(), width, height, channels));
     for (size_t i = 0; i < (size_t)width * (size_t)height * (size_t)channels; i++) {
@@ -15,15 +15,15 @@ static inline void noise_picture(struct image *out, int width, int height, int c
     }
 }
 
-static inline void flat_picture(struct image *out, int width, int height, int channels, float value)
+static inline void flat_image(struct image *out, int width, int height, int channels, float value)
 {
     CHECK(image_init(out, test_host(), width, height, channels));
     for (size_t i = 0; i < (size_t)width * (size_t)height * (size_t)channels; i++)
         out->pixels[i] = value;
 }
 
-// Display values, 0…1, of smooth shapes and noise; another seed is another picture.
-static inline void display_picture(struct image *out, int width, int height, int channels, int seed)
+// Display values in 0…1: blocks and noise. Each seed gives another image.
+static inline void display_image(struct image *out, int width, int height, int channels, int seed)
 {
     CHECK(image_init(out, test_host(), width, height, channels));
     for (int y = 0; y < height; y++)

@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "test_images.h"
 
 #include "image/metrics.h"
 #include "image/tonemap.h"
@@ -22,7 +22,7 @@ static void fill(struct image *image, int width, int height, const float *values
 TEST(equal_images_have_no_error_and_infinite_psnr)
 {
     struct image a;
-    noise_picture(&a, 9, 5, 3);
+    noise_image(&a, 9, 5, 3);
     struct metrics m = measure(&a, &a);
     CHECK(m.mse == 0.0 && m.mae == 0.0 && m.relmse == 0.0 && isinf(m.psnr) && m.psnr > 0.0);
     CHECK(memcmp(m.mean_a, m.mean_b, sizeof m.mean_a) == 0);
@@ -51,8 +51,8 @@ TEST(metrics_of_two_pixels_are_as_computed_by_hand)
 TEST(relmse_against_black_divides_by_a_tenth_squared)
 {
     struct image a, b;
-    flat_picture(&a, 3, 3, 3, 0.02f);
-    flat_picture(&b, 3, 3, 3, 0.0f);
+    flat_image(&a, 3, 3, 3, 0.02f);
+    flat_image(&b, 3, 3, 3, 0.0f);
     CHECK_RELATIVE(measure(&a, &b).relmse, 0.04, 1e-6);
     image_finish(&a, test_host());
     image_finish(&b, test_host());
@@ -61,8 +61,8 @@ TEST(relmse_against_black_divides_by_a_tenth_squared)
 TEST(relmse_does_not_change_with_exposure)
 {
     struct image a, b;
-    noise_picture(&a, 16, 9, 3);
-    noise_picture(&b, 16, 9, 3);
+    noise_image(&a, 16, 9, 3);
+    noise_image(&b, 16, 9, 3);
     for (int i = 0; i < 16 * 9 * 3; i++)
         a.pixels[i] = fabsf(a.pixels[i]), b.pixels[i] = 0.5f * a.pixels[i] + 3.0f;
     struct metrics before = measure(&a, &b);
@@ -78,8 +78,8 @@ TEST(relmse_does_not_change_with_exposure)
 TEST(mse_mae_and_psnr_are_symmetric)
 {
     struct image a, b;
-    noise_picture(&a, 16, 9, 3);
-    noise_picture(&b, 16, 9, 4); // other values, and the fourth channel does not count
+    noise_image(&a, 16, 9, 3);
+    noise_image(&b, 16, 9, 4); // other values; the fourth channel does not count
     struct metrics ab = measure(&a, &b), ba = measure(&b, &a);
     CHECK(ab.mse == ba.mse && ab.mae == ba.mae && ab.psnr == ba.psnr);
     CHECK(ab.mse > 0.0 && ab.mse >= ab.mae * ab.mae); // Jensen
@@ -90,10 +90,10 @@ TEST(mse_mae_and_psnr_are_symmetric)
 TEST(more_of_the_same_error_is_a_larger_error)
 {
     struct image a, b;
-    noise_picture(&b, 16, 9, 3);
+    noise_image(&b, 16, 9, 3);
     struct metrics last = { .psnr = INFINITY };
     for (int step = 1; step < 6; step++) {
-        noise_picture(&a, 16, 9, 3);
+        noise_image(&a, 16, 9, 3);
         for (int i = 0; i < 16 * 9 * 3; i++) a.pixels[i] += 0.1f * (float)(step * (i % 7));
         struct metrics m = measure(&a, &b);
         CHECK(m.mse > last.mse && m.mae > last.mae && m.relmse > last.relmse && m.psnr < last.psnr);
@@ -103,12 +103,12 @@ TEST(more_of_the_same_error_is_a_larger_error)
     image_finish(&b, test_host());
 }
 
-TEST(a_size_mismatch_names_both_sizes)
+TEST(the_error_for_a_size_mismatch_has_both_sizes)
 {
     struct image a, b, map;
     struct metrics m;
-    flat_picture(&a, 6, 4, 3, 0.0f);
-    flat_picture(&b, 5, 3, 3, 0.0f);
+    flat_image(&a, 6, 4, 3, 0.0f);
+    flat_image(&b, 5, 3, 3, 0.0f);
     CHECK(!metrics_compute(test_host(), &a, &b, NULL, &m));
     CHECK(strstr(test_last_message(), "6x4") && strstr(test_last_message(), "5x3"));
     CHECK(test_host()->failure == FAIL_ARGUMENT);
@@ -122,8 +122,8 @@ TEST(too_few_channels_are_refused)
 {
     struct image a, b;
     struct metrics m;
-    flat_picture(&a, 2, 2, 3, 0.0f);
-    flat_picture(&b, 2, 2, 1, 0.0f);
+    flat_image(&a, 2, 2, 3, 0.0f);
+    flat_image(&b, 2, 2, 1, 0.0f);
     CHECK(!metrics_compute(test_host(), &a, &b, NULL, &m));
     CHECK(!metrics_compute(test_host(), &b, &a, NULL, &m));
     image_finish(&a, test_host());
@@ -134,8 +134,8 @@ TEST(pixels_that_are_not_finite_are_counted_in_the_message)
 {
     struct image a, b;
     struct metrics m;
-    flat_picture(&a, 8, 8, 3, 1.0f);
-    flat_picture(&b, 8, 8, 3, 1.0f);
+    flat_image(&a, 8, 8, 3, 1.0f);
+    flat_image(&b, 8, 8, 3, 1.0f);
     for (int i = 0; i < 5; i++) image_at(&a, i, 2)[i % 3] = NAN;
     CHECK(!metrics_compute(test_host(), &a, &b, NULL, &m));
     CHECK(strstr(test_last_message(), "5 of 64 pixels of the image"));
@@ -155,8 +155,8 @@ TEST(the_error_map_rises_in_lightness_as_the_error_does)
 {
     enum { N = 201 };
     struct image a, b, map;
-    flat_picture(&b, N, 1, 3, 1.0f);
-    flat_picture(&a, N, 1, 3, 1.0f);
+    flat_image(&b, N, 1, 3, 1.0f);
+    flat_image(&a, N, 1, 3, 1.0f);
     for (int x = 0; x < N; x++)
         for (int c = 0; c < 3; c++) image_at(&a, x, 0)[c] += 2.0f * (float)x / (float)(N - 1);
     CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 2.0f, &map));
@@ -182,8 +182,8 @@ TEST(the_error_map_rises_in_lightness_as_the_error_does)
 TEST(the_automatic_scale_of_the_error_map_is_the_99th_percentile)
 {
     struct image a, b, automatic, given;
-    flat_picture(&a, 200, 1, 3, 0.0f);
-    flat_picture(&b, 200, 1, 3, 0.0f);
+    flat_image(&a, 200, 1, 3, 0.0f);
+    flat_image(&b, 200, 1, 3, 0.0f);
     for (int x = 0; x < 200; x++) // errors 1…200, in scrambled order; two lie above the percentile
         for (int c = 0; c < 3; c++) image_at(&a, x, 0)[c] = (float)((x * 77) % 200 + 1);
     CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 0.0f, &automatic));
@@ -198,11 +198,11 @@ TEST(the_automatic_scale_of_the_error_map_is_the_99th_percentile)
     image_finish(&b, test_host());
 }
 
-TEST(one_wrong_pixel_in_many_is_still_seen)
+TEST(a_single_wrong_pixel_stays_visible_in_the_error_map)
 {
     struct image a, b, map;
-    flat_picture(&a, 40, 30, 3, 0.5f);
-    flat_picture(&b, 40, 30, 3, 0.5f);
+    flat_image(&a, 40, 30, 3, 0.5f);
+    flat_image(&b, 40, 30, 3, 0.5f);
     image_at(&a, 7, 9)[1] = 4.0f;
     CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_ABSOLUTE, 0.0f, &map));
     CHECK_NEAR((double)image_at(&map, 7, 9)[0], 1.0, 1e-4);
@@ -212,14 +212,14 @@ TEST(one_wrong_pixel_in_many_is_still_seen)
     image_finish(&map, test_host());
 }
 
-// ---- what is shown, and which pixels count
+// ---- tone mapping and masks
 
-TEST(radiance_is_shown_with_one_exposure_and_display_values_as_they_are)
+TEST(radiance_is_tone_mapped_with_one_exposure_and_display_values_are_not)
 {
     struct image a, b, shown_a, shown_b;
     const struct metrics_options radiance = { .radiance = true, .ev = 3.0f };
-    display_picture(&a, 24, 17, 3, 1);
-    display_picture(&b, 24, 17, 3, 2);
+    display_image(&a, 24, 17, 3, 1);
+    display_image(&b, 24, 17, 3, 2);
     for (int i = 0; i < 24 * 17 * 3; i++) a.pixels[i] *= 20.0f, b.pixels[i] *= 20.0f;
     CHECK(image_tonemap(&shown_a, test_host(), &a, 3.0f));
     CHECK(image_tonemap(&shown_b, test_host(), &b, 3.0f));
@@ -228,7 +228,7 @@ TEST(radiance_is_shown_with_one_exposure_and_display_values_as_they_are)
     CHECK(light.flip == display.flip && light.ssim == display.ssim);
     CHECK(light.flip != unscaled.flip);
     CHECK(light.mse == unscaled.mse &&
-          light.relmse == unscaled.relmse); // of the values in the file
+          light.relmse == unscaled.relmse); // of radiance, not of display values
     CHECK(light.flip_hdr > 0.0 && light.flip_hdr <= 1.0 && isnan(display.flip_hdr));
     CHECK(light.counted == 24 * 17 && light.ignored == 0);
     image_finish(&a, test_host());
@@ -240,9 +240,9 @@ TEST(radiance_is_shown_with_one_exposure_and_display_values_as_they_are)
 TEST(only_pixels_in_the_mask_count)
 {
     struct image a, b, mask, half_a, half_b;
-    display_picture(&a, 20, 10, 3, 1);
-    display_picture(&b, 20, 10, 3, 2);
-    flat_picture(&mask, 20, 10, 2, -1.0f);
+    display_image(&a, 20, 10, 3, 1);
+    display_image(&b, 20, 10, 3, 2);
+    flat_image(&mask, 20, 10, 2, -1.0f);
     CHECK(image_init(&half_a, test_host(), 10, 10, 3));
     CHECK(image_init(&half_b, test_host(), 10, 10, 3));
     for (int y = 0; y < 10; y++)
@@ -262,7 +262,7 @@ TEST(only_pixels_in_the_mask_count)
     CHECK(masked.counted == 100 && masked.ignored == 0);
     CHECK(masked.mse == half.mse && masked.mae == half.mae && masked.relmse == half.relmse);
     CHECK(memcmp(masked.mean_b, half.mean_b, sizeof half.mean_b) == 0);
-    CHECK_NEAR(masked.flip, half.flip, 0.1); // the filters see what is beyond the mask
+    CHECK_NEAR(masked.flip, half.flip, 0.1); // the filters reach beyond the mask
     CHECK(masked.ssim < 1.0 && masked.flip > 0.0);
     image_finish(&a, test_host());
     image_finish(&b, test_host());
@@ -271,13 +271,13 @@ TEST(only_pixels_in_the_mask_count)
     image_finish(&half_b, test_host());
 }
 
-TEST(ignored_pixels_are_counted_and_do_not_spoil_their_neighbours)
+TEST(ignored_pixels_are_counted_and_do_not_affect_their_neighbours)
 {
     struct image a, b, map;
     struct metrics m;
     const struct metrics_options options = { .ignore_not_finite = true };
-    display_picture(&b, 30, 20, 3, 1);
-    display_picture(&a, 30, 20, 3, 1);
+    display_image(&b, 30, 20, 3, 1);
+    display_image(&a, 30, 20, 3, 1);
     for (int i = 0; i < 4; i++) image_at(&a, 5 + i, 7)[i % 3] = NAN;
     image_at(&b, 8, 7)[1] = INFINITY;
     image_at(&b, 20, 2)[2] = -INFINITY;
@@ -298,9 +298,9 @@ TEST(a_mask_of_another_size_or_without_pixels_is_refused)
 {
     struct image a, mask, none;
     struct metrics m;
-    display_picture(&a, 6, 4, 3, 1);
-    flat_picture(&mask, 4, 6, 1, 1.0f);
-    flat_picture(&none, 6, 4, 1, 0.0f);
+    display_image(&a, 6, 4, 3, 1);
+    flat_image(&mask, 4, 6, 1, 1.0f);
+    flat_image(&none, 6, 4, 1, 0.0f);
     CHECK(!metrics_compute(test_host(), &a, &a, &(struct metrics_options){ .mask = &mask }, &m));
     CHECK(strstr(test_last_message(), "4x6"));
     CHECK(!metrics_compute(test_host(), &a, &a, &(struct metrics_options){ .mask = &none }, &m));
@@ -310,13 +310,13 @@ TEST(a_mask_of_another_size_or_without_pixels_is_refused)
     image_finish(&none, test_host());
 }
 
-TEST(each_measure_is_the_mean_of_its_map)
+TEST(each_metric_is_the_mean_of_its_map)
 {
     struct image a, b, errors;
     struct metrics m;
     const struct metrics_options options = { .radiance = true, .ev = -1.0f };
-    display_picture(&a, 24, 17, 3, 1);
-    display_picture(&b, 24, 17, 3, 2);
+    display_image(&a, 24, 17, 3, 1);
+    display_image(&b, 24, 17, 3, 2);
     CHECK(metrics_compute(test_host(), &a, &b, &options, &m));
     const double expected[] = { m.mae, m.mse, m.relmse, 1.0 - m.ssim, m.flip, m.flip_hdr };
     for (int error = METRICS_ABSOLUTE; error <= METRICS_FLIP_HDR; error++) {
@@ -335,8 +335,8 @@ TEST(each_measure_is_the_mean_of_its_map)
 TEST(the_map_of_flip_saturates_at_one)
 {
     struct image a, b, automatic, given;
-    display_picture(&a, 24, 17, 3, 1);
-    display_picture(&b, 24, 17, 3, 2);
+    display_image(&a, 24, 17, 3, 1);
+    display_image(&b, 24, 17, 3, 2);
     CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_FLIP, 0.0f, &automatic));
     CHECK(metrics_error_map(test_host(), &a, &b, NULL, METRICS_FLIP, 1.0f, &given));
     CHECK(memcmp(automatic.pixels, given.pixels, 24 * 17 * 3 * sizeof(float)) == 0);

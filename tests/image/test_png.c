@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "test_images.h"
 
 #include "image/png_file.h"
 
@@ -24,7 +24,7 @@ TEST(the_srgb_curve_and_its_inverse_agree)
     CHECK(srgb_encode(0.0f) == 0.0f);
 }
 
-TEST(a_picture_comes_back_within_half_a_code)
+TEST(an_image_round_trips_within_half_a_code)
 {
     for (int channels = 1; channels <= 4; channels++) {
         struct image image, back;
@@ -51,7 +51,7 @@ TEST(a_picture_comes_back_within_half_a_code)
     }
 }
 
-TEST(all_codes_come_back_as_they_were)
+TEST(all_codes_round_trip_exactly)
 {
     struct image image, back;
     CHECK(image_init(&image, test_host(), 256, 1, 3));
@@ -64,7 +64,7 @@ TEST(all_codes_come_back_as_they_were)
     image_finish(&back, test_host());
 }
 
-TEST(values_outside_the_display_are_clamped_and_nan_is_black)
+TEST(values_outside_the_display_range_are_clamped_and_nan_is_black)
 {
     struct image image, back;
     CHECK(image_init(&image, test_host(), 4, 1, 3));
@@ -82,21 +82,21 @@ TEST(values_outside_the_display_are_clamped_and_nan_is_black)
 TEST(two_channels_and_unwritable_paths_are_refused)
 {
     struct image image;
-    flat_picture(&image, 2, 2, 2, 0.5f);
+    flat_image(&image, 2, 2, 2, 0.5f);
     CHECK(!png_write(test_host(), test_path("two.png"), &image));
     CHECK(strstr(test_last_message(), "not 2"));
     image_finish(&image, test_host());
-    flat_picture(&image, 2, 2, 3, 0.5f);
+    flat_image(&image, 2, 2, 3, 0.5f);
     CHECK(!png_write(test_host(), "/nowhere/out.png", &image));
     CHECK(strstr(test_last_message(), "/nowhere/out.png"));
     image_finish(&image, test_host());
 }
 
-TEST(the_same_picture_gives_the_same_bytes)
+TEST(the_same_image_gives_the_same_bytes)
 {
     struct image image;
     struct file_bytes a, b;
-    noise_picture(&image, 32, 20, 3);
+    noise_image(&image, 32, 20, 3);
     CHECK(png_write(test_host(), test_path("a.png"), &image));
     CHECK(png_write(test_host(), test_path("b.png"), &image));
     CHECK(file_read(test_host(), test_path("a.png"), 0, &a));
@@ -107,7 +107,7 @@ TEST(the_same_picture_gives_the_same_bytes)
     image_finish(&image, test_host());
 }
 
-// A file of another program: `bits` per channel, interlaced or not, whose samples count upwards.
+// A file of another program: `bits` per channel, interlaced or not, samples in ascending order.
 static void write_foreign(const char *path, int colour_type, int bits, int interlace)
 {
     enum { W = 9, H = 7 };
@@ -175,7 +175,7 @@ TEST(every_colour_type_and_depth_is_read)
     image_finish(&image, test_host());
 }
 
-TEST(an_interlaced_file_is_the_same_picture)
+TEST(an_interlaced_file_gives_the_same_image)
 {
     struct image plain, interlaced;
     read_foreign(PNG_COLOR_TYPE_RGB_ALPHA, 8, PNG_INTERLACE_NONE, &plain);

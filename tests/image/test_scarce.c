@@ -1,6 +1,6 @@
-// Memory that runs out at any allocation, and a disk that is full: a failure with its kind, nothing
-// half done left behind, and no leak (under the address sanitizer).
-#include "pictures.h"
+// Out of memory at any allocation and out of disk space: the right kind of failure, no partial
+// files, and no leaks (under the address sanitizer).
+#include "test_images.h"
 
 #include "image/exr.h"
 #include "image/metrics.h"
@@ -13,59 +13,59 @@
 #include <string.h>
 #include <sys/resource.h>
 
-// A host that grants so many allocations and no more.
-struct purse {
-    int left;
-    int held; // blocks in use
+// An allocator that fails after a number of allocations.
+struct limited_memory {
+    int left; // allocations that succeed
+    int live; // blocks in use
 };
 
-static void *spend(void *user, void *old, size_t bytes)
+static void *limited_reallocate(void *user, void *old, size_t bytes)
 {
-    struct purse *purse = user;
+    struct limited_memory *memory = user;
     if (bytes == 0) {
-        purse->held -= old != NULL;
+        memory->live -= old != NULL;
         free(old);
         return NULL;
     }
-    if (purse->left == 0) return NULL;
-    purse->left--;
+    if (memory->left == 0) return NULL;
+    memory->left--;
     void *block = realloc(old, bytes);
-    purse->held += block && !old;
+    memory->live += block && !old;
     return block;
 }
 
 typedef bool (*action)(struct host *host);
 
-// With 0, 1, 2 … allocations granted the action fails for want of memory, until they are enough.
+// With 0, 1, 2 … allocations the action fails with FAIL_MEMORY, until there are enough.
 static void check_action(action act)
 {
-    struct purse purse = { 0 };
-    struct host host = { .reallocate = spend, .user = &purse };
-    for (int granted = 0;; granted++) {
-        purse.left = granted;
+    struct limited_memory memory = { 0 };
+    struct host host = { .reallocate = limited_reallocate, .user = &memory };
+    for (int allowed = 0;; allowed++) {
+        memory.left = allowed;
         host.failure = FAIL_NONE;
         bool done = act(&host);
-        CHECK(purse.held == 0);
+        CHECK(memory.live == 0);
         if (done) {
-            CHECK(granted > 0);
+            CHECK(allowed > 0);
             return;
         }
         CHECK(host.failure == FAIL_MEMORY);
-        CHECK(granted < 1000);
+        CHECK(allowed < 1000);
     }
 }
 
 static const char *exr_path, *png_path;
-static struct image picture;
+static struct image noise;
 
 static void prepare(void)
 {
-    if (picture.pixels) return;
+    if (noise.pixels) return;
     exr_path = strdup(test_path("picture.exr"));
     png_path = strdup(test_path("picture.png"));
-    noise_picture(&picture, 9, 20, 3);
-    CHECK(png_write(test_host(), png_path, &picture));
-    CHECK(exr_write(test_host(), exr_path, &(struct exr_layer){ "color", &picture }, 1,
+    noise_image(&noise, 9, 20, 3);
+    CHECK(png_write(test_host(), png_path, &noise));
+    CHECK(exr_write(test_host(), exr_path, &(struct exr_layer){ "color", &noise }, 1,
                     &(struct exr_attribute){ "scene", "@maze" }, 1));
 }
 
@@ -90,13 +90,13 @@ static bool do_read_png(struct host *host)
 
 static bool do_write_exr(struct host *host)
 {
-    return exr_write(host, exr_path, &(struct exr_layer){ "color", &picture }, 1,
+    return exr_write(host, exr_path, &(struct exr_layer){ "color", &noise }, 1,
                      &(struct exr_attribute){ "scene", "@maze" }, 1);
 }
 
 static bool do_write_png(struct host *host)
 {
-    return png_write(host, png_path, &picture);
+    return png_write(host, png_path, &noise);
 }
 
 static bool do_list_layers(struct host *host)
@@ -116,36 +116,36 @@ static bool do_get_attribute(struct host *host)
 static bool do_map_error(struct host *host)
 {
     struct image map;
-    return finish(metrics_error_map(host, &picture, &picture, NULL, METRICS_ABSOLUTE, 0.0f, &map),
-                  &map, host);
+    return finish(metrics_error_map(host, &noise, &noise, NULL, METRICS_ABSOLUTE, 0.0f, &map), &map,
+                  host);
 }
 
-// With a copy, for the pixel that is not finite.
+// The pixel that is not finite makes metrics_compute copy the images.
 static bool do_measure(struct host *host)
 {
-    struct image holed;
+    struct image with_nan;
     struct metrics m;
-    noise_picture(&holed, 9, 20, 4);
-    holed.pixels[4] = NAN;
+    noise_image(&with_nan, 9, 20, 4);
+    with_nan.pixels[4] = NAN;
     const struct metrics_options options = { .radiance = true, .ignore_not_finite = true };
-    bool good = metrics_compute(host, &holed, &picture, &options, &m);
-    image_finish(&holed, test_host());
+    bool good = metrics_compute(host, &with_nan, &noise, &options, &m);
+    image_finish(&with_nan, test_host());
     return good;
 }
 
 static bool do_tonemap(struct host *host)
 {
-    struct image shown;
-    return finish(image_tonemap(&shown, host, &picture, 1.0f), &shown, host);
+    struct image display;
+    return finish(image_tonemap(&display, host, &noise, 1.0f), &display, host);
 }
 
 static bool do_pair(struct host *host)
 {
     struct image pair;
-    return finish(image_side_by_side(&pair, host, &picture, &picture, 1), &pair, host);
+    return finish(image_side_by_side(&pair, host, &noise, &noise, 1), &pair, host);
 }
 
-TEST(memory_that_runs_out_anywhere_is_a_clean_failure)
+TEST(out_of_memory_at_any_allocation_is_a_clean_failure)
 {
     static const action actions[] = { do_read_exr,    do_read_png,      do_write_exr, do_write_png,
                                       do_list_layers, do_get_attribute, do_map_error, do_measure,
@@ -154,16 +154,16 @@ TEST(memory_that_runs_out_anywhere_is_a_clean_failure)
     for (size_t i = 0; i < sizeof actions / sizeof actions[0]; i++) check_action(actions[i]);
 }
 
-TEST(a_full_disk_is_a_failure_that_leaves_the_old_file)
+TEST(full_disk_is_a_failure_that_keeps_the_old_file)
 {
     struct image large, back;
-    struct rlimit before, tight = { 4096, 4096 };
+    struct rlimit before, small = { 4096, 4096 };
     prepare();
-    noise_picture(&large, 200, 200, 3);
+    noise_image(&large, 200, 200, 3);
     signal(SIGXFSZ, SIG_IGN);
     CHECK(getrlimit(RLIMIT_FSIZE, &before) == 0);
-    tight.rlim_max = before.rlim_max;
-    CHECK(setrlimit(RLIMIT_FSIZE, &tight) == 0);
+    small.rlim_max = before.rlim_max;
+    CHECK(setrlimit(RLIMIT_FSIZE, &small) == 0);
     test_host()->failure = FAIL_NONE;
     bool png = png_write(test_host(), png_path, &large);
     enum fail_kind png_kind = test_host()->failure;

@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "test_images.h"
 
 #include "image/png_file.h"
 #include "image/ssim.h"
@@ -32,8 +32,8 @@ static double grey(const struct image *image, int x, int y)
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-// The index as the paper prints it (eq. 13 with eq. 14 to 16), with a window in two dimensions.
-static double printed_ssim(const struct image *a, const struct image *b, int x, int y)
+// Twin of the index (eq. 13 with eq. 14 to 16), with a two-dimensional window.
+static double twin_ssim(const struct image *a, const struct image *b, int x, int y)
 {
     double weight = 0, ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
     for (int v = -5; v <= 5; v++)
@@ -48,28 +48,28 @@ static double printed_ssim(const struct image *a, const struct image *b, int x, 
     return (2 * ma * mb + 1e-4) * (2 * ab + 9e-4) / ((ma * ma + mb * mb + 1e-4) * (aa + bb + 9e-4));
 }
 
-TEST(the_separable_index_is_the_printed_one_at_every_pixel_and_border)
+TEST(the_separable_index_equals_the_twin_at_every_pixel_and_border)
 {
     const int sizes[][2] = { { 37, 23 }, { 2, 2 }, { 1, 9 }, { 5, 140 }, { 260, 3 } };
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
         struct image a, b, map;
-        display_picture(&a, sizes[s][0], sizes[s][1], 3, 1);
-        display_picture(&b, sizes[s][0], sizes[s][1], 3, 2);
+        display_image(&a, sizes[s][0], sizes[s][1], 3, 1);
+        display_image(&b, sizes[s][0], sizes[s][1], 3, 2);
         blend(&b, &a, 0.6f);
         map_of(&a, &b, &map);
         for (int y = 0; y < map.height; y++)
             for (int x = 0; x < map.width; x++)
-                CHECK_NEAR((double)*image_at(&map, x, y), printed_ssim(&a, &b, x, y), 2e-4);
+                CHECK_NEAR((double)*image_at(&map, x, y), twin_ssim(&a, &b, x, y), 2e-4);
         image_finish(&a, test_host());
         image_finish(&b, test_host());
         image_finish(&map, test_host());
     }
 }
 
-TEST(equal_images_have_a_similarity_of_one_to_the_last_bit)
+TEST(equal_images_have_a_similarity_of_exactly_one)
 {
     struct image a;
-    display_picture(&a, 40, 31, 3, 5);
+    display_image(&a, 40, 31, 3, 5);
     CHECK(mean_of(&a, &a) == 1.0);
     image_finish(&a, test_host());
 }
@@ -77,8 +77,8 @@ TEST(equal_images_have_a_similarity_of_one_to_the_last_bit)
 TEST(similarity_is_symmetric_and_never_above_one)
 {
     struct image a, b, ab, ba;
-    display_picture(&a, 40, 31, 3, 5);
-    display_picture(&b, 40, 31, 4, 6);
+    display_image(&a, 40, 31, 3, 5);
+    display_image(&b, 40, 31, 4, 6);
     map_of(&a, &b, &ab);
     map_of(&b, &a, &ba);
     CHECK(memcmp(ab.pixels, ba.pixels, 40 * 31 * sizeof(float)) == 0);
@@ -94,8 +94,8 @@ TEST(flat_greys_differ_in_luminance_alone)
     const float levels[][2] = { { 0.0f, 1.0f }, { 0.2f, 0.3f }, { 0.5f, 0.52f } };
     for (size_t i = 0; i < 3; i++) {
         struct image a, b;
-        flat_picture(&a, 7, 3, 3, levels[i][0]);
-        flat_picture(&b, 7, 3, 3, levels[i][1]);
+        flat_image(&a, 7, 3, 3, levels[i][0]);
+        flat_image(&b, 7, 3, 3, levels[i][1]);
         double p = (double)srgb_encode(levels[i][0]), q = (double)srgb_encode(levels[i][1]);
         CHECK_NEAR(mean_of(&a, &b), (2 * p * q + 1e-4) / (p * p + q * q + 1e-4), 1e-5);
         image_finish(&a, test_host());
@@ -103,12 +103,12 @@ TEST(flat_greys_differ_in_luminance_alone)
     }
 }
 
-TEST(an_inverted_texture_is_less_similar_than_none)
+TEST(an_inverted_texture_is_less_similar_than_a_flat_image)
 {
     struct image a, b, none;
-    flat_picture(&a, 32, 32, 3, 0.0f);
-    flat_picture(&b, 32, 32, 3, 0.0f);
-    flat_picture(&none, 32, 32, 3, srgb_decode(0.5f));
+    flat_image(&a, 32, 32, 3, 0.0f);
+    flat_image(&b, 32, 32, 3, 0.0f);
+    flat_image(&none, 32, 32, 3, srgb_decode(0.5f));
     for (int i = 0; i < 32 * 32 * 3; i++) {
         int x = i / 3 % 32, y = i / 96;
         a.pixels[i] = srgb_decode((x + y) % 2 ? 0.7f : 0.3f);
@@ -124,10 +124,10 @@ TEST(an_inverted_texture_is_less_similar_than_none)
 TEST(more_noise_is_less_similar)
 {
     struct image a, noise;
-    display_picture(&a, 48, 32, 3, 1);
+    display_image(&a, 48, 32, 3, 1);
     double last = 1.0;
     for (int step = 1; step <= 4; step++) {
-        display_picture(&noise, 48, 32, 3, 9);
+        display_image(&noise, 48, 32, 3, 9);
         blend(&noise, &a, 1.0f - 0.2f * (float)step);
         double now = mean_of(&noise, &a);
         CHECK(now < last - 0.01);

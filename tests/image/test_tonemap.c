@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "test_images.h"
 
 #include "image/tonemap.h"
 
@@ -27,7 +27,7 @@ TEST(exposure_halves_with_each_stop)
     CHECK_RELATIVE((double)(exposure_scale(10.0f) * 1.2f * 1024.0f), 1.0, 1e-6);
 }
 
-TEST(below_the_compression_only_the_fresnel_offset_is_taken_away)
+TEST(below_the_compression_only_the_fresnel_offset_is_subtracted)
 {
     for (int i = 0; i < 500; i++) {
         float r = 0.08f + 0.0014f * (float)((i * 37) % 500), g = 0.08f + 0.0014f * (float)i,
@@ -40,21 +40,21 @@ TEST(below_the_compression_only_the_fresnel_offset_is_taken_away)
     }
 }
 
-TEST(the_toe_takes_black_to_black_and_joins_smoothly)
+TEST(the_toe_maps_black_to_black_and_joins_smoothly)
 {
     CHECK(tonemap_pbr_neutral(grey(0.0f)).x == 0.0f);
     for (int i = 1; i < 80; i++) {
         double x = 0.001 * i;
         CHECK_NEAR((double)tonemap_pbr_neutral(grey((float)x)).y, 6.25 * x * x, 1e-6);
     }
-    // value and slope on both sides of 0.08
+    // Value and slope on both sides of 0.08.
     double h = 1e-3;
     double left = (0.04 - (double)tonemap_pbr_neutral(grey(0.08f - (float)h)).x) / h;
     double right = ((double)tonemap_pbr_neutral(grey(0.08f + (float)h)).x - 0.04) / h;
     CHECK_NEAR(left, right, 0.01);
 }
 
-TEST(differences_between_channels_survive_where_nothing_is_compressed)
+TEST(differences_between_channels_are_kept_where_nothing_is_compressed)
 {
     // Hue: r − g and g − b, and so their ratio, are kept in the toe too.
     for (int i = 0; i < 100; i++) {
@@ -65,7 +65,7 @@ TEST(differences_between_channels_survive_where_nothing_is_compressed)
     }
 }
 
-TEST(more_light_never_gives_a_darker_peak)
+TEST(the_peak_increases_monotonically_with_radiance)
 {
     static const float tints[][3] = {
         { 1, 1, 1 }, { 1, 0, 0 }, { 0, 1, 0.2f }, { 0.1f, 0.3f, 1 }, { 1, 0.9f, 0.05f },
@@ -81,7 +81,7 @@ TEST(more_light_never_gives_a_darker_peak)
     }
 }
 
-TEST(white_is_approached_and_never_passed)
+TEST(white_is_approached_and_never_exceeded)
 {
     for (int i = 0; i <= 60; i++) {
         float v = exp2f((float)i / 4.0f);
@@ -94,7 +94,7 @@ TEST(white_is_approached_and_never_passed)
     CHECK(tonemap_pbr_neutral(vec3_of(INFINITY, 1.0f, 0.0f)).x <= 1.0f);
 }
 
-TEST(bright_colours_lose_saturation_the_more_the_brighter_they_are)
+TEST(brighter_colours_lose_more_saturation)
 {
     float before = 1.0f;
     for (int i = 0; i < 12; i++) {
@@ -107,7 +107,7 @@ TEST(bright_colours_lose_saturation_the_more_the_brighter_they_are)
     CHECK(before < 0.01f);
 }
 
-TEST(compression_joins_without_a_step_in_value_or_slope)
+TEST(compression_is_continuous_in_value_and_slope)
 {
     double at = 0.8, h = 1e-3;
     double a = (double)tonemap_pbr_neutral(grey((float)(at - h))).x,
@@ -125,10 +125,10 @@ TEST(negative_values_and_nan_count_as_black)
     CHECK_NEAR((double)out.z, 0.5, 1e-6);
 }
 
-TEST(a_picture_is_exposed_and_tonemapped_pixel_by_pixel)
+TEST(an_image_is_exposed_and_tonemapped_per_pixel)
 {
     struct image in, out;
-    noise_picture(&in, 8, 5, 4);
+    noise_image(&in, 8, 5, 4);
     CHECK(image_tonemap(&out, test_host(), &in, 9.0f));
     CHECK(out.width == 8 && out.height == 5 && out.channels == 3);
     for (int y = 0; y < 5; y++) {
@@ -142,27 +142,27 @@ TEST(a_picture_is_exposed_and_tonemapped_pixel_by_pixel)
     image_finish(&out, test_host());
     CHECK(!image_tonemap(&out, test_host(), &in, NAN));
     image_finish(&in, test_host());
-    flat_picture(&in, 2, 2, 1, 1.0f);
+    flat_image(&in, 2, 2, 1, 1.0f);
     CHECK(!image_tonemap(&out, test_host(), &in, 0.0f));
     image_finish(&in, test_host());
 }
 
-TEST(automatic_exposure_puts_a_grey_card_at_middle_grey)
+TEST(automatic_exposure_maps_a_grey_card_to_middle_grey)
 {
     for (int i = -8; i <= 8; i++) {
         struct image image;
         float radiance = exp2f((float)i * 2.5f);
-        flat_picture(&image, 6, 4, 3, radiance);
+        flat_image(&image, 6, 4, 3, radiance);
         float exposed = radiance * exposure_scale(auto_exposure(&image));
         CHECK_RELATIVE((double)exposed, 0.18, 1e-5);
         image_finish(&image, test_host());
     }
 }
 
-TEST(automatic_exposure_follows_the_light)
+TEST(automatic_exposure_gains_three_stops_for_eight_times_the_radiance)
 {
     struct image image;
-    noise_picture(&image, 16, 9, 3);
+    noise_image(&image, 16, 9, 3);
     float ev = auto_exposure(&image);
     for (int i = 0; i < 16 * 9 * 3; i++) image.pixels[i] *= 8.0f;
     CHECK_NEAR((double)auto_exposure(&image), (double)ev + 3.0, 1e-5);
@@ -172,7 +172,7 @@ TEST(automatic_exposure_follows_the_light)
 TEST(automatic_exposure_of_two_greys_is_their_geometric_mean)
 {
     struct image image;
-    flat_picture(&image, 4, 4, 3, 2.0f);
+    flat_image(&image, 4, 4, 3, 2.0f);
     for (int x = 0; x < 4; x++)
         for (int y = 0; y < 2; y++)
             for (int c = 0; c < 3; c++) image_at(&image, x, y)[c] = 8.0f;
@@ -195,12 +195,11 @@ TEST(a_small_sun_patch_is_not_blown_out)
     image_finish(&image, test_host());
 }
 
-// A pixel that is nearly black weighs as much as a black one, so that noise in the dark changes
-// little.
-TEST(a_pixel_counts_as_at_least_a_quarter_of_the_lit_mean)
+// A nearly black pixel weighs as much as a black one, so noise in dark regions has little effect.
+TEST(luminance_is_floored_at_a_quarter_of_the_lit_mean)
 {
     struct image image;
-    flat_picture(&image, 100, 1, 3, 100.0f);
+    flat_image(&image, 100, 1, 3, 100.0f);
     float lit = auto_exposure(&image);
     for (int c = 0; c < 3; c++) image_at(&image, 50, 0)[c] = 0.0f;
     float black = auto_exposure(&image);
@@ -215,7 +214,7 @@ TEST(a_pixel_counts_as_at_least_a_quarter_of_the_lit_mean)
 TEST(automatic_exposure_of_black_is_zero)
 {
     struct image image;
-    flat_picture(&image, 5, 5, 3, 0.0f);
+    flat_image(&image, 5, 5, 3, 0.0f);
     CHECK(auto_exposure(&image) == 0.0f);
     image_at(&image, 2, 2)[1] = -1.0f;
     image_at(&image, 3, 2)[1] = NAN; // counts as black
@@ -233,7 +232,7 @@ TEST(the_glsl_twin_agrees)
     for (int ev = -30; ev <= 30; ev++)
         CHECK_RELATIVE((double)glsl_exposure_scale((float)ev), (double)exposure_scale((float)ev),
                        1e-6);
-    noise_picture(&image, 64, 64, 3);
+    noise_image(&image, 64, 64, 3);
     for (int i = 0; i < 64 * 64; i++) {
         float *p = image.pixels + 3 * i, shown[3];
         float scale = exp2f((float)(i % 24 - 16)); // from deep in the toe to far above white

@@ -9,7 +9,7 @@ ag_test(image/flip USES image LIBRARIES OpenMP::OpenMP_C)
 ag_test(image/damaged USES image)
 ag_test(image/scarce USES image)
 
-# The GLSL twin compiles, also when it is included twice.
+# The GLSL twin compiles, even when included twice.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/image/tonemap_twice.comp @ONLY CONTENT [[
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,5 @@
-// tonemap.glsl compiled as C++, through the few types and functions of GLSL that it uses, so that a
-// test can hold the twins together without a GPU.
+// tonemap.glsl compiled as C++, with the GLSL types and functions that it uses, so that a test can
+// compare the twins without a GPU.
 #include <algorithm>
 #include <cmath>
 
@@ -62,6 +62,6 @@ extern "C" float glsl_exposure_scale(float ev)
 
 extern "C" void glsl_tonemap_pbr_neutral(const float exposed[3], float out[3])
 {
-    vec3 shown = tonemap_pbr_neutral(vec3(exposed[0], exposed[1], exposed[2]));
-    out[0] = shown.r, out[1] = shown.g, out[2] = shown.b;
+    vec3 display = tonemap_pbr_neutral(vec3(exposed[0], exposed[1], exposed[2]));
+    out[0] = display.r, out[1] = display.g, out[2] = display.b;
 }
