@@ -9,9 +9,9 @@
 #endif
 
 static struct gpu *device;
-static bool unfinished; // a test began and did not come to its end
+static bool unfinished; // a test began and has not finished
 
-// Whatever ended a test, its messages and objects are seen here at the latest.
+// Catches validation messages and live objects that test_gpu_finish did not check.
 static bool check_end(void)
 {
     if (!device) return true;
@@ -35,9 +35,8 @@ static int pin(struct dl_phdr_info *info, size_t size, void *user)
 }
 #endif
 
-// Drivers, layers and what they use stay loaded, so that a leak checker can name them at the end
-// (see lsan.supp). What they leave behind when they are loaded and unloaded for the first time has
-// no name any more, and is not looked at.
+// Keeps drivers, layers and their dependencies loaded, so that the leak sanitizer can match them
+// against lsan.supp. Leaks of the first load cannot be attributed and are ignored.
 static void pin_drivers(void)
 {
 #ifdef __SANITIZE_ADDRESS__
@@ -64,8 +63,7 @@ void test_gpu_require(void)
 struct gpu *test_gpu(void)
 {
     static bool registered;
-    // A test that failed half-way leaves objects and an open frame; the next one is not to answer
-    // for them.
+    // A failed test leaves live objects and an open frame; the next test gets a new device.
     if (device && (unfinished || gpu_live_objects(device) || gpu_validation_messages(device))) {
         gpu_destroy(device);
         device = NULL;
@@ -73,7 +71,7 @@ struct gpu *test_gpu(void)
     unfinished = false;
     if (device) return device;
     test_gpu_require();
-    // Hazards between submissions, which this layer leaves out unless told otherwise.
+    // Checks hazards between submissions too, which is off by default.
     setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
            0);
     device = gpu_create(test_host(), &(struct gpu_desc){ .device = getenv("AFTERGLOW_TEST_DEVICE"),

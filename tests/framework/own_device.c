@@ -25,7 +25,7 @@ static void create_instance(struct own_device *own, bool validation)
     CHECK_VK(vkCreateInstance(&info, NULL, &own->instance));
 }
 
-// With what ag_device_required_features and gpu_required_features list.
+// With the features that ag_device_required_features and gpu_required_features list.
 static void create_device(struct own_device *own, bool push_descriptors)
 {
     VkPhysicalDeviceVulkan13Features v13 = {

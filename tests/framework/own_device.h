@@ -1,4 +1,4 @@
-// A program's own Vulkan device, made with plain vulkan.h and lent to the library.
+// A host program's Vulkan device, created with plain vulkan.h, for tests of external devices.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -10,7 +10,7 @@ struct own_device {
     VkQueue queue;
     VkCommandPool pool;
     uint32_t family;
-    int locks, held; // the queue's lock, counted
+    int locks, held; // queue lock: times taken, times held now
 };
 
 enum own_device_flags {
@@ -18,16 +18,15 @@ enum own_device_flags {
     OWN_DEVICE_NO_PUSH_DESCRIPTORS = 2 // without the extension that the library needs
 };
 
-// With the features that the library asks for. Fails the test where it cannot.
+// With the features that the library requires. Fails the test on an error.
 void own_device_open(struct own_device *own, uint32_t flags);
 void own_device_close(struct own_device *own);
 
-// The queue's lock, to be lent with `own` as the user: counts, and fails the test when it is taken
-// twice.
+// Queue lock callbacks, with `own` as the user pointer. A recursive lock fails the test.
 void own_device_lock(void *own);
 void own_device_unlock(void *own);
 
-// A command buffer, begun.
+// A command buffer in the recording state.
 VkCommandBuffer own_device_begin(struct own_device *own);
 // Ends and submits it.
 void own_device_submit(struct own_device *own, VkCommandBuffer commands);

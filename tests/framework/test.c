@@ -49,7 +49,7 @@ void test_relative(double a, double b, double tolerance, const char *a_text, con
 void test_check(bool condition, const char *text, const char *file, int line)
 {
     if (condition) return;
-    print_error("%s:%d: not so: %s (last message: %s)\n", file, line, text, last_message);
+    print_error("%s:%d: check failed: %s (last message: %s)\n", file, line, text, last_message);
     _fail(file, line);
 }
 

@@ -1,4 +1,4 @@
-// A thin coat over cmocka: tests register themselves, and each states a law in its name.
+// A thin wrapper of cmocka: tests register themselves, and each name states a property.
 //
 //     TEST(sh_rotate_preserves_band_energy) { CHECK_NEAR(a, b, 1e-5); }
 //
@@ -17,8 +17,7 @@
 
 typedef void (*test_function)(void **state);
 void test_register(const char *name, test_function function);
-// A last check, run once after all tests, while every library is still whole (atexit may be too
-// late for that).
+// A final check, run once after all tests, while all libraries are still loaded (unlike atexit).
 void test_register_end(bool (*check)(void));
 
 #define TEST(name)                                                                                 \
@@ -44,14 +43,14 @@ void test_relative(double a, double b, double tolerance, const char *a_text, con
                    const char *file, int line);
 void test_check(bool condition, const char *text, const char *file, int line);
 
-// A host whose log goes to standard error when AFTERGLOW_TEST_VERBOSE is set and is remembered:
-// test_last_message gives the newest error or warning ("" if none since test_forget_messages).
+// A host that stores the newest error or warning (test_last_message; "" after
+// test_forget_messages). AFTERGLOW_TEST_VERBOSE sends its log to standard error too.
 struct host *test_host(void);
 const char *test_last_message(void);
 void test_forget_messages(void);
 
-// A path in a folder of this test run's own, removed at exit. Static storage, 16 in turn.
+// A path in a temporary folder that is removed at exit. Static storage, valid for 16 calls.
 const char *test_path(const char *name);
-// A real scene ("sponza.glb", "odd/truncated.glb"); skips the running test, visibly, where the
-// scenes are absent.
+// The path of a test scene ("sponza.glb", "odd/truncated.glb"). Reports the running test as skipped
+// where it is absent.
 const char *test_scene_path(const char *name);
