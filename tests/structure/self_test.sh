@@ -94,4 +94,30 @@ printf '#ifndef B\n#define B\nstatic inline int ag_new(int class) { return class
 fails "a header that is no C++" 'bad.h: not C++17 alone' "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
 printf 'struct ag_twice { int x; };\n' >"$tree/include/afterglow/bad.h"
 fails "a header without a guard" 'bad.h: not C17 alone' "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
+
+# cycle_case A B C: three files whose functions call the named ones, and headers that include the same.
+cycle_case() {
+    rm -rf "$tree/include" "$tree/src" "$tree/build"
+    mkdir -p "$tree/src/m" "$tree/build/src/m/CMakeFiles/ag_m.dir" "$tree/build/app"
+    for file in a b c; do
+        for other in $(eval "echo \$$file"); do
+            printf '#include "m/%s.h"\n' "$other"
+        done >"$tree/src/m/$file.h"
+        {
+            printf 'void %s(void);\n' a b c
+            printf 'void %s(void) {' "$file"
+            for other in $(eval "echo \$$file"); do printf ' %s();' "$other"; done
+            printf ' }\n'
+        } >"$tree/src/m/$file.c"
+        "$cc" -c "$tree/src/m/$file.c" -o "$tree/build/src/m/CMakeFiles/ag_m.dir/$file.c.o" || bad=1
+    done
+}
+
+a='b c' b=c c='' cycle_case
+passes "files without a cycle" "$here/cycles.sh" "$tree/build" "$tree"
+a=b b=c c=a cycle_case
+fails "headers in a cycle" 'cycle of 3 files: src/m/a.h src/m/b.h src/m/c.h' "$here/cycles.sh" "$tree/build" "$tree"
+fails "symbols in a cycle" 'src/m/c.c -> src/m/a.c: a$' "$here/cycles.sh" "$tree/build" "$tree"
+a=b b='a c' c='' cycle_case
+fails "a cycle of two" 'cycle of 2 files: src/m/a.c src/m/b.c$' "$here/cycles.sh" "$tree/build" "$tree"
 exit $bad
