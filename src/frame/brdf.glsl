@@ -1,14 +1,14 @@
-// The reflection of glTF 2.0's metallic-roughness material: Lambert plus GGX.
+// BRDF of glTF 2.0's metallic-roughness material: a Lambert lobe plus a GGX lobe.
 //
 // D: Trowbridge & Reitz 1975 (GGX, Walter et al. 2007, eq. 33). V = G / (4 n·l n·v): Heitz 2014
-// (height-correlated Smith, eq. 99). F: Schlick 1994. alpha = roughness². The Lambert term is not
+// (height-correlated Smith, eq. 99). F: Schlick 1994. alpha = roughness². The Lambert lobe is not
 // scaled by 1 − F, so that direct and indirect light see the same albedo·(1−metallic)/π.
 #ifndef AG_FRAME_BRDF_GLSL
 #define AG_FRAME_BRDF_GLSL
 
 const float BRDF_INV_PI = 0.31830988618;
-const float BRDF_MIN_ROUGHNESS =
-    0.045; // alpha² stays a normal float and a highlight is never missed by every pixel
+// Keeps alpha² a normal float and a highlight at least about one pixel wide.
+const float BRDF_MIN_ROUGHNESS = 0.045;
 
 float brdf_alpha(float roughness)
 {
@@ -16,7 +16,7 @@ float brdf_alpha(float roughness)
     return r * r;
 }
 
-// Reflectance at normal incidence; 4 % for what is not metal.
+// Reflectance at normal incidence; 4 % for dielectrics.
 vec3 brdf_f0(vec3 albedo, float metallic)
 {
     return mix(vec3(0.04), albedo, metallic);
@@ -27,8 +27,8 @@ vec3 brdf_diffuse(vec3 albedo, float metallic)
     return albedo * ((1.0 - metallic) * BRDF_INV_PI);
 }
 
-// D·V·F in 1/sr, without the cosine. n, v (to the viewer), l (to the light): unit; alpha from
-// brdf_alpha.
+// D·V·F in 1/sr, without the cosine. n, v (outgoing), l (incident) are unit vectors away from the
+// surface; alpha comes from brdf_alpha.
 vec3 brdf_specular(vec3 n, vec3 v, vec3 l, float alpha, vec3 f0)
 {
     vec3 h = normalize(v + l);
@@ -38,8 +38,7 @@ vec3 brdf_specular(vec3 n, vec3 v, vec3 l, float alpha, vec3 f0)
     float v_h = clamp(dot(v, h), 0.0, 1.0);
     float a2 = alpha * alpha;
 
-    // sin² from the cross product: 1 − n_h² has no digits left where the lobe of a smooth surface
-    // lies.
+    // sin² from the cross product: 1 − n_h² cancels within the narrow lobe of a smooth surface.
     vec3 n_x_h = cross(n, h);
     float d_base = dot(n_x_h, n_x_h) + n_h * n_h * a2;
     float d = a2 * BRDF_INV_PI / (d_base * d_base);

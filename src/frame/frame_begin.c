@@ -58,7 +58,7 @@ static void begin_camera(struct frame *f, const struct frame_input *input)
     c->previous_clip_from_world = f->camera_cut ? c->clip_from_world : previous;
     c->view_from_world =
         projection_view_from_world(input->camera.eye, input->camera.forward, input->camera.up);
-    c->eye = input->camera.eye;
+    c->camera_position = input->camera.eye;
     c->near_m = input->camera.near_m;
 }
 

@@ -21,7 +21,7 @@ struct frame_constants {
     mat4s world_from_clip;
     mat4s previous_clip_from_world; // last frame's camera
     mat4s view_from_world;
-    vec3s eye;
+    vec3s camera_position; // world, m
     float near_m;
     vec3s sky;                  // scaled radiance from outside
     float radiance_scale;       // scaled = physical × radiance_scale
@@ -52,8 +52,8 @@ struct rsm_face {
     mat4s clip_from_world;
     // Suns: scaled lux × texel area in m², the flux through a texel; other lights: scaled candela.
     vec3s intensity;
-    uint32_t type;   // FRAME_LIGHT_…
-    vec3s position;  // of the light; suns: 0
+    uint32_t type;  // FRAME_LIGHT_…
+    vec3s position; // of the light; suns: 0
     // Points and spots: tangent of the face's half-angle; suns: half-width in metres.
     float tan_half;
     vec3s direction; // of the light, the way it shines; suns and spots

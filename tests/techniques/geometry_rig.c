@@ -73,7 +73,7 @@ void geometry_scatter(struct stage *stage, struct gpu *gpu)
         }
     stage_show_wall(stage, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
                     vec3_of(0.1f, 0.3f, 3), vec3_of(0.2f, 0.9f, 0.1f));
-    stage->constants.eye = vec3_of(0.1f, 3, 2.5f);
+    stage->constants.camera_position = vec3_of(0.1f, 3, 2.5f);
     stage_upload(stage);
 }
 

@@ -71,7 +71,8 @@ static void show_hall(struct stage *stage, struct gpu *gpu, vec3s shift, vec3s s
     stage_init(stage, gpu, WIDTH, WIDTH, SIZE, 1);
     stage->view.bounds = (struct box3){ glms_vec3_add(vec3_of(0, 0, 0), shift),
                                         glms_vec3_add(vec3_of(16, 4, 8), shift) };
-    stage->constants.eye = glms_vec3_add(glms_vec3_add(vec3_of(5.2f, 2.1f, 4.3f), shift), step);
+    stage->constants.camera_position =
+        glms_vec3_add(glms_vec3_add(vec3_of(5.2f, 2.1f, 4.3f), shift), step);
     stage_set_face(stage, 0, glms_vec3_add(vec3_of(patch_x, 0, 2), shift), vec3_of(2, 0, 0),
                    vec3_of(0, 0, 2), vec3_of(0, 1e-3f, 0), vec3_of(3, 2, 1));
     stage_fill_face(stage, 0,

@@ -44,7 +44,8 @@ static void add_camera(struct geometry_twin *twin, const struct stage *stage, ve
             const vec3s position =
                 mat4_point(m, vec3_of(((float)x + 0.5f) * 2.0f / GEOMETRY_WIDTH - 1.0f,
                                       ((float)y + 0.5f) * 2.0f / GEOMETRY_HEIGHT - 1.0f, 0.5f));
-            const vec3s to_eye = glms_vec3_normalize(glms_vec3_sub(stage->constants.eye, position));
+            const vec3s to_eye =
+                glms_vec3_normalize(glms_vec3_sub(stage->constants.camera_position, position));
             geometry_twin_surfel(twin, position, stage_rounded_normal(normal), to_eye,
                                  fabs((double)glms_vec3_dot(glms_vec3_cross(u, v), to_eye)));
         }

@@ -42,7 +42,7 @@ static double behind(struct gpu *gpu, const char *gi, float height)
     set_wall(&stage, height);
     stage_show_wall(&stage, vec3_of(0.02f, 0.02f, ROOM - 0.01f), vec3_of(ROOM - 0.04f, 0, 0),
                     vec3_of(0, ROOM - 0.04f, 0), vec3_of(0, 0, -1));
-    stage.constants.eye = vec3_of(ROOM / 2, ROOM / 2, ROOM / 2);
+    stage.constants.camera_position = vec3_of(ROOM / 2, ROOM / 2, ROOM / 2);
     stage_upload(&stage);
     props_init(&props, &stage);
     if (height > 0)

@@ -1,10 +1,10 @@
-// The sum of all light.
+// Host code of the composite pass.
 #include "frame/composite/composite.h"
 
 #include "frame_shaders.h"
 
-static bool make_stand_in(struct composite *c, const char *name, enum gpu_format format,
-                          gpu_image *out)
+static bool make_placeholder(struct composite *c, const char *name, enum gpu_format format,
+                             gpu_image *out)
 {
     struct gpu_image_desc desc = { .name = name,
                                    .dimension = GPU_2D,
@@ -22,8 +22,8 @@ bool composite_init(struct composite *c, struct gpu *gpu)
         .name = "frame.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
     };
     return gpu_sampler_get(gpu, &nearest, &c->nearest) &&
-           make_stand_in(c, "frame.no_radiance", GPU_RGBA16F, &c->no_radiance) &&
-           make_stand_in(c, "frame.no_display", GPU_RGBA8, &c->no_display);
+           make_placeholder(c, "frame.no_radiance", GPU_RGBA16F, &c->no_radiance) &&
+           make_placeholder(c, "frame.no_display", GPU_RGBA8, &c->no_display);
 }
 
 void composite_finish(struct composite *c)
@@ -49,7 +49,7 @@ void composite_record(const struct composite *c, struct gpu_cmd *cmd, uint32_t v
                       const struct composite_images *images, struct gpu_binding constants,
                       struct gpu_binding exposure, uint32_t width, uint32_t height)
 {
-    // What is not read must still be bound: the direct image is always there.
+    // Every binding of the shader needs an image: the direct layer fills inputs that are not read.
     gpu_image irradiance = variant & COMPOSITE_IRRADIANCE ? images->irradiance : images->direct;
     gpu_image specular = variant & COMPOSITE_SPECULAR ? images->specular : images->direct;
     gpu_image visibility = variant & COMPOSITE_VISIBILITY ? images->visibility : images->direct;

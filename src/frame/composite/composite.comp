@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// The contract's sum: L = direct (with emission and sky) + albedo·(1−metallic)/π · E · visibility +
-// specular; and what a screen shows of it.
+// Outgoing radiance L = direct (with emission and sky) + albedo·(1−metallic)/π · E · visibility +
+// specular, and the tone-mapped display image.
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/composite/exposure_shared.h"
@@ -34,7 +34,7 @@ layout(set = 0, binding = 10, scalar) readonly buffer exposure_state
 vec3 indirect_light(ivec2 pixel)
 {
     vec3 light = vec3(0.0);
-    vec4 albedo = texelFetch(albedo_layer, pixel, 0); // alpha: is there a surface
+    vec4 albedo = texelFetch(albedo_layer, pixel, 0); // alpha: 0 where no surface is visible
     if (HAS_IRRADIANCE) {
         light = brdf_diffuse(albedo.rgb, texelFetch(material_layer, pixel, 0).g) *
                 texelFetch(irradiance_layer, pixel, 0).rgb;
@@ -62,8 +62,8 @@ void main()
     imageStore(color_layer, pixel, vec4(radiance, 1.0));
     if (WRITES_INDIRECT) imageStore(indirect_layer, pixel, vec4(indirect, 1.0));
     if (WRITES_DISPLAY) {
-        vec3 shown =
+        vec3 display =
             tonemap_pbr_neutral(radiance * (exposure_scale(state.ev) / frame.radiance_scale));
-        imageStore(display_layer, pixel, vec4(srgb_encoded(clamp(shown, 0.0, 1.0)), 1.0));
+        imageStore(display_layer, pixel, vec4(srgb_encoded(clamp(display, 0.0, 1.0)), 1.0));
     }
 }

@@ -1,10 +1,10 @@
-// The sum of all light, and what a screen shows of it.
+// Composite pass: direct plus indirect light, and the tone-mapped display image.
 #pragma once
 
 #include "gpu/gpu.h"
 
-// What a frame's composite reads and writes besides the direct image; the bits are the
-// constant_id's in composite.comp.
+// Inputs and outputs besides the direct layer; bit i is specialisation constant i of
+// composite.comp.
 enum composite_variant {
     COMPOSITE_IRRADIANCE = 1,
     COMPOSITE_SPECULAR = 2,
@@ -18,10 +18,10 @@ struct composite {
     struct gpu *gpu;
     gpu_pipeline pipelines[COMPOSITE_VARIANT_COUNT];
     gpu_sampler nearest;
-    gpu_image no_radiance, no_display; // stand for outputs that nobody wants
+    gpu_image no_radiance, no_display; // 1×1 placeholders for outputs of other variants
 };
 
-// Images that the variant does not name may be none.
+// An image that the variant does not use may be empty.
 struct composite_images {
     gpu_image direct, albedo, material, irradiance, specular, visibility;
     gpu_image color, indirect, display;

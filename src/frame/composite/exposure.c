@@ -1,4 +1,4 @@
-// The exposure value on the GPU.
+// Host code of the exposure passes.
 #include "frame/composite/exposure.h"
 
 #include "frame/composite/exposure_shared.h"
@@ -18,13 +18,13 @@ bool exposure_init(struct exposure *e, struct gpu *gpu)
                                      GPU_BUFFER_STORAGE };
     struct gpu_buffer_desc sums = { "frame.exposure_sums", EXPOSURE_MAX_GROUPS * sizeof(vec2s),
                                     GPU_BUFFER_STORAGE };
-    const struct gpu_constant second_round[] = { { 0, 1 } }; // see exposure_sum.comp
+    const struct gpu_constant second_pass[] = { { 0, 1 } }; // see exposure_sum.comp
     return gpu_sampler_get(gpu, &nearest, &e->nearest) &&
            gpu_buffer_create(gpu, &state, &e->state) && gpu_buffer_create(gpu, &sums, &e->sums) &&
            gpu_compute_pipeline_create(gpu, "frame.exposure_sum",
                                        &shader_composite_exposure_sum_comp, NULL, 0, &e->sum[0]) &&
            gpu_compute_pipeline_create(gpu, "frame.exposure_sum_again",
-                                       &shader_composite_exposure_sum_comp, second_round, 1,
+                                       &shader_composite_exposure_sum_comp, second_pass, 1,
                                        &e->sum[1]) &&
            gpu_compute_pipeline_create(gpu, "frame.exposure_finish",
                                        &shader_composite_exposure_finish_comp, NULL, 0, &e->finish);
@@ -62,8 +62,8 @@ void exposure_record_auto(const struct exposure *e, struct gpu_cmd *cmd,
                                   .emitted = in->emitted,
                                   .fallback = in->fallback };
     gpu_scope_begin(cmd, "exposure");
-    for (push.round_index = 0; push.round_index < 2; push.round_index++) {
-        gpu_dispatch(cmd, e->sum[push.round_index],
+    for (push.pass_index = 0; push.pass_index < 2; push.pass_index++) {
+        gpu_dispatch(cmd, e->sum[push.pass_index],
                      GPU_BIND(constants, { "exposure_state", .buffer = e->state },
                               { "exposure_sums", .buffer = e->sums },
                               { "direct_layer", .image = in->direct, .sampler = e->nearest },

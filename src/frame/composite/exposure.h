@@ -1,6 +1,6 @@
-// The exposure value, kept on the GPU: given, or from a log-average as image/tonemap.h's
-// auto_exposure defines it. What is metered is the same for every technique, so that pictures of
-// one scene by several of them can be compared.
+// The exposure value (EV), kept on the GPU: fixed, or the log-average that auto_exposure in
+// image/tonemap.h defines. Metering does not depend on the technique, so that images of one scene
+// have the same exposure with each of them.
 #pragma once
 
 #include "core/vec.h"
@@ -8,7 +8,7 @@
 
 struct exposure {
     struct gpu *gpu;
-    gpu_pipeline sum[2], finish; // of each round
+    gpu_pipeline sum[2], finish; // sum: of each pass over the image
     gpu_buffer state;            // struct exposure_values
     gpu_buffer sums;
     gpu_sampler nearest;
@@ -17,17 +17,16 @@ struct exposure {
 bool exposure_init(struct exposure *exposure, struct gpu *gpu);
 void exposure_finish(struct exposure *exposure); // accepts zero
 void exposure_record_fixed(const struct exposure *exposure, struct gpu_cmd *cmd, float ev);
-// What is metered where there is a surface: the direct image, and what the surface would reflect of
-// the irradiance `emitted` (scaled lux); where nothing of it is lit, `fallback` (scaled luminance,
-// 0: EV 0).
+// Metered at each surface: the direct layer plus the diffuse reflection of the irradiance
+// `emitted`.
 struct exposure_input {
     gpu_image direct, albedo, material;
-    gpu_image scratch; // RGBA16F, as large; what is in it is lost
-    vec3s emitted;
-    float fallback;
+    gpu_image scratch; // RGBA16F of the same size, overwritten
+    vec3s emitted;     // scaled lux
+    float fallback;    // scaled luminance if no visible surface is lit; 0: EV 0
     uint32_t width, height;
 };
 void exposure_record_auto(const struct exposure *exposure, struct gpu_cmd *cmd,
                           struct gpu_binding constants, const struct exposure_input *input);
-// Waits; the newest finished frame's.
+// Value of the newest completed frame. Waits for the GPU.
 bool exposure_read(struct exposure *exposure, float *ev);

@@ -1,4 +1,4 @@
-// The sum over a group of threads, in an order that does not depend on the device.
+// Sum over a work group, in an order that does not depend on the device.
 shared vec2 partial_sums[EXPOSURE_THREADS];
 
 vec2 sum_of_group(vec2 own)
@@ -9,5 +9,5 @@ vec2 sum_of_group(vec2 own)
         barrier();
         if (thread < half_size) partial_sums[thread] += partial_sums[thread + half_size];
     }
-    return partial_sums[0]; // right for thread 0
+    return partial_sums[0]; // valid in thread 0 only
 }

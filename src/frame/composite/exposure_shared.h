@@ -1,25 +1,26 @@
-// Automatic exposure on the GPU: two rounds of sums, each in groups first and then over the groups.
+// Automatic exposure on the GPU: two passes, each of which sums per work group and then over
+// groups.
 #ifndef AG_FRAME_EXPOSURE_SHARED_H
 #define AG_FRAME_EXPOSURE_SHARED_H
 
 #include "core/shared.h"
 
-#define EXPOSURE_THREADS    64 // of a group
-#define EXPOSURE_PIXELS     16 // that a thread adds up, until there are EXPOSURE_MAX_GROUPS
+#define EXPOSURE_THREADS    64 // per work group
+#define EXPOSURE_PIXELS     16 // per thread, until EXPOSURE_MAX_GROUPS is reached
 #define EXPOSURE_MAX_GROUPS 1024
 
-// What storage block "exposure_state" holds.
+// Content of the storage block "exposure_state".
 struct exposure_values {
     float ev;
-    float floor_log2; // log2 of the least luminance that a pixel counts as, scaled radiance
-    uint32_t lit;     // whether any pixel is lit
+    float floor_log2; // log2 of the smallest luminance that is metered, in scaled radiance
+    uint32_t lit;     // 1: at least one pixel is lit
 };
 
 struct exposure_push {
-    uint32_t round_index; // 0: over lit pixels; 1: over all, with the floor
+    uint32_t pass_index; // 0: lit pixels; 1: all surface pixels, clamped to the floor
     uint32_t groups;
-    vec3s emitted;  // scaled lux: mean irradiance by emissive surfaces
-    float fallback; // scaled luminance that is metered where no surface in sight is lit
+    vec3s emitted;  // scaled lux: mean irradiance from emissive surfaces
+    float fallback; // scaled luminance that is metered if no visible surface is lit
 };
 
 #endif

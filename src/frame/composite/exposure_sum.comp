@@ -2,9 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// A sum of log2 luminances for each group of threads. The order of additions depends on the image's
-// size alone, so equal images give equal bits. The first round leaves what it has metered for the
-// second one.
+// Sum of log2 luminances per work group. The order of additions depends on the image size only, so
+// equal images give equal bits. The first pass stores its log2 luminances for the second.
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/composite/exposure_shared.h"
@@ -23,10 +22,10 @@ layout(set = 0, binding = 2, scalar) writeonly buffer exposure_sums
 layout(set = 0, binding = 3) uniform sampler2D direct_layer;
 layout(set = 0, binding = 4) uniform sampler2D albedo_layer;
 layout(set = 0, binding = 5) uniform sampler2D material_layer;
-// The logarithm as two half floats, 22 bits; what the pixel is.
+// xy: log2 luminance as two half floats (22 bits); z: kind of pixel.
 layout(set = 0, binding = 6, rgba16f) uniform image2D metered_layer;
 
-layout(constant_id = 0) const bool SECOND_ROUND = false;
+layout(constant_id = 0) const bool SECOND_PASS = false;
 
 const float NO_SURFACE = 0.0, UNLIT = 1.0, LIT = 2.0;
 
@@ -35,46 +34,45 @@ layout(push_constant, scalar) uniform push_block
     exposure_push push;
 };
 
-// What a pixel is metered as. The direct image has emissive surfaces but not what they light: that
-// is taken as if it fell evenly on everything, whichever technique lights the frame.
-vec3 metered(ivec2 pixel)
+// Metered radiance of a pixel. The direct layer lacks light from emissive surfaces: a uniform
+// irradiance stands in for it, the same for every technique.
+vec3 metered_radiance(ivec2 pixel)
 {
     vec3 radiance = texelFetch(direct_layer, pixel, 0).rgb;
     float metallic = texelFetch(material_layer, pixel, 0).g;
     return radiance + brdf_diffuse(texelFetch(albedo_layer, pixel, 0).rgb, metallic) * push.emitted;
 }
 
-// x: log2 of the luminance, y: what the pixel is. The sky and the void behind the scene do not
-// count.
+// x: log2 of the luminance, y: kind of pixel. Sky pixels are not metered.
 vec2 meter(ivec2 pixel)
 {
-    float l = dot(metered(pixel), vec3(0.2126, 0.7152, 0.0722));
+    float l = dot(metered_radiance(pixel), vec3(0.2126, 0.7152, 0.0722));
     bool lit = l > 0.0 && !isinf(l);
     float kind = texelFetch(albedo_layer, pixel, 0).a == 0.0 ? NO_SURFACE : lit ? LIT : UNLIT;
     return vec2(kind == LIT ? log2(l) : 0.0, kind);
 }
 
-// x: log2 of what the pixel counts as; y: 1 where it counts. Of lit pixels first, then of all, with
-// the floor.
+// x: log2 of the metered luminance; y: 1 if the pixel is metered. Pass 1: lit pixels; pass 2: all
+// surface pixels, clamped to the floor.
 vec2 pixel_term(ivec2 pixel)
 {
-    if (SECOND_ROUND) {
-        vec4 left = imageLoad(metered_layer, pixel);
-        float value = left.z == LIT ? max(left.x + left.y, state.floor_log2) : state.floor_log2;
-        return left.z == NO_SURFACE ? vec2(0.0) : vec2(value, 1.0);
+    if (SECOND_PASS) {
+        vec4 stored = imageLoad(metered_layer, pixel);
+        float value =
+            stored.z == LIT ? max(stored.x + stored.y, state.floor_log2) : state.floor_log2;
+        return stored.z == NO_SURFACE ? vec2(0.0) : vec2(value, 1.0);
     }
-    vec2 found = meter(pixel);
-    float high = unpackHalf2x16(packHalf2x16(vec2(found.x, 0.0))).x;
-    imageStore(metered_layer, pixel, vec4(high, found.x - high, found.y, 0.0));
-    return vec2(found.x, found.y == LIT ? 1.0 : 0.0);
+    vec2 result = meter(pixel);
+    float high = unpackHalf2x16(packHalf2x16(vec2(result.x, 0.0))).x;
+    imageStore(metered_layer, pixel, vec4(high, result.x - high, result.y, 0.0));
+    return vec2(result.x, result.y == LIT ? 1.0 : 0.0);
 }
 
 void main()
 {
     uint count = frame.width * frame.height;
     uint stride = push.groups * EXPOSURE_THREADS;
-    // Stepped through row by row, without a division for each pixel, which software drivers do one
-    // by one.
+    // Incremental pixel coordinates: software drivers execute integer division one lane at a time.
     uvec2 step = uvec2(stride % frame.width, stride / frame.width);
     uvec2 pixel =
         uvec2(gl_GlobalInvocationID.x % frame.width, gl_GlobalInvocationID.x / frame.width);

@@ -1,4 +1,4 @@
-// Direct light.
+// Host code of the direct light pass.
 #include "frame/direct/direct.h"
 
 #include "frame/direct/direct_shared.h"

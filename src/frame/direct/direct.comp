@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Direct light: emission, and the reflection of all punctual lights with their shadows. Where there
-// is no surface, the sky.
+// Direct light: emission plus reflected light of all punctual lights with shadows. Pixels without a
+// surface get the sky radiance.
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/direct/direct_shared.h"
@@ -29,35 +29,34 @@ layout(push_constant, scalar) uniform push_block
     direct_push push;
 };
 
-// Without it nothing is read but depth and emission: software drivers run the body of a loop once
-// even where it has no turns.
+// A variant without lights reads depth and emission only: software drivers execute a loop body once
+// even for zero iterations.
 layout(constant_id = 0) const bool HAS_LIGHTS = true;
 
 struct surface {
-    vec3 position, normal, to_eye;
-    vec3 plane; // normal of the triangle, towards the eye
+    vec3 position, normal, to_viewer;
+    vec3 geometric_normal; // of the triangle, on the viewer's side
     vec3 diffuse, f0;
     float alpha;
 };
 
-// Depth at a pixel, kept within the picture.
+// Depth at a pixel, clamped to the image.
 float depth_at(ivec2 pixel)
 {
     return texelFetch(depth_layer, clamp(pixel, ivec2(0), ivec2(frame.width, frame.height) - 1), 0)
         .r;
 }
 
-// Position of the neighbour along `axis` that lies on the pixel's own plane. Depth is affine in the
-// picture on a plane: that side is taken where the two next pixels foretell this one's depth best,
-// so that creases do not mix.
+// Position of the neighbour along `axis` that lies on the same plane as the pixel. Reversed depth
+// is affine in screen space on a plane: the side whose two pixels extrapolate to this depth with
+// the smaller error is taken, so that creases are not crossed.
 vec3 neighbour_on_plane(ivec2 pixel, ivec2 axis, float depth)
 {
     float before = depth_at(pixel - axis), after = depth_at(pixel + axis);
-    float miss_before = abs(2.0 * before - depth_at(pixel - 2 * axis) - depth);
-    float miss_after = abs(2.0 * after - depth_at(pixel + 2 * axis) - depth);
-    float side = miss_before < miss_after ? -1.0 : 1.0;
-    // At the picture's rim the depth that was kept within is none of that place: the other side is
-    // true.
+    float error_before = abs(2.0 * before - depth_at(pixel - 2 * axis) - depth);
+    float error_after = abs(2.0 * after - depth_at(pixel + 2 * axis) - depth);
+    float side = error_before < error_after ? -1.0 : 1.0;
+    // Clamped depths at the image border are invalid: take the other side.
     ivec2 end = ivec2(frame.width, frame.height) - 1;
     if (any(lessThan(pixel - 2 * axis, ivec2(0)))) side = 1.0;
     if (any(greaterThan(pixel + 2 * axis, end))) side = -1.0;
@@ -65,16 +64,16 @@ vec3 neighbour_on_plane(ivec2 pixel, ivec2 axis, float depth)
     return frame_world_position(uv, max(side < 0.0 ? before : after, 1e-12));
 }
 
-// Unit normal of the triangle in the pixel, towards the eye, from the depths around it.
-vec3 plane_of(ivec2 pixel, float depth, vec3 position, vec3 to_eye)
+// Unit normal of the triangle in the pixel, on the viewer's side, from neighbouring depths.
+vec3 geometric_normal(ivec2 pixel, float depth, vec3 position, vec3 to_viewer)
 {
     vec3 across = neighbour_on_plane(pixel, ivec2(1, 0), depth) - position;
     vec3 down = neighbour_on_plane(pixel, ivec2(0, 1), depth) - position;
     vec3 n = cross(across, down);
     float length2 = dot(n, n);
-    if (!(length2 > 0.0)) return to_eye;
+    if (!(length2 > 0.0)) return to_viewer;
     n *= inversesqrt(length2);
-    return dot(n, to_eye) < 0.0 ? -n : n;
+    return dot(n, to_viewer) < 0.0 ? -n : n;
 }
 
 surface read_surface(ivec2 pixel, float depth)
@@ -82,8 +81,8 @@ surface read_surface(ivec2 pixel, float depth)
     surface s;
     s.position = frame_world_position(frame_uv(uvec2(pixel)), depth);
     s.normal = octahedral_decode(texelFetch(normal_layer, pixel, 0).rg);
-    s.to_eye = normalize(frame.eye - s.position);
-    s.plane = plane_of(pixel, depth, s.position, s.to_eye);
+    s.to_viewer = normalize(frame.camera_position - s.position);
+    s.geometric_normal = geometric_normal(pixel, depth, s.position, s.to_viewer);
     vec3 albedo = texelFetch(albedo_layer, pixel, 0).rgb;
     vec2 material = texelFetch(material_layer, pixel, 0).rg;
     s.diffuse = brdf_diffuse(albedo, material.y);
@@ -92,8 +91,8 @@ surface read_surface(ivec2 pixel, float depth)
     return s;
 }
 
-// Radiance that one light makes the surface reflect to the eye.
-vec3 reflected(surface s, frame_light light)
+// Radiance of one light that the surface reflects to the viewer.
+vec3 reflected_radiance(surface s, frame_light light)
 {
     vec3 to_light = -light.direction;
     float attenuation = 1.0;
@@ -107,10 +106,10 @@ vec3 reflected(surface s, frame_light light)
     float cosine = dot(s.normal, to_light);
     bool facing = cosine > 0.0 && attenuation > 0.0;
     if (light.shadow_first >= 0)
-        attenuation *= shadow_of(light, s.position, s.plane, to_light, facing, push.shadow_size,
-                                 push.shadow_radius);
+        attenuation *= shadow_visibility(light, s.position, s.geometric_normal, to_light, facing,
+                                         push.shadow_size, push.shadow_radius);
     if (!facing) return vec3(0.0);
-    vec3 brdf = s.diffuse + brdf_specular(s.normal, s.to_eye, to_light, s.alpha, s.f0);
+    vec3 brdf = s.diffuse + brdf_specular(s.normal, s.to_viewer, to_light, s.alpha, s.f0);
     return brdf * light.intensity * (attenuation * cosine);
 }
 
@@ -125,7 +124,7 @@ void main()
         if (HAS_LIGHTS) {
             surface s = read_surface(pixel, depth);
             for (uint i = 0; i < frame.light_count; i++)
-                radiance += reflected(s, frame_light_table[i]);
+                radiance += reflected_radiance(s, frame_light_table[i]);
         }
     }
     imageStore(direct_layer, pixel, vec4(min(radiance, vec3(HALF_MAX)), 1.0));

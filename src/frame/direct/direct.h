@@ -5,7 +5,7 @@
 
 struct direct {
     struct gpu *gpu;
-    gpu_pipeline lit, unlit; // for frames with lights and without
+    gpu_pipeline lit, unlit; // frames with and without lights
     gpu_sampler nearest;
 };
 
@@ -14,7 +14,7 @@ struct direct_input {
     gpu_image shadow_maps;
     gpu_sampler shadow_sampler;
     uint32_t shadow_size;
-    int shadow_radius; // of the filter, texels
+    int shadow_radius; // filter radius, texels
     struct gpu_binding constants, lights, shadow_faces;
     int light_count;
     uint32_t width, height;

@@ -6,7 +6,7 @@
 
 struct direct_push {
     float shadow_size;     // texels
-    int32_t shadow_radius; // of the filter, texels
+    int32_t shadow_radius; // filter radius, texels
 };
 
 #endif

@@ -1,5 +1,4 @@
-// The G-buffer pass. Back faces of single-sided materials are culled; what is seen of them is what
-// lies behind.
+// Host code of the G-buffer pass. Back faces of single-sided materials are culled.
 #include "frame/gbuffer/gbuffer.h"
 
 #include "frame/projection.h"

@@ -1,4 +1,4 @@
-// The G-buffer: what the camera sees, as the layers FRAME_DEPTH … FRAME_MOTION.
+// The G-buffer pass: rasterises the scene from the camera into FRAME_DEPTH … FRAME_MOTION.
 #pragma once
 
 #include "frame/scene_gpu.h"
@@ -10,11 +10,11 @@ struct gbuffer {
 
 struct gbuffer_targets {
     gpu_image depth, normal, albedo, material, emissive;
-    gpu_image motion; // none: not wanted
+    gpu_image motion; // optional
     uint32_t width, height;
 };
 
-// Makes the pipelines for these variants (bit v: variant v) that are not there yet.
+// Creates missing pipelines for these variants (bit v: variant v).
 bool gbuffer_prepare(struct gbuffer *gbuffer, struct gpu *gpu, uint32_t variants, bool motion);
 void gbuffer_record(const struct gbuffer *gbuffer, struct gpu_cmd *cmd,
                     const struct scene_gpu *scene, const struct gbuffer_targets *targets,

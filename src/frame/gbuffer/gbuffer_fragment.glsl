@@ -1,8 +1,7 @@
-// Fragments of the G-buffer. Formats: frame.h.
+// Fragment shader of the G-buffer. Formats: frame.h.
 //
-// Unlit materials (KHR_materials_unlit) are diffuse surfaces of their base colour, without gloss or
-// metal: they neither glow, which would add light that the scene does not have, nor stay dark to
-// the light around them.
+// Unlit materials (KHR_materials_unlit) are purely diffuse with their base colour as albedo: as
+// emitters they would add light that the scene does not have, as black surfaces remove light.
 #define GBUFFER_FRAGMENT
 #define SCENE_FRAGMENT
 #include "frame/frame.glsl"
@@ -21,8 +20,8 @@ layout(location = 3) out vec4 out_emissive;
 layout(location = 4) out vec4 out_motion; // see FRAME_MOTION
 #endif
 
-// glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w; the back of a double-sided
-// surface has the normal reversed, that of the map included.
+// glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w. Back faces of double-sided
+// materials reverse the normal after normal mapping.
 vec3 shading_normal()
 {
     vec3 n = vary_normal;
@@ -51,11 +50,11 @@ void main()
     out_material = scene_roughness_metallic(vary_metallic_roughness_uv);
     out_emissive = vec4(emitted_radiance(), 0.0);
 #ifdef GBUFFER_MOTION
-    vec2 now = vary_now.xy / vary_now.z;
-    // Behind the last frame's eye there is no position to come from: as far outside as the format
-    // can say.
-    vec2 before = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z : vec2(-HALF_MAX);
-    float farther = max(vary_previous.z, 0.0) / vary_now.z - 1.0;
-    out_motion = vec4(clamp(vec3((now - before) * 0.5, farther), -HALF_MAX, HALF_MAX), 1.0);
+    vec2 current = vary_current.xy / vary_current.z;
+    // A point behind the previous camera has no previous position: the largest motion marks it.
+    vec2 previous = vary_previous.z > 0.0 ? vary_previous.xy / vary_previous.z : vec2(-HALF_MAX);
+    float depth_change = max(vary_previous.z, 0.0) / vary_current.z - 1.0;
+    out_motion =
+        vec4(clamp(vec3((current - previous) * 0.5, depth_change), -HALF_MAX, HALF_MAX), 1.0);
 #endif
 }

@@ -1,4 +1,5 @@
-// What G-buffer vertices hand to fragments. VARY: in or out.
+// Interpolants of the G-buffer. VARY is `in` for the fragment shader and `out` for the vertex
+// shader.
 #ifdef GBUFFER_FRAGMENT
 #define VARY in
 #else
@@ -13,9 +14,9 @@ layout(location = 4) VARY vec2 vary_metallic_roughness_uv;
 layout(location = 5) VARY vec2 vary_normal_uv;
 layout(location = 6) VARY vec2 vary_emissive_uv;
 #ifdef GBUFFER_MOTION
-// Clip positions, x y w, of this frame and the last. Both are interpolated, so that what stands
-// still has a motion of exactly 0.
-layout(location = 7) VARY vec3 vary_now;
+// Clip-space x, y, w of this frame and the previous one. Both are interpolated alike, so that
+// static surfaces have a motion of exactly 0.
+layout(location = 7) VARY vec3 vary_current;
 layout(location = 8) VARY vec3 vary_previous;
 #endif
 

@@ -1,4 +1,4 @@
-// Vertices of the G-buffer; with GBUFFER_MOTION also where they were in the last frame.
+// Vertex shader of the G-buffer; GBUFFER_MOTION adds positions of the previous frame.
 #define SCENE_VERTEX
 #define SCENE_VERTEX_SURFACE
 #define SCENE_VERTEX_FRAME
@@ -29,7 +29,7 @@ void main()
 #ifdef GBUFFER_MOTION
     vec4 previous =
         frame.previous_clip_from_world * vec4(scene_previous_world_position(vertex), 1.0);
-    vary_now = clip.xyw;
+    vary_current = clip.xyw;
     vary_previous = previous.xyw;
 #endif
 }

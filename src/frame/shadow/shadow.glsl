@@ -1,6 +1,6 @@
-// Reading shadow maps: which map of a light holds a point, how far the receiver is moved, how the
-// map is filtered. Include after frame.glsl. Binding numbers: SHADOW_FACES_BINDING and
-// SHADOW_MAPS_BINDING, 2 and 3 unless defined before.
+// Shadow map lookup: selects the map of a light, offsets the receiver, filters the comparison.
+// Include after frame.glsl. Binding numbers: SHADOW_FACES_BINDING and SHADOW_MAPS_BINDING, 2 and 3
+// unless defined before.
 #ifndef AG_FRAME_SHADOW_GLSL
 #define AG_FRAME_SHADOW_GLSL
 
@@ -15,11 +15,11 @@ layout(set = 0, binding = SHADOW_FACES_BINDING, scalar) readonly buffer shadow_f
 {
     shadow_face shadow_face_table[];
 };
-layout(set = 0, binding = SHADOW_MAPS_BINDING) uniform sampler2DArrayShadow
-    shadow_maps; // passes where the reference ≥ the texel
+// Compares with ≥: 1 where the receiver's reversed depth is at least the texel's.
+layout(set = 0, binding = SHADOW_MAPS_BINDING) uniform sampler2DArrayShadow shadow_maps;
 
-// The first, finest cascade that holds the point and the filter around it. The last one holds
-// everything.
+// The finest cascade that contains the point and its filter footprint. The last cascade contains
+// the whole scene.
 int shadow_cascade(frame_light light, vec3 world, float inside)
 {
     int chosen = light.shadow_count - 1;
@@ -31,7 +31,7 @@ int shadow_cascade(frame_light light, vec3 world, float inside)
     return chosen;
 }
 
-// +x −x +y −y +z −z by the longest axis.
+// Cube face in the order +x −x +y −y +z −z.
 int shadow_cube_face(vec3 from_light)
 {
     vec3 a = abs(from_light);
@@ -40,11 +40,10 @@ int shadow_cube_face(vec3 from_light)
     return from_light.z >= 0.0 ? 4 : 5;
 }
 
-// The share of a box of (2·radius+1)² texels around `at` (in 0…1) that lets light through to
-// `depth`. A texel's weight is its overlap with the box. Two neighbours are one bilinear fetch that
-// stands between them where it weighs both right: (radius+1)² fetches in all. rows: 0 skips the
-// fetches. slope: change of the receiver's depth with the map's coordinates, so that each fetch is
-// held against the receiver's plane where it is made.
+// Percentage-closer filtering: the unoccluded fraction of a box of (2·radius+1)² texels around `at`
+// (in 0…1). Texels are weighted by their overlap with the box; one bilinear fetch between two
+// texels weights both, (radius+1)² fetches in all. rows: 0 skips the fetches. slope: gradient of
+// the receiver's depth over map coordinates (receiver-plane depth bias).
 float shadow_filtered(vec2 at, int layer, float depth, vec2 slope, float size, int radius, int rows)
 {
     vec2 start = at * size - (float(radius) + 0.5);
@@ -58,8 +57,8 @@ float shadow_filtered(vec2 at, int layer, float depth, vec2 slope, float size, i
         for (int x = 0; x <= radius; x++) {
             float x0 = x == 0 ? 1.0 - f.x : 1.0, x1 = x == radius ? f.x : 1.0;
             float u = (first.x + float(2 * x) + x1 / (x0 + x1) + 0.5) / size;
-            float there = depth + dot(slope, vec2(u, v) - at);
-            row += (x0 + x1) * texture(shadow_maps, vec4(u, v, float(layer), there));
+            float receiver = depth + dot(slope, vec2(u, v) - at);
+            row += (x0 + x1) * texture(shadow_maps, vec4(u, v, float(layer), receiver));
         }
         sum += (y0 + y1) * row;
     }
@@ -67,37 +66,36 @@ float shadow_filtered(vec2 at, int layer, float depth, vec2 slope, float size, i
     return sum / (width * width);
 }
 
-const float SHADOW_TEXEL_REACH =
-    1.5; // texels that the depth of one is wrong by: rasterisation, bilinear comparison
-const float SHADOW_LEAST_COSINE =
-    0.1; // the slope of planes that graze the light more is not followed
+// Error of a stored depth in texels: rasterisation plus bilinear comparison.
+const float SHADOW_TEXEL_ERROR = 1.5;
+// Below this cosine to the light the receiver-plane slope is faded out: it grows without bound.
+const float SHADOW_MIN_COSINE = 0.1;
 
-// Change of NDC depth with NDC x and y on the plane with this normal, which projections keep a
-// plane.
+// Gradient of NDC depth over NDC x and y on the plane with this normal.
 vec2 shadow_slope(mat4 clip_from_world, vec3 ndc, vec3 normal)
 {
     vec3 a = normalize(abs(normal.y) < 0.7 ? cross(normal, vec3(0, 1, 0))
                                            : cross(normal, vec3(1, 0, 0)));
     vec4 ca = clip_from_world * vec4(a, 0.0), cb = clip_from_world * vec4(cross(normal, a), 0.0);
-    vec3 da = ca.xyz - ndc * ca.w,
-         db = cb.xyz - ndc * cb.w; // along the plane, up to a common factor
+    // Tangents of the plane in NDC, up to a common factor.
+    vec3 da = ca.xyz - ndc * ca.w, db = cb.xyz - ndc * cb.w;
     float area = da.x * db.y - da.y * db.x;
     if (abs(area) < 1e-20) return vec2(0.0);
     return vec2(da.z * db.y - db.z * da.y, da.x * db.z - db.x * da.z) / area;
 }
 
-// 0 (in shadow) … 1. plane: unit normal of the receiver's plane, towards the eye; to_light: unit;
-// facing: whether the light shines on the front at all.
+// 0 (in shadow) … 1. normal: unit geometric normal of the receiver, on the viewer's side; to_light:
+// unit vector; facing: false skips the lookup for surfaces that face away from the light.
 //
-// What is left after each fetch follows the plane is the error of a texel: the receiver is moved
-// along its normal by d·sin θ, where d is that reach: at distance d the depth of a plane differs by
-// d·tan θ, and a step o along the normal gains o/cos θ. So a plane never shadows itself, and a
-// shadow's edge moves by less than two texels across the light, whatever the filter's width.
-float shadow_of(frame_light light, vec3 world, vec3 plane, vec3 to_light, bool facing, float size,
-                int radius)
+// The remaining depth error is that of one texel, d: on a plane at angle θ to the light it changes
+// depth by d·tan θ, and an offset o along the normal changes it by o/cos θ. The normal offset
+// d·sin θ thus prevents self-shadowing, and moves shadow edges by less than two texels for any
+// filter width.
+float shadow_visibility(frame_light light, vec3 world, vec3 normal, vec3 to_light, bool facing,
+                        float size, int radius)
 {
-    float reach = float(radius) +
-                  1.5; // texels: the filter, half a texel of rasterisation, and the bilinear rim
+    // Texels: filter radius, half a texel of rasterisation, one of bilinear interpolation.
+    float reach = float(radius) + 1.5;
     int face = 0;
     if (light.type == FRAME_LIGHT_SUN)
         face = shadow_cascade(light, world, 1.0 - 2.0 * (2.0 * reach + 1.0) / size);
@@ -109,16 +107,16 @@ float shadow_of(frame_light light, vec3 world, vec3 plane, vec3 to_light, bool f
         mat4 m = shadow_face_table[layer].clip_from_world;
         texel *= max(dot(vec4(m[0].w, m[1].w, m[2].w, m[3].w), vec4(world, 1.0)), 0.0);
     }
-    float cosine = dot(plane, to_light);
-    float offset = texel * SHADOW_TEXEL_REACH * 1.41421356 * sqrt(max(1.0 - cosine * cosine, 0.0));
+    float cosine = dot(normal, to_light);
+    float offset = texel * SHADOW_TEXEL_ERROR * 1.41421356 * sqrt(max(1.0 - cosine * cosine, 0.0));
     mat4 clip_from_world = shadow_face_table[layer].clip_from_world;
-    vec4 clip = clip_from_world * vec4(world + plane * offset, 1.0);
+    vec4 clip = clip_from_world * vec4(world + normal * offset, 1.0);
     vec3 at = clip.xyz / clip.w;
     float depth_scale = shadow_face_table[layer].depth_scale;
     float depth = at.z * depth_scale + shadow_face_table[layer].depth_offset;
-    float followed = clamp(abs(cosine) / SHADOW_LEAST_COSINE, 0.0, 1.0);
-    vec2 slope = shadow_slope(clip_from_world, at, plane) *
-                 (2.0 * depth_scale * followed); // NDC is twice as wide
+    float slope_fade = clamp(abs(cosine) / SHADOW_MIN_COSINE, 0.0, 1.0);
+    vec2 slope = shadow_slope(clip_from_world, at, normal) *
+                 (2.0 * depth_scale * slope_fade); // NDC has twice the extent of map coordinates
     return shadow_filtered(at.xy * 0.5 + 0.5, layer, depth, slope, size, radius,
                            facing ? radius + 1 : 0);
 }

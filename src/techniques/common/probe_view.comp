@@ -80,7 +80,7 @@ void main()
             probes_irradiance(probes, push.place, position + 0.5 * push.place.spacing_m * n, n);
     }
     float unit = float(push.every) * push.place.spacing_m;
-    vec3 from = (frame.eye - push.place.first_m) / unit + 0.5,
+    vec3 from = (frame.camera_position - push.place.first_m) / unit + 0.5,
          to = (position - push.place.first_m) / unit + 0.5;
     ivec3 balls =
         (ivec3(push.place.count_x, push.place.count_y, push.place.count_z) + push.every - 1) /

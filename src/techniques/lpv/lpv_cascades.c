@@ -60,8 +60,8 @@ bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view)
     if (!finest->coarser) return true;
     float cell_m = options->cell > 0.0f ? options->cell : 0.5f * finest->grid.cell_m;
     for (struct lpv *level = finest; level; level = level->coarser, cell_m *= 2.0f) {
-        lpv_grid_around(view->bounds, options->dim, margin, cell_m, view->constants->eye,
-                        &level->grid);
+        lpv_grid_around(view->bounds, options->dim, margin, cell_m,
+                        view->constants->camera_position, &level->grid);
         level->options = *options;
         if (!level->coarser) level->options.steps = steps_of_coarsest(finest, &level->grid);
     }

@@ -31,7 +31,7 @@ void add(inout lpv_run run, ivec2 pixel)
              frame_world_position(uv - vec2(half_pixel.x, 0.0), z);
     vec3 v = frame_world_position(uv + vec2(0.0, half_pixel.y), z) -
              frame_world_position(uv - vec2(0.0, half_pixel.y), z);
-    vec3 way = frame.eye - position;
+    vec3 way = frame.camera_position - position;
     vec3 to_eye = way * inversesqrt(max(dot(way, way), 1e-20));
     float across = abs(dot(cross(u, v), to_eye)); // |u × v| cos θ
     lpv_continue(run, lpv_corner(position),

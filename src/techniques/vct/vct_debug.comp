@@ -165,7 +165,8 @@ void main()
     vec4 before = (push.march & VCT_MARCH_FIRST) != 0u ? vec4(0.0) : imageLoad(picture, pixel);
     if (before.a > 0.0) return;
     vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0), colour = vec3(0.0);
-    bool found = march(vct_voxels_from_world(frame.eye), normalize(through - frame.eye), colour);
+    bool found = march(vct_voxels_from_world(frame.camera_position),
+                       normalize(through - frame.camera_position), colour);
     bool done = found || (push.march & VCT_MARCH_LAST) != 0u;
     imageStore(picture, pixel,
                vec4(found ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));

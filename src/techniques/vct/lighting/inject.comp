@@ -68,8 +68,8 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
     vec3 plane = front ? normal : -normal;
     if (light.shadow_first >= 0)
         attenuation *=
-            shadow_of(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light, true,
-                      vct.shadow_size, int(kept(uint(vct.shadow_radius))));
+            shadow_visibility(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light,
+                              true, vct.shadow_size, int(kept(uint(vct.shadow_radius))));
     return light.intensity * (attenuation * abs(cosine));
 }
 
