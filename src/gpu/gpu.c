@@ -115,7 +115,7 @@ fail:
     return NULL;
 }
 
-static uint64_t finished_serial(struct gpu *gpu)
+uint64_t finished_serial(struct gpu *gpu)
 {
     uint64_t value = 0;
     if (!gpu->timeline ||

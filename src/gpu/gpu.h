@@ -184,6 +184,20 @@ bool gpu_image_download_float(struct gpu *gpu, gpu_image image, uint32_t mip, ui
 bool gpu_buffer_download(struct gpu *gpu, gpu_buffer buffer, size_t offset, void *data,
                          size_t bytes);
 
+// A readback without waiting. The command copies part of a buffer as it is at this point of the
+// frame; when the GPU has finished the frame, gpu_readback_poll returns true and the bytes. A
+// second copy before that replaces the first.
+struct gpu_readback {
+    gpu_buffer buffer; // mapped
+    uint64_t serial;   // of the frame; 0: none
+};
+bool gpu_readback_create(struct gpu *gpu, const char *name, size_t bytes, struct gpu_readback *out);
+void gpu_readback_destroy(struct gpu *gpu, struct gpu_readback *readback);
+void gpu_readback_copy(struct gpu_cmd *cmd, struct gpu_readback *to, size_t to_offset,
+                       gpu_buffer from, size_t from_offset, size_t bytes);
+// Each copy is returned once.
+bool gpu_readback_poll(struct gpu *gpu, struct gpu_readback *readback, void *out, size_t bytes);
+
 // ---- Pipelines
 // ----------------------------------------------------------------------------------------------
 

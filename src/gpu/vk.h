@@ -355,7 +355,8 @@ struct trash {
     void *object;
 };
 void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), void *object);
-void trash_collect(struct gpu *gpu); // asks the GPU how far it is, and frees
+uint64_t finished_serial(struct gpu *gpu); // all recordings up to it are done
+void trash_collect(struct gpu *gpu);       // asks the GPU how far it is, and frees
 
 struct gpu {
     struct host *host;

@@ -223,3 +223,30 @@ TEST_GPU(transfers_within_a_frame_are_refused)
     CHECK(gpu_frame_end(gpu, cmd));
     gpu_buffer_destroy(gpu, &buffer);
 }
+
+TEST_GPU(a_readback_returns_a_frames_bytes_once_the_frame_is_done)
+{
+    const uint32_t wanted[4] = { 1, 2, 3, 4 };
+    uint32_t got[4] = { 0 };
+    gpu_buffer buffer;
+    struct gpu_readback readback;
+    const struct gpu_buffer_desc desc = { .name = "test.words",
+                                          .bytes = sizeof wanted,
+                                          .usage = GPU_BUFFER_STORAGE };
+    CHECK(gpu_buffer_create(gpu, &desc, &buffer));
+    CHECK(gpu_readback_create(gpu, "test.readback", sizeof got, &readback));
+    CHECK(gpu_buffer_upload(gpu, buffer, 0, wanted, sizeof wanted));
+    CHECK(!gpu_readback_poll(gpu, &readback, got, sizeof got));
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    gpu_readback_copy(cmd, &readback, 0, buffer, 8, 8);
+    gpu_readback_copy(cmd, &readback, 8, buffer, 0, 8);
+    CHECK(!gpu_readback_poll(gpu, &readback, got, sizeof got)); // not even submitted
+    gpu_fill_buffer(cmd, buffer, 0, sizeof wanted, 9);          // after the copies
+    CHECK(gpu_frame_end(gpu, cmd));
+    CHECK(gpu_wait(gpu));
+    CHECK(gpu_readback_poll(gpu, &readback, got, sizeof got));
+    CHECK(got[0] == 3 && got[1] == 4 && got[2] == 1 && got[3] == 2);
+    CHECK(!gpu_readback_poll(gpu, &readback, got, sizeof got)); // each copy once
+    gpu_readback_destroy(gpu, &readback);
+    gpu_buffer_destroy(gpu, &buffer);
+}
