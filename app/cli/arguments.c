@@ -1,6 +1,7 @@
 // The options of all commands, from one table.
 #include "arguments.h"
 #include "values.h"
+#include "wrapped.h"
 
 #include <afterglow/catalogue.h>
 
@@ -8,15 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum {
-    HELP_COLUMN = 24,
-    HELP_WIDTH = 100,
-    MAX_FRAMES = 1000000,
-    MAX_SPP = 1000000,
-    MAX_BOUNCES = 1000000
-};
+enum { HELP_COLUMN = 24, MAX_FRAMES = 1000000, MAX_SPP = 1000000, MAX_BOUNCES = 1000000 };
 
-// A setter says itself what is wrong and returns false, or NULL for "see the help".
+// Stores a value; false with *why, what a valid value is, for a wrong one.
 typedef bool setter(struct arguments *a, const char *value, const char **why);
 
 static bool set_gi(struct arguments *a, const char *value, const char **why)
@@ -28,7 +23,7 @@ static bool set_gi(struct arguments *a, const char *value, const char **why)
 
 static bool add_method(struct arguments *a, const char *value, const char **why)
 {
-    *why = "16 are the most";
+    *why = "at most 16 methods";
     if (a->method_count == MAX_METHODS) return false;
     a->methods[a->method_count++] = value;
     return true;
@@ -36,7 +31,7 @@ static bool add_method(struct arguments *a, const char *value, const char **why)
 
 static bool set_output(struct arguments *a, const char *value, const char **why)
 {
-    *why = "an image is a .png or an .exr";
+    *why = "the file name must end in .png or .exr";
     a->output = value;
     return has_extension(value, "png") || has_extension(value, "exr");
 }
@@ -112,7 +107,7 @@ static bool set_frames(struct arguments *a, const char *value, const char **why)
 
 static bool add_light(struct arguments *a, const char *value, const char **why)
 {
-    *why = "64 lights are the most";
+    *why = "at most 64 lights";
     if (a->light_count == MAX_LIGHTS) return false;
     return value_light(value, &a->lights[a->light_count++], why);
 }
@@ -126,7 +121,7 @@ static bool set_no_scene_lights(struct arguments *a, const char *value, const ch
 
 static bool set_sky(struct arguments *a, const char *value, const char **why)
 {
-    *why = "it must be three numbers from 0 on, r,g,b";
+    *why = "it must be three numbers of at least 0, r,g,b";
     a->has_sky = true;
     return value_floats(value, 3, a->sky) && a->sky[0] >= 0 && a->sky[1] >= 0 && a->sky[2] >= 0;
 }
@@ -252,7 +247,7 @@ static bool set_resume(struct arguments *a, const char *value, const char **why)
 
 static bool set_reference(struct arguments *a, const char *value, const char **why)
 {
-    *why = "a reference is an .exr";
+    *why = "the file name must end in .exr";
     a->reference = value;
     return has_extension(value, "exr");
 }
@@ -266,7 +261,7 @@ static bool set_no_cache(struct arguments *a, const char *value, const char **wh
 
 static bool set_bound(const char *value, double *out, const char **why)
 {
-    *why = "it must be a number from 0 on";
+    *why = "it must be a number of at least 0";
     return value_number(value, out) && *out >= 0.0;
 }
 
@@ -294,7 +289,7 @@ static bool set_layer(struct arguments *a, const char *value, const char **why)
 
 static bool set_map(struct arguments *a, const char *value, const char **why)
 {
-    *why = "the map is a .png";
+    *why = "the file name must end in .png";
     a->map = value;
     return has_extension(value, "png");
 }
@@ -357,22 +352,24 @@ static bool set_help(struct arguments *a, const char *value, const char **why)
 }
 
 struct option {
-    const char *name, *value;
-    unsigned commands; // command_bit
+    const char *name, *value; // name NULL: a heading, `help`
+    unsigned commands;        // command_bit
     setter *set;
     const char *help;
 };
 
 static const struct option options[] = {
 #define OPTION(name, value, commands, set, help) { name, value, commands, set, help },
+#define GROUP(title)                             { NULL, NULL, 0, NULL, title },
 #include "options.def"
 #undef OPTION
+#undef GROUP
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
 // ---- parsing
 
-// The option that `word` (up to its '=') names; NULL: none.
+// The option named by `word` up to its '='; NULL: none.
 static const struct option *option_find(const struct command *command, const char *word)
 {
     size_t length = strcspn(word, "=");
@@ -396,7 +393,7 @@ static enum status unknown_option(const struct command *command, const char *wor
     return wrong_usage("unknown option %s: see afterglow %s --help", name, command->name);
 }
 
-// Takes words[*at] and, where the value is a word of its own, the next one.
+// Parses words[*at] and, if the value is a separate word, the next one.
 static enum status parse_option(const struct command *command, int count, char **words, int *at,
                                 struct arguments *out)
 {
@@ -427,21 +424,21 @@ static enum status check_together(const struct command *command, const struct ar
                            command->name, command->usage);
     }
     if (a->has_eye != a->has_target)
-        return wrong_usage("cannot use --%s: it goes with --%s", a->has_eye ? "eye" : "target",
+        return wrong_usage("cannot use --%s: it requires --%s", a->has_eye ? "eye" : "target",
                            a->has_eye ? "target" : "eye");
     if (!isfinite(a->time_s + (a->frames - 1) * a->time_step_s))
-        return wrong_usage("cannot use --time-step: after %d frames the time is not finite",
+        return wrong_usage("cannot use --time-step: the time after %d frames is not finite",
                            a->frames);
     if (a->camera && a->has_eye)
-        return wrong_usage("cannot use --camera %s: --eye and --target are a camera already",
+        return wrong_usage("cannot use --camera %s with --eye and --target: choose one camera",
                            a->camera);
     if (a->has_eye && a->eye[0] == a->target[0] && a->eye[1] == a->target[1] &&
         a->eye[2] == a->target[2])
         return wrong_usage("cannot use --eye: it is the same point as --target");
     if (a->direct_only && a->indirect_only)
-        return wrong_usage("cannot use --direct-only: --indirect-only is the other half");
+        return wrong_usage("cannot use --direct-only with --indirect-only: choose one");
     if (a->reference && a->has_spp)
-        return wrong_usage("cannot use --spp: --reference %s has the samples that it has",
+        return wrong_usage("cannot use --spp with --reference %s: its samples are fixed",
                            a->reference);
     return DONE;
 }
@@ -488,35 +485,31 @@ enum status arguments_parse(const struct command *command, int count, char **wor
 
 // ---- help
 
-// Words of `text` in lines from column HELP_COLUMN on; the cursor is there already.
-static void print_wrapped(const char *text)
+static void print_option(const struct option *option)
 {
-    int column = HELP_COLUMN;
-    for (bool first = true; *text; first = false) {
-        int length = (int)strcspn(text, " ");
-        if (!first && column + 1 + length > HELP_WIDTH) {
-            printf("\n%*s", HELP_COLUMN, "");
-            column = HELP_COLUMN;
-        } else if (!first) {
-            column += printf(" ");
-        }
-        column += printf("%.*s", length, text);
-        text += length + (text[length] != 0);
+    int wrote = printf("  %s%s%s", option->name, option->value ? " " : "",
+                       option->value ? option->value : "");
+    if (wrote >= HELP_COLUMN) wrote = printf("\n") - 1;
+    printf("%*s", HELP_COLUMN - wrote, "");
+    print_wrapped(HELP_COLUMN, option->help);
+}
+
+// Groups without an option of the command have no heading.
+static void print_options(const struct command *command)
+{
+    const char *heading = NULL;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (!options[i].name) heading = options[i].help;
+        if (!(options[i].commands & command->bit)) continue;
+        if (heading) printf("\n%s:\n", heading);
+        heading = NULL;
+        print_option(&options[i]);
     }
-    printf("\n");
 }
 
 void arguments_help(const struct command *command)
 {
-    printf("afterglow %s%s%s\n\n%s\nOptions:\n", command->name, command->usage[0] ? " " : "",
-           command->usage, command->text);
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        if (!(options[i].commands & command->bit)) continue;
-        int wrote = printf("  %s%s%s", options[i].name, options[i].value ? " " : "",
-                           options[i].value ? options[i].value : "");
-        if (wrote >= HELP_COLUMN) wrote = printf("\n") - 1;
-        printf("%*s", HELP_COLUMN - wrote, "");
-        print_wrapped(options[i].help);
-    }
-    printf("\nExamples:\n%s", command->examples);
+    printf("Usage: afterglow %s%s%s\n\n%s\nExamples:\n%s", command->name,
+           command->usage[0] ? " " : "", command->usage, command->text, command->examples);
+    print_options(command);
 }

@@ -115,24 +115,23 @@ const struct command command_compare = {
     .bit = COMPARE,
     .positional_count = 1,
     .usage = "SCENE [options]",
-    .summary = "holds methods of indirect light against the truth: a folder with a report",
-    .text =
-        "Renders SCENE with each --gi on the GPU, path-traces the same image on the CPU,\n"
-        "measures how far each is from it and what it costs, and writes a folder: report.html,\n"
-        "the images, maps of the errors and EXR files. All have one camera, light and exposure.\n"
-        "\n"
-        "Nearly all of the time goes into the reference and grows with pixels times --spp: on\n"
-        "two cores half a minute for 640x360 of a room, half an hour for 1280x720 of a large\n"
-        "scene with --spp 512. Begin small. Ctrl-C keeps the samples in a cache: the same command\n"
-        "goes on with them, and once they are there it takes seconds.\n",
+    .summary = "measure error, time and memory of methods against the reference",
+    .text = "Renders SCENE with each --gi on the GPU and path-traces it on the CPU.\n"
+            "Writes a folder: report.html, images, error maps and .exr files.\n"
+            "All images have the same camera, light and exposure.\n"
+            "\n"
+            "The reference takes most of the time, proportional to pixels times --spp.\n"
+            "On two cores: 640x360 of a room half a minute;\n"
+            "1280x720 of a large scene with --spp 512 half an hour.\n"
+            "Ctrl-C caches its samples; the same command continues with them.\n",
     .examples = "  afterglow compare @cornell --size 320x180 --spp 64\n"
                 "      none, ambient and lpv, into cornell-compare\n"
                 "  afterglow compare house.glb --size 640x360 --gi lpv:steps=16 --gi lpv -o house\n"
-                "      one method with two settings\n"
-                "  afterglow reference @atrium --size 640x360 --spp 1024 -o court.exr\n"
-                "  afterglow compare @atrium --size 640x360 --reference court.exr\n"
-                "      against an image that was traced before\n"
+                "      one technique with two settings\n"
+                "  afterglow reference @atrium --size 640x360 --spp 1024 -o atrium.exr\n"
+                "  afterglow compare @atrium --size 640x360 --reference atrium.exr\n"
+                "      use a reference traced before\n"
                 "  afterglow compare @cornell --size 160x90 --gi lpv --max-flip 0.4 --quiet\n"
-                "      in a test: the exit status is 1 where lpv is further from the truth\n",
+                "      in a test: exit status 1 if the error of lpv exceeds the bound\n",
     .run = compare,
 };

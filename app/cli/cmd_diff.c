@@ -201,15 +201,13 @@ const struct command command_diff = {
     .bit = DIFF,
     .positional_count = 2,
     .usage = "A B [options]",
-    .summary = "how far image A is from image B",
-    .text = "Error of A against the reference B, two .exr or two .png files of one size: mean "
-            "squared error,\n"
-            "the same relative to B, mean absolute error, peak signal-to-noise ratio (for values "
-            "in 0 to 1),\n"
-            "structural similarity (1 for equal images), FLIP (0 for equal images, to 1) and the "
-            "mean colours.\n"
-            "For ssim and flip two .exr are shown alike: with one exposure, through the tone "
-            "mapper.\n",
+    .summary = "measure the difference of image A from reference image B",
+    .text = "Measures the error of A against B: two .exr or .png files of equal size.\n"
+            "  mse, mae, relmse  mean squared, absolute and relative squared error; 0 is equal\n"
+            "  psnr              signal-to-noise ratio in dB, for values of 0 to 1\n"
+            "  ssim              structural similarity; 1 is equal\n"
+            "  flip              visible difference when flipping between A and B; 0 is equal\n"
+            "For ssim and flip, .exr files get the same exposure and tone mapping.\n",
     .examples = "  afterglow diff lpv.exr reference.exr\n"
                 "  afterglow diff lpv.exr reference.exr --layer indirect --json\n"
                 "  afterglow diff before.png after.png --map error.png --metric flip\n"

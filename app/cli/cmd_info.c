@@ -252,13 +252,10 @@ const struct command command_info = {
     .bit = INFO,
     .positional_count = 1,
     .usage = "SCENE [options]",
-    .summary = "what is in a scene",
-    .text =
-        "Counts, size, lights, cameras, animations and materials of SCENE at a moment of its "
-        "animation, and\n"
-        "the light and the camera that it would get where it brings none, as the options of render "
-        "that\n"
-        "would ask for the same. Lengths are in metres, suns in lux, other lights in candela.\n",
+    .summary = "show the contents of SCENE: size, lights, cameras, materials",
+    .text = "Shows counts, size, lights, cameras, animations and materials of SCENE.\n"
+            "If light or camera are missing, shows the options that render would use.\n"
+            "Lengths are in metres, suns in lux, other lights in candela.\n",
     .examples = "  afterglow info house.glb\n"
                 "  afterglow info @cornell:light=point --json\n"
                 "  afterglow info fox.glb --animation Run --time 0.5\n",

@@ -2,14 +2,14 @@
 #include "commands.h"
 #include "json.h"
 #include "session.h"
+#include "wrapped.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_DEVICES = 64 };
+enum { MAX_DEVICES = 64, HELP_COLUMN = 34 };
 
-// Any of the catalogue's option lists: `owner` is the technique's or scene's index, and ignored for
-// the frame's.
+// An option list of the catalogue; owner: index of the technique or scene, ignored for the frame.
 typedef bool option_getter(int owner, int index, struct ag_option_info *out);
 
 static bool frame_option(int owner, int index, struct ag_option_info *out)
@@ -18,7 +18,7 @@ static bool frame_option(int owner, int index, struct ag_option_info *out)
     return ag_frame_option_get(index, out);
 }
 
-// The i-th of "first|second|…" into `out`.
+// Item `index` of "first|second|…".
 static const char *choice(const char *choices, int index, char out[64])
 {
     for (; index > 0 && *choices; index--) {
@@ -156,17 +156,35 @@ static enum status list_json(const struct ag_device_info *devices, int count)
 
 // ---- text
 
+static const char *default_of(const struct ag_option_info *o, char out[64])
+{
+    if (is(o, "choice")) return choice(o->unit, (int)o->initial, out);
+    if (is(o, "bool")) return o->initial != 0.0 ? "true" : "false";
+    snprintf(out, 64, "%g", o->initial);
+    return out;
+}
+
+// " (range)" on one line; "" for switches.
+static void range_of(const struct ag_option_info *o, char out[512])
+{
+    out[0] = 0;
+    if (is(o, "choice"))
+        snprintf(out, 512, " (%s)", o->unit);
+    else if (!is(o, "bool"))
+        snprintf(out, 512, " (%g to %g%s%s)", o->min, o->max, o->unit[0] ? " " : "", o->unit);
+    for (char *c = out; *c; c++)
+        if (*c == ' ' && c > out) *c = HELP_NO_BREAK;
+}
+
+// "name=default  help (range)"
 static void print_option(const struct ag_option_info *o)
 {
-    char range[512], name[64];
-    if (is(o, "choice"))
-        snprintf(range, sizeof range, "%s (%s)", o->unit, choice(o->unit, (int)o->initial, name));
-    else if (is(o, "bool"))
-        snprintf(range, sizeof range, "true|false (%s)", o->initial != 0.0 ? "true" : "false");
-    else
-        snprintf(range, sizeof range, "%g to %g%s%s (%g)", o->min, o->max, o->unit[0] ? " " : "",
-                 o->unit, o->initial);
-    printf("      %-18s %-28s %s\n", o->name, range, o->help);
+    char text[1024], range[512], value[64];
+    range_of(o, range);
+    snprintf(text, sizeof text, "%s%s", o->help, range);
+    int used = printf("    %s=%s", o->name, default_of(o, value));
+    printf("%*s", used < HELP_COLUMN ? HELP_COLUMN - used : 1, "");
+    print_wrapped(used < HELP_COLUMN ? HELP_COLUMN : used + 1, text);
 }
 
 static void print_options(option_getter *get, int owner)
@@ -175,43 +193,110 @@ static void print_options(option_getter *get, int owner)
     for (int i = 0; get(owner, i, &option); i++) print_option(&option);
 }
 
+// Two techniques may have the same options with other defaults.
+static bool options_are_equal(int a, int b)
+{
+    struct ag_option_info first, second;
+    for (int i = 0;; i++) {
+        bool more = ag_technique_option_get(a, i, &first);
+        if (more != ag_technique_option_get(b, i, &second)) return false;
+        if (!more) return i > 0;
+        if (strcmp(first.name, second.name) != 0 || strcmp(first.help, second.help) != 0)
+            return false;
+    }
+}
+
+static bool debug_views_are_equal(int a, int b)
+{
+    const char *first, *second, *help;
+    for (int i = 0;; i++) {
+        bool more = ag_technique_debug_view_get(a, i, &first, &help);
+        if (more != ag_technique_debug_view_get(b, i, &second, &help)) return false;
+        if (!more) return true;
+        if (strcmp(first, second) != 0) return false;
+    }
+}
+
+static int same_options_before(int technique)
+{
+    for (int i = 0; i < technique; i++)
+        if (options_are_equal(i, technique)) return i;
+    return -1;
+}
+
+static void print_other_defaults(int technique, int before)
+{
+    struct ag_technique_info other;
+    struct ag_option_info own, theirs;
+    char value[64];
+    ag_technique_get(before, &other);
+    printf("    options and debug views as in %s, but", other.name);
+    for (int i = 0; ag_technique_option_get(technique, i, &own); i++) {
+        ag_technique_option_get(before, i, &theirs);
+        if (own.initial != theirs.initial) printf(" %s=%s", own.name, default_of(&own, value));
+    }
+    printf("\n");
+}
+
 static void print_presets(int technique)
 {
     const char *name, *options;
-    for (int i = 0; ag_technique_preset_get(technique, i, &name, &options); i++)
-        printf("      quality=%-10s %s\n", name, options[0] ? options : "the defaults");
+    for (int i = 0; ag_technique_preset_get(technique, i, &name, &options); i++) {
+        int used = printf("    quality=%s", name);
+        printf("%*s%s\n", HELP_COLUMN - used, "", options[0] ? options : "the defaults");
+    }
+}
+
+static void print_debug_views(int technique)
+{
+    const char *name, *help;
+    for (int i = 0; ag_technique_debug_view_get(technique, i, &name, &help); i++) {
+        int used = printf("    --debug-view %s", name);
+        printf("%*s", used < HELP_COLUMN ? HELP_COLUMN - used : 1, "");
+        print_wrapped(HELP_COLUMN, help);
+    }
+}
+
+static void print_technique(int technique, const struct ag_technique_info *t)
+{
+    printf("\n%s: %s (%s)\n", t->name, t->title, t->role);
+    if (t->paper && t->paper[0] && strcmp(t->paper, "none") != 0) {
+        printf("    ");
+        print_wrapped(4, t->paper);
+    }
+    if (!t->moving_geometry) printf("    static geometry only\n");
+    if (!t->moving_lights) printf("    static lights only\n");
+    if (t->needs_bake) printf("    needs a bake\n");
+    int before = same_options_before(technique);
+    if (before >= 0)
+        print_other_defaults(technique, before);
+    else
+        print_options(ag_technique_option_get, technique);
+    print_presets(technique);
+    if (before < 0 || !debug_views_are_equal(before, technique)) print_debug_views(technique);
 }
 
 static void print_techniques(void)
 {
     struct ag_technique_info t;
-    const char *name, *help;
-    printf("Techniques, for --gi source+delta+visibility; options as name:key=value,key=value\n");
-    for (int i = 0; ag_technique_get(i, &t); i++) {
-        printf("\n  %-10s %s (%s%s%s%s)\n", t.name, t.title, t.role,
-               t.moving_geometry ? ", moving geometry" : "",
-               t.moving_lights ? ", moving lights" : "", t.needs_bake ? ", needs a bake" : "");
-        if (t.paper && t.paper[0]) printf("             %s\n", t.paper);
-        print_options(ag_technique_option_get, i);
-        print_presets(i);
-        for (int k = 0; ag_technique_debug_view_get(i, k, &name, &help); k++)
-            printf("      --debug-view %-16s %s\n", name, help);
-    }
+    printf("Techniques: --gi SOURCE[+VISIBILITY], options as NAME:OPTION=VALUE,OPTION=VALUE\n"
+           "Options are listed with their default: OPTION=DEFAULT\n");
+    for (int i = 0; ag_technique_get(i, &t); i++) print_technique(i, &t);
 }
 
 static void print_scenes(void)
 {
     struct ag_builtin_scene_info scene;
-    printf("\nBuilt-in scenes; options as @name:key=value,key=value\n");
+    printf("\nBuilt-in scenes: @NAME or @NAME:OPTION=VALUE,OPTION=VALUE\n");
     for (int i = 0; ag_builtin_scene_get(i, &scene); i++) {
-        printf("\n  @%-10s %s\n", scene.name, scene.title);
+        printf("\n@%s: %s\n", scene.name, scene.title);
         print_options(ag_builtin_scene_option_get, i);
     }
 }
 
 static void print_devices(const struct ag_device_info *devices, int count)
 {
-    printf("\nDevices, for --device\n\n");
+    printf("\nDevices: --device NUMBER or a part of the name\n\n");
     for (int i = 0; i < count; i++)
         printf("  %-3d %s, %s%s%s%s\n", i, devices[i].name, devices[i].driver,
                devices[i].software ? " (software)" : "", devices[i].usable ? "" : ": not usable, ",
@@ -226,7 +311,7 @@ static enum status list(const struct arguments *arguments)
     int count = 0;
     enum status status = session_begin(&session, arguments);
     if (status != DONE) return status;
-    // No device is no failure here: it is what the list says.
+    // A machine without a device still has a list.
     if (ag_device_list(session.context, devices, MAX_DEVICES, &count) != AG_OK) {
         note("no device: %s", ag_context_last_error(session.context));
         count = 0;
@@ -236,7 +321,7 @@ static enum status list(const struct arguments *arguments)
         status = list_json(devices, count);
     } else {
         print_techniques();
-        printf("\nFrame options, for --frame-options\n\n");
+        printf("\nFrame options: --frame-options OPTION=VALUE,OPTION=VALUE\n\n");
         print_options(frame_option, 0);
         print_scenes();
         print_devices(devices, count);
@@ -250,10 +335,9 @@ const struct command command_list = {
     .bit = LIST,
     .positional_count = 0,
     .usage = "[options]",
-    .summary = "techniques, their options and debug views, built-in scenes, devices",
-    .text = "Lists what there is: techniques for --gi with their options (range and default) and "
-            "debug views,\n"
-            "built-in scenes and their options, and the devices of this machine.\n",
+    .summary = "list techniques with their options, built-in scenes and devices",
+    .text = "Lists techniques for --gi with options, presets and debug views,\n"
+            "built-in scenes with options, frame options, and the devices of this machine.\n",
     .examples = "  afterglow list\n"
                 "  afterglow list --json | jq '.techniques[].name'\n",
     .run = list,

@@ -180,24 +180,18 @@ const struct command command_reference = {
     .bit = REFERENCE,
     .positional_count = 1,
     .usage = "SCENE [options]",
-    .summary = "path-traces the same image on the CPU, to hold the others against",
-    .text = "Path-traces SCENE on all cores, with the materials, lights, camera and units of "
-            "render; what "
-            "glows and\n"
-            "the sky light the scene too. The image is written after the first sample and now "
-            "and then, "
-            "better each\n"
-            "time; Ctrl-C leaves what there is, and --resume goes on with it. The result depends "
-            "neither "
-            "on the\n"
-            "number of cores nor on interruptions but for rounding.\n",
+    .summary = "path-trace SCENE on the CPU: slow, converges to ground truth",
+    .text = "Path-traces SCENE on all cores, with materials, lights and camera as in render.\n"
+            "Writes the image after the first sample, every ten seconds, and at the end.\n"
+            "Ctrl-C keeps the samples; --resume continues with them.\n"
+            "Neither the number of cores nor interruptions change the result, up to rounding.\n",
     .examples = "  afterglow reference @cornell --size 256x256 --spp 256\n"
-                "      into cornell-reference.exr, with direct and indirect light as layers\n"
-                "  afterglow reference @atrium --spp 1024 --size 640x360 --resume -o court.exr\n"
-                "      repeated after Ctrl-C, it goes on where it stopped\n"
+                "      into cornell-reference.exr, direct and indirect light as layers\n"
+                "  afterglow reference @atrium --size 640x360 --spp 1024 --resume -o atrium.exr\n"
+                "      run it again after Ctrl-C to continue\n"
                 "  afterglow reference @cornell --bounces 1 --aov color,irradiance -o one.exr\n"
                 "      direct light and one bounce\n"
                 "  afterglow reference house.glb --spp 256 --antialias -o house.png\n"
-                "      a smooth image, exposed\n",
+                "      an exposed image with smooth edges\n",
     .run = reference,
 };

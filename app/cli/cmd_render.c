@@ -241,27 +241,25 @@ const struct command command_render = {
     .bit = RENDER,
     .positional_count = 1,
     .usage = "SCENE [options]",
-    .summary = "renders a scene with real-time global illumination, headless",
-    .text = "Renders SCENE in real time on the GPU, without a window, and writes the image. A "
-            "scene without\n"
-            "light gets a sun and a faint sky, one without a camera gets one; both are said on "
-            "standard error.\n"
-            "A .png is exposed, tone mapped and sRGB; an .exr holds linear, unexposed values: "
-            "radiance in cd/m2,\n"
-            "irradiance in lux, lengths in metres.\n",
+    .summary = "render SCENE in real time on the GPU, without a window",
+    .text = "Renders SCENE on the GPU, without a window, and writes an image.\n"
+            "A .png is exposed and tone mapped; an .exr holds linear physical values.\n"
+            "Scenes without light get a sun and a faint sky, scenes without camera a view;\n"
+            "a note prints the options that give the same light and view.\n",
     .examples =
         "  afterglow render @cornell:light=point\n"
-        "      direct light alone, into cornell.png\n"
+        "      direct light only, into cornell.png\n"
         "  afterglow render @atrium --gi lpv:steps=16 --size 640x360 -o lit.png\n"
-        "      with light propagation volumes of 16 steps (what else there is: afterglow list)\n"
-        "  afterglow render house.glb --gi lpv --no-scene-lights --light "
-        "sun:1,-2,0.5:100000,95000,90000\n"
-        "      in the light of a sun that shines downwards\n"
+        "      light propagation volumes with 16 steps\n"
+        "  afterglow render @atrium --gi vct:quality=high --frames 24 -o vct.png\n"
+        "      a preset with temporal accumulation, which needs several frames\n"
+        "  afterglow render house.glb --gi lpv --light sun:1,-2,0.5:100000,95000,90000\n"
+        "      add a sun\n"
         "  afterglow render @atrium --gi lpv --aov color,direct,indirect -o parts.exr\n"
-        "      the image and its parts as layers; afterglow diff compares them\n"
+        "      several layers in one file; 'afterglow diff' compares them\n"
         "  afterglow render fox.glb --gi lpv --frames 48 --time-step 0.0416 -o fox-%04d.png\n"
-        "      two seconds of the first animation\n"
+        "      two seconds of an animation\n"
         "  afterglow render @atrium --gi lpv --frames 21 --stats times.json\n"
-        "      medians over 20 frames: the first one warms up\n",
+        "      measure 20 frames; the first warms up\n",
     .run = render,
 };

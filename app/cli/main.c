@@ -1,4 +1,4 @@
-// afterglow: finds the command and runs it. Exit status: 0 done, 1 it failed, 2 wrong usage.
+// afterglow: finds and runs the command. Exit status: 0 success, 1 failure, 2 wrong usage.
 #include "commands.h"
 #include "interrupt.h"
 
@@ -18,13 +18,18 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_usage(void)
 {
-    printf("afterglow COMMAND [arguments] [options]: real-time global illumination\n\n");
+    printf("Afterglow: real-time global illumination, measured against a path-traced reference\n\n"
+           "Usage: afterglow COMMAND ARGUMENTS [options]\n\n"
+           "Commands:\n");
     for (int i = 0; i < COMMAND_COUNT; i++)
-        printf("  %-10s%s\n", commands[i]->name, commands[i]->summary);
-    printf(
-        "\nA SCENE is a file (glTF 2.0 first; OBJ, PLY, FBX, X) or a built-in one, as @cornell.\n"
-        "Each command explains itself:  afterglow render --help\n"
-        "Exit status: 0 done, 1 it failed, 2 wrong usage.\n");
+        printf("  %-11s%s\n", commands[i]->name, commands[i]->summary);
+    printf("\nSCENE is a file (.gltf, .glb, .obj, .ply, .fbx, .x) or a built-in scene (@cornell).\n"
+           "\nFirst steps:\n"
+           "  afterglow render @cornell --gi lpv -o cornell.png\n"
+           "  afterglow compare @cornell --size 320x180\n"
+           "  afterglow list\n"
+           "  afterglow render --help\n"
+           "\nExit status: 0 success, 1 failure, 2 wrong usage.\n");
 }
 
 static const struct command *command_find(const char *name)
@@ -43,7 +48,7 @@ static enum status unknown_command(const char *name)
     return wrong_usage("unknown command %s: see afterglow --help", name);
 }
 
-// What stays in standard output's buffer must reach its reader too.
+// Reports an error of buffered output, which otherwise nobody would notice.
 static enum status flush_output(enum status status)
 {
     bool failed = fflush(stdout) != 0 || ferror(stdout);
@@ -53,7 +58,7 @@ static enum status flush_output(enum status status)
 
 static enum status run(int count, char **words)
 {
-    if (count < 2) return wrong_usage("no command is given: see afterglow --help");
+    if (count < 2) return wrong_usage("no command given: see afterglow --help");
     if (strcmp(words[1], "--help") == 0 || strcmp(words[1], "-h") == 0 ||
         strcmp(words[1], "help") == 0) {
         print_usage();
@@ -77,8 +82,9 @@ static enum status run(int count, char **words)
     return command->run(&arguments);
 }
 
-// Where a standard stream is closed, the first file that is opened would become it, and a note
-// would be written into the image. What stands in for it fails as the closed one does.
+// If a standard stream is closed, the next opened file gets its descriptor and messages would end
+// up in an image. /dev/null opened the wrong way round takes its place and fails like a closed
+// stream.
 static void keep_standard_streams_apart(void)
 {
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
@@ -89,7 +95,7 @@ static void keep_standard_streams_apart(void)
 int main(int count, char **words)
 {
     keep_standard_streams_apart();
-    signal(SIGXFSZ, SIG_IGN); // a file that grows too large is a failed write, and is cleaned up
+    signal(SIGXFSZ, SIG_IGN); // a file over the size limit is a failed write
     interrupt_begin();
     return flush_output(run(count, words));
 }

@@ -220,6 +220,58 @@ TEST(a_full_standard_output_is_a_failure)
     assert_int_equal(WEXITSTATUS(status), 1);
 }
 
+enum { MAX_WORDS = 15, MAX_HELP_WORDS = 30 };
+
+static int count_words(const char *text, size_t length)
+{
+    int words = 0;
+    for (size_t i = 0; i < length; i++) words += text[i] != ' ' && (i == 0 || text[i - 1] == ' ');
+    return words;
+}
+
+// Lines of text and of help, from `column` on in tables; command lines are as long as they are.
+static void check_lines(const char *text, size_t column)
+{
+    for (size_t length; *text; text += length + (text[length] == '\n')) {
+        length = strcspn(text, "\n");
+        bool command = strncmp(text + strspn(text, " "), "afterglow ", 10) == 0;
+        bool table = text[0] == ' ' && length > column;
+        size_t from = table ? column : 0;
+        if (!command && count_words(text + from, length - from) > MAX_WORDS)
+            fail_msg("more than %d words: %.*s", MAX_WORDS, (int)length, text);
+    }
+}
+
+TEST(a_line_of_help_has_at_most_15_words)
+{
+    static const char *const commands[] = { "",     "render", "reference", "compare",
+                                            "info", "list",   "diff" };
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
+        check_lines(run_expect(0, commands[i], "--help", NULL)->out, 24);
+    check_lines(run_expect(0, "list --quiet", NULL)->out, 34);
+}
+
+static void check_option_help(const json_t *owner)
+{
+    size_t i;
+    json_t *option;
+    json_array_foreach(json_object_get(owner, "options"), i, option)
+    {
+        const char *help = json_string_value(json_object_get(option, "help"));
+        if (count_words(help, strlen(help)) > MAX_HELP_WORDS)
+            fail_msg("more than %d words: %s", MAX_HELP_WORDS, help);
+    }
+}
+
+TEST(the_help_of_an_option_fits_two_lines)
+{
+    json_t *list = run_json(run_expect(0, "list --json --quiet", NULL)), *owner;
+    size_t i;
+    json_array_foreach(json_object_get(list, "techniques"), i, owner) check_option_help(owner);
+    json_array_foreach(json_object_get(list, "scenes"), i, owner) check_option_help(owner);
+    json_decref(list);
+}
+
 TEST(help_teaches_with_examples)
 {
     static const char *const commands[] = { "render", "info", "list", "diff" };
