@@ -236,7 +236,8 @@ static void check_lines(const char *text, size_t column)
         length = strcspn(text, "\n");
         bool command = strncmp(text + strspn(text, " "), "afterglow ", 10) == 0;
         bool table = text[0] == ' ' && length > column;
-        size_t from = table ? column : 0;
+        size_t name = strcspn(text, " \n"); // "lpv: light propagation volumes"
+        size_t from = table ? column : name > 0 && text[name - 1] == ':' ? name : 0;
         if (!command && count_words(text + from, length - from) > MAX_WORDS)
             fail_msg("more than %d words: %.*s", MAX_WORDS, (int)length, text);
     }
