@@ -36,7 +36,7 @@ static int key_before(const struct animation_channel *channel, float time_s)
     return low;
 }
 
-// The value of key k; for cubic channels it stands between its tangents.
+// The value of key k. Cubic keys store in-tangent, value, out-tangent.
 static const float *key_value(const struct animation_channel *channel, int k)
 {
     size_t width = (size_t)channel->width;
@@ -51,9 +51,9 @@ static versors quaternion_of(const float *values)
 
 static void slerp_keys(const float *a, const float *b, float u, float *out)
 {
-    versors turned = glms_quat_slerp(glms_quat_normalize(quaternion_of(a)),
+    versors result = glms_quat_slerp(glms_quat_normalize(quaternion_of(a)),
                                      glms_quat_normalize(quaternion_of(b)), u);
-    memcpy(out, turned.raw, sizeof turned.raw);
+    memcpy(out, result.raw, sizeof result.raw);
 }
 
 static void sample_linear(const struct animation_channel *channel, int k, float u, int count,
@@ -67,8 +67,7 @@ static void sample_linear(const struct animation_channel *channel, int k, float 
     for (int i = 0; i < count; i++) out[i] = a[i] + u * (b[i] - a[i]);
 }
 
-// The cubic Hermite spline of appendix C.5; tangents are per second, so they are scaled by the key
-// distance.
+// The cubic Hermite spline of appendix C.5. Tangents are per second, hence the factor step_s.
 static void sample_cubic(const struct animation_channel *channel, int k, float u, float step_s,
                          int count, float *out)
 {
@@ -113,7 +112,7 @@ static float wrap_time(float time_s, float duration_s)
     return wrapped < 0.0f ? wrapped + duration_s : wrapped;
 }
 
-// A channel moves the weights of all instances at its node.
+// A weights channel drives all instances at its node.
 static void animate_weights(const struct scene *scene, const struct animation_channel *channel,
                             float time_s, float *morph_weights, const size_t *morph_offset)
 {

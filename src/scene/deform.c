@@ -23,8 +23,7 @@ bool deformer_init(struct deformer *deformer, struct arena *arena, const struct 
 }
 
 // The transform of normals: the cofactor matrix, which is the inverse transpose times the
-// determinant. It needs no division, exists for flattening transforms too, and its sign is put
-// right for mirroring ones.
+// determinant. It exists for singular matrices too; the sign is corrected for mirroring ones.
 static mat3s normal_transform(mat4s m)
 {
     vec3s x = vec3_xyz(m.col[0]), y = vec3_xyz(m.col[1]), z = vec3_xyz(m.col[2]);
@@ -55,7 +54,7 @@ static mat4s blend_joints(const mat4s *world_from_mesh, const uint16_t *joints, 
     return blended;
 }
 
-// A vertex's position and normal with the morph targets added.
+// Position and normal of a vertex with the weighted morph targets added.
 static void morph_vertex(const struct mesh *mesh, const float *weights, uint32_t v, vec3s *position,
                          vec3s *normal)
 {
@@ -69,13 +68,14 @@ static void morph_vertex(const struct mesh *mesh, const float *weights, uint32_t
     }
 }
 
-static vec4s move_tangent(mat4s world_from_mesh, vec4s tangent, vec3s normal)
+static vec4s transform_tangent(mat4s world_from_mesh, vec4s tangent, vec3s normal)
 {
-    vec3s moved = mat4_direction(world_from_mesh, vec3_xyz(tangent));
-    moved = glms_vec3_sub(moved, glms_vec3_scale(normal, glms_vec3_dot(moved, normal)));
+    vec3s transformed = mat4_direction(world_from_mesh, vec3_xyz(tangent));
+    transformed =
+        glms_vec3_sub(transformed, glms_vec3_scale(normal, glms_vec3_dot(transformed, normal)));
     vec3s any_tangent, any_bitangent;
     basis_of(normal, &any_tangent, &any_bitangent);
-    return vec4_of(unit_or(moved, any_tangent), tangent.w);
+    return vec4_of(unit_or(transformed, any_tangent), tangent.w);
 }
 
 static void deform_vertices(const struct mesh *mesh, const float *weights, const mat4s *joints,
@@ -94,7 +94,8 @@ static void deform_vertices(const struct mesh *mesh, const float *weights, const
         out->positions[v] = mat4_point(world_from_mesh, position);
         out->normals[v] = unit_or(glms_mat3_mulv(normals, normal), mesh->normals[v]);
         if (out->tangents) {
-            out->tangents[v] = move_tangent(world_from_mesh, mesh->tangents[v], out->normals[v]);
+            out->tangents[v] =
+                transform_tangent(world_from_mesh, mesh->tangents[v], out->normals[v]);
         }
     }
 }
@@ -113,7 +114,7 @@ static void deform_instance(void *user, size_t i)
     const struct instance *instance = &scene->instances[i];
     mat4s *joints = NULL;
     if (instance->skin >= 0) {
-        // The node's own transform is left out for skinned meshes: the joints place them.
+        // glTF 2.0, section 3.7.3.3: the transform of a skinned node is ignored.
         const struct skin *skin = &scene->skins[instance->skin];
         joints = job->deformer->world_from_mesh + job->deformer->joint_offset[i];
         for (int j = 0; j < skin->joint_count; j++) {

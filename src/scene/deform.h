@@ -1,12 +1,12 @@
-// Vertices that bend: morph targets, then linear-blend skinning (glTF 2.0, sections 3.7.2.2
-// and 3.7.3), in world space, on the CPU.
+// Morph targets, then linear-blend skinning (glTF 2.0, sections 3.7.2.2 and 3.7.3), into world
+// space, on the CPU.
 #pragma once
 
 #include "scene/pose.h"
 
-// Where each instance's joint matrices go, so that instances can be worked on side by side.
+// Joint matrices of each instance, separate so that instances can be deformed in parallel.
 struct deformer {
-    mat4s *world_from_mesh; // by joint, all skinned instances one after the other
+    mat4s *world_from_mesh; // per joint, concatenated over all skinned instances
     size_t *joint_offset;   // [instance_count]
 };
 

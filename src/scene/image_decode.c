@@ -8,12 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// stb_image grows its buffers by what the stream delivers, not by what the image's size justifies:
-// a few kilobytes of zlib data can ask for gigabytes. One limit per thread, for one allocation,
-// stops that.
+// stb_image grows its buffers with the decompressed stream, whatever the image's size: a few
+// kilobytes of zlib data can expand to gigabytes. This limit for a single allocation prevents that.
 static _Thread_local size_t largest_block;
 
-// Zeroed: an image that names tables it does not have must decode to the same pixels each time.
+// Zeroed: an image that refers to missing tables must decode to the same pixels each time.
 static void *limited_alloc(size_t bytes)
 {
     return bytes <= largest_block ? calloc(1, bytes) : NULL;
@@ -47,8 +46,8 @@ static void *limited_realloc(void *old, size_t bytes)
 // doubling.
 static const size_t BLOCK_BYTES_PER_PIXEL = 18;
 static const size_t BLOCK_ALLOWANCE = (size_t)1 << 20;
-// A progressive image has some ten scans; each scan costs a pass over all pixels and may take ten
-// bytes.
+// A progressive JPEG has about ten scans. A scan can be ten bytes long and costs a pass over all
+// pixels.
 enum { MAX_JPEG_SCANS = 100 };
 
 enum image_kind image_kind_of(const uint8_t *data, size_t size)
@@ -73,7 +72,7 @@ const char *image_decode_size(const uint8_t *data, size_t size, int *width, int 
     int channels;
     if (size > INT_MAX) return "it has more than 2 GiB";
     largest_block = BLOCK_ALLOWANCE;
-    const bool jpeg = size > 0 && data[0] == 0xff; // as the decoder sees it: fill bytes may follow
+    const bool jpeg = size > 0 && data[0] == 0xff; // fill bytes may precede the second marker byte
     const char *unsound = jpeg ? jpeg_check(data, size) : NULL;
     if (unsound) return unsound;
     if (!stbi_info_from_memory(data, (int)size, width, height, &channels)) {

@@ -1,6 +1,6 @@
-// A walk over a JPEG's segments (ITU-T T.81, annex B). It finds every table that a decoder finds:
-// both skip segments by their length, and in entropy-coded data a marker is 0xff before a byte that
-// is neither 0, a fill byte nor a restart.
+// Traversal of a JPEG's segments (ITU-T T.81, annex B). It reaches every table that a decoder
+// reaches: both skip segments by their length, and in entropy-coded data a marker is 0xff before a
+// byte that is neither 0, a fill byte nor a restart marker.
 #include "scene/jpeg_check.h"
 
 #include <stdbool.h>
@@ -8,7 +8,7 @@
 enum { MARKER_DHT = 0xc4, MARKER_RST0 = 0xd0, MARKER_SOI = 0xd8, MARKER_EOI = 0xd9 };
 enum { CODE_LENGTHS = 16, MAX_SYMBOLS = 256 };
 
-// Behind the next marker, which goes to *marker; `size` where there is none.
+// The position after the next marker, which is stored in *marker; `size` when there is none.
 static size_t next_marker(const uint8_t *data, size_t size, size_t at, uint8_t *marker)
 {
     for (; at + 1 < size; at++) {
@@ -21,8 +21,8 @@ static size_t next_marker(const uint8_t *data, size_t size, size_t at, uint8_t *
     return size;
 }
 
-// One or more tables: class and number, how many codes of each length, the symbols (T.81, B.2.4.2).
-// A decoder reads the last one to its end, also beyond the segment's.
+// One or more tables: class and number, the number of codes of each length, the symbols (T.81,
+// B.2.4.2). A decoder reads the last table to its end, even beyond the end of the segment.
 static bool tables_are_sound(const uint8_t *data, size_t size, size_t length)
 {
     for (size_t at = 0; at < length;) {

@@ -4,6 +4,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// NULL, or why the file is refused (a constant): a Huffman table with more symbols than there are
-// byte values, which stb_image before 2.29 writes past the end of its own.
+// NULL, or the reason of refusal (a constant): a Huffman table with more than 256 symbols, which
+// overflows a buffer of stb_image before 2.29.
 const char *jpeg_check(const uint8_t *data, size_t size);

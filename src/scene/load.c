@@ -1,4 +1,4 @@
-// The one door for scene names: built-in scenes are written "@name", everything else is a file.
+// Loads a scene by name: "@name" is a built-in scene, everything else a file.
 #include "scene/builtin/builtin.h"
 #include "scene/import/import.h"
 

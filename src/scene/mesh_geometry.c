@@ -1,9 +1,9 @@
-// Copies of a mesh with other vertices, and its bounds.
+// Rearranged vertex arrays of a mesh, and its bounds.
 #include "scene/mesh_geometry.h"
 
 #include <string.h>
 
-// NULL for a NULL array; *ok turns false when memory runs out.
+// NULL for a NULL array; *ok becomes false when out of memory.
 static void *gather(struct arena *arena, const void *old, size_t size, const uint32_t *source,
                     uint32_t count, bool *ok)
 {

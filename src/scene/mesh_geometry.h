@@ -1,6 +1,5 @@
-// What meshes need and files leave out: bounds, flat normals, tangents. The functions that make
-// vertices replace all arrays of a mesh by new ones from the arena and leave the old ones as they
-// were: they may be shared.
+// Bounds, flat normals and tangents of a mesh. Functions that add vertices replace all arrays of
+// the mesh by new ones from the arena; the old arrays, which meshes may share, stay unchanged.
 #pragma once
 
 #include "scene/scene.h"
@@ -10,16 +9,16 @@
 // is then unchanged.
 bool mesh_gather(struct arena *arena, struct mesh *mesh, const uint32_t *source, uint32_t count);
 
-// Of the rest positions; empty for a mesh without vertices.
+// Bounds of the rest positions; empty for a mesh without vertices.
 struct box3 mesh_bounds(const struct mesh *mesh);
 
-// Flat shading, as glTF 2.0 asks where normals are absent: each triangle gets three vertices of its
-// own, with the normal of its plane (+y where it has no area). False when out of memory; the mesh
-// is then unchanged.
+// Flat normals, which glTF 2.0 requires where normals are absent: each triangle gets three vertices
+// of its own with the normal of its plane (+y for a degenerate triangle). False when out of memory;
+// the mesh is then unchanged.
 bool mesh_make_normals(struct arena *arena, struct mesh *mesh);
 
-// Tangents along the u of `map`, its transform included, averaged over the triangles at a vertex by
-// their angles. Vertices where mirrored and unmirrored mapping meet are doubled. Needs normals. A
-// mesh without the map's texture coordinates keeps tangents NULL. False when out of memory; the
-// mesh is then unchanged.
+// Tangents along the u axis of `map` (after its transform), averaged over the triangles at a
+// vertex, weighted by angle. Vertices shared by mirrored and unmirrored triangles are duplicated.
+// Needs normals. A mesh without the map's texture coordinates keeps tangents NULL. False when out
+// of memory; the mesh is then unchanged.
 bool mesh_make_tangents(struct arena *arena, struct mesh *mesh, const struct texture_use *map);

@@ -1,8 +1,7 @@
-// Flat normals for meshes without (glTF 2.0, section 3.7.2.1: "client implementations MUST
-// calculate flat normals").
+// Flat normals (glTF 2.0, section 3.7.2.1: "client implementations MUST calculate flat normals").
 #include "scene/mesh_geometry.h"
 
-// The cross product is taken in double: the squares of a triangle of 1e-20 m still count.
+// In double: the squared lengths of a triangle of 1e-20 m underflow in float.
 static vec3s plane_normal(const vec3s p[3])
 {
     double a[3], b[3];
@@ -20,7 +19,6 @@ static vec3s plane_normal(const vec3s p[3])
 bool mesh_make_normals(struct arena *arena, struct mesh *mesh)
 {
     struct mesh made = *mesh;
-    // Given normals and tangents would no longer fit.
     made.normals = NULL;
     made.tangents = NULL;
     if (!mesh_gather(arena, &made, mesh->indices, mesh->index_count)) return false;

@@ -1,4 +1,4 @@
-// A scene at a moment: node transforms from the rest pose and an animation (animation_sample.c),
+// A scene at a time: node transforms from the rest pose and an animation (animation_sample.c),
 // deformed vertices (deform.c), bounds, and lights and cameras in world space.
 #include "scene/pose.h"
 
@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-// Bounds of one rigid instance, kept while it does not move.
+// Cached bounds of one rigid instance, valid while its transform stays the same.
 struct rigid_bounds {
-    bool known;
+    bool valid;
     mat4s world_from_mesh;
     struct box3 box;
 };
@@ -28,7 +28,7 @@ static bool instance_deforms(const struct scene *scene, int instance)
     return it->skin >= 0 || scene->meshes[it->mesh].morph_count > 0;
 }
 
-// Rest weights of every instance, one after the other, at their offsets.
+// Concatenated morph weights of all instances.
 static bool create_morph_weights(struct scene_pose *pose, struct arena *arena)
 {
     const struct scene *scene = pose->scene;
@@ -119,8 +119,8 @@ static mat4s matrix_of_local(const struct node_local *local)
     return matrix;
 }
 
-// Parents come before their children, so one pass is enough. An animated node's matrix gives way to
-// its translation, rotation and scale (glTF 2.0, 3.6.2: only nodes with those are animated).
+// Parents come before their children, so one pass is enough. Animation replaces a node's matrix by
+// translation, rotation and scale (glTF 2.0, 3.6.2: nodes with a matrix are not animated).
 static void update_nodes(struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
@@ -135,8 +135,8 @@ static void update_nodes(struct scene_pose *pose)
     }
 }
 
-// A box of a box is exact where no axis is mixed with another.
-static bool keeps_axes(mat4s m)
+// Whether the transform maps axes to axes: a transformed box is then exact.
+static bool maps_axes_to_axes(mat4s m)
 {
     for (int column = 0; column < 3; column++) {
         int used = 0;
@@ -153,7 +153,7 @@ static struct box3 bounds_of_points(const vec3s *points, uint32_t count)
     return box;
 }
 
-static struct box3 bounds_of_moved_points(mat4s to_from, const vec3s *points, uint32_t count)
+static struct box3 bounds_of_transformed_points(mat4s to_from, const vec3s *points, uint32_t count)
 {
     struct box3 box = box3_empty();
     for (uint32_t v = 0; v < count; v++) box = box3_add_point(box, mat4_point(to_from, points[v]));
@@ -168,15 +168,16 @@ static struct box3 instance_bounds(struct scene_pose *pose, int instance)
     }
     if (box3_is_empty(mesh->bounds)) return box3_empty();
     mat4s world_from_mesh = pose_world_from_instance(pose, instance);
-    if (keeps_axes(world_from_mesh)) return box3_transform(world_from_mesh, mesh->bounds);
-    struct rigid_bounds *kept = &pose->workspace->bounds[instance];
-    if (!kept->known ||
-        memcmp(&kept->world_from_mesh, &world_from_mesh, sizeof world_from_mesh) != 0) {
-        kept->known = true;
-        kept->world_from_mesh = world_from_mesh;
-        kept->box = bounds_of_moved_points(world_from_mesh, mesh->positions, mesh->vertex_count);
+    if (maps_axes_to_axes(world_from_mesh)) return box3_transform(world_from_mesh, mesh->bounds);
+    struct rigid_bounds *cached = &pose->workspace->bounds[instance];
+    if (!cached->valid ||
+        memcmp(&cached->world_from_mesh, &world_from_mesh, sizeof world_from_mesh) != 0) {
+        cached->valid = true;
+        cached->world_from_mesh = world_from_mesh;
+        cached->box =
+            bounds_of_transformed_points(world_from_mesh, mesh->positions, mesh->vertex_count);
     }
-    return kept->box;
+    return cached->box;
 }
 
 void pose_update(struct scene_pose *pose, int animation, float time_s)
@@ -204,7 +205,7 @@ mat4s pose_world_from_instance(const struct scene_pose *pose, int instance)
     return pose->world_from_node[pose->scene->instances[instance].node];
 }
 
-static bool turns_over(mat4s m)
+static bool is_mirroring(mat4s m)
 {
     return glms_mat4_det(m) < 0.0f;
 }
@@ -212,21 +213,21 @@ static bool turns_over(mat4s m)
 bool pose_is_mirrored(const struct scene_pose *pose, int instance)
 {
     const struct instance *i = &pose->scene->instances[instance];
-    if (i->skin < 0) return turns_over(pose->world_from_node[i->node]);
+    if (i->skin < 0) return is_mirroring(pose->world_from_node[i->node]);
     const struct skin *skin = &pose->scene->skins[i->skin];
     if (skin->joint_count == 0) return false;
-    return turns_over(
+    return is_mirroring(
         glms_mat4_mul(pose->world_from_node[skin->joints[0]], skin->joint_from_mesh[0]));
 }
 
-// A unit direction through a node's transform; `fallback` where the transform flattens it to
-// nothing.
+// A direction in world space, normalised; `fallback` where the node's transform maps it to zero.
 static vec3s node_direction(const struct scene_pose *pose, int node, vec3s direction,
                             vec3s fallback)
 {
-    vec3s moved = mat4_direction(pose->world_from_node[node], direction);
-    float length = glms_vec3_norm(moved);
-    return length > 0.0f && isfinite(length) ? glms_vec3_scale(moved, 1.0f / length) : fallback;
+    vec3s transformed = mat4_direction(pose->world_from_node[node], direction);
+    float length = glms_vec3_norm(transformed);
+    return length > 0.0f && isfinite(length) ? glms_vec3_scale(transformed, 1.0f / length)
+                                             : fallback;
 }
 
 struct world_light pose_light(const struct scene_pose *pose, int light)
@@ -244,8 +245,8 @@ struct world_light pose_light(const struct scene_pose *pose, int light)
     };
 }
 
-// The unit vector nearest to `up` that is orthogonal to `forward`; when they are parallel, one that
-// keeps the picture's top where a camera tilted from the horizon would have it.
+// The unit vector nearest to `up` that is orthogonal to `forward`. For parallel vectors, the limit
+// of a horizontal camera that tilts up or down.
 static vec3s orthogonal_up(vec3s forward, vec3s up)
 {
     vec3s rest = glms_vec3_sub(up, glms_vec3_scale(forward, glms_vec3_dot(up, forward)));

@@ -1,7 +1,6 @@
-// A bounding volume hierarchy with binned surface area heuristic (Wald 2007, "On fast Construction
-// of SAH-based Bounding Volume Hierarchies"), Möller & Trumbore 1997's triangle test and ordered
-// traversal. Built by one thread: 0.1 s for a quarter of a million triangles, and the same tree
-// every time.
+// A bounding volume hierarchy by binned surface area heuristic (Wald 2007, "On fast Construction of
+// SAH-based Bounding Volume Hierarchies"), the triangle test of Möller & Trumbore 1997 and ordered
+// traversal. Built by one thread, deterministically: 0.1 s for a quarter of a million triangles.
 #include "scene/raycast.h"
 
 #include <math.h>
@@ -11,7 +10,7 @@ enum { BIN_COUNT = 16, LEAF_SIZE = 4, MAX_DEPTH = 48 };
 
 struct raycast_node {
     vec3s min;
-    uint32_t first; // the first triangle of a leaf, else the first of two neighbouring children
+    uint32_t first; // a leaf's first triangle, else the first of two adjacent children
     vec3s max;
     uint32_t count; // triangles of a leaf; 0: inner node
 };
@@ -20,7 +19,7 @@ struct raycast_triangle {
     vec3s corner, edge1, edge2;
 };
 
-// A triangle while the tree is built.
+// A triangle during the build.
 struct reference {
     struct box3 box;
     vec3s centre;
@@ -68,7 +67,7 @@ static int bin_of(vec3s centre, int axis, float low, float scale)
     return bin < 0 ? 0 : bin >= BIN_COUNT ? BIN_COUNT - 1 : bin;
 }
 
-// The bin border with the least estimated cost: triangles times area on both sides.
+// The bin border of the lowest estimated cost: triangle count times area, summed over both sides.
 static int best_border(const struct bins *bins, float *cost)
 {
     float right_cost[BIN_COUNT];
@@ -95,20 +94,20 @@ static int best_border(const struct bins *bins, float *cost)
     return best;
 }
 
-// Where a node is cut: centres in bins below `border` along `axis` go left. border 0: nowhere.
-struct cut {
+// How a node is split: centres in bins below `border` along `axis` go left. border 0: no split.
+struct split {
     int axis, border;
     float low, scale;
 };
 
-static struct cut choose_cut(const struct reference *references, uint32_t count)
+static struct split choose_split(const struct reference *references, uint32_t count)
 {
     struct box3 centres = NOTHING;
     for (uint32_t i = 0; i < count; i++) {
         centres.min = glms_vec3_minv(centres.min, references[i].centre);
         centres.max = glms_vec3_maxv(centres.max, references[i].centre);
     }
-    struct cut cut = { 0 };
+    struct split split = { 0 };
     float cost = INFINITY;
     for (int axis = 0; axis < 3; axis++) {
         float low = centres.min.raw[axis], extent = centres.max.raw[axis] - low;
@@ -122,17 +121,18 @@ static struct cut choose_cut(const struct reference *references, uint32_t count)
             bins.count[bin]++;
         }
         int border = best_border(&bins, &cost);
-        if (border > 0) cut = (struct cut){ axis, border, low, scale };
+        if (border > 0) split = (struct split){ axis, border, low, scale };
     }
-    return cut;
+    return split;
 }
 
-// References that go left to the front; how many they are.
-static uint32_t partition(struct reference *references, uint32_t count, const struct cut *cut)
+// Moves the references that go left to the front; returns their number.
+static uint32_t partition(struct reference *references, uint32_t count, const struct split *split)
 {
     uint32_t left = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (bin_of(references[i].centre, cut->axis, cut->low, cut->scale) >= cut->border) continue;
+        if (bin_of(references[i].centre, split->axis, split->low, split->scale) >= split->border)
+            continue;
         struct reference swap = references[i];
         references[i] = references[left];
         references[left++] = swap;
@@ -149,9 +149,9 @@ static void build_node(struct build *build, uint32_t node, uint32_t first, uint3
     build->nodes[node] =
         (struct raycast_node){ .min = box.min, .max = box.max, .first = first, .count = count };
     if (count <= LEAF_SIZE || depth >= MAX_DEPTH) return;
-    struct cut cut = choose_cut(references, count);
-    // Triangles with one centre cannot be told apart: halves, then, in the order they are in.
-    uint32_t left = cut.border > 0 ? partition(references, count, &cut) : count / 2;
+    struct split split = choose_split(references, count);
+    // Triangles of equal centres are split in halves, in their order.
+    uint32_t left = split.border > 0 ? partition(references, count, &split) : count / 2;
     if (left == 0 || left == count) left = count / 2;
     uint32_t children = build->node_count;
     build->node_count += 2;
@@ -193,14 +193,13 @@ end:
     return ok;
 }
 
-// Appends an instance's triangles in world space. What is not finite is left out: no ray can meet
-// it.
+// Appends an instance's triangles in world space, except those that are not finite.
 static void add_instance(struct raycast *raycast, const struct scene_pose *pose, int instance)
 {
     const struct mesh *mesh = &pose->scene->meshes[pose->scene->instances[instance].mesh];
     const vec3s *deformed = pose->deformed[instance].positions;
     mat4s world_from_mesh = pose_world_from_instance(pose, instance);
-    // A mirroring transform turns the winding over (glTF 2.0, 3.7.4).
+    // A mirroring transform reverses the winding (glTF 2.0, 3.7.4).
     bool mirrored = glms_mat4_det(world_from_mesh) < 0.0f;
     for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
         vec3s corner[3];
@@ -227,7 +226,7 @@ bool raycast_init(struct raycast *raycast, struct host *host, const struct scene
     *raycast = (struct raycast){ .host = host };
     size_t count = scene_triangle_count(pose->scene);
     if (count > UINT32_MAX / 2) {
-        return host_fail(host, FAIL_MEMORY, "rays through %s: more than %u triangles",
+        return host_fail(host, FAIL_MEMORY, "ray casts in %s: more than %u triangles",
                          pose->scene->name, UINT32_MAX / 2);
     }
     raycast->triangles = host_alloc(host, count, sizeof *raycast->triangles);
@@ -253,7 +252,8 @@ struct ray {
     vec3s origin, direction, inverse;
 };
 
-// Where the ray enters a node's box, INFINITY when it misses it or does so beyond `far`.
+// Distance at which the ray enters a node's box; INFINITY when it misses the box or enters beyond
+// `far`.
 static float enter_box(const struct raycast_node *node, const struct ray *ray, float far)
 {
     float near = 0.0f;
@@ -267,8 +267,7 @@ static float enter_box(const struct raycast_node *node, const struct ray *ray, f
     return near <= far ? near : INFINITY;
 }
 
-static bool meet_triangle(const struct raycast_triangle *triangle, const struct ray *ray,
-                          float *far)
+static bool hit_triangle(const struct raycast_triangle *triangle, const struct ray *ray, float *far)
 {
     vec3s p = glms_vec3_cross(ray->direction, triangle->edge2);
     float determinant = glms_vec3_dot(triangle->edge1, p);
@@ -286,19 +285,19 @@ static bool meet_triangle(const struct raycast_triangle *triangle, const struct 
     return true;
 }
 
-// The triangle met, UINT32_MAX for none; *far is its distance. Any will do when `any`.
+// The triangle that is hit, nearest or any, and its distance in *far; UINT32_MAX for none.
 static uint32_t traverse(const struct raycast *raycast, const struct ray *ray, float *far, bool any)
 {
-    uint32_t met = UINT32_MAX, stack[MAX_DEPTH + 2];
+    uint32_t hit_index = UINT32_MAX, stack[MAX_DEPTH + 2];
     int top = 0;
-    if (raycast->node_count == 0) return met;
+    if (raycast->node_count == 0) return hit_index;
     if (enter_box(&raycast->nodes[0], ray, *far) <= *far) stack[top++] = 0;
     while (top > 0) {
         const struct raycast_node *node = &raycast->nodes[stack[--top]];
         for (uint32_t i = 0; i < node->count; i++) {
-            if (!meet_triangle(&raycast->triangles[node->first + i], ray, far)) continue;
-            met = node->first + i;
-            if (any) return met;
+            if (!hit_triangle(&raycast->triangles[node->first + i], ray, far)) continue;
+            hit_index = node->first + i;
+            if (any) return hit_index;
         }
         if (node->count > 0) continue;
         float left = enter_box(&raycast->nodes[node->first], ray, *far);
@@ -307,10 +306,10 @@ static uint32_t traverse(const struct raycast *raycast, const struct ray *ray, f
         if (fmaxf(left, right) < INFINITY) stack[top++] = 2 * node->first + 1 - nearer;
         if (fminf(left, right) < INFINITY) stack[top++] = nearer;
     }
-    return met;
+    return hit_index;
 }
 
-// A component of 0 is taken as a very small one: 0 · ∞ in the plane of a box's side would be NaN.
+// A component of 0 becomes a very small one: 0 · ∞ on the plane of a box's side would be NaN.
 static float inverse_of(float component)
 {
     const float least = 1e-18f;
@@ -329,9 +328,9 @@ bool raycast_closest(const struct raycast *raycast, vec3s origin, vec3s directio
 {
     struct ray ray = make_ray(origin, direction);
     float distance = max_distance;
-    uint32_t met = traverse(raycast, &ray, &distance, false);
-    if (met == UINT32_MAX) return false;
-    const struct raycast_triangle *triangle = &raycast->triangles[met];
+    uint32_t hit_index = traverse(raycast, &ray, &distance, false);
+    if (hit_index == UINT32_MAX) return false;
+    const struct raycast_triangle *triangle = &raycast->triangles[hit_index];
     hit->distance = distance;
     hit->normal = glms_vec3_normalize(glms_vec3_cross(triangle->edge1, triangle->edge2));
     hit->front = glms_vec3_dot(hit->normal, direction) < 0.0f;

@@ -1,6 +1,5 @@
-// A scene's life, and the additions that are single records. Meshes have their own file,
-// scene_mesh.c; loading is in load.c. Every addition checks its argument first and changes the
-// scene last, so that a refused one leaves the scene as it was.
+// Creation and destruction of a scene, and scene_add_* for everything but meshes (scene_mesh.c).
+// Each function checks its argument before it changes the scene: a failure leaves it unchanged.
 #include "scene/scene.h"
 
 #include "scene/scene_check.h"
@@ -39,27 +38,27 @@ void *scene_copy(struct scene *scene, const void *source, size_t count, size_t s
     return copy;
 }
 
-bool scene_reserve(struct scene *scene, void **array, int count, int *room, size_t size)
+bool scene_reserve(struct scene *scene, void **array, int count, int *capacity, size_t size)
 {
-    if (count < *room) return true;
+    if (count < *capacity) return true;
     if (count > INT_MAX / 2) {
         return host_fail(scene->host, FAIL_MEMORY, "scene %s: more than %d elements of one kind",
                          scene->name, INT_MAX / 2);
     }
-    // Doubling leaves at most as much behind in the arena as is in use.
-    int grown_room = count < 4 ? 8 : 2 * count;
-    void *grown = arena_alloc(&scene->arena, (size_t)grown_room, size);
+    // The arena keeps the old arrays: with doubling they take no more than the new one.
+    int doubled = count < 4 ? 8 : 2 * count;
+    void *grown = arena_alloc(&scene->arena, (size_t)doubled, size);
     if (!grown) return false;
     if (count > 0) memcpy(grown, *array, (size_t)count * size);
     *array = grown;
-    *room = grown_room;
+    *capacity = doubled;
     return true;
 }
 
 // Appends *element to scene->plural; -1 when out of memory.
 #define APPEND(scene, plural, singular, element)                                                   \
     (scene_reserve((scene), (void **)&(scene)->plural, (scene)->singular##_count,                  \
-                   &(scene)->room.plural, sizeof *(scene)->plural)                                 \
+                   &(scene)->capacity.plural, sizeof *(scene)->plural)                             \
          ? ((scene)->plural[(scene)->singular##_count] = (element), (scene)->singular##_count++)   \
          : -1)
 
@@ -79,7 +78,8 @@ int scene_add_image(struct scene *scene, const struct scene_image *image)
 {
     if (image->width < 1 || image->height < 1 || image->width > SCENE_MAX_IMAGE_SIZE ||
         image->height > SCENE_MAX_IMAGE_SIZE || !image->rgba) {
-        refuse(scene, "image", image->name, "it has no pixels or too many");
+        refuse(scene, "image", image->name,
+               "its size is not 1 to 8192 pixels, or it has no pixels");
         return -1;
     }
     struct scene_image copy = *image;
@@ -126,7 +126,7 @@ int scene_add_material(struct scene *scene, const struct material *material)
                !texture_use_is_valid(scene, &material->metallic_roughness_map) ||
                !texture_use_is_valid(scene, &material->normal_map) ||
                !texture_use_is_valid(scene, &material->emissive_map)) {
-        why = "a texture refers to no image or no coordinates";
+        why = "a texture refers to an image or coordinate set that does not exist";
     }
     if (why) {
         refuse(scene, "material", material->name, why);
@@ -151,7 +151,7 @@ int scene_add_node(struct scene *scene, const struct node *node)
     float rotation_length = glms_quat_norm(copy.rotation);
     const char *why = NULL;
     if (copy.parent < -1 || copy.parent >= scene->node_count) {
-        why = "its parent does not come before it";
+        why = "its parent is not an earlier node";
     } else if (copy.has_matrix && !matrix_is_finite(&copy.matrix)) {
         why = "its matrix is not finite";
     } else if (!copy.has_matrix &&
@@ -168,7 +168,7 @@ int scene_add_node(struct scene *scene, const struct node *node)
     return APPEND(scene, nodes, node, copy);
 }
 
-// Every joint that the mesh's vertices name must be one of the skin's.
+// Every joint index of the mesh must exist in the skin.
 static bool skin_fits_mesh(const struct skin *skin, const struct mesh *mesh)
 {
     if (!mesh->joints || !mesh->weights) return false;
@@ -184,14 +184,14 @@ int scene_add_instance(struct scene *scene, const struct instance *instance)
 {
     const char *why = NULL;
     if (!index_is_valid(instance->node, scene->node_count)) {
-        why = "it names no node";
+        why = "its node does not exist";
     } else if (!index_is_valid(instance->mesh, scene->mesh_count)) {
-        why = "it names no mesh";
+        why = "its mesh does not exist";
     } else if (instance->skin != -1 && !index_is_valid(instance->skin, scene->skin_count)) {
-        why = "it names no skin";
+        why = "its skin does not exist";
     } else if (instance->skin != -1 &&
                !skin_fits_mesh(&scene->skins[instance->skin], &scene->meshes[instance->mesh])) {
-        why = "its mesh names joints that the skin does not have";
+        why = "its mesh uses joints that the skin does not have";
     }
     if (why) {
         refuse(scene, "instance", "", why);
@@ -226,7 +226,7 @@ int scene_add_light(struct scene *scene, const struct light *light)
 {
     const char *why = NULL;
     if (!index_is_valid(light->node, scene->node_count)) {
-        why = "it names no node";
+        why = "its node does not exist";
     } else if (light->type != LIGHT_SUN && light->type != LIGHT_POINT &&
                light->type != LIGHT_SPOT) {
         why = "its type is unknown";
@@ -250,11 +250,11 @@ int scene_add_camera(struct scene *scene, const struct camera *camera)
 {
     const char *why = NULL;
     if (!index_is_valid(camera->node, scene->node_count)) {
-        why = "it names no node";
+        why = "its node does not exist";
     } else if (!(camera->vertical_fov_rad > 0.0f && camera->vertical_fov_rad < GLM_PIf)) {
         why = "its field of view is not between 0 and 180 degrees";
     } else if (!(camera->near_m > 0.0f && isfinite(camera->near_m))) {
-        why = "its near plane is not in front of it";
+        why = "the distance of its near plane is not positive and finite";
     }
     if (why) {
         refuse(scene, "camera", camera->name, why);
@@ -269,11 +269,11 @@ int scene_add_node_looking(struct scene *scene, const char *name, vec3s position
 {
     direction = vec3_unit(direction);
     if (!vec3_is_finite(position) || glms_vec3_norm(direction) == 0.0f) {
-        refuse(scene, "node", name, "its position is not finite or its direction has no length");
+        refuse(scene, "node", name, "its position is not finite or its direction has length zero");
         return -1;
     }
     vec3s back = glms_vec3_negate(direction);
-    // +y stays as upright as it can; for straight up or down, up is -z or +z.
+    // Up is nearest to +y; for a vertical direction it is -z or +z.
     vec3s reference = fabsf(back.y) < 0.9999f ? vec3_of(0, 1, 0) : vec3_of(0, 0, -back.y);
     vec3s right = glms_vec3_normalize(glms_vec3_cross(reference, back));
     vec3s up = glms_vec3_cross(back, right);

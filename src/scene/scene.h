@@ -1,7 +1,7 @@
 // A scene: meshes, materials, textures, nodes, instances, lights, cameras, skins, animations.
-// Plain arrays owned by the scene's arena; indices refer to them, -1 is none. Immutable after
-// loading but for scene_add_*. World space is right-handed, +Y up, metres. Colours are linear Rec.
-// 709.
+// Plain arrays in the scene's arena; objects refer to each other by index, -1 is none. Immutable
+// after loading except through scene_add_*. World space is right-handed, +Y up, metres. Colours are
+// linear Rec. 709.
 #pragma once
 
 #include "core/arena.h"
@@ -21,19 +21,19 @@ struct scene_image {
 };
 #define SCENE_MAX_IMAGE_SIZE 8192
 
-// Use of an image by a material: which texture coordinates, how they are moved
-// (KHR_texture_transform), the sampler.
+// A material's reference to an image (glTF textureInfo): texture coordinate set, transform
+// (KHR_texture_transform), sampler.
 struct texture_use {
     int image; // -1: none
     int uv_set;
     enum texture_wrap wrap_u, wrap_v;
-    bool nearest;                                     // no filtering (magnification)
+    bool nearest;                                     // nearest-neighbour magnification
     float uv_offset[2], uv_scale[2], uv_rotation_rad; // identity: 0 0, 1 1, 0
 };
 
 enum alpha_mode { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND };
 
-// glTF 2.0 metallic-roughness. A factor multiplies its texture (white where there is none).
+// glTF 2.0 metallic-roughness. Factors multiply their textures; an absent texture is white.
 struct material {
     const char *name;
     vec4s base_color;
@@ -47,26 +47,25 @@ struct material {
 };
 
 struct morph_target {
-    vec3s *positions, *normals; // differences; normals may be NULL
+    vec3s *positions, *normals; // offsets from the base mesh; normals may be NULL
 };
 
-// One primitive: triangles with one material. Arrays of vertex_count but for indices.
+// A glTF primitive: triangles of one material. All arrays but indices have vertex_count elements.
 struct mesh {
     const char *name;
-    uint32_t vertex_count,
-        index_count; // index_count is a multiple of 3, every index < vertex_count
+    uint32_t vertex_count;
+    uint32_t index_count; // a multiple of 3
     vec3s *positions;
-    vec3s *normals;  // unit; made flat where the file has none
-    vec4s *tangents; // w = ±1: bitangent = w · cross(normal, tangent); made where a normal map
-                     // needs them, else NULL
+    vec3s *normals;  // unit length; flat where the file has none
+    vec4s *tangents; // bitangent = w · cross(normal, tangent), w = ±1; NULL without a normal map
     vec2s *uv[2];    // NULL where absent; v grows downwards as in glTF
     vec4s *colors;   // linear RGBA that multiplies base_color, NULL where absent
     uint16_t (*joints)[4]; // skinned meshes: indices into the skin's joints; NULL else
     vec4s *weights;        // sum 1
-    uint32_t *indices;     // counter-clockwise from outside
+    uint32_t *indices;     // < vertex_count; counter-clockwise from outside
     struct morph_target *morphs;
     int morph_count;
-    int material; // always valid: materials[0] is made where the file has none
+    int material; // always valid: a default material is added where the file has none
     struct box3 bounds;
 };
 
@@ -76,7 +75,7 @@ struct node {
     vec3s translation;
     versors rotation;
     vec3s scale;
-    bool has_matrix; // then `matrix` stands for the three above
+    bool has_matrix; // then `matrix` replaces the three above
     mat4s matrix;
 };
 
@@ -100,7 +99,7 @@ struct light {
 
 struct camera {
     const char *name;
-    int node; // looks along the node's -z, +y up
+    int node; // viewing direction is the node's -z, up its +y
     float vertical_fov_rad;
     float near_m; // far is infinite
 };
@@ -130,16 +129,16 @@ struct animation {
     int channel_count;
 };
 
-// Room in the scene's arrays, kept by scene_add_*. Whoever sets an array itself may leave its room
-// at 0: the array is then copied before anything is appended.
-struct scene_room {
+// Allocated lengths of the scene's arrays, maintained by scene_add_*. Importers set arrays directly
+// and leave 0: scene_add_* then copies the array before it appends.
+struct scene_capacity {
     int images, materials, meshes, nodes, instances, lights, cameras;
 };
 
 struct scene {
     struct host *host;
     struct arena arena;
-    struct scene_room room;
+    struct scene_capacity capacity;
     const char *name; // file name or "@builtin:…"
     struct scene_image *images;
     int image_count;
@@ -164,30 +163,30 @@ struct scene {
 };
 
 // Loads a file (glTF 2.0, .glb; OBJ, PLY, FBX, X) or a built-in, "@name" or "@name:key=value,…".
-// Files are untrusted. NULL on failure. One warning names each thing that is left out.
+// Files are untrusted. NULL on failure. One warning lists the features that are ignored.
 struct scene *scene_load(struct host *host, const char *name);
-// An empty scene to be filled by scene_add_*.
+// An empty scene, for scene_add_*.
 struct scene *scene_create(struct host *host, const char *name);
 void scene_destroy(struct scene *scene);
 
-// Appends a copy; the arrays that it points to are copied too. Returns the new index, -1 on failure
-// (bad index, not finite, out of memory).
+// Appends a deep copy. Returns the new index; -1 on failure (invalid index, value out of range or
+// not finite, out of memory).
 int scene_add_image(struct scene *scene, const struct scene_image *image);
 int scene_add_material(struct scene *scene, const struct material *material);
-int scene_add_mesh(struct scene *scene,
-                   const struct mesh *mesh); // makes normals, tangents and bounds where missing
+// Generates missing normals, the tangents that a normal map needs, and bounds.
+int scene_add_mesh(struct scene *scene, const struct mesh *mesh);
 int scene_add_node(struct scene *scene, const struct node *node);
 int scene_add_instance(struct scene *scene, const struct instance *instance);
 int scene_add_light(struct scene *scene, const struct light *light);
 int scene_add_camera(struct scene *scene, const struct camera *camera);
 // A node at `position` whose -z points along `direction`.
 int scene_add_node_looking(struct scene *scene, const char *name, vec3s position, vec3s direction);
-void scene_remove_lights(struct scene *scene); // the punctual ones
+void scene_remove_lights(struct scene *scene); // all punctual lights
 
 struct material material_default(void);
 struct node node_default(void);
 struct texture_use texture_use_none(void);
 
-size_t scene_triangle_count(const struct scene *scene); // over instances
+size_t scene_triangle_count(const struct scene *scene); // sum over instances
 bool scene_has_emission(const struct scene *scene); // some instanced mesh has an emissive material
 size_t scene_memory_bytes(const struct scene *scene);

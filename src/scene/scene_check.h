@@ -1,5 +1,4 @@
-// What scene_add_* refuses: numbers that are not finite, indices that lead nowhere. Shared by the
-// files that fill a scene.
+// Checks and copies shared by the files that fill a scene.
 #pragma once
 
 #include "scene/scene.h"
@@ -34,7 +33,7 @@ static inline bool index_is_valid(int index, int count)
     return index >= 0 && index < count;
 }
 
-// A name for messages and for keeping: never NULL.
+// Never NULL.
 static inline const char *name_or_empty(const char *name)
 {
     return name ? name : "";
@@ -43,6 +42,6 @@ static inline const char *name_or_empty(const char *name)
 // A copy of count × size bytes in the scene's arena; NULL when out of memory.
 void *scene_copy(struct scene *scene, const void *source, size_t count, size_t size);
 
-// Makes room for one more element in an array of `count`. False when out of memory or full; then
-// nothing changed.
-bool scene_reserve(struct scene *scene, void **array, int count, int *room, size_t size);
+// Grows an array of `count` elements so that one more fits. False when out of memory or at the
+// maximum length; the array is then unchanged.
+bool scene_reserve(struct scene *scene, void **array, int count, int *capacity, size_t size);

@@ -1,4 +1,4 @@
-// scene_add_mesh: checks a mesh, copies it into the scene and makes what is missing.
+// scene_add_mesh: checks a mesh, copies it into the scene, generates missing normals and tangents.
 #include "scene/mesh_geometry.h"
 #include "scene/scene_check.h"
 
@@ -8,7 +8,7 @@ static const char *check_indices(const struct scene *scene, const struct mesh *m
 {
     // -1 asks for a new default material, and so does 0 in a scene without any.
     if (mesh->material < -1 || (mesh->material > 0 && mesh->material >= scene->material_count)) {
-        return "it names no material";
+        return "its material does not exist";
     }
     if (mesh->index_count % 3 != 0) return "its index count is not a multiple of 3";
     if (mesh->index_count > 0 && !mesh->indices) return "it has no indices";
@@ -22,7 +22,8 @@ static const char *check_vertices(const struct mesh *mesh)
 {
     size_t count = mesh->vertex_count;
     if (count > 0 && !mesh->positions) return "it has no positions";
-    if (!mesh->joints != !mesh->weights) return "it has joints without weights or the reverse";
+    if (!mesh->joints != !mesh->weights)
+        return "it has joints without weights, or weights without joints";
     for (size_t v = 0; v < count; v++) {
         if (!vec3_is_finite(mesh->positions[v])) return "a position is not finite";
         if (mesh->normals && !vec3_is_finite(mesh->normals[v])) return "a normal is not finite";
@@ -45,7 +46,7 @@ static const char *check_vertices(const struct mesh *mesh)
 static const char *check_morphs(const struct mesh *mesh)
 {
     if (mesh->morph_count < 0 || (mesh->morph_count > 0 && !mesh->morphs)) {
-        return "it has no morph targets where it counts some";
+        return "it counts morph targets and has none";
     }
     for (int m = 0; m < mesh->morph_count; m++) {
         const struct morph_target *morph = &mesh->morphs[m];
@@ -75,7 +76,7 @@ static bool choose_material(struct scene *scene, struct mesh *mesh)
         if (!mesh->field) return false;                                                            \
     } while (0)
 
-// Replaces the pointers of *mesh, a caller's, by copies of what they point to.
+// Replaces the arrays of *mesh by copies in the scene's arena.
 static bool copy_arrays(struct scene *scene, struct mesh *mesh)
 {
     mesh->name = arena_strdup(&scene->arena, name_or_empty(mesh->name));
@@ -105,7 +106,7 @@ static vec3s unit_or_up(vec3s v)
     return length > 0.0f ? glms_vec3_scale(v, 1.0f / length) : vec3_of(0, 1, 0);
 }
 
-// Unit normals, weights that sum to 1.
+// Normals of length 1, joint weights that sum to 1.
 static void normalise(struct mesh *mesh)
 {
     for (size_t v = 0; v < mesh->vertex_count; v++) {
@@ -117,7 +118,7 @@ static void normalise(struct mesh *mesh)
     }
 }
 
-static bool make_missing(struct scene *scene, struct mesh *mesh)
+static bool generate_missing(struct scene *scene, struct mesh *mesh)
 {
     if (!mesh->normals && !mesh_make_normals(&scene->arena, mesh)) return false;
     normalise(mesh);
@@ -139,8 +140,8 @@ int scene_add_mesh(struct scene *scene, const struct mesh *mesh)
     }
     struct mesh copy = *mesh;
     if (!copy_arrays(scene, &copy) || !choose_material(scene, &copy) ||
-        !make_missing(scene, &copy) ||
-        !scene_reserve(scene, (void **)&scene->meshes, scene->mesh_count, &scene->room.meshes,
+        !generate_missing(scene, &copy) ||
+        !scene_reserve(scene, (void **)&scene->meshes, scene->mesh_count, &scene->capacity.meshes,
                        sizeof copy)) {
         return -1;
     }

@@ -1,8 +1,8 @@
 // Tangents as MikkTSpace makes them (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited",
-// section 5.2), on vertices instead of corners: each triangle's direction of increasing u,
+// section 5.2), per vertex instead of per corner: each triangle's direction of increasing u,
 // projected onto the plane of the vertex normal, normalised and weighted by the triangle's angle.
-// Vertices that differ in nothing that matters (position, normal, texture coordinates, handedness)
-// share their tangent whether or not the file shares the vertex.
+// Vertices of equal position, normal, texture coordinates and handedness share one tangent, also
+// where the file has them twice.
 //
 // The handedness is glTF's: the green channel of a normal map points up in the image, against v. An
 // unmirrored mapping has w = +1 there, where MikkTSpace on the same texture coordinates gives -1.
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-struct corner_key { // what two corners must have in common to share a tangent
+struct corner_key { // corners with equal keys share a tangent
     vec3s position, normal;
     vec2s uv;
     uint32_t mirrored;
@@ -21,11 +21,11 @@ struct corner_key { // what two corners must have in common to share a tangent
 
 struct tangent_work {
     const struct mesh *mesh;
-    vec2s *uv;        // transformed
-    int8_t *flags;    // per vertex: FLAG_*
-    uint32_t *other;  // vertex → its mirrored double (or itself)
-    uint32_t *source; // new vertex → old vertex
-    uint32_t count;   // new vertices
+    vec2s *uv;          // transformed
+    int8_t *flags;      // per vertex: FLAG_*
+    uint32_t *mirrored; // vertex → its mirrored duplicate, or itself
+    uint32_t *source;   // new vertex → old vertex
+    uint32_t count;     // new vertices
 };
 
 enum { FLAG_STRAIGHT = 1, FLAG_MIRRORED = 2 };
@@ -49,7 +49,7 @@ static float uv_area(const struct tangent_work *work, const uint32_t *t)
     return x1 * y2 - x2 * y1;
 }
 
-// Finds which vertices are used with either handedness and gives those with both a double.
+// Duplicates the vertices that triangles of both handednesses use.
 static void split_mirrored(struct tangent_work *work, uint32_t *indices)
 {
     const struct mesh *mesh = work->mesh;
@@ -62,13 +62,13 @@ static void split_mirrored(struct tangent_work *work, uint32_t *indices)
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         bool both = work->flags[v] == (FLAG_STRAIGHT | FLAG_MIRRORED);
         work->source[v] = v;
-        work->other[v] = both ? work->count : v;
+        work->mirrored[v] = both ? work->count : v;
         if (both) work->source[work->count++] = v;
     }
     for (uint32_t i = 0; i < mesh->index_count; i += 3) {
         if (!(uv_area(work, indices + i) > 0.0f)) continue;
         for (int k = 0; k < 3; k++)
-            indices[i + (uint32_t)k] = work->other[indices[i + (uint32_t)k]];
+            indices[i + (uint32_t)k] = work->mirrored[indices[i + (uint32_t)k]];
     }
 }
 
@@ -96,9 +96,9 @@ static void find_shared(const struct tangent_work *work, uint32_t *shared, uint3
             }
             uint32_t u = table[slot];
             uint32_t from = work->source[u];
-            struct corner_key seen = { mesh->positions[from], mesh->normals[from], work->uv[from],
-                                       is_mirrored(work, u) };
-            if (memcmp(&key, &seen, sizeof key) == 0) {
+            struct corner_key other = { mesh->positions[from], mesh->normals[from], work->uv[from],
+                                        is_mirrored(work, u) };
+            if (memcmp(&key, &other, sizeof key) == 0) {
                 shared[v] = u;
                 break;
             }
@@ -111,7 +111,7 @@ static vec3s on_plane(vec3s v, vec3s normal)
     return glms_vec3_sub(v, glms_vec3_scale(normal, glms_vec3_dot(normal, v)));
 }
 
-// Unit, or zero where there is no direction.
+// Normalised; zero where the length is zero or not finite.
 static vec3s unit_or_zero(vec3s v)
 {
     float length = glms_vec3_norm(v);
@@ -119,7 +119,7 @@ static vec3s unit_or_zero(vec3s v)
                                              : vec3_of(0.0f, 0.0f, 0.0f);
 }
 
-// Adds the triangle's direction of u to the tangents of its corners.
+// Adds the triangle's direction of increasing u to the tangents of its corners.
 static void add_triangle(const struct tangent_work *work, const uint32_t *triangle,
                          const uint32_t *shared, vec3s *sums)
 {
@@ -162,7 +162,7 @@ static void fill_tangents(const struct tangent_work *work, struct mesh *made,
     }
 }
 
-// The parts that live only here are in `scratch`.
+// Temporary arrays come from `scratch`.
 static bool make_tangents(struct arena *arena, struct arena *scratch, struct mesh *mesh,
                           const struct texture_use *map)
 {
@@ -172,10 +172,10 @@ static bool make_tangents(struct arena *arena, struct arena *scratch, struct mes
     struct tangent_work work = { .mesh = mesh };
     work.uv = arena_alloc(scratch, old_count, sizeof *work.uv);
     work.flags = arena_alloc(scratch, old_count, sizeof *work.flags);
-    work.other = arena_alloc(scratch, old_count, sizeof *work.other);
+    work.mirrored = arena_alloc(scratch, old_count, sizeof *work.mirrored);
     work.source = arena_alloc(scratch, 2 * old_count, sizeof *work.source);
     made.indices = arena_alloc(arena, mesh->index_count, sizeof *made.indices);
-    if (!work.uv || !work.flags || !work.other || !work.source || !made.indices) return false;
+    if (!work.uv || !work.flags || !work.mirrored || !work.source || !made.indices) return false;
     for (size_t v = 0; v < old_count; v++) work.uv[v] = transform_uv(map, mesh->uv[map->uv_set][v]);
     memcpy(made.indices, mesh->indices, mesh->index_count * sizeof *made.indices);
     split_mirrored(&work, made.indices);
