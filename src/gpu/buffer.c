@@ -89,8 +89,11 @@ bool gpu_buffer_create(struct gpu *gpu, const struct gpu_buffer_desc *desc, gpu_
 {
     out->id = 0;
     trash_collect(gpu);
-    if (!check_desc(gpu, desc)) return false;
-    struct buffer *buffer = buffer_new(gpu, desc->name, desc->bytes, desc->usage, MEMORY_DEVICE);
+    char name[NAME_SIZE];
+    struct gpu_buffer_desc d = *desc;
+    d.name = owner_name(gpu, d.name, name);
+    if (!check_desc(gpu, &d)) return false;
+    struct buffer *buffer = buffer_new(gpu, d.name, d.bytes, d.usage, MEMORY_DEVICE);
     if (!buffer) return false;
     buffer->zero_pending = true;
     out->id = table_add(gpu->host, &gpu->buffers, buffer);

@@ -343,6 +343,11 @@ struct gpu_binding gpu_transient(struct gpu_cmd *cmd, const char *name, const vo
 // ---- Scopes, timing, memory
 // ---------------------------------------------------------------------------------
 
+// From here to the matching pop, objects and scopes named without a dot belong to `owner`: "cones"
+// is "vct.cones". The innermost owner counts. `owner` outlives the pop.
+void gpu_owner_push(struct gpu *gpu, const char *owner);
+void gpu_owner_pop(struct gpu *gpu);
+
 // A debug label and a pair of timestamps. Scopes nest; a name seen twice in a frame is summed.
 void gpu_scope_begin(struct gpu_cmd *cmd, const char *name);
 void gpu_scope_end(struct gpu_cmd *cmd);

@@ -143,7 +143,9 @@ static bool check_supported(struct gpu *gpu, const struct gpu_image_desc *d,
 
 static struct image *image_new(struct gpu *gpu, const struct gpu_image_desc *desc)
 {
+    char name[NAME_SIZE];
     struct gpu_image_desc d = *desc;
+    d.name = owner_name(gpu, d.name, name);
     complete(&d);
     if (gpu->lost) {
         host_fail(gpu->host, FAIL_DEVICE, "gpu image %s: the device was lost",

@@ -273,7 +273,8 @@ static struct pipeline *pipeline_new(struct gpu *gpu, const char *name, gpu_pipe
 {
     out->id = 0;
     struct pipeline *p = host_alloc(gpu->host, 1, sizeof *p);
-    if (p) snprintf(p->name, sizeof p->name, "%s", name ? name : "");
+    char full[NAME_SIZE];
+    if (p) snprintf(p->name, sizeof p->name, "%s", name ? owner_name(gpu, name, full) : "");
     return p;
 }
 

@@ -85,7 +85,8 @@ bool gpu_sampler_get(struct gpu *gpu, const struct gpu_sampler_desc *desc, gpu_s
     sampler->desc.name = NULL;
     VkSamplerCreateInfo info = create_info(gpu, desc);
     if (!VK_CHECK(gpu, vkCreateSampler(gpu->device, &info, NULL, &sampler->handle))) goto fail;
-    VK_NAME(gpu, VK_OBJECT_TYPE_SAMPLER, sampler->handle, desc->name);
+    char name[NAME_SIZE];
+    VK_NAME(gpu, VK_OBJECT_TYPE_SAMPLER, sampler->handle, owner_name(gpu, desc->name, name));
     out->id = table_add(gpu->host, &gpu->samplers, sampler);
     if (out->id) return true;
     vkDestroySampler(gpu->device, sampler->handle, NULL);

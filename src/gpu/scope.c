@@ -80,6 +80,8 @@ void scopes_stop(struct gpu_cmd *cmd)
 
 void gpu_scope_begin(struct gpu_cmd *cmd, const char *name)
 {
+    char full[NAME_SIZE];
+    name = owner_name(cmd->gpu, name, full);
     if (cmd->gpu->begin_label) {
         cmd->gpu->begin_label(
             cmd->buffer, &(VkDebugUtilsLabelEXT){ .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,

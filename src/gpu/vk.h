@@ -16,6 +16,7 @@ enum {
     MAX_STAGES = 2,
     MAX_SCOPES = 128,
     NAME_SIZE = 64,
+    MAX_OWNERS = 4, // nested
     BATCH_IMAGES = 16,
 };
 
@@ -358,6 +359,9 @@ void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), voi
 uint64_t finished_serial(struct gpu *gpu); // all recordings up to it are done
 void trash_collect(struct gpu *gpu);       // asks the GPU how far it is, and frees
 
+// "owner.name" in `out` where an owner is pushed and the name is without one, else the name.
+const char *owner_name(const struct gpu *gpu, const char *name, char out[NAME_SIZE]);
+
 struct gpu {
     struct host *host;
     struct gpu_device_info info;
@@ -373,6 +377,8 @@ struct gpu {
     VkInstance instance;
     VkDebugUtilsMessengerEXT messenger;
     int validation_messages;
+    const char *owners[MAX_OWNERS];
+    uint32_t owner_depth;
     VkPhysicalDevice physical;
     VkDevice device;
     VkQueue queue;

@@ -82,7 +82,9 @@ TEST_GPU(bytes_are_counted_by_owner_largest_first)
 {
     gpu_image a = named_image(gpu, "grid.colour", 64), b = named_image(gpu, "grid.normal", 64);
     gpu_image c = named_image(gpu, "huge.image", 2048); // in a block of its own
-    gpu_buffer d = named_buffer(gpu, "probes.sh", 1000);
+    gpu_owner_push(gpu, "probes");
+    gpu_buffer d = named_buffer(gpu, "sh", 1000);
+    gpu_owner_pop(gpu);
     assert_in_range(bytes_of(gpu, "grid"), 2 * 64 * 64 * 8, 3 * 64 * 64 * 8);
     assert_in_range(bytes_of(gpu, "huge"), 2048 * 2048 * 8, 2 * 2048 * 2048 * 8);
     assert_in_range(bytes_of(gpu, "probes"), 1000, 4096);

@@ -65,6 +65,32 @@ TEST_GPU(timings_are_of_the_newest_finished_frame)
     }
 }
 
+TEST_GPU(scopes_without_a_dot_have_the_innermost_owner)
+{
+    if (!gpu_limits(gpu)->timestamps) skip();
+    static const char *const names[] = { "alone", "vct.cones", "gpu.copy", "vo.lines", "vct.fill" };
+    struct gpu_timing t[8];
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    gpu_scope_begin(cmd, "alone");
+    gpu_scope_end(cmd);
+    gpu_owner_push(gpu, "vct");
+    gpu_scope_begin(cmd, "cones");
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "gpu.copy");
+    gpu_scope_end(cmd);
+    gpu_owner_push(gpu, "vo");
+    gpu_scope_begin(cmd, "lines");
+    gpu_scope_end(cmd);
+    gpu_owner_pop(gpu);
+    gpu_scope_begin(cmd, "fill");
+    gpu_scope_end(cmd);
+    gpu_owner_pop(gpu);
+    CHECK(gpu_frame_end(gpu, cmd));
+    CHECK(gpu_wait(gpu));
+    assert_int_equal(gpu_frame_timings(gpu, t, 8), 6);
+    for (int i = 0; i < 5; i++) CHECK_STRING(t[i + 1].name, names[i]);
+}
+
 TEST_GPU(more_scopes_than_are_timed_do_no_harm)
 {
     struct gpu_timing t[300];
