@@ -22,6 +22,18 @@ struct gi {
     struct probe_view probe_view; // made when it is first shown
 };
 
+// Around the functions of a technique: what they create and record is named "technique.thing".
+static const struct technique *enter(const struct gi *gi, int term)
+{
+    gpu_owner_push(gi->gpu, gi->spec.technique[term]->name);
+    return gi->spec.technique[term];
+}
+
+static void leave(const struct gi *gi)
+{
+    gpu_owner_pop(gi->gpu);
+}
+
 static bool create_term(struct gi *gi, int i, const struct scene_pose *pose)
 {
     const struct technique *technique = gi->spec.technique[i];
@@ -33,7 +45,11 @@ static bool create_term(struct gi *gi, int i, const struct scene_pose *pose)
                                           .height = gi->height };
     if (technique->check && !technique->check(&how)) return false;
     gi->state[i] = host_alloc(gi->host, 1, technique->state_size);
-    return gi->state[i] && technique->create(gi->state[i], &how);
+    if (!gi->state[i]) return false;
+    enter(gi, i);
+    const bool ok = technique->create(gi->state[i], &how);
+    leave(gi);
+    return ok;
 }
 
 struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
@@ -84,8 +100,10 @@ bool gi_resize(struct gi *gi, uint32_t width, uint32_t height)
     gi->width = width;
     gi->height = height;
     for (int i = 0; i < gi->spec.count; i++) {
-        const struct technique *technique = gi->spec.technique[i];
-        if (technique->resize && !technique->resize(gi->state[i], width, height)) return false;
+        const struct technique *technique = enter(gi, i);
+        const bool ok = !technique->resize || technique->resize(gi->state[i], width, height);
+        leave(gi);
+        if (!ok) return false;
     }
     return !gi->debug_name || make_debug_image(gi);
 }
@@ -155,16 +173,22 @@ static void record_debug_view(struct gi *gi, struct gpu_cmd *cmd, const struct f
     struct probe_volume probes;
     const int term = gi->debug_term;
     const struct technique *technique = gi->spec.technique[term];
-    if (!is_of_probes(technique, gi->debug_name))
+    if (!is_of_probes(technique, gi->debug_name)) {
+        enter(gi, term);
         technique->debug_view(gi->state[term], cmd, view, gi->debug_name, gi->debug_image);
-    else if (probes_of(gi, term, &probes))
+        leave(gi);
+    } else if (probes_of(gi, term, &probes)) {
         probe_view_record(&gi->probe_view, cmd, view, probes.image, probes.place, gi->debug_image);
+    }
 }
 
 static void gi_record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct gi *gi = user;
-    for (int i = 0; i < gi->spec.count; i++) gi->spec.technique[i]->record(gi->state[i], cmd, view);
+    for (int i = 0; i < gi->spec.count; i++) {
+        enter(gi, i)->record(gi->state[i], cmd, view);
+        leave(gi);
+    }
     if (gi->debug_name) record_debug_view(gi, cmd, view);
 }
 

@@ -83,7 +83,8 @@ struct technique {
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
     size_t state_size; // of the private state, allocated zeroed by the host
 
-    // All but create, record and destroy may be NULL. `state` is the private state.
+    // All but create, record and destroy may be NULL. `state` is the private state. Objects and
+    // scopes are named without the technique's name: gi.c has it pushed as their owner.
     // frame_need bits that these options ask for beside `needs`.
     uint32_t (*more_needs)(const void *options);
     // Can it run here? If not, a sentence why goes to host_fail.

@@ -42,16 +42,16 @@ static bool ambient_create(void *state, const struct technique_create *how)
     struct gpu *gpu = how->gpu;
     ambient->gpu = gpu;
     ambient->options = *(const struct ambient_options *)how->options;
-    const struct gpu_buffer_desc partials = { "ambient.partials", AMBIENT_GROUPS * VEC3_BYTES,
+    const struct gpu_buffer_desc partials = { "partials", AMBIENT_GROUPS * VEC3_BYTES,
                                               GPU_BUFFER_STORAGE };
-    const struct gpu_buffer_desc result = { "ambient.result", VEC3_BYTES, GPU_BUFFER_STORAGE };
+    const struct gpu_buffer_desc result = { "result", VEC3_BYTES, GPU_BUFFER_STORAGE };
     return gpu_buffer_create(gpu, &partials, &ambient->partials) &&
            gpu_buffer_create(gpu, &result, &ambient->result) &&
-           gpu_compute_pipeline_create(gpu, "ambient.sum", &shader_ambient_sum_comp, NULL, 0,
+           gpu_compute_pipeline_create(gpu, "sum", &shader_ambient_sum_comp, NULL, 0,
                                        &ambient->sum) &&
-           gpu_compute_pipeline_create(gpu, "ambient.total", &shader_ambient_total_comp, NULL, 0,
+           gpu_compute_pipeline_create(gpu, "total", &shader_ambient_total_comp, NULL, 0,
                                        &ambient->total) &&
-           gpu_compute_pipeline_create(gpu, "ambient.fill", &shader_ambient_fill_comp, NULL, 0,
+           gpu_compute_pipeline_create(gpu, "fill", &shader_ambient_fill_comp, NULL, 0,
                                        &ambient->fill);
 }
 
@@ -93,7 +93,7 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
     const struct ambient_push push = push_of(ambient, view);
     const struct gpu_binding partials = { .name = "ambient_partials", .buffer = ambient->partials };
     const struct gpu_binding result = { .name = "ambient_result", .buffer = ambient->result };
-    gpu_scope_begin(cmd, "ambient.sum");
+    gpu_scope_begin(cmd, "sum");
     if (push.blocks > 0) {
         gpu_dispatch(cmd, ambient->sum,
                      GPU_BIND(view->rsm_faces_binding,
@@ -105,7 +105,7 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
     gpu_dispatch(cmd, ambient->total, GPU_BIND(partials, result), &push, sizeof push, 1, 1, 1);
     gpu_scope_end(cmd);
 
-    gpu_scope_begin(cmd, "ambient.fill");
+    gpu_scope_begin(cmd, "fill");
     gpu_dispatch(cmd, ambient->fill,
                  GPU_BIND(result, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),

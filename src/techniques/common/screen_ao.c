@@ -6,10 +6,9 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-enum { LOCAL = 8, BLUR_ROW = 4, NAME_SIZE = 32 };
+enum { LOCAL = 8, BLUR_ROW = 4 };
 enum { TURNS = 16 }; // of the patterns, and frames until they are the same again
 
 static const enum gpu_format ESTIMATE_FORMAT = GPU_RG32F, HISTORY_FORMAT = GPU_RGBA32F;
@@ -31,11 +30,9 @@ struct gpu_constant screen_ao_step(const struct screen_ao *ao)
 
 // ---- life
 
-static bool make_image(struct screen_ao *ao, const char *thing, enum gpu_format format,
+static bool make_image(struct screen_ao *ao, const char *name, enum gpu_format format,
                        gpu_image *out)
 {
-    char name[NAME_SIZE];
-    snprintf(name, sizeof name, "%s.%s", ao->owner, thing);
     const struct gpu_image_desc desc = { .name = name,
                                          .format = format,
                                          .width = ao->work_width,
@@ -58,11 +55,9 @@ bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
                                      make_image(ao, "history", HISTORY_FORMAT, &ao->history[1]));
 }
 
-static bool make_pipeline(struct screen_ao *ao, const char *thing, const struct gpu_shader *shader,
+static bool make_pipeline(struct screen_ao *ao, const char *name, const struct gpu_shader *shader,
                           gpu_pipeline *out)
 {
-    char name[NAME_SIZE];
-    snprintf(name, sizeof name, "%s.%s", ao->owner, thing);
     const struct gpu_constant step = screen_ao_step(ao);
     return gpu_compute_pipeline_create(ao->gpu, name, shader, &step, 1, out);
 }
@@ -88,10 +83,10 @@ static bool make_pipelines(struct screen_ao *ao)
            make_pipeline(ao, "temporal", &shader_common_screen_ao_temporal_comp, &ao->temporal);
 }
 
-bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const char *owner,
-                    const struct screen_ao_options *options, uint32_t width, uint32_t height)
+bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const struct screen_ao_options *options,
+                    uint32_t width, uint32_t height)
 {
-    *ao = (struct screen_ao){ .gpu = gpu, .owner = owner, .options = *options };
+    *ao = (struct screen_ao){ .gpu = gpu, .options = *options };
     return make_pipelines(ao) && screen_ao_resize(ao, width, height);
 }
 
@@ -177,13 +172,6 @@ void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct 
     gpu_scope_end(cmd);
 }
 
-static void scope_begin(const struct screen_ao *ao, struct gpu_cmd *cmd, const char *stage)
-{
-    char name[NAME_SIZE];
-    snprintf(name, sizeof name, "%s.%s", ao->owner, stage);
-    gpu_scope_begin(cmd, name);
-}
-
 static gpu_image evened(const struct screen_ao *ao)
 {
     return ao->options.temporal ? ao->history[ao->newest] : ao->estimate;
@@ -192,7 +180,7 @@ static gpu_image evened(const struct screen_ao *ao)
 static void record_temporal(const struct screen_ao *ao, struct gpu_cmd *cmd,
                             const struct frame_view *view)
 {
-    scope_begin(ao, cmd, "temporal");
+    gpu_scope_begin(cmd, "temporal");
     gpu_dispatch(cmd, ao->temporal,
                  GPU_BIND(screen_ao_binding(ao, cmd), { .name = "estimate", .image = ao->estimate },
                           { .name = "motion", .image = view->layers[FRAME_MOTION] },
@@ -205,7 +193,7 @@ static void record_temporal(const struct screen_ao *ao, struct gpu_cmd *cmd,
 static void record_blur(const struct screen_ao *ao, struct gpu_cmd *cmd, gpu_image visibility)
 {
     const struct gpu_binding params = screen_ao_binding(ao, cmd);
-    scope_begin(ao, cmd, "blur");
+    gpu_scope_begin(cmd, "blur");
     gpu_dispatch(cmd, ao->blur_x,
                  GPU_BIND(params, { .name = "before", .image = evened(ao) },
                           { .name = "after", .image = ao->scratch }),
@@ -224,7 +212,7 @@ static void record_fit(const struct screen_ao *ao, struct gpu_cmd *cmd,
                        const struct frame_view *view)
 {
     const gpu_image before = ao->options.blur ? ao->estimate : evened(ao);
-    scope_begin(ao, cmd, "fit");
+    gpu_scope_begin(cmd, "fit");
     gpu_dispatch(cmd, ao->fit,
                  GPU_BIND(screen_ao_binding(ao, cmd), { .name = "before", .image = before },
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },

@@ -14,7 +14,6 @@ struct screen_ao_options {
 
 struct screen_ao {
     struct gpu *gpu;
-    const char *owner; // "vo": of the images and of the passes
     struct screen_ao_options options;
     uint32_t width, height, work_width, work_height;
     gpu_image
@@ -28,9 +27,9 @@ struct screen_ao {
     struct screen_ao_params params; // of the frame being recorded
 };
 
-// owner: lives as long as the object. false: what was made is there, screen_ao_finish frees it.
-bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const char *owner,
-                    const struct screen_ao_options *options, uint32_t width, uint32_t height);
+// false: screen_ao_finish frees what was created.
+bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const struct screen_ao_options *options,
+                    uint32_t width, uint32_t height);
 bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height);
 void screen_ao_finish(struct screen_ao *ao); // accepts zero
 uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height);
@@ -45,11 +44,10 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
 // The block "screen_ao".
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd);
 // The estimate: `pipeline` with a shader that includes screen_ao_estimate.glsl. more: its own
-// bindings, one at least and SCREEN_AO_MORE at most. name: of the pass, "vo.lines".
+// bindings, one at least and SCREEN_AO_MORE at most. name: of the pass.
 enum { SCREEN_AO_MORE = 2 };
 void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view,
                         const char *name, gpu_pipeline pipeline, const struct gpu_binding *more,
                         int more_count);
-// After the estimate: fills the frame's visibility. Passes "owner.temporal", "owner.blur" and
-// "owner.fit".
+// After the estimate: fills the frame's visibility. Passes "temporal", "blur" and "fit".
 void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view);

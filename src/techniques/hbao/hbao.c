@@ -41,11 +41,10 @@ static bool hbao_create(void *state, const struct technique_create *how)
     hbao->gpu = how->gpu;
     hbao->options = *(const struct hbao_options *)how->options;
     const struct screen_ao_options options = ao_options(&hbao->options);
-    if (!screen_ao_init(&hbao->ao, how->gpu, "hbao", &options, how->width, how->height))
-        return false;
+    if (!screen_ao_init(&hbao->ao, how->gpu, &options, how->width, how->height)) return false;
     const struct gpu_constant step = screen_ao_step(&hbao->ao);
-    return gpu_compute_pipeline_create(hbao->gpu, "hbao.horizons", &shader_hbao_horizons_comp,
-                                       &step, 1, &hbao->horizons);
+    return gpu_compute_pipeline_create(hbao->gpu, "horizons", &shader_hbao_horizons_comp, &step, 1,
+                                       &hbao->horizons);
 }
 
 static bool hbao_resize(void *state, uint32_t width, uint32_t height)
@@ -71,7 +70,7 @@ static void hbao_record(void *state, struct gpu_cmd *cmd, const struct frame_vie
     struct hbao *hbao = state;
     screen_ao_begin(&hbao->ao, view, hbao->options.radius, hbao->options.reach);
     const struct hbao_params params = params_of(&hbao->options);
-    screen_ao_estimate(&hbao->ao, cmd, view, "hbao.horizons", hbao->horizons,
+    screen_ao_estimate(&hbao->ao, cmd, view, "horizons", hbao->horizons,
                        GPU_BIND(gpu_transient(cmd, "hbao_table", &params, sizeof params)));
     screen_ao_record(&hbao->ao, cmd, view);
 }

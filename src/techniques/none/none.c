@@ -11,7 +11,7 @@ static bool none_create(void *state, const struct technique_create *how)
 static void none_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     (void)state;
-    gpu_scope_begin(cmd, "none.clear");
+    gpu_scope_begin(cmd, "clear");
     gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
                     (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
     gpu_scope_end(cmd);

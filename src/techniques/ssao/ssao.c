@@ -53,9 +53,8 @@ static bool create_points(struct ssao *ssao)
         { 1, (uint32_t)fill_table(&ssao->options, &ssao->table) },
         { 2, ssao->options.normal },
     };
-    return gpu_compute_pipeline_create(ssao->gpu, "ssao.points", &shader_ssao_points_comp,
-                                       constants, sizeof constants / sizeof constants[0],
-                                       &ssao->points);
+    return gpu_compute_pipeline_create(ssao->gpu, "points", &shader_ssao_points_comp, constants,
+                                       sizeof constants / sizeof constants[0], &ssao->points);
 }
 
 static bool ssao_create(void *state, const struct technique_create *how)
@@ -64,7 +63,7 @@ static bool ssao_create(void *state, const struct technique_create *how)
     ssao->gpu = how->gpu;
     ssao->options = *(const struct ssao_options *)how->options;
     const struct screen_ao_options options = ao_options(&ssao->options);
-    return screen_ao_init(&ssao->ao, how->gpu, "ssao", &options, how->width, how->height) &&
+    return screen_ao_init(&ssao->ao, how->gpu, &options, how->width, how->height) &&
            create_points(ssao);
 }
 
@@ -84,7 +83,7 @@ static void ssao_record(void *state, struct gpu_cmd *cmd, const struct frame_vie
     screen_ao_begin(&ssao->ao, view, ssao->options.radius, ssao->options.reach);
     fill_table(&ssao->options, &ssao->table);
     screen_ao_estimate(
-        &ssao->ao, cmd, view, "ssao.points", ssao->points,
+        &ssao->ao, cmd, view, "points", ssao->points,
         GPU_BIND(gpu_transient(cmd, "ssao_table", &ssao->table, sizeof ssao->table)));
     screen_ao_record(&ssao->ao, cmd, view);
 }

@@ -33,7 +33,7 @@ static bool vo_create(void *state, const struct technique_create *how)
     vo->gpu = how->gpu;
     vo->options = *(const struct vo_options *)how->options;
     const struct screen_ao_options options = ao_options(&vo->options);
-    if (!screen_ao_init(&vo->ao, how->gpu, "vo", &options, how->width, how->height)) return false;
+    if (!screen_ao_init(&vo->ao, how->gpu, &options, how->width, how->height)) return false;
     if (vo->options.mode == VO_MODE_AREAS &&
         !(vo_create_pyramid(vo) && vo_resize_pyramid(vo, how->width, how->height)))
         return false;

@@ -27,13 +27,13 @@ static uint32_t levels_of(uint32_t width, uint32_t height)
 
 bool vo_create_pyramid(struct vo *vo)
 {
-    return gpu_compute_pipeline_create(vo->gpu, "vo.pyramid", &shader_vo_pyramid_comp, NULL, 0,
+    return gpu_compute_pipeline_create(vo->gpu, "pyramid", &shader_vo_pyramid_comp, NULL, 0,
                                        &vo->pyramid);
 }
 
 bool vo_resize_pyramid(struct vo *vo, uint32_t width, uint32_t height)
 {
-    const struct gpu_image_desc desc = { .name = "vo.moments",
+    const struct gpu_image_desc desc = { .name = "moments",
                                          .format = GPU_RG32F,
                                          .width = half_of(width),
                                          .height = half_of(height),
@@ -58,7 +58,7 @@ void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_vi
     const float widest_px = vo->ao.params.most_px * sqrtf(GLM_PIf);
     const int wanted = (int)ceilf(log2f(fmaxf(widest_px, 2.0f)));
     vo->table.level_count = wanted < (int)info->mips ? wanted : (int)info->mips;
-    gpu_scope_begin(cmd, "vo.pyramid");
+    gpu_scope_begin(cmd, "pyramid");
     for (int i = 0; i < vo->table.level_count; i++) {
         struct gpu_binding before = { .name = "before", .image = view->layers[FRAME_DEPTH] };
         if (i > 0)

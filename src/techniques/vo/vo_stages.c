@@ -11,9 +11,9 @@ static const struct way {
     const char *name;
     const struct gpu_shader *shader;
 } ways[] = {
-    [VO_MODE_LINES] = { "vo.lines", &shader_vo_lines_comp },
-    [VO_MODE_AREAS] = { "vo.areas", &shader_vo_areas_comp },
-    [VO_MODE_POINTS] = { "vo.points", &shader_vo_points_comp },
+    [VO_MODE_LINES] = { "lines", &shader_vo_lines_comp },
+    [VO_MODE_AREAS] = { "areas", &shader_vo_areas_comp },
+    [VO_MODE_POINTS] = { "points", &shader_vo_points_comp },
 };
 
 // An area alone stands for the whole disk, wherever a line alone would be.
