@@ -84,7 +84,7 @@ static bool prepare_image(struct gpu_cmd *cmd, const struct pipeline *pipeline,
         return gpu_misuse(gpu, "pipeline %s: image %s is bound to \"%s\" and rendered to at once",
                           pipeline->name, image->name, want->name);
     }
-    struct access access = { want->stages, want->writes, hazard_resting_layout(image) };
+    struct access access = { want->stages, want->writes, hazard_shader_layout(image) };
     hazard_image(cmd, image, &range, &access);
     *out = (VkDescriptorImageInfo){
         .imageView = image_view(gpu, image, want->view, &range),

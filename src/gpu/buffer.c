@@ -3,11 +3,6 @@
 
 #include <stdio.h>
 
-struct buffer *buffer_get(const struct gpu *gpu, gpu_buffer buffer)
-{
-    return table_get(&gpu->buffers, buffer.id);
-}
-
 static VkBufferUsageFlags usage_flags(uint32_t usage)
 {
     VkBufferUsageFlags flags = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
@@ -88,7 +83,7 @@ static bool check_desc(struct gpu *gpu, const struct gpu_buffer_desc *desc)
 bool gpu_buffer_create(struct gpu *gpu, const struct gpu_buffer_desc *desc, gpu_buffer *out)
 {
     out->id = 0;
-    trash_collect(gpu);
+    deferred_delete_collect(gpu);
     char name[NAME_SIZE];
     struct gpu_buffer_desc d = *desc;
     d.name = owner_name(gpu, d.name, name);
@@ -106,7 +101,7 @@ void gpu_buffer_destroy(struct gpu *gpu, gpu_buffer *handle)
 {
     struct buffer *buffer = gpu && handle ? table_remove(&gpu->buffers, handle->id) : NULL;
     if (handle) handle->id = 0;
-    if (buffer) trash_add(gpu, buffer_free, buffer);
+    if (buffer) deferred_delete_add(gpu, buffer_free, buffer);
 }
 
 size_t gpu_buffer_bytes(const struct gpu *gpu, gpu_buffer handle)

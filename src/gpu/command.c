@@ -45,30 +45,18 @@ void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd)
     *cmd = (struct gpu_cmd){ 0 };
 }
 
-static bool wait_for(struct gpu *gpu, uint64_t value)
-{
-    if (gpu->lost || !gpu->timeline) return false;
-    return VK_CHECK(gpu, vkWaitSemaphores(
-                             gpu->device,
-                             &(VkSemaphoreWaitInfo){ .sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
-                                                     .semaphoreCount = 1,
-                                                     .pSemaphores = &gpu->timeline,
-                                                     .pValues = &value },
-                             UINT64_MAX));
-}
-
 // Images that others may have used since our last recording.
-static void forget_shared(struct gpu *gpu)
+static void reset_shared(struct gpu *gpu)
 {
     for (uint32_t i = 0; i < gpu->images.count; i++) {
         struct image *image = gpu->images.objects[i];
         if (image && image->shared && !image->zero_pending)
-            hazard_forget(image, image->hazards[0].layout);
+            hazard_external_use(image, image->hazards[0].layout);
     }
 }
 
 // Others are to find such an image in one layout.
-static void unite_shared(struct gpu_cmd *cmd)
+static void unify_shared(struct gpu_cmd *cmd)
 {
     struct gpu *gpu = cmd->gpu;
     hazard_next_op(cmd);
@@ -78,7 +66,7 @@ static void unite_shared(struct gpu_cmd *cmd)
         struct range range = image_whole(image);
         hazard_image(cmd, image, &range,
                      &(struct access){ .stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                       .layout = hazard_resting_layout(image) });
+                                       .layout = hazard_shader_layout(image) });
     }
     hazard_flush(cmd);
 }
@@ -93,7 +81,7 @@ static void start(struct gpu_cmd *cmd)
     cmd->rendering = (struct rendering){ 0 };
     memset(cmd->bound, 0, sizeof cmd->bound);
     gpu->recording = cmd;
-    forget_shared(gpu);
+    reset_shared(gpu);
 }
 
 static bool start_own(struct gpu_cmd *cmd)
@@ -155,8 +143,8 @@ struct gpu_cmd *gpu_frame_begin(struct gpu *gpu)
 {
     if (!may_record(gpu, "frame")) return NULL;
     struct gpu_cmd *cmd = &gpu->cmds[gpu->next_frame];
-    if (cmd->state == CMD_PENDING && !wait_for(gpu, cmd->timeline)) return NULL;
-    trash_collect(gpu);
+    if (cmd->state == CMD_PENDING && !timeline_wait(gpu, cmd->timeline)) return NULL;
+    deferred_delete_collect(gpu);
     if (!start_own(cmd)) return NULL;
     gpu->next_frame = (gpu->next_frame + 1) % FRAMES_IN_FLIGHT;
     ring_start(cmd);
@@ -170,7 +158,7 @@ static void close_recording(struct gpu_cmd *cmd)
         gpu_misuse(cmd->gpu, "frame: a rendering is still open at its end");
         gpu_render_end(cmd);
     }
-    unite_shared(cmd);
+    unify_shared(cmd);
     ring_stop(cmd);
     scopes_stop(cmd);
 }
@@ -192,7 +180,7 @@ bool gpu_frame_end(struct gpu *gpu, struct gpu_cmd *cmd)
 struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer)
 {
     if (!may_record(gpu, "adopted frame")) return NULL;
-    trash_collect(gpu);
+    deferred_delete_collect(gpu);
     for (int i = CMD_TRANSFER + 1; i < CMD_COUNT; i++) {
         struct gpu_cmd *cmd = &gpu->cmds[i];
         if (cmd->state != CMD_FREE) continue;
@@ -221,13 +209,13 @@ void gpu_frame_adopted_done(struct gpu *gpu, struct gpu_cmd *cmd)
     }
     cmd->state = CMD_FREE;
     cmd->buffer = VK_NULL_HANDLE;
-    trash_collect(gpu);
+    deferred_delete_collect(gpu);
 }
 
 bool gpu_wait(struct gpu *gpu)
 {
-    bool done = gpu->submitted == 0 || wait_for(gpu, gpu->submitted);
-    trash_collect(gpu);
+    bool done = gpu->submitted == 0 || timeline_wait(gpu, gpu->submitted);
+    deferred_delete_collect(gpu);
     return done && !gpu->lost;
 }
 
@@ -246,8 +234,8 @@ struct gpu_cmd *transfer_begin(struct gpu *gpu)
 
 bool transfer_end(struct gpu *gpu, struct gpu_cmd *cmd)
 {
-    unite_shared(cmd);
-    bool done = submit(cmd) && wait_for(gpu, cmd->timeline);
-    trash_collect(gpu);
+    unify_shared(cmd);
+    bool done = submit(cmd) && timeline_wait(gpu, cmd->timeline);
+    deferred_delete_collect(gpu);
     return done;
 }

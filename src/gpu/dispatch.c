@@ -1,11 +1,6 @@
 // Compute dispatches.
 #include "gpu/vk.h"
 
-struct pipeline *pipeline_get(const struct gpu *gpu, gpu_pipeline pipeline)
-{
-    return table_get(&gpu->pipelines, pipeline.id);
-}
-
 // The pipeline with its bindings ready to record; NULL: nothing is to be recorded.
 static struct pipeline *prepare(struct gpu_cmd *cmd, gpu_pipeline handle,
                                 const struct gpu_binding *bindings, int binding_count,

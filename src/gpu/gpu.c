@@ -1,5 +1,4 @@
-// The device as a whole: its creation, its end, and what is freed only once the GPU no longer uses
-// it.
+// Creation and destruction of the device and of the objects that all recordings share.
 #include "gpu/vk.h"
 
 #include <errno.h>
@@ -115,59 +114,6 @@ fail:
     return NULL;
 }
 
-uint64_t finished_serial(struct gpu *gpu)
-{
-    uint64_t value = 0;
-    if (!gpu->timeline ||
-        vkGetSemaphoreCounterValue(gpu->device, gpu->timeline, &value) != VK_SUCCESS) {
-        value = gpu->lost ? UINT64_MAX : 0;
-    }
-    uint64_t finished = gpu->serial;
-    for (int i = 0; i < CMD_COUNT; i++) {
-        struct gpu_cmd *cmd = &gpu->cmds[i];
-        if (cmd->state == CMD_PENDING && !cmd->adopted && cmd->timeline <= value) {
-            cmd->state = CMD_FREE;
-            scopes_collect(cmd);
-        }
-        if (cmd->state != CMD_FREE && cmd->serial <= finished) finished = cmd->serial - 1;
-    }
-    return finished;
-}
-
-void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), void *object)
-{
-    if (!object) return;
-    if (gpu->trash_count == gpu->trash_capacity) {
-        size_t capacity = gpu->trash_capacity ? 2 * gpu->trash_capacity : 64;
-        struct trash *bigger = host_realloc(gpu->host, gpu->trash, capacity, sizeof *bigger);
-        if (!bigger) {
-            // No memory to remember it: free it now if nothing uses it, else a leak is the lesser
-            // evil.
-            gpu_wait(gpu);
-            if (finished_serial(gpu) >= gpu->serial) free(gpu, object);
-            return;
-        }
-        gpu->trash = bigger;
-        gpu->trash_capacity = capacity;
-    }
-    gpu->trash[gpu->trash_count++] = (struct trash){ gpu->serial, free, object };
-}
-
-void trash_collect(struct gpu *gpu)
-{
-    uint64_t finished = finished_serial(gpu);
-    size_t kept = 0;
-    for (size_t i = 0; i < gpu->trash_count; i++) {
-        struct trash *trash = &gpu->trash[i];
-        if (trash->serial <= finished) {
-            trash->free(gpu, trash->object);
-        } else {
-            gpu->trash[kept++] = *trash;
-        }
-    }
-    gpu->trash_count = kept;
-}
-
 // Reports and frees what the caller forgot. name_offset: where an object of this table keeps its
 // name.
 static void free_table(struct gpu *gpu, struct table *table, const char *kind, size_t name_offset,
@@ -185,8 +131,7 @@ static void free_table(struct gpu *gpu, struct table *table, const char *kind, s
 static void free_objects(struct gpu *gpu)
 {
     for (int i = 0; i < CMD_COUNT; i++) cmd_finish(gpu, &gpu->cmds[i]);
-    for (size_t i = 0; i < gpu->trash_count; i++) gpu->trash[i].free(gpu, gpu->trash[i].object);
-    gpu->trash_count = 0;
+    deferred_delete_finish(gpu);
     free_table(gpu, &gpu->pipelines, "pipeline", offsetof(struct pipeline, name), pipeline_free);
     free_table(gpu, &gpu->images, "image", offsetof(struct image, name), image_free);
     free_table(gpu, &gpu->buffers, "buffer", offsetof(struct buffer, name), buffer_free);
@@ -212,7 +157,6 @@ void gpu_destroy(struct gpu *gpu)
         if (destroy) destroy(gpu->instance, gpu->messenger, NULL);
     }
     if (gpu->instance && !gpu->adopted) vkDestroyInstance(gpu->instance, NULL);
-    host_free(gpu->host, gpu->trash);
     host_free(gpu->host, gpu->shader_dir);
     host_free(gpu->host, gpu);
 }

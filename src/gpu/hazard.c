@@ -210,7 +210,7 @@ static void use_image(struct gpu_cmd *cmd, struct image *image, const struct ran
     if (!part) join(image);
 }
 
-VkImageLayout hazard_resting_layout(const struct image *image)
+VkImageLayout hazard_shader_layout(const struct image *image)
 {
     if (image->desc.usage & GPU_STORAGE) return VK_IMAGE_LAYOUT_GENERAL;
     if (image->desc.usage & GPU_SAMPLED) return VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
@@ -293,7 +293,7 @@ struct hazard hazard_recycled(void)
     };
 }
 
-void hazard_forget(struct image *image, VkImageLayout layout)
+void hazard_external_use(struct image *image, VkImageLayout layout)
 {
     image->whole = true;
     image->hazards[0] = hazard_recycled();

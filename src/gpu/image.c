@@ -5,16 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-struct image *image_get(const struct gpu *gpu, gpu_image image)
-{
-    return table_get(&gpu->images, image.id);
-}
-
-struct range image_whole(const struct image *image)
-{
-    return (struct range){ 0, image->desc.mips, 0, image->layers };
-}
-
 static uint32_t mip_size(uint32_t size, uint32_t mip)
 {
     return size >> mip ? size >> mip : 1;
@@ -190,7 +180,7 @@ static bool create_handle(struct gpu *gpu, struct image *image)
 bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_image *out)
 {
     out->id = 0;
-    trash_collect(gpu);
+    deferred_delete_collect(gpu);
     struct image *image = image_new(gpu, desc);
     if (!image) return false;
     image->zero_pending = true;
@@ -213,7 +203,7 @@ bool gpu_image_wrap(struct gpu *gpu, const struct gpu_image_desc *desc, void *vk
     if (!image) return false;
     image->handle = (VkImage)vk_image;
     image->wrapped = image->shared = true;
-    hazard_forget(image, (VkImageLayout)layout);
+    hazard_external_use(image, (VkImageLayout)layout);
     out->id = table_add(gpu->host, &gpu->images, image);
     if (!out->id) {
         image_free(gpu, image);
@@ -240,7 +230,7 @@ void gpu_image_destroy(struct gpu *gpu, gpu_image *handle)
 {
     struct image *image = gpu && handle ? table_remove(&gpu->images, handle->id) : NULL;
     if (handle) handle->id = 0;
-    if (image) trash_add(gpu, image_free, image);
+    if (image) deferred_delete_add(gpu, image_free, image);
 }
 
 const struct gpu_image_desc *gpu_image_info(const struct gpu *gpu, gpu_image handle)

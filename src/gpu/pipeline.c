@@ -253,7 +253,7 @@ static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
         host_fail(gpu->host, FAIL_DEVICE, "gpu pipeline %s: the device was lost", p->name);
         goto fail;
     }
-    trash_collect(gpu);
+    deferred_delete_collect(gpu);
     bool on_disk = false;
     for (int i = 0; i < p->stage_count; i++) on_disk |= p->stages[i].stamp != 0;
     bool built = on_disk && build(gpu, p, true);
@@ -337,7 +337,7 @@ void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *handle)
 {
     struct pipeline *p = gpu && handle ? table_remove(&gpu->pipelines, handle->id) : NULL;
     if (handle) handle->id = 0;
-    if (p) trash_add(gpu, pipeline_free, p);
+    if (p) deferred_delete_add(gpu, pipeline_free, p);
 }
 
 static bool has_changed(struct gpu *gpu, struct pipeline *p)
@@ -380,7 +380,7 @@ int gpu_reload_shaders(struct gpu *gpu)
         struct pipeline *p = old && has_changed(gpu, old) ? rebuild(gpu, old) : NULL;
         if (!p) continue;
         gpu->pipelines.objects[i] = p;
-        trash_add(gpu, pipeline_free, old);
+        deferred_delete_add(gpu, pipeline_free, old);
         host_log(gpu->host, LOG_INFO, "gpu pipeline %s: reloaded", p->name);
         count++;
     }

@@ -35,7 +35,8 @@ void gpu_readback_copy(struct gpu_cmd *cmd, struct gpu_readback *to, size_t to_o
 bool gpu_readback_poll(struct gpu *gpu, struct gpu_readback *readback, void *out, size_t bytes)
 {
     struct buffer *buffer = buffer_get(gpu, readback->buffer);
-    if (!buffer || readback->serial == 0 || readback->serial > finished_serial(gpu)) return false;
+    if (!buffer || readback->serial == 0 || readback->serial > timeline_completed_serial(gpu))
+        return false;
     memcpy(out, buffer->memory.mapped, bytes < buffer->bytes ? bytes : buffer->bytes);
     readback->serial = 0;
     return true;

@@ -39,33 +39,6 @@ static bool check_desc(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
     return !desc->depth.image.id || check_target(cmd->gpu, &desc->depth, desc, true);
 }
 
-// 3D images have slices in place of layers, and one state for all of them.
-static struct range target_range(const struct image *image, const struct gpu_target *target)
-{
-    uint32_t layer = image->desc.dimension == GPU_3D ? 0 : target->layer;
-    return (struct range){ target->mip, 1, layer, 1 };
-}
-
-static bool is_target(const struct gpu_cmd *cmd, const struct gpu_target *target,
-                      const struct image *image, const struct range *range)
-{
-    if (!target->image.id || image_get(cmd->gpu, target->image) != image) return false;
-    struct range r = target_range(image, target);
-    return r.mip >= range->mip && r.mip < range->mip + range->mip_count &&
-           r.layer >= range->layer && r.layer < range->layer + range->layer_count;
-}
-
-bool render_has_target(const struct gpu_cmd *cmd, const struct image *image,
-                       const struct range *range)
-{
-    const struct rendering *r = &cmd->rendering;
-    if (!r->open || !(image->desc.usage & GPU_ATTACHMENT)) return false;
-    for (int i = 0; i < r->color_count; i++) {
-        if (is_target(cmd, &r->colors[i], image, range)) return true;
-    }
-    return is_target(cmd, &r->depth, image, range);
-}
-
 static struct access target_access(const struct image *image)
 {
     if (image->desc.format == GPU_D32F) {
@@ -83,7 +56,7 @@ static bool attach(struct gpu_cmd *cmd, const struct gpu_target *target,
     struct image *image = image_get(cmd->gpu, target->image);
     if (!image)
         return gpu_misuse(cmd->gpu, "rendering: a target was destroyed before its first draw");
-    struct range range = target_range(image, target);
+    struct range range = render_target_range(image, target);
     struct access access = target_access(image);
     VkExtent3D extent = image_extent(image, target->mip);
     bool load = target->load || cmd->rendering.begun;
@@ -138,13 +111,6 @@ static bool resume(struct gpu_cmd *cmd)
     return true;
 }
 
-void render_suspend(struct gpu_cmd *cmd)
-{
-    if (!cmd->rendering.active) return;
-    vkCmdEndRendering(cmd->buffer);
-    cmd->rendering.active = false;
-}
-
 // What the draws will read, as shaders find it.
 static void announce(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
 {
@@ -161,7 +127,7 @@ static void announce(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
             if (render_has_target(cmd, image, &range)) continue;
             hazard_image(
                 cmd, image, &range,
-                &(struct access){ .stages = stages, .layout = hazard_resting_layout(image) });
+                &(struct access){ .stages = stages, .layout = hazard_shader_layout(image) });
         } else if (buffer) {
             hazard_buffer(
                 cmd, buffer,

@@ -159,7 +159,10 @@ struct sampler {
 struct image *image_get(const struct gpu *gpu, gpu_image image);
 VkImageView image_view(struct gpu *gpu, struct image *image, VkImageViewType type,
                        const struct range *range);
-struct range image_whole(const struct image *image);
+static inline struct range image_whole(const struct image *image)
+{
+    return (struct range){ 0, image->desc.mips, 0, image->layers };
+}
 // Width, height and depth of a mip.
 VkExtent3D image_extent(const struct image *image, uint32_t mip);
 bool image_check_part(struct gpu *gpu, const struct image *image, uint32_t mip, uint32_t layer);
@@ -308,11 +311,11 @@ void hazard_overwrite_image(struct image *image);
 void hazard_overwrite_buffer(struct buffer *buffer);
 void hazard_flush(struct gpu_cmd *cmd); // records the queued barriers, outside of any rendering
 // Others may have used the image in any way, and left it in `layout`.
-void hazard_forget(struct image *image, VkImageLayout layout);
+void hazard_external_use(struct image *image, VkImageLayout layout);
 // A new object in memory that another one had.
 struct hazard hazard_recycled(void);
 VkImageLayout hazard_transfer_layout(const struct image *image, bool write);
-VkImageLayout hazard_resting_layout(const struct image *image); // where shaders find it
+VkImageLayout hazard_shader_layout(const struct image *image); // where shaders find it
 
 // Matches the bindings with the shader's, queues their barriers and fills `writes` with one entry
 // per shader binding.
@@ -330,10 +333,11 @@ void bind_record(struct gpu_cmd *cmd, const struct pipeline *pipeline, const str
 struct range bind_sampled_range(const struct image *image, const struct gpu_binding *binding,
                                 VkImageViewType view);
 
+// render_targets.c. The subresource of a target; 3D images have one state for all slices.
+struct range render_target_range(const struct image *image, const struct gpu_target *target);
 bool render_has_target(const struct gpu_cmd *cmd, const struct image *image,
                        const struct range *range);
-void render_suspend(
-    struct gpu_cmd *cmd); // ends the active rendering, if any; the next draw takes it up again
+void render_suspend(struct gpu_cmd *cmd); // ends an active rendering; the next draw resumes it
 
 bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted);
 void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd);
@@ -349,15 +353,21 @@ void ring_start(struct gpu_cmd *cmd);
 
 // ---- The device ---------------------------------------------------------------------------------
 
-// Work for when the GPU is done with all that was recorded before it.
-struct trash {
+// timeline.c
+bool timeline_wait(struct gpu *gpu, uint64_t value); // false: device lost
+// Serial up to which the GPU has completed every recording; returns their commands to CMD_FREE.
+uint64_t timeline_completed_serial(struct gpu *gpu);
+
+// deferred_delete.c. An object is freed once the GPU has completed all recordings up to `serial`.
+struct deferred_delete {
     uint64_t serial;
     void (*free)(struct gpu *gpu, void *object);
     void *object;
 };
-void trash_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object), void *object);
-uint64_t finished_serial(struct gpu *gpu); // all recordings up to it are done
-void trash_collect(struct gpu *gpu);       // asks the GPU how far it is, and frees
+void deferred_delete_add(struct gpu *gpu, void (*free)(struct gpu *gpu, void *object),
+                         void *object);
+void deferred_delete_collect(struct gpu *gpu); // frees what the GPU no longer uses
+void deferred_delete_finish(struct gpu *gpu);  // frees all; the device must be idle
 
 // "owner.name" in `out` where an owner is pushed and the name is without one, else the name.
 const char *owner_name(const struct gpu *gpu, const char *name, char out[NAME_SIZE]);
@@ -404,8 +414,8 @@ struct gpu {
     uint32_t next_frame;
     struct gpu_cmd *recording; // NULL: none
 
-    struct trash *trash;
-    size_t trash_count, trash_capacity;
+    struct deferred_delete *deferred;
+    size_t deferred_count, deferred_capacity;
     struct gpu_timing timings[MAX_SCOPES + 1];
     int timing_count;
     uint64_t timings_serial;

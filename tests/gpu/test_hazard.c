@@ -200,7 +200,7 @@ TEST_GPU(storage_images_keep_one_layout)
     gpu_image handle;
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
     struct image *image = fresh_image(gpu, &handle, 1, 4, GPU_SAMPLED | GPU_STORAGE);
-    assert_int_equal(hazard_resting_layout(image), VK_IMAGE_LAYOUT_GENERAL);
+    assert_int_equal(hazard_shader_layout(image), VK_IMAGE_LAYOUT_GENERAL);
     use_image(cmd, image, image_whole(image), COMPUTE, true, VK_IMAGE_LAYOUT_GENERAL);
     for (uint32_t mip = 1; mip < 4; mip++) { // a mip chain: waits, but no transitions
         hazard_next_op(cmd);
