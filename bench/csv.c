@@ -1,9 +1,10 @@
 #include "csv.h"
 
-bool csv_open(const char *path, FILE **out)
+bool csv_open(const char *path, const char *header, FILE **out)
 {
     *out = path ? fopen(path, "w") : NULL;
     if (path && !*out) perror(path);
+    if (*out) fprintf(*out, "%s\n", header);
     return !path || *out;
 }
 

@@ -1,15 +1,16 @@
-// The table that a bench writes beside what it prints.
+// CSV files of the benchmarks.
 #ifndef AG_BENCH_CSV_H
 #define AG_BENCH_CSV_H
 
 #include <stdbool.h>
 #include <stdio.h>
 
-// Opens the table at `path`; none where it is NULL. False, and said, where that fails.
-bool csv_open(const char *path, FILE **out);
-// A text in quotes and a comma, whatever is in it.
+// Creates the file and writes its header line. A NULL path gives no file. False on an error, which
+// is printed.
+bool csv_open(const char *path, const char *header, FILE **out);
+// Writes a quoted text and a comma.
 void csv_text(FILE *file, const char *text);
-// Ends a table, or none. False, and said, where something of it could not be written.
+// Closes the file; NULL is accepted. False on a write error, which is printed.
 bool csv_close(FILE *file, const char *path);
 
 #endif

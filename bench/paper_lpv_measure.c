@@ -1,14 +1,14 @@
-// The reference is the light that the techniques are for: what one bounce brings, or an area light
-// straight.
+// The reference has the light that the techniques compute: one bounce of sunlight, or the direct
+// light of an area light.
 #include "paper_lpv_measure.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static void say(const struct paper_scene *scene, const char *what)
+static void print_progress(const struct paper_scene *scene, const char *step)
 {
-    fprintf(stderr, "%s: %s\n", scene->name, what);
+    fprintf(stderr, "%s: %s\n", scene->name, step);
 }
 
 static double luminance(const float *rgb)
@@ -54,15 +54,15 @@ static enum ag_result create_renderer(const struct measure *measure, struct ag_s
     desc.width = width;
     desc.height = height;
     desc.gi = gi;
-    return ag_renderer_create(measure->device, loaded, &desc, out);
+    return ag_renderer_create(measure->bench->device, loaded, &desc, out);
 }
 
 // ---- scanlines
 
-static void take_line(const struct measure *measure, struct ag_image *image, double *out)
+static void read_line(const struct measure *measure, struct ag_image *image, double *out)
 {
     for (int i = 0; i < image->width; i++) out[i] = luminance(image->pixels + 3 * i);
-    ag_image_destroy(measure->context, image);
+    ag_image_destroy(measure->bench->context, image);
 }
 
 static enum ag_result trace_line(const struct measure *measure, const struct paper_scene *scene,
@@ -77,11 +77,11 @@ static enum ag_result trace_line(const struct measure *measure, const struct pap
     desc.bounces = scene->bounces;
     struct ag_reference *reference = NULL;
     struct ag_image *image = NULL;
-    say(scene, "path tracing the scanline");
+    print_progress(scene, "path tracing the scanline");
     enum ag_result result = ag_reference_create(loaded, &desc, &reference);
     if (result == AG_OK) result = ag_reference_render(reference, measure->spp, NULL, NULL);
     if (result == AG_OK) result = ag_reference_read(reference, "irradiance_emitters_sky", &image);
-    if (result == AG_OK) take_line(measure, image, line->reference);
+    if (result == AG_OK) read_line(measure, image, line->reference);
     ag_reference_destroy(reference);
     return result;
 }
@@ -97,12 +97,12 @@ static enum ag_result render_line(const struct measure *measure, struct ag_scene
     enum ag_result result = create_renderer(measure, loaded, m->gi, count, 1, &renderer);
     if (result == AG_OK) result = ag_renderer_render(renderer, &frame);
     if (result == AG_OK) result = ag_renderer_read(renderer, "irradiance", &image);
-    if (result == AG_OK) take_line(measure, image, m->lux);
+    if (result == AG_OK) read_line(measure, image, m->lux);
     ag_renderer_destroy(renderer);
     return result;
 }
 
-// Pixels without a surface have no irradiance in either, and do not count.
+// Pixels without a surface have an irradiance of 0 in both and do not count.
 static double error_of(const double *lux, const double *reference, int count)
 {
     double difference = 0, sum = 0;
@@ -113,7 +113,7 @@ static double error_of(const double *lux, const double *reference, int count)
     return sum > 0 ? difference / sum : 0;
 }
 
-// docs/metrics.md.
+// As in docs/metrics.md.
 static double relmse_of(const double *lux, const double *reference, int count)
 {
     double mean = 0, sum = 0;
@@ -145,7 +145,7 @@ enum ag_result measure_scanline(struct measure *measure, const struct paper_scen
         result = render_line(measure, loaded, &camera, out->count, m);
         m->error = error_of(m->lux, out->reference, out->count);
         m->relmse = relmse_of(m->lux, out->reference, out->count);
-        m->picture_relmse = -1;
+        m->image_relmse = -1;
     }
     return result;
 }
@@ -155,10 +155,9 @@ enum ag_result measure_scanline(struct measure *measure, const struct paper_scen
 static void add_pass(struct technique_cost *cost, const struct pass_time *pass,
                      const char *technique)
 {
-    size_t length = strlen(technique);
+    const char *stage = passes_stage(pass->name, technique);
     if (strcmp(pass->name, "frame") == 0) cost->frame_ms = pass->median_ms;
-    if (strncmp(pass->name, technique, length) != 0 || pass->name[length] != '.') return;
-    const char *stage = pass->name + length + 1;
+    if (!stage) return;
     double *sum = strncmp(stage, "inject", 6) == 0 || strncmp(stage, "resolve", 7) == 0
                       ? &cost->inject_ms
                   : strncmp(stage, "propagate", 9) == 0 ? &cost->propagate_ms
@@ -184,9 +183,10 @@ static enum ag_result measure_cost(struct measure *measure, struct ag_scene *loa
     struct ag_renderer *renderer = NULL;
     struct pass_time passes[PASSES_MAX];
     int count = 0;
-    enum ag_result result =
-        create_renderer(measure, loaded, m->gi, measure->width, measure->height, &renderer);
-    if (result == AG_OK) result = passes_measure(renderer, frame, measure->frames, passes, &count);
+    enum ag_result result = create_renderer(measure, loaded, m->gi, measure->bench->width,
+                                            measure->bench->height, &renderer);
+    if (result == AG_OK)
+        result = passes_measure(renderer, frame, measure->bench->frames, passes, &count);
     m->cost = (struct technique_cost){ 0 };
     for (int i = 0; i < count; i++) add_pass(&m->cost, &passes[i], m->technique);
     if (result == AG_OK) m->cost.bytes = memory_of(renderer, m->technique);
@@ -199,47 +199,47 @@ enum ag_result measure_costs(struct measure *measure, const struct paper_scene *
 {
     struct ag_frame_desc frame;
     ag_frame_desc_default(&frame);
-    measure->width = scene->width;
-    measure->height = scene->height;
+    measure->bench->width = scene->width;
+    measure->bench->height = scene->height;
     enum ag_result result = paper_scene_camera(scene, loaded, &frame.camera);
     for (int t = 0; t < line->technique_count && result == AG_OK; t++) {
-        say(scene, line->techniques[t].gi);
+        print_progress(scene, line->techniques[t].gi);
         result = measure_cost(measure, loaded, &frame, &line->techniques[t]);
     }
     return result;
 }
 
-// ---- pictures
+// ---- images
 
-static enum ag_result trace_picture(const struct measure *measure, const struct paper_scene *scene,
-                                    struct ag_scene *loaded, const struct ag_camera *camera,
-                                    int height, struct ag_image **out)
+static enum ag_result trace_image(const struct measure *measure, const struct paper_scene *scene,
+                                  struct ag_scene *loaded, const struct ag_camera *camera,
+                                  int height, struct ag_image **out)
 {
     struct ag_reference_desc desc;
     ag_reference_desc_default(&desc);
-    desc.width = measure->picture_width;
+    desc.width = measure->image_width;
     desc.height = height;
     desc.camera = *camera;
     desc.bounces = scene->bounces;
     struct ag_reference *reference = NULL;
-    say(scene, "path tracing the picture");
+    print_progress(scene, "path tracing the image");
     enum ag_result result = ag_reference_create(loaded, &desc, &reference);
-    if (result == AG_OK) result = ag_reference_render(reference, measure->picture_spp, NULL, NULL);
+    if (result == AG_OK) result = ag_reference_render(reference, measure->image_spp, NULL, NULL);
     if (result == AG_OK) result = ag_reference_read(reference, "color", out);
     ag_reference_destroy(reference);
     return result;
 }
 
-static enum ag_result render_picture(const struct measure *measure, struct ag_scene *loaded,
-                                     const struct ag_camera *camera, int height, const char *gi,
-                                     float *ev, struct ag_image **out)
+static enum ag_result render_image(const struct measure *measure, struct ag_scene *loaded,
+                                   const struct ag_camera *camera, int height, const char *gi,
+                                   float *ev, struct ag_image **out)
 {
     struct ag_renderer *renderer = NULL;
     struct ag_frame_desc frame;
     ag_frame_desc_default(&frame);
     frame.camera = *camera;
     enum ag_result result =
-        create_renderer(measure, loaded, gi, measure->picture_width, height, &renderer);
+        create_renderer(measure, loaded, gi, measure->image_width, height, &renderer);
     if (result == AG_OK) result = ag_renderer_render(renderer, &frame);
     if (result == AG_OK) result = ag_renderer_read(renderer, "color", out);
     if (result == AG_OK) result = ag_renderer_exposure(renderer, ev);
@@ -247,60 +247,58 @@ static enum ag_result render_picture(const struct measure *measure, struct ag_sc
     return result;
 }
 
-// Puts a picture at the right of *all, which may be NULL, and takes both.
+// Appends an image at the right of *all, which may be NULL; takes ownership of both.
 static enum ag_result append(struct ag_context *context, struct ag_image **all,
-                             struct ag_image *picture)
+                             struct ag_image *image)
 {
     struct ag_image *joined = NULL;
     if (!*all) {
-        *all = picture;
+        *all = image;
         return AG_OK;
     }
-    enum ag_result result = ag_image_side_by_side(context, *all, picture, 4, &joined);
+    enum ag_result result = ag_image_side_by_side(context, *all, image, 4, &joined);
     ag_image_destroy(context, *all);
-    ag_image_destroy(context, picture);
+    ag_image_destroy(context, image);
     *all = joined;
     return result;
 }
 
-static enum ag_result compare_picture(struct ag_context *context, const struct ag_image *picture,
-                                      const struct ag_image *reference, double *relmse)
+static enum ag_result compare_image(struct ag_context *context, const struct ag_image *image,
+                                    const struct ag_image *reference, double *relmse)
 {
     struct ag_compare_desc desc;
     struct ag_metrics metrics;
     ag_compare_desc_default(&desc);
     desc.radiance = true;
-    const enum ag_result result = ag_image_metrics(context, picture, reference, &desc, &metrics);
+    const enum ag_result result = ag_image_metrics(context, image, reference, &desc, &metrics);
     if (result == AG_OK) *relmse = metrics.relmse;
     return result;
 }
 
-enum ag_result measure_picture(struct measure *measure, const struct paper_scene *scene,
-                               struct ag_scene *loaded, struct scanline *line,
-                               struct ag_image **out)
+enum ag_result measure_image(struct measure *measure, const struct paper_scene *scene,
+                             struct ag_scene *loaded, struct scanline *line, struct ag_image **out)
 {
-    int height = measure->picture_width * scene->height / scene->width;
+    int height = measure->image_width * scene->height / scene->width;
     struct ag_camera camera;
-    struct ag_image *all = NULL, *pictures[1 + MEASURE_TECHNIQUES] = { NULL };
+    struct ag_image *all = NULL, *images[1 + MEASURE_TECHNIQUES] = { NULL };
     float ev = 0;
     *out = NULL;
     enum ag_result result = paper_scene_camera(scene, loaded, &camera);
-    if (result == AG_OK)
-        result = trace_picture(measure, scene, loaded, &camera, height, &pictures[0]);
+    if (result == AG_OK) result = trace_image(measure, scene, loaded, &camera, height, &images[0]);
     for (int t = 0; t < line->technique_count && result == AG_OK; t++) {
         struct measured *m = &line->techniques[t];
-        result = render_picture(measure, loaded, &camera, height, m->gi, &ev, &pictures[1 + t]);
+        result = render_image(measure, loaded, &camera, height, m->gi, &ev, &images[1 + t]);
         if (result == AG_OK)
             result =
-                compare_picture(measure->context, pictures[1 + t], pictures[0], &m->picture_relmse);
+                compare_image(measure->bench->context, images[1 + t], images[0], &m->image_relmse);
     }
     for (int i = 0; i <= line->technique_count; i++) {
         if (result == AG_OK)
-            result = append(measure->context, &all, pictures[i]);
+            result = append(measure->bench->context, &all, images[i]);
         else
-            ag_image_destroy(measure->context, pictures[i]);
+            ag_image_destroy(measure->bench->context, images[i]);
     }
-    if (result == AG_OK) result = ag_image_tonemap(measure->context, all, ev, out);
-    ag_image_destroy(measure->context, all);
+    if (result == AG_OK) result = ag_image_tonemap(measure->bench->context, all, ev, out);
+    ag_image_destroy(measure->bench->context, all);
     return result;
 }

@@ -1,36 +1,33 @@
-// What is measured of a scene of the paper: a line of irradiance beside the reference's, costs, a
-// picture.
-#pragma once
+// Measurements of one scene of the paper: a scanline of irradiance next to the reference's, costs,
+// and an image.
+#ifndef AG_BENCH_PAPER_LPV_MEASURE_H
+#define AG_BENCH_PAPER_LPV_MEASURE_H
 
+#include "bench.h"
 #include "paper_lpv_scenes.h"
-#include "passes.h"
 
 enum { MEASURE_TECHNIQUES = 2, MEASURE_COLUMNS = 480 };
 
 struct measure {
-    struct ag_context *context;
-    struct ag_device *device;
-    int frames, spp, picture_spp, picture_width;
-    bool paper_settings; // the scene's dim and steps, one grid and one bounce; else what the
-                         // techniques take by themselves
-    const char *options; // more of them for both techniques, "key=value,…"; may be NULL
-    int width, height;   // of the last frames measured
+    struct bench *bench; // its width and height become those of the scene
+    int spp, image_spp, image_width;
+    bool paper_settings; // dim and steps of the scene, one grid, one bounce; false: the defaults
+    const char *options; // more for both techniques, "key=value,…"; may be NULL
 };
 
+// Sums over the technique's own passes by stage; medians over frames.
 struct technique_cost {
-    // Sums over the technique's own passes, by the stage in their names; the medians of several
-    // frames.
     double inject_ms, propagate_ms, apply_ms, other_ms, technique_ms, frame_ms;
-    uint64_t bytes; // of GPU memory that is the technique's own
+    uint64_t bytes; // GPU memory of the technique
 };
 
 struct measured {
     const char *technique;
     char gi[256];
-    double lux[MEASURE_COLUMNS]; // the irradiance's luminance
-    double error;                // the mean of |lux - reference| over the reference's mean
-    double relmse;               // of the line, as ag_image_metrics has it
-    double picture_relmse;       // of the picture's radiance; negative: there is none
+    double lux[MEASURE_COLUMNS]; // luminance of the irradiance
+    double error;                // mean |lux - reference| over the reference's mean
+    double relmse;               // of the scanline, as ag_image_metrics
+    double image_relmse;         // of the image's radiance; negative: not measured
     struct technique_cost cost;
 };
 
@@ -40,12 +37,13 @@ struct scanline {
     struct measured techniques[MEASURE_TECHNIQUES];
 };
 
-// Fills the line anew: the reference and all of `lpv` and `holpv` that the library has.
+// Resets *out and fills it with the reference and the techniques lpv and holpv.
 enum ag_result measure_scanline(struct measure *measure, const struct paper_scene *scene,
                                 struct ag_scene *loaded, struct scanline *out);
 enum ag_result measure_costs(struct measure *measure, const struct paper_scene *scene,
                              struct ag_scene *loaded, struct scanline *line);
-// The reference and the techniques from left to right, at one exposure.
-enum ag_result measure_picture(struct measure *measure, const struct paper_scene *scene,
-                               struct ag_scene *loaded, struct scanline *line,
-                               struct ag_image **out);
+// Reference and techniques from left to right, at one exposure.
+enum ag_result measure_image(struct measure *measure, const struct paper_scene *scene,
+                             struct ag_scene *loaded, struct scanline *line, struct ag_image **out);
+
+#endif

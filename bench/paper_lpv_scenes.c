@@ -1,14 +1,14 @@
-// Scene files are scaled: the paper's Sponza is 37.2 units long and ours 29.76 m, its bunny is 2.3
-// units wide and ours 0.156 m. The paper's grids are cubes of 32 cells that reach beyond the scene
-// (10 units for a floor of 5, 20 for the bunny, 21 in Sponza, 12 for a box of 5.5); ours lie over
-// the scene's bounds, and `dim` is what gives cells of the paper's size there.
+// Scales differ: the paper's Sponza is 37.2 units long, the file 29.76 m; the paper's bunny is 2.3
+// units wide, the file 0.156 m. The paper's grids are cubes of 32 cells that exceed the scene (10
+// units for a floor of 5, 20 for the bunny, 21 in Sponza, 12 for a box of 5.5). Afterglow's grids
+// cover the scene's bounds; `dim` gives cells of the paper's size.
 #include "paper_lpv_scenes.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-// The text says that a light shines on the front of the bunny; here at a distance of about four
+// In the paper a light illuminates the front of the bunny; here from a distance of about four
 // cells.
 static const struct ag_area_light_desc BUNNY_LIGHT = {
     .position = { 0, 0.11f, 0.225f },
@@ -18,8 +18,8 @@ static const struct ag_area_light_desc BUNNY_LIGHT = {
     .radiance = { 10000, 10000, 10000 },
 };
 
-// The sun stands so that the hallway, which here is the gallery, is lit through its arches on the
-// right, and so that the ground floor's drapes are lit and the planters beside them are not.
+// Sun directions: through the arches on the right of the gallery (the paper's hallway); onto the
+// drapes of the ground floor but not onto the planters beside them.
 #define HALLWAY_SUN                                                                                \
     {                                                                                              \
         -0.15f, -0.8f, 0.5f                                                                        \
@@ -29,8 +29,8 @@ static const struct ag_area_light_desc BUNNY_LIGHT = {
         0.1f, -1, 0.33f                                                                            \
     }
 
-// Section 5.3 gives 16 steps for the Sponza scenes, table 5.1 gives 8: the table's, whose times are
-// shown beside ours.
+// Section 5.3 has 16 steps for the Sponza scenes, table 5.1 has 8: 8 are used, since the table's
+// times are compared.
 const struct paper_scene paper_scenes[] = {
     { .name = "diagonal",
       .title = "Diagonal propagation",
@@ -119,7 +119,7 @@ const struct paper_scene paper_scenes[] = {
       .height = 900,
       .lpv_ms = 9.9,
       .holpv_ms = 174.0 },
-    // Not in the paper: its planter and floor where Sponza's file is not at hand.
+    // Not in the paper: a built-in substitute where Sponza's file is missing.
     { .name = "planter-builtin",
       .title = "Planter (@planter)",
       .section = "5.5",
@@ -191,7 +191,7 @@ enum ag_result paper_scene_scan_camera(const struct paper_scene *scene, struct a
     if (!paper_scene_scans_floor(scene)) {
         enum ag_result result = paper_scene_camera(scene, loaded, out);
         float row = tanf(0.5f * out->vertical_fov_rad) / (float)scene->height;
-        row *= (float)scene->width / (float)width; // as wide as the picture
+        row *= (float)scene->width / (float)width; // same width as the image
         out->vertical_fov_rad = 2 * atanf(row);
         return result;
     }
@@ -202,7 +202,7 @@ enum ag_result paper_scene_scan_camera(const struct paper_scene *scene, struct a
     float eye[3] = { target[0], target[1] + HEIGHT_M, target[2] };
     float fov_rad = 2 * atanf(0.5f * length / (float)width / HEIGHT_M);
     enum ag_result result = ag_scene_look_at(loaded, eye, target, fov_rad, out);
-    // The way from one point to the other runs to the right.
+    // The direction from one point to the other points to the right of the image.
     out->up[0] = z / length;
     out->up[1] = 0;
     out->up[2] = -x / length;

@@ -1,57 +1,39 @@
 #include "paper_vo_measure.h"
 
+#include "visibility.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_PASSES = 64, TEXT = 256, PAN_FRAMES = 30 };
+enum { PAN_FRAMES = 30 };
 
-static const double PAN_PX = 0.5;         // a frame
-static const float SECOND_RADIUS = 0.25f; // of the first
+static const double PAN_PX = 0.5;         // per frame
+static const float SECOND_RADIUS = 0.25f; // relative to the first
 
-// ---- the truth
-
-static enum ag_result trace(struct vo_view *view, float radius_m, struct ag_image **obscurance,
-                            struct ag_image **ambient, struct ag_image **depth)
-{
-    struct ag_reference_desc desc;
-    ag_reference_desc_default(&desc);
-    desc.width = view->width;
-    desc.height = view->height;
-    desc.camera = view->frame.camera;
-    desc.direct_only = true; // the light does not matter
-    desc.bounces = 0;
-    desc.obscurance_radius_m = radius_m;
-    struct ag_reference *reference = NULL;
-    enum ag_result result = ag_reference_create(view->scene, &desc, &reference);
-    if (result == AG_OK) result = ag_reference_render(reference, view->spp, NULL, NULL);
-    if (result == AG_OK) result = ag_reference_read(reference, "obscurance", obscurance);
-    if (result == AG_OK && ambient)
-        result = ag_reference_read(reference, "ambient_occlusion", ambient);
-    if (result == AG_OK && depth) result = ag_reference_read(reference, "depth", depth);
-    ag_reference_destroy(reference);
-    return result;
-}
+// ---- references
 
 static size_t pixels_of(const struct ag_image *image)
 {
     return (size_t)image->width * (size_t)image->height;
 }
 
-static enum ag_result trace_all(struct vo_view *view)
+static enum ag_result trace(struct vo_view *view)
 {
-    enum ag_result result =
-        trace(view, view->radius_m, &view->obscurance, &view->ambient, &view->depth);
+    struct visibility_desc desc = { &view->frame.camera, view->spp, view->radius_m, 0.0f };
+    enum ag_result result = visibility_trace(view->bench, view->scene, &desc, &view->obscurance,
+                                             &view->ambient_occlusion, &view->depth);
+    desc.radius_m *= SECOND_RADIUS;
     if (result == AG_OK)
-        result = trace(view, SECOND_RADIUS * view->radius_m, &view->of_two_radii, NULL, NULL);
+        result = visibility_trace(view->bench, view->scene, &desc, &view->two_radii, NULL, NULL);
     if (result != AG_OK) return result;
     for (size_t i = 0; i < pixels_of(view->obscurance); i++)
-        view->of_two_radii->pixels[i] =
-            0.5f * (view->of_two_radii->pixels[i] + view->obscurance->pixels[i]);
+        view->two_radii->pixels[i] =
+            0.5f * (view->two_radii->pixels[i] + view->obscurance->pixels[i]);
     return AG_OK;
 }
 
-static enum ag_result find_radius(struct vo_view *view, double share)
+static enum ag_result set_radius(struct vo_view *view, double share)
 {
     struct ag_scene_info info;
     const enum ag_result result = ag_scene_get_info(view->scene, 0, 0.0, &info);
@@ -64,45 +46,31 @@ static enum ag_result find_radius(struct vo_view *view, double share)
 
 enum ag_result vo_view_open(struct vo_view *view, const char *scene, double radius_share)
 {
-    ag_frame_desc_default(&view->frame);
-    enum ag_result result = ag_scene_load(view->context, scene, &view->scene);
-    if (result == AG_OK) result = ag_scene_add_default_lighting(view->scene, NULL);
-    if (result == AG_OK)
-        result = ag_scene_default_camera(view->scene, 0, 0.0, &view->frame.camera, NULL);
-    if (result == AG_OK) result = find_radius(view, radius_share);
-    if (result == AG_OK) result = trace_all(view);
+    enum ag_result result = bench_open_scene(view->bench, scene, &view->scene, &view->frame);
+    if (result == AG_OK) result = set_radius(view, radius_share);
+    if (result == AG_OK) result = trace(view);
     return result;
 }
 
 void vo_view_close(struct vo_view *view)
 {
-    struct ag_image *images[] = { view->obscurance, view->of_two_radii, view->ambient,
+    struct ag_image *images[] = { view->obscurance, view->two_radii, view->ambient_occlusion,
                                   view->depth };
-    for (int i = 0; i < 4; i++) ag_image_destroy(view->context, images[i]);
+    for (int i = 0; i < 4; i++) ag_image_destroy(view->bench->context, images[i]);
     ag_scene_destroy(view->scene);
 }
 
 // ---- errors
 
-static void compare(const struct vo_view *view, const struct ag_image *seen, bool twice,
+static void compare(const struct vo_view *view, const struct ag_image *visibility, bool two_radii,
                     struct vo_result *out)
 {
-    const struct ag_image *truth = twice ? view->of_two_radii : view->obscurance;
-    double sum = 0.0, squares = 0.0, off = 0.0, ambient = 0.0, count = 0.0;
-    for (size_t i = 0; i < pixels_of(seen); i++) {
-        if (view->depth->pixels[i] <= 0.0f) continue;
-        const double d = (double)seen->pixels[i] - (double)truth->pixels[i];
-        sum += fabs(d);
-        squares += d * d;
-        off += d;
-        ambient += fabs((double)seen->pixels[i] - (double)view->ambient->pixels[i]);
-        count += 1.0;
-    }
-    const double n = fmax(count, 1.0);
-    out->mean_error = sum / n;
-    out->rms_error = sqrt(squares / n);
-    out->bias = off / n;
-    out->ambient_error = ambient / n;
+    const struct visibility_error error =
+        visibility_compare(visibility, two_radii ? view->two_radii : view->obscurance, view->depth);
+    out->mean_error = error.mean;
+    out->rms_error = error.rms;
+    out->bias = error.bias;
+    out->ambient_error = visibility_compare(visibility, view->ambient_occlusion, view->depth).mean;
 }
 
 static double mean_difference(const struct ag_image *a, const struct ag_image *b)
@@ -115,48 +83,40 @@ static double mean_difference(const struct ag_image *a, const struct ag_image *b
 
 // ---- times
 
-static double keep_least(double least, double ms)
+struct samples {
+    const char *gi;
+    struct vo_result *out;
+};
+
+static bool is_filter(const char *stage)
 {
-    return least == 0.0 || ms < least ? ms : least;
+    return strcmp(stage, "temporal") == 0 || strcmp(stage, "blur") == 0 ||
+           strcmp(stage, "fit") == 0 || strcmp(stage, "upsample") == 0;
 }
 
-// A technique's pass is named "technique.pass".
-static void collect(struct ag_renderer *renderer, const char *gi, struct vo_result *out)
+static void add_sample(void *user, int index, const struct ag_timing *timings, int count)
 {
-    struct ag_timing timings[MAX_PASSES];
-    const int count = ag_renderer_timings(renderer, timings, MAX_PASSES);
-    const size_t length = strcspn(gi, ":");
-    double geometry = 0.0, pyramid = 0.0, estimate = 0.0, after = 0.0;
-    for (int i = 0; i < count && i < MAX_PASSES; i++) {
-        const char *name = timings[i].name, *pass = name + length + 1;
-        if (strcmp(name, "gbuffer") == 0) geometry = timings[i].ms;
-        if (strncmp(name, gi, length) != 0 || name[length] != '.') continue;
-        const bool follows =
-            strcmp(pass, "temporal") == 0 || strcmp(pass, "blur") == 0 || strcmp(pass, "fit") == 0;
-        *(strcmp(pass, "pyramid") == 0 ? &pyramid : follows ? &after : &estimate) += timings[i].ms;
+    const struct samples *samples = user;
+    double geometry = 0.0, pyramid = 0.0, estimate = 0.0, filter = 0.0;
+    (void)index;
+    for (int i = 0; i < count; i++) {
+        const char *stage = passes_stage(timings[i].name, samples->gi);
+        if (strcmp(timings[i].name, "gbuffer") == 0) geometry = timings[i].ms;
+        if (!stage) continue;
+        *(strcmp(stage, "pyramid") == 0 ? &pyramid
+          : is_filter(stage)            ? &filter
+                                        : &estimate) += timings[i].ms;
     }
-    out->geometry_ms = keep_least(out->geometry_ms, geometry);
-    out->pyramid_ms = keep_least(out->pyramid_ms, pyramid);
-    out->estimate_ms = keep_least(out->estimate_ms, estimate);
-    out->after_ms = keep_least(out->after_ms, after);
+    passes_keep_least(&samples->out->geometry_ms, geometry);
+    passes_keep_least(&samples->out->pyramid_ms, pyramid);
+    passes_keep_least(&samples->out->estimate_ms, estimate);
+    passes_keep_least(&samples->out->filter_ms, filter);
 }
 
-static enum ag_result time_frames(const struct vo_view *view, struct ag_renderer *renderer,
-                                  const char *gi, struct vo_result *out)
-{
-    enum ag_result result = AG_OK;
-    for (int f = 0; f <= view->frames && result == AG_OK; f++) {
-        result = ag_renderer_render(renderer, &view->frame);
-        if (result == AG_OK) result = ag_renderer_wait(renderer);
-        if (result == AG_OK && f > 0) collect(renderer, gi, out);
-    }
-    return result;
-}
+// ---- pan
 
-// ---- a pan
-
-// Turned about +y.
-static struct ag_camera turned(const struct ag_camera *camera, double angle_rad)
+// Rotates the view direction about +y.
+static struct ag_camera rotated(const struct ag_camera *camera, double angle_rad)
 {
     struct ag_camera out = *camera;
     const double c = cos(angle_rad), s = sin(angle_rad);
@@ -170,46 +130,45 @@ static struct ag_camera turned(const struct ag_camera *camera, double angle_rad)
 static enum ag_result pan(const struct vo_view *view, struct ag_renderer *renderer,
                           struct vo_result *out)
 {
-    const double pixel_rad = (double)view->frame.camera.vertical_fov_rad / view->height;
-    struct ag_image *last = NULL;
+    const double pixel_rad = (double)view->frame.camera.vertical_fov_rad / view->bench->height;
+    struct ag_image *previous = NULL;
     enum ag_result result = AG_OK;
     for (int f = 0; f < PAN_FRAMES && result == AG_OK; f++) {
         struct ag_frame_desc frame = view->frame;
-        struct ag_image *now = NULL;
-        frame.camera = turned(&view->frame.camera, PAN_PX * pixel_rad * f);
+        struct ag_image *current = NULL;
+        frame.camera = rotated(&view->frame.camera, PAN_PX * pixel_rad * f);
         result = ag_renderer_render(renderer, &frame);
-        if (result == AG_OK) result = ag_renderer_read(renderer, "visibility", &now);
-        if (last && now) out->change += mean_difference(last, now) / (PAN_FRAMES - 1);
-        ag_image_destroy(view->context, last);
-        last = now;
+        if (result == AG_OK) result = ag_renderer_read(renderer, "visibility", &current);
+        if (previous && current)
+            out->change += mean_difference(previous, current) / (PAN_FRAMES - 1);
+        ag_image_destroy(view->bench->context, previous);
+        previous = current;
     }
-    ag_image_destroy(view->context, last);
+    ag_image_destroy(view->bench->context, previous);
     return result;
 }
 
-enum ag_result vo_measure(const struct vo_view *view, const char *gi, bool twice,
+enum ag_result vo_measure(const struct vo_view *view, const char *gi, bool two_radii,
                           struct vo_result *out)
 {
-    char text[TEXT], second[64] = "";
-    if (twice)
+    char spec[BENCH_TEXT], second[64] = "";
+    if (two_radii)
         snprintf(second, sizeof second, ",radius2=%.9g", (double)(SECOND_RADIUS * view->radius_m));
-    snprintf(text, sizeof text, "%s%cradius=%.9g%s", gi, strchr(gi, ':') ? ',' : ':',
+    snprintf(spec, sizeof spec, "%s%cradius=%.9g%s", gi, strchr(gi, ':') ? ',' : ':',
              (double)view->radius_m, second);
-    struct ag_renderer_desc desc;
-    ag_renderer_desc_default(&desc);
-    desc.width = view->width;
-    desc.height = view->height;
-    desc.gi = text;
-    desc.frame_options = "shadow_size=256";
+    struct samples samples = { gi, out };
     struct ag_renderer *renderer = NULL;
-    struct ag_image *seen = NULL;
+    struct ag_image *visibility = NULL;
     *out = (struct vo_result){ 0 };
-    enum ag_result result = ag_renderer_create(view->device, view->scene, &desc, &renderer);
-    if (result == AG_OK) result = time_frames(view, renderer, gi, out);
-    if (result == AG_OK) result = ag_renderer_read(renderer, "visibility", &seen);
-    if (result == AG_OK) compare(view, seen, twice, out);
+    enum ag_result result =
+        bench_create_renderer(view->bench, view->scene, spec, "shadow_size=256", &renderer);
+    if (result == AG_OK)
+        result =
+            passes_alternate(&renderer, 1, &view->frame, view->bench->frames, add_sample, &samples);
+    if (result == AG_OK) result = ag_renderer_read(renderer, "visibility", &visibility);
+    if (result == AG_OK) compare(view, visibility, two_radii, out);
     if (result == AG_OK) result = pan(view, renderer, out);
-    ag_image_destroy(view->context, seen);
+    ag_image_destroy(view->bench->context, visibility);
     ag_renderer_destroy(renderer);
     return result;
 }

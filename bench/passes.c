@@ -1,22 +1,35 @@
-// Times by pass, collected frame by frame and then summed up.
 #include "passes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct samples {
+struct collection {
+    struct pass_time *passes;
+    int *count;
     double ms[PASSES_MAX][PASSES_MAX_FRAMES];
 };
 
-static int place_of(struct pass_time *passes, int *count, const char *name)
+static int index_of(struct collection *c, const char *name)
 {
-    for (int i = 0; i < *count; i++)
-        if (strcmp(passes[i].name, name) == 0) return i;
-    if (*count == PASSES_MAX) return -1;
-    passes[*count] = (struct pass_time){ 0 };
-    snprintf(passes[*count].name, sizeof passes->name, "%.*s", (int)sizeof passes->name - 1, name);
-    return (*count)++;
+    for (int i = 0; i < *c->count; i++)
+        if (strcmp(c->passes[i].name, name) == 0) return i;
+    if (*c->count == PASSES_MAX) return -1;
+    struct pass_time *pass = &c->passes[*c->count];
+    *pass = (struct pass_time){ 0 };
+    snprintf(pass->name, sizeof pass->name, "%.*s", (int)sizeof pass->name - 1, name);
+    return (*c->count)++;
+}
+
+static void collect(void *user, int index, const struct ag_timing *timings, int count)
+{
+    struct collection *c = user;
+    (void)index;
+    for (int i = 0; i < count; i++) {
+        const int p = index_of(c, timings[i].name);
+        if (p >= 0 && c->passes[p].count < PASSES_MAX_FRAMES)
+            c->ms[p][c->passes[p].count++] = timings[i].ms;
+    }
 }
 
 static int by_value(const void *a, const void *b)
@@ -25,7 +38,7 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void sum_up(struct pass_time *pass, double *ms)
+static void summarize(struct pass_time *pass, double *ms)
 {
     int count = pass->count;
     qsort(ms, (size_t)count, sizeof *ms, by_value);
@@ -33,31 +46,45 @@ static void sum_up(struct pass_time *pass, double *ms)
     pass->p95_ms = ms[(95 * count + 99) / 100 - 1];
 }
 
-static enum ag_result render(struct ag_renderer *renderer, const struct ag_frame_desc *frame)
-{
-    enum ag_result result = ag_renderer_render(renderer, frame);
-    return result == AG_OK ? ag_renderer_wait(renderer) : result;
-}
-
 enum ag_result passes_measure(struct ag_renderer *renderer, const struct ag_frame_desc *frame,
                               int frames, struct pass_time out[PASSES_MAX], int *count)
 {
     *count = 0;
-    struct samples *samples = malloc(sizeof *samples);
-    if (!samples) return AG_ERROR_MEMORY;
-    enum ag_result result = AG_OK;
-    for (int f = 0; f <= frames && result == AG_OK; f++) {
-        struct ag_timing timings[PASSES_MAX];
-        result = render(renderer, frame);
-        if (result != AG_OK || f == 0) continue;
-        int timed = ag_renderer_timings(renderer, timings, PASSES_MAX);
-        for (int i = 0; i < timed && i < PASSES_MAX; i++) {
-            int place = place_of(out, count, timings[i].name);
-            if (place >= 0 && out[place].count < PASSES_MAX_FRAMES)
-                samples->ms[place][out[place].count++] = timings[i].ms;
-        }
-    }
-    for (int i = 0; i < *count; i++) sum_up(&out[i], samples->ms[i]);
-    free(samples);
+    struct collection *collection = malloc(sizeof *collection);
+    if (!collection) return AG_ERROR_MEMORY;
+    collection->passes = out;
+    collection->count = count;
+    enum ag_result result = passes_alternate(&renderer, 1, frame, frames, collect, collection);
+    for (int i = 0; i < *count; i++) summarize(&out[i], collection->ms[i]);
+    free(collection);
     return result;
+}
+
+enum ag_result passes_alternate(struct ag_renderer *const *renderers, int renderer_count,
+                                const struct ag_frame_desc *frame, int frames, passes_sample sample,
+                                void *user)
+{
+    enum ag_result result = AG_OK;
+    for (int f = 0; f <= frames; f++)
+        for (int r = 0; r < renderer_count && result == AG_OK; r++) {
+            struct ag_timing timings[PASSES_MAX];
+            result = ag_renderer_render(renderers[r], frame);
+            if (result == AG_OK) result = ag_renderer_wait(renderers[r]);
+            if (result != AG_OK || f == 0) continue;
+            const int count = ag_renderer_timings(renderers[r], timings, PASSES_MAX);
+            sample(user, r, timings, count < PASSES_MAX ? count : PASSES_MAX);
+        }
+    return result;
+}
+
+const char *passes_stage(const char *pass, const char *gi)
+{
+    const size_t length = strcspn(gi, ":");
+    const bool owned = strncmp(pass, gi, length) == 0 && pass[length] == '.';
+    return owned ? pass + length + 1 : NULL;
+}
+
+void passes_keep_least(double *least, double ms)
+{
+    if (*least == 0.0 || ms < *least) *least = ms;
 }

@@ -17,9 +17,9 @@ struct range {
 
 // ---- numbers
 
-void plot_marks(double low, double high, int most, double *first, double *step)
+void plot_ticks(double low, double high, int max_count, double *first, double *step)
 {
-    double least = (high - low) / most;
+    double least = (high - low) / max_count;
     double decade = pow(10.0, floor(log10(least)));
     static const double factors[] = { 1, 2, 5, 10 };
     int i = 0;
@@ -28,7 +28,7 @@ void plot_marks(double low, double high, int most, double *first, double *step)
     *first = ceil(low / *step - 1e-9) * *step;
 }
 
-// As few decimals as the marks' distance needs.
+// As few decimals as the distance of the ticks needs.
 static int decimals(double step)
 {
     int digits = (int)-floor(log10(step) + 1e-9);
@@ -60,19 +60,19 @@ static struct range range_of(const struct plot *plot, bool of_y)
     return range;
 }
 
-// A range of some width. Values that are all positive stand on 0, with a little room above.
+// Never empty; starts at 0 for positive values; with a margin.
 static struct range y_range(const struct plot *plot)
 {
     struct range range = range_of(plot, true);
     if (range.low > 0.0) range.low = 0.0;
-    double room = 0.06 * (range.high - range.low);
-    range.high += room;
-    if (range.low < 0.0) range.low -= room;
+    double margin = 0.06 * (range.high - range.low);
+    range.high += margin;
+    if (range.low < 0.0) range.low -= margin;
     if (!(range.high > range.low)) range.high = range.low + 1.0;
     return range;
 }
 
-// One that begins close to 0 begins there.
+// Never empty; extended to 0 where it starts close to 0.
 static struct range x_range(const struct plot *plot)
 {
     struct range range = range_of(plot, false);
@@ -91,7 +91,7 @@ static double at_y(struct range range, double y)
     return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * (y - range.low) / (range.high - range.low);
 }
 
-// ---- what is drawn
+// ---- drawing
 
 static void text(FILE *file, const char *attributes, double x, double y, const char *string)
 {
@@ -109,7 +109,7 @@ static void text(FILE *file, const char *attributes, double x, double y, const c
     fputs("</text>\n", file);
 }
 
-static void head(FILE *file, const struct plot *plot)
+static void header(FILE *file, const struct plot *plot)
 {
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
@@ -123,7 +123,7 @@ static void head(FILE *file, const struct plot *plot)
 static void x_axis(FILE *file, const struct plot *plot, struct range range)
 {
     double first, step;
-    plot_marks(range.low, range.high, 9, &first, &step);
+    plot_ticks(range.low, range.high, 9, &first, &step);
     double bottom = HEIGHT - BOTTOM;
     for (int i = 0; first + i * step <= range.high + 1e-9 * step; i++) {
         double value = first + i * step, x = at_x(range, value);
@@ -141,7 +141,7 @@ static void x_axis(FILE *file, const struct plot *plot, struct range range)
 static void y_axis(FILE *file, const struct plot *plot, struct range range)
 {
     double first, step;
-    plot_marks(range.low, range.high, 7, &first, &step);
+    plot_ticks(range.low, range.high, 7, &first, &step);
     for (int i = 0; first + i * step <= range.high + 1e-9 * step; i++) {
         double value = first + i * step, y = at_y(range, value);
         fprintf(file,
@@ -153,37 +153,37 @@ static void y_axis(FILE *file, const struct plot *plot, struct range range)
         fputs("</text>\n", file);
     }
     double middle = 0.5 * (TOP + HEIGHT - BOTTOM);
-    char turned[80];
-    snprintf(turned, sizeof turned, " text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\"",
+    char rotated[80];
+    snprintf(rotated, sizeof rotated, " text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\"",
              middle);
-    text(file, turned, 20, middle, plot->y_label);
+    text(file, rotated, 20, middle, plot->y_label);
 }
 
-static void pen(FILE *file, int place)
+static void stroke(FILE *file, int series)
 {
     fprintf(file, " fill=\"none\" stroke=\"%s\" stroke-width=\"2\" stroke-linejoin=\"round\"",
-            COLOURS[place]);
-    if (DASHES[place][0]) fprintf(file, " stroke-dasharray=\"%s\"", DASHES[place]);
+            COLOURS[series]);
+    if (DASHES[series][0]) fprintf(file, " stroke-dasharray=\"%s\"", DASHES[series]);
 }
 
-static void curve(FILE *file, const struct plot_series *series, int place, struct range x_axis_of,
+static void curve(FILE *file, const struct plot_series *series, int index, struct range x_axis_of,
                   struct range y_axis_of)
 {
-    bool down = false;
+    bool drawing = false;
     fputs("<path", file);
-    pen(file, place);
+    stroke(file, index);
     fputs(" d=\"", file);
     for (int i = 0; i < series->count; i++) {
-        bool there = isfinite(series->x[i]) && isfinite(series->y[i]);
-        if (there)
-            fprintf(file, "%c%.1f %.1f", down ? 'L' : 'M', at_x(x_axis_of, series->x[i]),
+        bool finite = isfinite(series->x[i]) && isfinite(series->y[i]);
+        if (finite)
+            fprintf(file, "%c%.1f %.1f", drawing ? 'L' : 'M', at_x(x_axis_of, series->x[i]),
                     at_y(y_axis_of, series->y[i]));
-        down = there;
+        drawing = finite;
     }
     fputs("\"/>\n", file);
 }
 
-// In one line between the head and the plot; names are of about seven pixels a letter.
+// One line between the title and the plot, at about seven pixels per letter.
 static void legend(FILE *file, const struct plot *plot)
 {
     double x = LEFT, y = TOP - 18;
@@ -192,7 +192,7 @@ static void legend(FILE *file, const struct plot *plot)
         int letters = 0;
         for (const char *c = name; *c; c++) letters += (*c & 0xC0) != 0x80; // UTF-8
         fprintf(file, "<path d=\"M%.1f %.1f h30\"", x, y);
-        pen(file, s);
+        stroke(file, s);
         fputs("/>\n", file);
         text(file, "", x + 37, y + 4.5, name);
         x += 37 + 7.2 * letters + 22;
@@ -204,12 +204,12 @@ bool plot_write(const char *path, const struct plot *plot)
     FILE *file = fopen(path, "w");
     if (!file) return false;
     struct range x = x_range(plot), y = y_range(plot);
-    head(file, plot);
+    header(file, plot);
     x_axis(file, plot, x);
     y_axis(file, plot, y);
     fprintf(file, "<path d=\"M%d %d V%d H%d\" fill=\"none\" stroke=\"#444\"/>\n", LEFT, TOP,
             HEIGHT - BOTTOM, WIDTH - RIGHT);
-    // The first series, the one that others are held against, lies on top.
+    // The first series, usually the reference, is drawn last, on top.
     for (int s = plot->series_count - 1; s >= 0; s--) curve(file, &plot->series[s], s, x, y);
     legend(file, plot);
     fputs("</svg>\n", file);

@@ -1,12 +1,12 @@
-// Line plots as SVG: axes with round numbers, units, a legend, colours that are told apart by
-// everyone (Okabe & Ito 2008) and dashes that are told apart in print. A file depends on its data
-// alone.
-#pragma once
+// Line plots as SVG: axes with round numbers and units, a legend, colours for colour-blind readers
+// (Okabe & Ito 2008), and dashes for print. The same data give the same file.
+#ifndef AG_BENCH_PLOT_H
+#define AG_BENCH_PLOT_H
 
 #include <stdbool.h>
 
-// A line through count points; one whose x or y is not finite leaves a gap. Colours and dashes go
-// by the series' place.
+// A line through `count` points. A point that is not finite leaves a gap. The index of a series
+// selects its colour and dashes.
 struct plot_series {
     const char *name;
     const double *x, *y;
@@ -23,8 +23,10 @@ struct plot {
 
 #define PLOT_MAX_SERIES 7
 
-// False: the file cannot be written; errno says why.
+// False where the file cannot be written (errno has the reason).
 bool plot_write(const char *path, const struct plot *plot);
-// The first mark at or above `low` and the distance between marks, 1, 2 or 5 times a power of ten:
-// at most `most` marks lie within low … high. low < high, both finite.
-void plot_marks(double low, double high, int most, double *first, double *step);
+// The first tick at or above `low`, and the distance of ticks: 1, 2 or 5 times a power of ten, with
+// about max_count ticks in low … high. low < high, both finite.
+void plot_ticks(double low, double high, int max_count, double *first, double *step);
+
+#endif

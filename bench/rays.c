@@ -1,6 +1,6 @@
-// What the reference makes of the rays that Embree can trace: millions a second of the path tracer,
-// and of Embree alone with the very same rays, in turns. Seconds are those of the processor's
-// cores, all together, so that what else the machine does hardly counts.
+// Overhead of the path tracer over Embree: millions of rays per second of `afterglow reference`,
+// and of Embree alone with the same rays, alternating. Seconds are CPU time of all cores together,
+// which hardly depends on other load.
 //
 //     rays [--size WxH] [--spp N] [--rounds N] [SCENE]…
 #include "command_line.h"
@@ -36,45 +36,45 @@ static double core_s(void)
 
 // ---- Embree alone
 
-struct bare {
+struct embree_only {
     RTCDevice device;
     RTCScene scene;
     const struct ray_log *log;
     size_t count;
-    atomic_size_t met; // so that no call can be left out
+    atomic_size_t hits; // keeps the compiler from removing calls
 };
 
-static void add_mesh(struct bare *bare, const struct embree_geometry *mesh)
+static void add_mesh(struct embree_only *embree, const struct embree_geometry *mesh)
 {
-    RTCGeometry g = rtcNewGeometry(bare->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    RTCGeometry g = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh->positions, 0,
                                mesh->stride, mesh->vertex_count);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->indices, 0,
                                3 * sizeof(uint32_t), mesh->triangle_count);
     rtcCommitGeometry(g);
-    rtcAttachGeometry(bare->scene, g);
+    rtcAttachGeometry(embree->scene, g);
     rtcReleaseGeometry(g);
 }
 
-// All is solid: masks are the path tracer's affair.
-static bool begin_bare(struct bare *bare, const struct trace_scene *scene)
+// Alpha masks are ignored: they belong to the path tracer.
+static bool begin_embree(struct embree_only *embree, const struct trace_scene *scene)
 {
-    bare->device = rtcNewDevice(NULL);
-    if (bare->device) bare->scene = rtcNewScene(bare->device);
-    if (!bare->scene) return false;
-    rtcSetSceneFlags(bare->scene, RTC_SCENE_FLAG_ROBUST);
-    for (uint32_t i = 0; i < scene->mesh_count; i++) add_mesh(bare, &scene->meshes[i].geometry);
-    rtcCommitScene(bare->scene);
-    return rtcGetDeviceError(bare->device) == RTC_ERROR_NONE;
+    embree->device = rtcNewDevice(NULL);
+    if (embree->device) embree->scene = rtcNewScene(embree->device);
+    if (!embree->scene) return false;
+    rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
+    for (uint32_t i = 0; i < scene->mesh_count; i++) add_mesh(embree, &scene->meshes[i].geometry);
+    rtcCommitScene(embree->scene);
+    return rtcGetDeviceError(embree->device) == RTC_ERROR_NONE;
 }
 
-static void finish_bare(struct bare *bare)
+static void finish_embree(struct embree_only *embree)
 {
-    if (bare->scene) rtcReleaseScene(bare->scene);
-    if (bare->device) rtcReleaseDevice(bare->device);
+    if (embree->scene) rtcReleaseScene(embree->scene);
+    if (embree->device) rtcReleaseDevice(embree->device);
 }
 
-static bool trace(const struct bare *bare, const struct logged_ray *logged)
+static bool trace(const struct embree_only *embree, const struct logged_ray *logged)
 {
     const struct ray *ray = &logged->ray;
     struct RTCRayHit r;
@@ -91,34 +91,35 @@ static bool trace(const struct bare *bare, const struct logged_ray *logged)
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if AG_EMBREE == 4
     if (logged->occlusion)
-        rtcOccluded1(bare->scene, &r.ray, NULL);
+        rtcOccluded1(embree->scene, &r.ray, NULL);
     else
-        rtcIntersect1(bare->scene, &r, NULL);
+        rtcIntersect1(embree->scene, &r, NULL);
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     if (logged->occlusion)
-        rtcOccluded1(bare->scene, &context, &r.ray);
+        rtcOccluded1(embree->scene, &context, &r.ray);
     else
-        rtcIntersect1(bare->scene, &context, &r);
+        rtcIntersect1(embree->scene, &context, &r);
 #endif
     return logged->occlusion ? r.ray.tfar < 0.0f : r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 static void trace_chunk(void *user, size_t chunk)
 {
-    struct bare *bare = user;
-    size_t met = 0, end = (chunk + 1) * CHUNK < bare->count ? (chunk + 1) * CHUNK : bare->count;
-    for (size_t i = chunk * CHUNK; i < end; i++) met += trace(bare, &bare->log->rays[i]);
-    atomic_fetch_add(&bare->met, met);
+    struct embree_only *embree = user;
+    size_t hits = 0,
+           end = (chunk + 1) * CHUNK < embree->count ? (chunk + 1) * CHUNK : embree->count;
+    for (size_t i = chunk * CHUNK; i < end; i++) hits += trace(embree, &embree->log->rays[i]);
+    atomic_fetch_add(&embree->hits, hits);
 }
 
-// Rays a second.
-static double bare_rate(struct bare *bare)
+// Rays per second.
+static double embree_only_rate(struct embree_only *embree)
 {
     double begun = core_s();
-    parallel_for((bare->count + CHUNK - 1) / CHUNK, 1, trace_chunk, bare);
-    return (double)bare->count / (core_s() - begun);
+    parallel_for((embree->count + CHUNK - 1) / CHUNK, 1, trace_chunk, embree);
+    return (double)embree->count / (core_s() - begun);
 }
 
 // ---- the path tracer
@@ -132,29 +133,29 @@ static double reference_rate(struct reference *reference, int samples)
     return (double)(reference_info(reference).rays - before) / seconds;
 }
 
-// The log has the rays of whole tiles, each tile's in the order in which they were traced, as far
-// as there is room.
+// The log holds the rays of the first tiles, in the order in which they were traced.
 static bool measure(struct bench *bench, const char *name, struct reference *reference,
                     struct trace_scene *scene, struct ray_log *log)
 {
-    struct bare bare = { .log = log };
+    struct embree_only embree = { .log = log };
     reference_log_rays(reference, log);
-    bool ok = reference_render(reference, 2, NULL, NULL) && begin_bare(&bare, scene);
+    bool ok = reference_render(reference, 2, NULL, NULL) && begin_embree(&embree, scene);
     reference_log_rays(reference, NULL);
     size_t logged = atomic_load(&log->count), occlusion = 0;
-    bare.count = logged < log->capacity ? logged : log->capacity;
-    for (size_t i = 0; i < bare.count; i++) occlusion += log->rays[i].occlusion;
-    double best = 0.0, best_bare = 0.0;
+    embree.count = logged < log->capacity ? logged : log->capacity;
+    for (size_t i = 0; i < embree.count; i++) occlusion += log->rays[i].occlusion;
+    double best = 0.0, best_embree = 0.0;
     for (int i = 0; ok && i < bench->rounds; i++) {
-        double rate = reference_rate(reference, bench->samples), alone = bare_rate(&bare);
+        double rate = reference_rate(reference, bench->samples),
+               embree_rate = embree_only_rate(&embree);
         best = rate > best ? rate : best;
-        best_bare = alone > best_bare ? alone : best_bare;
+        best_embree = embree_rate > best_embree ? embree_rate : best_embree;
     }
     if (ok)
-        printf("%-32s %10.2f %10.2f %9.0f %% %9.0f %%\n", name, best * 1e-6, best_bare * 1e-6,
-               100.0 * best / best_bare, 100.0 * (double)occlusion / (double)bare.count);
+        printf("%-32s %10.2f %10.2f %9.0f %% %9.0f %%\n", name, best * 1e-6, best_embree * 1e-6,
+               100.0 * best / best_embree, 100.0 * (double)occlusion / (double)embree.count);
     fflush(stdout);
-    finish_bare(&bare);
+    finish_embree(&embree);
     return ok;
 }
 
@@ -199,25 +200,21 @@ static bool measure_scene(struct bench *bench, const char *name)
     return ok;
 }
 
-// ---- the run
+// ---- main
 
 static bool parse_option(void *user, const char *name, const char *value)
 {
     struct bench *bench = user;
-    char rest;
-    if (strcmp(name, "--size") == 0)
-        return sscanf(value, "%dx%d%c", &bench->width, &bench->height, &rest) == 2;
-    if (strcmp(name, "--spp") == 0)
-        return sscanf(value, "%d%c", &bench->samples, &rest) == 1 && bench->samples >= 1;
-    if (strcmp(name, "--rounds") == 0)
-        return sscanf(value, "%d%c", &bench->rounds, &rest) == 1 && bench->rounds >= 1;
+    if (strcmp(name, "--size") == 0) return parse_size(value, &bench->width, &bench->height);
+    if (strcmp(name, "--spp") == 0) return parse_int(value, 1, 1000000, &bench->samples);
+    if (strcmp(name, "--rounds") == 0) return parse_int(value, 1, 1000000, &bench->rounds);
     return false;
 }
 
 static bool parse(struct bench *bench, int argc, char **argv)
 {
     if (!command_line_parse(argc, argv, parse_option, bench, &bench->scenes)) return false;
-    command_line_usual_scenes(&bench->scenes, "@cornell", "@atrium");
+    default_scenes(&bench->scenes, "@cornell", "@atrium");
     return true;
 }
 
@@ -238,8 +235,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: rays [--size WxH] [--spp N] [--rounds N] [SCENE]...\n");
         return 2;
     }
-    printf("%-32s %10s %10s %11s %11s\n", "million rays a core and second", "reference", "Embree",
-           "of it", "shadow rays");
+    printf("%-32s %10s %10s %11s %11s\n", "million rays per core second", "reference", "Embree",
+           "ratio", "shadow rays");
     for (int i = 0; i < bench.scenes.count; i++)
         if (!measure_scene(&bench, bench.scenes.names[i])) return 1;
     return 0;

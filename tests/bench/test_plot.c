@@ -1,4 +1,4 @@
-// Plots: where the marks stand, and what is written.
+// Plots: ticks, and the SVG file.
 #include "framework/test.h"
 
 #include "bench/plot.h"
@@ -9,12 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
-TEST(marks_are_round_and_within_the_range)
+TEST(ticks_are_round_numbers_in_the_range)
 {
     for (int i = 0; i < 200; i++) {
         double low = i % 3 == 0 ? 0 : 37.0 * sin(i), high = low + pow(10.0, 0.05 * i - 4);
         double first, step;
-        plot_marks(low, high, 8, &first, &step);
+        plot_ticks(low, high, 8, &first, &step);
         CHECK(first >= low - 1e-6 * step && first < low + step);
         CHECK((high - low) / step <= 8 + 1e-6 && (high - low) / step > 8 / 2.5 - 1e-6);
         double mantissa = step / pow(10.0, floor(log10(step) + 1e-9));
@@ -45,7 +45,7 @@ static int count_of(const char *what)
     return count;
 }
 
-TEST(names_are_escaped_and_curves_have_gaps_where_nothing_is_known)
+TEST(names_are_escaped_and_curves_have_gaps_at_values_that_are_not_finite)
 {
     const double x[] = { 0, 1, 2, 3, 4 }, y[] = { 0, 5, NAN, 5, 10 }, z[] = { 1, 1, 1, 1, 1 };
     const struct plot_series series[] = { { "a < b & c", x, y, 5 }, { "flat", x, z, 5 } };
@@ -58,7 +58,7 @@ TEST(names_are_escaped_and_curves_have_gaps_where_nothing_is_known)
     CHECK(strncmp(written, "<svg ", 5) == 0);
     CHECK(strstr(written, "T&lt;itle") && strstr(written, "a &lt; b &amp; c"));
     CHECK(strstr(written, "x (m)") && strstr(written, "y (lux)"));
-    // Two strokes of the first curve with two points each; its middle point is missing.
+    // The first curve has two strokes of two points each; its middle point is missing.
     const char *curve = strstr(written, "d=\"M84.0 382.0L");
     CHECK(curve);
     int strokes = 0;
@@ -68,7 +68,7 @@ TEST(names_are_escaped_and_curves_have_gaps_where_nothing_is_known)
     CHECK(count_of("<text") == count_of("</text>"));
 }
 
-TEST(a_plot_of_nothing_is_a_plot)
+TEST(empty_and_single_point_plots_are_valid)
 {
     const double none[] = { NAN }, one[] = { 3 };
     const struct plot_series nothing = { "nothing", none, none, 1 },
@@ -83,7 +83,7 @@ TEST(a_plot_of_nothing_is_a_plot)
     CHECK(strstr(written, "</svg>") && !strstr(written, "nan") && !strstr(written, "inf"));
 }
 
-TEST(a_file_that_cannot_be_written_is_told)
+TEST(an_unwritable_file_is_an_error)
 {
     struct plot plot = { .title = "", .x_label = "", .y_label = "" };
     CHECK(!plot_write("/no/such/folder/plot.svg", &plot));

@@ -1,4 +1,4 @@
-# What programs that measure share, and that they run.
+# Parts of the benchmarks, and a small run of some of them.
 ag_test(bench/plot USES core)
 target_sources(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR}/bench/plot.c)
 target_include_directories(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR})
