@@ -25,7 +25,7 @@ static uint32_t work_size(const struct screen_ao_options *options, uint32_t size
 
 struct gpu_constant screen_ao_step(const struct screen_ao *ao)
 {
-    return (struct gpu_constant){ 0, step_of(&ao->options) };
+    return (struct gpu_constant){ SCREEN_AO_CONSTANT_STEP, step_of(&ao->options) };
 }
 
 // ---- life

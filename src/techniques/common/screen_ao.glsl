@@ -27,8 +27,7 @@ layout(set = 0, binding = SCREEN_AO_BINDING, scalar) uniform screen_ao
     screen_ao_params view;
 };
 
-// Pixels of the frame per pixel of the estimate, across and down.
-layout(constant_id = 0) const int SCREEN_AO_STEP = 1;
+layout(constant_id = SCREEN_AO_CONSTANT_STEP) const int SCREEN_AO_STEP = 1;
 
 const float LEAST_PX = 0.01; // a radius of 0 has no disk
 const float GRAZING = 0.05;  // cosine towards the eye, at least

@@ -7,6 +7,10 @@
 
 #define SCREEN_AO_ROWS 8 // pixels of the estimate below each other that one invocation does
 
+// Specialization constants of the passes; those of a technique's estimate follow.
+#define SCREEN_AO_CONSTANT_STEP 0 // pixels of the frame per pixel of the estimate, along x and y
+#define SCREEN_AO_CONSTANT_NEXT 1
+
 // Uniform block "screen_ao".
 struct screen_ao_params {
     vec3s right, down, forward; // of the picture, world space, unit

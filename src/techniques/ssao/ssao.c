@@ -50,8 +50,8 @@ static bool create_points(struct ssao *ssao)
 {
     const struct gpu_constant constants[] = {
         screen_ao_step(&ssao->ao),
-        { 1, (uint32_t)fill_table(&ssao->options, &ssao->table) },
-        { 2, ssao->options.normal },
+        { SSAO_CONSTANT_COUNT, (uint32_t)fill_table(&ssao->options, &ssao->table) },
+        { SSAO_CONSTANT_NORMAL, ssao->options.normal },
     };
     return gpu_compute_pipeline_create(ssao->gpu, "points", &shader_ssao_points_comp, constants,
                                        sizeof constants / sizeof constants[0], &ssao->points);

@@ -8,8 +8,8 @@
 #include "techniques/common/screen_ao_estimate.glsl"
 #include "techniques/ssao/ssao_shared.h"
 
-layout(constant_id = 1) const int COUNT = 12;
-layout(constant_id = 2) const bool WITH_NORMAL = true;
+layout(constant_id = SSAO_CONSTANT_COUNT) const int COUNT = 12;
+layout(constant_id = SSAO_CONSTANT_NORMAL) const bool WITH_NORMAL = true;
 
 layout(set = 0, binding = 4, scalar) uniform ssao_table
 {

@@ -3,8 +3,13 @@
 #define AG_SSAO_SHARED_H
 
 #include "core/shared.h"
+#include "techniques/common/screen_ao_shared.h"
 
 #define SSAO_MOST_SAMPLES 33
+
+// Specialization constants of the estimate.
+#define SSAO_CONSTANT_COUNT  SCREEN_AO_CONSTANT_NEXT // samples
+#define SSAO_CONSTANT_NORMAL (SCREEN_AO_CONSTANT_NEXT + 1)
 
 // Uniform block "ssao_table".
 struct ssao_samples {

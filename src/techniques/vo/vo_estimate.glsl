@@ -7,9 +7,9 @@
 #include "techniques/common/screen_ao_estimate.glsl"
 #include "techniques/vo/vo_shared.h"
 
-layout(constant_id = 1) const int COUNT = 4;
-layout(constant_id = 2) const bool WITH_NORMAL = true;
-layout(constant_id = 3) const bool TWO_RADII = false;
+layout(constant_id = VO_CONSTANT_COUNT) const int COUNT = 4;
+layout(constant_id = VO_CONSTANT_NORMAL) const bool WITH_NORMAL = true;
+layout(constant_id = VO_CONSTANT_TWO_RADII) const bool TWO_RADII = false;
 
 layout(set = 0, binding = 4, scalar) uniform vo_table
 {

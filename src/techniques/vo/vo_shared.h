@@ -3,8 +3,14 @@
 #define AG_VO_SHARED_H
 
 #include "core/shared.h"
+#include "techniques/common/screen_ao_shared.h"
 
 #define VO_MOST_SAMPLES 33
+
+// Specialization constants of the estimate.
+#define VO_CONSTANT_COUNT     SCREEN_AO_CONSTANT_NEXT // samples
+#define VO_CONSTANT_NORMAL    (SCREEN_AO_CONSTANT_NEXT + 1)
+#define VO_CONSTANT_TWO_RADII (SCREEN_AO_CONSTANT_NEXT + 2)
 
 // Uniform block "vo_table".
 struct vo_samples {

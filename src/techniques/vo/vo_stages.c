@@ -79,9 +79,9 @@ bool vo_create_estimate(struct vo *vo)
 {
     const struct gpu_constant constants[] = {
         screen_ao_step(&vo->ao),
-        { 1, (uint32_t)fill_table(&vo->options, &vo->table) },
-        { 2, vo->options.normal },
-        { 3, vo->options.radius2 > 0.0f },
+        { VO_CONSTANT_COUNT, (uint32_t)fill_table(&vo->options, &vo->table) },
+        { VO_CONSTANT_NORMAL, vo->options.normal },
+        { VO_CONSTANT_TWO_RADII, vo->options.radius2 > 0.0f },
     };
     const struct way *way = &ways[vo->options.mode];
     return gpu_compute_pipeline_create(vo->gpu, way->name, way->shader, constants,
