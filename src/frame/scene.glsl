@@ -8,11 +8,12 @@
 #include "frame/scene_gpu_shared.h"
 
 // Variants of a pipeline, so that a material pays only for the maps that it has.
-layout(constant_id = 0) const bool HAS_BASE_COLOR_MAP = false;
-layout(constant_id = 1) const bool HAS_METALLIC_ROUGHNESS_MAP = false;
-layout(constant_id = 2) const bool HAS_NORMAL_MAP = false;
-layout(constant_id = 3) const bool HAS_EMISSIVE_MAP = false;
-layout(constant_id = 4) const bool IS_MASKED = false;
+layout(constant_id = SCENE_CONSTANT_BASE_COLOR_MAP) const bool HAS_BASE_COLOR_MAP = false;
+layout(constant_id = SCENE_CONSTANT_METALLIC_ROUGHNESS_MAP) const
+    bool HAS_METALLIC_ROUGHNESS_MAP = false;
+layout(constant_id = SCENE_CONSTANT_NORMAL_MAP) const bool HAS_NORMAL_MAP = false;
+layout(constant_id = SCENE_CONSTANT_EMISSIVE_MAP) const bool HAS_EMISSIVE_MAP = false;
+layout(constant_id = SCENE_CONSTANT_MASKED) const bool IS_MASKED = false;
 
 #ifdef SCENE_VERTEX
 

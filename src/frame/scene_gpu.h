@@ -8,14 +8,14 @@
 
 #include "frame/scene_gpu_shared.h"
 
-// What a material's pipelines are specialised for; the bits are the constant_id's in scene.glsl.
+// Pipelines are specialised for the maps that a material has: a bit for each SCENE_CONSTANT_….
 enum scene_variant {
-    VARIANT_BASE_COLOR_MAP = 1,
-    VARIANT_METALLIC_ROUGHNESS_MAP = 2,
-    VARIANT_NORMAL_MAP = 4,
-    VARIANT_EMISSIVE_MAP = 8,
-    VARIANT_MASKED = 16,
-    VARIANT_COUNT = 32,
+    VARIANT_BASE_COLOR_MAP = 1 << SCENE_CONSTANT_BASE_COLOR_MAP,
+    VARIANT_METALLIC_ROUGHNESS_MAP = 1 << SCENE_CONSTANT_METALLIC_ROUGHNESS_MAP,
+    VARIANT_NORMAL_MAP = 1 << SCENE_CONSTANT_NORMAL_MAP,
+    VARIANT_EMISSIVE_MAP = 1 << SCENE_CONSTANT_EMISSIVE_MAP,
+    VARIANT_MASKED = 1 << SCENE_CONSTANT_MASKED,
+    VARIANT_COUNT = 1 << SCENE_CONSTANT_COUNT,
 };
 
 struct scene_draw {

@@ -16,6 +16,14 @@ struct scene_surface {
 #define SCENE_MAP_EMISSIVE           3
 #define SCENE_MAP_COUNT              4
 
+// Specialization constants of shaders that read materials (scene.glsl).
+#define SCENE_CONSTANT_BASE_COLOR_MAP         0
+#define SCENE_CONSTANT_METALLIC_ROUGHNESS_MAP 1
+#define SCENE_CONSTANT_NORMAL_MAP             2
+#define SCENE_CONSTANT_EMISSIVE_MAP           3
+#define SCENE_CONSTANT_MASKED                 4
+#define SCENE_CONSTANT_COUNT                  5
+
 // Bits of scene_material.flags; bit m (m < SCENE_MAP_COUNT): map m reads the second texture
 // coordinates.
 #define SCENE_DOUBLE_SIDED 16

@@ -211,6 +211,12 @@ struct gpu_constant { // a specialization constant, 32 bits
     uint32_t id, value;
 };
 
+// Boolean constants 0 to count - 1 from the bits of a variant.
+static inline void gpu_constants_of_bits(uint32_t bits, struct gpu_constant *out, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) out[i] = (struct gpu_constant){ i, bits >> i & 1u };
+}
+
 // Layouts come from reflection: set 0 only, bindings by name, push constants of any size ≤ 128
 // bytes.
 bool gpu_compute_pipeline_create(struct gpu *gpu, const char *name, const struct gpu_shader *shader,

@@ -40,7 +40,7 @@ static void begin(struct studio *s, struct reader *r, struct gpu *gpu)
 {
     studio_init(s, gpu);
     *r = (struct reader){ .opaque = test_gpu_compute(gpu, &shader_triangle_areas_comp) };
-    const struct gpu_constant is_masked = { 4, 1 };
+    const struct gpu_constant is_masked = { SCENE_CONSTANT_MASKED, true };
     assert_true(gpu_compute_pipeline_create(gpu, "test.masked", &shader_triangle_areas_comp,
                                             &is_masked, 1, &r->masked));
     r->totals = test_gpu_buffer(gpu, sizeof(struct totals));

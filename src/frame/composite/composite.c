@@ -39,10 +39,10 @@ void composite_finish(struct composite *c)
 bool composite_prepare(struct composite *c, uint32_t variant)
 {
     if (c->pipelines[variant].id) return true;
-    struct gpu_constant constants[5];
-    for (uint32_t i = 0; i < 5; i++) constants[i] = (struct gpu_constant){ i, variant >> i & 1u };
+    struct gpu_constant constants[COMPOSITE_CONSTANT_COUNT];
+    gpu_constants_of_bits(variant, constants, COMPOSITE_CONSTANT_COUNT);
     return gpu_compute_pipeline_create(c->gpu, "frame.composite", &shader_composite_comp, constants,
-                                       5, &c->pipelines[variant]);
+                                       COMPOSITE_CONSTANT_COUNT, &c->pipelines[variant]);
 }
 
 void composite_record(const struct composite *c, struct gpu_cmd *cmd, uint32_t variant,

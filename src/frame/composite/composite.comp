@@ -6,16 +6,17 @@
 // specular, and the tone-mapped display image.
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
+#include "frame/composite/composite_shared.h"
 #include "frame/composite/exposure_shared.h"
 #include "image/tonemap.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool HAS_IRRADIANCE = false;
-layout(constant_id = 1) const bool HAS_SPECULAR = false;
-layout(constant_id = 2) const bool HAS_VISIBILITY = false;
-layout(constant_id = 3) const bool WRITES_INDIRECT = false;
-layout(constant_id = 4) const bool WRITES_DISPLAY = false;
+layout(constant_id = COMPOSITE_CONSTANT_IRRADIANCE) const bool HAS_IRRADIANCE = false;
+layout(constant_id = COMPOSITE_CONSTANT_SPECULAR) const bool HAS_SPECULAR = false;
+layout(constant_id = COMPOSITE_CONSTANT_VISIBILITY) const bool HAS_VISIBILITY = false;
+layout(constant_id = COMPOSITE_CONSTANT_INDIRECT) const bool WRITES_INDIRECT = false;
+layout(constant_id = COMPOSITE_CONSTANT_DISPLAY) const bool WRITES_DISPLAY = false;
 
 layout(set = 0, binding = 1) uniform sampler2D direct_layer;
 layout(set = 0, binding = 2) uniform sampler2D albedo_layer;

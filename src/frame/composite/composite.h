@@ -3,15 +3,16 @@
 
 #include "gpu/gpu.h"
 
-// Inputs and outputs besides the direct layer; bit i is specialisation constant i of
-// composite.comp.
+#include "frame/composite/composite_shared.h"
+
+// Inputs and outputs besides the direct layer: a bit for each COMPOSITE_CONSTANT_….
 enum composite_variant {
-    COMPOSITE_IRRADIANCE = 1,
-    COMPOSITE_SPECULAR = 2,
-    COMPOSITE_VISIBILITY = 4,
-    COMPOSITE_INDIRECT = 8,
-    COMPOSITE_DISPLAY = 16,
-    COMPOSITE_VARIANT_COUNT = 32,
+    COMPOSITE_IRRADIANCE = 1 << COMPOSITE_CONSTANT_IRRADIANCE,
+    COMPOSITE_SPECULAR = 1 << COMPOSITE_CONSTANT_SPECULAR,
+    COMPOSITE_VISIBILITY = 1 << COMPOSITE_CONSTANT_VISIBILITY,
+    COMPOSITE_INDIRECT = 1 << COMPOSITE_CONSTANT_INDIRECT,
+    COMPOSITE_DISPLAY = 1 << COMPOSITE_CONSTANT_DISPLAY,
+    COMPOSITE_VARIANT_COUNT = 1 << COMPOSITE_CONSTANT_COUNT,
 };
 
 struct composite {

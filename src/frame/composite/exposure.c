@@ -18,7 +18,7 @@ bool exposure_init(struct exposure *e, struct gpu *gpu)
                                      GPU_BUFFER_STORAGE };
     struct gpu_buffer_desc sums = { "frame.exposure_sums", EXPOSURE_MAX_GROUPS * sizeof(vec2s),
                                     GPU_BUFFER_STORAGE };
-    const struct gpu_constant second_pass[] = { { 0, 1 } }; // see exposure_sum.comp
+    const struct gpu_constant second_pass[] = { { EXPOSURE_CONSTANT_SECOND_PASS, true } };
     return gpu_sampler_get(gpu, &nearest, &e->nearest) &&
            gpu_buffer_create(gpu, &state, &e->state) && gpu_buffer_create(gpu, &sums, &e->sums) &&
            gpu_compute_pipeline_create(gpu, "frame.exposure_sum",

@@ -9,6 +9,8 @@
 #define EXPOSURE_PIXELS     16 // per thread, until EXPOSURE_MAX_GROUPS is reached
 #define EXPOSURE_MAX_GROUPS 1024
 
+#define EXPOSURE_CONSTANT_SECOND_PASS 0 // specialization constant of exposure_sum.comp
+
 // Content of the storage block "exposure_state".
 struct exposure_values {
     float ev;

@@ -25,7 +25,7 @@ layout(set = 0, binding = 5) uniform sampler2D material_layer;
 // xy: log2 luminance as two half floats (22 bits); z: kind of pixel.
 layout(set = 0, binding = 6, rgba16f) uniform image2D metered_layer;
 
-layout(constant_id = 0) const bool SECOND_PASS = false;
+layout(constant_id = EXPOSURE_CONSTANT_SECOND_PASS) const bool SECOND_PASS = false;
 
 const float NO_SURFACE = 0.0, UNLIT = 1.0, LIT = 2.0;
 

@@ -7,7 +7,7 @@
 
 bool direct_init(struct direct *d, struct gpu *gpu)
 {
-    static const struct gpu_constant unlit[] = { { 0, 0 } }; // HAS_LIGHTS
+    static const struct gpu_constant unlit[] = { { DIRECT_CONSTANT_HAS_LIGHTS, false } };
     *d = (struct direct){ .gpu = gpu };
     struct gpu_sampler_desc nearest = {
         .name = "frame.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP

@@ -31,7 +31,7 @@ layout(push_constant, scalar) uniform push_block
 
 // A variant without lights reads depth and emission only: software drivers execute a loop body once
 // even for zero iterations.
-layout(constant_id = 0) const bool HAS_LIGHTS = true;
+layout(constant_id = DIRECT_CONSTANT_HAS_LIGHTS) const bool HAS_LIGHTS = true;
 
 struct surface {
     vec3 position, normal, to_viewer;

@@ -7,14 +7,14 @@
 
 static bool make_pipeline(struct gbuffer *g, uint32_t variant, bool motion)
 {
-    struct gpu_constant constants[5];
-    for (uint32_t i = 0; i < 5; i++) constants[i] = (struct gpu_constant){ i, variant >> i & 1u };
+    struct gpu_constant constants[SCENE_CONSTANT_COUNT];
+    gpu_constants_of_bits(variant, constants, SCENE_CONSTANT_COUNT);
     struct gpu_graphics_desc desc = {
         .name = "frame.gbuffer",
         .vertex = motion ? &shader_gbuffer_motion_vert : &shader_gbuffer_vert,
         .fragment = motion ? &shader_gbuffer_motion_frag : &shader_gbuffer_frag,
         .constants = constants,
-        .constant_count = 5,
+        .constant_count = SCENE_CONSTANT_COUNT,
         .color_formats = { GPU_RG16F, GPU_RGBA8_SRGB, GPU_RG8, GPU_RGBA16F,
                            motion ? GPU_RGBA16F : GPU_FORMAT_NONE },
         .depth_format = GPU_D32F,

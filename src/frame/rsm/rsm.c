@@ -50,14 +50,14 @@ int rsm_faces_of(uint32_t light_type)
 
 static bool make_pipeline(struct rsm *r, uint32_t variant)
 {
-    struct gpu_constant constants[5];
-    for (uint32_t i = 0; i < 5; i++) constants[i] = (struct gpu_constant){ i, variant >> i & 1u };
+    struct gpu_constant constants[SCENE_CONSTANT_COUNT];
+    gpu_constants_of_bits(variant, constants, SCENE_CONSTANT_COUNT);
     struct gpu_graphics_desc desc = {
         .name = "frame.rsm",
         .vertex = &shader_rsm_vert,
         .fragment = &shader_rsm_frag,
         .constants = constants,
-        .constant_count = 5,
+        .constant_count = SCENE_CONSTANT_COUNT,
         .color_formats = { GPU_RG16F, GPU_RGBA8_SRGB },
         .depth_format = GPU_D32F,
         .depth_compare = GPU_GREATER,

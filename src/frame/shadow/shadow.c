@@ -34,7 +34,8 @@ static bool make_pipelines(struct shadow *s)
     desc.vertex = &shader_shadow_masked_vert;
     desc.fragment = &shader_shadow_masked_frag;
     for (uint32_t map = 0; map < 2; map++) {
-        struct gpu_constant constants[] = { { 0, map }, { 4, 1 } }; // HAS_BASE_COLOR_MAP, IS_MASKED
+        struct gpu_constant constants[] = { { SCENE_CONSTANT_BASE_COLOR_MAP, map },
+                                            { SCENE_CONSTANT_MASKED, true } };
         desc.constants = constants;
         desc.constant_count = 2;
         if (!gpu_graphics_pipeline_create(s->gpu, &desc, &s->masked[map])) return false;

@@ -1,0 +1,12 @@
+// Specialization constants of composite.comp.
+#ifndef AG_FRAME_COMPOSITE_SHARED_H
+#define AG_FRAME_COMPOSITE_SHARED_H
+
+#define COMPOSITE_CONSTANT_IRRADIANCE 0 // inputs
+#define COMPOSITE_CONSTANT_SPECULAR   1
+#define COMPOSITE_CONSTANT_VISIBILITY 2
+#define COMPOSITE_CONSTANT_INDIRECT   3 // outputs
+#define COMPOSITE_CONSTANT_DISPLAY    4
+#define COMPOSITE_CONSTANT_COUNT      5
+
+#endif
