@@ -1,4 +1,4 @@
-// A caller's camera: what it must hold, and the modules' view of it.
+// Checks a caller's camera and converts it for the modules.
 #include "api/objects.h"
 
 static const float PI = 3.14159265f;

@@ -1,4 +1,4 @@
-// What there is: techniques, frame options and built-in scenes, read from their tables.
+// Catalogue of techniques, frame options and built-in scenes, from their tables.
 #include "api/objects.h"
 
 #include "frame/frame.h"

@@ -1,5 +1,5 @@
-// A context: the program's log and memory as the modules' host. The only file of the library that
-// reads the environment.
+// Contexts: the program's log and memory as a host for the modules. Only this file reads the
+// environment.
 #include "api/objects.h"
 
 #include <stdio.h>
@@ -87,7 +87,7 @@ enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_c
     if (!desc) desc = &fallback;
     if ((unsigned)desc->log_up_to > AG_LOG_DEBUG) return AG_ERROR_ARGUMENT;
 
-    // On the stack first, so that the context's own memory comes from the program's allocator too.
+    // Starts on the stack, so that the program's allocator also provides the context's memory.
     struct ag_context seed = { .log = desc->log,
                                .reallocate = desc->reallocate,
                                .user = desc->user,
@@ -113,7 +113,7 @@ void ag_context_destroy(struct ag_context *context)
 {
     if (!context) return;
     host_free(&context->host, context->shader_dir);
-    struct ag_context last = *context; // the allocator's trampoline reads it while it frees it
+    struct ag_context last = *context; // context_reallocate reads it while freeing the context
     last.host.user = &last;
     host_free(&last.host, context);
 }

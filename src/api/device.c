@@ -16,8 +16,8 @@ static void info_out(struct ag_device_info *out, const struct gpu_device_info *i
 enum ag_result ag_device_list(struct ag_context *context, struct ag_device_info *out, int capacity,
                               int *count)
 {
-    AG_REQUIRE(context, context, "context is NULL");
-    AG_REQUIRE(context, count, "count is NULL");
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE_POINTER(context, count);
     *count = 0;
     AG_REQUIRE(context, capacity >= 0, "capacity %d is negative", capacity);
     AG_REQUIRE(context, out || capacity == 0, "out is NULL");
@@ -41,9 +41,8 @@ static bool adopt_is_whole(const struct ag_device_adopt *adopt)
 enum ag_result ag_device_create(struct ag_context *context, const struct ag_device_desc *desc,
                                 struct ag_device **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     struct ag_device_desc fallback;
     ag_device_desc_default(&fallback);
     if (!desc) desc = &fallback;

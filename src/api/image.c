@@ -16,7 +16,7 @@ enum { MAX_LAYERS = 256, MAX_ATTRIBUTES = 256 };
 
 _Static_assert(IMAGE_MAX_SIZE == 16384, "afterglow/image.h promises it");
 
-// The same pixels, as the module sees them.
+// The module's view of the same pixels.
 static struct image view_of(const struct ag_image *image)
 {
     return (struct image){ image->width, image->height, image->channels, image->pixels };
@@ -45,9 +45,8 @@ enum ag_result api_give_image(struct ag_context *context, bool ok, struct image 
 enum ag_result ag_image_create(struct ag_context *context, int width, int height, int channels,
                                struct ag_image **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, width >= 1 && width <= IMAGE_MAX_SIZE, "width %d is not 1 to %d", width,
                IMAGE_MAX_SIZE);
     AG_REQUIRE(context, height >= 1 && height <= IMAGE_MAX_SIZE, "height %d is not 1 to %d", height,
@@ -83,7 +82,7 @@ enum ag_result ag_image_write_exr(struct ag_context *context, const char *path,
                                   const struct ag_image_layer *layers, int layer_count,
                                   const struct ag_attribute *attributes, int attribute_count)
 {
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, path && path[0], "path is empty");
     AG_REQUIRE(context, layers && layer_count >= 1 && layer_count <= MAX_LAYERS,
                "layer_count %d is not 1 to %d", layer_count, MAX_LAYERS);
@@ -111,7 +110,7 @@ enum ag_result ag_image_write_exr(struct ag_context *context, const char *path,
 enum ag_result ag_image_write_png(struct ag_context *context, const char *path,
                                   const struct ag_image *image)
 {
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, path && path[0], "path is empty");
     AG_REQUIRE(context, is_whole(image), "image is NULL or not valid");
     AG_REQUIRE(context, image->channels != 2, "a PNG has 1, 3 or 4 channels, not 2");
@@ -122,9 +121,8 @@ enum ag_result ag_image_write_png(struct ag_context *context, const char *path,
 enum ag_result ag_image_read(struct ag_context *context, const char *path, const char *layer,
                              struct ag_image **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, path && path[0], "path is empty");
     char extension[16];
     file_extension(path, extension);
@@ -146,9 +144,9 @@ enum ag_result ag_image_read(struct ag_context *context, const char *path, const
 enum ag_result ag_image_read_attribute(struct ag_context *context, const char *path,
                                        const char *name, char *out, size_t size)
 {
-    AG_REQUIRE(context, out && size > 0, "out is NULL or has no room");
+    AG_REQUIRE(context, out && size > 0, "out is NULL or size is 0");
     out[0] = 0;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, path && path[0], "path is empty");
     AG_REQUIRE(context, name && name[0], "name is empty");
     struct host *host = &context->host;
@@ -162,9 +160,8 @@ enum ag_result ag_image_read_attribute(struct ag_context *context, const char *p
 enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
                                 float ev, struct ag_image **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, is_whole(radiance) && radiance->channels >= 3,
                "radiance is NULL or has not 3 channels");
     AG_REQUIRE(context, isfinite(ev), "ev is not finite");
@@ -183,9 +180,8 @@ float ag_image_auto_exposure(const struct ag_image *radiance)
 enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,
                                      const struct ag_image *b, int gap, struct ag_image **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
     AG_REQUIRE(context, a->height == b->height && a->channels == b->channels,
                "heights %d and %d, channels %d and %d are not equal", a->height, b->height,
@@ -205,7 +201,7 @@ void ag_compare_desc_default(struct ag_compare_desc *desc)
     *desc = (struct ag_compare_desc){ .pixels_per_degree = FLIP_PIXELS_PER_DEGREE };
 }
 
-// The same, as the module sees it; `mask` is room for the mask's view.
+// Converts a description; `mask` stores the view of its mask.
 static bool options_of(struct ag_context *context, const struct ag_compare_desc *desc,
                        struct image *mask, struct metrics_options *out)
 {
@@ -230,8 +226,8 @@ enum ag_result ag_image_metrics(struct ag_context *context, const struct ag_imag
                                 const struct ag_image *b, const struct ag_compare_desc *desc,
                                 struct ag_metrics *out)
 {
-    AG_REQUIRE(context, context, "context is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE_POINTER(context, out);
     AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
     struct image view_a = view_of(a), view_b = view_of(b), mask;
     struct metrics_options options;
@@ -258,9 +254,8 @@ enum ag_result ag_image_error_map(struct ag_context *context, const struct ag_im
                                   const struct ag_image *b, const struct ag_compare_desc *desc,
                                   enum ag_difference difference, float full, struct ag_image **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, is_whole(a) && is_whole(b), "an image is NULL or not valid");
     AG_REQUIRE(context,
                difference >= AG_DIFFERENCE_ABSOLUTE && difference <= AG_DIFFERENCE_FLIP_HDR,

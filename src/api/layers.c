@@ -1,4 +1,4 @@
-// The layers of a renderer's newest frame: read back, or handed out as the images that they are.
+// Layers of the newest frame: downloaded, or passed on as Vulkan images.
 #include "api/renderer_state.h"
 
 #include "image/image.h"
@@ -9,7 +9,7 @@ enum { NO_IMAGE = -1, NO_READBACK = -1 };
 
 struct layer {
     const char *name;
-    int read;     // enum frame_readback; NO_READBACK: the techniques' debug image
+    int read;     // enum frame_readback; NO_READBACK: the debug image of the GI stack
     int image;    // enum frame_layer; NO_IMAGE: computed while reading
     int channels; // when read
     bool scaled;  // radiance or irradiance
@@ -61,7 +61,7 @@ static gpu_image layer_image(const struct ag_renderer *r, const struct layer *la
     return frame_layer_image(r->frame, (enum frame_layer)layer->image);
 }
 
-// The layer of that name, if the renderer keeps it; else NULL and a failure.
+// The layer of that name, or NULL and a failure if the renderer does not keep it.
 static const struct layer *layer_kept(const struct ag_renderer *r, const char *name)
 {
     struct host *host = &r->device->context->host;
@@ -70,13 +70,13 @@ static const struct layer *layer_kept(const struct ag_renderer *r, const char *n
     if (!layer)
         fail_unknown(host, name);
     else if (layer->image == FRAME_INDIRECT && !r->indirect_layer)
-        need = "the renderer was made without indirect_layer";
+        need = "create the renderer with indirect_layer";
     else if (layer->image == FRAME_DISPLAY && !r->display_layer)
-        need = "the renderer was made without display_layer";
+        need = "create the renderer with display_layer";
     else if (layer->read == NO_READBACK && !r->debug_view)
         need = "no debug view is set";
     else if (layer->image == FRAME_MOTION && layer_image(r, layer).id == 0)
-        need = "the renderer was made without motion_layer, and no technique asks for it";
+        need = "create the renderer with motion_layer, or use a technique that needs it";
     if (need) host_fail(host, FAIL_ARGUMENT, "cannot read layer %s: %s", name, need);
     return layer && !need ? layer : NULL;
 }
@@ -102,8 +102,7 @@ static bool read_layer(struct ag_renderer *r, const struct layer *layer, struct 
 enum ag_result ag_renderer_read(struct ag_renderer *r, const char *name, struct ag_image **out)
 {
     struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
+    AG_REQUIRE_OUT(context, out);
     AG_REQUIRE(context, r, "renderer is NULL");
     AG_REQUIRE(context, name, "layer is NULL");
     AG_REQUIRE(context, r->rendered, "no frame has been rendered");
@@ -139,7 +138,7 @@ enum ag_result ag_renderer_layer_handle(struct ag_renderer *r, const char *name,
     gpu_image image = computed ? (gpu_image){ 0 } : layer_image(r, layer);
     if (image.id == 0)
         return api_done(context, host_fail(&context->host, FAIL_UNSUPPORTED,
-                                           "cannot hand out layer %s: it has no image here", name));
+                                           "cannot return layer %s: it has no Vulkan image", name));
     *vk_image = gpu_image_handle(r->device->gpu, image, vk_layout);
     *scale = layer->scaled ? frame_radiance_scale(r->frame) : 1.0f;
     return api_done(context, true);

@@ -1,5 +1,5 @@
-// What stands behind the public handles, and what every public function does at its door: check the
-// caller's arguments, forward, turn the module's failure into an ag_result.
+// The structs behind public handles and the steps of every public function: check arguments, call
+// the module, convert its failure into an ag_result.
 #pragma once
 
 #include <afterglow/afterglow.h>
@@ -12,7 +12,7 @@
 enum { API_MESSAGE_SIZE = 1024 };
 
 struct ag_context {
-    struct host host; // what the modules get; its user is this context
+    struct host host; // passed to the modules; its user is this context
     void (*log)(void *user, enum ag_log_level level, const char *message);
     void *(*reallocate)(void *user, void *old, size_t bytes);
     void *user;
@@ -33,41 +33,48 @@ struct ag_device {
 struct ag_scene {
     struct ag_context *context;
     struct scene *scene;
-    struct scene_pose pose; // for questions about a moment; zero until the first
+    struct scene_pose pose; // for queries at a moment; zero until the first
     uint64_t version;       // counts changes of the scene
-    uint64_t pose_version;  // the version that `pose` was made for
-    int renderers;          // that use the scene
+    uint64_t pose_version;  // version of the scene that `pose` belongs to
+    int renderers;          // using the scene
 };
 
-// Makes `pose` the scene's at a moment: from scratch where *pose_version is not the scene's. False:
-// out of memory.
+// Updates `pose` to a moment, or rebuilds it if *pose_version is outdated. False: out of memory.
 bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t *pose_version,
                  int animation, double time_s);
-// The index that pose_update takes: 0 stands for the first animation, if there is one.
+// Valid indices: -1 (rest pose), 0 (first animation, if any) and those of the scene.
 bool api_animation_exists(const struct ag_scene *scene, int animation);
 
-// AG_OK, or what the last failure means to the caller.
+// AG_OK, or the ag_result for the host's last failure.
 enum ag_result api_done(struct ag_context *context, bool ok);
-// Logs "cannot call <function>: <why>" where there is a context; returns AG_ERROR_ARGUMENT.
+// Logs "cannot call <function>: <why>" if there is a context; returns AG_ERROR_ARGUMENT.
 enum ag_result api_refuse(struct ag_context *context, const char *function, const char *why, ...)
     __attribute__((format(printf, 3, 4)));
 
-// At the door of every function: returns AG_ERROR_ARGUMENT unless the condition holds. `context`
-// may be NULL.
+// Argument check of a public function: returns AG_ERROR_ARGUMENT unless the condition holds.
+// `context` may be NULL.
 #define AG_REQUIRE(context, condition, ...)                                                        \
     AG_REQUIRE_FOR(__func__, context, condition, __VA_ARGS__)
-// The same in a part of a public function, which the message names.
+// The same in a helper; the message names the public `function`.
 #define AG_REQUIRE_FOR(function, context, condition, ...)                                          \
     do {                                                                                           \
         if (!(condition)) return api_refuse((context), (function), __VA_ARGS__);                   \
     } while (0)
 
-// Forward and up, unit and orthogonal; where the camera's up says nothing, any.
+#define AG_REQUIRE_POINTER(context, pointer) AG_REQUIRE(context, pointer, #pointer " is NULL")
+// Of functions that create an object: *out is NULL unless they succeed.
+#define AG_REQUIRE_OUT(context, out)                                                               \
+    do {                                                                                           \
+        AG_REQUIRE_POINTER(context, out);                                                          \
+        *(out) = NULL;                                                                             \
+    } while (0)
+
+// forward and up become orthonormal; up is arbitrary if the camera's is parallel to forward.
 struct world_camera api_camera(const struct ag_camera *camera);
 enum ag_result api_camera_check(struct ag_context *context, const char *function,
                                 const struct ag_camera *camera);
 
-// Hands a finished image over to the caller; takes *image in any case.
+// Passes an image to the caller if `ok`; takes ownership of *image in any case.
 struct image;
 enum ag_result api_give_image(struct ag_context *context, bool ok, struct image *image,
                               struct ag_image **out);

@@ -1,4 +1,4 @@
-// Probe volumes: read back, looked up on the CPU, or handed out as the image that they are.
+// Probe volumes: downloaded, sampled on the CPU, or passed on as a Vulkan image.
 #include "api/renderer_state.h"
 
 #include "core/sh.h"
@@ -7,7 +7,7 @@
 
 enum { COEFFICIENTS = 9, NUMBERS = 3 * COEFFICIENTS };
 
-// The newest frame's volume, if there is one.
+// The probe volume of the newest frame.
 static enum ag_result find(const char *function, struct ag_renderer *r, struct probe_volume *out)
 {
     struct ag_context *context = renderer_context(r);
@@ -27,7 +27,7 @@ static void place_of(const struct probe_volume *volume, float first[3], float *s
     counts[2] = place->count_z;
 }
 
-// From slabs of texels to probes of numbers.
+// Converts slabs of texels (frame/probes.glsl) to arrays of coefficients.
 static void unpack(const struct ag_probes *probes, const float *texels,
                    const struct gpu_image_desc *size, const struct frame_probes *place, float scale)
 {
@@ -72,8 +72,7 @@ enum ag_result ag_renderer_read_probes(struct ag_renderer *r, struct ag_probes *
 {
     struct ag_context *context = renderer_context(r);
     struct probe_volume volume;
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
+    AG_REQUIRE_OUT(context, out);
     enum ag_result result = find(__func__, r, &volume);
     if (result == AG_OK) result = ag_renderer_wait(r);
     if (result != AG_OK) return result;
@@ -94,7 +93,7 @@ void ag_probes_destroy(struct ag_context *context, struct ag_probes *probes)
     host_free(&context->host, probes);
 }
 
-// The eight probes around a point, and the share of each.
+// Trilinear interpolation: the eight probes around a point and their weights.
 struct corner {
     size_t probe;
     float weight;
@@ -144,7 +143,7 @@ enum ag_result ag_renderer_probes_handle(struct ag_renderer *r, struct ag_probes
 {
     struct ag_context *context = renderer_context(r);
     struct probe_volume volume;
-    AG_REQUIRE(context, out, "out is NULL");
+    AG_REQUIRE_POINTER(context, out);
     *out = (struct ag_probes_handle){ 0 };
     enum ag_result result = find(__func__, r, &volume);
     if (result != AG_OK) return result;

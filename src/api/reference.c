@@ -1,4 +1,4 @@
-// The reference: forwards to trace/.
+// The path-traced reference: checks arguments and forwards to trace/.
 #include "api/objects.h"
 
 #include "core/option.h"
@@ -47,7 +47,7 @@ static bool build(struct ag_reference *r, const struct ag_scene *scene,
     r->reference = reference_create(host, &pose, &camera, desc->width, desc->height, &options);
     pose_finish(&pose);
     if (!r->reference) return false;
-    // The number counts changes of the sampling: files of another one are not gone on from.
+    // The number changes with the sampling, so that older checkpoints are refused.
     snprintf(r->checkpoint, sizeof r->checkpoint, "reference 2 %016" PRIx64,
              reference_key(r->reference));
     return true;
@@ -57,10 +57,9 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
                                    struct ag_reference **out)
 {
     struct ag_context *context = scene ? scene->context : NULL;
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, desc, "desc is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, scene);
+    AG_REQUIRE_POINTER(context, desc);
     AG_REQUIRE(context,
                desc->width >= 1 && desc->width <= IMAGE_MAX_SIZE && desc->height >= 1 &&
                    desc->height <= IMAGE_MAX_SIZE,
@@ -126,10 +125,9 @@ static bool fail_unknown(struct host *host, const char *name)
 enum ag_result ag_reference_read(struct ag_reference *r, const char *layer, struct ag_image **out)
 {
     struct ag_context *context = context_of(r);
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
+    AG_REQUIRE_OUT(context, out);
     AG_REQUIRE(context, r, "reference is NULL");
-    AG_REQUIRE(context, layer, "layer is NULL");
+    AG_REQUIRE_POINTER(context, layer);
     layer = api_layer_name(context, layer);
     int index = 0;
     while (index < REFERENCE_LAYER_COUNT && strcmp(reference_layer_name(index), layer) != 0)
@@ -145,20 +143,20 @@ enum ag_result ag_reference_get_info(const struct ag_reference *r, struct ag_ref
 {
     struct ag_context *context = context_of(r);
     AG_REQUIRE(context, r, "reference is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
+    AG_REQUIRE_POINTER(context, out);
     struct reference_info info = reference_info(r->reference);
     *out = (struct ag_reference_info){ info.samples, info.rays, info.mean, info.error };
     return AG_OK;
 }
 
-// ---- going on
+// ---- checkpoints
 
 const char *ag_reference_checkpoint(const struct ag_reference *r)
 {
     return r ? r->checkpoint : "";
 }
 
-static bool is_of_this(struct ag_reference *r, const char *path)
+static bool checkpoint_matches(struct ag_reference *r, const char *path)
 {
     struct host *host = &r->context->host;
     char *value = exr_attribute_value(host, path, AG_REFERENCE_CHECKPOINT);
@@ -166,7 +164,7 @@ static bool is_of_this(struct ag_reference *r, const char *path)
     host_free(host, value);
     if (same || host->failure != FAIL_NONE) return same;
     return host_fail(host, FAIL_ARGUMENT,
-                     "cannot go on with %s: it is of another scene, camera, size or option", path);
+                     "cannot resume %s: its scene, lights, camera, size or options differ", path);
 }
 
 static bool resume(struct ag_reference *r, const char *path)
@@ -174,7 +172,7 @@ static bool resume(struct ag_reference *r, const char *path)
     struct host *host = &r->context->host;
     struct image layers[REFERENCE_KEPT_COUNT] = { 0 };
     host->failure = FAIL_NONE;
-    bool ok = is_of_this(r, path);
+    bool ok = checkpoint_matches(r, path);
     for (int i = 0; i < REFERENCE_KEPT_COUNT && ok; i++)
         ok = api_read_layer(r->context, path, reference_layer_name(reference_kept_layers[i]),
                             &layers[i]);

@@ -1,4 +1,4 @@
-// A renderer: composes a frame and a sum of techniques, one frame at a time.
+// Renderers: one frame at a time, from the frame passes and the GI stack.
 #include "api/renderer_state.h"
 
 #include "gpu/gpu.h"
@@ -29,7 +29,7 @@ static enum ag_result size_check(const char *function, struct ag_context *contex
     return AG_OK;
 }
 
-// Both texts of a description. *spec is to be finished in any case.
+// Parses both texts of a description. Finish *spec in any case.
 static bool parse_options(struct host *host, const struct ag_renderer_desc *desc,
                           struct gi_spec *spec, struct frame_options *options)
 {
@@ -43,9 +43,9 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
                                            const struct ag_renderer_desc *desc, int light_count,
                                            uint64_t *bytes)
 {
-    AG_REQUIRE(context, bytes, "bytes is NULL");
+    AG_REQUIRE_POINTER(context, bytes);
     *bytes = 0;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_POINTER(context, context);
     struct ag_renderer_desc fallback;
     ag_renderer_desc_default(&fallback);
     if (!desc) desc = &fallback;
@@ -56,7 +56,7 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
     struct frame_options options;
     struct host *host = &context->host;
     const enum log_level log_up_to = host->log_up_to;
-    host->log_up_to = LOG_ERROR; // ag_renderer_create logs the warnings of the same texts
+    host->log_up_to = LOG_ERROR; // ag_renderer_create logs the same warnings
     bool ok = parse_options(host, desc, &spec, &options);
     host->log_up_to = log_up_to;
     uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
@@ -68,17 +68,18 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
     return api_done(context, ok);
 }
 
-// ---- life
+// ---- creation and destruction
 
-// A picture that is black but for a lamp has no apparent reason without a word about it.
+// Without a technique that gathers emission, such a scene is black except for its emitters.
 static void warn_of_darkness(const struct ag_renderer *r)
 {
     const struct scene *scene = r->scene->scene;
-    bool glows_alone =
+    bool only_emitters =
         scene->light_count == 0 && luminance(scene->sky) <= 0.0f && scene_has_emission(scene);
-    if (glows_alone && !gi_spec_gathers_emission(&r->spec))
+    if (only_emitters && !gi_spec_gathers_emission(&r->spec))
         host_log(host_of(r), LOG_WARNING,
-                 "%s: lit by emissive surfaces alone, which --gi %s does not gather: try --gi lpv",
+                 "%s: only emissive surfaces light the scene and --gi %s ignores their light; try "
+                 "--gi lpv",
                  scene->name, r->gi_text);
 }
 
@@ -102,8 +103,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
                                   const struct ag_renderer_desc *desc, struct ag_renderer **out)
 {
     struct ag_context *context = device ? device->context : scene ? scene->context : NULL;
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
+    AG_REQUIRE_OUT(context, out);
     AG_REQUIRE(context, device && scene, "device or scene is NULL");
     AG_REQUIRE(context, device->context == scene->context,
                "device and scene are of different contexts");
@@ -143,12 +143,11 @@ void ag_renderer_destroy(struct ag_renderer *r)
     host_free(host_of(r), r);
 }
 
-// Between the moment of recording into a caller's command buffer and its end, nothing else may
-// happen.
+// A frame recorded into a caller's command buffer must be reported done before any other call.
 static enum ag_result idle_check(const char *function, const struct ag_renderer *r)
 {
     AG_REQUIRE_FOR(function, renderer_context(r), !r->recorded,
-                   "a recorded frame is not finished: ag_renderer_recorded_done comes first");
+                   "a recorded frame is unfinished: call ag_renderer_recorded_done first");
     return AG_OK;
 }
 
@@ -202,7 +201,7 @@ static int resolve_lights(struct ag_renderer *r)
     return count;
 }
 
-// All that may allocate, before recording begins.
+// All steps that may allocate; recording must not.
 static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
                     struct frame_input *input, struct frame_indirect *hook)
 {
@@ -226,7 +225,7 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
 static bool fail_lost(struct ag_renderer *r)
 {
     struct host *host = host_of(r);
-    if (host->failure != FAIL_NONE) return false; // said already
+    if (host->failure != FAIL_NONE) return false; // already reported
     return host_fail(host, FAIL_DEVICE, "cannot render a frame on %s: the device is lost",
                      gpu_info(r->device->gpu)->name);
 }
@@ -253,7 +252,7 @@ enum ag_result ag_renderer_record(struct ag_renderer *r, const struct ag_frame_d
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
-    AG_REQUIRE(context, vk_command_buffer, "vk_command_buffer is NULL");
+    AG_REQUIRE_POINTER(context, vk_command_buffer);
     AG_REQUIRE(context, r->device->adopted, "the device is not an adopted one");
     enum ag_result checked = frame_check(__func__, r, desc);
     if (checked != AG_OK) return checked;
@@ -287,13 +286,13 @@ enum ag_result ag_renderer_wait(struct ag_renderer *r)
     return api_done(context, gpu_wait(r->device->gpu) || fail_lost(r));
 }
 
-// ---- what it did
+// ---- results of a frame
 
 enum ag_result ag_renderer_exposure(struct ag_renderer *r, float *ev)
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
-    AG_REQUIRE(context, ev, "ev is NULL");
+    AG_REQUIRE_POINTER(context, ev);
     *ev = 0.0f;
     AG_REQUIRE(context, r->rendered, "no frame has been rendered");
     enum ag_result waited = ag_renderer_wait(r);

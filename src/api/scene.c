@@ -1,4 +1,4 @@
-// Scenes: forwards to scene/, and keeps a pose for questions about a moment.
+// Scenes: checks arguments, forwards to scene/, and keeps a pose for queries at a moment.
 #include "api/objects.h"
 
 #include "scene/defaults.h"
@@ -47,23 +47,39 @@ bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t
     return true;
 }
 
-// The scene's own pose at a moment; NULL when out of memory.
+// The scene's own pose; NULL if out of memory.
 static const struct scene_pose *pose_at(struct ag_scene *scene, int animation, double time_s)
 {
     return api_pose_at(scene, &scene->pose, &scene->pose_version, animation, time_s) ? &scene->pose
                                                                                      : NULL;
 }
 
-#define REQUIRE_MOMENT(scene, animation, time_s)                                                   \
+// The argument checks of functions that fill `out` for a moment, and the scene's pose then.
+static enum ag_result pose_for(const char *function, struct ag_scene *scene, const void *out,
+                               int animation, double time_s, const struct scene_pose **pose)
+{
+    struct ag_context *context = context_of(scene);
+    AG_REQUIRE_FOR(function, context, scene, "scene is NULL");
+    AG_REQUIRE_FOR(function, context, out, "out is NULL");
+    AG_REQUIRE_FOR(function, context, api_animation_exists(scene, animation),
+                   "animation %d is not one of %d", animation, scene->scene->animation_count);
+    AG_REQUIRE_FOR(function, context, isfinite(time_s), "time_s is not finite");
+    *pose = pose_at(scene, animation, time_s);
+    return api_done(context, *pose != NULL);
+}
+
+// The argument checks of functions that fill `out` for element `index` of `count`.
+#define REQUIRE_ELEMENT(scene, out, what, index, member)                                           \
     do {                                                                                           \
-        AG_REQUIRE((scene)->context, api_animation_exists((scene), (animation)),                   \
-                   "animation %d is not one of %d", (animation), (scene)->scene->animation_count); \
-        AG_REQUIRE((scene)->context, isfinite(time_s), "time_s is not finite");                    \
+        AG_REQUIRE_POINTER(context_of(scene), scene);                                              \
+        AG_REQUIRE_POINTER((scene)->context, out);                                                 \
+        AG_REQUIRE((scene)->context, (index) >= 0 && (index) < (scene)->scene->member,             \
+                   what " %d is not one of %d", (index), (scene)->scene->member);                  \
     } while (0)
 
-// ---- life
+// ---- creation and destruction
 
-// Wraps a scene, which it takes in any case.
+// Wraps a scene and takes ownership, also on failure.
 static enum ag_result give(struct ag_context *context, struct scene *made, struct ag_scene **out)
 {
     struct ag_scene *scene = made ? host_alloc(&context->host, 1, sizeof *scene) : NULL;
@@ -79,18 +95,16 @@ static enum ag_result give(struct ag_context *context, struct scene *made, struc
 
 enum ag_result ag_scene_load(struct ag_context *context, const char *name, struct ag_scene **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, name && name[0], "name is empty");
     return give(context, scene_load(&context->host, name), out);
 }
 
 enum ag_result ag_scene_create(struct ag_context *context, struct ag_scene **out)
 {
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = NULL;
-    AG_REQUIRE(context, context, "context is NULL");
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
     return give(context, scene_create(&context->host, "scene"), out);
 }
 
@@ -104,7 +118,7 @@ void ag_scene_destroy(struct ag_scene *scene)
 
 // ---- building
 
-// An index from scene_add_…, or its failure.
+// The result of scene_add_…: an index, or negative on failure.
 static enum ag_result added(struct ag_scene *scene, int index, int *out)
 {
     scene->version++;
@@ -115,6 +129,14 @@ static enum ag_result added(struct ag_scene *scene, int index, int *out)
 #define REQUIRE_UNUSED(scene)                                                                      \
     AG_REQUIRE((scene)->context, (scene)->renderers == 0,                                          \
                "the scene is in use by a renderer: only its lights and sky may change")
+
+// The argument checks of ag_scene_add_…, which set *index to -1 unless they succeed.
+#define REQUIRE_ADDING(scene, desc, index)                                                         \
+    do {                                                                                           \
+        if (index) *(index) = -1;                                                                  \
+        AG_REQUIRE_POINTER(context_of(scene), scene);                                              \
+        AG_REQUIRE_POINTER((scene)->context, desc);                                                \
+    } while (0)
 
 void ag_material_desc_default(struct ag_material_desc *desc)
 {
@@ -132,10 +154,8 @@ static bool in_unit_range(const float *values, int count)
 enum ag_result ag_scene_add_material(struct ag_scene *scene, const struct ag_material_desc *desc,
                                      int *index)
 {
-    struct ag_context *context = context_of(scene);
-    if (index) *index = -1;
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, desc, "desc is NULL");
+    REQUIRE_ADDING(scene, desc, index);
+    struct ag_context *context = scene->context;
     REQUIRE_UNUSED(scene);
     AG_REQUIRE(context, in_unit_range(desc->base_color, 4), "base_color is not within 0 to 1");
     AG_REQUIRE(context, in_unit_range(&desc->metallic, 1) && in_unit_range(&desc->roughness, 1),
@@ -155,10 +175,8 @@ enum ag_result ag_scene_add_material(struct ag_scene *scene, const struct ag_mat
 enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_desc *desc,
                                  int *index)
 {
-    struct ag_context *context = context_of(scene);
-    if (index) *index = -1;
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, desc, "desc is NULL");
+    REQUIRE_ADDING(scene, desc, index);
+    struct ag_context *context = scene->context;
     REQUIRE_UNUSED(scene);
     AG_REQUIRE(context, desc->positions && desc->vertex_count > 0, "there are no positions");
     AG_REQUIRE(context, desc->indices && desc->index_count > 0, "there are no indices");
@@ -173,7 +191,7 @@ enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_de
     struct mesh mesh = { .name = "mesh",
                          .vertex_count = desc->vertex_count,
                          .index_count = desc->index_count,
-                         .positions = (vec3s *)desc->positions, // copied, as are the others
+                         .positions = (vec3s *)desc->positions, // scene_add_mesh copies all arrays
                          .normals = (vec3s *)desc->normals,
                          .indices = (uint32_t *)desc->indices,
                          .material = desc->material };
@@ -185,7 +203,7 @@ enum ag_result ag_scene_add_instance(struct ag_scene *scene, int mesh, const flo
 {
     struct ag_context *context = context_of(scene);
     if (index) *index = -1;
-    AG_REQUIRE(context, scene, "scene is NULL");
+    AG_REQUIRE_POINTER(context, scene);
     REQUIRE_UNUSED(scene);
     AG_REQUIRE(context, mesh >= 0 && mesh < scene->scene->mesh_count, "mesh %d is not one of %d",
                mesh, scene->scene->mesh_count);
@@ -233,7 +251,7 @@ static enum ag_result light_check(const char *function, struct ag_context *conte
     return AG_OK;
 }
 
-// A node that stands for the light, and the light. -1: out of memory.
+// Adds a node and the light on it. -1: out of memory.
 static int add_light(struct scene *scene, const struct ag_light_desc *desc, const char *name)
 {
     vec3s position = desc->type == AG_LIGHT_SUN ? vec3_of(0, 0, 0) : api_vec3(desc->position);
@@ -252,10 +270,8 @@ static int add_light(struct scene *scene, const struct ag_light_desc *desc, cons
 enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_desc *desc,
                                   int *index)
 {
-    struct ag_context *context = context_of(scene);
-    if (index) *index = -1;
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, desc, "desc is NULL");
+    REQUIRE_ADDING(scene, desc, index);
+    struct ag_context *context = scene->context;
     enum ag_result checked = light_check(__func__, context, desc);
     if (checked != AG_OK) return checked;
     return added(scene, add_light(scene->scene, desc, "light"), index);
@@ -269,9 +285,9 @@ void ag_area_light_desc_default(struct ag_area_light_desc *desc)
     };
 }
 
-// The instance, -1 where memory or the node's place fails. The quad lies in its node's x and y and
-// faces -z, the way a node looks.
-static int add_glowing_quad(struct scene *scene, const struct ag_area_light_desc *desc)
+// Index of the instance; -1 if out of memory. The quad is in the xy plane of its node and faces -z,
+// the viewing direction of nodes.
+static int add_emissive_quad(struct scene *scene, const struct ag_area_light_desc *desc)
 {
     static const char *const NAME = "area light";
     float x = 0.5f * desc->width, y = 0.5f * desc->height;
@@ -298,10 +314,8 @@ static int add_glowing_quad(struct scene *scene, const struct ag_area_light_desc
 enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
                                        const struct ag_area_light_desc *desc, int *instance)
 {
-    struct ag_context *context = context_of(scene);
-    if (instance) *instance = -1;
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, desc, "desc is NULL");
+    REQUIRE_ADDING(scene, desc, instance);
+    struct ag_context *context = scene->context;
     REQUIRE_UNUSED(scene);
     AG_REQUIRE(context, api_finite(desc->position, 3), "position is not finite");
     AG_REQUIRE(context, glms_vec3_norm(vec3_unit(api_vec3(desc->direction))) > 0.0f,
@@ -311,7 +325,7 @@ enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
                "width %g and height %g are not above 0", (double)desc->width, (double)desc->height);
     AG_REQUIRE(context, api_finite_at_least(desc->radiance, 3, 0.0f),
                "radiance is negative or not finite");
-    return added(scene, add_glowing_quad(scene->scene, desc), instance);
+    return added(scene, add_emissive_quad(scene->scene, desc), instance);
 }
 
 enum ag_result ag_scene_remove_lights(struct ag_scene *scene)
@@ -334,8 +348,8 @@ enum ag_result ag_scene_set_sky(struct ag_scene *scene, const float *radiance)
 
 // ---- cameras
 
-// How far from the eye a target is put: a metre, and far from the origin so much more that the
-// rounding of both does not turn the view.
+// Distance between a camera and its target: a metre, more when far from the origin, so that
+// rounding of both positions does not rotate the view.
 static float target_distance(vec3s eye)
 {
     static const float NEAR_ORIGIN_M = 16.0f;
@@ -360,7 +374,7 @@ enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye, const 
                                 float vertical_fov_rad, struct ag_camera *out)
 {
     struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
+    AG_REQUIRE_POINTER(context, scene);
     AG_REQUIRE(context, eye && target && out, "eye, target or out is NULL");
     AG_REQUIRE(context, api_finite(eye, 3) && api_finite(target, 3), "eye or target is not finite");
     vec3s forward = vec3_towards(api_vec3(eye), api_vec3(target));
@@ -372,7 +386,7 @@ enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye, const 
     struct world_camera camera =
         camera_look_at(api_vec3(eye), api_vec3(target), vertical_fov_rad, default_near(pose));
     *out = camera_out(&camera);
-    memcpy(out->target, target, sizeof out->target); // as given: farther than the unit vector
+    memcpy(out->target, target, sizeof out->target); // as given, not at target_distance
     return api_done(context, true);
 }
 
@@ -392,7 +406,7 @@ const char *ag_scene_camera_name(const struct ag_scene *scene, int index)
     return named(scene->scene->cameras[index].name);
 }
 
-// "cannot find camera x in scene: it has a, b", cut where there are many.
+// "cannot find camera x in scene: it has a, b"; a long list is truncated.
 static bool fail_camera(const struct ag_scene *scene, const char *name)
 {
     char list[API_MESSAGE_SIZE / 4] = "none";
@@ -409,16 +423,15 @@ static bool fail_camera(const struct ag_scene *scene, const char *name)
 enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int animation,
                                double time_s, struct ag_camera *out)
 {
+    const struct scene_pose *pose;
     struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, name && out, "name or out is NULL");
-    REQUIRE_MOMENT(scene, animation, time_s);
+    AG_REQUIRE_POINTER(context, name);
+    enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
+    if (result != AG_OK) return result;
     int found = -1;
     for (int i = scene->scene->camera_count - 1; i >= 0; i--)
         if (strcmp(named(scene->scene->cameras[i].name), name) == 0) found = i;
     if (found < 0) return api_done(context, fail_camera(scene, name));
-    const struct scene_pose *pose = pose_at(scene, animation, time_s);
-    if (!pose) return api_done(context, false);
     struct world_camera camera = pose_camera(pose, found);
     *out = camera_out(&camera);
     return api_done(context, true);
@@ -427,35 +440,29 @@ enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int ani
 enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animation, double time_s,
                                        struct ag_camera *out, bool *made_up)
 {
-    struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
-    REQUIRE_MOMENT(scene, animation, time_s);
-    const struct scene_pose *pose = pose_at(scene, animation, time_s);
-    if (!pose) return api_done(context, false);
+    const struct scene_pose *pose;
+    enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
+    if (result != AG_OK) return result;
     bool none = scene->scene->camera_count == 0;
     struct world_camera camera = none ? default_camera(pose) : pose_camera(pose, 0);
     *out = camera_out(&camera);
     if (made_up) *made_up = none;
-    return api_done(context, context->host.failure == FAIL_NONE); // memory for the search
+    return api_done(scene->context, host_of(scene)->failure == FAIL_NONE); // memory for the search
 }
 
-// ---- lighting that a dark scene gets
+// ---- default lighting of dark scenes
 
 enum ag_result ag_scene_default_lighting(struct ag_scene *scene, struct ag_default_lighting *out)
 {
-    struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
-    *out = (struct ag_default_lighting){ 0 };
-    const struct scene_pose *pose = pose_at(scene, 0, 0.0);
-    if (!pose) return api_done(context, false);
+    const struct scene_pose *pose;
+    enum ag_result result = pose_for(__func__, scene, out, 0, 0.0, &pose);
+    if (result != AG_OK) return result;
     struct default_lighting lighting = default_lighting(pose);
     out->needed = scene_is_dark(scene->scene);
     api_store(out->sun_direction, lighting.sun_direction);
     api_store(out->sun_lux, lighting.sun_lux);
     api_store(out->sky, lighting.sky);
-    return api_done(context, context->host.failure == FAIL_NONE); // memory for the search
+    return api_done(scene->context, host_of(scene)->failure == FAIL_NONE); // memory for the search
 }
 
 enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,
@@ -475,17 +482,14 @@ enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,
     return result;
 }
 
-// ---- what is in it
+// ---- contents
 
 enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double time_s,
                                  struct ag_scene_info *out)
 {
-    struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
-    REQUIRE_MOMENT(scene, animation, time_s);
-    const struct scene_pose *pose = pose_at(scene, animation, time_s);
-    if (!pose) return api_done(context, false);
+    const struct scene_pose *pose;
+    enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
+    if (result != AG_OK) return result;
     const struct scene *s = scene->scene;
     *out = (struct ag_scene_info){ .meshes = s->mesh_count,
                                    .instances = s->instance_count,
@@ -504,20 +508,16 @@ enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double t
     api_store(out->bounds_min, pose->bounds.min);
     api_store(out->bounds_max, pose->bounds.max);
     api_store(out->sky, s->sky);
-    return api_done(context, true);
+    return AG_OK;
 }
 
 enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int animation, double time_s,
                                   struct ag_light_info *out)
 {
-    struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
-    AG_REQUIRE(context, index >= 0 && index < scene->scene->light_count,
-               "light %d is not one of %d", index, scene->scene->light_count);
-    REQUIRE_MOMENT(scene, animation, time_s);
-    const struct scene_pose *pose = pose_at(scene, animation, time_s);
-    if (!pose) return api_done(context, false);
+    const struct scene_pose *pose;
+    REQUIRE_ELEMENT(scene, out, "light", index, light_count);
+    enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
+    if (result != AG_OK) return result;
     const struct light *light = &scene->scene->lights[index];
     struct world_light world = pose_light(pose, index);
     *out = (struct ag_light_info){ .name = named(light->name),
@@ -527,17 +527,13 @@ enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int animati
     api_store(out->light.position, world.position);
     api_store(out->light.direction, world.direction);
     api_store(out->light.intensity, world.intensity);
-    return api_done(context, true);
+    return AG_OK;
 }
 
 enum ag_result ag_scene_get_animation(struct ag_scene *scene, int index,
                                       struct ag_animation_info *out)
 {
-    struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
-    AG_REQUIRE(context, index >= 0 && index < scene->scene->animation_count,
-               "animation %d is not one of %d", index, scene->scene->animation_count);
+    REQUIRE_ELEMENT(scene, out, "animation", index, animation_count);
     const struct animation *animation = &scene->scene->animations[index];
     *out = (struct ag_animation_info){ named(animation->name), (double)animation->duration_s };
     return AG_OK;
@@ -559,11 +555,7 @@ static const char *alpha_name(enum alpha_mode mode)
 enum ag_result ag_scene_get_material(struct ag_scene *scene, int index,
                                      struct ag_material_info *out)
 {
-    struct ag_context *context = context_of(scene);
-    AG_REQUIRE(context, scene, "scene is NULL");
-    AG_REQUIRE(context, out, "out is NULL");
-    AG_REQUIRE(context, index >= 0 && index < scene->scene->material_count,
-               "material %d is not one of %d", index, scene->scene->material_count);
+    REQUIRE_ELEMENT(scene, out, "material", index, material_count);
     const struct material *m = &scene->scene->materials[index];
     *out = (struct ag_material_info){
         .name = named(m->name),

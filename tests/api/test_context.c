@@ -1,5 +1,5 @@
 // Contexts: what they say and to whom, whose memory they use, and that they do not know each other.
-#include "api/purse.h"
+#include "api/counting_allocator.h"
 #include "framework/test.h"
 
 #include <afterglow/afterglow.h>
@@ -82,13 +82,13 @@ TEST(two_contexts_do_not_hear_each_other)
 
 // ---- memory
 
-static struct ag_context *purse_context(struct purse *purse)
+static struct ag_context *purse_context(struct counting_allocator *allocator)
 {
     struct ag_context_desc desc;
     struct ag_context *context = NULL;
     ag_context_desc_default(&desc);
-    desc.reallocate = purse_reallocate;
-    desc.user = purse;
+    desc.reallocate = counting_reallocate;
+    desc.user = allocator;
     ag_context_create(&desc, &context);
     return context;
 }
@@ -146,25 +146,26 @@ static enum ag_result use_everything(struct ag_context *context, const char *sce
 
 static void check_every_refusal(const char *scene_name)
 {
-    struct purse purse = { 0 };
+    struct counting_allocator allocator = { 0 };
     char folder[512];
     snprintf(folder, sizeof folder, "%s", test_path("memory"));
-    struct ag_context *context = purse_context(&purse);
+    struct ag_context *context = purse_context(&allocator);
     assert_non_null(context);
     assert_int_equal(use_everything(context, scene_name, folder), AG_OK);
     ag_context_destroy(context);
-    assert_true(purse.asked > 10);
-    assert_int_equal(purse.blocks, 0);
-    long calls = purse.asked;
+    assert_true(allocator.asked > 10);
+    assert_int_equal(allocator.blocks, 0);
+    long calls = allocator.asked;
 
     for (int all = 0; all < 2; all++)
         for (long k = 1; k <= calls; k++) {
-            purse = (struct purse){ .refuse_at = k, .refuse_all = all };
-            context = purse_context(&purse);
+            allocator = (struct counting_allocator){ .refuse_at = k, .refuse_all = all };
+            context = purse_context(&allocator);
             enum ag_result result =
                 context ? use_everything(context, scene_name, folder) : AG_ERROR_MEMORY;
             ag_context_destroy(context);
-            if (purse.blocks != 0) fail_msg("refusal %ld leaks %ld blocks", k, purse.blocks);
+            if (allocator.blocks != 0)
+                fail_msg("refusal %ld leaks %ld blocks", k, allocator.blocks);
             if (result != AG_ERROR_MEMORY)
                 fail_msg("refusal %ld of %ld gives \"%s\"", k, calls, ag_result_string(result));
         }
@@ -187,7 +188,7 @@ TEST(every_refused_allocation_of_a_skin_or_a_texture_is_a_memory_error_and_leaks
 
 TEST(the_programs_allocator_is_the_only_one)
 {
-    struct purse purse = { .refuse_at = 1, .refuse_all = true };
-    assert_null(purse_context(&purse));
-    assert_true(purse.asked > 0);
+    struct counting_allocator allocator = { .refuse_at = 1, .refuse_all = true };
+    assert_null(purse_context(&allocator));
+    assert_true(allocator.asked > 0);
 }

@@ -1,5 +1,5 @@
 // Probe volumes through the public functions: where probes stand, what they hold, who has them.
-#include "api/stage.h"
+#include "api/renderer_fixture.h"
 
 #include <afterglow/afterglow.h>
 
@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = STAGE_WIDTH, HEIGHT = STAGE_HEIGHT, PIXELS = WIDTH * HEIGHT };
+enum { WIDTH = FIXTURE_WIDTH, HEIGHT = FIXTURE_HEIGHT, PIXELS = WIDTH * HEIGHT };
 static const float PI = 3.14159265f;
 
-static struct ag_probes *render_probes(struct stage *s)
+static struct ag_probes *render_probes(struct renderer_fixture *s)
 {
     struct ag_probes *probes = NULL;
     assert_int_equal(ag_renderer_render(s->renderer, &s->frame), AG_OK);
@@ -41,11 +41,12 @@ TEST(strangers_are_lit_as_surfaces_are)
     const char *gi[] = { "lpv:probes=true,dim=16,offset=0,cascades=1",
                          "holpv:probes=true,dim=16,offset=0,cascades=1" };
     for (int k = 0; k < 2; k++) {
-        struct stage s = stage_open(gi[k], NULL);
+        struct renderer_fixture s = fixture_open(gi[k], NULL);
         struct ag_probes *probes = render_probes(&s);
-        struct ag_image *irradiance = stage_read(&s, "irradiance"),
-                        *normal = stage_read(&s, "normal"), *position = stage_read(&s, "position"),
-                        *depth = stage_read(&s, "depth");
+        struct ag_image *irradiance = fixture_read(&s, "irradiance"),
+                        *normal = fixture_read(&s, "normal"),
+                        *position = fixture_read(&s, "position"),
+                        *depth = fixture_read(&s, "depth");
         const double typical = mean(irradiance);
         int seen = 0;
         CHECK(typical > 0.0);
@@ -64,7 +65,7 @@ TEST(strangers_are_lit_as_surfaces_are)
         ag_image_destroy(s.context, position);
         ag_image_destroy(s.context, depth);
         ag_probes_destroy(s.context, probes);
-        stage_close(&s);
+        fixture_close(&s);
     }
 }
 
@@ -72,12 +73,12 @@ TEST(strangers_are_lit_as_surfaces_are)
 // half a spacing before the surface. Pixels with a ball before them are others, a few of them.
 TEST(shaders_look_probes_up_as_the_processor_does)
 {
-    struct stage s = stage_open("holpv:probes=true,dim=16", NULL);
+    struct renderer_fixture s = fixture_open("holpv:probes=true,dim=16", NULL);
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "probes"), AG_OK);
     struct ag_probes *probes = render_probes(&s);
-    struct ag_image *view = stage_read(&s, "debug"), *normal = stage_read(&s, "normal"),
-                    *position = stage_read(&s, "position"), *albedo = stage_read(&s, "albedo"),
-                    *depth = stage_read(&s, "depth");
+    struct ag_image *view = fixture_read(&s, "debug"), *normal = fixture_read(&s, "normal"),
+                    *position = fixture_read(&s, "position"), *albedo = fixture_read(&s, "albedo"),
+                    *depth = fixture_read(&s, "depth");
     int seen = 0, equal = 0;
     for (int i = 0; i < PIXELS; i++) {
         const float *n = normal->pixels + 3 * i, *p = position->pixels + 3 * i;
@@ -100,12 +101,12 @@ TEST(shaders_look_probes_up_as_the_processor_does)
     ag_image_destroy(s.context, albedo);
     ag_image_destroy(s.context, depth);
     ag_probes_destroy(s.context, probes);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(probes_are_filtered_between_and_kept_outside)
 {
-    struct stage s = stage_open("lpv:probes=true,dim=16", NULL);
+    struct renderer_fixture s = fixture_open("lpv:probes=true,dim=16", NULL);
     struct ag_probes *probes = render_probes(&s);
     struct ag_scene_info info;
     assert_int_equal(ag_scene_get_info(s.scene, 0, 0.0, &info), AG_OK);
@@ -146,12 +147,12 @@ TEST(probes_are_filtered_between_and_kept_outside)
     ag_probes_irradiance(probes, position, up, there);
     CHECK(isfinite(there[1]));
     ag_probes_destroy(s.context, probes);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(probes_are_dark_without_light)
 {
-    struct stage s = stage_open("lpv:probes=true,dim=16", NULL);
+    struct renderer_fixture s = fixture_open("lpv:probes=true,dim=16", NULL);
     assert_int_equal(ag_scene_remove_lights(s.scene), AG_OK);
     struct ag_probes *probes = render_probes(&s);
     const size_t count =
@@ -159,12 +160,12 @@ TEST(probes_are_dark_without_light)
     CHECK(count > 0);
     for (size_t i = 0; i < 27 * count; i++) CHECK(probes->coefficients[i] == 0.0f);
     ag_probes_destroy(s.context, probes);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(the_image_of_the_probes_is_handed_out)
 {
-    struct stage s = stage_open("lpv:probes=true,dim=16", NULL);
+    struct renderer_fixture s = fixture_open("lpv:probes=true,dim=16", NULL);
     struct ag_probes *probes = render_probes(&s);
     struct ag_probes_handle handle;
     assert_int_equal(ag_renderer_probes_handle(s.renderer, &handle), AG_OK);
@@ -174,12 +175,12 @@ TEST(the_image_of_the_probes_is_handed_out)
     CHECK(memcmp(handle.counts, probes->counts, sizeof handle.counts) == 0);
     CHECK(memcmp(handle.first, probes->first, sizeof handle.first) == 0);
     ag_probes_destroy(s.context, probes);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(who_has_no_probes_says_what_would_bring_them)
 {
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     struct ag_probes *probes = (struct ag_probes *)1;
     struct ag_probes_handle handle;
     assert_int_equal(ag_renderer_read_probes(s.renderer, &probes), AG_ERROR_ARGUMENT); // no frame
@@ -193,11 +194,11 @@ TEST(who_has_no_probes_says_what_would_bring_them)
     assert_null(handle.vk_image);
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "probes"), AG_ERROR_ARGUMENT);
     CHECK(strstr(ag_context_last_error(s.context), "lpv:probes=true"));
-    stage_close(&s);
-    s = stage_open("ambient", NULL);
+    fixture_close(&s);
+    s = fixture_open("ambient", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_read_probes(s.renderer, &probes), AG_ERROR_ARGUMENT);
     CHECK(strstr(ag_context_last_error(s.context), "ambient publishes no probes"));
     ag_probes_destroy(s.context, NULL);
-    stage_close(&s);
+    fixture_close(&s);
 }

@@ -1,7 +1,7 @@
 // Renderers through the public functions: frames, layers, what may change while one lives, two side
 // by side, and a device and a command buffer that are the program's own.
-#include "api/purse.h"
-#include "api/stage.h"
+#include "api/counting_allocator.h"
+#include "api/renderer_fixture.h"
 #include "framework/own_device.h"
 
 #include <afterglow/afterglow.h>
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = STAGE_WIDTH, HEIGHT = STAGE_HEIGHT };
+enum { WIDTH = FIXTURE_WIDTH, HEIGHT = FIXTURE_HEIGHT };
 
 static double mean(const struct ag_image *image)
 {
@@ -21,9 +21,9 @@ static double mean(const struct ag_image *image)
     return sum / count;
 }
 
-static double mean_of(struct stage *s, const char *layer)
+static double mean_of(struct renderer_fixture *s, const char *layer)
 {
-    struct ag_image *image = stage_read(s, layer);
+    struct ag_image *image = fixture_read(s, layer);
     double value = mean(image);
     ag_image_destroy(s->context, image);
     return value;
@@ -38,12 +38,12 @@ static bool equal(const struct ag_image *a, const struct ag_image *b)
 
 TEST(every_layer_is_finite_and_of_the_frames_size)
 {
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     const char *name;
     for (int i = 0; (name = ag_layer_name(i)); i++) {
         if (strcmp(name, "debug") == 0) continue; // not asked for
-        struct ag_image *image = stage_read(&s, name);
+        struct ag_image *image = fixture_read(&s, name);
         bool single = strcmp(name, "depth") == 0 || strcmp(name, "visibility") == 0;
         assert_int_equal(image->width, WIDTH);
         assert_int_equal(image->height, HEIGHT);
@@ -57,12 +57,12 @@ TEST(every_layer_is_finite_and_of_the_frames_size)
     float ev = 0;
     assert_int_equal(ag_renderer_exposure(s.renderer, &ev), AG_OK);
     CHECK(isfinite(ev) && ev != 0);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(layers_that_are_not_kept_or_not_known_are_refused)
 {
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     struct ag_image *image = (struct ag_image *)1;
     assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT); // no frame
     assert_null(image);
@@ -73,7 +73,7 @@ TEST(layers_that_are_not_kept_or_not_known_are_refused)
     assert_int_equal(ag_renderer_read(s.renderer, NULL, &image), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "no-such-view"), AG_ERROR_ARGUMENT);
     ag_renderer_destroy(s.renderer);
-    struct ag_renderer_desc desc = stage_renderer_desc("none");
+    struct ag_renderer_desc desc = fixture_renderer_desc("none");
     desc.indirect_layer = desc.display_layer = desc.motion_layer = false;
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
@@ -82,12 +82,12 @@ TEST(layers_that_are_not_kept_or_not_known_are_refused)
     assert_int_equal(ag_renderer_read(s.renderer, "motion", &image), AG_ERROR_ARGUMENT);
     CHECK(strstr(ag_context_last_error(s.context), "motion_layer"));
     CHECK(mean_of(&s, "irradiance") == 0.0); // that nobody writes
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(debug_views_fill_the_debug_layer_until_they_are_switched_off)
 {
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     struct ag_technique_info info;
     const char *view = NULL;
     for (int i = 0; ag_technique_get(i, &info); i++)
@@ -100,12 +100,12 @@ TEST(debug_views_fill_the_debug_layer_until_they_are_switched_off)
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     struct ag_image *image = NULL;
     assert_int_equal(ag_renderer_read(s.renderer, "debug", &image), AG_ERROR_ARGUMENT);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(wrong_frames_are_refused)
 {
-    struct stage s = stage_open("none", NULL);
+    struct renderer_fixture s = fixture_open("none", NULL);
     struct ag_frame_desc frame;
     assert_int_equal(ag_renderer_render(s.renderer, NULL), AG_ERROR_ARGUMENT);
     ag_frame_desc_default(&frame); // no camera yet
@@ -128,24 +128,24 @@ TEST(wrong_frames_are_refused)
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_record(s.renderer, &s.frame, &s), AG_ERROR_ARGUMENT); // not lent
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(wrong_renderers_are_refused)
 {
-    struct stage s = stage_open("none", NULL);
+    struct renderer_fixture s = fixture_open("none", NULL);
     struct ag_renderer *renderer = (struct ag_renderer *)1;
-    struct ag_renderer_desc desc = stage_renderer_desc("lpv:stepz=4");
+    struct ag_renderer_desc desc = fixture_renderer_desc("lpv:stepz=4");
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
     assert_null(renderer);
     CHECK(strstr(ag_context_last_error(s.context), "steps"));
-    desc = stage_renderer_desc("none");
+    desc = fixture_renderer_desc("none");
     desc.height = 0;
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
-    desc = stage_renderer_desc("none");
+    desc = fixture_renderer_desc("none");
     desc.frame_options = "cascades=9";
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &renderer), AG_ERROR_ARGUMENT);
-    struct ag_context *other = stage_context();
+    struct ag_context *other = fixture_context();
     struct ag_scene *stranger = NULL;
     assert_int_equal(ag_scene_load(other, "@cornell", &stranger), AG_OK);
     assert_int_equal(ag_renderer_create(s.device, stranger, NULL, &renderer), AG_ERROR_ARGUMENT);
@@ -157,12 +157,12 @@ TEST(wrong_renderers_are_refused)
     struct ag_material_desc material;
     ag_material_desc_default(&material);
     assert_int_equal(ag_scene_add_material(s.scene, &material, NULL), AG_OK);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(lights_and_sky_may_change_while_a_renderer_lives_and_nothing_else)
 {
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     double once = mean_of(&s, "color");
     struct ag_light_info light;
@@ -177,12 +177,12 @@ TEST(lights_and_sky_may_change_while_a_renderer_lives_and_nothing_else)
     ag_material_desc_default(&material);
     assert_int_equal(ag_scene_add_material(s.scene, &material, NULL), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_scene_add_instance(s.scene, 0, NULL, NULL), AG_ERROR_ARGUMENT);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(a_resize_changes_the_size_of_every_layer)
 {
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_resize(s.renderer, 0, 10), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_renderer_resize(s.renderer, 10, 16385), AG_ERROR_ARGUMENT);
@@ -190,16 +190,16 @@ TEST(a_resize_changes_the_size_of_every_layer)
     struct ag_image *image = NULL;
     assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT); // not yet
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
-    image = stage_read(&s, "color");
+    image = fixture_read(&s, "color");
     CHECK(image->width == 17 && image->height == 9);
     CHECK(mean(image) > 0);
     ag_image_destroy(s.context, image);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(times_and_memory_are_told_by_name)
 {
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_timings(s.renderer, NULL, 0), 0); // no frame
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     struct ag_timing timings[64];
@@ -228,50 +228,50 @@ TEST(times_and_memory_are_told_by_name)
             taken += owners[i].bytes;
     }
     CHECK(has_lpv);
-    struct ag_renderer_desc desc = stage_renderer_desc("lpv");
+    struct ag_renderer_desc desc = fixture_renderer_desc("lpv");
     assert_int_equal(ag_renderer_estimate_memory(s.context, &desc, 1, &estimate), AG_OK);
     if (taken > estimate)
         fail_msg("%llu bytes are taken, %llu were estimated at most", (unsigned long long)taken,
                  (unsigned long long)estimate);
     CHECK(strncmp(ag_renderer_gi(s.renderer), "lpv:", 4) == 0);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 TEST(two_contexts_side_by_side_render_what_each_renders_alone)
 {
-    struct stage alone = stage_open("lpv", NULL);
+    struct renderer_fixture alone = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(alone.renderer, &alone.frame), AG_OK);
-    struct ag_image *expected = stage_read(&alone, "color");
-    struct stage a = stage_open("lpv", NULL), b = stage_open("ambient", NULL);
+    struct ag_image *expected = fixture_read(&alone, "color");
+    struct renderer_fixture a = fixture_open("lpv", NULL), b = fixture_open("ambient", NULL);
     for (int i = 0; i < 2; i++) {
         assert_int_equal(ag_renderer_render(a.renderer, &a.frame), AG_OK);
         assert_int_equal(ag_renderer_render(b.renderer, &b.frame), AG_OK);
     }
-    struct ag_image *of_a = stage_read(&a, "color"), *of_b = stage_read(&b, "color");
+    struct ag_image *of_a = fixture_read(&a, "color"), *of_b = fixture_read(&b, "color");
     CHECK(equal(of_a, expected));
     CHECK(!equal(of_b, expected));
     ag_image_destroy(b.context, of_b);
-    stage_close(&b); // a goes on without b
+    fixture_close(&b); // a goes on without b
     assert_int_equal(ag_renderer_render(a.renderer, &a.frame), AG_OK);
     ag_image_destroy(a.context, of_a);
-    stage_close(&a);
+    fixture_close(&a);
     ag_image_destroy(alone.context, expected);
-    stage_close(&alone);
+    fixture_close(&alone);
 }
 
 // A renderer, a frame and a picture, or the first failure; then nothing is refused any more.
 // *calls: allocations so far.
-static enum ag_result render_once(struct stage *s, struct purse *purse, struct ag_image **image,
-                                  long *calls)
+static enum ag_result render_once(struct renderer_fixture *s, struct counting_allocator *allocator,
+                                  struct ag_image **image, long *calls)
 {
-    long begun = purse->asked;
-    struct ag_renderer_desc desc = stage_renderer_desc("lpv");
+    long begun = allocator->asked;
+    struct ag_renderer_desc desc = fixture_renderer_desc("lpv");
     struct ag_renderer *renderer = NULL;
     enum ag_result result = ag_renderer_create(s->device, s->scene, &desc, &renderer);
     if (result == AG_OK) result = ag_renderer_render(renderer, &s->frame);
     if (result == AG_OK) result = ag_renderer_read(renderer, "color", image);
-    *calls = purse->asked - begun;
-    purse->refuse_at = 0;
+    *calls = allocator->asked - begun;
+    allocator->refuse_at = 0;
     ag_renderer_destroy(renderer);
     return result;
 }
@@ -280,12 +280,12 @@ TEST(a_refused_allocation_in_a_renderer_is_a_memory_error_and_the_next_one_works
 {
     enum { SAMPLES = 24 }; // of all allocations, evenly spread
     test_gpu_require();
-    struct purse purse = { 0 };
-    struct stage s = { 0 };
+    struct counting_allocator allocator = { 0 };
+    struct renderer_fixture s = { 0 };
     struct ag_context_desc desc;
     ag_context_desc_default(&desc);
-    desc.reallocate = purse_reallocate;
-    desc.user = &purse;
+    desc.reallocate = counting_reallocate;
+    desc.user = &allocator;
     assert_int_equal(ag_context_create(&desc, &s.context), AG_OK);
     assert_int_equal(ag_device_create(s.context, NULL, &s.device), AG_OK);
     assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
@@ -294,46 +294,47 @@ TEST(a_refused_allocation_in_a_renderer_is_a_memory_error_and_the_next_one_works
 
     struct ag_image *expected = NULL, *image = NULL;
     long calls, ignored;
-    assert_int_equal(render_once(&s, &purse, &expected, &calls), AG_OK); // makes what lasts, too
-    assert_int_equal(render_once(&s, &purse, &image, &calls), AG_OK);
+    assert_int_equal(render_once(&s, &allocator, &expected, &calls),
+                     AG_OK); // makes what lasts, too
+    assert_int_equal(render_once(&s, &allocator, &image, &calls), AG_OK);
     CHECK(equal(image, expected));
     ag_image_destroy(s.context, image);
     assert_true(calls > SAMPLES);
     for (long i = 0; i < SAMPLES; i++) {
         long refused = 1 + i * (calls - 1) / (SAMPLES - 1);
-        purse.refuse_at = purse.asked + refused;
+        allocator.refuse_at = allocator.asked + refused;
         image = NULL;
         long asked;
-        enum ag_result result = render_once(&s, &purse, &image, &asked);
+        enum ag_result result = render_once(&s, &allocator, &image, &asked);
         if (asked < refused) { // lists that have grown already: there was nothing to refuse
             CHECK(result == AG_OK && equal(image, expected));
             ag_image_destroy(s.context, image);
         } else if (result != AG_ERROR_MEMORY || image)
             fail_msg("refusal %ld of %ld gives \"%s\"", refused, calls, ag_result_string(result));
     }
-    assert_int_equal(render_once(&s, &purse, &image, &ignored), AG_OK);
+    assert_int_equal(render_once(&s, &allocator, &image, &ignored), AG_OK);
     CHECK(equal(image, expected));
     ag_image_destroy(s.context, image);
     ag_image_destroy(s.context, expected);
-    stage_close(&s);
-    assert_int_equal(purse.blocks, 0);
+    fixture_close(&s);
+    assert_int_equal(allocator.blocks, 0);
 }
 
 TEST(two_renderers_share_a_device_and_a_scene)
 {
-    struct stage s = stage_open("lpv", NULL);
-    struct ag_renderer_desc desc = stage_renderer_desc("none");
+    struct renderer_fixture s = fixture_open("lpv", NULL);
+    struct ag_renderer_desc desc = fixture_renderer_desc("none");
     struct ag_renderer *second = NULL;
     assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &second), AG_OK);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(ag_renderer_render(second, &s.frame), AG_OK);
-    struct ag_image *with = stage_read(&s, "color"), *without = NULL;
+    struct ag_image *with = fixture_read(&s, "color"), *without = NULL;
     assert_int_equal(ag_renderer_read(second, "color", &without), AG_OK);
     CHECK(mean(with) > mean(without));
     ag_image_destroy(s.context, with);
     ag_image_destroy(s.context, without);
     ag_renderer_destroy(second);
-    stage_close(&s);
+    fixture_close(&s);
 }
 
 // ---- the program's own device
@@ -355,12 +356,12 @@ static const struct ag_image *expected_color(void)
 {
     static float pixels[WIDTH * HEIGHT * 3];
     static const struct ag_image copy = { WIDTH, HEIGHT, 3, pixels };
-    struct stage s = stage_open("lpv", NULL);
+    struct renderer_fixture s = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
-    struct ag_image *color = stage_read(&s, "color");
+    struct ag_image *color = fixture_read(&s, "color");
     memcpy(pixels, color->pixels, sizeof pixels);
     ag_image_destroy(s.context, color);
-    stage_close(&s);
+    fixture_close(&s);
     return &copy;
 }
 
@@ -370,11 +371,11 @@ TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
     struct own_device own;
     own_device_open(&own, 0);
     struct ag_device_adopt adopt = lend(&own);
-    struct stage s = stage_open("lpv", &adopt);
+    struct renderer_fixture s = fixture_open("lpv", &adopt);
     int before = own.locks;
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
     assert_int_equal(own.locks, before + 1);
-    struct ag_image *color = stage_read(&s, "color");
+    struct ag_image *color = fixture_read(&s, "color");
     CHECK(equal(color, expected));
     assert_int_equal(own.held, 0);
     void *image = NULL;
@@ -386,7 +387,7 @@ TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
     assert_int_equal(ag_renderer_layer_handle(s.renderer, "position", &image, &layout, &scale),
                      AG_ERROR_UNSUPPORTED);
     ag_image_destroy(s.context, color);
-    stage_close(&s);
+    fixture_close(&s);
     own_device_close(&own);
 }
 
@@ -396,7 +397,7 @@ TEST(a_frame_goes_into_the_programs_command_buffer)
     struct own_device own;
     own_device_open(&own, 0);
     struct ag_device_adopt adopt = lend(&own);
-    struct stage s = stage_open("lpv", &adopt);
+    struct renderer_fixture s = fixture_open("lpv", &adopt);
     int before = own.locks;
     for (int i = 0; i < 2; i++) {
         VkCommandBuffer commands = own_device_begin(&own);
@@ -411,16 +412,16 @@ TEST(a_frame_goes_into_the_programs_command_buffer)
         assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_OK);
     }
     assert_int_equal(own.locks, before); // the program submitted
-    struct ag_image *color = stage_read(&s, "color");
+    struct ag_image *color = fixture_read(&s, "color");
     CHECK(equal(color, expected));
     ag_image_destroy(s.context, color);
-    stage_close(&s);
+    fixture_close(&s);
     own_device_close(&own);
 }
 
 TEST(an_adopted_device_needs_all_its_handles)
 {
-    struct ag_context *context = stage_context();
+    struct ag_context *context = fixture_context();
     struct ag_device *device = NULL;
     struct ag_device_adopt adopt = { .instance = context };
     struct ag_device_desc desc;
@@ -435,7 +436,7 @@ TEST(an_adopted_device_needs_all_its_handles)
 TEST(an_unknown_device_is_refused)
 {
     test_gpu_require();
-    struct ag_context *context = stage_context();
+    struct ag_context *context = fixture_context();
     struct ag_device *device = NULL;
     struct ag_device_desc desc;
     ag_device_desc_default(&desc);
@@ -455,20 +456,20 @@ TEST(a_scene_lit_by_emission_alone_is_warned_about_where_no_technique_gathers_it
                   { "@cornell", "lpv", false },
                   { "@cornell", "ambient", false },
                   { "@cornell:light=point", "none", false } };
-    struct stage s = stage_open("none", NULL);
+    struct renderer_fixture s = fixture_open("none", NULL);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct ag_scene *scene = NULL;
         struct ag_renderer *renderer = NULL;
-        struct ag_renderer_desc desc = stage_renderer_desc(cases[i].gi);
+        struct ag_renderer_desc desc = fixture_renderer_desc(cases[i].gi);
         assert_int_equal(ag_scene_load(s.context, cases[i].scene, &scene), AG_OK);
-        stage_last_warning[0] = '\0';
+        fixture_last_warning[0] = '\0';
         assert_int_equal(ag_renderer_create(s.device, scene, &desc, &renderer), AG_OK);
-        CHECK_STRING(stage_last_warning,
-                     cases[i].warns ? "@cornell: lit by emissive surfaces alone, which --gi none "
-                                      "does not gather: try --gi lpv"
+        CHECK_STRING(fixture_last_warning,
+                     cases[i].warns ? "@cornell: only emissive surfaces light the scene and --gi "
+                                      "none ignores their light; try --gi lpv"
                                     : "");
         ag_renderer_destroy(renderer);
         ag_scene_destroy(scene);
     }
-    stage_close(&s);
+    fixture_close(&s);
 }

@@ -1,17 +1,17 @@
-#include "api/stage.h"
+#include "api/renderer_fixture.h"
 
 #include <stdio.h>
 
-char stage_last_warning[512];
+char fixture_last_warning[512];
 
 static void listen(void *user, enum ag_log_level level, const char *message)
 {
     (void)user;
     if (level <= AG_LOG_WARNING)
-        snprintf(stage_last_warning, sizeof stage_last_warning, "%s", message);
+        snprintf(fixture_last_warning, sizeof fixture_last_warning, "%s", message);
 }
 
-struct ag_context *stage_context(void)
+struct ag_context *fixture_context(void)
 {
     struct ag_context_desc desc;
     struct ag_context *context = NULL;
@@ -21,12 +21,12 @@ struct ag_context *stage_context(void)
     return context;
 }
 
-struct ag_renderer_desc stage_renderer_desc(const char *gi)
+struct ag_renderer_desc fixture_renderer_desc(const char *gi)
 {
     struct ag_renderer_desc desc;
     ag_renderer_desc_default(&desc);
-    desc.width = STAGE_WIDTH;
-    desc.height = STAGE_HEIGHT;
+    desc.width = FIXTURE_WIDTH;
+    desc.height = FIXTURE_HEIGHT;
     desc.gi = gi;
     desc.frame_options = "shadow_size=256,rsm_size=64";
     desc.indirect_layer = true;
@@ -34,10 +34,10 @@ struct ag_renderer_desc stage_renderer_desc(const char *gi)
     return desc;
 }
 
-struct stage stage_open(const char *gi, const struct ag_device_adopt *adopt)
+struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adopt *adopt)
 {
     test_gpu_require();
-    struct stage s = { .context = stage_context() };
+    struct renderer_fixture s = { .context = fixture_context() };
     // Hazards between submissions, which the layer leaves out unless told otherwise.
     setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
            0);
@@ -47,7 +47,7 @@ struct stage stage_open(const char *gi, const struct ag_device_adopt *adopt)
     device.adopt = adopt;
     assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
     assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);
-    struct ag_renderer_desc desc = stage_renderer_desc(gi);
+    struct ag_renderer_desc desc = fixture_renderer_desc(gi);
     if (ag_renderer_create(s.device, s.scene, &desc, &s.renderer) != AG_OK)
         fail_msg("%s", ag_context_last_error(s.context));
     ag_frame_desc_default(&s.frame);
@@ -55,17 +55,17 @@ struct stage stage_open(const char *gi, const struct ag_device_adopt *adopt)
     return s;
 }
 
-void stage_close(struct stage *s)
+void fixture_close(struct renderer_fixture *s)
 {
     ag_renderer_destroy(s->renderer);
     if (ag_device_validation_messages(s->device))
-        fail_msg("validation says: %s", stage_last_warning);
+        fail_msg("validation says: %s", fixture_last_warning);
     ag_scene_destroy(s->scene);
     ag_device_destroy(s->device);
     ag_context_destroy(s->context);
 }
 
-struct ag_image *stage_read(struct stage *s, const char *layer)
+struct ag_image *fixture_read(struct renderer_fixture *s, const char *layer)
 {
     struct ag_image *image = NULL;
     if (ag_renderer_read(s->renderer, layer, &image) != AG_OK)

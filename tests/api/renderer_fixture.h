@@ -1,0 +1,31 @@
+// A renderer of the Cornell box with a point light, through the public API, with validation on.
+#pragma once
+
+#include "framework/gpu_test.h"
+
+#include <afterglow/afterglow.h>
+
+#include <stdlib.h>
+
+enum { FIXTURE_WIDTH = 48, FIXTURE_HEIGHT = 32 };
+
+struct renderer_fixture {
+    struct ag_context *context;
+    struct ag_device *device;
+    struct ag_scene *scene;
+    struct ag_renderer *renderer;
+    struct ag_frame_desc frame; // of the camera main
+};
+
+// The last warning of all contexts from fixture_context; "" at first.
+extern char fixture_last_warning[512];
+
+struct ag_context *fixture_context(void);
+struct ag_renderer_desc fixture_renderer_desc(const char *gi);
+// Before the first frame. Uses the device in `adopt` (validated by its owner), or a new one if
+// NULL.
+struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adopt *adopt);
+// Fails the test if validation logged a message.
+void fixture_close(struct renderer_fixture *fixture);
+// The caller destroys it.
+struct ag_image *fixture_read(struct renderer_fixture *fixture, const char *layer);
