@@ -111,8 +111,8 @@ static void check_noise(enum sample_shape shape, int side)
         const struct voronoi v = voronoi_of(&points, &grid);
         const struct noise noise = noise_of(&points, &v);
         print_message("%s of %d: noise %.4f, bias %.4f\n", points.ball ? "ball" : "disk",
-                      points.count, noise.turns, noise.bias);
-        CHECK_NEAR(noise.turns, (double)set->noise, 1e-3); // weights of a coarser grid
+                      points.count, noise.deviation, noise.bias);
+        CHECK_NEAR(noise.deviation, (double)set->noise, 1e-3); // weights of a coarser grid
         CHECK_NEAR(noise.bias, (double)set->bias, 1e-3);
     }
     grid_finish(&grid);

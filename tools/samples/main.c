@@ -1,12 +1,11 @@
-// Makes the tables of samples that src/techniques/common/sample_sets.c includes:
+// Generates the sample tables that src/techniques/common/sample_sets.c includes:
 //
 //     make_samples disk > src/techniques/common/sample_sets_disk.inc
 //     make_samples ball > src/techniques/common/sample_sets_ball.inc
 //
-// Of many starts, each optimised and then spread by several factors, the set whose estimates are
-// nearest to exact when it is turned any way is kept. All sets are symmetric about their centre:
-// then a plane through the centre is halved whatever its slope. The same seed gives the same
-// tables.
+// Optimises many random starts, scales each by several factors, and keeps the set with the least
+// noise and bias under rotation. All sets are symmetric about their centre, so that a plane through
+// the centre of any slope is exactly half visible. The same seed gives the same tables.
 #include "noise.h"
 #include "optimise.h"
 
@@ -28,12 +27,12 @@ enum {
 static const int counts[] = { 1, 5, 6, 7, 9, 12, 13, 16, 33 };
 enum { COUNTS = sizeof counts / sizeof counts[0] };
 
-static const double RIM = 0.97; // no sample beyond: its line would have no length to speak of
+static const double RIM = 0.97; // largest radius: beyond it a line sample has almost no length
 static const double SPREAD_MIN = 0.9, SPREAD_MAX = 1.4, SPREAD_STEP = 0.025;
 
 struct choice {
     struct points set;
-    double error; // before the set was spread
+    double error; // before spreading
     double spread;
     int start;
     struct noise noise;
@@ -63,13 +62,13 @@ static void consider(struct choice *best, const struct points *set, double error
         if (reach > RIM) return;
         const struct voronoi v = voronoi_of(&c.set, grid);
         c.noise = noise_of(&c.set, &v);
-        c.total = hypot(c.noise.turns, c.noise.bias);
+        c.total = hypot(c.noise.deviation, c.noise.bias);
         if (c.total < best->total) *best = c;
     }
 }
 
-// A single line through the centre would meet the surface where the sphere has its centre, whatever
-// the surface: it stands beside it. A single point needs no repulsion either.
+// A single sample stands off-centre: a line through the centre would meet any surface at the
+// centre. It needs no repulsion.
 static struct points single(bool ball)
 {
     return (struct points){ .ball = ball, .count = 1, .at = { { 0.5, 0.0, 0.0 } } };
@@ -95,7 +94,7 @@ static void print_set(const struct choice *c, const struct grid *fine, uint32_t 
     const char *shape = set->ball ? "ball" : "disk";
     const struct voronoi v = voronoi_of(set, fine);
     printf("\n// %d: seed %u, start %d, error %.4f, spread %.3f, noise %.4f, bias %.4f\n",
-           set->count, seed, c->start, c->error, c->spread, c->noise.turns, c->noise.bias);
+           set->count, seed, c->start, c->error, c->spread, c->noise.deviation, c->noise.bias);
     printf("static const struct sample %s_%d[] = {\n", shape, set->count);
     for (int i = 0; i < set->count; i++) {
         const struct point p = set->at[i];
@@ -112,7 +111,7 @@ static void print_index(bool ball, const struct choice *choices)
     printf("\nstatic const struct sample_set %s_sets[] = {\n", shape);
     for (int i = 0; i < COUNTS; i++)
         printf("    { %d, %s_%d, %.6ff, %.6ff },\n", counts[i], shape, counts[i],
-               choices[i].noise.turns, choices[i].noise.bias);
+               choices[i].noise.deviation, choices[i].noise.bias);
     printf("};\n");
 }
 
@@ -131,7 +130,7 @@ static bool make(bool ball, uint32_t seed)
         choices[i] = choose(ball, counts[i], seed, &coarse, &check);
         print_set(&choices[i], &fine, seed);
         fprintf(stderr, "%s %d: noise %.4f, bias %.4f\n", ball ? "ball" : "disk", counts[i],
-                choices[i].noise.turns, choices[i].noise.bias);
+                choices[i].noise.deviation, choices[i].noise.bias);
     }
     if (ok) print_index(ball, choices);
     grid_finish(&coarse);

@@ -1,13 +1,12 @@
-// How much the estimate of a set depends on how the set is turned: what a picture shows as noise,
-// since every pixel turns it another way.
+// Variation of a set's estimates over rotations of the set: noise in the image, since each pixel
+// rotates the set differently.
 #pragma once
 
 #include "voronoi.h"
 
 struct noise {
-    double turns; // root mean square over surfaces of the standard deviation over turns
-    double bias;  // root mean square over surfaces of the mean over turns, less the exact value
+    double deviation; // standard deviation over rotations, root mean square over surfaces
+    double bias;      // mean over rotations minus the exact value, root mean square over surfaces
 };
-// Visibility of the hemisphere above a floor that faces the eye, beside walls and ramps: see
-// noise.c.
+// For the visibility of the hemisphere above a floor next to walls and ramps; see noise.c.
 struct noise noise_of(const struct points *set, const struct voronoi *voronoi);

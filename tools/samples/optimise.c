@@ -1,14 +1,13 @@
-// Samples repel each other with 1/d⁴, and the rim repels them with 1/b⁴ times a charge, b the
-// distance from it. A move is made only if it makes the error less; else the force is reduced, and
-// increased again afterwards. Now and then the rim's charge is changed towards what would bring the
-// samples to their regions' centroids.
+// Samples repel each other with 1/d⁴; the rim repels them with charge/b⁴, b the distance from the
+// rim. A step is accepted only if it reduces the error; otherwise the step size is halved. Between
+// rounds the rim's charge is adjusted, so that samples approach the centroids of their regions.
 #include "optimise.h"
 
 #include <math.h>
 
 enum { TRIES = 200, ROUNDS = 40, MOVES = 60 };
 
-static const double INNERMOST_RIM = 0.02; // no nearer to the rim
+static const double INNERMOST_RIM = 0.02; // least distance from the rim
 static const double STEP_MIN = 1e-6, STEP_MAX = 0.05;
 
 static double length(struct point p)
@@ -38,23 +37,25 @@ static struct point random_point(bool ball, struct rng *rng)
     }
 }
 
-static bool is_free(const struct points *set, struct point p, double apart)
+static bool is_free(const struct points *set, struct point p, double min_distance)
 {
     for (int i = 0; i < set->count; i++)
-        if (length(sum(p, scaled(set->at[i], -1.0))) < apart) return false;
+        if (length(sum(p, scaled(set->at[i], -1.0))) < min_distance) return false;
     return true;
 }
 
-// Dart throwing: the distance to keep shrinks where no place is found.
-static struct point dart(const struct points *set, bool symmetric, double *apart, struct rng *rng)
+// Dart throwing: the minimum distance shrinks after TRIES failures.
+static struct point dart(const struct points *set, bool symmetric, double *min_distance,
+                         struct rng *rng)
 {
     for (int tries = 0;; tries++) {
         if (tries == TRIES) {
-            *apart *= 0.9;
+            *min_distance *= 0.9;
             tries = 0;
         }
         const struct point p = random_point(set->ball, rng);
-        if (is_free(set, p, *apart) && (!symmetric || 2.0 * length(p) >= *apart)) return p;
+        if (is_free(set, p, *min_distance) && (!symmetric || 2.0 * length(p) >= *min_distance))
+            return p;
     }
 }
 
@@ -62,10 +63,10 @@ struct points optimise_start(bool ball, int count, enum start start, struct rng 
 {
     const bool symmetric = start == START_SYMMETRIC;
     struct points set = { .ball = ball };
-    double apart = 2.0 * pow(count, ball ? -1.0 / 3.0 : -0.5);
+    double min_distance = 2.0 * pow(count, ball ? -1.0 / 3.0 : -0.5);
     if (symmetric && count % 2) set.at[set.count++] = (struct point){ 0 };
     while (set.count < count) {
-        const struct point p = dart(&set, symmetric, &apart, rng);
+        const struct point p = dart(&set, symmetric, &min_distance, rng);
         set.at[set.count++] = p;
         if (symmetric) set.at[set.count++] = scaled(p, -1.0);
     }
@@ -94,23 +95,23 @@ static struct point inside(struct point p)
     return r > 1.0 - INNERMOST_RIM ? scaled(p, (1.0 - INNERMOST_RIM) / r) : p;
 }
 
-// The sample with the greatest force moves by `step`.
+// Moves each sample along its force, the one with the largest force by `step`.
 static struct points moved(const struct points *set, double charge, double step)
 {
     struct point forces[MAX_SAMPLES];
-    double most = 0.0;
+    double largest = 0.0;
     for (int i = 0; i < set->count; i++) {
         forces[i] = force_on(set, i, charge);
-        most = fmax(most, length(forces[i]));
+        largest = fmax(largest, length(forces[i]));
     }
     struct points to = *set;
-    for (int i = 0; i < set->count && most > 0.0; i++)
-        to.at[i] = inside(sum(set->at[i], scaled(forces[i], step / most)));
+    for (int i = 0; i < set->count && largest > 0.0; i++)
+        to.at[i] = inside(sum(set->at[i], scaled(forces[i], step / largest)));
     return to;
 }
 
-// Mean of how much farther out the samples are than their regions' centroids.
-static double too_far_out(const struct points *set, const struct voronoi *v)
+// Mean of the radius of the samples minus the radius of their regions' centroids.
+static double mean_excess_radius(const struct points *set, const struct voronoi *v)
 {
     double mean = 0.0;
     for (int i = 0; i < set->count; i++) mean += length(set->at[i]) - length(v->centroid[i]);
@@ -137,19 +138,19 @@ static double repel(struct points *set, const struct grid *grid, double charge, 
 
 double optimise(struct points *set, const struct grid *grid)
 {
-    // At first the rim is worth the force of a neighbour's image behind it.
+    // Initially the rim repels like the mirror image of a neighbour.
     double charge = 1.0 / 16.0, factor = 2.0;
     struct voronoi v = voronoi_of(set, grid);
     double error = INFINITY;
-    bool outwards = false;
+    bool inwards = false;
     for (int round = 0; round < ROUNDS && factor > 1.001; round++) {
         if (round == 0) error = voronoi_error(set, &v);
         error = repel(set, grid, charge, error);
         v = voronoi_of(set, grid);
-        const bool now = too_far_out(set, &v) < 0.0;
-        if (round > 0 && now != outwards) factor = sqrt(factor);
-        outwards = now;
-        charge *= outwards ? 1.0 / factor : factor;
+        const bool now_inwards = mean_excess_radius(set, &v) < 0.0;
+        if (round > 0 && now_inwards != inwards) factor = sqrt(factor);
+        inwards = now_inwards;
+        charge *= inwards ? 1.0 / factor : factor;
     }
     return error;
 }

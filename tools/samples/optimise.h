@@ -5,11 +5,11 @@
 
 #include "core/rng.h"
 
-// How a start is arranged before the samples repel each other; the forces keep it.
+// Symmetry of a random start; the forces preserve it.
 enum start { START_FREE, START_SYMMETRIC, START_KINDS };
 
-// A random start without near neighbours. START_SYMMETRIC: with every sample its reflection in the
-// centre, and the centre itself where the count is odd.
+// A random start with a minimum distance. START_SYMMETRIC: point-symmetric about the centre, with a
+// sample at the centre where the count is odd.
 struct points optimise_start(bool ball, int count, enum start start, struct rng *rng);
-// Moves the samples until no move makes the regions more equal. Returns voronoi_error on that grid.
+// Minimizes voronoi_error on the grid, and returns it.
 double optimise(struct points *set, const struct grid *grid);

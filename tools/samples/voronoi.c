@@ -1,4 +1,4 @@
-// Discrete Voronoi diagrams: every cell of a grid goes to the nearest sample.
+// Discrete Voronoi diagrams: each cell of a grid belongs to its nearest sample.
 #include "voronoi.h"
 
 #include <math.h>
@@ -17,8 +17,8 @@ static void add_cell(struct grid *grid, bool ball, struct point at)
     grid->cells[grid->count++] = (struct cell){ at, ball ? 1.0 : sqrt(1.0 - r2) };
 }
 
-// The cells' weights are scaled to a sum of 1, which takes the place of 4π/3 and of what the grid
-// misses at the rim.
+// Normalizes the weights to a sum of 1, which replaces the division by 4π/3 and corrects the grid's
+// error at the rim.
 static void normalize(struct grid *grid)
 {
     double sum = 0.0;
