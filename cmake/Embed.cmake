@@ -1,7 +1,7 @@
 # ag_embed(target header name=file…)
 #
-# Embeds files in a program: `#include "<header>"` declares `extern const struct embedded_file embedded_files[]`, which has a
-# name, bytes and size for each and ends with a name of NULL. Run as a script it writes one file's bytes as C.
+# Embeds files in a program. The header declares `extern const struct embedded_file embedded_files[]`: name, bytes and size of
+# each, ended by a NULL name. Run as a script, this file converts one file to a C array.
 if(CMAKE_SCRIPT_MODE_FILE)
   file(READ "${INPUT}" bytes HEX)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")

@@ -10,9 +10,9 @@ install(EXPORT afterglow NAMESPACE afterglow:: FILE afterglow-config.cmake DESTI
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/afterglow-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/afterglow-config-version.cmake DESTINATION ${package})
 
-# For the static library: the names that pkg-config knows the third-party libraries by.
+# pkg-config names of the third-party libraries that the static library needs.
 set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng OpenEXR assimp spirv-cross-c-shared vulkan")
-# From <libdir>/pkgconfig back to the prefix, so that an installed tree can be moved.
+# Path from <libdir>/pkgconfig to the prefix, so that an installed tree can be moved.
 file(RELATIVE_PATH AFTERGLOW_PC_UP /prefix/${CMAKE_INSTALL_LIBDIR} /prefix)
 configure_file(cmake/afterglow.pc.in ${CMAKE_BINARY_DIR}/afterglow.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/afterglow.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,7 +1,7 @@
 # ag_module(name [USES module…] [THIRD_PARTY target…])
 #
-# One static library per module, target ag_<name>. What it may include is what it links: the modules
-# under USES and, in its own .c files only, the libraries under THIRD_PARTY.
+# One static library per module, target ag_<name>, from all .c files of the folder. It may include the modules of USES and, in its
+# own .c files, the libraries of THIRD_PARTY.
 function(ag_module name)
   cmake_parse_arguments(arg "" "" "USES;THIRD_PARTY" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.c)

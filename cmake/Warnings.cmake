@@ -1,4 +1,4 @@
-# Warnings and sanitizers for our own code; third-party headers come in as system headers.
+# Warnings and sanitizers for the project's own code. Third-party headers are system headers.
 set(AFTERGLOW_C_WARNINGS
   -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wundef -Wvla
   -Wdouble-promotion -Wpointer-arith -Wimplicit-fallthrough -Wconversion -Wno-sign-conversion)
