@@ -1,6 +1,5 @@
-// Holds a technique to the path-traced reference: reads a .case file (README.md tells its lines),
-// has the program compare what the case names, and checks every expectation. All figures are
-// printed, also where they hold.
+// Compares techniques with the path-traced reference: reads a .case file (format: README.md), runs
+// `afterglow compare`, and checks and prints every expectation.
 #include "cli/program.h"
 
 #include <stdio.h>
@@ -17,9 +16,9 @@ struct quality_case {
     int expectation_count;
 };
 
-// ---- reading
+// ---- parsing
 
-static void take(char *out, const char *key, const char *value)
+static void set_once(char *out, const char *key, const char *value)
 {
     if (out[0]) fail_msg("the case has more than one line \"%s\"", key);
     snprintf(out, LINE_SIZE, "%s", value);
@@ -35,9 +34,9 @@ static void add(char list[][LINE_SIZE], int *count, int capacity, const char *ke
 static void read_line(struct quality_case *c, const char *key, const char *value)
 {
     if (strcmp(key, "scene") == 0)
-        take(c->scene, key, value);
+        set_once(c->scene, key, value);
     else if (strcmp(key, "options") == 0)
-        take(c->options, key, value);
+        set_once(c->options, key, value);
     else if (strcmp(key, "gi") == 0)
         add(c->methods, &c->method_count, MAX_METHODS, key, value);
     else if (strcmp(key, "expect") == 0)
@@ -73,7 +72,7 @@ static struct quality_case read_case(const char *path)
 
 // ---- running
 
-// "sponza.glb" lies with the real scenes, which may be absent; "@cornell" is built in.
+// A built-in scene ("@cornell") or a file of the scenes folder ("sponza.glb"), which may be absent.
 static const char *scene_of(const struct quality_case *c)
 {
     return c->scene[0] == '@' ? c->scene : test_scene_path(c->scene);
@@ -81,20 +80,20 @@ static const char *scene_of(const struct quality_case *c)
 
 static json_t *compare(const struct quality_case *c)
 {
-    char words[16384];
-    int length = snprintf(words, sizeof words, "compare %s --json %s", scene_of(c), c->options);
+    char command[16384];
+    int length = snprintf(command, sizeof command, "compare %s --json %s", scene_of(c), c->options);
     for (int i = 0; i < c->method_count; i++)
         length +=
-            snprintf(words + length, sizeof words - (size_t)length, " --gi %s", c->methods[i]);
-    const struct run *run = run_expect(0, words, "-o", test_path("out"), NULL);
+            snprintf(command + length, sizeof command - (size_t)length, " --gi %s", c->methods[i]);
+    const struct run *run = run_expect(0, command, "-o", test_path("out"), NULL);
     if (strstr(run->err, "gpu validation")) fail_msg("%s", run->err);
     return run_json(run);
 }
 
-// ---- expecting
+// ---- expectations
 
-// "indirect.relmse" of the first method, "none/flip" of a named one, "reference.noise" of the
-// reference, or a number.
+// A number, or a figure of the report: "indirect.relmse" of the first method, "none/flip" of a
+// named method, "reference.noise" of the reference.
 static double value_of(const struct quality_case *c, json_t *report, const char *term)
 {
     char *end;

@@ -1,4 +1,4 @@
-# Techniques against the path-traced reference: one test for each .case file here. References are kept between runs.
+# Techniques against the path-traced reference: one test for each .case file. References are cached between runs.
 add_executable(test_quality_case ${CMAKE_CURRENT_LIST_DIR}/test_case.c)
 target_link_libraries(test_quality_case PRIVATE ag_test_program afterglow_flags)
 set_target_properties(test_quality_case PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
