@@ -87,6 +87,21 @@ fails "work left for later" 'notes.md:1' "$here/source_text.sh" "$tree"
 rm "$tree/notes.md"
 
 fresh
+cp "$here/../../.clang-format" "$tree"
+printf 'int x;\n' | tee "$tree/src/gpu/gpu.c" >"$tree/src/techniques/lpv/lpv.c"
+rm "$tree/include/afterglow/x.h"
+"$here/format.sh" "$tree" >/dev/null 2>&1
+if [ $? -ne 77 ]; then
+    passes "formatted sources" "$here/format.sh" "$tree"
+    printf 'int  x;\n' >"$tree/src/core/bad.c"
+    fails "a C file that is not formatted" 'src/core/bad.c:1' "$here/format.sh" "$tree"
+    rm "$tree/src/core/bad.c"
+    printf 'float  x;\n' >"$tree/src/core/bad.comp"
+    fails "a shader that is not formatted" 'src/core/bad.comp: not' "$here/format.sh" "$tree"
+fi
+rm "$tree/.clang-format"
+
+fresh
 passes "a header that stands alone" "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
 printf 'uint32_t ag_missing;\n' >"$tree/include/afterglow/bad.h"
 fails "a header that needs another" 'bad.h: not C17 alone' "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
