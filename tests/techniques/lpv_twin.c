@@ -175,5 +175,5 @@ double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,
     const double loss = fmax(first - gather(twin, further, reconstruction, lobe), 0.0);
     const double damped = fmax(first - (double)how->damping * loss, 0.0);
     const double area = (double)twin->grid.cell_m * (double)twin->grid.cell_m;
-    return damped * lpv_mean_way(twin->scheme) / area;
+    return damped * lpv_mean_path(twin->scheme) / area;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frame/scene_gpu.h"
-#include "techniques/lpv_rig.h"
+#include "techniques/lpv_fixture.h"
 
 struct props {
     struct stage *stage;

@@ -1,13 +1,13 @@
 // Further bounces: what is known of the surfaces, and what they send on.
 #include "frame/studio.h"
-#include "techniques/lpv_rig.h"
+#include "techniques/lpv_fixture.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDES = 6, SIDE_NUMBERS = RIG_COLOURS + 1, NUMBERS = SIDES * SIDE_NUMBERS };
+enum { SIDES = 6, SIDE_NUMBERS = LPV_FIXTURE_COLOURS + 1, NUMBERS = SIDES * SIDE_NUMBERS };
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
@@ -26,7 +26,7 @@ static void read_areas(struct lpv *lpv, double out[NUMBERS])
     const size_t count = (size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2];
     const double unit = (double)(lpv->grid.cell_m * lpv->grid.cell_m) / LPV_SURFACE_UNIT;
     uint32_t *words = malloc(count * NUMBERS * sizeof *words);
-    CHECK(gpu_buffer_download(lpv->gpu, lpv->bounce.surfaces, 0, words,
+    CHECK(gpu_buffer_download(lpv->gpu, lpv->volumes.surfaces, 0, words,
                               count * NUMBERS * sizeof *words));
     memset(out, 0, NUMBERS * sizeof *out);
     for (size_t i = 0; i < count * NUMBERS; i++) out[i % NUMBERS] += unit * words[i];
@@ -60,18 +60,18 @@ TEST_GPU(lpv_surfaces_have_the_area_and_colour_of_the_scene)
     metal.metallic = 1;
     studio_floor(&s, 2, studio_material(&s, &metal)); // reflects nothing diffusely
     studio_open(&s);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
     use(&s, lpv);
     studio_render(&s);
     double areas[NUMBERS];
     read_areas(lpv, areas);
     // +x −x +y −y +z −z
     const double expected[SIDES] = { 2.5 + 20 * 0.36, 2.5, 36 + 5 + 20 * 0.64, 36 + 5, 2, 2 };
-    const double albedo[RIG_COLOURS] = { 0.2, 0.5, 0.8 };
+    const double albedo[LPV_FIXTURE_COLOURS] = { 0.2, 0.5, 0.8 };
     for (int side = 0; side < SIDES; side++)
-        for (int c = 0; c < RIG_COLOURS; c++)
+        for (int c = 0; c < LPV_FIXTURE_COLOURS; c++)
             CHECK_RELATIVE(areas[SIDE_NUMBERS * side + c], albedo[c] * expected[side], 0.06);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     studio_finish(&s);
 }
 
@@ -95,7 +95,7 @@ TEST_GPU(lpv_surfaces_respect_masks_and_sides)
     studio_quad(&s, vec3_of(-2, 0, -2), vec3_of(2, 0, -2), vec3_of(2, 2, -2), vec3_of(-2, 2, -2),
                 studio_matte(&s, vec3_of(1, 1, 1))); // +z, 8 m²
     studio_open(&s);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
     use(&s, lpv);
     studio_render(&s);
     double areas[NUMBERS];
@@ -103,7 +103,7 @@ TEST_GPU(lpv_surfaces_respect_masks_and_sides)
     const double expected[SIDES] = { 0, 0, 8, 8, 8, 0 };
     for (int side = 0; side < SIDES; side++)
         CHECK_NEAR(areas[SIDE_NUMBERS * side], expected[side], 0.06 * 8);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     studio_finish(&s);
 }
 
@@ -127,10 +127,10 @@ static double closed_box(struct gpu *gpu, const char *gi, float albedo)
     studio_box(&s, vec3_of(-2, -2, -2), vec3_of(2, 2, 2), true,
                studio_matte(&s, vec3_of(albedo, albedo, albedo)));
     studio_open(&s);
-    struct lpv *lpv = rig_create(gpu, gi);
+    struct lpv *lpv = lpv_fixture_create(gpu, gi);
     use(&s, lpv);
     const double mean = render_mean(&s);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     studio_finish(&s);
     return mean;
 }
@@ -185,7 +185,7 @@ TEST_GPU(lpv_bounces_are_linear)
     float *e[4];
     double most = 0;
     for (int lights = 1; lights < 4; lights++) {
-        struct lpv *lpv = rig_create(gpu, "lpv:dim=16,steps=24,bounces=2,precision=float");
+        struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=16,steps=24,bounces=2,precision=float");
         const vec3s one = lights & 1 ? vec3_of(1, 1, 1) : vec3_of(0, 0, 0);
         const vec3s two = lights & 2 ? vec3_of(3, 2, 1) : vec3_of(0, 0, 0);
         s.lights[0].intensity = one;
@@ -193,7 +193,7 @@ TEST_GPU(lpv_bounces_are_linear)
         use(&s, lpv);
         studio_render(&s);
         e[lights] = studio_read(&s, READ_IRRADIANCE);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
     }
     const size_t count = (size_t)s.width * s.height * 3;
     for (size_t i = 0; i < count; i++) most = fmax(most, (double)e[3][i]);
@@ -214,7 +214,7 @@ TEST_GPU(lpv_surfaces_follow_what_moves)
     const int slab = studio_quad(&s, vec3_of(-1, 1, 0), vec3_of(1, 1, 0), vec3_of(1, 2, 0),
                                  vec3_of(-1, 2, 0), matte);
     studio_open(&s);
-    struct lpv *kept = rig_create(gpu, "lpv:dim=16,steps=16,bounces=1");
+    struct lpv *kept = lpv_fixture_create(gpu, "lpv:dim=16,steps=16,bounces=1");
     use(&s, kept);
     const double first = render_mean(&s), second = render_mean(&s);
     CHECK(first > 0 && first == second);
@@ -225,10 +225,10 @@ TEST_GPU(lpv_surfaces_follow_what_moves)
     double areas[NUMBERS];
     read_areas(kept, areas);
     CHECK(areas[0] > 1.0 && areas[4 * SIDE_NUMBERS] < 0.1);
-    rig_destroy(kept);
-    struct lpv *fresh = rig_create(gpu, "lpv:dim=16,steps=16,bounces=1");
+    lpv_fixture_destroy(kept);
+    struct lpv *fresh = lpv_fixture_create(gpu, "lpv:dim=16,steps=16,bounces=1");
     use(&s, fresh);
     CHECK(render_mean(&s) == turned);
-    rig_destroy(fresh);
+    lpv_fixture_destroy(fresh);
     studio_finish(&s);
 }

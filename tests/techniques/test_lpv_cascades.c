@@ -1,6 +1,6 @@
 // Nested grids: where they lie, what the finer begin with, and that a picture depends on nothing
 // but the frame.
-#include "techniques/lpv_rig.h"
+#include "techniques/lpv_fixture.h"
 
 #include "core/rng.h"
 
@@ -85,7 +85,7 @@ static void show_hall(struct stage *stage, struct gpu *gpu, vec3s shift, vec3s s
 
 static void render(struct lpv *lpv, struct stage *stage, float out[PIXELS * 3])
 {
-    rig_render(lpv, stage);
+    lpv_fixture_render(lpv, stage);
     stage_read_irradiance(stage, out);
 }
 
@@ -107,11 +107,11 @@ TEST_GPU(lpv_cascades_give_a_still_scene_the_same_bytes_in_every_frame)
         struct stage stage;
         float first[PIXELS * 3], second[PIXELS * 3];
         show_hall(&stage, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
-        struct lpv *lpv = rig_create(gpu, GIS[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, GIS[i]);
         render(lpv, &stage, first);
         render(lpv, &stage, second);
         check_same(first, second, 0.0);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
         stage_finish(&stage);
     }
 }
@@ -123,13 +123,13 @@ TEST_GPU(lpv_cascades_leave_no_trail_of_a_light_that_moved)
         float moved[PIXELS * 3], fresh[PIXELS * 3];
         show_hall(&there, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 12);
         show_hall(&here, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
-        struct lpv *lpv = rig_create(gpu, GIS[i]), *other = rig_create(gpu, GIS[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, GIS[i]), *other = lpv_fixture_create(gpu, GIS[i]);
         render(lpv, &there, moved);
         render(lpv, &here, moved);
         render(other, &here, fresh);
         check_same(moved, fresh, 0.0);
-        rig_destroy(lpv);
-        rig_destroy(other);
+        lpv_fixture_destroy(lpv);
+        lpv_fixture_destroy(other);
         stage_finish(&there);
         stage_finish(&here);
     }
@@ -141,7 +141,7 @@ TEST_GPU(lpv_cascades_give_the_same_picture_wherever_scene_and_camera_stand)
         struct stage stage, shifted;
         float a[PIXELS * 3], b[PIXELS * 3];
         show_hall(&stage, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
-        struct lpv *lpv = rig_create(gpu, GIS[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, GIS[i]);
         render(lpv, &stage, a);
         const struct lpv *coarsest = lpv;
         while (coarsest->coarser) coarsest = coarsest->coarser;
@@ -149,7 +149,7 @@ TEST_GPU(lpv_cascades_give_the_same_picture_wherever_scene_and_camera_stand)
         show_hall(&shifted, gpu, vec3_of(3 * cell, -2 * cell, cell), vec3_of(0, 0, 0), 3);
         render(lpv, &shifted, b);
         check_same(a, b, 2e-3);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
         stage_finish(&stage);
         stage_finish(&shifted);
     }
@@ -179,7 +179,7 @@ TEST_GPU(lpv_cascades_do_not_swim_when_the_camera_goes_on_by_whole_cells)
         struct stage stage, near, next;
         float a[PIXELS * 3], b[PIXELS * 3], c[PIXELS * 3];
         show_hall(&stage, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
-        struct lpv *lpv = rig_create(gpu, gis[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, gis[i]);
         render(lpv, &stage, a);
         const struct lpv_grid before = lpv->grid;
         show_hall(&near, gpu, vec3_of(0, 0, 0), vec3_of(0.05f, 0.01f, 0.02f), 3);
@@ -201,7 +201,7 @@ TEST_GPU(lpv_cascades_do_not_swim_when_the_camera_goes_on_by_whole_cells)
                       worst / most);
         CHECK(seen > PIXELS / 2);
         CHECK(worst < 0.01 * most);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
         stage_finish(&stage);
         stage_finish(&near);
         stage_finish(&next);
@@ -256,17 +256,17 @@ static void refinement_is_the_twins(struct gpu *gpu, const char *gi)
 {
     struct stage stage;
     show_hall(&stage, gpu, vec3_of(0.2f, 0, 0.1f), vec3_of(0, 0, 0), 3);
-    struct lpv *lpv = rig_create(gpu, gi);
-    rig_render(lpv, &stage);
+    struct lpv *lpv = lpv_fixture_create(gpu, gi);
+    lpv_fixture_render(lpv, &stage);
     CHECK(lpv->grid.open != 0 && lpv->coarser->grid.open == 0);
-    float *coarser = rig_read(lpv->coarser, lpv->coarser->light, 1);
-    float *got = rig_read(lpv, lpv->light, 1);
+    float *coarser = lpv_fixture_read(lpv->coarser, lpv->coarser->volumes.light, 1);
+    float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
     struct twin twin;
     twin_init(&twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
     const int count = (int)twin_cells(&twin), coefficients = SH_COUNT(lpv->options.bands);
     double(*injected)[9] = calloc((size_t)count, sizeof *injected),
     (*begin)[9] = calloc((size_t)count, sizeof *begin);
-    rig_inject_twin(&twin, &stage, 1);
+    lpv_fixture_inject_twin(&twin, &stage, 1);
     memcpy(injected, twin.light, (size_t)count * sizeof *injected);
     refine_twin(lpv, coarser, begin);
     memcpy(twin.light, begin, (size_t)count * sizeof *begin);
@@ -287,7 +287,7 @@ static void refinement_is_the_twins(struct gpu *gpu, const char *gi)
     free(coarser);
     free(got);
     twin_finish(&twin);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 

@@ -1,5 +1,5 @@
 // Energy: what is injected stays in the grid, and what comes out of it is near form factors.
-#include "techniques/lpv_rig.h"
+#include "techniques/lpv_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@ enum { SIZE = 64, WIDTH = 16, PIXELS = WIDTH * WIDTH };
 
 static double flux_of(struct lpv *lpv, gpu_image volume)
 {
-    float *cells = rig_read(lpv, volume, 1);
+    float *cells = lpv_fixture_read(lpv, volume, 1);
     double sum = 0.0;
     for (int i = 0; i < lpv->grid.cells[0] * lpv->grid.cells[1] * lpv->grid.cells[2]; i++)
         sum += (double)cells[SH_COUNT(lpv->options.bands) * i];
@@ -44,19 +44,20 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
                   { "holpv:dim=40,steps=16,precision=float,lobe=normal", 1e-5 },
                   { "holpv:dim=40,steps=16,precision=half", 2e-3 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct lpv *lpv = rig_create(gpu, cases[i].gi);
-        rig_render(lpv, &stage);
+        struct lpv *lpv = lpv_fixture_create(gpu, cases[i].gi);
+        lpv_fixture_render(lpv, &stage);
         assert_int_equal(lpv->grid.cells[0], 39);
-        const double injected = flux_of(lpv, lpv->injected);
+        const double injected = flux_of(lpv, lpv->volumes.injected);
         // All but the last step, each of which holds the injected flux once; then the last, in 16
         // bits.
-        const double sum = flux_of(lpv, lpv->steps[0]), last = flux_of(lpv, lpv->light);
+        const double sum = flux_of(lpv, lpv->volumes.steps[0]),
+                     last = flux_of(lpv, lpv->volumes.light);
         print_message("%s: flux %.6f, over 15 steps %.6f, rounded to 16 bits %.6f of it\n",
                       cases[i].gi, injected, sum / (16.0 * injected), last / (17.0 * injected));
         CHECK_RELATIVE(injected, 700.0, cases[i].rounding);
         CHECK_RELATIVE(sum, 16.0 * injected, cases[i].rounding);
         CHECK_RELATIVE(last, 17.0 * injected, 2e-3);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
     }
     stage_finish(&stage);
 }
@@ -103,14 +104,14 @@ static struct room_error room(struct gpu *gpu, const char *options, float a, flo
     stage_fill_face(&stage, 0,
                     (struct stage_texel){
                         .depth = 1, .normal = vec3_of(0, 0, 1), .reflectance = { 255, 255, 255 } });
-    struct lpv *lpv = rig_create(gpu, options);
+    struct lpv *lpv = lpv_fixture_create(gpu, options);
     double mean[3] = { 0 }, truth[3] = { 0 }, error = 0.0, all = 0.0;
     for (int wall = 0; wall < 3; wall++) {
         float got[PIXELS * 3];
         const double weight = wall == 1 ? 4.0 : 1.0; // four side walls
         stage_show_wall(&stage, CORNERS[wall], ACROSS[wall], DOWN[wall], NORMALS[wall]);
         stage_upload(&stage);
-        rig_render(lpv, &stage);
+        lpv_fixture_render(lpv, &stage);
         stage_read_irradiance(&stage, got);
         for (int i = 0; i < PIXELS; i++) {
             const float u = ((float)(i % WIDTH) + 0.5f) / WIDTH,
@@ -126,7 +127,7 @@ static struct room_error room(struct gpu *gpu, const char *options, float a, flo
             all += weight * expected;
         }
     }
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
     return (struct room_error){ mean[0] / truth[0], mean[1] / truth[1], mean[2], error / all };
 }
@@ -239,8 +240,8 @@ static double diagonal_relmse(struct gpu *gpu, const char *gi)
     stage_show_wall(&stage, vec3_of(0.1f, 0, 0.1f), vec3_of(9.8f, 0, 0), vec3_of(0, 0, 9.8f),
                     vec3_of(0, 1, 0));
     stage_upload(&stage);
-    struct lpv *lpv = rig_create(gpu, gi);
-    rig_render(lpv, &stage);
+    struct lpv *lpv = lpv_fixture_create(gpu, gi);
+    lpv_fixture_render(lpv, &stage);
     float got[PIXELS * 3];
     stage_read_irradiance(&stage, got);
     double truth[PIXELS], mean = 0.0, sum = 0.0;
@@ -257,7 +258,7 @@ static double diagonal_relmse(struct gpu *gpu, const char *gi)
         const double error = (double)got[3 * i] - truth[i];
         if (truth[i] > 0.0) sum += error * error / (truth[i] * truth[i] + 0.01 * mean * mean);
     }
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
     print_message("%s: relmse %.3f on the diagonal's lit floor\n", gi, sum / lit);
     return sum / lit;

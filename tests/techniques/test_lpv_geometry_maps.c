@@ -1,5 +1,5 @@
 // The geometry volume from maps against the plain C twin, and what must hold to the bit.
-#include "techniques/geometry_rig.h"
+#include "techniques/geometry_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -63,16 +63,16 @@ TEST_GPU(lpv_geometry_from_maps_is_the_twins)
 {
     struct stage stage;
     geometry_scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1,geometry=maps");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1,geometry=maps");
     for (int faces = 2; faces > 0; faces--) {
         struct geometry_twin twin;
         stage.view.rsm_face_count = faces;
-        rig_render(lpv, &stage);
+        lpv_fixture_render(lpv, &stage);
         twin_of(&twin, lpv, &stage);
         geometry_check(lpv, &twin, 2e-3); // halves
         geometry_twin_finish(&twin);
     }
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
@@ -84,13 +84,13 @@ TEST_GPU(lpv_light_goes_past_what_maps_see_as_the_twins_does)
     struct stage stage;
     geometry_scatter(&stage, gpu);
     for (int i = 0; i < 4; i++) {
-        struct lpv *lpv = rig_create(gpu, options[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, options[i]);
         struct geometry_twin twin;
-        rig_render(lpv, &stage);
+        lpv_fixture_render(lpv, &stage);
         twin_of(&twin, lpv, &stage);
         geometry_check_light(lpv, &stage, &twin);
         geometry_twin_finish(&twin);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
     }
     stage_finish(&stage);
 }
@@ -99,8 +99,8 @@ TEST_GPU(lpv_geometry_from_maps_knows_no_order_of_lights)
 {
     struct stage stage;
     geometry_scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1,geometry=maps");
-    rig_render(lpv, &stage);
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1,geometry=maps");
+    lpv_fixture_render(lpv, &stage);
     float *before = geometry_read(lpv);
     for (uint32_t i = 0; i < GEOMETRY_SIZE * GEOMETRY_SIZE; i++) {
         const struct stage_texel texel = stage.texels[i];
@@ -111,12 +111,12 @@ TEST_GPU(lpv_geometry_from_maps_knows_no_order_of_lights)
     stage.faces[0] = stage.faces[1];
     stage.faces[1] = face;
     stage_upload(&stage);
-    rig_render(lpv, &stage);
+    lpv_fixture_render(lpv, &stage);
     float *swapped = geometry_read(lpv);
     assert_memory_equal(before, swapped, geometry_floats(lpv) * sizeof *before);
     free(before);
     free(swapped);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
@@ -130,15 +130,15 @@ TEST_GPU(lpv_geometry_counts_a_surface_once_whoever_sees_it)
     stage.faces[1] = stage.faces[0];
     stage.faces[1].light = 1;
     stage_upload(&stage);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1,geometry=maps");
-    rig_render(lpv, &stage);
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1,geometry=maps");
+    lpv_fixture_render(lpv, &stage);
     float *two = geometry_read(lpv);
     stage.view.rsm_face_count = 1;
-    rig_render(lpv, &stage);
+    lpv_fixture_render(lpv, &stage);
     float *one = geometry_read(lpv);
     assert_memory_equal(one, two, geometry_floats(lpv) * sizeof *one);
     free(one);
     free(two);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }

@@ -1,6 +1,6 @@
 // The geometry volume from the scene's triangles against the plain C twin, and what must hold to
 // the bit.
-#include "techniques/geometry_rig.h"
+#include "techniques/geometry_fixture.h"
 #include "techniques/props.h"
 
 #include <math.h>
@@ -49,12 +49,12 @@ TEST_GPU(lpv_geometry_from_the_scene_is_the_twins)
         struct set set;
         struct geometry_twin twin;
         set_init(&set, gpu, 1);
-        struct lpv *lpv = rig_create(gpu, options[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, options[i]);
         props_render(&set.props, lpv);
         twin_of(&twin, lpv, &set.props);
         geometry_check(lpv, &twin, 0.0); // sixteenths
         geometry_twin_finish(&twin);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
         set_finish(&set);
     }
 }
@@ -67,13 +67,13 @@ TEST_GPU(lpv_light_goes_past_the_scene_as_the_twins_does)
     struct set set;
     set_init(&set, gpu, 1);
     for (int i = 0; i < 5; i++) {
-        struct lpv *lpv = rig_create(gpu, options[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, options[i]);
         struct geometry_twin twin;
         props_render(&set.props, lpv);
         twin_of(&twin, lpv, &set.props);
         geometry_check_light(lpv, &set.stage, &twin);
         geometry_twin_finish(&twin);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
     }
     set_finish(&set);
 }
@@ -83,7 +83,7 @@ TEST_GPU(lpv_blocking_changes_what_was_kept)
 {
     struct set set;
     set_init(&set, gpu, 1);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=6,blocking=0.2");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=6,blocking=0.2");
     props_render(&set.props, lpv);
     struct lpv_options options = lpv->options;
     options.blocking = 2;
@@ -93,7 +93,7 @@ TEST_GPU(lpv_blocking_changes_what_was_kept)
     twin_of(&twin, lpv, &set.props);
     geometry_check_light(lpv, &set.stage, &twin);
     geometry_twin_finish(&twin);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     set_finish(&set);
 }
 
@@ -102,21 +102,21 @@ TEST_GPU(lpv_geometry_kept_from_earlier_frames_is_that_of_a_first_frame)
 {
     struct set set;
     set_init(&set, gpu, 3);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
     for (int frame = 0; frame < 6; frame++) {
         if (frame > 1 && frame < 5) props_move(&set.props, 1, 0.21f);
         if (frame == 3) props_move(&set.props, 2, -0.4f); // one more begins to move
         props_render(&set.props, lpv);
         float *kept = geometry_read(lpv);
-        struct lpv *fresh = rig_create(gpu, "lpv:dim=8,steps=1");
+        struct lpv *fresh = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
         props_render(&set.props, fresh);
         float *first = geometry_read(fresh);
         assert_memory_equal(kept, first, geometry_floats(lpv) * sizeof *kept);
         free(kept);
         free(first);
-        rig_destroy(fresh);
+        lpv_fixture_destroy(fresh);
     }
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     set_finish(&set);
 }
 
@@ -124,12 +124,13 @@ TEST_GPU(lpv_geometry_kept_from_earlier_frames_is_that_of_a_first_frame)
 // made anew.
 static bool is_made_anew(struct props *props, struct lpv *lpv)
 {
-    const size_t words = gpu_buffer_bytes(lpv->gpu, lpv->geometry.still) / 4;
+    const size_t words = gpu_buffer_bytes(lpv->gpu, lpv->volumes.static_coverage) / 4;
     uint32_t *mark = malloc(words * sizeof *mark), *after = malloc(words * sizeof *mark);
     for (size_t i = 0; i < words; i++) mark[i] = 0x5555;
-    CHECK(gpu_buffer_upload(lpv->gpu, lpv->geometry.still, 0, mark, words * sizeof *mark));
+    CHECK(gpu_buffer_upload(lpv->gpu, lpv->volumes.static_coverage, 0, mark, words * sizeof *mark));
     props_render(props, lpv);
-    CHECK(gpu_buffer_download(lpv->gpu, lpv->geometry.still, 0, after, words * sizeof *mark));
+    CHECK(gpu_buffer_download(lpv->gpu, lpv->volumes.static_coverage, 0, after,
+                              words * sizeof *mark));
     const bool anew = memcmp(mark, after, words * sizeof *mark) != 0;
     free(mark);
     free(after);
@@ -140,7 +141,7 @@ TEST_GPU(lpv_geometry_of_still_things_is_made_once)
 {
     struct set set;
     set_init(&set, gpu, 2);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
     CHECK(is_made_anew(&set.props, lpv));
     CHECK(!is_made_anew(&set.props, lpv));
     props_move(&set.props, 1, 0.3f);
@@ -156,7 +157,7 @@ TEST_GPU(lpv_geometry_of_still_things_is_made_once)
     CHECK(is_made_anew(&set.props, lpv));
     set.stage.view.index = 0; // another scene
     CHECK(is_made_anew(&set.props, lpv));
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     set_finish(&set);
 }
 
@@ -182,7 +183,7 @@ TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
     props_init(&set.props, &set.stage);
     props_add(&set.props, positions, (N + 1) * (N + 1), indices, 6 * N * N);
     props_place(&set.props);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=16,steps=1");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=16,steps=1");
     props_render(&set.props, lpv);
     const int32_t *cells = lpv->grid.cells;
     float *got = geometry_read(lpv);
@@ -198,7 +199,7 @@ TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
             CHECK_NEAR(sum, 1.0, 0.0);
         }
     free(got);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     set_finish(&set);
 }
 
@@ -214,12 +215,12 @@ TEST_GPU(lpv_geometry_of_nothing_is_nothing)
         stage_show_wall(&set.stage, vec3_of(90, 0, 0), vec3_of(1, 0, 0), vec3_of(0, 1, 0),
                         vec3_of(0, 0, 1));
         stage_upload(&set.stage);
-        struct lpv *lpv = rig_create(gpu, options[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, options[i]);
         props_render(&set.props, lpv);
         float *got = geometry_read(lpv);
         for (size_t k = 0; k < geometry_floats(lpv); k++) CHECK(got[k] == 0.0f);
         free(got);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
         set_finish(&set);
     }
 }
@@ -229,7 +230,7 @@ TEST_GPU(lpv_geometry_leaves_out_what_has_no_place)
 {
     struct set set;
     set_init(&set, gpu, 2);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=8,steps=1");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
     props_move(&set.props, 1, 1e4f);
     props_render(&set.props, lpv);
     float *one = geometry_read(lpv);
@@ -242,6 +243,6 @@ TEST_GPU(lpv_geometry_leaves_out_what_has_no_place)
         free(got);
     }
     free(one);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     set_finish(&set);
 }

@@ -94,8 +94,8 @@ TEST(lpv_mean_way_of_a_step_is_the_mean_over_directions)
         const double x = sqrt(1.0 - z * z) * cos(phi), y = sqrt(1.0 - z * z) * sin(phi);
         sum += x + y + z, most += fmax(x, fmax(y, z)), all += 1.0;
     }
-    CHECK_NEAR(lpv_mean_way(LPV_SIX), all / sum, 1e-4);
-    CHECK_NEAR(lpv_mean_way(LPV_TWENTY_SIX), all / most, 1e-4);
+    CHECK_NEAR(lpv_mean_path(LPV_SIX), all / sum, 1e-4);
+    CHECK_NEAR(lpv_mean_path(LPV_TWENTY_SIX), all / most, 1e-4);
 }
 
 // Coefficients of one face's lobe of unit flux, before what the quadrature of band 2 divides by.

@@ -48,13 +48,13 @@ static double behind(struct gpu *gpu, const char *gi, float height)
     if (height > 0)
         props_add_wall(&props, vec3_of(0, 0, WALL), vec3_of(ROOM, 0, 0), vec3_of(0, height, 0));
     props_place(&props);
-    struct lpv *lpv = rig_create(gpu, gi);
+    struct lpv *lpv = lpv_fixture_create(gpu, gi);
     props_render(&props, lpv);
     float got[PIXELS * 3];
     double sum = 0.0;
     stage_read_irradiance(&stage, got);
     for (int i = 0; i < PIXELS; i++) sum += (double)got[3 * i] / PIXELS;
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     props_finish(&props);
     stage_finish(&stage);
     return sum;

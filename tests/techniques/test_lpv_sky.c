@@ -1,7 +1,7 @@
 // The light of the sky, which comes in through the border of the grid.
 #include "frame/studio.h"
 #include "techniques/gi.h"
-#include "techniques/lpv_rig.h"
+#include "techniques/lpv_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static void check_furnace(struct stage *stage, struct lpv *lpv, double tolerance
         // From corner to corner of the box, and a little beyond.
         stage_show_wall(stage, vec3_of(-2, -1, -3), vec3_of(4, 0, 6), vec3_of(0, 2, 0), n);
         stage_upload(stage);
-        rig_render(lpv, stage);
+        lpv_fixture_render(lpv, stage);
         stage_read_irradiance(stage, got);
         for (int k = 0; k < 3 * PIXELS; k++)
             CHECK_RELATIVE((double)got[k], GLM_PI * (double)SKY.raw[k % 3], tolerance);
@@ -43,9 +43,9 @@ TEST_GPU(lpv_under_the_sky_alone_is_a_furnace)
         stage_init(&stage, gpu, WIDTH, WIDTH, 8, 0);
         stage.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
         stage.constants.sky = SKY;
-        struct lpv *lpv = rig_create(gpu, cases[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, cases[i]);
         check_furnace(&stage, lpv, 5e-3);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
         stage_finish(&stage);
     }
 }
@@ -60,11 +60,11 @@ TEST_GPU(lpv_leaves_the_sky_out_when_told)
     stage_show_wall(&stage, vec3_of(-1, 0, -1), vec3_of(1, 0, 1), vec3_of(0, 1, 0),
                     vec3_of(0, 1, 0));
     stage_upload(&stage);
-    struct lpv *lpv = rig_create(gpu, "lpv:dim=16,sky=false");
-    rig_render(lpv, &stage);
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=16,sky=false");
+    lpv_fixture_render(lpv, &stage);
     stage_read_irradiance(&stage, got);
     for (int k = 0; k < 3 * PIXELS; k++) CHECK(got[k] == 0.0f);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
@@ -85,11 +85,12 @@ TEST_GPU(lpv_sky_adds_to_other_light)
         stage_show_wall(&stage, vec3_of(-2, 0.9f, -3), vec3_of(4, 0, 0), vec3_of(0, 0, 6),
                         vec3_of(0, -1, 0));
         stage_upload(&stage);
-        struct lpv *lpv = rig_create(gpu, "lpv:dim=16,sky=true,cell_margin=1,precision=float");
-        rig_render(lpv, &stage);
+        struct lpv *lpv =
+            lpv_fixture_create(gpu, "lpv:dim=16,sky=true,cell_margin=1,precision=float");
+        lpv_fixture_render(lpv, &stage);
         stage_read_irradiance(&stage, which == 3 ? both : got);
         for (int k = 0; k < 3 * PIXELS && which < 3; k++) sum[k] += got[k];
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
         stage_finish(&stage);
     }
     for (int k = 0; k < 3 * PIXELS; k++) // 11 bits of three results

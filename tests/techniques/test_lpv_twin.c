@@ -1,5 +1,5 @@
 // Each GPU stage against the plain C twin, and what must hold to the bit.
-#include "techniques/lpv_rig.h"
+#include "techniques/lpv_fixture.h"
 
 #include "core/rng.h"
 
@@ -66,16 +66,16 @@ static double rounding(const struct lpv *lpv)
 static void twin_of(struct twin *twin, struct lpv *lpv, const struct stage *stage, int colour)
 {
     twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
-    rig_inject_twin(twin, stage, colour);
+    lpv_fixture_inject_twin(twin, stage, colour);
 }
 
 static void check_injection(struct lpv *lpv, struct stage *stage)
 {
-    rig_render(lpv, stage);
-    for (int colour = 0; colour < RIG_COLOURS; colour++) {
+    lpv_fixture_render(lpv, stage);
+    for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
         twin_of(&twin, lpv, stage, colour);
-        float *got = rig_read(lpv, lpv->injected, colour);
+        float *got = lpv_fixture_read(lpv, lpv->volumes.injected, colour);
         check_volume(got, &twin, twin.light, rounding(lpv));
         free(got);
         twin_finish(&twin);
@@ -91,9 +91,9 @@ TEST_GPU(lpv_injection_is_the_twins)
     struct stage stage;
     scatter(&stage, gpu);
     for (int i = 0; i < INJECTION_COUNT; i++) {
-        struct lpv *lpv = rig_create(gpu, INJECTIONS[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, INJECTIONS[i]);
         check_injection(lpv, &stage);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
     }
     stage_finish(&stage);
 }
@@ -123,12 +123,12 @@ TEST_GPU(lpv_injection_of_emissive_surfaces_is_the_twins)
     scatter_points(points);
     stage_set_emitters(&stage, points, POINTS);
     for (int i = 0; i < INJECTION_COUNT; i++) {
-        struct lpv *lpv = rig_create(gpu, INJECTIONS[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, INJECTIONS[i]);
         stage.view.rsm_face_count = 2;
         check_injection(lpv, &stage); // with the maps
         stage.view.rsm_face_count = 0;
         check_injection(lpv, &stage); // alone
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
     }
     stage_finish(&stage);
 }
@@ -143,18 +143,18 @@ static void propagation_is_the_twins(struct gpu *gpu, const char *options)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, options);
-    rig_render(lpv, &stage);
-    for (int colour = 0; colour < RIG_COLOURS; colour++) {
+    struct lpv *lpv = lpv_fixture_create(gpu, options);
+    lpv_fixture_render(lpv, &stage);
+    for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
         twin_of(&twin, lpv, &stage, colour);
         propagate_twin(&twin, lpv);
-        float *got = rig_read(lpv, lpv->light, colour);
+        float *got = lpv_fixture_read(lpv, lpv->volumes.light, colour);
         check_volume(got, &twin, twin.accumulated, 1e-3);
         free(got);
         twin_finish(&twin);
     }
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
@@ -186,11 +186,11 @@ static void application_is_the_twins(struct gpu *gpu, const char *options)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, options);
-    rig_render(lpv, &stage);
+    struct lpv *lpv = lpv_fixture_create(gpu, options);
+    lpv_fixture_render(lpv, &stage);
     float got[PIXELS * 3];
     stage_read_irradiance(&stage, got);
-    for (int colour = 0; colour < RIG_COLOURS; colour++) {
+    for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
         twin_of(&twin, lpv, &stage, colour);
         propagate_twin(&twin, lpv);
@@ -209,7 +209,7 @@ static void application_is_the_twins(struct gpu *gpu, const char *options)
             CHECK_NEAR((double)got[3 * i + colour], expected[i], 5e-3 * most);
         twin_finish(&twin);
     }
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
@@ -227,20 +227,20 @@ static float *injected(struct lpv *lpv, size_t *count)
 {
     const size_t one = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
                        (size_t)lpv->grid.cells[2] * (size_t)SH_COUNT(lpv->options.bands);
-    float *all = malloc(RIG_COLOURS * one * sizeof *all);
-    for (int colour = 0; colour < RIG_COLOURS; colour++) {
-        float *read = rig_read(lpv, lpv->injected, colour);
+    float *all = malloc(LPV_FIXTURE_COLOURS * one * sizeof *all);
+    for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
+        float *read = lpv_fixture_read(lpv, lpv->volumes.injected, colour);
         memcpy(all + (size_t)colour * one, read, one * sizeof *all);
         free(read);
     }
-    *count = RIG_COLOURS * one;
+    *count = LPV_FIXTURE_COLOURS * one;
     return all;
 }
 
 static float *injected_of(struct stage *stage, struct lpv *lpv, size_t *count)
 {
     stage_upload(stage);
-    rig_render(lpv, stage);
+    lpv_fixture_render(lpv, stage);
     return injected(lpv, count);
 }
 
@@ -260,14 +260,14 @@ TEST_GPU(lpv_volumes_of_half_floats_are_as_large_as_the_papers)
         double grid;
     } cases[] = { { "lpv:dim=32,precision=half", 0.75 }, { "holpv:dim=32,precision=half", 1.75 } };
     for (int i = 0; i < 2; i++) {
-        struct lpv *lpv = rig_create(gpu, cases[i].gi);
-        CHECK(mebibytes(gpu, lpv->injected) == cases[i].grid);
-        CHECK(mebibytes(gpu, lpv->steps[0]) == cases[i].grid);
-        CHECK(mebibytes(gpu, lpv->light) == cases[i].grid);
-        CHECK(mebibytes(gpu, lpv->geometry.volume) == 0.25);
+        struct lpv *lpv = lpv_fixture_create(gpu, cases[i].gi);
+        CHECK(mebibytes(gpu, lpv->volumes.injected) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->volumes.steps[0]) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->volumes.light) == cases[i].grid);
+        CHECK(mebibytes(gpu, lpv->volumes.geometry) == 0.25);
         CHECK(!lpv->coarser); // cascades would bring one more each
-        assert_int_equal(lpv->steps[1].id, 0);
-        rig_destroy(lpv);
+        assert_int_equal(lpv->volumes.steps[1].id, 0);
+        lpv_fixture_destroy(lpv);
     }
 }
 
@@ -275,7 +275,7 @@ TEST_GPU(lpv_injection_knows_no_order)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=1,precision=float");
+    struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=1,precision=float");
     size_t count;
     float *before = injected_of(&stage, lpv, &count), *again = injected_of(&stage, lpv, &count);
     assert_memory_equal(before, again, count * sizeof *before);
@@ -300,7 +300,7 @@ TEST_GPU(lpv_injection_knows_no_order)
     free(before);
     free(again);
     free(swapped);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
@@ -308,7 +308,7 @@ TEST_GPU(lpv_half_the_light_is_half_the_grid_to_the_bit)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=1,precision=float");
+    struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=1,precision=float");
     size_t count;
     float *full = injected_of(&stage, lpv, &count);
     for (int face = 0; face < 2; face++)
@@ -317,7 +317,7 @@ TEST_GPU(lpv_half_the_light_is_half_the_grid_to_the_bit)
     for (size_t i = 0; i < count; i++) CHECK(half[i] == 0.5f * full[i]);
     free(full);
     free(half);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
@@ -340,14 +340,14 @@ TEST_GPU(lpv_no_light_is_too_strong_or_too_weak_for_half_floats)
     stage.view.rsm_face_count = 1;
     const vec3s intensity = stage.faces[0].intensity;
     for (int i = 0; i < 4; i++) {
-        struct lpv *lpv = rig_create(gpu, gis[i]);
+        struct lpv *lpv = lpv_fixture_create(gpu, gis[i]);
         float most = 0.0f;
         float *all[3];
         for (int k = 0; k < 3; k++) { // 2^-40, 1 and 2^40 of the light
             stage.faces[0].intensity = glms_vec3_scale(intensity, ldexpf(1.0f, 40 * (k - 1)));
             stage_upload(&stage);
-            rig_render(lpv, &stage);
-            all[k] = rig_read(lpv, lpv->light, 0);
+            lpv_fixture_render(lpv, &stage);
+            all[k] = lpv_fixture_read(lpv, lpv->volumes.light, 0);
         }
         const size_t count = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
                              (size_t)lpv->grid.cells[2] * (size_t)SH_COUNT(lpv->options.bands);
@@ -359,7 +359,7 @@ TEST_GPU(lpv_no_light_is_too_strong_or_too_weak_for_half_floats)
         print_message("%s: at most %g of 65504\n", gis[i], (double)(ldexpf(most, 40) * unit));
         CHECK(ldexpf(most, 40) * unit < 65504.0f / 8);
         for (int k = 0; k < 3; k++) free(all[k]);
-        rig_destroy(lpv);
+        lpv_fixture_destroy(lpv);
     }
     stage_finish(&stage);
 }
@@ -368,7 +368,7 @@ TEST_GPU(lpv_two_lights_are_the_sum_even_ten_thousand_times_apart)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=1,precision=float");
+    struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=1,precision=float");
     stage.faces[1].intensity = glms_vec3_scale(stage.faces[1].intensity, 1e4f);
     const vec3s dim = stage.faces[0].intensity, bright = stage.faces[1].intensity;
     size_t count;
@@ -393,14 +393,14 @@ TEST_GPU(lpv_two_lights_are_the_sum_even_ten_thousand_times_apart)
     free(both);
     free(first);
     free(second);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }
 
 static void expect_black(struct lpv *lpv, struct stage *stage)
 {
     float got[PIXELS * 3];
-    rig_render(lpv, stage);
+    lpv_fixture_render(lpv, stage);
     stage_read_irradiance(stage, got);
     for (int i = 0; i < PIXELS * 3; i++) CHECK(got[i] == 0.0f);
 }
@@ -409,8 +409,8 @@ TEST_GPU(lpv_without_light_or_scene_is_black_exactly)
 {
     struct stage stage;
     scatter(&stage, gpu);
-    struct lpv *lpv = rig_create(gpu, "holpv:dim=8,steps=4");
-    rig_render(lpv, &stage); // leaves light in all images
+    struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=4");
+    lpv_fixture_render(lpv, &stage); // leaves light in all images
     const struct box3 bounds = stage.view.bounds;
     stage.view.bounds = box3_empty();
     expect_black(lpv, &stage);
@@ -427,6 +427,6 @@ TEST_GPU(lpv_without_light_or_scene_is_black_exactly)
     expect_black(lpv, &stage);
     stage.view.rsm_face_count = 0;
     expect_black(lpv, &stage);
-    rig_destroy(lpv);
+    lpv_fixture_destroy(lpv);
     stage_finish(&stage);
 }

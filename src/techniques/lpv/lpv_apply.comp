@@ -2,7 +2,7 @@
 // albedo of eq. 3.4).
 //
 // From intensity to irradiance. The flux I(ω) dω that a step finds in a cell of side a goes a way w
-// a in that step, w = 2/3 with six neighbours and 1.203 with 26 (lpv_mean_way). A flux density of
+// a in that step, w = 2/3 with six neighbours and 1.203 with 26 (lpv_mean_path). A flux density of
 // paths per volume is radiance: L(ω) = I(ω) (w a) / a³, and E = ∫ L(ω) (−n·ω)₊ dω. Hence
 // irradiance_scale = w / a²; the tests print how near that comes to form factors.
 //

@@ -33,7 +33,7 @@ vec3 reflecting_area(int at)
 vec3 reflected_flux(ivec3 cell, vec3 area, vec3 n)
 {
     vec3 at = vec3(cell) + 0.5 + (lpv.bounce_offset - 0.5) * n; // the surface is half a cell behind
-    return lpv.mean_way * area * lpv_irradiance(lpv_sample(arrived, at), n);
+    return lpv.mean_path * area * lpv_irradiance(lpv_sample(arrived, at), n);
 }
 
 void main()

@@ -1,47 +1,31 @@
-// Cascades (Kaplanyan & Dachsbacher 2010): grids with cells of several sizes, each of which begins
-// with the light of the next coarser one.
-#include "techniques/lpv/lpv_state.h"
+// Cascades (Kaplanyan & Dachsbacher 2010): nested grids with cells of several sizes. Each cascade
+// starts from the light of the next coarser one.
+#include "techniques/lpv/lpv_stages.h"
 
-#include "technique_shaders.h"
+#include "techniques/lpv/lpv_bindings.h"
+#include "techniques/lpv/lpv_volumes.h"
 
 bool lpv_cascades_create(struct lpv_cascades *cascades)
 {
-    struct lpv *finest = &cascades->levels[0];
-    if (finest->options.cascades == 1) return true;
-    const struct gpu_constant constants[] = {
-        { LPV_CONSTANT_BANDS, (uint32_t)finest->options.bands },
-        { LPV_CONSTANT_HALF, finest->options.precision == LPV_PRECISION_HALF },
-    };
-    if (!gpu_compute_pipeline_create(finest->gpu, finest->names->refine, &shader_lpv_refine_comp,
-                                     constants, 2, &finest->refine))
-        return false;
+    const struct lpv *finest = &cascades->levels[0];
     for (int i = 1; i < finest->options.cascades; i++) {
         struct lpv *level = &cascades->levels[i];
         *level = *finest;
-        level->light = (gpu_image){ 0 };
-        level->geometry = (struct lpv_geometry){ 0 };
-        level->bounce.surfaces = (gpu_buffer){ 0 };
         level->coarser = NULL;
         cascades->levels[i - 1].coarser = level;
-        if (!lpv_create_volume(level, level->names->coarser_light, GPU_RGBA16F, &level->light) ||
-            !lpv_geometry_create(level) || !lpv_surfaces_create(level))
-            return false;
+        if (!lpv_volumes_create_coarser(level)) return false;
     }
     return true;
 }
 
 void lpv_cascades_destroy(struct lpv_cascades *cascades)
 {
-    for (struct lpv *level = cascades->levels[0].coarser; level; level = level->coarser) {
-        gpu_image_destroy(level->gpu, &level->light);
-        lpv_geometry_destroy(level);
-        gpu_buffer_destroy(level->gpu, &level->bounce.surfaces);
-    }
-    gpu_pipeline_destroy(cascades->levels[0].gpu, &cascades->levels[0].refine);
+    for (struct lpv *level = cascades->levels[0].coarser; level; level = level->coarser)
+        lpv_volumes_destroy_coarser(level);
 }
 
-// As many steps as light needs to cross the coarsest grid, up to four times those of the others:
-// its cells are few.
+// Steps that light needs to cross the coarsest grid, at most four times those of the others: its
+// cells are few.
 static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid *grid)
 {
     int32_t longest = 0;
@@ -78,11 +62,11 @@ void lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image to)
         .cells_y = coarser->cells[1],
         .cells_z = coarser->cells[2],
     };
-    gpu_dispatch(
-        cmd, lpv->refine,
-        GPU_BIND(lpv_grid_binding(lpv, cmd),
-                 { .name = "coarser", .image = lpv->coarser->light, .sampler = lpv->linear },
-                 { .name = "refined", .image = to }),
-        &push, sizeof push, gpu_groups((uint32_t)grid->cells[0], LPV_LOCAL),
-        gpu_groups((uint32_t)grid->cells[1], LPV_LOCAL), (uint32_t)grid->cells[2]);
+    lpv_dispatch_cells_push(
+        lpv, cmd, lpv->pipelines.refine,
+        GPU_BIND(
+            lpv_grid_binding(lpv, cmd),
+            { .name = "coarser", .image = lpv->coarser->volumes.light, .sampler = lpv->linear },
+            { .name = "refined", .image = to }),
+        &push, sizeof push);
 }

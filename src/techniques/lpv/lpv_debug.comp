@@ -11,7 +11,7 @@
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
 #define LPV_GEOMETRY_BINDING 6
-#include "techniques/lpv/lpv_geometry.glsl"
+#include "techniques/lpv/geometry/geometry.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -72,7 +72,7 @@ int lpv_neighbours(enum lpv_scheme scheme, struct lpv_neighbour out[LPV_MAX_NEIG
 // way if there are six of them, max(|x|, |y|, |z|) if 26. The means over the sphere are 3/2 (so
 // that a step is Cauchy's mean chord of a cube, 4 V/S) and, six times the projection of one face of
 // the cube of side 2 over its share of the sphere, 3√2/π atan(1/√2) = 0.831.
-double lpv_mean_way(enum lpv_scheme scheme)
+double lpv_mean_path(enum lpv_scheme scheme)
 {
     const double root = sqrt(2.0);
     return scheme == LPV_SIX ? 2.0 / 3.0 : GLM_PI / (3.0 * root * atan(1.0 / root));
@@ -153,9 +153,9 @@ struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double f
     const int ahead[3] = { 1, 0, 0 }, edge[3] = { 1, 1, 0 }, corner[3] = { 1, 1, 1 };
     const struct lpv_face beside = scheme == LPV_SIX ? face_of(ahead, Y, 1) : face_of(edge, X, 1);
     return (struct lpv_step){
-        .ahead = reprojection_of(face_of(ahead, X, 1), X, Y, lobe),
-        .beside = reprojection_of(beside, X, Y, lobe),
-        .diagonal = reprojection_of(face_of(corner, X, 1), X, Y, lobe),
+        .far_face = reprojection_of(face_of(ahead, X, 1), X, Y, lobe),
+        .side_face = reprojection_of(beside, X, Y, lobe),
+        .corner_face = reprojection_of(face_of(corner, X, 1), X, Y, lobe),
         .lobe = lpv_lobe_weights_of(scheme, lobe, focus),
     };
 }

@@ -38,7 +38,7 @@ int lpv_neighbours(enum lpv_scheme scheme, struct lpv_neighbour out[LPV_MAX_NEIG
 double lpv_rectangle_sr(double x0, double x1, double y0, double y1, double distance);
 
 // The mean way of a step in cells, over all directions: of light that goes straight on.
-double lpv_mean_way(enum lpv_scheme scheme);
+double lpv_mean_path(enum lpv_scheme scheme);
 
 // What one re-projected lobe of unit flux has: coefficient i is weight_i Y_i(axis). `along` is the
 // weight of band 1, that of band 2 is `square` for 3z² − 1 and x² − y² and `product` for xy, yz and
@@ -53,8 +53,8 @@ double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient);
 
 // What the shaders need of one step: faces that are alike, one of each, and the lobes' weights.
 struct lpv_step {
-    struct lpv_reprojection ahead, beside,
-        diagonal; // far faces; side faces of six, at an edge of 26; at a corner
+    struct lpv_reprojection far_face, side_face,
+        corner_face; // far faces
     struct lpv_lobe_weights lobe;
 };
 struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus);

@@ -19,14 +19,14 @@
 #include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
-#define LPV_SHARES_BINDING 4
-#define LPV_SHARES_ACCESS  readonly
-#include "techniques/lpv/lpv_shares.glsl"
+#define LPV_TRANSMITTANCE_BINDING 4
+#define LPV_TRANSMITTANCE_ACCESS  readonly
+#include "techniques/lpv/geometry/geometry_transmittance.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = LPV_CONSTANT_GEOMETRY) const int LPV_GEOMETRY = LPV_GEOMETRY_OFF;
-layout(constant_id = LPV_CONSTANT_HELD) const bool LPV_HELD = false;
+layout(constant_id = LPV_CONSTANT_OCCLUDED) const bool LPV_OCCLUDED = false;
 
 layout(set = 0, binding = 1) uniform sampler3D injected;
 layout(set = 0, binding = 2) uniform sampler3D before;
@@ -46,20 +46,21 @@ sums nothing()
 }
 
 // The shares of the light from `cell` that arrive where it goes: four neighbours, as
-// lpv_shares.glsl has them. Light that does not arrive is gone. What comes from outside of the grid
-// finds nothing in its way.
+// geometry_transmittance.glsl has them. Light that does not arrive is gone. What comes from outside
+// of the grid finds nothing in its way.
 vec4 reach(ivec3 cell, int word)
 {
-    if (!lpv_inside(cell)) return vec4(LPV_HELD ? 0.0 : 1.0);
+    if (!lpv_inside(cell)) return vec4(LPV_OCCLUDED ? 0.0 : 1.0);
     if (LPV_GEOMETRY == LPV_GEOMETRY_OFF) return vec4(1.0);
-    vec4 passing = unpackUnorm4x8(share_words[LPV_WORDS * lpv_index(cell) + word]);
-    return LPV_HELD ? 1.0 - passing : passing;
+    vec4 passing =
+        unpackUnorm4x8(transmittance_words[LPV_TRANSMITTANCE_WORDS * lpv_index(cell) + word]);
+    return LPV_OCCLUDED ? 1.0 - passing : passing;
 }
 
 // The neighbour along axis a: its far face, (±1, 0, 0).
 void send_ahead(inout sums to, lpv_light light, int a, float side, float share)
 {
-    lpv_reprojection face = lpv.ahead;
+    lpv_reprojection face = lpv.far_face;
     vec3 flux = share * (face.flux_0 * light.mean + side * face.flux_p * light.along[a] +
                          face.flux_pp * light.square[a]);
     to.flux += flux;
@@ -72,7 +73,7 @@ void send_ahead(inout sums to, lpv_light light, int a, float side, float share)
 void send_through_five(inout sums to, lpv_light light, int a, float side, float share)
 {
     int b = (a + 1) % 3, c = (a + 2) % 3;
-    lpv_reprojection face = lpv.beside;
+    lpv_reprojection face = lpv.side_face;
     float p = side * face.lobe_p, q = face.lobe_q;
     send_ahead(to, light, a, side, share);
     vec3 even = face.flux_0 * light.mean + side * face.flux_p * light.along[a] +
@@ -101,7 +102,7 @@ void send_through_five(inout sums to, lpv_light light, int a, float side, float 
 void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float side_b, float share)
 {
     int a = (c + 1) % 3, b = (c + 2) % 3;
-    lpv_reprojection face = lpv.beside;
+    lpv_reprojection face = lpv.side_face;
     float p = face.lobe_p, q = face.lobe_q, sides = side_a * side_b;
     vec3 shared_part = face.flux_0 * light.mean + sides * face.flux_product_pq * light.product[c];
     vec3 flux_a = share * (shared_part + side_a * face.flux_p * light.along[a] +
@@ -122,7 +123,7 @@ void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float s
 // out what is the same for all axes.
 void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
 {
-    lpv_reprojection face = lpv.diagonal;
+    lpv_reprojection face = lpv.corner_face;
     float p = face.lobe_p, q = face.lobe_q;
     vec3 sides = side.yzx * side.zxy; // of the products
     vec3 shared_part = face.flux_0 * light.mean;
@@ -150,7 +151,7 @@ void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
 void store(ivec3 cell, sums sum)
 {
     vec4 slabs[7];
-    if (lpv.held != 0u && lpv_outermost(cell, lpv.held)) {
+    if (lpv.boundary != 0u && lpv_outermost(cell, lpv.boundary)) {
         lpv_fetch_slabs(before, cell, slabs);
         lpv_store_slabs(after, cell, slabs);
         return;

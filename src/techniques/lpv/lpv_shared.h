@@ -1,45 +1,45 @@
-// What the shaders of light propagation volumes share with the host. Scalar layout.
+// Structs and constants that host and shaders of light propagation volumes share. Scalar layout.
 #ifndef AG_LPV_SHARED_H
 #define AG_LPV_SHARED_H
 
 #include "core/shared.h"
 
-#define LPV_TEXELS                                                                                 \
-    4 // side of the block of texels of a reflective shadow map that one invocation injects
-#define LPV_EMITTERS_LOCAL                                                                         \
-    64 // invocations of a workgroup that injects emissive surfaces, one point each
-#define LPV_SURFACE_LINES                                                                          \
-    4 // along each side of a cell's face; where one crosses a triangle its surface is sampled
-#define LPV_SURFACE_UNIT 65536.0 // of reflectance × area, per cells²
-#define LPV_RUN                                                                                    \
-    8 // cells along z that an invocation of a step with 26 neighbours takes; divides every
-      // dimension
+#define LPV_LOCAL 8 // workgroup size in x and y of shaders over cells or pixels
+// Side of the block of reflective shadow map texels that one invocation takes.
+#define LPV_TEXELS         4
+#define LPV_EMITTERS_LOCAL 64 // workgroup size of the injection of emissive surfaces
+// Cells along z of an invocation with 26 neighbours; divides every dimension.
+#define LPV_RUN 8
+
+// Sampling lines along each side of a cell's face: of reflecting surfaces, of coverage masks.
+#define LPV_SURFACE_LINES 4
+#define LPV_LINES         4
+#define LPV_SURFACE_UNIT  65536.0 // of reflectance × area, per cells²
 
 #define LPV_MAX_CASCADES     4
-#define LPV_OPEN(axis, high) (1u << (2 * (axis) + (high))) // a side of a grid, in a set of them
-#define LPV_TRANSITION                                                                             \
-    4.0 // cells before an open side over which a cascade gives way to the next coarser one
+#define LPV_OPEN(axis, high) (1u << (2 * (axis) + (high))) // bit of a grid's side
+// Cells before an open side over which a cascade blends into the next coarser one.
+#define LPV_TRANSITION 4.0
 
 // Specialization constants.
 #define LPV_CONSTANT_BANDS      0 // 2 or 3
-#define LPV_CONSTANT_HALF       1
+#define LPV_CONSTANT_HALF       1 // volumes are half floats
 #define LPV_CONSTANT_GEOMETRY   2 // LPV_GEOMETRY_…
 #define LPV_CONSTANT_NEIGHBOURS 3 // 6 or 26
-#define LPV_CONSTANT_HELD       4 // send on what geometry holds back, not what it lets through
-#define LPV_CONSTANT_CUBIC      5 // reconstruction between cells: cubic, or linear
-#define LPV_CONSTANT_DAMPED     6 // light is looked up a cell further along the normal too
+#define LPV_CONSTANT_OCCLUDED   4 // propagate the occluded light instead of the transmitted
+#define LPV_CONSTANT_CUBIC      5 // cubic reconstruction between cells, or trilinear
+#define LPV_CONSTANT_DAMPED     6 // damping is on
 
-// What stands in the way of the light: nothing, what lights and camera see, or all of the scene.
+// Source of the geometry volume: none, surfels of maps and camera, triangles of the scene.
 #define LPV_GEOMETRY_OFF   0
 #define LPV_GEOMETRY_MAPS  1
 #define LPV_GEOMETRY_SCENE 2
-#define LPV_LINES          4 // through a face, each way
-#define LPV_WORDS_OF_6     3 // of a cell's shares, with six neighbours and with 26
-#define LPV_WORDS_OF_26    9
+// Words of a cell's transmittance with 6 and with 26 neighbours.
+#define LPV_TRANSMITTANCE_WORDS_6  3
+#define LPV_TRANSMITTANCE_WORDS_26 9
 
-// Faces that are alike: their direction is (p, q, 0) or (p, q, q) in some order of the axes, their
-// solid angle Ω, the axis of the lobes they are re-projected as (lobe_p, lobe_q, …). See
-// lpv_propagate.comp.
+// A class of equivalent faces: direction (p, q, 0) or (p, q, q) in some order of the axes, solid
+// angle Ω, and the axis (lobe_p, lobe_q, …) of the re-projected lobes. See lpv_propagate.comp.
 struct lpv_reprojection {
     float flux_0, flux_p, flux_q;           // Ω Y0, Ω Y1 p, Ω Y1 q
     float flux_pp, flux_qq;                 // Ω p², Ω q²
@@ -51,43 +51,41 @@ struct lpv_reprojection {
 struct lpv_params {
     vec3s origin_m; // corner of cell 0, world space
     float cell_m;
-    int32_t cells_x, cells_y, cells_z;                   // in use; beyond them is the outside
-    int32_t dim;                                         // side of the images
-    AG_STRUCT(lpv_reprojection) ahead, beside, diagonal; // struct lpv_step
-    float lobe_along, lobe_square, lobe_product;
-    vec3s sky; // coefficient of band 0 that a cell under the sky alone has, in the grid's unit; 0:
-               // none
+    int32_t cells_x, cells_y, cells_z;                            // in use
+    int32_t dim;                                                  // side of the images
+    AG_STRUCT(lpv_reprojection) far_face, side_face, corner_face; // struct lpv_step
+    float lobe_along, lobe_square, lobe_product;                  // struct lpv_lobe_weights
+    vec3s sky; // band 0 of a cell that only the sky lights, in the grid's unit; 0: no sky
     float fixed_from_flux;  // integer per scaled lumen
     float grid_from_fixed;  // the grid's unit per integer
     float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
-    float mean_way;         // of light in a step, cells
-    float offset_m;         // of the look-up, along the normal
-    float bounce_offset; // of the look-up of what surfaces send on, cells: that of the light that
-                         // has arrived there
-    float window;        // weight of the bands above the first at the look-up
-    float blocking;      // factor on what the geometry volume says is blocked
-    float damping;       // of light that is less a cell further along the normal
-    uint32_t rsm_size;   // texels
+    float mean_path;        // mean path of light in a step, cells
+    float offset_m;         // of a surface's lookup, along the normal
+    float bounce_offset;    // of a reflecting surface's lookup, cells of this cascade
+    float window;           // weight of the bands above the first in a lookup
+    float occlusion;        // factor on the occlusion of the geometry volume
+    float damping;          // of irradiance that decreases along the normal
+    uint32_t rsm_size;      // texels
     uint32_t width, height; // of the frame, pixels
     uint32_t emitter_count;
-    uint32_t held; // sides whose outermost cells keep the light of the coarser cascade
+    uint32_t boundary; // LPV_OPEN sides whose outermost cells keep the coarser cascade's light
 };
 
-// Where the next coarser cascade lies as seen from this one: lpv_refine.comp.
+// Push constants of lpv_refine.comp.
 struct lpv_refine_push {
-    vec3s first;                       // the corner of cell 0, in cells of the coarser
-    float ratio;                       // cells of the coarser per cell
-    int32_t cells_x, cells_y, cells_z; // of the coarser
+    vec3s first;                       // corner of cell 0, in cells of the coarser cascade
+    float ratio;                       // cells of the coarser cascade per cell
+    int32_t cells_x, cells_y, cells_z; // of the coarser cascade
 };
 
-// Which pixels a cascade lights: lpv_apply.comp.
+// Push constants of lpv_apply.comp.
 struct lpv_apply_push {
-    vec3s finer_origin_m; // of the next finer cascade
-    float finer_cell_m;   // 0: there is none
+    vec3s finer_origin_m; // the next finer cascade
+    float finer_cell_m;   // 0: this is the finest
     int32_t finer_cells_x, finer_cells_y, finer_cells_z;
     uint32_t finer_open;
-    uint32_t open;     // this one's sides
-    uint32_t coarsest; // there is none before it
+    uint32_t open;     // LPV_OPEN sides of this cascade
+    uint32_t coarsest; // 1: writes every pixel
 };
 
 // Views of lpv_debug.comp.

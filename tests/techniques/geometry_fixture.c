@@ -1,4 +1,4 @@
-#include "techniques/geometry_rig.h"
+#include "techniques/geometry_fixture.h"
 
 #include "core/rng.h"
 
@@ -10,7 +10,7 @@ float *geometry_read(struct lpv *lpv)
 {
     const size_t dim = (size_t)lpv->options.dim;
     float *all = malloc(dim * dim * dim * 4 * sizeof *all);
-    CHECK(gpu_image_download_float(lpv->gpu, lpv->geometry.volume, 0, 0, all, 4,
+    CHECK(gpu_image_download_float(lpv->gpu, lpv->volumes.geometry, 0, 0, all, 4,
                                    dim * dim * dim * 4));
     const int32_t *cells = lpv->grid.cells;
     size_t out = 0;
@@ -88,13 +88,13 @@ static void inject_as(struct twin *twin, const struct lpv *lpv, struct stage *st
                                           .gpu = lpv->gpu,
                                           .options = &options };
     CHECK(technique_lpv.create(open, &how));
-    rig_render(open, stage);
-    float *injected = rig_read(open, open->injected, 1);
+    lpv_fixture_render(open, stage);
+    float *injected = lpv_fixture_read(open, open->volumes.injected, 1);
     for (size_t i = 0; i < twin_cells(twin); i++)
         for (size_t k = 0; k < coefficients; k++)
             twin->light[i][k] = twin->accumulated[i][k] = (double)injected[coefficients * i + k];
     free(injected);
-    rig_destroy(open);
+    lpv_fixture_destroy(open);
 }
 
 void geometry_check_light(struct lpv *lpv, struct stage *stage,
@@ -108,7 +108,7 @@ void geometry_check_light(struct lpv *lpv, struct stage *stage,
     inject_as(&twin, lpv, stage);
     for (int i = 0; i < lpv->options.steps; i++)
         twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);
-    float *got = rig_read(lpv, lpv->light, 1);
+    float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
     double most = 0.0;
     for (size_t i = 0; i < twin_cells(&twin); i++) most = fmax(most, fabs(twin.accumulated[i][0]));
     CHECK(most > 0.0);

@@ -13,7 +13,7 @@
 
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 
-layout(set = 0, binding = 12, scalar) buffer lpv_lines
+layout(set = 0, binding = 12, scalar) buffer lpv_coverage
 {
     uint crossed[]; // [cell][axis]: of its low faces
 };

@@ -1,30 +1,30 @@
-// Remarks on scenes without extent, on cells so large that little is left of the light's detail,
-// and on lights outside of the grid.
-#include "techniques/lpv/lpv_remarks.h"
+// Diagnostics: scenes without extent, cells too large for the detail of indirect light, lights
+// outside of the grid.
+#include "techniques/lpv/lpv_diagnostics.h"
 
 #include "techniques/lpv/lpv_state.h"
 
 #include <stdio.h>
 
-// Rooms, streets and trees are larger than this, and their light with them; not much else is.
+// Larger cells blur the indirect light of rooms and streets.
 static const float COARSE_M = 2.0f;
 
-// Of the finest cascade, or the only grid. `side` is what one grid over the scene would have.
+// Cell size of the finest cascade, or of the only grid. `side`: of one grid over the scene.
 static double finest_cell(const struct lpv_options *options, double side)
 {
     if (options->cascades == 1) return side;
     return options->cell > 0.0f ? (double)options->cell : 0.5 * side;
 }
 
-// With all cascades, the coarsest of which is one grid over the scene, cells may be this small.
+// Cell size of the finest of all cascades when the coarsest is one grid over the scene.
 static double smallest_cell(double side)
 {
     return side / (1 << (LPV_MAX_CASCADES - 1));
 }
 
-static void remark_on_cells(struct host *host, const char *technique,
-                            const struct lpv_options *options, const struct lpv_grid *grid,
-                            const char *scene)
+static void diagnose_cells(struct host *host, const char *technique,
+                           const struct lpv_options *options, const struct lpv_grid *grid,
+                           const char *scene)
 {
     const int32_t *cells = grid->cells;
     const double side = (double)grid->cell_m, finest = finest_cell(options, side);
@@ -56,8 +56,8 @@ static bool is_inside(const struct lpv_grid *grid, vec3s position)
     return true;
 }
 
-static void remark_on_lights(struct host *host, const char *technique, const struct lpv_grid *grid,
-                             const struct scene_pose *pose)
+static void diagnose_lights(struct host *host, const char *technique, const struct lpv_grid *grid,
+                            const struct scene_pose *pose)
 {
     for (int i = 0; i < pose->scene->light_count; i++) {
         const struct world_light light = pose_light(pose, i);
@@ -69,8 +69,8 @@ static void remark_on_lights(struct host *host, const char *technique, const str
     }
 }
 
-void lpv_remark_on_scene(struct host *host, const char *technique,
-                         const struct lpv_options *options, const struct scene_pose *pose)
+void lpv_diagnose(struct host *host, const char *technique, const struct lpv_options *options,
+                  const struct scene_pose *pose)
 {
     struct lpv_grid grid;
     const char *scene = pose->scene->name;
@@ -80,6 +80,6 @@ void lpv_remark_on_scene(struct host *host, const char *technique,
                  technique, scene);
         return;
     }
-    remark_on_cells(host, technique, options, &grid, scene);
-    remark_on_lights(host, technique, &grid, pose);
+    diagnose_cells(host, technique, options, &grid, scene);
+    diagnose_lights(host, technique, &grid, pose);
 }

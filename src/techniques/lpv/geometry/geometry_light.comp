@@ -14,8 +14,8 @@
 #include "frame/octahedral.glsl"
 #include "frame/rsm/rsm.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
-#define LPV_AREAS_BINDING 4
-#include "techniques/lpv/lpv_surfels.glsl"
+#define LPV_SURFELS_BINDING 4
+#include "techniques/lpv/geometry/geometry_surfels.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -31,7 +31,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer rsm_faces
 layout(set = 0, binding = 2) uniform sampler2DArray rsm_depth;
 layout(set = 0, binding = 3) uniform sampler2DArray rsm_normal;
 
-void add(inout lpv_run run, rsm_face face, ivec3 texel)
+void add(inout lpv_surfel_run run, rsm_face face, ivec3 texel)
 {
     float depth = texelFetch(rsm_depth, texel, 0).r;
     if (depth == 0.0) return;
@@ -46,7 +46,7 @@ void add(inout lpv_run run, rsm_face face, ivec3 texel)
         across = rsm_solid_angle(face, texel.xy, lpv.rsm_size) * distance2;
     }
     vec3 normal = octahedral_decode(texelFetch(rsm_normal, texel, 0).rg);
-    lpv_continue(run, lpv_corner(position), lpv_surfel(normal, to_light, across));
+    lpv_surfel_run_add(run, lpv_corner(position), lpv_surfel(normal, to_light, across));
 }
 
 void main()
@@ -55,8 +55,8 @@ void main()
     rsm_face face = faces[layer];
     ivec2 first = ivec2(gl_GlobalInvocationID.xy) * LPV_TEXELS;
     ivec2 last = min(first + LPV_TEXELS, ivec2(lpv.rsm_size));
-    lpv_run run = lpv_run(LPV_NO_CORNER, vec4(0.0));
+    lpv_surfel_run run = lpv_surfel_run(LPV_NO_CORNER, vec4(0.0));
     for (int y = first.y; y < last.y; y++)
         for (int x = first.x; x < last.x; x++) add(run, face, ivec3(x, y, layer));
-    lpv_put_down(run);
+    lpv_surfel_run_flush(run);
 }

@@ -1,9 +1,9 @@
-#include "techniques/lpv_rig.h"
+#include "techniques/lpv_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-struct lpv *rig_create(struct gpu *gpu, const char *gi)
+struct lpv *lpv_fixture_create(struct gpu *gpu, const char *gi)
 {
     const char *colon = strchr(gi, ':');
     const struct technique *technique =
@@ -21,13 +21,13 @@ struct lpv *rig_create(struct gpu *gpu, const char *gi)
     return lpv;
 }
 
-void rig_destroy(struct lpv *lpv)
+void lpv_fixture_destroy(struct lpv *lpv)
 {
     technique_lpv.destroy(lpv);
     free(lpv);
 }
 
-void rig_render(struct lpv *lpv, struct stage *stage)
+void lpv_fixture_render(struct lpv *lpv, struct stage *stage)
 {
     struct gpu_cmd *cmd = gpu_frame_begin(stage->gpu);
     assert_non_null(cmd);
@@ -36,7 +36,7 @@ void rig_render(struct lpv *lpv, struct stage *stage)
     CHECK(gpu_wait(stage->gpu));
 }
 
-float *rig_read(struct lpv *lpv, gpu_image volume, int colour)
+float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour)
 {
     const size_t dim = (size_t)lpv->options.dim, slab = dim * dim * dim * 4;
     const size_t count = slab * lpv_slabs(&lpv->options);
@@ -60,7 +60,7 @@ float *rig_read(struct lpv *lpv, gpu_image volume, int colour)
     return out;
 }
 
-void rig_inject_twin(struct twin *twin, const struct stage *stage, int colour)
+void lpv_fixture_inject_twin(struct twin *twin, const struct stage *stage, int colour)
 {
     for (int i = 0; i < stage->view.emitter_count; i++) {
         const struct frame_emitter *point = &stage->view.emitters[i];

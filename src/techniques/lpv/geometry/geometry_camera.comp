@@ -13,15 +13,15 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
-#define LPV_AREAS_BINDING 4
-#include "techniques/lpv/lpv_surfels.glsl"
+#define LPV_SURFELS_BINDING 4
+#include "techniques/lpv/geometry/geometry_surfels.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler2D normal;
 
-void add(inout lpv_run run, ivec2 pixel)
+void add(inout lpv_surfel_run run, ivec2 pixel)
 {
     float z = texelFetch(depth, pixel, 0).r;
     if (z == 0.0) return;
@@ -32,18 +32,19 @@ void add(inout lpv_run run, ivec2 pixel)
     vec3 v = frame_world_position(uv + vec2(0.0, half_pixel.y), z) -
              frame_world_position(uv - vec2(0.0, half_pixel.y), z);
     vec3 way = frame.camera_position - position;
-    vec3 to_eye = way * inversesqrt(max(dot(way, way), 1e-20));
-    float across = abs(dot(cross(u, v), to_eye)); // |u × v| cos θ
-    lpv_continue(run, lpv_corner(position),
-                 lpv_surfel(octahedral_decode(texelFetch(normal, pixel, 0).rg), to_eye, across));
+    vec3 to_viewer = way * inversesqrt(max(dot(way, way), 1e-20));
+    float across = abs(dot(cross(u, v), to_viewer)); // |u × v| cos θ
+    lpv_surfel_run_add(
+        run, lpv_corner(position),
+        lpv_surfel(octahedral_decode(texelFetch(normal, pixel, 0).rg), to_viewer, across));
 }
 
 void main()
 {
     ivec2 first = ivec2(gl_GlobalInvocationID.xy) * LPV_TEXELS;
     ivec2 last = min(first + LPV_TEXELS, ivec2(lpv.width, lpv.height));
-    lpv_run run = lpv_run(LPV_NO_CORNER, vec4(0.0));
+    lpv_surfel_run run = lpv_surfel_run(LPV_NO_CORNER, vec4(0.0));
     for (int y = first.y; y < last.y; y++)
         for (int x = first.x; x < last.x; x++) add(run, ivec2(x, y));
-    lpv_put_down(run);
+    lpv_surfel_run_flush(run);
 }

@@ -1,5 +1,5 @@
-// From the geometry volume to the shares of light that reach each neighbour (lpv_shares.glsl):
-// once, not in each step.
+// From the geometry volume to the shares of light that reach each neighbour
+// (geometry_transmittance.glsl): once, not in each step.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -7,10 +7,10 @@
 #include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #define LPV_GEOMETRY_BINDING 1
-#include "techniques/lpv/lpv_geometry.glsl"
-#define LPV_SHARES_BINDING 2
-#define LPV_SHARES_ACCESS  writeonly
-#include "techniques/lpv/lpv_shares.glsl"
+#include "techniques/lpv/geometry/geometry.glsl"
+#define LPV_TRANSMITTANCE_BINDING 2
+#define LPV_TRANSMITTANCE_ACCESS  writeonly
+#include "techniques/lpv/geometry/geometry_transmittance.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -36,8 +36,8 @@ void main()
 {
     ivec3 cell = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(cell)) return;
-    int first = LPV_WORDS * lpv_index(cell);
-    for (int i = 0; i < LPV_WORDS; i++)
-        share_words[first + i] =
+    int first = LPV_TRANSMITTANCE_WORDS * lpv_index(cell);
+    for (int i = 0; i < LPV_TRANSMITTANCE_WORDS; i++)
+        transmittance_words[first + i] =
             LPV_NEIGHBOURS == 26 ? in_column(cell, ivec2(i % 3, i / 3) - 1) : along_axis(cell, i);
 }

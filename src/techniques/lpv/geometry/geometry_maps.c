@@ -1,35 +1,33 @@
-// The geometry volume as the paper fills it: from the reflective shadow maps of each light and from
-// the camera's G-buffer, each source by itself, merged by the greatest.
+// The geometry volume of the paper: surfels of each light's reflective shadow maps and of the
+// camera's G-buffer. Sources are summed one by one and merged by the maximum.
+#include "techniques/lpv/geometry/geometry.h"
+
+#include "techniques/lpv/lpv_bindings.h"
 #include "techniques/lpv/lpv_state.h"
+#include "techniques/lpv/lpv_volumes.h"
 
-static size_t area_bytes(const struct lpv *lpv)
+static struct gpu_binding surfels_binding(const struct lpv *lpv)
 {
-    const int32_t *cells = lpv->grid.cells;
-    return (size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2] * LPV_AREA_BYTES;
-}
-
-static struct gpu_binding areas_binding(const struct lpv *lpv)
-{
-    return (struct gpu_binding){ .name = "lpv_areas", .buffer = lpv->geometry.areas };
+    return (struct gpu_binding){ .name = "lpv_surfels", .buffer = lpv->volumes.surfels };
 }
 
 static void begin_source(struct lpv *lpv, struct gpu_cmd *cmd)
 {
-    gpu_fill_buffer(cmd, lpv->geometry.areas, 0, area_bytes(lpv), 0);
+    gpu_fill_buffer(cmd, lpv->volumes.surfels, 0, lpv_cell_count(&lpv->grid) * LPV_SURFEL_BYTES, 0);
 }
 
 static void end_source(struct lpv *lpv, struct gpu_cmd *cmd)
 {
-    lpv_dispatch_cells(lpv, cmd, lpv->geometry.merge, 1,
-                       GPU_BIND(lpv_grid_binding(lpv, cmd), areas_binding(lpv),
-                                { .name = "geometry", .image = lpv->geometry.volume }));
+    lpv_dispatch_cells(lpv, cmd, lpv->pipelines.geometry_merge, 1,
+                       GPU_BIND(lpv_grid_binding(lpv, cmd), surfels_binding(lpv),
+                                { .name = "geometry", .image = lpv->volumes.geometry }));
 }
 
 static void record_camera(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     begin_source(lpv, cmd);
-    gpu_dispatch(cmd, lpv->geometry.camera,
-                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->constants_binding, areas_binding(lpv),
+    gpu_dispatch(cmd, lpv->pipelines.geometry_camera,
+                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->constants_binding, surfels_binding(lpv),
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] }),
                  NULL, 0, gpu_groups(view->width, LPV_LOCAL * LPV_TEXELS),
@@ -43,8 +41,8 @@ static void record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
     const uint32_t groups = gpu_groups(view->rsm_size, LPV_LOCAL * LPV_TEXELS);
     const uint32_t push = (uint32_t)first_face;
     begin_source(lpv, cmd);
-    gpu_dispatch(cmd, lpv->geometry.light,
-                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->rsm_faces_binding, areas_binding(lpv),
+    gpu_dispatch(cmd, lpv->pipelines.geometry_light,
+                 GPU_BIND(lpv_grid_binding(lpv, cmd), view->rsm_faces_binding, surfels_binding(lpv),
                           { .name = "rsm_depth", .image = view->rsm_depth },
                           { .name = "rsm_normal", .image = view->rsm_normal }),
                  &push, sizeof push, groups, groups, (uint32_t)face_count);
@@ -53,9 +51,9 @@ static void record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
 
 void lpv_record_geometry_maps(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    gpu_clear_image(cmd, lpv->geometry.volume, (const float[4]){ 0.0f, 0.0f, 0.0f, 0.0f });
+    gpu_clear_image(cmd, lpv->volumes.geometry, (const float[4]){ 0.0f, 0.0f, 0.0f, 0.0f });
     record_camera(lpv, cmd, view);
-    // A light's faces follow each other and see nothing twice: they are one source.
+    // The consecutive faces of a light do not overlap: together they are one source.
     for (int first = 0, end; first < view->rsm_face_count; first = end) {
         end = first + 1;
         while (end < view->rsm_face_count &&

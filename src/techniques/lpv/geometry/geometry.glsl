@@ -37,7 +37,7 @@ float lpv_corners_block(vec3 at, vec3 d)
 
 float lpv_free(float blocked)
 {
-    return 1.0 - clamp(lpv.blocking * blocked, 0.0, 1.0);
+    return 1.0 - clamp(lpv.occlusion * blocked, 0.0, 1.0);
 }
 
 // The share of the light from `cell` that reaches the neighbour at `offset`, 0…1. Both must be

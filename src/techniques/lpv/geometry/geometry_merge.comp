@@ -12,8 +12,8 @@
 
 #include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
-#define LPV_AREAS_BINDING 1
-#include "techniques/lpv/lpv_surfels.glsl"
+#define LPV_SURFELS_BINDING 1
+#include "techniques/lpv/geometry/geometry_surfels.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -31,8 +31,9 @@ void main()
     ivec3 corner = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(corner)) return;
     int at = 4 * lpv_index(corner);
-    vec4 seen = vec4(area_sums[at], area_sums[at + 1], area_sums[at + 2], area_sums[at + 3]) /
-                LPV_AREA_FIXED;
+    vec4 seen =
+        vec4(surfel_sums[at], surfel_sums[at + 1], surfel_sums[at + 2], surfel_sums[at + 3]) /
+        LPV_SURFEL_FIXED;
     seen = vec4(unpackHalf2x16(packHalf2x16(seen.xy)), unpackHalf2x16(packHalf2x16(seen.zw)));
     if (greater(seen, imageLoad(geometry, corner))) imageStore(geometry, corner, seen);
 }

@@ -8,11 +8,11 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 1, scalar) readonly buffer lpv_still
+layout(set = 0, binding = 1, scalar) readonly buffer lpv_static_coverage
 {
     uint still[]; // [cell][axis]
 };
-layout(set = 0, binding = 2, scalar) readonly buffer lpv_moving
+layout(set = 0, binding = 2, scalar) readonly buffer lpv_moving_coverage
 {
     uint moving[];
 };

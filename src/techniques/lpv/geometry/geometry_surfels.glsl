@@ -1,5 +1,5 @@
 // Adding surfels to one source's geometry volume. Include after core/sh.glsl and lpv_grid.glsl;
-// define LPV_AREAS_BINDING.
+// define LPV_SURFELS_BINDING.
 //
 // A surfel of area A (m²) and normal n adds A/S² (n·ω)₊, S the side of a cell (m), to the corner of
 // the cells that is nearest: the share of a cell's face that it covers, seen along ω. Sums are
@@ -8,16 +8,16 @@
 #define AG_LPV_SURFELS_GLSL
 
 // [corner][coefficient]
-layout(set = 0, binding = LPV_AREAS_BINDING, scalar) buffer lpv_areas
+layout(set = 0, binding = LPV_SURFELS_BINDING, scalar) buffer lpv_surfels
 {
-    int area_sums[];
+    int surfel_sums[];
 };
 
 const int LPV_NO_CORNER = -1;
 // What 1 is as a whole number. The surfels of a source around a corner are what one eye sees within
 // one cell: with the bound on the slope below the sum of their areas is less than 120 faces, and
 // 2^31/2^23 = 256.
-const float LPV_AREA_FIXED = 8388608.0; // 2^23
+const float LPV_SURFEL_FIXED = 8388608.0; // 2^23
 // Least cosine between a surfel's normal and the way to the eye: beyond it the normal says less
 // about the slope than the shading does.
 const float LPV_LEAST_COSINE = 0.1;
@@ -32,33 +32,33 @@ int lpv_corner(vec3 position)
 }
 
 // Coefficients of what a surfel blocks: `across` is the area (m²) of its picture's texel at its
-// place, `to_eye` a unit vector.
-vec4 lpv_surfel(vec3 normal, vec3 to_eye, float across)
+// place, `to_viewer` a unit vector.
+vec4 lpv_surfel(vec3 normal, vec3 to_viewer, float across)
 {
-    float area = across / max(dot(normal, to_eye), LPV_LEAST_COSINE);
+    float area = across / max(dot(normal, to_viewer), LPV_LEAST_COSINE);
     return min(area / (lpv.cell_m * lpv.cell_m), 1.0) * sh4_clamped_cosine(normal);
 }
 
 // Surfels that follow each other mostly share a corner: they are put down together.
-struct lpv_run {
+struct lpv_surfel_run {
     int corner;
     vec4 lobe;
 };
 
-void lpv_put_down(lpv_run run)
+void lpv_surfel_run_flush(lpv_surfel_run run)
 {
     if (run.corner == LPV_NO_CORNER) return;
-    ivec4 whole = ivec4(roundEven(run.lobe * LPV_AREA_FIXED));
+    ivec4 whole = ivec4(roundEven(run.lobe * LPV_SURFEL_FIXED));
     for (int i = 0; i < 4; i++)
-        if (whole[i] != 0) atomicAdd(area_sums[4 * run.corner + i], whole[i]);
+        if (whole[i] != 0) atomicAdd(surfel_sums[4 * run.corner + i], whole[i]);
 }
 
-void lpv_continue(inout lpv_run run, int corner, vec4 lobe)
+void lpv_surfel_run_add(inout lpv_surfel_run run, int corner, vec4 lobe)
 {
     if (corner == LPV_NO_CORNER) return;
     if (corner != run.corner) {
-        lpv_put_down(run);
-        run = lpv_run(corner, vec4(0.0));
+        lpv_surfel_run_flush(run);
+        run = lpv_surfel_run(corner, vec4(0.0));
     }
     run.lobe += lobe;
 }

@@ -1,0 +1,53 @@
+#include "techniques/lpv/lpv_bindings.h"
+
+#include "techniques/lpv/lpv_state.h"
+
+#include "frame/scene_gpu.h"
+
+struct gpu_binding lpv_grid_binding(const struct lpv *lpv, struct gpu_cmd *cmd)
+{
+    return gpu_transient(cmd, "lpv_grid", &lpv->params, sizeof lpv->params);
+}
+
+void lpv_dispatch_cells(const struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
+                        uint32_t run, const struct gpu_binding *bindings, int count)
+{
+    gpu_dispatch(cmd, pipeline, bindings, count, NULL, 0,
+                 gpu_groups((uint32_t)lpv->grid.cells[0], LPV_LOCAL),
+                 gpu_groups((uint32_t)lpv->grid.cells[1], LPV_LOCAL),
+                 gpu_groups((uint32_t)lpv->grid.cells[2], run));
+}
+
+void lpv_dispatch_cells_push(const struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
+                             const struct gpu_binding *bindings, int count, const void *push,
+                             uint32_t push_bytes)
+{
+    gpu_dispatch(cmd, pipeline, bindings, count, push, push_bytes,
+                 gpu_groups((uint32_t)lpv->grid.cells[0], LPV_LOCAL),
+                 gpu_groups((uint32_t)lpv->grid.cells[1], LPV_LOCAL), (uint32_t)lpv->grid.cells[2]);
+}
+
+void lpv_dispatch_triangles(const struct lpv *lpv, struct gpu_cmd *cmd,
+                            const struct scene_gpu *scene, gpu_pipeline opaque, gpu_pipeline masked,
+                            bool (*wanted)(const struct scene_draw *draw), const char *name,
+                            gpu_buffer buffer)
+{
+    const struct gpu_binding own[2] = { lpv_grid_binding(lpv, cmd),
+                                        { .name = name, .buffer = buffer } };
+    for (int i = 0; scene && i < scene->draw_count; i++) {
+        const struct scene_draw *draw = &scene->draws[i];
+        if (wanted && !wanted(draw)) continue;
+        scene_gpu_dispatch(scene, cmd,
+                           &(struct scene_dispatch_call){
+                               .pipeline = draw->variant & VARIANT_MASKED ? masked : opaque,
+                               .draw = draw,
+                               .bindings = own,
+                               .binding_count = 2,
+                           });
+    }
+}
+
+void lpv_scope_begin(const struct lpv *lpv, struct gpu_cmd *cmd, const char *pass)
+{
+    gpu_scope_begin(cmd, lpv_name(lpv, pass).text);
+}

@@ -1,0 +1,84 @@
+// Placement of the grids and the parameters of a frame.
+#include "techniques/lpv/lpv_stages.h"
+
+static const float Y0 = 0.282094792f; // √(1/4π)
+
+// Flux of a cell that the sky's radiance L reaches from all directions: 4π I with
+// L = I (w a) / a³ (lpv_apply.comp).
+static vec3s sky_flux(const struct lpv *lpv, const struct frame_view *view)
+{
+    const float mean_path = (float)lpv_mean_path((enum lpv_scheme)lpv->options.neighbours);
+    const float cell_m = lpv->grid.cell_m;
+    if (!lpv->options.sky) return vec3_of(0, 0, 0);
+    return glms_vec3_scale(view->constants->sky, 4.0f * GLM_PIf * cell_m * cell_m / mean_path);
+}
+
+static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_view *view)
+{
+    return (struct lpv_lights){
+        .faces = view->rsm_faces,
+        .face_count = view->rsm_face_count,
+        .rsm_size = view->rsm_size,
+        .emitters = view->emitters,
+        .emitter_count = lpv->options.emitters ? view->emitter_count : 0,
+        .bounces = lpv->options.bounces,
+    };
+}
+
+static struct lpv_params params_of(const struct lpv *lpv, const struct frame_view *view,
+                                   const struct lpv_scale *scale)
+{
+    const struct lpv_options *options = &lpv->options;
+    const struct lpv_grid *grid = &lpv->grid;
+    const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
+    const struct lpv_step step =
+        lpv_step_of(scheme, (enum lpv_lobe)options->lobe, (double)options->focus);
+    const float mean_path = (float)lpv_mean_path(scheme); // see lpv_apply.comp
+    return (struct lpv_params){
+        .origin_m = grid->origin_m,
+        .cell_m = grid->cell_m,
+        .cells_x = grid->cells[0],
+        .cells_y = grid->cells[1],
+        .cells_z = grid->cells[2],
+        .dim = options->dim,
+        .far_face = step.far_face,
+        .side_face = step.side_face,
+        .corner_face = step.corner_face,
+        .lobe_along = (float)step.lobe.along,
+        .lobe_square = (float)step.lobe.square,
+        .lobe_product = (float)step.lobe.product,
+        .sky = glms_vec3_scale(sky_flux(lpv, view), Y0 * scale->grid_from_flux),
+        .fixed_from_flux = scale->fixed_from_flux,
+        .grid_from_fixed = scale->grid_from_flux / scale->fixed_from_flux,
+        .irradiance_scale =
+            options->gain * mean_path / (grid->cell_m * grid->cell_m * scale->grid_from_flux),
+        .mean_path = mean_path,
+        .offset_m = options->offset * grid->cell_m,
+        .bounce_offset =
+            options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
+        .window = options->window,
+        .occlusion = options->blocking,
+        .damping = options->damping,
+        .rsm_size = view->rsm_size,
+        .width = view->width,
+        .height = view->height,
+        .emitter_count = (uint32_t)lights_of(lpv, view).emitter_count,
+        .boundary = lpv->coarser ? grid->open : 0,
+    };
+}
+
+bool lpv_prepare(struct lpv *finest, const struct frame_view *view)
+{
+    struct lpv_lights lights = lights_of(finest, view);
+    struct lpv_scale scale;
+    finest->lit = lpv_cascades_place(finest, view);
+    if (!finest->lit) return false;
+    const struct lpv *coarsest = finest;
+    while (coarsest->coarser) coarsest = coarsest->coarser;
+    lights.sky_flux = sky_flux(coarsest, view);
+    finest->lit = lpv_scale_of(&lights, &scale);
+    if (!finest->lit) return false;
+    for (struct lpv *level = finest; level; level = level->coarser)
+        level->params = params_of(level, view, &scale);
+    return true;
+}

@@ -1,0 +1,173 @@
+// Sizes, images and buffers of all volumes, from one table: what is created is what is estimated.
+#include "techniques/lpv/lpv_volumes.h"
+
+#include "techniques/lpv/lpv_state.h"
+
+enum { MAX_VOLUMES = 16 };
+
+// dim³ cells of a member of struct lpv_volumes.
+struct volume {
+    const char *name;
+    size_t offset;          // of the member
+    enum gpu_format format; // GPU_FORMAT_NONE: a buffer
+    size_t size;            // slabs of an image, bytes of a buffer's cell; 0: not needed
+    bool of_each_cascade;   // others are shared by all cascades
+};
+
+uint32_t lpv_slabs(const struct lpv_options *options)
+{
+    return options->bands == 3 ? 7 : 3;
+}
+
+size_t lpv_sum_bytes(const struct lpv_options *options)
+{
+    return 4 * (size_t)lpv_slabs(options) * 8;
+}
+
+size_t lpv_cell_count(const struct lpv_grid *grid)
+{
+    return (size_t)grid->cells[0] * (size_t)grid->cells[1] * (size_t)grid->cells[2];
+}
+
+static size_t transmittance_bytes(const struct lpv_options *options)
+{
+    return 4 * (size_t)(options->neighbours == LPV_SIX ? LPV_TRANSMITTANCE_WORDS_6
+                                                       : LPV_TRANSMITTANCE_WORDS_26);
+}
+
+#define MEMBER(member) offsetof(struct lpv_volumes, member)
+
+static int list_volumes(const struct lpv_options *options, struct volume out[MAX_VOLUMES])
+{
+    const bool half = options->precision == LPV_PRECISION_HALF, bounces = options->bounces > 0,
+               maps = options->geometry == LPV_GEOMETRY_MAPS,
+               scene = options->geometry == LPV_GEOMETRY_SCENE;
+    const enum gpu_format step = half ? GPU_RGBA16F : GPU_RGBA32F;
+    const size_t slabs = lpv_slabs(options);
+    const size_t transmittance = maps || scene ? transmittance_bytes(options) : 0;
+    const struct volume all[] = {
+        { "sums", MEMBER(sums), GPU_FORMAT_NONE, lpv_sum_bytes(options), false },
+        { "injected", MEMBER(injected), step, slabs, false },
+        { "step_even", MEMBER(steps[0]), step, slabs, false },
+        { "step_odd", MEMBER(steps[1]), step, half ? 0 : slabs, false },
+        { "light", MEMBER(light), GPU_RGBA16F, slabs, true },
+        { "probes", MEMBER(probes), GPU_RGBA16F, options->probes ? FRAME_PROBE_SLABS : 0, false },
+        { "reflected", MEMBER(reflected), step, bounces ? slabs : 0, false },
+        { "sent", MEMBER(sent), step, bounces ? slabs : 0, false },
+        { "surfaces", MEMBER(surfaces), GPU_FORMAT_NONE, bounces ? LPV_SURFACE_BYTES : 0, true },
+        { "geometry", MEMBER(geometry), GPU_RGBA16F, maps || scene, true },
+        { "transmittance", MEMBER(transmittance), GPU_FORMAT_NONE, transmittance, true },
+        { "surfels", MEMBER(surfels), GPU_FORMAT_NONE, maps ? LPV_SURFEL_BYTES : 0, true },
+        { "static_coverage", MEMBER(static_coverage), GPU_FORMAT_NONE,
+          scene ? LPV_COVERAGE_BYTES : 0, true },
+        { "moving_coverage", MEMBER(moving_coverage), GPU_FORMAT_NONE,
+          scene ? LPV_COVERAGE_BYTES : 0, true },
+    };
+    int count = 0;
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+        if (all[i].size > 0) out[count++] = all[i];
+    return count;
+}
+
+static bool create_image(struct lpv *lpv, const struct volume *volume, gpu_image *out)
+{
+    const uint32_t dim = (uint32_t)lpv->options.dim;
+    const struct lpv_name name = lpv_name(lpv, volume->name);
+    const struct gpu_image_desc desc = { .name = name.text,
+                                         .dimension = GPU_3D,
+                                         .format = volume->format,
+                                         .width = dim,
+                                         .height = dim,
+                                         .depth = dim * (uint32_t)volume->size,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    return gpu_image_create(lpv->gpu, &desc, out);
+}
+
+static bool create_buffer(struct lpv *lpv, const struct volume *volume, gpu_buffer *out)
+{
+    const size_t dim = (size_t)lpv->options.dim;
+    const struct lpv_name name = lpv_name(lpv, volume->name);
+    const struct gpu_buffer_desc desc = { .name = name.text,
+                                          .bytes = dim * dim * dim * volume->size,
+                                          .usage = GPU_BUFFER_STORAGE };
+    return gpu_buffer_create(lpv->gpu, &desc, out);
+}
+
+static bool create(struct lpv *lpv, bool coarser)
+{
+    struct volume volumes[MAX_VOLUMES];
+    const int count = list_volumes(&lpv->options, volumes);
+    for (int i = 0; i < count; i++) {
+        void *member = (char *)&lpv->volumes + volumes[i].offset;
+        if (coarser && !volumes[i].of_each_cascade) continue;
+        if (volumes[i].format == GPU_FORMAT_NONE ? !create_buffer(lpv, &volumes[i], member)
+                                                 : !create_image(lpv, &volumes[i], member))
+            return false;
+    }
+    return true;
+}
+
+static void destroy(struct lpv *lpv, bool coarser)
+{
+    struct volume volumes[MAX_VOLUMES];
+    const int count = list_volumes(&lpv->options, volumes);
+    for (int i = 0; i < count; i++) {
+        void *member = (char *)&lpv->volumes + volumes[i].offset;
+        if (coarser && !volumes[i].of_each_cascade) continue;
+        if (volumes[i].format == GPU_FORMAT_NONE)
+            gpu_buffer_destroy(lpv->gpu, member);
+        else
+            gpu_image_destroy(lpv->gpu, member);
+    }
+}
+
+bool lpv_volumes_create(struct lpv *lpv)
+{
+    return create(lpv, false);
+}
+
+// Until all are created, a failure must leave none of the finest's handles to be destroyed twice.
+static void drop_copies(struct lpv *lpv)
+{
+    struct volume volumes[MAX_VOLUMES];
+    const int count = list_volumes(&lpv->options, volumes);
+    for (int i = 0; i < count; i++) {
+        void *member = (char *)&lpv->volumes + volumes[i].offset;
+        if (!volumes[i].of_each_cascade) continue;
+        if (volumes[i].format == GPU_FORMAT_NONE)
+            *(gpu_buffer *)member = (gpu_buffer){ 0 };
+        else
+            *(gpu_image *)member = (gpu_image){ 0 };
+    }
+}
+
+bool lpv_volumes_create_coarser(struct lpv *lpv)
+{
+    drop_copies(lpv);
+    return create(lpv, true);
+}
+
+void lpv_volumes_destroy(struct lpv *lpv)
+{
+    destroy(lpv, false);
+}
+
+void lpv_volumes_destroy_coarser(struct lpv *lpv)
+{
+    destroy(lpv, true);
+}
+
+uint64_t lpv_volumes_bytes(const struct lpv_options *options)
+{
+    struct volume volumes[MAX_VOLUMES];
+    const int count = list_volumes(options, volumes);
+    const uint64_t dim = (uint64_t)options->dim;
+    uint64_t of_cell = 0;
+    for (int i = 0; i < count; i++) {
+        const uint64_t copies = volumes[i].of_each_cascade ? (uint64_t)options->cascades : 1;
+        const bool is_buffer = volumes[i].format == GPU_FORMAT_NONE;
+        const uint64_t unit = is_buffer ? 1 : (uint64_t)gpu_format_bytes(volumes[i].format);
+        of_cell += copies * unit * volumes[i].size;
+    }
+    return dim * dim * dim * of_cell;
+}
