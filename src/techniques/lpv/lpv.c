@@ -105,18 +105,8 @@ static bool holpv_create(void *state, const struct technique_create *how)
 static void lpv_set_options(void *state, const void *options)
 {
     struct lpv *lpv = state;
-    // Images and shaders exist for these.
-    struct lpv_options next = *(const struct lpv_options *)options;
-    next.bands = lpv->options.bands;
-    next.cascades = lpv->options.cascades;
-    next.neighbours = lpv->options.neighbours;
-    next.precision = lpv->options.precision;
-    next.dim = lpv->options.dim;
-    next.reconstruction = lpv->options.reconstruction;
-    next.geometry = lpv->options.geometry;
-    next.probes = lpv->options.probes;
-    next.bounces = lpv->options.bounces;
-    lpv->options = next;
+    option_copy_live(&technique_lpv.options, options,
+                     &lpv->options); // holpv's effects are the same
 }
 
 static void lpv_invalidate(void *state, uint32_t changes)
