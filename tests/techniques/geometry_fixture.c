@@ -104,7 +104,7 @@ void geometry_check_light(struct lpv *lpv, struct stage *stage,
     struct twin twin;
     twin_init(&twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
     twin.geometry = geometry;
-    twin.blocking = (double)lpv->options.blocking;
+    twin.occlusion = (double)lpv->options.occlusion;
     inject_as(&twin, lpv, stage);
     for (int i = 0; i < lpv->options.steps; i++)
         twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);

@@ -132,9 +132,9 @@ const double *geometry_twin_at(const struct geometry_twin *twin, int x, int y, i
     return twin->volume[index_of(twin, x, y, z)];
 }
 
-static double passing(double blocked, double blocking)
+static double passing(double blocked, double occlusion)
 {
-    return 1.0 - fmin(fmax(blocked * blocking, 0.0), 1.0);
+    return 1.0 - fmin(fmax(blocked * occlusion, 0.0), 1.0);
 }
 
 static int clamped(int value, int low, int high)
@@ -173,7 +173,7 @@ static double corners_block(const struct geometry_twin *twin, const int cell[3],
 // Along each axis that the offset has: the mean of the faces across it that touch the place of
 // crossing.
 static double faces_pass(const struct geometry_twin *twin, const int cell[3], const int offset[3],
-                         double blocking)
+                         double occlusion)
 {
     double pass = 1.0;
     for (int axis = 0; axis < 3; axis++) {
@@ -194,15 +194,15 @@ static double faces_pass(const struct geometry_twin *twin, const int cell[3], co
             sum += geometry_twin_at(twin, at[0], at[1], at[2])[axis];
             count++;
         }
-        pass *= passing(sum / count, blocking);
+        pass *= passing(sum / count, occlusion);
     }
     return pass;
 }
 
 double geometry_twin_passing(const struct geometry_twin *twin, const int cell[3],
-                             const int offset[3], double blocking)
+                             const int offset[3], double occlusion)
 {
     if (twin->kind == LPV_GEOMETRY_MAPS)
-        return passing(corners_block(twin, cell, offset), blocking);
-    return faces_pass(twin, cell, offset, blocking);
+        return passing(corners_block(twin, cell, offset), occlusion);
+    return faces_pass(twin, cell, offset, occlusion);
 }

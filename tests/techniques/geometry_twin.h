@@ -27,4 +27,4 @@ const double *geometry_twin_at(const struct geometry_twin *twin, int x, int y,
                                int z); // of the volume
 // The share of the light from a cell that reaches the neighbour at `offset`.
 double geometry_twin_passing(const struct geometry_twin *twin, const int cell[3],
-                             const int offset[3], double blocking);
+                             const int offset[3], double occlusion);

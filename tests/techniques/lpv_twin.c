@@ -78,7 +78,7 @@ static void send(const struct twin *twin, const double *light, double share,
 static double passing(const struct twin *twin, const int cell[3], const int offset[3])
 {
     if (!twin->geometry || twin->steps == 0) return 1.0;
-    return geometry_twin_passing(twin->geometry, cell, offset, twin->blocking);
+    return geometry_twin_passing(twin->geometry, cell, offset, twin->occlusion);
 }
 
 void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)

@@ -17,8 +17,8 @@ struct twin {
     double (*accumulated)[9]; // of all steps so far, the injected light among it
     int steps;                // so far
     const struct geometry_twin
-        *geometry;   // what is in the way from the second step on; NULL: nothing
-    double blocking; // the option
+        *geometry;    // what is in the way from the second step on; NULL: nothing
+    double occlusion; // the option
 };
 
 void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_scheme scheme);

@@ -79,7 +79,7 @@ TEST_GPU(lpv_geometry_from_maps_is_the_twins)
 TEST_GPU(lpv_light_goes_past_what_maps_see_as_the_twins_does)
 {
     const char *options[] = { "lpv:dim=8,steps=1,geometry=maps", "lpv:dim=8,steps=6,geometry=maps",
-                              "lpv:dim=8,steps=7,geometry=maps,blocking=0.7,precision=float",
+                              "lpv:dim=8,steps=7,geometry=maps,occlusion=0.7,precision=float",
                               "holpv:dim=8,steps=5,geometry=maps" };
     struct stage stage;
     geometry_scatter(&stage, gpu);

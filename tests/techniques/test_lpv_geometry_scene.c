@@ -62,7 +62,7 @@ TEST_GPU(lpv_geometry_from_the_scene_is_the_twins)
 TEST_GPU(lpv_light_goes_past_the_scene_as_the_twins_does)
 {
     const char *options[] = { "lpv:dim=8,steps=1", "lpv:dim=8,steps=6",
-                              "lpv:dim=8,steps=7,blocking=0.7,precision=float",
+                              "lpv:dim=8,steps=7,occlusion=0.7,precision=float",
                               "holpv:dim=8,steps=5", "lpv:dim=16,steps=9,neighbours=26" };
     struct set set;
     set_init(&set, gpu, 1);
@@ -78,15 +78,15 @@ TEST_GPU(lpv_light_goes_past_the_scene_as_the_twins_does)
     set_finish(&set);
 }
 
-// What the option `blocking` makes of the kept volume follows it at once.
-TEST_GPU(lpv_blocking_changes_what_was_kept)
+// A change of the option takes effect at once.
+TEST_GPU(lpv_occlusion_applies_to_the_cached_volume)
 {
     struct set set;
     set_init(&set, gpu, 1);
-    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=6,blocking=0.2");
+    struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=6,occlusion=0.2");
     props_render(&set.props, lpv);
     struct lpv_options options = lpv->options;
-    options.blocking = 2;
+    options.occlusion = 2;
     technique_lpv.set_options(lpv, &options);
     props_render(&set.props, lpv);
     struct geometry_twin twin;

@@ -28,6 +28,8 @@ static const struct option_row higher_order_rows[] = {
 };
 #undef OPTION
 
+static const struct option_alias aliases[] = { { "blocking", "occlusion" }, { NULL, NULL } };
+
 static const struct technique_debug_view debug_views[] = {
     { "injected", "slices of the grid: injected light, of lit and emissive surfaces", NULL },
     { "propagated", "slices of the grid: light accumulated over all steps", NULL },
@@ -183,7 +185,7 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     .name = name_, .title = title_, .paper = paper_, .folder = "lpv", .role = ROLE_SOURCE,         \
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | PUBLISHES_PROBES | GATHERS_EMISSION,     \
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
-    .options = OPTION_TABLE(struct lpv_options, rows_, NULL), .presets = presets_,                 \
+    .options = OPTION_TABLE(struct lpv_options, rows_, aliases), .presets = presets_,              \
     .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),                         \
     .set_options = lpv_set_options, .invalidate = lpv_invalidate, .record = lpv_record,            \
     .debug_view = lpv_debug_view, .probes = lpv_probes, .destroy = lpv_destroy,                    \

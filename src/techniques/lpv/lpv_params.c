@@ -57,7 +57,7 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .bounce_offset =
             options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
         .window = options->window,
-        .occlusion = options->blocking,
+        .occlusion = options->occlusion,
         .damping = options->damping,
         .rsm_size = view->rsm_size,
         .width = view->width,

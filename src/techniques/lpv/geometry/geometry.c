@@ -28,7 +28,8 @@ void lpv_record_geometry(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
         lpv_record_geometry_maps(lpv, cmd, view);
     else
         changed = lpv_record_geometry_scene(lpv, cmd, view);
-    if (changed || lpv->geometry.occlusion != lpv->options.blocking) record_transmittance(lpv, cmd);
-    lpv->geometry.occlusion = lpv->options.blocking;
+    if (changed || lpv->geometry.occlusion != lpv->options.occlusion)
+        record_transmittance(lpv, cmd);
+    lpv->geometry.occlusion = lpv->options.occlusion;
     gpu_scope_end(cmd);
 }
