@@ -1,26 +1,24 @@
-// Irradiance at each pixel from the accumulated intensity (Martin 2012, sec. 3.2.4, without the
+// Irradiance of each pixel from the accumulated intensity (Martin 2012, sec. 3.2.4, without the
 // albedo of eq. 3.4).
 //
-// From intensity to irradiance. The flux I(ω) dω that a step finds in a cell of side a goes a way w
-// a in that step, w = 2/3 with six neighbours and 1.203 with 26 (lpv_mean_path). A flux density of
-// paths per volume is radiance: L(ω) = I(ω) (w a) / a³, and E = ∫ L(ω) (−n·ω)₊ dω. Hence
-// irradiance_scale = w / a²; the tests print how near that comes to form factors.
+// From intensity to irradiance. In one step, the flux I(ω) dω of a cell of side a travels the path
+// w a, w = 2/3 with six neighbours and 1.203 with 26 (lpv_mean_path). Flux times path per volume is
+// radiance: L(ω) = I(ω) (w a) / a³, and E = ∫ L(ω) (−n·ω)₊ dω. Hence irradiance_scale = w / a²; the
+// tests compare it with form factors.
 //
-// The window. Light with the direction ω, c = −n·ω, has the irradiance ∝ 1 + w 2 c in two bands and
-// ∝ 1 + w (2 c + 5/4 P2(c)) in three, w being the weight of the bands above the first: exact for w
-// = 1, but it comes out negative behind the surface (−1 at c = −1; −0.158 at c = −8/15), and beside
-// a bright wall, whose light all leaves it, it takes other light away, in the wall's complementary
-// colour. 1/2 in two bands and 0.863 in three are the largest weights with which no light of
-// positive intensity becomes negative.
+// Window. Light of the direction ω, c = −n·ω, has the irradiance ∝ 1 + w 2 c in two bands and
+// ∝ 1 + w (2 c + 5/4 P2(c)) in three, w being the weight of the directional bands. w = 1 is exact,
+// but negative behind the surface (−1 at c = −1; −0.158 at c = −8/15): next to a bright wall, which
+// all its light leaves, it cancels other light and shows the complementary colour. 1/2 in two bands
+// and 0.863 in three are the largest weights that keep every positive intensity positive.
 //
-// Damping. Light from elsewhere is there further along the normal too; what a surface sends out
-// itself, or what comes through it from behind, is less there, and the two bands take a part of it
-// for light that arrives. So what irradiance loses over a cell along the normal, h ∂E/∂n < 0, is
-// taken off (the directional derivative of Martin 2012, sec. 3.2.4, for which the paper gives no
-// formula).
+// Damping. Light that arrives from elsewhere does not decrease along the normal; light that the
+// surface itself sends, or that leaks through it, does. The decrease of irradiance over a cell
+// along the normal, h ∂E/∂n < 0, is subtracted (the directional derivative of Martin 2012,
+// sec. 3.2.4; the paper gives no formula).
 //
-// Reconstruction. Between cells trilinear, whose kinks show where light changes fast (sec. 6.4); or
-// a cubic B-spline, smooth and broader.
+// Reconstruction. Trilinear between cells, with visible kinks at strong gradients (sec. 6.4), or a
+// cubic B-spline, smooth and wider.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -35,7 +33,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Constants, since drivers without branches would do both.
+// Constants, because drivers without branches would evaluate both.
 layout(constant_id = LPV_CONSTANT_CUBIC) const bool LPV_CUBIC = false;
 layout(constant_id = LPV_CONSTANT_DAMPED) const bool LPV_DAMPED = false;
 
@@ -61,8 +59,8 @@ vec3 linear_irradiance(vec3 at, vec3 n)
     return lpv_irradiance(lpv_sample(light, at), n);
 }
 
-// A cubic B-spline over 4³ cells in eight filtered look-ups (Sigg & Hadwiger 2005): along an axis,
-// the weights of two cells are one filtered look-up between them.
+// A cubic B-spline over 4³ cells in eight filtered lookups (Sigg & Hadwiger 2005): along an axis,
+// two cells are one filtered lookup between them.
 vec3 cubic_irradiance(vec3 at, vec3 n)
 {
     vec3 first = floor(at - 0.5), f = at - 0.5 - first, g = 1.0 - f;
@@ -78,7 +76,7 @@ vec3 cubic_irradiance(vec3 at, vec3 n)
     return sum;
 }
 
-// What steps of sharp lobes left negative behind a bright wall stays out.
+// Sharp lobes leave negative values behind a bright wall.
 vec3 irradiance_at(vec3 at, vec3 n)
 {
     return max(LPV_CUBIC ? cubic_irradiance(at, n) : linear_irradiance(at, n), vec3(0.0));
@@ -92,14 +90,14 @@ vec3 damped_irradiance(vec3 at, vec3 n)
     return max(here + lpv.damping * min(gain, vec3(0.0)), vec3(0.0));
 }
 
-vec3 lit(vec3 surface, vec3 n)
+vec3 surface_irradiance(vec3 surface, vec3 n)
 {
     vec3 at = lpv_cells_from_world(surface + lpv.offset_m * n);
     return min(lpv.irradiance_scale * damped_irradiance(at, n), vec3(HALF_MAX));
 }
 
-// From the coarsest cascade to the finest, each over what the one before left. Outside of the
-// coarsest there is no light.
+// Dispatched from the coarsest cascade to the finest; each blends over the previous ones. Outside
+// of the coarsest cascade there is no light.
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -110,7 +108,9 @@ void main()
         vec3 surface = frame_world_position(frame_uv(uvec2(pixel)), z);
         float weight = lpv_cascade_weight(lpv_cells_from_world(surface), lpv_cells(), push.open);
         if (covered_by_finer(surface) || (weight == 0.0 && push.coarsest == 0u)) return;
-        if (weight > 0.0) result = lit(surface, octahedral_decode(texelFetch(normal, pixel, 0).rg));
+        if (weight > 0.0)
+            result =
+                surface_irradiance(surface, octahedral_decode(texelFetch(normal, pixel, 0).rg));
         if (weight < 1.0)
             result = mix(push.coarsest != 0u ? vec3(0.0) : imageLoad(irradiance, pixel).rgb, result,
                          weight);

@@ -1,6 +1,6 @@
-// A bounce: what surfaces reflect of the light that has come to them so far joins what was
-// injected. A cell's surfaces are six, one for each direction ±a, with the reflectance times area
-// of lpv_surfaces.comp; each receives E(±a) and sends it on as a clamped cosine around ±a.
+// A bounce: surfaces reflect the accumulated light, which joins the injected light. A cell has six
+// surfaces, one for each direction ±a, with the reflecting area of lpv_surfaces.comp; each receives
+// E(±a) and sends it as a clamped cosine around ±a.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -16,20 +16,20 @@ layout(set = 0, binding = 1, scalar) readonly buffer lpv_surfaces
 {
     uvec4 surfaces[]; // [cell][direction]
 };
-layout(set = 0, binding = 2) uniform sampler3D injected; // by lamps and emissive surfaces
+layout(set = 0, binding = 2) uniform sampler3D injected; // from lights and emissive surfaces
 layout(set = 0, binding = 3) uniform sampler3D arrived;  // accumulated so far
 layout(set = 0, binding = 4) uniform writeonly image3D reflected;
-layout(set = 0, binding = 5) uniform writeonly image3D sent; // both together
+layout(set = 0, binding = 5) uniform writeonly image3D sent; // reflected + injected
 
-// Reflectance × area in cells². Together a cell's surfaces that look one way receive no more than
-// what comes through its side.
+// Reflectance × area in cells². All surfaces of one direction receive at most the light through one
+// side of the cell.
 vec3 reflecting_area(int at)
 {
     vec4 sums = vec4(surfaces[at]) / LPV_SURFACE_UNIT;
     return sums.rgb / max(sums.a, 1.0);
 }
 
-// Flux: irradiance is w / a² times the integral, area a² times the number.
+// Irradiance is w / a² times the integral, area a² times `area`.
 vec3 reflected_flux(ivec3 cell, vec3 area, vec3 n)
 {
     vec3 at = vec3(cell) + 0.5 + (lpv.bounce_offset - 0.5) * n; // the surface is half a cell behind
@@ -51,8 +51,8 @@ void main()
         sh9_clamped_cosine(n, lobe);
         for (int i = 0; i < LPV_BANDS * LPV_BANDS; i++)
             for (int colour = 0; colour < 3; colour++) {
-                int number = 3 * i + colour;
-                slabs[number / 4][number % 4] += flux[colour] * lobe[i] / SH_COSINE_0;
+                int value = 3 * i + colour;
+                slabs[value / 4][value % 4] += flux[colour] * lobe[i] / SH_COSINE_0;
             }
     }
     lpv_store_slabs(reflected, cell, slabs);

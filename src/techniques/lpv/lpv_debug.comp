@@ -1,5 +1,5 @@
-// Debug views. The slices of the grid as tiles, from z = 0 at the top left, +y up; or the surfaces,
-// coloured by cell.
+// Debug views: slices of the grid as tiles, z = 0 at the top left, +y up; or surfaces coloured by
+// cell.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -22,25 +22,26 @@ layout(push_constant, scalar) uniform push_block
 layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler3D volume;
 layout(set = 0, binding = 4) uniform sampler2D normal;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D picture;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D debug_image;
 
 // Flux of a cell, ∫ I dω = c0 √(4π), as the mean radiance in it.
-vec3 shown(ivec3 cell)
+vec3 mean_radiance(ivec3 cell)
 {
     return clamp(texelFetch(volume, cell, 0).rgb / SH_Y0 * push.radiance_scale, 0.0, HALF_MAX);
 }
 
-// What is held back at a cell's faces towards −x, −y, −z, of the light that goes either way.
-vec3 held_back(ivec3 cell)
+// Occlusion at a cell's faces towards −x, −y, −z, the greater of both directions.
+vec3 occlusion(ivec3 cell)
 {
-    vec3 held = vec3(0.0);
+    vec3 occluded = vec3(0.0);
     for (int axis = 0; axis < 3; axis++) {
         ivec3 low = ivec3(0);
         low[axis] = -1;
         if (lpv_inside(cell + low))
-            held[axis] = 1.0 - min(lpv_passing(cell, low), lpv_passing(cell + low, -low));
+            occluded[axis] =
+                1.0 - min(lpv_transmittance_of(cell, low), lpv_transmittance_of(cell + low, -low));
     }
-    return held;
+    return occluded;
 }
 
 vec3 slices(ivec2 pixel)
@@ -54,11 +55,11 @@ vec3 slices(ivec2 pixel)
     int z = tile.y * columns + tile.x;
     if (z >= cells.z) return vec3(0.0);
     ivec3 cell = ivec3(ivec2(vec2(within.x, 1.0 - within.y) * 0.9999 * vec2(cells.xy)), z);
-    return push.view == LPV_VIEW_GEOMETRY ? held_back(cell) : shown(cell);
+    return push.view == LPV_VIEW_GEOMETRY ? occlusion(cell) : mean_radiance(cell);
 }
 
-// A colour for the cell into which a surface injects, half a cell along its normal: full where
-// there is light, dim where not.
+// A colour for the cell that a surface injects into, half a cell along its normal: bright with
+// light, dim without.
 vec3 cells_on_surfaces(ivec2 pixel)
 {
     float z = texelFetch(depth, pixel, 0).r;
@@ -68,7 +69,7 @@ vec3 cells_on_surfaces(ivec2 pixel)
         lpv_cells_from_world(position) + 0.5 * octahedral_decode(texelFetch(normal, pixel, 0).rg);
     ivec3 cell = clamp(ivec3(floor(at)), ivec3(0), lpv_cells() - 1);
     vec3 colour = 0.25 + 0.5 * vec3(cell & 1);
-    return colour * (any(greaterThan(shown(cell), vec3(0.0))) ? 1.0 : 0.1);
+    return colour * (any(greaterThan(mean_radiance(cell), vec3(0.0))) ? 1.0 : 0.1);
 }
 
 void main()
@@ -76,5 +77,5 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(lpv.width, lpv.height)))) return;
     vec3 colour = push.view == LPV_VIEW_CELLS ? cells_on_surfaces(pixel) : slices(pixel);
-    imageStore(picture, pixel, vec4(colour, 1.0));
+    imageStore(debug_image, pixel, vec4(colour, 1.0));
 }

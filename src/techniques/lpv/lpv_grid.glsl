@@ -1,4 +1,4 @@
-// The grid's uniform block and where things lie in it. Binding 0.
+// The uniform block of the grid (binding 0) and coordinates in the grid.
 #ifndef AG_LPV_GRID_GLSL
 #define AG_LPV_GRID_GLSL
 
@@ -25,7 +25,7 @@ vec3 lpv_cells_from_world(vec3 position)
     return (position - lpv.origin_m) / lpv.cell_m;
 }
 
-// Whether the cell is one of the outermost on a side of a set (LPV_OPEN).
+// Whether the cell is an outermost one on one of the sides (LPV_OPEN bits).
 bool lpv_outermost(ivec3 cell, uint sides)
 {
     ivec3 last = lpv_cells() - 1;
@@ -36,8 +36,8 @@ bool lpv_outermost(ivec3 cell, uint sides)
     return false;
 }
 
-// The weight of a cascade at a place in its cells, against the next coarser one: 1, but before open
-// sides it falls to 0.
+// Weight of a cascade against the next coarser one at a position in its cells: 1, falling to 0
+// before open sides.
 float lpv_cascade_weight(vec3 at, ivec3 cells, uint open)
 {
     float inside = LPV_TRANSITION; // cells from the outermost ones

@@ -1,7 +1,7 @@
-// Injection: every texel of every reflective shadow map is a virtual point light with the intensity
-// I(ω) = Φ/π (n·ω)₊ lumen/sr (Martin 2012, sec. 3.2.1; flux Φ, so the 1/π), added to the cell half
-// a cell along its normal as coefficients of two or three bands. One invocation takes a block of
-// LPV_TEXELS² texels and adds once per run of texels that meet in one cell.
+// Injection: every texel of every reflective shadow map is a virtual point light of the intensity
+// I(ω) = Φ/π (n·ω)₊ lumen/sr (Martin 2012, sec. 3.2.1; flux Φ, therefore 1/π). It is added to the
+// cell half a cell along its normal, as coefficients of two or three bands. One invocation takes a
+// block of LPV_TEXELS² texels and adds once per run of texels in the same cell.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -35,7 +35,7 @@ void main()
     int cell = LPV_NO_CELL;
     vec3 sum[9];
     for (int k = 0; k < 9; k++) sum[k] = vec3(0.0);
-    // One turn more than there are texels, to put the last run down.
+    // One iteration more than there are texels, to flush the last run.
     for (int i = 0; i <= LPV_TEXELS * LPV_TEXELS; i++) {
         ivec2 texel = first + ivec2(i % LPV_TEXELS, i / LPV_TEXELS);
         int next = LPV_NO_CELL;

@@ -1,5 +1,5 @@
 // Injection of emissive surfaces: each point of the frame's list is a virtual light like a texel of
-// a reflective shadow map (Martin 2012 lights the Cornell box so), and adds to the same sums.
+// a reflective shadow map (as in the Cornell box of Martin 2012), added to the same sums.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,8 +1,8 @@
-// Irradiance of the light of a cell. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl.
+// Irradiance from a cell's light. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl.
 #ifndef AG_LPV_IRRADIANCE_GLSL
 #define AG_LPV_IRRADIANCE_GLSL
 
-// ∫ I(ω) (−n·ω)₊ dω in the bands of I, weighted with the window.
+// ∫ I(ω) (−n·ω)₊ dω in the bands of I, weighted by the window.
 vec3 lpv_irradiance(lpv_light light, vec3 n)
 {
     vec3 sum = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);

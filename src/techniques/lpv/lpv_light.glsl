@@ -1,23 +1,21 @@
-// The directed light of a cell, and how a volume holds it. Include after core/sh.glsl and
-// lpv_grid.glsl.
+// The directional light of a cell, and its storage. Include after core/sh.glsl and lpv_grid.glsl.
 //
-// A volume is one image: slabs of dim³ texels, one behind the other along z. Numbers 3 i + colour,
-// four to a slab, are the coefficients i of red, green and blue: 3 slabs hold two bands, 7 slabs
-// hold three bands and a number to spare.
+// A volume is one image: slabs of dim³ texels, one behind the other along z. Values 3 i + colour,
+// four to a texel, are the coefficients i of red, green and blue: 3 slabs hold two bands; 7 slabs
+// hold three bands and one unused value.
 //
 // Three bands of an intensity are a polynomial of the direction ω,
-//     I(ω) = Y0 mean + Y1 Σ along_a ω_a + Σ square_a ω_a² + Yxy Σ product_a ω_b ω_c,   Σ square_a =
+//     I(ω) = Y0 mean + Y1 Σ along_a ω_a + Σ square_a ω_a² + Yxy Σ product_a ω_b ω_c, Σ square_a =
 //     0,
-// which treats the axes alike: `square` is what the bands' 3z² − 1 and x² − y² are together.
+// which treats all axes alike: `square` combines the coefficients of 3z² − 1 and x² − y².
 #ifndef AG_LPV_LIGHT_GLSL
 #define AG_LPV_LIGHT_GLSL
 
 layout(constant_id = LPV_CONSTANT_BANDS) const int LPV_BANDS = 2;
-layout(constant_id = LPV_CONSTANT_HALF) const
-    bool LPV_HALF = true; // volumes are written as half floats
+layout(constant_id = LPV_CONSTANT_HALF) const bool LPV_HALF = true; // volumes are half floats
 
 const int LPV_SLABS = LPV_BANDS == 3 ? 7 : 3;
-const int LPV_NUMBERS = 4 * LPV_SLABS; // of a cell
+const int LPV_VALUES = 4 * LPV_SLABS; // of a cell
 
 struct lpv_light { // red, green, blue; by axis x, y, z
     vec3 mean;
@@ -56,9 +54,8 @@ void lpv_fetch_slabs(sampler3D volume, ivec3 cell, out vec4 slabs[7])
             LPV_BANDS == 3 ? texelFetch(volume, cell + ivec3(0, 0, i * lpv.dim), 0) : vec4(0.0);
 }
 
-// The nearest half float: what a driver makes of others need not be, and cutting off takes a part
-// of the light in every step. Below 2^-14 half floats are multiples of 2^-24, as floats around 3/4
-// are.
+// Rounds to the nearest half float. Drivers may truncate, which loses light in every step. Below
+// 2^-14 half floats are multiples of 2^-24, like floats around 3/4.
 vec4 lpv_rounded(vec4 value)
 {
     uvec4 bits = floatBitsToUint(value);
@@ -67,7 +64,7 @@ vec4 lpv_rounded(vec4 value)
     return mix(nearest, small, lessThan(abs(value), vec4(1.0 / 16384.0)));
 }
 
-// Macros: not every driver takes images that are written alone as parameters of functions.
+// Macros, because not every driver accepts write-only images as function parameters.
 #define lpv_store_slab(volume, cell, slab, value)                                                  \
     imageStore(volume, (cell) + ivec3(0, 0, (slab)*lpv.dim),                                       \
                LPV_HALF ? lpv_rounded(value) : (value))
@@ -82,8 +79,8 @@ lpv_light lpv_fetch(sampler3D volume, ivec3 cell)
     return lpv_unpack(slabs);
 }
 
-// Filtered, `at` in cells from the corner of a grid of so many cells; half a cell inside of it at
-// least, so that slabs do not mix.
+// Filtered lookup at `at`, in cells from the corner of a grid of `cells`. Clamped to half a cell
+// inside of it, so that slabs do not mix.
 void lpv_sample_slabs(sampler3D volume, vec3 at, ivec3 cells, out vec4 slabs[7])
 {
     vec3 texel = clamp(at, vec3(0.5), vec3(cells) - 0.5), size = vec3(textureSize(volume, 0));

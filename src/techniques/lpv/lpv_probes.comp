@@ -1,7 +1,7 @@
-// The probe volume: what the light of each cell brings to a surface of any normal n that stood in
-// its middle, E(n) = ∫ I(ω) (−n·ω)₊ dω as in lpv_apply.comp. In spherical harmonics a factor for
-// each band, and as light comes from where n looks to, another sign for band 1. It is not clamped:
-// where light comes from one side alone, E may be a little negative.
+// The probe volume: irradiance of a surface of any normal n at the centre of each cell,
+// E(n) = ∫ I(ω) (−n·ω)₊ dω as in lpv_apply.comp: one factor per band, with the sign of band 1
+// flipped because n points towards the light. Not clamped: light from one side only may leave E
+// slightly negative.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -20,7 +20,7 @@ layout(set = 0, binding = 2) uniform writeonly image3D probes;
 
 layout(push_constant, scalar) uniform push_block
 {
-    frame_probes place;
+    frame_probes grid;
 };
 
 void main()
@@ -34,11 +34,11 @@ void main()
         float weight = sh9_cosine_weight(i) * lpv.irradiance_scale * (i == 0 ? 1.0 : lpv.window) *
                        (i > 0 && i < 4 ? -1.0 : 1.0);
         for (int colour = 0; colour < 3; colour++) {
-            int number = 3 * i + colour;
+            int value = 3 * i + colour;
             coefficients[i][colour] =
-                clamp(weight * slabs[number / 4][number % 4], -HALF_MAX, HALF_MAX);
+                clamp(weight * slabs[value / 4][value % 4], -HALF_MAX, HALF_MAX);
         }
     }
     for (int s = 0; s < FRAME_PROBE_SLABS; s++)
-        imageStore(probes, cell + ivec3(0, 0, s * place.slab), probes_slab(coefficients, s));
+        imageStore(probes, cell + ivec3(0, 0, s * grid.slab), probes_slab(coefficients, s));
 }

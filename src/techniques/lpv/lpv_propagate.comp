@@ -1,16 +1,16 @@
-// One step: light goes from each cell into its 6 or 26 neighbours, gathered by the receiver (Martin
-// 2012, sec. 3.2.3, 3.3 and 4.2).
+// One propagation step: each cell gathers light from its 6 or 26 neighbours (Martin 2012,
+// sec. 3.2.3, 3.3 and 4.2).
 //
-// What accumulates over the steps is A = S + TS + T²S + …, S what was injected, T the step. T is
-// linear (nothing is clamped), so the accumulation needs no pass and no third grid of its own: A' =
-// S + T A.
+// The light accumulated over all steps is A = S + TS + T²S + …, S the injected light, T the step. T
+// is linear (nothing is clamped), so accumulation needs neither a pass nor a third grid: A' = S +
+// TA.
 //
 // T sends the flux Φ = Ω I(ω) through each face of a neighbour, of direction ω and solid angle Ω,
-// and re-projects it as a lobe around an axis n: the coefficients of a lobe are those of the band's
-// polynomials at n. So a receiver adds up Φ, Φ n and the products of Φ n nᵀ (struct sums), which
-// one multiplication for each coefficient makes light of. Directions are (p, q, q) in the order of
-// a neighbour's axes, its signs aside; terms that the faces of one neighbour share are taken out.
-// test_lpv_twin holds this to the plain sum over faces.
+// and re-projects it as a lobe around an axis n: the coefficients of a lobe are the polynomials of
+// the bands at n. A receiver sums Φ, Φ n and the products Φ n nᵀ (struct sums); one factor per
+// coefficient converts these sums. Directions are (p, q, q) in the order of a neighbour's axes, up
+// to signs; common terms of the faces of a neighbour are factored out. test_lpv_twin compares this
+// with the plain sum over faces.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -39,52 +39,51 @@ struct sums {
     vec3 product[3];
 };
 
-sums nothing()
+sums empty_sums()
 {
     vec3 none[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
     return sums(vec3(0.0), none, none, none);
 }
 
-// The shares of the light from `cell` that arrive where it goes: four neighbours, as
-// geometry_transmittance.glsl has them. Light that does not arrive is gone. What comes from outside
-// of the grid finds nothing in its way.
-vec4 reach(ivec3 cell, int word)
+// Transmittance of the light of `cell` to four neighbours (geometry_transmittance.glsl); with
+// LPV_OCCLUDED the occluded remainder. Light from outside of the grid is never occluded.
+vec4 transmittance_of(ivec3 cell, int word)
 {
     if (!lpv_inside(cell)) return vec4(LPV_OCCLUDED ? 0.0 : 1.0);
     if (LPV_GEOMETRY == LPV_GEOMETRY_OFF) return vec4(1.0);
-    vec4 passing =
+    vec4 transmitted =
         unpackUnorm4x8(transmittance_words[LPV_TRANSMITTANCE_WORDS * lpv_index(cell) + word]);
-    return LPV_OCCLUDED ? 1.0 - passing : passing;
+    return LPV_OCCLUDED ? 1.0 - transmitted : transmitted;
 }
 
-// The neighbour along axis a: its far face, (±1, 0, 0).
-void send_ahead(inout sums to, lpv_light light, int a, float side, float share)
+// The neighbour along axis a: its far face (±1, 0, 0).
+void send_far(inout sums to, lpv_light light, int a, float side, float transmittance)
 {
     lpv_reprojection face = lpv.far_face;
-    vec3 flux = share * (face.flux_0 * light.mean + side * face.flux_p * light.along[a] +
-                         face.flux_pp * light.square[a]);
+    vec3 flux = transmittance * (face.flux_0 * light.mean + side * face.flux_p * light.along[a] +
+                                 face.flux_pp * light.square[a]);
     to.flux += flux;
     to.along[a] += side * flux;
     to.square[a] += flux;
 }
 
-// The same with its four side faces, (±p, ±q, 0) and (±p, 0, ±q): pairs, whose sums and differences
-// are what is needed.
-void send_through_five(inout sums to, lpv_light light, int a, float side, float share)
+// Its far face and its four side faces (±p, ±q, 0) and (±p, 0, ±q): two pairs, of which only sums
+// and differences are needed.
+void send_to_face_neighbour(inout sums to, lpv_light light, int a, float side, float transmittance)
 {
     int b = (a + 1) % 3, c = (a + 2) % 3;
     lpv_reprojection face = lpv.side_face;
     float p = side * face.lobe_p, q = face.lobe_q;
-    send_ahead(to, light, a, side, share);
+    send_far(to, light, a, side, transmittance);
     vec3 even = face.flux_0 * light.mean + side * face.flux_p * light.along[a] +
                 face.flux_pp * light.square[a];
-    vec3 sum_b = 2.0 * share * (even + face.flux_qq * light.square[b]);
-    vec3 sum_c = 2.0 * share * (even + face.flux_qq * light.square[c]);
+    vec3 sum_b = 2.0 * transmittance * (even + face.flux_qq * light.square[b]);
+    vec3 sum_c = 2.0 * transmittance * (even + face.flux_qq * light.square[c]);
     vec3 difference_b =
-        2.0 * share *
+        2.0 * transmittance *
         (face.flux_q * light.along[b] + side * face.flux_product_pq * light.product[c]);
     vec3 difference_c =
-        2.0 * share *
+        2.0 * transmittance *
         (face.flux_q * light.along[c] + side * face.flux_product_pq * light.product[b]);
     vec3 all = sum_b + sum_c;
     to.flux += all;
@@ -98,19 +97,20 @@ void send_through_five(inout sums to, lpv_light light, int a, float side, float 
     to.product[b] += p * q * difference_c;
 }
 
-// The neighbour across the edge along axis c: its two outer faces, (±p, ±q, 0) and (±q, ±p, 0).
-void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float side_b, float share)
+// The neighbour across the edge along axis c: its two outer faces (±p, ±q, 0) and (±q, ±p, 0).
+void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float side_b,
+                    float transmittance)
 {
     int a = (c + 1) % 3, b = (c + 2) % 3;
     lpv_reprojection face = lpv.side_face;
     float p = face.lobe_p, q = face.lobe_q, sides = side_a * side_b;
     vec3 shared_part = face.flux_0 * light.mean + sides * face.flux_product_pq * light.product[c];
-    vec3 flux_a = share * (shared_part + side_a * face.flux_p * light.along[a] +
-                           side_b * face.flux_q * light.along[b] + face.flux_pp * light.square[a] +
-                           face.flux_qq * light.square[b]);
-    vec3 flux_b = share * (shared_part + side_a * face.flux_q * light.along[a] +
-                           side_b * face.flux_p * light.along[b] + face.flux_qq * light.square[a] +
-                           face.flux_pp * light.square[b]);
+    vec3 flux_a = transmittance * (shared_part + side_a * face.flux_p * light.along[a] +
+                                   side_b * face.flux_q * light.along[b] +
+                                   face.flux_pp * light.square[a] + face.flux_qq * light.square[b]);
+    vec3 flux_b = transmittance * (shared_part + side_a * face.flux_q * light.along[a] +
+                                   side_b * face.flux_p * light.along[b] +
+                                   face.flux_qq * light.square[a] + face.flux_pp * light.square[b]);
     to.flux += flux_a + flux_b;
     to.along[a] += side_a * (p * flux_a + q * flux_b);
     to.along[b] += side_b * (q * flux_a + p * flux_b);
@@ -119,9 +119,9 @@ void send_over_edge(inout sums to, lpv_light light, int c, float side_a, float s
     to.product[c] += sides * p * q * (flux_a + flux_b);
 }
 
-// The neighbour across a corner: its three outer faces, (±p, ±q, ±q) and so on. Squares may leave
-// out what is the same for all axes.
-void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
+// The neighbour across a corner: its three outer faces (±p, ±q, ±q), …. Terms of `square` that are
+// equal for all axes may be omitted.
+void send_over_corner(inout sums to, lpv_light light, vec3 side, float transmittance)
 {
     lpv_reprojection face = lpv.corner_face;
     float p = face.lobe_p, q = face.lobe_q;
@@ -132,10 +132,10 @@ void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
                        sides[a] * face.flux_product_pq * light.product[a];
     vec3 all = vec3(0.0), flux[3];
     for (int a = 0; a < 3; a++) {
-        flux[a] =
-            share * (shared_part + side[a] * (face.flux_p - face.flux_q) * light.along[a] +
-                     sides[a] * (face.flux_product_qq - face.flux_product_pq) * light.product[a] +
-                     (face.flux_pp - face.flux_qq) * light.square[a]);
+        flux[a] = transmittance *
+                  (shared_part + side[a] * (face.flux_p - face.flux_q) * light.along[a] +
+                   sides[a] * (face.flux_product_qq - face.flux_product_pq) * light.product[a] +
+                   (face.flux_pp - face.flux_qq) * light.square[a]);
         all += flux[a];
     }
     to.flux += all;
@@ -146,8 +146,8 @@ void send_over_corner(inout sums to, lpv_light light, vec3 side, float share)
     }
 }
 
-// What a receiver has with what was injected into it. At the sides of a cascade where light comes
-// in from the next coarser one that one's light stays.
+// Writes received plus injected light. On boundary sides of a cascade the outermost cells keep the
+// light of the next coarser one.
 void store(ivec3 cell, sums sum)
 {
     vec4 slabs[7];
@@ -173,7 +173,7 @@ void store(ivec3 cell, sums sum)
     lpv_store_slabs(after, cell, slabs);
 }
 
-// Outside of the grid the sky: the same from all directions.
+// Outside of the grid: the sky, isotropic.
 lpv_light light_of(ivec3 cell)
 {
     if (lpv_inside(cell)) return lpv_fetch(before, cell);
@@ -185,13 +185,13 @@ void from_face(inout sums to, ivec3 cell, int axis, int side)
 {
     ivec3 offset = ivec3(0);
     offset[axis] = side;
-    float share = reach(cell - offset, axis)[side > 0 ? 1 : 0];
-    send_through_five(to, light_of(cell - offset), axis, float(side), share);
+    float transmittance = transmittance_of(cell - offset, axis)[side > 0 ? 1 : 0];
+    send_to_face_neighbour(to, light_of(cell - offset), axis, float(side), transmittance);
 }
 
 void gather_six(ivec3 cell)
 {
-    sums sum = nothing();
+    sums sum = empty_sums();
     for (int axis = 0; axis < 3; axis++) {
         from_face(sum, cell, axis, 1);
         from_face(sum, cell, axis, -1);
@@ -199,46 +199,46 @@ void gather_six(ivec3 cell)
     store(cell, sum);
 }
 
-// ---- 26 neighbours. An invocation goes along z and takes each source once, for the receivers
-// below, beside and above it.
+// ---- 26 neighbours: an invocation iterates along z and fetches each source once, for the
+// receivers below, level with and above it.
 
 struct receivers {
     sums below, level, above;
 };
 
-// From the source at x = −step.x, y = −step.y of the receivers' column.
+// From the source at (−step.x, −step.y) relative to the receivers' column.
 void from_column(inout receivers to, ivec3 cell, ivec2 step)
 {
     lpv_light light = light_of(cell);
     float x = float(step.x), y = float(step.y);
-    vec4 shares = reach(cell, 3 * (step.y + 1) + step.x + 1);
-    float below = shares[0], level = shares[1], above = shares[2];
+    vec4 transmittance = transmittance_of(cell, 3 * (step.y + 1) + step.x + 1);
+    float below = transmittance[0], level = transmittance[1], above = transmittance[2];
     if (step.x != 0 && step.y != 0) {
         send_over_corner(to.below, light, vec3(x, y, -1.0), below);
         send_over_edge(to.level, light, 2, x, y, level);
         send_over_corner(to.above, light, vec3(x, y, 1.0), above);
     } else if (step.x != 0) {
         send_over_edge(to.below, light, 1, -1.0, x, below);
-        send_ahead(to.level, light, 0, x, level);
+        send_far(to.level, light, 0, x, level);
         send_over_edge(to.above, light, 1, 1.0, x, above);
     } else if (step.y != 0) {
         send_over_edge(to.below, light, 0, y, -1.0, below);
-        send_ahead(to.level, light, 1, y, level);
+        send_far(to.level, light, 1, y, level);
         send_over_edge(to.above, light, 0, y, 1.0, above);
     } else {
-        send_ahead(to.below, light, 2, -1.0, below);
-        send_ahead(to.above, light, 2, 1.0, above);
+        send_far(to.below, light, 2, -1.0, below);
+        send_far(to.above, light, 2, 1.0, above);
     }
 }
 
 void gather_twenty_six(ivec3 first)
 {
-    receivers to = receivers(nothing(), nothing(), nothing());
+    receivers to = receivers(empty_sums(), empty_sums(), empty_sums());
     for (int z = first.z - 1; z <= first.z + LPV_RUN; z++) {
         [[unroll]] for (int y = -1; y <= 1; y++) [[unroll]] for (int x = -1; x <= 1; x++)
             from_column(to, ivec3(first.xy - ivec2(x, y), z), ivec2(x, y));
         if (z > first.z && z - 1 < lpv.cells_z) store(ivec3(first.xy, z - 1), to.below);
-        to = receivers(to.level, to.above, nothing());
+        to = receivers(to.level, to.above, empty_sums());
     }
 }
 

@@ -1,9 +1,9 @@
-// Where the steps of a cascade begin: with the light of the next coarser one, which has come from
-// further away than they reach. k steps leave of it what is older than k steps, T^k A, and put the
-// nearer light in its place, S + TS + … + T^(k−1)S.
+// Start of a finer cascade's steps: the light of the next coarser one, which comes from further
+// away than the steps reach. k steps keep the part of it that is older than k steps, T^k A, and
+// replace the nearer light by S + TS + … + T^(k−1)S.
 //
-// Radiance is I · (w a)/a³ in cells of side a (lpv_apply.comp), so the same radiance has
-// intensities ∝ a².
+// Radiance is I · (w a)/a³ in cells of side a (lpv_apply.comp), so equal radiance has intensities
+// ∝ a².
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,4 @@
-// From whole numbers to coefficients: intensity in the grid's unit (scaled lumen/sr × a power of
-// two).
+// Integer sums to coefficients: intensity in the grid's unit (scaled lumen/sr × a power of two).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -16,9 +15,9 @@ layout(set = 0, binding = 1, scalar) readonly buffer lpv_sums
 };
 layout(set = 0, binding = 2) uniform writeonly image3D injected;
 
-// A 64-bit two's complement number. Negated first where negative: −1 as 2^32 · (2^32 − 1) + … would
-// cancel to nothing.
-float number(int at)
+// A 64-bit two's complement integer, negated first where negative: as floats the halves of −1 would
+// cancel.
+float value_at(int at)
 {
     uint low = words[at], high = words[at + 1];
     bool negative = (high & 0x80000000u) != 0u;
@@ -34,8 +33,8 @@ void main()
 {
     ivec3 cell = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(cell)) return;
-    int at = 2 * LPV_NUMBERS * lpv_index(cell);
+    int at = 2 * LPV_VALUES * lpv_index(cell);
     for (int i = 0; i < LPV_SLABS; i++, at += 8)
         lpv_store_slab(injected, cell, i,
-                       vec4(number(at), number(at + 2), number(at + 4), number(at + 6)));
+                       vec4(value_at(at), value_at(at + 2), value_at(at + 4), value_at(at + 6)));
 }

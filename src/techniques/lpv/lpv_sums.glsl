@@ -1,51 +1,51 @@
-// Adding virtual lights to the grid. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl;
+// Adds virtual lights to the grid. Include after core/sh.glsl, lpv_grid.glsl and lpv_light.glsl;
 // define LPV_SUMS_BINDING.
 //
-// Sums are whole numbers, so that no order of the invocations changes a bit: each coefficient has
-// 64 bits in two words. The carry out of the low word is added to the high one; modulo 2^64 the
-// total is exact whatever the order.
+// Sums are integers, so that the order of invocations does not change a bit: 64 bits in two words
+// per coefficient. The carry of the low word is added to the high one; modulo 2^64 the total is
+// exact in any order.
 #ifndef AG_LPV_SUMS_GLSL
 #define AG_LPV_SUMS_GLSL
 
-// [cell][coefficient][colour][low, high], as many numbers to a cell as its slabs hold
+// [cell][coefficient][colour][low, high], LPV_VALUES to a cell
 layout(set = 0, binding = LPV_SUMS_BINDING, scalar) buffer lpv_sums
 {
     uint words[];
 };
 
 const int LPV_NO_CELL = -1;
-const float LPV_LARGEST = 1073741824.0; // 2^30, what lpv_scale_of promises not to exceed
+const float LPV_LARGEST = 1073741824.0; // 2^30: bound of one addition, see lpv_scale_of
 
-void lpv_add_number(int at, float value)
+void lpv_add_value(int at, float value)
 {
-    int whole = int(roundEven(clamp(value * lpv.fixed_from_flux, -LPV_LARGEST, LPV_LARGEST)));
-    if (whole == 0) return;
-    uint low = uint(whole);
+    int fixed_value = int(roundEven(clamp(value * lpv.fixed_from_flux, -LPV_LARGEST, LPV_LARGEST)));
+    if (fixed_value == 0) return;
+    uint low = uint(fixed_value);
     uint before = atomicAdd(words[at], low);
     uint carry;
     uaddCarry(before, low, carry);
-    uint high = (whole < 0 ? 0xffffffffu : 0u) + carry;
+    uint high = (fixed_value < 0 ? 0xffffffffu : 0u) + carry;
     if (high != 0u) atomicAdd(words[at + 1], high);
 }
 
-// Coefficients × flux of what arrives in a cell; nothing for LPV_NO_CELL.
+// Adds coefficients × flux to a cell; nothing for LPV_NO_CELL.
 void lpv_add(int cell, vec3 lobe[9])
 {
     if (cell == LPV_NO_CELL) return;
-    int at = 2 * LPV_NUMBERS * cell;
+    int at = 2 * LPV_VALUES * cell;
     for (int i = 0; i < LPV_BANDS * LPV_BANDS; i++)
         for (int colour = 0; colour < 3; colour++)
-            lpv_add_number(at + 2 * (3 * i + colour), lobe[i][colour]);
+            lpv_add_value(at + 2 * (3 * i + colour), lobe[i][colour]);
 }
 
-// Half a cell in front of its surface, so that a virtual light is on the side that it shines to.
+// Half a cell in front of the surface, so that a virtual light is on its lit side.
 int lpv_injection_cell(vec3 position, vec3 normal)
 {
     ivec3 at = ivec3(floor(lpv_cells_from_world(position) + 0.5 * normal));
     return lpv_inside(at) ? lpv_index(at) : LPV_NO_CELL;
 }
 
-// Coefficients of 1/π (n·ω)₊: a flux of 1. Those of bands that are not in use are never looked at.
+// Coefficients of 1/π (n·ω)₊, a flux of 1. Those of unused bands are never read.
 void lpv_unit_lobe(vec3 normal, out float lobe[9])
 {
     sh9_clamped_cosine(normal, lobe);

@@ -1,11 +1,10 @@
-// What reflects light, by cell: Σ ρ A n_a² and Σ A n_a² over the surfaces that inject into the
-// cell, for each of the six directions ±a that their normals n look to, ρ in RGB. ρ is diffuse
-// reflectance, A area in cells²; the three n_a² sum to 1, and a surface of normal n is taken as
-// three that look along the axes.
+// Reflecting surfaces by cell: Σ ρ A n_a² and Σ A n_a² over the surfaces that inject into the cell,
+// for each of six directions ±a by the sign of their normals n. ρ is diffuse reflectance in RGB, A
+// area in cells². The three n_a² sum to 1: a surface of normal n counts as three along the axes.
 //
-// A triangle is sampled where lines along its largest axis cross it, LPV_SURFACE_LINES² of them to
-// a face of a cell. Sums are whole numbers: no order of triangles changes a bit. One invocation
-// takes one triangle; where many lines may cross it the whole workgroup helps.
+// A triangle is sampled where lines along its largest axis cross it, LPV_SURFACE_LINES² per face of
+// a cell. Sums are integers: the order of triangles does not change a bit. One invocation takes one
+// triangle; the whole workgroup shares a large one.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -18,12 +17,12 @@ layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
 layout(set = 0, binding = 12, scalar) buffer lpv_surfaces
 {
-    uint surfaces[]; // [cell][direction +x −x +y −y +z −z][red, green, blue, area], in units of
-                     // 1/LPV_SURFACE_UNIT cells²
+    // [cell][direction +x −x +y −y +z −z][red, green, blue, area], 1/LPV_SURFACE_UNIT cells²
+    uint surfaces[];
 };
 
 const int LINES = LPV_SURFACE_LINES;
-const int FEW = 64; // lines that one invocation looks at alone
+const int MAX_LINES = 64; // that one invocation tests alone
 
 shared uint large[SCENE_TRIANGLES_LOCAL];
 shared uint large_count;
@@ -31,13 +30,13 @@ shared uint large_count;
 struct triangle {
     uvec3 vertices;
     mat3 corners;       // in cells from the grid's corner
-    vec3 normal;        // of the front
-    int axis;           // that the normal is nearest to
-    ivec2 first, count; // lines of its box
-    float lod;          // of the base colour map at the distance of lines
+    vec3 normal;        // of the front side
+    int axis;           // nearest to the normal
+    ivec2 first, count; // lines that cross its bounding box
+    float lod;          // of the base colour map, for the spacing of lines
 };
 
-vec2 across(vec3 v, int axis)
+vec2 projected(vec3 v, int axis)
 {
     return vec2(v[(axis + 1) % 3], v[(axis + 2) % 3]);
 }
@@ -58,8 +57,8 @@ float lod_of(uvec3 vertices, float area)
     vec2 a = map_uv(SCENE_MAP_BASE_COLOR, vertices.x) * size,
          b = map_uv(SCENE_MAP_BASE_COLOR, vertices.y) * size;
     vec2 c = map_uv(SCENE_MAP_BASE_COLOR, vertices.z) * size;
-    float texels = 0.5 * abs(cross_2d(b - a, c - a)) /
-                   max(area * float(LINES * LINES), 1e-12); // of one sample
+    float texels =
+        0.5 * abs(cross_2d(b - a, c - a)) / max(area * float(LINES * LINES), 1e-12); // per sample
     return 0.5 * log2(max(texels, 1.0));
 }
 
@@ -78,9 +77,9 @@ bool triangle_of(uint i, out triangle t)
     if (determinant(mat3(scene_world_from_instance())) < 0.0) t.normal = -t.normal;
     vec3 size = abs(t.normal);
     t.axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-    vec2 a = across(t.corners[0], t.axis), b = across(t.corners[1], t.axis),
-         c = across(t.corners[2], t.axis);
-    // Line i stands at (i + 1/2) / LINES cells.
+    vec2 a = projected(t.corners[0], t.axis), b = projected(t.corners[1], t.axis),
+         c = projected(t.corners[2], t.axis);
+    // Line i is at (i + 1/2) / LINES cells.
     vec2 low = min(a, min(b, c)) * float(LINES) - 0.5,
          high = max(a, max(b, c)) * float(LINES) - 0.5;
     ivec2 end = ivec2(lpv_cells()[(t.axis + 1) % 3], lpv_cells()[(t.axis + 2) % 3]) * LINES - 1;
@@ -90,7 +89,7 @@ bool triangle_of(uint i, out triangle t)
     return true;
 }
 
-// Diffuse reflectance, as reflective shadow maps hold it.
+// Diffuse reflectance as in reflective shadow maps.
 vec3 reflectance_at(triangle t, vec3 weight)
 {
     scene_material material = scene_material_table[push.draw.material];
@@ -112,22 +111,22 @@ void add_side(vec3 position, vec3 normal, vec4 amount)
     if (!lpv_inside(cell)) return;
     for (int axis = 0; axis < 3; axis++) {
         int at = 24 * lpv_index(cell) + 4 * (2 * axis + (normal[axis] < 0.0 ? 1 : 0));
-        uvec4 whole = uvec4(round(amount * normal[axis] * normal[axis] * LPV_SURFACE_UNIT));
+        uvec4 fixed_amount = uvec4(round(amount * normal[axis] * normal[axis] * LPV_SURFACE_UNIT));
         for (int c = 0; c < 4; c++)
-            if (whole[c] > 0u) atomicAdd(surfaces[at + c], whole[c]);
+            if (fixed_amount[c] > 0u) atomicAdd(surfaces[at + c], fixed_amount[c]);
     }
 }
 
 void add_line(triangle t, ivec2 line)
 {
     vec2 p = (vec2(line) + 0.5) / float(LINES);
-    vec2 a = across(t.corners[0], t.axis) - p, b = across(t.corners[1], t.axis) - p,
-         c = across(t.corners[2], t.axis) - p;
+    vec2 a = projected(t.corners[0], t.axis) - p, b = projected(t.corners[1], t.axis) - p,
+         c = projected(t.corners[2], t.axis) - p;
     vec3 weight = vec3(cross_2d(b, c), cross_2d(c, a), cross_2d(a, b));
     if (!all(greaterThanEqual(weight, vec3(0.0))) && !all(lessThanEqual(weight, vec3(0.0)))) return;
     weight /= weight.x + weight.y + weight.z;
     vec3 position = t.corners * weight;
-    if (!scene_triangle_solid(t.vertices, weight)) return; // a mask cuts it away
+    if (!scene_triangle_solid(t.vertices, weight)) return; // alpha mask
     vec4 amount =
         vec4(reflectance_at(t, weight), 1.0) / (float(LINES * LINES) * abs(t.normal[t.axis]));
     add_side(position, t.normal, amount);
@@ -135,7 +134,7 @@ void add_line(triangle t, ivec2 line)
         add_side(position, -t.normal, amount);
 }
 
-// Every `stride`th line from number `first`.
+// Every `stride`th line from index `first`.
 void add_lines(triangle t, int first, int stride)
 {
     for (int i = first; i < t.count.x * t.count.y; i += stride)
@@ -149,7 +148,7 @@ void main()
     if (gl_LocalInvocationIndex == 0u) large_count = 0u;
     barrier();
     if (i < push.triangle_count && triangle_of(i, t)) {
-        if (t.count.x * t.count.y <= FEW)
+        if (t.count.x * t.count.y <= MAX_LINES)
             add_lines(t, 0, 1);
         else
             large[atomicAdd(large_count, 1u)] = i;

@@ -1,9 +1,9 @@
-// The surfels that the camera sees (Martin 2012, sec. 3.2.2): every pixel of the G-buffer. One
-// invocation takes a block of LPV_TEXELS² pixels.
+// Surfels of the camera (Martin 2012, sec. 3.2.2): every pixel of the G-buffer. One invocation
+// takes a block of LPV_TEXELS² pixels.
 //
-// Area of a surfel. A pixel's rectangle on the plane of its depth has the area |u × v| (m²); the
-// beam to the eye, at the angle θ to the camera's axis, has cos θ of it across, and the surface
-// behind is larger by the cosine between its normal and the way to the eye.
+// Area of a surfel: a pixel's rectangle on the plane of its depth has the area |u × v| (m²). Its
+// perpendicular area is smaller by the cosine to the camera's axis, the surface behind it larger by
+// the cosine between its normal and the direction to the camera.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -31,8 +31,8 @@ void add(inout lpv_surfel_run run, ivec2 pixel)
              frame_world_position(uv - vec2(half_pixel.x, 0.0), z);
     vec3 v = frame_world_position(uv + vec2(0.0, half_pixel.y), z) -
              frame_world_position(uv - vec2(0.0, half_pixel.y), z);
-    vec3 way = frame.camera_position - position;
-    vec3 to_viewer = way * inversesqrt(max(dot(way, way), 1e-20));
+    vec3 offset = frame.camera_position - position;
+    vec3 to_viewer = offset * inversesqrt(max(dot(offset, offset), 1e-20));
     float across = abs(dot(cross(u, v), to_viewer)); // |u × v| cos θ
     lpv_surfel_run_add(
         run, lpv_corner(position),

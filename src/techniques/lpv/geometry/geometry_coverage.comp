@@ -1,9 +1,8 @@
-// Surfaces across lines. Each face between two cells has LPV_LINES² lines through it, from the
-// middle of the one cell to that of the other; a line that a triangle crosses has its bit set. What
-// is set is set whatever comes first, and twice is once: neither the order of triangles nor which
-// of them are drawn together changes anything.
+// Coverage masks: each face between two cells has LPV_LINES² sampling lines, from the centre of one
+// cell to that of the next; a line that a triangle crosses sets its bit. Setting a bit is
+// idempotent: neither the order of triangles nor their grouping into draws changes the result.
 //
-// One invocation looks at one triangle. Where it may cross many lines the whole workgroup helps.
+// One invocation takes one triangle; the whole workgroup shares a large one.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -15,53 +14,53 @@ layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 
 layout(set = 0, binding = 12, scalar) buffer lpv_coverage
 {
-    uint crossed[]; // [cell][axis]: of its low faces
+    uint masks[]; // [cell][axis]: of the low faces
 };
 
-const int FEW = 64; // lines that one invocation looks at alone
+const int MAX_LINES = 64; // that one invocation tests alone
 
 shared uint large[SCENE_TRIANGLES_LOCAL];
 shared uint large_count;
 
-// The lines along an axis that a triangle's box meets: those from `first`, `count` of them each
-// way.
-struct patch_of_lines {
+// Lines along an axis that cross the bounding box of a triangle.
+struct line_range {
     ivec2 first, count;
 };
 
-// Corners in cells from the grid's corner; false where a number is not one.
+// Corners in cells from the grid's corner; false for NaN, infinite or far ones.
 bool corners_of(uvec3 vertices, out mat3 corners)
 {
     mat3 world = scene_triangle_positions(vertices);
-    bool fine = true;
+    bool valid = true;
     for (int k = 0; k < 3; k++) {
         corners[k] = lpv_cells_from_world(world[k]);
-        fine = fine && all(lessThan(abs(corners[k]), vec3(1e6)));
+        valid = valid && all(lessThan(abs(corners[k]), vec3(1e6)));
     }
-    return fine;
+    return valid;
 }
 
-vec2 across(vec3 v, int axis)
+vec2 projected(vec3 v, int axis)
 {
     return vec2(v[(axis + 1) % 3], v[(axis + 2) % 3]);
 }
 
-patch_of_lines lines_of(mat3 corners, int axis)
+line_range lines_of(mat3 corners, int axis)
 {
-    vec2 a = across(corners[0], axis), b = across(corners[1], axis), c = across(corners[2], axis);
-    // Line i stands at (i + 1/2) / LPV_LINES cells.
+    vec2 a = projected(corners[0], axis), b = projected(corners[1], axis),
+         c = projected(corners[2], axis);
+    // Line i is at (i + 1/2) / LPV_LINES cells.
     vec2 low = min(a, min(b, c)) * float(LPV_LINES) - 0.5,
          high = max(a, max(b, c)) * float(LPV_LINES) - 0.5;
     ivec3 cells = lpv_cells();
     ivec2 end = ivec2(cells[(axis + 1) % 3], cells[(axis + 2) % 3]) * LPV_LINES - 1;
-    patch_of_lines lines;
+    line_range lines;
     lines.first = max(ivec2(ceil(low)), ivec2(0));
     lines.count = max(min(ivec2(floor(high)), end) - lines.first + 1, ivec2(0));
     return lines;
 }
 
-// Twice the area of (p, a, b), its sign flipped exactly when a and b are: neighbours leave no gap
-// between them.
+// Twice the signed area of (p, a, b). Swapping a and b flips the sign exactly, so that triangles
+// with a common edge leave no gap.
 float side_of(vec2 p, vec2 a, vec2 b)
 {
     precise vec2 u = a - p, v = b - p;
@@ -73,41 +72,42 @@ float side_of(vec2 p, vec2 a, vec2 b)
 void cross_line(uvec3 vertices, mat3 corners, int axis, ivec2 line)
 {
     vec2 p = (vec2(line) + 0.5) / float(LPV_LINES);
-    vec2 a = across(corners[0], axis), b = across(corners[1], axis), c = across(corners[2], axis);
+    vec2 a = projected(corners[0], axis), b = projected(corners[1], axis),
+         c = projected(corners[2], axis);
     vec3 weight = vec3(side_of(p, b, c), side_of(p, c, a), side_of(p, a, b));
     bool inside = all(greaterThanEqual(weight, vec3(0.0))) || all(lessThanEqual(weight, vec3(0.0)));
     float area = weight.x + weight.y + weight.z;
-    if (!inside || area == 0.0) return; // along the line
+    if (!inside || area == 0.0) return; // parallel to the line
     weight /= area;
     vec3 depth = vec3(corners[0][axis], corners[1][axis], corners[2][axis]);
     ivec3 cell;
-    cell[axis] = int(floor(dot(weight, depth) + 0.5)); // whose low face is the nearest
+    cell[axis] = int(floor(dot(weight, depth) + 0.5)); // its low face is the nearest
     cell[(axis + 1) % 3] = line.x / LPV_LINES;
     cell[(axis + 2) % 3] = line.y / LPV_LINES;
     if (!lpv_inside(cell) || !scene_triangle_solid(vertices, weight)) return;
     ivec2 within = line % LPV_LINES;
-    atomicOr(crossed[3 * lpv_index(cell) + axis], 1u << (within.y * LPV_LINES + within.x));
+    atomicOr(masks[3 * lpv_index(cell) + axis], 1u << (within.y * LPV_LINES + within.x));
 }
 
-// Every `stride`th line from number `first`.
+// Every `stride`th line from index `first`.
 void cross_lines(uvec3 vertices, mat3 corners, int first, int stride)
 {
     for (int axis = 0; axis < 3; axis++) {
-        patch_of_lines lines = lines_of(corners, axis);
+        line_range lines = lines_of(corners, axis);
         for (int i = first; i < lines.count.x * lines.count.y; i += stride)
             cross_line(vertices, corners, axis,
                        lines.first + ivec2(i % lines.count.x, i / lines.count.x));
     }
 }
 
-int most_lines(mat3 corners)
+int max_lines(mat3 corners)
 {
-    int most = 0;
+    int result = 0;
     for (int axis = 0; axis < 3; axis++) {
         ivec2 count = lines_of(corners, axis).count;
-        most = max(most, count.x * count.y);
+        result = max(result, count.x * count.y);
     }
-    return most;
+    return result;
 }
 
 void main()
@@ -119,7 +119,7 @@ void main()
     if (triangle < push.triangle_count) {
         uvec3 vertices = scene_triangle(triangle);
         if (corners_of(vertices, corners)) {
-            if (most_lines(corners) <= FEW)
+            if (max_lines(corners) <= MAX_LINES)
                 cross_lines(vertices, corners, 0, 1);
             else
                 large[atomicAdd(large_count, 1u)] = triangle;

@@ -1,5 +1,4 @@
-// From lines to the geometry volume: of each cell's low faces the share of the lines that something
-// still or moving crosses.
+// Coverage masks to the geometry volume: the covered fraction of each cell's low faces.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -10,11 +9,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 1, scalar) readonly buffer lpv_static_coverage
 {
-    uint still[]; // [cell][axis]
+    uint static_masks[]; // [cell][axis]
 };
 layout(set = 0, binding = 2, scalar) readonly buffer lpv_moving_coverage
 {
-    uint moving[];
+    uint moving_masks[];
 };
 layout(set = 0, binding = 3, rgba16f) uniform writeonly image3D geometry;
 
@@ -23,9 +22,9 @@ void main()
     ivec3 cell = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(cell)) return;
     int at = 3 * lpv_index(cell);
-    vec3 blocked = vec3(0.0);
+    vec3 covered = vec3(0.0);
     for (int axis = 0; axis < 3; axis++)
-        blocked[axis] =
-            float(bitCount(still[at + axis] | moving[at + axis])) / float(LPV_LINES * LPV_LINES);
-    imageStore(geometry, cell, vec4(blocked, 0.0));
+        covered[axis] = float(bitCount(static_masks[at + axis] | moving_masks[at + axis])) /
+                        float(LPV_LINES * LPV_LINES);
+    imageStore(geometry, cell, vec4(covered, 0.0));
 }

@@ -1,10 +1,10 @@
-// The surfels that one light sees (Martin 2012, sec. 3.2.2): every texel of its reflective shadow
-// maps. One invocation takes a block of LPV_TEXELS² texels.
+// Surfels of one light (Martin 2012, sec. 3.2.2): every texel of its reflective shadow maps. One
+// invocation takes a block of LPV_TEXELS² texels.
 //
-// Area of a surfel. The texel of a sun's map is a beam of perpendicular area (2 w / size)², w its
-// half-width (m); that of a point's or spot's map is a cone of solid angle Ω (sr), at the distance
-// r (m) of the area Ω r². The surface behind it is larger by the cosine between its normal and the
-// way to the light.
+// Area of a surfel: the texel of a sun's map is a beam of perpendicular area (2 w / size)², w the
+// half-width of the map (m); that of a point or spot light is a cone of solid angle Ω (sr), which
+// has the area Ω r² at the distance r (m). The surface is larger by the cosine between its normal
+// and the direction to the light.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -40,9 +40,9 @@ void add(inout lpv_surfel_run run, rsm_face face, ivec3 texel)
     float across = 2.0 * face.tan_half / float(lpv.rsm_size);
     across *= across;
     if (face.type != FRAME_LIGHT_SUN) {
-        vec3 way = face.position - position;
-        float distance2 = dot(way, way);
-        to_light = way * inversesqrt(max(distance2, 1e-20));
+        vec3 offset = face.position - position;
+        float distance2 = dot(offset, offset);
+        to_light = offset * inversesqrt(max(distance2, 1e-20));
         across = rsm_solid_angle(face, texel.xy, lpv.rsm_size) * distance2;
     }
     vec3 normal = octahedral_decode(texelFetch(rsm_normal, texel, 0).rg);

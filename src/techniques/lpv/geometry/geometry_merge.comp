@@ -1,11 +1,10 @@
-// Takes one source's surfels into the geometry volume: at each corner the source that saw most
-// stays. Several that see the same surface would count it as often as they see it; so there is no
-// sum.
+// Merges the surfels of one source into the geometry volume by the maximum. A sum would count a
+// surface that several sources see several times.
 //
-// A greatest vector of coefficients: the one with the greatest first coefficient, Y00 Σ A/S² π/4π…,
-// that is the greatest area, as a whole. The greatest of each coefficient by itself would be a
-// surface that nobody saw. Equal areas are decided by the other coefficients in order, after
-// rounding to what is stored: so no order of the sources changes a bit.
+// The maximum of two lobes is the one with the greater first coefficient, that is the greater area,
+// as a whole: a maximum per coefficient would be a surface that does not exist. Ties are decided by
+// the other coefficients in order, after rounding to the stored precision, so that the order of
+// the sources does not change a bit.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -31,9 +30,9 @@ void main()
     ivec3 corner = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(corner)) return;
     int at = 4 * lpv_index(corner);
-    vec4 seen =
+    vec4 source =
         vec4(surfel_sums[at], surfel_sums[at + 1], surfel_sums[at + 2], surfel_sums[at + 3]) /
         LPV_SURFEL_FIXED;
-    seen = vec4(unpackHalf2x16(packHalf2x16(seen.xy)), unpackHalf2x16(packHalf2x16(seen.zw)));
-    if (greater(seen, imageLoad(geometry, corner))) imageStore(geometry, corner, seen);
+    source = vec4(unpackHalf2x16(packHalf2x16(source.xy)), unpackHalf2x16(packHalf2x16(source.zw)));
+    if (greater(source, imageLoad(geometry, corner))) imageStore(geometry, corner, source);
 }

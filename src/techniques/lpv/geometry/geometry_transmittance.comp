@@ -1,5 +1,5 @@
-// From the geometry volume to the shares of light that reach each neighbour
-// (geometry_transmittance.glsl): once, not in each step.
+// The geometry volume to the transmittance between neighbours (geometry_transmittance.glsl),
+// precomputed for all steps.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -14,22 +14,23 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-float share(ivec3 cell, ivec3 offset)
+float transmittance(ivec3 cell, ivec3 offset)
 {
-    return lpv_inside(cell + offset) ? lpv_passing(cell, offset) : 0.0;
+    return lpv_inside(cell + offset) ? lpv_transmittance_of(cell, offset) : 0.0;
 }
 
 uint along_axis(ivec3 cell, int axis)
 {
     ivec3 one = ivec3(0);
     one[axis] = 1;
-    return packUnorm4x8(vec4(share(cell, -one), share(cell, one), 0.0, 0.0));
+    return packUnorm4x8(vec4(transmittance(cell, -one), transmittance(cell, one), 0.0, 0.0));
 }
 
 uint in_column(ivec3 cell, ivec2 step)
 {
-    return packUnorm4x8(vec4(share(cell, ivec3(step, -1)), share(cell, ivec3(step, 0)),
-                             share(cell, ivec3(step, 1)), 0.0));
+    return packUnorm4x8(vec4(transmittance(cell, ivec3(step, -1)),
+                             transmittance(cell, ivec3(step, 0)),
+                             transmittance(cell, ivec3(step, 1)), 0.0));
 }
 
 void main()

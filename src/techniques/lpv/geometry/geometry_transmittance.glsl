@@ -1,9 +1,9 @@
-// Which share of a cell's light reaches each of its neighbours: what geometry lets through, of each
-// step the same. Include after lpv_grid.glsl; define LPV_TRANSMITTANCE_BINDING, and
-// LPV_TRANSMITTANCE_ACCESS (readonly or writeonly).
+// Fraction of a cell's light that geometry transmits to each of its neighbours, equal for all
+// steps. Include after lpv_grid.glsl; define LPV_TRANSMITTANCE_BINDING and LPV_TRANSMITTANCE_ACCESS
+// (readonly or writeonly).
 //
-// A word has four shares of 8 bits. With six neighbours those along axis a are in word a: −, +.
-// With 26 those at the offset (x, y, z) are in word 3 (y + 1) + x + 1, at z + 1.
+// A word holds four values of 8 bits. Six neighbours: word a holds those along axis a: −, +.
+// 26 neighbours: word 3 (y + 1) + x + 1 holds those at the offset (x, y, z), at z + 1.
 #ifndef AG_LPV_TRANSMITTANCE_GLSL
 #define AG_LPV_TRANSMITTANCE_GLSL
 
