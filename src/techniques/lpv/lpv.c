@@ -80,13 +80,12 @@ static bool holpv_check(const struct technique_create *how)
 static bool create(struct lpv_cascades *cascades, const char *owner,
                    const struct technique_create *how)
 {
-    const struct gpu_sampler_desc linear = { .name = "lpv.linear",
+    const struct gpu_sampler_desc linear = { .name = "linear",
                                              .filter = GPU_LINEAR,
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
     struct lpv *finest = &cascades->levels[0];
-    finest->owner = owner;
     if (how->pose) lpv_diagnose(how->host, owner, how->options, how->pose);
     finest->gpu = how->gpu;
     finest->options = *(const struct lpv_options *)how->options;
@@ -107,8 +106,8 @@ static bool holpv_create(void *state, const struct technique_create *how)
 static void lpv_set_options(void *state, const void *options)
 {
     struct lpv *lpv = state;
-    option_copy_live(&technique_lpv.options, options,
-                     &lpv->options); // holpv's effects are the same
+    // Both techniques have the same effects.
+    option_copy_live(&technique_lpv.options, options, &lpv->options);
 }
 
 static void lpv_invalidate(void *state, uint32_t changes)

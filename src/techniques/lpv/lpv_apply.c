@@ -30,7 +30,7 @@ static void apply(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view 
 
 void lpv_record_application(struct lpv *finest, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    lpv_scope_begin(finest, cmd, "apply");
+    gpu_scope_begin(cmd, "apply");
     apply(finest, cmd, view, NULL);
     gpu_scope_end(cmd);
 }

@@ -46,8 +46,3 @@ void lpv_dispatch_triangles(const struct lpv *lpv, struct gpu_cmd *cmd,
                            });
     }
 }
-
-void lpv_scope_begin(const struct lpv *lpv, struct gpu_cmd *cmd, const char *pass)
-{
-    gpu_scope_begin(cmd, lpv_name(lpv, pass).text);
-}

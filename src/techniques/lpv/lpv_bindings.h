@@ -22,4 +22,3 @@ void lpv_dispatch_triangles(const struct lpv *lpv, struct gpu_cmd *cmd,
                             const struct scene_gpu *scene, gpu_pipeline opaque, gpu_pipeline masked,
                             bool (*wanted)(const struct scene_draw *draw), const char *name,
                             gpu_buffer buffer);
-void lpv_scope_begin(const struct lpv *lpv, struct gpu_cmd *cmd, const char *pass);

@@ -17,7 +17,7 @@ void lpv_record_surfaces(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
 {
     const struct lpv_pipelines *p = &lpv->pipelines;
     if (lpv->options.bounces == 0 || is_cached(lpv, view)) return;
-    lpv_scope_begin(lpv, cmd, "surfaces");
+    gpu_scope_begin(cmd, "surfaces");
     gpu_fill_buffer(cmd, lpv->volumes.surfaces, 0, lpv_cell_count(&lpv->grid) * LPV_SURFACE_BYTES,
                     0);
     lpv_dispatch_triangles(lpv, cmd, view->scene, p->surfaces, p->masked_surfaces, NULL,

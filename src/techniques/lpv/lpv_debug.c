@@ -14,7 +14,7 @@ void lpv_record_debug(struct lpv *finest, struct gpu_cmd *cmd, const struct fram
     };
     const gpu_image shown = debug_view == LPV_VIEW_PROPAGATED ? v->light : v->injected;
     const gpu_image geometry = finest->options.geometry == LPV_GEOMETRY_OFF ? shown : v->geometry;
-    lpv_scope_begin(finest, cmd, "debug");
+    gpu_scope_begin(cmd, "debug");
     lpv_record_resolve(finest, cmd); // propagation may have added occluded light to `injected`
     gpu_dispatch(cmd, finest->pipelines.debug,
                  GPU_BIND(lpv_grid_binding(finest, cmd), view->constants_binding,

@@ -36,14 +36,14 @@ void lpv_record_resolve(struct lpv *lpv, struct gpu_cmd *cmd)
 
 void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    lpv_scope_begin(lpv, cmd, "inject");
+    gpu_scope_begin(cmd, "inject");
     gpu_fill_buffer(cmd, lpv->volumes.sums, 0,
                     lpv_cell_count(&lpv->grid) * lpv_sum_bytes(&lpv->options), 0);
     inject_rsm(lpv, cmd, view);
     inject_emitters(lpv, cmd, view);
     gpu_scope_end(cmd);
 
-    lpv_scope_begin(lpv, cmd, "resolve");
+    gpu_scope_begin(cmd, "resolve");
     lpv_record_resolve(lpv, cmd);
     gpu_scope_end(cmd);
 }

@@ -57,8 +57,7 @@ static bool create(struct lpv *lpv, const struct pipeline *pipeline)
     int count = 0;
     for (uint32_t bit = 1; bit <= MASKED; bit <<= 1)
         if (pipeline->constants & bit) constants[count++] = constant_of(&lpv->options, bit);
-    const struct lpv_name name = lpv_name(lpv, pipeline->name);
-    return gpu_compute_pipeline_create(lpv->gpu, name.text, pipeline->shader, constants, count,
+    return gpu_compute_pipeline_create(lpv->gpu, pipeline->name, pipeline->shader, constants, count,
                                        pipeline->out);
 }
 

@@ -37,7 +37,7 @@ void lpv_record_probes(struct lpv *finest, struct gpu_cmd *cmd)
     }
     const struct frame_probes grid = probe_grid(finest);
     const struct lpv *from = finest_covering_scene(finest);
-    lpv_scope_begin(finest, cmd, "probes");
+    gpu_scope_begin(cmd, "probes");
     lpv_dispatch_cells_push(from, cmd, finest->pipelines.probes,
                             GPU_BIND(lpv_grid_binding(from, cmd),
                                      { .name = "light", .image = from->volumes.light },

@@ -102,7 +102,7 @@ static void propagate_finer(struct lpv *lpv, struct gpu_cmd *cmd)
 
 void lpv_record_propagation(struct lpv *lpv, struct gpu_cmd *cmd)
 {
-    lpv_scope_begin(lpv, cmd, "propagate");
+    gpu_scope_begin(cmd, "propagate");
     if (lpv->coarser)
         propagate_finer(lpv, cmd);
     else

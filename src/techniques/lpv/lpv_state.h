@@ -6,8 +6,6 @@
 #include "techniques/lpv/lpv_shared.h"
 #include "techniques/technique.h"
 
-#include <stdio.h>
-
 struct lpv_options {
 #define OPTION OPTION_FIELD
 #include "techniques/lpv/lpv_options.def"
@@ -64,7 +62,6 @@ struct lpv_surface_cache {
 // One grid, or one of several cascades. Coarser cascades share the pipelines and all volumes of the
 // finest, except those that lpv_volumes.c marks as owned by each cascade.
 struct lpv {
-    const char *owner; // "lpv" or "holpv": prefix of the names of objects and passes
     struct gpu *gpu;
     struct lpv_options options;
     gpu_sampler linear;
@@ -82,17 +79,6 @@ struct lpv {
 struct lpv_cascades {
     struct lpv levels[LPV_MAX_CASCADES]; // from the finest
 };
-
-// Name of an object or a pass: "owner.thing".
-struct lpv_name {
-    char text[48];
-};
-static inline struct lpv_name lpv_name(const struct lpv *lpv, const char *thing)
-{
-    struct lpv_name name;
-    snprintf(name.text, sizeof name.text, "%s.%s", lpv->owner, thing);
-    return name;
-}
 
 // Empty cells around the scene. With a sky at least one, so that its light enters through cells
 // without surfaces.

@@ -72,8 +72,7 @@ static int list_volumes(const struct lpv_options *options, struct volume out[MAX
 static bool create_image(struct lpv *lpv, const struct volume *volume, gpu_image *out)
 {
     const uint32_t dim = (uint32_t)lpv->options.dim;
-    const struct lpv_name name = lpv_name(lpv, volume->name);
-    const struct gpu_image_desc desc = { .name = name.text,
+    const struct gpu_image_desc desc = { .name = volume->name,
                                          .dimension = GPU_3D,
                                          .format = volume->format,
                                          .width = dim,
@@ -86,8 +85,7 @@ static bool create_image(struct lpv *lpv, const struct volume *volume, gpu_image
 static bool create_buffer(struct lpv *lpv, const struct volume *volume, gpu_buffer *out)
 {
     const size_t dim = (size_t)lpv->options.dim;
-    const struct lpv_name name = lpv_name(lpv, volume->name);
-    const struct gpu_buffer_desc desc = { .name = name.text,
+    const struct gpu_buffer_desc desc = { .name = volume->name,
                                           .bytes = dim * dim * dim * volume->size,
                                           .usage = GPU_BUFFER_STORAGE };
     return gpu_buffer_create(lpv->gpu, &desc, out);

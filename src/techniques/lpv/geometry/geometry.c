@@ -23,7 +23,7 @@ void lpv_record_geometry(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
 {
     bool changed = true;
     if (lpv->options.geometry == LPV_GEOMETRY_OFF) return;
-    lpv_scope_begin(lpv, cmd, "geometry");
+    gpu_scope_begin(cmd, "geometry");
     if (lpv->options.geometry == LPV_GEOMETRY_MAPS)
         lpv_record_geometry_maps(lpv, cmd, view);
     else
