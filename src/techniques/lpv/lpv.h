@@ -1,5 +1,5 @@
-// Light propagation volumes of two bands and six neighbours, and of higher order: three bands and
-// 26 neighbours. One method, two sets of defaults.
+// Light propagation volumes (two bands, six neighbours) and higher order light propagation volumes
+// (three bands, 26 neighbours): one method, two sets of defaults.
 #pragma once
 
 #include "techniques/technique.h"

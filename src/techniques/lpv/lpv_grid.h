@@ -1,4 +1,4 @@
-// Where the grid lies in the scene, and the powers of two that keep its numbers in range. Pure
+// Placement of the grid in the scene, and the powers of two that keep its values in range. Pure
 // functions, no state.
 #pragma once
 
@@ -14,30 +14,29 @@ struct lpv_grid {
     vec3s origin_m;
     float cell_m;
     int32_t cells[3];
-    uint32_t open; // sides beyond which the scene goes on: bits LPV_OPEN(axis, high)
+    uint32_t open; // sides beyond which the scene continues: bits LPV_OPEN(axis, high)
 };
 
-// Fits the bounds with `margin` (in cells) around them. The cell's size is a power of 2^(1/16) m
-// and the origin a whole number of cells, so that the grid stands still in the world while
-// something moves the bounds a little. Larger scenes get larger cells: nothing is ever left out.
-// false: the bounds are empty, a point or not finite.
+// One grid over the bounds with `margin` (in cells) around them. The cell size is a power of
+// 2^(1/16) m and the origin a multiple of it, so that the grid does not move when the bounds change
+// a little. Larger scenes get larger cells. false: the bounds are empty, a point or not finite.
 bool lpv_grid_fit(struct box3 bounds, int dim, float margin, struct lpv_grid *out);
 
-// One of several cascades, with cells of cell_m: the bounds where they need no more than `dim`
-// cells along an axis, else the part around `eye`. It moves by two cells at a time, one of the next
-// coarser cascade.
-void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s eye,
+// One of several cascades, with cells of cell_m: covers the bounds along axes where they need at
+// most `dim` cells, else the part around the camera. Moves by two cells at a time, one cell of the
+// next coarser cascade.
+void lpv_grid_around(struct box3 bounds, int dim, float margin, float cell_m, vec3s camera,
                      struct lpv_grid *out);
 bool lpv_grid_equal(const struct lpv_grid *a, const struct lpv_grid *b);
 
-// Injection adds whole numbers, so that its order does not matter. A block of LPV_TEXELS² texels of
-// a reflective shadow map, or a point of an emissive surface, adds at most 2^30 to a coefficient;
-// sums are 64 bits wide and cannot overflow.
+// Injection sums integers, so that order does not matter. A block of LPV_TEXELS² texels of a
+// reflective shadow map, or a point on an emissive surface, adds at most 2^30 to a coefficient;
+// sums of 64 bits cannot overflow.
 
 struct lpv_scale {
     float fixed_from_flux; // integer per scaled lumen, a power of two
-    float grid_from_flux; // the grid's unit per scaled lumen, a power of two: all light together is
-                          // less than 8192
+    // The grid's unit per scaled lumen, a power of two: all light together is less than 8192.
+    float grid_from_flux;
 };
 struct lpv_lights {
     const struct rsm_face *faces;
@@ -45,8 +44,8 @@ struct lpv_lights {
     uint32_t rsm_size;
     const struct frame_emitter *emitters;
     int emitter_count;
-    vec3s sky_flux; // of a cell under the sky alone
-    int bounces;    // more than one: each adds as much as there is at most
+    vec3s sky_flux; // of a cell that only the sky lights
+    int bounces;    // further ones; each adds at most the injected flux
 };
-// false: there is no light (or its strength is not finite).
+// false: there is no light, or its flux is not finite.
 bool lpv_scale_of(const struct lpv_lights *lights, struct lpv_scale *out);

@@ -1,15 +1,15 @@
-// Faces of neighbour cells, their solid angles in closed form, and the lobes behind them.
+// Faces of neighbour cells, their solid angles in closed form, and the re-projected lobes.
 //
-// Differs from Martin 2012, eq. 3.3 in the weight: with Ω/4π and a lobe of unit peak a step keeps a
-// quarter of the flux. Here the flux through a face is Φ = Ω I(ω) and the re-projected lobe has the
-// flux Φ (for a clamped cosine: Φ/π (cosθ)₊), so that the solid angles' sum of 4π makes the step
-// conserve flux. And the lobe's width is a parameter, see README.md.
+// Differs from Martin 2012, eq. 3.3 in the weight: Ω/4π and a lobe of unit peak keep a quarter of
+// the flux per step. Here the flux through a face is Φ = Ω I(ω) and the re-projected lobe has the
+// flux Φ (clamped cosine: Φ/π (cosθ)₊); since the solid angles sum to 4π, a step conserves flux.
+// The width of the lobe is a parameter (docs/techniques/lpv.md).
 #include "techniques/lpv/lpv_math.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-// Of the rectangle [0,x] × [0,y]: ∫∫ d / (u² + v² + d²)^(3/2) du dv. atan2 is right for d → 0 too.
+// Rectangle [0,x] × [0,y]: ∫∫ d / (u² + v² + d²)^(3/2) du dv. atan2 is also correct for d → 0.
 static double corner_sr(double x, double y, double distance)
 {
     return atan2(x * y, distance * sqrt(x * x + y * y + distance * distance));
@@ -21,8 +21,7 @@ double lpv_rectangle_sr(double x0, double x1, double y0, double y1, double dista
            corner_sr(x0, y0, distance);
 }
 
-// The face of the cell at `offset` whose normal is ±axis. In units of the cell, from the source's
-// centre.
+// Face of the cell at `offset` with the normal ±axis, in cells from the source's centre.
 static struct lpv_face face_of(const int offset[3], int axis, int side)
 {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
@@ -39,9 +38,9 @@ static struct lpv_face face_of(const int offset[3], int axis, int side)
     };
 }
 
-// Whether light goes on through this face: of six neighbours through all but the shared one, of 26
-// through those on the outside of the 3 × 3 × 3 cells.
-static bool passes(enum lpv_scheme scheme, const int offset[3], int axis, int side)
+// Whether a face receives light. Six neighbours: all but the face shared with the source; 26: the
+// outer faces of the 3 × 3 × 3 cells.
+static bool is_outer(enum lpv_scheme scheme, const int offset[3], int axis, int side)
 {
     return scheme == LPV_SIX ? offset[axis] != -side : offset[axis] == side;
 }
@@ -51,7 +50,7 @@ static struct lpv_neighbour neighbour_of(enum lpv_scheme scheme, const int offse
     struct lpv_neighbour out = { .offset = { offset[0], offset[1], offset[2] } };
     for (int axis = 0; axis < 3; axis++)
         for (int side = -1; side <= 1; side += 2)
-            if (passes(scheme, offset, axis, side))
+            if (is_outer(scheme, offset, axis, side))
                 out.faces[out.face_count++] = face_of(offset, axis, side);
     return out;
 }
@@ -68,18 +67,17 @@ int lpv_neighbours(enum lpv_scheme scheme, struct lpv_neighbour out[LPV_MAX_NEIG
     return count;
 }
 
-// Light of direction ω that goes from cell to neighbour takes |x| + |y| + |z| steps for one cell of
-// way if there are six of them, max(|x|, |y|, |z|) if 26. The means over the sphere are 3/2 (so
-// that a step is Cauchy's mean chord of a cube, 4 V/S) and, six times the projection of one face of
-// the cube of side 2 over its share of the sphere, 3√2/π atan(1/√2) = 0.831.
+// Light of direction (x, y, z) needs |x| + |y| + |z| steps per cell of path with six neighbours,
+// max(|x|, |y|, |z|) with 26. Means over the sphere: 3/2 (a step is Cauchy's mean chord of a cube,
+// 4 V/S), and 3√2/π atan(1/√2) = 0.831, an integral over one face of a cube times six.
 double lpv_mean_path(enum lpv_scheme scheme)
 {
     const double root = sqrt(2.0);
     return scheme == LPV_SIX ? 2.0 / 3.0 : GLM_PI / (3.0 * root * atan(1.0 / root));
 }
 
-// How the faces, as the nodes of a quadrature with the solid angles as weights, see the squares of
-// x² − y² and xy: 1 each if it were exact. By the cube's symmetry these are all that band 2 has.
+// Quadrature of the squares of x² − y² and xy with the faces as nodes and their solid angles as
+// weights: 1 each if it were exact. By the symmetry of the cube these two determine band 2.
 static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double *product)
 {
     enum { XY = 4, XX_YY = 8 };
@@ -98,12 +96,12 @@ static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double 
 
 // Band 2 of the lobe (cosθ)₊ⁿ of mean cosine g = (n+1)/(n+2), relative to band 0, is the mean of
 // the Legendre polynomial P2: n/(n+3) = (2g − 1)/(2 − g). n = 1 is the clamped cosine with g = 2/3
-// and the paper's 1/4, g = 1 keeps every direction. Broader lobes than a hemisphere have none.
+// and the paper's 1/4; g = 1 preserves every direction. Lobes wider than a hemisphere have none.
 //
-// No wave grows. A step takes the coefficients c of the wave exp(i k·x) to G A E B c: the fluxes
-// through the faces over √Ω, the faces' phases E (unitary), the polynomials at the lobes' axes
-// times √Ω, and the weights G. B Bᵀ is the quadrature of products of two coefficients: exact up to
-// degree 3 by the cube's symmetry, and in band 2 diagonal with the two numbers q of
+// Stability: no wave grows. A step maps the coefficients c of the wave exp(i k·x) to G A E B c: B
+// the fluxes through the faces over √Ω, E the faces' phases (unitary), A the polynomials at the
+// lobes' axes times √Ω, G the weights. B Bᵀ is the quadrature of products of two coefficients:
+// exact up to degree 3 by the cube's symmetry, and in band 2 diagonal with the two numbers q of
 // quadrature_of_band_2. With D = √q, 1 for the lower bands, B D⁻¹ has the norm 1, and the step
 // grows no more than D G A does. Along the way A = Bᵀ, and D G A has the norm of q G: weights over
 // q leave 1, g and the family's band 2, none of which is above 1, and light of any direction keeps

@@ -1,6 +1,5 @@
-// The geometry of propagation: the faces of the neighbour cells as seen from the source cell's
-// centre, the lobes that are sent on behind them, and what one step does to the coefficients. Pure
-// functions, no state.
+// The geometry of propagation: faces of the neighbour cells seen from the source cell's centre, the
+// re-projected lobes, and the coefficients of one step. Pure functions, no state.
 //
 // Martin 2012, sec. 3.2.3 (eq. 3.3) and 4.2; Kaplanyan & Dachsbacher 2010. Coefficients are in the
 // order of core/sh.h.
@@ -9,10 +8,9 @@
 #include "core/sh.h"
 #include "techniques/lpv/lpv_shared.h"
 
-// The option `neighbours`: those that share a face with the source, or also an edge or a corner.
+// The option `neighbours`: cells that share a face with the source, or also an edge or a corner.
 enum lpv_scheme { LPV_SIX, LPV_TWENTY_SIX };
-// Where a re-projected lobe points: along the light's way to the face's centre, or along the face's
-// normal.
+// Axis of a re-projected lobe: the direction to the face's centre, or the face's normal.
 enum lpv_lobe { LPV_LOBE_PROPAGATION, LPV_LOBE_NORMAL };
 
 #define LPV_MAX_NEIGHBOURS 26
@@ -29,32 +27,33 @@ struct lpv_neighbour {
     struct lpv_face faces[LPV_MAX_FACES];
 };
 
-// All neighbours of a scheme; returns how many. Their faces bound the neighbours and the source
-// together, so that each direction leaves through one face: of six neighbours 30, all but the six
-// shared with the source; of 26 neighbours 54.
+// All neighbours of a scheme; returns their number. Their faces bound the union of neighbours and
+// source, so that each direction leaves through one face: 30 faces of six neighbours (the six
+// shared with the source are omitted), 54 of 26 neighbours.
 int lpv_neighbours(enum lpv_scheme scheme, struct lpv_neighbour out[LPV_MAX_NEIGHBOURS]);
 // Solid angle in sr of the rectangle [x0,x1] × [y0,y1] in the plane z = distance > 0, seen from the
 // origin.
 double lpv_rectangle_sr(double x0, double x1, double y0, double y1, double distance);
 
-// The mean way of a step in cells, over all directions: of light that goes straight on.
+// Mean path of light in a step, over all directions, in cells; light travels in straight lines.
 double lpv_mean_path(enum lpv_scheme scheme);
 
-// What one re-projected lobe of unit flux has: coefficient i is weight_i Y_i(axis). `along` is the
-// weight of band 1, that of band 2 is `square` for 3z² − 1 and x² − y² and `product` for xy, yz and
-// xz. Band 0 has the weight 1, which is what conserves flux.
+// A re-projected lobe of unit flux: coefficient i is weight_i Y_i(axis). `along`: weight of band 1;
+// band 2: `square` for 3z² − 1 and x² − y², `product` for xy, yz and xz. Band 0 has the weight 1,
+// which conserves flux.
 struct lpv_lobe_weights {
     double along, square, product;
 };
-// `focus` is the mean cosine of the lobe, 0…1, and the weight of band 1; see lpv_math.c for band 2.
+// `focus`: mean cosine of the lobe, 0…1, which is the weight of band 1; band 2 in lpv_math.c.
 struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
                                             double focus);
 double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient);
 
-// What the shaders need of one step: faces that are alike, one of each, and the lobes' weights.
+// Shader parameters of one step: one face of each class, and the lobes' weights.
 struct lpv_step {
-    struct lpv_reprojection far_face, side_face,
-        corner_face; // far faces
+    struct lpv_reprojection far_face;
+    struct lpv_reprojection side_face;   // six neighbours: side faces; 26: faces next to an edge
+    struct lpv_reprojection corner_face; // 26 neighbours: faces at a corner
     struct lpv_lobe_weights lobe;
 };
 struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus);

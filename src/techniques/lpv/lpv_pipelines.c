@@ -6,9 +6,9 @@
 #include "frame/scene_gpu.h"
 #include "technique_shaders.h"
 
-enum { MAX_CONSTANTS = 8, CONSTANT_MASKED = 4 };
+enum { MAX_CONSTANTS = 8 };
 
-// Specialization constants by bit. IS_MASKED of frame/scene.glsl has the index of its variant bit.
+// Specialization constants by bit.
 enum {
     BANDS = 1 << LPV_CONSTANT_BANDS,
     HALF = 1 << LPV_CONSTANT_HALF,
@@ -18,7 +18,7 @@ enum {
     CUBIC = 1 << LPV_CONSTANT_CUBIC,
     DAMPED = 1 << LPV_CONSTANT_DAMPED,
     LIGHT = BANDS | HALF, // shaders that include lpv_light.glsl
-    MASKED = 1 << 7,
+    MASKED = 1 << 7,      // SCENE_CONSTANT_MASKED
 };
 
 struct pipeline {
@@ -47,7 +47,7 @@ static struct gpu_constant constant_of(const struct lpv_options *options, uint32
     case DAMPED:
         return (struct gpu_constant){ LPV_CONSTANT_DAMPED, 1 };
     default:
-        return (struct gpu_constant){ CONSTANT_MASKED, 1 };
+        return (struct gpu_constant){ SCENE_CONSTANT_MASKED, 1 };
     }
 }
 
