@@ -25,8 +25,7 @@ size_t geometry_floats(const struct lpv *lpv)
     return 4 * (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] * (size_t)lpv->grid.cells[2];
 }
 
-// Texel (x, y, z) of what maps fill is the corner (x + 1, y + 1, z + 1), of what the scene fills
-// the cell (x, y, z).
+// Texel (x, y, z) is the corner (x + 1, y + 1, z + 1) for maps, the cell (x, y, z) for the scene.
 void geometry_check(struct lpv *lpv, const struct geometry_twin *twin, double tolerance)
 {
     const int shift = twin->kind == LPV_GEOMETRY_MAPS ? 1 : 0;
@@ -77,8 +76,8 @@ void geometry_scatter(struct stage *stage, struct gpu *gpu)
     stage_upload(stage);
 }
 
-// What the stage injects of green, in a grid where nothing is in the way.
-static void inject_as(struct twin *twin, const struct lpv *lpv, struct stage *stage)
+// The injected green light, from a grid without occlusion.
+static void inject_unoccluded(struct twin *twin, const struct lpv *lpv, struct stage *stage)
 {
     const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
     struct lpv_options options = lpv->options;
@@ -105,14 +104,14 @@ void geometry_check_light(struct lpv *lpv, struct stage *stage,
     twin_init(&twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
     twin.geometry = geometry;
     twin.occlusion = (double)lpv->options.occlusion;
-    inject_as(&twin, lpv, stage);
+    inject_unoccluded(&twin, lpv, stage);
     for (int i = 0; i < lpv->options.steps; i++)
         twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);
     float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
     double most = 0.0;
     for (size_t i = 0; i < twin_cells(&twin); i++) most = fmax(most, fabs(twin.accumulated[i][0]));
     CHECK(most > 0.0);
-    // Shares have 8 bits, the geometry volume 11.
+    // Transmittance has 8 bits, the geometry volume 11.
     for (size_t i = 0; i < twin_cells(&twin); i++)
         for (size_t k = 0; k < coefficients; k++)
             CHECK_NEAR((double)got[coefficients * i + k], twin.accumulated[i][k], 3e-3 * most);

@@ -1,18 +1,18 @@
-// What the tests of the geometry volume share.
+// Fixture of the tests of the geometry volume.
 #pragma once
 
 #include "techniques/geometry_twin.h"
 #include "techniques/lpv_fixture.h"
 
-enum { GEOMETRY_SIZE = 24, GEOMETRY_WIDTH = 20, GEOMETRY_HEIGHT = 12 }; // of maps and pictures
+enum { GEOMETRY_SIZE = 24, GEOMETRY_WIDTH = 20, GEOMETRY_HEIGHT = 12 }; // of maps and images
 
-// A sun's map and a point light's, of two lights, texels scattered over a box and somewhat beyond.
+// Reflective shadow maps of a sun and a point light, texels scattered over and around a box.
 void geometry_scatter(struct stage *stage, struct gpu *gpu);
-// The volume's texels in use, four numbers each, [z][y][x]; to be freed. And how many numbers these
-// are.
+// The volume's texels in use, four floats each, [z][y][x]; the caller frees them. And their number
+// of floats.
 float *geometry_read(struct lpv *lpv);
 size_t geometry_floats(const struct lpv *lpv);
-// The volume is the twin's.
+// Checks that the volume equals the twin.
 void geometry_check(struct lpv *lpv, const struct geometry_twin *twin, double tolerance);
-// The light after all steps is what the twin lets through.
+// Checks that the light after all steps equals that of a twin with this geometry.
 void geometry_check_light(struct lpv *lpv, struct stage *stage, const struct geometry_twin *twin);

@@ -23,14 +23,14 @@ void geometry_twin_init(struct geometry_twin *twin, struct lpv_grid grid, int ki
     *twin = (struct geometry_twin){ .grid = grid, .kind = kind };
     twin->volume = calloc(count_of(twin), sizeof *twin->volume);
     twin->source = calloc(count_of(twin), sizeof *twin->source);
-    twin->crossed = calloc(count_of(twin), (size_t)3 * LPV_LINES * LPV_LINES);
+    twin->covered = calloc(count_of(twin), (size_t)3 * LPV_LINES * LPV_LINES);
 }
 
 void geometry_twin_finish(struct geometry_twin *twin)
 {
     free(twin->volume);
     free(twin->source);
-    free(twin->crossed);
+    free(twin->covered);
 }
 
 static double in_cells(const struct geometry_twin *twin, vec3s position, int axis)
@@ -39,7 +39,7 @@ static double in_cells(const struct geometry_twin *twin, vec3s position, int axi
            (double)twin->grid.cell_m;
 }
 
-void geometry_twin_surfel(struct geometry_twin *twin, vec3s position, vec3s normal, vec3s to_eye,
+void geometry_twin_surfel(struct geometry_twin *twin, vec3s position, vec3s normal, vec3s to_viewer,
                           double across)
 {
     int corner[3];
@@ -47,17 +47,17 @@ void geometry_twin_surfel(struct geometry_twin *twin, vec3s position, vec3s norm
         corner[axis] = (int)floor(in_cells(twin, position, axis) + 0.5);
         if (corner[axis] < 1 || corner[axis] >= twin->grid.cells[axis]) return;
     }
-    const double cosine = fmax((double)glms_vec3_dot(normal, to_eye), 0.1);
+    const double cosine = fmax((double)glms_vec3_dot(normal, to_viewer), 0.1);
     const double face = (double)twin->grid.cell_m * (double)twin->grid.cell_m;
-    const double share = fmin(across / cosine / face, 1.0);
+    const double coverage = fmin(across / cosine / face, 1.0);
     float zonal[2], lobe[4];
     zh_clamped_cosine(2, zonal);
     zh_rotate(2, zonal, normal, lobe);
     double *sum = twin->source[index_of(twin, corner[0], corner[1], corner[2])];
-    for (int i = 0; i < 4; i++) sum[i] += share * (double)lobe[i];
+    for (int i = 0; i < 4; i++) sum[i] += coverage * (double)lobe[i];
 }
 
-// Rounded to a half float: eleven bits.
+// Rounds to the eleven bits of a half float.
 static double half_of(double value)
 {
     int exponent;
@@ -80,7 +80,7 @@ void geometry_twin_merge(struct geometry_twin *twin)
     memset(twin->source, 0, count_of(twin) * sizeof *twin->source);
 }
 
-// Where the line (u, v) along `axis` meets the triangle; false: nowhere. All in cells.
+// Intersects the line (u, v) along `axis` with the triangle; coordinates in cells.
 static bool meets(double corners[3][3], int axis, double u, double v, double *where)
 {
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -110,7 +110,7 @@ static void cross(struct geometry_twin *twin, double corners[3][3], int axis, in
         if (at[i] < 0 || at[i] >= twin->grid.cells[i]) return;
     const int index = index_of(twin, at[0], at[1], at[2]);
     unsigned char *line =
-        &twin->crossed[((index * 3 + axis) * LPV_LINES + u % LPV_LINES) * LPV_LINES +
+        &twin->covered[((index * 3 + axis) * LPV_LINES + u % LPV_LINES) * LPV_LINES +
                        v % LPV_LINES];
     if (!*line) twin->volume[index][axis] += 1.0 / (LPV_LINES * LPV_LINES);
     *line = 1;
@@ -132,9 +132,9 @@ const double *geometry_twin_at(const struct geometry_twin *twin, int x, int y, i
     return twin->volume[index_of(twin, x, y, z)];
 }
 
-static double passing(double blocked, double occlusion)
+static double transmitted(double occluded, double occlusion)
 {
-    return 1.0 - fmin(fmax(blocked * occlusion, 0.0), 1.0);
+    return 1.0 - fmin(fmax(occluded * occlusion, 0.0), 1.0);
 }
 
 static int clamped(int value, int low, int high)
@@ -142,22 +142,22 @@ static int clamped(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
-// The corners that the two cells have in common, those on the border replaced by their neighbours.
-static double corners_block(const struct geometry_twin *twin, const int cell[3],
-                            const int offset[3])
+// Mean of the corners that two cells share; inner neighbours replace those on the border.
+static double corner_occlusion(const struct geometry_twin *twin, const int cell[3],
+                               const int offset[3])
 {
     double sum[4] = { 0 };
     int count = 0;
     for (int k = 0; k < 8; k++) {
         int corner[3];
-        bool common = true;
+        bool shared = true;
         for (int axis = 0; axis < 3; axis++) {
             const int high = k >> axis & 1;
-            common = common && (offset[axis] == 0 || high == (offset[axis] > 0));
+            shared = shared && (offset[axis] == 0 || high == (offset[axis] > 0));
             const int last = twin->grid.cells[axis] > 1 ? twin->grid.cells[axis] - 1 : 1;
             corner[axis] = clamped(cell[axis] + high, 1, last);
         }
-        if (!common) continue;
+        if (!shared) continue;
         const double *c = geometry_twin_at(twin, corner[0], corner[1], corner[2]);
         for (int i = 0; i < 4; i++) sum[i] += c[i];
         count++;
@@ -165,44 +165,43 @@ static double corners_block(const struct geometry_twin *twin, const int cell[3],
     float basis[4];
     const vec3s back = vec3_of((float)-offset[0], (float)-offset[1], (float)-offset[2]);
     sh_eval(2, glms_vec3_normalize(back), basis);
-    double blocked = 0.0;
-    for (int i = 0; i < 4; i++) blocked += sum[i] / count * (double)basis[i];
-    return blocked * (double)glms_vec3_norm(back) / 0.75; // the peak of a clamped cosine
+    double occluded = 0.0;
+    for (int i = 0; i < 4; i++) occluded += sum[i] / count * (double)basis[i];
+    return occluded * (double)glms_vec3_norm(back) / 0.75; // the peak of a clamped cosine
 }
 
-// Along each axis that the offset has: the mean of the faces across it that touch the place of
-// crossing.
-static double faces_pass(const struct geometry_twin *twin, const int cell[3], const int offset[3],
-                         double occlusion)
+// Product over the axes of the offset: transmittance of the mean of the faces around the crossing.
+static double face_transmittance(const struct geometry_twin *twin, const int cell[3],
+                                 const int offset[3], double occlusion)
 {
-    double pass = 1.0;
+    double transmittance = 1.0;
     for (int axis = 0; axis < 3; axis++) {
         if (offset[axis] == 0) continue;
         double sum = 0.0;
         int count = 0;
-        for (int k = 0; k < 8;
-             k++) { // over the other axes: at the source's place, or at the neighbour's
+        // Over the other axes: at the source's coordinate, or at the neighbour's.
+        for (int k = 0; k < 8; k++) {
             int at[3];
-            bool is = true;
+            bool touches = true;
             for (int i = 0; i < 3; i++) {
                 const int moved = k >> i & 1;
-                if (i == axis || offset[i] == 0) is = is && !moved;
+                if (i == axis || offset[i] == 0) touches = touches && !moved;
                 at[i] = cell[i] + moved * offset[i];
             }
-            if (!is) continue;
+            if (!touches) continue;
             if (offset[axis] > 0) at[axis]++;
             sum += geometry_twin_at(twin, at[0], at[1], at[2])[axis];
             count++;
         }
-        pass *= passing(sum / count, occlusion);
+        transmittance *= transmitted(sum / count, occlusion);
     }
-    return pass;
+    return transmittance;
 }
 
-double geometry_twin_passing(const struct geometry_twin *twin, const int cell[3],
-                             const int offset[3], double occlusion)
+double geometry_twin_transmittance(const struct geometry_twin *twin, const int cell[3],
+                                   const int offset[3], double occlusion)
 {
     if (twin->kind == LPV_GEOMETRY_MAPS)
-        return passing(corners_block(twin, cell, offset), occlusion);
-    return faces_pass(twin, cell, offset, occlusion);
+        return transmitted(corner_occlusion(twin, cell, offset), occlusion);
+    return face_transmittance(twin, cell, offset, occlusion);
 }

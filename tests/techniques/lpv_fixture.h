@@ -1,4 +1,4 @@
-// Light propagation volumes on a stage, with their grids open to the tests.
+// Light propagation volumes without a frame, with access to their volumes.
 #pragma once
 
 #include "techniques/lpv/lpv.h"
@@ -9,13 +9,14 @@
 
 enum { LPV_FIXTURE_COLOURS = 3 };
 
-// `gi` is "lpv:options" or "holpv:options", on top of one grid, one bounce and steps enough to
-// cross it.
+// `gi`: "lpv:options" or "holpv:options", relative to one grid, one bounce and enough steps to
+// cross the grid.
 struct lpv *lpv_fixture_create(struct gpu *gpu, const char *gi);
 void lpv_fixture_destroy(struct lpv *lpv);
-// One frame, waited for.
+// Renders one frame and waits for it.
 void lpv_fixture_render(struct lpv *lpv, struct stage *stage);
-// One colour of a volume as lumen/sr, bands² floats a cell in use, [z][y][x]. To be freed.
+// One colour of a volume in lumen/sr: bands² floats per cell in use, [z][y][x]. The caller frees
+// it.
 float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour);
-// What the stage's reflective shadow maps and emissive surfaces inject of one colour.
+// Injects one colour of the reflective shadow maps and emissive surfaces into the twin.
 void lpv_fixture_inject_twin(struct twin *twin, const struct stage *stage, int colour);

@@ -57,8 +57,8 @@ void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux)
 }
 
 // Martin 2012, sec. 3.2.3 and 4.2: the flux through each face of a neighbour becomes a lobe in the
-// neighbour, of which `share` gets there.
-static void send(const struct twin *twin, const double *light, double share,
+// neighbour, scaled by the transmittance.
+static void send(const struct twin *twin, const double *light, double transmittance,
                  const struct lpv_neighbour *neighbour, enum lpv_lobe lobe,
                  const struct lpv_lobe_weights *weights, double *to)
 {
@@ -70,15 +70,15 @@ static void send(const struct twin *twin, const double *light, double share,
         double intensity = 0.0;
         for (int i = 0; i < SH_COUNT(twin->bands); i++) intensity += light[i] * (double)basis[i];
         for (int i = 0; i < SH_COUNT(twin->bands); i++)
-            to[i] += share * face->solid_angle_sr * intensity * lpv_lobe_weight(weights, i) *
-                     (double)sent[i];
+            to[i] += transmittance * face->solid_angle_sr * intensity *
+                     lpv_lobe_weight(weights, i) * (double)sent[i];
     }
 }
 
-static double passing(const struct twin *twin, const int cell[3], const int offset[3])
+static double transmittance_of(const struct twin *twin, const int cell[3], const int offset[3])
 {
     if (!twin->geometry || twin->steps == 0) return 1.0;
-    return geometry_twin_passing(twin->geometry, cell, offset, twin->occlusion);
+    return geometry_twin_transmittance(twin->geometry, cell, offset, twin->occlusion);
 }
 
 void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)
@@ -96,8 +96,8 @@ void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)
             for (int axis = 0; axis < 3; axis++) to[axis] = cell[axis] + neighbours[n].offset[axis];
             const int at = index_of(twin, to);
             if (at < 0) continue;
-            const double share = passing(twin, cell, neighbours[n].offset);
-            send(twin, twin->light[i], share, &neighbours[n], lobe, &weights, next[at]);
+            const double transmittance = transmittance_of(twin, cell, neighbours[n].offset);
+            send(twin, twin->light[i], transmittance, &neighbours[n], lobe, &weights, next[at]);
         }
     }
     for (int i = 0; i < count; i++)
@@ -114,7 +114,7 @@ double twin_flux(const struct twin *twin)
     return sum * sqrt(4.0 * GLM_PI);
 }
 
-// Cells around a place along one axis, and their weights. Beyond the border its cells go on.
+// Filter taps around a position along one axis, clamped to the border.
 struct taps {
     int cell[4];
     double weight[4];
@@ -134,7 +134,7 @@ static struct taps taps_of(double at, int cells, enum lpv_reconstruction reconst
     return out;
 }
 
-// ∫ I (−n·ω)₊ dω at a place in cells, where `lobe` is the weighted cosine; not below 0.
+// ∫ I (−n·ω)₊ dω at a position in cells, clamped at 0; `lobe` is the weighted cosine.
 static double gather(const struct twin *twin, const double at[3],
                      enum lpv_reconstruction reconstruction, const float lobe[9])
 {

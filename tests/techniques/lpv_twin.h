@@ -1,6 +1,6 @@
-// Light propagation volumes in plain C, in double precision, step by step as the paper tells it:
-// the light of each step is a grid of its own, and goes through the faces one by one. Two or three
-// bands, six or 26 neighbours.
+// Light propagation volumes in plain C and double precision, step by step as in the paper: each
+// step has a grid of its own, and light passes the faces one by one. Two or three bands, six or 26
+// neighbours.
 #pragma once
 
 #include "techniques/lpv/lpv_grid.h"
@@ -13,12 +13,11 @@ struct twin {
     struct lpv_grid grid;
     int bands;
     enum lpv_scheme scheme;
-    double (*light)[9];       // of this step, [z][y][x]
-    double (*accumulated)[9]; // of all steps so far, the injected light among it
-    int steps;                // so far
-    const struct geometry_twin
-        *geometry;    // what is in the way from the second step on; NULL: nothing
-    double occlusion; // the option
+    double (*light)[9];                   // of this step, [z][y][x]
+    double (*accumulated)[9];             // of all steps so far, including the injected light
+    int steps;                            // so far
+    const struct geometry_twin *geometry; // occluders from the second step on; NULL: none
+    double occlusion;                     // the option
 };
 
 void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_scheme scheme);
@@ -28,7 +27,6 @@ size_t twin_cells(const struct twin *twin);
 void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux);
 void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus);
 double twin_flux(const struct twin *twin); // of this step, lumen
-// Irradiance (lux) at a surface point, as the options offset, window, damping and reconstruction
-// say.
+// Irradiance (lux) at a surface point, with the options offset, window, damping, reconstruction.
 double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,
                        const struct lpv_options *how);

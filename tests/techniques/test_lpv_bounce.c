@@ -1,4 +1,4 @@
-// Further bounces: what is known of the surfaces, and what they send on.
+// Further bounces: reflecting surfaces by cell, and the light that they reflect.
 #include "frame/studio.h"
 #include "techniques/lpv_fixture.h"
 
@@ -40,8 +40,7 @@ static void begin(struct studio *s, struct gpu *gpu)
     studio_add_sun(s, vec3_of(0.3f, -1, -0.2f), vec3_of(1, 1, 1));
 }
 
-// Lines sample the area: a border's length times half their distance may be missed or counted
-// twice.
+// Lines sample the area, with an error of a border's length times half their spacing.
 TEST_GPU(lpv_surfaces_have_the_area_and_colour_of_the_scene)
 {
     struct studio s;
@@ -75,12 +74,12 @@ TEST_GPU(lpv_surfaces_have_the_area_and_colour_of_the_scene)
     studio_finish(&s);
 }
 
-// A cutout and both sides of it.
+// An alpha mask and a double-sided material.
 TEST_GPU(lpv_surfaces_respect_masks_and_sides)
 {
     struct studio s;
     begin(&s, gpu);
-    uint8_t pixels[2 * 4] = { 255, 255, 255, 255, 255, 255, 255, 0 }; // the right half is away
+    uint8_t pixels[2 * 4] = { 255, 255, 255, 255, 255, 255, 255, 0 }; // the right half is masked
     const int image = scene_add_image(
         s.scene, &(struct scene_image){
                      .name = "half", .width = 2, .height = 1, .rgba = pixels, .has_alpha = true });
@@ -107,8 +106,8 @@ TEST_GPU(lpv_surfaces_respect_masks_and_sides)
     studio_finish(&s);
 }
 
-// Mean irradiance of a picture.
-static double render_mean(struct studio *s)
+// Sum of the irradiance of an image.
+static double render_sum(struct studio *s)
 {
     studio_render(s);
     float *e = studio_read(s, READ_IRRADIANCE);
@@ -129,14 +128,14 @@ static double closed_box(struct gpu *gpu, const char *gi, float albedo)
     studio_open(&s);
     struct lpv *lpv = lpv_fixture_create(gpu, gi);
     use(&s, lpv);
-    const double mean = render_mean(&s);
+    const double sum = render_sum(&s);
     lpv_fixture_destroy(lpv);
     studio_finish(&s);
-    return mean;
+    return sum;
 }
 
-// A lamp in the middle of a closed box: of its flux Φ all walls get Φ ρ by one bounce, Φ ρ / (1 −
-// ρ) by all of them.
+// A point light in the centre of a closed box: the walls receive Φ ρ of its flux Φ by one bounce,
+// Φ ρ / (1 − ρ) by all bounces.
 static void bounces_are_near_the_geometric_series(struct gpu *gpu, const char *gi, double least)
 {
     static const float albedos[] = { 0.3f, 0.6f };
@@ -149,23 +148,24 @@ static void bounces_are_near_the_geometric_series(struct gpu *gpu, const char *g
             mean[k] = closed_box(gpu, text, albedos[i]);
         }
         const double rho = (double)albedos[i], all = mean[2] / mean[0];
-        print_message("%s, albedo %.1f: by one more %.3f (%.3f), by eight more %.3f (%.3f)\n", gi,
-                      rho, mean[1] / mean[0], 1 + rho, all, 1 / (1 - rho));
+        print_message(
+            "%s, albedo %.1f: one further bounce %.3f (expected %.3f), eight %.3f (%.3f)\n", gi,
+            rho, mean[1] / mean[0], 1 + rho, all, 1 / (1 - rho));
         CHECK(mean[1] > 1.1 * mean[0] && mean[2] > mean[1]);
         CHECK(all - 1 > least * rho / (1 - rho) && all - 1 < 1.4 * rho / (1 - rho));
     }
 }
 
-// The far wall gets a part of its share alone, and a wall some of its own.
+// The facing wall receives too little light, and a wall some of its own.
 TEST_GPU(lpv_bounces_are_near_the_geometric_series)
 {
     bounces_are_near_the_geometric_series(gpu, "lpv:dim=16,steps=64", 0.6);
     bounces_are_near_the_geometric_series(gpu, "holpv:dim=16,steps=64", 0.6);
 }
 
-// Finer cascades go on with the light that bounced in the coarsest, and send on what of it comes to
-// their surfaces. The coarsest makes only as many steps as light needs to cross it, so that the
-// last of eight bounces come too late to get far.
+// Finer cascades start from the coarsest cascade's light, which holds all bounces, and reflect it
+// once. The coarsest makes only the steps that light needs to cross it, so that the last of eight
+// bounces do not propagate far.
 TEST_GPU(lpv_bounces_of_cascades_are_near_the_geometric_series)
 {
     bounces_are_near_the_geometric_series(gpu, "lpv:dim=16,cascades=3,steps=8", 0.3);
@@ -197,15 +197,15 @@ TEST_GPU(lpv_bounces_are_linear)
     }
     const size_t count = (size_t)s.width * s.height * 3;
     for (size_t i = 0; i < count; i++) most = fmax(most, (double)e[3][i]);
-    for (size_t i = 0; i < count; i++) // where nothing is clamped; 11 bits of three results
+    for (size_t i = 0; i < count; i++) // without clamped values; 11 bits of three results
         if (e[1][i] > 0 && e[2][i] > 0)
             CHECK_NEAR((double)e[3][i], (double)e[1][i] + (double)e[2][i], 2e-3 * most);
     for (int i = 1; i < 4; i++) free(e[i]);
     studio_finish(&s);
 }
 
-// Surfaces are kept while nothing moves, and are new when something has.
-TEST_GPU(lpv_surfaces_follow_what_moves)
+// Surfaces are cached while nothing moves and recomputed after a move.
+TEST_GPU(lpv_surfaces_follow_moving_meshes)
 {
     struct studio s;
     begin(&s, gpu);
@@ -216,19 +216,19 @@ TEST_GPU(lpv_surfaces_follow_what_moves)
     studio_open(&s);
     struct lpv *kept = lpv_fixture_create(gpu, "lpv:dim=16,steps=16,bounces=1");
     use(&s, kept);
-    const double first = render_mean(&s), second = render_mean(&s);
+    const double first = render_sum(&s), second = render_sum(&s);
     CHECK(first > 0 && first == second);
-    // Turned by a right angle around the vertical axis: it looks along x.
+    // Rotated by a right angle around the vertical axis: its normal is along x.
     mat4s *m = &s.pose.world_from_node[s.scene->instances[slab].node];
     *m = glms_rotate_make(GLM_PI_2f, vec3_of(0, 1, 0));
-    const double turned = render_mean(&s);
+    const double turned = render_sum(&s);
     double areas[NUMBERS];
     read_areas(kept, areas);
     CHECK(areas[0] > 1.0 && areas[4 * SIDE_NUMBERS] < 0.1);
     lpv_fixture_destroy(kept);
     struct lpv *fresh = lpv_fixture_create(gpu, "lpv:dim=16,steps=16,bounces=1");
     use(&s, fresh);
-    CHECK(render_mean(&s) == turned);
+    CHECK(render_sum(&s) == turned);
     lpv_fixture_destroy(fresh);
     studio_finish(&s);
 }

@@ -1,5 +1,5 @@
-// Nested grids: where they lie, what the finer begin with, and that a picture depends on nothing
-// but the frame.
+// Cascades: placement, the light that the finer ones start from, and independence of earlier
+// frames.
 #include "techniques/lpv_fixture.h"
 
 #include "core/rng.h"
@@ -24,15 +24,15 @@ static bool inside(const struct lpv_grid *inner, const struct lpv_grid *outer)
     return true;
 }
 
-TEST(lpv_cascades_lie_in_each_other_and_the_coarsest_holds_the_scene)
+TEST(lpv_cascades_are_nested_and_the_coarsest_contains_the_scene)
 {
     struct rng rng = rng_for(3, 0, 0);
     for (int i = 0; i < 200; i++) {
-        const vec3s eye = vec3_of(30 * rng_float(&rng) - 15, 20 * rng_float(&rng) - 10,
-                                  20 * rng_float(&rng) - 10);
+        const vec3s camera = vec3_of(30 * rng_float(&rng) - 15, 20 * rng_float(&rng) - 10,
+                                     20 * rng_float(&rng) - 10);
         struct lpv_grid grids[4];
         for (int k = 0; k < 4; k++) {
-            lpv_grid_around(HALL, 16, 0.5f * (float)(i % 3), ldexpf(0.27f, k), eye, &grids[k]);
+            lpv_grid_around(HALL, 16, 0.5f * (float)(i % 3), ldexpf(0.27f, k), camera, &grids[k]);
             for (int axis = 0; axis < 3; axis++)
                 CHECK(grids[k].cells[axis] >= 1 && grids[k].cells[axis] <= 16);
             if (k > 0) CHECK(inside(&grids[k - 1], &grids[k]));
@@ -49,7 +49,7 @@ TEST(lpv_cascades_lie_in_each_other_and_the_coarsest_holds_the_scene)
     }
 }
 
-TEST(lpv_cascade_stands_still_for_less_than_a_cell_and_goes_by_two)
+TEST(lpv_cascade_moves_by_two_cells_at_a_time)
 {
     struct lpv_grid a, b, c;
     lpv_grid_around(HALL, 8, 0, 0.25f, vec3_of(0.1f, 2.1f, 0.1f), &a);
@@ -57,15 +57,15 @@ TEST(lpv_cascade_stands_still_for_less_than_a_cell_and_goes_by_two)
     lpv_grid_around(HALL, 8, 0, 0.25f, vec3_of(0.6f, 2.1f, 0.1f), &c);
     assert_memory_equal(&a, &b, sizeof a);
     CHECK(c.origin_m.x == a.origin_m.x + 0.5f && c.origin_m.y == a.origin_m.y);
-    // The sides of the scene are closed, those within it are open.
+    // Sides within the scene are open, sides of the scene closed.
     CHECK(a.open == (LPV_OPEN(0, 0) | LPV_OPEN(0, 1) | LPV_OPEN(1, 0) | LPV_OPEN(1, 1) |
                      LPV_OPEN(2, 0) | LPV_OPEN(2, 1)));
     lpv_grid_around(HALL, 8, 0, 0.25f, vec3_of(-50, 2, 0), &a);
     CHECK((a.open & LPV_OPEN(0, 0)) == 0 && (a.open & LPV_OPEN(0, 1)) != 0);
 }
 
-// A hall of 16 m; a patch of its floor is lit, and the camera sees the wall beside it. Everything
-// is `shift` further on, but the camera alone also by `step`.
+// A hall of 16 m with a lit patch on its floor; the camera sees the adjacent wall. All is
+// translated by `shift`, the camera also by `step`.
 static void show_hall(struct stage *stage, struct gpu *gpu, vec3s shift, vec3s step, float patch_x)
 {
     stage_init(stage, gpu, WIDTH, WIDTH, SIZE, 1);
@@ -92,7 +92,7 @@ static void render(struct lpv *lpv, struct stage *stage, float out[PIXELS * 3])
 static const char *const GIS[] = { "lpv:dim=16,cascades=3,steps=5",
                                    "holpv:dim=16,cascades=4,steps=4" };
 
-// Not more apart than half floats and cells that are no powers of two make it.
+// Relative to the largest value; half floats and cell sizes cause differences.
 static void check_same(const float *a, const float *b, double tolerance)
 {
     double most = 0.0;
@@ -101,7 +101,7 @@ static void check_same(const float *a, const float *b, double tolerance)
     for (int i = 0; i < PIXELS * 3; i++) CHECK_NEAR((double)a[i], (double)b[i], tolerance * most);
 }
 
-TEST_GPU(lpv_cascades_give_a_still_scene_the_same_bytes_in_every_frame)
+TEST_GPU(lpv_cascades_of_a_static_scene_are_equal_in_every_frame)
 {
     for (int i = 0; i < 2; i++) {
         struct stage stage;
@@ -116,7 +116,7 @@ TEST_GPU(lpv_cascades_give_a_still_scene_the_same_bytes_in_every_frame)
     }
 }
 
-TEST_GPU(lpv_cascades_leave_no_trail_of_a_light_that_moved)
+TEST_GPU(lpv_cascades_keep_no_light_of_earlier_frames)
 {
     for (int i = 0; i < 2; i++) {
         struct stage there, here;
@@ -135,7 +135,7 @@ TEST_GPU(lpv_cascades_leave_no_trail_of_a_light_that_moved)
     }
 }
 
-TEST_GPU(lpv_cascades_give_the_same_picture_wherever_scene_and_camera_stand)
+TEST_GPU(lpv_cascades_are_invariant_to_translation)
 {
     for (int i = 0; i < 2; i++) {
         struct stage stage, shifted;
@@ -155,7 +155,7 @@ TEST_GPU(lpv_cascades_give_the_same_picture_wherever_scene_and_camera_stand)
     }
 }
 
-// Whether a pixel of the wall shows the light of the finest grid alone.
+// Whether a pixel of the wall is lit by the finest cascade alone.
 static bool shows_finest(const struct lpv_grid *grid, int pixel)
 {
     const double wall[3] = { 0.1 + 15.8 * (pixel % WIDTH + 0.5) / WIDTH,
@@ -169,9 +169,9 @@ static bool shows_finest(const struct lpv_grid *grid, int pixel)
     return true;
 }
 
-// The finest grid follows the camera by whole cells, so that the light does not swim on surfaces.
-// What remains is what differs at the sides, where the coarser light comes in.
-TEST_GPU(lpv_cascades_do_not_swim_when_the_camera_goes_on_by_whole_cells)
+// The finest grid follows the camera by whole cells, so that the light on surfaces is stable. The
+// remaining difference comes from the open sides, where the coarser light enters.
+TEST_GPU(lpv_cascades_are_stable_when_the_camera_moves_by_whole_cells)
 {
     static const char *const gis[] = { "lpv:dim=32,cascades=2,steps=8",
                                        "holpv:dim=32,cascades=2,steps=6" };
@@ -184,7 +184,7 @@ TEST_GPU(lpv_cascades_do_not_swim_when_the_camera_goes_on_by_whole_cells)
         const struct lpv_grid before = lpv->grid;
         show_hall(&near, gpu, vec3_of(0, 0, 0), vec3_of(0.05f, 0.01f, 0.02f), 3);
         render(lpv, &near, b);
-        check_same(a, b, 0.0); // within a cell nothing moves
+        check_same(a, b, 0.0); // less than a cell: no change
         show_hall(&next, gpu, vec3_of(0, 0, 0), vec3_of(2.0f * before.cell_m, 0, 0), 3);
         render(lpv, &next, c);
         CHECK_NEAR((double)lpv->grid.origin_m.x, (double)(before.origin_m.x + 2.0f * before.cell_m),
@@ -197,7 +197,7 @@ TEST_GPU(lpv_cascades_do_not_swim_when_the_camera_goes_on_by_whole_cells)
             worst = fmax(worst, fabs((double)a[k] - (double)c[k]));
             seen++;
         }
-        print_message("%s: %d numbers, at most %.4f of the brightest apart\n", gis[i], seen,
+        print_message("%s: %d values, largest difference %.4f of the maximum\n", gis[i], seen,
                       worst / most);
         CHECK(seen > PIXELS / 2);
         CHECK(worst < 0.01 * most);
@@ -208,9 +208,9 @@ TEST_GPU(lpv_cascades_do_not_swim_when_the_camera_goes_on_by_whole_cells)
     }
 }
 
-// ---- against the twin
+// ---- comparison with the twin
 
-// The coarser light in the middle of a cell, filtered, for cells of half the size.
+// The coarser light at the centre of a cell, filtered, for cells of half the size.
 static void refine_twin(const struct lpv *lpv, const float *coarser, double (*out)[9])
 {
     const struct lpv_grid *fine = &lpv->grid, *coarse = &lpv->coarser->grid;
@@ -227,7 +227,7 @@ static void refine_twin(const struct lpv *lpv, const float *coarser, double (*ou
         }
         for (int k = 0; k < 9; k++) out[i][k] = 0.0;
         for (int corner = 0; corner < 8; corner++) {
-            double weight = 0.25; // intensities of the same radiance go with the square of the cell
+            double weight = 0.25; // intensities of equal radiance are ∝ the squared cell size
             int index[3];
             for (int axis = 0; axis < 3; axis++) {
                 const double low = floor(at[axis]);
@@ -241,7 +241,7 @@ static void refine_twin(const struct lpv *lpv, const float *coarser, double (*ou
     }
 }
 
-static bool is_held(const struct lpv_grid *grid, int i)
+static bool is_boundary(const struct lpv_grid *grid, int i)
 {
     const int cell[3] = { i % grid->cells[0], i / grid->cells[0] % grid->cells[1],
                           i / grid->cells[0] / grid->cells[1] };
@@ -252,7 +252,7 @@ static bool is_held(const struct lpv_grid *grid, int i)
     return false;
 }
 
-static void refinement_is_the_twins(struct gpu *gpu, const char *gi)
+static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
 {
     struct stage stage;
     show_hall(&stage, gpu, vec3_of(0.2f, 0, 0.1f), vec3_of(0, 0, 0), 3);
@@ -275,7 +275,7 @@ static void refinement_is_the_twins(struct gpu *gpu, const char *gi)
         for (int i = 0; i < count; i++)
             for (int k = 0; k < 9; k++)
                 twin.light[i][k] =
-                    is_held(&lpv->grid, i) ? begin[i][k] : twin.light[i][k] + injected[i][k];
+                    is_boundary(&lpv->grid, i) ? begin[i][k] : twin.light[i][k] + injected[i][k];
     }
     double most = 0.0;
     for (int i = 0; i < count; i++) most = fmax(most, fabs(twin.light[i][0]));
@@ -291,10 +291,10 @@ static void refinement_is_the_twins(struct gpu *gpu, const char *gi)
     stage_finish(&stage);
 }
 
-TEST_GPU(lpv_cascade_begins_with_the_light_of_the_next_coarser_and_goes_on_as_the_twin)
+TEST_GPU(lpv_cascade_starts_from_the_coarser_light_and_propagates_as_the_twin)
 {
-    refinement_is_the_twins(gpu, "lpv:dim=8,cascades=2,steps=1,precision=float");
-    refinement_is_the_twins(gpu, "lpv:dim=8,cascades=2,steps=4,precision=half");
-    refinement_is_the_twins(gpu, "holpv:dim=8,cascades=2,steps=3,precision=float");
-    refinement_is_the_twins(gpu, "holpv:dim=8,cascades=2,steps=4,precision=half");
+    refinement_equals_the_twin(gpu, "lpv:dim=8,cascades=2,steps=1,precision=float");
+    refinement_equals_the_twin(gpu, "lpv:dim=8,cascades=2,steps=4,precision=half");
+    refinement_equals_the_twin(gpu, "holpv:dim=8,cascades=2,steps=3,precision=float");
+    refinement_equals_the_twin(gpu, "holpv:dim=8,cascades=2,steps=4,precision=half");
 }

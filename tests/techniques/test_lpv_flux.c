@@ -1,4 +1,4 @@
-// Energy: what is injected stays in the grid, and what comes out of it is near form factors.
+// Energy: the injected flux is conserved, and irradiance is close to form factors.
 #include "techniques/lpv_fixture.h"
 
 #include <math.h>
@@ -20,8 +20,8 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
 {
     struct stage stage;
     stage_init(&stage, gpu, 8, 8, SIZE, 1);
-    // 39 cells fit exactly; the light is near the middle and reaches the outermost cells in the
-    // 19th step at the earliest.
+    // 39 cells fit exactly; the light is near the centre and cannot reach the outermost cells
+    // before the 19th step.
     stage.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(39, 39, 39) };
     stage_set_face(&stage, 0, vec3_of(0, 0, 0), vec3_of(64, 0, 0), vec3_of(0, 64, 0),
                    vec3_of(0, 0, 39), vec3_of(1, 700, 1));
@@ -34,7 +34,7 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
     stage_upload(&stage);
     const struct {
         const char *gi;
-        double rounding; // of the 15 steps: floats; halves, which keep 11 bits of what is summed up
+        double rounding; // of 15 steps in floats, or in halves of 11 bits
     } cases[] = { { "lpv:dim=40,steps=16,precision=float", 1e-5 },
                   { "lpv:dim=40,steps=16,precision=float,focus=0.6666667", 1e-5 },
                   { "lpv:dim=40,steps=16,precision=float,lobe=normal", 1e-5 },
@@ -48,12 +48,11 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
         lpv_fixture_render(lpv, &stage);
         assert_int_equal(lpv->grid.cells[0], 39);
         const double injected = flux_of(lpv, lpv->volumes.injected);
-        // All but the last step, each of which holds the injected flux once; then the last, in 16
-        // bits.
+        // Each step adds the injected flux once; the last step is stored in 16 bits.
         const double sum = flux_of(lpv, lpv->volumes.steps[0]),
                      last = flux_of(lpv, lpv->volumes.light);
-        print_message("%s: flux %.6f, over 15 steps %.6f, rounded to 16 bits %.6f of it\n",
-                      cases[i].gi, injected, sum / (16.0 * injected), last / (17.0 * injected));
+        print_message("%s: flux %.6f, after 15 steps %.6f, in 16 bits %.6f of it\n", cases[i].gi,
+                      injected, sum / (16.0 * injected), last / (17.0 * injected));
         CHECK_RELATIVE(injected, 700.0, cases[i].rounding);
         CHECK_RELATIVE(sum, 16.0 * injected, cases[i].rounding);
         CHECK_RELATIVE(last, 17.0 * injected, 2e-3);
@@ -62,7 +61,7 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
     stage_finish(&stage);
 }
 
-// Irradiance at p (normal n) from the square [a,b]² in the plane z = 0 that sends out 1 lumen/m².
+// Irradiance at p (normal n) from the square [a,b]² in the plane z = 0 that emits 1 lumen/m².
 static double wall_irradiance(double a, double b, vec3s p, vec3s n)
 {
     enum { N = 120 };
@@ -79,9 +78,9 @@ static double wall_irradiance(double a, double b, vec3s p, vec3s n)
 }
 
 struct room_error {
-    double facing, side, own; // mean irradiance over the mean true one; own: of the lit wall, in
-                              // units of its exitance
-    double relative;          // mean |error| over mean truth, all walls
+    double facing, side; // mean irradiance over the reference
+    double own;          // of the lit wall, in units of its exitance
+    double relative;     // mean |error| over the mean reference, all walls
 };
 
 static const vec3s CORNERS[3] = { { { 0.02f, 0.02f, 9.99f } },
@@ -91,7 +90,7 @@ static const vec3s ACROSS[3] = { { { 9.96f, 0, 0 } }, { { 0, 9.96f, 0 } }, { { 9
 static const vec3s DOWN[3] = { { { 0, 9.96f, 0 } }, { { 0, 0, 9.96f } }, { { 0, 9.96f, 0 } } };
 static const vec3s NORMALS[3] = { { { 0, 0, -1 } }, { { 1, 0, 0 } }, { { 0, 0, 1 } } };
 
-// A black room of 10 m; of its wall z = 0 the square [a,b]² sends out 1 lumen/m².
+// A black room of 10 m; the square [a,b]² of its wall z = 0 emits 1 lumen/m².
 static struct room_error room(struct gpu *gpu, const char *options, float a, float b)
 {
     struct stage stage;
@@ -105,7 +104,7 @@ static struct room_error room(struct gpu *gpu, const char *options, float a, flo
                     (struct stage_texel){
                         .depth = 1, .normal = vec3_of(0, 0, 1), .reflectance = { 255, 255, 255 } });
     struct lpv *lpv = lpv_fixture_create(gpu, options);
-    double mean[3] = { 0 }, truth[3] = { 0 }, error = 0.0, all = 0.0;
+    double mean[3] = { 0 }, reference[3] = { 0 }, error = 0.0, all = 0.0;
     for (int wall = 0; wall < 3; wall++) {
         float got[PIXELS * 3];
         const double weight = wall == 1 ? 4.0 : 1.0; // four side walls
@@ -122,33 +121,33 @@ static struct room_error room(struct gpu *gpu, const char *options, float a, flo
             const double expected =
                 wall == 2 ? 0.0 : wall_irradiance((double)a, (double)b, p, NORMALS[wall]);
             mean[wall] += (double)got[3 * i] / PIXELS;
-            truth[wall] += expected / PIXELS;
+            reference[wall] += expected / PIXELS;
             error += weight * fabs((double)got[3 * i] - expected);
             all += weight * expected;
         }
     }
     lpv_fixture_destroy(lpv);
     stage_finish(&stage);
-    return (struct room_error){ mean[0] / truth[0], mean[1] / truth[1], mean[2], error / all };
+    return (struct room_error){ mean[0] / reference[0], mean[1] / reference[1], mean[2],
+                                error / all };
 }
 
 static struct room_error print_room(struct gpu *gpu, const char *options, float a, float b)
 {
     const struct room_error r = room(gpu, options, a, b);
     print_message(
-        "%-48s lit %4.1f m: facing %.2f, side %.2f of the truth, own wall %.3f, error %.2f\n",
+        "%-48s lit %4.1f m: facing %.2f, side %.2f of the form factor, own wall %.3f, error %.2f\n",
         options, (double)(b - a), r.facing, r.side, r.own, r.relative);
     return r;
 }
 
-// Without the window nothing but the method itself stands between the grid and the form factors, so
-// this is where the factor from intensity to irradiance must show right. Light spreads too much on
-// its way: the far wall gets less than its share.
-TEST_GPU(lpv_of_a_lit_wall_is_near_form_factors)
+// Without the window the result depends on the factor from intensity to irradiance alone. Light
+// spreads too much during propagation: the facing wall receives less than its form factor.
+TEST_GPU(lpv_of_a_lit_wall_is_close_to_form_factors)
 {
     const struct {
         const char *gi;
-        double facing; // at least; the narrower the cells, the more steps spread the light
+        double facing; // at least; smaller cells mean more steps, which spread the light
     } cases[] = { { "lpv:dim=24,window=1,offset=0.5", 0.4 },
                   { "lpv:dim=16,window=1,offset=0.5", 0.55 },
                   { "holpv:dim=24,window=1,offset=0.5", 0.35 },
@@ -162,7 +161,7 @@ TEST_GPU(lpv_of_a_lit_wall_is_near_form_factors)
     }
 }
 
-// The window gives a part of the light back to the wall that it came from.
+// The window returns some of the light to the emitting wall.
 TEST_GPU(lpv_defaults_are_within_a_half_of_form_factors)
 {
     const char *options[] = { "lpv:dim=24",
@@ -179,8 +178,8 @@ TEST_GPU(lpv_defaults_are_within_a_half_of_form_factors)
     }
 }
 
-// What a wall is lit by itself lessens along its normal; what comes from elsewhere does not.
-TEST_GPU(lpv_damping_takes_a_walls_own_light_and_leaves_that_of_others)
+// A wall's own light decreases along its normal; light from elsewhere does not.
+TEST_GPU(lpv_damping_removes_a_walls_own_light_only)
 {
     const struct room_error all = print_room(gpu, "lpv:dim=16,damping=0", 0, 10),
                             damped = print_room(gpu, "lpv:dim=16,damping=1", 0, 10);
@@ -203,8 +202,8 @@ TEST_GPU(lpv_defaults_beat_the_papers_lobe_and_the_other_orientation)
     }
 }
 
-// A floor of 10 m; near its corner a panel of 2 m × 1.6 m stands upright, faces along the diagonal
-// and sends out 1 lumen/m² (Martin 2012, sec. 5.2).
+// A floor of 10 m; near its corner an upright panel of 2 m × 1.6 m faces along the diagonal and
+// emits 1 lumen/m² (Martin 2012, sec. 5.2).
 static const vec3s PANEL = { { 1.5f, 0.2f, 2.9f } }, PANEL_ACROSS = { { 1.4f, 0, -1.4f } },
                    PANEL_UP = { { 0, 1.6f, 0 } },
                    PANEL_NORMAL = { { 0.70710678f, 0, 0.70710678f } };
@@ -225,7 +224,7 @@ static double panel_irradiance(vec3s p)
     return sum / (N * N) * (double)glms_vec3_norm(PANEL_ACROSS) * (double)PANEL_UP.y / GLM_PI;
 }
 
-// The relative mean squared error where the floor sees the panel; it is limited as that of `diff`.
+// Relative mean squared error where the floor sees the panel, regularised as in `afterglow diff`.
 static double diagonal_relmse(struct gpu *gpu, const char *gi)
 {
     struct stage stage;
@@ -244,19 +243,20 @@ static double diagonal_relmse(struct gpu *gpu, const char *gi)
     lpv_fixture_render(lpv, &stage);
     float got[PIXELS * 3];
     stage_read_irradiance(&stage, got);
-    double truth[PIXELS], mean = 0.0, sum = 0.0;
+    double reference[PIXELS], mean = 0.0, sum = 0.0;
     int lit = 0;
     for (int i = 0; i < PIXELS; i++) {
         const float x = ((float)(i % WIDTH) + 0.5f) / WIDTH,
                     z = ((float)(i / WIDTH) + 0.5f) / WIDTH;
-        truth[i] = panel_irradiance(vec3_of(0.1f + 9.8f * x, 0, 0.1f + 9.8f * z));
-        mean += truth[i];
-        lit += truth[i] > 0.0;
+        reference[i] = panel_irradiance(vec3_of(0.1f + 9.8f * x, 0, 0.1f + 9.8f * z));
+        mean += reference[i];
+        lit += reference[i] > 0.0;
     }
     mean /= lit;
     for (int i = 0; i < PIXELS; i++) {
-        const double error = (double)got[3 * i] - truth[i];
-        if (truth[i] > 0.0) sum += error * error / (truth[i] * truth[i] + 0.01 * mean * mean);
+        const double error = (double)got[3 * i] - reference[i];
+        if (reference[i] > 0.0)
+            sum += error * error / (reference[i] * reference[i] + 0.01 * mean * mean);
     }
     lpv_fixture_destroy(lpv);
     stage_finish(&stage);
@@ -264,7 +264,7 @@ static double diagonal_relmse(struct gpu *gpu, const char *gi)
     return sum / lit;
 }
 
-TEST_GPU(lpv_of_higher_order_is_nearer_to_the_truth_along_a_diagonal_at_equal_steps)
+TEST_GPU(lpv_of_higher_order_has_less_error_along_a_diagonal_at_equal_steps)
 {
     const char *gis[][2] = { { "lpv:dim=32,steps=10", "holpv:dim=32,steps=10" },
                              { "lpv:dim=32,steps=20", "holpv:dim=32,steps=20" },

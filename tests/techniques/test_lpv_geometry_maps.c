@@ -1,10 +1,10 @@
-// The geometry volume from maps against the plain C twin, and what must hold to the bit.
+// The geometry volume from maps: equality with the plain C twin, bitwise invariants.
 #include "techniques/geometry_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-// Perpendicular area in m² of a texel at its place: a beam's, or a cone's at its distance.
+// Perpendicular area in m² of a texel: of a beam, or of a cone at its distance.
 static double texel_across(const struct stage *stage, int face, uint32_t x, uint32_t y,
                            vec3s to_light)
 {
@@ -24,16 +24,17 @@ static void add_face(struct geometry_twin *twin, const struct stage *stage, int 
                 &stage->texels[((uint32_t)face * GEOMETRY_SIZE + y) * GEOMETRY_SIZE + x];
             if (texel->depth == 0.0f) continue;
             const vec3s position = stage_texel_position(stage, face, x, y);
-            const vec3s way = stage->faces[face].type == FRAME_LIGHT_SUN
-                                  ? glms_vec3_negate(stage->faces[face].direction)
-                                  : glms_vec3_sub(stage->faces[face].position, position);
+            const vec3s to_light = stage->faces[face].type == FRAME_LIGHT_SUN
+                                       ? glms_vec3_negate(stage->faces[face].direction)
+                                       : glms_vec3_sub(stage->faces[face].position, position);
             geometry_twin_surfel(twin, position, stage_rounded_normal(texel->normal),
-                                 glms_vec3_normalize(way), texel_across(stage, face, x, y, way));
+                                 glms_vec3_normalize(to_light),
+                                 texel_across(stage, face, x, y, to_light));
         }
     geometry_twin_merge(twin);
 }
 
-// The stage's wall, whose pixels are parallelograms.
+// The visible wall, whose pixels are parallelograms.
 static void add_camera(struct geometry_twin *twin, const struct stage *stage, vec3s normal)
 {
     const mat4s m = stage->constants.world_from_clip;
@@ -44,10 +45,10 @@ static void add_camera(struct geometry_twin *twin, const struct stage *stage, ve
             const vec3s position =
                 mat4_point(m, vec3_of(((float)x + 0.5f) * 2.0f / GEOMETRY_WIDTH - 1.0f,
                                       ((float)y + 0.5f) * 2.0f / GEOMETRY_HEIGHT - 1.0f, 0.5f));
-            const vec3s to_eye =
+            const vec3s to_viewer =
                 glms_vec3_normalize(glms_vec3_sub(stage->constants.camera_position, position));
-            geometry_twin_surfel(twin, position, stage_rounded_normal(normal), to_eye,
-                                 fabs((double)glms_vec3_dot(glms_vec3_cross(u, v), to_eye)));
+            geometry_twin_surfel(twin, position, stage_rounded_normal(normal), to_viewer,
+                                 fabs((double)glms_vec3_dot(glms_vec3_cross(u, v), to_viewer)));
         }
     geometry_twin_merge(twin);
 }
@@ -59,7 +60,7 @@ static void twin_of(struct geometry_twin *twin, const struct lpv *lpv, const str
     for (int face = 0; face < stage->view.rsm_face_count; face++) add_face(twin, stage, face);
 }
 
-TEST_GPU(lpv_geometry_from_maps_is_the_twins)
+TEST_GPU(lpv_geometry_from_maps_equals_the_twin)
 {
     struct stage stage;
     geometry_scatter(&stage, gpu);
@@ -76,7 +77,7 @@ TEST_GPU(lpv_geometry_from_maps_is_the_twins)
     stage_finish(&stage);
 }
 
-TEST_GPU(lpv_light_goes_past_what_maps_see_as_the_twins_does)
+TEST_GPU(lpv_light_occluded_by_maps_equals_the_twin)
 {
     const char *options[] = { "lpv:dim=8,steps=1,geometry=maps", "lpv:dim=8,steps=6,geometry=maps",
                               "lpv:dim=8,steps=7,geometry=maps,occlusion=0.7,precision=float",
@@ -95,7 +96,7 @@ TEST_GPU(lpv_light_goes_past_what_maps_see_as_the_twins_does)
     stage_finish(&stage);
 }
 
-TEST_GPU(lpv_geometry_from_maps_knows_no_order_of_lights)
+TEST_GPU(lpv_geometry_from_maps_is_independent_of_the_order_of_lights)
 {
     struct stage stage;
     geometry_scatter(&stage, gpu);
@@ -120,8 +121,8 @@ TEST_GPU(lpv_geometry_from_maps_knows_no_order_of_lights)
     stage_finish(&stage);
 }
 
-// Several lights that see the same surface do not make it denser than it is.
-TEST_GPU(lpv_geometry_counts_a_surface_once_whoever_sees_it)
+// Several lights that see the same surface do not increase its occlusion.
+TEST_GPU(lpv_geometry_counts_a_surface_once)
 {
     struct stage stage;
     geometry_scatter(&stage, gpu);

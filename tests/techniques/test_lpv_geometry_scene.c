@@ -1,5 +1,5 @@
-// The geometry volume from the scene's triangles against the plain C twin, and what must hold to
-// the bit.
+// The geometry volume from the scene's triangles: equality with the plain C twin, bitwise
+// invariants.
 #include "techniques/geometry_fixture.h"
 #include "techniques/props.h"
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A stage with `soups` things on it.
+// A stage with meshes of scattered triangles.
 struct set {
     struct stage stage;
     struct props props;
@@ -42,7 +42,7 @@ static void twin_of(struct geometry_twin *twin, const struct lpv *lpv, const str
     }
 }
 
-TEST_GPU(lpv_geometry_from_the_scene_is_the_twins)
+TEST_GPU(lpv_geometry_from_the_scene_equals_the_twin)
 {
     const char *options[] = { "lpv:dim=8,steps=1", "lpv:dim=16,steps=1,cell_margin=1" };
     for (int i = 0; i < 2; i++) {
@@ -59,7 +59,7 @@ TEST_GPU(lpv_geometry_from_the_scene_is_the_twins)
     }
 }
 
-TEST_GPU(lpv_light_goes_past_the_scene_as_the_twins_does)
+TEST_GPU(lpv_light_occluded_by_the_scene_equals_the_twin)
 {
     const char *options[] = { "lpv:dim=8,steps=1", "lpv:dim=8,steps=6",
                               "lpv:dim=8,steps=7,occlusion=0.7,precision=float",
@@ -97,22 +97,22 @@ TEST_GPU(lpv_occlusion_applies_to_the_cached_volume)
     set_finish(&set);
 }
 
-// Things begin to move and stop, and each moment is shown as a first frame, too.
-TEST_GPU(lpv_geometry_kept_from_earlier_frames_is_that_of_a_first_frame)
+// Meshes start and stop moving; each frame equals a first frame.
+TEST_GPU(lpv_cached_geometry_equals_that_of_a_first_frame)
 {
     struct set set;
     set_init(&set, gpu, 3);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
     for (int frame = 0; frame < 6; frame++) {
         if (frame > 1 && frame < 5) props_move(&set.props, 1, 0.21f);
-        if (frame == 3) props_move(&set.props, 2, -0.4f); // one more begins to move
+        if (frame == 3) props_move(&set.props, 2, -0.4f); // a second mesh starts to move
         props_render(&set.props, lpv);
-        float *kept = geometry_read(lpv);
+        float *cached = geometry_read(lpv);
         struct lpv *fresh = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
         props_render(&set.props, fresh);
         float *first = geometry_read(fresh);
-        assert_memory_equal(kept, first, geometry_floats(lpv) * sizeof *kept);
-        free(kept);
+        assert_memory_equal(cached, first, geometry_floats(lpv) * sizeof *cached);
+        free(cached);
         free(first);
         lpv_fixture_destroy(fresh);
     }
@@ -120,9 +120,8 @@ TEST_GPU(lpv_geometry_kept_from_earlier_frames_is_that_of_a_first_frame)
     set_finish(&set);
 }
 
-// What the still lines hold is overwritten behind the technique's back: it stays until it must be
-// made anew.
-static bool is_made_anew(struct props *props, struct lpv *lpv)
+// Overwrites the static coverage; the marks stay until it is recomputed.
+static bool is_recomputed(struct props *props, struct lpv *lpv)
 {
     const size_t words = gpu_buffer_bytes(lpv->gpu, lpv->volumes.static_coverage) / 4;
     uint32_t *mark = malloc(words * sizeof *mark), *after = malloc(words * sizeof *mark);
@@ -131,37 +130,37 @@ static bool is_made_anew(struct props *props, struct lpv *lpv)
     props_render(props, lpv);
     CHECK(gpu_buffer_download(lpv->gpu, lpv->volumes.static_coverage, 0, after,
                               words * sizeof *mark));
-    const bool anew = memcmp(mark, after, words * sizeof *mark) != 0;
+    const bool recomputed = memcmp(mark, after, words * sizeof *mark) != 0;
     free(mark);
     free(after);
-    return anew;
+    return recomputed;
 }
 
-TEST_GPU(lpv_geometry_of_still_things_is_made_once)
+TEST_GPU(lpv_static_geometry_is_computed_once)
 {
     struct set set;
     set_init(&set, gpu, 2);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
-    CHECK(is_made_anew(&set.props, lpv));
-    CHECK(!is_made_anew(&set.props, lpv));
+    CHECK(is_recomputed(&set.props, lpv));
+    CHECK(!is_recomputed(&set.props, lpv));
     props_move(&set.props, 1, 0.3f);
-    CHECK(is_made_anew(&set.props, lpv)); // without what moves
+    CHECK(is_recomputed(&set.props, lpv)); // without the moving mesh
     props_move(&set.props, 1, 0.3f);
-    CHECK(!is_made_anew(&set.props, lpv));
-    CHECK(!is_made_anew(&set.props, lpv));
+    CHECK(!is_recomputed(&set.props, lpv));
+    CHECK(!is_recomputed(&set.props, lpv));
     technique_lpv.invalidate(lpv, CHANGED_LIGHT | CHANGED_CAMERA);
-    CHECK(!is_made_anew(&set.props, lpv));
+    CHECK(!is_recomputed(&set.props, lpv));
     technique_lpv.invalidate(lpv, CHANGED_GEOMETRY);
-    CHECK(is_made_anew(&set.props, lpv));
+    CHECK(is_recomputed(&set.props, lpv));
     set.stage.view.bounds.max.x += 3; // another grid
-    CHECK(is_made_anew(&set.props, lpv));
+    CHECK(is_recomputed(&set.props, lpv));
     set.stage.view.index = 0; // another scene
-    CHECK(is_made_anew(&set.props, lpv));
+    CHECK(is_recomputed(&set.props, lpv));
     lpv_fixture_destroy(lpv);
     set_finish(&set);
 }
 
-// A sheet of many triangles, which meet on lines and at corners of cells too: a gap would show.
+// A wall of many triangles, whose edges lie on lines and on corners of cells: no gaps.
 TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
 {
     enum { N = 7 };
@@ -170,7 +169,7 @@ TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
     uint32_t indices[6 * N * N];
     for (uint32_t i = 0; i < (N + 1) * (N + 1); i++) {
         const float u = (float)(i % (N + 1)) / N, v = (float)(i / (N + 1)) / N;
-        // A slope: across x and y it covers every face that it passes in the room, once.
+        // A slope that covers each column along z exactly once.
         positions[i] = vec3_of(8 * u, 8 * v, 2.3f + 3.1f * u);
     }
     for (uint32_t i = 0; i < N * N; i++) {
@@ -189,7 +188,7 @@ TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
     float *got = geometry_read(lpv);
     for (int y = 0; y < cells[1]; y++)
         for (int x = 0; x < cells[0]; x++) {
-            // Columns along z that lie over the slope as a whole meet it once.
+            // Columns along z that lie entirely over the slope cross it once.
             const float end = (float)(x + 1) * lpv->grid.cell_m,
                         top = (float)(y + 1) * lpv->grid.cell_m;
             if (end > 8.0f || top > 8.0f) continue;
@@ -203,7 +202,7 @@ TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
     set_finish(&set);
 }
 
-TEST_GPU(lpv_geometry_of_nothing_is_nothing)
+TEST_GPU(lpv_geometry_of_an_empty_scene_is_zero)
 {
     const char *options[] = { "lpv:dim=8,steps=3,geometry=maps", "lpv:dim=8,steps=3" };
     for (int i = 0; i < 2; i++) {
@@ -225,8 +224,8 @@ TEST_GPU(lpv_geometry_of_nothing_is_nothing)
     }
 }
 
-// Vertices that are no numbers, or far away, leave what is fine as it is.
-TEST_GPU(lpv_geometry_leaves_out_what_has_no_place)
+// Meshes with non-finite or far vertices do not affect other meshes.
+TEST_GPU(lpv_geometry_ignores_vertices_out_of_range)
 {
     struct set set;
     set_init(&set, gpu, 2);

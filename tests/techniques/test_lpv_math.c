@@ -28,8 +28,7 @@ TEST(lpv_faces_of_all_neighbours_cover_the_sphere_once)
     }
 }
 
-// ∫ cosθ/r² over the unit square around the face's centre, which is `half` away from the cell's at
-// `offset`.
+// ∫ cosθ/r² over the face of the cell at `offset` with this normal.
 static double integrated_sr(const int offset[3], vec3s normal)
 {
     enum { N = 300 };
@@ -48,7 +47,7 @@ static double integrated_sr(const int offset[3], vec3s normal)
     return sum / (N * N);
 }
 
-TEST(lpv_face_solid_angles_are_what_integration_gives)
+TEST(lpv_face_solid_angles_equal_numerical_integration)
 {
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
         struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
@@ -68,7 +67,7 @@ TEST(lpv_solid_angle_holds_down_to_distance_zero)
     CHECK_NEAR(lpv_rectangle_sr(-1, 1, -1, 1, 1.0), 4.0 * GLM_PI / 6.0, 1e-12);
 }
 
-TEST(lpv_faces_look_away_from_the_source)
+TEST(lpv_faces_point_away_from_the_source)
 {
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
         struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
@@ -85,11 +84,11 @@ TEST(lpv_faces_look_away_from_the_source)
     }
 }
 
-TEST(lpv_mean_way_of_a_step_is_the_mean_over_directions)
+TEST(lpv_mean_path_of_a_step_is_the_mean_over_directions)
 {
     enum { N = 200 };
     double sum = 0.0, most = 0.0, all = 0.0;
-    for (int i = 0; i < N * N; i++) { // of the eighth of the sphere where all are positive
+    for (int i = 0; i < N * N; i++) { // over the octant where all are positive
         const double z = (i % N + 0.5) / N, phi = (i / N + 0.5) / N * GLM_PI_2;
         const double x = sqrt(1.0 - z * z) * cos(phi), y = sqrt(1.0 - z * z) * sin(phi);
         sum += x + y + z, most += fmax(x, fmax(y, z)), all += 1.0;
@@ -98,7 +97,7 @@ TEST(lpv_mean_way_of_a_step_is_the_mean_over_directions)
     CHECK_NEAR(lpv_mean_path(LPV_TWENTY_SIX), all / most, 1e-4);
 }
 
-// Coefficients of one face's lobe of unit flux, before what the quadrature of band 2 divides by.
+// Coefficients of a face's lobe of unit flux, before the division by the quadrature of band 2.
 TEST(lpv_lobe_at_two_thirds_is_the_clamped_cosine)
 {
     float zonal[3];
@@ -112,13 +111,13 @@ TEST(lpv_lobe_at_two_thirds_is_the_clamped_cosine)
                 sqrt(4.0 * GLM_PI / (2 * band + 1)) * (double)zonal[band] / GLM_PI;
             if (band < 2) CHECK_NEAR(lpv_lobe_weight(&weights, i), cosine, 1e-6);
         }
-        // x² − y² and 3z² − 1 are two, xy, yz and xz three of the five of band 2: the mean weight.
+        // Mean weight of band 2: x² − y² and 3z² − 1 are two, xy, yz and xz three of five.
         const double mean = 5.0 / (2.0 / weights.square + 3.0 / weights.product);
         CHECK_NEAR(mean, sqrt(4.0 * GLM_PI / 5.0) * (double)zonal[2] / GLM_PI, 1e-6);
     }
 }
 
-// What all neighbours receive together, from coefficients `in`.
+// Sum of the coefficients that all neighbours receive from `in`.
 static void received(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus, const double in[9],
                      double out[9])
 {
@@ -141,7 +140,7 @@ static void received(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus, c
 
 static const double SOME_LIGHT[9] = { 1.0, 0.3, -0.7, 0.2, 0.4, -0.1, 0.25, 0.6, -0.5 };
 
-TEST(lpv_step_conserves_flux_whatever_the_lobe)
+TEST(lpv_step_conserves_flux_for_every_lobe)
 {
     double out[9];
     for (int scheme = 0; scheme < SCHEMES; scheme++)
@@ -152,9 +151,8 @@ TEST(lpv_step_conserves_flux_whatever_the_lobe)
             }
 }
 
-// Light of any direction keeps the same: of its mean direction the focus, of band 2 what (cosθ)₊ⁿ
-// has.
-TEST(lpv_step_keeps_of_the_direction_what_focus_says)
+// Light of any direction keeps the same factors: `focus` in band 1, that of (cosθ)₊ⁿ in band 2.
+TEST(lpv_step_scales_bands_by_focus)
 {
     double out[9];
     for (int scheme = 0; scheme < SCHEMES; scheme++)
@@ -187,7 +185,7 @@ TEST(lpv_lobes_of_higher_powers_of_the_cosine_have_their_band_2)
 // Growth per step of the wave exp(i k·x), by the power method.
 static const double complex J = (double complex)I;
 
-struct wave_step { // the sum over the neighbours of their matrix times the wave's phase
+struct wave_step { // sum over the neighbours of matrix × phase of the wave
     double complex matrix[9][9];
 };
 
@@ -246,14 +244,14 @@ TEST(lpv_step_lets_no_wave_grow)
                                   GLM_PI * (i / (N + 1) / (N + 1)) / N };
             struct wave_step step;
             wave_step_of(scheme, lobe, focus, k, &step);
-            // The power method's mean of 100 steps still feels where it began.
+            // The mean of 100 steps of the power method still depends on the initial vector.
             CHECK(growth(&step, 4) < 1.0 + 5e-3);
             CHECK(growth(&step, 9) < 1.0 + 5e-3);
         }
     }
 }
 
-TEST(lpv_grid_holds_the_bounds_and_never_more_than_its_cells)
+TEST(lpv_grid_contains_the_bounds_with_at_most_dim_cells)
 {
     struct rng rng = rng_for(2, 0, 0);
     for (int i = 0; i < 2000; i++) {
@@ -278,7 +276,7 @@ TEST(lpv_grid_holds_the_bounds_and_never_more_than_its_cells)
     }
 }
 
-TEST(lpv_grid_stands_still_while_the_bounds_breathe)
+TEST(lpv_grid_moves_by_whole_cells_when_the_bounds_change_a_little)
 {
     struct box3 box = { vec3_of(-3.3f, 0.1f, -2.2f), vec3_of(4.1f, 3.0f, 2.7f) };
     struct lpv_grid grid, moved;
@@ -308,7 +306,7 @@ static bool scale_of(const struct rsm_face *faces, int count, struct lpv_scale *
         &(struct lpv_lights){ .faces = faces, .face_count = count, .rsm_size = 256 }, out);
 }
 
-TEST(lpv_scales_bound_emissive_surfaces_with_the_rest)
+TEST(lpv_scales_include_emissive_surfaces)
 {
     struct rsm_face face = { .type = FRAME_LIGHT_SUN, .intensity = { { 1e-3f, 0, 0 } } };
     struct frame_emitter points[3] = { { .flux = { { 1, 2, 3 } } },
@@ -342,7 +340,7 @@ TEST(lpv_scales_are_powers_of_two_that_follow_the_light)
     int exponent;
     CHECK(frexpf(one.fixed_from_flux, &exponent) == 0.5f);
     CHECK(frexpf(one.grid_from_flux, &exponent) == 0.5f);
-    // The strongest texel, a sun's here, fills a block.
+    // A block of texels that equal the strongest one, here of a sun.
     CHECK(7.4f * LPV_TEXELS * LPV_TEXELS * 0.33f * two.fixed_from_flux <= 1073741824.0f);
     for (int i = 0; i < 2; i++) faces[i].intensity = vec3_of(0, 0, 0);
     CHECK(!scale_of(faces, 2, &one));

@@ -1,13 +1,13 @@
-// What a wall between the light and the receiver leaves of the light.
+// Light behind a wall between emitter and receiver.
 #include "techniques/props.h"
 
 #include <math.h>
 
 enum { SIZE = 64, WIDTH = 16, PIXELS = WIDTH * WIDTH };
 
-static const float ROOM = 8, WALL = 4.13f; // m; not on a border between cells
+static const float ROOM = 8, WALL = 4.13f; // m; not on a face between cells
 
-// Nothing, or a wall that its own map sees too.
+// No wall, or a wall of `height` with a reflective shadow map of its own.
 static void set_wall(struct stage *stage, float height)
 {
     const float texel = ROOM / SIZE;
@@ -25,9 +25,9 @@ static void set_wall(struct stage *stage, float height)
         }
 }
 
-// Mean irradiance of the wall z = ROOM in lumen/m² when the wall z = 0 of a black room sends out 1
-// lumen/m² and a wall of this height stands between them.
-static double behind(struct gpu *gpu, const char *gi, float height)
+// Mean irradiance of the wall z = ROOM in lumen/m² when the wall z = 0 of a black room emits
+// 1 lumen/m² and a wall of `height` stands between them.
+static double irradiance_behind(struct gpu *gpu, const char *gi, float height)
 {
     struct stage stage;
     struct props props;
@@ -60,7 +60,7 @@ static double behind(struct gpu *gpu, const char *gi, float height)
     return sum;
 }
 
-// A wall as high as the room lets nothing through. Without the geometry volume it is not there.
+// A wall of the room's height occludes all light; without the geometry volume none.
 TEST_GPU(lpv_is_dark_behind_a_wall)
 {
     const char *with[] = { "lpv:dim=24,geometry=scene", "lpv:dim=24,geometry=maps",
@@ -68,8 +68,9 @@ TEST_GPU(lpv_is_dark_behind_a_wall)
     const char *without[] = { "lpv:dim=24,geometry=off", "lpv:dim=24,geometry=off",
                               "holpv:dim=24,geometry=off", "holpv:dim=24,geometry=off" };
     for (int i = 0; i < 4; i++) {
-        const double open = behind(gpu, with[i], 0), leak = behind(gpu, with[i], ROOM),
-                     off = behind(gpu, without[i], ROOM);
+        const double open = irradiance_behind(gpu, with[i], 0),
+                     leak = irradiance_behind(gpu, with[i], ROOM),
+                     off = irradiance_behind(gpu, without[i], ROOM);
         print_message("%-28s behind the wall %.4f lm/m², without the wall %.4f (%.1f %%); "
                       "geometry=off: %.4f\n",
                       with[i], leak, open, 100.0 * leak / open, off);
@@ -79,13 +80,14 @@ TEST_GPU(lpv_is_dark_behind_a_wall)
     }
 }
 
-// Half a wall takes away some of the light and not all of it.
+// Half a wall occludes some of the light.
 TEST_GPU(lpv_is_dim_behind_half_a_wall)
 {
     const char *with[] = { "lpv:dim=24", "lpv:dim=24,geometry=maps", "holpv:dim=24",
                            "holpv:dim=24,geometry=maps" };
     for (int i = 0; i < 4; i++) {
-        const double open = behind(gpu, with[i], 0), half = behind(gpu, with[i], ROOM / 2);
+        const double open = irradiance_behind(gpu, with[i], 0),
+                     half = irradiance_behind(gpu, with[i], ROOM / 2);
         print_message("%-28s behind half a wall %.1f %%\n", with[i], 100.0 * half / open);
         CHECK(half > 0.2 * open && half < 0.8 * open);
     }

@@ -1,4 +1,4 @@
-// The light of the sky, which comes in through the border of the grid.
+// Light of the sky, which enters through the border of the grid.
 #include "frame/studio.h"
 #include "techniques/gi.h"
 #include "techniques/lpv_fixture.h"
@@ -10,8 +10,7 @@ enum { WIDTH = 8, PIXELS = WIDTH * WIDTH, DIRECTIONS = 5 };
 
 static const vec3s SKY = { { 1, 10, 200 } };
 
-// No lamp, nothing in the way: what one sees from everywhere is the sky, so that E = π L whatever
-// the normal.
+// No lights and no occluders: the sky fills the sphere, so that E = π L for every normal.
 static void check_furnace(struct stage *stage, struct lpv *lpv, double tolerance)
 {
     static const float normals[DIRECTIONS][3] = {
@@ -20,7 +19,7 @@ static void check_furnace(struct stage *stage, struct lpv *lpv, double tolerance
     for (int i = 0; i < DIRECTIONS; i++) {
         const vec3s n = glms_vec3_normalize(vec3_of(normals[i][0], normals[i][1], normals[i][2]));
         float got[3 * PIXELS];
-        // From corner to corner of the box, and a little beyond.
+        // From corner to corner of the box and slightly beyond.
         stage_show_wall(stage, vec3_of(-2, -1, -3), vec3_of(4, 0, 6), vec3_of(0, 2, 0), n);
         stage_upload(stage);
         lpv_fixture_render(lpv, stage);
@@ -30,9 +29,9 @@ static void check_furnace(struct stage *stage, struct lpv *lpv, double tolerance
     }
 }
 
-// A cell in the middle of 16 gets its share of the border's light step by step; 128 steps leave
-// less than the rounding of half floats to be gained.
-TEST_GPU(lpv_under_the_sky_alone_is_a_furnace)
+// The light of the border converges towards the central cells; after 128 steps the remainder is
+// below the rounding of half floats.
+TEST_GPU(lpv_passes_the_furnace_test_of_the_sky)
 {
     const char *cases[] = { "lpv:dim=16,steps=128,sky=true",
                             "lpv:dim=16,steps=128,sky=true,bands=3,lobe=normal",
@@ -50,7 +49,7 @@ TEST_GPU(lpv_under_the_sky_alone_is_a_furnace)
     }
 }
 
-TEST_GPU(lpv_leaves_the_sky_out_when_told)
+TEST_GPU(lpv_without_the_option_ignores_the_sky)
 {
     struct stage stage;
     float got[3 * PIXELS];
@@ -68,8 +67,7 @@ TEST_GPU(lpv_leaves_the_sky_out_when_told)
     stage_finish(&stage);
 }
 
-// Sky and lamps together are the sum of each alone, in one grid: with a sky there is a cell around
-// the scene.
+// Sky plus lights equals the sum of both, on the same grid: a sky implies a margin of one cell.
 TEST_GPU(lpv_sky_adds_to_other_light)
 {
     float sum[3 * PIXELS] = { 0 }, both[3 * PIXELS], got[3 * PIXELS];
@@ -97,7 +95,7 @@ TEST_GPU(lpv_sky_adds_to_other_light)
         CHECK_RELATIVE((double)both[k], (double)sum[k], 3e-3);
 }
 
-// Irradiance over πL in the middle of a floor of 6 m that nothing shades, and its range.
+// Range of irradiance over πL in the middle of an unoccluded floor of 6 m.
 static void floor_under_sky(struct gpu *gpu, const char *text, double *least, double *most)
 {
     struct studio s;
@@ -131,10 +129,10 @@ static void floor_under_sky(struct gpu *gpu, const char *text, double *least, do
 #define LPV   "cascades=1,steps=64,bounces=0,"
 #define HOLPV "cascades=1,steps=32,bounces=0,"
 
-// Light from below the floor is none of its irradiance. Without geometry it is there, and the bands
-// of all directions together are exact; with geometry two or three bands must tell above from
-// below, which the window blurs: of a hemisphere two bands make 1/2 + w/2.
-TEST_GPU(lpv_lights_an_open_floor_with_all_of_the_sky)
+// Without geometry the light is isotropic, which the bands represent exactly. With geometry the
+// floor occludes the lower hemisphere, which two or three bands approximate and the window blurs:
+// two bands give 1/2 + w/2 of a hemisphere.
+TEST_GPU(lpv_lights_an_open_floor_with_the_sky)
 {
     const struct {
         const char *gi;

@@ -1,4 +1,4 @@
-// Each GPU stage against the plain C twin, and what must hold to the bit.
+// Each GPU stage: equality with the plain C twin, bitwise invariants.
 #include "techniques/lpv_fixture.h"
 
 #include "core/rng.h"
@@ -15,7 +15,7 @@ static vec3s random_direction(struct rng *rng)
         vec3_of(rng_float(rng) - 0.5f, rng_float(rng) - 0.5f, rng_float(rng) - 0.5f));
 }
 
-// Two maps of texels scattered over a box of 4 × 3 × 3.5 m, some of them outside of it, some empty.
+// Two maps with texels scattered over a box of 4 × 3 × 3.5 m, some outside, some empty.
 static void scatter(struct stage *stage, struct gpu *gpu)
 {
     struct rng rng = rng_for(5, 0, 0);
@@ -57,7 +57,7 @@ static void check_volume(const float *got, const struct twin *twin, double (*exp
             CHECK_NEAR((double)got[coefficients * i + k], expected[i][k], tolerance * most);
 }
 
-// Of half floats, 11 bits, and of floats, whose sums were whole numbers.
+// Half floats have 11 bits; floats are converted from integer sums.
 static double rounding(const struct lpv *lpv)
 {
     return lpv->options.precision == LPV_PRECISION_HALF ? 5e-4 : 1e-5;
@@ -86,7 +86,7 @@ static const char *const INJECTIONS[] = { "lpv:dim=8,steps=1", "lpv:dim=8,steps=
                                           "holpv:dim=8,steps=1,precision=float" };
 enum { INJECTION_COUNT = sizeof INJECTIONS / sizeof INJECTIONS[0] };
 
-TEST_GPU(lpv_injection_is_the_twins)
+TEST_GPU(lpv_injection_equals_the_twin)
 {
     struct stage stage;
     scatter(&stage, gpu);
@@ -100,7 +100,7 @@ TEST_GPU(lpv_injection_is_the_twins)
 
 enum { POINTS = 777 }; // not a multiple of a workgroup
 
-// Points all over the box and a little outside of it, faint and strong ones.
+// Points in and around the box, faint and strong ones.
 static void scatter_points(struct frame_emitter *points)
 {
     struct rng rng = rng_for(6, 0, 0);
@@ -115,7 +115,7 @@ static void scatter_points(struct frame_emitter *points)
     }
 }
 
-TEST_GPU(lpv_injection_of_emissive_surfaces_is_the_twins)
+TEST_GPU(lpv_injection_of_emissive_surfaces_equals_the_twin)
 {
     struct stage stage;
     struct frame_emitter points[POINTS];
@@ -139,7 +139,7 @@ static void propagate_twin(struct twin *twin, const struct lpv *lpv)
         twin_propagate(twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);
 }
 
-static void propagation_is_the_twins(struct gpu *gpu, const char *options)
+static void propagation_equals_the_twin(struct gpu *gpu, const char *options)
 {
     struct stage stage;
     scatter(&stage, gpu);
@@ -160,29 +160,30 @@ static void propagation_is_the_twins(struct gpu *gpu, const char *options)
 
 TEST_GPU(lpv_propagation_is_the_sum_over_faces_and_steps)
 {
-    propagation_is_the_twins(gpu, "lpv:dim=8,steps=1,precision=float");
-    propagation_is_the_twins(gpu, "lpv:dim=8,steps=6");
-    propagation_is_the_twins(gpu, "lpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
-    propagation_is_the_twins(gpu, "lpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=1,precision=float");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=6");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
+    propagation_equals_the_twin(gpu, "lpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
 }
 
 TEST_GPU(lpv_propagation_of_higher_order_is_the_sum_over_faces_and_steps)
 {
-    propagation_is_the_twins(gpu, "holpv:dim=8,steps=1,precision=float");
-    propagation_is_the_twins(gpu, "holpv:dim=8,steps=6");
-    propagation_is_the_twins(gpu, "holpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
-    propagation_is_the_twins(gpu, "holpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
+    propagation_equals_the_twin(gpu, "holpv:dim=8,steps=1,precision=float");
+    propagation_equals_the_twin(gpu, "holpv:dim=8,steps=6");
+    propagation_equals_the_twin(gpu, "holpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
+    propagation_equals_the_twin(gpu,
+                                "holpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
 }
 
 TEST_GPU(lpv_bands_and_neighbours_are_independent)
 {
-    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,bands=3,focus=0.8");
-    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,bands=3,lobe=normal,precision=float");
-    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,neighbours=26,focus=0.8");
-    propagation_is_the_twins(gpu, "lpv:dim=8,steps=5,neighbours=26,lobe=normal,precision=float");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=5,bands=3,focus=0.8");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=5,bands=3,lobe=normal,precision=float");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=5,neighbours=26,focus=0.8");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=5,neighbours=26,lobe=normal,precision=float");
 }
 
-static void application_is_the_twins(struct gpu *gpu, const char *options)
+static void application_equals_the_twin(struct gpu *gpu, const char *options)
 {
     struct stage stage;
     scatter(&stage, gpu);
@@ -204,7 +205,7 @@ static void application_is_the_twins(struct gpu *gpu, const char *options)
             most = fmax(most, expected[i]);
         }
         CHECK(most > 0.0);
-        // Besides halves, filtering hardware may round its weights to 8 bits.
+        // Half floats, and filter weights that hardware may round to 8 bits.
         for (int i = 0; i < PIXELS; i++)
             CHECK_NEAR((double)got[3 * i + colour], expected[i], 5e-3 * most);
         twin_finish(&twin);
@@ -213,16 +214,16 @@ static void application_is_the_twins(struct gpu *gpu, const char *options)
     stage_finish(&stage);
 }
 
-TEST_GPU(lpv_application_is_the_twins)
+TEST_GPU(lpv_application_equals_the_twin)
 {
-    application_is_the_twins(gpu, "lpv:dim=8,steps=5,offset=0.75,window=0.8");
-    application_is_the_twins(gpu, "lpv:dim=8,steps=5,damping=0.8");
-    application_is_the_twins(gpu, "lpv:dim=8,steps=5,damping=2,reconstruction=cubic");
-    application_is_the_twins(gpu, "holpv:dim=8,steps=5,offset=0.75,window=0.9");
-    application_is_the_twins(gpu, "holpv:dim=8,steps=5,damping=1,reconstruction=cubic");
+    application_equals_the_twin(gpu, "lpv:dim=8,steps=5,offset=0.75,window=0.8");
+    application_equals_the_twin(gpu, "lpv:dim=8,steps=5,damping=0.8");
+    application_equals_the_twin(gpu, "lpv:dim=8,steps=5,damping=2,reconstruction=cubic");
+    application_equals_the_twin(gpu, "holpv:dim=8,steps=5,offset=0.75,window=0.9");
+    application_equals_the_twin(gpu, "holpv:dim=8,steps=5,damping=1,reconstruction=cubic");
 }
 
-// The numbers of the injected grid, all colours.
+// All values of the injected grid.
 static float *injected(struct lpv *lpv, size_t *count)
 {
     const size_t one = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
@@ -251,9 +252,9 @@ static double mebibytes(struct gpu *gpu, gpu_image image)
            (1 << 20);
 }
 
-// Martin 2012, sec. 5.8: 0.75 MiB for a grid of 32³ cells in two bands, 1.75 in three; three grids;
-// and a geometry volume of 0.25.
-TEST_GPU(lpv_volumes_of_half_floats_are_as_large_as_the_papers)
+// Martin 2012, sec. 5.8: three grids of 32³ cells, 0.75 MiB each in two bands, 1.75 in three, and a
+// geometry volume of 0.25 MiB.
+TEST_GPU(lpv_volumes_of_half_floats_have_the_papers_size)
 {
     const struct {
         const char *gi;
@@ -265,13 +266,13 @@ TEST_GPU(lpv_volumes_of_half_floats_are_as_large_as_the_papers)
         CHECK(mebibytes(gpu, lpv->volumes.steps[0]) == cases[i].grid);
         CHECK(mebibytes(gpu, lpv->volumes.light) == cases[i].grid);
         CHECK(mebibytes(gpu, lpv->volumes.geometry) == 0.25);
-        CHECK(!lpv->coarser); // cascades would bring one more each
+        CHECK(!lpv->coarser); // each cascade adds another
         assert_int_equal(lpv->volumes.steps[1].id, 0);
         lpv_fixture_destroy(lpv);
     }
 }
 
-TEST_GPU(lpv_injection_knows_no_order)
+TEST_GPU(lpv_injection_is_independent_of_order)
 {
     struct stage stage;
     scatter(&stage, gpu);
@@ -286,7 +287,7 @@ TEST_GPU(lpv_injection_knows_no_order)
     stage_set_emitters(&stage, points, POINTS);
     before = injected_of(&stage, lpv, &count);
     stage_set_emitters(&stage, reversed, POINTS);
-    // The same lights in the other order.
+    // The same lights in reverse order.
     for (uint32_t i = 0; i < SIZE * SIZE; i++) {
         const struct stage_texel texel = stage.texels[i];
         stage.texels[i] = stage.texels[SIZE * SIZE + i];
@@ -321,8 +322,8 @@ TEST_GPU(lpv_half_the_light_is_half_the_grid_to_the_bit)
     stage_finish(&stage);
 }
 
-// All texels of a face in one cell, with the most steps: half floats end at 65504.
-TEST_GPU(lpv_no_light_is_too_strong_or_too_weak_for_half_floats)
+// All texels of a face in one cell, maximum number of steps: half floats end at 65504.
+TEST_GPU(lpv_half_floats_represent_any_flux)
 {
     static const char *const gis[] = { "lpv:dim=8,steps=128,precision=half,focus=0",
                                        "lpv:dim=8,steps=128,precision=half,focus=1",
@@ -382,7 +383,7 @@ TEST_GPU(lpv_two_lights_are_the_sum_even_ten_thousand_times_apart)
     for (size_t i = 0; i < count; i++)
         CHECK_NEAR((double)both[i], (double)first[i] + (double)second[i],
                    1e-6 * (fabs((double)second[i]) + fabs((double)first[i])) + 1e-2);
-    // Cells that only the faint light reaches hold it beside a light 10⁴ times as strong.
+    // The faint light is accurate in cells that the strong light does not reach.
     size_t seen = 0;
     for (size_t i = 0; i < count; i++)
         if (second[i] == 0.0f && fabsf(first[i]) > 1.0f) {
