@@ -1,5 +1,5 @@
-/// Everything: real-time global illumination on any Vulkan 1.3 device. See examples/minimal.c for a
-/// first program.
+/// Real-time global illumination on any Vulkan 1.3 device. This header includes all others;
+/// examples/minimal.c is a first program.
 #ifndef AFTERGLOW_H
 #define AFTERGLOW_H
 

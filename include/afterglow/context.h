@@ -1,5 +1,5 @@
-/// A context: the log and the memory that the program lends to the library. Everything hangs from
-/// one; two can live side by side.
+/// Contexts. A context holds the log callback and the allocator of a program. Every other object
+/// belongs to one context; several contexts are independent.
 #ifndef AFTERGLOW_CONTEXT_H
 #define AFTERGLOW_CONTEXT_H
 
@@ -12,21 +12,22 @@ struct ag_context;
 enum ag_log_level { AG_LOG_ERROR, AG_LOG_WARNING, AG_LOG_INFO, AG_LOG_DEBUG };
 
 struct ag_context_desc {
-    /// Called with one sentence without a newline, on the thread of the call. NULL: silent.
+    /// Gets one sentence without a newline, on the calling thread. NULL: no log.
     void (*log)(void *user, enum ag_log_level level, const char *message);
-    /// realloc-like; 0 bytes frees and returns NULL. NULL: the C library's.
+    /// Like realloc; 0 bytes frees and returns NULL. NULL: the C library's.
     void *(*reallocate)(void *user, void *old, size_t bytes);
-    void *user;
-    enum ag_log_level log_up_to; ///< default AG_LOG_WARNING
+    void *user;                  ///< passed to both callbacks
+    enum ag_log_level log_up_to; ///< least important level to log; default AG_LOG_WARNING
     bool use_environment; ///< default true: read AFTERGLOW_SHADER_DIR and AFTERGLOW_VALIDATION
 };
 
 AG_API void ag_context_desc_default(struct ag_context_desc *desc);
-/// desc may be NULL for the defaults. *out is NULL on failure.
+/// desc NULL: the defaults. *out is NULL on failure.
 AG_API enum ag_result ag_context_create(const struct ag_context_desc *desc,
                                         struct ag_context **out);
+/// Destroy all objects of the context first.
 AG_API void ag_context_destroy(struct ag_context *context);
-/// The newest error's sentence, "" if there was none. Valid until the next call on the context.
+/// Sentence of the last error, "" if there was none. Valid until the next call with the context.
 AG_API const char *ag_context_last_error(const struct ag_context *context);
 
 AG_END

@@ -1,9 +1,12 @@
-/// Results, versions and the rules that hold for every call.
+/// Results, versions and rules for all functions.
 ///
-/// Ownership: an object is destroyed by the function that carries its name, before the object it
-/// was made from; every destroy function accepts NULL. Descriptions are structs that a function
-/// ag_…_desc_default() fills; they need only live until the call returns. Strings are UTF-8 and
-/// copied. Threads: one thread at a time per context.
+/// Ownership: ag_X_destroy destroys what ag_X_create or another function returned in `out`, before
+/// the object it was created from; all destroy functions accept NULL.
+/// Descriptions: ag_X_desc_default fills a struct ag_X_desc with the defaults. It and all pointers
+/// in it are needed only during the call.
+/// Strings: UTF-8; arguments are copied.
+/// Threads: one thread at a time per context; different contexts are independent.
+/// Errors: on failure *out is NULL, and ag_context_last_error() has one sentence.
 #ifndef AFTERGLOW_TYPES_H
 #define AFTERGLOW_TYPES_H
 
@@ -31,21 +34,21 @@
 
 AG_BEGIN
 
-/// Outcome of a call. Details are one sentence in the context's log and in ag_context_last_error().
+/// Result of a call.
 enum ag_result {
     AG_OK = 0,
     AG_ERROR_ARGUMENT,    ///< a value is out of range, unknown or NULL
     AG_ERROR_FILE,        ///< a file cannot be opened, read or written
     AG_ERROR_FORMAT,      ///< a file's content is wrong
-    AG_ERROR_UNSUPPORTED, ///< right, but this build or device cannot do it
-    AG_ERROR_MEMORY,      ///< out of memory, or more than is allowed
-    AG_ERROR_DEVICE,      ///< no usable GPU, or it was lost
-    AG_ERROR_CANCELLED,   ///< a callback asked to stop
+    AG_ERROR_UNSUPPORTED, ///< valid, but not supported by this build or device
+    AG_ERROR_MEMORY,      ///< out of memory, or over a limit
+    AG_ERROR_DEVICE,      ///< no usable GPU, or the device was lost
+    AG_ERROR_CANCELLED,   ///< a callback returned false
 };
 
-/// A few words for a result; never NULL.
+/// A short static description; never NULL.
 AG_API const char *ag_result_string(enum ag_result result);
-/// Version of the library that runs, as major·10000 + minor·100 + patch.
+/// Version of the linked library: major·10000 + minor·100 + patch.
 AG_API int ag_version(void);
 
 AG_END

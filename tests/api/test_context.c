@@ -82,7 +82,7 @@ TEST(two_contexts_do_not_hear_each_other)
 
 // ---- memory
 
-static struct ag_context *purse_context(struct counting_allocator *allocator)
+static struct ag_context *allocator_context(struct counting_allocator *allocator)
 {
     struct ag_context_desc desc;
     struct ag_context *context = NULL;
@@ -149,7 +149,7 @@ static void check_every_refusal(const char *scene_name)
     struct counting_allocator allocator = { 0 };
     char folder[512];
     snprintf(folder, sizeof folder, "%s", test_path("memory"));
-    struct ag_context *context = purse_context(&allocator);
+    struct ag_context *context = allocator_context(&allocator);
     assert_non_null(context);
     assert_int_equal(use_everything(context, scene_name, folder), AG_OK);
     ag_context_destroy(context);
@@ -160,7 +160,7 @@ static void check_every_refusal(const char *scene_name)
     for (int all = 0; all < 2; all++)
         for (long k = 1; k <= calls; k++) {
             allocator = (struct counting_allocator){ .refuse_at = k, .refuse_all = all };
-            context = purse_context(&allocator);
+            context = allocator_context(&allocator);
             enum ag_result result =
                 context ? use_everything(context, scene_name, folder) : AG_ERROR_MEMORY;
             ag_context_destroy(context);
@@ -189,6 +189,6 @@ TEST(every_refused_allocation_of_a_skin_or_a_texture_is_a_memory_error_and_leaks
 TEST(the_programs_allocator_is_the_only_one)
 {
     struct counting_allocator allocator = { .refuse_at = 1, .refuse_all = true };
-    assert_null(purse_context(&allocator));
+    assert_null(allocator_context(&allocator));
     assert_true(allocator.asked > 0);
 }

@@ -151,7 +151,7 @@ TEST(wrong_renderers_are_refused)
     assert_int_equal(ag_renderer_create(s.device, stranger, NULL, &renderer), AG_ERROR_ARGUMENT);
     ag_scene_destroy(stranger);
     ag_context_destroy(other);
-    // The scene is free again after each refusal but for the stage's own renderer.
+    // The scene is free again after each refusal but for the fixture's renderer.
     ag_renderer_destroy(s.renderer);
     s.renderer = NULL;
     struct ag_material_desc material;
