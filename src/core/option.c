@@ -1,4 +1,4 @@
-// Options by table: defaults, text in and out, JSON, and what a change asks for.
+// Option tables: defaults, parsing, printing, JSON, and the effect of changes.
 #include "core/option.h"
 
 #include <errno.h>
@@ -10,8 +10,7 @@
 
 enum { VALUE_SIZE = 64, LIST_SIZE = 512, NAME_MAX_LENGTH = 63, MAX_KNOWN = 128 };
 
-// Numbers are written with a dot, whatever language the program speaks. The locale of this thread
-// only.
+// Switches this thread to the C locale, so that numbers have a decimal point.
 struct c_locale {
     locale_t c, before;
 };
@@ -122,7 +121,7 @@ static int32_t choice_index(const char *choices, const char *name)
 
 // ---- printing
 
-// The shortest decimal that reads back as the same float: nine digits always do.
+// The shortest decimal that parses to the same float; nine digits always suffice.
 static void print_float(float value, char *out, size_t out_size)
 {
     for (int digits = 1; digits <= 9; digits++) {
@@ -244,7 +243,7 @@ static bool parse_int(const struct parse *parse, const struct option_row *row, c
     return true;
 }
 
-// The range is compared in single precision: 0.1 is in 0…0.1 although 0.1f > 0.1.
+// The range is compared in single precision: 0.1 lies within 0…0.1 although 0.1f > 0.1.
 static bool parse_float(const struct parse *parse, const struct option_row *row, const char *text)
 {
     char *end;
@@ -399,9 +398,8 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-// Edit distance with insertion, deletion, substitution and exchange of neighbours (optimal string
-// alignment, after Damerau 1964), of at most NAME_MAX_LENGTH characters each, letters of either
-// case being equal.
+// Edit distance with insertion, deletion, substitution and transposition (optimal string alignment,
+// Damerau 1964), case-insensitive. Both have at most NAME_MAX_LENGTH characters.
 static size_t edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
 {
     size_t rows[3][NAME_MAX_LENGTH + 1];
@@ -412,8 +410,8 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
         for (size_t j = 1; j <= b_length; j++) {
             char ca = lower(a[i - 1]), cb = lower(b[j - 1]);
             now[j] = least(last[j - 1] + (ca != cb), 1 + least(last[j], now[j - 1]));
-            bool exchanged = i > 1 && j > 1 && ca == lower(b[j - 2]) && cb == lower(a[i - 2]);
-            if (exchanged) now[j] = least(now[j], before[j - 2] + 1);
+            bool transposed = i > 1 && j > 1 && ca == lower(b[j - 2]) && cb == lower(a[i - 2]);
+            if (transposed) now[j] = least(now[j], before[j - 2] + 1);
         }
         size_t *recycled = before;
         before = last;
@@ -428,12 +426,12 @@ const char *nearest_name(const char *name, const char *const *known, size_t coun
     size_t length = strlen(name);
     if (length > NAME_MAX_LENGTH) return NULL;
     const char *nearest = NULL;
-    size_t nearest_distance = 2 + length / 4; // one slip, and one more for each four letters
+    size_t nearest_distance = 2 + length / 4; // one typing error, plus one per four letters
     for (size_t i = 0; i < count; i++) {
         size_t known_length = strlen(known[i]);
         if (known_length > NAME_MAX_LENGTH) continue;
         size_t distance = edit_distance(name, length, known[i], known_length);
-        // Two names that share nothing are not near, however short.
+        // Names without a common letter are never near.
         if (distance >= nearest_distance || distance >= known_length) continue;
         nearest = known[i];
         nearest_distance = distance;

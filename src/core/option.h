@@ -30,7 +30,7 @@ typedef int32_t option_choice;
 
 enum option_type { OPTION_TYPE_int32, OPTION_TYPE_float32, OPTION_TYPE_bool8, OPTION_TYPE_choice };
 
-// What a change of the option asks of a running technique, mildest first.
+// What a running technique must do when the option changes, in ascending order.
 enum option_effect { LIVE, INVALIDATE, RESIZE, RECREATE, REBAKE };
 
 struct option_row {
@@ -83,11 +83,11 @@ const struct option_row *option_find(const struct option_table *table, const cha
 // one warning.
 bool option_parse(struct host *host, const struct option_table *table, const char *owner,
                   const char *text, void *options);
-// The value as text, as option_parse would read it.
+// The value as text that option_parse reads.
 void option_print(const struct option_row *row, const void *options, char *out, size_t out_size);
 // {"name": value, …}; a new reference, NULL when out of memory. Choices are strings.
 json_t *option_json(const struct option_table *table, const void *options);
-// The strongest effect among the options that differ; -1 when all are equal.
+// The strongest effect of the options that differ; -1: all are equal.
 int option_difference(const struct option_table *table, const void *a, const void *b);
 // Copies the options that may change while a technique runs: those of effect LIVE and INVALIDATE.
 void option_copy_live(const struct option_table *table, const void *from, void *into);

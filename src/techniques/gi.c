@@ -1,4 +1,4 @@
-// The life of a sum of techniques: create, frames, resize, debug views, destroy.
+// A GI stack: creation, frames, resizing, debug views, destruction.
 #include "techniques/gi.h"
 
 #include "techniques/common/probe_view.h"
@@ -16,10 +16,10 @@ struct gi {
     struct gi_spec spec;
     uint32_t width, height;
     void *state[GI_MAX_TERMS];
-    int debug_term;         // whose view is shown
+    int debug_term;         // the technique of the debug view
     const char *debug_name; // NULL: none
     gpu_image debug_image;
-    struct probe_view probe_view; // made when it is first shown
+    struct probe_view probe_view; // created with its first use
 };
 
 // Around the functions of a technique: what they create and record is named "technique.thing".
@@ -163,7 +163,7 @@ bool gi_probes(const struct gi *gi, struct probe_volume *out)
     return fail_probes(gi);
 }
 
-static bool is_of_probes(const struct technique *technique, const char *view)
+static bool shows_probes(const struct technique *technique, const char *view)
 {
     return (technique->capabilities & PUBLISHES_PROBES) && strcmp(view, PROBES_VIEW) == 0;
 }
@@ -173,7 +173,7 @@ static void record_debug_view(struct gi *gi, struct gpu_cmd *cmd, const struct f
     struct probe_volume probes;
     const int term = gi->debug_term;
     const struct technique *technique = gi->spec.technique[term];
-    if (!is_of_probes(technique, gi->debug_name)) {
+    if (!shows_probes(technique, gi->debug_name)) {
         enter(gi, term);
         technique->debug_view(gi->state[term], cmd, view, gi->debug_name, gi->debug_image);
         leave(gi);
@@ -240,11 +240,11 @@ static bool fail_debug_view(const struct gi *gi, const char *name)
                      used ? "there are " : "there is none", list);
 }
 
-// What the view draws with, and draws into.
+// Creates the images and pipelines of the view.
 static bool make_debug_view(struct gi *gi, const char *view, int term)
 {
     struct probe_volume probes;
-    if (is_of_probes(gi->spec.technique[term], view)) {
+    if (shows_probes(gi->spec.technique[term], view)) {
         if (!probes_of(gi, term, &probes)) return fail_probes(gi);
         if (!gi->probe_view.pipeline.id && !probe_view_create(&gi->probe_view, gi->gpu))
             return false;

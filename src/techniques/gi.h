@@ -1,14 +1,13 @@
-// A running sum of techniques from its spelling: "lpv:steps=8,dim=32+vo", "lpv:quality=low". It is
-// the frame's indirect hook.
+// A GI stack: the techniques of a GI spec such as "lpv:steps=8,dim=32+vo" or "lpv:quality=low". It
+// is the frame's indirect hook.
 #pragma once
 
 #include "techniques/technique.h"
 
 #define GI_MAX_TERMS 3
 
-// A parsed and checked spec: at most one technique of each role, in the order source, delta,
-// visibility, whatever the order in which they were written. There is always a source: "vo" is
-// "none+vo".
+// A parsed spec: at most one technique of each role, sorted as source, delta, visibility. There is
+// always a source: "vo" is "none+vo".
 struct gi_spec {
     struct host *host;
     int count;
@@ -18,27 +17,27 @@ struct gi_spec {
 // "" is "none". Errors name the unknown technique or option and the nearest known one.
 bool gi_spec_parse(struct gi_spec *spec, struct host *host, const char *text);
 void gi_spec_finish(struct gi_spec *spec); // accepts zero
-// The spec with all options written out, owned by the caller.
+// The spec with all options, owned by the caller.
 char *gi_spec_print(const struct gi_spec *spec);
 bool gi_spec_gathers_emission(const struct gi_spec *spec);
 
 struct gi;
-// Checks, creates (and later bakes or loads) each technique. The spec is copied.
+// Checks and creates each technique. The spec is copied.
 struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
                      const struct scene_pose *pose, uint32_t width, uint32_t height);
 void gi_destroy(struct gi *gi);
 bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
 void gi_invalidate(struct gi *gi, uint32_t changes);
-// Takes over another spec's options while running. false, and nothing changed: it names other
+// Applies another spec's options to the running stack. false, and nothing changed: it names other
 // techniques, or changes options that need gi_create (their effect is stronger than INVALIDATE).
 bool gi_set_options(struct gi *gi, const struct gi_spec *spec);
 struct frame_indirect gi_hook(struct gi *gi); // refers to gi
 // The debug view shown instead of colour from the next frame on; NULL: none. false: no technique
-// has it (names those known).
+// has it; the message names the known ones.
 bool gi_set_debug_view(struct gi *gi, const char *name);
-// The image it draws into, none where no view is set.
+// The image of the debug view; none if no view is set.
 gpu_image gi_debug_image(const struct gi *gi);
-// The probe volume of the sum, of the newest frame; false: no term publishes one (says how it
-// would).
+// The stack's probe volume of the newest frame; false: no technique publishes one; the message
+// names the option that does.
 bool gi_probes(const struct gi *gi, struct probe_volume *out);
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height);

@@ -1,4 +1,4 @@
-// Options of a technique as a term of a sum spells them: a preset, and what is said beside it.
+// Options of a technique in a GI spec: a preset and single options.
 #include "techniques/gi_preset.h"
 
 #include <stdio.h>
@@ -52,7 +52,7 @@ static bool is_misspelt(const struct technique *technique, const char *key)
            !option_find(&technique->options, key);
 }
 
-// Takes "quality=NAME" where an item is one. Others are left as they are, for option_parse.
+// Applies an item "quality=NAME" and leaves others unchanged for option_parse.
 static bool read_item(struct host *host, const struct technique *technique, char *item, bool *taken,
                       void *values)
 {
@@ -67,8 +67,7 @@ static bool read_item(struct host *host, const struct technique *technique, char
     return true;
 }
 
-// Sets what presets say, the last one last, and leaves in `rest`, longer than the text, the other
-// items.
+// Applies the presets in order and copies the other items to `rest`, which is longer than the text.
 static bool read_presets(struct host *host, const struct technique *technique, char *text,
                          char *rest, void *values)
 {
@@ -80,7 +79,7 @@ static bool read_presets(struct host *host, const struct technique *technique, c
         if (!read_item(host, technique, item, &taken, values)) return false;
         if (taken) continue;
         const size_t length = strlen(item);
-        if (!first || length == 0) rest[used++] = ','; // an item that is missing stays an error
+        if (!first || length == 0) rest[used++] = ','; // an empty item stays an error
         memcpy(rest + used, item, length);
         used += length;
         first = false;

@@ -1,4 +1,4 @@
-// Reading and writing "source+delta+visibility".
+// Parsing and printing "source+delta+visibility".
 #include "techniques/gi.h"
 
 #include "techniques/gi_preset.h"
@@ -17,7 +17,7 @@ static const char *role_name(enum technique_role role)
     return names[role];
 }
 
-// A '+' between terms, not the one in a number like 1e+3.
+// A '+' between terms, not in a number such as 1e+3.
 static bool is_separator(const char *text, size_t i)
 {
     if (text[i] != '+') return false;
@@ -53,7 +53,7 @@ static bool fail_unknown(struct host *host, const char *name, const struct techn
     return host_fail(host, FAIL_ARGUMENT, "unknown technique %s: known are %s", name, list);
 }
 
-// Puts the technique at its role's place. `options` is owned by the spec from here on.
+// Inserts the technique in the order of roles. The spec takes ownership of `options`.
 static void insert_term(struct gi_spec *spec, const struct technique *technique, void *options)
 {
     int at = spec->count++;
@@ -71,8 +71,9 @@ static bool add_technique(struct gi_spec *spec, const struct technique *techniqu
     struct host *host = spec->host;
     for (int i = 0; i < spec->count; i++)
         if (spec->technique[i]->role == technique->role)
-            return host_fail(host, FAIL_ARGUMENT, "cannot add %s to %s: a sum has at most one %s",
-                             technique->name, spec->technique[i]->name, role_name(technique->role));
+            return host_fail(host, FAIL_ARGUMENT,
+                             "cannot add %s to %s: a GI spec has at most one %s", technique->name,
+                             spec->technique[i]->name, role_name(technique->role));
     void *values = host_alloc(host, 1, technique->options.size);
     if (!values) return false;
     if (!gi_options_read(host, technique, options, values)) {
@@ -83,7 +84,7 @@ static bool add_technique(struct gi_spec *spec, const struct technique *techniqu
     return true;
 }
 
-// One "name" or "name:options", cut out of the text and changed.
+// One "name" or "name:options"; modifies the text.
 static bool parse_term(struct gi_spec *spec, char *term, const struct technique *const *known)
 {
     char *colon = strchr(term, ':');
@@ -91,7 +92,7 @@ static bool parse_term(struct gi_spec *spec, char *term, const struct technique 
     if (!term[0])
         return host_fail(
             spec->host, FAIL_ARGUMENT,
-            "cannot read the sum of techniques: a name is missing (source+delta+visibility)");
+            "cannot read the GI spec: a technique's name is missing (source+delta+visibility)");
     for (size_t i = 0; known[i]; i++)
         if (strcmp(known[i]->name, term) == 0)
             return add_technique(spec, known[i], colon ? colon + 1 : "");
@@ -119,14 +120,12 @@ bool gi_spec_parse_among(struct gi_spec *spec, struct host *host, const char *te
     *spec = (struct gi_spec){ .host = host };
     if (strlen(text) > GI_MAX_TEXT) {
         return host_fail(host, FAIL_ARGUMENT,
-                         "cannot read the sum of techniques: it is longer than %d characters",
-                         GI_MAX_TEXT);
+                         "cannot read the GI spec: it is longer than %d characters", GI_MAX_TEXT);
     }
     if (!parse_terms(spec, text, known)) goto fail;
     if (spec->count > 0 && spec->technique[0]->role == ROLE_SOURCE) return true;
     if (spec->count > 0 && spec->technique[0]->role == ROLE_DELTA) {
-        host_fail(host, FAIL_ARGUMENT,
-                  "cannot use %s alone: it changes what a source gives, and there is none",
+        host_fail(host, FAIL_ARGUMENT, "cannot use %s alone: a delta needs a source",
                   spec->technique[0]->name);
         goto fail;
     }

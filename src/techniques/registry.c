@@ -1,4 +1,4 @@
-// The explicit array of all techniques, and the rules that each entry keeps.
+// The array of all techniques, and the rules for each entry.
 #include "techniques/registry.h"
 
 #include "techniques/ambient/ambient.h"

@@ -1,6 +1,6 @@
-// The interface of a technique: one const struct, data first, functions second, in the order of
-// life. A frame is lit by a sum written as "source+delta+visibility", for example "lpv" or
-// "mrt+dnrt+vo".
+// The interface of a technique: one const struct, data first, then functions in the order of their
+// calls. A frame is lit by a GI stack, whose spec is written as "source+delta+visibility", for
+// example "lpv" or "mrt+dnrt+vo".
 #pragma once
 
 #include "core/option.h"
@@ -16,7 +16,7 @@ enum technique_capability {
     NEEDS_BAKE = 4,
     MAKES_SPECULAR = 8,
     PUBLISHES_PROBES = 16,
-    GATHERS_EMISSION = 32, // what glows lights others
+    GATHERS_EMISSION = 32, // emissive surfaces light others
 };
 
 // What changed, for `invalidate`.
@@ -32,19 +32,16 @@ struct technique_debug_view {
     const char *name, *help;
     const char *old_name; // of the last release, still accepted with a warning; NULL: none
 };
-// What `quality=NAME` sets before the options that are given beside it, written as they are:
-// "steps=4,dim=16". "": the defaults.
+// Options that `quality=NAME` sets, as "steps=4,dim=16", before other options of the spec apply.
+// "": the defaults.
 struct technique_preset {
     const char *name, *options;
 };
-// A view of this name of a technique that publishes probes is drawn from them by gi.c; debug_view
-// is not called.
-#define PROBES_VIEW "probes"
-#define PROBES_VIEW_HELP                                                                           \
-    "white balls where probes stand, before surfaces lit by the probes; with probes=true"
+// gi.c draws the view of this name from the technique's probes; debug_view is not called.
+#define PROBES_VIEW      "probes"
+#define PROBES_VIEW_HELP "white spheres at the probes and surfaces lit by them; needs probes=true"
 
-// Irradiance at the points of a grid: an image of the format in frame/probes.glsl and its place.
-// Each frame's record fills it.
+// Irradiance at the points of a grid, in the format of frame/probes.glsl. Each record fills it.
 struct probe_volume {
     gpu_image image; // RGBA16F
     struct frame_probes place;
@@ -72,22 +69,21 @@ struct technique {
     const char *name;   // stable, [a-z0-9]+
     const char *title;  // a few words
     const char *paper;  // one-line citation
-    const char *folder; // that it shares with another technique; NULL: that of its name
+    const char *folder; // shared with another technique; NULL: the technique's name
     enum technique_role role;
     uint32_t capabilities; // technique_capability bits
     uint32_t needs;        // frame_need bits
     int bake_version;      // 0: no bake
     struct option_table options;
-    const struct technique_preset
-        *presets; // from cheap to dear; ends with a NULL name; may be NULL
+    const struct technique_preset *presets; // by ascending cost; ends with a NULL name; may be NULL
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL
     size_t state_size; // of the private state, allocated zeroed by the host
 
     // All but create, record and destroy may be NULL. `state` is the private state. Objects and
     // scopes are named without the technique's name: gi.c has it pushed as their owner.
-    // frame_need bits that these options ask for beside `needs`.
+    // frame_need bits of these options, in addition to `needs`.
     uint32_t (*more_needs)(const void *options);
-    // Can it run here? If not, a sentence why goes to host_fail.
+    // false: it cannot run on this device and scene; host_fail has the reason.
     bool (*check)(const struct technique_create *how);
     bool (*bake)(const struct technique_bake *how); // CPU only, deterministic for a seed
     bool (*create)(void *state, const struct technique_create *how);
@@ -100,9 +96,10 @@ struct technique {
     void (*debug_view)(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
                        const char *name,
                        gpu_image out); // RGBA16F of the frame's size, scaled radiance
-    // With PUBLISHES_PROBES: what the newest record filled. false: its option `probes` is off.
+    // With PUBLISHES_PROBES: the volume that the newest record filled. false: the option `probes`
+    // is off.
     bool (*probes)(void *state, struct probe_volume *out);
     void (*destroy)(void *state); // accepts any half-built state
-    // Bytes of GPU memory for these options at this size, before anything is created.
+    // Bytes of GPU memory for these options at this size, without creating anything.
     uint64_t (*memory_estimate)(const void *options, uint32_t width, uint32_t height);
 };

@@ -1,4 +1,4 @@
-// Options from a table: defaults, text in and out, errors that help, and what a change asks for.
+// Option tables: defaults, parsing, printing, error messages, and the effect of changes.
 #include "framework/test.h"
 
 #include "core/option.h"
@@ -40,7 +40,7 @@ static bool parse(const char *text, struct options *options)
     return option_parse(test_host(), &table, "lpv", text, options);
 }
 
-// Parsing `text` fails with this sentence and leaves the options alone.
+// Parsing `text` fails with this message and leaves the options unchanged.
 static void check_refused(const char *text, const char *message)
 {
     struct options options = defaults(), before;
@@ -62,7 +62,7 @@ TEST(defaults_are_the_table)
     assert_int_equal(options.dim, -5);
 }
 
-TEST(text_sets_what_it_names_and_nothing_else)
+TEST(text_sets_the_named_options_alone)
 {
     struct options options = defaults();
     CHECK(parse("gain=2.5,quality=high", &options));
@@ -76,7 +76,7 @@ TEST(text_sets_what_it_names_and_nothing_else)
     CHECK(!options.blur);
 }
 
-TEST(ends_of_each_range_are_in_it)
+TEST(ranges_include_their_ends)
 {
     struct options options = defaults();
     // Rounded to single precision, 0.7 is below 0.7 and 4.4 above 4.4.
@@ -87,7 +87,7 @@ TEST(ends_of_each_range_are_in_it)
     assert_int_equal(options.dim, INT32_MAX);
 }
 
-TEST(truth_has_its_usual_names)
+TEST(booleans_have_their_usual_names)
 {
     static const char *const yes[] = { "blur=true", "blur=1", "blur=on", "blur=yes" };
     static const char *const no[] = { "blur=false", "blur=0", "blur=off", "blur=no" };
@@ -118,7 +118,7 @@ TEST(value_out_of_range_names_the_range)
                   "2147483647 cells");
 }
 
-TEST(value_of_the_wrong_kind_says_which_kind)
+TEST(value_of_the_wrong_type_names_the_type)
 {
     check_refused("steps=2.5", "cannot set lpv:steps to \"2.5\": it must be a whole number");
     check_refused("steps=0x10", "cannot set lpv:steps to \"0x10\": it must be a whole number");
@@ -132,7 +132,7 @@ TEST(value_of_the_wrong_kind_says_which_kind)
                   "cannot set lpv:quality to \"1\": it must be one of low|middle|high");
 }
 
-TEST(incomplete_text_is_refused_whole)
+TEST(incomplete_text_is_refused)
 {
     check_refused("steps", "cannot set lpv:steps: no value is given");
     check_refused("steps=", "cannot set lpv:steps: no value is given");
@@ -144,7 +144,7 @@ TEST(incomplete_text_is_refused_whole)
     check_refused("steps=3,,gain=1", nameless);
 }
 
-TEST(error_after_good_values_leaves_all_unchanged)
+TEST(error_after_valid_values_changes_nothing)
 {
     check_refused("steps=9,gain=3,blur=0,quality=low,dim=7,steps=99",
                   "cannot set lpv:steps to \"99\": it must be from 1 to 32 steps");
@@ -189,7 +189,7 @@ TEST(old_name_is_refused_like_the_new_one)
                   "unknown option lpv:facto: known are steps, gain, blur, quality, dim, bias");
 }
 
-TEST(very_long_text_fails_with_a_sentence)
+TEST(very_long_text_fails_with_a_message)
 {
     enum { LONG = 100000 };
     char *text = malloc(LONG + 1);
@@ -203,7 +203,7 @@ TEST(very_long_text_fails_with_a_sentence)
     free(text);
 }
 
-TEST(cut_text_never_changes_the_options_by_halves)
+TEST(text_cut_at_any_length_sets_all_or_nothing)
 {
     const char *whole = "steps=9,gain=3.25,blur=no,quality=high,dim=-12";
     for (size_t length = 0; length <= strlen(whole); length++) {
@@ -272,7 +272,7 @@ TEST(printed_numbers_are_the_shortest)
     CHECK_STRING(text, "mid");
 }
 
-TEST(numbers_have_a_dot_whatever_the_locale)
+TEST(numbers_have_a_dot_in_every_locale)
 {
     static const char *const names[] = { "de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE" };
     bool found = false;
@@ -291,7 +291,7 @@ TEST(numbers_have_a_dot_whatever_the_locale)
     CHECK_STRING(text, "2.5");
 }
 
-TEST(json_has_each_value_in_its_own_type)
+TEST(json_values_have_the_options_type)
 {
     struct options options = defaults();
     json_t *json = option_json(&table, &options);
@@ -304,7 +304,7 @@ TEST(json_has_each_value_in_its_own_type)
     json_decref(json);
 }
 
-TEST(difference_is_the_strongest_effect_of_what_changed)
+TEST(difference_is_the_strongest_effect)
 {
     struct options a = defaults(), b = a;
     assert_int_equal(option_difference(&table, &a, &b), -1);
@@ -335,7 +335,7 @@ TEST(copy_of_live_options_leaves_the_others)
     }
 }
 
-TEST(nearest_name_forgives_slips_and_no_more)
+TEST(nearest_name_allows_small_typing_errors_only)
 {
     static const char *const known[] = { "lpv", "vct", "mrt", "iterations", "interleave" };
     struct {

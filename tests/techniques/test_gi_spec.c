@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Techniques of the other roles, which only parsing sees.
+// Fake techniques of all roles for the parser; never created.
 static bool fake_create(void *state, const struct technique_create *how)
 {
     return state && how;
@@ -39,8 +39,8 @@ static const struct technique_preset fake_presets[] = { { "low", "bias=0.5" },
         .record = fake_record, .destroy = fake_destroy,                                            \
         .options = OPTION_TABLE(struct fake_options, fake_rows, NULL)                              \
     }
-static const struct technique still = FAKE("still", ROLE_SOURCE), glow = FAKE("glow", ROLE_SOURCE),
-                              change = FAKE("change", ROLE_DELTA),
+static const struct technique still = FAKE("still", ROLE_SOURCE),
+                              light = FAKE("light", ROLE_SOURCE), delta = FAKE("delta", ROLE_DELTA),
                               shade = FAKE("shade", ROLE_VISIBILITY);
 static const struct technique graded = {
     .name = "graded",
@@ -53,7 +53,7 @@ static const struct technique graded = {
     .options = OPTION_TABLE(struct fake_options, fake_rows, fake_aliases),
     .presets = fake_presets,
 };
-static const struct technique *const fakes[] = { &still, &glow, &change, &shade, &graded, NULL };
+static const struct technique *const fakes[] = { &still, &light, &delta, &shade, &graded, NULL };
 
 static void parses_as(const char *text, const char *printed)
 {
@@ -75,11 +75,11 @@ static void fails_with(const char *text, const char *words)
     assert_int_equal(spec.count, 0);
 }
 
-TEST(gi_spec_terms_may_stand_in_any_order)
+TEST(gi_spec_terms_may_have_any_order)
 {
-    parses_as("glow:bias=2+change+shade", "glow:bias=2+change:bias=1+shade:bias=1");
-    parses_as("shade+glow:bias=2+change", "glow:bias=2+change:bias=1+shade:bias=1");
-    parses_as("change+shade+glow:bias=2", "glow:bias=2+change:bias=1+shade:bias=1");
+    parses_as("light:bias=2+delta+shade", "light:bias=2+delta:bias=1+shade:bias=1");
+    parses_as("shade+light:bias=2+delta", "light:bias=2+delta:bias=1+shade:bias=1");
+    parses_as("delta+shade+light:bias=2", "light:bias=2+delta:bias=1+shade:bias=1");
 }
 
 TEST(gi_spec_without_a_source_has_the_first_one)
@@ -90,11 +90,11 @@ TEST(gi_spec_without_a_source_has_the_first_one)
 
 TEST(gi_spec_reads_exponents_with_a_plus)
 {
-    parses_as("glow:bias=1e+3+shade:bias=2.5E+2", "glow:bias=1e+03+shade:bias=2.5e+02");
-    parses_as("glow:bias=1e+03+shade:bias=2.5e+02", "glow:bias=1e+03+shade:bias=2.5e+02");
+    parses_as("light:bias=1e+3+shade:bias=2.5E+2", "light:bias=1e+03+shade:bias=2.5e+02");
+    parses_as("light:bias=1e+03+shade:bias=2.5e+02", "light:bias=1e+03+shade:bias=2.5e+02");
 }
 
-TEST(gi_spec_prints_what_it_reads)
+TEST(gi_spec_printed_parses_to_the_same)
 {
     struct gi_spec spec, again;
     CHECK(gi_spec_parse(&spec, test_host(), "lpv:steps=7,lobe=normal,focus=0.625"));
@@ -108,28 +108,28 @@ TEST(gi_spec_prints_what_it_reads)
     gi_spec_finish(&spec);
 }
 
-TEST(gi_spec_errors_name_what_is_wrong_and_what_was_meant)
+TEST(gi_spec_errors_name_the_mistake_and_the_nearest_name)
 {
-    fails_with("glov", "unknown technique glov: did you mean glow?");
-    fails_with("xyzzyxyzzy", "known are still, glow, change, shade, graded");
-    fails_with("glow:bais=1", "bias");
-    fails_with("glow:bias=x", "glow:bias");
-    fails_with("glow+still", "at most one source");
-    fails_with("shade+glow+shade", "at most one visibility");
-    fails_with("glow+", "a name is missing");
-    fails_with("+glow", "a name is missing");
-    fails_with("glow++shade", "a name is missing");
-    fails_with(":bias=1", "a name is missing");
-    fails_with("change", "changes what a source gives");
-    fails_with("change+shade", "changes what a source gives");
-    fails_with("glow +shade", "unknown technique");
+    fails_with("lighr", "unknown technique lighr: did you mean light?");
+    fails_with("xyzzyxyzzy", "known are still, light, delta, shade, graded");
+    fails_with("light:bais=1", "bias");
+    fails_with("light:bias=x", "light:bias");
+    fails_with("light+still", "at most one source");
+    fails_with("shade+light+shade", "at most one visibility");
+    fails_with("light+", "a technique's name is missing");
+    fails_with("+light", "name is missing");
+    fails_with("light++shade", "name is missing");
+    fails_with(":bias=1", "name is missing");
+    fails_with("delta", "a delta needs a source");
+    fails_with("delta+shade", "a delta needs a source");
+    fails_with("light +shade", "unknown technique");
     char longest[GI_MAX_TEXT + 2];
     memset(longest, 'a', sizeof longest - 1);
     longest[sizeof longest - 1] = 0;
     fails_with(longest, "longer than");
 }
 
-TEST(gi_spec_presets_come_before_what_is_said_beside_them)
+TEST(gi_spec_presets_apply_before_other_options)
 {
     parses_as("graded", "graded:bias=1");
     parses_as("graded:quality=low", "graded:bias=0.5");
@@ -148,7 +148,7 @@ TEST(gi_spec_accepts_old_names_of_options)
     parses_as("graded:quality=low,offset=4+shade", "graded:bias=4+shade:bias=1");
 }
 
-TEST(gi_spec_errors_of_presets_name_what_there_is)
+TEST(gi_spec_errors_of_presets_name_the_known_ones)
 {
     fails_with("graded:quality=hihg", "did you mean high? (one of low|high)");
     fails_with("graded:quality=ultimate",
@@ -159,11 +159,11 @@ TEST(gi_spec_errors_of_presets_name_what_there_is)
     fails_with("graded:quality=low,,bias=1", "a name is missing");
     fails_with("graded:quality=low,", "a name is missing");
     fails_with("graded:quality=low,bias=x", "graded:bias");
-    fails_with("glow:quality=low", "glow has no presets");
+    fails_with("light:quality=low", "light has no presets");
 }
 
-// From cheap to dear, of known names; the middle one is what there is without.
-TEST(presets_of_techniques_can_be_read)
+// By ascending cost, with known names; the middle one is the default.
+TEST(presets_of_techniques_parse)
 {
     static const char *const names[] = { "low", "medium", "high" };
     for (size_t i = 0; techniques[i]; i++) {
@@ -181,7 +181,7 @@ TEST(presets_of_techniques_can_be_read)
     }
 }
 
-TEST(gi_spec_cut_anywhere_is_read_or_refused)
+TEST(gi_spec_cut_at_any_length_parses_or_fails)
 {
     const char *text = "lpv:dim=16,steps=3,lobe=normal,focus=0.5,offset=1,gain=2e+0";
     char part[128];
@@ -203,29 +203,29 @@ TEST(registry_finds_each_technique_by_its_name)
     CHECK(techniques[0] == technique_find("none"));
 }
 
-TEST(registry_refuses_a_technique_that_lacks_something)
+TEST(registry_refuses_incomplete_techniques)
 {
-    CHECK(technique_is_sound(&glow));
-    struct technique bad = glow;
-    bad.name = "Glow";
+    CHECK(technique_is_sound(&light));
+    struct technique bad = light;
+    bad.name = "Light";
     CHECK(!technique_is_sound(&bad));
-    bad = glow;
+    bad = light;
     bad.record = NULL;
     CHECK(!technique_is_sound(&bad));
-    bad = glow;
+    bad = light;
     bad.bake_version = 1;
     CHECK(!technique_is_sound(&bad));
     struct option_row named_quality = fake_rows[0];
     named_quality.name = "quality";
-    bad = glow;
+    bad = light;
     bad.options.rows = &named_quality;
     CHECK(!technique_is_sound(&bad));
     const struct technique_debug_view views[] = { { "a", "b", NULL }, { NULL, NULL, NULL } };
-    bad = glow;
+    bad = light;
     bad.debug_views = views;
     CHECK(!technique_is_sound(&bad));
     const struct option_alias of_nothing[] = { { "offset", "bais" }, { NULL, NULL } };
-    bad = glow;
+    bad = light;
     bad.options.aliases = of_nothing;
     CHECK(!technique_is_sound(&bad));
     const struct option_alias of_a_row[] = { { "bias", "bias" }, { NULL, NULL } };
