@@ -1,6 +1,6 @@
-// @atrium: a colonnaded court of two storeys, open to the sky, in the role that Sponza has
-// elsewhere: sunlight falls on the floor, one long wall and coloured cloth, and reaches the aisles
-// and the gallery only by bouncing. Every solid is closed and has thickness.
+// @atrium: a colonnaded two-storey courtyard, open to the sky, for the same tests as Sponza:
+// sunlight falls on the floor, one long wall and coloured cloth; aisles and gallery receive
+// indirect light only. All solids are closed and have thickness.
 #include "scene/builtin/atrium.h"
 #include "scene/builtin/textures.h"
 
@@ -51,8 +51,8 @@ static bool build_materials(struct scene *scene, int texels, int *materials)
     return materials[ATRIUM_BRASS] >= 0 && materials[ATRIUM_WATER] >= 0;
 }
 
-// The walls reach into floor and roof, and those into the walls, so that nothing only touches where
-// light could come through, and no two faces that are seen share a plane.
+// Walls, floor and roof overlap, so that no light leaks at their edges and no two visible faces are
+// coplanar.
 static bool build_shell(struct scene *scene, const int *materials)
 {
     struct shape_builder builder;
@@ -72,7 +72,7 @@ static bool build_shell(struct scene *scene, const int *materials)
     return shape_emit(&builder, "walls", materials[ATRIUM_WALL]) >= 0;
 }
 
-// Gallery floors, aisle roofs, and the mouldings along their edges over the court.
+// Gallery floors, aisle roofs, and the mouldings along their edges over the courtyard.
 static bool build_slabs(struct scene *scene, const int *materials)
 {
     struct shape_builder builder;
@@ -166,7 +166,7 @@ static bool build_arches(struct scene *scene, const int *materials)
     float from = ATRIUM_COLONNADE + 0.28f, to = ATRIUM_HALF_WIDTH + 0.2f;
     for (int side = -1; side <= 1; side += 2) {
         for (int k = 1; k < ATRIUM_BAYS; k++) {
-            // The arch's own x runs along the scene's z.
+            // The arch's local x is the scene's z.
             builder.scene_from_shape = glms_rotate_y(
                 glms_translate_make(vec3_of(atrium_column_x(k), 0, 0)), -GLM_PI_2f * (float)side);
             shape_arch(&builder, vec3_of(from, ATRIUM_ARCH_LOW, -0.2f),
@@ -230,8 +230,8 @@ static bool build_doors(struct scene *scene, const int *materials)
     return shape_emit(&builder, "doors", materials[ATRIUM_WOOD]) >= 0;
 }
 
-// The sun stands at azimuth 0 over +z and lights what faces it: with the defaults the floor's far
-// half and the whole colonnade at -z, and cloth hanging there.
+// At azimuth 0 the sun is towards +z. By default it lights the -z half of the floor, the colonnade
+// at -z and the cloth there.
 static bool build_light(struct scene *scene, const struct atrium_options *options)
 {
     scene->sky = vec3_of(1700, 2300, 3400);
@@ -257,7 +257,7 @@ static bool build_atrium(struct scene *scene, const void *options)
 
 const struct builtin_scene builtin_atrium = {
     .name = "atrium",
-    .title = "a colonnaded two-storey court with coloured drapes, sunlit from above",
+    .title = "a colonnaded two-storey courtyard with coloured drapes, sunlit from above",
     .options = OPTION_TABLE(struct atrium_options, rows, NULL),
     .build = build_atrium,
 };

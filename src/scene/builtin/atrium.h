@@ -1,11 +1,10 @@
-// @atrium's parts, in two files: the building (atrium.c) and what stands and hangs in it
-// (atrium_furniture.c).
+// Parts of @atrium: the building (atrium.c), its drapes and furniture (atrium_furniture.c).
 #pragma once
 
 #include "scene/builtin/parts.h"
 
-// Metres. The court is open to the sky; aisles run along both sides of it on two storeys. The long
-// axis is x.
+// Metres. The courtyard is open to the sky; aisles run along both its sides on two storeys. The
+// long axis is x.
 #define ATRIUM_HALF_LENGTH 12.0f // inner face of the end walls
 #define ATRIUM_COLONNADE   3.5f  // z of the columns' axes
 #define ATRIUM_HALF_WIDTH  7.0f  // inner face of the long walls

@@ -1,12 +1,12 @@
-// What hangs and stands in @atrium: drapes, banners, swags over the court, a fountain, urns, a
-// brass ball.
+// Drapes and furniture of @atrium: curtains, banners, swags over the courtyard, a fountain, urns, a
+// brass sphere.
 #include "scene/builtin/atrium.h"
 
 #include <math.h>
 
-// Cloth on a rod: it hangs in waves that deepen downwards.
+// Cloth on a rod, with folds that deepen downwards.
 struct drape {
-    vec3s corner; // its upper left, front towards +z
+    vec3s corner; // upper left; the front faces +z
     float width, length;
     float waves, depth, phase;
 };
@@ -15,7 +15,7 @@ static vec3s drape_at(const void *user, float s, float t)
 {
     const struct drape *drape = user;
     float angle = 2.0f * GLM_PIf * (drape->waves * s) + drape->phase;
-    // Folds drift sideways on their way down, and the seam rises where a fold comes forward.
+    // Folds drift sideways downwards; the hem rises where a fold comes forward.
     float depth = drape->depth * (0.35f + 0.65f * t);
     float z = depth * sinf(angle + 0.7f * t) + 0.25f * depth * sinf(1.7f * angle + 1.0f);
     float gather = 1.0f - 0.06f * sinf(GLM_PIf * t);
@@ -24,13 +24,13 @@ static vec3s drape_at(const void *user, float s, float t)
     return glms_vec3_add(drape->corner, vec3_of(x, y, z));
 }
 
-// Cloth that spans the court, held up at both ends and sagging between.
+// Cloth that spans the courtyard, fixed at both ends and sagging between.
 struct swag {
-    vec3s middle; // of the line between its ends
+    vec3s middle; // of the line between the ends
     float half_span, width, sag, phase;
 };
 
-// s runs across the court (along +z), t along +x, so that the front faces down.
+// s runs across the courtyard along +z, t along +x; the front faces down.
 static vec3s swag_at(const void *user, float s, float t)
 {
     const struct swag *swag = user;
@@ -50,7 +50,7 @@ static void hang(struct shape_builder *builder, const struct drape *drape, int c
     shape_cloth(builder, &sheet);
 }
 
-// Where the lower colonnade's bays are curtained, and in which colour. The side is that of z.
+// A curtain or banner: bay of the colonnade, side (sign of z), material.
 struct curtained_bay {
     int bay, side, material;
 };
@@ -59,7 +59,7 @@ static const struct curtained_bay CURTAINS[] = {
     { 1, -1, ATRIUM_RED }, { 3, -1, ATRIUM_GREEN }, { 5, -1, ATRIUM_BLUE }, { 6, -1, ATRIUM_RED },
     { 2, 1, ATRIUM_BLUE }, { 4, 1, ATRIUM_RED },    { 6, 1, ATRIUM_GREEN },
 };
-// Banners over the balustrade, towards the court.
+// Banners over the balustrade, on the side of the courtyard.
 static const struct curtained_bay BANNERS[] = {
     { 2, -1, ATRIUM_BLUE }, { 4, -1, ATRIUM_RED }, { 7, -1, ATRIUM_GREEN },
     { 1, 1, ATRIUM_GREEN }, { 3, 1, ATRIUM_BLUE }, { 5, 1, ATRIUM_RED },
@@ -123,8 +123,7 @@ static bool build_cloth(struct scene *scene, const char *name, int which, int ma
 // A rod along +x.
 static void rod(struct shape_builder *builder, vec3s from, float length)
 {
-    mat4s place = glms_rotate_z(glms_translate_make(from), -GLM_PI_2f);
-    builder->scene_from_shape = place;
+    builder->scene_from_shape = glms_rotate_z(glms_translate_make(from), -GLM_PI_2f);
     shape_cylinder(builder, vec3_of(0, 0, 0), 0.02f, length, 8);
     builder->scene_from_shape = glms_mat4_identity();
 }
@@ -180,8 +179,8 @@ static bool build_fountain(struct scene *scene, const int *materials)
 }
 
 enum { URNS = 6 };
-static const float URN_PLACES[URNS][2] = { { -7.5f, -2.3f }, { -4.0f, 2.3f }, { -1.5f, -2.3f },
-                                           { 4.5f, 2.3f },   { 6.0f, -2.3f }, { 9.0f, 2.3f } };
+static const float URN_POSITIONS[URNS][2] = { { -7.5f, -2.3f }, { -4.0f, 2.3f }, { -1.5f, -2.3f },
+                                              { 4.5f, 2.3f },   { 6.0f, -2.3f }, { 9.0f, 2.3f } };
 
 static bool build_urns(struct scene *scene, const int *materials)
 {
@@ -194,12 +193,12 @@ static bool build_urns(struct scene *scene, const int *materials)
     struct shape_builder builder;
     shape_begin(&builder, scene);
     for (int i = 0; i < URNS; i++) {
-        shape_lathe(&builder, vec3_of(URN_PLACES[i][0], 0.45f, URN_PLACES[i][1]), urn,
+        shape_lathe(&builder, vec3_of(URN_POSITIONS[i][0], 0.45f, URN_POSITIONS[i][1]), urn,
                     sizeof urn / sizeof *urn, 16);
     }
     if (shape_emit(&builder, "urns", materials[ATRIUM_TERRACOTTA]) < 0) return false;
     for (int i = 0; i < URNS; i++) {
-        float x = URN_PLACES[i][0], z = URN_PLACES[i][1];
+        float x = URN_POSITIONS[i][0], z = URN_POSITIONS[i][1];
         shape_box(&builder, vec3_of(x - 0.34f, -0.05f, z - 0.34f),
                   vec3_of(x + 0.34f, 0.08f, z + 0.34f));
         shape_box(&builder, vec3_of(x - 0.27f, 0.04f, z - 0.27f),

@@ -1,4 +1,4 @@
-// The registry of built-in scenes, and how a spec becomes a scene.
+// The registry of built-in scenes; parses a spec and builds its scene.
 #include "scene/builtin/parts.h"
 
 #include "core/hash.h"
@@ -38,8 +38,7 @@ static const struct builtin_scene *find_builtin(struct host *host, const char *s
     return NULL;
 }
 
-// Of the name, every option's value and what was built from them: any of them changing makes old
-// bakes stale.
+// Hash of name, option values, geometry, materials and images. Bakes of another hash are stale.
 static uint64_t content_hash(const struct scene *scene, const struct builtin_scene *builtin,
                              const void *options)
 {

@@ -14,5 +14,6 @@ struct builtin_scene {
 
 extern const struct builtin_scene *const builtin_scenes[]; // NULL-terminated
 
-// "@name" or "@name:key=value,…"; an unknown name is an error that lists the nearest.
+// `spec` is "@name" or "@name:key=value,…". An unknown name is an error that suggests the nearest
+// one.
 struct scene *builtin_load(struct host *host, const char *spec);

@@ -1,14 +1,14 @@
 // @cornell: the Cornell box by its published measurements (Cornell University Program of Computer
 // Graphics, "Cornell Box Data"; the scene of Goral et al. 1984, "Modeling the Interaction of Light
 // Between Diffuse Surfaces", as measured for Meyer et al. 1986), at one centimetre per unit of the
-// data, so 5.56 m wide.
+// data: 5.56 m wide.
 //
-// The data look along +z with +x to the left. Here the box is turned half around +y and its floor's
-// centre moved to the origin: the opening faces +z, the camera stands outside at z = 10.796 m and
-// looks along -z, red to the left.
+// In the data the camera faces +z with +x to the left. Here the box is rotated by 180 degrees
+// around +y and the floor's centre is the origin: the opening faces +z, the camera at z = 10.796 m
+// faces -z, the red wall is on the left.
 //
-// What differs: the ceiling has a hole where the light is, so that the two are not in the same
-// place; optionally the walls have a thickness.
+// Differs: the ceiling has a hole at the light, to avoid coplanar surfaces; walls can have a
+// thickness.
 #include "scene/builtin/parts.h"
 
 #include <math.h>
@@ -27,21 +27,21 @@ static const struct option_row rows[] = {
 
 enum cornell_light { CORNELL_QUAD, CORNELL_POINT };
 
-// The published spectra in linear Rec. 709, as most renderers' versions of the box have them.
+// The published spectra in linear Rec. 709, as in most renderers' versions of the box.
 static const vec3s WHITE = { { 0.725f, 0.71f, 0.68f } };
 static const vec3s RED = { { 0.63f, 0.065f, 0.05f } };
 static const vec3s GREEN = { { 0.14f, 0.45f, 0.091f } };
 
 // The light's published emission is given without a photometric scale (0, 8, 15.6, 18.4 at 400…700
-// nm). 1000 cd/m² per unit makes its luminance 15600 cd/m², a fluorescent tube's, and the floor
-// some 700 lux bright.
+// nm). 1000 cd/m² per unit gives a luminance of 15600 cd/m², that of a fluorescent tube, and about
+// 700 lux on the floor.
 static const vec3s LIGHT_RADIANCE = { { 18400.0f, 15600.0f, 8000.0f } };
 
 static const float HEIGHT = 548.8f, DEPTH = 559.2f;
-// The light: x from 213 to 343, z from 227 to 332.
+// Extent of the light in the data.
 static const float LIGHT_X[2] = { 213.0f, 343.0f }, LIGHT_Z[2] = { 227.0f, 332.0f };
 
-// A point of the data in the scene, metres.
+// From coordinates of the data to the scene, metres.
 static vec3s from_data(float x, float y, float z)
 {
     return vec3_of(0.01f * (278.0f - x), 0.01f * y, 0.01f * (0.5f * DEPTH - z));
@@ -52,9 +52,9 @@ static vec3s outwards(vec3s p, float thickness, vec3s direction)
     return glms_vec3_muladds(direction, thickness, p);
 }
 
-// The inner corners of the shell: index x + 2 y + 4 z, each 0 or 1 in the data's sense. The floor
-// is narrower than the ceiling, and narrowest at the back: the red wall leans and is twisted, as
-// published.
+// The inner corners of the shell: index x + 2 y + 4 z, each 0 or 1, along the axes of the data. The
+// floor is narrower than the ceiling, and narrowest at the back: the red wall leans and is twisted,
+// as published.
 static void shell_corners(vec3s corner[8])
 {
     corner[0] = from_data(0, 0, 0);
@@ -67,7 +67,7 @@ static void shell_corners(vec3s corner[8])
     corner[7] = from_data(556, HEIGHT, DEPTH);
 }
 
-// The same corners pushed out by the walls' thickness; the front ones stay in the plane of the
+// The corners moved outwards by the walls' thickness; the front ones stay in the plane of the
 // opening.
 static void outer_corners(const vec3s inner[8], float thickness, vec3s outer[8])
 {
@@ -77,8 +77,7 @@ static void outer_corners(const vec3s inner[8], float thickness, vec3s outer[8])
     }
 }
 
-// The four corners of the light's place, in the order of the ceiling's: counter-clockwise from
-// below.
+// The corners of the light, in the order of the ceiling's: counter-clockwise from below.
 static void light_corners(vec3s corner[4])
 {
     corner[0] = from_data(LIGHT_X[1], HEIGHT, LIGHT_Z[0]);
@@ -99,7 +98,7 @@ static void shell_face(struct shape_builder *builder, const vec3s corner[8], enu
     shape_quad(builder, corner[at[0]], corner[at[1]], corner[at[2]], corner[at[3]]);
 }
 
-// The ceiling around the light, without vertices on the edges that it shares with the walls.
+// The ceiling around the light, without T-vertices on the edges shared with the walls.
 static void ceiling(struct shape_builder *builder, const vec3s corner[8], bool hole)
 {
     vec3s light[4];
@@ -177,8 +176,8 @@ static bool build_shell(struct scene *scene, const struct cornell_options *optio
     return shape_emit(&builder, "tall block", white) >= 0;
 }
 
-// The quad shines π L A lumens per channel; a point of the same power has a quarter of L A as its
-// intensity.
+// The quad has the flux π L A per channel; a point light of the same flux has the intensity L A
+// / 4.
 static bool build_light(struct scene *scene, const struct cornell_options *options)
 {
     vec3s radiance = glms_vec3_scale(LIGHT_RADIANCE, options->power), corner[4];
@@ -200,7 +199,7 @@ static bool build_light(struct scene *scene, const struct cornell_options *optio
 
 static bool build_cornell(struct scene *scene, const void *options)
 {
-    // Published: at (278, 273, -800), focal length 35 mm before a sensor of 25 mm.
+    // Published: position (278, 273, -800), focal length 35 mm, sensor height 25 mm.
     float vertical_fov_rad = 2.0f * atanf(0.5f * 0.025f / 0.035f);
     return build_shell(scene, options) && build_light(scene, options) &&
            builtin_camera(scene, "main", from_data(278, 273, -800), from_data(278, 273, 0),
@@ -209,7 +208,7 @@ static bool build_cornell(struct scene *scene, const void *options)
 
 const struct builtin_scene builtin_cornell = {
     .name = "cornell",
-    .title = "the Cornell box, published measurements at 5.56 m",
+    .title = "the Cornell box by its published measurements, 5.56 m wide",
     .options = OPTION_TABLE(struct cornell_options, rows, NULL),
     .build = build_cornell,
 };

@@ -1,7 +1,7 @@
-// @corridor: two corridors that cross, and one bright ball where they do, in the role of the
+// @corridor: two crossing corridors with a bright sphere light at the crossing, similar to the
 // corridor scene of Giuffrida 2016, section 6.2. Each of the four arms ends in a niche around a
-// corner, which light reaches only by several bounces. The far walls are coloured, one colour for
-// each arm.
+// corner, which light reaches only after several bounces. The end wall of each arm has a colour of
+// its own.
 #include "scene/builtin/parts.h"
 
 #include <math.h>
@@ -20,9 +20,8 @@ static const struct option_row rows[] = {
 
 static const float WALL = 0.3f;
 
-// Planes along x and z, from the outside in and out again: outer face, end of an arm, start of its
-// niche, the depth of a niche (measured from the corridor that it turns off from), the corridor's
-// sides.
+// Planes along x and z, symmetric: outer face, end of an arm, start of its niche, end of the niche
+// of the other corridor, side of the corridor.
 enum { PLANES = 10, CELLS = PLANES - 1 };
 enum part { FLOOR = 1, CEILING, WALLS, RED, GREEN, BLUE, YELLOW, PART_COUNT };
 
@@ -37,15 +36,14 @@ static void lay_planes(const struct corridor_options *o, float plane[PLANES])
     }
 }
 
-// Whether a cell of the plan is empty in the arm along +x or in its niche, which turns off towards
-// +z.
+// Whether a cell of the plan is in the arm along +x or in its niche towards +z.
 static bool in_arm(int i, int k)
 {
     bool along = i >= 4 && i <= 7 && k == 4;
     return along || (i == 7 && k == 5);
 }
 
-// The other arms are the first one turned by right angles.
+// The other arms are the first one rotated by right angles.
 static bool is_empty(int i, int k)
 {
     for (int quarter = 0; quarter < 4; quarter++) {
@@ -99,7 +97,7 @@ static bool build_rooms(struct scene *scene, const struct corridor_options *o)
     return true;
 }
 
-// Flat pillars along the arms' walls and a beam over each pair: edges for light to bend around.
+// Pillars along the walls and a beam over each pair: shadow edges along the arms.
 static bool build_ribs(struct scene *scene, const struct corridor_options *o)
 {
     int material = builtin_diffuse(scene, "ribs", vec3_of(0.55f, 0.50f, 0.44f));
@@ -121,7 +119,7 @@ static bool build_ribs(struct scene *scene, const struct corridor_options *o)
     return shape_emit(&builder, "ribs", material) >= 0;
 }
 
-// Crates in the arms, away from the walls so that light passes around them.
+// Crates in the arms, away from the walls so that light passes on both sides.
 static bool build_crates(struct scene *scene, const struct corridor_options *o)
 {
     static const vec3s colours[4] = { { { 0.55f, 0.38f, 0.20f } },
@@ -151,15 +149,16 @@ static bool build_corridor(struct scene *scene, const void *options)
 {
     const struct corridor_options *o = options;
     vec3s middle = vec3_of(0, 0.55f * o->height, 0);
-    vec3s eye = vec3_of(0.36f * o->length, 1.6f, 0.25f * o->width);
+    vec3s camera = vec3_of(0.36f * o->length, 1.6f, 0.25f * o->width);
     return build_rooms(scene, o) && build_ribs(scene, o) && build_crates(scene, o) &&
-           builtin_ball(scene, middle, o->light == 1, o->lumens) &&
-           builtin_camera(scene, "main", eye, vec3_of(0, 1.4f, -0.1f * o->width), glm_rad(60.0f));
+           builtin_sphere_light(scene, middle, o->light == 1, o->lumens) &&
+           builtin_camera(scene, "main", camera, vec3_of(0, 1.4f, -0.1f * o->width),
+                          glm_rad(60.0f));
 }
 
 const struct builtin_scene builtin_corridor = {
     .name = "corridor",
-    .title = "two crossing corridors and one bright ball in the middle",
+    .title = "two crossing corridors with one bright sphere light in the middle",
     .options = OPTION_TABLE(struct corridor_options, rows, NULL),
     .build = build_corridor,
 };

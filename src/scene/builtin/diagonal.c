@@ -1,6 +1,6 @@
-// @diagonal: a square floor with an area light that stands upright near one corner and faces the
-// middle, after Martin 2012, section 5.2: how well does light travel along a grid's diagonal? The
-// camera `above` looks straight down, the light in the picture's upper left corner: the picture's
+// @diagonal: a square floor with an upright area light near one corner that faces the centre, after
+// Martin 2012, section 5.2: shows how a grid propagates light along its diagonal. The camera
+// `above` faces straight down; the light is in the image's upper left corner, so that the image's
 // diagonal is the floor's.
 #include "scene/builtin/parts.h"
 
@@ -29,25 +29,25 @@ static bool build_floor(struct scene *scene, float size)
     return shape_emit(&builder, "floor", material) >= 0;
 }
 
-// The light stands at 80% of the way to the corner (-x, -z): a panel with its back to the corner,
-// and the shining quad a hair before it. Sizes are parts of the floor's.
+// The light is at 80% of the distance to the corner (-x, -z): a panel with an emissive quad in
+// front. Sizes are fractions of the floor's.
 static bool build_light(struct scene *scene, float size, float cd_m2)
 {
     int dark = builtin_diffuse(scene, "panel", vec3_of(0.1f, 0.1f, 0.1f));
-    int shine = builtin_emitter(scene, "light", vec3_of(cd_m2, cd_m2, cd_m2));
-    if (dark < 0 || shine < 0) return false;
+    int emitter = builtin_emitter(scene, "light", vec3_of(cd_m2, cd_m2, cd_m2));
+    if (dark < 0 || emitter < 0) return false;
     struct shape_builder builder;
     shape_begin(&builder, scene);
     float at = -0.4f * size, half = 0.1f * size, low = 0.02f * size, high = 0.16f * size;
     float depth = 0.01f * size;
-    // The panel's own +z becomes (1, 0, 1)/√2.
+    // The panel's local +z is (1, 0, 1)/√2.
     builder.scene_from_shape = glms_rotate_y(glms_translate_make(vec3_of(at, 0, at)), GLM_PI_4f);
     shape_box(&builder, vec3_of(-half, low, -depth), vec3_of(half, high, 0));
     if (shape_emit(&builder, "panel", dark) < 0) return false;
     float front = 0.001f * size;
     shape_quad(&builder, vec3_of(-half, low, front), vec3_of(half, low, front),
                vec3_of(half, high, front), vec3_of(-half, high, front));
-    return shape_emit(&builder, "light", shine) >= 0;
+    return shape_emit(&builder, "light", emitter) >= 0;
 }
 
 static bool build_diagonal(struct scene *scene, const void *options)

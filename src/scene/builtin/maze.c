@@ -1,6 +1,6 @@
-// @maze: cubes on a square plan, each joined to an earlier one by a whole missing face (the
-// two-dimensional mazes of Loos 2015, chapter 3). Neighbours that are not joined have a wall
-// between them. The light is in the first block.
+// @maze: cubes on a square plan, each connected to an earlier one by a missing face (the
+// two-dimensional mazes of Loos 2015, chapter 3). Other neighbours have a wall between them. The
+// light is in the first block.
 #include "scene/builtin/parts.h"
 
 #include "core/rng.h"
@@ -20,17 +20,17 @@ static const struct option_row rows[] = {
 };
 #undef OPTION
 
-static const float WALL_PART = 0.08f; // of a block's edge
+static const float WALL_FRACTION = 0.08f; // of a block's edge length
 
 enum { MAX_BLOCKS = 64, PLAN = 2 * MAX_BLOCKS + 1, MAX_PLANES = 2 * PLAN + 2 };
 
 struct maze {
     int count;
     int x[MAX_BLOCKS], z[MAX_BLOCKS], parent[MAX_BLOCKS]; // parent[0] is -1
-    // The plan as cells and walls take turns: block (x, z) at [2 x + 1][2 z + 1]; 1 where it is
-    // open.
+    // The plan: odd indices are blocks, even ones the walls between. Block (x, z) is at
+    // [2 x + 1][2 z + 1].
     bool open[2 * PLAN + 1][2 * PLAN + 1];
-    int low[2], high[2]; // the part of `open` that is used, walls included
+    int low[2], high[2]; // used range of `open`, including outer walls
 };
 
 static bool is_block(const struct maze *maze, int x, int z)
@@ -48,7 +48,7 @@ static void add_block(struct maze *maze, int x, int z, int parent)
     if (parent >= 0) maze->open[x + maze->x[parent] + 1][z + maze->z[parent] + 1] = true;
 }
 
-// Grows from the middle: an earlier block and a side are drawn until that side is free.
+// Random growth from the centre: draws an earlier block and a side until that side is free.
 static void lay_maze(struct maze *maze, int blocks, uint32_t seed)
 {
     static const int sides[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
@@ -73,7 +73,7 @@ static void lay_maze(struct maze *maze, int blocks, uint32_t seed)
 
 enum part { FLOOR = 1, CEILING, WALLS, FIRST_COLOUR, PART_COUNT = FIRST_COLOUR + 4 };
 
-// Something of the maze is here or right beside it.
+// Whether this cell or one of its 8 neighbours is open.
 static bool near_open(const struct maze *maze, int i, int k)
 {
     for (int di = -1; di <= 1; di++) {
@@ -86,8 +86,8 @@ static bool near_open(const struct maze *maze, int i, int k)
     return false;
 }
 
-// A wall or a post stands where the plan is not open but touches what is; blocks that are not of
-// the maze stay empty, and so does all around it.
+// Whether the cell is part of the building: open cells, and closed walls and posts beside open
+// cells. Unused blocks and the surroundings stay empty.
 static bool is_covered(const struct maze *maze, int i, int k)
 {
     if (maze->open[i][k]) return true;
@@ -110,14 +110,13 @@ static int maze_part(const void *user, int i, int j, int k)
     return post || hash % 3u != 0 ? WALLS : FIRST_COLOUR + (int)((hash >> 8) % 4u);
 }
 
-// Planes of the used part along one axis, around the first block's middle.
+// Planes of the used range along one axis; the origin is the centre of the first block.
 static int lay_planes(const struct maze *maze, int axis, float size, float *plane)
 {
     int middle = axis ? maze->z[0] : maze->x[0], count = 0;
-    float half_wall = 0.5f * WALL_PART * size;
+    float half_wall = 0.5f * WALL_FRACTION * size;
     for (int cell = maze->low[axis]; cell <= maze->high[axis] + 1; cell++) {
-        // Even cells are walls around the border before block cell / 2, odd ones the blocks
-        // between.
+        // An even cell is the wall before block cell / 2, an odd cell the inside of a block.
         float border = ((float)(cell / 2 - middle) - 0.5f) * size;
         plane[count++] = cell % 2 == 0 ? border - half_wall : border + half_wall;
     }
@@ -139,7 +138,7 @@ static bool build_walls(struct scene *scene, const struct maze *maze, float size
         { "yellow walls", { { 0.70f, 0.55f, 0.12f } } },
     };
     float x[MAX_PLANES], z[MAX_PLANES];
-    float wall = WALL_PART * size;
+    float wall = WALL_FRACTION * size;
     const float y[4] = { -wall, 0, size - wall, size };
     struct shape_grid grid = { .x = x, .y = y, .z = z, .ny = 3, .part = maze_part, .user = maze };
     grid.nx = lay_planes(maze, 0, size, x);
@@ -148,7 +147,7 @@ static bool build_walls(struct scene *scene, const struct maze *maze, float size
     shape_begin(&builder, scene);
     for (int part = FLOOR; part < PART_COUNT; part++) {
         shape_blocks(&builder, &grid, part);
-        if (builder.index_count == 0) { // a small maze may lack a colour
+        if (builder.index_count == 0) { // a small maze may not use every colour
             shape_discard(&builder);
             continue;
         }
@@ -167,18 +166,18 @@ static vec3s block_middle(const struct maze *maze, int block, float size, float 
                    (float)(maze->z[block] - maze->z[0]) * size);
 }
 
-// `main` stands at the far side of the second block and looks into the first one; `far` stands in
-// the last block and looks towards the one before it.
+// `main` is at the far side of the second block and faces the first one; `far` is in the last block
+// and faces the one before it.
 static bool build_cameras(struct scene *scene, const struct maze *maze, float size)
 {
     vec3s light_block = block_middle(maze, 0, size, 0.45f);
-    vec3s eye = vec3_of(0.35f * size, 0.5f * size, 0.35f * size);
+    vec3s position = vec3_of(0.35f * size, 0.5f * size, 0.35f * size);
     if (maze->count > 1) {
         vec3s beside = block_middle(maze, 1, size, 0.5f);
         vec3s away = glms_vec3_sub(beside, block_middle(maze, 0, size, 0.5f));
-        eye = glms_vec3_muladds(away, 0.38f, beside);
+        position = glms_vec3_muladds(away, 0.38f, beside);
     }
-    if (!builtin_camera(scene, "main", eye, light_block, glm_rad(70.0f))) return false;
+    if (!builtin_camera(scene, "main", position, light_block, glm_rad(70.0f))) return false;
     if (maze->count == 1) return true;
     int last = maze->count - 1;
     vec3s end = block_middle(maze, last, size, 0.5f);
@@ -196,16 +195,17 @@ static bool build_maze(struct scene *scene, const void *options)
     struct maze *maze = host_alloc(scene->host, 1, sizeof *maze);
     if (!maze) return false;
     lay_maze(maze, o->blocks, (uint32_t)o->seed);
-    bool ok = build_walls(scene, maze, o->size) &&
-              builtin_ball(scene, vec3_of(0, 0.62f * o->size, 0), o->light == 1, o->lumens) &&
-              build_cameras(scene, maze, o->size);
+    bool ok =
+        build_walls(scene, maze, o->size) &&
+        builtin_sphere_light(scene, vec3_of(0, 0.62f * o->size, 0), o->light == 1, o->lumens) &&
+        build_cameras(scene, maze, o->size);
     host_free(scene->host, maze);
     return ok;
 }
 
 const struct builtin_scene builtin_maze = {
     .name = "maze",
-    .title = "cubes joined by missing faces, the light in one of them",
+    .title = "cubes connected by missing faces, with the light in one of them",
     .options = OPTION_TABLE(struct maze_options, rows, NULL),
     .build = build_maze,
 };

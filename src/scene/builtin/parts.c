@@ -18,7 +18,7 @@ int builtin_emitter(struct scene *scene, const char *name, vec3s radiance)
     return scene_add_material(scene, &material);
 }
 
-bool builtin_camera(struct scene *scene, const char *name, vec3s eye, vec3s target,
+bool builtin_camera(struct scene *scene, const char *name, vec3s position, vec3s target,
                     float vertical_fov_rad)
 {
     struct camera camera = {
@@ -26,7 +26,7 @@ bool builtin_camera(struct scene *scene, const char *name, vec3s eye, vec3s targ
         .vertical_fov_rad = vertical_fov_rad,
         .near_m = 0.01f,
     };
-    camera.node = scene_add_node_looking(scene, name, eye, glms_vec3_sub(target, eye));
+    camera.node = scene_add_node_looking(scene, name, position, glms_vec3_sub(target, position));
     return camera.node >= 0 && scene_add_camera(scene, &camera) >= 0;
 }
 
@@ -37,24 +37,24 @@ bool builtin_point_light(struct scene *scene, const char *name, vec3s position, 
     return light.node >= 0 && scene_add_light(scene, &light) >= 0;
 }
 
-bool builtin_sun(struct scene *scene, const char *name, vec3s over, vec3s direction, vec3s lux)
+bool builtin_sun(struct scene *scene, const char *name, vec3s position, vec3s direction, vec3s lux)
 {
     struct light light = { .name = name, .type = LIGHT_SUN, .intensity = lux };
-    light.node = scene_add_node_looking(scene, name, over, direction);
+    light.node = scene_add_node_looking(scene, name, position, direction);
     return light.node >= 0 && scene_add_light(scene, &light) >= 0;
 }
 
-bool builtin_ball(struct scene *scene, vec3s centre, bool as_point, float lumens)
+bool builtin_sphere_light(struct scene *scene, vec3s centre, bool as_point, float lumens)
 {
     static const float RADIUS = 0.12f;
-    // Of luminance 1, so that lumens are photometric.
+    // Normalised to luminance 1, so that `lumens` is the luminous flux.
     vec3s white = vec3_of(1.13f, 0.98f, 0.815f);
     white = glms_vec3_scale(white, 1.0f / luminance(white));
     if (as_point) {
         return builtin_point_light(scene, "light", centre,
                                    glms_vec3_scale(white, lumens / (4.0f * GLM_PIf)));
     }
-    // A diffuse surface of radiance L and area A shines π L A lumens.
+    // A Lambertian emitter of luminance L and area A has the luminous flux π L A.
     float area_m2 = 4.0f * GLM_PIf * RADIUS * RADIUS;
     int material =
         builtin_emitter(scene, "light", glms_vec3_scale(white, lumens / (GLM_PIf * area_m2)));

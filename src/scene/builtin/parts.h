@@ -1,4 +1,4 @@
-// What the files of the built-in scenes have in common; not for others.
+// Materials, cameras and lights shared by the built-in scenes. Internal to src/scene/builtin.
 #pragma once
 
 #include "scene/builtin/builtin.h"
@@ -9,15 +9,15 @@ extern const struct builtin_scene builtin_cornell, builtin_corridor, builtin_maz
 
 // A diffuse material without textures; -1 on failure.
 int builtin_diffuse(struct scene *scene, const char *name, vec3s reflectance);
-// A surface that only shines, cd/m².
+// A black emissive material, cd/m²; -1 on failure.
 int builtin_emitter(struct scene *scene, const char *name, vec3s radiance);
-// A node and a camera at it, near plane 1 cm. A scene's first is called "main".
-bool builtin_camera(struct scene *scene, const char *name, vec3s eye, vec3s target,
+// A node and a camera at it, near plane 1 cm. The first camera of a scene is called "main".
+bool builtin_camera(struct scene *scene, const char *name, vec3s position, vec3s target,
                     float vertical_fov_rad);
 // A node and a point light (candela) at it.
 bool builtin_point_light(struct scene *scene, const char *name, vec3s position, vec3s candela);
-// A node above `over` and a sun (lux) that shines along `direction`.
-bool builtin_sun(struct scene *scene, const char *name, vec3s over, vec3s direction, vec3s lux);
-// A small light in a room: a shining ball of 12 cm radius, or a point light in its stead, warm
-// white. Lumens are those of the whole sphere of directions.
-bool builtin_ball(struct scene *scene, vec3s centre, bool as_point, float lumens);
+// A node at `position` and a sun (lux) that shines along `direction`.
+bool builtin_sun(struct scene *scene, const char *name, vec3s position, vec3s direction, vec3s lux);
+// A warm white light: an emissive sphere of 12 cm radius, or a point light of the same luminous
+// flux.
+bool builtin_sphere_light(struct scene *scene, vec3s centre, bool as_point, float lumens);

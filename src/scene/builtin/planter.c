@@ -1,10 +1,11 @@
-// @planter: a stone planter in the shade of an arcade, beside a red drape in the sun, after the
-// planter and the floor of Martin 2012, sections 5.5 and 5.6: what the light that comes back from
-// the drape, from one side, makes of the planter's flutes and leaves, and what a grid makes of
-// light on a plain floor. The cameras are `main` (the planter) and `floor`.
+// @planter: a planter in the shade of an arcade, beside a sunlit red drape, after the planter and
+// the floor of Martin 2012, sections 5.5 and 5.6. Shows one-sided indirect light on fine geometry
+// (flutes, leaves) and grid artefacts on a plain floor. The cameras are `main` (the planter) and
+// `floor`.
 //
-// The aisle lies behind the arcade, at z < 0, closed by walls and a ceiling; sunlight comes through
-// the one open arch and falls on the drape and on the floor before it. Every solid is closed.
+// The aisle lies behind the arcade, at z < 0, closed by walls and a ceiling; sunlight enters
+// through the one open arch and falls on the drape and on the floor in front of it. All solids are
+// closed.
 #include "scene/builtin/parts.h"
 #include "scene/builtin/textures.h"
 
@@ -24,8 +25,8 @@ static const struct option_row rows[] = {
 
 enum planter_material { WALL, STONE, FLOOR, PLASTER, CLOTH, TERRACOTTA, SOIL, LEAF, MATERIALS };
 
-// Metres. The arcade's bays are along x around the open one, its columns stand on z = 0.
-static const float BAY = 3.6f, END = 4.8f, BACK = -3.4f, COURT = 3.0f, CEILING = 4.7f;
+// Metres. The bays of the arcade are along x around the open one, its columns at z = 0.
+static const float BAY = 3.6f, END = 4.8f, BACK = -3.4f, YARD = 3.0f, CEILING = 4.7f;
 static const float ARCH_FOOT = 2.7f, ARCH_RADIUS = 1.52f, DRAPE_X = -2.2f;
 static const vec3s POT = { { 2.15f, 0.30f, -2.0f } }; // on its plinth
 
@@ -40,7 +41,7 @@ static bool build_materials(struct scene *scene, const struct planter_options *o
         [CLOTH] = { "red cloth", paint_cloth, 0.7f, { { 0.62f, 0.045f, 0.035f } }, 0.9f },
         [TERRACOTTA] = { "terracotta", paint_stone, 1.0f, { { 0.95f, 0.62f, 0.45f } }, 0.7f },
     };
-    // About the textures' means.
+    // About the mean colours of the textures.
     static const vec3s plain[MATERIALS] = {
         [WALL] = { { 0.45f, 0.38f, 0.29f } },    [STONE] = { { 0.58f, 0.53f, 0.45f } },
         [FLOOR] = { { 0.41f, 0.34f, 0.28f } },   [PLASTER] = { { 0.74f, 0.71f, 0.63f } },
@@ -58,15 +59,14 @@ static bool build_materials(struct scene *scene, const struct planter_options *o
     return true;
 }
 
-// ---- the building
+// ---- building
 
-// Floor, ceiling, back and end walls. They reach into each other, so that no two faces that are
-// seen share a plane.
+// Floor, ceiling, back and end walls. They overlap, so that no two visible faces are coplanar.
 static bool build_shell(struct scene *scene, const int *materials)
 {
     struct shape_builder builder;
     shape_begin(&builder, scene);
-    shape_box(&builder, vec3_of(-END - 0.3f, -0.3f, BACK - 0.3f), vec3_of(END + 0.3f, 0, COURT));
+    shape_box(&builder, vec3_of(-END - 0.3f, -0.3f, BACK - 0.3f), vec3_of(END + 0.3f, 0, YARD));
     if (shape_emit(&builder, "floor", materials[FLOOR]) < 0) return false;
     shape_box(&builder, vec3_of(-END - 0.26f, -0.2f, BACK - 0.28f),
               vec3_of(END + 0.26f, CEILING + 0.15f, BACK));
@@ -75,7 +75,7 @@ static bool build_shell(struct scene *scene, const int *materials)
         shape_box(&builder, vec3_of(fminf(inner, outer), -0.2f, BACK - 0.2f),
                   vec3_of(fmaxf(inner, outer), CEILING + 0.2f, 0.2f));
     }
-    // The bays beside the open one are walled up between their columns.
+    // The other bays are closed by walls between the columns.
     for (int side = -1; side <= 1; side += 2) {
         float a = (float)side * (0.5f * BAY - 0.1f), b = (float)side * (END + 0.1f);
         shape_box(&builder, vec3_of(fminf(a, b), -0.1f, -0.14f),
@@ -109,13 +109,13 @@ static bool build_arcade(struct scene *scene, const int *materials)
     float half = 0.5f * BAY + 0.2f;
     shape_arch(&builder, vec3_of(-half, ARCH_FOOT, -0.22f), vec3_of(half, CEILING + 0.05f, 0.22f),
                ARCH_RADIUS, ARCH_FOOT + 0.08f, 20);
-    // A base along the walls.
+    // A skirting along the back wall.
     shape_box(&builder, vec3_of(-END - 0.1f, -0.05f, BACK - 0.1f),
               vec3_of(END + 0.1f, 0.18f, BACK + 0.05f));
     return shape_emit(&builder, "arcade", materials[STONE]) >= 0;
 }
 
-// ---- the drape
+// ---- drape
 
 // s runs from the arcade to the back wall, t downwards; the front faces +x.
 static vec3s drape_at(const void *user, float s, float t)
@@ -142,11 +142,11 @@ static bool build_drape(struct scene *scene, const int *materials)
     return shape_emit(&builder, "rod", materials[TERRACOTTA]) >= 0;
 }
 
-// ---- the planter
+// ---- planter
 
 enum { FLUTES = 18, AROUND = 6 * FLUTES };
 
-// (radius, height, depth of the flutes), from the middle of the foot to that of the soil's bed.
+// (radius, height, depth of the flutes), from the foot to the bed of the soil.
 static const vec3s POT_PROFILE[] = {
     { { 0.22f, 0.00f, 0 } },     { { 0.30f, 0.00f, 0 } },     { { 0.31f, 0.06f, 0 } },
     { { 0.24f, 0.10f, 0 } },     { { 0.25f, 0.14f, 0.01f } }, { { 0.37f, 0.26f, 0.025f } },
@@ -161,13 +161,13 @@ static vec3s pot_point(int ring, int step)
 {
     const vec3s p = POT_PROFILE[ring];
     float angle = 2.0f * GLM_PIf * (float)(step % AROUND) / (float)AROUND;
-    // Hollows between narrow ridges.
+    // Wide flutes between narrow ridges.
     float flute = fabsf(cosf(0.5f * (float)FLUTES * angle));
     float radius = p.x - p.z * (1.0f - flute * flute);
     return vec3_of(radius * sinf(angle), p.y, radius * cosf(angle));
 }
 
-// Flat faces: the flutes are carved.
+// Flat shaded.
 static void pot(struct shape_builder *builder)
 {
     for (int step = 0; step < AROUND; step++) {
@@ -183,10 +183,10 @@ static void pot(struct shape_builder *builder)
     }
 }
 
-// A leaf that rises and bends over: s across, t from the root to the tip.
+// A leaf that rises and bends down: s across, t from the root to the tip.
 struct leaf {
-    float angle, length, rise,
-        bend; // rise: radians from the ground at the root; bend: down to the tip
+    float angle, length;
+    float rise, bend; // radians: elevation at the root, and its decrease to the tip
 };
 
 static vec3s leaf_at(const void *user, float s, float t)
@@ -195,7 +195,7 @@ static vec3s leaf_at(const void *user, float s, float t)
     float side = 2.0f * s - 1.0f;
     float half_width = 0.006f + 0.043f * sinf(GLM_PIf * (0.12f + 0.86f * t)) * (1.0f - 0.3f * t);
     float keel = -0.3f * half_width * (1.0f - side * side);
-    // The way along an arc whose slope falls from rise to rise - bend.
+    // An arc whose slope falls from rise to rise - bend.
     float slope = leaf->rise - leaf->bend * t, scale = leaf->length / leaf->bend;
     float out = 0.06f + scale * (sinf(leaf->rise) - sinf(slope));
     float up = 0.66f + scale * (cosf(slope) - cosf(leaf->rise)) + keel;
@@ -261,7 +261,7 @@ static bool build_scene(struct scene *scene, const void *options)
 
 const struct builtin_scene builtin_planter = {
     .name = "planter",
-    .title = "a planter in the shade of an arcade, lit by a drape in the sun",
+    .title = "a planter in a shaded arcade, lit indirectly by a sunlit drape",
     .options = OPTION_TABLE(struct planter_options, rows, NULL),
     .build = build_scene,
 };

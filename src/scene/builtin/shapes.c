@@ -1,4 +1,4 @@
-// Growing buffers, flat faces and solids with flat faces; round ones are in shapes_round.c.
+// Vertex buffers, polygons, boxes and blocks; round shapes are in shapes_round.c.
 #include "scene/builtin/shapes.h"
 
 #include <math.h>
@@ -50,9 +50,9 @@ end:
     return added;
 }
 
-static bool grow_array(struct shape_builder *builder, void **array, uint32_t room, size_t size)
+static bool grow_array(struct shape_builder *builder, void **array, uint32_t capacity, size_t size)
 {
-    void *grown = host_realloc(builder->scene->host, *array, room, size);
+    void *grown = host_realloc(builder->scene->host, *array, capacity, size);
     if (!grown) {
         builder->failed = true;
         return false;
@@ -64,14 +64,14 @@ static bool grow_array(struct shape_builder *builder, void **array, uint32_t roo
 static bool reserve_vertex(struct shape_builder *builder)
 {
     if (builder->failed) return false;
-    if (builder->vertex_count < builder->vertex_room) return true;
-    uint32_t room = builder->vertex_room ? 2 * builder->vertex_room : 256;
-    if (!grow_array(builder, (void **)&builder->positions, room, sizeof *builder->positions) ||
-        !grow_array(builder, (void **)&builder->normals, room, sizeof *builder->normals) ||
-        !grow_array(builder, (void **)&builder->uv, room, sizeof *builder->uv)) {
+    if (builder->vertex_count < builder->vertex_capacity) return true;
+    uint32_t capacity = builder->vertex_capacity ? 2 * builder->vertex_capacity : 256;
+    if (!grow_array(builder, (void **)&builder->positions, capacity, sizeof *builder->positions) ||
+        !grow_array(builder, (void **)&builder->normals, capacity, sizeof *builder->normals) ||
+        !grow_array(builder, (void **)&builder->uv, capacity, sizeof *builder->uv)) {
         return false;
     }
-    builder->vertex_room = room;
+    builder->vertex_capacity = capacity;
     return true;
 }
 
@@ -88,12 +88,12 @@ uint32_t shape_vertex(struct shape_builder *builder, vec3s position, vec3s norma
 void shape_triangle(struct shape_builder *builder, uint32_t a, uint32_t b, uint32_t c)
 {
     if (builder->failed) return;
-    if (builder->index_count + 3 > builder->index_room) {
-        uint32_t room = builder->index_room ? 2 * builder->index_room : 768;
-        if (!grow_array(builder, (void **)&builder->indices, room, sizeof *builder->indices)) {
+    if (builder->index_count + 3 > builder->index_capacity) {
+        uint32_t capacity = builder->index_capacity ? 2 * builder->index_capacity : 768;
+        if (!grow_array(builder, (void **)&builder->indices, capacity, sizeof *builder->indices)) {
             return;
         }
-        builder->index_room = room;
+        builder->index_capacity = capacity;
     }
     uint32_t *out = builder->indices + builder->index_count;
     out[0] = a;
@@ -108,7 +108,7 @@ void shape_quad_of(struct shape_builder *builder, uint32_t a, uint32_t b, uint32
     shape_triangle(builder, a, c, d);
 }
 
-// Metres along a flat face: u to the right and v down as seen from outside (for floors, v towards
+// Planar projection in metres: u to the right and v down, seen from outside (for floors, v along
 // +z).
 static vec2s planar_uv(vec3s normal, vec3s p)
 {
@@ -146,8 +146,7 @@ void shape_quad(struct shape_builder *builder, vec3s a, vec3s b, vec3s c, vec3s 
     }
 }
 
-// The rectangle of a box's side: axis 0…2, towards +axis or -axis, counter-clockwise from that
-// side.
+// One side of a box, towards +axis or -axis, counter-clockwise from outside.
 static void box_side(struct shape_builder *builder, const vec3s bounds[2], int axis, int positive)
 {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -1,11 +1,11 @@
-// Round building blocks: solids of revolution, arches, cloth. See shapes.h.
+// Round shapes: solids of revolution, arches, pipes, cloth. See shapes.h.
 #include "scene/builtin/shapes.h"
 
 #include <math.h>
 
-static const float CREASE_COS = 0.7660444f; // cos 40°: sharper edges of a profile stay sharp
+static const float CREASE_COS = 0.7660444f; // cos 40°: sharper edges have split normals
 
-// A point of a solid of revolution.
+// A point of the profile of a solid of revolution.
 struct ring {
     float radius, height;
     vec2s normal; // (outward, up), unit
@@ -19,7 +19,7 @@ static void lathe_band(struct shape_builder *builder, vec3s base, struct ring lo
     uint32_t first = builder->vertex_count;
     for (int i = 0; i <= segments; i++) {
         float turn = (float)i / (float)segments;
-        // The seam's two sides are the same point to the last bit.
+        // Exactly the same point on both sides of the seam.
         float angle = i == segments ? 0.0f : 2.0f * GLM_PIf * turn;
         float c = cosf(angle), s = -sinf(angle);
         for (int k = 0; k < 2; k++) {
@@ -76,7 +76,7 @@ void shape_cylinder(struct shape_builder *builder, vec3s base, float radius, flo
     shape_lathe(builder, base, profile, 4, segments);
 }
 
-// A row of a sphere: latitude from -90 to 90 degrees. Poles are on the axis exactly.
+// A row of a sphere: latitude from -90 to 90 degrees. Poles are exactly on the axis.
 static struct ring sphere_ring(float radius, int row, int rows)
 {
     float latitude = GLM_PIf * ((float)row / (float)rows - 0.5f);
@@ -96,7 +96,7 @@ void shape_sphere(struct shape_builder *builder, vec3s centre, float radius, int
     }
 }
 
-// A cut through an arch's panel from its opening to its outline, in x and y.
+// A segment from the opening of an arch to the outline of its panel, in x and y.
 struct arch_cut {
     vec2s inner, outer;
 };
@@ -106,8 +106,8 @@ static bool same_point(vec2s a, vec2s b)
     return a.x == b.x && a.y == b.y;
 }
 
-// The piece of the panel between two cuts: front, back and the faces of both edges. A cut may share
-// one end with the next; the piece is then a triangle.
+// The piece of the panel between two cuts: front, back, inner and outer edge. A triangle where the
+// cuts share one end.
 static void arch_piece(struct shape_builder *builder, float front, float back, struct arch_cut a,
                        struct arch_cut b)
 {
@@ -174,7 +174,7 @@ void shape_arch(struct shape_builder *builder, vec3s min, vec3s max, float radiu
     arch_foot(builder, front, back, min.y, min.x, left);
 }
 
-// A vertex of a pipe's ring; the last one is the first again.
+// A vertex of a pipe's ring; the last one is at the position of the first.
 static void pipe_vertex(struct shape_builder *builder, const struct shape_pipe *pipe, mat4s frame,
                         int i, float along_m)
 {
@@ -188,7 +188,7 @@ static void pipe_vertex(struct shape_builder *builder, const struct shape_pipe *
     shape_vertex(builder, position, normal, (vec2s){ { around_m, along_m } });
 }
 
-// A quad or triangle is turned over for a pipe that is seen from inside.
+// A triangle with its winding reversed for inside_out.
 static void pipe_triangle(struct shape_builder *builder, bool inside_out, uint32_t a, uint32_t b,
                           uint32_t c)
 {
@@ -240,14 +240,14 @@ void shape_sweep(struct shape_builder *builder, const struct shape_pipe *pipe)
     if (pipe->end_cap) pipe_cap(builder, pipe, pipe->frames[pipe->count - 1], true);
 }
 
-// The middle surface and its normal by central differences.
+// A point of the middle surface and its normal, by central differences.
 struct sheet_point {
     vec3s middle, normal;
 };
 
 static struct sheet_point sheet_point(const struct shape_sheet *sheet, float s, float t)
 {
-    // Derivatives, not differences: some versions of cglm take what is shorter than 1e-7 for zero.
+    // Scaled to derivatives: some versions of cglm normalise vectors shorter than 1e-7 to zero.
     const float step = 1e-3f, per_step = 0.5f / step;
     vec3s along_s = glms_vec3_scale(
         glms_vec3_sub(sheet->at(sheet->user, s + step, t), sheet->at(sheet->user, s - step, t)),
@@ -289,8 +289,8 @@ static void cloth_side(struct shape_builder *builder, const struct shape_sheet *
     }
 }
 
-// One strip of the hem between two points of the border; outside is to the left of a → b as the
-// front is seen.
+// One quad of the hem between two points of the border; outside is to the left of a → b, seen from
+// the front.
 static void cloth_hem(struct shape_builder *builder, const struct shape_sheet *sheet, vec2s a,
                       vec2s b)
 {

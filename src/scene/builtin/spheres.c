@@ -1,7 +1,6 @@
-// @spheres: a chart of metallic and roughness under a sun and a sky, and a furnace. In a closed box
-// whose walls all emit Le and reflect the fraction ρ, radiance is Le / (1 − ρ) everywhere and
-// irradiance π times that, whatever the box's shape: the plainest test that light is neither lost
-// nor made.
+// @spheres: a chart of metallic and roughness under a sun and a sky, or a furnace test. In a closed
+// box whose walls emit radiance Le and have albedo ρ, radiance is Le / (1 − ρ) everywhere and
+// irradiance π times that, whatever the box's shape: a test of energy conservation.
 #include "scene/builtin/parts.h"
 
 #include <math.h>
@@ -28,7 +27,7 @@ static int furnace_part(const void *user, int i, int j, int k)
     return i != 1 || j != 1 || k != 1;
 }
 
-// A box with walls around an empty middle; the walls shine on both sides.
+// A hollow box; its walls emit on both sides.
 static bool build_furnace(struct scene *scene, const struct spheres_options *options)
 {
     struct material wall = material_default();
@@ -111,7 +110,7 @@ static bool build_spheres(struct scene *scene, const void *options)
 
 const struct builtin_scene builtin_spheres = {
     .name = "spheres",
-    .title = "a chart of metallic and roughness, or a furnace",
+    .title = "a chart of metallic and roughness, or a furnace test",
     .options = OPTION_TABLE(struct spheres_options, rows, NULL),
     .build = build_spheres,
 };

@@ -1,4 +1,4 @@
-// Tileable noise, the painters, and how paint becomes images. See textures.h.
+// Tileable noise, procedural textures, and their colour and normal images. See textures.h.
 #include "scene/builtin/textures.h"
 
 #include "core/rng.h"
@@ -8,8 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Noise of one frequency that repeats with period 1: random values at cells × cells lattice points,
-// smoothly blended.
+// Value noise with period 1: random values at cells × cells lattice points, smoothly interpolated.
 static float lattice(int x, int y, int cells, uint32_t seed)
 {
     uint32_t column = (uint32_t)((x % cells + cells) % cells);
@@ -49,8 +48,8 @@ static float smooth_step(float low, float high, float x)
     return fade(t);
 }
 
-// Where a place is in a grid of rectangles, and how far from the nearest joint, in parts of the
-// texture.
+// The cell of a point in a grid of rectangles, and its distance to the nearest joint, as a fraction
+// of the texture's width.
 struct panel {
     int column, row;
     float edge;
@@ -169,7 +168,7 @@ static void write_colours(const struct paint *painting, uint8_t *rgba, int size)
     }
 }
 
-// Central differences of the height; green points up in the image, against v.
+// Central differences of the height; green points up in the image, along -v.
 static void write_normals(const struct paint *painting, uint8_t *rgba, int size)
 {
     float per_texel = 0.5f * (float)size;
@@ -187,13 +186,13 @@ static void write_normals(const struct paint *painting, uint8_t *rgba, int size)
     }
 }
 
-// Adds both images of a painting; the index of the first, the normals come next.
+// Adds colour and normal images; the index of the first, that of the normals is one more.
 static int add_images(struct scene *scene, const char *name, painter paint, int size)
 {
     char colour_name[64], normal_name[64];
     snprintf(colour_name, sizeof colour_name, "%s colour", name);
     snprintf(normal_name, sizeof normal_name, "%s normals", name);
-    // Materials may share a painter, and so its images.
+    // Materials of the same painter share the images.
     for (int i = 0; i < scene->image_count; i++) {
         if (strcmp(scene->images[i].name, colour_name) == 0) return i;
     }

@@ -1,5 +1,5 @@
-// @tunnel: round pipes in a row, each straight, bent to the left or bent to the right (the three
-// shapes of the cylinder dictionary in Loos 2015, chapter 3), closed at both ends.
+// @tunnel: a chain of round pipes, each straight, bent left or bent right (the three shapes of the
+// cylinder dictionary in Loos 2015, chapter 3), closed at both ends.
 #include "scene/builtin/parts.h"
 
 #include "core/rng.h"
@@ -19,27 +19,26 @@ static const struct option_row rows[] = {
 };
 #undef OPTION
 
-// A piece fills a square of PIECE metres; its axis runs from the middle of one side to the middle
-// of another.
+// A piece fills a square of PIECE metres; its axis connects the midpoints of two sides.
 static const float PIECE = 4.0f, RADIUS = 1.5f, WALL = 0.15f;
 enum { MAX_PIECES = 64, STEPS = 8, SEGMENTS = 32, MAX_FRAMES = MAX_PIECES * STEPS + 1 };
 
 struct tunnel {
     int pieces;
-    mat4s frames[MAX_FRAMES]; // origin on the axis; x to the left, y up, z onwards
+    mat4s frames[MAX_FRAMES]; // origin on the axis; x to the left, y up, z along the axis
 };
 
 // A frame at `position` whose z axis has this heading: 0 along -z, π/2 along +x.
 static mat4s frame_at(vec3s position, float heading)
 {
-    vec3s onwards = vec3_of(sinf(heading), 0, -cosf(heading));
-    return (mat4s){ .col = { vec4_of(glms_vec3_cross(vec3_of(0, 1, 0), onwards), 0),
+    vec3s along = vec3_of(sinf(heading), 0, -cosf(heading));
+    return (mat4s){ .col = { vec4_of(glms_vec3_cross(vec3_of(0, 1, 0), along), 0),
                              { { 0, 1, 0, 0 } },
-                             vec4_of(onwards, 0),
+                             vec4_of(along, 0),
                              vec4_of(position, 1) } };
 }
 
-// -1 left, 0 straight, 1 right. The tunnel never heads back along +z, so it cannot meet itself.
+// -1 left, 0 straight, 1 right. The tunnel never heads along +z, so it cannot intersect itself.
 static int choose_bend(uint32_t seed, int piece, int quarter)
 {
     int bend = (int)(pcg_hash(seed * 4099u + (uint32_t)piece) % 3u) - 1;
@@ -57,20 +56,20 @@ static void lay_tunnel(struct tunnel *tunnel, int pieces, uint32_t seed)
         float heading = GLM_PI_2f * (float)quarter;
         mat4s start = frame_at(position, heading);
         for (int s = 1; s <= STEPS; s++) {
-            float t = (float)s / (float)STEPS, turned = GLM_PI_2f * t * (float)bend;
+            float t = (float)s / (float)STEPS, turn = GLM_PI_2f * t * (float)bend;
             // A bend is a quarter circle of half the piece's size; x of the frame is to the left.
             float arc = 0.5f * PIECE;
-            vec3s local = bend ? vec3_of(-(float)bend * arc * (1.0f - cosf(turned)), 0,
-                                         arc * sinf(fabsf(turned)))
-                               : vec3_of(0, 0, t * PIECE);
-            tunnel->frames[p * STEPS + s] = frame_at(mat4_point(start, local), heading + turned);
+            vec3s local =
+                bend ? vec3_of(-(float)bend * arc * (1.0f - cosf(turn)), 0, arc * sinf(fabsf(turn)))
+                     : vec3_of(0, 0, t * PIECE);
+            tunnel->frames[p * STEPS + s] = frame_at(mat4_point(start, local), heading + turn);
         }
         position = vec3_xyz(tunnel->frames[(p + 1) * STEPS].col[3]);
         quarter += bend;
     }
 }
 
-// Inner faces, a mesh for each piece, in colours that take turns.
+// Inner faces: one mesh per piece, in alternating colours.
 static bool build_inside(struct scene *scene, const struct tunnel *tunnel)
 {
     static const vec3s colours[4] = { { { 0.75f, 0.74f, 0.70f } },
@@ -97,7 +96,7 @@ static bool build_inside(struct scene *scene, const struct tunnel *tunnel)
     return true;
 }
 
-// The outer face: a wall's thickness further out and further on at both ends.
+// The outer face, offset by the wall's thickness, also at both ends.
 static bool build_outside(struct scene *scene, struct tunnel *tunnel)
 {
     int material = builtin_diffuse(scene, "outside", vec3_of(0.5f, 0.5f, 0.5f));
@@ -125,19 +124,19 @@ static bool build_tunnel(struct scene *scene, const void *options)
     if (!tunnel) return false;
     lay_tunnel(tunnel, o->pieces, (uint32_t)o->seed);
     int lit = o->pieces > 1 ? STEPS + STEPS / 2 : STEPS / 2;
-    vec3s eye = mat4_point(tunnel->frames[0], vec3_of(0.5f, 0.3f, 1.2f));
+    vec3s camera = mat4_point(tunnel->frames[0], vec3_of(0.5f, 0.3f, 1.2f));
     vec3s target = mat4_point(tunnel->frames[STEPS], vec3_of(0, 0, 0));
     vec3s light = mat4_point(tunnel->frames[lit], vec3_of(0, 0.5f * RADIUS, 0));
     bool ok = build_inside(scene, tunnel) && build_outside(scene, tunnel) &&
-              builtin_ball(scene, light, o->light == 1, o->lumens) &&
-              builtin_camera(scene, "main", eye, target, glm_rad(70.0f));
+              builtin_sphere_light(scene, light, o->light == 1, o->lumens) &&
+              builtin_camera(scene, "main", camera, target, glm_rad(70.0f));
     host_free(scene->host, tunnel);
     return ok;
 }
 
 const struct builtin_scene builtin_tunnel = {
     .name = "tunnel",
-    .title = "straight and bent pipes in a row, one light",
+    .title = "a chain of straight and bent pipes with one light",
     .options = OPTION_TABLE(struct tunnel_options, rows, NULL),
     .build = build_tunnel,
 };
