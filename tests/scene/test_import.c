@@ -1,5 +1,4 @@
-// Small glTF files, one for each thing that is read: what the file says is in the scene, and what
-// is wrong is refused.
+// Import of small glTF files: one for each feature, and invalid ones that are refused.
 #include "scene/gltf_maker.h"
 
 #include "scene/pose.h"
@@ -11,7 +10,7 @@
 #define FLOATS(view, type, count)                                                                  \
     "{'bufferView':" #view ",'componentType':5126,'type':'" type "','count':" #count "}"
 #define SCENE "'scenes':[{'nodes':[0]}],'nodes':[{'mesh':0}]"
-// A file that needs nothing but one triangle of three positions: view 0, accessor 0, 36 bytes.
+// One triangle of three positions: view 0, accessor 0, 36 bytes.
 #define TRIANGLE_DATA                                                                              \
     BUFFER(36) ",'bufferViews':[" VIEW(0, 36) "],'accessors':[" FLOATS(0, "VEC3", 3) "]"
 #define TRIANGLE_MESH "'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]"
@@ -25,7 +24,7 @@ static struct scene *load_triangle(const char *json)
     return scene;
 }
 
-TEST(a_mesh_without_normals_gets_the_normals_of_its_planes)
+TEST(a_mesh_without_normals_gets_flat_normals)
 {
     // Two triangles share an edge and are at a right angle to each other.
     struct {
@@ -53,7 +52,7 @@ TEST(a_mesh_keeps_only_the_vertices_that_it_uses)
         uint8_t i[4];
     } data = { .i = { 5, 1, 3 } };
     for (int v = 0; v < 6; v++) {
-        data.p[v][0] = v == 0 ? NAN : (float)v; // not finite, and not used
+        data.p[v][0] = v == 0 ? NAN : (float)v; // not finite, but unused
         data.p[v][1] = v == 1;
         data.n[v][2] = 2.0f; // not of length one
     }
@@ -93,7 +92,7 @@ TEST(strips_and_fans_keep_their_winding)
     }
 }
 
-TEST(normalised_integers_are_their_fractions)
+TEST(normalised_integers_become_fractions)
 {
     struct {
         int16_t p[3][4]; // stride 8
@@ -118,7 +117,7 @@ TEST(normalised_integers_are_their_fractions)
     scene_destroy(scene);
 }
 
-TEST(sparse_values_replace_those_of_the_base)
+TEST(sparse_values_replace_base_values)
 {
     struct {
         float p[3][3], values[1][3];
@@ -137,7 +136,7 @@ TEST(sparse_values_replace_those_of_the_base)
     scene_destroy(scene);
 }
 
-TEST(parents_come_first_whatever_the_order_in_the_file)
+TEST(parents_precede_children_in_the_scene)
 {
     struct scene *scene = load_triangle(
         "{" ASSET ",'scenes':[{'nodes':[2]}],'nodes':[{'mesh':0,'translation':[0,0,3]},"
@@ -149,7 +148,7 @@ TEST(parents_come_first_whatever_the_order_in_the_file)
     CHECK(pose_init(&pose, scene, -1, 0.0f));
     mat4s world = pose_world_from_instance(&pose, 0);
     vec3s origin =
-        mat4_point(world, vec3_of(0, 0, 0)); // z 3, scaled to 6, turned to x, moved by 10
+        mat4_point(world, vec3_of(0, 0, 0)); // z 3, scaled to 6, rotated to x, translated by 10
     CHECK_NEAR(origin.x, 16.0, 1e-5);
     CHECK_NEAR(origin.z, 0.0, 1e-5);
     CHECK(glms_mat4_det(world) < 0.0f);
@@ -157,7 +156,7 @@ TEST(parents_come_first_whatever_the_order_in_the_file)
     scene_destroy(scene);
 }
 
-TEST(only_the_default_scene_is_shown)
+TEST(only_the_default_scene_is_instanced)
 {
     struct scene *scene = load_triangle(
         "{" ASSET ",'scene':1,'scenes':[{'nodes':[0]},{'nodes':[1]}],"
@@ -169,7 +168,7 @@ TEST(only_the_default_scene_is_shown)
     scene_destroy(scene);
 }
 
-TEST(materials_have_the_defaults_and_the_values_of_gltf)
+TEST(materials_have_the_values_of_the_file_and_glTF_defaults)
 {
     struct scene *scene = load_gltf(
         "{" ASSET ",'materials':[{},{'name':'m','pbrMetallicRoughness':{'baseColorFactor':"
@@ -218,7 +217,7 @@ TEST(images_are_decoded_top_row_first_and_shared)
     scene_destroy(scene);
 }
 
-TEST(an_image_that_cannot_be_read_is_named_and_left_out)
+TEST(an_unreadable_image_is_noted_and_ignored)
 {
     write_bytes("broken image.png", "\x89PNG\r\n\x1a\nnothing", 15);
     struct scene *scene = load_gltf(
@@ -257,12 +256,12 @@ TEST(lights_keep_their_units_range_and_cone)
     CHECK(l[3].intensity.x == 1.0f);
     struct scene_pose pose;
     CHECK(pose_init(&pose, scene, -1, 0.0f));
-    CHECK_NEAR(pose_light(&pose, 2).direction.y, -1.0, 1e-6); // the node's -z, turned down
+    CHECK_NEAR(pose_light(&pose, 2).direction.y, -1.0, 1e-6); // the node's -z, rotated down
     pose_finish(&pose);
     scene_destroy(scene);
 }
 
-TEST(perspective_cameras_are_read_and_orthographic_ones_named)
+TEST(perspective_cameras_are_read_and_orthographic_ones_noted)
 {
     struct scene *scene = load_gltf(
         "{" ASSET ",'cameras':[{'type':'orthographic','orthographic':{'xmag':1,'ymag':1,'znear':0,"
@@ -276,7 +275,7 @@ TEST(perspective_cameras_are_read_and_orthographic_ones_named)
     scene_destroy(scene);
 }
 
-TEST(names_give_no_commands_to_a_terminal)
+TEST(control_characters_in_names_are_replaced)
 {
     struct scene *scene =
         load_gltf("{" ASSET ",'cameras':[{'name':'a\\u001b[31m\\u007f','type':'perspective',"
@@ -287,11 +286,11 @@ TEST(names_give_no_commands_to_a_terminal)
     scene_destroy(scene);
 }
 
-TEST(animations_keep_their_interpolation_and_drop_doubled_keys)
+TEST(animations_keep_their_interpolation_and_drop_duplicate_keys)
 {
     static const float data[] = { 0, 1, 1, 2,                         // times
                                   0, 0, 0, 1, 0, 0, 9, 9, 9, 3, 0, 0, // translations
-                                  0, 0, 0, 2 }; // a rotation, not of length one
+                                  0, 0, 0, 2 }; // a rotation that is not normalised
     struct scene *scene = load_gltf(
         "{" ASSET ",'nodes':[{}],'animations':[{'name':'a','channels':["
         "{'sampler':0,'target':{'node':0,'path':'translation'}},"
@@ -307,7 +306,7 @@ TEST(animations_keep_their_interpolation_and_drop_doubled_keys)
     const struct animation *a = &scene->animations[0];
     CHECK(a->channel_count == 3 && a->duration_s == 2.0f);
     CHECK(a->channels[0].key_count == 3 && a->channels[0].interpolation == INTERPOLATE_LINEAR);
-    CHECK(a->channels[0].values[6] == 3.0f); // the third key is the one at two seconds
+    CHECK(a->channels[0].values[6] == 3.0f); // the third key is at two seconds
     CHECK(a->channels[1].interpolation == INTERPOLATE_STEP && a->channels[1].values[3] == 1.0f);
     CHECK(a->channels[2].path == PATH_SCALE);
     scene_destroy(scene);
@@ -332,7 +331,7 @@ TEST(cubic_keys_keep_their_tangents)
     scene_destroy(scene);
 }
 
-TEST(morph_weights_of_a_node_stand_before_those_of_its_mesh)
+TEST(morph_weights_of_a_node_override_those_of_its_mesh)
 {
     static const float data[] = {
         0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 4, 0, 0, 4, 0, 0, 4, 0, 1, 0, 1
@@ -370,7 +369,7 @@ TEST(morph_weights_of_a_node_stand_before_those_of_its_mesh)
                                                        3) ",{'bufferView':2,'componentType':5121," \
                                                           "'type':'VEC4','count':3}]}"
 
-TEST(skins_move_vertices_and_their_weights_sum_to_one)
+TEST(skins_deform_vertices_and_weights_sum_to_one)
 {
     struct {
         float p[3][3], w[3][4];
@@ -389,7 +388,7 @@ TEST(skins_move_vertices_and_their_weights_sum_to_one)
     CHECK_NEAR(pose.bounds.min.x, 5.0, 1e-5);
     pose_finish(&pose);
     scene_destroy(scene);
-    data.j[1][1] = 1; // has weight, and the skin has one joint
+    data.j[1][1] = 1; // nonzero weight, but the skin has one joint
     CHECK(!load_gltf(SKIN, &data, sizeof data));
     CHECK(strstr(test_last_message(), "joint 1 of 1"));
 }
@@ -411,20 +410,20 @@ struct refusal {
 
 static const struct refusal refusals[] = {
     { "", "JSON" },
-    { "[]", "no object" },
+    { "[]", "not an object" },
     { "{}", "no asset version" },
     { "{'asset':{'version':'3.0'}}", "3.0" },
     { "{'asset':{'version':'2.1','minVersion':'2.1'}}", "2.1" },
     { "{" ASSET ",'extensionsRequired':['KHR_lights_punctual','EXT_new\\nline']}", "EXT_new?line" },
-    { "{" ASSET ",'nodes':{}}", "nodes is no array" },
+    { "{" ASSET ",'nodes':{}}", "nodes is not an array" },
     { "{" ASSET ",'nodes':[3]}", "node 0" },
-    { "{" ASSET ",'nodes':[{'mesh':0}]}", "mesh refers to number 0 of 0" },
+    { "{" ASSET ",'nodes':[{'mesh':0}]}", "mesh 0 does not exist; there are 0" },
     { "{" ASSET ",'nodes':[{'children':[1]},{'children':[2]},{'children':[1]}]}", "parent" },
-    { "{" ASSET ",'nodes':[{'children':[1]},{'children':[0]}]}", "loop" },
+    { "{" ASSET ",'nodes':[{'children':[1]},{'children':[0]}]}", "cycle" },
     { "{" ASSET ",'nodes':[{'rotation':[0,0,0,0]}]}", "quaternion" },
     { "{" ASSET ",'nodes':[{'translation':[0,0,1e99]}]}", "translation[2]" },
     { "{" ASSET ",'nodes':[{'scale':[1,2]}]}", "array of 3" },
-    { "{" ASSET ",'scene':4,'scenes':[{}]}", "number 4" },
+    { "{" ASSET ",'scene':4,'scenes':[{}]}", "scene 4 does not exist; there are 1" },
     { "{" ASSET ",'buffers':[{'byteLength':4}]}", "no data" },
     { "{" ASSET ",'buffers':[{'byteLength':4,'uri':'/etc/passwd'}]}", "relative" },
     { "{" ASSET ",'buffers':[{'byteLength':4,'uri':'../made.bin'}]}", "relative" },
@@ -432,7 +431,8 @@ static const struct refusal refusals[] = {
     { "{" ASSET ",'buffers':[{'byteLength':4,'uri':'file:made.bin'}]}", "relative" },
     { "{" ASSET ",'buffers':[{'byteLength':4,'uri':'a\\\\..\\\\made.bin'}]}", "relative" },
     { "{" ASSET ",'buffers':[{'byteLength':4,'uri':'%00'}]}", "relative" },
-    { "{" ASSET ",'buffers':[{'byteLength':37,'uri':'made.bin'}]}", "says 37 bytes and has 36" },
+    { "{" ASSET ",'buffers':[{'byteLength':37,'uri':'made.bin'}]}",
+      "byteLength is 37, but the data have 36 bytes" },
     { "{" ASSET ",'buffers':[{'byteLength':4,'uri':'data:;base64,AAA*'}]}", "base64" },
     { "{" ASSET ",'materials':[{'alphaMode':'GLASS'}]}", "alphaMode" },
     { "{" ASSET ",'materials':[{'pbrMetallicRoughness':{'metallicFactor':2}}]}", "metallicFactor" },
@@ -451,7 +451,7 @@ static const struct refusal refusals[] = {
     { "{" ASSET "," SCENE "," TRIANGLE_MESH
       "," BUFFER(36) ",'bufferViews':[" VIEW(0, 36) "],"
                                                     "'accessors':[" FLOATS(0, "VEC2", 3) "]}",
-      "2 components where 3" },
+      "2 components, 3 are" },
     { "{" ASSET "," SCENE "," TRIANGLE_MESH "," BUFFER(36) ",'bufferViews':[" VIEW(
           0, 36) "],"
                  "'accessors':[{'bufferView':0,'componentType':5124,'type':'VEC3','count':3}]}",
@@ -461,7 +461,7 @@ static const struct refusal refusals[] = {
           36) "],"
               "'accessors':[{'bufferView':0,'byteOffset':18446744073709551600,'componentType':5126,"
               "'type':'VEC3','count':3}]}",
-      "JSON" }, // the number is beyond 64 bits
+      "JSON" }, // exceeds 64 bits
     { "{" ASSET "," SCENE "," TRIANGLE_MESH "," BUFFER(36) ",'bufferViews':[" VIEW(
           0,
           36) "],"
@@ -469,7 +469,7 @@ static const struct refusal refusals[] = {
               "{'count':1,'indices':{'bufferView':0,'byteOffset':12,'componentType':5125},"
               "'values':{'bufferView':0}}}]}",
       "sparse index" },
-    // A few bytes that ask for gigabytes: zeros with one sparse value.
+    // A small file that describes gigabytes: zeros with one sparse value.
     { "{" ASSET "," SCENE "," TRIANGLE_MESH "," BUFFER(36) ",'bufferViews':[" VIEW(
           0, 36) "],"
                  "'accessors':[{'componentType':5126,'type':'VEC3','count':4000000000,'sparse':"
@@ -487,11 +487,11 @@ static const struct refusal refusals[] = {
           0, "VEC3", 3) ","
                         "{'bufferView':0,'byteOffset':12,'componentType':5125,'"
                         "type':'SCALAR','count':3}]}",
-      "index 1065353216 beyond its 3 vertices" },
+      "index 1065353216 exceeds its 3 vertices" },
     { "{" ASSET ",'nodes':[{}],'animations':[{'channels':[{'sampler':0,'target':{'node':0,"
       "'path':'scale'}}],'samplers':[{'input':0,'output':1}]}]," BUFFER(36) ",'bufferViews':[" VIEW(
           0, 36) "],'accessors':[" FLOATS(0, "SCALAR", 2) "," FLOATS(0, "VEC3", 3) "]}",
-      "3 values where 2" },
+      "3 values, 2 are" },
     { "{" ASSET ",'nodes':[{}],'animations':[{'channels':[{'sampler':0,'target':{'node':0,"
       "'path':'scale'}}],'samplers':[{'input':0,'output':1}]}]," BUFFER(36) ",'bufferViews':[" VIEW(
           12, 24) "," VIEW(0, 36) "],'accessors':[" FLOATS(0, "SCALAR", 3) "," FLOATS(1, "VEC3",
@@ -499,7 +499,7 @@ static const struct refusal refusals[] = {
       "do not ascend" },
 };
 
-TEST(what_is_wrong_is_refused_with_its_place)
+TEST(invalid_files_are_refused_with_the_location_of_the_error)
 {
     for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
         struct scene *scene = load_gltf(refusals[i].json, triangle, sizeof triangle);
@@ -522,7 +522,7 @@ TEST(vertices_that_are_not_finite_are_refused)
     }
 }
 
-// Each part is small, their product is not: ten gigabytes from half a megabyte.
+// Ten gigabytes from half a megabyte.
 TEST(many_primitives_of_one_large_accessor_are_bounded)
 {
     enum { VERTICES = 30000, PRIMITIVES = 4000 };

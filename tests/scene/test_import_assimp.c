@@ -1,4 +1,4 @@
-// OBJ, PLY, X and FBX files, written here as text.
+// Import of OBJ, PLY, X and FBX files.
 #include "scene/gltf_maker.h"
 
 #include "scene/pose.h"
@@ -33,7 +33,7 @@ TEST(obj_faces_become_triangles_with_their_material)
     CHECK_NEAR(mesh->bounds.max.y, 3.0, 1e-6);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         CHECK_NEAR(mesh->normals[v].z, 1.0, 1e-6);
-        // v grows downwards: the vertex at the bottom has v = 1.
+        // v grows downwards: the bottom vertex has v = 1.
         CHECK_NEAR(mesh->uv[0][v].y, 1.0 - (double)(mesh->positions[v].y / 3.0f), 1e-6);
     }
     scene_destroy(scene);
@@ -47,7 +47,7 @@ TEST(an_obj_without_its_materials_still_loads)
     scene_destroy(scene);
 }
 
-TEST(a_texture_that_is_not_there_is_named_and_left_out)
+TEST(a_missing_texture_is_noted_and_ignored)
 {
     const char mtl[] = "newmtl red\nmap_Kd nowhere.png\n";
     write_bytes("made.mtl", mtl, sizeof mtl - 1);
@@ -129,7 +129,7 @@ TEST(x_frames_and_their_animation_are_read)
     scene_destroy(scene);
 }
 
-TEST(blocks_nested_too_deep_are_refused)
+TEST(too_deeply_nested_blocks_are_refused)
 {
     static char text[40000] = "xof 0303txt 0032\n";
     for (int i = 0; i < 3000; i++) strcat(text, "Frame a {\n");
@@ -169,8 +169,8 @@ static void *counting_reallocate(void *user, void *old, size_t bytes)
     return NULL;
 }
 
-// Assimp leaks where its parsers throw; what we give it must still come back.
-static void check_cuts(const char *name, const void *bytes, size_t size)
+// Assimp leaks when its parsers throw, but memory of our host functions must be freed.
+static void check_truncations(const char *name, const void *bytes, size_t size)
 {
     int blocks = 0;
     struct host host = host_default();
@@ -186,24 +186,24 @@ static void check_cuts(const char *name, const void *bytes, size_t size)
     }
 }
 
-TEST(an_obj_cut_at_any_length_is_read_or_refused)
+TEST(an_obj_truncated_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.obj", cube_corner, strlen(cube_corner));
+    check_truncations("cut.obj", cube_corner, strlen(cube_corner));
 }
 
-TEST(a_ply_cut_at_any_length_is_read_or_refused)
+TEST(a_ply_truncated_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.ply", ply, strlen(ply));
+    check_truncations("cut.ply", ply, strlen(ply));
 }
 
-TEST(an_x_file_cut_at_any_length_is_read_or_refused)
+TEST(an_x_file_truncated_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.x", x_file, strlen(x_file));
+    check_truncations("cut.x", x_file, strlen(x_file));
 }
 
-TEST(an_fbx_cut_at_any_length_is_read_or_refused)
+TEST(an_fbx_truncated_at_any_length_is_read_or_refused)
 {
-    check_cuts("cut.fbx", fbx, strlen(fbx));
+    check_truncations("cut.fbx", fbx, strlen(fbx));
 }
 
 // --- Binary FBX, version 7400: records of end offset, property count, property bytes, name,
@@ -226,8 +226,8 @@ static void put_u32(struct fbx_writer *w, size_t value)
     put(w, &u32, 4);
 }
 
-// "I" and "L" numbers of 32 and 64 bits, "S" a text, "d" and "i" arrays: one letter for each
-// argument.
+// `types` has one letter per argument: "I" and "L" integers of 32 and 64 bits, "S" a string, "d"
+// and "i" arrays.
 static size_t begin_record(struct fbx_writer *w, const char *name, const char *types, ...)
 {
     size_t start = w->size, name_size = strlen(name);
@@ -313,13 +313,13 @@ TEST(a_binary_fbx_is_read)
     scene_destroy(scene);
 }
 
-TEST(a_binary_fbx_cut_at_any_length_is_read_or_refused)
+TEST(a_binary_fbx_truncated_at_any_length_is_read_or_refused)
 {
     struct fbx_writer w = binary_fbx();
-    check_cuts("cut.fbx", w.bytes, w.size);
+    check_truncations("cut.fbx", w.bytes, w.size);
 }
 
-TEST(a_binary_fbx_that_states_huge_arrays_or_bad_ends_is_refused)
+TEST(a_binary_fbx_with_huge_arrays_or_invalid_ends_is_refused)
 {
     struct fbx_writer w = binary_fbx();
     const uint8_t *vertices = memmem(w.bytes, w.size, "Verticesd", 9);
@@ -337,7 +337,7 @@ TEST(a_binary_fbx_that_states_huge_arrays_or_bad_ends_is_refused)
     CHECK(strstr(test_last_message(), "damaged"));
 }
 
-TEST(unknown_kinds_of_file_are_refused)
+TEST(unknown_file_extensions_are_refused)
 {
     CHECK(!load_text("made.blend", "anything"));
     CHECK(strstr(test_last_message(), "unknown kind"));

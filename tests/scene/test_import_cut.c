@@ -1,5 +1,4 @@
-// Damaged files: whatever is cut off or overwritten, the answer is a scene that holds together or
-// one refusal.
+// Damaged files: truncated or overwritten files are refused or give a valid scene.
 #include "scene/gltf_maker.h"
 
 #include "scene/pose.h"
@@ -42,7 +41,7 @@ static struct everything contents(void)
     return e;
 }
 
-// A file with one of each thing that is read.
+// A file with one object of each supported kind.
 static uint8_t *make_everything(size_t *size)
 {
     static const char format[] =
@@ -93,7 +92,7 @@ static uint8_t *make_everything(size_t *size)
     return make_glb(json, &e, sizeof e, size);
 }
 
-// Loads what the bytes make; a scene that comes out is posed, so that every array is read.
+// Loads the bytes; poses the scene if there is one, so that every array is read.
 static bool try_bytes(const char *name, const uint8_t *bytes, size_t size)
 {
     write_bytes(name, bytes, size);
@@ -119,7 +118,7 @@ static bool try_bytes(const char *name, const uint8_t *bytes, size_t size)
     return true;
 }
 
-TEST(the_undamaged_file_has_everything)
+TEST(the_undamaged_file_has_every_feature)
 {
     size_t size;
     uint8_t *glb = make_everything(&size);
@@ -134,7 +133,7 @@ TEST(the_undamaged_file_has_everything)
     free(glb);
 }
 
-TEST(a_glb_cut_at_any_length_is_refused)
+TEST(a_glb_truncated_at_any_length_is_refused)
 {
     size_t size;
     uint8_t *glb = make_everything(&size);
@@ -142,8 +141,7 @@ TEST(a_glb_cut_at_any_length_is_refused)
     free(glb);
 }
 
-// As before, with the lengths in the headers corrected, so that the cut reaches the JSON and the
-// buffer.
+// The lengths in the headers are corrected, so that the JSON and the buffer are truncated.
 TEST(a_glb_with_shortened_chunks_is_read_or_refused)
 {
     size_t size;
@@ -191,7 +189,7 @@ TEST(a_glb_with_changed_bytes_is_read_or_refused)
         for (uint32_t k = 0; k <= next_random(&seed) % 3; k++) {
             bool in_json = next_random(&seed) % 3 != 0;
             size_t at = in_json ? 20 + next_random(&seed) % json_size : next_random(&seed) % size;
-            // A digit is worth more than a broken brace.
+            // Prefers digits: a broken brace only tests the JSON parser.
             while (in_json && next_random(&seed) % 8 != 0 && (copy[at] < '0' || copy[at] > '9')) {
                 at = 20 + next_random(&seed) % json_size;
             }
@@ -200,7 +198,7 @@ TEST(a_glb_with_changed_bytes_is_read_or_refused)
         }
         loaded += try_bytes("changed.glb", copy, size);
     }
-    CHECK(loaded > rounds / 50 && loaded < rounds); // the damage is neither nothing nor everything
+    CHECK(loaded > rounds / 50 && loaded < rounds); // some damage is harmless, some is refused
     free(copy);
     free(glb);
 }

@@ -1,5 +1,5 @@
-// Real files: each loads as the folder of test scenes describes it, or is refused with a message
-// that names the cause.
+// Files of the test scene folder: each loads with its documented contents, or is refused with a
+// message that names the cause.
 #include "framework/test.h"
 
 #include "scene/pose.h"
@@ -147,7 +147,7 @@ static const struct expected scenes[] = {
 
 struct odd {
     const char *file;
-    size_t triangles; // SIZE_MAX: to be refused
+    size_t triangles; // SIZE_MAX: refused
     const char *message;
 };
 
@@ -166,7 +166,7 @@ static const struct odd odd[] = {
     { "index-out-of-range/index_buffer_oob.gltf", SIZE_MAX, "index" },
     { "node-loop.gltf", SIZE_MAX, "child" },
     { "missing-buffer.gltf", SIZE_MAX, "not_found.bin" },
-    { "truncated.glb", SIZE_MAX, "cut off" },
+    { "truncated.glb", SIZE_MAX, "47 bytes of the 48" },
     { "version-1.gltf", SIZE_MAX, "1.0" },
     { "draco-required.glb", SIZE_MAX, "KHR_draco_mesh_compression" },
     { "draco-not-required/BoxDraco.gltf", SIZE_MAX, "KHR_draco_mesh_compression" },
@@ -180,7 +180,7 @@ static struct scene *load(const char *file)
     return scene_load(test_host(), test_scene_path(file));
 }
 
-// Of all instances where their nodes put them; skins are ignored.
+// Bounds of all instances transformed by their nodes, without skinning.
 static struct box3 node_bounds(const struct scene *scene)
 {
     struct scene_pose pose;
@@ -213,7 +213,7 @@ static void check_mesh(const struct scene *scene, const struct mesh *mesh)
     if (map->image >= 0 && mesh->uv[map->uv_set]) CHECK(mesh->tangents);
 }
 
-TEST(real_scenes_have_their_described_triangles_bounds_and_parts)
+TEST(files_have_their_documented_triangles_bounds_and_contents)
 {
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         const struct expected *want = &scenes[i];
@@ -254,9 +254,9 @@ TEST(odd_files_load_or_are_refused_with_the_cause)
     }
 }
 
-// The Khronos Sponza's tangents have w = -1 where the mapping is not mirrored: its normal maps
-// point along +v.
-TEST(given_tangents_keep_their_handedness)
+// The tangents of the Khronos Sponza have w = -1 for unmirrored mapping: its normal maps point
+// along +v.
+TEST(tangents_of_the_file_keep_their_handedness)
 {
     struct scene *scene = load("sponza.glb");
     CHECK(scene);
@@ -280,7 +280,7 @@ TEST(light_units_are_those_of_the_file)
     scene_destroy(scene);
     scene = load("window-sun-light.glb");
     CHECK(scene && scene->lights[0].type == LIGHT_SUN);
-    CHECK_NEAR(scene->lights[0].intensity.x, 68300.0, 100.0); // the colour's red is 1
+    CHECK_NEAR(scene->lights[0].intensity.x, 68300.0, 100.0); // red is 1
     scene_destroy(scene);
     scene = load("cornell-box-emissive.glb");
     CHECK(scene && scene_has_emission(scene));
@@ -307,7 +307,7 @@ TEST(mirrored_nodes_keep_their_transform)
     scene_destroy(scene);
 }
 
-TEST(masked_materials_are_marked)
+TEST(masked_materials_have_alpha_mode_mask)
 {
     struct scene *scene = load("sponza.glb");
     CHECK(scene);

@@ -1,18 +1,16 @@
-// Scene files.
+// Chooses an importer by file extension: glTF 2.0 is read from its JSON and accessors (gltf/), PLY
+// by ply.c, OBJ, FBX and X through Assimp's C API (assimp/).
 //
-// glTF 2.0 is read from its JSON and accessors (gltf/), PLY by ply.c; OBJ, FBX and X go through
-// Assimp's C API (assimp/). Assimp reads glTF too, but what its scene
-// structure cannot hold is what this library needs, and a second reading of the JSON could not be
-// matched to its result:
+// Assimp reads glTF too, but loses data, and its result cannot be matched to the JSON afterwards:
 //
-// - its bones and animation channels refer to nodes by name, which glTF requires to be neither
-//   present nor unique, and its order of nodes and meshes is its own;
-// - its animation keys are linear: step and cubic interpolation are lost;
-// - its lights have no range, and no way to tell candela from lux;
-// - it trusts its input more than we may: index values, node loops, sparse accessors.
+// - bones and animation channels refer to nodes by name; glTF names are optional and not unique,
+// and
+//   the order of nodes and meshes differs from the file's;
+// - all animation keys are linear: step and cubic interpolation are lost;
+// - lights have no range, and candela cannot be distinguished from lux;
+// - input is not fully validated: indices, node cycles, sparse accessors.
 //
-// Accessors with our own bounds checks are less code than that repair, and all of it is tested with
-// hostile files.
+// A reader with bounds checks is less code than working around this.
 #include "scene/import/import.h"
 
 #include "scene/import/importers.h"
@@ -38,7 +36,7 @@ static bool dispatch(struct import *import, const struct file_bytes *bytes)
         }
     }
     return host_fail(import->host, FAIL_UNSUPPORTED,
-                     "%s: unknown kind of scene file; glTF, GLB, OBJ, PLY, FBX and X are read",
+                     "%s: unknown kind of scene file; use glTF, GLB, OBJ, PLY, FBX or X",
                      import->path);
 }
 

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const size_t ALLOWANCE_BYTES = (size_t)256 << 20; // that any file may spend
-static const size_t BYTES_PER_SOURCE_BYTE =
-    64; // an 8-bit index becomes a flat-shaded vertex with tangent
+static const size_t ALLOWANCE_BYTES = (size_t)256 << 20; // budget of an empty file
+// An 8-bit index becomes a flat-shaded vertex with tangent.
+static const size_t BYTES_PER_SOURCE_BYTE = 64;
 
 bool import_charge(struct import *import, size_t count, size_t size)
 {
@@ -18,7 +18,7 @@ bool import_charge(struct import *import, size_t count, size_t size)
     }
     if (!size_mul(count, size, &bytes) || bytes > limit - import->spent) {
         return host_fail(import->host, FAIL_MEMORY,
-                         "%s: asks for more memory than its %zu bytes justify", import->path,
+                         "%s: needs more memory than its %zu bytes justify", import->path,
                          import->source_bytes);
     }
     import->spent += bytes;
@@ -31,7 +31,7 @@ void *import_alloc(struct import *import, size_t count, size_t size)
     return arena_alloc(&import->scene->arena, count, size);
 }
 
-// Names and paths end up on terminals, where control characters are commands.
+// Names and paths are printed on terminals, which interpret control characters.
 static void replace_controls(char *text)
 {
     for (char *c = text; *c; c++)
@@ -82,7 +82,7 @@ void import_log_notes(struct import *import)
             snprintf(list + length, sizeof list - length, "%s%s", i ? ", " : "", import->notes[i]);
         length += (size_t)n;
     }
-    host_log(import->host, LOG_WARNING, "%s: left out: %s", import->path, list);
+    host_log(import->host, LOG_WARNING, "%s: ignored: %s", import->path, list);
 }
 
 static int hex_digit(char c)
@@ -93,7 +93,7 @@ static int hex_digit(char c)
     return -1;
 }
 
-// In place. False where an escape is broken or hides a zero byte.
+// In place. False for an incomplete escape or an escaped zero byte.
 static bool percent_decode(char *text)
 {
     char *to = text;
@@ -112,7 +112,7 @@ static bool percent_decode(char *text)
     return true;
 }
 
-// Appends the segments of `uri` to `out`, which has room for them. False for what is refused.
+// Appends the segments of `uri` to `out`, which is long enough. False for refused paths.
 static bool append_segments(char *out, const char *uri)
 {
     if (uri[0] == '/' || uri[0] == '\\' || !uri[0]) return false;
@@ -156,8 +156,8 @@ char *import_resolve(struct import *import, const char *uri)
     char *path = import_resolve_quietly(import, uri, true);
     if (!path) {
         host_fail(import->host, FAIL_FORMAT,
-                  "%s: refers to \"%s\": only relative paths without \"..\" are read", import->path,
-                  import_printable(uri).s);
+                  "%s: refers to \"%s\": only relative paths without \"..\" are allowed",
+                  import->path, import_printable(uri).s);
     }
     return path;
 }

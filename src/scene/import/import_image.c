@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-// Pixels may be many times larger than their encoding (a white 4096² PNG has 80 kB), so images have
-// a budget apart.
+// Images have a budget of their own: decoded pixels can be much larger than the file (a white 4096²
+// PNG has 80 kB).
 static const size_t IMAGE_ALLOWANCE_BYTES = (size_t)1 << 30;
 static const size_t IMAGE_BYTES_PER_SOURCE_BYTE = 64;
 
@@ -37,11 +37,11 @@ static const char *find_size(struct job *job)
     if (source->jpeg_and_png_only && kind != IMAGE_JPEG && kind != IMAGE_PNG) {
         return "neither JPEG nor PNG";
     }
-    if (kind == IMAGE_UNKNOWN && !source->is_tga) return "none of JPEG, PNG, BMP, TGA";
+    if (kind == IMAGE_UNKNOWN && !source->is_tga) return "neither JPEG, PNG, BMP nor TGA";
     return image_decode_size(source->data, source->size, &job->width, &job->height);
 }
 
-// Sizes first, so that the memory of all is known before any is decoded.
+// Reads all sizes first, so that the total memory is known before any image is decoded.
 static bool prepare(struct import *import, const struct image_source *sources, int count,
                     struct job *jobs)
 {

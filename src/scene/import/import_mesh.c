@@ -1,5 +1,4 @@
-// The last step of every imported mesh: only the vertices in use, finite, with normals, tangents
-// and bounds.
+// Validation and completion of imported meshes.
 #include "scene/import/import_mesh.h"
 
 #include "scene/mesh_geometry.h"
@@ -7,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// Bytes of one vertex with everything, for the budget.
+// Bytes of a vertex with all attributes, for the budget.
 static size_t vertex_bytes(const struct mesh *mesh)
 {
     return 2 * sizeof(vec3s) + 3 * sizeof(vec4s) + 2 * sizeof(vec2s) + 4 * sizeof(uint16_t) +
@@ -25,14 +24,13 @@ bool import_check_indices(struct import *import, const struct mesh *mesh, uint32
         if (index > *high) *high = index;
     }
     if (*high >= mesh->vertex_count) {
-        return host_fail(import->host, FAIL_FORMAT, "%s: mesh %s: index %u beyond its %u vertices",
+        return host_fail(import->host, FAIL_FORMAT, "%s: mesh %s: index %u exceeds its %u vertices",
                          import->path, import_printable(mesh->name).s, *high, mesh->vertex_count);
     }
     return true;
 }
 
-// Several primitives may share one large vertex buffer: each mesh keeps only what its triangles
-// use.
+// Primitives may share one large vertex buffer: each mesh keeps only the vertices of its triangles.
 static bool drop_unused_vertices(struct import *import, struct mesh *mesh)
 {
     uint32_t low, high, used = 0;
@@ -101,7 +99,7 @@ static bool has_length(vec3s v)
     return squared > 0.0f && isfinite(squared);
 }
 
-// Normals of length one; those of length zero take the plane of the last triangle that uses them.
+// Normalises normals; a normal of length zero becomes that of the last triangle that uses it.
 static bool unit_normals(struct import *import, struct mesh *mesh)
 {
     vec3s *normals = import_alloc(import, mesh->vertex_count, sizeof *normals);
@@ -127,8 +125,8 @@ static bool unit_normals(struct import *import, struct mesh *mesh)
     return true;
 }
 
-// Given tangents made orthogonal to the normal, w = ±1; exporters write NaN and zero where texture
-// coordinates degenerate, and any direction does there.
+// Makes the file's tangents orthogonal to the normal, w = ±1. Exporters write NaN or zero where
+// texture coordinates are degenerate; an arbitrary tangent replaces those.
 static bool unit_tangents(struct import *import, struct mesh *mesh)
 {
     vec4s *tangents = import_alloc(import, mesh->vertex_count, sizeof *tangents);

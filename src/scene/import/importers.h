@@ -3,7 +3,7 @@
 
 #include "scene/import/import_context.h"
 
-// Importers: fill import->scene from the file's bytes.
+// Each fills import->scene from the bytes of the file.
 bool import_gltf(struct import *import, const struct file_bytes *bytes);
 bool import_ply(struct import *import, const struct file_bytes *bytes);
 bool import_assimp(struct import *import, const struct file_bytes *bytes, const char *extension);

@@ -1,7 +1,6 @@
 // PLY files (Turk 1994, "The PLY Polygon File Format"): ASCII and both binary byte orders, vertices
-// with normals, colours and texture coordinates, faces of any number of corners. Read here and not
-// through Assimp, which does not end on a header without its last line and allocates list lengths
-// before it looks whether the file can hold them.
+// with normals, colours and texture coordinates, polygons. Not read through Assimp, which loops
+// forever on a header without end_header and allocates lists before it checks their length.
 #include "scene/import/importers.h"
 
 #include "scene/import/import_mesh.h"
@@ -38,10 +37,10 @@ struct ply {
     struct ply_element elements[MAX_ELEMENTS];
     int element_count;
     struct mesh mesh;
-    bool broken; // a value was missing
+    bool broken; // a value was missing or invalid
 };
 
-// What a vertex property feeds: an array and its component.
+// The vertex attribute that a property belongs to.
 enum ply_target { TO_NOTHING, TO_POSITION, TO_NORMAL, TO_UV, TO_COLOR };
 
 static bool wrong(struct ply *ply, const char *why)
@@ -54,9 +53,9 @@ static bool is_space(char c)
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-// --- The header.
+// --- Header
 
-// The next line without its end; false at the end of the file.
+// The next line without its line end; false at the end of the file.
 static bool next_line(struct ply *ply, char line[256])
 {
     size_t start = ply->at, n = 0;
@@ -108,7 +107,8 @@ static bool add_property(struct ply *ply, const char *line)
     char type[NAME_SIZE], count_type[NAME_SIZE];
     if (sscanf(line, "property list %31s %31s %31s", count_type, type, property.name) == 3) {
         property.count_type = type_of(count_type);
-        if (property.count_type >= PLY_F32) return wrong(ply, "a list whose length is no integer");
+        if (property.count_type >= PLY_F32)
+            return wrong(ply, "a list whose length is not an integer");
     } else if (sscanf(line, "property %31s %31s", type, property.name) != 2) {
         return wrong(ply, "a property without a type or a name");
     }
@@ -129,7 +129,7 @@ static bool starts_with(const char *line, const char *word)
 static bool read_header(struct ply *ply)
 {
     char line[256];
-    if (!next_line(ply, line) || strcmp(line, "ply") != 0) return wrong(ply, "no PLY file");
+    if (!next_line(ply, line) || strcmp(line, "ply") != 0) return wrong(ply, "not a PLY file");
     bool has_format = false;
     while (next_line(ply, line)) {
         if (starts_with(line, "format ")) {
@@ -141,26 +141,26 @@ static bool read_header(struct ply *ply)
             else if (starts_with(line, "format binary_big_endian"))
                 ply->format = PLY_BIG;
             else
-                return wrong(ply, "an unknown format");
+                return wrong(ply, "unknown format");
         } else if (starts_with(line, "element ")) {
             if (!add_element(ply, line)) return false;
         } else if (starts_with(line, "property ")) {
             if (!add_property(ply, line)) return false;
         } else if (strcmp(line, "end_header") == 0) {
-            return has_format || wrong(ply, "no format");
+            return has_format || wrong(ply, "the header has no format");
         }
     }
-    return wrong(ply, "its header does not end");
+    return wrong(ply, "the header has no end_header");
 }
 
-// --- Values.
+// --- Values
 
 static bool is_digit(char c)
 {
     return c >= '0' && c <= '9';
 }
 
-// A decimal number, whatever the locale. Ends at the zero byte after the file at the latest.
+// A decimal number, independent of the locale. Stops at the zero byte after the file at the latest.
 static double ascii_value(struct ply *ply)
 {
     const char *c = ply->data + ply->at, *end = ply->data + ply->size;
@@ -226,7 +226,7 @@ static double next_value(struct ply *ply, enum ply_type type)
     return ply->format == PLY_ASCII ? ascii_value(ply) : binary_value(ply, type);
 }
 
-// The length of a list; every element of it takes at least a byte.
+// The length of a list; each element takes at least a byte.
 static size_t list_length(struct ply *ply, const struct ply_property *property)
 {
     double length = next_value(ply, property->count_type);
@@ -241,7 +241,7 @@ static void skip_property(struct ply *ply, const struct ply_property *property)
     for (size_t i = 0; i < count && !ply->broken; i++) next_value(ply, property->type);
 }
 
-// --- Vertices and faces.
+// --- Vertices and faces
 
 static enum ply_target target_of(const struct ply_property *property, int *component)
 {
@@ -275,9 +275,9 @@ static bool allocate_vertices(struct ply *ply, const struct ply_element *element
         has[target_of(&element->properties[i], &component)] = true;
     }
     if (mesh->positions || !has[TO_POSITION])
-        return wrong(ply, "not one list of vertices with x, y, z");
+        return wrong(ply, "needs exactly one list of vertices with x, y, z");
     size_t count = element->count;
-    if (count > ply->size - ply->at) return wrong(ply, "is shorter than its vertices");
+    if (count > ply->size - ply->at) return wrong(ply, "is shorter than its vertex data");
     mesh->vertex_count = (uint32_t)count;
     mesh->positions = import_alloc(ply->import, count, sizeof *mesh->positions);
     if (has[TO_NORMAL]) mesh->normals = import_alloc(ply->import, count, sizeof *mesh->normals);
@@ -287,7 +287,7 @@ static bool allocate_vertices(struct ply *ply, const struct ply_element *element
            (mesh->colors || !has[TO_COLOR]);
 }
 
-// Colours of a PLY file are display values, encoded with the sRGB curve; alpha is linear.
+// Colours of a PLY file are sRGB-encoded; alpha is linear.
 static float color_of(double value, enum ply_type type, int component)
 {
     double scale = type == PLY_U8 ? 255.0 : type == PLY_U16 ? 65535.0 : 1.0;
@@ -324,11 +324,11 @@ static bool read_vertices(struct ply *ply, const struct ply_element *element)
 {
     if (!allocate_vertices(ply, element)) return false;
     for (size_t v = 0; v < element->count && !ply->broken; v++) read_vertex(ply, element, v);
-    return !ply->broken || wrong(ply, "is cut off, or a value is no number, among the vertices");
+    return !ply->broken || wrong(ply, "vertex data is truncated, or a value is not a number");
 }
 
-// Corners as a fan of triangles, appended to the indices. *room: of indices.
-static bool read_fan(struct ply *ply, const struct ply_property *property, size_t *room)
+// Appends a polygon as a triangle fan to the indices, whose allocated length is *capacity.
+static bool read_fan(struct ply *ply, const struct ply_property *property, size_t *capacity)
 {
     struct mesh *mesh = &ply->mesh;
     size_t corners = list_length(ply, property);
@@ -336,16 +336,16 @@ static bool read_fan(struct ply *ply, const struct ply_property *property, size_
     for (size_t k = 0; k < corners && !ply->broken; k++) {
         double value = next_value(ply, property->type);
         if (!(value >= 0.0 && value < (double)UINT32_MAX))
-            return wrong(ply, "a corner is no index");
+            return wrong(ply, "a face index is not a whole number");
         uint32_t corner = (uint32_t)value;
-        if (k >= 2 && mesh->index_count + 3u > *room) {
-            size_t grown = *room < 1024 ? 1024 : 2 * *room;
+        if (k >= 2 && mesh->index_count + 3u > *capacity) {
+            size_t grown = *capacity < 1024 ? 1024 : 2 * *capacity;
             if (grown > UINT32_MAX - 3) return wrong(ply, "too many triangles");
             uint32_t *more = import_alloc(ply->import, grown, sizeof *more);
             if (!more) return false;
             if (mesh->indices) memcpy(more, mesh->indices, mesh->index_count * sizeof *more);
             mesh->indices = more;
-            *room = grown;
+            *capacity = grown;
         }
         if (k >= 2) {
             uint32_t *triangle = mesh->indices + mesh->index_count;
@@ -362,7 +362,7 @@ static bool read_fan(struct ply *ply, const struct ply_property *property, size_
 
 static bool read_faces(struct ply *ply, const struct ply_element *element)
 {
-    size_t room = 0;
+    size_t capacity = 0;
     for (size_t f = 0; f < element->count && !ply->broken; f++) {
         for (int i = 0; i < element->property_count; i++) {
             const struct ply_property *property = &element->properties[i];
@@ -371,18 +371,18 @@ static bool read_faces(struct ply *ply, const struct ply_element *element)
                             strcmp(property->name, "vertex_index") == 0);
             if (!corners)
                 skip_property(ply, property);
-            else if (!read_fan(ply, property, &room))
+            else if (!read_fan(ply, property, &capacity))
                 return false;
         }
     }
-    return !ply->broken || wrong(ply, "is cut off, or a value is no number, among the faces");
+    return !ply->broken || wrong(ply, "face data is truncated, or a value is not a number");
 }
 
 static bool read_elements(struct ply *ply)
 {
     for (int e = 0; e < ply->element_count; e++) {
         const struct ply_element *element = &ply->elements[e];
-        // Nothing is read for an element without properties, however many there are.
+        // Elements without properties have no data, whatever their count.
         if (element->property_count == 0) continue;
         if (strcmp(element->name, "vertex") == 0) {
             if (!read_vertices(ply, element)) return false;
@@ -397,7 +397,7 @@ static bool read_elements(struct ply *ply)
                     skip_property(ply, &element->properties[k]);
                 }
             }
-            if (ply->broken) return wrong(ply, "is cut off");
+            if (ply->broken) return wrong(ply, "is truncated");
         }
     }
     return true;

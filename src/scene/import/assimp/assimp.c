@@ -1,6 +1,6 @@
-// Scene files through Assimp's C API: the file and what it refers to come from our own file
-// functions, the result is copied into the scene. Lights and cameras of these formats have no
-// physical units; they are left out.
+// Imports OBJ, FBX and X through Assimp's C API: files are read by our file functions, the result
+// is copied into the scene. Lights and cameras are ignored, because these formats have no physical
+// units.
 #include "scene/import/assimp/assimp.h"
 
 #include "scene/import/importers.h"
@@ -15,8 +15,8 @@ static const struct aiScene *read_scene(struct import *import, const struct file
 {
     struct assimp_files files = { import, bytes };
     struct aiFileIO io = assimp_file_io(&files);
-    // v grows downwards in our texture coordinates. FBX has a unit of its own; scaled, it is
-    // metres.
+    // v grows downwards in our texture coordinates. FBX files state their unit; GlobalScale
+    // converts it to metres.
     unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType |
                      aiProcess_JoinIdenticalVertices | aiProcess_LimitBoneWeights |
                      aiProcess_ValidateDataStructure | aiProcess_FlipUVs;

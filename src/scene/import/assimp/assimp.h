@@ -1,4 +1,4 @@
-// OBJ, FBX and X through Assimp. Internal to src/scene.
+// The state of an import of OBJ, FBX or X through Assimp. Internal to src/scene/import/assimp.
 #pragma once
 
 #include "scene/import/import_context.h"
@@ -9,16 +9,16 @@
 struct assimp {
     struct import *import;
     const struct aiScene *from;
-    const struct aiNode **nodes; // in the scene's order, parents first
-    int *mesh_of;                // aiMesh → scene mesh, -1: no triangles
+    const struct aiNode **nodes; // in the order of the scene's nodes, parents first
+    int *mesh_of;                // aiMesh → scene mesh, -1 without triangles
     int *skin_of;                // aiMesh → skin, -1
 };
 
-// Refuses what Assimp would follow into a stack overflow or gigabytes.
+// Refuses files on which Assimp would overflow the stack or allocate gigabytes.
 bool assimp_check_input(struct import *import, const struct file_bytes *bytes,
                         const char *extension);
 
-// The imported file in memory, for assimp_file_io.
+// File access for Assimp: the imported file from memory, others from its folder only.
 struct assimp_files {
     struct import *import;
     const struct file_bytes *main;

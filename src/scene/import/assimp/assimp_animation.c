@@ -17,7 +17,7 @@ static bool load_skin(struct assimp *assimp, const struct aiMesh *from, struct s
         const struct aiBone *bone = from->mBones[b];
         skin->joints[b] = assimp_find_node(assimp, &bone->mName);
         if (skin->joints[b] < 0) {
-            return host_fail(import->host, FAIL_FORMAT, "%s: bone %s is no node", import->path,
+            return host_fail(import->host, FAIL_FORMAT, "%s: bone %s is not a node", import->path,
                              import_printable(bone->mName.data).s);
         }
         skin->joint_from_mesh[b] = assimp_matrix(&bone->mOffsetMatrix);
@@ -54,7 +54,7 @@ static bool channel_init(struct import *import, struct animation_channel *channe
     return channel->times_s && channel->values;
 }
 
-// Keeps keys that are finite and later than the one before.
+// Adds the key if it is finite and later than the previous one.
 static void add_key(struct animation_channel *channel, double time_s, const float *value)
 {
     int n = channel->key_count;
@@ -67,7 +67,7 @@ static void add_key(struct animation_channel *channel, double time_s, const floa
     channel->key_count++;
 }
 
-static void keep(struct animation *animation, const struct animation_channel *channel)
+static void add_channel(struct animation *animation, const struct animation_channel *channel)
 {
     if (channel->key_count == 0) return;
     float end = channel->times_s[channel->key_count - 1];
@@ -85,7 +85,7 @@ static bool load_vectors(struct import *import, struct animation *animation, int
         float value[3] = { keys[i].mValue.x, keys[i].mValue.y, keys[i].mValue.z };
         add_key(&channel, keys[i].mTime / ticks, value);
     }
-    keep(animation, &channel);
+    add_channel(animation, &channel);
     return true;
 }
 
@@ -102,11 +102,11 @@ static bool load_rotations(struct import *import, struct animation *animation, i
         float value[4] = { q->x / length, q->y / length, q->z / length, q->w / length };
         add_key(&channel, from->mRotationKeys[i].mTime / ticks, value);
     }
-    keep(animation, &channel);
+    add_channel(animation, &channel);
     return true;
 }
 
-// An animated node needs its rest transform in parts, for the keys to replace.
+// Decomposes the rest transform of an animated node: keys replace its parts.
 static void decompose_node(struct assimp *assimp, int node)
 {
     struct node *to = &assimp->import->scene->nodes[node];
@@ -133,7 +133,7 @@ static bool load_animation(struct assimp *assimp, unsigned i)
     animation->channels = import_alloc(import, from->mNumChannels, 3 * sizeof *animation->channels);
     if (!animation->name || !animation->channels) return false;
     if (from->mNumMeshChannels + from->mNumMorphMeshChannels > 0) {
-        import_note(import, "animation of vertices");
+        import_note(import, "vertex animation");
     }
     for (unsigned c = 0; c < from->mNumChannels; c++) {
         const struct aiNodeAnim *channel = from->mChannels[c];

@@ -1,5 +1,5 @@
-// What we look at before Assimp does. Its readers of X and FBX follow nested blocks by recursion
-// and allocate the array lengths that a file states; both are bounded here.
+// Checks before Assimp reads a file. Its readers of X and FBX recurse into nested blocks and
+// allocate the array lengths that a file states; both are bounded here.
 #include "scene/import/assimp/assimp.h"
 
 #include <string.h>
@@ -46,7 +46,7 @@ static bool fbx_cut(struct fbx_cursor *c)
                      c->import->path, c->at);
 }
 
-// One property; arrays count against what the file may spend.
+// One property; arrays are charged to the memory budget.
 static bool fbx_property(struct fbx_cursor *c)
 {
     static const struct {
@@ -76,7 +76,7 @@ static bool fbx_property(struct fbx_cursor *c)
     return true;
 }
 
-// The header of a record and its properties; *end is 0 for the null record that ends a list.
+// The header of a record and its properties; *end is 0 for the null record at the end of a list.
 static bool fbx_record(struct fbx_cursor *c, uint64_t *end)
 {
     int word = c->wide ? 8 : 4;
@@ -131,11 +131,12 @@ bool assimp_check_input(struct import *import, const struct file_bytes *bytes,
     }
     if (strcmp(extension, "x") != 0) return true;
     if (bytes->size < 16 || memcmp(bytes->data, "xof ", 4) != 0) {
-        return host_fail(import->host, FAIL_FORMAT, "%s: no X file", import->path);
+        return host_fail(import->host, FAIL_FORMAT, "%s: not an X file", import->path);
     }
     if (memcmp(bytes->data + 8, "txt ", 4) != 0) {
         return host_fail(import->host, FAIL_UNSUPPORTED,
-                         "%s: binary and compressed X files are not read, only text", import->path);
+                         "%s: binary and compressed X files are not supported; save it as text",
+                         import->path);
     }
     return check_braces(import, bytes);
 }

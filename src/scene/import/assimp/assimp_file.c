@@ -45,7 +45,7 @@ static aiReturn file_seek_proc(struct aiFile *file, size_t offset, enum aiOrigin
 {
     struct open_file *open = (struct open_file *)file->UserData;
     size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? open->at : open->size;
-    // Offsets from the end count backwards in some of Assimp's readers and forwards in others.
+    // Backwards from the end: Assimp's readers disagree about the sign of such offsets.
     if (origin == aiOrigin_END) {
         if (offset > open->size) return aiReturn_FAILURE;
         open->at = open->size - offset;
@@ -61,7 +61,7 @@ static void file_flush_proc(struct aiFile *file)
     (void)file;
 }
 
-// What stands after the folder of the imported file; NULL when the name is not in that folder.
+// The part of a name after the folder of the imported file; NULL if it is not in that folder.
 static const char *name_in_folder(const struct import *import, const char *name)
 {
     const char *slash = strrchr(import->path, '/');

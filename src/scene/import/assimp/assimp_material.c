@@ -1,4 +1,4 @@
-// Materials and textures of the formats before glTF, as metallic-roughness.
+// Phong materials and textures of OBJ, FBX and X, converted to metallic-roughness.
 #include "scene/import/assimp/assimp.h"
 
 #include "scene/import/import_image.h"
@@ -12,12 +12,12 @@
 #include <string.h>
 #include <unistd.h>
 
-struct textures { // the distinct images that the materials name
+struct textures { // the distinct images of all materials
     char (*paths)[1024];
     struct image_source *sources;
     void **owned;
     int *scene_image;
-    int count, room;
+    int count, capacity;
 };
 
 static enum texture_wrap wrap_of(const struct aiMaterial *material, const char *key,
@@ -29,7 +29,7 @@ static enum texture_wrap wrap_of(const struct aiMaterial *material, const char *
     return mode == aiTextureMapMode_Wrap ? WRAP_REPEAT : WRAP_CLAMP;
 }
 
-// image: a number in `textures` until they are loaded.
+// The image index is that in `textures` until load_textures replaces it.
 static struct texture_use use_of(struct import *import, struct textures *textures,
                                  const struct aiMaterial *material, enum aiTextureType type)
 {
@@ -47,7 +47,7 @@ static struct texture_use use_of(struct import *import, struct textures *texture
     }
     int i = 0;
     while (i < textures->count && strcmp(textures->paths[i], path.data) != 0) i++;
-    if (i == textures->room) return use;
+    if (i == textures->capacity) return use;
     if (i == textures->count) {
         snprintf(textures->paths[textures->count++], sizeof *textures->paths, "%s", path.data);
     }
@@ -82,9 +82,8 @@ static float clamp01(float value)
     return fminf(fmaxf(value, 0.0f), 1.0f);
 }
 
-// Blinn-Phong's exponent s has the lobe of a microfacet distribution with alpha² = 2 / (s + 2)
-// (Walter et al. 2007, section 5.2, after Blinn's distribution); roughness is the square root of
-// alpha.
+// A Blinn-Phong exponent s corresponds to a microfacet distribution with alpha² = 2 / (s + 2)
+// (Walter et al. 2007, section 5.2); roughness is the square root of alpha.
 static float roughness_of_shininess(float shininess)
 {
     return shininess > 0.0f ? sqrtf(sqrtf(2.0f / (shininess + 2.0f))) : 1.0f;
@@ -138,7 +137,7 @@ static const char *base_name(const char *path)
     return name;
 }
 
-// "*3" is the third texture of the file; FBX refers to its own by file name.
+// "*3" is embedded texture 3; FBX refers to embedded textures by file name.
 static const struct aiTexture *embedded_texture(const struct aiScene *scene, const char *path)
 {
     if (path[0] == '*') {
@@ -152,7 +151,7 @@ static const struct aiTexture *embedded_texture(const struct aiScene *scene, con
     return NULL;
 }
 
-// The bytes of a texture: embedded in the file, or a file beside it.
+// The bytes of a texture: embedded, or in a file.
 static bool find_texture(struct assimp *assimp, struct textures *textures, int i)
 {
     struct import *import = assimp->import;
@@ -163,7 +162,7 @@ static bool find_texture(struct assimp *assimp, struct textures *textures, int i
     const struct aiTexture *embedded = embedded_texture(assimp->from, path);
     if (embedded) {
         if (embedded->mHeight != 0)
-            import_note(import, "embedded textures without compression");
+            import_note(import, "uncompressed embedded textures");
         else
             source->data = (const uint8_t *)embedded->pcData;
         source->size = embedded->mWidth;
@@ -206,7 +205,7 @@ static bool load_textures(struct assimp *assimp, struct textures *textures)
         link_image(textures, &m->base_color_map);
         link_image(textures, &m->normal_map);
         link_image(textures, &m->emissive_map);
-        // These formats cut leaves out of their images without saying so.
+        // These formats have no alpha mode: images with alpha are used as masks.
         int image = m->base_color_map.image;
         if (image >= 0 && scene->images[image].has_alpha && m->alpha_mode == ALPHA_OPAQUE) {
             m->alpha_mode = ALPHA_MASK;
@@ -220,13 +219,13 @@ bool assimp_load_materials(struct assimp *assimp)
     struct import *import = assimp->import;
     struct scene *scene = import->scene;
     unsigned count = assimp->from->mNumMaterials;
-    struct textures textures = { .room = 4 * (int)(count < 65536 ? count : 65536) };
-    size_t room = (size_t)textures.room;
+    struct textures textures = { .capacity = 4 * (int)(count < 65536 ? count : 65536) };
+    size_t capacity = (size_t)textures.capacity;
     scene->materials = import_alloc(import, (size_t)count + 1, sizeof *scene->materials);
-    textures.paths = host_alloc(import->host, room, sizeof *textures.paths);
-    textures.sources = host_alloc(import->host, room, sizeof *textures.sources);
-    textures.owned = host_alloc(import->host, room, sizeof *textures.owned);
-    textures.scene_image = host_alloc(import->host, room, sizeof *textures.scene_image);
+    textures.paths = host_alloc(import->host, capacity, sizeof *textures.paths);
+    textures.sources = host_alloc(import->host, capacity, sizeof *textures.sources);
+    textures.owned = host_alloc(import->host, capacity, sizeof *textures.owned);
+    textures.scene_image = host_alloc(import->host, capacity, sizeof *textures.scene_image);
     bool ok = scene->materials && textures.paths && textures.sources && textures.owned &&
               textures.scene_image;
     for (unsigned i = 0; ok && i < count; i++) {

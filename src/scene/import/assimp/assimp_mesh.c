@@ -48,7 +48,7 @@ static bool copy_vertices(struct import *import, const struct aiMesh *from, stru
     }
     for (uint32_t v = 0; mesh->normals && v < count; v++) {
         vec3s n = vec3_of(from->mNormals[v].x, from->mNormals[v].y, from->mNormals[v].z);
-        // Assimp marks the normals of degenerate faces with NaN; zero asks for one of our own.
+        // Assimp gives degenerate faces NaN normals; import_finish_mesh replaces zero normals.
         mesh->normals[v] = vec3_is_finite(n) ? n : vec3_of(0.0f, 0.0f, 0.0f);
     }
     if (from->mNumAnimMeshes > 0) import_note(import, "morph targets of this format");
@@ -57,12 +57,12 @@ static bool copy_vertices(struct import *import, const struct aiMesh *from, stru
 
 static bool copy_faces(struct import *import, const struct aiMesh *from, struct mesh *mesh)
 {
-    size_t room;
-    if (!size_mul(from->mNumFaces, 3, &room) || room > UINT32_MAX) {
+    size_t capacity;
+    if (!size_mul(from->mNumFaces, 3, &capacity) || capacity > UINT32_MAX) {
         return host_fail(import->host, FAIL_UNSUPPORTED, "%s: mesh %s has too many triangles",
                          import->path, import_printable(mesh->name).s);
     }
-    mesh->indices = import_alloc(import, room, sizeof *mesh->indices);
+    mesh->indices = import_alloc(import, capacity, sizeof *mesh->indices);
     if (!mesh->indices) return false;
     for (unsigned f = 0; f < from->mNumFaces; f++) {
         const struct aiFace *face = &from->mFaces[f];
@@ -73,7 +73,7 @@ static bool copy_faces(struct import *import, const struct aiMesh *from, struct 
     return true;
 }
 
-// Weights of the mesh's bones, four at most for each vertex, that sum to 1. Joint k is bone k.
+// At most four bone weights per vertex, with sum 1. Joint k is bone k.
 static bool copy_bones(struct import *import, const struct aiMesh *from, struct mesh *mesh)
 {
     if (from->mNumBones == 0 || from->mNumBones > UINT16_MAX) return true;

@@ -22,28 +22,29 @@ int assimp_find_node(const struct assimp *assimp, const struct aiString *name)
     return -1;
 }
 
-// Nodes in order of depth: a list that is its own queue.
+// Nodes in breadth-first order: the list is its own queue.
 bool assimp_load_nodes(struct assimp *assimp)
 {
     struct import *import = assimp->import;
     struct scene *scene = import->scene;
     const struct aiNode *root = assimp->from->mRootNode;
-    size_t count = 1, room = 64;
-    struct node *nodes = host_alloc(import->host, room, sizeof *nodes);
-    const struct aiNode **list = host_alloc(import->host, room, sizeof *list);
+    size_t count = 1, capacity = 64;
+    struct node *nodes = host_alloc(import->host, capacity, sizeof *nodes);
+    const struct aiNode **list = host_alloc(import->host, capacity, sizeof *list);
     bool ok = nodes && list;
     if (ok) list[0] = root;
     if (ok) nodes[0] = (struct node){ .parent = -1 };
     for (size_t i = 0; ok && i < count; i++) {
         size_t children = list[i]->mNumChildren;
         ok = import_charge(import, 1 + children, sizeof *nodes) && count + children < INT_MAX;
-        while (ok && count + children > room) {
-            struct node *more = host_realloc(import->host, nodes, 2 * room, sizeof *nodes);
+        while (ok && count + children > capacity) {
+            struct node *more = host_realloc(import->host, nodes, 2 * capacity, sizeof *nodes);
             if (more) nodes = more;
-            void *longer = more ? host_realloc(import->host, list, 2 * room, sizeof *list) : NULL;
+            void *longer =
+                more ? host_realloc(import->host, list, 2 * capacity, sizeof *list) : NULL;
             if (longer) list = longer;
             ok = longer != NULL;
-            room *= 2;
+            capacity *= 2;
         }
         for (size_t k = 0; ok && k < children; k++) {
             list[count] = list[i]->mChildren[k];
@@ -61,8 +62,8 @@ bool assimp_load_nodes(struct assimp *assimp)
         node.matrix = assimp_matrix(&list[i]->mTransformation);
         ok = node.name && floats_are_finite(&node.matrix.raw[0][0], 16);
         if (node.name && !ok) {
-            host_fail(import->host, FAIL_FORMAT, "%s: node %s is not finite", import->path,
-                      import_printable(node.name).s);
+            host_fail(import->host, FAIL_FORMAT, "%s: the matrix of node %s is not finite",
+                      import->path, import_printable(node.name).s);
         }
         scene->nodes[i] = node;
     }

@@ -1,4 +1,4 @@
-// The order in which a glTF file is read.
+// Imports a glTF file: the order of the steps.
 #include "scene/import/gltf/gltf.h"
 
 #include "scene/import/importers.h"

@@ -1,6 +1,6 @@
-// A glTF 2.0 file being read. Internal to src/scene: gltf_file.c opens it, gltf_check.c decides
-// whether we can read it, gltf_accessor.c gives arrays, the others fill the scene in the order of
-// `import_gltf`.
+// The state of a glTF 2.0 import. Internal to src/scene/import/gltf: gltf_file.c opens the file,
+// gltf_check.c checks version, extensions and nodes, gltf_accessor.c decodes arrays, the other
+// files fill the scene in the order of import_gltf.
 #pragma once
 
 #include "scene/import/import_context.h"
@@ -10,8 +10,8 @@
 struct gltf_buffer {
     const uint8_t *data;
     size_t size;
-    char *path;  // of an external file, else NULL; buffers of one path share data
-    void *owned; // to be freed, NULL where data is another's
+    char *path;  // of an external file, else NULL; buffers of the same path share data
+    void *owned; // memory to free; NULL if data is shared
 };
 
 struct gltf_cached { // an accessor's array, decoded once
@@ -22,29 +22,29 @@ struct gltf_cached { // an accessor's array, decoded once
 struct gltf {
     struct import *import;
     json_t *root;
-    json_t *empty; // an array, for what is absent
+    json_t *empty; // an empty array, for absent ones
     json_t *accessors, *views, *nodes, *meshes, *materials, *textures, *images, *samplers, *skins,
         *cameras, *lights, *animations; // arrays, empty where absent; borrowed from root
-    const uint8_t *binary;              // the GLB's second chunk, NULL where there is none
+    const uint8_t *binary;              // the BIN chunk of a GLB, else NULL
     size_t binary_size;
     struct gltf_buffer *buffers;
     size_t buffer_count;
     struct gltf_cached *cached;   // per accessor
     uint32_t *scene_node;         // glTF node → scene node (parents first)
-    uint8_t *in_scene;            // glTF node → 1 when the default scene shows it
+    uint8_t *in_scene;            // glTF node → 1 if it belongs to the default scene
     int *first_mesh, *mesh_parts; // glTF mesh → its scene meshes (one per triangle primitive)
     int *image_of;                // glTF image → scene image, -1
     int default_material;         // scene material for primitives without, -1 until needed
-    bool failed;                  // a value was wrong; the message is out
+    bool failed;                  // a value was invalid; the message has been logged
 };
 
-// --- gltf_json.c: values with their checks. A wrong type or range fails once, with `where` (see
-// gltf_at) and the key, and sets `failed`; the answer is then the fallback, so that a caller may
-// look at `failed` at the end.
+// --- gltf_json.c: JSON values with type and range checks. An invalid value logs one message and
+// sets `failed`; the result is then the fallback, so that callers can check `failed` once at the
+// end.
 
 struct gltf_object {
     struct gltf *gltf;
-    json_t *json; // an object, or NULL: then everything is absent
+    json_t *json; // an object; NULL: all members are absent
     const char *kind;
     size_t index; // "materials", 3
 };
@@ -54,8 +54,8 @@ struct gltf_object gltf_child(struct gltf_object object, const char *key);
 struct gltf_object gltf_extension(struct gltf_object object, const char *name);
 bool gltf_has(struct gltf_object object, const char *key);
 json_t *gltf_array(struct gltf_object object, const char *key); // never NULL
-// Fails with the object's name before the sentence. False, always; a macro, so that analyzers see
-// that.
+// Fails with a message that begins with the object's kind and index. Always false; a macro, so that
+// static analysers know the value.
 #define gltf_wrong(...) gltf_false(gltf_set_wrong(__VA_ARGS__))
 bool gltf_set_wrong(struct gltf_object object, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -69,7 +69,7 @@ int gltf_index_value(struct gltf_object object, const char *key, json_t *value, 
 size_t gltf_size(struct gltf_object object, const char *key, size_t fallback, size_t max);
 float gltf_float(struct gltf_object object, const char *key, float fallback, float min, float max);
 bool gltf_bool(struct gltf_object object, const char *key, bool fallback);
-// True when present and right.
+// True when present and valid.
 bool gltf_floats(struct gltf_object object, const char *key, int count, float *out);
 const char *gltf_string(struct gltf_object object, const char *key); // NULL: absent
 
@@ -95,17 +95,16 @@ bool gltf_view(struct gltf *gltf, int index, struct gltf_view *out);
 size_t gltf_accessor_count(struct gltf *gltf, int accessor);
 // Components per element: 1, 2, 3, 4, 16; 0 on failure.
 int gltf_accessor_width(struct gltf *gltf, int accessor);
-// All elements as floats, normalised integers as their fractions, sparse values put in; from the
-// scene's arena, shared by all who ask for the same. `width`: the components asked for. NULL on
-// failure.
+// All elements as floats: normalised integers as fractions, sparse values applied. In the scene's
+// arena, cached per accessor. `width`: expected components per element. NULL on failure.
 float *gltf_floats_of(struct gltf *gltf, int accessor, int width);
-// Unsigned integers (indices, joints). NULL on failure. From the scene's arena, not shared.
+// Unsigned integers (indices, joints) in the scene's arena, not cached. NULL on failure.
 uint32_t *gltf_integers_of(struct gltf *gltf, int accessor, int width);
 
-// --- the scene's parts, in this order
-bool gltf_load_materials(struct gltf *gltf); // and the images that they use
-int gltf_material_default(
-    struct gltf *gltf); // index of a scene material for primitives without; -1 on failure
+// --- parts of the scene, in this order
+bool gltf_load_materials(struct gltf *gltf); // with their images
+// The scene material of primitives without a material; -1 on failure.
+int gltf_material_default(struct gltf *gltf);
 bool gltf_load_meshes(struct gltf *gltf);
 bool gltf_load_nodes(struct gltf *gltf); // nodes, instances, lights, cameras
 bool gltf_load_skins(struct gltf *gltf);

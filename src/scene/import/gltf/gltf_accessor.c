@@ -1,5 +1,5 @@
-// Arrays of a glTF file (glTF 2.0, section 3.6). Every offset, stride and count is checked against
-// the bytes that are there before anything is read or allocated.
+// Accessors of a glTF file (glTF 2.0, section 3.6). Offsets, strides and counts are checked against
+// the size of the data before reading or allocating.
 #include "scene/import/gltf/gltf.h"
 
 #include <math.h>
@@ -70,8 +70,7 @@ static bool read_accessor(struct gltf *gltf, int index, struct accessor *out)
         return gltf_wrong(object, "its type is none of SCALAR, VEC2, VEC3, VEC4, MAT4");
     }
     if (out->view < 0 && !gltf_has(object, "sparse")) {
-        return gltf_wrong(object, "has no data (no bufferView), as where only a compressed copy is "
-                                  "stored");
+        return gltf_wrong(object, "has no data: no bufferView (only a compressed copy?)");
     }
     return true;
 }
@@ -95,7 +94,7 @@ bool gltf_view(struct gltf *gltf, int index, struct gltf_view *out)
     return true;
 }
 
-// The first byte of `count` elements at `offset` of a view, and their distance.
+// The first byte of `count` elements at `offset` of a view, and their stride.
 static bool view_elements(struct gltf *gltf, struct gltf_object object, int view, size_t offset,
                           size_t count, size_t element, const uint8_t **data, size_t *stride)
 {
@@ -164,7 +163,7 @@ static uint32_t component_as_integer(const uint8_t *bytes, enum component_type t
     }
 }
 
-// Converts `count` elements; `slots` (NULL: in order) says where each goes.
+// Converts `count` elements; slots[i] is the output index of element i, i itself for NULL.
 static void convert_floats(const struct accessor *accessor, const uint8_t *data, size_t stride,
                            const uint32_t *slots, size_t count, float *out)
 {
@@ -187,15 +186,14 @@ static bool is_unsigned(enum component_type type)
     return type == COMPONENT_UBYTE || type == COMPONENT_USHORT || type == COMPONENT_UINT;
 }
 
-// The element numbers that sparse values replace: strictly ascending and within the accessor.
+// Sparse indices must be strictly ascending and within the accessor.
 static bool check_slots(const struct accessor *accessor, const uint32_t *slots, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         if (slots[i] >= accessor->count || (i > 0 && slots[i] <= slots[i - 1])) {
             return gltf_wrong(accessor->object,
-                              "sparse index %zu (%u of %zu) is out of order or "
-                              "range",
-                              i, slots[i], accessor->count);
+                              "sparse index %zu (%u of %zu) is out of order or range", i, slots[i],
+                              accessor->count);
         }
     }
     return true;
@@ -240,8 +238,7 @@ static bool apply_sparse(struct gltf *gltf, const struct accessor *accessor, flo
 static bool check_width(const struct accessor *accessor, int width)
 {
     if (accessor->width == width) return true;
-    return gltf_wrong(accessor->object, "has %d components where %d are needed", accessor->width,
-                      width);
+    return gltf_wrong(accessor->object, "has %d components, %d are needed", accessor->width, width);
 }
 
 size_t gltf_accessor_count(struct gltf *gltf, int index)
@@ -264,7 +261,7 @@ float *gltf_floats_of(struct gltf *gltf, int index, int width)
     size_t element = (size_t)width * component_size(accessor.component);
     const uint8_t *data = NULL;
     size_t stride = 0;
-    // The bytes come before the memory for them.
+    // Checks the data before allocating.
     if (accessor.view >= 0 && !view_elements(gltf, accessor.object, accessor.view, accessor.offset,
                                              accessor.count, element, &data, &stride)) {
         return NULL;
@@ -284,8 +281,8 @@ uint32_t *gltf_integers_of(struct gltf *gltf, int index, int width)
     if (!read_accessor(gltf, index, &accessor) || !check_width(&accessor, width)) return NULL;
     if (!is_unsigned(accessor.component) || accessor.view < 0 ||
         gltf_has(accessor.object, "sparse")) {
-        gltf_wrong(accessor.object, "is used for indices or joints, and holds no unsigned "
-                                    "integers, or sparse ones");
+        gltf_wrong(accessor.object, "is used for indices or joints, but is sparse or not of "
+                                    "unsigned integers");
         return NULL;
     }
     size_t size = component_size(accessor.component), stride;

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-struct sampled { // a sampler's arrays as they are in the file
+struct sampled { // a sampler's arrays in the file
     size_t keys;
     int width;
     const float *times, *values;
@@ -39,7 +39,7 @@ static bool interpolation_of(struct gltf_object sampler, enum channel_interpolat
     else if (strcmp(text, "CUBICSPLINE") == 0)
         *out = INTERPOLATE_CUBIC;
     else
-        return gltf_wrong(sampler, "its interpolation is unknown");
+        return gltf_wrong(sampler, "unknown interpolation");
     return !sampler.gltf->failed;
 }
 
@@ -50,14 +50,15 @@ static int morph_count_of(struct gltf *gltf, struct gltf_object node)
     return gltf->import->scene->meshes[gltf->first_mesh[mesh]].morph_count;
 }
 
-// Keys in the order of time; of those at the same time the first stands.
+// Copies the keys, which must ascend in time. Of keys at the same time the first is used.
 static bool copy_keys(struct gltf_object object, const struct sampled *in,
                       struct animation_channel *out)
 {
     size_t stride = (size_t)in->width * (out->interpolation == INTERPOLATE_CUBIC ? 3 : 1);
     for (size_t i = 0; i < in->keys; i++) {
         float time = in->times[i];
-        if (!isfinite(time) || time < 0.0f) return gltf_wrong(object, "key %zu has no time", i);
+        if (!isfinite(time) || time < 0.0f)
+            return gltf_wrong(object, "the time of key %zu is negative or not finite", i);
         if (out->key_count > 0 && time <= out->times_s[out->key_count - 1]) {
             if (time == out->times_s[out->key_count - 1]) continue;
             return gltf_wrong(object, "its times do not ascend at key %zu", i);
@@ -72,7 +73,7 @@ static bool copy_keys(struct gltf_object object, const struct sampled *in,
     return true;
 }
 
-// Rotations that are to be interpolated have length one.
+// Normalises rotation keys.
 static void unit_rotations(struct animation_channel *channel)
 {
     bool cubic = channel->interpolation == INTERPOLATE_CUBIC;
@@ -91,7 +92,7 @@ static bool load_sampler(struct gltf *gltf, struct gltf_object sampler,
     int input = gltf_index(sampler, "input", gltf->accessors);
     int output = gltf_index(sampler, "output", gltf->accessors);
     if (gltf->failed || !interpolation_of(sampler, &channel->interpolation)) return false;
-    if (input < 0 || output < 0) return gltf_wrong(sampler, "lacks its input or output");
+    if (input < 0 || output < 0) return gltf_wrong(sampler, "has no input or no output");
     struct sampled in = { .keys = gltf_accessor_count(gltf, input), .width = channel->width };
     size_t stride = (size_t)in.width * (channel->interpolation == INTERPOLATE_CUBIC ? 3 : 1);
     bool weights = channel->path == PATH_WEIGHTS;
@@ -99,7 +100,7 @@ static bool load_sampler(struct gltf *gltf, struct gltf_object sampler,
     size_t given = gltf_accessor_count(gltf, output);
     if (gltf->failed) return false;
     if (given != needed)
-        return gltf_wrong(sampler, "%zu values where %zu are needed", given, needed);
+        return gltf_wrong(sampler, "has %zu values, %zu are needed", given, needed);
     in.times = gltf_floats_of(gltf, input, 1);
     in.values = in.times ? gltf_floats_of(gltf, output, weights ? 1 : in.width) : NULL;
     if (!in.values) return false;
@@ -124,10 +125,10 @@ static bool load_channel(struct gltf *gltf, json_t *channels, size_t i, json_t *
     if (gltf->failed) return false;
     if (sampler_index < 0) return gltf_wrong(object, "has no sampler");
     if (!path_of(path, &channel->path, &channel->width)) {
-        import_note(import, "animation of other things than nodes");
+        import_note(import, "animation of other targets than nodes");
         return true;
     }
-    if (node < 0) return true; // glTF 2.0: to be ignored
+    if (node < 0) return true; // ignored, as glTF 2.0 requires
     struct gltf_object node_object = gltf_element(gltf, gltf->nodes, "node", (size_t)node);
     if (gltf_has(node_object, "matrix")) {
         import_note(import, "animation of nodes that have a matrix");

@@ -1,18 +1,17 @@
-// Whether a glTF file is one that we read: its version, what it requires, and a node graph that is
-// a forest.
+// Checks a glTF file: version, required extensions, and that the nodes form a forest.
 #include "scene/import/gltf/gltf.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-// Extensions whose whole effect on a scene of this library is read.
+// Fully supported extensions.
 static const char *const KNOWN_EXTENSIONS[] = {
     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_texture_transform",
     "KHR_materials_unlit", "KHR_mesh_quantization",
 };
 
-// Used ones that lose nothing when they are ignored: compressed copies (a primitive without an
-// uncompressed one is refused where it is read) and metadata.
+// Extensions that are ignored without a note: compressed copies (a primitive without uncompressed
+// data is refused when it is read) and metadata.
 static const char *const HARMLESS_EXTENSIONS[] = {
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",
@@ -39,13 +38,14 @@ static bool check_version(struct gltf *gltf)
     const char *minimum = gltf_string(asset, "minVersion");
     if (gltf->failed) return false;
     if (!version) {
-        return host_fail(import->host, FAIL_FORMAT, "%s: no asset version: no glTF file",
+        return host_fail(import->host, FAIL_FORMAT, "%s: not a glTF file: it has no asset version",
                          import->path);
     }
-    // 2.x is promised to be readable by a reader of 2.0, unless minVersion says otherwise.
+    // 2.x files are readable by a 2.0 reader, except with a higher minVersion.
     if (strncmp(version, "2.", 2) == 0 && (!minimum || strcmp(minimum, "2.0") == 0)) return true;
-    return host_fail(import->host, FAIL_UNSUPPORTED, "%s: glTF version %s, only 2.0 is read",
-                     import->path, import_printable(minimum ? minimum : version).s);
+    return host_fail(import->host, FAIL_UNSUPPORTED,
+                     "%s: glTF version %s is not supported; only 2.0 is", import->path,
+                     import_printable(minimum ? minimum : version).s);
 }
 
 static bool check_extensions(struct gltf *gltf)
@@ -54,24 +54,24 @@ static bool check_extensions(struct gltf *gltf)
     struct gltf_object root = { gltf, gltf->root, "file", 0 };
     json_t *required = gltf_array(root, "extensionsRequired");
     json_t *used = gltf_array(root, "extensionsUsed");
-    const char *unknown = NULL; // the first
+    const char *unsupported = NULL; // the first one
     size_t i;
     json_t *value;
     json_array_foreach(required, i, value)
     {
         const char *name = json_string_value(value);
-        if (!name) return gltf_wrong(root, "extensionsRequired[%zu] is no text", i);
-        if (!unknown && !IS_IN(name, KNOWN_EXTENSIONS)) unknown = name;
+        if (!name) return gltf_wrong(root, "extensionsRequired[%zu] is not a string", i);
+        if (!unsupported && !IS_IN(name, KNOWN_EXTENSIONS)) unsupported = name;
     }
-    if (unknown) {
+    if (unsupported) {
         return host_fail(import->host, FAIL_UNSUPPORTED,
-                         "%s: requires the extension %s, which is not read", import->path,
-                         import_printable(unknown).s);
+                         "%s: requires the extension %s, which is not supported", import->path,
+                         import_printable(unsupported).s);
     }
     json_array_foreach(used, i, value)
     {
         const char *name = json_string_value(value);
-        if (!name) return gltf_wrong(root, "extensionsUsed[%zu] is no text", i);
+        if (!name) return gltf_wrong(root, "extensionsUsed[%zu] is not a string", i);
         if (IS_IN(name, KNOWN_EXTENSIONS) || IS_IN(name, HARMLESS_EXTENSIONS)) continue;
         import_note(import, "extension %s", import_printable(name).s);
     }
@@ -83,7 +83,7 @@ bool gltf_check_asset(struct gltf *gltf)
     return check_version(gltf) && check_extensions(gltf);
 }
 
-// parent[child] for all nodes; UINT32_MAX where there is none. A second parent is an error.
+// parent[child] for all nodes; UINT32_MAX for roots. A second parent is an error.
 static bool find_parents(struct gltf *gltf, uint32_t *parent)
 {
     size_t count = json_array_size(gltf->nodes);
@@ -107,8 +107,7 @@ static bool find_parents(struct gltf *gltf, uint32_t *parent)
     return !gltf->failed;
 }
 
-// Marks the roots of the default scene: the one that the file names, else the first, else every
-// root.
+// Marks the roots of the default scene, else of the first one, else all roots.
 static bool mark_scene_roots(struct gltf *gltf, const uint32_t *parent)
 {
     struct gltf_object root = { gltf, gltf->root, "file", 0 };
@@ -134,8 +133,8 @@ static bool mark_scene_roots(struct gltf *gltf, const uint32_t *parent)
     return !gltf->failed;
 }
 
-// Numbers the nodes so that parents come first, by walking the trees without recursion: `stack` has
-// room for all.
+// Numbers the nodes so that parents come first: a depth-first traversal without recursion. `stack`
+// has one element per node.
 static uint32_t number_nodes(struct gltf *gltf, const uint32_t *parent, uint32_t *stack)
 {
     size_t count = json_array_size(gltf->nodes);
@@ -168,10 +167,10 @@ bool gltf_order_nodes(struct gltf *gltf)
     gltf->in_scene = host_alloc(import->host, count, sizeof *gltf->in_scene);
     bool ok = parent && stack && gltf->scene_node && gltf->in_scene && find_parents(gltf, parent) &&
               mark_scene_roots(gltf, parent);
-    // Every node has at most one parent, so one that no root reaches hangs from a loop.
+    // Each node has at most one parent, so a node that no root reaches is below a cycle.
     if (ok && number_nodes(gltf, parent, stack) < count) {
-        ok = host_fail(import->host, FAIL_FORMAT, "%s: nodes form a loop (one is its own ancestor)",
-                       import->path);
+        ok = host_fail(import->host, FAIL_FORMAT,
+                       "%s: the nodes form a cycle: one is its own ancestor", import->path);
     }
     host_free(import->host, parent);
     host_free(import->host, stack);

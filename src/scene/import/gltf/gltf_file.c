@@ -17,22 +17,22 @@ static bool is_glb(const struct file_bytes *bytes)
     return bytes->size >= 4 && read_u32(bytes->data) == GLB_MAGIC;
 }
 
-// Finds the JSON chunk and the binary one.
+// Finds the JSON chunk and the BIN chunk.
 static bool open_glb(struct gltf *gltf, const struct file_bytes *bytes, const uint8_t **json,
                      size_t *json_size)
 {
     struct host *host = gltf->import->host;
     const char *path = gltf->import->path;
     if (bytes->size < GLB_HEADER + CHUNK_HEADER) {
-        return host_fail(host, FAIL_FORMAT, "%s: cut off within the GLB header", path);
+        return host_fail(host, FAIL_FORMAT, "%s: truncated GLB header", path);
     }
     uint32_t version = read_u32(bytes->data + 4), length = read_u32(bytes->data + 8);
     if (version != 2) {
-        return host_fail(host, FAIL_UNSUPPORTED, "%s: GLB version %u, only 2 is read", path,
-                         version);
+        return host_fail(host, FAIL_UNSUPPORTED,
+                         "%s: GLB version %u is not supported; only version 2 is", path, version);
     }
     if (length > bytes->size) {
-        return host_fail(host, FAIL_FORMAT, "%s: cut off: %zu bytes of the %u that its header says",
+        return host_fail(host, FAIL_FORMAT, "%s: truncated: %zu bytes of the %u in its header",
                          path, bytes->size, length);
     }
     size_t at = GLB_HEADER;
@@ -54,7 +54,7 @@ static bool open_glb(struct gltf *gltf, const struct file_bytes *bytes, const ui
         at = (at + size + 3) & ~(size_t)3;
     }
     if (*json) return true;
-    return host_fail(host, FAIL_FORMAT, "%s: its first GLB chunk is not JSON", path);
+    return host_fail(host, FAIL_FORMAT, "%s: the first GLB chunk is not JSON", path);
 }
 
 static bool parse_json(struct gltf *gltf, const uint8_t *text, size_t size)
@@ -67,7 +67,7 @@ static bool parse_json(struct gltf *gltf, const uint8_t *text, size_t size)
                          error.line, import_printable(error.text).s);
     }
     if (json_is_object(gltf->root)) return true;
-    return host_fail(import->host, FAIL_FORMAT, "%s: its JSON is no object", import->path);
+    return host_fail(import->host, FAIL_FORMAT, "%s: the JSON is not an object", import->path);
 }
 
 bool gltf_open(struct gltf *gltf, struct import *import, const struct file_bytes *bytes)
@@ -82,7 +82,7 @@ bool gltf_open(struct gltf *gltf, struct import *import, const struct file_bytes
     } else {
         json = bytes->data;
         json_size = bytes->size;
-        // A byte-order mark is not allowed, and written nevertheless.
+        // Some exporters write a byte-order mark, which glTF forbids.
         if (json_size >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) {
             json += 3;
             json_size -= 3;
@@ -133,9 +133,9 @@ static int base64_value(char c)
     return -1;
 }
 
-static uint8_t *no_base64(struct gltf_object object)
+static uint8_t *not_base64(struct gltf_object object)
 {
-    gltf_wrong(object, "its data URI is no base64");
+    gltf_wrong(object, "its data URI is not base64");
     return NULL;
 }
 
@@ -147,7 +147,7 @@ uint8_t *gltf_data_uri(struct gltf_object object, const char *uri, size_t *size)
     size_t marker_length = sizeof marker - 1;
     if (strncmp(uri, "data:", 5) != 0 || !comma || (size_t)(comma - uri) < 5 + marker_length ||
         memcmp(comma - marker_length, marker, marker_length) != 0) {
-        return no_base64(object);
+        return not_base64(object);
     }
     const char *text = comma + 1;
     size_t length = strlen(text);
@@ -161,7 +161,7 @@ uint8_t *gltf_data_uri(struct gltf_object object, const char *uri, size_t *size)
         int value = base64_value(text[i]);
         if (value < 0) {
             host_free(host, bytes);
-            return no_base64(object);
+            return not_base64(object);
         }
         bits = bits << 6 | (uint32_t)value;
         pending += 6;
@@ -210,9 +210,10 @@ static bool load_buffer(struct gltf *gltf, json_t *array, size_t index)
     } else if (uri) {
         if (!read_external(gltf, index, uri)) return false;
     } else if (gltf_has(gltf_extension(object, "EXT_meshopt_compression"), "fallback")) {
-        return host_fail(gltf->import->host, FAIL_UNSUPPORTED,
-                         "%s: buffer %zu has only EXT_meshopt_compression data, which is not read",
-                         gltf->import->path, index);
+        return host_fail(
+            gltf->import->host, FAIL_UNSUPPORTED,
+            "%s: buffer %zu has only EXT_meshopt_compression data, which is not supported",
+            gltf->import->path, index);
     } else if (index == 0 && gltf->binary) {
         buffer->data = gltf->binary;
         buffer->size = gltf->binary_size;
@@ -220,7 +221,8 @@ static bool load_buffer(struct gltf *gltf, json_t *array, size_t index)
         return gltf_wrong(object, "has no data");
     }
     if (length > buffer->size) {
-        return gltf_wrong(object, "says %zu bytes and has %zu", length, buffer->size);
+        return gltf_wrong(object, "byteLength is %zu, but the data have %zu bytes", length,
+                          buffer->size);
     }
     buffer->size = length;
     return true;

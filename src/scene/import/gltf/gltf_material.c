@@ -24,7 +24,7 @@ static enum texture_wrap wrap_of(struct gltf_object sampler, const char *key)
     return WRAP_REPEAT;
 }
 
-// `info` is the material's textureInfo. image: the glTF image until link_images.
+// `info` is a textureInfo. The image index is glTF's until gltf_load_materials replaces it.
 static struct texture_use texture_use_of(struct gltf *gltf, struct gltf_object info)
 {
     struct texture_use use = texture_use_none();
@@ -69,11 +69,11 @@ static void load_alpha_mode(struct gltf_object object, struct material *material
     else if (strcmp(mode, "BLEND") == 0)
         material->alpha_mode = ALPHA_BLEND;
     else
-        gltf_wrong(object, "alphaMode is none of OPAQUE, MASK, BLEND");
+        gltf_wrong(object, "alphaMode is not OPAQUE, MASK or BLEND");
     material->alpha_cutoff = gltf_float(object, "alphaCutoff", 0.5f, 0.0f, FLT_MAX);
 }
 
-// The material as glTF's defaults have it: white, metallic 1, rough 1.
+// glTF's default material: white, metallic 1, roughness 1.
 static struct material gltf_default(void)
 {
     struct material material = material_default();
@@ -95,7 +95,7 @@ static bool load_material(struct gltf *gltf, size_t i, struct material *out)
     m.roughness = gltf_float(pbr, "roughnessFactor", 1.0f, 0.0f, 1.0f);
     m.emissive = vec3_of(0.0f, 0.0f, 0.0f);
     gltf_floats(object, "emissiveFactor", 3, m.emissive.raw);
-    // Emission of strength 1 is 1 cd/m² (KHR_materials_emissive_strength).
+    // Emissive strength 1 is 1 cd/m² (KHR_materials_emissive_strength).
     float strength = gltf_float(gltf_extension(object, "KHR_materials_emissive_strength"),
                                 "emissiveStrength", 1.0f, 0.0f, 1e18f);
     for (int k = 0; k < 3; k++)
@@ -119,8 +119,7 @@ static struct texture_use *map_of(struct material *material, int k)
     return maps[k];
 }
 
-// The encoded bytes of an image: in a buffer, in a data URI, or in a file beside. *owned is to be
-// freed.
+// The encoded bytes of an image, from a buffer, a data URI or a file. The caller frees *owned.
 static bool find_image(struct gltf *gltf, size_t i, struct image_source *source, void **owned)
 {
     struct import *import = gltf->import;
@@ -158,7 +157,7 @@ static bool find_image(struct gltf *gltf, size_t i, struct image_source *source,
     return ok;
 }
 
-// Reads and decodes the images that some material uses; image_of[glTF image] is the scene's.
+// Reads and decodes the images that materials use; fills image_of.
 static bool load_used_images(struct gltf *gltf)
 {
     struct import *import = gltf->import;
@@ -189,7 +188,7 @@ bool gltf_load_materials(struct gltf *gltf)
 {
     struct scene *scene = gltf->import->scene;
     size_t count = json_array_size(gltf->materials), images = json_array_size(gltf->images);
-    // One more for primitives without a material.
+    // One more: the default material.
     scene->materials = import_alloc(gltf->import, count + 1, sizeof *scene->materials);
     gltf->image_of = host_alloc(gltf->import->host, images, sizeof *gltf->image_of);
     if (!scene->materials || !gltf->image_of) return false;

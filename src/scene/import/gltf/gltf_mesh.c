@@ -14,14 +14,15 @@ struct primitive {
     struct mesh *mesh;
 };
 
-// The accessor of an attribute, -1 where there is none; its count must be the mesh's.
+// The accessor of an attribute, -1 if absent; its count must equal that of the mesh.
 static int attribute(struct primitive *p, struct gltf_object attributes, const char *name)
 {
     int accessor = gltf_index(attributes, name, p->gltf->accessors);
     if (accessor < 0) return -1;
     size_t count = gltf_accessor_count(p->gltf, accessor);
     if (count == p->mesh->vertex_count) return accessor;
-    gltf_wrong(p->object, "%s has %zu elements, POSITION %u", name, count, p->mesh->vertex_count);
+    gltf_wrong(p->object, "%s has %zu elements, POSITION has %u", name, count,
+               p->mesh->vertex_count);
     return -1;
 }
 
@@ -32,7 +33,7 @@ static float *floats(struct primitive *p, struct gltf_object attributes, const c
     return accessor < 0 ? NULL : gltf_floats_of(p->gltf, accessor, width);
 }
 
-// What the reader has no place for is named once.
+// Notes unsupported attributes.
 static void note_attributes(struct primitive *p)
 {
     const char *name;
@@ -72,14 +73,14 @@ static bool load_colors(struct primitive *p)
     return p->mesh->colors != NULL;
 }
 
-// Weights that sum to 1; joints without weight refer to the first, whatever the file says.
+// Normalises weights to sum 1; joints of weight 0 become joint 0.
 static bool load_skinning(struct primitive *p)
 {
     struct mesh *mesh = p->mesh;
     int joint_accessor = attribute(p, p->attributes, "JOINTS_0");
     const float *given = floats(p, p->attributes, "WEIGHTS_0", 4);
     if (p->gltf->failed || (joint_accessor >= 0) != (given != NULL)) {
-        return gltf_wrong(p->object, "JOINTS_0 and WEIGHTS_0 go together");
+        return gltf_wrong(p->object, "has only one of JOINTS_0 and WEIGHTS_0");
     }
     if (!given) return true;
     const uint32_t *joints = gltf_integers_of(p->gltf, joint_accessor, 4);
@@ -92,7 +93,8 @@ static bool load_skinning(struct primitive *p)
         for (size_t k = 0; k < 4; k++) {
             float weight = given[4 * i + k] > 0.0f ? given[4 * i + k] : 0.0f;
             uint32_t joint = weight > 0.0f ? joints[4 * i + k] : 0;
-            if (joint > UINT16_MAX) return gltf_wrong(p->object, "joint %u of 65536", joint);
+            if (joint > UINT16_MAX)
+                return gltf_wrong(p->object, "joint index %u is above 65535", joint);
             mesh->joints[i][k] = (uint16_t)joint;
             mesh->weights[i].raw[k] = weight;
             sum += weight;
@@ -120,7 +122,7 @@ static bool load_morphs(struct primitive *p)
         struct morph_target *morph = &mesh->morphs[i];
         morph->positions = (vec3s *)floats(p, target, "POSITION", 3);
         morph->normals = (vec3s *)floats(p, target, "NORMAL", 3);
-        // Differences of normals that the mesh does not have say nothing.
+        // Offsets of absent normals are meaningless.
         if (!mesh->normals) morph->normals = NULL;
         if (p->gltf->failed) return false;
         if (!morph->positions) {
@@ -132,7 +134,7 @@ static bool load_morphs(struct primitive *p)
     return true;
 }
 
-// The vertices' corner order: the file's indices, or 0, 1, 2, … where there are none.
+// The file's indices, or 0, 1, 2, … for a primitive without.
 static uint32_t *load_corners(struct primitive *p, size_t *count)
 {
     int accessor = gltf_index(p->object, "indices", p->gltf->accessors);
@@ -147,7 +149,7 @@ static uint32_t *load_corners(struct primitive *p, size_t *count)
     return corners;
 }
 
-// Strips and fans become triangles with the orders of glTF 2.0, section 3.7.2.1.
+// Triangles of a strip or fan, in the order of glTF 2.0, section 3.7.2.1.
 static uint32_t *triangles_of(struct primitive *p, const uint32_t *corners, size_t corner_count,
                               bool strip)
 {
@@ -175,13 +177,13 @@ static bool load_indices(struct primitive *p, size_t mode)
         count = 3 * (count - 2);
     }
     if (count % 3 != 0) {
-        return gltf_wrong(p->object, "%zu corners make no whole triangles", count);
+        return gltf_wrong(p->object, "%zu indices are not a multiple of 3", count);
     }
     mesh->index_count = (uint32_t)count;
     return mesh->indices != NULL;
 }
 
-// Draco data beside ordinary accessors is a copy; alone, it is all there is.
+// Refuses primitives that have only Draco data; beside ordinary accessors it is a copy.
 static bool check_compression(struct primitive *p)
 {
     if (!gltf_extension(p->object, "KHR_draco_mesh_compression").json) return !p->gltf->failed;
@@ -192,7 +194,7 @@ static bool check_compression(struct primitive *p)
     if (gltf_has(object, "bufferView") || gltf_has(object, "sparse")) return true;
     struct import *import = p->gltf->import;
     return host_fail(import->host, FAIL_UNSUPPORTED,
-                     "%s: mesh %s has only KHR_draco_mesh_compression data, which is not read",
+                     "%s: mesh %s has only KHR_draco_mesh_compression data, which is not supported",
                      import->path, import_printable(p->mesh->name).s);
 }
 
@@ -203,13 +205,13 @@ static bool load_vertices(struct primitive *p, int position_accessor)
     if (!mesh->positions) return false;
     mesh->normals = (vec3s *)floats(p, p->attributes, "NORMAL", 3);
     mesh->tangents = (vec4s *)floats(p, p->attributes, "TANGENT", 4);
-    if (!mesh->normals) mesh->tangents = NULL; // glTF 2.0: to be ignored then
+    if (!mesh->normals) mesh->tangents = NULL; // ignored then, as glTF 2.0 requires
     mesh->uv[0] = (vec2s *)floats(p, p->attributes, "TEXCOORD_0", 2);
     mesh->uv[1] = (vec2s *)floats(p, p->attributes, "TEXCOORD_1", 2);
     return !p->gltf->failed && load_colors(p) && load_skinning(p) && load_morphs(p);
 }
 
-// Adds the primitive to the scene unless it has no triangles.
+// Adds the primitive to the scene if it has triangles.
 static bool load_primitive(struct gltf *gltf, const char *name, json_t *primitives, size_t i,
                            bool *added)
 {
@@ -261,7 +263,7 @@ static bool load_mesh(struct gltf *gltf, size_t i)
         if (!load_primitive(gltf, name, primitives, k, &added)) return false;
         gltf->mesh_parts[i] += added;
     }
-    // One set of weights serves all parts.
+    // All parts share one set of weights.
     const struct mesh *parts = import->scene->meshes + gltf->first_mesh[i];
     for (int k = 1; k < gltf->mesh_parts[i]; k++) {
         if (parts[k].morph_count == parts[0].morph_count) continue;

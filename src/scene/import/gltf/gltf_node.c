@@ -12,7 +12,7 @@ static bool load_node(struct gltf *gltf, size_t i)
 {
     struct gltf_object object = gltf_element(gltf, gltf->nodes, "node", i);
     struct node *node = &gltf->import->scene->nodes[gltf->scene_node[i]];
-    int parent = node->parent; // set by its parent already
+    int parent = node->parent; // set by set_children
     *node = node_default();
     node->parent = parent;
     node->name = import_name(gltf->import, gltf_string(object, "name"), "node", i);
@@ -21,7 +21,7 @@ static bool load_node(struct gltf *gltf, size_t i)
     if (gltf_floats(object, "rotation", 4, node->rotation.raw)) {
         float length = glms_quat_norm(node->rotation);
         if (!(length > 0.0f) || !isfinite(length)) {
-            return gltf_wrong(object, "its rotation is no unit quaternion");
+            return gltf_wrong(object, "its rotation is not a unit quaternion");
         }
         node->rotation = glms_quat_normalize(node->rotation);
     }
@@ -29,7 +29,7 @@ static bool load_node(struct gltf *gltf, size_t i)
     if (gltf_floats(object, "matrix", 16, matrix)) {
         node->has_matrix = true;
         memcpy(&node->matrix, matrix, sizeof matrix);
-        // Affine by definition: what rounding put into the last row goes.
+        // Affine by definition: removes rounding errors from the last row.
         for (int k = 0; k < 4; k++) node->matrix.raw[k][3] = k == 3 ? 1.0f : 0.0f;
     }
     return node->name && !gltf->failed;
@@ -47,7 +47,7 @@ static void set_children(struct gltf *gltf, size_t i)
     }
 }
 
-// Rest weights: the node's, else the mesh's, else zero.
+// Default morph weights: the node's, else the mesh's, else zero.
 static bool rest_weights(struct gltf *gltf, struct gltf_object node, int gltf_mesh,
                          struct instance *instance)
 {
@@ -86,7 +86,7 @@ static bool load_spot(struct gltf_object object, struct light *light)
     light->outer_rad = gltf_float(spot, "outerConeAngle", PI / 4.0f, 1e-4f, PI / 2.0f + 1e-4f);
     light->inner_rad = gltf_float(spot, "innerConeAngle", 0.0f, 0.0f, PI);
     light->outer_rad = fminf(light->outer_rad, PI / 2.0f);
-    // A hard edge is written as two equal angles; the fall-off needs some width.
+    // Files have equal angles for a hard edge; the falloff needs a nonzero width.
     light->inner_rad = fminf(light->inner_rad, 0.999f * light->outer_rad);
     return !object.gltf->failed;
 }
@@ -118,7 +118,7 @@ static bool load_light(struct gltf *gltf, size_t i)
     else if (type && strcmp(type, "spot") == 0)
         light->type = LIGHT_SPOT;
     else
-        return gltf_wrong(object, "its type is none of directional, point, spot");
+        return gltf_wrong(object, "its type is not directional, point or spot");
     if (light->type == LIGHT_SPOT && !load_spot(object, light)) return false;
     scene->light_count++;
     return true;
@@ -145,7 +145,7 @@ static bool load_camera(struct gltf *gltf, size_t i)
     return camera->name && !gltf->failed;
 }
 
-// Room for what the default scene's nodes show.
+// Allocates nodes, instances, lights and cameras.
 static bool reserve(struct gltf *gltf)
 {
     struct scene *scene = gltf->import->scene;
@@ -206,15 +206,15 @@ static bool load_skin(struct gltf *gltf, size_t i)
     size_t given = gltf_accessor_count(gltf, matrices);
     const float *values = given ? gltf_floats_of(gltf, matrices, 16) : NULL;
     if (!values) return false;
-    if (given < count) return gltf_wrong(object, "%zu joints and %zu matrices", count, given);
+    if (given < count) return gltf_wrong(object, "has %zu joints, but %zu matrices", count, given);
     for (size_t k = 0; k < 16 * count; k++) {
-        if (!isfinite(values[k])) return gltf_wrong(object, "a matrix is not finite");
+        if (!isfinite(values[k])) return gltf_wrong(object, "an inverse bind matrix is not finite");
     }
     memcpy(skin->joint_from_mesh, values, count * sizeof *skin->joint_from_mesh);
     return true;
 }
 
-// Every joint that a vertex of a skinned instance refers to is one of its skin's.
+// Every joint index of a skinned instance must exist in its skin.
 static bool check_joints(struct gltf *gltf)
 {
     const struct scene *scene = gltf->import->scene;
@@ -223,8 +223,7 @@ static bool check_joints(struct gltf *gltf)
         if (instance->skin < 0) continue;
         const struct mesh *mesh = &scene->meshes[instance->mesh];
         int joint_count = scene->skins[instance->skin].joint_count;
-        // One walk over the vertices for each instance: many instances of one mesh are work to be
-        // justified.
+        // Charged, because many instances of one mesh multiply this work.
         if (!import_charge(gltf->import, mesh->vertex_count, 1)) return false;
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
             for (int k = 0; k < 4; k++) {
