@@ -1,4 +1,4 @@
-// Small glTF files for tests: JSON written with ' for ", and one buffer "made.bin" beside it.
+// Writes small glTF files for tests: JSON with ' in place of ", and a buffer "made.bin".
 #pragma once
 
 #include "framework/test.h"

@@ -1,4 +1,4 @@
-// Laws that every built-in scene keeps, and the published facts of single ones.
+// Properties of all built-in scenes, and published measurements.
 #include "framework/test.h"
 
 #include "scene/builtin/builtin.h"
@@ -123,8 +123,8 @@ TEST(every_builtin_is_the_same_for_the_same_options)
     }
 }
 
-// "name=value" of an option at one of its ends.
-static void write_end(const struct option_row *row, int end, char *out, size_t size)
+// "name=value" for an option at its minimum or maximum.
+static void write_limit(const struct option_row *row, int end, char *out, size_t size)
 {
     double value = end ? row->max : row->min;
     if (row->type == OPTION_TYPE_choice) {
@@ -136,13 +136,13 @@ static void write_end(const struct option_row *row, int end, char *out, size_t s
     }
 }
 
-TEST(every_option_builds_at_both_its_ends)
+TEST(every_option_builds_at_its_minimum_and_maximum)
 {
     for (int i = 0; builtin_scenes[i]; i++) {
         const struct option_table *table = &builtin_scenes[i]->options;
         for (size_t r = 0; r < 2 * table->count; r++) {
             char option[64], spec[128];
-            write_end(&table->rows[r / 2], (int)(r % 2), option, sizeof option);
+            write_limit(&table->rows[r / 2], (int)(r % 2), option, sizeof option);
             snprintf(spec, sizeof spec, "@%s:%s", builtin_scenes[i]->name, option);
             struct scene *scene = load(spec);
             for (int m = 0; m < scene->mesh_count; m++) check_mesh(scene, &scene->meshes[m]);
@@ -151,7 +151,7 @@ TEST(every_option_builds_at_both_its_ends)
     }
 }
 
-TEST(an_unknown_name_is_refused_and_the_nearest_named)
+TEST(an_unknown_name_is_refused_with_a_suggestion)
 {
     CHECK(!builtin_load(test_host(), "@cornel"));
     CHECK(strstr(test_last_message(), "@cornell"));
@@ -183,8 +183,8 @@ static int compare_edges(const void *a, const void *b)
     return order ? order : compare_points(p->to, q->to);
 }
 
-// How many edges of the meshes first…last run one way more often than the other: 0 for closed
-// surfaces.
+// The number of edges of the meshes first…last whose two directions are not equally frequent: 0 for
+// closed surfaces.
 static size_t count_open_edges(const struct scene *scene, int first, int last)
 {
     size_t count = 0, open = 0;
@@ -221,8 +221,8 @@ TEST(cornell_has_the_published_dimensions)
     CHECK_NEAR(box3_size(ceiling).x, 5.56, 1e-5);
     CHECK_NEAR(box3_size(ceiling).z, 5.592, 1e-5);
     CHECK_NEAR(ceiling.min.y, 5.488, 1e-5);
-    // Trapezia: the floor is 552.8 wide in front and 549.6 at the back, the back wall 549.6 and
-    // 556.
+    // Trapezia: the floor is 552.8 wide in front and 549.6 at the back, the back wall 549.6 below
+    // and 556 above.
     CHECK_RELATIVE(mesh_area(floor), 0.5 * (5.528 + 5.496) * 5.592, 1e-6);
     CHECK_RELATIVE(mesh_area(back), 0.5 * (5.496 + 5.56) * 5.488, 1e-6);
     CHECK_RELATIVE(mesh_area(mesh_named(scene, "green wall")), 5.592 * 5.488, 1e-6);
@@ -245,7 +245,7 @@ TEST(cornell_opens_towards_plus_z_with_red_to_the_left)
     CHECK(mesh_named(scene, "red wall")->bounds.max.x < -2.7f);
     CHECK(mesh_named(scene, "green wall")->bounds.min.x > 2.7f);
     CHECK(mesh_named(scene, "back wall")->bounds.max.z < -2.7f);
-    // The surfaces look inwards.
+    // The surfaces face inwards.
     CHECK(mesh_named(scene, "floor")->normals[0].y > 0.99f);
     CHECK(mesh_named(scene, "ceiling")->normals[0].y < -0.99f);
     CHECK(mesh_named(scene, "light")->normals[0].y < -0.99f);
@@ -267,7 +267,7 @@ TEST(cornell_point_light_has_the_power_of_the_quad)
             GLM_PI * mesh_area(light) * (double)quad->materials[light->material].emissive.raw[c];
         CHECK_RELATIVE(4 * GLM_PI * (double)point->lights[0].intensity.raw[c], quad_lumens, 1e-5);
     }
-    // Without the light the ceiling is whole.
+    // Without the light the ceiling has no hole.
     CHECK_RELATIVE(mesh_area(mesh_named(point, "ceiling")), 5.56 * 5.592, 1e-6);
     scene_destroy(quad);
     scene_destroy(point);
@@ -290,7 +290,7 @@ TEST(cornell_is_closed_where_it_should_be)
     scene_destroy(scene);
 }
 
-// Everything but the light of a scene whose light is a bare quad.
+// All meshes but the light, a single quad.
 static void check_closed(const char *spec)
 {
     struct scene *scene = load(spec);
@@ -325,14 +325,13 @@ TEST(rooms_are_closed_so_that_no_light_leaks)
     for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) check_closed(specs[i]);
 }
 
-TEST(a_maze_has_the_blocks_that_were_asked_for)
+TEST(a_maze_has_the_requested_number_of_blocks)
 {
     for (int blocks = 1; blocks <= 64; blocks += 9) {
         char spec[64];
         snprintf(spec, sizeof spec, "@maze:blocks=%d,size=2", blocks);
         struct scene *scene = load(spec);
-        // A tree of blocks has one passage less than blocks; each is open over the wall's
-        // thickness, 0.16 m.
+        // A tree of n blocks has n - 1 passages, each as long as a wall is thick, 0.16 m.
         const struct mesh *floor = mesh_named(scene, "floor");
         double area = 0;
         for (uint32_t t = 0; t < floor->index_count / 3; t++) {
@@ -344,7 +343,7 @@ TEST(a_maze_has_the_blocks_that_were_asked_for)
     }
 }
 
-TEST(a_ball_and_a_point_light_have_the_same_lumens)
+TEST(sphere_and_point_lights_have_the_same_luminous_flux)
 {
     struct scene *ball = load("@maze:lumens=5000");
     struct scene *point = load("@maze:lumens=5000,light=point");
@@ -356,7 +355,7 @@ TEST(a_ball_and_a_point_light_have_the_same_lumens)
     scene_destroy(point);
 }
 
-TEST(the_furnace_is_one_material_that_shines_everywhere)
+TEST(the_furnace_has_one_emissive_material)
 {
     struct scene *scene = load("@spheres:furnace=1,albedo=0.25,radiance=10");
     CHECK(scene->mesh_count == 1 && scene->light_count == 0);
@@ -366,7 +365,7 @@ TEST(the_furnace_is_one_material_that_shines_everywhere)
     scene_destroy(scene);
 }
 
-TEST(the_atriums_sun_lights_floor_wall_and_cloth_through_the_roof)
+TEST(the_sun_of_the_atrium_lights_floor_wall_and_cloth)
 {
     struct scene *scene = load("@atrium");
     size_t triangles = scene_triangle_count(scene);
@@ -378,16 +377,17 @@ TEST(the_atriums_sun_lights_floor_wall_and_cloth_through_the_roof)
     vec3s towards = glms_vec3_negate(pose_light(&pose, 0).direction);
     struct raycast raycast;
     CHECK(raycast_init(&raycast, test_host(), &pose));
-    // The court's floor is lit in part, its far half in most places; the aisles' is not.
-    int court = 0, aisle = 0;
+    // The floor of the courtyard is partly lit, mostly in its far half; the floor of the aisles
+    // is not.
+    int courtyard = 0, aisle = 0;
     for (int i = 0; i < 400; i++) {
         float x = -11.5f + 23.0f * (float)i / 399.0f;
         vec3s far_half = vec3_of(x, 0.01f, -1.5f), in_aisle = vec3_of(x, 0.01f, 5.5f);
-        court += !raycast_blocked(&raycast, far_half, towards, INFINITY);
+        courtyard += !raycast_blocked(&raycast, far_half, towards, INFINITY);
         aisle += !raycast_blocked(&raycast, in_aisle, towards, INFINITY);
     }
-    CHECK(court > 200 && court < 400 && aisle == 0);
-    // A ray downwards from high above the court meets something everywhere: no hole in the floor.
+    CHECK(courtyard > 200 && courtyard < 400 && aisle == 0);
+    // A ray down from above the courtyard always hits: no hole in the floor.
     for (int i = 0; i < 2000; i++) {
         vec2s u = r2_sequence((uint32_t)i);
         vec3s above = vec3_of(-12 + 24 * u.x, 30, -7 + 14 * u.y);
@@ -398,10 +398,10 @@ TEST(the_atriums_sun_lights_floor_wall_and_cloth_through_the_roof)
     scene_destroy(scene);
 }
 
-// Of the points of a mesh that face the sun, the share that it reaches; each is moved a little
-// along its normal.
-static double sunlit_share(const struct scene *scene, const struct scene_pose *pose,
-                           const char *name)
+// The fraction of the sun-facing vertices of a mesh that are lit; ray origins are offset along the
+// normal.
+static double sunlit_fraction(const struct scene *scene, const struct scene_pose *pose,
+                              const char *name)
 {
     struct raycast raycast;
     CHECK(raycast_init(&raycast, test_host(), pose));
@@ -419,20 +419,21 @@ static double sunlit_share(const struct scene *scene, const struct scene_pose *p
     return (double)lit / facing;
 }
 
-TEST(the_planter_stands_in_the_shade_beside_a_sunlit_drape)
+TEST(the_planter_is_shaded_and_its_drape_sunlit)
 {
     struct scene *scene = load("@planter");
     struct scene_pose pose;
     CHECK(pose_init(&pose, scene, -1, 0));
-    // The arch is lower than the drape and round, and folds shade each other.
-    CHECK(sunlit_share(scene, &pose, "drape") > 0.2);
-    CHECK(sunlit_share(scene, &pose, "planter") == 0 && sunlit_share(scene, &pose, "plant") == 0);
+    // Partly: the arch is lower than the drape, and folds shade each other.
+    CHECK(sunlit_fraction(scene, &pose, "drape") > 0.2);
+    CHECK(sunlit_fraction(scene, &pose, "planter") == 0 &&
+          sunlit_fraction(scene, &pose, "plant") == 0);
     CHECK(mesh_named(scene, "drape")->bounds.max.x < mesh_named(scene, "plant")->bounds.min.x);
     pose_finish(&pose);
     scene_destroy(scene);
 }
 
-TEST(plain_and_textured_planters_are_the_same_solids)
+TEST(plain_and_textured_planters_have_the_same_geometry)
 {
     struct scene *plain = load("@planter:textures=false"), *painted = load("@planter");
     CHECK(plain->image_count == 0 && painted->image_count > 0);
@@ -441,7 +442,7 @@ TEST(plain_and_textured_planters_are_the_same_solids)
     scene_destroy(painted);
 }
 
-TEST(the_floors_camera_sees_the_floor_alone_and_no_sun_on_it)
+TEST(the_floor_camera_sees_only_shaded_floor)
 {
     struct scene *scene = load("@planter");
     struct scene_pose pose;
@@ -453,11 +454,11 @@ TEST(the_floors_camera_sees_the_floor_alone_and_no_sun_on_it)
     CHECK(raycast_init(&raycast, test_host(), &pose));
     float half = camera.eye.y * tanf(0.5f * camera.vertical_fov_rad);
     for (int i = 0; i < 1000; i++) {
-        vec2s u = r2_sequence((uint32_t)i); // a picture of 4:3
+        vec2s u = r2_sequence((uint32_t)i); // aspect ratio 4:3
         vec3s at = vec3_of(camera.eye.x + half * 4.0f / 3.0f * (2 * u.x - 1), 0.01f,
                            camera.eye.z + half * (2 * u.y - 1));
-        vec3s way = glms_vec3_sub(camera.eye, at);
-        CHECK(!raycast_blocked(&raycast, at, way, 1.0f));
+        vec3s to_camera = glms_vec3_sub(camera.eye, at);
+        CHECK(!raycast_blocked(&raycast, at, to_camera, 1.0f));
         CHECK(raycast_blocked(&raycast, at, towards, INFINITY));
     }
     raycast_finish(&raycast);

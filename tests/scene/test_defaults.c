@@ -1,4 +1,4 @@
-// The camera and the sun of scenes that bring none.
+// Default camera and sun of scenes without.
 #include "framework/test.h"
 
 #include "scene/builtin/shapes.h"
@@ -9,33 +9,33 @@
 #include <math.h>
 #include <string.h>
 
-// A scene made of one shape, and its pose.
-struct staged {
+// A scene of one shape, and its pose.
+struct shape_fixture {
     struct scene *scene;
     struct scene_pose pose;
     struct shape_builder builder;
 };
 
-static void begin(struct staged *staged)
+static void begin(struct shape_fixture *fixture)
 {
-    staged->scene = scene_create(test_host(), "test");
-    CHECK(staged->scene);
-    shape_begin(&staged->builder, staged->scene);
+    fixture->scene = scene_create(test_host(), "test");
+    CHECK(fixture->scene);
+    shape_begin(&fixture->builder, fixture->scene);
 }
 
-static void end(struct staged *staged)
+static void end(struct shape_fixture *fixture)
 {
-    CHECK(shape_emit(&staged->builder, "shape", -1) >= 0);
-    CHECK(pose_init(&staged->pose, staged->scene, -1, 0));
+    CHECK(shape_emit(&fixture->builder, "shape", -1) >= 0);
+    CHECK(pose_init(&fixture->pose, fixture->scene, -1, 0));
 }
 
-static void finish(struct staged *staged)
+static void finish(struct shape_fixture *fixture)
 {
-    pose_finish(&staged->pose);
-    scene_destroy(staged->scene);
+    pose_finish(&fixture->pose);
+    scene_destroy(fixture->scene);
 }
 
-// Walls 0.1 thick around a room of 10 × 4 × 6, times `scale`; an open roof lacks its middle.
+// A room of 10 × 4 × 6 with walls 0.1 thick, times `scale`; an open roof has a hole in its middle.
 struct room {
     bool open_roof;
 };
@@ -49,55 +49,55 @@ static int room_part(const void *user, int i, int j, int k)
     return !inside;
 }
 
-static void stage_room(struct staged *staged, float scale, bool open_roof)
+static void make_room(struct shape_fixture *fixture, float scale, bool open_roof)
 {
     struct room room = { open_roof };
     float x[6] = { -5.1f, -5, -4, 4, 5, 5.1f }, z[6] = { -3.1f, -3, -2, 2, 3, 3.1f };
     float y[4] = { -0.1f, 0, 4, 4.1f };
-    begin(staged);
-    staged->builder.scene_from_shape = glms_scale_make(vec3_of(scale, scale, scale));
+    begin(fixture);
+    fixture->builder.scene_from_shape = glms_scale_make(vec3_of(scale, scale, scale));
     struct shape_grid grid = { x, y, z, 5, 3, 5, room_part, &room };
-    shape_blocks(&staged->builder, &grid, 1);
-    end(staged);
+    shape_blocks(&fixture->builder, &grid, 1);
+    end(fixture);
 }
 
-static void stage_sphere(struct staged *staged, float radius)
+static void make_sphere(struct shape_fixture *fixture, float radius)
 {
-    begin(staged);
-    shape_sphere(&staged->builder, vec3_of(3 * radius, 0, radius), radius, 48);
-    end(staged);
+    begin(fixture);
+    shape_sphere(&fixture->builder, vec3_of(3 * radius, 0, radius), radius, 48);
+    end(fixture);
 }
 
-TEST(a_room_is_seen_from_inside_along_its_length)
+TEST(the_camera_of_a_room_is_inside_and_faces_along_its_length)
 {
     static const float scales[3] = { 0.01f, 1, 100 };
     for (int i = 0; i < 3; i++) {
-        struct staged staged;
+        struct shape_fixture fixture;
         float scale = scales[i];
-        stage_room(&staged, scale, false);
-        struct world_camera camera = default_camera(&staged.pose);
+        make_room(&fixture, scale, false);
+        struct world_camera camera = default_camera(&fixture.pose);
         CHECK(fabsf(camera.eye.x) < 5 * scale && fabsf(camera.eye.z) < 3 * scale);
         CHECK(camera.eye.y > 0.2f * scale && camera.eye.y < 3 * scale);
         struct raycast raycast;
         struct raycast_hit hit;
-        CHECK(raycast_init(&raycast, test_host(), &staged.pose));
+        CHECK(raycast_init(&raycast, test_host(), &fixture.pose));
         CHECK(raycast_closest(&raycast, camera.eye, camera.forward, INFINITY, &hit));
         CHECK(hit.distance > 7 * scale);
         CHECK(camera.near_m > 0 && camera.near_m < 0.01f * scale);
         raycast_finish(&raycast);
-        finish(&staged);
+        finish(&fixture);
     }
 }
 
-TEST(a_person_stands_at_a_persons_height)
+TEST(the_camera_of_a_room_in_metres_is_at_eye_level)
 {
-    struct staged staged;
-    stage_room(&staged, 1, false);
-    CHECK_NEAR(default_camera(&staged.pose).eye.y, 1.7, 1e-4);
-    finish(&staged);
+    struct shape_fixture fixture;
+    make_room(&fixture, 1, false);
+    CHECK_NEAR(default_camera(&fixture.pose).eye.y, 1.7, 1e-4);
+    finish(&fixture);
 }
 
-// Whether all corners of the bounds lie in a picture of this aspect ratio, before the near plane.
+// Whether all corners of the bounds are in an image of this aspect ratio, beyond the near plane.
 static bool frames(const struct world_camera *camera, struct box3 bounds, float aspect, float *fill)
 {
     vec3s right = glms_vec3_cross(camera->forward, camera->up);
@@ -117,23 +117,23 @@ static bool frames(const struct world_camera *camera, struct box3 bounds, float 
     return *fill <= 1;
 }
 
-TEST(a_thing_is_seen_from_outside_and_whole)
+TEST(the_camera_of_an_object_is_outside_and_sees_all_of_it)
 {
     static const float radii[3] = { 0.07f, 1, 300 };
     for (int i = 0; i < 3; i++) {
-        struct staged staged;
-        stage_sphere(&staged, radii[i]);
-        struct world_camera camera = default_camera(&staged.pose);
-        vec3s centre = box3_centre(staged.pose.bounds);
+        struct shape_fixture fixture;
+        make_sphere(&fixture, radii[i]);
+        struct world_camera camera = default_camera(&fixture.pose);
+        vec3s centre = box3_centre(fixture.pose.bounds);
         CHECK(glms_vec3_distance(camera.eye, centre) > 1.5f * radii[i]);
         float fill;
-        CHECK(frames(&camera, staged.pose.bounds, 1, &fill));
-        CHECK(fill > 0.7f); // and not lost in the distance
-        finish(&staged);
+        CHECK(frames(&camera, fixture.pose.bounds, 1, &fill));
+        CHECK(fill > 0.7f); // and the object fills most of the image
+        finish(&fixture);
     }
 }
 
-TEST(an_empty_scene_has_a_camera_too)
+TEST(an_empty_scene_has_a_camera)
 {
     struct scene *scene = scene_create(test_host(), "empty");
     struct scene_pose pose;
@@ -146,17 +146,17 @@ TEST(an_empty_scene_has_a_camera_too)
     scene_destroy(scene);
 }
 
-TEST(the_sun_reaches_the_inside_through_an_open_roof)
+TEST(the_sun_reaches_the_interior_through_an_open_roof)
 {
-    struct staged staged;
-    stage_room(&staged, 1, true);
-    struct default_lighting light = default_lighting(&staged.pose);
+    struct shape_fixture fixture;
+    make_room(&fixture, 1, true);
+    struct default_lighting light = default_lighting(&fixture.pose);
     CHECK_NEAR(glms_vec3_norm(light.sun_direction), 1, 1e-5);
     double elevation = asin(-(double)light.sun_direction.y) * 180 / GLM_PI;
     CHECK(elevation > 34.9 && elevation < 75.1);
-    // Some of the floor is lit, and some of a wall.
+    // Part of the floor and part of a wall is lit.
     struct raycast raycast;
-    CHECK(raycast_init(&raycast, test_host(), &staged.pose));
+    CHECK(raycast_init(&raycast, test_host(), &fixture.pose));
     int floor = 0, wall = 0;
     vec3s towards = glms_vec3_negate(light.sun_direction);
     for (int i = 0; i < 400; i++) {
@@ -172,23 +172,23 @@ TEST(the_sun_reaches_the_inside_through_an_open_roof)
     }
     CHECK(floor > 20 && wall > 20);
     raycast_finish(&raycast);
-    finish(&staged);
+    finish(&fixture);
 }
 
-TEST(the_sun_lights_what_the_outside_camera_sees)
+TEST(the_sun_lights_surfaces_visible_to_the_outside_camera)
 {
-    struct staged staged;
-    stage_sphere(&staged, 1);
-    struct world_camera camera = default_camera(&staged.pose);
-    struct default_lighting light = default_lighting(&staged.pose);
+    struct shape_fixture fixture;
+    make_sphere(&fixture, 1);
+    struct world_camera camera = default_camera(&fixture.pose);
+    struct default_lighting light = default_lighting(&fixture.pose);
     CHECK(glms_vec3_dot(light.sun_direction, camera.forward) > 0.3f);
     CHECK(light.sun_direction.y < -0.3f);
     CHECK_NEAR(light.sun_lux.x, 100000, 1);
     CHECK(light.sky.z > light.sky.x && luminance(light.sky) < 0.01f * luminance(light.sun_lux));
-    finish(&staged);
+    finish(&fixture);
 }
 
-TEST(defaults_are_the_same_every_time)
+TEST(defaults_are_deterministic)
 {
     struct scene *scene = builtin_load(test_host(), "@atrium:texels=16");
     struct scene_pose pose;
@@ -197,7 +197,7 @@ TEST(defaults_are_the_same_every_time)
     CHECK(memcmp(&first, &second, sizeof first) == 0);
     struct default_lighting a = default_lighting(&pose), b = default_lighting(&pose);
     CHECK(memcmp(&a, &b, sizeof a) == 0);
-    // Inside the court, looking along it.
+    // Inside the courtyard, facing along it.
     CHECK(fabsf(first.eye.z) < 3.5f && fabsf(first.forward.x) > 0.9f);
     pose_finish(&pose);
     scene_destroy(scene);
@@ -206,14 +206,14 @@ TEST(defaults_are_the_same_every_time)
 TEST(a_scene_is_dark_without_lights_emission_and_sky)
 {
     struct scene *lit = builtin_load(test_host(), "@cornell:light=point");
-    struct scene *shining = builtin_load(test_host(), "@cornell");
-    CHECK(lit && shining && !scene_is_dark(lit) && !scene_is_dark(shining));
+    struct scene *emissive = builtin_load(test_host(), "@cornell");
+    CHECK(lit && emissive && !scene_is_dark(lit) && !scene_is_dark(emissive));
     scene_remove_lights(lit);
     CHECK(scene_is_dark(lit));
     lit->sky = vec3_of(1, 1, 1);
     CHECK(!scene_is_dark(lit));
     scene_destroy(lit);
-    scene_destroy(shining);
+    scene_destroy(emissive);
 }
 
 static double volume(vec3s a, vec3s b, vec3s c)
@@ -225,11 +225,11 @@ static double volume(vec3s a, vec3s b, vec3s c)
 }
 
 // Distance along a ray to a triangle by signed volumes, INFINITY for a miss.
-static double distance_to(vec3s eye, vec3s direction, vec3s a, vec3s b, vec3s c)
+static double distance_to(vec3s origin, vec3s direction, vec3s a, vec3s b, vec3s c)
 {
-    a = glms_vec3_sub(a, eye);
-    b = glms_vec3_sub(b, eye);
-    c = glms_vec3_sub(c, eye);
+    a = glms_vec3_sub(a, origin);
+    b = glms_vec3_sub(b, origin);
+    c = glms_vec3_sub(c, origin);
     double u = volume(direction, b, c), v = volume(direction, c, a), w = volume(direction, a, b);
     if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)) || u + v + w == 0) {
         return HUGE_VAL;
@@ -238,51 +238,51 @@ static double distance_to(vec3s eye, vec3s direction, vec3s a, vec3s b, vec3s c)
     return distance > 0 ? distance : HUGE_VAL;
 }
 
-static double nearest_of_all(const struct mesh *mesh, vec3s eye, vec3s direction)
+static double nearest_of_all(const struct mesh *mesh, vec3s origin, vec3s direction)
 {
     double nearest = HUGE_VAL;
     for (uint32_t i = 0; i < mesh->index_count; i += 3) {
         const uint32_t *t = mesh->indices + i;
-        nearest = fmin(nearest, distance_to(eye, direction, mesh->positions[t[0]],
+        nearest = fmin(nearest, distance_to(origin, direction, mesh->positions[t[0]],
                                             mesh->positions[t[1]], mesh->positions[t[2]]));
     }
     return nearest;
 }
 
-TEST(rays_meet_what_brute_force_meets)
+TEST(ray_hits_equal_brute_force)
 {
-    struct staged staged;
-    begin(&staged);
+    struct shape_fixture fixture;
+    begin(&fixture);
     for (int i = 0; i < 5; i++) {
         vec3s centre = vec3_of((float)i, 0.3f * (float)i, -(float)(i % 2));
-        shape_sphere(&staged.builder, centre, 0.4f, 16);
+        shape_sphere(&fixture.builder, centre, 0.4f, 16);
     }
-    end(&staged);
+    end(&fixture);
     struct raycast raycast;
-    CHECK(raycast_init(&raycast, test_host(), &staged.pose));
-    int met = 0, differ = 0;
+    CHECK(raycast_init(&raycast, test_host(), &fixture.pose));
+    int hits = 0, differ = 0;
     for (int i = 0; i < 1000; i++) {
-        float turn = 0.00625f * (float)i;
-        vec3s eye = vec3_of(2 + 6 * cosf(turn), 0.6f, 6 * sinf(turn));
+        float angle = 0.00625f * (float)i;
+        vec3s origin = vec3_of(2 + 6 * cosf(angle), 0.6f, 6 * sinf(angle));
         vec3s aim = vec3_of(0.0055f * (float)i, 0.0015f * (float)i, -0.5f);
-        vec3s direction = glms_vec3_normalize(glms_vec3_sub(aim, eye));
-        double nearest = nearest_of_all(&staged.scene->meshes[0], eye, direction);
+        vec3s direction = glms_vec3_normalize(glms_vec3_sub(aim, origin));
+        double nearest = nearest_of_all(&fixture.scene->meshes[0], origin, direction);
         struct raycast_hit hit = { .distance = INFINITY };
-        bool found = raycast_closest(&raycast, eye, direction, INFINITY, &hit);
-        CHECK(raycast_blocked(&raycast, eye, direction, INFINITY) == found);
-        met += found;
+        bool found = raycast_closest(&raycast, origin, direction, INFINITY, &hit);
+        CHECK(raycast_blocked(&raycast, origin, direction, INFINITY) == found);
+        hits += found;
         bool same = found ? fabs((double)hit.distance - nearest) < 1e-4 : nearest == HUGE_VAL;
         differ += !same;
         if (!found) continue;
         CHECK(hit.front && glms_vec3_dot(hit.normal, direction) < 0);
-        CHECK(!raycast_blocked(&raycast, eye, direction, 0.999f * hit.distance));
+        CHECK(!raycast_blocked(&raycast, origin, direction, 0.999f * hit.distance));
     }
-    CHECK(met > 200 && met < 1000 && differ == 0);
+    CHECK(hits > 200 && hits < 1000 && differ == 0);
     raycast_finish(&raycast);
-    finish(&staged);
+    finish(&fixture);
 }
 
-TEST(sponza_is_seen_from_inside_with_floor_in_the_sun)
+TEST(the_camera_of_sponza_is_inside_and_the_sun_lights_the_floor)
 {
     struct scene *scene = scene_load(test_host(), test_scene_path("sponza.glb"));
     struct scene_pose pose;

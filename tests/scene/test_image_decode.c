@@ -1,4 +1,4 @@
-// Encoded images from untrusted files.
+// Image decoding of untrusted data.
 #include "framework/test.h"
 
 #include "scene/image_decode.h"
@@ -21,7 +21,7 @@ static void add(struct bytes *file, const uint8_t *data, size_t size)
     file->size += size;
 }
 
-// A table with `each` codes of each of the 16 lengths, in a segment that says `length`.
+// A table with `each` codes of each of the 16 lengths, in a segment of the stated `length`.
 static void add_table(struct bytes *file, uint8_t each, size_t length)
 {
     const uint8_t head[DHT_HEAD] = { 0xff, 0xc4, (uint8_t)(length >> 8), (uint8_t)length, 0 };
@@ -35,7 +35,7 @@ static const char *size_of(const struct bytes *file, int *width, int *height)
     return image_decode_size(file->data, file->size, width, height);
 }
 
-TEST(jpeg_says_its_size)
+TEST(jpeg_size_is_read_from_the_header)
 {
     struct bytes file = { 0 };
     int width = 0, height = 0;
@@ -48,8 +48,8 @@ TEST(jpeg_says_its_size)
     assert_int_equal(height, 2);
 }
 
-// 272 symbols, in a segment that holds them and in one that holds only the table's class.
-TEST(jpeg_table_with_more_symbols_than_bytes_have_values_is_refused)
+// 272 symbols, in a segment that includes them and in one that ends after the table's class.
+TEST(a_jpeg_huffman_table_of_more_than_256_symbols_is_refused)
 {
     static const size_t lengths[] = { 2 + 17 + 272, 3 };
     for (int i = 0; i < 2; i++) {
@@ -62,8 +62,8 @@ TEST(jpeg_table_with_more_symbols_than_bytes_have_values_is_refused)
     }
 }
 
-// Bytes of a comment, or of a picture within the picture, are no tables.
-TEST(jpeg_segments_without_tables_are_not_looked_into)
+// The contents of comments and embedded thumbnails are not tables.
+TEST(jpeg_segments_without_tables_are_skipped)
 {
     struct bytes file = { 0 };
     int width = 0, height = 0;

@@ -1,4 +1,4 @@
-// Normals and tangents that are made.
+// Generated normals and tangents.
 #include "framework/test.h"
 
 #include "scene/mesh_geometry.h"
@@ -7,7 +7,7 @@
 
 static struct arena arena;
 
-// A square in the plane z = 0 that faces +z. The image is upright: u to the right, v down.
+// A square in the plane z = 0, facing +z. The image is upright: u to the right, v down.
 static struct mesh square(bool mirrored)
 {
     static vec3s positions[4] = {
@@ -46,24 +46,23 @@ TEST(tangents_follow_u_and_the_bitangent_points_up_in_the_image)
     arena_finish(&arena);
 }
 
-TEST(a_turned_map_turns_its_tangents)
+TEST(a_rotated_map_rotates_its_tangents)
 {
     arena_init(&arena, test_host());
     struct texture_use map = texture_use_none();
     map.uv_rotation_rad = 0.5f;
     struct mesh mesh = square(false);
     CHECK(mesh_make_tangents(&arena, &mesh, &map));
-    // Texture coordinates turned counter-clockwise by 0.5: the direction of growing u turns
-    // clockwise.
+    // Texture coordinates rotated counter-clockwise by 0.5 rad rotate the u axis clockwise.
     CHECK_NEAR(mesh.tangents[0].x, cosf(0.5f), 1e-6);
     CHECK_NEAR(mesh.tangents[0].y, -sinf(0.5f), 1e-6);
     arena_finish(&arena);
 }
 
-TEST(vertices_between_mirrored_and_straight_mapping_are_doubled)
+TEST(vertices_between_mirrored_and_unmirrored_triangles_are_duplicated)
 {
     arena_init(&arena, test_host());
-    // Two triangles share the edge 0-1; u runs away from it on both sides.
+    // Two triangles share the edge 0-1; u increases away from it on both sides.
     vec3s positions[4] = { { { 0, 0, 0 } }, { { 0, 1, 0 } }, { { 1, 0, 0 } }, { { -1, 0, 0 } } };
     vec3s normals[4];
     vec2s uv[4] = { { { 0, 1 } }, { { 0, 0 } }, { { 1, 1 } }, { { 1, 1 } } };
@@ -87,11 +86,10 @@ TEST(vertices_between_mirrored_and_straight_mapping_are_doubled)
     arena_finish(&arena);
 }
 
-TEST(equal_vertices_share_their_tangent_whether_or_not_the_file_shares_them)
+TEST(equal_vertices_share_their_tangent_also_when_duplicated_in_the_file)
 {
     arena_init(&arena, test_host());
-    // A bent strip with smooth normals; u follows the surface, whose direction differs in the two
-    // triangles.
+    // A bent strip with smooth normals; the direction of u differs between the two triangles.
     vec3s p[4] = { { { 0, 0, 0 } }, { { 1, 0, 0 } }, { { 1, 1, 0 } }, { { 0, 1, 0.5f } } };
     vec2s t[4] = { { { 0, 1 } }, { { 1, 0.8f } }, { { 1, 0 } }, { { 0.2f, 0 } } };
     uint32_t shared[6] = { 0, 1, 2, 0, 2, 3 }, apart[6] = { 0, 1, 2, 3, 4, 5 };
@@ -145,7 +143,7 @@ TEST(degenerate_triangles_get_unit_normals_and_tangents)
     arena_finish(&arena);
 }
 
-TEST(a_mesh_without_the_coordinates_of_its_map_has_no_tangents)
+TEST(a_mesh_without_the_texture_coordinates_of_its_map_has_no_tangents)
 {
     arena_init(&arena, test_host());
     struct mesh mesh = square(false);

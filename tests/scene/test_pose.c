@@ -1,4 +1,4 @@
-// Where things are at a time: hierarchy, animation, skins, morphs, bounds, lights, cameras.
+// Poses: hierarchy, animation, skins, morph targets, bounds, lights, cameras.
 #include "framework/test.h"
 
 #include "scene/animation_sample.h"
@@ -30,19 +30,19 @@ static struct mesh triangle(void)
                           .indices = indices };
 }
 
-static versors turn(float degrees, vec3s axis)
+static versors rotation(float degrees, vec3s axis)
 {
     return glms_quatv(glm_rad(degrees), axis);
 }
 
-// Node 0 moves by (1, 2, 3) and turns by 90 degrees around +y; node 1 is its child, at (0, 0, 1),
-// twice as large.
+// Node 0 is translated by (1, 2, 3) and rotated by 90 degrees around +y; node 1 is its child, at
+// (0, 0, 1), scaled by 2.
 static struct scene *parent_and_child(void)
 {
     struct scene *scene = scene_create(test_host(), "test");
     struct node node = node_default();
     node.translation = vec3_of(1, 2, 3);
-    node.rotation = turn(90, vec3_of(0, 1, 0));
+    node.rotation = rotation(90, vec3_of(0, 1, 0));
     CHECK(scene_add_node(scene, &node) == 0);
     node = node_default();
     node.parent = 0;
@@ -59,13 +59,13 @@ static void add_triangle(struct scene *scene, int node)
     CHECK(scene_add_instance(scene, &instance) >= 0);
 }
 
-TEST(a_child_moves_with_its_parent)
+TEST(a_child_follows_its_parent)
 {
     struct scene *scene = parent_and_child();
     add_triangle(scene, 1);
     struct scene_pose pose;
     CHECK(pose_init(&pose, scene, -1, 0));
-    // (x, y, z) turned is (z, y, -x).
+    // The rotation maps (x, y, z) to (z, y, -x).
     vec3s moved = mat4_point(pose.world_from_node[1], vec3_of(1, 0, 0));
     check_vec3(moved, vec3_of(1 + 1, 2, 3 - 2), 1e-5);
     check_vec3(pose.bounds.min, vec3_of(2, 2, 1), 1e-5);
@@ -76,7 +76,7 @@ TEST(a_child_moves_with_its_parent)
     scene_destroy(scene);
 }
 
-TEST(a_matrix_stands_for_translation_rotation_and_scale)
+TEST(a_matrix_replaces_translation_rotation_and_scale)
 {
     struct scene *scene = parent_and_child();
     struct node node = node_default();
@@ -95,7 +95,7 @@ TEST(bounds_are_tight_under_rotation)
 {
     struct scene *scene = scene_create(test_host(), "test");
     struct node node = node_default();
-    node.rotation = turn(45, vec3_of(0, 0, 1));
+    node.rotation = rotation(45, vec3_of(0, 0, 1));
     CHECK(scene_add_node(scene, &node) == 0);
     add_triangle(scene, 0);
     struct scene_pose pose;
@@ -114,7 +114,7 @@ static struct animation_channel channel(enum channel_path path,
     return (struct animation_channel){ 0, path, interpolation, key_count, width, times, values };
 }
 
-TEST(step_and_linear_channels_hold_before_and_after_their_keys)
+TEST(step_and_linear_channels_are_clamped_to_their_keys)
 {
     float times[3] = { 1, 2, 4 }, values[9] = { 0, 0, 0, 10, 0, 0, 30, 0, 0 }, out[3];
     struct animation_channel c = channel(PATH_TRANSLATION, INTERPOLATE_LINEAR, 3, 3, times, values);
@@ -130,9 +130,9 @@ TEST(step_and_linear_channels_hold_before_and_after_their_keys)
     }
 }
 
-TEST(linear_rotation_turns_at_a_constant_rate_along_the_shorter_arc)
+TEST(linear_rotation_has_a_constant_rate_along_the_shorter_arc)
 {
-    versors a = turn(0, vec3_of(0, 1, 0)), b = turn(120, vec3_of(0, 1, 0));
+    versors a = rotation(0, vec3_of(0, 1, 0)), b = rotation(120, vec3_of(0, 1, 0));
     for (int sign = -1; sign <= 1; sign += 2) {
         float times[2] = { 0, 3 }, values[8], out[4];
         memcpy(values, a.raw, sizeof a.raw);
@@ -141,7 +141,7 @@ TEST(linear_rotation_turns_at_a_constant_rate_along_the_shorter_arc)
             channel(PATH_ROTATION, INTERPOLATE_LINEAR, 4, 2, times, values);
         for (int second = 0; second <= 3; second++) {
             channel_sample(&c, (float)second, 4, out);
-            versors expected = turn(40.0f * (float)second, vec3_of(0, 1, 0));
+            versors expected = rotation(40.0f * (float)second, vec3_of(0, 1, 0));
             double dot = 0;
             for (int i = 0; i < 4; i++) dot += (double)out[i] * (double)expected.raw[i];
             CHECK_NEAR(fabs(dot), 1, 1e-6);
@@ -149,7 +149,7 @@ TEST(linear_rotation_turns_at_a_constant_rate_along_the_shorter_arc)
     }
 }
 
-TEST(cubic_passes_through_its_keys_with_their_tangents)
+TEST(cubic_channels_interpolate_keys_and_tangents)
 {
     // For each key: in-tangent, value, out-tangent.
     float times[2] = { 1, 3 }, values[6] = { 9, 2, -1, 4, 5, 9 }, out;
@@ -163,7 +163,7 @@ TEST(cubic_passes_through_its_keys_with_their_tangents)
     channel_sample(&c, 3 - h, 1, &near_in);
     CHECK_NEAR((near_out - 2) / h, -1, 0.05);
     CHECK_NEAR((5 - near_in) / h, 4, 0.05);
-    // The spline's middle: (p0 + p1)/2 + d (m0 − m1)/8.
+    // The spline at its midpoint: (p0 + p1)/2 + d (m0 − m1)/8.
     channel_sample(&c, 2, 1, &out);
     CHECK_NEAR(out, 3.5 + 2.0 * (-1 - 4) / 8, 1e-6);
 }
@@ -199,12 +199,12 @@ TEST(time_wraps_around_the_duration)
     scene_destroy(scene);
 }
 
-TEST(rotation_keys_turn_a_node_and_its_children)
+TEST(rotation_keys_rotate_a_node_and_its_children)
 {
     struct scene *scene = parent_and_child();
     float times[2] = { 0, 1 }, values[8];
-    memcpy(values, turn(0, vec3_of(0, 1, 0)).raw, 4 * sizeof(float));
-    memcpy(values + 4, turn(120, vec3_of(0, 1, 0)).raw, 4 * sizeof(float));
+    memcpy(values, rotation(0, vec3_of(0, 1, 0)).raw, 4 * sizeof(float));
+    memcpy(values + 4, rotation(120, vec3_of(0, 1, 0)).raw, 4 * sizeof(float));
     struct animation_channel c = channel(PATH_ROTATION, INTERPOLATE_LINEAR, 4, 2, times, values);
     struct animation animation;
     set_animation(scene, &animation, &c, 1, 1);
@@ -216,7 +216,7 @@ TEST(rotation_keys_turn_a_node_and_its_children)
     scene_destroy(scene);
 }
 
-// A triangle skinned to nodes 0 and 1 of `scene`, bound where they rest when `at_rest`.
+// A triangle skinned to nodes 0 and 1 of `scene`.
 struct skinned {
     int joints[2];
     mat4s joint_from_mesh[2];
@@ -244,7 +244,7 @@ static void add_skinned(struct scene *scene, struct skinned *skinned)
     CHECK(scene_add_instance(scene, &instance) == 0);
 }
 
-TEST(a_skin_at_rest_leaves_the_mesh_where_it_is)
+TEST(a_skin_in_bind_pose_leaves_the_mesh_unchanged)
 {
     struct scene *scene = parent_and_child();
     struct skinned skinned;
@@ -270,7 +270,7 @@ TEST(a_skinned_vertex_follows_its_joint)
     struct scene *scene = parent_and_child();
     struct skinned skinned;
     add_skinned(scene, &skinned);
-    float times[1] = { 0 }, values[3] = { 1, 2, 13 }; // node 0 moves by 10 along z
+    float times[1] = { 0 }, values[3] = { 1, 2, 13 }; // node 0 is translated by 10 along z
     struct animation_channel c = channel(PATH_TRANSLATION, INTERPOLATE_STEP, 3, 1, times, values);
     struct animation animation;
     set_animation(scene, &animation, &c, 1, 0);
@@ -322,7 +322,7 @@ TEST(morph_weights_add)
     scene_destroy(scene);
 }
 
-TEST(lights_and_cameras_look_along_minus_z_of_their_nodes)
+TEST(lights_and_cameras_face_minus_z_of_their_nodes)
 {
     struct scene *scene = parent_and_child();
     struct light light = { .name = "spot",
@@ -349,14 +349,15 @@ TEST(lights_and_cameras_look_along_minus_z_of_their_nodes)
     scene_destroy(scene);
 }
 
-TEST(camera_look_at_gives_a_unit_frame_in_every_direction)
+TEST(camera_look_at_gives_an_orthonormal_frame_in_every_direction)
 {
     static const float along[7][3] = { { 1, 0, 0 }, { 0, 0, -2 },    { 0, 3, 0 }, { 0, -3, 0 },
                                        { 1, 1, 1 }, { 1e-4f, 5, 0 }, { 0, 0, 0 } };
     for (int i = 0; i < 7; i++) {
-        vec3s eye = vec3_of(1, 2, 3);
+        vec3s position = vec3_of(1, 2, 3);
         vec3s direction = vec3_of(along[i][0], along[i][1], along[i][2]);
-        struct world_camera camera = camera_look_at(eye, glms_vec3_add(eye, direction), 1, 0.1f);
+        struct world_camera camera =
+            camera_look_at(position, glms_vec3_add(position, direction), 1, 0.1f);
         CHECK_NEAR(glms_vec3_norm(camera.forward), 1, 1e-5);
         CHECK_NEAR(glms_vec3_norm(camera.up), 1, 1e-5);
         CHECK_NEAR(glms_vec3_dot(camera.up, camera.forward), 0, 1e-5);
@@ -365,7 +366,7 @@ TEST(camera_look_at_gives_a_unit_frame_in_every_direction)
     }
 }
 
-TEST(a_node_looking_looks)
+TEST(scene_add_node_looking_faces_its_direction)
 {
     struct scene *scene = scene_create(test_host(), "test");
     static const float along[4][3] = { { 1, 2, 3 }, { 0, -1, 0 }, { 0, 1, 0 }, { 0, 0, 4 } };

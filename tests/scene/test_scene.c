@@ -1,4 +1,4 @@
-// What scene_add_* takes, copies, makes and refuses.
+// scene_add_*: copies, generated data, refused arguments.
 #include "framework/test.h"
 
 #include "scene/scene.h"
@@ -42,7 +42,7 @@ static struct scene *scene_with_square(void)
     return scene;
 }
 
-TEST(an_empty_scene_counts_nothing)
+TEST(an_empty_scene_has_no_triangles_and_no_emission)
 {
     struct scene *scene = scene_create(test_host(), "empty");
     CHECK(scene && scene->mesh_count == 0 && scene_triangle_count(scene) == 0);
@@ -70,7 +70,7 @@ TEST(additions_are_copies)
     scene_destroy(scene);
 }
 
-TEST(indices_run_on_over_many_additions)
+TEST(indices_are_consecutive_over_many_additions)
 {
     struct scene *scene = scene_with_square();
     for (int i = 1; i < 1000; i++) {
@@ -87,7 +87,7 @@ TEST(indices_run_on_over_many_additions)
     scene_destroy(scene);
 }
 
-TEST(arrays_set_by_others_survive_an_addition)
+TEST(arrays_set_directly_survive_an_addition)
 {
     struct scene *scene = scene_create(test_host(), "test");
     scene->nodes = arena_alloc(&scene->arena, 3, sizeof *scene->nodes);
@@ -119,7 +119,7 @@ TEST(a_mesh_without_material_gets_a_default_one)
     scene_destroy(scene);
 }
 
-TEST(missing_normals_are_made_and_given_ones_made_unit)
+TEST(missing_normals_are_generated_and_others_normalised)
 {
     struct scene *scene = scene_create(test_host(), "test");
     struct mesh mesh = square();
@@ -134,7 +134,7 @@ TEST(missing_normals_are_made_and_given_ones_made_unit)
     scene_destroy(scene);
 }
 
-TEST(tangents_are_made_where_a_normal_map_needs_them)
+TEST(tangents_are_generated_for_a_normal_map)
 {
     struct scene *scene = scene_create(test_host(), "test");
     uint8_t flat[4] = { 128, 128, 255, 255 };
@@ -150,7 +150,7 @@ TEST(tangents_are_made_where_a_normal_map_needs_them)
     scene_destroy(scene);
 }
 
-TEST(an_image_knows_whether_it_is_opaque)
+TEST(has_alpha_is_set_for_images_that_are_not_opaque)
 {
     struct scene *scene = scene_create(test_host(), "test");
     uint8_t texels[8] = { 0, 0, 0, 255, 0, 0, 0, 255 };
@@ -230,7 +230,7 @@ TEST(a_material_out_of_range_is_refused)
     scene_destroy(scene);
 }
 
-TEST(nodes_and_instances_that_lead_nowhere_are_refused)
+TEST(nodes_and_instances_with_invalid_indices_are_refused)
 {
     struct scene *scene = scene_with_square();
     struct node node = node_default();
@@ -281,7 +281,7 @@ TEST(lights_and_cameras_out_of_range_are_refused)
     scene_destroy(scene);
 }
 
-TEST(a_skin_must_have_the_joints_that_a_mesh_names)
+TEST(a_skin_must_have_the_joints_that_its_mesh_uses)
 {
     struct scene *scene = scene_with_square();
     int joints[2] = { 0, 0 };
@@ -325,7 +325,7 @@ static void *failing_reallocate(void *user, void *old, size_t bytes)
     return allowed-- > 0 ? realloc(old, bytes) : NULL;
 }
 
-TEST(running_out_of_memory_is_a_failure_and_no_leak)
+TEST(out_of_memory_fails_without_a_leak)
 {
     struct host host = host_default();
     host.reallocate = failing_reallocate;
