@@ -158,14 +158,6 @@ fail:
     return false;
 }
 
-bool file_begin_path(struct file_writer *writer, struct host *host, const char *path)
-{
-    if (!file_begin(writer, host, path)) return false;
-    fclose(writer->stream); // empty, so closing cannot fail
-    writer->stream = NULL;
-    return true;
-}
-
 // The stream remembers that an earlier write failed, but not its errno.
 static bool stream_close(FILE *stream, const char **why)
 {
@@ -179,7 +171,7 @@ bool file_commit(struct file_writer *writer)
 {
     if (!writer->path) return false;
     const char *why = NULL;
-    bool ok = !writer->stream || stream_close(writer->stream, &why);
+    bool ok = stream_close(writer->stream, &why);
     writer->stream = NULL;
     if (ok && rename(writer->temporary_path, writer->path) != 0) {
         why = strerror(errno);

@@ -22,12 +22,10 @@ struct file_writer {
     struct host *host;
     char *path;
     char *temporary_path;
-    FILE *stream; // NULL after file_begin_path
+    FILE *stream;
 };
 
 bool file_begin(struct file_writer *writer, struct host *host, const char *path);
-// As file_begin, but without a stream: a library writes to writer->temporary_path itself.
-bool file_begin_path(struct file_writer *writer, struct host *host, const char *path);
 bool file_commit(struct file_writer *writer);
 void file_abort(struct file_writer *writer);
 

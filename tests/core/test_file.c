@@ -77,7 +77,6 @@ static void check_unwritable(const char *path, const char *why)
     CHECK_STRING(test_last_message(), expected);
     assert_int_equal(test_host()->failure, FAIL_FILE);
     file_abort(&writer); // no effect after a failed begin
-    CHECK(!file_begin_path(&writer, test_host(), path));
 }
 
 TEST(file_is_read_whole_with_a_terminating_zero)
@@ -160,22 +159,7 @@ TEST(abort_leaves_no_file)
     CHECK(file_begin(&writer, test_host(), in(folder, "a")));
     fputs("half", writer.stream);
     file_abort(&writer);
-    CHECK(file_begin_path(&writer, test_host(), in(folder, "b")));
-    write_text(writer.temporary_path, "half");
-    file_abort(&writer);
     assert_int_equal(entries_in(folder), 0);
-}
-
-TEST(library_may_write_to_the_temporary_path_itself)
-{
-    const char *folder = fresh_folder("library"), *path = in(folder, "out.txt");
-    struct file_writer writer;
-    CHECK(file_begin_path(&writer, test_host(), path));
-    assert_null(writer.stream);
-    write_text(writer.temporary_path, "by a library");
-    CHECK(file_commit(&writer));
-    CHECK_STRING(read_text(path), "by a library");
-    assert_int_equal(entries_in(folder), 1);
 }
 
 TEST(two_writers_of_one_path_do_not_mix)
