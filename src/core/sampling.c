@@ -1,5 +1,4 @@
-// Warps of the unit square. Sines are computed from 1 − cosθ: in narrow cones 1 − cos²θ would lose
-// its digits to cancellation.
+// Warps of the unit square.
 #include "core/sampling.h"
 
 #include <math.h>
@@ -19,32 +18,7 @@ vec3s sample_sphere(vec2s u)
     return direction_of(2.0f * u.x, u.y);
 }
 
-float pdf_sphere(void)
-{
-    return 1.0f / (4.0f * PI);
-}
-
-float pdf_hemisphere_cosine(float cos_theta)
-{
-    return fmaxf(0.0f, cos_theta) / PI;
-}
-
 vec3s sample_hemisphere_uniform(vec2s u)
 {
     return direction_of(u.x, u.y);
-}
-
-float pdf_hemisphere_uniform(void)
-{
-    return 1.0f / (2.0f * PI);
-}
-
-vec3s sample_cone_uniform(vec2s u, float cos_max)
-{
-    return direction_of(u.x * (1.0f - cos_max), u.y);
-}
-
-float pdf_cone_uniform(float cos_max)
-{
-    return 1.0f / (2.0f * PI * (1.0f - cos_max));
 }
