@@ -1,7 +1,6 @@
 // Reproducible random numbers: a generator is seeded from (pixel, sample, dimension). PCG32
 // (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
-// Random Number Generation"), and the R2 low-discrepancy sequence (Roberts 2018). The GLSL twin is
-// rng.glsl.
+// Random Number Generation"), and the low-discrepancy sequences R2 (Roberts 2018) and Sobol.
 #pragma once
 
 #include "core/vec.h"
@@ -16,7 +15,7 @@ struct rng rng_for(uint32_t pixel, uint32_t sample, uint32_t dimension);
 uint32_t rng_u32(struct rng *rng);
 float rng_float(struct rng *rng); // in [0, 1)
 vec2s rng_vec2(struct rng *rng);
-// PCG hash of one word (Jarzynski & Olano 2020), the same in GLSL.
+// PCG hash of one word (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
 uint32_t pcg_hash(uint32_t word);
 // Point i of the R2 sequence, in [0, 1)².
 vec2s r2_sequence(uint32_t i);

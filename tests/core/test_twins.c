@@ -1,4 +1,4 @@
-// The GLSL twins sh.glsl and rng.glsl, run on the GPU, against sh.c and rng.c.
+// The GLSL twin sh.glsl, run on the GPU, against sh.c.
 #include "framework/gpu_test.h"
 
 #include "core/rng.h"
@@ -15,11 +15,8 @@ struct twin { // as in core_twins.comp, scalar layout
     vec3s value_rgb, irradiance_rgb;
     vec4s basis4, lobe4;
     float value4, irradiance4;
-    vec2s r2, pair;
-    float number;
-    uint32_t hash;
 };
-_Static_assert(sizeof(struct twin) == 42 * 4, "scalar layout has no padding");
+_Static_assert(sizeof(struct twin) == 36 * 4, "scalar layout has no padding");
 
 static vec3s directions[COUNT];
 static float coefficients[9];
@@ -107,20 +104,5 @@ TEST_GPU(evaluation_and_irradiance_equal_those_of_c)
         }
         CHECK_NEAR(twins[i].value4, sh_dot(2, coefficients, directions[i]), 3e-6);
         CHECK_NEAR(twins[i].irradiance4, sh_dot(2, irradiance, directions[i]), 1e-5);
-    }
-}
-
-TEST_GPU(hash_and_sequence_equal_those_of_c_to_the_bit)
-{
-    run_shader(gpu);
-    for (uint32_t i = 0; i < COUNT; i++) {
-        assert_int_equal(twins[i].hash, pcg_hash(i * 2654435761u));
-        vec2s r2 = r2_sequence(i * 1000003u);
-        CHECK(twins[i].r2.x == r2.x && twins[i].r2.y == r2.y);
-        uint32_t bits[2];
-        for (uint32_t k = 0; k < 2; k++) bits[k] = pcg_hash(i + pcg_hash(i * 3 + pcg_hash(5 + k)));
-        CHECK(twins[i].number == (float)(bits[0] >> 8) * 0x1p-24f);
-        CHECK(twins[i].pair.x == twins[i].number);
-        CHECK(twins[i].pair.y == (float)(bits[1] >> 8) * 0x1p-24f);
     }
 }

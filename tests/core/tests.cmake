@@ -2,7 +2,7 @@ foreach(name arena file hash host option parallel rng sampling sh vec)
   ag_test(core/${name} USES core)
 endforeach()
 
-# The GLSL twins, called by a test shader.
+# The GLSL twin, called by a test shader.
 add_library(ag_test_core_shaders STATIC)
 target_link_libraries(ag_test_core_shaders PUBLIC ag_gpu)
 ag_shaders_for(ag_test_core_shaders core_test_shaders.h ${CMAKE_CURRENT_SOURCE_DIR}/core/shaders)

@@ -1,9 +1,7 @@
-// Runs every function of sh.glsl and rng.glsl, one invocation per direction; test_twins.c compares
-// them with C.
+// Runs every function of sh.glsl, one invocation per direction; test_twins.c compares them with C.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "core/rng.glsl"
 #include "core/sh.glsl"
 
 layout(local_size_x = 64) in;
@@ -14,9 +12,6 @@ struct twin {
     vec3 value_rgb, irradiance_rgb;
     vec4 basis4, lobe4;
     float value4, irradiance4;
-    vec2 r2, pair;
-    float number;
-    uint hash;
 };
 
 layout(scalar, binding = 0) readonly buffer Directions
@@ -58,9 +53,5 @@ void main()
     t.lobe4 = sh4_clamped_cosine(d);
     t.value4 = sh4_dot(c4, d);
     t.irradiance4 = sh4_dot(sh4_irradiance(c4), d);
-    t.r2 = r2_sequence(i * 1000003u);
-    t.pair = random_vec2(i, i * 3u, 5u);
-    t.number = random_float(i, i * 3u, 5u);
-    t.hash = pcg_hash(i * 2654435761u);
     twins[i] = t;
 }
