@@ -1,7 +1,6 @@
 // Images in memory: bounded allocation and basic operations.
 #include "image/image.h"
 
-#include <math.h>
 #include <string.h>
 
 bool image_init(struct image *image, struct host *host, int width, int height, int channels)
@@ -29,22 +28,6 @@ void image_finish(struct image *image, struct host *host)
 {
     host_free(host, image->pixels);
     *image = (struct image){ 0 };
-}
-
-static bool all_finite(const float *values, int count)
-{
-    for (int c = 0; c < count; c++)
-        if (!isfinite(values[c])) return false;
-    return true;
-}
-
-size_t image_count_not_finite(const struct image *image)
-{
-    size_t count = 0;
-    for (int y = 0; y < image->height; y++)
-        for (int x = 0; x < image->width; x++)
-            if (!all_finite(image_at(image, x, y), image->channels)) count++;
-    return count;
 }
 
 static void copy_rows(struct image *out, const struct image *in, int x)

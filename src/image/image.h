@@ -22,8 +22,6 @@ static inline float *image_at(const struct image *image, int x, int y)
     return image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }
 
-// The number of pixels with a NaN or infinite channel.
-size_t image_count_not_finite(const struct image *image);
 // Two images of equal height side by side, with `gap` black columns between.
 bool image_side_by_side(struct image *out, struct host *host, const struct image *a,
                         const struct image *b, int gap);

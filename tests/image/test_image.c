@@ -1,6 +1,5 @@
 #include "test_images.h"
 
-#include <math.h>
 #include <string.h>
 
 TEST(image_init_gives_zeroed_pixels)
@@ -40,18 +39,6 @@ TEST(image_at_addresses_rows_from_the_top_with_interleaved_channels)
     CHECK(image_at(&image, 0, 0) == image.pixels);
     CHECK(image_at(&image, 1, 0) == image.pixels + 3);
     CHECK(image_at(&image, 2, 3) == image.pixels + (3 * 5 + 2) * 3);
-    image_finish(&image, test_host());
-}
-
-TEST(image_count_not_finite_counts_a_pixel_once)
-{
-    struct image image;
-    flat_image(&image, 4, 4, 3, 1.0f);
-    CHECK(image_count_not_finite(&image) == 0);
-    image_at(&image, 1, 1)[0] = NAN;
-    image_at(&image, 1, 1)[2] = INFINITY;
-    image_at(&image, 3, 3)[1] = -INFINITY;
-    CHECK(image_count_not_finite(&image) == 2);
     image_finish(&image, test_host());
 }
 
