@@ -13,18 +13,18 @@ enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 // All ways of looking; the radius is appended.
 static const char *const ways[] = { "vo:samples=5",
                                     "vo:samples=9,blur=false",
-                                    "vo:samples=5,half=true",
-                                    "vo:samples=6,half=true,blur=false",
+                                    "vo:samples=5,half_resolution=true",
+                                    "vo:samples=6,half_resolution=true,blur=false",
                                     "vo:samples=7,radius2=0.15",
                                     "vo:mode=points,samples=12",
                                     "vo:mode=areas,samples=1",
-                                    "vo:mode=areas,samples=5,half=true",
+                                    "vo:mode=areas,samples=5,half_resolution=true",
                                     "vo:samples=5,temporal=true",
-                                    "vo:samples=5,half=true,temporal=true,blur=false",
+                                    "vo:samples=5,half_resolution=true,temporal=true,blur=false",
                                     "ssao:samples=12",
-                                    "ssao:samples=5,half=true",
+                                    "ssao:samples=5,half_resolution=true",
                                     "hbao:steps=6,falloff=cubic",
-                                    "hbao:falloff=quadratic,half=true" };
+                                    "hbao:falloff=quadratic,half_resolution=true" };
 enum { WAYS = sizeof ways / sizeof ways[0] };
 
 static const double STEP = 1.0 / 255.0; // of the layer's 8 bits

@@ -1,9 +1,9 @@
-// Ambient light that knows how much light there is: the same irradiance at every surface,
+// Ambient term derived from the scene's flux: the same irradiance at every surface,
 //     E = (π·sky + Σ Φ ℓ̄ / (4V)) · strength.
-// A virtual light of flux Φ (lumen), a texel of a reflective shadow map or a point of an emissive
-// surface, sends its light through the scene's box of volume V on a way of ℓ̄ = ⅔ d on average, d
-// the distance along its normal to the box's wall (Cauchy's mean chord of a cube's wall). README.md
-// says when that is exact.
+// The sum is over virtual lights of flux Φ (lumen): texels of reflective shadow maps and points on
+// emissive surfaces. V is the volume of the scene's bounding box, ℓ̄ = ⅔ d the mean path length, d
+// the distance along the light's normal to the box (Cauchy's mean chord of a cube). README.md says
+// when that is exact.
 #include "techniques/ambient/ambient.h"
 
 #include "techniques/ambient/ambient_shared.h"
@@ -34,7 +34,7 @@ struct ambient {
 
 enum { VEC3_BYTES = 12, LOCAL = 8 };
 
-static const float MEAN_WAY = 2.0f / 3.0f; // over the distance along the normal
+static const float MEAN_PATH = 2.0f / 3.0f; // over the distance along the normal
 
 static bool ambient_create(void *state, const struct technique_create *how)
 {
@@ -60,22 +60,22 @@ static void ambient_set_options(void *state, const void *options)
     ((struct ambient *)state)->options = *(const struct ambient_options *)options;
 }
 
-// 1/m³; 0 for a flat or empty box, which light leaves at once.
-static float per_way(struct box3 box)
+// 1/m³; 0 for a flat or empty box, which has no mean path.
+static float per_path(struct box3 box)
 {
     if (box3_is_empty(box)) return 0.0f;
     const vec3s size = box3_size(box);
     const float volume = size.x * size.y * size.z;
-    return volume > 0.0f && isfinite(volume) ? MEAN_WAY / (4.0f * volume) : 0.0f;
+    return volume > 0.0f && isfinite(volume) ? MEAN_PATH / (4.0f * volume) : 0.0f;
 }
 
 static struct ambient_push push_of(const struct ambient *ambient, const struct frame_view *view)
 {
     const uint32_t across = gpu_groups(view->rsm_size, AMBIENT_TEXELS);
     return (struct ambient_push){
-        .evenly =
+        .uniform_irradiance =
             glms_vec3_add(glms_vec3_scale(view->constants->sky, GLM_PIf), view->emitted_irradiance),
-        .per_way = per_way(view->bounds),
+        .per_path = per_path(view->bounds),
         .box_min = view->bounds.min,
         .box_max = view->bounds.max,
         .strength = ambient->options.strength,
@@ -135,7 +135,7 @@ static uint64_t ambient_memory_estimate(const void *options, uint32_t width, uin
 
 const struct technique technique_ambient = {
     .name = "ambient",
-    .title = "reflected light, spread evenly",
+    .title = "uniform ambient irradiance from the reflected flux",
     .paper = "mean fluence in a box, mean chord after Cauchy; flux as in Martin 2012, sec. 3.1",
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | GATHERS_EMISSION,

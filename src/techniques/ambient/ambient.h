@@ -1,4 +1,4 @@
-// The reflected light of the whole scene, spread evenly.
+// Uniform ambient irradiance from the scene's reflected flux.
 #pragma once
 
 #include "techniques/technique.h"

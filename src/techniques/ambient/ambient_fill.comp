@@ -1,4 +1,4 @@
-// The same irradiance at every surface.
+// Writes the irradiance to every pixel with a surface.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,19 +1,18 @@
-// What the shaders of the ambient technique share with the host. Scalar layout.
+// Shared by C and the shaders of the ambient technique. Scalar layout.
 #ifndef AG_AMBIENT_SHARED_H
 #define AG_AMBIENT_SHARED_H
 
 #include "core/shared.h"
 
-#define AMBIENT_LOCAL  64 // invocations of a summing workgroup
-#define AMBIENT_GROUPS 64 // summing workgroups, and partial sums
+#define AMBIENT_LOCAL  64 // invocations of a reduction workgroup
+#define AMBIENT_GROUPS 64 // reduction workgroups, and partial sums
 #define AMBIENT_TEXELS 4  // side of a block of texels
 
 // Push constants of all passes.
 struct ambient_push {
-    vec3s evenly;  // scaled irradiance of what falls on everything: the sky, and emissive surfaces
-    float per_way; // 1/m³: irradiance per flux and metre to the exit; 0 where the bounds have no
-                   // volume
-    vec3s box_min, box_max; // the bounds
+    vec3s uniform_irradiance; // scaled: sky and emissive surfaces
+    float per_path; // 1/m³: irradiance per flux and path length; 0 if the bounds have no volume
+    vec3s box_min, box_max; // bounds of the scene
     float strength;
     uint32_t rsm_size;      // texels
     uint32_t blocks_across; // blocks in a row of a reflective shadow map

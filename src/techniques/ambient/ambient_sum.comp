@@ -1,6 +1,6 @@
-// Reflected flux times its way to the box's exit (scaled lumen · m) of all reflective shadow maps,
-// as AMBIENT_GROUPS partial sums. Every sum has a fixed order, so that a frame gives the same bits
-// each time.
+// Reflected flux times the distance to the box (scaled lumen · m) over all reflective shadow maps,
+// as AMBIENT_GROUPS partial sums. The order of summation is fixed, so that equal frames have equal
+// bits.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -30,14 +30,14 @@ layout(set = 0, binding = 4, scalar) writeonly buffer ambient_partials
 
 const float FAR = 1e30;
 
-// m; emitters.c has the same for emissive surfaces.
+// Metres. emitters.c has the same function for emissive surfaces.
 float distance_to_exit(vec3 from, vec3 direction)
 {
-    vec3 way =
+    vec3 distance_m =
         max((mix(push.box_min, push.box_max, greaterThan(direction, vec3(0.0))) - from) / direction,
             vec3(0.0));
-    way = mix(way, vec3(FAR), equal(direction, vec3(0.0)));
-    return min(way.x, min(way.y, way.z));
+    distance_m = mix(distance_m, vec3(FAR), equal(direction, vec3(0.0)));
+    return min(distance_m.x, min(distance_m.y, distance_m.z));
 }
 
 vec3 block_flux(uint block)

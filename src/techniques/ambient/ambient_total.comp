@@ -1,4 +1,4 @@
-// The total of the partial sums, by one workgroup, and from it the irradiance.
+// Adds the partial sums in one workgroup and computes the irradiance.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -24,5 +24,5 @@ void main()
 {
     uint me = gl_LocalInvocationIndex;
     vec3 flux = workgroup_sum(push.blocks > 0u && me < AMBIENT_GROUPS ? partials[me] : vec3(0.0));
-    if (me == 0u) irradiance = push.strength * (push.evenly + flux * push.per_way);
+    if (me == 0u) irradiance = push.strength * (push.uniform_irradiance + flux * push.per_path);
 }

@@ -7,7 +7,7 @@
 
 shared vec3 tree[AMBIENT_LOCAL];
 
-// To be called by all invocations; the total is valid in all of them.
+// Call from all invocations; all of them get the total.
 vec3 workgroup_sum(vec3 value)
 {
     uint me = gl_LocalInvocationIndex;

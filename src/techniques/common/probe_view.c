@@ -1,11 +1,11 @@
-// Set-up and the one dispatch of the view of probes.
+// Host code of the debug view of probes.
 #include "techniques/common/probe_view.h"
 
 #include "techniques/common/probe_view_shared.h"
 
 #include "technique_shaders.h"
 
-enum { LOCAL = 8, BALLS_A_SIDE = 16 };
+enum { LOCAL = 8, MAX_SPHERES = 16 };
 
 bool probe_view_create(struct probe_view *view, struct gpu *gpu)
 {
@@ -24,19 +24,19 @@ void probe_view_destroy(struct probe_view *view, struct gpu *gpu)
     gpu_pipeline_destroy(gpu, &view->pipeline);
 }
 
-// So many balls that one sees through between them.
-static int32_t ball_distance(struct frame_probes place)
+// Probes from one sphere to the next, so that a side has at most MAX_SPHERES.
+static int32_t sphere_spacing(struct frame_probes place)
 {
     int32_t most = place.count_x > place.count_y ? place.count_x : place.count_y;
     if (place.count_z > most) most = place.count_z;
-    return (most + BALLS_A_SIDE - 1) / BALLS_A_SIDE;
+    return (most + MAX_SPHERES - 1) / MAX_SPHERES;
 }
 
 void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd,
                        const struct frame_view *frame, gpu_image probes, struct frame_probes place,
                        gpu_image out)
 {
-    const struct probe_view_push push = { place, ball_distance(place) };
+    const struct probe_view_push push = { place, sphere_spacing(place) };
     gpu_scope_begin(cmd, "probe_view");
     gpu_dispatch(
         cmd, view->pipeline,
@@ -44,7 +44,7 @@ void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd,
                  { .name = "normal", .image = frame->layers[FRAME_NORMAL] },
                  { .name = "albedo", .image = frame->layers[FRAME_ALBEDO] },
                  { .name = "probes", .image = probes, .sampler = view->linear },
-                 { .name = "picture", .image = out }),
+                 { .name = "target", .image = out }),
         &push, sizeof push, gpu_groups(frame->width, LOCAL), gpu_groups(frame->height, LOCAL), 1);
     gpu_scope_end(cmd);
 }

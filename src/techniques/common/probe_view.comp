@@ -1,4 +1,4 @@
-// Walks from ball to ball along each pixel's line of sight (Amanatides & Woo 1987), up to the
+// Traverses the grid of spheres along each pixel's view ray (Amanatides & Woo 1987), up to the
 // surface.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -20,39 +20,38 @@ layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform sampler2D albedo;
 layout(set = 0, binding = 4) uniform sampler3D probes;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D picture;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D target;
 
 const float PI = 3.14159265, RADIUS = 0.12, DIM = 0.3;
 
-// The nearest point of the unit ball's like around `centre`, radius RADIUS; false: the ray passes
-// by.
-bool meets_ball(vec3 from, vec3 way, vec3 centre, out float distance)
+// Intersection with the sphere of radius RADIUS around `center`; false: the ray misses it.
+bool intersect_sphere(vec3 from, vec3 direction, vec3 center, out float distance)
 {
-    vec3 to = from - centre;
-    float b = dot(to, way), c = dot(to, to) - RADIUS * RADIUS, d = b * b - c;
+    vec3 to = from - center;
+    float b = dot(to, direction), c = dot(to, to) - RADIUS * RADIUS, d = b * b - c;
     distance = -b - sqrt(max(d, 0.0));
     return d >= 0.0 && distance > 0.0;
 }
 
-// In units of the balls' distance, a ball in the middle of each cell. The radiance of a white ball,
-// or less than 0 where there is none up to `limit`.
-vec3 ball_along(vec3 from, vec3 way, float limit, ivec3 balls)
+// Radiance of the first sphere before `limit`; less than 0: none. One unit is the spacing of the
+// spheres, which lie at the centers of unit cells.
+vec3 trace_spheres(vec3 from, vec3 direction, float limit, ivec3 spheres)
 {
-    vec3 inverse = 1.0 / way;
-    vec3 low = -from * inverse, high = (vec3(balls) - from) * inverse;
+    vec3 inverse = 1.0 / direction;
+    vec3 low = -from * inverse, high = (vec3(spheres) - from) * inverse;
     vec3 near = min(low, high), far = max(low, high);
     float begin = max(max(near.x, near.y), max(near.z, 0.0)),
           end = min(min(far.x, far.y), min(far.z, limit));
     if (begin >= end) return vec3(-1.0);
-    ivec3 cell = clamp(ivec3(floor(from + way * begin)), ivec3(0), balls - 1);
-    ivec3 one = ivec3(sign(way));
+    ivec3 cell = clamp(ivec3(floor(from + direction * begin)), ivec3(0), spheres - 1);
+    ivec3 one = ivec3(sign(direction));
     vec3 step_length = abs(inverse),
          next = (vec3(cell) + vec3(greaterThan(one, ivec3(0))) - from) * inverse;
-    while (begin < end && all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, balls))) {
+    while (begin < end && all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, spheres))) {
         float distance;
-        vec3 centre = vec3(cell) + 0.5;
-        if (meets_ball(from, way, centre, distance) && distance < end) {
-            vec3 n = normalize(from + way * distance - centre);
+        vec3 center = vec3(cell) + 0.5;
+        if (intersect_sphere(from, direction, center, distance) && distance < end) {
+            vec3 n = normalize(from + direction * distance - center);
             vec3 probe = push.place.first_m + float(push.every) * push.place.spacing_m * vec3(cell);
             return probes_irradiance(probes, push.place, probe, n) / PI;
         }
@@ -69,7 +68,7 @@ void main()
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= frame.width || pixel.y >= frame.height) return;
     float z = texelFetch(depth, ivec2(pixel), 0).r;
-    // A line of sight without a surface ends far away; it is not parallel to any axis exactly.
+    // A view ray without a surface ends far away. No component of its direction may be exactly 0.
     vec3 position = frame_world_position(frame_uv(pixel), max(z, 1e-6));
     vec3 colour = vec3(0.0);
     if (z > 0.0) {
@@ -82,13 +81,13 @@ void main()
     float unit = float(push.every) * push.place.spacing_m;
     vec3 from = (frame.camera_position - push.place.first_m) / unit + 0.5,
          to = (position - push.place.first_m) / unit + 0.5;
-    ivec3 balls =
+    ivec3 spheres =
         (ivec3(push.place.count_x, push.place.count_y, push.place.count_z) + push.every - 1) /
         push.every;
     float limit = distance(from, to);
-    vec3 way = (to - from) / limit;
-    way = mix(way, vec3(1e-6), lessThan(abs(way), vec3(1e-6)));
-    vec3 ball = ball_along(from, way, limit, balls);
-    if (ball.r >= 0.0) colour = ball;
-    imageStore(picture, ivec2(pixel), vec4(min(colour, HALF_MAX), 1.0));
+    vec3 direction = (to - from) / limit;
+    direction = mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
+    vec3 sphere = trace_spheres(from, direction, limit, spheres);
+    if (sphere.r >= 0.0) colour = sphere;
+    imageStore(target, ivec2(pixel), vec4(min(colour, HALF_MAX), 1.0));
 }

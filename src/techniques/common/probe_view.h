@@ -1,5 +1,5 @@
-// A debug view of any probe volume: surfaces dimly, as the probes would light them, and before them
-// a white ball at each probe, or at each of every so many, as bright as its irradiance makes it.
+// Debug view of a probe volume: a white diffuse sphere at each probe, or at every n-th one, lit by
+// the probe's irradiance, in front of dimmed surfaces that the probes light.
 #pragma once
 
 #include "frame/frame.h"

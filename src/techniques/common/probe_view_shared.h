@@ -1,4 +1,4 @@
-// What the shader of the view of probes shares with the host. Scalar layout.
+// Push constants of probe_view.comp. Scalar layout.
 #ifndef AG_PROBE_VIEW_SHARED_H
 #define AG_PROBE_VIEW_SHARED_H
 
@@ -10,7 +10,7 @@
 
 struct probe_view_push {
     AG_STRUCT(frame_probes) place;
-    int32_t every; // probes from one ball to the next
+    int32_t every; // probes from one sphere to the next
 };
 
 #ifndef AG_GLSL

@@ -1,5 +1,4 @@
-// The estimate, and the way from it to the frame's visibility: history, blur, fit to the frame's
-// size.
+// The estimate and its filters: temporal accumulation, blur, upsampling.
 #include "techniques/common/screen_ao.h"
 
 #include "technique_shaders.h"
@@ -9,13 +8,13 @@
 #include <string.h>
 
 enum { LOCAL = 8, BLUR_ROW = 4 };
-enum { TURNS = 16 }; // of the patterns, and frames until they are the same again
+enum { ROTATIONS = 16 }; // of the pattern, in pixels of a tile and in frames
 
 static const enum gpu_format ESTIMATE_FORMAT = GPU_RG32F, HISTORY_FORMAT = GPU_RGBA32F;
 
 static uint32_t step_of(const struct screen_ao_options *options)
 {
-    return options->half ? 2 : 1;
+    return options->half_resolution ? 2 : 1;
 }
 
 static uint32_t work_size(const struct screen_ao_options *options, uint32_t size)
@@ -28,10 +27,10 @@ struct gpu_constant screen_ao_step(const struct screen_ao *ao)
     return (struct gpu_constant){ SCREEN_AO_CONSTANT_STEP, step_of(&ao->options) };
 }
 
-// ---- life
+// ---- creation and destruction
 
-static bool make_image(struct screen_ao *ao, const char *name, enum gpu_format format,
-                       gpu_image *out)
+static bool create_image(struct screen_ao *ao, const char *name, enum gpu_format format,
+                         gpu_image *out)
 {
     const struct gpu_image_desc desc = { .name = name,
                                          .format = format,
@@ -48,46 +47,47 @@ bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
     ao->height = height;
     ao->work_width = work_size(&ao->options, width);
     ao->work_height = work_size(&ao->options, height);
-    ao->before_near_m = 0.0f;
-    if (!make_image(ao, "estimate", ESTIMATE_FORMAT, &ao->estimate)) return false;
-    if (ao->options.blur && !make_image(ao, "scratch", ESTIMATE_FORMAT, &ao->scratch)) return false;
-    return !ao->options.temporal || (make_image(ao, "history", HISTORY_FORMAT, &ao->history[0]) &&
-                                     make_image(ao, "history", HISTORY_FORMAT, &ao->history[1]));
+    ao->previous_near_m = 0.0f;
+    if (!create_image(ao, "estimate", ESTIMATE_FORMAT, &ao->estimate)) return false;
+    if (ao->options.blur && !create_image(ao, "scratch", ESTIMATE_FORMAT, &ao->scratch))
+        return false;
+    return !ao->options.temporal || (create_image(ao, "history", HISTORY_FORMAT, &ao->history[0]) &&
+                                     create_image(ao, "history", HISTORY_FORMAT, &ao->history[1]));
 }
 
-static bool make_pipeline(struct screen_ao *ao, const char *name, const struct gpu_shader *shader,
-                          gpu_pipeline *out)
+static bool create_pipeline(struct screen_ao *ao, const char *name, const struct gpu_shader *shader,
+                            gpu_pipeline *out)
 {
     const struct gpu_constant step = screen_ao_step(ao);
     return gpu_compute_pipeline_create(ao->gpu, name, shader, &step, 1, out);
 }
 
-static bool needs_fit(const struct screen_ao_options *options)
+static bool needs_upsample(const struct screen_ao_options *options)
 {
-    return options->half || !options->blur;
+    return options->half_resolution || !options->blur;
 }
 
-// Those that the options need.
-static bool make_pipelines(struct screen_ao *ao)
+static bool create_pipelines(struct screen_ao *ao)
 {
     const struct screen_ao_options *o = &ao->options;
-    const struct gpu_shader *blur_y =
-        o->half ? &shader_common_screen_ao_blur_y_half_comp : &shader_common_screen_ao_blur_y_comp;
+    const struct gpu_shader *blur_y = o->half_resolution ? &shader_common_screen_ao_blur_y_half_comp
+                                                         : &shader_common_screen_ao_blur_y_comp;
     if (o->blur &&
-        !(make_pipeline(ao, "blur_x", &shader_common_screen_ao_blur_x_comp, &ao->blur_x) &&
-          make_pipeline(ao, "blur_y", blur_y, &ao->blur_y)))
+        !(create_pipeline(ao, "blur_x", &shader_common_screen_ao_blur_x_comp, &ao->blur_x) &&
+          create_pipeline(ao, "blur_y", blur_y, &ao->blur_y)))
         return false;
-    if (needs_fit(o) && !make_pipeline(ao, "fit", &shader_common_screen_ao_fit_comp, &ao->fit))
+    if (needs_upsample(o) &&
+        !create_pipeline(ao, "upsample", &shader_common_screen_ao_upsample_comp, &ao->upsample))
         return false;
     return !o->temporal ||
-           make_pipeline(ao, "temporal", &shader_common_screen_ao_temporal_comp, &ao->temporal);
+           create_pipeline(ao, "temporal", &shader_common_screen_ao_temporal_comp, &ao->temporal);
 }
 
 bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const struct screen_ao_options *options,
                     uint32_t width, uint32_t height)
 {
     *ao = (struct screen_ao){ .gpu = gpu, .options = *options };
-    return make_pipelines(ao) && screen_ao_resize(ao, width, height);
+    return create_pipelines(ao) && screen_ao_resize(ao, width, height);
 }
 
 void screen_ao_finish(struct screen_ao *ao)
@@ -99,7 +99,7 @@ void screen_ao_finish(struct screen_ao *ao)
     gpu_pipeline_destroy(ao->gpu, &ao->temporal);
     gpu_pipeline_destroy(ao->gpu, &ao->blur_x);
     gpu_pipeline_destroy(ao->gpu, &ao->blur_y);
-    gpu_pipeline_destroy(ao->gpu, &ao->fit);
+    gpu_pipeline_destroy(ao->gpu, &ao->upsample);
     *ao = (struct screen_ao){ 0 };
 }
 
@@ -113,14 +113,14 @@ uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t widt
 
 // ---- a frame
 
-static void go_on_from_last_frame(struct screen_ao *ao, const struct frame_view *view)
+static void use_history(struct screen_ao *ao, const struct frame_view *view)
 {
     struct screen_ao_params *p = &ao->params;
-    const bool known = ao->before_near_m > 0.0f && !view->camera_cut && view->index > 0;
-    p->before_near_m = known ? ao->before_near_m : 0.0f;
-    // The patterns' golden steps go on from frame to frame.
-    p->turn = fmodf(0.61803399f * (float)(TURNS * (view->index % TURNS)), 1.0f);
-    ao->before_near_m = view->camera.near_m;
+    const bool known = ao->previous_near_m > 0.0f && !view->camera_cut && view->index > 0;
+    p->previous_near_m = known ? ao->previous_near_m : 0.0f;
+    // The golden-ratio sequence of rotations continues from frame to frame.
+    p->rotation = fmodf(0.61803399f * (float)(ROTATIONS * (view->index % ROTATIONS)), 1.0f);
+    ao->previous_near_m = view->camera.near_m;
     ao->newest = 1 - ao->newest;
 }
 
@@ -136,15 +136,15 @@ void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float 
         .focal_px = 0.5f * height / tanf(0.5f * camera->vertical_fov_rad),
         .near_m = camera->near_m,
         .radius_m = radius_m,
-        .most_px = reach * height,
-        .middle_x = 0.5f * width,
-        .middle_y = 0.5f * height,
+        .max_radius_px = reach * height,
+        .center_x = 0.5f * width,
+        .center_y = 0.5f * height,
         .width = view->width,
         .height = view->height,
         .work_width = ao->work_width,
         .work_height = ao->work_height,
     };
-    if (ao->options.temporal) go_on_from_last_frame(ao, view);
+    if (ao->options.temporal) use_history(ao, view);
 }
 
 struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd *cmd)
@@ -153,26 +153,26 @@ struct gpu_binding screen_ao_binding(const struct screen_ao *ao, struct gpu_cmd 
 }
 
 void screen_ao_estimate(struct screen_ao *ao, struct gpu_cmd *cmd, const struct frame_view *view,
-                        const char *name, gpu_pipeline pipeline, const struct gpu_binding *more,
-                        int more_count)
+                        const char *name, gpu_pipeline pipeline, const struct gpu_binding *extra,
+                        int extra_count)
 {
-    struct gpu_binding bindings[4 + SCREEN_AO_MORE] = {
+    struct gpu_binding bindings[4 + SCREEN_AO_EXTRA] = {
         screen_ao_binding(ao, cmd),
         { .name = "depth", .image = view->layers[FRAME_DEPTH] },
         { .name = "normal", .image = view->layers[FRAME_NORMAL] },
         { .name = "estimate", .image = ao->estimate },
     };
-    assert(more_count <= SCREEN_AO_MORE);
-    memcpy(bindings + 4, more, (size_t)more_count * sizeof *more);
+    assert(extra_count <= SCREEN_AO_EXTRA);
+    memcpy(bindings + 4, extra, (size_t)extra_count * sizeof *extra);
     gpu_scope_begin(cmd, name);
-    gpu_clear_image(cmd, ao->estimate, (const float[4]){ 1.0f }); // where there is no surface
-    gpu_dispatch(cmd, pipeline, bindings, 4 + more_count, NULL, 0,
+    gpu_clear_image(cmd, ao->estimate, (const float[4]){ 1.0f }); // pixels without a surface
+    gpu_dispatch(cmd, pipeline, bindings, 4 + extra_count, NULL, 0,
                  gpu_groups(ao->work_width, LOCAL),
                  gpu_groups(ao->work_height, LOCAL * SCREEN_AO_ROWS), 1);
     gpu_scope_end(cmd);
 }
 
-static gpu_image evened(const struct screen_ao *ao)
+static gpu_image estimate_to_filter(const struct screen_ao *ao)
 {
     return ao->options.temporal ? ao->history[ao->newest] : ao->estimate;
 }
@@ -185,7 +185,7 @@ static void record_temporal(const struct screen_ao *ao, struct gpu_cmd *cmd,
                  GPU_BIND(screen_ao_binding(ao, cmd), { .name = "estimate", .image = ao->estimate },
                           { .name = "motion", .image = view->layers[FRAME_MOTION] },
                           { .name = "history", .image = ao->history[1 - ao->newest] },
-                          { .name = "after", .image = ao->history[ao->newest] }),
+                          { .name = "target", .image = ao->history[ao->newest] }),
                  NULL, 0, gpu_groups(ao->work_width, LOCAL), gpu_groups(ao->work_height, LOCAL), 1);
     gpu_scope_end(cmd);
 }
@@ -195,26 +195,26 @@ static void record_blur(const struct screen_ao *ao, struct gpu_cmd *cmd, gpu_ima
     const struct gpu_binding params = screen_ao_binding(ao, cmd);
     gpu_scope_begin(cmd, "blur");
     gpu_dispatch(cmd, ao->blur_x,
-                 GPU_BIND(params, { .name = "before", .image = evened(ao) },
-                          { .name = "after", .image = ao->scratch }),
+                 GPU_BIND(params, { .name = "source", .image = estimate_to_filter(ao) },
+                          { .name = "target", .image = ao->scratch }),
                  NULL, 0, gpu_groups(ao->work_width, LOCAL * BLUR_ROW),
                  gpu_groups(ao->work_height, LOCAL), 1);
     gpu_dispatch(cmd, ao->blur_y,
-                 GPU_BIND(params, { .name = "before", .image = ao->scratch },
-                          { .name = "after", .image = ao->estimate },
+                 GPU_BIND(params, { .name = "source", .image = ao->scratch },
+                          { .name = "target", .image = ao->estimate },
                           { .name = "visibility", .image = visibility }),
                  NULL, 0, gpu_groups(ao->work_width, LOCAL),
                  gpu_groups(ao->work_height, LOCAL * BLUR_ROW), 1);
     gpu_scope_end(cmd);
 }
 
-static void record_fit(const struct screen_ao *ao, struct gpu_cmd *cmd,
-                       const struct frame_view *view)
+static void record_upsample(const struct screen_ao *ao, struct gpu_cmd *cmd,
+                            const struct frame_view *view)
 {
-    const gpu_image before = ao->options.blur ? ao->estimate : evened(ao);
-    gpu_scope_begin(cmd, "fit");
-    gpu_dispatch(cmd, ao->fit,
-                 GPU_BIND(screen_ao_binding(ao, cmd), { .name = "before", .image = before },
+    const gpu_image source = ao->options.blur ? ao->estimate : estimate_to_filter(ao);
+    gpu_scope_begin(cmd, "upsample");
+    gpu_dispatch(cmd, ao->upsample,
+                 GPU_BIND(screen_ao_binding(ao, cmd), { .name = "source", .image = source },
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "visibility", .image = view->layers[FRAME_VISIBILITY] }),
                  NULL, 0, gpu_groups(ao->width, LOCAL), gpu_groups(ao->height, LOCAL), 1);
@@ -225,5 +225,5 @@ void screen_ao_record(struct screen_ao *ao, struct gpu_cmd *cmd, const struct fr
 {
     if (ao->options.temporal) record_temporal(ao, cmd, view);
     if (ao->options.blur) record_blur(ao, cmd, view->layers[FRAME_VISIBILITY]);
-    if (needs_fit(&ao->options)) record_fit(ao, cmd, view);
+    if (needs_upsample(&ao->options)) record_upsample(ao, cmd, view);
 }

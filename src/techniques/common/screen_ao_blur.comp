@@ -1,12 +1,12 @@
-// Mean of an estimate over five pixels in a row, the outer two by half, so that a pattern of four
-// pixels is evened out wholly, and not across edges: a pixel counts the less the farther it is, in
-// radii of the sphere, from the straight line through its neighbours in depth. One direction after
-// the other makes the mean over 4 by 4 pixels.
+// Edge-aware mean of an estimate over five pixels of a row, the outer two with half the weight,
+// which removes a pattern of period four. A pixel's weight falls with its distance, in sphere
+// radii, from the line through its neighbours' depths. Rows, then columns, give the mean over 4 × 4
+// pixels.
 //
-// One invocation does four pixels in a row: they share what they read.
+// One invocation filters four pixels of a row, which share their fetches.
 //
-// Permutations: ALONG_Y, the row's direction; TO_VISIBILITY, the second pass writes the frame's
-// visibility, otherwise visibility and depth.
+// Permutations: ALONG_Y, columns instead of rows; TO_VISIBILITY, the output is the frame's
+// visibility instead of visibility and depth.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -15,7 +15,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 1) uniform sampler2D before; // visibility, depth
+layout(set = 0, binding = 1) uniform sampler2D source; // visibility, depth
 #if TO_VISIBILITY
 layout(set = 0, binding = 2, r8) uniform writeonly image2D visibility;
 void store(ivec2 at, vec2 value)
@@ -23,26 +23,25 @@ void store(ivec2 at, vec2 value)
     imageStore(visibility, at, vec4(value.x));
 }
 #else
-layout(set = 0, binding = 2, rg32f) uniform writeonly image2D after;
+layout(set = 0, binding = 2, rg32f) uniform writeonly image2D target;
 void store(ivec2 at, vec2 value)
 {
-    imageStore(after, at, vec4(value, 0.0, 0.0));
+    imageStore(target, at, vec4(value, 0.0, 0.0));
 }
 #endif
 
 const ivec2 DOWN = ALONG_Y ? ivec2(0, 1) : ivec2(1, 0);
 
 const int ROW = 4, REACH = 2;
-const float EDGE = 4.0; // a pixel a quarter of a radius off does not count
+const float EDGE = 4.0; // weight 0 at a quarter of a radius
 
-// The part of a pixel `offset` steps away in the mean around one of depth `here`; slope: of the
-// depth per step.
+// Weight of a pixel `offset` steps from one of depth `here`; slope: of the depth, per step.
 float weight_of(float depth, float here, float slope, float offset, float per_depth)
 {
     return clamp(1.0 - abs(depth - here - slope * offset) * per_depth, 0.0, 1.0);
 }
 
-// Of the two slopes beside a pixel the flatter: the steeper may lead over an edge.
+// The smaller of the two one-sided slopes; the larger may cross an edge.
 float flatter(float a, float b)
 {
     return abs(a) < abs(b) ? a : b;
@@ -73,7 +72,7 @@ void main()
     if (any(greaterThanEqual(first, size))) return;
     vec2 row[ROW + 2 * REACH];
     for (int i = 0; i < ROW + 2 * REACH; i++)
-        row[i] = texelFetch(before, clamp(first + DOWN * (i - REACH), ivec2(0), size - 1), 0).rg;
+        row[i] = texelFetch(source, clamp(first + DOWN * (i - REACH), ivec2(0), size - 1), 0).rg;
     for (int i = 0; i < ROW; i++) {
         ivec2 at = first + DOWN * i;
         if (all(lessThan(at, size))) store(at, mean_around(row, i + REACH));

@@ -1,9 +1,9 @@
-// The pass that fills the estimate. A shader includes this file and says in screen_ao_visibility
-// how it looks round a pixel's point; bindings from 4 on are its own.
+// Main function of the estimate. A shader includes this file and defines screen_ao_visibility; its
+// own bindings start at 4.
 //
-// One invocation does SCREEN_AO_ROWS pixels below each other and goes over those without a surface,
-// which were cleared before, in a loop of its own: software drivers run through what is not wanted
-// of a body, but not through a loop that is done.
+// One invocation processes SCREEN_AO_ROWS pixels of a column. An inner loop skips pixels without a
+// surface, which are already cleared: software drivers execute masked branches but leave finished
+// loops.
 #extension GL_EXT_control_flow_attributes : require
 
 #include "frame/octahedral.glsl"
@@ -15,20 +15,20 @@ layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3, rg32f) uniform writeonly image2D estimate;
 
-struct screen_place {
+struct screen_point {
     ivec2 pixel;  // of the frame
-    uint pattern; // which of the turned sets is its own
+    uint pattern; // index of its rotated sample set
     float depth;
-    vec3 n; // towards the eye; x right, y down, z away
+    vec3 n; // faces the camera; x right, y down, z forward
 };
 
-float screen_ao_visibility(screen_place place);
+float screen_ao_visibility(screen_point point);
 
-screen_place place_at(ivec2 work, float depth)
+screen_point point_at(ivec2 work, float depth)
 {
     ivec2 pixel = work * SCREEN_AO_STEP;
     vec3 n = screen_normal(octahedral_decode(texelFetch(normal, pixel, 0).rg));
-    return screen_place(pixel, screen_pattern(uvec2(work)), depth, n);
+    return screen_point(pixel, screen_pattern(uvec2(work)), depth, n);
 }
 
 void main()
@@ -45,7 +45,7 @@ void main()
             if (here > 0.0) break;
         }
         if (work.y >= end) break;
-        float visibility = screen_ao_visibility(place_at(work, here));
+        float visibility = screen_ao_visibility(point_at(work, here));
         imageStore(estimate, work, vec4(clamp(visibility, 0.0, 1.0), here, 0.0, 0.0));
     }
 }

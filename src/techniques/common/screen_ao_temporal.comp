@@ -1,6 +1,5 @@
-// Goes on from the last frames' estimates: the mean over up to 16 frames in which the pixel's
-// surface was seen. A frame that is new to it starts again; a tap of the last frame counts the less
-// the farther its surface is from where the pixel's was.
+// Temporal accumulation: the mean over up to 16 frames in which the pixel's surface was visible. A
+// disoccluded surface starts again. A tap of the history is weighted by its depth difference.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -11,34 +10,34 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 1) uniform sampler2D estimate; // visibility, depth
-layout(set = 0, binding = 2) uniform sampler2D motion;   // of the frame's size
+layout(set = 0, binding = 2) uniform sampler2D motion;   // at full resolution
 layout(set = 0, binding = 3) uniform sampler2D history;  // visibility, depth, frames
-layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D after;
+layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D target;
 
-const float EDGE = 4.0;   // a surface a quarter of a radius off does not count
-const float LEAST = 0.25; // of the taps' weights: with less there is no history
-const float FRAMES = 16.0;
+const float EDGE = 4.0;        // weight 0 at a quarter of a radius
+const float MIN_WEIGHT = 0.25; // sum of the taps' weights; below it the history is rejected
+const float MAX_FRAMES = 16.0;
 
-// Visibility and frames at a place of the estimate, in its pixels; (0, 0): none.
-vec2 remembered(vec2 place, float depth)
+// Visibility and frame count at a position in pixels of the estimate; (0, 0): no history.
+vec2 history_at(vec2 position, float depth)
 {
-    float radius_px =
-        clamp(view.radius_m * view.focal_px * depth / view.before_near_m, LEAST_PX, view.most_px);
+    float radius_px = clamp(view.radius_m * view.focal_px * depth / view.previous_near_m,
+                            MIN_RADIUS_PX, view.max_radius_px);
     float per_depth = EDGE * view.focal_px / (radius_px * depth);
     vec2 sum = vec2(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; i++) {
-        ivec2 at = reproject_tap(place, i);
+        ivec2 at = reproject_tap(position, i);
         if (any(lessThan(at, ivec2(0))) ||
             any(greaterThanEqual(at, ivec2(view.work_width, view.work_height))))
             continue;
         vec3 tap = texelFetch(history, at, 0).rgb;
         float near = max(1.0 - abs(tap.y - depth) * per_depth, 0.0);
-        float w = tap.y > 0.0 ? reproject_share(place, i) * near : 0.0;
+        float w = tap.y > 0.0 ? reproject_share(position, i) * near : 0.0;
         sum += w * tap.xz;
         weights += w;
     }
-    return weights > LEAST ? sum / weights : vec2(0.0);
+    return weights > MIN_WEIGHT ? sum / weights : vec2(0.0);
 }
 
 void main()
@@ -47,14 +46,14 @@ void main()
     if (any(greaterThanEqual(work, ivec2(view.work_width, view.work_height)))) return;
     vec2 now = texelFetch(estimate, work, 0).rg;
     vec2 past = vec2(0.0);
-    if (now.y > 0.0 && view.before_near_m > 0.0) {
+    if (now.y > 0.0 && view.previous_near_m > 0.0) {
         ivec2 pixel = work * SCREEN_AO_STEP;
         vec4 moved = texelFetch(motion, pixel, 0);
-        vec2 place =
+        vec2 position =
             reproject_place(moved, pixel, vec2(view.width, view.height)) / float(SCREEN_AO_STEP);
         float distance_m = reproject_distance(moved, view.near_m / now.y);
-        if (distance_m > 0.0) past = remembered(place, view.before_near_m / distance_m);
+        if (distance_m > 0.0) past = history_at(position, view.previous_near_m / distance_m);
     }
-    float frames = min(past.y + 1.0, FRAMES);
-    imageStore(after, work, vec4(mix(past.x, now.x, 1.0 / frames), now.y, frames, 0.0));
+    float frames = min(past.y + 1.0, MAX_FRAMES);
+    imageStore(target, work, vec4(mix(past.x, now.x, 1.0 / frames), now.y, frames, 0.0));
 }

@@ -1,5 +1,5 @@
-// Horizon-based ambient occlusion (Bavoil & Sainz 2008), to be held against vo. README.md says what
-// differs.
+// Horizon-based ambient occlusion (Bavoil & Sainz 2008), a baseline for vo. README.md lists the
+// differences.
 #include "techniques/hbao/hbao.h"
 
 #include "techniques/common/screen_ao.h"
@@ -23,6 +23,8 @@ static const struct option_row option_rows[] = {
 #undef OPTION
 };
 
+static const struct option_alias aliases[] = { { "half", "half_resolution" }, { NULL, NULL } };
+
 struct hbao {
     struct gpu *gpu;
     struct hbao_options options;
@@ -32,7 +34,8 @@ struct hbao {
 
 static struct screen_ao_options ao_options(const struct hbao_options *options)
 {
-    return (struct screen_ao_options){ .blur = options->blur, .half = options->half };
+    return (struct screen_ao_options){ .blur = options->blur,
+                                       .half_resolution = options->half_resolution };
 }
 
 static bool hbao_create(void *state, const struct technique_create *how)
@@ -91,12 +94,12 @@ static uint64_t hbao_memory_estimate(const void *options, uint32_t width, uint32
 
 const struct technique technique_hbao = {
     .name = "hbao",
-    .title = "ambient occlusion by horizons",
+    .title = "horizon-based ambient occlusion",
     .paper = "Bavoil & Sainz 2008, Image-Space Horizon-Based Ambient Occlusion",
     .role = ROLE_VISIBILITY,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
     .needs = FRAME_WRITES_VISIBILITY,
-    .options = OPTION_TABLE(struct hbao_options, option_rows, NULL),
+    .options = OPTION_TABLE(struct hbao_options, option_rows, aliases),
     .state_size = sizeof(struct hbao),
     .create = hbao_create,
     .resize = hbao_resize,

@@ -1,4 +1,4 @@
-// Ambient occlusion by horizons.
+// Horizon-based ambient occlusion.
 #pragma once
 
 #include "techniques/technique.h"

@@ -1,9 +1,9 @@
-// Ambient occlusion by horizons (Bavoil & Sainz 2008): along each of some directions on the screen
-// the horizon rises from the tangent plane. With elevations α measured from the plane across the
-// line of sight, what lies between the tangent t and the horizon h is 1/2π ∫ (sin h − sin t) dθ of
-// the hemisphere, each rise weighted with the fall-off at the sample that makes it.
+// Horizon-based ambient occlusion (Bavoil & Sainz 2008): along each screen direction the horizon
+// rises from the tangent plane. With elevations measured from the plane perpendicular to the line
+// of sight, the occlusion between the tangent t and the horizon h is 1/2π ∫ (sin h − sin t) dθ;
+// each rise is weighted with the falloff at its sample.
 //
-// Samples are in radii, in the sphere's frame of screen_ao.glsl: x and y across the line of sight,
+// Samples are in radii, in the frame of screen_ao.glsl: x and y perpendicular to the line of sight,
 // z along it.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -23,13 +23,13 @@ float sine(float t)
     return t * inversesqrt(1.0 + t * t);
 }
 
-float occlusion(ivec2 pixel, screen_sphere sphere, screen_plane plane, vec2 direction, float first)
+float occlusion(ivec2 pixel, screen_sphere sphere, screen_plane plane, vec2 direction, float jitter)
 {
     vec2 pixels = screen_stretch(sphere, direction) * sphere.radius_px;
-    float slope = -dot(plane.on_disk, direction); // towards the eye
+    float slope = -dot(plane.on_disk, direction); // towards the camera
     float highest = sine((slope + table.bias) / max(1.0 - slope * table.bias, 1.0e-3)), sum = 0.0;
     for (int i = 0; i < table.steps; i++) {
-        float across = (float(i) + first) / float(table.steps);
+        float across = (float(i) + jitter) / float(table.steps);
         ivec2 there = pixel + ivec2(round(pixels * across));
         if (any(lessThan(there, ivec2(0))) ||
             any(greaterThanEqual(there, ivec2(view.width, view.height))))
@@ -47,17 +47,17 @@ float occlusion(ivec2 pixel, screen_sphere sphere, screen_plane plane, vec2 dire
     return sum;
 }
 
-float screen_ao_visibility(screen_place place)
+float screen_ao_visibility(screen_point point)
 {
-    screen_sphere sphere = screen_sphere_at(place.pixel, place.depth, view.radius_m);
-    screen_plane plane = screen_plane_of(sphere, place.n);
-    float turn = screen_turn(place.pattern);
-    // Of 16 samples in the first step, in another order than turns.
-    float first = (float((place.pattern * 5u) & 15u) + 0.5) / 16.0;
+    screen_sphere sphere = screen_sphere_at(point.pixel, point.depth, view.radius_m);
+    screen_plane plane = screen_plane_of(sphere, point.n);
+    float rotation = screen_rotation(point.pattern);
+    // Jitter of the first step: 16 values, in another order than the rotations.
+    float jitter = (float((point.pattern * 5u) & 15u) + 0.5) / 16.0;
     float sum = 0.0;
     for (int i = 0; i < table.directions; i++) {
-        float angle = 6.28318531 * (float(i) + turn) / float(table.directions);
-        sum += occlusion(place.pixel, sphere, plane, vec2(cos(angle), sin(angle)), first);
+        float angle = 6.28318531 * (float(i) + rotation) / float(table.directions);
+        sum += occlusion(point.pixel, sphere, plane, vec2(cos(angle), sin(angle)), jitter);
     }
     return mix(1.0, 1.0 - sum / float(table.directions), screen_fade(sphere));
 }

@@ -1,4 +1,4 @@
-// What the shader of hbao shares with the host. Scalar layout.
+// Shared by C and the shaders of hbao. Scalar layout.
 #ifndef AG_HBAO_SHARED_H
 #define AG_HBAO_SHARED_H
 

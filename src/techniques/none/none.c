@@ -1,4 +1,4 @@
-// The source that gives nothing: irradiance 0 everywhere. What the others are measured against.
+// Irradiance 0 at every pixel: direct light alone, the baseline of comparisons.
 #include "techniques/none/none.h"
 
 static bool none_create(void *state, const struct technique_create *how)

@@ -1,5 +1,5 @@
-// Screen-space ambient occlusion by points in a sphere (Mittring 2007), to be held against vo.
-// README.md says what differs.
+// Screen-space ambient occlusion with points in a sphere (Mittring 2007), a baseline for vo.
+// README.md lists the differences.
 #include "techniques/ssao/ssao.h"
 
 #include "techniques/common/sample_sets.h"
@@ -22,6 +22,8 @@ static const struct option_row option_rows[] = {
 #undef OPTION
 };
 
+static const struct option_alias aliases[] = { { "half", "half_resolution" }, { NULL, NULL } };
+
 struct ssao {
     struct gpu *gpu;
     struct ssao_options options;
@@ -32,7 +34,8 @@ struct ssao {
 
 static struct screen_ao_options ao_options(const struct ssao_options *options)
 {
-    return (struct screen_ao_options){ .blur = options->blur, .half = options->half };
+    return (struct screen_ao_options){ .blur = options->blur,
+                                       .half_resolution = options->half_resolution };
 }
 
 static int fill_table(const struct ssao_options *options, struct ssao_samples *table)
@@ -104,13 +107,13 @@ static uint64_t ssao_memory_estimate(const void *options, uint32_t width, uint32
 
 const struct technique technique_ssao = {
     .name = "ssao",
-    .title = "ambient occlusion by points in a sphere",
+    .title = "screen-space ambient occlusion, points in a sphere",
     .paper = "Mittring 2007, Finding Next Gen: CryEngine 2; Filion & McNaughton 2008, Effects & "
              "Techniques (StarCraft II)",
     .role = ROLE_VISIBILITY,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
     .needs = FRAME_WRITES_VISIBILITY,
-    .options = OPTION_TABLE(struct ssao_options, option_rows, NULL),
+    .options = OPTION_TABLE(struct ssao_options, option_rows, aliases),
     .state_size = sizeof(struct ssao),
     .create = ssao_create,
     .resize = ssao_resize,

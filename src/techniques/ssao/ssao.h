@@ -1,4 +1,4 @@
-// Ambient occlusion by points in a sphere.
+// Screen-space ambient occlusion with points in a sphere.
 #pragma once
 
 #include "techniques/technique.h"

@@ -1,6 +1,6 @@
-// Ambient occlusion by points in a sphere (Mittring 2007; with the normal as Filion & McNaughton
-// 2008): each is projected to the picture and is visible where the surface there is not before it.
-// A surface far before the pixel's own says nothing.
+// Ambient occlusion with points in a sphere (Mittring 2007; with the normal, Filion & McNaughton
+// 2008): a point is visible if the depth buffer has no surface in front of it. Surfaces far in
+// front of the pixel's own are ignored.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -16,46 +16,46 @@ layout(set = 0, binding = 4, scalar) uniform ssao_table
     ssao_samples table;
 };
 
-const float NEUTRAL = WITH_NORMAL ? 1.0 : 0.5; // what a plane leaves
-const float NEAREST = 1.0e-3; // of a point, distances of the pixel's own: it may lie behind the eye
+const float NEUTRAL = WITH_NORMAL ? 1.0 : 0.5; // visibility of a plane
+// Smallest distance of a point, relative to the pixel's: points may lie behind the camera.
+const float NEAREST = 1.0e-3;
 
-// Radii along the view axis by which a surface is before `distance_m`.
-float before(float surface, float distance_m, float radius_m)
+// Distance in radii along the view axis of a surface in front of `distance_m`.
+float in_front(float surface, float distance_m, float radius_m)
 {
     return surface > 0.0 ? (distance_m - view.near_m / surface) / radius_m : -1.0e9;
 }
 
-float visible(screen_place place, screen_sphere sphere, screen_plane plane, vec3 point)
+float visible(screen_point receiver, screen_sphere sphere, screen_plane plane, vec3 point)
 {
-    float distance_m = view.near_m / place.depth;
-    float radius_m =
-        sphere.radius_px * distance_m / view.focal_px; // `reach` may have made it smaller
+    float distance_m = view.near_m / receiver.depth;
+    float radius_m = sphere.radius_px * distance_m / view.focal_px; // bounded by `reach`
     vec3 at = vec3(sphere.m, 1.0) * distance_m + radius_m * point;
     at.z = max(at.z, NEAREST * distance_m);
     vec2 offset = view.focal_px * (at.xy / at.z - sphere.m);
     ivec2 there =
-        clamp(place.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
+        clamp(receiver.pixel + ivec2(round(offset)), ivec2(0), ivec2(view.width, view.height) - 1);
     float surface = texelFetch(depth, there, 0).r, tolerance = 0.0;
     if (WITH_NORMAL) {
-        // The surface goes on from the pixel's centre to the point as the tangent plane does.
-        surface -= dot(plane.on_screen, offset - vec2(there - place.pixel)) / sphere.z_per_depth;
+        // From the pixel's center to the point the surface continues parallel to the tangent plane.
+        surface -= dot(plane.on_screen, offset - vec2(there - receiver.pixel)) / sphere.z_per_depth;
         tolerance = plane.tolerance;
     }
-    float open = before(surface, at.z, radius_m) <= tolerance ? 1.0 : 0.0;
-    float too_far = clamp(before(surface, distance_m, radius_m) / table.range - 1.0, 0.0, 1.0);
+    float open = in_front(surface, at.z, radius_m) <= tolerance ? 1.0 : 0.0;
+    float too_far = clamp(in_front(surface, distance_m, radius_m) / table.range - 1.0, 0.0, 1.0);
     return mix(open, NEUTRAL, too_far);
 }
 
-float screen_ao_visibility(screen_place place)
+float screen_ao_visibility(screen_point receiver)
 {
-    screen_sphere sphere = screen_sphere_at(place.pixel, place.depth, view.radius_m);
-    screen_plane plane = screen_plane_of(sphere, place.n);
-    mat3 turn = screen_reflection_of_ball(place.pattern);
+    screen_sphere sphere = screen_sphere_at(receiver.pixel, receiver.depth, view.radius_m);
+    screen_plane plane = screen_plane_of(sphere, receiver.n);
+    mat3 turn = screen_reflection_of_ball(receiver.pattern);
     float sum = 0.0;
     for (int i = 0; i < COUNT; i++) {
         vec3 point = turn * table.at[i].xyz;
-        if (WITH_NORMAL) point -= 2.0 * min(dot(point, place.n), 0.0) * place.n;
-        sum += table.at[i].w * visible(place, sphere, plane, point);
+        if (WITH_NORMAL) point -= 2.0 * min(dot(point, receiver.n), 0.0) * receiver.n;
+        sum += table.at[i].w * visible(receiver, sphere, plane, point);
     }
     return mix(NEUTRAL, sum, screen_fade(sphere));
 }

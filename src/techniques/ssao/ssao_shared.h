@@ -1,4 +1,4 @@
-// What the shader of ssao shares with the host. Scalar layout.
+// Shared by C and the shaders of ssao. Scalar layout.
 #ifndef AG_SSAO_SHARED_H
 #define AG_SSAO_SHARED_H
 

@@ -1,8 +1,8 @@
-// Volumetric obscurance (Loos 2015, ch. 6): how much of a sphere round each point is empty, as far
-// as the depth buffer can tell.
+// Volumetric obscurance (Loos 2015, ch. 6): the empty share of a sphere around each surface point,
+// estimated from the depth buffer.
 //
-// The estimate comes from few samples per pixel, turned from pixel to pixel; what follows evens out
-// the noise (techniques/common/screen_ao.h). README.md says what differs from the paper.
+// The estimate has few samples per pixel, rotated per pixel; techniques/common/screen_ao.h filters
+// the noise. README.md lists the differences from the paper.
 #include "techniques/vo/vo.h"
 
 #include "techniques/vo/vo_state.h"
@@ -15,15 +15,18 @@ static const struct option_row option_rows[] = {
 #undef OPTION
 };
 
-// By measured error and time, see README.md.
-static const struct technique_preset presets[] = {
-    { "low", "half=true" }, { "medium", "" }, { "high", "samples=9,temporal=true" }, { NULL, NULL }
-};
+static const struct option_alias aliases[] = { { "half", "half_resolution" }, { NULL, NULL } };
+
+// Chosen by measured error and time, see docs/techniques/vo.md.
+static const struct technique_preset presets[] = { { "low", "half_resolution=true" },
+                                                   { "medium", "" },
+                                                   { "high", "samples=9,temporal=true" },
+                                                   { NULL, NULL } };
 
 static struct screen_ao_options ao_options(const struct vo_options *options)
 {
     return (struct screen_ao_options){ .blur = options->blur,
-                                       .half = options->half,
+                                       .half_resolution = options->half_resolution,
                                        .temporal = options->temporal };
 }
 
@@ -93,7 +96,7 @@ const struct technique technique_vo = {
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
     .needs = FRAME_WRITES_VISIBILITY,
     .more_needs = vo_more_needs,
-    .options = OPTION_TABLE(struct vo_options, option_rows, NULL),
+    .options = OPTION_TABLE(struct vo_options, option_rows, aliases),
     .presets = presets,
     .state_size = sizeof(struct vo),
     .create = vo_create,

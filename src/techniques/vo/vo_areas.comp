@@ -1,21 +1,20 @@
-// Volumetric obscurance by areas (Loos 2015, sec. 6.3.2): the depths in the part of the picture
-// that a sample stands for are spread evenly over a box with the mean and the variance that the
-// pyramid has there.
+// Volumetric obscurance by areas (Loos 2015, sec. 6.3.2): the depths in a sample's area are
+// modelled as a uniform distribution with the pyramid's mean and variance.
 //
-// One texel is looked up, half as wide as the part. The patterns move the place over a texel, and
-// by a level: the blur makes of that what many taps would.
+// Each sample fetches one texel, half as wide as its area. The patterns jitter the position by a
+// texel and the level by one; the blur then acts as a filter with many taps.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/vo/vo_estimate.glsl"
 
-layout(set = 0, binding = 5) uniform sampler2D moments; // level 0 has half the picture's size
+layout(set = 0, binding = 5) uniform sampler2D moments; // level 0 is half resolution
 
-const vec4 WHOLE = vec4(0.0, 0.0, 1.0, 0.5); // an area alone stands for the whole disk
+const vec4 WHOLE = vec4(0.0, 0.0, 1.0, 0.5); // a single area sample: the whole disk
 const float THINNEST = 1.0e-4;               // half-width of a box, radii
 
-// Of the tangent plane's own depths over a texel.
+// Variance of the tangent plane's depths over a texel.
 float plane_variance(vec2 slope, float texel_px)
 {
     return dot(slope, slope) * (texel_px * texel_px - 1.0) / 12.0;
@@ -25,14 +24,13 @@ struct vo_box {
     float middle, half_width;
 };
 
-// Depths beside the tangent plane round an offset in pixels. The variance is what is left beside
-// the plane's.
-vo_box box_at(vo_place p, vec2 offset, int level)
+// Distribution of depths relative to the tangent plane around an offset in pixels. The plane's own
+// variance is subtracted.
+vo_box box_at(vo_point p, vec2 offset, int level)
 {
     float texel_px = float(1 << level);
     vec2 jitter = (vec2(p.pattern & 3u, p.pattern >> 2u) - 1.5) / 4.0; // texels
-    // Not textureSize: software drivers have taken its level from one invocation for its neighbours
-    // too.
+    // No textureSize: software drivers evaluated its level for one invocation of a group only.
     vec2 here = vec2(p.pixel) + 0.5,
          last = vec2(max(ivec2(view.width, view.height) >> level, 1) - 1);
     vec2 texel = clamp(floor((here + offset) * (1.0 / texel_px) + jitter), vec2(0.0), last);
@@ -40,15 +38,14 @@ vo_box box_at(vo_place p, vec2 offset, int level)
     vec2 step = (texel + 0.5) * texel_px - here;
     float to_z = p.sphere.z_per_depth;
     float tolerance = p.plane.tolerance;
-    // Of a slope s off by t the square is off by t (t + 2s), and 2s ≤ 1 + s².
+    // An error t of the slope s changes its square by t (t + 2s), and 2s ≤ 1 + s².
     float rounding = tolerance * (tolerance + 1.0 + dot(p.plane.on_disk, p.plane.on_disk));
     float variance = seen.y * to_z * to_z - plane_variance(p.plane.on_screen, texel_px) - rounding;
     return vo_box(screen_behind(p.sphere, p.plane, step, seen.x) + (WITH_NORMAL ? tolerance : 0.0),
                   max(sqrt(3.0 * max(variance, 0.0)), THINNEST));
 }
 
-// From far before the box up to z the integral of the share of depths that are behind z: all before
-// the box, none behind it. z may be several.
+// Integral up to z of the share of depths behind z: 1 in front of the box, 0 behind it.
 vec4 open_up_to(vo_box box, vec4 z)
 {
     vec4 u = clamp((z - box.middle) * (0.5 / box.half_width) + 0.5, 0.0, 1.0);
@@ -61,7 +58,7 @@ float open_between(vo_box box, float from, float to, float thickness)
     return up_to.y - up_to.x + to - from - (up_to.w - up_to.z);
 }
 
-float vo_visibility(vo_place p)
+float vo_visibility(vo_point p)
 {
     mat2 turn = COUNT == 1 ? mat2(1.0) : screen_reflection(p.pattern);
     mat2 pixels = mat2(screen_stretch(p.sphere, turn[0]), screen_stretch(p.sphere, turn[1])) *

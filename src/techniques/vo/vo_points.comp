@@ -1,6 +1,5 @@
 // Volumetric obscurance by points (Loos 2015, sec. 6.3, 6.3.4; Mittring 2007; Filion & McNaughton
-// 2008), to be held against lines: which points in the sphere are before the surface, or behind it
-// by more than its thickness.
+// 2008), a baseline for lines: a point is visible in front of the surface, or behind its thickness.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -9,15 +8,15 @@
 
 const float ON_PLANE = 1.0e-5; // a point on the tangent plane is visible
 
-float vo_visibility(vo_place p)
+float vo_visibility(vo_point p)
 {
     mat3 turn = screen_reflection_of_ball(p.pattern);
     vec3 outwards = normalize(vec3(p.plane.on_disk, -1.0));
-    float visible = table.centre * (WITH_NORMAL ? 1.0 : 0.5);
+    float visible = table.center * (WITH_NORMAL ? 1.0 : 0.5);
     [[unroll]] for (int i = 0; i < COUNT; i++)
     {
         vec3 point = turn * table.at[i].xyz;
-        // Points below the tangent plane are mirrored to above it.
+        // Reflects points below the tangent plane.
         if (WITH_NORMAL) point -= 2.0 * min(dot(point, outwards), 0.0) * outwards;
         vec2 offset = p.sphere.radius_px * screen_stretch(p.sphere, point.xy);
         float behind = point.z - dot(p.plane.on_disk, point.xy) - vo_behind(p, offset);

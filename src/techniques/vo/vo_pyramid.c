@@ -17,7 +17,7 @@ static uint32_t level_size(uint32_t size, uint32_t level)
     return size >> level ? size >> level : 1;
 }
 
-// Down to the level whose shorter side is a texel.
+// Down to the level whose shorter side is one texel.
 static uint32_t levels_of(uint32_t width, uint32_t height)
 {
     uint32_t levels = 1;
@@ -54,20 +54,20 @@ uint64_t vo_pyramid_memory(uint32_t width, uint32_t height)
 void vo_record_pyramid(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct gpu_image_desc *info = gpu_image_info(vo->gpu, vo->moments);
-    // A sample that stands for the whole disk has its area, π radius².
-    const float widest_px = vo->ao.params.most_px * sqrtf(GLM_PIf);
-    const int wanted = (int)ceilf(log2f(fmaxf(widest_px, 2.0f)));
-    vo->table.level_count = wanted < (int)info->mips ? wanted : (int)info->mips;
+    // A single area sample covers the whole disk, π radius².
+    const float widest_px = vo->ao.params.max_radius_px * sqrtf(GLM_PIf);
+    const int needed = (int)ceilf(log2f(fmaxf(widest_px, 2.0f)));
+    vo->table.level_count = needed < (int)info->mips ? needed : (int)info->mips;
     gpu_scope_begin(cmd, "pyramid");
     for (int i = 0; i < vo->table.level_count; i++) {
-        struct gpu_binding before = { .name = "before", .image = view->layers[FRAME_DEPTH] };
+        struct gpu_binding source = { .name = "source", .image = view->layers[FRAME_DEPTH] };
         if (i > 0)
-            before = (struct gpu_binding){
-                .name = "before", .image = vo->moments, .mip = (uint32_t)i - 1, .one_mip = true
+            source = (struct gpu_binding){
+                .name = "source", .image = vo->moments, .mip = (uint32_t)i - 1, .one_mip = true
             };
         gpu_dispatch(
             cmd, vo->pyramid,
-            GPU_BIND(before, { .name = "after", .image = vo->moments, .mip = (uint32_t)i }), NULL,
+            GPU_BIND(source, { .name = "target", .image = vo->moments, .mip = (uint32_t)i }), NULL,
             0, gpu_groups(level_size(info->width, (uint32_t)i), LOCAL),
             gpu_groups(level_size(info->height, (uint32_t)i), LOCAL), 1);
     }

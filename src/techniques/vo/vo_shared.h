@@ -1,4 +1,4 @@
-// What the shaders of volumetric obscurance share with the host. Scalar layout.
+// Shared by C and the shaders of volumetric obscurance. Scalar layout.
 #ifndef AG_VO_SHARED_H
 #define AG_VO_SHARED_H
 
@@ -14,15 +14,14 @@
 
 // Uniform block "vo_table".
 struct vo_samples {
-    // Lines: x, y in the disk, half length, weight over length, opposite ones next to each other.
-    // Points: x, y, z in the ball, weight. Areas: as lines.
+    // Lines and areas: x, y in the disk, half length, weight over length; opposite samples are
+    // adjacent. Points: x, y, z in the ball, weight.
     vec4s at[VO_MOST_SAMPLES];
-    float levels[VO_MOST_SAMPLES]; // areas: of the pyramid, log2 of the side in radii
-    int32_t level_count;           // of the pyramid, those in use
-    vec2s radii_m;                 // the second 0: there is but the first
+    float levels[VO_MOST_SAMPLES]; // areas: pyramid level, log2 of the side in radii
+    int32_t level_count;           // pyramid levels in use
+    vec2s radii_m;                 // the second is 0 without a second sphere
     float thickness;               // of occluders, radii
-    float centre; // weight of the sample at the sphere's centre, which needs no look; 0: there is
-                  // none
+    float center; // weight of the sample at the sphere's center, known without a fetch; 0: none
 };
 
 #ifndef AG_GLSL

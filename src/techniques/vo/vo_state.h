@@ -19,8 +19,7 @@ struct vo {
     struct vo_options options;
     struct screen_ao ao;
     gpu_pipeline estimate;
-    gpu_image
-        moments; // areas: RG32F, mean and variance of depth; level 0 has half the frame's size
+    gpu_image moments; // areas: RG32F, mean and variance of depth; level 0 is half resolution
     gpu_pipeline pyramid;
     struct vo_samples table;
 };
@@ -28,7 +27,7 @@ struct vo {
 bool vo_create_estimate(struct vo *vo);
 void vo_record_estimate(struct vo *vo, struct gpu_cmd *cmd, const struct frame_view *view);
 
-// The pyramid of moments, of the mode areas alone.
+// The pyramid of depth moments, for mode=areas.
 bool vo_create_pyramid(struct vo *vo);
 bool vo_resize_pyramid(struct vo *vo, uint32_t width, uint32_t height);
 uint64_t vo_pyramid_memory(uint32_t width, uint32_t height);

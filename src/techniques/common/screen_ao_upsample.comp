@@ -1,5 +1,5 @@
-// An estimate as the frame's visibility: as it is, or, from every second pixel of every second row,
-// the mean of the up to four neighbours whose surface is the pixel's own.
+// Writes an estimate to the frame's visibility: a copy, or a depth-aware bilinear upsampling from
+// half resolution.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,14 +8,14 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 1) uniform sampler2D before; // visibility, depth
+layout(set = 0, binding = 1) uniform sampler2D source; // visibility, depth
 layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3, r8) uniform writeonly image2D visibility;
 
-const float EDGE = 4.0;     // a neighbour a quarter of a radius off does not count
-const float LEAST = 1.0e-3; // but where none does, all do a little
+const float EDGE = 4.0;          // weight 0 at a quarter of a radius
+const float MIN_WEIGHT = 1.0e-3; // of each neighbour's weight, so that their sum is never 0
 
-float fitted(ivec2 pixel)
+float upsampled(ivec2 pixel)
 {
     float here = texelFetch(depth, pixel, 0).r;
     if (here <= 0.0) return 1.0;
@@ -23,13 +23,13 @@ float fitted(ivec2 pixel)
     float per_depth = EDGE * view.focal_px / (radius_px * here);
     ivec2 last = ivec2(view.work_width, view.work_height) - 1;
     ivec2 first = pixel / SCREEN_AO_STEP;
-    vec2 between = vec2(pixel - first * SCREEN_AO_STEP) / float(SCREEN_AO_STEP);
+    vec2 fraction = vec2(pixel - first * SCREEN_AO_STEP) / float(SCREEN_AO_STEP);
     float sum = 0.0, weights = 0.0;
     for (int i = 0; i < 4; i++) {
         ivec2 corner = ivec2(i & 1, i >> 1);
-        vec2 share = mix(1.0 - between, between, equal(corner, ivec2(1)));
-        vec2 value = texelFetch(before, min(first + corner, last), 0).rg;
-        float w = share.x * share.y * max(1.0 - abs(value.y - here) * per_depth, LEAST);
+        vec2 share = mix(1.0 - fraction, fraction, equal(corner, ivec2(1)));
+        vec2 value = texelFetch(source, min(first + corner, last), 0).rg;
+        float w = share.x * share.y * max(1.0 - abs(value.y - here) * per_depth, MIN_WEIGHT);
         sum += w * value.x;
         weights += w;
     }
@@ -40,6 +40,6 @@ void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(view.width, view.height)))) return;
-    float result = SCREEN_AO_STEP == 1 ? texelFetch(before, pixel, 0).r : fitted(pixel);
+    float result = SCREEN_AO_STEP == 1 ? texelFetch(source, pixel, 0).r : upsampled(pixel);
     imageStore(visibility, pixel, vec4(result));
 }
