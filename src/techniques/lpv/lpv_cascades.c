@@ -24,8 +24,8 @@ void lpv_cascades_destroy(struct lpv_cascades *cascades)
         lpv_volumes_destroy_coarser(level);
 }
 
-// Steps that light needs to cross the coarsest grid, at most four times those of the others: its
-// cells are few.
+// Enough steps for light to cross the coarsest grid, at most four times the steps of the others;
+// its cells are few.
 static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid *grid)
 {
     int32_t longest = 0;

@@ -103,10 +103,10 @@ static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double 
 // lobes' axes times √Ω, G the weights. B Bᵀ is the quadrature of products of two coefficients:
 // exact up to degree 3 by the cube's symmetry, and in band 2 diagonal with the two numbers q of
 // quadrature_of_band_2. With D = √q, 1 for the lower bands, B D⁻¹ has the norm 1, and the step
-// grows no more than D G A does. Along the way A = Bᵀ, and D G A has the norm of q G: weights over
-// q leave 1, g and the family's band 2, none of which is above 1, and light of any direction keeps
-// the same share, along an axis or not. With lobes along the normals, six directions of weight
-// 4π/6, x² − y² is seen 5/2 times and xy not at all: √(5/2 q) G ≤ 1 is a bound on the weight.
+// grows at most by the norm of D G A. For lobes along the directions A = Bᵀ and D G A has the norm
+// of q G: weights divided by q give 1, g and the band 2 above, all at most 1, and light of every
+// direction is scaled alike. For lobes along the normals, six directions of weight 4π/6, x² − y²
+// counts 5/2 times and xy not at all: √(5/2 q) G ≤ 1 bounds the weight.
 struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
                                             double focus)
 {

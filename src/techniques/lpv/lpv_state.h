@@ -46,7 +46,7 @@ struct lpv_pipelines {
     gpu_pipeline geometry_transmittance;
 };
 
-// What the static geometry in the volumes was computed for.
+// Inputs of the cached static geometry.
 struct lpv_geometry_cache {
     bool valid;
     struct lpv_grid grid;

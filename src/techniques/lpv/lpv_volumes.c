@@ -1,4 +1,4 @@
-// Sizes, images and buffers of all volumes, from one table: what is created is what is estimated.
+// Sizes, images and buffers of all volumes. One table serves creation and the memory estimate.
 #include "techniques/lpv/lpv_volumes.h"
 
 #include "techniques/lpv/lpv_state.h"
