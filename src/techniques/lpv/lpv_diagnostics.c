@@ -38,8 +38,9 @@ static void diagnose_cells(struct host *host, const char *technique,
         return;
     }
     if (finest > 1.01 * smallest_cell(side))
-        snprintf(remedy, sizeof remedy, "; cascades=%d,cell=%.3g has smaller ones near the camera",
-                 LPV_MAX_CASCADES, smallest_cell(side));
+        snprintf(remedy, sizeof remedy,
+                 "; cascades=%d,cell=%.3g gives smaller cells near the camera", LPV_MAX_CASCADES,
+                 smallest_cell(side));
     host_log(host, LOG_WARNING,
              "gi %s: %s is %.3g m long: with dim=%d a cell is %.3g m%s, and indirect light has no "
              "finer detail%s",
@@ -63,8 +64,8 @@ static void diagnose_lights(struct host *host, const char *technique, const stru
         const struct world_light light = pose_light(pose, i);
         if (light.type == LIGHT_SUN || is_inside(grid, light.position)) continue;
         host_log(host, LOG_INFO,
-                 "gi %s: light %d of %s is outside of the grid: the surfaces that it lights send "
-                 "light on as others do",
+                 "gi %s: light %d of %s is outside of the grid: the surfaces that it lights inside "
+                 "are injected as usual",
                  technique, i, pose->scene->name);
     }
 }
@@ -76,8 +77,8 @@ void lpv_diagnose(struct host *host, const char *technique, const struct lpv_opt
     const char *scene = pose->scene->name;
     if (!lpv_grid_fit(pose->bounds, options->dim, lpv_margin(options, pose->scene->sky), &grid)) {
         host_log(host, LOG_WARNING,
-                 "gi %s: %s has no extent that a grid could cover: there is no indirect light",
-                 technique, scene);
+                 "gi %s: %s has no extent for a grid: there is no indirect light", technique,
+                 scene);
         return;
     }
     diagnose_cells(host, technique, options, &grid, scene);

@@ -3,6 +3,8 @@
 
 #include "techniques/lpv/lpv_state.h"
 
+#include <string.h>
+
 enum { MAX_VOLUMES = 16 };
 
 // dim³ cells of a member of struct lpv_volumes.
@@ -37,7 +39,9 @@ static size_t transmittance_bytes(const struct lpv_options *options)
 
 #define MEMBER(member) offsetof(struct lpv_volumes, member)
 
-static int list_volumes(const struct lpv_options *options, struct volume out[MAX_VOLUMES])
+// The volumes that the options need; of a coarser cascade those of its own.
+static int list_volumes(const struct lpv_options *options, bool coarser,
+                        struct volume out[MAX_VOLUMES])
 {
     const bool half = options->precision == LPV_PRECISION_HALF, bounces = options->bounces > 0,
                maps = options->geometry == LPV_GEOMETRY_MAPS,
@@ -65,7 +69,7 @@ static int list_volumes(const struct lpv_options *options, struct volume out[MAX
     };
     int count = 0;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        if (all[i].size > 0) out[count++] = all[i];
+        if (all[i].size > 0 && (!coarser || all[i].of_each_cascade)) out[count++] = all[i];
     return count;
 }
 
@@ -91,15 +95,34 @@ static bool create_buffer(struct lpv *lpv, const struct volume *volume, gpu_buff
     return gpu_buffer_create(lpv->gpu, &desc, out);
 }
 
+static void *member_of(struct lpv *lpv, const struct volume *volume)
+{
+    return (char *)&lpv->volumes + volume->offset;
+}
+
+static bool is_buffer(const struct volume *volume)
+{
+    return volume->format == GPU_FORMAT_NONE;
+}
+
+// A coarser cascade's handles are copies of the finest's: cleared, so that a failure does not
+// destroy these twice.
+static void clear_handles(struct lpv *lpv, const struct volume *volumes, int count)
+{
+    for (int i = 0; i < count; i++)
+        memset(member_of(lpv, &volumes[i]), 0,
+               is_buffer(&volumes[i]) ? sizeof(gpu_buffer) : sizeof(gpu_image));
+}
+
 static bool create(struct lpv *lpv, bool coarser)
 {
     struct volume volumes[MAX_VOLUMES];
-    const int count = list_volumes(&lpv->options, volumes);
+    const int count = list_volumes(&lpv->options, coarser, volumes);
+    clear_handles(lpv, volumes, count);
     for (int i = 0; i < count; i++) {
-        void *member = (char *)&lpv->volumes + volumes[i].offset;
-        if (coarser && !volumes[i].of_each_cascade) continue;
-        if (volumes[i].format == GPU_FORMAT_NONE ? !create_buffer(lpv, &volumes[i], member)
-                                                 : !create_image(lpv, &volumes[i], member))
+        void *member = member_of(lpv, &volumes[i]);
+        if (is_buffer(&volumes[i]) ? !create_buffer(lpv, &volumes[i], member)
+                                   : !create_image(lpv, &volumes[i], member))
             return false;
     }
     return true;
@@ -108,11 +131,10 @@ static bool create(struct lpv *lpv, bool coarser)
 static void destroy(struct lpv *lpv, bool coarser)
 {
     struct volume volumes[MAX_VOLUMES];
-    const int count = list_volumes(&lpv->options, volumes);
+    const int count = list_volumes(&lpv->options, coarser, volumes);
     for (int i = 0; i < count; i++) {
-        void *member = (char *)&lpv->volumes + volumes[i].offset;
-        if (coarser && !volumes[i].of_each_cascade) continue;
-        if (volumes[i].format == GPU_FORMAT_NONE)
+        void *member = member_of(lpv, &volumes[i]);
+        if (is_buffer(&volumes[i]))
             gpu_buffer_destroy(lpv->gpu, member);
         else
             gpu_image_destroy(lpv->gpu, member);
@@ -124,24 +146,8 @@ bool lpv_volumes_create(struct lpv *lpv)
     return create(lpv, false);
 }
 
-// Until all are created, a failure must leave none of the finest's handles to be destroyed twice.
-static void drop_copies(struct lpv *lpv)
-{
-    struct volume volumes[MAX_VOLUMES];
-    const int count = list_volumes(&lpv->options, volumes);
-    for (int i = 0; i < count; i++) {
-        void *member = (char *)&lpv->volumes + volumes[i].offset;
-        if (!volumes[i].of_each_cascade) continue;
-        if (volumes[i].format == GPU_FORMAT_NONE)
-            *(gpu_buffer *)member = (gpu_buffer){ 0 };
-        else
-            *(gpu_image *)member = (gpu_image){ 0 };
-    }
-}
-
 bool lpv_volumes_create_coarser(struct lpv *lpv)
 {
-    drop_copies(lpv);
     return create(lpv, true);
 }
 
@@ -158,13 +164,13 @@ void lpv_volumes_destroy_coarser(struct lpv *lpv)
 uint64_t lpv_volumes_bytes(const struct lpv_options *options)
 {
     struct volume volumes[MAX_VOLUMES];
-    const int count = list_volumes(options, volumes);
+    const int count = list_volumes(options, false, volumes);
     const uint64_t dim = (uint64_t)options->dim;
     uint64_t of_cell = 0;
     for (int i = 0; i < count; i++) {
         const uint64_t copies = volumes[i].of_each_cascade ? (uint64_t)options->cascades : 1;
-        const bool is_buffer = volumes[i].format == GPU_FORMAT_NONE;
-        const uint64_t unit = is_buffer ? 1 : (uint64_t)gpu_format_bytes(volumes[i].format);
+        const uint64_t unit =
+            is_buffer(&volumes[i]) ? 1 : (uint64_t)gpu_format_bytes(volumes[i].format);
         of_cell += copies * unit * volumes[i].size;
     }
     return dim * dim * dim * of_cell;
