@@ -219,11 +219,6 @@ bool gpu_wait(struct gpu *gpu)
     return done && !gpu->lost;
 }
 
-struct gpu *gpu_of(struct gpu_cmd *cmd)
-{
-    return cmd->gpu;
-}
-
 struct gpu_cmd *transfer_begin(struct gpu *gpu)
 {
     struct gpu_cmd *cmd = &gpu->cmds[CMD_TRANSFER];

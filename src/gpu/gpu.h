@@ -262,7 +262,6 @@ bool gpu_frame_end(struct gpu *gpu, struct gpu_cmd *cmd);
 struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer);
 void gpu_frame_adopted_done(struct gpu *gpu, struct gpu_cmd *cmd);
 bool gpu_wait(struct gpu *gpu); // until all submitted work is done; false: device lost
-struct gpu *gpu_of(struct gpu_cmd *cmd);
 
 // Something bound to a shader's name. Give exactly one of image (with a sampler where the shader
 // samples) and buffer.
