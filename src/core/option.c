@@ -158,42 +158,6 @@ void option_print(const struct option_row *row, const void *options, char *out, 
     c_locale_leave(scope);
 }
 
-static json_t *value_json(const struct option_row *row, const void *options)
-{
-    double value = value_of(row, options);
-    char text[VALUE_SIZE];
-    switch (row->type) {
-    case OPTION_TYPE_int32:
-        return json_integer((json_int_t)value);
-    case OPTION_TYPE_bool8:
-        return json_boolean(value != 0.0);
-    case OPTION_TYPE_float32: // 0.1, not 0.10000000149011612
-        print_float((float)value, text, sizeof text);
-        return json_real(strtod(text, NULL));
-    case OPTION_TYPE_choice:
-        break;
-    }
-    size_t length = 0;
-    const char *name = choice_name(row->unit, (int32_t)value, &length);
-    return json_stringn(name ? name : "", length);
-}
-
-json_t *option_json(const struct option_table *table, const void *options)
-{
-    json_t *object = json_object();
-    if (!object) return NULL;
-    struct c_locale scope = c_locale_enter();
-    for (size_t i = 0; object && i < table->count; i++) {
-        const struct option_row *row = &table->rows[i];
-        if (json_object_set_new(object, row->name, value_json(row, options)) != 0) {
-            json_decref(object);
-            object = NULL;
-        }
-    }
-    c_locale_leave(scope);
-    return object;
-}
-
 // ---- parsing
 
 struct parse {

@@ -20,7 +20,6 @@
 
 #include "core/host.h"
 
-#include <jansson.h>
 #include <stdint.h>
 
 typedef int32_t option_int32;
@@ -85,8 +84,6 @@ bool option_parse(struct host *host, const struct option_table *table, const cha
                   const char *text, void *options);
 // The value as text that option_parse reads.
 void option_print(const struct option_row *row, const void *options, char *out, size_t out_size);
-// {"name": value, …}; a new reference, NULL when out of memory. Choices are strings.
-json_t *option_json(const struct option_table *table, const void *options);
 // The strongest effect of the options that differ; -1: all are equal.
 int option_difference(const struct option_table *table, const void *a, const void *b);
 // Copies the options that may change while a technique runs: those of effect LIVE and INVALIDATE.

@@ -291,19 +291,6 @@ TEST(numbers_have_a_dot_in_every_locale)
     CHECK_STRING(text, "2.5");
 }
 
-TEST(json_values_have_the_options_type)
-{
-    struct options options = defaults();
-    json_t *json = option_json(&table, &options);
-    assert_non_null(json);
-    assert_int_equal(json_object_size(json), table.count);
-    assert_int_equal(json_integer_value(json_object_get(json, "steps")), 8);
-    CHECK(json_real_value(json_object_get(json, "gain")) == 0.8);
-    CHECK(json_is_true(json_object_get(json, "blur")));
-    CHECK_STRING(json_string_value(json_object_get(json, "quality")), "middle");
-    json_decref(json);
-}
-
 TEST(difference_is_the_strongest_effect)
 {
     struct options a = defaults(), b = a;
