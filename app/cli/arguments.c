@@ -1,4 +1,4 @@
-// The options of all commands, from one table.
+// Parses the options of all commands, which options.def lists.
 #include "arguments.h"
 #include "values.h"
 #include "wrapped.h"

@@ -1,4 +1,4 @@
-// The command line as values. One table (options.def) gives names, checks and help.
+// The parsed command line. One table (options.def) holds names, setters and help.
 #pragma once
 
 #include "messages.h"
@@ -22,7 +22,7 @@ struct arguments {
     uint64_t seed;
     bool has_exposure;
     float exposure_ev;
-    // moment and camera
+    // time and camera
     const char *camera, *animation;
     bool has_eye, has_target, has_fov;
     float eye[3], target[3];
@@ -57,13 +57,13 @@ struct command {
     int positional_count;
     const char *usage;   // "SCENE [options]"
     const char *summary; // one line
-    const char *text;    // what --help says before the options
+    const char *text;    // description in --help
     const char *examples;
     enum status (*run)(const struct arguments *arguments);
 };
 
-// Reads what follows the command's name. WRONG_USAGE has been explained on standard error.
+// Parses the words after the command name; reports wrong usage on standard error.
 enum status arguments_parse(const struct command *command, int count, char **words,
                             struct arguments *out);
-// --help of one command, on standard output.
+// Prints --help of one command.
 void arguments_help(const struct command *command);

@@ -1,4 +1,4 @@
-// $CACHE/references/KEY.exr.
+// Cached references: $CACHE/references/KEY.exr.
 #include "cache.h"
 #include "interrupt.h"
 
@@ -16,9 +16,9 @@
 static const long long MAX_BYTES = 2LL << 30;
 static const char FOLDER[] = "references";
 
-// ---- where
+// ---- location
 
-// As the XDG Base Directory Specification has it: paths that are relative or empty do not count.
+// Per the XDG Base Directory Specification, relative and empty paths are ignored.
 static bool find_folder(char out[PATH_SIZE])
 {
     const char *own = getenv("AFTERGLOW_CACHE"), *xdg = getenv("XDG_CACHE_HOME"),
@@ -33,7 +33,7 @@ static bool find_folder(char out[PATH_SIZE])
     return wrote > 0 && wrote < PATH_SIZE;
 }
 
-// With all above it. False: errno says why.
+// Creates a folder and its parents. False: see errno.
 static bool make_folder(char *path)
 {
     for (char *slash = path + 1; (slash = strchr(slash, '/')); slash++) {
@@ -68,7 +68,7 @@ void cache_touch(const char *path)
         detail("cannot touch %s: %s", path, strerror(errno));
 }
 
-// ---- how much
+// ---- size limit
 
 struct entry {
     char path[PATH_SIZE + NAME_MAX + 2];
@@ -76,7 +76,7 @@ struct entry {
     struct timespec used;
 };
 
-// Ours are "reference-1-0123456789abcdef.exr", or begin like that where they are half written.
+// Cached files are named "reference-1-0123456789abcdef.exr"; a temporary file has a longer name.
 static bool is_ours(const char *name)
 {
     char hash[17];
@@ -89,7 +89,8 @@ static bool is_older(const struct entry *a, const struct entry *b)
                                             : a->used.tv_nsec < b->used.tv_nsec;
 }
 
-// What our files take together, and the one unused for longest but `spared` (none: its path is "").
+// Total size of the cached files, and the least recently used one except `spared` (path "" if
+// none).
 static long long look_around(const char *folder, const char *spared, struct entry *oldest)
 {
     long long sum = 0;

@@ -1,15 +1,14 @@
-// Files that took long to compute, kept from run to run: in $AFTERGLOW_CACHE,
-// $XDG_CACHE_HOME/afterglow or
-// ~/.cache/afterglow. Without such a folder there is no cache, and work goes on without.
+// Cache of references between runs, in $AFTERGLOW_CACHE, $XDG_CACHE_HOME/afterglow or
+// ~/.cache/afterglow. Without such a folder nothing is cached.
 #pragma once
 
 #include "output.h"
 
-// The file that is, or is to be, kept for `key` (letters, digits, blanks), among others whose keys
-// begin alike. Makes the folder. False: there is no cache; --verbose says why.
+// Path of the cached file for `key` (letters, digits, blanks). Creates the folder. False: no
+// cache; --verbose shows the reason.
 bool cache_file(const char *key, char out[PATH_SIZE]);
-// The file was of use: among those to be removed it comes last.
+// Marks a file as recently used.
 void cache_touch(const char *path);
-// Removes the files unused for longest until those of the folder of `path` are no more than the
-// cache may hold; never `path` itself.
+// Removes the least recently used files in the folder of `path`, except `path`, until the cache
+// is within its size limit.
 void cache_trim(const char *path);

@@ -1,4 +1,4 @@
-// afterglow compare: methods beside each other, each held against the truth.
+// afterglow compare: measures methods against the reference.
 #include "commands.h"
 #include "compare.h"
 #include "json.h"
@@ -9,8 +9,7 @@
 
 static const char REPORT[] = "report.json";
 
-// All wrong usage, and a folder that cannot be written, are found before a file is opened or a
-// device is woken.
+// Detects wrong usage and unwritable folders before any file or device is opened.
 static enum status plan(struct comparison *c)
 {
     const struct arguments *a = c->arguments;
@@ -30,7 +29,7 @@ static enum status open_device(struct comparison *c)
     enum ag_result result = ag_device_create(c->session.context, &desc, &c->device);
     if (result == AG_OK) return DONE;
     fail_library(c->session.context, result);
-    return FAILED; // which devices there are is the machine's affair
+    return FAILED; // a missing device is no wrong usage
 }
 
 static enum status prepare(struct comparison *c)
@@ -45,11 +44,11 @@ static enum status prepare(struct comparison *c)
     return status;
 }
 
-// Vulkan's own complaints make all that was rendered doubtful.
+// Validation messages make the rendered images untrustworthy.
 static enum status check_device(const struct comparison *c)
 {
     if (ag_device_validation_messages(c->device) == 0) return DONE;
-    return fail("cannot trust %s: Vulkan's validation has complaints (see --verbose)",
+    return fail("cannot trust %s: Vulkan validation logged messages (see --verbose)",
                 c->arguments->positional[0]);
 }
 
@@ -76,7 +75,7 @@ static enum status publish(struct comparison *c)
         return status;
     }
     if (c->arguments->json) {
-        status = json_print(report); // takes it
+        status = json_print(report); // takes ownership
     } else {
         report_print(c);
         json_decref(report);

@@ -1,4 +1,4 @@
-// afterglow diff: how far one image is from another.
+// afterglow diff: error of an image relative to a reference.
 #include "commands.h"
 #include "images.h"
 #include "interrupt.h"
@@ -15,7 +15,7 @@ static bool is_image(const char *path)
     return has_extension(path, "png") || has_extension(path, "exr");
 }
 
-// Of two PNG files: what only an EXR has.
+// Options for EXR files only.
 static enum status check_png_usage(const struct arguments *a)
 {
     if (a->layer)
@@ -23,9 +23,9 @@ static enum status check_png_usage(const struct arguments *a)
     if (a->mask_layer[0])
         return wrong_usage("cannot use --mask %s: %s has no layers", a->mask_layer,
                            a->positional[1]);
-    if (a->has_exposure) return wrong_usage("cannot use --exposure: a .png is exposed already");
+    if (a->has_exposure) return wrong_usage("cannot use --exposure: a .png is already exposed");
     if (a->metric == AG_DIFFERENCE_FLIP_HDR)
-        return wrong_usage("cannot use --metric flip_hdr: it takes radiance, as .exr files hold");
+        return wrong_usage("cannot use --metric flip_hdr: it needs radiance (.exr files)");
     return DONE;
 }
 
@@ -42,7 +42,7 @@ static enum status check_usage(const struct arguments *a)
     return has_extension(first, "exr") ? DONE : check_png_usage(a);
 }
 
-// One channel three times, so that single-channel layers can be compared like any other.
+// Repeats a single channel three times, so that metrics accept it.
 static enum ag_result spread(struct ag_context *context, struct ag_image **image)
 {
     struct ag_image *one = *image, *three = NULL;
@@ -58,7 +58,7 @@ static enum ag_result spread(struct ag_context *context, struct ag_image **image
     return AG_OK;
 }
 
-// One channel of 0 and 1: where the mask's layer is above the threshold.
+// A mask: 1 where the layer exceeds the threshold, else 0.
 static enum status load_mask(struct session *session, struct ag_image **out)
 {
     const struct arguments *arguments = session->arguments;
@@ -86,7 +86,7 @@ static enum status check_sizes(const struct arguments *arguments, const struct p
 {
     const struct ag_image *a = pair->a, *b = pair->b;
     if (a->width == b->width && a->height == b->height) return DONE;
-    return fail("cannot compare %s with %s: %dx%d and %dx%d are not the same size",
+    return fail("cannot compare %s with %s: %dx%d and %dx%d differ in size",
                 arguments->positional[0], arguments->positional[1], a->width, a->height, b->width,
                 b->height);
 }
@@ -114,7 +114,7 @@ static enum status load_pair(struct session *session, struct pair *pair)
     return DONE;
 }
 
-// Keys for EXR files and for masks come after those that every comparison has.
+// Keys for EXR files and masks follow the common ones.
 static json_t *metrics_json(const struct ag_metrics *m, const struct arguments *arguments,
                             const struct pair *pair)
 {

@@ -1,4 +1,4 @@
-// afterglow info: what is in a scene, and what it would get where it brings no light or no camera.
+// afterglow info: contents of a scene, and its default light and camera.
 #include "commands.h"
 #include "json.h"
 #include "session.h"
@@ -83,7 +83,7 @@ static json_t *list_of(struct session *session, int count,
     return array;
 }
 
-// The options that would ask for what the scene gets by default; nulls where it needs none.
+// Options that give the default light and camera; null if the scene has its own.
 static json_t *defaults_json(const struct defaults *d)
 {
     json_t *light =
@@ -141,7 +141,7 @@ static void print_counts(const struct ag_scene_info *i)
     }
     printf("memory       %.1f MB\n", (double)i->memory_bytes * 1e-6);
     print_vector("sky          ", i->sky, " cd/m2\n");
-    printf("glows        %s\n", i->emissive ? "yes" : "no");
+    printf("emissive     %s\n", i->emissive ? "yes" : "no");
 }
 
 static void print_lights(struct session *session, int count)
@@ -188,12 +188,13 @@ static void print_materials(struct session *session, int count)
         print_vector(" colour ", m.material.base_color, "");
         printf(", metallic %.3g, roughness %.3g", (double)m.material.metallic,
                (double)m.material.roughness);
-        const float *glow = m.material.emissive;
-        if (glow[0] > 0 || glow[1] > 0 || glow[2] > 0) print_vector(", glows ", glow, " cd/m2");
+        const float *emissive = m.material.emissive;
+        if (emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0)
+            print_vector(", emissive ", emissive, " cd/m2");
         printf("%s%s%s%s%s\n", m.base_color_map ? ", colour map" : "",
                m.metallic_roughness_map ? ", roughness map" : "",
                m.normal_map ? ", normal map" : "", m.emissive_map ? ", emissive map" : "",
-               strcmp(m.alpha_mode, "opaque") != 0 ? ", cut out" : "");
+               strcmp(m.alpha_mode, "opaque") != 0 ? ", alpha mask or blend" : "");
     }
 }
 
@@ -210,7 +211,7 @@ static void print_animations(struct session *session, int count)
 static void print_defaults(const struct defaults *d)
 {
     if (!d->light[0] && !d->eye[0]) return;
-    printf("by default, as with:\n");
+    printf("default light and camera, as options:\n");
     if (d->light[0]) printf("  --light %s --sky %s\n", d->light, d->sky);
     if (d->eye[0]) printf("  --eye %s --target %s --fov %s\n", d->eye, d->target, d->fov);
 }

@@ -1,4 +1,4 @@
-// afterglow reference: the path-traced image, better with every pass.
+// afterglow reference: progressive path tracing.
 #include "commands.h"
 #include "interrupt.h"
 #include "json.h"
@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double WRITE_EVERY_S = 10.0; // while it converges
+static const double WRITE_EVERY_S = 10.0; // while sampling
 
 struct job {
     const struct arguments *arguments;
@@ -22,7 +22,7 @@ struct job {
     float exposure_ev;
 };
 
-// ---- what the command line alone decides
+// ---- checks of the command line
 
 static enum status plan(struct job *job)
 {
@@ -35,7 +35,7 @@ static enum status plan(struct job *job)
         output_default(a->positional[0], "-reference.exr", job->path);
     bool exr = has_extension(job->path, "exr");
     if (a->resume && !exr)
-        return wrong_usage("cannot use --resume with %s: a PNG cannot be gone on with", job->path);
+        return wrong_usage("cannot use --resume with %s: only an .exr can be resumed", job->path);
     return output_plan(a, job->path, ag_reference_layer_name, exr ? tracing_kept_layers : "color",
                        &job->output);
 }
@@ -50,13 +50,13 @@ static enum status prepare(struct job *job)
     return status == DONE ? tracing_begin(&job->tracing, &job->session, &camera, a->spp) : status;
 }
 
-static enum status go_on(struct job *job)
+static enum status resume(struct job *job)
 {
     if (!job->arguments->resume || access(job->path, F_OK) != 0) return DONE;
     enum ag_result result = tracing_resume(&job->tracing, job->path);
     if (result == AG_OK) return DONE;
     fail_library(job->session.context, result);
-    return FAILED; // what the file holds is not the command line's affair
+    return FAILED; // the file's content is no wrong usage
 }
 
 // ---- the image
@@ -106,18 +106,18 @@ static enum status write_output(void *user)
     return FAILED;
 }
 
-// Ctrl-C ends the work with what there is.
+// Ctrl-C stops sampling and keeps the samples.
 static enum status converge(struct job *job)
 {
     const struct tracing_keeper keeper = { write_output, job, WRITE_EVERY_S, true };
     enum status status = tracing_converge(&job->tracing, &keeper);
     const struct tracing *t = &job->tracing;
     if (status != DONE || t->done >= t->wanted) return status;
-    return fail("reference of %s: interrupted after %d of %d samples; %s holds them",
+    return fail("reference of %s: interrupted after %d of %d samples; --resume continues %s",
                 job->arguments->positional[0], t->done, t->wanted, job->path);
 }
 
-// ---- what it says afterwards
+// ---- results
 
 static json_t *result_json(const struct job *job, const struct ag_reference_info *info, double rate)
 {
@@ -148,7 +148,7 @@ static enum status report(struct job *job)
     double rate = seconds > 0.0 ? (double)info.rays / seconds : (double)NAN;
     session_say(&job->session);
     if (info.rays > 0)
-        note("%d samples, %.1f million rays in %.1f s: %.2f million a second", info.samples,
+        note("%d samples, %.1f million rays in %.1f s: %.2f million per second", info.samples,
              (double)info.rays * 1e-6, seconds, rate * 1e-6);
     if (info.mean > 0.0 && isfinite(info.error))
         note("standard error %.3g cd/m2, %.2f %% of the mean", info.error,
@@ -166,7 +166,7 @@ static enum status reference(const struct arguments *arguments)
     if (status == DONE) status = plan(job);
     if (status == DONE) status = output_check(job->path);
     if (status == DONE) status = prepare(job);
-    if (status == DONE) status = go_on(job);
+    if (status == DONE) status = resume(job);
     if (status == DONE) status = converge(job);
     if (status == DONE) status = report(job);
     tracing_end(&job->tracing);

@@ -16,12 +16,12 @@ struct job {
     struct output output;
     struct statistics statistics;
     char pattern[PATH_SIZE]; // of -o
-    bool sequence;           // the pattern numbers the frames
-    bool measure;            // times are wanted
+    bool sequence;           // the pattern has a frame number
+    bool measure;            // collect times
     float exposure_ev;       // of the newest frame
 };
 
-// ---- what the command line alone decides
+// ---- checks of the command line
 
 static enum status plan_output(struct job *job)
 {
@@ -34,7 +34,7 @@ static enum status plan_output(struct job *job)
     if (a->output && strlen(a->output) >= sizeof job->pattern)
         return wrong_usage("wrong value -o: the path is longer than %d", PATH_SIZE - 1);
     if (!value_frame_path(job->pattern, 0, first, sizeof first, &job->sequence))
-        return wrong_usage("wrong value -o %s: one frame number (%%04d) is the most", job->pattern);
+        return wrong_usage("wrong value -o %s: at most one frame number (%%04d)", job->pattern);
     bool exr = has_extension(job->pattern, "exr");
     const char *fallback = a->debug_view ? exr ? "color,debug" : "debug" : "color";
     return output_plan(a, job->pattern, ag_layer_name, fallback, &job->output);
@@ -68,7 +68,7 @@ static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
     desc->motion_layer = output_has_layer(&job->output, "motion");
 }
 
-// All wrong usage is found before a file is opened or a device is woken.
+// Detects wrong usage before any file or device is opened.
 static enum status check_usage(struct job *job)
 {
     const struct arguments *a = job->arguments;
@@ -104,7 +104,7 @@ static enum status prepare(struct job *job)
     struct ag_context *context = job->session.context;
     enum status status = session_load(&job->session, a->positional[0]);
     if (status == DONE) status = session_light(&job->session);
-    struct ag_camera camera; // each frame asks again: what is wrong shows before a device is woken
+    struct ag_camera camera; // unused: fails early if there is no such camera
     if (status == DONE) status = session_camera(&job->session, a->time_s, &camera);
     if (status != DONE) return status;
 
@@ -114,7 +114,7 @@ static enum status prepare(struct job *job)
     enum ag_result result = ag_device_create(context, &device_desc, &job->device);
     if (result != AG_OK) {
         fail_library(context, result);
-        return FAILED; // which devices there are is the machine's affair
+        return FAILED; // a missing device is no wrong usage
     }
     struct ag_renderer_desc desc;
     renderer_desc(job, &desc);
@@ -137,7 +137,7 @@ static enum status render_frame(struct job *job, int frame)
     if (status != DONE) return status;
     enum ag_result result = ag_renderer_render(job->renderer, &desc);
     if (result != AG_OK) return fail_library(job->session.context, result);
-    // The first of several frames pays for what later ones find ready.
+    // The first of several frames includes one-time work.
     bool counts = job->measure && (frame > 0 || a->frames == 1);
     if (counts && !statistics_add(&job->statistics, job->renderer))
         return fail("cannot measure %s: out of memory", a->positional[0]);
@@ -165,7 +165,7 @@ static enum status render_frames(struct job *job, char last_path[PATH_SIZE])
     return status;
 }
 
-// ---- what it says afterwards
+// ---- results
 
 static json_t *result_json(struct job *job, const char *path)
 {
@@ -226,7 +226,7 @@ static enum status render(const struct arguments *arguments)
     statistics_finish(&job->statistics);
     ag_renderer_destroy(job->renderer);
     if (job->device && ag_device_validation_messages(job->device) > 0 && status == DONE)
-        status = fail("cannot trust %s: Vulkan's validation has complaints (see --verbose)", path);
+        status = fail("cannot trust %s: Vulkan validation logged messages (see --verbose)", path);
     struct ag_device *device = job->device;
     ag_scene_destroy(job->session.scene);
     job->session.scene = NULL;

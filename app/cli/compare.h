@@ -1,4 +1,4 @@
-// What the parts of compare share. cmd_compare.c tells the story; each part has a file of its own.
+// Shared state of the parts of compare; cmd_compare.c calls them in order.
 #pragma once
 
 #include "arguments.h"
@@ -10,35 +10,35 @@
 
 enum { STEM_SIZE = 64, UNLIMITED = -1, NOT_KNOWN = -2 };
 
-// How far a method's image, or its indirect light alone, is from the reference's.
+// Error of a method's image or of its indirect light.
 struct measured {
     struct ag_metrics metrics;
-    double energy; // mean luminance over the reference's; NaN where that is 0
+    double energy; // mean luminance over the reference's; NaN if that is 0
 };
 
-// One --gi: its frame, what it costs, how far it is from the truth.
+// One --gi: its frame, costs and errors.
 struct method {
-    const char *gi;       // as it was given
-    char stem[STEM_SIZE]; // of its files' names: "2-lpv-steps-8"
+    const char *gi;       // as given
+    char stem[STEM_SIZE]; // prefix of file names: "2-lpv-steps-8"
     struct ag_image *color, *indirect, *irradiance;
-    char *spelled;                                // the sum with every option written out
+    char *spelled;                                // the GI spec with all options
     json_t *options, *passes, *frame_ms, *memory; // as in --stats
     struct measured image_error, indirect_error;  // indirect_error: where the reference has it
 };
 
-// The reference: traced, from the cache, or a file that was given.
+// The reference: traced, cached, or a given file.
 struct reference {
-    struct tracing tracing;     // of the same image; without samples where a file was given
+    struct tracing tracing;     // no samples if a file was given
     struct output kept;         // the layers of its files
-    char cache_path[PATH_SIZE]; // "": it is not cached
+    char cache_path[PATH_SIZE]; // "": not cached
     struct ag_image *color;
     struct ag_image *indirect; // layer indirect_emitters_sky; NULL: absent in the given file
-    int spp;                   // 0: not known
+    int spp;                   // 0: unknown
     int bounces;               // or UNLIMITED, or NOT_KNOWN
-    double seconds, rays;      // of all runs that it took; NaN: not known
-    double noise;              // relative standard error; NaN: not known
-    double noise_relmse;       // that a perfect image would have for that noise; likewise
-    bool cached;               // nothing was left to trace
+    double seconds, rays;      // total of all runs; NaN: unknown
+    double noise;              // relative standard error; NaN: unknown
+    double noise_relmse;       // relmse of a perfect image with this noise; NaN: unknown
+    bool cached;               // all samples were cached
 };
 
 struct comparison {
@@ -51,23 +51,22 @@ struct comparison {
     int method_count;
     struct reference reference;
     struct folder folder;
-    float full_indirect; // cd/m²: an error that is white in the maps of indirect light
+    float full_indirect; // cd/m²: error shown white in maps of indirect light
 };
 
 // compare_method.c
-// All wrong usage of --gi, --size and --frame-options is found before the work.
+// Checks --gi, --size and --frame-options before the work.
 enum status methods_plan(struct comparison *c);
-// Renders method `index` and takes its layers, times and bytes. The first one finds the exposure.
+// Renders a method and reads its layers, times and memory. Method 0 determines the exposure.
 enum status method_render(struct comparison *c, int index);
 void methods_finish(struct comparison *c);
 
 // compare_reference.c
-// Reads the file that was given and refuses one of another image, or looks for samples in the
-// cache.
+// Reads the given file, or cached samples. Fails if the file shows another image.
 enum status reference_begin(struct comparison *c);
-// Traces what is missing; --reference: nothing. Fills the rest of c->reference.
+// Traces missing samples (none with --reference) and fills the rest of c->reference.
 enum status reference_complete(struct comparison *c);
-// reference.exr: what the tracer has, or a copy of the file that was given.
+// Writes reference.exr: the traced layers or a copy of the given file.
 enum status reference_write_exr(struct comparison *c, const char *path);
 void reference_finish(struct comparison *c);
 
@@ -75,13 +74,13 @@ void reference_finish(struct comparison *c);
 enum status methods_measure(struct comparison *c);
 
 // compare_files.c
-// Images and EXR files into the folder that was begun.
+// Writes images and EXR files into the new folder.
 enum status files_write(struct comparison *c);
-// Is it a name of a file that compare writes?
+// Is this the name of a file that compare writes?
 bool files_are_named(const char *name);
 
 // compare_report.c
 json_t *report_json(const struct comparison *c); // NULL: out of memory
 void report_print(const struct comparison *c);   // the table, on standard output
-// One line for each method and bound that it breaks; FAILED where there is one.
+// Prints a line for each exceeded bound; FAILED if there is one.
 enum status report_gates(const struct comparison *c);

@@ -1,5 +1,4 @@
-// The folder's images: what was rendered, the truth, and maps of the errors, which share their
-// scale so that they can be compared with each other.
+// Image files of a comparison: rendered, reference and error maps, which share a scale.
 #include "compare.h"
 #include "interrupt.h"
 #include "values.h"
@@ -21,7 +20,7 @@ bool files_are_named(const char *name)
     return numbered && (has_extension(name, "png") || has_extension(name, "exr"));
 }
 
-// The path of "STEM" + ending.
+// Path of "STEM" + ending.
 static enum status path_of(const struct comparison *c, const char *stem, const char *ending,
                            char out[PATH_SIZE])
 {
@@ -32,7 +31,7 @@ static enum status path_of(const struct comparison *c, const char *stem, const c
                : fail("cannot write %s/%s: the path is too long", c->folder.shown, name);
 }
 
-// Takes the image, which may be NULL where `result` says why.
+// Takes ownership of `image`, which is NULL if `result` is an error.
 static enum status write_png(struct comparison *c, enum ag_result result, struct ag_image *image,
                              const char *stem, const char *ending)
 {
@@ -102,8 +101,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// What is white in all maps of indirect light: an error as large as the truth is there, but for the
-// brightest twentieth of the lit pixels.
+// Error shown white in maps of indirect light: the 95th percentile of the reference over lit
+// pixels.
 static bool find_full_indirect(struct comparison *c)
 {
     const struct ag_image *reference = c->reference.indirect;

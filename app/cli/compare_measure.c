@@ -1,4 +1,4 @@
-// How far each method's image and its indirect light are from the reference's.
+// Errors of images and of indirect light.
 #include "compare.h"
 #include "images.h"
 
@@ -42,8 +42,7 @@ static enum status measure_method(struct comparison *c, struct method *m)
     enum status status = image_check(&c->session, m->color, NULL, name);
     if (status == DONE) status = measure(c, m->color, c->reference.color, &desc, &m->image_error);
     if (status != DONE || !c->reference.indirect) return status;
-    desc.radiance =
-        false; // of indirect light relmse, mae and energy alone are said, which do not depend on it
+    desc.radiance = false; // only relmse, mae and energy are reported, which ignore it
     snprintf(name, sizeof name, "the indirect light of %s", m->gi);
     status = image_check(&c->session, m->indirect, NULL, name);
     return status == DONE

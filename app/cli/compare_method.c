@@ -1,4 +1,4 @@
-// One method: rendered, timed, its layers taken.
+// Renders and times one method and reads its layers.
 #include "compare.h"
 #include "statistics.h"
 
@@ -9,7 +9,7 @@
 
 static const char *const usual_methods[] = { "none", "ambient", "lpv" };
 
-// ---- before the work
+// ---- checks of the command line
 
 static void renderer_desc(const struct comparison *c, int index, struct ag_renderer_desc *desc)
 {
@@ -23,7 +23,7 @@ static void renderer_desc(const struct comparison *c, int index, struct ag_rende
     desc->display_layer = false;
 }
 
-// "2-lpv-steps-8": safe on any file system and in any address, and no two are equal.
+// "2-lpv-steps-8": unique, and safe in file systems and URLs.
 static void name_files(struct method *method, int number)
 {
     int used = snprintf(method->stem, STEM_SIZE, "%d", number);
@@ -76,7 +76,7 @@ static void frame_desc(const struct comparison *c, struct ag_frame_desc *desc)
     desc->exposure_ev = c->exposure_ev;
 }
 
-// What is metered is the same for all methods: direct light and what emission lights.
+// Exposure does not depend on the method, so one renderer meters it.
 static enum status find_exposure(struct rendering *r)
 {
     struct comparison *c = r->c;
@@ -90,8 +90,8 @@ static enum status find_exposure(struct rendering *r)
     return result == AG_OK ? DONE : fail_library(c->session.context, result);
 }
 
-// The first frame forgets that exposure was metered, and of several it pays for what later ones
-// find ready.
+// The first frame discards the history of metering. It includes one-time work, so it is not
+// measured if there are others.
 static enum status render_frame(struct rendering *r, int index)
 {
     struct comparison *c = r->c;
@@ -121,7 +121,7 @@ static enum status render_frames(struct rendering *r)
     return status;
 }
 
-// ---- what is taken from them
+// ---- results
 
 static enum status take_layers(struct rendering *r)
 {
@@ -152,8 +152,7 @@ static enum status create(struct rendering *r, int index)
     enum ag_result result = ag_renderer_create(c->device, c->session.scene, &desc, &r->renderer);
     if (result == AG_OK) return DONE;
     fail_library(c->session.context, result);
-    return FAILED; // what the scene and the device let a technique do is not the command line's
-                   // affair
+    return FAILED; // an unsupported scene or device is no wrong usage
 }
 
 enum status method_render(struct comparison *c, int index)

@@ -1,5 +1,4 @@
-// The reference of a comparison: a file that was given, or samples from the cache and those that
-// it lacks.
+// The reference of a comparison: a given file, or cached samples plus missing ones.
 #include "cache.h"
 #include "compare.h"
 #include "images.h"
@@ -12,15 +11,13 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double KEEP_EVERY_S = 30.0;                                      // while it converges
+static const double KEEP_EVERY_S = 30.0;                                      // while sampling
 static const char SECONDS[] = "afterglow.seconds", RAYS[] = "afterglow.rays"; // of a cached file
 
-// What holds against a frame's layer indirect: there, and not in direct, is the light that emissive
-// surfaces and the sky throw on others.
+// Counterpart of the frame's layer indirect, which includes light from emitters and sky.
 static const char INDIRECT[] = "indirect_emitters_sky";
 
-// The root of the mean square of the luminance's standard error, over the mean luminance: as
-// reference says it.
+// Standard error of luminance (root mean square) over mean luminance, as printed by reference.
 static double relative_noise(const struct ag_image *color, const struct ag_image *error)
 {
     double mean = 0.0, variance = 0.0;
@@ -33,8 +30,7 @@ static double relative_noise(const struct ag_image *color, const struct ag_image
     return sqrt(variance / (double)count) / (mean / (double)count);
 }
 
-// That of an image that is off by the standard error everywhere: what a perfect one is to be
-// expected to have.
+// Expected relmse of a perfect image: that of the reference plus its standard error.
 static enum ag_result find_noise_relmse(struct comparison *c, const struct ag_image *error)
 {
     const struct ag_image *color = c->reference.color;
@@ -57,7 +53,7 @@ static enum ag_result find_noise_relmse(struct comparison *c, const struct ag_im
     return result;
 }
 
-// One sample alone has an infinite error, and then neither is known.
+// With one sample the error is infinite and the noise unknown.
 static enum ag_result find_noise(struct comparison *c, const struct ag_image *error)
 {
     struct reference *reference = &c->reference;
@@ -66,9 +62,9 @@ static enum ag_result find_noise(struct comparison *c, const struct ag_image *er
     return isfinite(reference->noise) ? find_noise_relmse(c, error) : AG_OK;
 }
 
-// ---- a file that was given
+// ---- given file
 
-// The file's own words about itself; "" where it has none.
+// An attribute of the file; "" if absent.
 static enum status read_attribute(struct comparison *c, const char *name, char *out, size_t size)
 {
     const char *path = c->arguments->reference;
@@ -91,7 +87,7 @@ static enum status check_size(const struct comparison *c)
     return DONE;
 }
 
-// Without the attribute nobody knows what the file is of; its size must do.
+// Without the attribute only the size can be checked.
 static enum status check_same_image(struct comparison *c)
 {
     const char *path = c->arguments->reference;
@@ -99,15 +95,15 @@ static enum status check_same_image(struct comparison *c)
     enum status status = read_attribute(c, AG_REFERENCE_CHECKPOINT, checkpoint, sizeof checkpoint);
     if (status != DONE) return status;
     if (!checkpoint[0])
-        note("%s does not say what it shows: that it is the same image is taken on trust", path);
+        note("%s has no checkpoint attribute: only its size can be checked", path);
     else if (strcmp(checkpoint, ag_reference_checkpoint(c->reference.tracing.reference)) != 0)
-        return fail("cannot compare with %s: it is of another scene, light, camera, size or option "
+        return fail("cannot compare with %s: its scene, light, camera, size or options differ "
                     "(--bounces, --seed)",
                     path);
     return DONE;
 }
 
-// A layer that the file may lack; one of another size is as good as none.
+// An optional layer; NULL if absent or of another size.
 static struct ag_image *load_if_there(struct comparison *c, const char *layer, int channels)
 {
     const struct arguments *a = c->arguments;
@@ -161,7 +157,7 @@ static enum status take_given(struct comparison *c)
     return result == AG_OK ? DONE : fail_library(c->session.context, result);
 }
 
-// ---- samples from the cache
+// ---- cached samples
 
 static double cached_number(struct comparison *c, const char *name)
 {
@@ -172,7 +168,7 @@ static double cached_number(struct comparison *c, const char *name)
     return result == AG_OK && value_number(text, &value) ? value : (double)NAN;
 }
 
-// A file that is of no use costs the time that it should have saved, no more.
+// An unusable cached file is not an error.
 static void take_cached(struct comparison *c)
 {
     struct reference *reference = &c->reference;
@@ -180,7 +176,7 @@ static void take_cached(struct comparison *c)
         return;
     if (access(reference->cache_path, F_OK) != 0) return;
     if (tracing_resume(&reference->tracing, reference->cache_path) != AG_OK) {
-        note("warning: the reference is traced anew: %s",
+        note("warning: the reference is traced again: %s",
              ag_context_last_error(c->session.context));
         return;
     }
@@ -208,7 +204,7 @@ enum status reference_begin(struct comparison *c)
     return DONE;
 }
 
-// ---- tracing what is missing
+// ---- missing samples
 
 static double rays_so_far(const struct reference *reference)
 {
@@ -242,18 +238,18 @@ static enum status interrupted(const struct comparison *c)
     const struct tracing *t = &c->reference.tracing;
     return fail("comparison of %s: interrupted after %d of %d samples of the reference; %s",
                 c->arguments->positional[0], t->done, t->wanted,
-                c->reference.cache_path[0] ? "the same command goes on with them"
-                                           : "they are lost without the cache");
+                c->reference.cache_path[0] ? "the same command continues with them"
+                                           : "without a cache they are lost");
 }
 
 static enum status trace(struct comparison *c)
 {
     struct tracing *t = &c->reference.tracing;
-    // First once early: what is wrong with the cache shows before hours of work.
+    // The first write is early, so that cache problems show before hours of work.
     const struct tracing_keeper keeper = { keep, c, KEEP_EVERY_S, true };
     c->reference.cached = t->done >= t->wanted;
     if (c->reference.cached) return DONE;
-    if (t->done > 0) note("going on with %d samples of an earlier run", t->done);
+    if (t->done > 0) note("continuing with %d samples of an earlier run", t->done);
     enum status status = tracing_converge(t, &keeper);
     bool stopped = interrupt_let_go() || t->done < t->wanted;
     return status == DONE && stopped ? interrupted(c) : status;
@@ -284,7 +280,7 @@ enum status reference_complete(struct comparison *c)
     return status == DONE ? take_traced(c) : status;
 }
 
-// ---- its file
+// ---- reference.exr
 
 enum status reference_write_exr(struct comparison *c, const char *path)
 {

@@ -1,4 +1,4 @@
-// What compare says: report.json, a table, and which bounds were broken.
+// Output of compare: report.json, a table, exceeded bounds.
 #include "compare.h"
 #include "json.h"
 
@@ -62,7 +62,7 @@ static json_t *whole_or_null(double value)
     return isfinite(value) ? json_integer((json_int_t)value) : json_null();
 }
 
-// A number of bounces that is not known has no key: null is no limit.
+// bounces: null if unlimited, absent if unknown.
 static json_t *reference_json(const struct reference *t)
 {
     json_t *images = json_pack("{s:s}", "picture", "reference.png");
@@ -108,7 +108,7 @@ static double sum_of(json_t *object)
     return sum;
 }
 
-// A number, or a dash where there is none.
+// A number, or a dash if it is not finite.
 static void print_cell(int width, int digits, double value)
 {
     if (isfinite(value))
@@ -117,7 +117,7 @@ static void print_cell(int width, int digits, double value)
         printf("  %*s", width, "-");
 }
 
-// Four digits, however large or small.
+// Four significant digits.
 static void print_any(int width, double value)
 {
     char text[32];
@@ -182,12 +182,12 @@ void report_print(const struct comparison *c)
 
 // ---- bounds
 
-// No bound is below 0. What could not be measured keeps none.
+// A negative bound is none. A value that was not measured exceeds every bound.
 static bool breaks(const char *gi, const char *what, double value, double bound)
 {
     if (bound < 0.0 || value <= bound) return false;
     if (isfinite(value))
-        fail("%s of %s: %.6g is more than --max-%s %.6g", what, gi, value, what, bound);
+        fail("%s of %s: %.6g exceeds --max-%s %.6g", what, gi, value, what, bound);
     else
         fail("%s of %s: not measured, and --max-%s is %.6g", what, gi, what, bound);
     return true;

@@ -1,4 +1,4 @@
-// Filled beside, exchanged in one step.
+// A temporary folder is filled, then exchanged with the final one in one step.
 #include "folder.h"
 #include "interrupt.h"
 #include "whole_file.h"
@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// ---- may it be there?
+// ---- checks
 
 static bool take_path(struct folder *folder, const char *path)
 {
@@ -42,8 +42,8 @@ static enum status check_parent(const char *path)
     snprintf(parent, sizeof parent, "%.*s", length ? (int)length : 1, length ? path : ".");
     struct stat info;
     if (stat(parent, &info) != 0)
-        return fail("cannot write %s: there is no folder %s", path, parent);
-    if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is no folder", path, parent);
+        return fail("cannot write %s: no folder %s", path, parent);
+    if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is not a folder", path, parent);
     if (access(parent, W_OK | X_OK) != 0)
         return fail("cannot write %s: %s: %s", path, parent, strerror(errno));
     return DONE;
@@ -65,7 +65,7 @@ static enum status check_files(const struct folder *folder, const char *mark)
     }
     closedir(dir);
     if (count > 0 && !marked)
-        return fail("cannot replace %s: it is no result of an earlier run (it has no %s); name "
+        return fail("cannot replace %s: it is not a result of an earlier run (no %s in it); name "
                     "another folder",
                     folder->shown, mark);
     if (stranger[0])
@@ -97,10 +97,10 @@ enum status folder_plan(struct folder *folder, const char *path, const char *mar
     return status == DONE ? check_existing(folder, mark) : status;
 }
 
-// ---- filling it
+// ---- content
 
-// Its files, those of `is_ours` alone unless that is NULL, and itself where it is empty then. True:
-// it is gone.
+// Removes a folder and its files, or only those accepted by `is_ours` unless NULL. True: it is
+// gone.
 static bool remove_folder(const char *path, bool (*is_ours)(const char *name))
 {
     char file[PATH_SIZE + NAME_MAX + 2];
@@ -164,10 +164,10 @@ enum status folder_copy(const char *from, const char *path)
     return why == 0 ? DONE : fail("cannot copy %s to %s: %s", from, path, strerror(why));
 }
 
-// ---- putting it in its place
+// ---- publishing
 
-// 0, or errno. Afterwards what was there before is beside. File systems that cannot exchange leave
-// a moment in which neither is there.
+// 0, or errno. Afterwards the temporary name holds the old folder. File systems that cannot
+// exchange have a moment without either.
 static int exchange(const struct folder *folder)
 {
     if (renameat2(AT_FDCWD, folder->beside, AT_FDCWD, folder->path, RENAME_EXCHANGE) == 0) return 0;
@@ -189,7 +189,7 @@ enum status folder_commit(struct folder *folder, const char *mark)
     int why = exists ? exchange(folder) : rename(folder->beside, folder->path) == 0 ? 0 : errno;
     bool left = why == 0 && exists && !remove_folder(folder->beside, folder->is_ours);
     if (why == 0) {
-        if (left) note("warning: cannot remove %s, the results of before", folder->beside);
+        if (left) note("warning: cannot remove %s, the earlier results", folder->beside);
         folder->beside[0] = 0;
     }
     interrupt_release();

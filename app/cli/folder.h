@@ -1,27 +1,26 @@
-// A folder of results that appears whole or not at all, in place of one of an earlier run.
+// A folder of results that appears complete or not at all and replaces an earlier one.
 #pragma once
 
 #include "output.h"
 
 struct folder {
-    char shown[PATH_SIZE];  // as it was named
-    char path[PATH_SIZE];   // where it is to be, through symbolic links
-    char beside[PATH_SIZE]; // where it is being filled; "": nowhere
+    char shown[PATH_SIZE];  // as given
+    char path[PATH_SIZE];   // final path, symbolic links resolved
+    char beside[PATH_SIZE]; // temporary folder; "": none
     bool (*is_ours)(const char *name);
 };
 
-// Could it be written there? What is there already must be an empty folder or one that holds `mark`
-// and else nothing but files whose names are ours, so that replacing it loses nothing of anybody
-// else's. Says why not.
+// Checks that the folder can be written. An existing one must be empty, or contain `mark` and
+// only files of ours.
 enum status folder_plan(struct folder *folder, const char *path, const char *mark,
                         bool (*is_ours)(const char *name));
-// Makes the folder beside. A signal that ends the program removes it.
+// Creates the temporary folder. A signal that ends the program removes it.
 enum status folder_begin(struct folder *folder);
-// The path of a file in it. False: too long.
+// Path of a file in the temporary folder. False: too long.
 bool folder_file(const struct folder *folder, const char *name, char out[PATH_SIZE]);
-// A copy of a file at `path`, which is in it.
+// Copies a file to `path` in the temporary folder.
 enum status folder_copy(const char *from, const char *path);
-// Puts it in its place and removes the one of before.
+// Publishes the folder and removes the earlier one.
 enum status folder_commit(struct folder *folder, const char *mark);
-// Removes what was begun; accepts a folder that was not, or that is in its place.
+// Removes an unpublished temporary folder, if any.
 void folder_abort(struct folder *folder);

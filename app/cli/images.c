@@ -1,4 +1,4 @@
-// Reading, and looking for NaN.
+// Reads images and checks them for NaN.
 #include "images.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-// A thread waits for the signals that end the program, which all other threads block: it can take a
-// mutex, as a handler could not, and so waits for the end of a file that is being written.
+// A thread waits for the signals that end the program; all other threads block them. Unlike a
+// handler it can lock a mutex and thus wait for the end of a write.
 #include "interrupt.h"
 
 #include <pthread.h>
@@ -13,7 +13,7 @@ static atomic_bool catching, caught;
 static void (*clean_up)(void *user); // under the mutex, as is the next
 static void *clean_user;
 
-// As if nobody had waited for it: the parent sees which signal it was. The mutex stays taken.
+// Ends the program by the same signal, so that the parent sees it. The mutex stays locked.
 static void *wait_for_the_end(void *unused)
 {
     int number = 0;
@@ -64,7 +64,7 @@ bool interrupt_caught(void)
     return atomic_load(&caught);
 }
 
-// Who resets `catching` first knows what becomes of a signal that comes at this moment.
+// The thread that resets `catching` first decides what a concurrent signal does.
 bool interrupt_let_go(void)
 {
     return !atomic_exchange(&catching, false) || interrupt_caught();

@@ -1,24 +1,23 @@
-// Signals that end the program, and files that must not be left half written.
+// Signals that end the program, never during a write.
 #pragma once
 
 #include <stdbool.h>
 
-// At the start of main, before there is another thread: SIGINT, SIGTERM and SIGHUP end the program
-// as ever, but not between the two calls below. Those that the program was started to ignore it
-// ignores.
+// Call at the start of main, before any other thread exists. SIGINT, SIGTERM and SIGHUP then end
+// the program, except between interrupt_hold and interrupt_release. Signals ignored by the parent
+// stay ignored.
 void interrupt_begin(void);
 
-// Work that ends well when it is interrupted: after interrupt_catch the first SIGINT is only
-// remembered, the next one ends the program.
+// For interruptible work: after interrupt_catch the first SIGINT is only recorded, the next one
+// ends the program.
 void interrupt_catch(void);
 bool interrupt_caught(void);
-// From here on the first one ends the program again. True: one had come.
+// Ends this mode. True: a SIGINT was recorded.
 bool interrupt_let_go(void);
 
-// Around all that writes a file.
+// Enclose all writes of files.
 void interrupt_hold(void);
 void interrupt_release(void);
 
-// What a signal that ends the program calls before, on another thread, between files; NULL:
-// nothing.
+// Called on another thread before a signal ends the program; NULL: none.
 void interrupt_clean_with(void (*clean)(void *user), void *user);

@@ -1,4 +1,4 @@
-// JSON out.
+// Writes JSON.
 #include "json.h"
 #include "whole_file.h"
 
@@ -33,7 +33,7 @@ json_t *json_floats(const float *values, int count)
     return array;
 }
 
-// The bytes of the character at `s`, 0 where they are none (Unicode 15, table 3-7).
+// Length of the UTF-8 character at `s`, 0 if invalid (Unicode 15, table 3-7).
 static size_t utf8_length(const unsigned char *s)
 {
     if (s[0] < 0x80) return 1;

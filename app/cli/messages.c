@@ -1,4 +1,4 @@
-// Standard error. The only file of the program with state of its own: the terminal is one, too.
+// Standard error. The only file with static state, since there is one terminal.
 #include "messages.h"
 
 #include <stdio.h>

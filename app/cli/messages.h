@@ -1,28 +1,27 @@
-// Standard error: one line for an error, notes, and the progress of long work.
+// Standard error: errors, notes and progress.
 #pragma once
 
 #include <afterglow/context.h>
 
-enum status { DONE = 0, FAILED = 1, WRONG_USAGE = 2 }; // exit statuses, a contract with scripts
+enum status { DONE = 0, FAILED = 1, WRONG_USAGE = 2 }; // exit statuses; scripts rely on them
 
-// --quiet leaves errors alone; --verbose adds the library's own notes.
+// --quiet prints only errors; --verbose adds details and log messages of the library.
 void messages_init(bool quiet, bool verbose);
 
-// Each prints one line "afterglow: …" and returns its status, so that `return fail(…)` reads well.
-// The text is
-// "<what> <where>: <why>"; line breaks in it (from file names) become question marks.
+// Prints one line "afterglow: <what> <where>: <why>" and returns the status. Control characters
+// (from file names) become question marks.
 enum status fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 enum status wrong_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// The library's last error. Wrong arguments are wrong usage: the command line was forwarded as it
-// stands.
+// Prints the library's last error. AG_ERROR_ARGUMENT is wrong usage, since arguments are passed
+// on unchanged.
 enum status fail_library(const struct ag_context *context, enum ag_result result);
-// A line that --quiet leaves out.
+// A line that --quiet omits.
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// A line that only --verbose shows.
+// A line that only --verbose prints.
 void detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// For ag_context_desc.log. Errors wait in the context until a command says that it failed.
+// The callback of ag_context_desc. Errors are not printed here, but by fail_library.
 void log_message(void *user, enum ag_log_level level, const char *message);
 
-// Progress: a bar with the time left on a terminal, elsewhere a line now and then.
+// A progress bar with the remaining time on a terminal, otherwise a line every ten seconds.
 void progress(const char *what, int done, int total);
 void progress_end(void);

@@ -1,4 +1,4 @@
-// Images: which layers, how a layer looks in a PNG, what an EXR says about itself.
+// Output images: layers, their display in a PNG, EXR attributes.
 #include "output.h"
 #include "interrupt.h"
 #include "values.h"
@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// ---- can it be written?
+// ---- checks
 
 enum status output_check(const char *path)
 {
@@ -22,14 +22,14 @@ enum status output_check(const char *path)
     folder[length] = 0;
     struct stat info;
     if (stat(length ? folder : ".", &info) != 0)
-        return fail("cannot write %s: there is no folder %s", path, folder);
-    if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is no folder", path, folder);
+        return fail("cannot write %s: no folder %s", path, folder);
+    if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is not a folder", path, folder);
     if (access(length ? folder : ".", W_OK | X_OK) != 0)
         return fail("cannot write %s: %s", path, strerror(errno));
     if (stat(path, &info) != 0)
         return errno == ENOENT ? DONE : fail("cannot write %s: %s", path, strerror(errno));
     if (S_ISDIR(info.st_mode)) return fail("cannot write %s: it is a folder", path);
-    if (!S_ISREG(info.st_mode)) return fail("cannot write %s: it is no regular file", path);
+    if (!S_ISREG(info.st_mode)) return fail("cannot write %s: it is not a regular file", path);
     return access(path, W_OK) == 0 ? DONE : fail("cannot write %s: %s", path, strerror(errno));
 }
 
@@ -44,7 +44,7 @@ void output_default(const char *scene, const char *ending, char out[PATH_SIZE])
     snprintf(out, PATH_SIZE, "%.*s%s", length < 255 ? (int)length : 255, name, ending);
 }
 
-// ---- which layers
+// ---- layers
 
 static enum status unknown_layer(const char *name, const char *(*layer_name)(int))
 {
@@ -91,7 +91,7 @@ static enum status add_layer(struct output *output, const char *name,
     for (int i = 0; i < output->layer_count; i++)
         if (strcmp(output->layers[i], name) == 0)
             return wrong_usage("wrong value --aov: layer %s is named twice", name);
-    output->layers[output->layer_count++] = name; // at most each of the library's once
+    output->layers[output->layer_count++] = name; // names are unique, so there is space
     return DONE;
 }
 
@@ -110,7 +110,7 @@ enum status output_plan(const struct arguments *a, const char *path, const char 
         return wrong_usage("cannot write %d layers into %s: a PNG holds one, an .exr holds all",
                            out->layer_count, path);
     if (output_has_layer(out, "debug") && !a->debug_view)
-        return wrong_usage("cannot write layer debug: it needs --debug-view");
+        return wrong_usage("cannot write layer debug: it requires --debug-view");
     return DONE;
 }
 
@@ -121,14 +121,15 @@ bool output_has_layer(const struct output *output, const char *layer)
     return false;
 }
 
-// ---- a layer as a PNG: display values 0…1
+// ---- conversion of layers to display values 0…1
 
 static float srgb_to_linear(float encoded)
 {
     return encoded <= 0.04045f ? encoded / 12.92f : powf((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-// −1…1 as bytes 0…255, the way normal maps are stored: the file's sRGB curve is undone beforehand.
+// Maps −1…1 to bytes 0…255 as normal maps do; the inverse sRGB curve cancels the encoding of the
+// file.
 static void show_direction(struct ag_image *image)
 {
     size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
@@ -138,7 +139,7 @@ static void show_direction(struct ag_image *image)
     }
 }
 
-// Grey where nothing moves; the largest motion as bright or dark as it goes. Not finite: grey.
+// Grey for no motion (and NaN), 0 or 1 for the largest.
 static void show_motion(struct ag_image *image)
 {
     size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
@@ -152,7 +153,7 @@ static void show_motion(struct ag_image *image)
     show_direction(image);
 }
 
-// Each channel from its least to its greatest finite value. Not finite: 0.
+// Maps each channel from its finite range to 0…1; NaN to 0.
 static void show_range(struct ag_image *image)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height;
@@ -173,7 +174,7 @@ static void show_range(struct ag_image *image)
     }
 }
 
-// The nearest surface white, twice as far half as bright, nothing (0) black.
+// Inverse depth: the nearest surface is white, background (0) black.
 static void show_depth(struct ag_image *image)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height;
@@ -184,7 +185,7 @@ static void show_depth(struct ag_image *image)
         image->pixels[i] = image->pixels[i] > 0.0f ? nearest / image->pixels[i] : 0.0f;
 }
 
-// Irradiance as a white, perfectly diffuse surface would show it.
+// Radiance of a white diffuse surface with this irradiance.
 static void irradiance_to_radiance(struct ag_image *image)
 {
     size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
@@ -201,32 +202,32 @@ static enum ag_result tonemap(struct session *session, float ev, struct ag_image
     return AG_OK;
 }
 
-// How a layer becomes an image; what is not named is radiance.
-enum look { RADIANCE, AS_IT_IS, DIRECTION, MOTION, DEPTH, RANGE, IRRADIANCE };
+// Conversion of a layer; RADIANCE if not listed.
+enum conversion { RADIANCE, UNCHANGED, DIRECTION, MOTION, DEPTH, RANGE, IRRADIANCE };
 
-static enum look look_of(const char *layer)
+static enum conversion conversion_of(const char *layer)
 {
     static const struct {
         const char *layer;
-        enum look look;
-    } looks[] = {
-        { "albedo", AS_IT_IS },       { "visibility", AS_IT_IS },
-        { "display", AS_IT_IS },      { "normal", DIRECTION },
+        enum conversion conversion;
+    } conversions[] = {
+        { "albedo", UNCHANGED },      { "visibility", UNCHANGED },
+        { "display", UNCHANGED },     { "normal", DIRECTION },
         { "motion", MOTION },         { "depth", DEPTH },
-        { "obscurance", AS_IT_IS },   { "ambient_occlusion", AS_IT_IS },
+        { "obscurance", UNCHANGED },  { "ambient_occlusion", UNCHANGED },
         { "position", RANGE },        { "samples", RANGE },
         { "irradiance", IRRADIANCE }, { "irradiance_emitters_sky", IRRADIANCE },
     };
-    for (size_t i = 0; i < sizeof looks / sizeof looks[0]; i++)
-        if (strcmp(looks[i].layer, layer) == 0) return looks[i].look;
+    for (size_t i = 0; i < sizeof conversions / sizeof conversions[0]; i++)
+        if (strcmp(conversions[i].layer, layer) == 0) return conversions[i].conversion;
     return RADIANCE;
 }
 
 enum ag_result layer_to_display(struct session *session, const char *layer, float ev,
                                 struct ag_image **image)
 {
-    switch (look_of(layer)) {
-    case AS_IT_IS:
+    switch (conversion_of(layer)) {
+    case UNCHANGED:
         return AG_OK;
     case DIRECTION:
         show_direction(*image);
@@ -266,7 +267,7 @@ static enum status write_png(struct session *session, struct ag_renderer *render
 
 // ---- EXR
 
-// Nothing here depends on the hour or the machine: equal commands give equal files.
+// No time or host name: equal commands write equal files.
 static enum ag_result write_exr_layers(struct session *session, struct ag_renderer *renderer,
                                        const struct ag_image_layer *layers, int count,
                                        const char *path)

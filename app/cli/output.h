@@ -1,14 +1,14 @@
-// Files that come out: checked before the work begins, written whole or not at all.
+// Output files: checked before the work, complete or absent.
 #pragma once
 
 #include "session.h"
 
 enum { MAX_LAYERS = 32, PATH_SIZE = 4096 };
 
-// Could a file be written there? Says why not.
+// Checks that a file can be written; reports the reason if not.
 enum status output_check(const char *path);
 
-// What an image holds, from --aov and --debug-view.
+// Layers of an output image, from --aov and --debug-view.
 struct output {
     const char *layers[MAX_LAYERS]; // names of the library's layers
     int layer_count;
@@ -16,16 +16,16 @@ struct output {
     char names[256]; // what `layers` points into
 };
 
-// Unknown layers, and several layers of a PNG, are wrong usage. layer_name: the names that there
-// are, NULL past the end; fallback: the list where the command line has none.
+// Unknown layers, and several layers in a PNG, are wrong usage. layer_name: valid names, NULL
+// past the end; fallback: the list without --aov.
 enum status output_plan(const struct arguments *arguments, const char *path,
                         const char *(*layer_name)(int), const char *fallback, struct output *out);
 bool output_has_layer(const struct output *output, const char *layer);
-// Brings a layer's values to display values 0…1, as a PNG has them; ev is for what is radiance.
+// Converts a layer to display values 0…1 for a PNG; ev: exposure of radiance.
 enum ag_result layer_to_display(struct session *session, const char *layer, float ev,
                                 struct ag_image **image);
 // "shots/house.glb" and "@house:lit=1" give "house" + ending.
 void output_default(const char *scene, const char *ending, char out[PATH_SIZE]);
-// Reads the layers of the newest frame and writes them.
+// Reads the layers of the newest frame and writes them to a file.
 enum status output_write(struct session *session, struct ag_renderer *renderer,
                          const struct output *output, const char *path);

@@ -1,7 +1,6 @@
-// The page is a template, report/report.html, in which {{name}} stands for a file that the program
-// holds or for one of three pieces of data. Those go into <script> blocks that are no scripts, as
-// JSON without any "<" and in ASCII alone, so that no name in them can end the block or begin
-// another.
+// The page is a template, report/report.html: {{name}} is replaced by an embedded file or by one
+// of three pieces of data. Data goes into <script> blocks of type JSON, in ASCII without "<", so
+// that no name can end a block or begin another.
 #include "report_page.h"
 #include "report_files.h"
 #include "whole_file.h"
@@ -18,12 +17,11 @@ enum { PATH_SIZE = 4096, SCALE_COLOURS = 33 };
 struct page {
     const char *folder;
     const json_t *report;
-    json_t *images; // the names of all files, each once, as keys
-    char scale[SCALE_COLOURS]
-              [8]; // the colours of an error map from no error to the largest: "#rrggbb"
+    json_t *images;               // unique file names, as keys
+    char scale[SCALE_COLOURS][8]; // colours of error maps, "#rrggbb", from no error to the largest
 };
 
-// ---- the images that the report names
+// ---- images of the report
 
 static bool is_inside(const char *name)
 {
@@ -38,7 +36,7 @@ static bool is_inside(const char *name)
 
 static enum status image_path(const char *folder, const char *name, char out[PATH_SIZE])
 {
-    if (!is_inside(name)) return fail("cannot embed %s: it does not lie in %s", name, folder);
+    if (!is_inside(name)) return fail("cannot embed %s: it is not in %s", name, folder);
     if (snprintf(out, PATH_SIZE, "%s/%s", folder, name) >= PATH_SIZE)
         return fail("cannot embed %s: the path is too long", name);
     return DONE;
@@ -102,7 +100,7 @@ static enum status find_images(struct page *page)
     return status;
 }
 
-// ---- the colours of error maps, from the function that draws them
+// ---- colours of error maps
 
 static void colour_text(const float *linear, char out[8])
 {
@@ -115,7 +113,7 @@ static void colour_text(const float *linear, char out[8])
     snprintf(out, 8, "#%02x%02x%02x", bytes[0] & 255, bytes[1] & 255, bytes[2] & 255);
 }
 
-// The map of a ramp against black, whose absolute error is the ramp.
+// The error map of a ramp against black contains all colours.
 static enum ag_result map_ramp(struct ag_context *context, struct ag_image **map)
 {
     struct ag_image *ramp = NULL, *black = NULL;
@@ -147,8 +145,7 @@ static enum status find_scale(struct page *page)
 
 // ---- data in the page
 
-// "<" and ">" stand only within the strings of a JSON document, where they may be written as
-// escapes.
+// "<" and ">" occur only in strings of a JSON document, where escapes are allowed.
 static int write_escaped(const char *text, size_t size, void *user)
 {
     FILE *file = user;
@@ -256,7 +253,7 @@ static const struct embedded_file *embedded(struct piece piece)
     return NULL;
 }
 
-// What {{name}} stands for.
+// Writes the replacement of {{name}}.
 static enum status write_piece(FILE *file, const struct page *page, struct piece piece)
 {
     if (is(piece, "report")) return write_json(file, page->report);

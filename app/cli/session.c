@@ -1,4 +1,4 @@
-// A context, a scene, its light and its camera.
+// Context, scene, light and camera of a command.
 #include "session.h"
 #include "values.h"
 
@@ -28,7 +28,7 @@ void session_end(struct session *session)
     *session = (struct session){ 0 };
 }
 
-// ---- the scene and its animation
+// ---- scene and animation
 
 static int animation_count(const struct session *session)
 {
@@ -79,12 +79,12 @@ enum status session_load(struct session *session, const char *name)
     return find_animation(session);
 }
 
-// ---- what a scene gets that brings none
+// ---- default light and camera
 
 static void print_floats(char out[SPEC_SIZE], const float v[3])
 {
     size_t used = 0;
-    for (int i = 0; i < 3; i++) { // a millimetre, also far from the origin
+    for (int i = 0; i < 3; i++) { // a millimetre, even far from the origin
         int digits = fabsf(v[i]) < 1000.0f ? 6 : 9;
         int wrote =
             snprintf(out + used, SPEC_SIZE - used, "%s%.*g", i ? "," : "", digits, (double)v[i]);
@@ -132,10 +132,10 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
     result = ag_scene_look_at(session->scene, eye, target, radians(fov_deg), &out->camera);
     if (result == AG_OK) return DONE;
     fail_library(session->context, result);
-    return FAILED; // it is the scene's affair where it stands
+    return FAILED; // an unsuitable scene is no wrong usage
 }
 
-// ---- what was decided
+// ---- notes about defaults
 
 __attribute__((format(printf, 2, 3))) static void remember(struct session *session,
                                                            const char *format, ...)
@@ -164,7 +164,7 @@ static enum status add_default_light(struct session *session)
         ag_scene_add_light(session->scene, &defaults.light_value.punctual, NULL);
     if (result == AG_OK) result = ag_scene_set_sky(session->scene, defaults.sky_radiance);
     if (result != AG_OK) return fail_library(session->context, result);
-    remember(session, "no light in %s: as with --light %s --sky %s",
+    remember(session, "no light in %s: using --light %s --sky %s",
              session->arguments->positional[0], defaults.light, defaults.sky);
     return DONE;
 }
@@ -212,7 +212,7 @@ static enum status camera_from_scene(struct session *session, double time_s, str
     snprintf(session->camera_name, sizeof session->camera_name, "%s", name);
     if (result == AG_OK) return DONE;
     fail_library(session->context, result);
-    return FAILED; // which cameras there are is the file's affair, not the command line's
+    return FAILED; // a missing camera is no wrong usage
 }
 
 static enum status camera_default(struct session *session, double time_s, struct ag_camera *out)
@@ -230,7 +230,7 @@ static enum status camera_default(struct session *session, double time_s, struct
     }
     session->made_up = true;
     session->made_up_camera = defaults.camera;
-    remember(session, "no camera in %s: as with --eye %s --target %s --fov %s",
+    remember(session, "no camera in %s: using --eye %s --target %s --fov %s",
              session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
     snprintf(session->camera_name, sizeof session->camera_name, "--eye %.80s --target %.80s",
              defaults.eye, defaults.target);

@@ -66,7 +66,7 @@ json_t *statistics_summary(struct pass_times *times)
     return json_pack("{s:f, s:f}", "median", median, "p95", times->ms[rank - 1]);
 }
 
-// ---- options, from the sum with every option written out: "lpv:steps=8,dim=32+vo:…"
+// ---- options, from the GI spec with all options: "lpv:steps=8,dim=32+vo:…"
 
 static bool option_info(const char *technique, const char *option, struct ag_option_info *out)
 {
@@ -89,7 +89,7 @@ static json_t *option_value(const char *technique, const char *option, const cha
     return json_real(strtod(text, NULL));
 }
 
-// One technique's "key=value,key=value".
+// Options of one technique: "key=value,key=value".
 static json_t *options_of(const char *technique, char *list)
 {
     json_t *object = json_object();
@@ -102,7 +102,7 @@ static json_t *options_of(const char *technique, char *list)
     return object;
 }
 
-// The next term of a sum. A plus before a digit belongs to a number, as in 1e+05.
+// The next term of a GI spec. A plus before a digit belongs to a number (1e+05).
 static char *next_term(char **rest)
 {
     char *term = *rest, *c = term;
@@ -165,7 +165,7 @@ json_t *statistics_json(struct statistics *statistics, const struct session *ses
     const struct arguments *a = session->arguments;
     struct ag_device_info info;
     ag_device_get_info(device, &info);
-    // No technique bakes anything here: nothing was spent on it.
+    // No technique has a bake.
     return json_pack("{s:s, s:s, s:[ii], s:i, s:s, s:o, s:o, s:o, s:o, s:{s:f, s:i}}", "device",
                      info.name, "driver", info.driver, "size", a->width, a->height, "frames",
                      a->frames, "gi", ag_renderer_gi(renderer), "options",

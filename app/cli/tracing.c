@@ -1,4 +1,4 @@
-// Samples until there are enough, a file now and then.
+// Adds samples until there are enough and writes a file at intervals.
 #include "tracing.h"
 #include "interrupt.h"
 
@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <time.h>
 
-static const double LONGEST_STEP_S = 2.0; // between two looks at the clock
+static const double LONGEST_STEP_S = 2.0; // between checks of the clock
 enum { MAX_ATTRIBUTES = 16 };
 
 const char tracing_kept_layers[] =
@@ -79,7 +79,7 @@ static bool show_progress(void *user, double done)
     return !interrupt_caught();
 }
 
-// As many samples as fit into a step, judged by those before.
+// Number of samples for the next step, estimated from the previous ones.
 static int next_step(const struct tracing *t)
 {
     int fresh = t->done - t->begun, left = t->wanted - t->done;

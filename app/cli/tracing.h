@@ -1,5 +1,5 @@
-// The path tracer at work, as reference and compare use it: begun as the options say, until there
-// are enough samples or Ctrl-C, into an EXR that can be gone on with.
+// Path tracing for reference and compare: set up from the options, until there are enough samples
+// or Ctrl-C, written to a resumable EXR.
 #pragma once
 
 #include "output.h"
@@ -7,32 +7,32 @@
 struct tracing {
     struct session *session;
     struct ag_reference *reference;
-    int wanted;      // samples per pixel, those of the file that was gone on with among them
-    int begun, done; // samples of that file; by now
-    double seconds;  // spent in rendering by this run
+    int wanted;      // samples per pixel, including resumed ones
+    int begun, done; // resumed samples; current samples
+    double seconds;  // rendering time of this run
 };
 
-// The layers of an EXR that can be gone on with, and color.
+// Layers of a resumable EXR, and color.
 extern const char tracing_kept_layers[];
 
-// The scene is loaded and lit; its reference has no sample yet.
+// Requires a loaded and lit scene. The reference has no samples yet.
 enum status tracing_begin(struct tracing *tracing, struct session *session,
                           const struct ag_camera *camera, int wanted);
 void tracing_end(struct tracing *tracing); // accepts zero
-// Goes on from a file of the same image.
+// Loads the samples of a checkpoint.
 enum ag_result tracing_resume(struct tracing *tracing, const char *path);
 
-// Puts down what there is.
+// Writes the samples so far.
 struct tracing_keeper {
-    enum status (*keep)(void *user); // NULL: nobody does
+    enum status (*keep)(void *user); // NULL: none
     void *user;
     double every_s;
-    bool first; // also after the first samples
+    bool first; // also call it after the first step
 };
-// Renders with a bar. The keeper comes now and then and in the end, if the first Ctrl-C ends the
-// work, too; then done is less than wanted. A second one ends the program.
+// Renders with a progress bar. Calls the keeper at intervals and at the end, also after the first
+// Ctrl-C (then done < wanted). A second Ctrl-C ends the program.
 enum status tracing_converge(struct tracing *tracing, const struct tracing_keeper *keeper);
 
-// An EXR of these layers; its attributes say how it was made, `more` adds some.
+// Writes an EXR of these layers; attributes record how it was made, `more` adds some.
 enum ag_result tracing_write_exr(const struct tracing *tracing, const struct output *output,
                                  const char *path, const struct ag_attribute *more, int more_count);

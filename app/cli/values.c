@@ -11,7 +11,7 @@
 
 enum { MAX_SIZE = 16384, SPEC_SIZE = 512, MAX_PARTS = 6 };
 
-// strtod and its like skip white space: a value begins with its number.
+// strtod skips white space, which is not part of a value.
 static bool begins(const char *text)
 {
     return text[0] && !isspace((unsigned char)text[0]);
@@ -76,7 +76,7 @@ bool value_size(const char *text, int *width, int *height)
 
 // ---- lights
 
-// Splits at colons; the number of parts.
+// Splits at colons; returns the number of parts.
 static int split(char *text, char *parts[MAX_PARTS])
 {
     int count = 0;
@@ -186,7 +186,7 @@ bool value_light(const char *text, struct light_value *out, const char **why)
         const char *form = NULL, *reason = NULL;
         *out = (struct light_value){ 0 };
         bool ok = kinds[i].read(parts, count, out, &reason);
-        kinds[i].read(parts, 0, out, &form); // the spelling, for a value that is no number
+        kinds[i].read(parts, 0, out, &form); // the expected form, for a malformed value
         *why = reason ? reason : form;
         return ok;
     }
@@ -203,7 +203,7 @@ bool has_extension(const char *path, const char *extension)
     return dot && dot > name && strcasecmp(dot + 1, extension) == 0;
 }
 
-// The length of "%d", "%4d" or "%04d" at `text`, 0 where something else stands.
+// Length of "%d", "%4d" or "%04d" at `text`, else 0.
 static size_t number_length(const char *text)
 {
     size_t length = 1;

@@ -1,6 +1,6 @@
-// What stands behind an option's name, as numbers. Each function is false where the text is
-// anything else, with *why (a static string, or NULL) for the error. The program never leaves the
-// "C" locale, so that a dot is a dot.
+// Values of options as numbers. Functions return false for malformed text, with *why (a static
+// string or NULL) for the message. The program stays in the "C" locale, so the decimal separator
+// is a point.
 #pragma once
 
 #include <afterglow/scene.h>
@@ -11,7 +11,7 @@ bool value_number(const char *text, double *out);           // finite
 bool value_floats(const char *text, int count, float *out); // "x,y,z", finite
 // "WxH", each 1…16384.
 bool value_size(const char *text, int *width, int *height);
-// A light of the command line: a punctual one, or an area that glows.
+// A light of the command line: punctual, or a rectangular emitter.
 struct light_value {
     bool is_area;
     struct ag_light_desc punctual;
@@ -20,10 +20,10 @@ struct light_value {
 // "point:x,y,z:r,g,b", "sun:dx,dy,dz:r,g,b", "spot:x,y,z:dx,dy,dz:innerDEG:outerDEG:r,g,b" or
 // "area:x,y,z:dx,dy,dz:w,h:r,g,b".
 bool value_light(const char *text, struct light_value *out, const char **why);
-// The lower-case part after the last dot of a path's last part: is it that?
+// Does the path end in ".EXTENSION", in any case?
 bool has_extension(const char *path, const char *extension);
-// "" where the path has none of "%d", "%4d", "%04d"; the path of that frame else. False: more than
-// one, or too long.
+// The path of a frame for a pattern with "%d", "%4d" or "%04d"; is_pattern: it has one. False:
+// more than one, or too long.
 bool value_frame_path(const char *pattern, int frame, char *out, size_t size, bool *is_pattern);
 
 static inline float radians(double degrees)

@@ -1,4 +1,4 @@
-// Whole files.
+// Atomic writes of files.
 #include "whole_file.h"
 #include "interrupt.h"
 
@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-// Shorter than the longest name that folders take.
+// Shorter than the file name limit of usual file systems.
 char *whole_file_beside(const char *path)
 {
     enum { SUFFIX_SIZE = 32 };
@@ -22,8 +22,8 @@ char *whole_file_beside(const char *path)
 }
 
 struct destination {
-    const char *path;   // as it was asked for, for messages
-    const char *target; // through symbolic links, which a rename would replace
+    const char *path;   // as given, for messages
+    const char *target; // symbolic links resolved, since a rename would replace them
     const char *beside;
 };
 
@@ -32,7 +32,7 @@ static enum status cannot_write(const struct destination *to, int why)
     return fail("cannot write %s: %s", to->path, strerror(why));
 }
 
-// The temporary file is new: what has its name already is left alone.
+// Creates the temporary file; an existing one is left alone.
 static enum status write_beside(const struct destination *to,
                                 enum status (*write)(FILE *file, const void *what),
                                 const void *what)

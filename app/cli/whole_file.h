@@ -1,15 +1,13 @@
-// A file that appears whole or not at all: written beside its place, then renamed.
+// Atomic writes: a temporary file beside the target, then renamed.
 #pragma once
 
 #include "messages.h"
 
 #include <stdio.h>
 
-// `write` fills the file; whether that reached the disk is found out here. It may fail for a reason
-// of its own, which it has then said. An existing file keeps its content until the new one is
-// whole.
+// `write` fills the file and reports its own failures; errors of the disk are reported here. An
+// existing file keeps its content until the new one is complete.
 enum status whole_file_write(const char *path, enum status (*write)(FILE *file, const void *what),
                              const void *what);
-// The name beside `path` under which it is written before it is renamed; the caller frees it. NULL:
-// out of memory.
+// Name of the temporary file for `path`; the caller frees it. NULL: out of memory.
 char *whole_file_beside(const char *path);

@@ -348,7 +348,7 @@ TEST(a_cache_that_is_damaged_or_cannot_be_written_costs_time_alone)
     closedir(dir);
     const struct run *r = run_expect(
         0, "compare @cornell --size 24x18 --frames 1 --spp 2 --gi none -o", folder, NULL);
-    CHECK(strstr(r->err, "traced anew"));
+    CHECK(strstr(r->err, "traced again"));
     json_t *report = report_of(folder);
     CHECK(json_is_false(json_object_get(json_object_get(report, "reference"), "cached")));
     json_decref(report);

@@ -225,7 +225,7 @@ TEST(json_says_what_was_traced)
     assert_true(png_read(test_host(), path, &image));
     image_finish(&image, test_host());
     r = run_expect(0, "reference @cornell --size 16x16 --spp 2 -o", path, NULL);
-    CHECK(strstr(r->err, "million a second") && strstr(r->err, "standard error"));
+    CHECK(strstr(r->err, "million per second") && strstr(r->err, "standard error"));
 }
 
 TEST(each_layer_makes_an_image)

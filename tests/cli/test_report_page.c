@@ -199,7 +199,7 @@ TEST(images_from_elsewhere_are_refused)
     snprintf(folder, sizeof folder, "%s", make_folder("inside"));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         json_t *report = json_pack("{s:{s:{s:s}}}", "reference", "images", "picture", names[i]);
-        CHECK(strstr(failure(folder, report), "it does not lie in"));
+        CHECK(strstr(failure(folder, report), "it is not in"));
         json_decref(report);
     }
     assert_int_equal(count_files(folder), 0);

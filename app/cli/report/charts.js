@@ -1,4 +1,4 @@
-// Error against milliseconds, and where the milliseconds go.
+// Charts: error against time, and time by pass.
 
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const charts = [];
@@ -38,7 +38,7 @@ function pointsOf(metric) {
     .filter(point => isNumber(point.x) && isNumber(point.y));
 }
 
-// From left to right, each with less error than all before.
+// Pareto front: from left to right, each with less error than all before.
 function frontOf(points) {
   let least = Infinity;
   return [...points].sort((a, b) => a.x - b.x || a.y - b.y).filter(({ y }) => y < least && ((least = y), true));
@@ -53,7 +53,7 @@ function logTicks(value) {
     ? String(+value.toPrecision(2)) : '';
 }
 
-// Room for names and points around the values.
+// Margins for names and points around the values.
 function scatterAxis(title, values, log) {
   const high = Math.max(...values), low = Math.min(...values);
   if (!log) return axis(title, { type: 'linear', min: 0, suggestedMax: high > 0 ? 1.15 * high : 1 });
@@ -61,7 +61,7 @@ function scatterAxis(title, values, log) {
     ticks: { color: css('--soft'), callback: logTicks, autoSkip: false, maxRotation: 0 } });
 }
 
-// Names beside their points: to the right, else to the left; moved down or up where another name stands.
+// Labels of points: right of the point, else left; moved vertically if they would overlap.
 const pointNames = {
   id: 'pointNames',
   afterDatasetsDraw(chart) {
@@ -137,7 +137,7 @@ const passMs = pass => pass?.gpu_ms?.median;
 const groupOf = pass => String(pass.name).split('.')[0];
 const TECHNIQUES = new Set(methods.flatMap(techniquesOf));
 
-// All names, in the order of frames: a name that only some methods have comes after the one before it there.
+// Pass names in frame order; a name that only some methods have follows its predecessor there.
 function passNames() {
   const names = [];
   for (const method of methods) {
@@ -151,7 +151,7 @@ function passNames() {
   return names;
 }
 
-// What every frame has is grey and blue, what the methods add is in colour.
+// Passes of the frame are grey and blue, those of methods are coloured.
 function groupColours(groups) {
   const own = css('--own').split(/\s+/), common = css('--common').split(/\s+/);
   let nextOwn = 0, nextCommon = 0;
@@ -170,7 +170,7 @@ function passesData(names, colours) {
   };
 }
 
-// The whole frame's time, beside its bar.
+// Total frame time beside its bar.
 const frameTimes = {
   id: 'frameTimes',
   afterDatasetsDraw(chart) {
@@ -221,7 +221,7 @@ function buildPasses() {
   return true;
 }
 
-// ---- both
+// ---- all charts
 
 function buildCharts(show) {
   const draw = () => {

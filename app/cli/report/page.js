@@ -1,6 +1,6 @@
-// The head of the page, the tables at its end, explanations; and the start of all.
+// Page header, tables of details, tooltips, and start-up.
 
-// ---- explanations, for a pointer that rests and for the keyboard's focus
+// ---- tooltips, for pointer and keyboard focus
 
 const tip = element('div', { className: 'tip', id: 'tip', role: 'tooltip', hidden: true });
 
@@ -21,7 +21,7 @@ function explain(target, text) {
   for (const event of ['pointerleave', 'blur']) target.addEventListener(event, () => (tip.hidden = true));
 }
 
-// ---- what was compared
+// ---- header
 
 function buildHead() {
   const scene = String(report.scene ?? 'Comparison');
@@ -40,23 +40,23 @@ function buildReference() {
   const reference = report.reference;
   if (!reference) return;
   const spp = isNumber(reference.spp) ? `, ${reference.spp} ${reference.spp === 1 ? 'sample' : 'samples'} per pixel` : '';
-  const bounces = reference.bounces === null ? ', any number of bounces'
-    : reference.bounces === 0 ? ', direct light alone'
+  const bounces = reference.bounces === null ? ', unlimited bounces'
+    : reference.bounces === 0 ? ', direct light only'
     : isNumber(reference.bounces) ? `, ${reference.bounces} ${reference.bounces === 1 ? 'bounce' : 'bounces'} of indirect light` : '';
   const cost = [
     isNumber(reference.rays) ? `${countText(reference.rays)} rays` : null,
-    isNumber(reference.seconds) ? `${secondsText(reference.seconds)}${reference.cached ? ', kept from an earlier run' : ''}` : null,
+    isNumber(reference.seconds) ? `${secondsText(reference.seconds)}${reference.cached ? ', cached' : ''}` : null,
   ].filter(Boolean).join(' in ');
   const noise = isNumber(reference.noise) ? element('button', { type: 'button', className: 'term' },
     `noise ${numberText(100 * reference.noise, decimalsFor([100 * reference.noise]) ? 1 : 0)} %`) : null;
-  if (noise) explain(noise, 'The standard error of the reference, as the root of its mean square over all pixels, over the mean ' +
-    'of the image. Errors of methods hold this much that is not theirs' + (isNumber(reference.noise_relmse)
-    ? `: a perfect image would have a relMSE of ${numberText(reference.noise_relmse)}.` : '.') + ' More samples per pixel lessen it.');
+  if (noise) explain(noise, 'Standard error of the reference (root mean square over all pixels), relative to its mean. It adds to the ' +
+    'error of every method' + (isNumber(reference.noise_relmse)
+    ? `: a perfect image would have a relMSE of ${numberText(reference.noise_relmse)}.` : '.') + ' More samples per pixel reduce it.');
   byId('reference').append(element('b', {}, 'Reference'), ` path traced${spp}${bounces}`, ...(noise ? [', ', noise] : []),
     cost ? ` (${cost}).` : '.');
 }
 
-// ---- all the figures that the charts and the table gather up
+// ---- tables of all values
 
 function figuresTable(title, unit, names, valueOf) {
   if (!names.length) return null;

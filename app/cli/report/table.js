@@ -1,12 +1,12 @@
-// The table of methods: sorted by a click on a heading, the best of each column marked.
+// Table of methods: sortable by column, with the best value of each column marked.
 
-const order = { metric: null, turned: false }; // best first; turned: worst first; no metric: as they were asked for
+const order = { metric: null, reversed: false }; // best first; reversed: worst first; no metric: original order
 
 function sortedMethods() {
   const indices = methods.map((_, i) => i);
   if (!order.metric) return indices;
   const bad = i => badness(order.metric, order.metric.value(methods[i]));
-  const sign = order.turned ? -1 : 1;
+  const sign = order.reversed ? -1 : 1;
   return indices.sort((a, b) => {
     const x = bad(a), y = bad(b);
     if (x === Infinity || y === Infinity) return (x === Infinity) - (y === Infinity); // missing ones last, either way
@@ -14,28 +14,28 @@ function sortedMethods() {
   });
 }
 
-// Best first, worst first, as asked for.
-function turnOrder(metric) {
-  if (order.metric !== metric) Object.assign(order, { metric, turned: false });
-  else if (!order.turned) order.turned = true;
-  else Object.assign(order, { metric: null, turned: false });
+// Cycles through best first, worst first, original order.
+function nextOrder(metric) {
+  if (order.metric !== metric) Object.assign(order, { metric, reversed: false });
+  else if (!order.reversed) order.reversed = true;
+  else Object.assign(order, { metric: null, reversed: false });
 }
 
 function headingOf(metric, rebuild) {
   const active = order.metric === metric;
-  const rising = active && (metric.better !== 'high') !== order.turned;
+  const rising = active && (metric.better !== 'high') !== order.reversed;
   const button = element('button', { type: 'button', className: 'sort' }, metric.name,
     element('span', { className: 'arrow', 'aria-hidden': 'true' }, active ? (rising ? '↑' : '↓') : ''));
-  explain(button, `${metric.meaning} Unit: ${metric.unit}. ${WAY[metric.better]}`);
+  explain(button, `${metric.meaning} Unit: ${metric.unit}. ${DIRECTION[metric.better]}`);
   button.addEventListener('click', () => {
-    turnOrder(metric);
+    nextOrder(metric);
     rebuild(metric);
   });
   const sort = active ? (rising ? 'ascending' : 'descending') : 'none';
   return element('th', { scope: 'col', 'aria-sort': sort, 'data-metric': metric.name }, button);
 }
 
-// Neighbours of one group share a heading.
+// Adjacent columns of a group share a heading.
 function groupHeadings(columns) {
   const groups = [];
   for (const { group } of columns)
@@ -45,14 +45,14 @@ function groupHeadings(columns) {
     element('th', { scope: 'colgroup', colSpan: span, className: 'group' }, group));
 }
 
-// The name, which shows the method in the viewer, and the spelling that asks for it again.
+// The name (a click shows the method in the viewer) and the GI spec with all options.
 function nameCell(i, show) {
-  const button = element('button', { type: 'button', className: 'method', title: 'Show it against the reference' }, labels[i]);
+  const button = element('button', { type: 'button', className: 'method', title: 'Compare with the reference' }, labels[i]);
   button.addEventListener('click', () => show(i));
   const count = Object.keys(optionsOf(methods[i])).length;
   const options = count ? element('details', { className: 'options' },
     element('summary', {}, count === 1 ? '1 option' : `${count} options`),
-    element('code', {}, `--gi ${spellingOf(methods[i])}`)) : null;
+    element('code', {}, `--gi ${specOf(methods[i])}`)) : null;
   return element('th', { scope: 'row' }, button, options);
 }
 
@@ -83,7 +83,7 @@ function buildTable(show) {
   byId('methods').hidden = methods.length === 0;
 }
 
-// The row of the method that the viewer shows.
+// Highlights the row of the method in the viewer.
 let shown = -1;
 function markShown(i = shown) {
   shown = i;

@@ -1,4 +1,4 @@
-// The report, numbers as people read them, and elements of the page.
+// The report, formatting of numbers, and creation of elements.
 
 const dataOf = id => JSON.parse(document.getElementById(`data-${id}`).textContent);
 const report = dataOf('report');
@@ -7,7 +7,7 @@ const scale = dataOf('scale'); // colours of the error maps, least to largest er
 const methods = Array.isArray(report.methods) ? report.methods : [];
 const byId = id => document.getElementById(id);
 
-// An element with properties and children; text is never read as HTML.
+// An element with properties and children; text is never parsed as HTML.
 function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [key, value] of Object.entries(properties)) {
@@ -21,7 +21,7 @@ function element(tag, properties = {}, ...children) {
 
 const isNumber = value => typeof value === 'number' && Number.isFinite(value);
 
-// As many decimals as make the largest of a column show three digits and the smallest two, at most five.
+// Decimals so that the largest value of a column shows three digits and the smallest two; at most five.
 function decimalsFor(values) {
   const sizes = values.filter(isNumber).map(Math.abs).filter(value => value > 0);
   if (!sizes.length) return 0;
@@ -49,9 +49,9 @@ function secondsText(seconds) {
   return minutes < 60 ? `${minutes} min` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-// ---- methods by name
+// ---- names of methods
 
-// "lpv:dim=32+vo" → ["lpv", "vo"]; a plus before a digit belongs to a number, as in 1e+05.
+// "lpv:dim=32+vo" → ["lpv", "vo"]; a plus before a digit belongs to a number (1e+05).
 const terms = gi => String(gi ?? '').split(/\+(?!\d)/);
 const techniquesOf = method => terms(method.gi).map(term => term.split(':')[0]);
 const baseName = method => techniquesOf(method).join(' + ') || 'unnamed';
@@ -65,8 +65,8 @@ function optionsOf(method) {
   return flat;
 }
 
-// The sum with every option written out, as --gi takes it.
-function spellingOf(method) {
+// The GI spec with all options, as --gi accepts it.
+function specOf(method) {
   return terms(method.gi).map(term => {
     const name = term.split(':')[0];
     const options = Object.entries(method.options?.[name] ?? {}).map(([option, value]) => `${option}=${value}`);
@@ -74,7 +74,7 @@ function spellingOf(method) {
   }).join('+');
 }
 
-// Methods of the same techniques are told apart by the options in which they differ.
+// Labels of methods with the same techniques show the options in which they differ.
 function labelsOf(all) {
   const labels = all.map(method => {
     const alike = all.filter(other => baseName(other) === baseName(method)).map(optionsOf);

@@ -1,5 +1,5 @@
-// Where all images look: one zoom and one place for every image on the page, and the gestures that change them.
-// Lengths are fractions of an image's frame, so that small and large frames move in step.
+// One zoom and position for all images of the page, and the gestures that change them. Lengths are fractions of an
+// image frame, so that all frames move together.
 
 const view = { zoom: 1, x: 0, y: 0, split: 0.5 }; // x, y: the frame's upper left corner, within the zoomed image
 const [WIDTH, HEIGHT] = Array.isArray(report.size) && report.size.every(isNumber) ? report.size : [16, 9];
@@ -26,7 +26,7 @@ function showView() {
   stage.dataset.side = view.split <= 0 ? 'right' : view.split >= 1 ? 'left' : 'both';
 }
 
-// The image's point under (px, py) stays there.
+// Zooms about (px, py).
 function zoomAt(px, py, factor) {
   const most = Math.max(LARGEST_PIXEL * WIDTH / Math.max(stage.clientWidth, 1), 8);
   const zoom = clamp(view.zoom * factor, 1, most);
@@ -52,7 +52,7 @@ function fitView() {
   showView();
 }
 
-// Where an event is within a frame, 0…1.
+// Position of an event in a frame, 0…1.
 function placeIn(frame, event) {
   const box = frame.getBoundingClientRect();
   return { x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height };
@@ -60,8 +60,7 @@ function placeIn(frame, event) {
 
 // ---- the wheel
 
-// A turn of the wheel that began as scrolling goes on as scrolling, and one that began as zooming as zooming. What cannot
-// zoom out any further scrolls.
+// A wheel movement that began as scrolling or zooming continues as such. At the smallest zoom it scrolls.
 const wheel = { last: -Infinity, zooms: false, fresh: true };
 addEventListener('wheel', event => {
   wheel.fresh = event.timeStamp - wheel.last > SAME_GESTURE_MS;
@@ -87,7 +86,7 @@ const nearDivider = (frame, place) => Math.abs(place.x - view.split) * frame.cli
 function beginDrag(frame, event) {
   const place = placeIn(frame, event);
   const splits = frame === stage && (view.zoom <= 1 || nearDivider(frame, place));
-  // A finger may be about to scroll the page: it moves the divider along instead of calling it.
+  // A finger may begin to scroll the page: it moves the divider relatively, without a jump.
   if (splits && event.pointerType !== 'touch') splitAt(place.x);
   return { splits, moved: false, from: place, offset: view.split - place.x };
 }
@@ -136,7 +135,7 @@ function listenToPointers(frame, clicked) {
   frame.addEventListener('pointerleave', () => point(null));
 }
 
-// What every frame on the page listens to. clicked: a press without a drag.
+// Event handlers of every frame. clicked: a press without a drag.
 function listenTo(frame, clicked = () => {}) {
   listenToWheel(frame);
   listenToPointers(frame, clicked);

@@ -1,4 +1,4 @@
-// The images: two of them on a stage with a divider between, and a sheet of all.
+// Image viewer: two images with a divider, and a row of thumbnails for each method.
 
 const LAYERS = [
   { key: 'picture', error: 'error', name: 'Full image', tile: 'Image' },
@@ -9,7 +9,7 @@ const shows = { layer: LAYERS[0], left: '', right: '' }; // left, right: "refere
 const uriOf = (owner, role) => images[owner?.images?.[role]];
 const hasLayer = layer => [report.reference, ...methods].some(owner => uriOf(owner, layer.key));
 
-// What a name as above stands for, in the layer that is shown.
+// Image of such a name in the current layer.
 function sourceOf(name, layer = shows.layer) {
   if (name === 'reference') return { uri: uriOf(report.reference, layer.key), label: 'reference', text: 'Reference' };
   const [i, kind] = name.split(' ');
@@ -18,7 +18,7 @@ function sourceOf(name, layer = shows.layer) {
   return { uri: uriOf(methods[i], layer.key), label, text: label };
 }
 
-// ---- the stage
+// ---- the two images
 
 function fillPick(select) {
   const option = name => {
@@ -52,7 +52,7 @@ function show(side, name, layer = shows.layer) {
   else showImages();
 }
 
-// From a table's row or a chart's point.
+// Called for rows of the table and points of the chart.
 function showMethod(i) {
   shows.right = 'reference';
   show('left', `${i} picture`);
@@ -86,7 +86,7 @@ function pixelText(source, x, y) {
   return context ? [...context.getImageData(x, y, 1, 1).data.slice(0, 3)].join(' ') : '…';
 }
 
-// place: within any frame; null frame: the pointer has left.
+// place: position in a frame; frame null: the pointer has left.
 function point(frame, place) {
   byId('viewer').classList.toggle('pointed', Boolean(frame));
   for (const other of document.querySelectorAll('.view')) other.classList.toggle('under-pointer', other === frame);
@@ -109,12 +109,12 @@ function showHint() {
     : 'Drag to compare, wheel to zoom, double-click for the whole image. Keys: ← → + − 0, F to flip.';
 }
 
-// ---- the colours of the error maps
+// ---- legend of the error maps
 
 const ERROR_NAMES = { flip: 'FLIP', flip_hdr: 'HDR-FLIP', mae: 'mean absolute error', mse: 'squared error',
   relmse: 'relative squared error', ssim: '1 − SSIM' };
 
-// report.error_maps, where it is there: {"picture": {"metric": "flip", "full": 1}, …}
+// Optional report.error_maps: {"picture": {"metric": "flip", "full": 1}, …}
 function showLegend() {
   const map = report.error_maps?.[shows.layer.key] ?? {};
   const any = methods.some(method => uriOf(method, shows.layer.error));
@@ -129,7 +129,7 @@ function showLegend() {
   byId('legend').hidden = !any;
 }
 
-// ---- the sheet: a row for each method
+// ---- thumbnails: a row
 
 function tile(side, name, layer, caption) {
   const source = sourceOf(name, layer);
@@ -161,7 +161,7 @@ function buildSheet() {
   byId('sheet').replaceChildren(...methods.map((_, i) => sheetRow(i)).filter(Boolean));
 }
 
-// ---- the whole
+// ---- start-up
 
 function setLayer(layer) {
   shows.layer = layer;
@@ -197,7 +197,7 @@ function listenToKeys() {
     else return;
     event.preventDefault();
   });
-  // A press would take the focus away; the divider's keys are wanted instead.
+  // A press would move the focus away from the divider and its keys.
   stage.addEventListener('mousedown', event => {
     if (event.target.closest('select')) return;
     event.preventDefault();
