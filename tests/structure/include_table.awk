@@ -1,5 +1,5 @@
 # Checks files against include_table.txt (the first argument; the files follow, as paths from the project's root):
-# every #include, and that identifiers of Vulkan stand only in src/gpu and those of Embree only in src/trace.
+# every #include, and that Vulkan is used in src/gpu alone and Embree in src/trace alone.
 # Prints one line per violation and exits with 1 when there is any. POSIX awk.
 
 function complain(text)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# include_table.sh ROOT: every source file below ROOT keeps to include_table.txt.
+# include_table.sh ROOT: every source file below ROOT follows include_table.txt.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$1"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# self_test.sh CC CXX: the structure tests see what they are there to see. Each case makes a small tree that is right but
-# for one thing, and the test must fail and name it.
+# self_test.sh CC CXX: the structure tests find violations. Each case is a small tree with a single violation, which the test
+# must report.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 cc=$1 cxx=$2
@@ -8,7 +8,7 @@ tree=$(mktemp -d) || exit 1
 trap 'rm -rf "$tree"' EXIT
 bad=0
 
-# A tree that keeps every rule.
+# A tree without violations.
 fresh() {
     rm -rf "$tree/src" "$tree/include" "$tree/app" "$tree/examples"
     mkdir -p "$tree/src/core" "$tree/src/scene" "$tree/src/gpu" "$tree/src/trace" "$tree/src/frame/gbuffer" "$tree/src/frame/rsm" \
@@ -27,7 +27,7 @@ fails() {
     name=$1 pattern=$2
     shift 2
     if output=$("$@" 2>&1); then
-        echo "$name: not seen"
+        echo "$name: not reported"
         bad=1
     elif ! printf '%s\n' "$output" | grep -q "$pattern"; then
         echo "$name: failed for another reason: $output"
@@ -52,7 +52,7 @@ include_case() {
 }
 
 fresh
-passes "a tree that keeps the rules" "$here/include_table.sh" "$tree"
+passes "a tree without violations" "$here/include_table.sh" "$tree"
 include_case src/core/bad.c 'may not include scene/scene.h' '#include "scene/scene.h"'
 include_case src/core/bad.c 'may not include jansson.h' '#include <jansson.h>'
 include_case src/scene/bad.h 'may not include vulkan/vulkan.h' '#  include  <vulkan/vulkan.h>'

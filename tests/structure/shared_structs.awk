@@ -1,6 +1,6 @@
 # shared_structs.awk [-v glsl=1] HEADER…: what the *_shared.h headers declare, as tables for test_shared_layout.c: every struct
-# with its size, every member with its offset and size. What is not understood does not compile there. With glsl=1 a shader
-# that has an array of each struct in a storage block, for those that no other shader has.
+# with its size, every member with its offset and size. Unknown syntax fails to compile there. With glsl=1 a shader with an
+# array of each struct in a storage block, for structs that no other shader has.
 function note(text) { members = members text }
 
 FNR == 1 { # paths as the sources write them

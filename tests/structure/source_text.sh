@@ -1,6 +1,6 @@
 #!/bin/sh
 # source_text.sh ROOT: no tracked file below ROOT leaves work for later, and no source has blanks at the end of a line.
-# Without git (a source archive) every file outside build/ is looked at.
+# Without git (a source archive) all files outside build/ are checked.
 set -eu
 cd "$1"
 list() {
@@ -13,7 +13,7 @@ list() {
 marks='TO''DO|FIX''ME' # in two pieces, so that this file does not find itself
 blank=$(printf '[ \t]')
 bad=0
-[ -n "$(list)" ] || { echo "no file to look at in $1"; exit 1; }
+[ -n "$(list)" ] || { echo "no file to check in $1"; exit 1; }
 if list | tr '\n' '\0' | xargs -0 grep -IHnwE "$marks"; then
     echo "work left for later, above"
     bad=1

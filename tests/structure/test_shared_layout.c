@@ -1,6 +1,5 @@
-// C and GLSL agree about the structs that they share: those of the *_shared.h headers have, in
-// every block of every shader that was built, the members, offsets and sizes that they have in C.
-// One more shader, made for this test, has a block of each.
+// C and GLSL agree on shared structs: in every block of every shader, the structs of *_shared.h
+// headers have the members, offsets and sizes of C. A generated shader has a block of each struct.
 #include "framework/test.h"
 
 #include "core/file.h"
@@ -33,7 +32,7 @@ struct shader {
     spvc_compiler compiler;
 };
 
-// A header may rename a struct in GLSL to "…_data", where the block itself has its name.
+// A struct may be "…_data" in GLSL, where a block has its name.
 static const struct shared *find(const char *name)
 {
     for (int i = 0; i < STRUCTS; i++) {
@@ -73,7 +72,7 @@ static void check_struct(const struct shader *s, spvc_type type, const struct sh
     check_equal(s, c, "size", size, c->size);
 }
 
-// The structs inside a block, and inside those.
+// The structs in a block, recursively.
 static void check_members(const struct shader *s, spvc_type block)
 {
     for (unsigned i = 0; i < spvc_type_get_num_member_types(block); i++) {

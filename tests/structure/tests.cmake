@@ -1,4 +1,4 @@
-# What holds for the sources themselves. Plain shell and awk, so that they run wherever the project builds.
+# Checks of the sources. POSIX shell and awk, so that they run wherever the project builds.
 set(structure ${CMAKE_CURRENT_SOURCE_DIR}/structure)
 add_test(NAME structure.include_table COMMAND sh ${structure}/include_table.sh ${CMAKE_SOURCE_DIR})
 add_test(NAME structure.source_text COMMAND sh ${structure}/source_text.sh ${CMAKE_SOURCE_DIR})
@@ -8,7 +8,7 @@ add_test(NAME structure.self_test COMMAND sh ${structure}/self_test.sh ${CMAKE_C
 set_tests_properties(structure.include_table structure.source_text structure.headers_alone structure.self_test
   PROPERTIES TIMEOUT 300 LABELS structure)
 
-# The public headers are part of the build too, so that a broken one is seen at once.
+# The public headers are part of the build, so that errors in them appear early.
 file(GLOB public_headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/include ${CMAKE_SOURCE_DIR}/include/afterglow/*.h)
 foreach(header ${public_headers})
   get_filename_component(name ${header} NAME_WE)

@@ -1,4 +1,4 @@
-// Emissive surfaces as light, through the real frame, for every source that gathers them.
+// Emissive surfaces as lights, in the full frame, for every source that gathers emission.
 #include "frame/studio.h"
 #include "techniques/gi.h"
 #include "techniques/registry.h"
@@ -15,10 +15,10 @@ struct room {
     struct studio studio;
     struct gi_spec spec;
     struct gi *gi;
-    int lamp; // instance
+    int emitter; // instance
 };
 
-static int glow(struct studio *s, vec3s radiance)
+static int emissive_material(struct studio *s, vec3s radiance)
 {
     struct material m = material_default();
     m.emissive = radiance;
@@ -50,7 +50,7 @@ static float *room_render(struct room *r)
     return studio_read(&r->studio, READ_IRRADIANCE);
 }
 
-// A closed room with a lamp and a block, seen from a corner.
+// A closed room with an emissive box and a block, viewed from a corner.
 static void furnish(struct room *r, struct gpu *gpu, const char *gi, float emission, float point)
 {
     *r = (struct room){ 0 };
@@ -60,9 +60,10 @@ static void furnish(struct room *r, struct gpu *gpu, const char *gi, float emiss
                studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
     studio_box(s, vec3_of(0.2f, 0, -0.5f), vec3_of(1, 1, 0.3f), false,
                studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
-    r->lamp = studio_quad(s, vec3_of(-1, 2.9f, -1), vec3_of(-0.5f, 2.9f, -1),
-                          vec3_of(-0.5f, 2.9f, -0.5f), vec3_of(-1, 2.9f, -0.5f),
-                          glow(s, vec3_of(300 * emission, 200 * emission, 100 * emission)));
+    r->emitter =
+        studio_quad(s, vec3_of(-1, 2.9f, -1), vec3_of(-0.5f, 2.9f, -1), vec3_of(-0.5f, 2.9f, -0.5f),
+                    vec3_of(-1, 2.9f, -0.5f),
+                    emissive_material(s, vec3_of(300 * emission, 200 * emission, 100 * emission)));
     if (point > 0.0f)
         studio_add_point(s, vec3_of(-1, 2, 0), vec3_of(40 * point, 60 * point, 20 * point));
     studio_look(s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
@@ -121,21 +122,21 @@ TEST_GPU(emission_and_punctual_light_are_the_sum_of_each_alone)
     size_t at = 0;
     for (const struct technique *t; (t = next_gatherer(&at));) {
         float *both = irradiance(gpu, t->name, 1, 1);
-        float *lamp = irradiance(gpu, t->name, 1, 0), *point = irradiance(gpu, t->name, 0, 1);
+        float *emitter = irradiance(gpu, t->name, 1, 0), *point = irradiance(gpu, t->name, 0, 1);
         const double most = (double)largest(both);
         int compared = 0;
         for (int i = 0; i < FLOATS; i++) {
-            // Where one of them is clamped at zero the sum is not the sum of what is shown.
-            if (lamp[i] == 0.0f || point[i] == 0.0f || both[i] == 0.0f) continue;
+            // Linearity does not hold where one of them is clamped at zero.
+            if (emitter[i] == 0.0f || point[i] == 0.0f || both[i] == 0.0f) continue;
             compared++;
-            CHECK_NEAR((double)both[i], (double)lamp[i] + (double)point[i], 2e-3 * most);
+            CHECK_NEAR((double)both[i], (double)emitter[i] + (double)point[i], 2e-3 * most);
         }
         CHECK(compared > FLOATS / 2);
-        free(both), free(lamp), free(point);
+        free(both), free(emitter), free(point);
     }
 }
 
-TEST_GPU(no_emission_is_exactly_nothing)
+TEST_GPU(no_emission_gives_exactly_zero)
 {
     size_t at = 0;
     for (const struct technique *t; (t = next_gatherer(&at));) {
@@ -150,17 +151,17 @@ TEST_GPU(no_emission_is_exactly_nothing)
 
 static void move_lamp(struct room *r, float x)
 {
-    int node = r->studio.scene->instances[r->lamp].node;
+    int node = r->studio.scene->instances[r->emitter].node;
     r->studio.pose.world_from_node[node].raw[3][0] = x;
 }
 
-// What is sent on from frame to frame follows after (test_vct_bounces): here is what comes at once.
+// Bounces that take several frames are tested by test_vct_bounces; this is the first frame.
 static const char *at_once(const struct technique *t)
 {
     return strcmp(t->name, "vct") == 0 ? "vct:bounces=1" : t->name;
 }
 
-TEST_GPU(a_moving_lamp_leaves_no_trail)
+TEST_GPU(a_moving_emitter_leaves_no_trail)
 {
     size_t at = 0;
     for (const struct technique *t; (t = next_gatherer(&at));) {
@@ -204,8 +205,8 @@ static double facing_squares(void)
     return 2.0 / PI * (log(sqrt(4.0 / 3.0)) + 2.0 * root * atan(1.0 / root) - PI / 2.0);
 }
 
-// A black room of 10 m, one wall of which glows with π lm/m², seen from that wall: every pixel
-// shows the wall that faces it, all of it and evenly.
+// A black room of 10 m with one emissive wall of π lm/m², viewed from that wall: every pixel shows
+// the opposite wall.
 static double facing_wall(struct gpu *gpu, const char *gi)
 {
     struct room r = { 0 };
@@ -213,7 +214,7 @@ static double facing_wall(struct gpu *gpu, const char *gi)
     studio_init(s, gpu);
     studio_box(s, vec3_of(0, 0, 0), vec3_of(10, 10, 10), true, studio_matte(s, vec3_of(0, 0, 0)));
     studio_quad(s, vec3_of(0, 0, 0.01f), vec3_of(10, 0, 0.01f), vec3_of(10, 10, 0.01f),
-                vec3_of(0, 10, 0.01f), glow(s, vec3_of(1, 1, 1)));
+                vec3_of(0, 10, 0.01f), emissive_material(s, vec3_of(1, 1, 1)));
     s->input.camera =
         camera_look_at(vec3_of(5, 5, 0.1f), vec3_of(5, 5, 10), 2.0f * atanf(5.0f / 9.9f), 0.01f);
     room_open(&r, gi);
@@ -226,11 +227,11 @@ static double facing_wall(struct gpu *gpu, const char *gi)
 
 #define ONE_GRID "cascades=1,steps=64,bounces=0"
 
-// Light keeps a mean cosine of 0.95 in each step and thus its direction for some twenty cells: the
-// further the wall in cells, the less of its share it gets, and the side walls get it instead.
-// test_lpv_flux finds the same of a lit wall (0.50 and 0.41 of the truth for 16 and 24 cells) and
-// holds all walls together to their form factors.
-TEST_GPU(lpv_of_a_glowing_wall_gives_the_wall_that_faces_it_a_part_of_its_form_factor)
+// Propagation keeps a mean cosine of 0.95 per step, a direction for about twenty cells: the more
+// cells between two walls, the more light reaches the side walls instead. test_lpv_flux measures
+// the same for a lit wall (0.50 and 0.41 of the reference for 16 and 24 cells) and compares the sum
+// over all walls with their form factors.
+TEST_GPU(lpv_of_an_emissive_wall_gives_the_opposite_wall_a_part_of_its_form_factor)
 {
     const double truth = PI * facing_squares();
     CHECK_RELATIVE(facing_squares(), 0.199825, 1e-5);
@@ -249,14 +250,14 @@ TEST_GPU(lpv_of_a_glowing_wall_gives_the_wall_that_faces_it_a_part_of_its_form_f
     }
 }
 
-// The closed cube of glowing walls, the furnace, gets π L; the wall above gives Φ · ⅔ a / (4 a³).
+// A closed cube of emissive walls (furnace) has E = π L; one emissive wall Φ · ⅔ a / (4 a³).
 TEST_GPU(ambient_is_the_mean_fluence_of_a_box)
 {
     CHECK_RELATIVE(facing_wall(gpu, "ambient"), PI * 100 * (2.0 / 3.0 * 9.99) / 4000, 2e-3);
     struct room r = { 0 };
     studio_init(&r.studio, gpu);
     studio_box(&r.studio, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), true,
-               glow(&r.studio, vec3_of(7, 7, 7)));
+               emissive_material(&r.studio, vec3_of(7, 7, 7)));
     room_open(&r, "ambient");
     float *e = room_render(&r);
     CHECK_RELATIVE(mean_of(e), PI * 7, 2e-3);
@@ -264,9 +265,9 @@ TEST_GPU(ambient_is_the_mean_fluence_of_a_box)
     room_finish(&r);
 }
 
-// Sun on the floor of an open court: ρ E A lumen on ways of ⅔ h through A h: ρ E / 6, whatever its
-// size.
-TEST_GPU(ambient_light_leaves_an_open_court)
+// Sun on the floor of an open courtyard: ρ E A lumen on paths of ⅔ h through A h give ρ E / 6 at
+// any size.
+TEST_GPU(ambient_light_leaves_an_open_courtyard)
 {
     for (int i = 0; i < 2; i++) {
         struct room r = { 0 };
@@ -288,13 +289,13 @@ TEST_GPU(ambient_light_leaves_an_open_court)
     }
 }
 
-TEST_GPU(a_flat_glowing_scene_is_finite)
+TEST_GPU(a_flat_emissive_scene_is_finite)
 {
     size_t at = 0;
     for (const struct technique *t; (t = next_gatherer(&at));) {
         struct room r = { 0 };
         studio_init(&r.studio, gpu);
-        studio_floor(&r.studio, 1, glow(&r.studio, vec3_of(9, 9, 9)));
+        studio_floor(&r.studio, 1, emissive_material(&r.studio, vec3_of(9, 9, 9)));
         studio_look(&r.studio, vec3_of(0, 1, 1), vec3_of(0, 0, 0));
         room_open(&r, t->name);
         float *e = room_render(&r);

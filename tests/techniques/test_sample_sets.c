@@ -1,4 +1,4 @@
-// The tables of samples are what tools/samples says of them.
+// Properties of the sample tables that tools/samples generates.
 #include "framework/test.h"
 
 #include "samples/noise.h"
@@ -19,7 +19,7 @@ static struct points points_of(enum sample_shape shape, int index)
     return out;
 }
 
-TEST(sample_sets_have_the_counts_that_the_options_name)
+TEST(sample_sets_have_the_counts_of_the_option)
 {
     const char *choice = SAMPLE_SET_CHOICES;
     for (int i = 0; i < SAMPLE_SET_COUNT; i++) {
@@ -45,35 +45,35 @@ TEST(sample_weights_and_shares_add_up_to_one)
     }
 }
 
-// What makes a plane through the centre leave exactly half, and an odd set's first line need no
-// look.
-TEST(sample_sets_are_symmetric_about_their_centre)
+// Symmetry gives a plane through the center exactly half, and an odd set's first line needs no
+// fetch.
+TEST(sample_sets_are_symmetric_about_their_center)
 {
     for (int k = 2; k < 2 * SAMPLE_SET_COUNT; k++) { // but the sets of one
         const enum sample_shape shape = k % 2 ? SAMPLE_BALL : SAMPLE_DISK;
         const struct sample_set *set = sample_set_at(shape, k / 2);
         for (int i = 0; i < set->count; i++) {
             const struct sample *a = &set->samples[i];
-            // Its opposite is its neighbour, the centre's itself.
+            // Opposite samples are adjacent; the center is its own opposite.
             const int place = i - set->count % 2;
             const struct sample *b = &set->samples[place < 0 ? 0 : (place ^ 1) + set->count % 2];
             const float z = shape == SAMPLE_BALL ? a->z + b->z : a->z - b->z;
             CHECK(a->x + b->x == 0.0f && a->y + b->y == 0.0f && z == 0.0f);
-            // Weights come from cells of a grid: those of a pair may differ by a few.
+            // Weights come from cells of a grid and may differ by a few within a pair.
             CHECK_NEAR(a->weight, b->weight, 1e-3f);
         }
         CHECK(set->count % 2 == 0 || (set->samples[0].x == 0.0f && set->samples[0].y == 0.0f));
     }
 }
 
-TEST(sample_lines_have_the_length_that_the_sphere_gives_them)
+TEST(sample_lines_have_the_length_of_the_spheres_chord)
 {
     for (int k = 0; k < SAMPLE_SET_COUNT; k++) {
         const struct sample_set *set = sample_set_at(SAMPLE_DISK, k);
         for (int i = 0; i < set->count; i++) {
             const struct sample *s = &set->samples[i];
             CHECK_NEAR((double)(s->x * s->x + s->y * s->y + s->z * s->z), 1.0, 1e-6);
-            CHECK(s->z > 0.2f); // a line near the rim stands for little and divides by little
+            CHECK(s->z > 0.2f); // a chord near the rim has little weight and length
         }
     }
 }
@@ -93,7 +93,7 @@ static void check_voronoi(enum sample_shape shape, int side, double tolerance)
     grid_finish(&grid);
 }
 
-TEST(sample_weights_are_those_of_their_voronoi_regions)
+TEST(sample_weights_match_their_voronoi_regions)
 {
     // The disk's grid is the tables' own. The ball's has half its side: regions of 1/33 of it have
     // 4000 cells, and a border through a tenth of them.
@@ -118,7 +118,7 @@ static void check_noise(enum sample_shape shape, int side)
     grid_finish(&grid);
 }
 
-TEST(sample_sets_have_the_noise_that_their_tables_say)
+TEST(sample_sets_have_the_noise_of_their_tables)
 {
     check_noise(SAMPLE_DISK, 192);
     check_noise(SAMPLE_BALL, 40);

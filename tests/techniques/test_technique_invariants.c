@@ -1,5 +1,4 @@
-// What holds for every source, through the real frame: light adds up, none is black, the same is
-// the same.
+// Invariants of every source in the full frame: linearity, black without light, determinism.
 #include "frame/studio.h"
 #include "techniques/gi.h"
 #include "techniques/registry.h"
@@ -10,7 +9,7 @@
 
 enum { SIZE = 32, FLOATS = SIZE * SIZE * 3 };
 
-// A closed room; `lights` is a set of bits: which of its two lights are on.
+// A closed room; `lights` has a bit for each of two lights.
 static float *layer(struct gpu *gpu, const char *text, int lights, float strength, int frames,
                     enum frame_readback what)
 {
@@ -73,7 +72,7 @@ TEST_GPU(techniques_add_two_lights_up)
         const double most = (double)largest(both);
         int compared = 0;
         for (int i = 0; i < FLOATS; i++) {
-            // Where one of them is clamped at zero the sum is not the sum of what is shown.
+            // Linearity does not hold where one of them is clamped at zero.
             if (most > 0.0 && (one[i] == 0.0f || two[i] == 0.0f || both[i] == 0.0f)) continue;
             compared++;
             CHECK_NEAR((double)both[i], (double)one[i] + (double)two[i], 2e-3 * most);
@@ -85,7 +84,7 @@ TEST_GPU(techniques_add_two_lights_up)
     }
 }
 
-TEST_GPU(techniques_give_exactly_nothing_without_light)
+TEST_GPU(techniques_give_exactly_zero_without_light)
 {
     for (size_t t = 0; techniques[t]; t++) {
         if (techniques[t]->role != ROLE_SOURCE) continue;
@@ -120,7 +119,7 @@ struct span {
     float least, most;
 };
 
-// Of visibility, on which light has no influence.
+// For techniques of the role visibility, which do not depend on light.
 static struct span visibility(struct gpu *gpu, const char *text)
 {
     float *lit = layer(gpu, text, 3, 1.0f, 1, READ_VISIBILITY);
@@ -136,12 +135,12 @@ static struct span visibility(struct gpu *gpu, const char *text)
     return span;
 }
 
-// The room has corners and a box in it: some of it is open, some is not, and light does not matter.
-TEST_GPU(visibilities_see_the_geometry_and_not_the_light)
+// The room has corners and a box: visibility varies, and does not depend on light.
+TEST_GPU(visibility_depends_on_geometry_and_not_on_light)
 {
     for (size_t t = 0; techniques[t]; t++) {
         if (techniques[t]->role != ROLE_VISIBILITY) continue;
-        // Cones see all of the closed room: without a decay it is dark, with a steep one it is
+        // Cones reach all walls of the closed room: without decay it is dark, with a steep decay
         // open.
         const bool far = strcmp(techniques[t]->name, "vctao") == 0;
         const struct span near = visibility(gpu, far ? "vctao:decay=16" : techniques[t]->name);

@@ -1,4 +1,4 @@
-// Every technique through the real frame: its whole life, with every option at both ends.
+// Every technique in the full frame: creation to destruction, with every option at both ends.
 #include "frame/studio.h"
 #include "techniques/gi.h"
 #include "techniques/registry.h"
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A room with a box in it, a sun from above and a point light.
+// A room with a box, a sun and a point light.
 static void room(struct studio *s, struct gpu *gpu)
 {
     studio_init(s, gpu);
@@ -47,13 +47,13 @@ static void finite_frames(struct studio *s, int count)
     free(v);
 }
 
-TEST_GPU(techniques_live_through_frames_sizes_and_views)
+TEST_GPU(techniques_survive_frames_resizes_and_debug_views)
 {
     struct studio s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
         char text[64];
-        const bool probes = techniques[i]->capabilities & PUBLISHES_PROBES; // they have a view
+        const bool probes = techniques[i]->capabilities & PUBLISHES_PROBES; // has a debug view
         snprintf(text, sizeof text, "%s%s", techniques[i]->name, probes ? ":probes=true" : "");
         struct gi *gi = create(&s, text);
         finite_frames(&s, 3);
@@ -85,14 +85,14 @@ TEST_GPU(techniques_live_through_frames_sizes_and_views)
     studio_finish(&s);
 }
 
-// "technique:option=value" with the least or the largest value.
+// "technique:option=value" with the smallest or the largest value.
 static void print_end(const struct technique *technique, const struct option_row *row, bool largest,
                       char *text, size_t size)
 {
     struct gi_spec spec;
     CHECK(gi_spec_parse(&spec, test_host(), technique->name));
     char value[64];
-    void *options = spec.options[spec.count - 1]; // a source may stand before it
+    void *options = spec.options[spec.count - 1]; // a default source may precede it
     const double end = largest ? row->max : row->min;
     if (row->type == OPTION_TYPE_float32)
         *(float *)((char *)options + row->offset) = (float)end;
@@ -105,14 +105,14 @@ static void print_end(const struct technique *technique, const struct option_row
     gi_spec_finish(&spec);
 }
 
-// Options that may change while a technique lives do so in `living`; others make a new one.
-static void run_with(struct studio *s, struct gi *living, const char *text)
+// Live options change in `running`; others create a new stack.
+static void run_with(struct studio *s, struct gi *running, const char *text)
 {
     struct gi_spec spec;
     CHECK(gi_spec_parse(&spec, test_host(), text));
-    const bool live = gi_set_options(living, &spec);
+    const bool live = gi_set_options(running, &spec);
     gi_spec_finish(&spec);
-    struct gi *gi = live ? living : create(s, text);
+    struct gi *gi = live ? running : create(s, text);
     s->indirect = gi_hook(gi);
     finite_frames(s, 1);
     if (!live) gi_destroy(gi);
@@ -123,20 +123,20 @@ TEST_GPU(techniques_run_with_every_option_at_both_ends)
     struct studio s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
-        struct gi *living = create(&s, techniques[i]->name);
+        struct gi *running = create(&s, techniques[i]->name);
         for (size_t k = 0; k < techniques[i]->options.count; k++)
             for (int end = 0; end < 2; end++) {
                 char text[128];
                 print_end(techniques[i], &techniques[i]->options.rows[k], end != 0, text,
                           sizeof text);
-                run_with(&s, living, text);
+                run_with(&s, running, text);
             }
-        gi_destroy(living);
+        gi_destroy(running);
     }
     studio_finish(&s);
 }
 
-TEST_GPU(techniques_survive_scenes_with_nothing_in_them)
+TEST_GPU(techniques_survive_empty_scenes)
 {
     struct studio s;
     studio_init(&s, gpu);
@@ -150,7 +150,7 @@ TEST_GPU(techniques_survive_scenes_with_nothing_in_them)
     studio_finish(&s);
 }
 
-TEST_GPU(techniques_say_before_how_much_memory_they_take)
+TEST_GPU(techniques_estimate_their_memory)
 {
     struct studio s;
     room(&s, gpu);
@@ -165,16 +165,16 @@ TEST_GPU(techniques_say_before_how_much_memory_they_take)
         const int count = gpu_memory_by_owner(gpu, owners, 32);
         for (int k = 0; k < count && k < 32; k++)
             if (strcmp(owners[k].owner, techniques[i]->name) == 0) taken = owners[k].bytes;
-        print_message("%s: %llu bytes said, %llu taken\n", techniques[i]->name,
+        print_message("%s: %llu bytes estimated, %llu allocated\n", techniques[i]->name,
                       (unsigned long long)estimate, (unsigned long long)taken);
-        // The device may round each object up.
+        // The device may round up each object.
         CHECK(taken >= estimate && (double)taken <= 1.02 * (double)estimate + 4096);
         gi_destroy(gi);
     }
     studio_finish(&s);
 }
 
-TEST_GPU(gi_changes_live_options_in_place_and_asks_for_a_new_one_else)
+TEST_GPU(gi_changes_live_options_in_place_and_refuses_others)
 {
     struct studio s;
     room(&s, gpu);

@@ -1,4 +1,4 @@
-// What every technique of the role visibility must do, whatever way it looks into the depth buffer.
+// Requirements on every screen-space technique of the role visibility.
 #include "techniques/gi.h"
 
 #include "frame/studio.h"
@@ -10,22 +10,22 @@
 
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 
-// All ways of looking; the radius is appended.
-static const char *const ways[] = { "vo:samples=5",
-                                    "vo:samples=9,blur=false",
-                                    "vo:samples=5,half_resolution=true",
-                                    "vo:samples=6,half_resolution=true,blur=false",
-                                    "vo:samples=7,radius2=0.15",
-                                    "vo:mode=points,samples=12",
-                                    "vo:mode=areas,samples=1",
-                                    "vo:mode=areas,samples=5,half_resolution=true",
-                                    "vo:samples=5,temporal=true",
-                                    "vo:samples=5,half_resolution=true,temporal=true,blur=false",
-                                    "ssao:samples=12",
-                                    "ssao:samples=5,half_resolution=true",
-                                    "hbao:steps=6,falloff=cubic",
-                                    "hbao:falloff=quadratic,half_resolution=true" };
-enum { WAYS = sizeof ways / sizeof ways[0] };
+// All estimators; the radius is appended.
+static const char *const specs[] = { "vo:samples=5",
+                                     "vo:samples=9,blur=false",
+                                     "vo:samples=5,half_resolution=true",
+                                     "vo:samples=6,half_resolution=true,blur=false",
+                                     "vo:samples=7,radius2=0.15",
+                                     "vo:mode=points,samples=12",
+                                     "vo:mode=areas,samples=1",
+                                     "vo:mode=areas,samples=5,half_resolution=true",
+                                     "vo:samples=5,temporal=true",
+                                     "vo:samples=5,half_resolution=true,temporal=true,blur=false",
+                                     "ssao:samples=12",
+                                     "ssao:samples=5,half_resolution=true",
+                                     "hbao:steps=6,falloff=cubic",
+                                     "hbao:falloff=quadratic,half_resolution=true" };
+enum { WAYS = sizeof specs / sizeof specs[0] };
 
 static const double STEP = 1.0 / 255.0; // of the layer's 8 bits
 
@@ -88,48 +88,48 @@ static void box_on_floor(struct studio *s, struct gpu *gpu)
     studio_open(s);
 }
 
-TEST_GPU(where_there_is_nothing_all_is_visible)
+TEST_GPU(empty_images_have_full_visibility)
 {
     struct studio s;
     begin(&s, gpu);
     studio_quad(&s, vec3_of(-1, -1, 9), vec3_of(1, -1, 9), vec3_of(1, 1, 9), vec3_of(-1, 1, 9),
                 studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
-    studio_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1)); // the quad is behind the eye
+    studio_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1)); // the quad is behind the camera
     studio_open(&s);
     for (int i = 0; i < WAYS; i++) {
-        float *v = seen(&s, ways[i], 0.5);
-        check_all(ways[i], v, 1.0, 1.0);
+        float *v = seen(&s, specs[i], 0.5);
+        check_all(specs[i], v, 1.0, 1.0);
         free(v);
     }
     studio_finish(&s);
 }
 
-TEST_GPU(a_sphere_of_no_size_is_open_and_one_beyond_the_scene_is_a_number)
+TEST_GPU(a_sphere_of_radius_0_is_open_and_one_beyond_the_scene_is_finite)
 {
     struct studio s;
     box_on_floor(&s, gpu);
     for (int i = 0; i < WAYS; i++) {
-        float *v = seen(&s, ways[i], 0.0);
-        // The second sphere of one of them has a size of its own.
-        check_all(ways[i], v, strstr(ways[i], "radius2") ? 0.0 : 1.0, 1.0);
+        float *v = seen(&s, specs[i], 0.0);
+        // One estimator has a second sphere of fixed radius.
+        check_all(specs[i], v, strstr(specs[i], "radius2") ? 0.0 : 1.0, 1.0);
         free(v);
-        v = seen(&s, ways[i], 1e6);
-        check_all(ways[i], v, 0.0, 1.0);
+        v = seen(&s, specs[i], 1e6);
+        check_all(specs[i], v, 0.0, 1.0);
         free(v);
     }
     studio_finish(&s);
 }
 
-// Up to the horizon, where a pixel's neighbours are as far from each other as from the eye; and
-// nothing changes while the eye moves.
-TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_eye_moves)
+// Up to the horizon, where neighbouring pixels are as far apart as from the camera, and without
+// change while the camera moves.
+TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_camera_moves)
 {
     struct studio s;
     begin(&s, gpu);
     studio_floor(&s, 20000, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     studio_open(&s);
     for (int i = 0; i < WAYS; i++) {
-        struct look look = look_begin(&s, ways[i], 0.5);
+        struct look look = look_begin(&s, specs[i], 0.5);
         double least = 1.0, change = 0.0;
         float *last = NULL;
         for (int k = 0; k < 4; k++) {
@@ -137,9 +137,9 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_eye_moves)
             studio_look(&s, vec3_of(x, 1.5f, x), vec3_of(x + 0.2f, 1.5f - 0.02f * (float)k, x - 1));
             studio_render(&s);
             float *v = studio_read(&s, READ_VISIBILITY);
-            // Beside the picture's middle the plane's slope is beyond its bound while spheres are
-            // still two pixels large: an area looks farther from its pixel than a line there.
-            check_all(ways[i], v, 1.0 - (strstr(ways[i], "areas") ? 5 : 1) * STEP, 1.0);
+            // Away from the image center the slope exceeds its bound while spheres still have two
+            // pixels: an area fetches farther from its pixel than a line.
+            check_all(specs[i], v, 1.0 - (strstr(specs[i], "areas") ? 5 : 1) * STEP, 1.0);
             for (int p = 0; p < PIXELS; p++) {
                 least = fmin(least, (double)v[p]);
                 if (last) change = fmax(change, fabs((double)(v[p] - last[p])));
@@ -148,15 +148,15 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_eye_moves)
             last = v;
         }
         free(last);
-        print_message("%-36s %.3f at least, %.3f from frame to frame\n", ways[i], least, change);
+        print_message("%-36s %.3f at least, %.3f from frame to frame\n", specs[i], least, change);
         look_end(&look);
     }
     studio_finish(&s);
 }
 
-// Two walls along the y axis, z = 0 and x = 0, seen from between them. A wall at the distance a
+// Two walls along the y axis, z = 0 and x = 0, viewed from between them. A wall at the distance a
 // (radii) leaves (2 + 3a − a³)/4 of the hemisphere over the other.
-TEST_GPU(beside_a_wall_as_much_is_seen_as_the_wall_leaves)
+TEST_GPU(visibility_beside_a_wall_is_the_closed_form)
 {
     struct studio s;
     begin(&s, gpu);
@@ -169,8 +169,9 @@ TEST_GPU(beside_a_wall_as_much_is_seen_as_the_wall_leaves)
     studio_open(&s);
     const double radius_m = 0.6; // nine pixels
     for (int i = 0; i < WAYS; i++) {
-        if (strstr(ways[i], "radius2") || strstr(ways[i], "quadratic")) continue; // something else
-        float *v = seen(&s, ways[i], radius_m), *at = studio_read(&s, READ_POSITION);
+        if (strstr(specs[i], "radius2") || strstr(specs[i], "quadratic"))
+            continue; // something else
+        float *v = seen(&s, specs[i], radius_m), *at = studio_read(&s, READ_POSITION);
         double sum = 0.0, squares = 0.0;
         int count = 0;
         for (int k = 0; k < PIXELS; k++) {
@@ -182,14 +183,13 @@ TEST_GPU(beside_a_wall_as_much_is_seen_as_the_wall_leaves)
             count++;
         }
         const double mean = sum / count, rms = sqrt(squares / count);
-        print_message("%-36s mean %+.3f, rms %.3f\n", ways[i], mean, rms);
+        print_message("%-36s mean %+.3f, rms %.3f\n", specs[i], mean, rms);
         CHECK(count > 500);
-        // The few samples' own bias is up to 0.042 (5 points); without the wall the mean would be
-        // 0.2.
+        // The bias of small sample sets is up to 0.042 (5 points); without the wall the mean
+        // difference would be 0.2.
         CHECK(fabs(mean) < 0.042);
-        // The blur takes the crease together with what is two pixels off, 0.2 radii, at half size
-        // 0.4.
-        const bool half = strstr(ways[i], "half") != NULL, blur = !strstr(ways[i], "blur=false");
+        // The blur mixes the crease with pixels at 0.2 radii (two pixels), at half resolution 0.4.
+        const bool half = strstr(specs[i], "half") != NULL, blur = !strstr(specs[i], "blur=false");
         CHECK(rms < (!blur ? 0.12 : half ? 0.08 : 0.05));
         free(v);
         free(at);
@@ -197,7 +197,7 @@ TEST_GPU(beside_a_wall_as_much_is_seen_as_the_wall_leaves)
     studio_finish(&s);
 }
 
-// A board four metres before a wall. The wall is open up to the board's silhouette.
+// A board four metres in front of a wall. The wall is open up to the board's silhouette.
 static double darkest_background(struct studio *s, const char *way)
 {
     float *v = seen(s, way, 0.5), *depth = studio_read(s, READ_DEPTH);
@@ -209,7 +209,7 @@ static double darkest_background(struct studio *s, const char *way)
     return least;
 }
 
-TEST_GPU(silhouettes_have_no_halo_on_what_is_far_behind_them)
+TEST_GPU(silhouettes_have_no_halo_on_distant_backgrounds)
 {
     struct studio s;
     begin(&s, gpu);
@@ -221,13 +221,13 @@ TEST_GPU(silhouettes_have_no_halo_on_what_is_far_behind_them)
     studio_look(&s, vec3_of(0, 0, 0), vec3_of(0.05f, 0, -1));
     studio_open(&s);
     for (int i = 0; i < WAYS; i++) {
-        const double least = darkest_background(&s, ways[i]);
-        print_message("%-36s %.3f\n", ways[i], least);
-        // A box spreads board and wall over all that is between them, of which the thickness closes
-        // a part.
-        CHECK(least >= (strstr(ways[i], "areas") ? 0.9 : 1.0 - 2 * STEP));
+        const double least = darkest_background(&s, specs[i]);
+        print_message("%-36s %.3f\n", specs[i], least);
+        // The depth distribution of an area spans board and wall; the thickness closes a part of
+        // it.
+        CHECK(least >= (strstr(specs[i], "areas") ? 0.9 : 1.0 - 2 * STEP));
     }
-    // What would be there if occluders had no end:
+    // Occluders of infinite thickness would give:
     CHECK(darkest_background(&s, "vo:samples=5,thickness=1000") < 0.8);
     CHECK(darkest_background(&s, "vo:mode=points,samples=12,thickness=1000") < 0.8);
     CHECK(darkest_background(&s, "ssao:range=1000") < 0.8);
@@ -259,9 +259,9 @@ static double change_in_pan(struct studio *s, const char *way)
     return sum;
 }
 
-// Loos 2015, sec. 6.3.1: lines change as the depths beside them do, points jump. Ridges and grooves
-// without silhouettes, so that depth is continuous; at silhouettes both jump.
-TEST_GPU(five_lines_change_less_than_twelve_points_while_the_eye_turns)
+// Loos 2015, sec. 6.3.1: lines change continuously with depth, points jump. The scene has ridges
+// and grooves without silhouettes, where both would jump.
+TEST_GPU(five_lines_change_less_than_twelve_points_while_the_camera_rotates)
 {
     struct studio s;
     begin(&s, gpu);
@@ -282,8 +282,8 @@ TEST_GPU(five_lines_change_less_than_twelve_points_while_the_eye_turns)
     studio_finish(&s);
 }
 
-// In a still scene each frame adds a turn: what is left of the noise of a picture without blur.
-TEST_GPU(history_takes_the_noise_out_of_a_still_picture)
+// In a static scene each frame adds a rotation: the noise that remains without blur.
+TEST_GPU(temporal_accumulation_reduces_the_noise_of_a_static_image)
 {
     struct studio s;
     box_on_floor(&s, gpu);
@@ -300,14 +300,13 @@ TEST_GPU(history_takes_the_noise_out_of_a_still_picture)
         look_end(&look);
     }
     print_message("without history %.4f, with it %.4f\n", noise[0], noise[1]);
-    CHECK(noise[1] <
-          0.8 * noise[0]); // the rest is bias and what the blur of `exact` takes together
+    CHECK(noise[1] < 0.8 * noise[0]); // the rest is bias and the blur of `exact`
     free(exact);
     studio_finish(&s);
 }
 
-// Obscurance is linear in the fall-off.
-TEST_GPU(two_radii_see_the_mean_of_each)
+// Obscurance is linear in the falloff.
+TEST_GPU(two_radii_give_the_mean_of_both)
 {
     struct studio s;
     box_on_floor(&s, gpu);

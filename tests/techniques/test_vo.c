@@ -1,12 +1,12 @@
 // Volumetric obscurance against closed forms: planes and creases, at any angle, distance and sample
 // set.
-#include "techniques/vo_rig.h"
+#include "techniques/vo_fixture.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { WIDTH = 96, HEIGHT = 61 }; // rows are taken in eights: some are left over
+enum { WIDTH = 96, HEIGHT = 61 }; // not a multiple of the eight rows of an invocation
 
 static const int counts[] = { 5, 6, 7, 9, 12, 13, 16, 33 };
 enum { COUNTS = sizeof counts / sizeof counts[0] };
@@ -20,7 +20,7 @@ static void begin(struct studio *s, struct gpu *gpu)
 
 // ---- planes
 
-// The eye is `height` above a floor without end and looks down at `degrees` below the horizon.
+// The camera is `height` above an infinite floor and looks `degrees` below the horizon.
 static void floor_seen(struct studio *s, struct gpu *gpu, float height, float degrees)
 {
     begin(s, gpu);
@@ -31,11 +31,11 @@ static void floor_seen(struct studio *s, struct gpu *gpu, float height, float de
     studio_open(s);
 }
 
-// Largest difference from `expected` where there is a surface, `margin` pixels and more from the
-// picture's edge.
-static double farthest(struct vo_rig *rig, float expected, uint32_t margin)
+// Largest difference from `expected` on surfaces at least `margin` pixels from the image border.
+static double farthest(struct vo_fixture *fixture, float expected, uint32_t margin)
 {
-    float *estimate = vo_rig_estimate(rig), *depth = studio_read(rig->studio, READ_DEPTH);
+    float *estimate = vo_fixture_estimate(fixture),
+          *depth = studio_read(fixture->studio, READ_DEPTH);
     double most = 0.0;
     int looked_at = 0;
     for (uint32_t y = margin; y < HEIGHT - margin; y++)
@@ -52,15 +52,15 @@ static double farthest(struct vo_rig *rig, float expected, uint32_t margin)
 
 static double off(struct studio *s, const char *options, float expected, uint32_t margin)
 {
-    struct vo_rig rig = vo_rig_create(s, options);
-    const double most = farthest(&rig, expected, margin);
-    vo_rig_destroy(&rig);
+    struct vo_fixture fixture = vo_fixture_create(s, options);
+    const double most = farthest(&fixture, expected, margin);
+    vo_fixture_destroy(&fixture);
     return most;
 }
 
 static const float slants[] = { 90, 60, 35, 20 };
 
-TEST_GPU(vo_leaves_a_plane_exactly_half_of_its_sphere)
+TEST_GPU(vo_of_a_plane_is_exactly_half_without_the_normal)
 {
     for (int i = 0; i < 4; i++) {
         struct studio s;
@@ -68,8 +68,8 @@ TEST_GPU(vo_leaves_a_plane_exactly_half_of_its_sphere)
         double most = 0.0;
         for (int k = 0; k < COUNTS; k++) {
             char options[96];
-            // The sphere's radius is 0.1 of the height, 6.4 pixels, at most: seven from the edge no
-            // line is cut off.
+            // The sphere's radius is at most 0.1 of the height, 6.4 pixels: at seven pixels from
+            // the border no line is cut off.
             snprintf(options, sizeof options, "samples=%d,radius=0.3,reach=0.1,normal=false",
                      counts[k]);
             most = fmax(most, off(&s, options, 0.5f, 11));
@@ -84,7 +84,7 @@ TEST_GPU(vo_leaves_a_plane_exactly_half_of_its_sphere)
     }
 }
 
-TEST_GPU(vo_leaves_a_plane_all_of_its_hemisphere_up_to_the_pictures_edge)
+TEST_GPU(vo_of_a_plane_is_one_up_to_the_image_border)
 {
     for (int i = 0; i < 4; i++) {
         struct studio s;
@@ -106,7 +106,7 @@ TEST_GPU(vo_leaves_a_plane_all_of_its_hemisphere_up_to_the_pictures_edge)
 
 // ---- a crease
 
-// Two walls that meet at a right angle along the y axis, z = 0 and x = 0, seen from between them.
+// Two walls that meet at a right angle along the y axis, z = 0 and x = 0, viewed from between them.
 static void crease(struct studio *s, struct gpu *gpu)
 {
     begin(s, gpu);
@@ -127,13 +127,14 @@ static double open_share(double a)
     return a < 1.0 ? (2.0 + 3.0 * a - a * a * a) / 4.0 : 1.0;
 }
 
-// Means over the points of each of BINS distances up to 1.2 radii; all turns of the pattern are
-// among them.
+// Means over the points of each of BINS distances up to 1.2 radii, over all rotations of the
+// pattern.
 enum { BINS = 8 };
-static void by_distance(struct vo_rig *rig, float radius_m, double mean[BINS], double exact[BINS],
-                        int count[BINS])
+static void by_distance(struct vo_fixture *fixture, float radius_m, double mean[BINS],
+                        double exact[BINS], int count[BINS])
 {
-    float *estimate = vo_rig_estimate(rig), *at = studio_read(rig->studio, READ_POSITION);
+    float *estimate = vo_fixture_estimate(fixture),
+          *at = studio_read(fixture->studio, READ_POSITION);
     for (int b = 0; b < BINS; b++) mean[b] = exact[b] = count[b] = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         const double a = (double)fmaxf(at[3 * i], at[3 * i + 2]) / (double)radius_m;
@@ -162,10 +163,10 @@ TEST_GPU(vo_beside_a_wall_is_the_closed_form_up_to_the_sets_bias)
             char options[96];
             snprintf(options, sizeof options, "samples=%d,radius=%g,normal=%s,thickness=1000",
                      counts[k], (double)radius_m, normal ? "true" : "false");
-            struct vo_rig rig = vo_rig_create(&s, options);
+            struct vo_fixture fixture = vo_fixture_create(&s, options);
             double mean[BINS], exact[BINS], squares = 0.0;
             int count[BINS];
-            by_distance(&rig, radius_m, mean, exact, count);
+            by_distance(&fixture, radius_m, mean, exact, count);
             printf("%2d %s:", counts[k], normal ? "hemisphere" : "sphere    ");
             for (int b = 0; b < BINS; b++) {
                 CHECK(count[b] > 50);
@@ -174,12 +175,11 @@ TEST_GPU(vo_beside_a_wall_is_the_closed_form_up_to_the_sets_bias)
                 squares += pow(mean[b] - half * exact[b], 2.0) / BINS;
             }
             printf("  rms %.4f\n", sqrt(squares));
-            // The set's own bias beside walls and ramps, and 0.015 for a picture's pixels and
-            // perspective.
+            // The set's bias beside walls and ramps, and 0.015 for pixels and perspective.
             const double bias = (double)sample_set_at(SAMPLE_DISK, k + 1)->bias;
             CHECK(sqrt(squares) < bias + 0.015);
             before = sqrt(squares);
-            vo_rig_destroy(&rig);
+            vo_fixture_destroy(&fixture);
         }
         CHECK(before < 0.02); // 33
     }

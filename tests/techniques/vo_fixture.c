@@ -1,4 +1,4 @@
-#include "techniques/vo_rig.h"
+#include "techniques/vo_fixture.h"
 
 #include "techniques/gi.h"
 #include "techniques/vo/vo.h"
@@ -11,40 +11,40 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
     technique_vo.record(user, cmd, view);
 }
 
-struct vo_rig vo_rig_create(struct studio *studio, const char *options)
+struct vo_fixture vo_fixture_create(struct studio *studio, const char *options)
 {
     char text[128];
     struct gi_spec spec;
     snprintf(text, sizeof text, "vo:%s", options);
     if (!gi_spec_parse(&spec, test_host(), text)) fail_msg("%s: %s", text, test_last_message());
-    struct vo_rig rig = { studio, calloc(1, technique_vo.state_size) };
-    assert_non_null(rig.vo);
+    struct vo_fixture fixture = { studio, calloc(1, technique_vo.state_size) };
+    assert_non_null(fixture.vo);
     const struct technique_create how = { .host = test_host(),
                                           .gpu = studio->gpu,
                                           .pose = &studio->pose,
                                           .options = spec.options[1],
                                           .width = studio->width,
                                           .height = studio->height };
-    CHECK(technique_vo.create(rig.vo, &how));
+    CHECK(technique_vo.create(fixture.vo, &how));
     gi_spec_finish(&spec);
-    studio->indirect = (struct frame_indirect){ record, rig.vo, technique_vo.needs };
-    return rig;
+    studio->indirect = (struct frame_indirect){ record, fixture.vo, technique_vo.needs };
+    return fixture;
 }
 
-void vo_rig_destroy(struct vo_rig *rig)
+void vo_fixture_destroy(struct vo_fixture *fixture)
 {
-    technique_vo.destroy(rig->vo);
-    free(rig->vo);
-    *rig = (struct vo_rig){ 0 };
+    technique_vo.destroy(fixture->vo);
+    free(fixture->vo);
+    *fixture = (struct vo_fixture){ 0 };
 }
 
-float *vo_rig_estimate(struct vo_rig *rig)
+float *vo_fixture_estimate(struct vo_fixture *fixture)
 {
-    studio_render(rig->studio);
-    const struct screen_ao *ao = &rig->vo->ao;
+    studio_render(fixture->studio);
+    const struct screen_ao *ao = &fixture->vo->ao;
     const size_t pixels = (size_t)ao->work_width * ao->work_height;
     float *both = malloc(pixels * 2 * sizeof *both);
-    CHECK(gpu_image_download_float(rig->studio->gpu, ao->estimate, 0, 0, both, 2, 2 * pixels));
+    CHECK(gpu_image_download_float(fixture->studio->gpu, ao->estimate, 0, 0, both, 2, 2 * pixels));
     for (size_t i = 0; i < pixels; i++) both[i] = both[2 * i];
     return both;
 }
