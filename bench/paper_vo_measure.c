@@ -91,7 +91,7 @@ struct samples {
 static bool is_filter(const char *stage)
 {
     return strcmp(stage, "temporal") == 0 || strcmp(stage, "blur") == 0 ||
-           strcmp(stage, "fit") == 0 || strcmp(stage, "upsample") == 0;
+           strcmp(stage, "upsample") == 0;
 }
 
 static void add_sample(void *user, int index, const struct ag_timing *timings, int count)
