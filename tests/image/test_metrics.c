@@ -165,7 +165,7 @@ TEST(the_error_map_rises_in_lightness_as_the_error_does)
     CHECK_NEAR((double)map_luminance(&map, N - 1), 1.0, 1e-4);
     double before = -1.0;
     for (int x = 0; x < N; x++) {
-        // CIE lightness, 0…100, in even steps whatever the hue: OKLab and CIE differ by up to 2.8.
+        // CIE lightness, 0…100, in equal steps for all hues; OKLab and CIE differ by up to 2.8.
         double y = (double)map_luminance(&map, x);
         double lightness = y > 0.008856 ? 116.0 * cbrt(y) - 16.0 : 903.3 * y;
         CHECK(lightness > before);
