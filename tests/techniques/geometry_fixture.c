@@ -46,38 +46,39 @@ void geometry_check(struct lpv *lpv, const struct geometry_twin *twin, double to
     free(got);
 }
 
-void geometry_scatter(struct stage *stage, struct gpu *gpu)
+void geometry_scatter(struct rsm_fixture *rsm, struct gpu *gpu)
 {
     struct rng rng = rng_for(7, 0, 0);
-    stage_init(stage, gpu, GEOMETRY_WIDTH, GEOMETRY_HEIGHT, GEOMETRY_SIZE, 2);
-    stage->view.bounds = (struct box3){ vec3_of(-2.1f, 0.3f, 1.2f), vec3_of(1.9f, 3.3f, 4.7f) };
-    stage_set_face(stage, 0, vec3_of(-2.5f, 0.2f, 1.1f), vec3_of(4.6f, 0.3f, 0.1f),
-                   vec3_of(0.2f, 3.2f, 0.3f), vec3_of(0.1f, -0.2f, 3.6f), vec3_of(3, 2, 1));
-    stage_set_face(stage, 1, vec3_of(1.7f, 3.1f, 4.6f), vec3_of(-3.3f, 0.3f, 0.1f),
-                   vec3_of(0.2f, 0.2f, -3.2f), vec3_of(0.1f, -2.6f, 0.2f), vec3_of(0.01f, 40, 1));
-    stage->faces[0].direction = glms_vec3_normalize(vec3_of(0.1f, -0.2f, 1));
-    stage->faces[0].tan_half = 3.7f;
-    stage->faces[1].type = FRAME_LIGHT_POINT;
-    stage->faces[1].light = 1;
-    stage->faces[1].position = vec3_of(0.3f, 4.1f, 2.9f);
-    stage->faces[1].tan_half = 1.7f;
+    rsm_fixture_init(rsm, gpu, GEOMETRY_WIDTH, GEOMETRY_HEIGHT, GEOMETRY_SIZE, 2);
+    rsm->view.bounds = (struct box3){ vec3_of(-2.1f, 0.3f, 1.2f), vec3_of(1.9f, 3.3f, 4.7f) };
+    rsm_fixture_set_face(rsm, 0, vec3_of(-2.5f, 0.2f, 1.1f), vec3_of(4.6f, 0.3f, 0.1f),
+                         vec3_of(0.2f, 3.2f, 0.3f), vec3_of(0.1f, -0.2f, 3.6f), vec3_of(3, 2, 1));
+    rsm_fixture_set_face(rsm, 1, vec3_of(1.7f, 3.1f, 4.6f), vec3_of(-3.3f, 0.3f, 0.1f),
+                         vec3_of(0.2f, 0.2f, -3.2f), vec3_of(0.1f, -2.6f, 0.2f),
+                         vec3_of(0.01f, 40, 1));
+    rsm->faces[0].direction = glms_vec3_normalize(vec3_of(0.1f, -0.2f, 1));
+    rsm->faces[0].tan_half = 3.7f;
+    rsm->faces[1].type = FRAME_LIGHT_POINT;
+    rsm->faces[1].light = 1;
+    rsm->faces[1].position = vec3_of(0.3f, 4.1f, 2.9f);
+    rsm->faces[1].tan_half = 1.7f;
     for (int face = 0; face < 2; face++)
         for (uint32_t i = 0; i < GEOMETRY_SIZE * GEOMETRY_SIZE; i++) {
-            struct stage_texel texel = { .depth = i % 7 == 0 ? 0.0f : rng_float(&rng),
-                                         .normal = glms_vec3_normalize(
-                                             vec3_of(rng_float(&rng) - 0.5f, rng_float(&rng) - 0.5f,
-                                                     rng_float(&rng) - 0.5f)),
-                                         .reflectance = { 200, 200, 200 } };
-            *stage_texel(stage, face, i % GEOMETRY_SIZE, i / GEOMETRY_SIZE) = texel;
+            struct rsm_fixture_texel texel = { .depth = i % 7 == 0 ? 0.0f : rng_float(&rng),
+                                               .normal = glms_vec3_normalize(vec3_of(
+                                                   rng_float(&rng) - 0.5f, rng_float(&rng) - 0.5f,
+                                                   rng_float(&rng) - 0.5f)),
+                                               .reflectance = { 200, 200, 200 } };
+            *rsm_fixture_texel(rsm, face, i % GEOMETRY_SIZE, i / GEOMETRY_SIZE) = texel;
         }
-    stage_show_wall(stage, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
-                    vec3_of(0.1f, 0.3f, 3), vec3_of(0.2f, 0.9f, 0.1f));
-    stage->constants.camera_position = vec3_of(0.1f, 3, 2.5f);
-    stage_upload(stage);
+    rsm_fixture_show_wall(rsm, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
+                          vec3_of(0.1f, 0.3f, 3), vec3_of(0.2f, 0.9f, 0.1f));
+    rsm->constants.camera_position = vec3_of(0.1f, 3, 2.5f);
+    rsm_fixture_upload(rsm);
 }
 
 // The injected green light, from a grid without occlusion.
-static void inject_unoccluded(struct twin *twin, const struct lpv *lpv, struct stage *stage)
+static void inject_unoccluded(struct twin *twin, const struct lpv *lpv, struct rsm_fixture *rsm)
 {
     const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
     struct lpv_options options = lpv->options;
@@ -87,7 +88,7 @@ static void inject_unoccluded(struct twin *twin, const struct lpv *lpv, struct s
                                           .gpu = lpv->gpu,
                                           .options = &options };
     CHECK(technique_lpv.create(open, &how));
-    lpv_fixture_render(open, stage);
+    lpv_fixture_render(open, rsm);
     float *injected = lpv_fixture_read(open, open->volumes.injected, 1);
     for (size_t i = 0; i < twin_cells(twin); i++)
         for (size_t k = 0; k < coefficients; k++)
@@ -96,7 +97,7 @@ static void inject_unoccluded(struct twin *twin, const struct lpv *lpv, struct s
     lpv_fixture_destroy(open);
 }
 
-void geometry_check_light(struct lpv *lpv, struct stage *stage,
+void geometry_check_light(struct lpv *lpv, struct rsm_fixture *rsm,
                           const struct geometry_twin *geometry)
 {
     const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
@@ -104,7 +105,7 @@ void geometry_check_light(struct lpv *lpv, struct stage *stage,
     twin_init(&twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
     twin.geometry = geometry;
     twin.occlusion = (double)lpv->options.occlusion;
-    inject_unoccluded(&twin, lpv, stage);
+    inject_unoccluded(&twin, lpv, rsm);
     for (int i = 0; i < lpv->options.steps; i++)
         twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);
     float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);

@@ -27,13 +27,13 @@ void lpv_fixture_destroy(struct lpv *lpv)
     free(lpv);
 }
 
-void lpv_fixture_render(struct lpv *lpv, struct stage *stage)
+void lpv_fixture_render(struct lpv *lpv, struct rsm_fixture *rsm)
 {
-    struct gpu_cmd *cmd = gpu_frame_begin(stage->gpu);
+    struct gpu_cmd *cmd = gpu_frame_begin(rsm->gpu);
     assert_non_null(cmd);
-    technique_lpv.record(lpv, cmd, &stage->view);
-    CHECK(gpu_frame_end(stage->gpu, cmd));
-    CHECK(gpu_wait(stage->gpu));
+    technique_lpv.record(lpv, cmd, &rsm->view);
+    CHECK(gpu_frame_end(rsm->gpu, cmd));
+    CHECK(gpu_wait(rsm->gpu));
 }
 
 float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour)
@@ -60,19 +60,19 @@ float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour)
     return out;
 }
 
-void lpv_fixture_inject_twin(struct twin *twin, const struct stage *stage, int colour)
+void lpv_fixture_inject_twin(struct twin *twin, const struct rsm_fixture *rsm, int colour)
 {
-    for (int i = 0; i < stage->view.emitter_count; i++) {
-        const struct frame_emitter *point = &stage->view.emitters[i];
+    for (int i = 0; i < rsm->view.emitter_count; i++) {
+        const struct frame_emitter *point = &rsm->view.emitters[i];
         twin_inject(twin, point->position, point->normal, (double)point->flux.raw[colour]);
     }
-    const uint32_t size = stage->view.rsm_size;
-    for (int face = 0; face < stage->view.rsm_face_count; face++)
+    const uint32_t size = rsm->view.rsm_size;
+    for (int face = 0; face < rsm->view.rsm_face_count; face++)
         for (uint32_t i = 0; i < size * size; i++) {
-            const struct stage_texel *texel = &stage->texels[(size_t)face * size * size + i];
+            const struct rsm_fixture_texel *texel = &rsm->texels[(size_t)face * size * size + i];
             if (texel->depth == 0.0f) continue;
-            twin_inject(twin, stage_texel_position(stage, face, i % size, i / size),
-                        stage_rounded_normal(texel->normal),
-                        (double)stage_texel_flux(stage, face, i % size, i / size).raw[colour]);
+            twin_inject(twin, rsm_fixture_texel_position(rsm, face, i % size, i / size),
+                        rsm_fixture_rounded_normal(texel->normal),
+                        (double)rsm_fixture_texel_flux(rsm, face, i % size, i / size).raw[colour]);
         }
 }

@@ -5,7 +5,7 @@
 #include "techniques/lpv/lpv_state.h"
 #include "techniques/lpv/lpv_volumes.h"
 #include "techniques/lpv_twin.h"
-#include "techniques/stage.h"
+#include "techniques/rsm_fixture.h"
 
 enum { LPV_FIXTURE_COLOURS = 3 };
 
@@ -14,9 +14,9 @@ enum { LPV_FIXTURE_COLOURS = 3 };
 struct lpv *lpv_fixture_create(struct gpu *gpu, const char *gi);
 void lpv_fixture_destroy(struct lpv *lpv);
 // Renders one frame and waits for it.
-void lpv_fixture_render(struct lpv *lpv, struct stage *stage);
+void lpv_fixture_render(struct lpv *lpv, struct rsm_fixture *rsm);
 // One colour of a volume in lumen/sr: bands² floats per cell in use, [z][y][x]. The caller frees
 // it.
 float *lpv_fixture_read(struct lpv *lpv, gpu_image volume, int colour);
 // Injects one colour of the reflective shadow maps and emissive surfaces into the twin.
-void lpv_fixture_inject_twin(struct twin *twin, const struct stage *stage, int colour);
+void lpv_fixture_inject_twin(struct twin *twin, const struct rsm_fixture *rsm, int colour);

@@ -66,27 +66,29 @@ TEST(lpv_cascade_moves_by_two_cells_at_a_time)
 
 // A hall of 16 m with a lit patch on its floor; the camera sees the adjacent wall. All is
 // translated by `shift`, the camera also by `step`.
-static void show_hall(struct stage *stage, struct gpu *gpu, vec3s shift, vec3s step, float patch_x)
+static void show_hall(struct rsm_fixture *rsm, struct gpu *gpu, vec3s shift, vec3s step,
+                      float patch_x)
 {
-    stage_init(stage, gpu, WIDTH, WIDTH, SIZE, 1);
-    stage->view.bounds = (struct box3){ glms_vec3_add(vec3_of(0, 0, 0), shift),
-                                        glms_vec3_add(vec3_of(16, 4, 8), shift) };
-    stage->constants.camera_position =
+    rsm_fixture_init(rsm, gpu, WIDTH, WIDTH, SIZE, 1);
+    rsm->view.bounds = (struct box3){ glms_vec3_add(vec3_of(0, 0, 0), shift),
+                                      glms_vec3_add(vec3_of(16, 4, 8), shift) };
+    rsm->constants.camera_position =
         glms_vec3_add(glms_vec3_add(vec3_of(5.2f, 2.1f, 4.3f), shift), step);
-    stage_set_face(stage, 0, glms_vec3_add(vec3_of(patch_x, 0, 2), shift), vec3_of(2, 0, 0),
-                   vec3_of(0, 0, 2), vec3_of(0, 1e-3f, 0), vec3_of(3, 2, 1));
-    stage_fill_face(stage, 0,
-                    (struct stage_texel){
-                        .depth = 1, .normal = vec3_of(0, 1, 0), .reflectance = { 255, 200, 90 } });
-    stage_show_wall(stage, glms_vec3_add(vec3_of(0.1f, 0.1f, 0.05f), shift), vec3_of(15.8f, 0, 0),
-                    vec3_of(0, 3.8f, 0), vec3_of(0, 0, 1));
-    stage_upload(stage);
+    rsm_fixture_set_face(rsm, 0, glms_vec3_add(vec3_of(patch_x, 0, 2), shift), vec3_of(2, 0, 0),
+                         vec3_of(0, 0, 2), vec3_of(0, 1e-3f, 0), vec3_of(3, 2, 1));
+    rsm_fixture_fill_face(rsm, 0,
+                          (struct rsm_fixture_texel){ .depth = 1,
+                                                      .normal = vec3_of(0, 1, 0),
+                                                      .reflectance = { 255, 200, 90 } });
+    rsm_fixture_show_wall(rsm, glms_vec3_add(vec3_of(0.1f, 0.1f, 0.05f), shift),
+                          vec3_of(15.8f, 0, 0), vec3_of(0, 3.8f, 0), vec3_of(0, 0, 1));
+    rsm_fixture_upload(rsm);
 }
 
-static void render(struct lpv *lpv, struct stage *stage, float out[PIXELS * 3])
+static void render(struct lpv *lpv, struct rsm_fixture *rsm, float out[PIXELS * 3])
 {
-    lpv_fixture_render(lpv, stage);
-    stage_read_irradiance(stage, out);
+    lpv_fixture_render(lpv, rsm);
+    rsm_fixture_read_irradiance(rsm, out);
 }
 
 static const char *const GIS[] = { "lpv:dim=16,cascades=3,steps=5",
@@ -104,22 +106,22 @@ static void check_same(const float *a, const float *b, double tolerance)
 TEST_GPU(lpv_cascades_of_a_static_scene_are_equal_in_every_frame)
 {
     for (int i = 0; i < 2; i++) {
-        struct stage stage;
+        struct rsm_fixture rsm;
         float first[PIXELS * 3], second[PIXELS * 3];
-        show_hall(&stage, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
+        show_hall(&rsm, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
         struct lpv *lpv = lpv_fixture_create(gpu, GIS[i]);
-        render(lpv, &stage, first);
-        render(lpv, &stage, second);
+        render(lpv, &rsm, first);
+        render(lpv, &rsm, second);
         check_same(first, second, 0.0);
         lpv_fixture_destroy(lpv);
-        stage_finish(&stage);
+        rsm_fixture_finish(&rsm);
     }
 }
 
 TEST_GPU(lpv_cascades_keep_no_light_of_earlier_frames)
 {
     for (int i = 0; i < 2; i++) {
-        struct stage there, here;
+        struct rsm_fixture there, here;
         float moved[PIXELS * 3], fresh[PIXELS * 3];
         show_hall(&there, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 12);
         show_hall(&here, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
@@ -130,19 +132,19 @@ TEST_GPU(lpv_cascades_keep_no_light_of_earlier_frames)
         check_same(moved, fresh, 0.0);
         lpv_fixture_destroy(lpv);
         lpv_fixture_destroy(other);
-        stage_finish(&there);
-        stage_finish(&here);
+        rsm_fixture_finish(&there);
+        rsm_fixture_finish(&here);
     }
 }
 
 TEST_GPU(lpv_cascades_are_invariant_to_translation)
 {
     for (int i = 0; i < 2; i++) {
-        struct stage stage, shifted;
+        struct rsm_fixture rsm, shifted;
         float a[PIXELS * 3], b[PIXELS * 3];
-        show_hall(&stage, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
+        show_hall(&rsm, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
         struct lpv *lpv = lpv_fixture_create(gpu, GIS[i]);
-        render(lpv, &stage, a);
+        render(lpv, &rsm, a);
         const struct lpv *coarsest = lpv;
         while (coarsest->coarser) coarsest = coarsest->coarser;
         const float cell = 2.0f * coarsest->grid.cell_m;
@@ -150,8 +152,8 @@ TEST_GPU(lpv_cascades_are_invariant_to_translation)
         render(lpv, &shifted, b);
         check_same(a, b, 2e-3);
         lpv_fixture_destroy(lpv);
-        stage_finish(&stage);
-        stage_finish(&shifted);
+        rsm_fixture_finish(&rsm);
+        rsm_fixture_finish(&shifted);
     }
 }
 
@@ -176,11 +178,11 @@ TEST_GPU(lpv_cascades_are_stable_when_the_camera_moves_by_whole_cells)
     static const char *const gis[] = { "lpv:dim=32,cascades=2,steps=8",
                                        "holpv:dim=32,cascades=2,steps=6" };
     for (int i = 0; i < 2; i++) {
-        struct stage stage, near, next;
+        struct rsm_fixture rsm, near, next;
         float a[PIXELS * 3], b[PIXELS * 3], c[PIXELS * 3];
-        show_hall(&stage, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
+        show_hall(&rsm, gpu, vec3_of(0, 0, 0), vec3_of(0, 0, 0), 3);
         struct lpv *lpv = lpv_fixture_create(gpu, gis[i]);
-        render(lpv, &stage, a);
+        render(lpv, &rsm, a);
         const struct lpv_grid before = lpv->grid;
         show_hall(&near, gpu, vec3_of(0, 0, 0), vec3_of(0.05f, 0.01f, 0.02f), 3);
         render(lpv, &near, b);
@@ -202,9 +204,9 @@ TEST_GPU(lpv_cascades_are_stable_when_the_camera_moves_by_whole_cells)
         CHECK(seen > PIXELS / 2);
         CHECK(worst < 0.01 * most);
         lpv_fixture_destroy(lpv);
-        stage_finish(&stage);
-        stage_finish(&near);
-        stage_finish(&next);
+        rsm_fixture_finish(&rsm);
+        rsm_fixture_finish(&near);
+        rsm_fixture_finish(&next);
     }
 }
 
@@ -254,10 +256,10 @@ static bool is_boundary(const struct lpv_grid *grid, int i)
 
 static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
 {
-    struct stage stage;
-    show_hall(&stage, gpu, vec3_of(0.2f, 0, 0.1f), vec3_of(0, 0, 0), 3);
+    struct rsm_fixture rsm;
+    show_hall(&rsm, gpu, vec3_of(0.2f, 0, 0.1f), vec3_of(0, 0, 0), 3);
     struct lpv *lpv = lpv_fixture_create(gpu, gi);
-    lpv_fixture_render(lpv, &stage);
+    lpv_fixture_render(lpv, &rsm);
     CHECK(lpv->grid.open != 0 && lpv->coarser->grid.open == 0);
     float *coarser = lpv_fixture_read(lpv->coarser, lpv->coarser->volumes.light, 1);
     float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
@@ -266,7 +268,7 @@ static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
     const int count = (int)twin_cells(&twin), coefficients = SH_COUNT(lpv->options.bands);
     double(*injected)[9] = calloc((size_t)count, sizeof *injected),
     (*begin)[9] = calloc((size_t)count, sizeof *begin);
-    lpv_fixture_inject_twin(&twin, &stage, 1);
+    lpv_fixture_inject_twin(&twin, &rsm, 1);
     memcpy(injected, twin.light, (size_t)count * sizeof *injected);
     refine_twin(lpv, coarser, begin);
     memcpy(twin.light, begin, (size_t)count * sizeof *begin);
@@ -288,7 +290,7 @@ static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
     free(got);
     twin_finish(&twin);
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 TEST_GPU(lpv_cascade_starts_from_the_coarser_light_and_propagates_as_the_twin)

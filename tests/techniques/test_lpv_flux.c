@@ -18,20 +18,21 @@ static double flux_of(struct lpv *lpv, gpu_image volume)
 
 TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
 {
-    struct stage stage;
-    stage_init(&stage, gpu, 8, 8, SIZE, 1);
+    struct rsm_fixture rsm;
+    rsm_fixture_init(&rsm, gpu, 8, 8, SIZE, 1);
     // 39 cells fit exactly; the light is near the centre and cannot reach the outermost cells
     // before the 19th step.
-    stage.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(39, 39, 39) };
-    stage_set_face(&stage, 0, vec3_of(0, 0, 0), vec3_of(64, 0, 0), vec3_of(0, 64, 0),
-                   vec3_of(0, 0, 39), vec3_of(1, 700, 1));
-    stage_fill_face(&stage, 0, (struct stage_texel){ .depth = 0 });
-    *stage_texel(&stage, 0, 19, 19) =
-        (struct stage_texel){ .depth = 0.5f,
-                              .normal = glms_vec3_normalize(vec3_of(1, 2, 3)),
-                              .reflectance = { 255, 255, 255 } };
-    stage_show_wall(&stage, vec3_of(0, 0, 0), vec3_of(1, 0, 0), vec3_of(0, 1, 0), vec3_of(0, 0, 1));
-    stage_upload(&stage);
+    rsm.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(39, 39, 39) };
+    rsm_fixture_set_face(&rsm, 0, vec3_of(0, 0, 0), vec3_of(64, 0, 0), vec3_of(0, 64, 0),
+                         vec3_of(0, 0, 39), vec3_of(1, 700, 1));
+    rsm_fixture_fill_face(&rsm, 0, (struct rsm_fixture_texel){ .depth = 0 });
+    *rsm_fixture_texel(&rsm, 0, 19, 19) =
+        (struct rsm_fixture_texel){ .depth = 0.5f,
+                                    .normal = glms_vec3_normalize(vec3_of(1, 2, 3)),
+                                    .reflectance = { 255, 255, 255 } };
+    rsm_fixture_show_wall(&rsm, vec3_of(0, 0, 0), vec3_of(1, 0, 0), vec3_of(0, 1, 0),
+                          vec3_of(0, 0, 1));
+    rsm_fixture_upload(&rsm);
     const struct {
         const char *gi;
         double rounding; // of 15 steps in floats, or in halves of 11 bits
@@ -45,7 +46,7 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
                   { "holpv:dim=40,steps=16,precision=half", 2e-3 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct lpv *lpv = lpv_fixture_create(gpu, cases[i].gi);
-        lpv_fixture_render(lpv, &stage);
+        lpv_fixture_render(lpv, &rsm);
         assert_int_equal(lpv->grid.cells[0], 39);
         const double injected = flux_of(lpv, lpv->volumes.injected);
         // Each step adds the injected flux once; the last step is stored in 16 bits.
@@ -58,7 +59,7 @@ TEST_GPU(lpv_flux_is_conserved_over_sixteen_steps)
         CHECK_RELATIVE(last, 17.0 * injected, 2e-3);
         lpv_fixture_destroy(lpv);
     }
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 // Irradiance at p (normal n) from the square [a,b]² in the plane z = 0 that emits 1 lumen/m².
@@ -93,25 +94,26 @@ static const vec3s NORMALS[3] = { { { 0, 0, -1 } }, { { 1, 0, 0 } }, { { 0, 0, 1
 // A black room of 10 m; the square [a,b]² of its wall z = 0 emits 1 lumen/m².
 static struct room_error room(struct gpu *gpu, const char *options, float a, float b)
 {
-    struct stage stage;
-    stage_init(&stage, gpu, WIDTH, WIDTH, SIZE, 1);
-    stage.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(10, 10, 10) };
+    struct rsm_fixture rsm;
+    rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, SIZE, 1);
+    rsm.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(10, 10, 10) };
     const float texel = (b - a) / SIZE;
     const float lumen = texel * texel;
-    stage_set_face(&stage, 0, vec3_of(a, a, 0), vec3_of(b - a, 0, 0), vec3_of(0, b - a, 0),
-                   vec3_of(0, 0, 1e-3f), vec3_of(lumen, lumen, lumen));
-    stage_fill_face(&stage, 0,
-                    (struct stage_texel){
-                        .depth = 1, .normal = vec3_of(0, 0, 1), .reflectance = { 255, 255, 255 } });
+    rsm_fixture_set_face(&rsm, 0, vec3_of(a, a, 0), vec3_of(b - a, 0, 0), vec3_of(0, b - a, 0),
+                         vec3_of(0, 0, 1e-3f), vec3_of(lumen, lumen, lumen));
+    rsm_fixture_fill_face(&rsm, 0,
+                          (struct rsm_fixture_texel){ .depth = 1,
+                                                      .normal = vec3_of(0, 0, 1),
+                                                      .reflectance = { 255, 255, 255 } });
     struct lpv *lpv = lpv_fixture_create(gpu, options);
     double mean[3] = { 0 }, reference[3] = { 0 }, error = 0.0, all = 0.0;
     for (int wall = 0; wall < 3; wall++) {
         float got[PIXELS * 3];
         const double weight = wall == 1 ? 4.0 : 1.0; // four side walls
-        stage_show_wall(&stage, CORNERS[wall], ACROSS[wall], DOWN[wall], NORMALS[wall]);
-        stage_upload(&stage);
-        lpv_fixture_render(lpv, &stage);
-        stage_read_irradiance(&stage, got);
+        rsm_fixture_show_wall(&rsm, CORNERS[wall], ACROSS[wall], DOWN[wall], NORMALS[wall]);
+        rsm_fixture_upload(&rsm);
+        lpv_fixture_render(lpv, &rsm);
+        rsm_fixture_read_irradiance(&rsm, got);
         for (int i = 0; i < PIXELS; i++) {
             const float u = ((float)(i % WIDTH) + 0.5f) / WIDTH,
                         v = ((float)(i / WIDTH) + 0.5f) / WIDTH;
@@ -127,7 +129,7 @@ static struct room_error room(struct gpu *gpu, const char *options, float a, flo
         }
     }
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
     return (struct room_error){ mean[0] / reference[0], mean[1] / reference[1], mean[2],
                                 error / all };
 }
@@ -227,22 +229,23 @@ static double panel_irradiance(vec3s p)
 // Relative mean squared error where the floor sees the panel, regularised as in `afterglow diff`.
 static double diagonal_relmse(struct gpu *gpu, const char *gi)
 {
-    struct stage stage;
-    stage_init(&stage, gpu, WIDTH, WIDTH, SIZE, 1);
-    stage.view.bounds = (struct box3){ vec3_of(0, -0.4f, 0), vec3_of(10, 1.8f, 10) };
+    struct rsm_fixture rsm;
+    rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, SIZE, 1);
+    rsm.view.bounds = (struct box3){ vec3_of(0, -0.4f, 0), vec3_of(10, 1.8f, 10) };
     const float lumen = 1.98f * 1.6f / (SIZE * SIZE); // √(1.4² + 1.4²) = 1.98
-    stage_set_face(&stage, 0, PANEL, PANEL_ACROSS, PANEL_UP, glms_vec3_scale(PANEL_NORMAL, 1e-3f),
-                   vec3_of(lumen, lumen, lumen));
-    stage_fill_face(&stage, 0,
-                    (struct stage_texel){
-                        .depth = 1, .normal = PANEL_NORMAL, .reflectance = { 255, 255, 255 } });
-    stage_show_wall(&stage, vec3_of(0.1f, 0, 0.1f), vec3_of(9.8f, 0, 0), vec3_of(0, 0, 9.8f),
-                    vec3_of(0, 1, 0));
-    stage_upload(&stage);
+    rsm_fixture_set_face(&rsm, 0, PANEL, PANEL_ACROSS, PANEL_UP,
+                         glms_vec3_scale(PANEL_NORMAL, 1e-3f), vec3_of(lumen, lumen, lumen));
+    rsm_fixture_fill_face(&rsm, 0,
+                          (struct rsm_fixture_texel){ .depth = 1,
+                                                      .normal = PANEL_NORMAL,
+                                                      .reflectance = { 255, 255, 255 } });
+    rsm_fixture_show_wall(&rsm, vec3_of(0.1f, 0, 0.1f), vec3_of(9.8f, 0, 0), vec3_of(0, 0, 9.8f),
+                          vec3_of(0, 1, 0));
+    rsm_fixture_upload(&rsm);
     struct lpv *lpv = lpv_fixture_create(gpu, gi);
-    lpv_fixture_render(lpv, &stage);
+    lpv_fixture_render(lpv, &rsm);
     float got[PIXELS * 3];
-    stage_read_irradiance(&stage, got);
+    rsm_fixture_read_irradiance(&rsm, got);
     double reference[PIXELS], mean = 0.0, sum = 0.0;
     int lit = 0;
     for (int i = 0; i < PIXELS; i++) {
@@ -259,7 +262,7 @@ static double diagonal_relmse(struct gpu *gpu, const char *gi)
             sum += error * error / (reference[i] * reference[i] + 0.01 * mean * mean);
     }
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
     print_message("%s: relmse %.3f on the diagonal's lit floor\n", gi, sum / lit);
     return sum / lit;
 }

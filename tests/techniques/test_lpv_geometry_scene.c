@@ -1,38 +1,39 @@
 // The geometry volume from the scene's triangles: equality with the plain C twin, bitwise
 // invariants.
 #include "techniques/geometry_fixture.h"
-#include "techniques/props.h"
+#include "techniques/mesh_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// A stage with meshes of scattered triangles.
+// Input with meshes of scattered triangles.
 struct set {
-    struct stage stage;
-    struct props props;
+    struct rsm_fixture rsm;
+    struct mesh_fixture meshes;
 };
 
 static void set_init(struct set *set, struct gpu *gpu, int soups)
 {
-    geometry_scatter(&set->stage, gpu);
-    props_init(&set->props, &set->stage);
-    for (int i = 0; i < soups; i++) props_add_soup(&set->props, (uint32_t)i);
-    props_place(&set->props);
+    geometry_scatter(&set->rsm, gpu);
+    mesh_fixture_init(&set->meshes, &set->rsm);
+    for (int i = 0; i < soups; i++) mesh_fixture_add_soup(&set->meshes, (uint32_t)i);
+    mesh_fixture_place(&set->meshes);
 }
 
 static void set_finish(struct set *set)
 {
-    props_finish(&set->props);
-    stage_finish(&set->stage);
+    mesh_fixture_finish(&set->meshes);
+    rsm_fixture_finish(&set->rsm);
 }
 
-static void twin_of(struct geometry_twin *twin, const struct lpv *lpv, const struct props *props)
+static void twin_of(struct geometry_twin *twin, const struct lpv *lpv,
+                    const struct mesh_fixture *meshes)
 {
     geometry_twin_init(twin, lpv->grid, LPV_GEOMETRY_SCENE);
-    for (int i = 0; i < props->scene->instance_count; i++) {
-        const struct mesh *mesh = &props->scene->meshes[props->scene->instances[i].mesh];
-        const mat4s m = pose_world_from_instance(&props->pose, i);
+    for (int i = 0; i < meshes->scene->instance_count; i++) {
+        const struct mesh *mesh = &meshes->scene->meshes[meshes->scene->instances[i].mesh];
+        const mat4s m = pose_world_from_instance(&meshes->pose, i);
         for (uint32_t t = 0; t < mesh->index_count; t += 3) {
             vec3s corners[3];
             for (uint32_t k = 0; k < 3; k++)
@@ -50,8 +51,8 @@ TEST_GPU(lpv_geometry_from_the_scene_equals_the_twin)
         struct geometry_twin twin;
         set_init(&set, gpu, 1);
         struct lpv *lpv = lpv_fixture_create(gpu, options[i]);
-        props_render(&set.props, lpv);
-        twin_of(&twin, lpv, &set.props);
+        mesh_fixture_render(&set.meshes, lpv);
+        twin_of(&twin, lpv, &set.meshes);
         geometry_check(lpv, &twin, 0.0); // sixteenths
         geometry_twin_finish(&twin);
         lpv_fixture_destroy(lpv);
@@ -69,9 +70,9 @@ TEST_GPU(lpv_light_occluded_by_the_scene_equals_the_twin)
     for (int i = 0; i < 5; i++) {
         struct lpv *lpv = lpv_fixture_create(gpu, options[i]);
         struct geometry_twin twin;
-        props_render(&set.props, lpv);
-        twin_of(&twin, lpv, &set.props);
-        geometry_check_light(lpv, &set.stage, &twin);
+        mesh_fixture_render(&set.meshes, lpv);
+        twin_of(&twin, lpv, &set.meshes);
+        geometry_check_light(lpv, &set.rsm, &twin);
         geometry_twin_finish(&twin);
         lpv_fixture_destroy(lpv);
     }
@@ -84,14 +85,14 @@ TEST_GPU(lpv_occlusion_applies_to_the_cached_volume)
     struct set set;
     set_init(&set, gpu, 1);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=6,occlusion=0.2");
-    props_render(&set.props, lpv);
+    mesh_fixture_render(&set.meshes, lpv);
     struct lpv_options options = lpv->options;
     options.occlusion = 2;
     technique_lpv.set_options(lpv, &options);
-    props_render(&set.props, lpv);
+    mesh_fixture_render(&set.meshes, lpv);
     struct geometry_twin twin;
-    twin_of(&twin, lpv, &set.props);
-    geometry_check_light(lpv, &set.stage, &twin);
+    twin_of(&twin, lpv, &set.meshes);
+    geometry_check_light(lpv, &set.rsm, &twin);
     geometry_twin_finish(&twin);
     lpv_fixture_destroy(lpv);
     set_finish(&set);
@@ -104,12 +105,12 @@ TEST_GPU(lpv_cached_geometry_equals_that_of_a_first_frame)
     set_init(&set, gpu, 3);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
     for (int frame = 0; frame < 6; frame++) {
-        if (frame > 1 && frame < 5) props_move(&set.props, 1, 0.21f);
-        if (frame == 3) props_move(&set.props, 2, -0.4f); // a second mesh starts to move
-        props_render(&set.props, lpv);
+        if (frame > 1 && frame < 5) mesh_fixture_move(&set.meshes, 1, 0.21f);
+        if (frame == 3) mesh_fixture_move(&set.meshes, 2, -0.4f); // a second mesh starts to move
+        mesh_fixture_render(&set.meshes, lpv);
         float *cached = geometry_read(lpv);
         struct lpv *fresh = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
-        props_render(&set.props, fresh);
+        mesh_fixture_render(&set.meshes, fresh);
         float *first = geometry_read(fresh);
         assert_memory_equal(cached, first, geometry_floats(lpv) * sizeof *cached);
         free(cached);
@@ -121,13 +122,13 @@ TEST_GPU(lpv_cached_geometry_equals_that_of_a_first_frame)
 }
 
 // Overwrites the static coverage; the marks stay until it is recomputed.
-static bool is_recomputed(struct props *props, struct lpv *lpv)
+static bool is_recomputed(struct mesh_fixture *meshes, struct lpv *lpv)
 {
     const size_t words = gpu_buffer_bytes(lpv->gpu, lpv->volumes.static_coverage) / 4;
     uint32_t *mark = malloc(words * sizeof *mark), *after = malloc(words * sizeof *mark);
     for (size_t i = 0; i < words; i++) mark[i] = 0x5555;
     CHECK(gpu_buffer_upload(lpv->gpu, lpv->volumes.static_coverage, 0, mark, words * sizeof *mark));
-    props_render(props, lpv);
+    mesh_fixture_render(meshes, lpv);
     CHECK(gpu_buffer_download(lpv->gpu, lpv->volumes.static_coverage, 0, after,
                               words * sizeof *mark));
     const bool recomputed = memcmp(mark, after, words * sizeof *mark) != 0;
@@ -141,21 +142,21 @@ TEST_GPU(lpv_static_geometry_is_computed_once)
     struct set set;
     set_init(&set, gpu, 2);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
-    CHECK(is_recomputed(&set.props, lpv));
-    CHECK(!is_recomputed(&set.props, lpv));
-    props_move(&set.props, 1, 0.3f);
-    CHECK(is_recomputed(&set.props, lpv)); // without the moving mesh
-    props_move(&set.props, 1, 0.3f);
-    CHECK(!is_recomputed(&set.props, lpv));
-    CHECK(!is_recomputed(&set.props, lpv));
+    CHECK(is_recomputed(&set.meshes, lpv));
+    CHECK(!is_recomputed(&set.meshes, lpv));
+    mesh_fixture_move(&set.meshes, 1, 0.3f);
+    CHECK(is_recomputed(&set.meshes, lpv)); // without the moving mesh
+    mesh_fixture_move(&set.meshes, 1, 0.3f);
+    CHECK(!is_recomputed(&set.meshes, lpv));
+    CHECK(!is_recomputed(&set.meshes, lpv));
     technique_lpv.invalidate(lpv, CHANGED_LIGHT | CHANGED_CAMERA);
-    CHECK(!is_recomputed(&set.props, lpv));
+    CHECK(!is_recomputed(&set.meshes, lpv));
     technique_lpv.invalidate(lpv, CHANGED_GEOMETRY);
-    CHECK(is_recomputed(&set.props, lpv));
-    set.stage.view.bounds.max.x += 3; // another grid
-    CHECK(is_recomputed(&set.props, lpv));
-    set.stage.view.index = 0; // another scene
-    CHECK(is_recomputed(&set.props, lpv));
+    CHECK(is_recomputed(&set.meshes, lpv));
+    set.rsm.view.bounds.max.x += 3; // another grid
+    CHECK(is_recomputed(&set.meshes, lpv));
+    set.rsm.view.index = 0; // another scene
+    CHECK(is_recomputed(&set.meshes, lpv));
     lpv_fixture_destroy(lpv);
     set_finish(&set);
 }
@@ -177,13 +178,13 @@ TEST_GPU(lpv_geometry_of_a_closed_wall_has_no_gaps)
         const uint32_t quad[6] = { a, a + 1, a + N + 2, a, a + N + 2, a + N + 1 };
         memcpy(&indices[6 * i], quad, sizeof quad);
     }
-    geometry_scatter(&set.stage, gpu);
-    set.stage.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(8, 8, 8) };
-    props_init(&set.props, &set.stage);
-    props_add(&set.props, positions, (N + 1) * (N + 1), indices, 6 * N * N);
-    props_place(&set.props);
+    geometry_scatter(&set.rsm, gpu);
+    set.rsm.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(8, 8, 8) };
+    mesh_fixture_init(&set.meshes, &set.rsm);
+    mesh_fixture_add(&set.meshes, positions, (N + 1) * (N + 1), indices, 6 * N * N);
+    mesh_fixture_place(&set.meshes);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=16,steps=1");
-    props_render(&set.props, lpv);
+    mesh_fixture_render(&set.meshes, lpv);
     const int32_t *cells = lpv->grid.cells;
     float *got = geometry_read(lpv);
     for (int y = 0; y < cells[1]; y++)
@@ -209,13 +210,13 @@ TEST_GPU(lpv_geometry_of_an_empty_scene_is_zero)
         struct set set;
         set_init(&set, gpu, 0);
         for (int face = 0; face < 2; face++)
-            stage_fill_face(&set.stage, face, (struct stage_texel){ .depth = 0 });
+            rsm_fixture_fill_face(&set.rsm, face, (struct rsm_fixture_texel){ .depth = 0 });
         // The camera sees a wall outside of the grid.
-        stage_show_wall(&set.stage, vec3_of(90, 0, 0), vec3_of(1, 0, 0), vec3_of(0, 1, 0),
-                        vec3_of(0, 0, 1));
-        stage_upload(&set.stage);
+        rsm_fixture_show_wall(&set.rsm, vec3_of(90, 0, 0), vec3_of(1, 0, 0), vec3_of(0, 1, 0),
+                              vec3_of(0, 0, 1));
+        rsm_fixture_upload(&set.rsm);
         struct lpv *lpv = lpv_fixture_create(gpu, options[i]);
-        props_render(&set.props, lpv);
+        mesh_fixture_render(&set.meshes, lpv);
         float *got = geometry_read(lpv);
         for (size_t k = 0; k < geometry_floats(lpv); k++) CHECK(got[k] == 0.0f);
         free(got);
@@ -230,13 +231,13 @@ TEST_GPU(lpv_geometry_ignores_vertices_out_of_range)
     struct set set;
     set_init(&set, gpu, 2);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=8,steps=1");
-    props_move(&set.props, 1, 1e4f);
-    props_render(&set.props, lpv);
+    mesh_fixture_move(&set.meshes, 1, 1e4f);
+    mesh_fixture_render(&set.meshes, lpv);
     float *one = geometry_read(lpv);
     const float wrong[] = { NAN, INFINITY, -INFINITY, 3e38f, 1e20f };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        set.props.pose.world_from_node[set.props.scene->instances[1].node].raw[3][0] = wrong[i];
-        props_render(&set.props, lpv);
+        set.meshes.pose.world_from_node[set.meshes.scene->instances[1].node].raw[3][0] = wrong[i];
+        mesh_fixture_render(&set.meshes, lpv);
         float *got = geometry_read(lpv);
         assert_memory_equal(one, got, geometry_floats(lpv) * sizeof *one);
         free(got);

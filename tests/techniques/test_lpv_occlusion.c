@@ -1,5 +1,5 @@
 // Light behind a wall between emitter and receiver.
-#include "techniques/props.h"
+#include "techniques/mesh_fixture.h"
 
 #include <math.h>
 
@@ -8,20 +8,22 @@ enum { SIZE = 64, WIDTH = 16, PIXELS = WIDTH * WIDTH };
 static const float ROOM = 8, WALL = 4.13f; // m; not on a face between cells
 
 // No wall, or a wall of `height` with a reflective shadow map of its own.
-static void set_wall(struct stage *stage, float height)
+static void set_wall(struct rsm_fixture *rsm, float height)
 {
     const float texel = ROOM / SIZE;
-    stage_set_face(stage, 1, vec3_of(0, 0, WALL), vec3_of(ROOM, 0, 0), vec3_of(0, ROOM, 0),
-                   vec3_of(0, 0, 1e-3f), vec3_of(texel * texel, texel * texel, texel * texel));
-    stage->faces[1].type = FRAME_LIGHT_SUN;
-    stage->faces[1].light = 1;
-    stage->faces[1].direction = vec3_of(0, 0, 1);
-    stage->faces[1].tan_half = ROOM / 2;
+    rsm_fixture_set_face(rsm, 1, vec3_of(0, 0, WALL), vec3_of(ROOM, 0, 0), vec3_of(0, ROOM, 0),
+                         vec3_of(0, 0, 1e-3f),
+                         vec3_of(texel * texel, texel * texel, texel * texel));
+    rsm->faces[1].type = FRAME_LIGHT_SUN;
+    rsm->faces[1].light = 1;
+    rsm->faces[1].direction = vec3_of(0, 0, 1);
+    rsm->faces[1].tan_half = ROOM / 2;
     for (uint32_t y = 0; y < SIZE; y++)
         for (uint32_t x = 0; x < SIZE; x++) {
             const bool is_wall = ((float)y + 0.5f) * texel < height;
-            *stage_texel(stage, 1, x, y) =
-                (struct stage_texel){ .depth = is_wall ? 1.0f : 0.0f, .normal = vec3_of(0, 0, -1) };
+            *rsm_fixture_texel(rsm, 1, x, y) =
+                (struct rsm_fixture_texel){ .depth = is_wall ? 1.0f : 0.0f,
+                                            .normal = vec3_of(0, 0, -1) };
         }
 }
 
@@ -29,34 +31,36 @@ static void set_wall(struct stage *stage, float height)
 // 1 lumen/m² and a wall of `height` stands between them.
 static double irradiance_behind(struct gpu *gpu, const char *gi, float height)
 {
-    struct stage stage;
-    struct props props;
-    stage_init(&stage, gpu, WIDTH, WIDTH, SIZE, 2);
-    stage.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(ROOM, ROOM, ROOM) };
+    struct rsm_fixture rsm;
+    struct mesh_fixture meshes;
+    rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, SIZE, 2);
+    rsm.view.bounds = (struct box3){ vec3_of(0, 0, 0), vec3_of(ROOM, ROOM, ROOM) };
     const float lumen = ROOM * ROOM / (SIZE * SIZE);
-    stage_set_face(&stage, 0, vec3_of(0, 0, 0), vec3_of(ROOM, 0, 0), vec3_of(0, ROOM, 0),
-                   vec3_of(0, 0, 1e-3f), vec3_of(lumen, lumen, lumen));
-    stage_fill_face(&stage, 0,
-                    (struct stage_texel){
-                        .depth = 1, .normal = vec3_of(0, 0, 1), .reflectance = { 255, 255, 255 } });
-    set_wall(&stage, height);
-    stage_show_wall(&stage, vec3_of(0.02f, 0.02f, ROOM - 0.01f), vec3_of(ROOM - 0.04f, 0, 0),
-                    vec3_of(0, ROOM - 0.04f, 0), vec3_of(0, 0, -1));
-    stage.constants.camera_position = vec3_of(ROOM / 2, ROOM / 2, ROOM / 2);
-    stage_upload(&stage);
-    props_init(&props, &stage);
+    rsm_fixture_set_face(&rsm, 0, vec3_of(0, 0, 0), vec3_of(ROOM, 0, 0), vec3_of(0, ROOM, 0),
+                         vec3_of(0, 0, 1e-3f), vec3_of(lumen, lumen, lumen));
+    rsm_fixture_fill_face(&rsm, 0,
+                          (struct rsm_fixture_texel){ .depth = 1,
+                                                      .normal = vec3_of(0, 0, 1),
+                                                      .reflectance = { 255, 255, 255 } });
+    set_wall(&rsm, height);
+    rsm_fixture_show_wall(&rsm, vec3_of(0.02f, 0.02f, ROOM - 0.01f), vec3_of(ROOM - 0.04f, 0, 0),
+                          vec3_of(0, ROOM - 0.04f, 0), vec3_of(0, 0, -1));
+    rsm.constants.camera_position = vec3_of(ROOM / 2, ROOM / 2, ROOM / 2);
+    rsm_fixture_upload(&rsm);
+    mesh_fixture_init(&meshes, &rsm);
     if (height > 0)
-        props_add_wall(&props, vec3_of(0, 0, WALL), vec3_of(ROOM, 0, 0), vec3_of(0, height, 0));
-    props_place(&props);
+        mesh_fixture_add_wall(&meshes, vec3_of(0, 0, WALL), vec3_of(ROOM, 0, 0),
+                              vec3_of(0, height, 0));
+    mesh_fixture_place(&meshes);
     struct lpv *lpv = lpv_fixture_create(gpu, gi);
-    props_render(&props, lpv);
+    mesh_fixture_render(&meshes, lpv);
     float got[PIXELS * 3];
     double sum = 0.0;
-    stage_read_irradiance(&stage, got);
+    rsm_fixture_read_irradiance(&rsm, got);
     for (int i = 0; i < PIXELS; i++) sum += (double)got[3 * i] / PIXELS;
     lpv_fixture_destroy(lpv);
-    props_finish(&props);
-    stage_finish(&stage);
+    mesh_fixture_finish(&meshes);
+    rsm_fixture_finish(&rsm);
     return sum;
 }
 

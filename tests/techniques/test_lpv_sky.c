@@ -11,7 +11,7 @@ enum { WIDTH = 8, PIXELS = WIDTH * WIDTH, DIRECTIONS = 5 };
 static const vec3s SKY = { { 1, 10, 200 } };
 
 // No lights and no occluders: the sky fills the sphere, so that E = π L for every normal.
-static void check_furnace(struct stage *stage, struct lpv *lpv, double tolerance)
+static void check_furnace(struct rsm_fixture *rsm, struct lpv *lpv, double tolerance)
 {
     static const float normals[DIRECTIONS][3] = {
         { 0, 1, 0 }, { 0, -1, 0 }, { 1, 0, 0 }, { 1, 2, -3 }, { -1, -1, 1 }
@@ -20,10 +20,10 @@ static void check_furnace(struct stage *stage, struct lpv *lpv, double tolerance
         const vec3s n = glms_vec3_normalize(vec3_of(normals[i][0], normals[i][1], normals[i][2]));
         float got[3 * PIXELS];
         // From corner to corner of the box and slightly beyond.
-        stage_show_wall(stage, vec3_of(-2, -1, -3), vec3_of(4, 0, 6), vec3_of(0, 2, 0), n);
-        stage_upload(stage);
-        lpv_fixture_render(lpv, stage);
-        stage_read_irradiance(stage, got);
+        rsm_fixture_show_wall(rsm, vec3_of(-2, -1, -3), vec3_of(4, 0, 6), vec3_of(0, 2, 0), n);
+        rsm_fixture_upload(rsm);
+        lpv_fixture_render(lpv, rsm);
+        rsm_fixture_read_irradiance(rsm, got);
         for (int k = 0; k < 3 * PIXELS; k++)
             CHECK_RELATIVE((double)got[k], GLM_PI * (double)SKY.raw[k % 3], tolerance);
     }
@@ -38,33 +38,33 @@ TEST_GPU(lpv_passes_the_furnace_test_of_the_sky)
                             "lpv:dim=16,steps=128,sky=true,focus=0.6666667,precision=float",
                             "holpv:dim=16,steps=128,sky=true" };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct stage stage;
-        stage_init(&stage, gpu, WIDTH, WIDTH, 8, 0);
-        stage.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
-        stage.constants.sky = SKY;
+        struct rsm_fixture rsm;
+        rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, 8, 0);
+        rsm.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
+        rsm.constants.sky = SKY;
         struct lpv *lpv = lpv_fixture_create(gpu, cases[i]);
-        check_furnace(&stage, lpv, 5e-3);
+        check_furnace(&rsm, lpv, 5e-3);
         lpv_fixture_destroy(lpv);
-        stage_finish(&stage);
+        rsm_fixture_finish(&rsm);
     }
 }
 
 TEST_GPU(lpv_without_the_option_ignores_the_sky)
 {
-    struct stage stage;
+    struct rsm_fixture rsm;
     float got[3 * PIXELS];
-    stage_init(&stage, gpu, WIDTH, WIDTH, 8, 0);
-    stage.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
-    stage.constants.sky = SKY;
-    stage_show_wall(&stage, vec3_of(-1, 0, -1), vec3_of(1, 0, 1), vec3_of(0, 1, 0),
-                    vec3_of(0, 1, 0));
-    stage_upload(&stage);
+    rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, 8, 0);
+    rsm.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
+    rsm.constants.sky = SKY;
+    rsm_fixture_show_wall(&rsm, vec3_of(-1, 0, -1), vec3_of(1, 0, 1), vec3_of(0, 1, 0),
+                          vec3_of(0, 1, 0));
+    rsm_fixture_upload(&rsm);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=16,sky=false");
-    lpv_fixture_render(lpv, &stage);
-    stage_read_irradiance(&stage, got);
+    lpv_fixture_render(lpv, &rsm);
+    rsm_fixture_read_irradiance(&rsm, got);
     for (int k = 0; k < 3 * PIXELS; k++) CHECK(got[k] == 0.0f);
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 // Sky plus lights equals the sum of both, on the same grid: a sky implies a margin of one cell.
@@ -75,21 +75,21 @@ TEST_GPU(lpv_sky_adds_to_other_light)
                                    .normal = vec3_of(0, 1, 0),
                                    .flux = vec3_of(500, 20, 1) };
     for (int which = 1; which <= 3; which++) {
-        struct stage stage;
-        stage_init(&stage, gpu, WIDTH, WIDTH, 8, 0);
-        stage.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
-        if (which & 1) stage.constants.sky = SKY;
-        stage_set_emitters(&stage, &point, which & 2 ? 1 : 0);
-        stage_show_wall(&stage, vec3_of(-2, 0.9f, -3), vec3_of(4, 0, 0), vec3_of(0, 0, 6),
-                        vec3_of(0, -1, 0));
-        stage_upload(&stage);
+        struct rsm_fixture rsm;
+        rsm_fixture_init(&rsm, gpu, WIDTH, WIDTH, 8, 0);
+        rsm.view.bounds = (struct box3){ vec3_of(-2, -1, -3), vec3_of(2, 1, 3) };
+        if (which & 1) rsm.constants.sky = SKY;
+        rsm_fixture_set_emitters(&rsm, &point, which & 2 ? 1 : 0);
+        rsm_fixture_show_wall(&rsm, vec3_of(-2, 0.9f, -3), vec3_of(4, 0, 0), vec3_of(0, 0, 6),
+                              vec3_of(0, -1, 0));
+        rsm_fixture_upload(&rsm);
         struct lpv *lpv =
             lpv_fixture_create(gpu, "lpv:dim=16,sky=true,cell_margin=1,precision=float");
-        lpv_fixture_render(lpv, &stage);
-        stage_read_irradiance(&stage, which == 3 ? both : got);
+        lpv_fixture_render(lpv, &rsm);
+        rsm_fixture_read_irradiance(&rsm, which == 3 ? both : got);
         for (int k = 0; k < 3 * PIXELS && which < 3; k++) sum[k] += got[k];
         lpv_fixture_destroy(lpv);
-        stage_finish(&stage);
+        rsm_fixture_finish(&rsm);
     }
     for (int k = 0; k < 3 * PIXELS; k++) // 11 bits of three results
         CHECK_RELATIVE((double)both[k], (double)sum[k], 3e-3);

@@ -16,25 +16,26 @@ static vec3s random_direction(struct rng *rng)
 }
 
 // Two maps with texels scattered over a box of 4 × 3 × 3.5 m, some outside, some empty.
-static void scatter(struct stage *stage, struct gpu *gpu)
+static void scatter(struct rsm_fixture *rsm, struct gpu *gpu)
 {
     struct rng rng = rng_for(5, 0, 0);
-    stage_init(stage, gpu, WIDTH, HEIGHT, SIZE, 2);
-    stage->view.bounds = (struct box3){ vec3_of(-2.1f, 0.3f, 1.2f), vec3_of(1.9f, 3.3f, 4.7f) };
-    stage_set_face(stage, 0, vec3_of(-2.5f, 0.2f, 1.1f), vec3_of(4.6f, 0.3f, 0.1f),
-                   vec3_of(0.2f, 3.2f, 0.3f), vec3_of(0.1f, -0.2f, 3.6f), vec3_of(3, 2, 1));
-    stage_set_face(stage, 1, vec3_of(1.7f, 3.1f, 4.6f), vec3_of(-3.3f, 0.3f, 0.1f),
-                   vec3_of(0.2f, 0.2f, -3.2f), vec3_of(0.1f, -2.6f, 0.2f), vec3_of(0.01f, 40, 1));
+    rsm_fixture_init(rsm, gpu, WIDTH, HEIGHT, SIZE, 2);
+    rsm->view.bounds = (struct box3){ vec3_of(-2.1f, 0.3f, 1.2f), vec3_of(1.9f, 3.3f, 4.7f) };
+    rsm_fixture_set_face(rsm, 0, vec3_of(-2.5f, 0.2f, 1.1f), vec3_of(4.6f, 0.3f, 0.1f),
+                         vec3_of(0.2f, 3.2f, 0.3f), vec3_of(0.1f, -0.2f, 3.6f), vec3_of(3, 2, 1));
+    rsm_fixture_set_face(rsm, 1, vec3_of(1.7f, 3.1f, 4.6f), vec3_of(-3.3f, 0.3f, 0.1f),
+                         vec3_of(0.2f, 0.2f, -3.2f), vec3_of(0.1f, -2.6f, 0.2f),
+                         vec3_of(0.01f, 40, 1));
     for (int face = 0; face < 2; face++)
         for (uint32_t i = 0; i < SIZE * SIZE; i++) {
-            struct stage_texel texel = { .depth = i % 7 == 0 ? 0.0f : rng_float(&rng),
-                                         .normal = random_direction(&rng) };
+            struct rsm_fixture_texel texel = { .depth = i % 7 == 0 ? 0.0f : rng_float(&rng),
+                                               .normal = random_direction(&rng) };
             for (int c = 0; c < 3; c++) texel.reflectance[c] = (uint8_t)(rng_u32(&rng) & 255);
-            *stage_texel(stage, face, i % SIZE, i / SIZE) = texel;
+            *rsm_fixture_texel(rsm, face, i % SIZE, i / SIZE) = texel;
         }
-    stage_show_wall(stage, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
-                    vec3_of(0.1f, 0.3f, 3), vec3_of(0, 1, 0));
-    stage_upload(stage);
+    rsm_fixture_show_wall(rsm, vec3_of(-2, 0.5f, 1.5f), vec3_of(3.5f, 0.2f, 0.1f),
+                          vec3_of(0.1f, 0.3f, 3), vec3_of(0, 1, 0));
+    rsm_fixture_upload(rsm);
 }
 
 static double largest(const struct twin *twin, double (*values)[9])
@@ -63,18 +64,18 @@ static double rounding(const struct lpv *lpv)
     return lpv->options.precision == LPV_PRECISION_HALF ? 5e-4 : 1e-5;
 }
 
-static void twin_of(struct twin *twin, struct lpv *lpv, const struct stage *stage, int colour)
+static void twin_of(struct twin *twin, struct lpv *lpv, const struct rsm_fixture *rsm, int colour)
 {
     twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
-    lpv_fixture_inject_twin(twin, stage, colour);
+    lpv_fixture_inject_twin(twin, rsm, colour);
 }
 
-static void check_injection(struct lpv *lpv, struct stage *stage)
+static void check_injection(struct lpv *lpv, struct rsm_fixture *rsm)
 {
-    lpv_fixture_render(lpv, stage);
+    lpv_fixture_render(lpv, rsm);
     for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
-        twin_of(&twin, lpv, stage, colour);
+        twin_of(&twin, lpv, rsm, colour);
         float *got = lpv_fixture_read(lpv, lpv->volumes.injected, colour);
         check_volume(got, &twin, twin.light, rounding(lpv));
         free(got);
@@ -88,14 +89,14 @@ enum { INJECTION_COUNT = sizeof INJECTIONS / sizeof INJECTIONS[0] };
 
 TEST_GPU(lpv_injection_equals_the_twin)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
     for (int i = 0; i < INJECTION_COUNT; i++) {
         struct lpv *lpv = lpv_fixture_create(gpu, INJECTIONS[i]);
-        check_injection(lpv, &stage);
+        check_injection(lpv, &rsm);
         lpv_fixture_destroy(lpv);
     }
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 enum { POINTS = 777 }; // not a multiple of a workgroup
@@ -117,20 +118,20 @@ static void scatter_points(struct frame_emitter *points)
 
 TEST_GPU(lpv_injection_of_emissive_surfaces_equals_the_twin)
 {
-    struct stage stage;
+    struct rsm_fixture rsm;
     struct frame_emitter points[POINTS];
-    scatter(&stage, gpu);
+    scatter(&rsm, gpu);
     scatter_points(points);
-    stage_set_emitters(&stage, points, POINTS);
+    rsm_fixture_set_emitters(&rsm, points, POINTS);
     for (int i = 0; i < INJECTION_COUNT; i++) {
         struct lpv *lpv = lpv_fixture_create(gpu, INJECTIONS[i]);
-        stage.view.rsm_face_count = 2;
-        check_injection(lpv, &stage); // with the maps
-        stage.view.rsm_face_count = 0;
-        check_injection(lpv, &stage); // alone
+        rsm.view.rsm_face_count = 2;
+        check_injection(lpv, &rsm); // with the maps
+        rsm.view.rsm_face_count = 0;
+        check_injection(lpv, &rsm); // alone
         lpv_fixture_destroy(lpv);
     }
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 static void propagate_twin(struct twin *twin, const struct lpv *lpv)
@@ -141,13 +142,13 @@ static void propagate_twin(struct twin *twin, const struct lpv *lpv)
 
 static void propagation_equals_the_twin(struct gpu *gpu, const char *options)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
     struct lpv *lpv = lpv_fixture_create(gpu, options);
-    lpv_fixture_render(lpv, &stage);
+    lpv_fixture_render(lpv, &rsm);
     for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
-        twin_of(&twin, lpv, &stage, colour);
+        twin_of(&twin, lpv, &rsm, colour);
         propagate_twin(&twin, lpv);
         float *got = lpv_fixture_read(lpv, lpv->volumes.light, colour);
         check_volume(got, &twin, twin.accumulated, 1e-3);
@@ -155,7 +156,7 @@ static void propagation_equals_the_twin(struct gpu *gpu, const char *options)
         twin_finish(&twin);
     }
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 TEST_GPU(lpv_propagation_is_the_sum_over_faces_and_steps)
@@ -185,23 +186,23 @@ TEST_GPU(lpv_bands_and_neighbours_are_independent)
 
 static void application_equals_the_twin(struct gpu *gpu, const char *options)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
     struct lpv *lpv = lpv_fixture_create(gpu, options);
-    lpv_fixture_render(lpv, &stage);
+    lpv_fixture_render(lpv, &rsm);
     float got[PIXELS * 3];
-    stage_read_irradiance(&stage, got);
+    rsm_fixture_read_irradiance(&rsm, got);
     for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
-        twin_of(&twin, lpv, &stage, colour);
+        twin_of(&twin, lpv, &rsm, colour);
         propagate_twin(&twin, lpv);
         double expected[PIXELS], most = 0.0;
         for (int i = 0; i < PIXELS; i++) {
             const float x = ((float)(i % WIDTH) + 0.5f) * 2.0f / WIDTH - 1.0f;
             const float y = ((float)(i / WIDTH) + 0.5f) * 2.0f / HEIGHT - 1.0f;
             expected[i] = twin_irradiance(
-                &twin, mat4_point(stage.constants.world_from_clip, vec3_of(x, y, 0.5f)),
-                stage_rounded_normal(vec3_of(0, 1, 0)), &lpv->options);
+                &twin, mat4_point(rsm.constants.world_from_clip, vec3_of(x, y, 0.5f)),
+                rsm_fixture_rounded_normal(vec3_of(0, 1, 0)), &lpv->options);
             most = fmax(most, expected[i]);
         }
         CHECK(most > 0.0);
@@ -211,7 +212,7 @@ static void application_equals_the_twin(struct gpu *gpu, const char *options)
         twin_finish(&twin);
     }
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 TEST_GPU(lpv_application_equals_the_twin)
@@ -238,10 +239,10 @@ static float *injected(struct lpv *lpv, size_t *count)
     return all;
 }
 
-static float *injected_of(struct stage *stage, struct lpv *lpv, size_t *count)
+static float *injected_of(struct rsm_fixture *rsm, struct lpv *lpv, size_t *count)
 {
-    stage_upload(stage);
-    lpv_fixture_render(lpv, stage);
+    rsm_fixture_upload(rsm);
+    lpv_fixture_render(lpv, rsm);
     return injected(lpv, count);
 }
 
@@ -274,52 +275,52 @@ TEST_GPU(lpv_volumes_of_half_floats_have_the_papers_size)
 
 TEST_GPU(lpv_injection_is_independent_of_order)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
     struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=1,precision=float");
     size_t count;
-    float *before = injected_of(&stage, lpv, &count), *again = injected_of(&stage, lpv, &count);
+    float *before = injected_of(&rsm, lpv, &count), *again = injected_of(&rsm, lpv, &count);
     assert_memory_equal(before, again, count * sizeof *before);
     struct frame_emitter points[POINTS], reversed[POINTS];
     scatter_points(points);
     for (int i = 0; i < POINTS; i++) reversed[i] = points[POINTS - 1 - i];
     free(before);
-    stage_set_emitters(&stage, points, POINTS);
-    before = injected_of(&stage, lpv, &count);
-    stage_set_emitters(&stage, reversed, POINTS);
+    rsm_fixture_set_emitters(&rsm, points, POINTS);
+    before = injected_of(&rsm, lpv, &count);
+    rsm_fixture_set_emitters(&rsm, reversed, POINTS);
     // The same lights in reverse order.
     for (uint32_t i = 0; i < SIZE * SIZE; i++) {
-        const struct stage_texel texel = stage.texels[i];
-        stage.texels[i] = stage.texels[SIZE * SIZE + i];
-        stage.texels[SIZE * SIZE + i] = texel;
+        const struct rsm_fixture_texel texel = rsm.texels[i];
+        rsm.texels[i] = rsm.texels[SIZE * SIZE + i];
+        rsm.texels[SIZE * SIZE + i] = texel;
     }
-    const struct rsm_face face = stage.faces[0];
-    stage.faces[0] = stage.faces[1];
-    stage.faces[1] = face;
-    float *swapped = injected_of(&stage, lpv, &count);
+    const struct rsm_face face = rsm.faces[0];
+    rsm.faces[0] = rsm.faces[1];
+    rsm.faces[1] = face;
+    float *swapped = injected_of(&rsm, lpv, &count);
     assert_memory_equal(before, swapped, count * sizeof *before);
     free(before);
     free(again);
     free(swapped);
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 TEST_GPU(lpv_half_the_light_is_half_the_grid_to_the_bit)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
     struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=1,precision=float");
     size_t count;
-    float *full = injected_of(&stage, lpv, &count);
+    float *full = injected_of(&rsm, lpv, &count);
     for (int face = 0; face < 2; face++)
-        stage.faces[face].intensity = glms_vec3_scale(stage.faces[face].intensity, 0.5f);
-    float *half = injected_of(&stage, lpv, &count);
+        rsm.faces[face].intensity = glms_vec3_scale(rsm.faces[face].intensity, 0.5f);
+    float *half = injected_of(&rsm, lpv, &count);
     for (size_t i = 0; i < count; i++) CHECK(half[i] == 0.5f * full[i]);
     free(full);
     free(half);
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 // All texels of a face in one cell, maximum number of steps: half floats end at 65504.
@@ -329,25 +330,25 @@ TEST_GPU(lpv_half_floats_represent_any_flux)
                                        "lpv:dim=8,steps=128,precision=half,focus=1",
                                        "holpv:dim=8,steps=128,precision=half,focus=0",
                                        "holpv:dim=8,steps=128,precision=half,focus=1" };
-    struct stage stage;
-    scatter(&stage, gpu);
-    stage_set_face(&stage, 0, vec3_of(-0.1f, 2, 3), vec3_of(0.01f, 0, 0), vec3_of(0, 0.01f, 0),
-                   vec3_of(0, 0, 0.01f), vec3_of(3, 2, 1));
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
+    rsm_fixture_set_face(&rsm, 0, vec3_of(-0.1f, 2, 3), vec3_of(0.01f, 0, 0), vec3_of(0, 0.01f, 0),
+                         vec3_of(0, 0, 0.01f), vec3_of(3, 2, 1));
     for (uint32_t i = 0; i < SIZE * SIZE; i++)
-        *stage_texel(&stage, 0, i % SIZE, i / SIZE) = (struct stage_texel){
+        *rsm_fixture_texel(&rsm, 0, i % SIZE, i / SIZE) = (struct rsm_fixture_texel){
             .depth = 0.5f, .normal = vec3_of(0, 1, 0), .reflectance = { 255, 255, 255 }
         };
-    stage_upload(&stage);
-    stage.view.rsm_face_count = 1;
-    const vec3s intensity = stage.faces[0].intensity;
+    rsm_fixture_upload(&rsm);
+    rsm.view.rsm_face_count = 1;
+    const vec3s intensity = rsm.faces[0].intensity;
     for (int i = 0; i < 4; i++) {
         struct lpv *lpv = lpv_fixture_create(gpu, gis[i]);
         float most = 0.0f;
         float *all[3];
         for (int k = 0; k < 3; k++) { // 2^-40, 1 and 2^40 of the light
-            stage.faces[0].intensity = glms_vec3_scale(intensity, ldexpf(1.0f, 40 * (k - 1)));
-            stage_upload(&stage);
-            lpv_fixture_render(lpv, &stage);
+            rsm.faces[0].intensity = glms_vec3_scale(intensity, ldexpf(1.0f, 40 * (k - 1)));
+            rsm_fixture_upload(&rsm);
+            lpv_fixture_render(lpv, &rsm);
             all[k] = lpv_fixture_read(lpv, lpv->volumes.light, 0);
         }
         const size_t count = (size_t)lpv->grid.cells[0] * (size_t)lpv->grid.cells[1] *
@@ -362,24 +363,24 @@ TEST_GPU(lpv_half_floats_represent_any_flux)
         for (int k = 0; k < 3; k++) free(all[k]);
         lpv_fixture_destroy(lpv);
     }
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
 TEST_GPU(lpv_two_lights_are_the_sum_even_ten_thousand_times_apart)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
     struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=1,precision=float");
-    stage.faces[1].intensity = glms_vec3_scale(stage.faces[1].intensity, 1e4f);
-    const vec3s dim = stage.faces[0].intensity, bright = stage.faces[1].intensity;
+    rsm.faces[1].intensity = glms_vec3_scale(rsm.faces[1].intensity, 1e4f);
+    const vec3s dim = rsm.faces[0].intensity, bright = rsm.faces[1].intensity;
     size_t count;
-    float *both = injected_of(&stage, lpv, &count);
-    stage.faces[1].intensity = vec3_of(0, 0, 0);
-    float *first = injected_of(&stage, lpv, &count);
-    stage.faces[1].intensity = bright;
-    stage.faces[0].intensity = vec3_of(0, 0, 0);
-    float *second = injected_of(&stage, lpv, &count);
-    stage.faces[0].intensity = dim;
+    float *both = injected_of(&rsm, lpv, &count);
+    rsm.faces[1].intensity = vec3_of(0, 0, 0);
+    float *first = injected_of(&rsm, lpv, &count);
+    rsm.faces[1].intensity = bright;
+    rsm.faces[0].intensity = vec3_of(0, 0, 0);
+    float *second = injected_of(&rsm, lpv, &count);
+    rsm.faces[0].intensity = dim;
     for (size_t i = 0; i < count; i++)
         CHECK_NEAR((double)both[i], (double)first[i] + (double)second[i],
                    1e-6 * (fabs((double)second[i]) + fabs((double)first[i])) + 1e-2);
@@ -395,39 +396,39 @@ TEST_GPU(lpv_two_lights_are_the_sum_even_ten_thousand_times_apart)
     free(first);
     free(second);
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }
 
-static void expect_black(struct lpv *lpv, struct stage *stage)
+static void expect_black(struct lpv *lpv, struct rsm_fixture *rsm)
 {
     float got[PIXELS * 3];
-    lpv_fixture_render(lpv, stage);
-    stage_read_irradiance(stage, got);
+    lpv_fixture_render(lpv, rsm);
+    rsm_fixture_read_irradiance(rsm, got);
     for (int i = 0; i < PIXELS * 3; i++) CHECK(got[i] == 0.0f);
 }
 
 TEST_GPU(lpv_without_light_or_scene_is_black_exactly)
 {
-    struct stage stage;
-    scatter(&stage, gpu);
+    struct rsm_fixture rsm;
+    scatter(&rsm, gpu);
     struct lpv *lpv = lpv_fixture_create(gpu, "holpv:dim=8,steps=4");
-    lpv_fixture_render(lpv, &stage); // leaves light in all images
-    const struct box3 bounds = stage.view.bounds;
-    stage.view.bounds = box3_empty();
-    expect_black(lpv, &stage);
-    stage.view.bounds = (struct box3){ bounds.min, bounds.min };
-    expect_black(lpv, &stage);
-    stage.view.bounds = bounds;
-    for (int face = 0; face < 2; face++) stage.faces[face].intensity = vec3_of(0, 0, 0);
-    expect_black(lpv, &stage);
+    lpv_fixture_render(lpv, &rsm); // leaves light in all images
+    const struct box3 bounds = rsm.view.bounds;
+    rsm.view.bounds = box3_empty();
+    expect_black(lpv, &rsm);
+    rsm.view.bounds = (struct box3){ bounds.min, bounds.min };
+    expect_black(lpv, &rsm);
+    rsm.view.bounds = bounds;
+    for (int face = 0; face < 2; face++) rsm.faces[face].intensity = vec3_of(0, 0, 0);
+    expect_black(lpv, &rsm);
     for (int face = 0; face < 2; face++) {
-        stage.faces[face].intensity = vec3_of(9, 9, 9);
-        stage_fill_face(&stage, face, (struct stage_texel){ .depth = 0 });
+        rsm.faces[face].intensity = vec3_of(9, 9, 9);
+        rsm_fixture_fill_face(&rsm, face, (struct rsm_fixture_texel){ .depth = 0 });
     }
-    stage_upload(&stage);
-    expect_black(lpv, &stage);
-    stage.view.rsm_face_count = 0;
-    expect_black(lpv, &stage);
+    rsm_fixture_upload(&rsm);
+    expect_black(lpv, &rsm);
+    rsm.view.rsm_face_count = 0;
+    expect_black(lpv, &rsm);
     lpv_fixture_destroy(lpv);
-    stage_finish(&stage);
+    rsm_fixture_finish(&rsm);
 }

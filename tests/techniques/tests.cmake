@@ -1,5 +1,5 @@
 add_library(ag_test_techniques STATIC techniques/geometry_fixture.c techniques/geometry_twin.c techniques/lpv_fixture.c
-  techniques/lpv_twin.c techniques/props.c techniques/stage.c
+  techniques/lpv_twin.c techniques/mesh_fixture.c techniques/rsm_fixture.c
   techniques/svo_tree.c techniques/vct_rig.c techniques/vct_twin.c techniques/vo_fixture.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_studio ag_techniques PRIVATE afterglow_flags m)
 
