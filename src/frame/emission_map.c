@@ -1,23 +1,23 @@
-// A mean pyramid of linear light. The first level is the exact area average of the image on a grid
-// of powers of two, so that halving stays exact; between texels the look-up is bilinear.
+// A mip pyramid of linear values. The first level is the exact area average of the image on a grid
+// of powers of two, so that each further level is exact too; lookups are bilinear.
 #include "frame/emission_map.h"
 
 #include "image/png_file.h"
 
 #include <math.h>
 
-// What a texel of the image counts as.
+// Conversion of 8-bit texels to linear values.
 struct decoder {
     bool mask;
-    float least;       // alpha, 0…1
-    float linear[256]; // of sRGB
+    float cutoff;      // alpha, 0…1
+    float linear[256]; // sRGB decoding table
 };
 
 static vec3s decode(const struct decoder *d, const uint8_t rgba[4])
 {
     if (d->mask) {
-        float there = (float)rgba[3] >= d->least * 255.0f ? 1.0f : 0.0f;
-        return vec3_of(there, there, there);
+        float solid = (float)rgba[3] >= d->cutoff * 255.0f ? 1.0f : 0.0f;
+        return vec3_of(solid, solid, solid);
     }
     return vec3_of(d->linear[rgba[0]], d->linear[rgba[1]], d->linear[rgba[2]]);
 }
@@ -29,7 +29,7 @@ static int power_of_two_within(int size)
     return power;
 }
 
-// A texel of `from` covers one or two of `to` ≤ `from` texels: the first, and how much lies in it.
+// A texel of a row of `from` overlaps one or two texels of a row of `to` ≤ `from`.
 struct overlap {
     int first;
     float in_first, in_second;
@@ -114,9 +114,9 @@ bool emission_map_init_color(struct emission_map *out, struct host *host, const 
 }
 
 bool emission_map_init_mask(struct emission_map *out, struct host *host, const struct scene *scene,
-                            const struct texture_use *use, float least)
+                            const struct texture_use *use, float cutoff)
 {
-    struct decoder decoder = { .mask = true, .least = least };
+    struct decoder decoder = { .mask = true, .cutoff = cutoff };
     return init(out, host, scene, use, &decoder);
 }
 
@@ -126,7 +126,7 @@ void emission_map_finish(struct emission_map *map, struct host *host)
     *map = (struct emission_map){ 0 };
 }
 
-// ---- Look-up ------------------------------------------------------------------------------------
+// ---- Lookup -------------------------------------------------------------------------------------
 
 vec2s emission_map_uv(const struct emission_map *map, const vec2s *uv0, const vec2s *uv1,
                       uint32_t vertex)
@@ -140,7 +140,7 @@ vec2s emission_map_uv(const struct emission_map *map, const vec2s *uv0, const ve
     return (vec2s){ { c * u + s * v + t->uv_offset[0], c * v - s * u + t->uv_offset[1] } };
 }
 
-// Keeps the texel numbers that follow small; NaN becomes 0.
+// Reduces a coordinate to one period, so that texel indices do not overflow; NaN becomes 0.
 static float wrapped(float x, enum texture_wrap wrap)
 {
     if (!isfinite(x)) return 0.0f;

@@ -1,6 +1,5 @@
-// What a texture contributes to emission, averaged over footprints of any size on the CPU: the
-// colours of an emissive map, or how much of a masked surface is there. A small mean pyramid of the
-// image, EMISSION_MAP_SIZE² at most.
+// CPU mip pyramids of emissive maps and alpha masks, at most EMISSION_MAP_SIZE²: averages over
+// footprints of any size.
 #pragma once
 
 #include "scene/scene.h"
@@ -17,16 +16,16 @@ struct emission_map {
     } levels[EMISSION_MAP_LEVELS];
 };
 
-// sRGB-decoded colours of the image that `use` names; linear light is what is averaged.
+// Averages linear (sRGB-decoded) colours.
 bool emission_map_init_color(struct emission_map *out, struct host *host, const struct scene *scene,
                              const struct texture_use *use);
-// 1 where the image's alpha reaches `least`, else 0.
+// Averages a mask: 1 where alpha ≥ cutoff, else 0.
 bool emission_map_init_mask(struct emission_map *out, struct host *host, const struct scene *scene,
-                            const struct texture_use *use, float least);
+                            const struct texture_use *use, float cutoff);
 void emission_map_finish(struct emission_map *map, struct host *host); // accepts zero
 
-// The texture's coordinates from the mesh's (KHR_texture_transform), and how areas grow on the way.
+// Texture coordinates of a vertex after KHR_texture_transform.
 vec2s emission_map_uv(const struct emission_map *map, const vec2s *uv0, const vec2s *uv1,
                       uint32_t vertex);
-// Mean around `uv`, already transformed, over a footprint of `area` (the whole image is 1).
+// Mean over a footprint around transformed coordinates; area 1 is the whole image.
 vec3s emission_map_mean(const struct emission_map *map, vec2s uv, float area);

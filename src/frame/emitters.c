@@ -1,4 +1,5 @@
-// Virtual lights on emissive triangles: their flux once a scene, their places whenever they move.
+// Virtual point lights on emissive triangles. Radiance is computed once per scene; areas and points
+// whenever an emissive instance moves.
 #include "frame/emitters.h"
 
 #include "frame/emission_map.h"
@@ -11,11 +12,10 @@
 
 static const float BLEND_CUTOFF = 0.5f; // blended materials are drawn as masks
 static const double PI = 3.14159265358979323846;
-enum {
-    MAX_STRATA = 32
-}; // a side of a triangle is cut into at most so many pieces to average its map
+// Upper limit of subdivisions of a triangle's edge when its maps are averaged.
+enum { MAX_STRATA = 32 };
 
-// Of an emissive material; unused ones have no levels.
+// Maps of an emissive material; unused ones have no levels.
 struct emission_maps {
     struct emission_map color, mask;
 };
@@ -30,8 +30,8 @@ struct emitter_instance {
     const struct mesh *mesh;
     const struct material *material;
     const struct emission_maps *maps;
-    size_t first; // triangle
-    bool known;   // the areas are those of world_from_mesh
+    size_t first;     // index of its first triangle
+    bool areas_valid; // for world_from_mesh
     mat4s world_from_mesh;
 };
 
@@ -40,15 +40,15 @@ static size_t triangle_count(const struct mesh *mesh)
     return mesh->index_count / 3;
 }
 
-// ---- Radiance, once a scene ---------------------------------------------------------------------
+// ---- Radiance, once per scene -------------------------------------------------------------------
 
 static bool is_emissive(const struct material *m)
 {
     return m->emissive.x > 0.0f || m->emissive.y > 0.0f || m->emissive.z > 0.0f;
 }
 
-// The alpha that a texel must have to be there; below 0 where nothing is cut away.
-static float least_alpha(const struct material *m)
+// Alpha cutoff of the base-colour map's texels; negative: not masked.
+static float texel_cutoff(const struct material *m)
 {
     if (m->alpha_mode == ALPHA_OPAQUE) return -1.0f;
     float cutoff = m->alpha_mode == ALPHA_BLEND ? BLEND_CUTOFF : m->alpha_cutoff;
@@ -58,16 +58,16 @@ static float least_alpha(const struct material *m)
 
 static bool make_maps(struct emitters *e, const struct material *m, struct emission_maps *maps)
 {
-    float least = least_alpha(m);
+    float cutoff = texel_cutoff(m);
     if (m->emissive_map.image >= 0 && maps->color.level_count == 0 &&
         !emission_map_init_color(&maps->color, e->host, e->scene, &m->emissive_map)) {
         return false;
     }
-    return m->base_color_map.image < 0 || least < 0.0f || maps->mask.level_count > 0 ||
-           emission_map_init_mask(&maps->mask, e->host, e->scene, &m->base_color_map, least);
+    return m->base_color_map.image < 0 || cutoff < 0.0f || maps->mask.level_count > 0 ||
+           emission_map_init_mask(&maps->mask, e->host, e->scene, &m->base_color_map, cutoff);
 }
 
-// A triangle's coordinates in a map: a corner, two edges, and the area (the whole image is 1).
+// A triangle in texture space; area 1 is the whole image.
 struct map_triangle {
     vec2s corner, edges[2];
     float area;
@@ -92,7 +92,7 @@ static vec3s map_mean(const struct emission_map *map, const struct map_triangle 
     return emission_map_mean(map, uv, t->area * share);
 }
 
-// What the maps leave of a material's emission on one triangle.
+// Emission of one triangle: a factor, an emissive map, an alpha mask.
 struct emission {
     const struct emission_maps *maps;
     vec3s factor; // cd/m²
@@ -104,8 +104,8 @@ static struct emission emission_of(const struct emitter_instance *it, size_t tri
     const uint32_t *index = &it->mesh->indices[3 * triangle];
     struct emission e = { .maps = it->maps,
                           .factor = glms_vec3_maxv(it->material->emissive, vec3_of(0, 0, 0)) };
-    // A mask without a map keeps or takes the whole surface.
-    if (it->material->base_color_map.image < 0 && least_alpha(it->material) > 1.0f)
+    // A mask without a map keeps or discards the whole surface.
+    if (it->material->base_color_map.image < 0 && texel_cutoff(it->material) > 1.0f)
         e.factor = vec3_of(0, 0, 0);
     if (e.maps->color.level_count) e.color = map_triangle_of(&e.maps->color, it->mesh, index);
     if (e.maps->mask.level_count) e.mask = map_triangle_of(&e.maps->mask, it->mesh, index);
@@ -128,8 +128,7 @@ static vec3s radiance_at(const struct emission *e, vec2s at, float share)
     return l;
 }
 
-// Pieces along a side that bring the footprint of each down to a third of a texel of the finest
-// level, across.
+// Subdivisions of an edge for footprints a third of a finest-level texel wide.
 static int strata_of(const struct emission *e)
 {
     const struct emission_level *color = &e->maps->color.levels[0];
@@ -139,7 +138,7 @@ static int strata_of(const struct emission *e)
     return (int)fminf(fmaxf(ceilf(3.0f * sqrtf(texels)), 1.0f), (float)MAX_STRATA);
 }
 
-// The triangle cut into n² equal ones, each looked up at its centre.
+// Mean over n² equal subtriangles, sampled at their centroids.
 static vec3s mean_radiance(const struct emission *e)
 {
     if (!is_mapped(e)) return e->factor;
@@ -151,7 +150,7 @@ static vec3s mean_radiance(const struct emission *e)
             vec2s at = { { ((float)i + 1.0f / 3.0f) * step, ((float)j + 1.0f / 3.0f) * step } };
             sum = glms_vec3_add(sum, radiance_at(e, at, share));
             if (i + j + 1 >= n) continue;
-            at = glms_vec2_adds(at, step / 3.0f); // its neighbour, the other way round
+            at = glms_vec2_adds(at, step / 3.0f); // the other half of the parallelogram
             sum = glms_vec3_add(sum, radiance_at(e, at, share));
         }
     }
@@ -204,9 +203,9 @@ bool emitters_init(struct emitters *out, struct host *host, const struct scene *
     out->maps = host_alloc(host, (size_t)scene->material_count, sizeof *out->maps);
     out->instances = host_alloc(host, (size_t)scene->instance_count, sizeof *out->instances);
     if (!out->maps || !out->instances || !list_instances(out)) return false;
-    size_t room = out->instance_count ? EMITTERS_MAX : 1; // a block is never empty
-    out->points = host_alloc(host, room, sizeof *out->points);
-    out->scaled = host_alloc(host, room, sizeof *out->scaled);
+    size_t capacity = out->instance_count ? EMITTERS_MAX : 1; // a storage block is never empty
+    out->points = host_alloc(host, capacity, sizeof *out->points);
+    out->scaled = host_alloc(host, capacity, sizeof *out->scaled);
     return out->points && out->scaled;
 }
 
@@ -225,12 +224,13 @@ void emitters_finish(struct emitters *e)
     *e = (struct emitters){ 0 };
 }
 
-// ---- Areas, whenever something moves ------------------------------------------------------------
+// ---- Areas, after movement ----------------------------------------------------------------------
 
-// A triangle in world space; the normal is the front's, unit.
+// A triangle in world space.
 struct world_triangle {
-    vec3s corner, edges[2], normal;
-    float area_m2; // 0 where it has none
+    vec3s corner, edges[2];
+    vec3s normal;  // unit, front side
+    float area_m2; // 0: degenerate
 };
 
 static struct world_triangle world_triangle_of(const struct emitter_instance *it,
@@ -253,18 +253,18 @@ static struct world_triangle world_triangle_of(const struct emitter_instance *it
     return t;
 }
 
-// False while everything is where it was. What is deformed comes anew each time.
+// False if no emissive instance moved. Deformed instances always count as moved.
 static bool update_areas(struct emitters *e, const struct scene_pose *pose)
 {
     bool changed = false;
     for (int i = 0; i < e->instance_count; i++) {
         struct emitter_instance *it = &e->instances[i];
         mat4s world_from_mesh = pose_world_from_instance(pose, it->instance);
-        if (it->known && !pose->deformed[it->instance].positions &&
+        if (it->areas_valid && !pose->deformed[it->instance].positions &&
             memcmp(&it->world_from_mesh, &world_from_mesh, sizeof world_from_mesh) == 0) {
             continue;
         }
-        it->known = changed = true;
+        it->areas_valid = changed = true;
         it->world_from_mesh = world_from_mesh;
         struct emitter_triangle *triangles = &e->triangles[it->first];
         for (size_t t = 0; t < triangle_count(it->mesh); t++)
@@ -291,34 +291,34 @@ static double power(const struct flux *f)
     return (f->channel[0] + f->channel[1] + f->channel[2]) / 3.0;
 }
 
-static double spread(const struct emitter_triangle *t, const struct flux *f)
+static double root_flux_area(const struct emitter_triangle *t, const struct flux *f)
 {
     return sqrt(power(f) * (double)t->area_m2);
 }
 
-// The walk over all sides of all triangles.
-struct walk {
-    double all_power, all_spread;
-    double due; // points, of the sides so far
+// Progress of the point allocation over all sides of all triangles.
+struct allocation {
+    double total_power, total_root_flux_area;
+    double expected; // points for the sides so far
     int placed;
-    struct flux carried; // lumen of the sides that had no point of their own
+    struct flux carried; // lumen of sides that got no point
 };
 
-static void measure(const struct emitters *e, struct walk *w)
+static void measure(const struct emitters *e, struct allocation *a)
 {
     for (int i = 0; i < e->instance_count; i++) {
         const struct emitter_instance *it = &e->instances[i];
         double sides = it->material->double_sided ? 2.0 : 1.0;
         for (size_t t = 0; t < triangle_count(it->mesh); t++) {
             struct flux f = flux_of(&e->triangles[it->first + t]);
-            w->all_power += sides * power(&f);
-            w->all_spread += sides * spread(&e->triangles[it->first + t], &f);
+            a->total_power += sides * power(&f);
+            a->total_root_flux_area += sides * root_flux_area(&e->triangles[it->first + t], &f);
         }
     }
 }
 
-// Evenly over the triangle: R2 (Roberts 2018), from the centre on, folded at the diagonal.
-static vec2s place_in_triangle(uint32_t i)
+// R2 sequence (Roberts 2018) that starts at the centroid, folded at the diagonal.
+static vec2s r2_in_triangle(uint32_t i)
 {
     vec2s first = r2_sequence(0), at = r2_sequence(i);
     for (int axis = 0; axis < 2; axis++) {
@@ -328,13 +328,13 @@ static vec2s place_in_triangle(uint32_t i)
     return at.x + at.y > 1.0f ? (vec2s){ { 1.0f - at.x, 1.0f - at.y } } : at;
 }
 
-// `count` points on one side, which share `flux` in proportion to the radiance around each.
+// Places `count` points on one side; they share `flux` in proportion to the radiance around each.
 static void place_on_side(struct frame_emitter *out, int count, const struct world_triangle *side,
                           const struct emission *emission, const struct flux *flux)
 {
     struct flux sum = { { 0 } };
     for (int i = 0; i < count; i++) {
-        vec2s at = place_in_triangle((uint32_t)i);
+        vec2s at = r2_in_triangle((uint32_t)i);
         out[i].position =
             glms_vec3_add(side->corner, glms_vec3_add(glms_vec3_scale(side->edges[0], at.x),
                                                       glms_vec3_scale(side->edges[1], at.y)));
@@ -351,49 +351,51 @@ static void place_on_side(struct frame_emitter *out, int count, const struct wor
     }
 }
 
-static void visit_triangle(struct emitters *e, struct walk *w, const struct scene_pose *pose,
-                           const struct emitter_instance *it, size_t t, bool back, bool mirrored)
+static void place_on_triangle(struct emitters *e, struct allocation *a,
+                              const struct scene_pose *pose, const struct emitter_instance *it,
+                              size_t t, bool back, bool mirrored)
 {
     const struct emitter_triangle *triangle = &e->triangles[it->first + t];
     struct flux f = flux_of(triangle);
     if (!(power(&f) > 0.0)) return;
-    double share = 0.5 * power(&f) / w->all_power + 0.5 * spread(triangle, &f) / w->all_spread;
-    w->due += share * EMITTERS_MAX;
-    for (int c = 0; c < 3; c++) w->carried.channel[c] += f.channel[c];
-    int until = (int)fmin(floor(w->due + 0.5), EMITTERS_MAX);
-    if (until <= w->placed) return;
+    double share = 0.5 * power(&f) / a->total_power +
+                   0.5 * root_flux_area(triangle, &f) / a->total_root_flux_area;
+    a->expected += share * EMITTERS_MAX;
+    for (int c = 0; c < 3; c++) a->carried.channel[c] += f.channel[c];
+    int until = (int)fmin(floor(a->expected + 0.5), EMITTERS_MAX);
+    if (until <= a->placed) return;
     struct world_triangle side = world_triangle_of(it, pose, t, mirrored != back);
     struct emission emission = emission_of(it, t);
-    place_on_side(&e->points[w->placed], until - w->placed, &side, &emission, &w->carried);
-    w->placed = until;
-    w->carried = (struct flux){ { 0 } };
+    place_on_side(&e->points[a->placed], until - a->placed, &side, &emission, &a->carried);
+    a->placed = until;
+    a->carried = (struct flux){ { 0 } };
 }
 
-// All fronts, then all backs: alternating, the even steps of the walk would favour one side.
+// All front sides, then all back sides: with alternating sides, rounding would favour one of them.
 static void place_points(struct emitters *e, const struct scene_pose *pose)
 {
-    struct walk w = { 0 };
-    measure(e, &w);
+    struct allocation a = { 0 };
+    measure(e, &a);
     e->count = 0;
     e->flux = vec3_of(0, 0, 0);
-    if (!(w.all_power > 0.0) || !isfinite(w.all_power)) return;
+    if (!(a.total_power > 0.0) || !isfinite(a.total_power)) return;
     for (int back = 0; back < 2; back++) {
         for (int i = 0; i < e->instance_count; i++) {
             const struct emitter_instance *it = &e->instances[i];
             if (back && !it->material->double_sided) continue;
             bool mirrored = pose_is_mirrored(pose, it->instance);
             for (size_t t = 0; t < triangle_count(it->mesh); t++)
-                visit_triangle(e, &w, pose, it, t, back != 0, mirrored);
+                place_on_triangle(e, &a, pose, it, t, back != 0, mirrored);
         }
     }
-    e->count = w.placed;
+    e->count = a.placed;
     double total[3] = { 0 };
     for (int i = 0; i < e->count; i++)
         for (int c = 0; c < 3; c++) total[c] += (double)e->points[i].flux.raw[c];
     for (int c = 0; c < 3; c++) {
-        // Sides behind the last point are there by rounding alone.
-        e->points[e->count - 1].flux.raw[c] += (float)w.carried.channel[c];
-        e->flux.raw[c] = (float)(total[c] + w.carried.channel[c]);
+        // Rounding may leave sides after the last point.
+        e->points[e->count - 1].flux.raw[c] += (float)a.carried.channel[c];
+        e->flux.raw[c] = (float)(total[c] + a.carried.channel[c]);
     }
 }
 
@@ -434,8 +436,8 @@ vec3s emitters_irradiance(const struct emitters *e, struct box3 bounds)
     double sum[3] = { 0 };
     for (int i = 0; i < e->count; i++) {
         const struct frame_emitter *p = &e->points[i];
-        double way = 2.0 / 3.0 * distance_to_exit(bounds, p->position, p->normal);
-        for (int c = 0; c < 3; c++) sum[c] += (double)p->flux.raw[c] * way;
+        double path_m = 2.0 / 3.0 * distance_to_exit(bounds, p->position, p->normal);
+        for (int c = 0; c < 3; c++) sum[c] += (double)p->flux.raw[c] * path_m;
     }
     return vec3_of((float)(sum[0] / (4.0 * volume)), (float)(sum[1] / (4.0 * volume)),
                    (float)(sum[2] / (4.0 * volume)));

@@ -1,5 +1,5 @@
-// One frame, front to back. frame_record is the order of passes; each pass lies in its own folder
-// and is handed what the ones before it made. Nothing flows back up.
+// One frame: frame_record is the order of passes. Each pass has its own folder and gets the results
+// of earlier passes as arguments.
 #include "frame/frame_state.h"
 
 static const struct option_row option_rows[] = {
@@ -57,7 +57,7 @@ bool frame_set_scene(struct frame *f, const struct scene *scene)
         scene_gpu_finish(&f->scene);
         return false;
     }
-    f->scene.updates = updates + 1; // no map of the last scene is taken for one of this
+    f->scene.updates = updates + 1; // invalidates cached maps of the previous scene
     f->has_scene = true;
     return true;
 }
@@ -119,7 +119,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
 {
     f->prepared = false;
     if (!f->has_scene || f->width == 0) {
-        return host_fail(f->host, FAIL_ARGUMENT, "frame: it has no %s yet",
+        return host_fail(f->host, FAIL_ARGUMENT, "frame: no %s was set",
                          f->has_scene ? "size" : "scene");
     }
     if (input->light_count < 0 || input->light_count > FRAME_MAX_LIGHTS) {
@@ -127,7 +127,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
                          FRAME_MAX_LIGHTS);
     }
     if (input->pose->scene != f->scene.scene)
-        return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose is of another scene");
+        return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
     f->needs =
         (indirect ? indirect->needs : 0) | (input->want_motion_layer ? FRAME_NEEDS_MOTION : 0);
     f->composite_variant = composite_variant_of(input, f->needs);
@@ -160,8 +160,8 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
 static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
 {
     struct frame_view *view = &f->view;
-    size_t faces =
-        f->shadow.face_count ? (size_t)f->shadow.face_count : 1; // a block is never empty
+    // A storage block is never empty.
+    size_t faces = f->shadow.face_count ? (size_t)f->shadow.face_count : 1;
     view->shadow_maps = f->shadow.maps;
     view->shadow_sampler = f->shadow.sampler;
     view->shadow_size = f->shadow.size;
@@ -217,7 +217,7 @@ static void record_emitters(struct frame *f, struct gpu_cmd *cmd)
     struct frame_view *view = &f->view;
     if (!(f->needs & FRAME_NEEDS_EMITTERS)) return;
     emitters_scale(&f->emitters, f->constants.radiance_scale);
-    size_t count = f->emitters.count ? (size_t)f->emitters.count : 1; // a block is never empty
+    size_t count = f->emitters.count ? (size_t)f->emitters.count : 1; // never an empty block
     view->emitter_count = f->emitters.count;
     view->emitters = f->emitters.scaled;
     view->emitters_binding = gpu_transient(cmd, "frame_emitters", f->emitters.scaled,
@@ -254,17 +254,17 @@ static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct f
         exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);
         return;
     }
-    struct exposure_input metered = {
+    struct exposure_input in = {
         .direct = f->layers[FRAME_DIRECT],
         .albedo = f->layers[FRAME_ALBEDO],
         .material = f->layers[FRAME_MATERIAL],
-        .scratch = f->layers[FRAME_COLOR], // not written yet
+        .scratch = f->layers[FRAME_COLOR], // written by the composite pass only
         .emitted = f->emitted_irradiance,
-        .fallback = f->unlit_luminance,
+        .fallback = f->fallback_luminance,
         .width = f->width,
         .height = f->height,
     };
-    exposure_record_auto(&f->exposure, cmd, f->constants_binding, &metered);
+    exposure_record_auto(&f->exposure, cmd, f->constants_binding, &in);
 }
 
 static void record_composite(struct frame *f, struct gpu_cmd *cmd)

@@ -1,5 +1,5 @@
-// The frame's uniform block and what every pass computes from it. Include this instead of
-// frame_shared.h: GLSL lets no struct bear the name of a block, so the struct is renamed here.
+// The frame's uniform block and functions of it. Include this instead of frame_shared.h: in GLSL a
+// struct and a block cannot share a name, so the struct is renamed here.
 //
 // Binding number: FRAME_CONSTANTS_BINDING, 0 unless defined before the inclusion. Needs
 // GL_EXT_scalar_block_layout.

@@ -1,6 +1,6 @@
-// One frame: G-buffer, shadow maps, reflective shadow maps, direct light, indirect light (by a
-// hook), composite. The frame does not know which technique fills the indirect light. The order of
-// passes is frame.c.
+// One frame: G-buffer, shadow maps, reflective shadow maps, direct light, indirect light (recorded
+// by a callback), composite. The frame does not know the techniques. The order of passes is in
+// frame.c.
 //
 // Contract of light: a source writes irradiance E (lux) without albedo and without 1/π; specular is
 // reflected radiance; visibility is 0 (closed) … 1 (open). composite: L = Le + direct +
@@ -23,30 +23,29 @@ struct frame_options {
 };
 extern const struct option_table frame_option_table;
 
-// Images of the frame's size that can be read back. The G-buffer's formats are fixed, so that a
-// host can bring its own.
+// Images of the frame's size. G-buffer formats are fixed, so that a host application can provide
+// its own G-buffer.
 enum frame_layer {
-    FRAME_DEPTH,    // D32F, reversed Z; 0 where there is nothing
+    FRAME_DEPTH,    // D32F, reversed Z; 0: no surface
     FRAME_NORMAL,   // RG16F: octahedral shading normal, world space (frame/octahedral.glsl)
-    FRAME_ALBEDO,   // RGBA8_SRGB: base colour, alpha 1 where there is a surface
+    FRAME_ALBEDO,   // RGBA8_SRGB: base colour; alpha 1: surface, 0: none
     FRAME_MATERIAL, // RG8: roughness, metallic
     FRAME_EMISSIVE, // RGBA16F: scaled radiance
-    FRAME_MOTION, // RGBA16F: screen position now minus last frame's, in units of the screen (0…1),
-                  // +y down; distance along the view axis, last frame's over now's, minus 1; 1
-                  // where there is a surface
+    // RGBA16F. xy: screen position minus previous screen position, in 0…1 units, +y down; z:
+    // previous over current distance along the view axis, minus 1; w: 1 where there is a surface.
+    FRAME_MOTION,
     FRAME_DIRECT,     // RGBA16F: scaled radiance of punctual lights and emission
     FRAME_IRRADIANCE, // RGBA16F: scaled irradiance, indirect
     FRAME_SPECULAR,   // RGBA16F: scaled radiance, indirect
     FRAME_VISIBILITY, // R8
-    FRAME_INDIRECT, // RGBA16F: scaled radiance, albedo/π·E·visibility + specular; only when asked
-                    // for
-    FRAME_COLOR,   // RGBA16F: scaled radiance, the sum
-    FRAME_DISPLAY, // RGBA8: exposed, tone mapped, sRGB-encoded
+    FRAME_INDIRECT,   // RGBA16F: scaled radiance, albedo/π·E·visibility + specular; optional
+    FRAME_COLOR,      // RGBA16F: scaled radiance, direct + indirect
+    FRAME_DISPLAY,    // RGBA8: exposed, tone mapped, sRGB-encoded
     FRAME_LAYER_COUNT
 };
 
-// What a technique sees of a frame, valid while it records. Images are none where nobody asked for
-// them.
+// The frame as techniques see it; valid while they record. Layers that were not requested are empty
+// handles.
 struct frame_view {
     uint32_t width, height;
     uint64_t index;                          // frames since the last resize or scene change
@@ -55,38 +54,38 @@ struct frame_view {
     struct gpu_binding lights_binding;       // named "frame_lights"
     const struct frame_light *lights;
     int light_count;
-    // Points of emissive surfaces (frame/emitters.h); none where nobody needs them.
+    // Virtual point lights on emissive surfaces (frame/emitters.h), with FRAME_NEEDS_EMITTERS only.
     int emitter_count;
     const struct frame_emitter *emitters; // CPU copy
     struct gpu_binding emitters_binding;  // named "frame_emitters"
-    vec3s emitted_irradiance; // scaled lux: mean over the scene by emission on its straight way
-                              // (emitters_irradiance)
+    vec3s emitted_irradiance; // scaled lux: mean over the scene, unoccluded (emitters_irradiance)
     const struct scene_pose *pose;
     const struct scene_gpu *scene; // triangles and materials on the GPU (frame/scene_gpu.h)
     struct world_camera camera;
     struct box3 bounds; // of the scene, world space; empty for an empty scene
-    bool camera_cut, geometry_moved, lights_changed; // since last frame
+    bool camera_cut, geometry_moved, lights_changed; // since the previous frame
     gpu_image layers[FRAME_LAYER_COUNT];
     // Reflective shadow maps: arrays of rsm_size² with rsm_face_count layers in use.
     uint32_t rsm_size;
     int rsm_face_count;
     const struct rsm_face *rsm_faces;     // CPU copy
     struct gpu_binding rsm_faces_binding; // named "rsm_faces"
-    gpu_image rsm_depth;                  // D32F array, reversed Z; 0 where there is nothing
-    gpu_image rsm_normal;                 // RG16F array: octahedral, faces the light
-    gpu_image rsm_flux; // RGBA8_SRGB array: reflectance ρ of the texel (albedo × (1−metallic) ×
-                        // spot and range fall-off); reflected flux in scaled lumen = ρ × flux
-                        // through the texel, see frame/rsm/rsm.glsl
-    // Shadow maps of all lights, to be read through frame/shadow/shadow.glsl.
+    gpu_image rsm_depth;                  // D32F array, reversed Z; 0: no surface
+    gpu_image rsm_normal;                 // RG16F array: octahedral, on the light's side
+    // RGBA8_SRGB array: reflectance ρ of the texel (albedo × (1−metallic) × spot and range
+    // falloff). Reflected flux in scaled lumen = ρ × flux through the texel, see
+    // frame/rsm/rsm.glsl.
+    gpu_image rsm_flux;
+    // Shadow maps of all lights, sampled by frame/shadow/shadow.glsl.
     gpu_image shadow_maps;      // D32F array, reversed Z
-    gpu_sampler shadow_sampler; // compares
+    gpu_sampler shadow_sampler; // comparison sampler
     uint32_t shadow_size;
-    int shadow_radius;                       // of the filter, texels
+    int shadow_radius;                       // filter radius, texels
     struct gpu_binding shadow_faces_binding; // named "shadow_faces"
-    int maps_drawn; // layers of shadow maps and reflective shadow maps drawn anew in this frame
+    int maps_drawn; // layers of shadow maps and reflective shadow maps rendered in this frame
 };
 
-// What the hook reads and writes; the frame makes and fills only what is needed.
+// Inputs and outputs of the indirect light; the frame creates and fills only these.
 enum frame_need {
     FRAME_NEEDS_RSM = 1,
     FRAME_NEEDS_MOTION = 2,
@@ -109,34 +108,33 @@ struct frame_input {
     const struct world_light *lights; // physical units
     int light_count;                  // ≤ FRAME_MAX_LIGHTS
     vec3s sky;                        // cd/m²
-    bool auto_exposure; // from the log-average of direct light and emission (composite/exposure.h)
-    float exposure_ev;  // used where auto_exposure is false
-    bool camera_cut;    // forget history
+    bool auto_exposure;       // log-average of direct light and emission (composite/exposure.h)
+    float exposure_ev;        // used if auto_exposure is false
+    bool camera_cut;          // invalidate history
     bool want_indirect_layer; // fill FRAME_INDIRECT
-    bool want_motion_layer;   // fill FRAME_MOTION, whether the hook needs it or not
+    bool want_motion_layer;   // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
     bool want_display;        // fill FRAME_DISPLAY
 };
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);
-void frame_destroy(struct frame *frame); // accepts NULL and half-built frames
+void frame_destroy(struct frame *frame); // accepts NULL
 // Uploads meshes and textures; the scene must outlive the frame or the next frame_set_scene.
 bool frame_set_scene(struct frame *frame, const struct scene *scene);
 bool frame_resize(struct frame *frame, uint32_t width, uint32_t height); // 1…16384
-// Makes what the next frames need; call before recording when lights or needs changed (it may
-// allocate).
+// Creates images and pipelines for the next frames. May allocate; call before recording when lights
+// or needs changed.
 bool frame_prepare(struct frame *frame, const struct frame_input *input,
                    const struct frame_indirect *indirect);
-// Records the whole frame. Nothing here can fail or allocate.
+// Records the whole frame. Cannot fail, does not allocate.
 void frame_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
                   const struct frame_indirect *indirect);
-gpu_image frame_layer_image(const struct frame *frame,
-                            enum frame_layer layer); // none where not made
+// Empty handle if the layer was not requested.
+gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer);
 // Scale of the newest recorded frame: scaled = physical × scale.
 float frame_radiance_scale(const struct frame *frame);
-// EV of the newest finished frame (call gpu_wait first).
+// EV of the newest completed frame (call gpu_wait first).
 bool frame_exposure(struct frame *frame, float *ev);
-// Reads a layer as physical values, `channels` floats a texel (normals and positions decoded, see
-// frame_readback.c).
+// Layers as physical values; units and encodings: frame_readback.c.
 enum frame_readback {
     READ_COLOR,
     READ_DIRECT,
@@ -153,9 +151,8 @@ enum frame_readback {
     READ_MOTION,
     READ_DISPLAY,
 };
-// pixels: width × height × channels (3; depth and visibility 1, in metres along the view axis and
-// 0…1).
+// pixels: width × height × channels floats. Channels: 3, but 1 for depth and visibility.
 bool frame_read(struct frame *frame, enum frame_readback what, float *pixels, int channels);
-// Bytes for these options at this size, before anything is created.
+// Upper bound of the bytes for these options at this size.
 uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t width, uint32_t height,
                                int light_count);

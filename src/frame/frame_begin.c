@@ -1,5 +1,4 @@
-// The beginning of a frame: from physical units and world space to what shaders read, and what has
-// changed.
+// Begin of a frame: constants and lights in scaled units, and change flags.
 #include "frame/frame_state.h"
 
 #include "frame/frame_scale.h"
@@ -26,7 +25,7 @@ static struct frame_light scaled_light(const struct world_light *light, float sc
     };
 }
 
-// Field by field: the bytes between fields mean nothing.
+// Field by field, since padding bytes are undefined.
 static bool same_light(const struct world_light *a, const struct world_light *b)
 {
     return a->type == b->type && memcmp(&a->position, &b->position, sizeof a->position) == 0 &&
@@ -76,7 +75,7 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
         .bounds = input->pose->bounds,
     };
     c->radiance_scale = frame_scale(&light);
-    f->unlit_luminance = frame_unlit_luminance(&light) * c->radiance_scale;
+    f->fallback_luminance = frame_fallback_luminance(&light) * c->radiance_scale;
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
     f->emitted_irradiance =
@@ -96,6 +95,6 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
                  });
     rsm_place(&f->rsm, f->lights, f->light_count, input->pose->bounds);
     f->constants_binding = gpu_transient(cmd, "frame_constants", c, sizeof *c);
-    size_t lights = f->light_count ? (size_t)f->light_count : 1; // a block is never empty
+    size_t lights = f->light_count ? (size_t)f->light_count : 1; // never an empty block
     f->lights_binding = gpu_transient(cmd, "frame_lights", f->lights, lights * sizeof *f->lights);
 }

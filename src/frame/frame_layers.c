@@ -1,4 +1,4 @@
-// The images of a frame: formats, making and freeing, and what they will cost.
+// The images of a frame: formats, creation, destruction, memory estimate.
 #include "frame/frame_state.h"
 
 struct layer {
@@ -55,7 +55,7 @@ gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer)
     return frame->layers[layer];
 }
 
-// An upper bound: all layers, and every light as the kind that needs most maps.
+// Upper bound: all layers, and every light a point light, which has the most maps.
 uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t width, uint32_t height,
                                int light_count)
 {
@@ -65,7 +65,7 @@ uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t wid
     uint64_t faces = 6 * (uint64_t)(light_count > 0 ? light_count : 0);
     uint64_t shadow = (uint64_t)options->shadow_size, rsm = (uint64_t)options->rsm_size;
     int rsm_bytes = gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) +
-                    gpu_format_bytes(GPU_RGBA8_SRGB); // of a texel
+                    gpu_format_bytes(GPU_RGBA8_SRGB); // per texel
     return texel_bytes * width * height +
            faces * (shadow * shadow * (uint64_t)gpu_format_bytes(GPU_D32F) +
                     rsm * rsm * (uint64_t)rsm_bytes);

@@ -1,10 +1,10 @@
-// A frame's images as physical values on the CPU. Waits for the GPU.
+// Layers of a frame as physical values on the CPU. Waits for the GPU.
 //
-// Radiance in cd/m² and irradiance in lux; albedo linear; normals unit, world space, 0 where there
-// is no surface; depth in metres along the view axis and positions in world space, both 0 where
-// there is no surface; roughness and metallic in channels 0 and 1; motion as in FRAME_MOTION;
-// display values linear 0…1 (the sRGB curve undone), ready for png_write. What nobody wrote has its
-// neutral value: no indirect light, visibility 1.
+// Radiance in cd/m², irradiance in lux; albedo linear; normals as unit vectors in world space;
+// depth in metres along the view axis; positions in world space (normals, depth and positions are 0
+// without a surface); roughness and metallic in channels 0 and 1; motion as in FRAME_MOTION;
+// display values linear 0…1 (sRGB decoded), as png_write expects. Layers that no technique writes
+// have neutral values: indirect light 0, visibility 1.
 #include "frame/frame_state.h"
 
 #include "frame/octahedral.h"
@@ -16,8 +16,8 @@
 struct source {
     const char *name;
     enum frame_layer layer;
-    bool scaled;   // radiometric: divided by the frame's scale
-    bool fallible; // neutral where nobody writes it
+    bool scaled;   // radiometric: divided by the radiance scale
+    bool optional; // `neutral` if no technique writes it
     float neutral;
 };
 
@@ -25,9 +25,9 @@ static const struct source sources[] = {
     [READ_COLOR] = { "color", FRAME_COLOR, .scaled = true },
     [READ_DIRECT] = { "direct", FRAME_DIRECT, .scaled = true },
     [READ_INDIRECT] = { "indirect", FRAME_INDIRECT, .scaled = true },
-    [READ_IRRADIANCE] = { "irradiance", FRAME_IRRADIANCE, .scaled = true, .fallible = true },
-    [READ_VISIBILITY] = { "visibility", FRAME_VISIBILITY, .fallible = true, .neutral = 1.0f },
-    [READ_SPECULAR] = { "specular", FRAME_SPECULAR, .scaled = true, .fallible = true },
+    [READ_IRRADIANCE] = { "irradiance", FRAME_IRRADIANCE, .scaled = true, .optional = true },
+    [READ_VISIBILITY] = { "visibility", FRAME_VISIBILITY, .optional = true, .neutral = 1.0f },
+    [READ_SPECULAR] = { "specular", FRAME_SPECULAR, .scaled = true, .optional = true },
     [READ_ALBEDO] = { "albedo", FRAME_ALBEDO, .scaled = false },
     [READ_NORMAL] = { "normal", FRAME_NORMAL, .scaled = false },
     [READ_DEPTH] = { "depth", FRAME_DEPTH, .scaled = false },
@@ -50,7 +50,7 @@ static void divide_by_scale(const struct frame *f, float *pixels, size_t count)
     for (size_t i = 0; i < count; i++) pixels[i] *= inverse;
 }
 
-// Metres along the view axis; 0 where there is nothing.
+// Metres along the view axis; 0: no surface.
 static float distance_of(const struct frame *f, float depth)
 {
     return depth > 0.0f ? f->camera.near_m / depth : 0.0f;
@@ -87,7 +87,7 @@ static bool read_position(struct frame *f, float *pixels)
     return true;
 }
 
-// The albedo's alpha says where there is a surface.
+// The albedo's alpha is 0 without a surface.
 static bool read_normal(struct frame *f, float *pixels)
 {
     size_t count = (size_t)f->width * f->height;
@@ -113,8 +113,7 @@ static bool read_display(struct frame *f, float *pixels, int channels)
 
 static bool neutral(const struct frame *f, const struct source *source, float *pixels, size_t count)
 {
-    bool made = f->layers[source->layer].id != 0;
-    if (made || !source->fallible) return false;
+    if (f->layers[source->layer].id || !source->optional) return false;
     for (size_t i = 0; i < count; i++) pixels[i] = source->neutral;
     return true;
 }
@@ -122,7 +121,7 @@ static bool neutral(const struct frame *f, const struct source *source, float *p
 bool frame_read(struct frame *f, enum frame_readback what, float *pixels, int channels)
 {
     if ((unsigned)what >= sizeof sources / sizeof *sources)
-        return host_fail(f->host, FAIL_ARGUMENT, "frame layer %d: there is none", (int)what);
+        return host_fail(f->host, FAIL_ARGUMENT, "frame layer %d: unknown layer", (int)what);
     const struct source *source = &sources[what];
     int expected = what == READ_DEPTH || what == READ_VISIBILITY ? 1 : 3;
     if (channels != expected) {
@@ -135,7 +134,7 @@ bool frame_read(struct frame *f, enum frame_readback what, float *pixels, int ch
     size_t count = (size_t)f->width * f->height * (size_t)channels;
     if (neutral(f, source, pixels, count)) return true;
     if (!f->layers[source->layer].id) {
-        return host_fail(f->host, FAIL_ARGUMENT, "frame layer %s: nobody asked for it",
+        return host_fail(f->host, FAIL_ARGUMENT, "frame layer %s: it was not requested",
                          source->name);
     }
     if (what == READ_DEPTH) return read_depth(f, pixels);

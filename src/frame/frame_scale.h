@@ -12,7 +12,7 @@ struct scale_input {
     struct box3 bounds; // of the scene
 };
 
-// A power of two. Twice as much of everything halves it exactly; no light at all gives 1.
+// A power of two; twice the light halves it exactly. 1 without light.
 float frame_scale(const struct scale_input *in);
-// What exposure meters where no surface in sight is lit, cd/m²: see docs/units.md. 0 without light.
-float frame_unlit_luminance(const struct scale_input *in);
+// Metered luminance if no visible surface is lit, cd/m² (docs/units.md). 0 without light.
+float frame_fallback_luminance(const struct scale_input *in);

@@ -1,8 +1,8 @@
-// What the frame's passes and the techniques read on the GPU. Scalar layout.
+// Data of a frame that passes and techniques share, C and GLSL. Scalar layout.
 //
-// Radiometric unit of all GPU images: physical value × radiance_scale, a power of two chosen from
-// the lights' strength, so that half floats neither overflow nor vanish and doubling every light
-// changes nothing but the scale. Read-backs divide by it.
+// Radiometric unit of all GPU images: physical value × radiance_scale, a power of two derived from
+// the lights, so that half floats neither overflow nor underflow and twice the light changes only
+// the scale. Readbacks divide by it.
 #ifndef AG_FRAME_SHARED_H
 #define AG_FRAME_SHARED_H
 
@@ -19,13 +19,13 @@
 struct frame_constants {
     mat4s clip_from_world; // reversed Z, infinite far: depth 1 at the near plane, 0 at infinity
     mat4s world_from_clip;
-    mat4s previous_clip_from_world; // last frame's camera
+    mat4s previous_clip_from_world; // of the previous frame
     mat4s view_from_world;
     vec3s camera_position; // world, m
     float near_m;
-    vec3s sky;                  // scaled radiance from outside
+    vec3s sky;                  // scaled radiance of the sky
     float radiance_scale;       // scaled = physical × radiance_scale
-    float previous_scale_ratio; // radiance_scale / last frame's: multiply history by it
+    float previous_scale_ratio; // radiance_scale / previous radiance_scale: a factor for history
     uint32_t width, height;
     uint32_t light_count;
     uint32_t frame_index;
@@ -36,12 +36,12 @@ struct frame_constants {
 struct frame_light {
     vec3s position;
     uint32_t type;   // FRAME_LIGHT_…
-    vec3s direction; // unit, the way it shines
+    vec3s direction; // unit, away from the light
     float range_m;   // 0: unlimited
     vec3s intensity; // scaled lux or candela
     float cos_inner;
     float cos_outer;
-    int32_t shadow_first; // first face in the shadow tables, -1: casts none
+    int32_t shadow_first; // first face in shadow_faces, -1: no shadow
     int32_t shadow_count; // suns: cascades; spots: 1; points: 6 (+x −x +y −y +z −z)
     uint32_t padding;
 };
@@ -56,25 +56,25 @@ struct rsm_face {
     vec3s position; // of the light; suns: 0
     // Points and spots: tangent of the face's half-angle; suns: half-width in metres.
     float tan_half;
-    vec3s direction; // of the light, the way it shines; suns and spots
+    vec3s direction; // of suns and spots, away from the light
     uint32_t light;  // index in frame_lights
 };
 
-// Storage block "frame_emitters": a point of an emissive surface as a virtual light of intensity
+// Storage block "frame_emitters": a virtual point light on an emissive surface, of intensity
 // flux/π · (normal·ω)₊.
 struct frame_emitter {
     vec3s position; // world, m
-    vec3s normal;   // unit, the side that emits
+    vec3s normal;   // unit, of the emitting side
     vec3s flux;     // scaled lumen
 };
 
-// Where the points of a probe volume are, and how its image holds them: frame/probes.glsl.
+// Grid and image layout of a probe volume: frame/probes.glsl.
 #define FRAME_PROBE_SLABS 7
 struct frame_probes {
     vec3s first_m;   // of probe (0, 0, 0), world
-    float spacing_m; // from one to the next, along each axis of the world
+    float spacing_m; // between neighbouring probes, along each axis of the world
     int32_t count_x, count_y, count_z;
-    int32_t slab; // texels along z from one slab of the image to the next
+    int32_t slab; // texels along z between slabs of the image
 };
 
 #ifndef AG_GLSL

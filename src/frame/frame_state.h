@@ -1,5 +1,4 @@
-// What a frame holds. Only the files of this folder that make up the frame itself include it;
-// passes do not.
+// State of a frame, private to frame*.c. Passes do not include it.
 #pragma once
 
 #include "frame/frame.h"
@@ -30,27 +29,27 @@ struct frame {
     struct composite composite;
     gpu_image layers[FRAME_LAYER_COUNT];
 
-    // Decided by frame_prepare.
+    // Set by frame_prepare.
     uint32_t needs;             // frame_need bits
     uint32_t composite_variant; // composite_variant bits
     bool prepared;
 
-    // Of the newest recorded frame.
-    uint64_t index; // of the next one
+    // State of the newest recorded frame.
+    uint64_t index; // of the next frame
     struct frame_constants constants;
     struct frame_light lights[FRAME_MAX_LIGHTS];
     int light_count;
-    struct world_light world_lights[FRAME_MAX_LIGHTS]; // to see what changed
+    struct world_light world_lights[FRAME_MAX_LIGHTS]; // to detect changes
     struct world_camera camera;
     vec3s emitted_irradiance; // scaled lux
-    float unlit_luminance;    // scaled, see frame_unlit_luminance
+    float fallback_luminance; // scaled, see frame_fallback_luminance
     bool camera_cut, lights_changed;
     struct gpu_binding constants_binding, lights_binding;
     struct frame_view view;
 };
 
 // frame_layers.c
-bool frame_make_layers(struct frame *frame, uint32_t wanted); // bit l: layer l; frees the others
+bool frame_make_layers(struct frame *frame, uint32_t wanted); // bit l: layer l; destroys others
 void frame_destroy_layers(struct frame *frame);
 
 // frame_begin.c: constants, lights and change flags of a new frame.

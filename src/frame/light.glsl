@@ -1,10 +1,10 @@
-// Fall-off of punctual lights, as KHR_lights_punctual recommends. Include after frame.glsl.
+// Falloff of punctual lights, as KHR_lights_punctual recommends. Include after frame.glsl.
 #ifndef AG_FRAME_LIGHT_GLSL
 #define AG_FRAME_LIGHT_GLSL
 
-const float LIGHT_MIN_DISTANCE_M = 0.01; // 1/r² is cut off there
+const float LIGHT_MIN_DISTANCE_M = 0.01; // 1/r² is clamped below this distance
 
-// The part of the intensity that leaves towards `from_light` (unit): 1 but for spots.
+// Angular attenuation of spots in the direction `from_light` (unit); 1 for other lights.
 float light_cone(frame_light light, vec3 from_light)
 {
     if (light.type != FRAME_LIGHT_SPOT) return 1.0;
@@ -13,7 +13,7 @@ float light_cone(frame_light light, vec3 from_light)
     return t * t;
 }
 
-// The window that brings a light of limited range to 0: 1 − (d/range)⁴, 1 for unlimited ones.
+// Window function of a light with limited range: 1 − (d/range)⁴; 1 for unlimited lights.
 float light_window(frame_light light, float distance2_m2)
 {
     if (light.range_m <= 0.0) return 1.0;

@@ -1,5 +1,5 @@
-// Unit vectors on the octahedron, unfolded to −1…1 squared (Cigolle et al. 2014, "A Survey of
-// Efficient Representations for Independent Unit Vectors", oct). C twin: octahedral.h.
+// Octahedral encoding of unit vectors in −1…1 squared (Cigolle et al. 2014, "A Survey of Efficient
+// Representations for Independent Unit Vectors", oct). C twin: octahedral.h.
 #ifndef AG_FRAME_OCTAHEDRAL_GLSL
 #define AG_FRAME_OCTAHEDRAL_GLSL
 

@@ -1,5 +1,5 @@
-// Unit vectors on the octahedron, unfolded to −1…1 squared (Cigolle et al. 2014, "A Survey of
-// Efficient Representations for Independent Unit Vectors", oct). GLSL twin: octahedral.glsl.
+// Octahedral encoding of unit vectors in −1…1 squared (Cigolle et al. 2014, "A Survey of Efficient
+// Representations for Independent Unit Vectors", oct). GLSL twin: octahedral.glsl.
 #pragma once
 
 #include "core/vec.h"
@@ -24,7 +24,7 @@ static inline vec3s octahedral_decode(vec2s e)
     return glms_vec3_normalize(n);
 }
 
-// As two 16-bit signed normalised numbers, x in the low half (GLSL: unpackSnorm2x16).
+// Two 16-bit snorm values, x in the low half (GLSL: unpackSnorm2x16).
 static inline uint32_t octahedral_pack(vec3s n)
 {
     vec2s e = octahedral_encode(n);

@@ -1,39 +1,38 @@
-// A probe volume: irradiance at the points of a grid, for what the frame has no pixel of — dynamic
-// objects, particles, techniques that come later. Include after core/sh.glsl and
-// frame/frame_shared.h.
+// Irradiance probe volume: irradiance on a grid, for shading points that are not pixels (dynamic
+// objects, particles). Include after core/sh.glsl and frame/frame_shared.h.
 //
-// Each probe holds scaled irradiance E(n) = Σ c_i Y_i(n), n the receiver's normal, in nine
-// coefficients for each of R, G, B. They lie in one RGBA16F image of FRAME_PROBE_SLABS slabs, one
-// behind the other along z: number 3 i + colour stands in component (3 i + colour) mod 4 of slab (3
-// i + colour) div 4; the last number is 0.
+// Each probe stores scaled irradiance E(n) = Σ c_i Y_i(n), n the receiver's normal, as nine SH
+// coefficients per RGB channel. One RGBA16F image has FRAME_PROBE_SLABS slabs along z: coefficient
+// 3 i + channel is component (3 i + channel) mod 4 of slab (3 i + channel) div 4; the last
+// component is 0.
 #ifndef AG_FRAME_PROBES_GLSL
 #define AG_FRAME_PROBES_GLSL
 
-// Of a point of the world, filtered between the eight probes around it; outside of the grid the
-// nearest face's.
-vec3 probes_irradiance(sampler3D volume, frame_probes place, vec3 position, vec3 normal)
+// Irradiance at a world position, trilinear between eight probes; positions are clamped to the
+// grid.
+vec3 probes_irradiance(sampler3D volume, frame_probes grid, vec3 position, vec3 normal)
 {
-    vec3 last = vec3(place.count_x, place.count_y, place.count_z) - 1.0;
-    vec3 texel = clamp((position - place.first_m) / place.spacing_m, vec3(0.0), last) + 0.5;
+    vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
+    vec3 texel = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), last) + 0.5;
     vec3 size = vec3(textureSize(volume, 0));
     float basis[9];
     sh9_eval(normal, basis);
     vec4 slab;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 9; i++) {
-        for (int colour = 0; colour < 3; colour++) {
-            int number = 3 * i + colour;
-            if (number % 4 == 0) {
-                float behind = float(number / 4 * place.slab);
-                slab = textureLod(volume, (texel + vec3(0.0, 0.0, behind)) / size, 0.0);
+        for (int channel = 0; channel < 3; channel++) {
+            int component = 3 * i + channel;
+            if (component % 4 == 0) {
+                float offset = float(component / 4 * grid.slab);
+                slab = textureLod(volume, (texel + vec3(0.0, 0.0, offset)) / size, 0.0);
             }
-            sum[colour] += basis[i] * slab[number % 4];
+            sum[channel] += basis[i] * slab[component % 4];
         }
     }
     return max(sum, vec3(0.0));
 }
 
-// What slab s of FRAME_PROBE_SLABS holds of a probe; its texel is probe + (0, 0, s × place.slab).
+// Texel of a probe in slab s of FRAME_PROBE_SLABS, at probe + (0, 0, s × grid.slab).
 vec4 probes_slab(vec3 coefficients[9], int s)
 {
     vec4 slab = vec4(0.0);

@@ -1,4 +1,4 @@
-// Cameras and lights as matrices.
+// View and projection matrices.
 #include "frame/projection.h"
 
 #include <math.h>
@@ -103,8 +103,8 @@ mat4s projection_inverse(mat4s m)
 bool projection_may_see(mat4s clip_from_world, struct box3 box)
 {
     if (box3_is_empty(box)) return false;
-    // All corners outside of one plane: x < −w, x > w, y < −w, y > w, z > w (before the near
-    // plane). The far plane is left out: it is infinite for cameras, and the scene's end for suns.
+    // Culled if all corners are outside of one plane: x < −w, x > w, y < −w, y > w, z > w (near).
+    // The far plane is not tested: it is infinite for cameras and behind the scene for suns.
     int outside[5] = { 0 };
     for (int i = 0; i < 8; i++) {
         vec4s corner = { { (i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y,

@@ -1,5 +1,4 @@
-// Cameras and lights as matrices. Vulkan's clip space: x right, y down, depth reversed (1 near, 0
-// far).
+// View and projection matrices. Vulkan clip space: x right, y down, depth reversed (1 near, 0 far).
 #pragma once
 
 #include "scene/pose.h"
@@ -17,8 +16,8 @@ mat4s projection_of_camera(const struct world_camera *camera, uint32_t width, ui
 vec3s projection_cube_forward(int face);
 vec3s projection_cube_up(int face);
 
-// The inverse, computed in double: shadows and positions hang on its last digits.
+// The inverse, in double precision: reconstructed positions need its last digits.
 mat4s projection_inverse(mat4s m);
 
-// Whether some of the box may be inside the clip volume (never wrongly false).
+// Conservative frustum culling: false only if the box is outside of the clip volume.
 bool projection_may_see(mat4s clip_from_world, struct box3 box);

@@ -1,13 +1,12 @@
-// Vertex pulling: the scene's buffers and maps. Bindings 1…7 are the buffers, 8…11 the maps; 0 is
-// frame_constants, 12 and up are the pass's own. Compute shaders include it through
-// scene_triangles.glsl. A pass declares its push block, `push`, with a scene_push named `draw` in
-// it.
+// Vertex pulling: buffers and maps of the scene. Bindings: 0 frame_constants, 1…7 buffers, 8…11
+// maps, 12 and up for the pass. Compute shaders include it through scene_triangles.glsl. The pass
+// declares its push block, `push`, with a member scene_push `draw`.
 #ifndef AG_FRAME_SCENE_GLSL
 #define AG_FRAME_SCENE_GLSL
 
 #include "frame/scene_gpu_shared.h"
 
-// Variants of a pipeline, so that a material pays only for the maps that it has.
+// Pipeline variants: one per set of maps that a material has.
 layout(constant_id = SCENE_CONSTANT_BASE_COLOR_MAP) const bool HAS_BASE_COLOR_MAP = false;
 layout(constant_id = SCENE_CONSTANT_METALLIC_ROUGHNESS_MAP) const
     bool HAS_METALLIC_ROUGHNESS_MAP = false;
@@ -17,7 +16,7 @@ layout(constant_id = SCENE_CONSTANT_MASKED) const bool IS_MASKED = false;
 
 #ifdef SCENE_VERTEX
 
-// Scalar arrays: a vec3 stride of 12 bytes.
+// Scalar layout: vec3 has a stride of 12 bytes.
 layout(set = 0, binding = 1, scalar) readonly buffer scene_positions
 {
     vec3 scene_position_table[];
@@ -53,8 +52,8 @@ layout(set = 0, binding = 6, scalar) readonly buffer scene_materials
     scene_material scene_material_table[];
 };
 
-// Where a map is read. Done for vertices: where a fragment is derived from its neighbours outside
-// of the triangle, their loads from buffers may give 0 on some drivers, and with it a wrong mip.
+// Texture coordinates of a map. Computed in the vertex shader: buffer loads of helper invocations
+// may return 0 on some drivers, which gives wrong derivatives and mips.
 vec2 scene_map_uv(uint map, scene_surface surface)
 {
     uint m = push.draw.material;
@@ -67,7 +66,7 @@ vec2 scene_map_uv(uint map, scene_surface surface)
 
 #ifdef SCENE_VERTEX_FRAME
 #include "frame/octahedral.glsl"
-// x: octahedral normal; y: octahedral tangent, its lowest bit set where the bitangent is
+// x: octahedral normal; y: octahedral tangent, lowest bit 1: the bitangent is
 // −cross(normal, tangent).
 layout(set = 0, binding = 2, scalar) readonly buffer scene_frames
 {
@@ -76,11 +75,10 @@ layout(set = 0, binding = 2, scalar) readonly buffer scene_frames
 
 struct scene_frame {
     vec3 normal;
-    vec4 tangent; // w = ±1, for world space: mirrored transforms included
+    vec4 tangent; // w = ±1 in world space, mirrored transforms included
 };
 
-// World-space normal and tangent. Normals go through the cofactor matrix: the inverse transpose but
-// for a factor.
+// World-space normal and tangent. The cofactor matrix is the inverse transpose up to a factor.
 scene_frame scene_frame_of(uint vertex, mat4 world_from_instance)
 {
     uvec2 bits = scene_frame_table[push.draw.vertex_base + vertex];
@@ -122,7 +120,7 @@ layout(set = 0, binding = 6, scalar) readonly buffer scene_materials
 layout(set = 0, binding = 8) uniform sampler2D base_color_map;
 layout(set = 0, binding = 9) uniform sampler2D metallic_roughness_map;
 
-// Factor × vertex colour × map; discards what the mask cuts away.
+// Factor × vertex colour × map; discards fragments below the alpha cutoff.
 vec4 scene_base_color(vec2 uv, vec4 color)
 {
     vec4 base = scene_material_table[push.draw.material].base_color * color;

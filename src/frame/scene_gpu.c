@@ -1,4 +1,4 @@
-// Vertex streams, materials and draws of a scene: made once for a scene.
+// Vertex streams, materials and draws of a scene, created once per scene.
 #include "frame/scene_gpu.h"
 
 #include "frame/octahedral.h"
@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const float BLEND_CUTOFF = 0.5f; // blended materials are drawn as masks
+static const float BLEND_CUTOFF = 0.5f; // blended materials are rendered as masks
 
 static bool is_deformed(const struct scene *scene, int instance)
 {
@@ -20,7 +20,7 @@ struct stream_sizes {
     size_t vertices, indices;
 };
 
-// Vertex numbers are 32 bits wide, and a storage buffer can be bound up to a limit.
+// Sizes are limited by 32-bit vertex indices and by the device's storage buffer range.
 static bool measure(const struct scene_gpu *s, struct stream_sizes *out)
 {
     *out = (struct stream_sizes){ 0 };
@@ -33,7 +33,7 @@ static bool measure(const struct scene_gpu *s, struct stream_sizes *out)
     size_t most = gpu_limits(s->gpu)->max_storage_bytes / sizeof(struct scene_surface);
     if (out->vertices <= most && out->vertices < INT32_MAX && out->indices < INT32_MAX) return true;
     return host_fail(s->host, FAIL_UNSUPPORTED,
-                     "scene %s: its %zu vertices and %zu indices are more than device %s can bind",
+                     "scene %s: %zu vertices and %zu indices are more than device %s can bind",
                      s->scene->name, out->vertices, out->indices, gpu_info(s->gpu)->name);
 }
 
@@ -55,7 +55,7 @@ static struct scene_surface surface_of(const struct mesh *mesh, uint32_t v)
     return s;
 }
 
-// Normal and tangent; the sign of the bitangent takes the place of a bit that is worth 3·10⁻⁵.
+// Normal and tangent; the sign of the bitangent replaces the tangent's lowest bit, worth 3·10⁻⁵.
 static void pack_frame(vec3s normal, const vec4s *tangent, uint32_t out[2])
 {
     out[0] = octahedral_pack(normal);
@@ -247,24 +247,22 @@ static bool make_draws(struct scene_gpu *s)
     return true;
 }
 
-// Room for what scene_gpu_update fills, so that frames allocate nothing.
-static bool make_frame_room(struct scene_gpu *s)
+// Arrays that scene_gpu_update fills, so that frames allocate nothing.
+static bool make_frame_arrays(struct scene_gpu *s)
 {
     size_t n = (size_t)s->scene->instance_count, v = s->deformed_vertex_count;
     s->instances = host_alloc(s->host, n, sizeof *s->instances);
-    s->previous = host_alloc(s->host, n, sizeof *s->previous);
     s->deformed_positions = host_alloc(s->host, v, sizeof *s->deformed_positions);
     s->deformed_previous = host_alloc(s->host, v, sizeof *s->deformed_previous);
     s->deformed_frames = host_alloc(s->host, v, sizeof *s->deformed_frames);
-    return s->instances && s->previous && s->deformed_positions && s->deformed_previous &&
-           s->deformed_frames;
+    return s->instances && s->deformed_positions && s->deformed_previous && s->deformed_frames;
 }
 
 bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu,
                     const struct scene *scene)
 {
     *out = (struct scene_gpu){ .host = host, .gpu = gpu, .scene = scene };
-    return make_streams(out) && make_materials(out) && make_draws(out) && make_frame_room(out) &&
+    return make_streams(out) && make_materials(out) && make_draws(out) && make_frame_arrays(out) &&
            scene_gpu_make_textures(out);
 }
 
@@ -278,7 +276,6 @@ void scene_gpu_finish(struct scene_gpu *s)
     host_free(s->host, s->index_offset);
     host_free(s->host, s->draws);
     host_free(s->host, s->instances);
-    host_free(s->host, s->previous);
     host_free(s->host, s->deformed_positions);
     host_free(s->host, s->deformed_previous);
     host_free(s->host, s->deformed_frames);

@@ -1,6 +1,5 @@
-// The scene on the GPU: vertex streams, materials, textures, and the draws that show it. Passes
-// that rasterise, and techniques that walk the triangles in compute, share it. One draw is one
-// instance of one mesh, which has one material.
+// The scene on the GPU: vertex streams, materials, textures and draws, for rasterising passes and
+// for compute passes over triangles. A draw is one instance of one mesh, which has one material.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -8,7 +7,7 @@
 
 #include "frame/scene_gpu_shared.h"
 
-// Pipelines are specialised for the maps that a material has: a bit for each SCENE_CONSTANT_….
+// Pipeline variants: bit SCENE_CONSTANT_… per map that a material has.
 enum scene_variant {
     VARIANT_BASE_COLOR_MAP = 1 << SCENE_CONSTANT_BASE_COLOR_MAP,
     VARIANT_METALLIC_ROUGHNESS_MAP = 1 << SCENE_CONSTANT_METALLIC_ROUGHNESS_MAP,
@@ -22,29 +21,29 @@ struct scene_draw {
     int instance, mesh, material;
     uint32_t variant; // scene_variant bits
     struct scene_push push;
-    bool deformed;      // vertices come anew each frame, in world space
-    bool mirrored;      // this frame's transform turns triangles over
-    bool moves;         // its vertices have moved since the scene was set; what has not is still
-    bool moved;         // since the last frame
-    struct box3 bounds; // this frame's, world space
-    struct box3 swept;  // this frame's and the last one's
+    bool deformed;      // vertices are uploaded each frame, in world space
+    bool mirrored;      // the transform reverses the winding order in this frame
+    bool moves;         // dynamic: has moved since the scene was set
+    bool moved;         // since the previous frame
+    struct box3 bounds; // world space
+    struct box3 swept;  // union of this frame's and the previous frame's bounds
 };
 
 struct scene_gpu {
     struct host *host;
     struct gpu *gpu;
     const struct scene *scene;
-    float max_emissive; // the strongest channel of any instanced material, cd/m²
+    float max_emissive; // largest channel of all instanced materials, cd/m²
 
     // Static: positions (vec3), tangent frames (two words, see scene.glsl), surfaces, indices,
     // materials.
     gpu_buffer positions, frames, surfaces, indices, materials;
     size_t *index_offset; // [mesh_count] bytes
-    // Textures: [image_count] as colours (sRGB) and as data; none where no material uses them so.
+    // Textures: [image_count] as colours (sRGB) and as data; empty if no material uses them so.
     gpu_image *color_textures, *data_textures;
-    gpu_image white, flat_normal;                // 1×1 stand-ins
+    gpu_image white, flat_normal;                // 1×1 placeholders
     struct gpu_binding (*maps)[SCENE_MAP_COUNT]; // [material_count]
-    struct gpu_binding *reads;                   // all textures, to be announced to renderings
+    struct gpu_binding *reads;                   // all textures, see gpu_render_desc.reads
     int read_count;
 
     struct scene_draw *draws; // sorted: opaque before masked, then by variant and material
@@ -53,31 +52,30 @@ struct scene_gpu {
 
     // Per frame, filled by scene_gpu_update.
     struct scene_instance *instances; // [instance_count]
-    struct scene_instance *previous;  // last frame's, to see what moved
     uint32_t deformed_vertex_count;
     vec3s *deformed_positions, *deformed_previous; // [deformed_vertex_count]
     uint32_t (*deformed_frames)[2];
     bool has_previous, moved;
-    uint64_t updates; // so many moments have been uploaded
-    int moving_count; // draws that move
+    uint64_t updates; // number of uploaded poses
+    int moving_count; // number of dynamic draws
     struct gpu_binding instances_binding, deformed_positions_binding, deformed_previous_binding,
         deformed_frames_binding;
 };
 
-// The scene must outlive this. False after a failure; scene_gpu_finish accepts the half-built rest.
+// The scene must outlive this. On failure (false) call scene_gpu_finish.
 bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu,
                     const struct scene *scene);
 void scene_gpu_finish(struct scene_gpu *scene); // accepts zero
 
-// Uploads a moment. With `forget`, everything counts as having stood where it is. Sets `moved`, and
-// that and `moves` of the draws.
+// Uploads a pose. reset_motion: previous positions become the current ones. Updates `moved` and
+// `moves` of the scene and its draws.
 void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct scene_pose *pose,
-                      bool forget);
+                      bool reset_motion);
 
-// Whether nothing that has moved since the last update is or was inside of this clip volume.
-bool scene_gpu_still_in(const struct scene_gpu *scene, mat4s clip_from_world);
+// Whether no draw that moved in the last update is or was inside this clip volume.
+bool scene_gpu_unchanged_in(const struct scene_gpu *scene, mat4s clip_from_world);
 
-// Records one draw. push: starts with a scene_push, which this fills. bindings: the pass's own.
+// Records one draw. push: starts with a scene_push, which this fills. bindings: of the pass.
 struct scene_draw_call {
     gpu_pipeline pipeline;
     const struct scene_draw *draw;
@@ -94,16 +92,15 @@ void scene_gpu_draw(const struct scene_gpu *scene, struct gpu_cmd *cmd,
 // scene_triangles.glsl.
 struct scene_dispatch_call {
     gpu_pipeline pipeline;
-    bool drawn; // it is a graphics pipeline instead: three vertices for each triangle, into the
-                // rendering that is open
+    bool rasterize; // `pipeline` is a graphics pipeline: draws the triangles in the open rendering
     const struct scene_draw *draw;
-    const struct gpu_binding *bindings; // the pass's own
+    const struct gpu_binding *bindings; // of the pass
     int binding_count;                  // ≤ 8
-    // What `pipeline` puts off, if it does: `rest` follows with the same bindings, in as many
-    // workgroups as `pipeline` says in rest_groups: x, y, z, which are 0, 1, 1 before it, and a
-    // word of the pass's own, which is 0.
-    gpu_pipeline rest;
-    gpu_buffer rest_groups;
+    // Optional second dispatch for work that `pipeline` queues, with the same bindings. Its work
+    // group counts x, y, z are in deferred_groups, initialised to 0, 1, 1; a fourth word, 0, is for
+    // the pass.
+    gpu_pipeline deferred;
+    gpu_buffer deferred_groups;
 };
 void scene_gpu_dispatch(const struct scene_gpu *scene, struct gpu_cmd *cmd,
                         const struct scene_dispatch_call *call);

@@ -1,13 +1,13 @@
-// The scene as the rasterising passes read it. Scalar layout.
+// Data of the scene on the GPU, C and GLSL. Scalar layout.
 #ifndef AG_FRAME_SCENE_GPU_SHARED_H
 #define AG_FRAME_SCENE_GPU_SHARED_H
 
 #include "core/shared.h"
 
-// What a vertex has besides position, normal and tangent.
+// Vertex attributes other than position, normal and tangent.
 struct scene_surface {
     vec2s uv0, uv1;
-    uint32_t color; // linear RGBA, 8 bits each, red lowest
+    uint32_t color; // linear RGBA, 8 bits each, red in the lowest byte
 };
 
 #define SCENE_MAP_BASE_COLOR         0
@@ -24,8 +24,7 @@ struct scene_surface {
 #define SCENE_CONSTANT_MASKED                 4
 #define SCENE_CONSTANT_COUNT                  5
 
-// Bits of scene_material.flags; bit m (m < SCENE_MAP_COUNT): map m reads the second texture
-// coordinates.
+// Bits of scene_material.flags; bit m (m < SCENE_MAP_COUNT): map m uses texture coordinate set 1.
 #define SCENE_DOUBLE_SIDED 16
 #define SCENE_UNLIT        32
 
@@ -41,18 +40,18 @@ struct scene_material {
 
 struct scene_instance {
     mat4s world_from_instance;
-    mat4s previous_world_from_instance; // last frame's
+    mat4s previous_world_from_instance; // of the previous frame
 };
 
-// Push constants of every draw; passes append their own.
+// Push constants of every draw; passes append theirs.
 struct scene_push {
     uint32_t instance, material;
     uint32_t vertex_base;  // into positions, previous positions and tangent frames
     uint32_t surface_base; // into surfaces
 };
 
-#define SCENE_TRIANGLES_LOCAL                                                                      \
-    64 // invocations of a workgroup of a dispatch over triangles: one for each
+// Work group size of dispatches over triangles, one invocation per triangle.
+#define SCENE_TRIANGLES_LOCAL 64
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct scene_surface) == 20, "layout is shared with GLSL");

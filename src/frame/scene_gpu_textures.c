@@ -1,6 +1,5 @@
-// Textures of a scene: each image as colours (sRGB) or as data or both, as its materials use it,
-// with full mip chains made on the GPU. An alpha mask is averaged in the smaller mips like any
-// other channel.
+// Textures of a scene: each image as colours (sRGB), as data or as both, depending on its
+// materials, with full mip chains generated on the GPU. Alpha is averaged like any other channel.
 #include "frame/scene_gpu.h"
 
 static bool is_color(int map)

@@ -1,4 +1,4 @@
-// The scene at a moment: what changes from frame to frame, and the recording of draws.
+// Per-frame update of the scene on the GPU, and recording of its draws and dispatches.
 #include "frame/scene_gpu.h"
 
 #include "frame/octahedral.h"
@@ -7,15 +7,15 @@
 #include <assert.h>
 #include <string.h>
 
-static void note_move(struct scene_gpu *s, struct scene_draw *draw)
+static void mark_moved(struct scene_gpu *s, struct scene_draw *draw)
 {
     s->moved = draw->moved = true;
-    if (draw->moves || !s->has_previous) return; // in the first frame everything has just come
+    if (draw->moves || !s->has_previous) return; // the first frame is no movement
     draw->moves = true;
     s->moving_count++;
 }
 
-// Copies a deformed instance's vertices behind those before it; grows the draw's bounds.
+// Copies a deformed instance's vertices and computes the draw's bounds.
 static void copy_deformed(struct scene_gpu *s, const struct deformed_mesh *from,
                           const struct mesh *mesh, struct scene_draw *draw)
 {
@@ -23,13 +23,13 @@ static void copy_deformed(struct scene_gpu *s, const struct deformed_mesh *from,
     draw->bounds = box3_empty();
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         vec3s p = from->positions[v];
-        if (memcmp(&s->deformed_positions[base + v], &p, sizeof p) != 0) note_move(s, draw);
+        if (memcmp(&s->deformed_positions[base + v], &p, sizeof p) != 0) mark_moved(s, draw);
         s->deformed_positions[base + v] = p;
         draw->bounds = box3_add_point(draw->bounds, p);
         uint32_t *frame = s->deformed_frames[base + v];
         frame[0] = octahedral_pack(from->normals[v]);
         frame[1] = from->tangents ? octahedral_pack(vec3_xyz(from->tangents[v])) & ~1u : 0;
-        // World space: what is mirrored has its bitangent on the other side.
+        // In world space a mirrored instance has the opposite bitangent sign.
         if (from->tangents && (from->tangents[v].w < 0.0f) != draw->mirrored) frame[1] |= 1u;
     }
 }
@@ -47,7 +47,7 @@ static void update_draw(struct scene_gpu *s, const struct scene_pose *pose, stru
     }
     mat4s m = pose_world_from_instance(pose, draw->instance);
     struct scene_instance *instance = &s->instances[draw->instance];
-    if (memcmp(&instance->world_from_instance, &m, sizeof m) != 0) note_move(s, draw);
+    if (memcmp(&instance->world_from_instance, &m, sizeof m) != 0) mark_moved(s, draw);
     instance->world_from_instance = m;
     draw->bounds = box3_transform(m, mesh->bounds);
 }
@@ -65,7 +65,7 @@ static void upload_deformed(struct scene_gpu *s, struct gpu_cmd *cmd)
 }
 
 void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct scene_pose *pose,
-                      bool forget)
+                      bool reset_motion)
 {
     size_t n = (size_t)s->scene->instance_count, v = s->deformed_vertex_count;
     memcpy(s->deformed_previous, s->deformed_positions, v * sizeof *s->deformed_previous);
@@ -79,7 +79,7 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
         draw->swept = box3_union(before, draw->bounds);
     }
     s->updates++;
-    if (forget || !s->has_previous) {
+    if (reset_motion || !s->has_previous) {
         s->moved = s->moved || !s->has_previous;
         memcpy(s->deformed_previous, s->deformed_positions, v * sizeof *s->deformed_previous);
         for (size_t i = 0; i < n; i++)
@@ -92,7 +92,7 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
     upload_deformed(s, cmd);
 }
 
-bool scene_gpu_still_in(const struct scene_gpu *s, mat4s clip_from_world)
+bool scene_gpu_unchanged_in(const struct scene_gpu *s, mat4s clip_from_world)
 {
     for (int i = 0; i < s->draw_count && s->moved; i++)
         if (s->draws[i].moved && projection_may_see(clip_from_world, s->draws[i].swept))
@@ -100,7 +100,7 @@ bool scene_gpu_still_in(const struct scene_gpu *s, mat4s clip_from_world)
     return true;
 }
 
-// What every draw and dispatch of the scene may read; returns the count.
+// Bindings that every draw and dispatch of the scene may read; returns the count.
 enum { SCENE_BINDINGS = 10 };
 static int scene_bindings(const struct scene_gpu *s, const struct scene_draw *draw,
                           struct gpu_binding out[SCENE_BINDINGS])
@@ -148,10 +148,11 @@ void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
                   });
 }
 
-// A dispatch covers so many triangles at most: their groups and the bytes of their indices are
-// within every device's limits.
+// Maximum of a single dispatch: work group counts and index bytes stay within every device's
+// limits.
 static const uint32_t DISPATCH_TRIANGLES = 1u << 21;
-static const size_t BYTES_ALIGNED = 256; // no device asks more of a buffer's offset
+// Upper bound of minStorageBufferOffsetAlignment in the specification.
+static const size_t MAX_OFFSET_ALIGNMENT = 256;
 
 void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
                         const struct scene_dispatch_call *call)
@@ -164,36 +165,36 @@ void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
     for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
     struct gpu_binding *indices = &bindings[count++];
     for (uint32_t first = 0; first < triangles; first += DISPATCH_TRIANGLES) {
-        const uint32_t some =
+        const uint32_t count_here =
             triangles - first < DISPATCH_TRIANGLES ? triangles - first : DISPATCH_TRIANGLES;
         const size_t begin = s->index_offset[draw->mesh] + (size_t)first * 3 * sizeof(uint32_t);
-        const size_t end = begin + (size_t)some * 3 * sizeof(uint32_t);
-        const size_t aligned = begin / BYTES_ALIGNED * BYTES_ALIGNED;
+        const size_t end = begin + (size_t)count_here * 3 * sizeof(uint32_t);
+        const size_t aligned = begin / MAX_OFFSET_ALIGNMENT * MAX_OFFSET_ALIGNMENT;
         const struct {
             struct scene_push draw;
             uint32_t first_index, triangle_count, mirrored;
-        } push = { draw->push, (uint32_t)((begin - aligned) / sizeof(uint32_t)), some,
+        } push = { draw->push, (uint32_t)((begin - aligned) / sizeof(uint32_t)), count_here,
                    draw->mirrored };
         *indices = (struct gpu_binding){
             .name = "scene_indices", .buffer = s->indices, .offset = aligned, .bytes = end - aligned
         };
-        if (call->drawn) {
+        if (call->rasterize) {
             gpu_draw(cmd, &(struct gpu_draw_desc){ .pipeline = call->pipeline,
                                                    .bindings = bindings,
                                                    .binding_count = count,
                                                    .push = &push,
                                                    .push_bytes = sizeof push,
-                                                   .count = 3 * some });
+                                                   .count = 3 * count_here });
             continue;
         }
-        if (call->rest.id) {
-            gpu_fill_buffer(cmd, call->rest_groups, 0, 4 * sizeof(uint32_t), 0);
-            gpu_fill_buffer(cmd, call->rest_groups, sizeof(uint32_t), 2 * sizeof(uint32_t), 1);
+        if (call->deferred.id) {
+            gpu_fill_buffer(cmd, call->deferred_groups, 0, 4 * sizeof(uint32_t), 0);
+            gpu_fill_buffer(cmd, call->deferred_groups, sizeof(uint32_t), 2 * sizeof(uint32_t), 1);
         }
         gpu_dispatch(cmd, call->pipeline, bindings, count, &push, sizeof push,
-                     gpu_groups(some, SCENE_TRIANGLES_LOCAL), 1, 1);
-        if (call->rest.id)
-            gpu_dispatch_indirect(cmd, call->rest, bindings, count, &push, sizeof push,
-                                  call->rest_groups, 0);
+                     gpu_groups(count_here, SCENE_TRIANGLES_LOCAL), 1, 1);
+        if (call->deferred.id)
+            gpu_dispatch_indirect(cmd, call->deferred, bindings, count, &push, sizeof push,
+                                  call->deferred_groups, 0);
     }
 }

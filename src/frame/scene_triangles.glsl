@@ -1,6 +1,6 @@
-// Triangles for compute: dispatched by scene_gpu_dispatch, in workgroups of SCENE_TRIANGLES_LOCAL
-// invocations. The bindings are those of scene.glsl; 7 holds the indices, 0 and 12 and up are the
-// pass's own. IS_MASKED is a variant.
+// Compute passes over triangles, dispatched by scene_gpu_dispatch in work groups of
+// SCENE_TRIANGLES_LOCAL invocations. Bindings as in scene.glsl; 7 holds the indices. IS_MASKED is a
+// pipeline variant.
 #ifndef AG_FRAME_SCENE_TRIANGLES_GLSL
 #define AG_FRAME_SCENE_TRIANGLES_GLSL
 
@@ -10,7 +10,7 @@ layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
     uint first_index, triangle_count;
-    uint mirrored; // this frame's transform turns triangles over
+    uint mirrored; // the transform reverses the winding order
 }
 push;
 
@@ -40,8 +40,7 @@ mat3 scene_triangle_positions(uvec3 vertices)
                 world * vec4(scene_position(vertices.z), 1.0));
 }
 
-// Whether there is a surface at a point of the triangle: what the mask cuts away is none, as in a
-// frame.
+// Alpha test at a point of the triangle.
 bool scene_triangle_solid(uvec3 vertices, vec3 barycentric)
 {
     if (!IS_MASKED) return true;

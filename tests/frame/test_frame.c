@@ -248,7 +248,7 @@ TEST_GPU(wrong_requests_are_refused_with_a_reason)
     struct frame *bare = frame_create(test_host(), gpu, &s.options);
     assert_non_null(bare);
     CHECK(!frame_prepare(bare, &s.input, NULL));
-    CHECK_STRING(test_last_message(), "frame: it has no scene yet");
+    CHECK_STRING(test_last_message(), "frame: no scene was set");
     frame_destroy(bare);
     studio_open(&s);
     CHECK(!frame_resize(s.frame, 0, 8) && !frame_resize(s.frame, 8, 16385));
@@ -260,7 +260,7 @@ TEST_GPU(wrong_requests_are_refused_with_a_reason)
     studio_render(&s);
     CHECK(!frame_read(s.frame, READ_COLOR, pixel, 4));
     CHECK(!frame_read(s.frame, READ_MOTION, pixel, 3));
-    CHECK_STRING(test_last_message(), "frame layer motion: nobody asked for it");
+    CHECK_STRING(test_last_message(), "frame layer motion: it was not requested");
     frame_destroy(NULL);
     studio_finish(&s);
 }

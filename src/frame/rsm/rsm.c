@@ -1,14 +1,14 @@
-// Reflective shadow maps.
+// Host code of the reflective shadow map pass.
 #include "frame/rsm/rsm.h"
 
-#include "frame/light_fit.h"
+#include "frame/light_projection.h"
 #include "frame/projection.h"
 
 #include "frame_shaders.h"
 
 #include <math.h>
 
-// Normal maps and emission do not show in them.
+// Reflective shadow maps ignore normal maps and emission.
 static const uint32_t VARIANT_BITS =
     VARIANT_BASE_COLOR_MAP | VARIANT_METALLIC_ROUGHNESS_MAP | VARIANT_MASKED;
 
@@ -29,9 +29,9 @@ static void destroy_images(struct rsm *r)
     gpu_image_destroy(r->gpu, &r->normal);
     gpu_image_destroy(r->gpu, &r->flux);
     host_free(r->host, r->faces);
-    host_free(r->host, r->kept);
+    host_free(r->host, r->cache);
     r->faces = NULL;
-    r->kept = NULL;
+    r->cache = NULL;
     r->capacity = 0;
 }
 
@@ -88,12 +88,12 @@ static bool make_images(struct rsm *r, int faces)
     if (faces == 0) return true;
     if ((uint32_t)faces > gpu_limits(r->gpu)->max_layers) {
         return host_fail(r->host, FAIL_UNSUPPORTED,
-                         "frame reflective shadow maps: %d faces, device %s has room for %u", faces,
+                         "frame reflective shadow maps: %d faces, device %s supports %u", faces,
                          gpu_info(r->gpu)->name, gpu_limits(r->gpu)->max_layers);
     }
     r->faces = host_alloc(r->host, (size_t)faces, sizeof *r->faces);
-    r->kept = host_alloc(r->host, (size_t)faces, sizeof *r->kept);
-    if (!r->faces || !r->kept || !make_array(r, "frame.rsm_depth", GPU_D32F, faces, &r->depth) ||
+    r->cache = host_alloc(r->host, (size_t)faces, sizeof *r->cache);
+    if (!r->faces || !r->cache || !make_array(r, "frame.rsm_depth", GPU_D32F, faces, &r->depth) ||
         !make_array(r, "frame.rsm_normal", GPU_RG16F, faces, &r->normal) ||
         !make_array(r, "frame.rsm_flux", GPU_RGBA8_SRGB, faces, &r->flux)) {
         return false;
@@ -113,8 +113,7 @@ bool rsm_prepare(struct rsm *r, int face_count, uint32_t variants)
     return true;
 }
 
-// A square over the whole scene: it does not move with the camera, so the light that it carries is
-// steady.
+// Covers the whole scene and does not follow the camera, so that indirect light is stable.
 static void place_sun(const struct rsm *r, struct rsm_face *face, const struct frame_light *light,
                       struct box3 bounds)
 {
@@ -197,16 +196,16 @@ static void record_face(const struct rsm *r, struct gpu_cmd *cmd, const struct s
 }
 
 void rsm_record(struct rsm *r, struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                const struct frame_light *lights, const struct gpu_binding bindings[3], bool keep)
+                const struct frame_light *lights, const struct gpu_binding bindings[3], bool reuse)
 {
     static const char *const scopes[] = { "rsm.sun", "rsm.point", "rsm.spot" };
     r->drawn = 0;
     for (int i = 0; i < r->face_count; i++) {
         const struct rsm_face *face = &r->faces[i];
-        const bool stands =
-            kept_map_stands(&r->kept[i], scene, &lights[face->light], face->clip_from_world);
+        const bool valid =
+            cached_map_is_valid(&r->cache[i], scene, &lights[face->light], face->clip_from_world);
         gpu_scope_begin(cmd, scopes[face->type]);
-        if (!stands || !keep) {
+        if (!valid || !reuse) {
             record_face(r, cmd, scene, i, bindings);
             r->drawn++;
         }

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Normal and reflectance of a texel of a reflective shadow map (formats: frame.h). Normals are
-// those of the vertices: a texel stands for more surface than one texel of a normal map.
+// Normal and reflectance of a reflective shadow map texel (formats: frame.h). Normals are
+// interpolated vertex normals: a texel covers many texels of a normal map.
 #define RSM_FRAGMENT
 #define SCENE_FRAGMENT
 #include "frame/frame.glsl"
@@ -28,13 +28,13 @@ void main()
     frame_light light = frame_light_table[rsm_face_table[push.face].light];
     vec3 from_light = light.type == FRAME_LIGHT_SUN ? light.direction : vary_world - light.position;
     float distance2 = dot(from_light, from_light);
-    float reach = 1.0;
+    float falloff = 1.0;
     if (light.type != FRAME_LIGHT_SUN)
-        reach = light_window(light, distance2) *
-                light_cone(light, from_light * inversesqrt(max(distance2, 1e-12)));
+        falloff = light_window(light, distance2) *
+                  light_cone(light, from_light * inversesqrt(max(distance2, 1e-12)));
 
     float length2 = dot(vary_normal, vary_normal);
     vec3 n = length2 > 1e-12 ? vary_normal * inversesqrt(length2) : -from_light;
     out_normal = octahedral_encode(dot(n, from_light) > 0.0 ? -n : n);
-    out_flux = vec4(base * ((1.0 - metallic) * reach), 1.0);
+    out_flux = vec4(base * ((1.0 - metallic) * falloff), 1.0);
 }

@@ -1,19 +1,18 @@
-// Reading reflective shadow maps (Dachsbacher & Stamminger 2005). Include after frame.glsl; the
+// Lookup of reflective shadow maps (Dachsbacher & Stamminger 2005). Include after frame.glsl; the
 // caller declares the bindings: buffer rsm_faces, sampler2DArray for depth, normal and flux
 // (nearest).
 //
-// Flux of a texel. A texel of a sun's map is a beam of perpendicular area A, and E⊥·A lumens go
-// through it whatever the slope of the surface behind: the surface is then larger, and E is
-// smaller, by the same cosine. A texel of a point's or spot's map is a cone of solid angle Ω with
-// I·Ω lumens. Martin 2012, sec. 3.1, multiplies by another (n·l): that would count the slope twice,
-// so there is no such factor here.
+// Flux through a texel: E⊥·A for suns, with the texel's perpendicular area A; I·Ω for points and
+// spots, with its solid angle Ω. It does not depend on the surface's slope: on an inclined surface
+// the lit area grows and E falls by the same cosine. Martin 2012, sec. 3.1, multiplies by another
+// (n·l), which would count that cosine twice; it is left out here.
 #ifndef AG_FRAME_RSM_GLSL
 #define AG_FRAME_RSM_GLSL
 
 struct rsm_texel {
-    bool valid;    // something was hit
+    bool valid;    // there is a surface
     vec3 position; // world, m
-    vec3 normal;   // unit, towards the light
+    vec3 normal;   // unit, on the light's side
     vec3 flux;     // reflected, scaled lumen
 };
 
@@ -39,8 +38,8 @@ float rsm_solid_angle(rsm_face face, ivec2 texel, uint size)
     return edge * edge / (r2 * sqrt(r2));
 }
 
-// Flux through a texel, scaled lumen. Times the reflectance from the flux image it is the reflected
-// flux.
+// Incident flux through a texel, scaled lumen; reflected flux = incident flux × reflectance (flux
+// image).
 vec3 rsm_flux_through(rsm_face face, ivec2 texel, uint size)
 {
     if (face.type == FRAME_LIGHT_SUN) return face.intensity;

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Surfaces as a light sees them.
+// Vertex shader of reflective shadow maps.
 #define SCENE_VERTEX
 #define SCENE_VERTEX_SURFACE
 #define SCENE_VERTEX_FRAME

@@ -1,4 +1,4 @@
-// What the vertices of reflective shadow maps hand to fragments, and what both read.
+// Interpolants and bindings of the reflective shadow map shaders. VARY: `in` or `out`.
 #include "frame/scene_gpu_shared.h"
 
 #ifdef RSM_FRAGMENT

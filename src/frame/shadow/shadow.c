@@ -1,8 +1,8 @@
-// Shadow maps: suns have cascades, spots one perspective map, points six. Both sides of every
-// triangle cast.
+// Shadow maps: cascades for suns, one perspective map for spots, six for points. Both sides of a
+// triangle cast shadows.
 #include "frame/shadow/shadow.h"
 
-#include "frame/light_fit.h"
+#include "frame/light_projection.h"
 #include "frame/projection.h"
 
 #include "frame_shaders.h"
@@ -10,8 +10,7 @@
 #include <math.h>
 
 static const float CONSTANT_BIAS = 0.1f; // texels
-static const float SLOPE_BIAS =
-    -1.0f; // texels' worth of slope, away from the light (reversed depth)
+static const float SLOPE_BIAS = -1.0f;   // texels of slope, away from the light (reversed depth)
 
 struct push {
     struct scene_push draw;
@@ -68,7 +67,7 @@ void shadow_finish(struct shadow *s)
     for (int i = 0; i < 2; i++) gpu_pipeline_destroy(s->gpu, &s->masked[i]);
     gpu_image_destroy(s->gpu, &s->maps);
     host_free(s->host, s->faces);
-    host_free(s->host, s->kept);
+    host_free(s->host, s->cache);
     *s = (struct shadow){ 0 };
 }
 
@@ -82,16 +81,15 @@ bool shadow_prepare(struct shadow *s, int face_count)
 {
     if (face_count == s->capacity) return true;
     if ((uint32_t)face_count > gpu_limits(s->gpu)->max_layers) {
-        return host_fail(s->host, FAIL_UNSUPPORTED,
-                         "frame shadows: %d maps, device %s has room for %u", face_count,
-                         gpu_info(s->gpu)->name, gpu_limits(s->gpu)->max_layers);
+        return host_fail(s->host, FAIL_UNSUPPORTED, "frame shadows: %d maps, device %s supports %u",
+                         face_count, gpu_info(s->gpu)->name, gpu_limits(s->gpu)->max_layers);
     }
     gpu_image_destroy(s->gpu, &s->maps);
     host_free(s->host, s->faces);
-    host_free(s->host, s->kept);
+    host_free(s->host, s->cache);
     s->capacity = -1;
     s->faces = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->faces);
-    s->kept = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->kept);
+    s->cache = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->cache);
     struct gpu_image_desc desc = {
         .name = "frame.shadow_maps",
         .dimension = GPU_2D_ARRAY,
@@ -101,12 +99,12 @@ bool shadow_prepare(struct shadow *s, int face_count)
         .depth = face_count ? (uint32_t)face_count : 1,
         .usage = GPU_SAMPLED | GPU_ATTACHMENT,
     };
-    if (!s->faces || !s->kept || !gpu_image_create(s->gpu, &desc, &s->maps)) return false;
+    if (!s->faces || !s->cache || !gpu_image_create(s->gpu, &desc, &s->maps)) return false;
     s->capacity = face_count;
     return true;
 }
 
-// A face of a point or spot, widened so that the filter finds texels beyond its border.
+// A face of a point or spot light, widened by the filter radius.
 static void place_perspective(const struct shadow *s, struct shadow_face *face, int index,
                               const struct frame_light *light, const struct shadow_view *view)
 {
@@ -176,7 +174,7 @@ static void record_face(const struct shadow *s, struct gpu_cmd *cmd, const struc
 }
 
 void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                   const struct frame_light *lights, int light_count, bool keep)
+                   const struct frame_light *lights, int light_count, bool reuse)
 {
     s->drawn = 0;
     static const char *const scopes[] = { "shadow.sun", "shadow.point", "shadow.spot" };
@@ -185,9 +183,9 @@ void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu
         gpu_scope_begin(cmd, scopes[lights[i].type]);
         for (int k = 0; k < lights[i].shadow_count; k++) {
             const int layer = lights[i].shadow_first + k;
-            const bool stands = kept_map_stands(&s->kept[layer], scene, &lights[i],
-                                                s->faces[layer].clip_from_world);
-            if (stands && keep) continue;
+            const bool valid = cached_map_is_valid(&s->cache[layer], scene, &lights[i],
+                                                   s->faces[layer].clip_from_world);
+            if (valid && reuse) continue;
             record_face(s, cmd, scene, layer);
             s->drawn++;
         }

@@ -1,29 +1,27 @@
 // Stable cascaded shadow maps for suns.
 //
 // Splits: the practical scheme, C_i = ρ n (f/n)^(i/m) + (1−ρ)(n + (f−n) i/m) (Zhang et al. 2007, as
-// in Hong 2015, sec. 2.3.2). Stability (Valient 2007; Hong 2015, sec. 2.3.3): a cascade covers a
-// sphere around its slice of the frustum, so that turning the camera changes nothing, and moves in
-// steps of whole texels. Differs: a cascade is never wider than the scene's bounding sphere, and
-// all are as deep as the scene along the light, so that casters between a slice and the sun are in
-// the map.
+// in Hong 2015, sec. 2.3.2). Stability (Valient 2007; Hong 2015, sec. 2.3.3): a cascade covers the
+// bounding sphere of its frustum slice, so that its size does not depend on the camera's
+// orientation, and moves by whole texels. Differs: a cascade is never wider than the scene's
+// bounding sphere, and its depth range is that of the scene, so that it contains all casters.
 #include "frame/shadow/shadow.h"
 
-#include "frame/light_fit.h"
+#include "frame/light_projection.h"
 
 #include <math.h>
 
-static const float NEAR_SHARE = 1e-3f;   // splits begin no nearer than this share of the far end
+static const float NEAR_SHARE = 1e-3f;   // minimum near distance of the splits over the far one
 static const float CONSTANT_BIAS = 0.1f; // texels
-static const float RADIUS_STEP =
-    64.0f; // a radius is a multiple of 1/64 of its power of two: rounding keeps it
+static const float RADIUS_STEP = 64.0f;  // radii are multiples of 1/64 of their power of two
 
 struct sphere {
     vec3s centre;
     float radius;
 };
 
-// As far as the scene reaches: its diagonal from anywhere inside, doubled until it is enough from
-// outside. It does not change while the camera moves, but for those doublings.
+// Far distance of the last split: the scene's diagonal, doubled until the scene is inside. Constant
+// under camera motion except for these steps.
 static float far_end(const struct shadow_view *view)
 {
     float diagonal = fmaxf(light_diagonal(view->bounds), 1e-3f);
@@ -48,9 +46,8 @@ static float split(float near_m, float far_m, float blend, int i, int count)
     return blend * logarithmic + (1.0f - blend) * uniform;
 }
 
-// The smallest sphere around the frustum between two distances. Its centre lies on the axis, as far
-// from the near corners as from the far ones, or in the middle of the far plane where that is
-// nearer.
+// Minimal bounding sphere of a frustum slice. Its centre lies on the view axis, equidistant from
+// the near and the far corners, or on the far plane if that is nearer.
 static struct sphere slice_sphere(const struct shadow_view *view, float near_m, float far_m)
 {
     float tan_y = tanf(view->camera.vertical_fov_rad * 0.5f), tan_x = tan_y * view->aspect;
@@ -61,7 +58,7 @@ static struct sphere slice_sphere(const struct shadow_view *view, float near_m, 
         .centre = glms_vec3_muladds(view->camera.forward, at, view->camera.eye),
         .radius = sqrtf(across * across + far_m * far_m * k2),
     };
-    // Rounded up, so that the last bits of the camera's numbers do not change the texels' size.
+    // Rounded up, so that rounding errors of the camera do not change the texel size.
     int exponent;
     float mantissa = frexpf(s.radius, &exponent);
     s.radius = ldexpf(ceilf(mantissa * RADIUS_STEP) / RADIUS_STEP, exponent);
@@ -83,7 +80,7 @@ static double snap(double value, double step)
 static struct shadow_face place(const struct shadow *shadow, vec3s direction, struct sphere sphere,
                                 const struct shadow_view *view)
 {
-    // Room around the sphere for half a step, the filter and the receiver's offset.
+    // Margin around the sphere for half a texel step, the filter and the receiver's offset.
     float rim = 4.0f * ((float)view->filter_radius + 2.0f);
     float half = sphere.radius / fmaxf(1.0f - rim / (float)shadow->size, 0.25f);
     double texel = 2.0 * (double)half / (double)shadow->size;
@@ -114,7 +111,7 @@ void shadow_place_sun(const struct shadow *shadow, struct shadow_face *faces, in
         struct sphere slice =
             slice_sphere(view, i == 0 ? 0.0f : split(near_m, far_m, view->cascade_blend, i, count),
                          split(near_m, far_m, view->cascade_blend, i + 1, count));
-        // The last one is where a point goes that no other holds: it takes the whole scene.
+        // The last cascade contains the whole scene: points outside of all others use it.
         bool last = i == count - 1;
         faces[i] =
             place(shadow, direction, last || slice.radius > whole.radius ? whole : slice, view);

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Cuts the holes of alpha-masked shadow casters.
+// Alpha test of masked shadow casters.
 #define SCENE_FRAGMENT
 #include "frame/scene_gpu_shared.h"
 

@@ -1,4 +1,4 @@
-// What reading a shadow map needs. Scalar layout.
+// Shadow map faces, C and GLSL. Scalar layout.
 #ifndef AG_FRAME_SHADOW_SHARED_H
 #define AG_FRAME_SHADOW_SHARED_H
 
@@ -8,10 +8,9 @@
 // points here.
 struct shadow_face {
     mat4s clip_from_world;
-    float texel_m;     // suns: edge of a texel; else: its edge at distance 1
-    float depth_scale; // compare depth · depth_scale + depth_offset: moves the receiver towards the
-                       // light
-    float depth_offset;
+    float texel_m; // edge of a texel; points and spots: at distance 1
+    // Depth bias: the receiver's depth is depth · depth_scale + depth_offset.
+    float depth_scale, depth_offset;
     uint32_t padding;
 };
 

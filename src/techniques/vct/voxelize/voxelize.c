@@ -53,12 +53,12 @@ static void walk(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *c
         const struct vct_walk *pipelines = add ? &vct->add[kind] : &vct->mark;
         scene_gpu_dispatch(view->scene, cmd,
                            &(struct scene_dispatch_call){ .pipeline = pipelines->small,
-                                                          .drawn = raster,
+                                                          .rasterize = raster,
                                                           .draw = draw,
                                                           .bindings = bindings,
                                                           .binding_count = count,
-                                                          .rest = pipelines->large,
-                                                          .rest_groups = vct->queue_state });
+                                                          .deferred = pipelines->large,
+                                                          .deferred_groups = vct->queue_state });
     }
     if (raster) gpu_render_end(cmd);
 }

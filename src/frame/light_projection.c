@@ -1,13 +1,13 @@
-// Where the maps of lights stand.
-#include "frame/light_fit.h"
+// Projections of shadow maps and reflective shadow maps.
+#include "frame/light_projection.h"
 
 #include "frame/projection.h"
 
 #include <math.h>
 
 static const float SPOT_MIN_COS = 0.0871557f; // cos 85°
-static const float NEAR_SHARE = 1e-4f;        // of the scene's diagonal
-static const float NEAR_LEAST_M = 1e-3f;
+static const float NEAR_SHARE = 1e-4f;        // near plane over the scene's diagonal
+static const float NEAR_MIN_M = 1e-3f;
 
 mat4s light_space(vec3s direction)
 {
@@ -21,7 +21,7 @@ mat4s light_orthographic(vec3s direction, float x, float y, float half_m, struct
 {
     mat4s view = light_space(direction);
     struct box3 box = box3_transform(view, bounds);
-    // A flat scene has no depth of its own; the margin also keeps its rim inside.
+    // The margin gives flat scenes a depth and keeps the box's faces inside.
     float margin = 1e-3f * (light_diagonal(bounds) + 1.0f);
     float near_m = -box.max.z - margin, far_m = -box.min.z + margin;
     *depth_m = far_m - near_m;
@@ -53,7 +53,7 @@ float light_spot_tan(float cos_outer)
 
 float light_near(struct box3 bounds)
 {
-    return fmaxf(NEAR_SHARE * light_diagonal(bounds), NEAR_LEAST_M);
+    return fmaxf(NEAR_SHARE * light_diagonal(bounds), NEAR_MIN_M);
 }
 
 float light_diagonal(struct box3 bounds)
