@@ -1,5 +1,4 @@
-// From the caller's bindings, by name, to what a shader's descriptors say and what must be waited
-// for.
+// Bindings by name: descriptor writes and barriers for a pipeline.
 #include "gpu/vk.h"
 
 #include <string.h>
@@ -9,7 +8,7 @@ static bool is_buffer(VkDescriptorType type)
     return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-// Callers mostly list bindings in the shader's order: look there first.
+// Bindings are mostly listed in the shader's order: try the same index first.
 static const struct gpu_binding *find(const struct gpu_binding *bindings, int count,
                                       const char *name, int hint)
 {
@@ -95,7 +94,7 @@ static bool prepare_image(struct gpu_cmd *cmd, const struct pipeline *pipeline,
         return gpu_misuse(gpu, "pipeline %s: the sampler of \"%s\" is none of this device's",
                           pipeline->name, want->name);
     }
-    if (!out->imageView) cmd->broken = true; // no memory: the frame is not what was asked for
+    if (!out->imageView) cmd->broken = true; // out of memory
     return out->imageView != VK_NULL_HANDLE;
 }
 
@@ -161,7 +160,7 @@ bool bind_prepare(struct gpu_cmd *cmd, const struct pipeline *pipeline,
         return gpu_misuse(cmd->gpu, "pipeline %s: %zu bytes of push constants, it declares %u",
                           pipeline->name, push_bytes, r->push_bytes);
     }
-    // Writes first: what this operation also reads is then remembered as written by it.
+    // Writes first: a resource that is also read is then tracked as written by this operation.
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < r->binding_count; i++) {
             if (r->bindings[i].writes != (pass == 0)) continue;

@@ -1,4 +1,4 @@
-// Buffers: the caller's, on the device, and the layer's own, mapped.
+// Buffers: device-local ones of the caller, and mapped ones of this layer.
 #include "gpu/vk.h"
 
 #include <stdio.h>
@@ -71,7 +71,7 @@ static bool check_desc(struct gpu *gpu, const struct gpu_buffer_desc *desc)
     }
     if (!desc->bytes)
         return host_fail(gpu->host, FAIL_ARGUMENT, "gpu buffer %s: 0 bytes", desc->name);
-    // Larger uniform and index buffers would be legal and bound in part, but none could hold one.
+    // maxStorageBufferRange limits bindings, not buffers; allocation size is the only limit here.
     if (desc->bytes > gpu->memory.max_allocation) {
         return host_fail(gpu->host, FAIL_MEMORY,
                          "gpu buffer %s: %zu bytes, the device gives at most %llu", desc->name,

@@ -1,6 +1,5 @@
 // Frames and transfers: recording, submission and waiting. Two frames are in flight; one timeline
-// semaphore counts all submissions. Each recording has a serial, by which things are freed once the
-// GPU is done with it.
+// semaphore counts all submissions. Deferred deletion refers to the serial number of recordings.
 #include "gpu/vk.h"
 
 #include <stdio.h>
@@ -45,7 +44,7 @@ void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd)
     *cmd = (struct gpu_cmd){ 0 };
 }
 
-// Images that others may have used since our last recording.
+// Resets the state of images that the caller may have used since the previous recording.
 static void reset_shared(struct gpu *gpu)
 {
     for (uint32_t i = 0; i < gpu->images.count; i++) {
@@ -55,7 +54,7 @@ static void reset_shared(struct gpu *gpu)
     }
 }
 
-// Others are to find such an image in one layout.
+// Transitions shared images to a single layout, which gpu_image_handle returns.
 static void unify_shared(struct gpu_cmd *cmd)
 {
     struct gpu *gpu = cmd->gpu;

@@ -1,5 +1,4 @@
-// Which physical devices there are, which of them will do, and the logical device with the features
-// we need.
+// Physical devices: enumeration, requirements, selection; the logical device and its limits.
 #include "gpu/vk.h"
 
 #include <ctype.h>
@@ -17,7 +16,7 @@ struct features {
     VkPhysicalDeviceVulkan13Features v13;
 };
 
-// One table for what is checked, what is enabled and what gpu_required_features says.
+// One table of features: checked, enabled, and listed by gpu_required_features.
 #define REQUIRED_FEATURES(X)                                                                       \
     X(core.features, imageCubeArray)                                                               \
     X(core.features, independentBlend)                                                             \
@@ -107,7 +106,7 @@ static void check_usable(VkPhysicalDevice physical, const VkPhysicalDeviceProper
 {
     out->usable = true;
     if (p->apiVersion < VK_API_VERSION_1_3) {
-        miss(out, "Vulkan 1.3"); // the structures below are not to be asked for
+        miss(out, "Vulkan 1.3"); // the structures below need it
         return;
     }
     struct features has;
@@ -196,8 +195,7 @@ static bool contains(const char *text, const char *part)
     return false;
 }
 
-// The index that `wanted` means, -1 for none. A device that will not do is taken only when it is
-// named.
+// Index of the device for `wanted`, -1: none. An unusable device is selected only by name or index.
 static int match(const struct gpu_device_info *infos, uint32_t count, const char *wanted)
 {
     if (wanted && isdigit((unsigned char)wanted[0])) {
@@ -267,7 +265,7 @@ bool device_create(struct gpu *gpu)
     const char *extensions[2] = { VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME };
     uint32_t count = 1;
     if (has_extension(gpu->physical, "VK_KHR_portability_subset")) {
-        extensions[count++] = "VK_KHR_portability_subset"; // must be enabled where it is offered
+        extensions[count++] = "VK_KHR_portability_subset"; // must be enabled if it is supported
     }
     float priority = 1;
     if (!VK_CHECK(gpu,

@@ -1,4 +1,4 @@
-// Formats: their Vulkan names, sizes, and their texels as floats.
+// Formats: Vulkan formats, sizes, and conversion of texels to floats.
 #include "gpu/vk.h"
 
 #include <math.h>
@@ -34,8 +34,8 @@ int gpu_format_bytes(enum gpu_format format)
     return format_of(format)->bytes;
 }
 
-// A float with `exponent` bits biased by 2^(exponent−1)−1 and `mantissa` bits, without sign (IEEE
-// 754 in small).
+// An unsigned float with `exponent` bits, biased by 2^(exponent−1)−1, and `mantissa` bits, with
+// IEEE 754 rules.
 static float small_float(uint32_t bits, int exponent_bits, int mantissa_bits)
 {
     int bias = (1 << (exponent_bits - 1)) - 1;

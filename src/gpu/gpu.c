@@ -114,8 +114,7 @@ fail:
     return NULL;
 }
 
-// Reports and frees what the caller forgot. name_offset: where an object of this table keeps its
-// name.
+// Logs and frees objects that the caller did not destroy. name_offset: of the object's name.
 static void free_table(struct gpu *gpu, struct table *table, const char *kind, size_t name_offset,
                        void (*free)(struct gpu *gpu, void *object))
 {

@@ -1,13 +1,12 @@
-// A thin layer over Vulkan 1.3; the only header of it that others see. No Vulkan type stands here.
+// A thin layer over Vulkan 1.3, and its only public header. It contains no Vulkan types.
 //
-// Objects are small handles into the device's tables; a zeroed handle is none, and destroying it
-// does nothing. Every object has a name "owner.thing"; the part before the dot owns its bytes in
-// gpu_memory. Destruction is deferred until the GPU no longer uses the object.
+// Objects are small handles into tables of the device; a zeroed handle is empty, and destroying it
+// does nothing. Every object has a name "owner.thing"; gpu_memory counts its bytes for the owner.
+// Destruction is deferred until the GPU no longer uses the object.
 //
-// Barriers and image layouts: the layer reflects each shader and knows for each binding whether it
-// is read or written; before each dispatch and each rendering it waits for exactly what was written
-// before (or read, before a write). Nobody writes a barrier by hand. Hazards between draws of one
-// rendering are not tracked.
+// Barriers and image layouts are automatic: shader reflection tells which bindings are read or
+// written, and each dispatch and rendering waits for exactly the earlier accesses that it depends
+// on. Hazards between draws of one rendering are not tracked.
 //
 // Units: sizes in bytes, extents in texels, times in milliseconds. Thread-safety: one thread per
 // device.
@@ -33,18 +32,17 @@ typedef struct {
     uint32_t id;
 } gpu_pipeline;
 
-// ---- Device
-// -------------------------------------------------------------------------------------------------
+// ---- Device -------------------------------------------------------------------------------------
 
 struct gpu_device_info {
     char name[256], driver[256];
     enum { GPU_CPU, GPU_INTEGRATED, GPU_DISCRETE, GPU_OTHER } type;
-    bool usable;       // has all that the core path needs
-    char missing[256]; // what it lacks, where it is not usable
+    bool usable;       // meets all requirements
+    char missing[256]; // missing requirements if not usable
 };
 
-// Fills at most `capacity` entries and sets *count to the number of devices. false: no Vulkan at
-// all.
+// Fills at most `capacity` entries and sets *count to the number of devices. false: no Vulkan
+// instance.
 bool gpu_list_devices(struct host *host, struct gpu_device_info *out, int capacity, int *count);
 
 // A caller's own device (Vulkan handles as void *). It must have been created with the features
@@ -52,22 +50,21 @@ bool gpu_list_devices(struct host *host, struct gpu_device_info *out, int capaci
 struct gpu_adopt {
     void *instance, *physical_device, *device, *queue;
     uint32_t queue_family;
-    void (*lock_queue)(void *user), (*unlock_queue)(void *user); // around submissions; may be NULL
+    void (*lock_queue)(void *user), (*unlock_queue)(void *user); // around submissions; or NULL
     void *user;
 };
 
 struct gpu_desc {
-    const char *device; // a number from gpu_list_devices, a part of a name, or NULL for the best
+    const char *device; // index from gpu_list_devices, part of a name, or NULL for the best
     bool validation; // validation and synchronization validation; fails when the layer is missing
-    const char *shader_dir; // X.spv from here, where there is one, stands for the embedded X; NULL:
-                            // embedded ones only
-    const struct gpu_adopt *adopt; // NULL: our own device
+    const char *shader_dir; // X.spv in this folder overrides the embedded shader X; NULL: no folder
+    const struct gpu_adopt *adopt; // NULL: the layer creates the device
 };
 
 struct gpu *gpu_create(struct host *host, const struct gpu_desc *desc);
-void gpu_destroy(struct gpu *gpu); // waits; reports objects that were never destroyed
+void gpu_destroy(struct gpu *gpu); // waits; logs objects that were not destroyed
 const struct gpu_device_info *gpu_info(const struct gpu *gpu);
-const char *gpu_required_features(void); // for documentation and errors: one name a line
+const char *gpu_required_features(void); // one name per line
 // Validation errors and warnings so far (0 when validation is off). Tests fail on any.
 int gpu_validation_messages(const struct gpu *gpu);
 int gpu_live_objects(const struct gpu *gpu);
@@ -79,8 +76,7 @@ struct gpu_limits {
 };
 const struct gpu_limits *gpu_limits(const struct gpu *gpu);
 
-// ---- Resources
-// ----------------------------------------------------------------------------------------------
+// ---- Resources ----------------------------------------------------------------------------------
 
 enum gpu_format {
     GPU_FORMAT_NONE,
@@ -117,8 +113,8 @@ struct gpu_image_desc {
     enum gpu_dimension dimension;
     enum gpu_format format;
     uint32_t width, height;
-    uint32_t
-        depth; // 3D: depth; 2D arrays: layers; cubes: 6; cube arrays: 6 × cubes; 2D: 1 (0 is 1)
+    // 3D: depth; 2D arrays: layers; cubes: 6; cube arrays: 6 × cubes; 2D: 1. 0 is the default.
+    uint32_t depth;
     uint32_t mips;  // 0 is 1
     uint32_t usage; // gpu_image_usage; copies and clears are always allowed
 };
@@ -126,15 +122,15 @@ struct gpu_image_desc {
 // A new image is zeroed on the GPU before its first use. false: the size is 0 or beyond the limits,
 // or no memory.
 bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_image *out);
-void gpu_image_destroy(struct gpu *gpu, gpu_image *image); // sets *image to none
+void gpu_image_destroy(struct gpu *gpu, gpu_image *image); // zeroes *image
 const struct gpu_image_desc *gpu_image_info(const struct gpu *gpu, gpu_image image);
-// Wraps a caller's VkImage (not owned). `layout` is its VkImageLayout now; see gpu_image_handle for
-// later.
+// Wraps a caller's VkImage (not owned). `layout` is its current VkImageLayout; see
+// gpu_image_handle.
 bool gpu_image_wrap(struct gpu *gpu, const struct gpu_image_desc *desc, void *vk_image,
                     uint32_t layout, gpu_image *out);
-// The VkImage, and its VkImageLayout at the end of the newest frame, in which it must be again when
-// the next one begins. From then on each frame waits for all that was submitted before, as others
-// may have used the image; they wait for the frame themselves. NULL: no such image.
+// The VkImage, and its VkImageLayout at the end of the newest frame; it must have this layout again
+// when the next frame begins. From now on each frame waits for all earlier submissions, since the
+// caller may use the image between frames; the caller waits for the frame. NULL: no such image.
 void *gpu_image_handle(const struct gpu *gpu, gpu_image image, uint32_t *layout);
 
 enum gpu_buffer_usage {
@@ -160,25 +156,23 @@ struct gpu_sampler_desc {
     const char *name;
     enum gpu_filter filter, mip_filter;
     enum gpu_wrap wrap_u, wrap_v, wrap_w;
-    bool compare_greater; // a comparison sampler for reversed-Z shadow maps: passes where reference
-                          // ≥ texel
+    bool compare_greater; // comparison sampler for reversed-Z shadow maps: 1 if reference ≥ texel
     float max_anisotropy; // ≤ 1: off
 };
 // Equal descriptions share one sampler; gpu_destroy frees them.
 bool gpu_sampler_get(struct gpu *gpu, const struct gpu_sampler_desc *desc, gpu_sampler *out);
 
-// Blocking transfers for set-up and for reading results; never in per-frame code.
+// Blocking transfers for initialisation and for reading results; not for per-frame code.
+// One mip of one layer, or of a whole 3D image.
 bool gpu_image_upload(struct gpu *gpu, gpu_image image, uint32_t mip, uint32_t layer,
-                      const void *texels,
-                      size_t bytes); // one mip of one layer, or of a whole 3D image
-bool gpu_image_generate_mips(struct gpu *gpu,
-                             gpu_image image); // box filter, from mip 0; format must blit
+                      const void *texels, size_t bytes);
+// Box filter from mip 0; the format must support blits.
+bool gpu_image_generate_mips(struct gpu *gpu, gpu_image image);
 bool gpu_buffer_upload(struct gpu *gpu, gpu_buffer buffer, size_t offset, const void *data,
                        size_t bytes);
 bool gpu_image_download(struct gpu *gpu, gpu_image image, uint32_t mip, uint32_t layer,
                         void *texels, size_t bytes);
-// As 32-bit floats, whatever the format (half, unorm, snorm and srgb are converted), `channels` per
-// texel.
+// Converts any format (half, unorm, snorm, srgb) to 32-bit floats, `channels` per texel.
 bool gpu_image_download_float(struct gpu *gpu, gpu_image image, uint32_t mip, uint32_t layer,
                               float *texels, int channels, size_t float_count);
 bool gpu_buffer_download(struct gpu *gpu, gpu_buffer buffer, size_t offset, void *data,
@@ -198,8 +192,7 @@ void gpu_readback_copy(struct gpu_cmd *cmd, struct gpu_readback *to, size_t to_o
 // Each copy is returned once.
 bool gpu_readback_poll(struct gpu *gpu, struct gpu_readback *readback, void *out, size_t bytes);
 
-// ---- Pipelines
-// ----------------------------------------------------------------------------------------------
+// ---- Pipelines ----------------------------------------------------------------------------------
 
 struct gpu_shader {   // embedded by cmake/Shaders.cmake
     const char *name; // "lpv_propagate.comp"
@@ -235,44 +228,41 @@ struct gpu_graphics_desc {
     enum gpu_format depth_format;     // GPU_FORMAT_NONE: no depth
     enum gpu_compare depth_compare;   // reversed Z: GPU_GREATER
     bool depth_write, depth_clamp;
-    float depth_bias, depth_bias_slope; // in the sense of Vulkan; reversed Z wants negative values
+    float depth_bias, depth_bias_slope; // as in Vulkan; negative values for reversed Z
     enum gpu_blend blend;
-    // Triangle lists, no vertex input (vertex pulling), cull mode set per draw. Clip space is
-    // Vulkan's (y down, so that row 0 is at y = -1); what is counter-clockwise in the image, row 0
-    // on top, is a front.
+    // Triangle lists without vertex input (vertex pulling); the cull mode is set per draw. Vulkan
+    // clip space (y down, row 0 at y = -1); front faces are counter-clockwise in the image.
 };
 bool gpu_graphics_pipeline_create(struct gpu *gpu, const struct gpu_graphics_desc *desc,
                                   gpu_pipeline *out);
 void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *pipeline);
-// Rebuilds pipelines whose .spv in shader_dir changed; a bad shader is logged and the old one kept.
-// Returns how many.
+// Rebuilds pipelines whose .spv in shader_dir changed and returns their number. On an invalid
+// shader the old pipeline stays, with a warning.
 int gpu_reload_shaders(struct gpu *gpu);
 
-// ---- Commands
-// -----------------------------------------------------------------------------------------------
+// ---- Commands -----------------------------------------------------------------------------------
 
-// One frame at a time: begin, record, end (submits, does not wait). Two frames are in flight at
-// most. NULL: device lost.
+// Frames are recorded one at a time: begin, record, end (submits, does not wait). At most two
+// frames are in flight. NULL: device lost.
 struct gpu_cmd *gpu_frame_begin(struct gpu *gpu);
 bool gpu_frame_end(struct gpu *gpu, struct gpu_cmd *cmd);
-// Records into a caller's VkCommandBuffer instead (in the recording state, outside of a rendering).
-// gpu_frame_end then ends our part and submits nothing: the caller submits it before any other call
-// that submits, and says with gpu_frame_adopted_done when the GPU has finished it. Four may be
-// unfinished.
+// Records into a caller's VkCommandBuffer (in the recording state, outside of a rendering).
+// gpu_frame_end then does not submit: the caller submits the buffer before any other call that
+// submits, and calls gpu_frame_adopted_done once the GPU has completed it. At most four adopted
+// frames are pending.
 struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer);
 void gpu_frame_adopted_done(struct gpu *gpu, struct gpu_cmd *cmd);
-bool gpu_wait(struct gpu *gpu); // until all submitted work is done; false: device lost
+bool gpu_wait(struct gpu *gpu); // until all submissions are complete; false: device lost
 
-// Something bound to a shader's name. Give exactly one of image (with a sampler where the shader
-// samples) and buffer.
+// An image (with a sampler, if the shader samples it) or a buffer, bound to a name in the shader.
 struct gpu_binding {
     const char *name; // of the variable in GLSL; of the block for buffers
     gpu_image image;
     gpu_buffer buffer;
-    gpu_sampler sampler; // none: nearest, clamped (for texelFetch)
-    uint32_t mip;        // storage images: which mip. Sampled: the first mip seen
-    bool one_mip;        // sampled: only that mip
-    uint32_t layer;      // with one_layer: which layer of an array (seen as 2D)
+    gpu_sampler sampler; // empty: nearest, clamped (for texelFetch)
+    uint32_t mip;        // storage images: the mip; sampled images: the first mip of the view
+    bool one_mip;        // sampled images: only that mip
+    uint32_t layer;      // with one_layer: the layer of an array, viewed as 2D
     bool one_layer;
     size_t offset, bytes; // buffers; bytes 0: to the end
 };
@@ -280,8 +270,8 @@ struct gpu_binding {
     (const struct gpu_binding[]){ __VA_ARGS__ },                                                   \
         (int)(sizeof((const struct gpu_binding[]){ __VA_ARGS__ }) / sizeof(struct gpu_binding))
 
-// All of the shader's bindings must be there (asserted), others are ignored. group counts of 0
-// dispatch nothing.
+// All bindings of the shader are required (asserted), others are ignored. A group count of 0
+// dispatches nothing.
 void gpu_dispatch(struct gpu_cmd *cmd, gpu_pipeline pipeline, const struct gpu_binding *bindings,
                   int binding_count, const void *push, size_t push_bytes, uint32_t groups_x,
                   uint32_t groups_y, uint32_t groups_z);
@@ -297,16 +287,15 @@ static inline uint32_t gpu_groups(uint32_t size, uint32_t local)
 struct gpu_target {
     gpu_image image;
     uint32_t mip, layer; // one layer (for 3D images: a slice)
-    bool load;           // keep what is there; else clear
+    bool load;           // keep the content; else clear
     float clear[4];      // depth: clear[0]
 };
 struct gpu_render_desc {
     struct gpu_target color[8];
     int color_count;
-    struct gpu_target depth; // image none: no depth
+    struct gpu_target depth; // empty image: no depth
     uint32_t width, height;
-    // Everything the draws will read besides the targets; made readable before the rendering
-    // begins.
+    // Resources that the draws read; barriers for them are recorded before the rendering begins.
     const struct gpu_binding *reads;
     int read_count;
 };
@@ -320,40 +309,39 @@ struct gpu_draw_desc {
     int binding_count;
     const void *push;
     size_t push_bytes;
-    gpu_buffer indices;  // 32-bit; none: not indexed
+    gpu_buffer indices;  // 32-bit; empty: not indexed
     size_t index_offset; // bytes
     uint32_t count;      // indices, or vertices
     uint32_t instances;  // 0 is 1
     int32_t vertex_offset;
     enum gpu_cull cull;
-    bool flip_front; // mirrored transform
+    bool flip_front; // for mirrored transforms
 };
 void gpu_draw(struct gpu_cmd *cmd, const struct gpu_draw_desc *desc);
 void gpu_render_end(struct gpu_cmd *cmd);
 
-void gpu_clear_image(struct gpu_cmd *cmd, gpu_image image,
-                     const float value[4]); // all mips and layers
+// All mips and layers.
+void gpu_clear_image(struct gpu_cmd *cmd, gpu_image image, const float value[4]);
 void gpu_fill_buffer(struct gpu_cmd *cmd, gpu_buffer buffer, size_t offset, size_t bytes,
                      uint32_t word);
-void gpu_copy_image(struct gpu_cmd *cmd, gpu_image to,
-                    gpu_image from); // same format and size, all mips and layers
+// Same format and size; all mips and layers.
+void gpu_copy_image(struct gpu_cmd *cmd, gpu_image to, gpu_image from);
 void gpu_copy_buffer(struct gpu_cmd *cmd, gpu_buffer to, size_t to_offset, gpu_buffer from,
                      size_t from_offset, size_t bytes);
 
-// Small data for this frame, in a ring: a binding for a uniform or storage block of that name.
-// Never fails: when the ring is full it grows, and the old one lives until the GPU is done.
+// Copies small data for this frame into a ring buffer; returns a binding for the uniform or storage
+// block of that name. A full ring is replaced by a larger one.
 struct gpu_binding gpu_transient(struct gpu_cmd *cmd, const char *name, const void *data,
                                  size_t bytes);
 
-// ---- Scopes, timing, memory
-// ---------------------------------------------------------------------------------
+// ---- Scopes, timing, memory ---------------------------------------------------------------------
 
 // From here to the matching pop, objects and scopes named without a dot belong to `owner`: "cones"
 // is "vct.cones". The innermost owner counts. `owner` outlives the pop.
 void gpu_owner_push(struct gpu *gpu, const char *owner);
 void gpu_owner_pop(struct gpu *gpu);
 
-// A debug label and a pair of timestamps. Scopes nest; a name seen twice in a frame is summed.
+// A debug label and a pair of timestamps. Scopes nest; times of equal names in a frame are added.
 void gpu_scope_begin(struct gpu_cmd *cmd, const char *name);
 void gpu_scope_end(struct gpu_cmd *cmd);
 
@@ -361,13 +349,13 @@ struct gpu_timing {
     char name[48];
     double ms;
 };
-// Times of the newest finished frame, in the order first begun, innermost scopes; "frame" is the
-// whole. Returns the count. gpu_wait first to get the frame just ended.
+// Times of the innermost scopes of the newest completed frame, in the order of their first begin;
+// "frame" is the total. Returns the count. Call gpu_wait first for the frame just ended.
 int gpu_frame_timings(const struct gpu *gpu, struct gpu_timing *out, int capacity);
 
 struct gpu_memory {
     char owner[32];
     uint64_t bytes;
 };
-// Bytes now, by owner, largest first. Returns the count.
+// Current bytes by owner, largest first. Returns the count.
 int gpu_memory_by_owner(const struct gpu *gpu, struct gpu_memory *out, int capacity);

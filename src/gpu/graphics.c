@@ -1,5 +1,4 @@
-// The fixed state of a graphics pipeline. Culling, the front face, viewport and scissor are set
-// with each draw.
+// Fixed state of graphics pipelines. Cull mode, front face, viewport and scissor are dynamic.
 #include "gpu/vk.h"
 
 static VkCompareOp compare_op(enum gpu_compare compare)

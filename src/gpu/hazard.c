@@ -1,15 +1,15 @@
-// The one place for barriers. Each buffer, and each subresource of an image, remembers its last
-// write, who sees it, who read since, and its layout; each use compares itself with that and waits
-// for exactly what it must:
+// Hazard tracking and barriers. The state of each buffer and each image subresource is its last
+// write, the stages to which it is visible, the stages that read since, and its layout. Each access
+// queues exactly the barriers that it needs:
 //
 //   read after write    the write is made visible, once for each stage
-//   write after read    execution only: the readers finish first
+//   write after read    execution dependency only
 //   write after write   the earlier write is made visible
-//   change of layout    counts as a write, ordered after all of these
+//   layout transition   counts as a write, ordered after all of these
 //
-// There is one queue, so the memory holds across submissions. Uses within one operation (a
-// dispatch, or all draws of a rendering) are not ordered among each other. Waits for whole memory
-// are one VkMemoryBarrier2, or-ed together; only a change of layout needs a barrier of its own.
+// There is one queue, so the state holds across submissions. Accesses within one operation (a
+// dispatch, or all draws of a rendering) are not ordered among each other. Memory dependencies are
+// merged into one VkMemoryBarrier2; only layout transitions need separate barriers.
 #include "gpu/vk.h"
 
 static const VkPipelineStageFlags2 SHADER_STAGES = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
@@ -18,8 +18,8 @@ static const VkPipelineStageFlags2 SHADER_STAGES = VK_PIPELINE_STAGE_2_VERTEX_SH
 static const VkPipelineStageFlags2 DEPTH_STAGES =
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
 
-// All the ways in which a stage reads: what is visible to a stage is visible to each of them, so
-// that `hazard.visible` can be a set of stages alone.
+// All read accesses of a stage: a write is made visible to all of them at once, so that
+// `hazard.visible` needs no access flags.
 static VkAccessFlags2 reads_of(VkPipelineStageFlags2 stages)
 {
     VkAccessFlags2 access = 0;
@@ -81,8 +81,8 @@ static bool overlap(const VkImageSubresourceRange *a, const struct range *b)
            b->layer < a->baseArrayLayer + a->layerCount;
 }
 
-// Barriers of one command are not ordered among each other: two changes of one subresource need two
-// commands.
+// Barriers of one command are not ordered among each other: two transitions of one subresource need
+// two commands.
 static void batch_layout(struct gpu_cmd *cmd, const struct image *image, const struct range *range,
                          const struct hazard *h, VkPipelineStageFlags2 source,
                          const struct access *access)
@@ -173,7 +173,7 @@ static void split(struct image *image)
     image->whole = false;
 }
 
-// One state for all subresources that asks for at least the waits of each; where there is such.
+// Merges the states of all subresources into a conservative one, if layout and operation agree.
 static void join(struct image *image)
 {
     uint32_t count = image->desc.mips * image->layers;
@@ -195,7 +195,7 @@ static void use_image(struct gpu_cmd *cmd, struct image *image, const struct ran
 {
     struct range all = image_whole(image);
     bool part = !is_whole(image, range);
-    // A read that changes no layout may be remembered for more than it touches.
+    // A partial read without transition may conservatively be tracked for the whole image.
     bool exclusive = access->write || image->hazards[0].layout != access->layout;
     if (image->whole && (!part || !exclusive)) {
         use(cmd, &image->hazards[0], image, &all, access);
@@ -282,9 +282,8 @@ void hazard_overwrite_buffer(struct buffer *buffer)
     buffer->zero_pending = false;
 }
 
-// The GPU is done with the earlier object, as the host has seen. To wait once more, for nothing,
-// costs one barrier in the new object's life, and lets synchronization validation follow: it does
-// not know what the host waited for.
+// The GPU has completed all accesses of the earlier object. The redundant barrier is for
+// synchronization validation, which does not track host waits; it costs one barrier per object.
 struct hazard hazard_recycled(void)
 {
     return (struct hazard){

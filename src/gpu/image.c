@@ -1,4 +1,4 @@
-// Images and their views. A view is made when a part of an image is first bound, and kept with the
+// Images and their views. A view is created at the first binding of a part, and cached in the
 // image.
 #include "gpu/vk.h"
 
@@ -30,7 +30,7 @@ bool image_check_part(struct gpu *gpu, const struct image *image, uint32_t mip, 
                      layer, image->desc.mips, image->layers);
 }
 
-// Fills in what 0 stands for.
+// Replaces 0 by defaults.
 static void complete(struct gpu_image_desc *desc)
 {
     if (!desc->mips) desc->mips = 1;
@@ -261,7 +261,7 @@ VkImageView image_view(struct gpu *gpu, struct image *image, VkImageViewType typ
     for (uint32_t i = 0; i < image->view_count; i++) {
         if (same_view(&image->views[i], type, range)) return image->views[i].handle;
     }
-    // Grown by eights: a view is made once, on the first use of a part.
+    // The array grows by eight entries.
     if (image->view_count % 8 == 0) {
         struct image_view *views =
             host_realloc(gpu->host, image->views, image->view_count + 8, sizeof *views);

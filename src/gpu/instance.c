@@ -1,4 +1,4 @@
-// The Vulkan instance, and the messenger that counts what the validation layer says.
+// The Vulkan instance, and the messenger that counts validation messages.
 #include "gpu/vk.h"
 
 #include <string.h>
@@ -108,13 +108,13 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
 {
     struct gpu *gpu = user;
     (void)type;
-    // What the loader says of drivers and layers on the machine is not about our calls.
+    // Loader messages about installed drivers and layers are not about our calls.
     if (data->pMessageIdName && strcmp(data->pMessageIdName, "Loader Message") == 0) {
         host_log(gpu->host, LOG_DEBUG, "gpu loader: %s", data->pMessage);
         return VK_FALSE;
     }
     gpu->validation_messages++;
-    // A warning, as the call it is about goes on: errors are what a call's result tells.
+    // Logged as a warning, since the call itself may still succeed.
     host_log(gpu->host, LOG_WARNING, "gpu validation %s: %s",
              severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? "error" : "warning",
              data->pMessage);
@@ -132,8 +132,7 @@ bool instance_watch(struct gpu *gpu)
                          "and %s, itself)",
                          VK_EXT_DEBUG_UTILS_EXTENSION_NAME, validation_layer);
     }
-    // Not PERFORMANCE: its advice is about other drivers' habits, and storage images live in the
-    // general layout.
+    // Not PERFORMANCE: its advice is vendor-specific, and storage images are in the general layout.
     return VK_CHECK(gpu,
                     create(gpu->instance,
                            &(VkDebugUtilsMessengerCreateInfoEXT){

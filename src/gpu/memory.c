@@ -1,8 +1,7 @@
-// Device memory: large blocks cut into pieces, and the bytes of each owner.
+// Device memory: first-fit suballocation of large blocks, and the bytes of each owner.
 //
-// A block belongs to one memory type and to either buffers or images, so that
-// bufferImageGranularity never matters. Free pieces are kept sorted by offset; the first that fits
-// is taken. What is large gets a block of its own.
+// A block has one memory type and holds either buffers or images, so that bufferImageGranularity
+// does not matter. Free ranges are sorted by offset. Large allocations get a dedicated block.
 #include "gpu/vk.h"
 
 #include <stdio.h>
@@ -21,8 +20,8 @@ struct memory_block {
     VkDeviceMemory memory;
     VkDeviceSize bytes;
     uint32_t type;
-    bool linear, single; // single: holds one allocation only
-    bool recycled;       // some of it was in use before
+    bool linear, single; // single: a dedicated block
+    bool recycled;       // part of it was in use before
     void *mapped;
     struct piece *free;
     uint32_t free_count, free_capacity;
@@ -46,7 +45,7 @@ static uint32_t owner_index(struct gpu *gpu, const char *name)
     return m->owner_count++;
 }
 
-// How well a memory type serves; negative: not at all.
+// Preference for a memory type; negative: unsuitable.
 static int score(VkMemoryPropertyFlags flags, enum memory_kind kind)
 {
     const VkMemoryPropertyFlags mapped =
@@ -57,7 +56,7 @@ static int score(VkMemoryPropertyFlags flags, enum memory_kind kind)
         return -1;
     if (kind != MEMORY_DEVICE && (flags & mapped) != mapped) return -1;
     switch (kind) {
-    case MEMORY_DEVICE: // leave the small window that the CPU can see to those who need it
+    case MEMORY_DEVICE: // host-visible device memory may be a small heap: prefer other types
         return (local ? 4 : 0) + (flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT ? 0 : 1);
     case MEMORY_UPLOAD:
         return (local ? 0 : 2) + (cached ? 0 : 1);
@@ -96,7 +95,7 @@ static void block_free(struct gpu *gpu, struct memory_block *block)
     host_free(gpu->host, block);
 }
 
-// NULL without a message when this type has no memory left: another may.
+// NULL without a message if this memory type is exhausted: another one may do.
 static struct memory_block *block_new(struct gpu *gpu, uint32_t type, VkDeviceSize bytes,
                                       bool linear, bool mapped)
 {
@@ -125,7 +124,7 @@ static struct memory_block *block_new(struct gpu *gpu, uint32_t type, VkDeviceSi
     return block;
 }
 
-// Takes the needed bytes out of the first free piece that holds them.
+// First fit.
 static bool block_take(struct gpu *gpu, struct memory_block *block,
                        const VkMemoryRequirements *needs, VkDeviceSize *offset)
 {
@@ -163,7 +162,7 @@ static struct memory_block *find_block(struct gpu *gpu, const VkMemoryRequiremen
         if ((mapped && !block->mapped) || (!mapped && block->mapped)) continue;
         if (block_take(gpu, block, needs, offset)) return block;
     }
-    // A small heap is not to be eaten by one block.
+    // A block takes at most an eighth of its heap, unless the allocation needs more.
     const VkPhysicalDeviceMemoryProperties *p = &gpu->memory.properties;
     VkDeviceSize heap = p->memoryHeaps[p->memoryTypes[type].heapIndex].size;
     VkDeviceSize bytes = single ? needs->size : BLOCK_BYTES;
@@ -181,9 +180,10 @@ bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum me
     const VkPhysicalDeviceMemoryProperties *p = &gpu->memory.properties;
     *out = (struct allocation){ .bytes = needs->size };
     if (needs->size > gpu->memory.max_allocation) {
-        return host_fail(
-            gpu->host, FAIL_MEMORY, "gpu memory of %s: %llu bytes, the device gives at most %llu",
-            name, (unsigned long long)needs->size, (unsigned long long)gpu->memory.max_allocation);
+        return host_fail(gpu->host, FAIL_MEMORY,
+                         "gpu memory of %s: %llu bytes, the device supports at most %llu", name,
+                         (unsigned long long)needs->size,
+                         (unsigned long long)gpu->memory.max_allocation);
     }
     uint32_t owner = owner_index(gpu, name);
     if (owner == UINT32_MAX) return false;
@@ -228,7 +228,7 @@ static void block_give(struct gpu *gpu, struct memory_block *block, struct piece
         block->free[i].bytes += piece.bytes;
     } else {
         (void)add_piece(gpu, block, i,
-                        piece); // out of memory: the piece is lost until the block goes
+                        piece); // on failure the range is lost until the block is freed
     }
 }
 

@@ -1,4 +1,4 @@
-// The owner whose name comes before the names of new objects and scopes.
+// Owner prefix for the names of new objects and scopes.
 #include "gpu/vk.h"
 
 #include <stdio.h>

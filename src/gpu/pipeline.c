@@ -1,5 +1,4 @@
-// Pipelines: from shaders, embedded or on disk, to layouts and Vulkan's objects, and again when a
-// shader on disk changes.
+// Pipelines from embedded shaders or shaders on disk, and their reload when a file changes.
 #include "gpu/vk.h"
 
 #include "core/file.h"
@@ -21,7 +20,7 @@ static char *shader_path(struct gpu *gpu, const struct shader_stage *stage)
                            : NULL;
 }
 
-// Changes whenever the file does; 0: there is none.
+// Changes with the file; 0: no file.
 static int64_t stamp_of(struct gpu *gpu, const struct shader_stage *stage)
 {
     char *path = shader_path(gpu, stage);
@@ -42,7 +41,7 @@ static void use_embedded(const struct shader_stage *stage, struct code *out)
     out->count = stage->embedded.word_count;
 }
 
-// From the file where `from_file`, which then must be there and hold whole words.
+// from_file: the file on disk if there is one, which must hold whole words.
 static bool load_code(struct gpu *gpu, const struct shader_stage *stage, bool from_file,
                       struct code *out)
 {
@@ -193,7 +192,7 @@ static void free_handles(struct gpu *gpu, struct pipeline *p)
     p->set_layout = VK_NULL_HANDLE;
 }
 
-// Builds all from the description. from_files: with the shaders in shader_dir where there are such.
+// Builds reflection, layouts and pipeline. from_files: with shaders in shader_dir if present.
 static bool build(struct gpu *gpu, struct pipeline *p, bool from_files)
 {
     struct code codes[MAX_STAGES] = { 0 };
@@ -259,7 +258,7 @@ static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
     bool built = on_disk && build(gpu, p, true);
     if (on_disk && !built)
         host_log(gpu->host, LOG_WARNING,
-                 "gpu pipeline %s: a shader in %s is bad; the built-in one is used", p->name,
+                 "gpu pipeline %s: invalid shader in %s; the embedded one is used", p->name,
                  gpu->shader_dir);
     if (!built && !build(gpu, p, false)) goto fail;
     out->id = table_add(gpu->host, &gpu->pipelines, p);
@@ -346,12 +345,12 @@ static bool has_changed(struct gpu *gpu, struct pipeline *p)
     for (int i = 0; i < p->stage_count; i++) {
         int64_t stamp = stamp_of(gpu, &p->stages[i]);
         changed |= stamp != p->stages[i].stamp;
-        p->stages[i].stamp = stamp; // a bad one is not tried again before it changes again
+        p->stages[i].stamp = stamp; // an invalid shader is retried only after another change
     }
     return changed;
 }
 
-// A twin of `old` built anew, for the same handle; NULL: the old one stays.
+// A new pipeline from the description of `old`; NULL: the old one stays.
 static struct pipeline *rebuild(struct gpu *gpu, const struct pipeline *old)
 {
     struct pipeline *p = host_alloc(gpu->host, 1, sizeof *p);
@@ -365,8 +364,8 @@ static struct pipeline *rebuild(struct gpu *gpu, const struct pipeline *old)
     p->constant_count = 0;
     if (copy_constants(gpu, p, old->constants, old->constant_count) && build(gpu, p, true))
         return p;
-    host_log(gpu->host, LOG_WARNING,
-             "gpu pipeline %s: a changed shader is bad; the old one is kept", old->name);
+    host_log(gpu->host, LOG_WARNING, "gpu pipeline %s: invalid shader; the previous one is kept",
+             old->name);
     pipeline_free(gpu, p);
     return NULL;
 }

@@ -1,5 +1,5 @@
-// What a shader declares and uses: bindings with their names, kinds and directions, push constants,
-// specialization constants. SPIRV-Cross reads the SPIR-V; only what the entry point reaches counts.
+// Shader reflection with SPIRV-Cross: bindings (name, type, read or written), push constants,
+// specialization constants. Only variables that the entry point uses are listed.
 #include "gpu/vk.h"
 
 #include <spirv_cross_c.h>
@@ -21,7 +21,7 @@ static bool refuse(const struct reader *r, const char *name, const char *why)
     return host_fail(r->gpu->host, FAIL_FORMAT, "gpu shader %s: \"%s\" %s", r->what, name, why);
 }
 
-// A walk over the instructions: SPIRV-Cross and drivers trust their lengths.
+// Checks the instruction lengths, which SPIRV-Cross and drivers trust.
 static bool check_words(struct gpu *gpu, const uint32_t *words, size_t count, const char *what)
 {
     enum { HEADER = 5, MAGIC = 0x07230203, OP_ENTRY_POINT = 15, OP_FUNCTION_END = 56 };
@@ -95,7 +95,7 @@ static bool is_read_only(const struct reader *r, spvc_variable_id id, bool buffe
     return false;
 }
 
-// Adds a binding, or joins it with that of the other stage.
+// Adds a binding, or merges it with that of the other stage.
 static bool add_binding(const struct reader *r, const struct shader_binding *binding)
 {
     struct reflection *out = r->out;

@@ -1,6 +1,6 @@
-// Renderings: targets, draws. vkCmdBeginRendering is put off until the first draw, so that what the
-// draws need can be waited for even where it was not announced; a later draw that must wait
-// interrupts the rendering and takes it up again.
+// Renderings: targets and draws. vkCmdBeginRendering is deferred to the first draw, so that
+// barriers of its bindings can come before. A later draw that needs a barrier suspends and resumes
+// the rendering.
 #include "gpu/vk.h"
 
 #include <stddef.h>
@@ -86,8 +86,7 @@ static bool resume(struct gpu_cmd *cmd)
     struct rendering *r = &cmd->rendering;
     if (r->active) return true;
     VkRenderingAttachmentInfo colors[MAX_COLORS], depth;
-    hazard_next_op(
-        cmd); // the targets are used anew, whatever an earlier part of this rendering did
+    hazard_next_op(cmd); // a resumed rendering depends on its earlier part
     bool ok = true;
     for (int i = 0; i < r->color_count; i++) ok = ok && attach(cmd, &r->colors[i], &colors[i]);
     if (r->depth.image.id) ok = ok && attach(cmd, &r->depth, &depth);
@@ -111,8 +110,8 @@ static bool resume(struct gpu_cmd *cmd)
     return true;
 }
 
-// What the draws will read, as shaders find it.
-static void announce(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
+// Queues barriers for gpu_render_desc.reads.
+static void prepare_reads(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
 {
     const VkPipelineStageFlags2 stages =
         VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
@@ -145,7 +144,7 @@ void gpu_render_begin(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
     }
     *r = (struct rendering){ .open = true };
     if (cmd->gpu->lost || cmd->broken || !check_desc(cmd, desc)) {
-        r->wrong = true;
+        r->invalid = true;
         return;
     }
     for (int i = 0; i < desc->color_count; i++) r->colors[i] = desc->color[i];
@@ -155,7 +154,7 @@ void gpu_render_begin(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
     r->height = desc->height;
     gpu_render_viewport(cmd, 0, 0, desc->width, desc->height);
     hazard_next_op(cmd);
-    announce(cmd, desc);
+    prepare_reads(cmd, desc);
     hazard_next_op(cmd);
     r->op = cmd->op;
 }
@@ -164,7 +163,7 @@ void gpu_render_viewport(struct gpu_cmd *cmd, uint32_t x, uint32_t y, uint32_t w
                          uint32_t height)
 {
     struct rendering *r = &cmd->rendering;
-    if (!r->open || r->wrong) return;
+    if (!r->open || r->invalid) return;
     if (x > r->width || y > r->height || width > r->width - x || height > r->height - y) {
         gpu_misuse(cmd->gpu, "viewport: %u x %u at %u, %u is outside of %u x %u", width, height, x,
                    y, r->width, r->height);
@@ -190,7 +189,7 @@ static bool formats_match(struct gpu_cmd *cmd, const struct pipeline *pipeline)
            gpu_misuse(cmd->gpu, "draw with %s: the targets are not of its formats", pipeline->name);
 }
 
-// The index buffer of an indexed draw, ready to be read; NULL where something is wrong.
+// The index buffer of an indexed draw, with its barrier queued; NULL: invalid.
 static struct buffer *prepare_indices(struct gpu_cmd *cmd, const struct pipeline *pipeline,
                                       const struct gpu_draw_desc *draw)
 {
@@ -227,7 +226,7 @@ void gpu_draw(struct gpu_cmd *cmd, const struct gpu_draw_desc *draw)
 {
     struct gpu *gpu = cmd->gpu;
     struct rendering *r = &cmd->rendering;
-    if (gpu->lost || cmd->broken || r->wrong || !draw->count) return;
+    if (gpu->lost || cmd->broken || r->invalid || !draw->count) return;
     struct pipeline *pipeline = pipeline_get(gpu, draw->pipeline);
     if (!r->open || !pipeline || !pipeline->graphics || (unsigned)draw->cull > GPU_CULL_FRONT) {
         gpu_misuse(gpu, "draw: %s",
@@ -258,8 +257,8 @@ void gpu_render_end(struct gpu_cmd *cmd)
         gpu_misuse(cmd->gpu, "rendering: none is open");
         return;
     }
-    // Without a draw there may still be targets to clear.
-    if (!r->wrong && !r->begun && !cmd->broken && !cmd->gpu->lost) resume(cmd);
+    // A rendering without draws still clears its targets.
+    if (!r->invalid && !r->begun && !cmd->broken && !cmd->gpu->lost) resume(cmd);
     render_suspend(cmd);
     *r = (struct rendering){ 0 };
 }

@@ -1,4 +1,4 @@
-// Samplers: one for each description, for as long as the device lives.
+// Samplers, one per description, destroyed with the device.
 #include "gpu/vk.h"
 
 static VkSamplerAddressMode address_mode(enum gpu_wrap wrap)

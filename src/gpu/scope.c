@@ -22,7 +22,7 @@ bool scopes_init(struct gpu *gpu, struct scopes *scopes, const char *name)
     return true;
 }
 
-// The time when all before it is done.
+// A timestamp after completion of all earlier commands.
 static uint32_t stamp(struct gpu_cmd *cmd)
 {
     if (!cmd->scopes.queries) return NOT_TIMED;

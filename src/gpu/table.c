@@ -1,4 +1,4 @@
-// Handles: small ids into tables of pointers, with a generation so that a stale id finds nothing.
+// Handle tables: ids of pointers, with a generation that detects stale ids.
 #include "gpu/vk.h"
 
 #include <string.h>

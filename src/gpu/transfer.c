@@ -1,10 +1,10 @@
-// Blocking transfers, through one staging buffer for each direction.
+// Blocking transfers through one staging buffer per direction.
 #include "gpu/vk.h"
 
 #include <string.h>
 
 enum { UPLOAD, DOWNLOAD };
-static const size_t KEPT_BYTES = 64u << 20; // a larger staging buffer is given back after use
+static const size_t KEPT_BYTES = 64u << 20; // larger staging buffers are freed after use
 
 static struct buffer *staging(struct gpu *gpu, int direction, size_t bytes)
 {
@@ -30,7 +30,7 @@ static const struct access copy_write = { .stages = VK_PIPELINE_STAGE_2_ALL_TRAN
                                           .write = true };
 static const struct access copy_read = { .stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT };
 
-// The staged bytes become readable by the CPU once the submission is done.
+// Makes the staged bytes visible to the host once the submission is complete.
 static bool finish_download(struct gpu *gpu, struct gpu_cmd *cmd, struct buffer *stage)
 {
     hazard_next_op(cmd);

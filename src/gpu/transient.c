@@ -1,6 +1,5 @@
-// Small data for one frame: a mapped buffer for each frame in flight, filled from its start and
-// used anew when the GPU is done with the frame. The CPU's writes come before the submission, which
-// makes them visible.
+// Small data for one frame: a mapped buffer per frame in flight, reset when the GPU has completed
+// the frame. Host writes are made visible by the submission.
 #include "gpu/vk.h"
 
 #include <string.h>
@@ -67,7 +66,7 @@ struct gpu_binding gpu_transient(struct gpu_cmd *cmd, const char *name, const vo
     static const char nothing[16];
     const VkPhysicalDeviceLimits *l = &cmd->gpu->vk_limits;
     struct gpu_binding binding = { .name = name };
-    if (!bytes) data = nothing, bytes = sizeof nothing; // an empty block still needs a buffer
+    if (!bytes) data = nothing, bytes = sizeof nothing; // a block is never empty
     size_t alignment = l->minUniformBufferOffsetAlignment;
     if (alignment < l->minStorageBufferOffsetAlignment)
         alignment = l->minStorageBufferOffsetAlignment;
@@ -76,7 +75,7 @@ struct gpu_binding gpu_transient(struct gpu_cmd *cmd, const char *name, const vo
     size_t end, capacity = gpu_buffer_bytes(cmd->gpu, cmd->ring.buffer);
     if (!size_add(start, bytes, &end) || end > capacity) {
         if (!ring_grow(cmd, bytes)) {
-            cmd->broken = true; // the rest of the frame is not recorded, and its end fails
+            cmd->broken = true;
             return binding;
         }
         start = 0;

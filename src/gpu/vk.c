@@ -1,4 +1,4 @@
-// Failures of Vulkan calls and names for its objects.
+// Results of Vulkan calls, API misuse, and debug names.
 #include "gpu/vk.h"
 
 #include <assert.h>

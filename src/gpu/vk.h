@@ -1,5 +1,4 @@
-// Private to src/gpu: the device and its objects as Vulkan sees them. Each .c file says what it
-// does; this header says only what they share.
+// Private to src/gpu: the device, its objects, and functions that the .c files share.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -22,21 +21,19 @@ enum {
 
 // ---- Failure (vk.c) -----------------------------------------------------------------------------
 
-// True where `call` gave VK_SUCCESS; else logs the call's text and the result. A lost device stays
-// lost.
+// True on VK_SUCCESS; else logs the call's text and the result, and notes a lost device.
 #define VK_CHECK(gpu, call) vk_check((gpu), (call), #call)
 bool vk_check(struct gpu *gpu, VkResult result, const char *call);
 const char *vk_result_name(VkResult result);
-// A programmer's mistake that a release build survives: logged, asserted in debug builds. Returns
-// false.
+// API misuse: logged, and asserted in debug builds. Returns false.
 bool gpu_misuse(struct gpu *gpu, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void vk_name(struct gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
-// Vulkan's handles are pointers or 64-bit numbers, by platform.
+// Vulkan handles are pointers or 64-bit integers, depending on the platform.
 #define VK_NAME(gpu, type, handle, name) vk_name((gpu), (type), (uint64_t)(handle), (name))
 
 // ---- Handles (table.c) --------------------------------------------------------------------------
 
-// Objects by id: index + 1 in the low 20 bits, a generation above, so that a stale id is found out.
+// Objects by id: index + 1 in the low 20 bits, a generation above, which detects stale ids.
 struct table {
     void **objects;
     uint32_t *generations;
@@ -50,10 +47,10 @@ void table_finish(struct host *host, struct table *table);
 // ---- Memory (memory.c) --------------------------------------------------------------------------
 
 enum memory_kind {
-    MEMORY_DEVICE,   // where the GPU is fastest
+    MEMORY_DEVICE,   // device-local
     MEMORY_UPLOAD,   // mapped, coherent
-    MEMORY_DOWNLOAD, // mapped, coherent, cached where there is such
-    MEMORY_RING,     // mapped, coherent, device-local where there is such
+    MEMORY_DOWNLOAD, // mapped, coherent, cached if available
+    MEMORY_RING,     // mapped, coherent, device-local if available
 };
 
 struct memory_block;
@@ -63,7 +60,7 @@ struct allocation {
     VkDeviceSize offset, bytes;
     void *mapped; // at offset; NULL for MEMORY_DEVICE
     uint32_t owner;
-    bool recycled; // may hold what another object left
+    bool recycled; // the memory was in use before
 };
 
 struct memory_owner {
@@ -79,8 +76,8 @@ struct memory {
     uint32_t owner_count;
 };
 
-// `linear`: for buffers; images live in blocks of their own (bufferImageGranularity). The owner is
-// name's first part.
+// linear: for buffers; images have separate blocks (bufferImageGranularity). The owner is the part
+// of `name` before the dot.
 bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum memory_kind kind,
                      bool linear, const char *name, struct allocation *out);
 void memory_free(struct gpu *gpu, struct allocation *allocation);
@@ -88,15 +85,15 @@ void memory_finish(struct gpu *gpu);
 
 // ---- Hazards (hazard.c) -------------------------------------------------------------------------
 
-// What the queue has done to a buffer or to one subresource of an image.
+// Last accesses to a buffer or to one subresource of an image.
 struct hazard {
-    VkPipelineStageFlags2 write_stages; // of the last write, or of the last layout transition
+    VkPipelineStageFlags2 write_stages; // of the last write or layout transition
     VkAccessFlags2 write_access;
-    VkPipelineStageFlags2 visible;     // stages that see that write
-    VkPipelineStageFlags2 read_stages; // that read since
+    VkPipelineStageFlags2 visible;     // stages to which that write is visible
+    VkPipelineStageFlags2 read_stages; // of reads since that write
     VkImageLayout layout;
-    bool op_wrote; // the operation `op` wrote it
-    uint64_t op;   // the last operation that used it
+    bool op_wrote; // whether `op` wrote
+    uint64_t op;   // last operation with an access
 };
 
 struct access {
@@ -105,7 +102,7 @@ struct access {
     VkImageLayout layout; // images only
 };
 
-// Barriers waiting for the next command: one for all memory, and one for each change of layout.
+// Pending barriers of the next command: one memory barrier, and one per layout transition.
 struct batch {
     VkMemoryBarrier2 memory;
     VkImageMemoryBarrier2 images[BATCH_IMAGES];
@@ -125,15 +122,15 @@ struct image_view {
 };
 
 struct image {
-    struct gpu_image_desc desc; // with its zeros filled in; desc.name is `name`
+    struct gpu_image_desc desc; // with defaults filled in; desc.name is `name`
     char name[NAME_SIZE];
     VkImage handle;
     VkImageAspectFlags aspect;
     uint32_t layers;   // 1 for 3D images
     bool wrapped;      // the caller's VkImage
-    bool shared;       // others use it between our frames: wrapped, or its handle was given away
+    bool shared;       // the caller may use it between frames: wrapped, or its handle was queried
     bool zero_pending; // not yet cleared
-    bool whole;        // all subresources are in the state hazards[0]
+    bool whole;        // hazards[0] is the state of all subresources
     struct hazard *hazards; // [layer × mips + mip]
     struct image_view *views;
     uint32_t view_count;
@@ -143,10 +140,10 @@ struct image {
 struct buffer {
     char name[NAME_SIZE];
     VkBuffer handle;
-    size_t bytes;    // as asked
+    size_t bytes;    // as requested
     size_t capacity; // rounded up to whole words, for fills
     bool zero_pending;
-    bool constant; // the GPU only reads it: no hazards
+    bool constant; // read-only for the GPU: no hazards
     struct hazard hazard;
     struct allocation memory;
 };
@@ -170,14 +167,13 @@ size_t image_part_bytes(const struct image *image, uint32_t mip);
 void image_free(struct gpu *gpu, void *image);
 
 struct buffer *buffer_get(const struct gpu *gpu, gpu_buffer buffer);
-// Mapped buffers of the layer itself are `constant` or staging, and not zeroed. Live objects do not
-// count them.
+// Without a handle, and not zeroed.
 struct buffer *buffer_new(struct gpu *gpu, const char *name, size_t bytes, uint32_t usage,
                           enum memory_kind kind);
 void buffer_free(struct gpu *gpu, void *buffer);
 
-VkSampler sampler_handle(struct gpu *gpu,
-                         gpu_sampler sampler); // none: nearest, clamped; NULL where stale
+// Empty handle: nearest, clamped. NULL: stale handle.
+VkSampler sampler_handle(struct gpu *gpu, gpu_sampler sampler);
 void samplers_finish(struct gpu *gpu);
 
 struct format {
@@ -209,7 +205,7 @@ struct reflection {
     uint32_t constant_ids[64];
     int constant_count;
 };
-// Adds what one stage declares to what is there. `what` names the shader in failures.
+// Adds the interface of one stage. `what` names the shader in messages.
 bool reflect_stage(struct gpu *gpu, const uint32_t *words, size_t word_count, const char *what,
                    VkShaderStageFlagBits stage, struct reflection *out);
 
@@ -217,7 +213,7 @@ struct shader_stage {
     VkShaderStageFlagBits stage;
     struct gpu_shader embedded; // words of static storage
     char name[NAME_SIZE];
-    int64_t stamp; // of the file in shader_dir when last read; 0: there was none
+    int64_t stamp; // of the file in shader_dir when last read; 0: no file
 };
 
 struct pipeline {
@@ -227,7 +223,7 @@ struct pipeline {
     int stage_count;
     struct gpu_constant *constants;
     int constant_count;
-    struct gpu_graphics_desc desc; // graphics only; its pointers are not used
+    struct gpu_graphics_desc desc; // graphics only; pointers are cleared
     int color_count;
 
     struct reflection reflection;
@@ -243,10 +239,10 @@ VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *pipeline,
 // ---- Commands -----------------------------------------------------------------------------------
 
 struct rendering {
-    bool open;   // between gpu_render_begin and gpu_render_end
-    bool active; // between vkCmdBeginRendering and vkCmdEndRendering
-    bool begun;  // was active before: load from now on
-    bool wrong;  // misused: draws nothing
+    bool open;    // between gpu_render_begin and gpu_render_end
+    bool active;  // between vkCmdBeginRendering and vkCmdEndRendering
+    bool begun;   // was active before: the next begin loads
+    bool invalid; // after a misuse: draws nothing
     struct gpu_target colors[MAX_COLORS], depth;
     int color_count;
     uint32_t width, height;
@@ -255,25 +251,25 @@ struct rendering {
     uint64_t op;
 };
 
-enum { RING_OUTGROWN = 40 }; // each is twice the one before: no memory has room for more
+enum { RING_OUTGROWN = 40 }; // each ring is twice as large as the previous one
 
 struct ring { // transient data
     gpu_buffer buffer;
     size_t used;
-    gpu_buffer outgrown[RING_OUTGROWN]; // bindings of this recording may still name them
+    gpu_buffer outgrown[RING_OUTGROWN]; // replaced, but used by bindings of this recording
     int outgrown_count;
 };
 
 struct scope {
     char name[48];
     uint32_t first_query, last_query; // UINT32_MAX: not timed
-    bool outer;                       // others are inside
+    bool outer;                       // contains other scopes
 };
 
 struct scopes {
     VkQueryPool queries;
     struct scope list[MAX_SCOPES];
-    uint32_t count; // begun, timed or not
+    uint32_t count; // timed or not
     uint32_t query_count;
     uint32_t stack[16], depth;
 };
@@ -284,9 +280,9 @@ struct gpu_cmd {
     struct gpu *gpu;
     enum cmd_state state;
     bool adopted;
-    bool broken;       // something could not be recorded: the frame's end fails
-    uint64_t serial;   // frames and transfers in the order of their recording
-    uint64_t timeline; // the value that our own submission signals
+    bool broken;       // a command could not be recorded: gpu_frame_end fails
+    uint64_t serial;   // of frames and transfers, in recording order
+    uint64_t timeline; // semaphore value that the submission signals
     VkCommandPool pool;
     VkCommandBuffer buffer;
     uint64_t op; // see hazard.op
@@ -297,28 +293,28 @@ struct gpu_cmd {
     VkPipeline bound[2]; // compute, graphics
 };
 
-// Lets the rings go that this recording has outgrown.
-void ring_stop(struct gpu_cmd *cmd);
-void ring_finish(struct gpu_cmd *cmd); // the GPU is done with all of them
-// The next command is an operation of its own as regards hazards.
+void ring_stop(struct gpu_cmd *cmd);   // destroys (deferred) the replaced rings
+void ring_finish(struct gpu_cmd *cmd); // the GPU must be idle
+// Begins a new operation for hazard tracking.
 void hazard_next_op(struct gpu_cmd *cmd);
-// Queues the barriers that `access` needs and remembers it. Clears what was never used before.
+// Queues the barriers that `access` needs and records the access. Zeroes the resource before its
+// first use.
 void hazard_image(struct gpu_cmd *cmd, struct image *image, const struct range *range,
                   const struct access *access);
 void hazard_buffer(struct gpu_cmd *cmd, struct buffer *buffer, const struct access *access);
-// The image or buffer will be overwritten entirely: no need to zero it.
+// The image or buffer will be overwritten entirely and need not be zeroed.
 void hazard_overwrite_image(struct image *image);
 void hazard_overwrite_buffer(struct buffer *buffer);
 void hazard_flush(struct gpu_cmd *cmd); // records the queued barriers, outside of any rendering
-// Others may have used the image in any way, and left it in `layout`.
+// The caller may have accessed the image in any way, and left it in `layout`.
 void hazard_external_use(struct image *image, VkImageLayout layout);
-// A new object in memory that another one had.
+// Initial state of an object in recycled memory.
 struct hazard hazard_recycled(void);
 VkImageLayout hazard_transfer_layout(const struct image *image, bool write);
-VkImageLayout hazard_shader_layout(const struct image *image); // where shaders find it
+VkImageLayout hazard_shader_layout(const struct image *image); // for access by shaders
 
-// Matches the bindings with the shader's, queues their barriers and fills `writes` with one entry
-// per shader binding.
+// Matches bindings to the shader by name, queues their barriers, fills one write per shader
+// binding.
 struct bound_set {
     VkWriteDescriptorSet writes[MAX_BINDINGS];
     VkDescriptorImageInfo images[MAX_BINDINGS];
@@ -329,7 +325,7 @@ bool bind_prepare(struct gpu_cmd *cmd, const struct pipeline *pipeline,
                   struct bound_set *set);
 void bind_record(struct gpu_cmd *cmd, const struct pipeline *pipeline, const struct bound_set *set,
                  const void *push);
-// What a sampled binding covers.
+// Subresources that a sampled binding covers.
 struct range bind_sampled_range(const struct image *image, const struct gpu_binding *binding,
                                 VkImageViewType view);
 
@@ -341,14 +337,14 @@ void render_suspend(struct gpu_cmd *cmd); // ends an active rendering; the next 
 
 bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted);
 void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd);
-struct gpu_cmd *
-transfer_begin(struct gpu *gpu); // NULL: a frame is being recorded, or the device is lost
+// NULL: a frame is being recorded, or the device is lost.
+struct gpu_cmd *transfer_begin(struct gpu *gpu);
 bool transfer_end(struct gpu *gpu, struct gpu_cmd *cmd); // submits and waits
 
 bool scopes_init(struct gpu *gpu, struct scopes *scopes, const char *name);
 void scopes_start(struct gpu_cmd *cmd);
 void scopes_stop(struct gpu_cmd *cmd);
-void scopes_collect(struct gpu_cmd *cmd); // the GPU is done with it
+void scopes_collect(struct gpu_cmd *cmd); // reads timestamps of a completed recording
 void ring_start(struct gpu_cmd *cmd);
 
 // ---- The device ---------------------------------------------------------------------------------
@@ -402,12 +398,12 @@ struct gpu {
     VkPipelineCache pipeline_cache;
     struct memory memory;
     struct table images, buffers, samplers, pipelines;
-    uint32_t internal_buffers; // rings: not the caller's
+    uint32_t internal_buffers; // rings, not counted as live objects
     gpu_sampler default_sampler;
     struct buffer *staging[2]; // upload, download
 
     VkSemaphore timeline;
-    uint64_t submitted; // the newest value that a submission signals
+    uint64_t submitted; // semaphore value of the newest submission
     uint64_t serial;    // of the newest recording
     uint64_t ops;
     struct gpu_cmd cmds[CMD_COUNT];
@@ -421,7 +417,7 @@ struct gpu {
     uint64_t timings_serial;
 };
 
-// instance.c. messages: where the debug messenger counts; NULL: no messenger. false: logged.
+// instance.c
 bool instance_create(struct host *host, bool validation, VkInstance *out);
 bool instance_watch(struct gpu *gpu); // counts validation messages from now on
 // device.c

@@ -51,7 +51,7 @@ TEST(a_changed_shader_is_reloaded_and_a_bad_one_is_not)
     write_file(path, second->words, second->word_count * 4 - 20); // cut off
     test_forget_messages();
     assert_int_equal(gpu_reload_shaders(gpu), 0);
-    assert_non_null(strstr(test_last_message(), "the old one is kept"));
+    assert_non_null(strstr(test_last_message(), "the previous one is kept"));
     assert_int_equal(run(gpu, pipeline), 2);
     write_file(path, "text", 3);
     assert_int_equal(gpu_reload_shaders(gpu), 0);
@@ -67,10 +67,10 @@ TEST(a_changed_shader_is_reloaded_and_a_bad_one_is_not)
     pipeline = test_gpu_compute(gpu, first);
     assert_int_equal(run(gpu, pipeline), 2);
     gpu_pipeline_destroy(gpu, &pipeline);
-    write_file(path, "text", 4); // unless it is bad
+    write_file(path, "text", 4); // unless it is invalid
     test_forget_messages();
     pipeline = test_gpu_compute(gpu, first);
-    assert_non_null(strstr(test_last_message(), "the built-in one is used"));
+    assert_non_null(strstr(test_last_message(), "the embedded one is used"));
     assert_int_equal(run(gpu, pipeline), 1);
     gpu_pipeline_destroy(gpu, &pipeline);
     test_gpu_finish(gpu);
