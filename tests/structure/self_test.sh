@@ -102,6 +102,14 @@ fi
 rm "$tree/.clang-format"
 
 fresh
+passes "plain terms" "$here/wording.sh" "$tree"
+printf 'Surfaces that glow.\n' >"$tree/notes.md"
+fails "a phrase that has a term" 'notes.md:1:Surfaces that glow' "$here/wording.sh" "$tree"
+rm "$tree/notes.md"
+printf 'int x; // a picture\n' >"$tree/src/core/bad.c"
+fails "a phrase in a comment" 'write instead: image' "$here/wording.sh" "$tree"
+
+fresh
 passes "a header that stands alone" "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
 printf 'uint32_t ag_missing;\n' >"$tree/include/afterglow/bad.h"
 fails "a header that needs another" 'bad.h: not C17 alone' "$here/headers_alone.sh" "$tree/include" "$cc" "$cxx"
