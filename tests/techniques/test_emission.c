@@ -245,7 +245,7 @@ TEST_GPU(lpv_of_an_emissive_wall_gives_the_opposite_wall_a_part_of_its_form_fact
                   { "lpv:bounces=0", 0.4 } };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double share = facing_wall(gpu, cases[i].gi) / truth;
-        print_message("%-48s facing wall: %.2f of the truth\n", cases[i].gi, share);
+        print_message("%-48s facing wall: %.2f of the reference\n", cases[i].gi, share);
         CHECK(share > cases[i].least && share < 1.1);
     }
 }
