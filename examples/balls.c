@@ -1,6 +1,5 @@
-// Dynamic objects of a program's own, lit by the scene: white balls that hang about in it and are
-// no part of it. Their indirect light comes from the probes that a technique publishes; the balls
-// are drawn here, on the CPU.
+// Dynamic objects outside the scene, lit by it: white balls. Their indirect light comes from the
+// probes of a technique; this program draws them on the CPU.
 //
 //     balls SCENE GI WIDTH HEIGHT OUT.png
 //     balls @planter lpv:probes=true 640 480 balls.png
@@ -13,12 +12,12 @@
 enum { BALLS_A_SIDE = 6 };
 static const float PI = 3.14159265f;
 
-// What a picture is made of: the frame, as far as it is needed, and the camera's axes.
-struct picture {
+// Layers of the frame and the axes of the camera.
+struct view {
     struct ag_image *color, *depth;
     struct ag_probes *probes;
     float ev;
-    float eye[3], right[3], up[3], forward[3], half_height; // of the picture at distance 1
+    float eye[3], right[3], up[3], forward[3], half_height; // of the image at distance 1
 };
 
 static float dot(const float *a, const float *b)
@@ -38,60 +37,61 @@ static void unit(float *v)
     for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
-static void look(struct picture *picture, const struct ag_camera *camera)
+static void aim(struct view *view, const struct ag_camera *camera)
 {
     for (int i = 0; i < 3; i++) {
-        picture->eye[i] = camera->eye[i];
-        picture->forward[i] = camera->target[i] - camera->eye[i];
+        view->eye[i] = camera->eye[i];
+        view->forward[i] = camera->target[i] - camera->eye[i];
     }
-    unit(picture->forward);
-    cross(picture->forward, camera->up, picture->right);
-    unit(picture->right);
-    cross(picture->right, picture->forward, picture->up);
-    picture->half_height = tanf(0.5f * camera->vertical_fov_rad);
+    unit(view->forward);
+    cross(view->forward, camera->up, view->right);
+    unit(view->right);
+    cross(view->right, view->forward, view->up);
+    view->half_height = tanf(0.5f * camera->vertical_fov_rad);
 }
 
-// A pixel's line of sight, one metre along the view axis.
-static void sight(const struct picture *picture, int x, int y, float *way)
+// Direction of a primary ray, one metre along the view axis.
+static void primary_ray(const struct view *view, int x, int y, float *direction)
 {
-    float width = (float)picture->color->width, height = (float)picture->color->height;
-    float right = (2 * ((float)x + 0.5f) - width) / height * picture->half_height;
-    float up = (1 - 2 * ((float)y + 0.5f) / height) * picture->half_height;
+    float width = (float)view->color->width, height = (float)view->color->height;
+    float right = (2 * ((float)x + 0.5f) - width) / height * view->half_height;
+    float up = (1 - 2 * ((float)y + 0.5f) / height) * view->half_height;
     for (int i = 0; i < 3; i++)
-        way[i] = picture->forward[i] + right * picture->right[i] + up * picture->up[i];
+        direction[i] = view->forward[i] + right * view->right[i] + up * view->up[i];
 }
 
-// How far along the way the ball begins; 0: the way passes by, or begins inside.
-static float meet(const float *eye, const float *way, const float *centre, float radius)
+// Distance to the front of the ball; 0: no hit, or the origin is inside.
+static float hit_distance(const float *eye, const float *direction, const float *centre,
+                          float radius)
 {
     float to[3] = { centre[0] - eye[0], centre[1] - eye[1], centre[2] - eye[2] };
-    float along = dot(to, way) / dot(way, way);
-    float beside = dot(to, to) - along * along * dot(way, way);
-    float half = sqrtf(fmaxf(radius * radius - beside, 0) / dot(way, way));
+    float along = dot(to, direction) / dot(direction, direction);
+    float beside = dot(to, to) - along * along * dot(direction, direction);
+    float half = sqrtf(fmaxf(radius * radius - beside, 0) / dot(direction, direction));
     return half > 0 && along > half ? along - half : 0;
 }
 
-// A white ball, where it stands before what the frame shows. Depth is in metres along the view
-// axis, 0 where nothing is.
-static void draw_ball(struct picture *picture, const float *centre, float radius)
+// Draws a white ball where it is in front of the scene. Depth is in metres along the view axis, 0
+// for background.
+static void draw_ball(struct view *view, const float *centre, float radius)
 {
-    for (int y = 0; y < picture->color->height; y++) {
-        for (int x = 0; x < picture->color->width; x++) {
-            int pixel = y * picture->color->width + x;
-            float *depth = &picture->depth->pixels[pixel], way[3], normal[3], lux[3];
-            sight(picture, x, y, way);
-            float distance = meet(picture->eye, way, centre, radius);
+    for (int y = 0; y < view->color->height; y++) {
+        for (int x = 0; x < view->color->width; x++) {
+            int pixel = y * view->color->width + x;
+            float *depth = &view->depth->pixels[pixel], direction[3], normal[3], lux[3];
+            primary_ray(view, x, y, direction);
+            float distance = hit_distance(view->eye, direction, centre, radius);
             if (distance <= 0 || (*depth > 0 && *depth < distance)) continue;
             *depth = distance;
             for (int i = 0; i < 3; i++)
-                normal[i] = (picture->eye[i] + distance * way[i] - centre[i]) / radius;
-            ag_probes_irradiance(picture->probes, centre, normal, lux);
-            for (int i = 0; i < 3; i++) picture->color->pixels[3 * pixel + i] = 0.8f / PI * lux[i];
+                normal[i] = (view->eye[i] + distance * direction[i] - centre[i]) / radius;
+            ag_probes_irradiance(view->probes, centre, normal, lux);
+            for (int i = 0; i < 3; i++) view->color->pixels[3 * pixel + i] = 0.8f / PI * lux[i];
         }
     }
 }
 
-static void draw_balls(struct picture *picture, const float *low, const float *high)
+static void draw_balls(struct view *view, const float *low, const float *high)
 {
     float longest = 0, centre[3];
     for (int i = 0; i < 3; i++) longest = fmaxf(longest, high[i] - low[i]);
@@ -100,13 +100,13 @@ static void draw_balls(struct picture *picture, const float *low, const float *h
                       n / BALLS_A_SIDE / BALLS_A_SIDE };
         for (int i = 0; i < 3; i++)
             centre[i] = low[i] + (high[i] - low[i]) * ((float)at[i] + 0.5f) / BALLS_A_SIDE;
-        draw_ball(picture, centre, 0.012f * longest);
+        draw_ball(view, centre, 0.012f * longest);
     }
 }
 
 static enum ag_result take(struct ag_device *device, struct ag_scene *scene,
                            const struct ag_renderer_desc *desc, const struct ag_frame_desc *frame,
-                           struct picture *out)
+                           struct view *out)
 {
     struct ag_renderer *renderer = NULL;
     enum ag_result result = ag_renderer_create(device, scene, desc, &renderer);
@@ -119,7 +119,7 @@ static enum ag_result take(struct ag_device *device, struct ag_scene *scene,
     return result;
 }
 
-static enum ag_result run(struct ag_context *context, char **argv, struct picture *picture)
+static enum ag_result run(struct ag_context *context, char **argv, struct view *view)
 {
     struct ag_device *device = NULL;
     struct ag_scene *scene = NULL;
@@ -138,11 +138,11 @@ static enum ag_result run(struct ag_context *context, char **argv, struct pictur
     if (result == AG_OK) result = ag_scene_add_default_lighting(scene, NULL);
     if (result == AG_OK) result = ag_scene_default_camera(scene, 0, 0.0, &frame.camera, NULL);
     if (result == AG_OK) result = ag_scene_get_info(scene, 0, 0.0, &info);
-    if (result == AG_OK) result = take(device, scene, &desc, &frame, picture);
+    if (result == AG_OK) result = take(device, scene, &desc, &frame, view);
     if (result == AG_OK) {
-        look(picture, &frame.camera);
-        draw_balls(picture, info.bounds_min, info.bounds_max);
-        result = ag_image_tonemap(context, picture->color, picture->ev, &display);
+        aim(view, &frame.camera);
+        draw_balls(view, info.bounds_min, info.bounds_max);
+        result = ag_image_tonemap(context, view->color, view->ev, &display);
     }
     if (result == AG_OK) result = ag_image_write_png(context, argv[5], display);
     ag_image_destroy(context, display);
@@ -158,13 +158,13 @@ int main(int argc, char **argv)
         return 2;
     }
     struct ag_context *context = NULL;
-    struct picture picture = { 0 };
+    struct view view = { 0 };
     enum ag_result result = ag_context_create(NULL, &context);
-    if (result == AG_OK) result = run(context, argv, &picture);
+    if (result == AG_OK) result = run(context, argv, &view);
     if (result != AG_OK) fprintf(stderr, "balls: %s\n", ag_context_last_error(context));
-    ag_probes_destroy(context, picture.probes);
-    ag_image_destroy(context, picture.color);
-    ag_image_destroy(context, picture.depth);
+    ag_probes_destroy(context, view.probes);
+    ag_image_destroy(context, view.color);
+    ag_image_destroy(context, view.depth);
     ag_context_destroy(context);
     return result == AG_OK ? 0 : 1;
 }

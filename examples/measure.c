@@ -1,6 +1,5 @@
-// What each technique costs and changes: renders a scene with every source of indirect light,
-// prints milliseconds, bytes and the difference from direct light alone, and writes the last one's
-// layers.
+// Cost and effect of each technique: renders a scene with every source of indirect light, prints
+// times, memory and the difference from direct light only, and writes the layers of the last one.
 //
 //     measure SCENE OUT.exr
 #include <afterglow/afterglow.h>
@@ -31,7 +30,7 @@ static void print_costs(struct ag_renderer *renderer)
         printf("    %-20s %8.2f MB\n", owners[i].owner, (double)owners[i].bytes * 1e-6);
 }
 
-// Colour and indirect light of the newest frame: the difference is printed, the layers are written.
+// Prints the difference of the newest frame from direct light and writes its layers.
 static enum ag_result compare(struct bench *bench, struct ag_renderer *renderer)
 {
     struct ag_image *color = NULL, *indirect = NULL;

@@ -3,16 +3,16 @@
 //
 //     minimal OUT.png
 //
-// Build it against an installed library with:  cc minimal.c $(pkg-config --cflags --libs afterglow)
-// -o minimal
+// Build it with an installed library:
+//
+//     cc minimal.c $(pkg-config --cflags --libs afterglow) -o minimal
 #include <afterglow/afterglow.h>
 
 #include <stdio.h>
 
 enum { WIDTH = 320, HEIGHT = 240, FRAMES = 4 };
 
-// A box seen from inside or outside: 6 faces of 4 vertices, counter-clockwise as seen from where
-// the normals point.
+// A box: 6 faces of 4 vertices, counter-clockwise seen from the side of the normals.
 static enum ag_result add_box(struct ag_scene *scene, const float low[3], const float high[3],
                               bool inside, int material)
 {
@@ -50,7 +50,7 @@ static enum ag_result add_material(struct ag_scene *scene, float r, float g, flo
     return ag_scene_add_material(scene, &desc, index);
 }
 
-// A white room of 4 m with a red block in it, and a spot that lights one wall only.
+// A white room of 4 m with a red block and a spot that lights one wall.
 static enum ag_result build(struct ag_scene *scene)
 {
     int white = -1, red = -1;

@@ -1,4 +1,4 @@
-// Renders one scene with two sums of techniques at the same exposure and writes both into one PNG.
+// Renders one scene with two GI specs at the same exposure and writes both into one PNG.
 //
 //     side_by_side SCENE GI_LEFT GI_RIGHT WIDTH HEIGHT OUT.png
 #include <afterglow/afterglow.h>
@@ -20,8 +20,7 @@ static void log_to_stderr(void *user, enum ag_log_level level, const char *messa
     fprintf(stderr, "side_by_side: %s%s\n", level == AG_LOG_ERROR ? "" : "note: ", message);
 }
 
-// Radiance of the scene with shot->gi. The first shot measures the exposure, which the next ones
-// keep.
+// Renders radiance with shot->gi. The first shot measures the exposure for all.
 static enum ag_result take(struct ag_device *device, struct ag_scene *scene, struct shot *shot,
                            struct ag_image **out)
 {
@@ -43,7 +42,7 @@ static enum ag_result take(struct ag_device *device, struct ag_scene *scene, str
     return result;
 }
 
-// Tone maps both with one exposure and writes them next to each other.
+// Tone maps both with one exposure and places them side by side.
 static enum ag_result write_pair(struct ag_context *context, struct ag_image *const radiance[2],
                                  float ev, const char *path)
 {

@@ -1,4 +1,4 @@
-// Whatever a caller passes, the answer is a result and a sentence, and nothing is left half made.
+// Wrong arguments yield a result and a message; no object is left half built.
 #include "framework/test.h"
 
 #include <afterglow/afterglow.h>
@@ -13,7 +13,7 @@ static struct ag_context *open_context(void)
     return context;
 }
 
-// A refusal is said in a sentence.
+// A refused call logs one sentence.
 #define CHECK_REFUSED(context, call)                                                               \
     do {                                                                                           \
         assert_int_equal((call), AG_ERROR_ARGUMENT);                                               \
@@ -43,7 +43,7 @@ TEST(default_functions_accept_nothing)
     ag_compare_desc_default(NULL);
 }
 
-TEST(null_instead_of_a_context_is_refused)
+TEST(a_null_context_is_refused)
 {
     struct ag_context *context;
     struct ag_device *device;
@@ -73,7 +73,7 @@ TEST(null_instead_of_a_context_is_refused)
     (void)context;
 }
 
-TEST(null_instead_of_an_object_is_refused)
+TEST(a_null_object_is_refused)
 {
     struct ag_camera camera;
     struct ag_default_lighting lighting;
@@ -191,7 +191,7 @@ TEST(image_sizes_out_of_range_are_refused)
     ag_context_destroy(context);
 }
 
-TEST(comparisons_that_make_no_sense_are_refused)
+TEST(invalid_comparisons_are_refused)
 {
     struct ag_context *context = open_context();
     struct ag_image *a = NULL, *small = NULL, *map = (struct ag_image *)1;
@@ -264,7 +264,7 @@ TEST(library_and_headers_have_one_version)
                      AG_VERSION_MAJOR * 10000 + AG_VERSION_MINOR * 100 + AG_VERSION_PATCH);
 }
 
-TEST(every_result_has_its_own_words)
+TEST(every_result_has_its_own_description)
 {
     for (int a = AG_OK; a <= AG_ERROR_CANCELLED + 1; a++)
         for (int b = AG_OK; b < a; b++)

@@ -1,4 +1,4 @@
-// The catalogue ends, and says of each option what can be asked for.
+// The catalogue: its ends, and complete descriptions of all options.
 #include "framework/test.h"
 
 #include <afterglow/afterglow.h>
@@ -16,7 +16,7 @@ static void check_option(const struct ag_option_info *option)
           strcmp(option->type, "bool") == 0 || strcmp(option->type, "choice") == 0);
 }
 
-TEST(techniques_and_their_options_can_be_counted)
+TEST(the_catalogue_lists_all_techniques_and_options)
 {
     struct ag_technique_info technique;
     struct ag_option_info option;
@@ -50,7 +50,7 @@ TEST(techniques_and_their_options_can_be_counted)
     CHECK(ag_technique_debug_view_find(0, NULL) == -1);
 }
 
-TEST(every_technique_can_be_asked_for_with_its_defaults)
+TEST(every_technique_parses_with_its_defaults)
 {
     struct ag_context *context = NULL;
     struct ag_technique_info technique;
@@ -66,7 +66,7 @@ TEST(every_technique_can_be_asked_for_with_its_defaults)
     ag_context_destroy(context);
 }
 
-TEST(frame_options_can_be_counted)
+TEST(the_catalogue_lists_all_frame_options)
 {
     struct ag_option_info option;
     int count = 0;
@@ -99,7 +99,7 @@ TEST(every_builtin_scene_loads_and_has_a_camera_called_main)
     ag_context_destroy(context);
 }
 
-TEST(the_nearest_name_is_the_one_that_was_meant)
+TEST(the_nearest_name_corrects_typing_errors)
 {
     const char *const known[] = { "render", "info", "list" };
     CHECK_STRING(ag_nearest_name("rendr", known, 3), "render");

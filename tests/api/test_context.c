@@ -1,4 +1,4 @@
-// Contexts: what they say and to whom, whose memory they use, and that they do not know each other.
+// Contexts: logs, allocators and independence.
 #include "api/counting_allocator.h"
 #include "framework/test.h"
 
@@ -23,7 +23,7 @@ static void listen(void *user, enum ag_log_level level, const char *message)
     CHECK(strchr(message, '\n') == NULL);
 }
 
-TEST(an_error_is_said_once_and_kept)
+TEST(an_error_is_logged_once_and_kept)
 {
     struct ears ears = { 0 };
     struct ag_context_desc desc;
@@ -51,7 +51,7 @@ TEST(a_context_without_a_log_still_knows_its_last_error)
     ag_context_destroy(context);
 }
 
-TEST(two_contexts_do_not_hear_each_other)
+TEST(two_contexts_have_separate_logs)
 {
     struct ears ears[2] = { 0 };
     struct ag_context *contexts[2] = { NULL };
@@ -70,7 +70,7 @@ TEST(two_contexts_do_not_hear_each_other)
     assert_int_equal(ears[0].errors, 1);
     assert_int_equal(ears[1].errors, 0);
     CHECK_STRING(ag_context_last_error(contexts[1]), "");
-    // Either can go first.
+    // Any order of destruction works.
     ag_scene_destroy(scenes[0]);
     ag_context_destroy(contexts[0]);
     struct ag_scene_info info;
@@ -93,8 +93,8 @@ static struct ag_context *allocator_context(struct counting_allocator *allocator
     return context;
 }
 
-// Every call that takes memory but needs no GPU: ends at the first failure, which must be one of
-// memory.
+// Calls everything that allocates without a GPU; stops at the first failure, which must be
+// AG_ERROR_MEMORY.
 static enum ag_result use_everything(struct ag_context *context, const char *scene_name,
                                      const char *folder)
 {

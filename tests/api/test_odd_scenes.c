@@ -1,4 +1,4 @@
-// Scenes that do not suit a grid of cells: techniques say what they do, and do it.
+// Scenes unsuitable for a grid of cells: techniques warn and still work.
 #include "framework/gpu_test.h"
 
 #include <afterglow/afterglow.h>
@@ -30,8 +30,8 @@ static void check_said(enum ag_log_level level, const char *gi, const char *what
     fail_msg("not said by %s at level %d: %s; but\n%s", gi, (int)level, what, said);
 }
 
-// A floor of `side` metres, lit by a sun and by a lamp at a height; its mean irradiance by `gi`,
-// with a sunlit wall at one end that lights it.
+// Mean irradiance by `gi` of a floor of `side` metres, lit by a sun and a point light, with a
+// sunlit wall at one end.
 static double render_floor(const char *gi, float side, float lamp_height)
 {
     test_gpu_require();
@@ -101,7 +101,7 @@ static double render_floor(const char *gi, float side, float lamp_height)
 static const char *const volumes[] = { "lpv", "holpv", "vct" };
 enum { VOLUMES = sizeof volumes / sizeof volumes[0] };
 
-TEST(a_scene_that_suits_the_grid_is_told_its_cells)
+TEST(a_suitable_scene_logs_its_cell_size)
 {
     for (int i = 0; i < VOLUMES; i++) {
         CHECK(render_floor(volumes[i], 8, 2) > 0);
@@ -111,7 +111,7 @@ TEST(a_scene_that_suits_the_grid_is_told_its_cells)
     }
 }
 
-TEST(a_scene_too_large_for_its_cells_is_said_to_lose_detail)
+TEST(a_scene_too_large_for_its_cells_causes_a_warning)
 {
     for (int i = 0; i < VOLUMES; i++) {
         CHECK(render_floor(volumes[i], 4000, 1000) > 0);
@@ -121,7 +121,7 @@ TEST(a_scene_too_large_for_its_cells_is_said_to_lose_detail)
     }
 }
 
-TEST(a_scene_without_extent_is_said_to_have_no_indirect_light)
+TEST(a_scene_without_extent_causes_a_warning)
 {
     for (int i = 0; i < VOLUMES; i++) {
         CHECK(render_floor(volumes[i], 0, 2) == 0);
@@ -129,7 +129,7 @@ TEST(a_scene_without_extent_is_said_to_have_no_indirect_light)
     }
 }
 
-TEST(occlusion_by_cones_says_the_same_of_itself)
+TEST(occlusion_by_cones_logs_the_same)
 {
     render_floor("vctao", 4000, 1000);
     check_said(AG_LOG_WARNING, "vctao", "ambient occlusion has no finer detail");
@@ -137,8 +137,8 @@ TEST(occlusion_by_cones_says_the_same_of_itself)
     check_said(AG_LOG_WARNING, "vctao", "there is no ambient occlusion");
 }
 
-// The wall is half as high as the floor is long.
-TEST(a_light_outside_of_the_grid_lights_as_others_do)
+// The height of the wall is half the length of the floor.
+TEST(a_light_outside_the_grid_has_the_same_effect)
 {
     for (int i = 0; i < VOLUMES; i++) {
         CHECK(render_floor(volumes[i], 8, 100) > 0);

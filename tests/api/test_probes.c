@@ -1,4 +1,4 @@
-// Probe volumes through the public functions: where probes stand, what they hold, who has them.
+// Probe volumes through the public API: positions, coefficients, availability.
 #include "api/renderer_fixture.h"
 
 #include <afterglow/afterglow.h>
@@ -33,10 +33,10 @@ static double mean(const struct ag_image *image)
     return sum;
 }
 
-// A surface of the scene, and a stranger in the same place, are lit alike. A technique looks its
-// surfaces up in its own way; without an offset it is the probes' way but for the rounding
-// of coefficients and results to half floats (11 bits, nine terms of which some cancel).
-TEST(strangers_are_lit_as_surfaces_are)
+// Irradiance from probes equals that of a surface at the same point. Without an offset, the
+// lookup of surfaces differs only by rounding of coefficients and results to half floats (11
+// bits, nine terms that partly cancel).
+TEST(probes_and_surfaces_have_equal_irradiance)
 {
     const char *gi[] = { "lpv:probes=true,dim=16,offset=0,cascades=1",
                          "holpv:probes=true,dim=16,offset=0,cascades=1" };
@@ -69,9 +69,9 @@ TEST(strangers_are_lit_as_surfaces_are)
     }
 }
 
-// The view draws surfaces by the shaders' look-up, which must be the processor's: 0.3 albedo/π E
-// half a spacing before the surface. Pixels with a ball before them are others, a few of them.
-TEST(shaders_look_probes_up_as_the_processor_does)
+// The debug view shades surfaces with the lookup of the shaders, which must equal that of the
+// CPU: 0.3 albedo/π E half a spacing in front of the surface. Balls cover a few other pixels.
+TEST(shaders_sample_probes_as_the_cpu_does)
 {
     struct renderer_fixture s = fixture_open("holpv:probes=true,dim=16", NULL);
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "probes"), AG_OK);
@@ -91,8 +91,8 @@ TEST(shaders_look_probes_up_as_the_processor_does)
         equal += fabsf(view->pixels[3 * i + 1] - expected) <= 0.01f * expected;
     }
     print_message("%d of %d pixels equal\n", equal, seen);
-    // Balls of the radius 0.12 d, one in d³, stand before 1 − exp(−π 0.12² L/d) of the pixels:
-    // 1/2 where one sees past 16 of them.
+    // Balls of radius 0.12 d, one in d³, cover 1 − exp(−π 0.12² L/d) of the pixels: 1/2 for a
+    // free path past 16 of them.
     CHECK(seen > PIXELS / 3 && equal > seen / 2);
     CHECK(equal < seen); // there are balls
     ag_image_destroy(s.context, view);
@@ -104,7 +104,7 @@ TEST(shaders_look_probes_up_as_the_processor_does)
     fixture_close(&s);
 }
 
-TEST(probes_are_filtered_between_and_kept_outside)
+TEST(probes_are_interpolated_inside_and_clamped_outside)
 {
     struct renderer_fixture s = fixture_open("lpv:probes=true,dim=16", NULL);
     struct ag_probes *probes = render_probes(&s);
@@ -137,7 +137,7 @@ TEST(probes_are_filtered_between_and_kept_outside)
     ag_probes_irradiance(probes, position, up, between);
     CHECK_RELATIVE((double)between[1], 0.25 * (double)here[1] + 0.75 * (double)there[1], 1e-4);
     CHECK(here[1] != there[1]);
-    // Outside: that of the border, however far.
+    // Outside the grid: the irradiance of its border, at any distance.
     position[0] = probes->first[0] + probes->spacing * (float)(probes->counts[0] - 1);
     ag_probes_irradiance(probes, position, up, here);
     position[0] = INFINITY;
@@ -163,7 +163,7 @@ TEST(probes_are_dark_without_light)
     fixture_close(&s);
 }
 
-TEST(the_image_of_the_probes_is_handed_out)
+TEST(the_image_of_the_probes_is_accessible)
 {
     struct renderer_fixture s = fixture_open("lpv:probes=true,dim=16", NULL);
     struct ag_probes *probes = render_probes(&s);
@@ -178,7 +178,7 @@ TEST(the_image_of_the_probes_is_handed_out)
     fixture_close(&s);
 }
 
-TEST(who_has_no_probes_says_what_would_bring_them)
+TEST(without_probes_the_message_names_the_option)
 {
     struct renderer_fixture s = fixture_open("lpv", NULL);
     struct ag_probes *probes = (struct ag_probes *)1;

@@ -1,4 +1,4 @@
-// The reference through the public functions: layers, progress, going on, wrong arguments.
+// The reference through the public API: layers, progress, checkpoints, wrong arguments.
 #include "framework/test.h"
 
 #include <afterglow/afterglow.h>
@@ -92,8 +92,8 @@ TEST(every_named_layer_can_be_read)
     close(&f);
 }
 
-// The form factor from a point to a parallel rectangle at distance 1 that stands with a corner over
-// it (Siegel & Howell, configuration 11).
+// Form factor from a point to a parallel rectangle at distance 1 with a corner above the point
+// (Siegel & Howell, configuration 11).
 static double corner_factor(double x, double y)
 {
     double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
@@ -115,7 +115,7 @@ static void add_floor(struct ag_scene *scene)
     assert_int_equal(ag_scene_add_instance(scene, index, NULL, NULL), AG_OK);
 }
 
-TEST(an_area_light_brings_what_its_form_factor_says)
+TEST(an_area_light_has_the_irradiance_of_its_form_factor)
 {
     struct fixture f;
     assert_int_equal(ag_context_create(NULL, &f.context), AG_OK);
@@ -227,7 +227,7 @@ TEST(an_attribute_of_a_file_is_read_back)
     close(&f);
 }
 
-TEST(a_file_of_the_same_picture_is_gone_on_with_and_no_other)
+TEST(only_a_checkpoint_of_the_same_image_is_resumed)
 {
     struct fixture f;
     open(&f, "@cornell");
@@ -302,7 +302,7 @@ TEST(former_layer_names_are_accepted_with_one_warning)
     close(&f);
 }
 
-TEST(null_instead_of_an_object_is_refused)
+TEST(a_null_object_is_refused)
 {
     struct fixture f;
     open(&f, "@cornell");

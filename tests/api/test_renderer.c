@@ -1,5 +1,5 @@
-// Renderers through the public functions: frames, layers, what may change while one lives, two side
-// by side, and a device and a command buffer that are the program's own.
+// Renderers through the public API: frames, layers, changes between frames, several renderers,
+// adopted devices and command buffers.
 #include "api/counting_allocator.h"
 #include "api/renderer_fixture.h"
 #include "framework/own_device.h"
@@ -60,7 +60,7 @@ TEST(every_layer_is_finite_and_of_the_frames_size)
     fixture_close(&s);
 }
 
-TEST(layers_that_are_not_kept_or_not_known_are_refused)
+TEST(unknown_layers_and_layers_not_kept_are_refused)
 {
     struct renderer_fixture s = fixture_open("lpv", NULL);
     struct ag_image *image = (struct ag_image *)1;
@@ -151,7 +151,7 @@ TEST(wrong_renderers_are_refused)
     assert_int_equal(ag_renderer_create(s.device, stranger, NULL, &renderer), AG_ERROR_ARGUMENT);
     ag_scene_destroy(stranger);
     ag_context_destroy(other);
-    // The scene is free again after each refusal but for the fixture's renderer.
+    // After each refused call only the fixture uses the scene.
     ag_renderer_destroy(s.renderer);
     s.renderer = NULL;
     struct ag_material_desc material;
@@ -160,7 +160,7 @@ TEST(wrong_renderers_are_refused)
     fixture_close(&s);
 }
 
-TEST(lights_and_sky_may_change_while_a_renderer_lives_and_nothing_else)
+TEST(only_lights_and_sky_may_change_while_a_renderer_exists)
 {
     struct renderer_fixture s = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
@@ -197,7 +197,7 @@ TEST(a_resize_changes_the_size_of_every_layer)
     fixture_close(&s);
 }
 
-TEST(times_and_memory_are_told_by_name)
+TEST(times_and_memory_are_listed_by_name)
 {
     struct renderer_fixture s = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_timings(s.renderer, NULL, 0), 0); // no frame
@@ -213,7 +213,7 @@ TEST(times_and_memory_are_told_by_name)
             parts += timings[i].ms;
     }
     CHECK(count > 3 && whole > 0 && parts > 0 && parts <= 1.01 * whole);
-    // Fewer places than passes: the count is still whole, and nothing is written beyond.
+    // A capacity below the number of passes: the count is complete, nothing is written beyond.
     timings[1].ms = -1;
     assert_int_equal(ag_renderer_timings(s.renderer, timings, 1), count);
     CHECK(timings[1].ms == -1);
@@ -237,7 +237,7 @@ TEST(times_and_memory_are_told_by_name)
     fixture_close(&s);
 }
 
-TEST(two_contexts_side_by_side_render_what_each_renders_alone)
+TEST(two_contexts_do_not_affect_each_other)
 {
     struct renderer_fixture alone = fixture_open("lpv", NULL);
     assert_int_equal(ag_renderer_render(alone.renderer, &alone.frame), AG_OK);
@@ -259,8 +259,8 @@ TEST(two_contexts_side_by_side_render_what_each_renders_alone)
     fixture_close(&alone);
 }
 
-// A renderer, a frame and a picture, or the first failure; then nothing is refused any more.
-// *calls: allocations so far.
+// Creates a renderer, renders and reads an image, or returns the first failure; afterwards
+// allocations succeed again. *calls: allocations so far.
 static enum ag_result render_once(struct renderer_fixture *s, struct counting_allocator *allocator,
                                   struct ag_image **image, long *calls)
 {
@@ -337,7 +337,7 @@ TEST(two_renderers_share_a_device_and_a_scene)
     fixture_close(&s);
 }
 
-// ---- the program's own device
+// ---- adopted device
 
 static struct ag_device_adopt lend(struct own_device *own)
 {
@@ -351,7 +351,7 @@ static struct ag_device_adopt lend(struct own_device *own)
                                      .user = own };
 }
 
-// What the library's own device gives; static storage.
+// The image from the library's own device; static storage.
 static const struct ag_image *expected_color(void)
 {
     static float pixels[WIDTH * HEIGHT * 3];
@@ -365,7 +365,7 @@ static const struct ag_image *expected_color(void)
     return &copy;
 }
 
-TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
+TEST(an_adopted_device_renders_the_same_and_its_queue_is_locked)
 {
     const struct ag_image *expected = expected_color();
     struct own_device own;
@@ -391,7 +391,7 @@ TEST(a_lent_device_renders_the_same_and_its_queue_is_locked)
     own_device_close(&own);
 }
 
-TEST(a_frame_goes_into_the_programs_command_buffer)
+TEST(a_frame_is_recorded_into_the_programs_command_buffer)
 {
     const struct ag_image *expected = expected_color();
     struct own_device own;
@@ -403,7 +403,7 @@ TEST(a_frame_goes_into_the_programs_command_buffer)
         VkCommandBuffer commands = own_device_begin(&own);
         assert_int_equal(ag_renderer_record(s.renderer, &s.frame, NULL), AG_ERROR_ARGUMENT);
         assert_int_equal(ag_renderer_record(s.renderer, &s.frame, commands), AG_OK);
-        // Until its end is reported nothing else may come in between.
+        // No other call is allowed until the frame is reported done.
         struct ag_image *image = NULL;
         assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT);
         assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_ERROR_ARGUMENT);
@@ -447,7 +447,7 @@ TEST(an_unknown_device_is_refused)
     ag_context_destroy(context);
 }
 
-TEST(a_scene_lit_by_emission_alone_is_warned_about_where_no_technique_gathers_it)
+TEST(a_scene_lit_only_by_emission_causes_a_warning_without_a_technique_for_it)
 {
     static const struct {
         const char *scene, *gi;

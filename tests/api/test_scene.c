@@ -1,4 +1,4 @@
-// Scenes through the public functions: what is put in comes out, and what is wrong does not get in.
+// Scenes through the public API: contents are returned unchanged, wrong contents are refused.
 #include "framework/test.h"
 
 #include <afterglow/afterglow.h>
@@ -42,7 +42,7 @@ static int add_square(void)
     return mesh;
 }
 
-TEST(instances_are_where_their_transform_puts_them)
+TEST(instances_are_placed_by_their_transform)
 {
     begin();
     int mesh = add_square();
@@ -73,7 +73,7 @@ TEST(an_empty_scene_has_no_bounds)
     end();
 }
 
-TEST(wrong_meshes_stay_outside)
+TEST(wrong_meshes_are_refused)
 {
     begin();
     struct ag_mesh_desc desc = square();
@@ -105,7 +105,7 @@ TEST(wrong_meshes_stay_outside)
     end();
 }
 
-TEST(wrong_instances_stay_outside)
+TEST(wrong_instances_are_refused)
 {
     begin();
     int mesh = add_square();
@@ -118,7 +118,7 @@ TEST(wrong_instances_stay_outside)
     end();
 }
 
-TEST(wrong_materials_stay_outside)
+TEST(wrong_materials_are_refused)
 {
     begin();
     struct ag_material_desc desc;
@@ -134,7 +134,7 @@ TEST(wrong_materials_stay_outside)
     end();
 }
 
-TEST(materials_come_out_as_they_went_in)
+TEST(materials_are_returned_unchanged)
 {
     begin();
     struct ag_material_desc desc;
@@ -155,7 +155,7 @@ TEST(materials_come_out_as_they_went_in)
     end();
 }
 
-TEST(lights_come_out_as_they_went_in)
+TEST(lights_are_returned_unchanged)
 {
     begin();
     for (int type = AG_LIGHT_SUN; type <= AG_LIGHT_SPOT; type++) {
@@ -184,7 +184,7 @@ TEST(lights_come_out_as_they_went_in)
     end();
 }
 
-TEST(wrong_lights_stay_outside)
+TEST(wrong_lights_are_refused)
 {
     begin();
     struct ag_light_desc desc;
@@ -208,7 +208,7 @@ TEST(wrong_lights_stay_outside)
     end();
 }
 
-TEST(an_area_light_is_a_rectangle_around_its_place)
+TEST(an_area_light_is_a_rectangle_around_its_position)
 {
     begin();
     struct ag_area_light_desc desc;
@@ -231,7 +231,7 @@ TEST(an_area_light_is_a_rectangle_around_its_place)
     end();
 }
 
-TEST(wrong_area_lights_stay_outside)
+TEST(wrong_area_lights_are_refused)
 {
     begin();
     struct ag_area_light_desc desc;
@@ -274,7 +274,7 @@ TEST(only_a_dark_scene_gets_the_default_light_and_only_once)
     end();
 }
 
-TEST(looking_from_a_point_at_itself_is_refused)
+TEST(equal_eye_and_target_are_refused)
 {
     begin();
     const float here[3] = { 1, 2, 3 }, there[3] = { 1, 2, 2 }, nowhere[3] = { NAN, 0, 0 };
@@ -290,7 +290,7 @@ TEST(looking_from_a_point_at_itself_is_refused)
     end();
 }
 
-// The picture of a scene must not turn, nor get lost, where the scene stands far away.
+// Far from the origin the image must not rotate or get lost.
 TEST(a_far_scene_gets_the_same_view_as_a_near_one)
 {
     static const float places[] = { 0.0f, 65536.0f, 16777216.0f, 1e12f };
@@ -315,7 +315,7 @@ TEST(a_far_scene_gets_the_same_view_as_a_near_one)
     }
 }
 
-TEST(refusals_name_the_function_that_was_called)
+TEST(messages_name_the_called_function)
 {
     begin();
     struct ag_light_desc desc;
@@ -329,7 +329,7 @@ TEST(refusals_name_the_function_that_was_called)
     end();
 }
 
-TEST(a_scene_without_a_camera_gets_one_that_is_said_to_be_made_up)
+TEST(a_scene_without_a_camera_gets_a_generated_one)
 {
     begin();
     assert_int_equal(ag_scene_add_instance(scene, add_square(), NULL, NULL), AG_OK);
@@ -347,7 +347,7 @@ TEST(a_scene_without_a_camera_gets_one_that_is_said_to_be_made_up)
     end();
 }
 
-TEST(time_moves_what_an_animation_moves)
+TEST(time_moves_animated_instances)
 {
     assert_int_equal(ag_context_create(NULL, &context), AG_OK);
     assert_int_equal(ag_scene_load(context, test_scene_path("box-animated.gltf"), &scene), AG_OK);

@@ -62,7 +62,7 @@ static void become_chromium(const char *path, const char *profile, int commands,
     _exit(127);
 }
 
-// A pipe whose ends are above the numbers that the browser gives a meaning.
+// A pipe with descriptors above those that have a meaning for the browser.
 static void open_pipe(int ends[2])
 {
     int low[2];
@@ -119,7 +119,7 @@ static void note_event(struct browser *browser, const json_t *message)
     }
 }
 
-// The next whole message; NULL when none is there yet.
+// The next complete message; NULL if there is none yet.
 static json_t *take_message(struct browser *browser)
 {
     char *end = browser->size ? memchr(browser->pending, 0, browser->size) : NULL;
@@ -157,7 +157,7 @@ static void send_all(int fd, const char *bytes, size_t size)
     }
 }
 
-// Takes params; the caller releases the result.
+// Takes ownership of params; the caller releases the result.
 static json_t *call(struct browser *browser, const char *method, json_t *params)
 {
     int id = ++browser->last_id;

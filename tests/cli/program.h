@@ -1,4 +1,4 @@
-// Runs the program, as a script would, and looks at what it leaves: status, both outputs, files.
+// Runs the program as a script does and checks its status, output and files.
 #pragma once
 
 #include "framework/test.h"
@@ -11,21 +11,21 @@ struct run {
     char err[16384];
 };
 
-// Fails the test unless the program ends with that status. The first text is split at blanks, the
-// others are taken as they stand: run_expect(0, "render @cornell -o", path, NULL). The result is
+// Fails the test unless the program exits with that status. The first text is split at blanks,
+// the others are single arguments: run_expect(0, "render @cornell -o", path, NULL). The result is
 // valid until the next call.
 const struct run *run_expect(int status, const char *words, ...) __attribute__((sentinel));
-// One line, "afterglow: …", and nothing else anywhere.
+// The output is a single line, "afterglow: …", on standard error.
 void check_one_error_line(const struct run *result);
 // The standard output as JSON; the caller releases it.
 json_t *run_json(const struct run *result);
-// Skips the running test, visibly, where the program finds no usable device.
+// Skips the test, visibly, without a usable device.
 void require_device(void);
 
 bool file_exists(const char *path);
 bool files_are_equal(const char *a, const char *b);
 void write_file(const char *path, const char *bytes, size_t size);
-// Entries of a folder, besides . and ..
+// Number of entries of a folder, without . and ..
 int count_files(const char *folder);
-// A new folder of this test run's own.
+// Creates an empty folder for this test run.
 const char *make_folder(const char *name);

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-// A ramp across and one down, in a tint of its own.
+// A horizontal and a vertical ramp with a tint.
 static void write_image(const char *folder, const char *name, int tint)
 {
     struct image image = { 0 };
@@ -43,7 +43,7 @@ static json_t *images(const char *folder, int method)
     return object;
 }
 
-// The later, the nearer to the reference and the slower.
+// Later methods are closer to the reference and slower.
 static json_t *method(const char *folder, int i, const char *gi, json_t *options)
 {
     double error = 1.0 / (1 + i);

@@ -12,6 +12,6 @@ enum {
     SAMPLE_IMAGES = 2 + 4 * SAMPLE_METHODS
 };
 
-// Scene and spelling of the first method as given; the images lie in `folder` afterwards. The
-// caller releases it.
+// A report with this scene and GI spec of the first method; its images are written to `folder`.
+// The caller releases it.
 json_t *sample_report(const char *folder, const char *scene, const char *gi);

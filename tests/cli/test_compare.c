@@ -1,5 +1,4 @@
-// compare: the report's contract, numbers that can be known beforehand, samples that are kept, and
-// a folder that appears whole or not at all.
+// compare: documented output, errors known in advance, cached samples, complete folders.
 #include "cli/program.h"
 
 #include "image/exr.h"
@@ -20,7 +19,7 @@
 #define SCENE "compare @cornell --size 24x18 --quiet"
 #define SMALL SCENE " --frames 2 --spp 2 --gi none"
 
-// Both results are valid for a while: until some calls later.
+// Both results are valid until some calls later.
 static const char *path_of(const char *name)
 {
     static char paths[8][400];
@@ -40,7 +39,7 @@ static const char *in(const char *folder, const char *name)
     return memcpy(paths[next++ % 8], path, sizeof path);
 }
 
-// A cache of the test's own; the folder of its files.
+// Creates a cache for the test and returns its folder.
 static const char *own_cache(const char *name)
 {
     static char folder[600];
@@ -103,7 +102,7 @@ static void check_images(const char *folder, json_t *images, int width, int heig
     }
 }
 
-TEST(the_report_has_the_fields_and_files_that_were_promised)
+TEST(the_report_has_the_documented_fields_and_files)
 {
     require_device();
     own_cache("contract-cache");
@@ -136,7 +135,7 @@ TEST(the_report_has_the_fields_and_files_that_were_promised)
                  "ambient:strength=0.5");
     json_t *options = json_object_get(json_object_get(method_of(report, 1), "options"), "ambient");
     CHECK_NEAR(number(options, "strength"), 0.5, 0);
-    // Half the strength, half the light: the energy of what is gathered says so.
+    // Half the strength, half the light: the energy of indirect light shows it.
     double whole = number(json_object_get(method_of(report, 0), "indirect"), "energy"),
            half = number(json_object_get(method_of(report, 1), "indirect"), "energy");
     CHECK_RELATIVE(half, 0.5 * whole, 0.002); // half floats
@@ -148,7 +147,7 @@ TEST(the_report_has_the_fields_and_files_that_were_promised)
     char *names = exr_layer_names(test_host(), in(folder, "2-ambient-strength-0.5.exr"));
     CHECK_STRING(names, "color\nindirect\nirradiance");
     host_free(test_host(), names);
-    // What --json prints is the file.
+    // --json prints the content of the file.
     r = run_expect(0, SMALL " --json -o", folder, NULL);
     json_t *printed = run_json(r);
     report = report_of(folder);
@@ -157,7 +156,7 @@ TEST(the_report_has_the_fields_and_files_that_were_promised)
     json_decref(printed);
 }
 
-// ---- numbers that are known
+// ---- errors known in advance
 
 static struct image read_layer(const char *path, const char *layer)
 {
@@ -166,8 +165,8 @@ static struct image read_layer(const char *path, const char *layer)
     return image;
 }
 
-// A frame's layers as a reference file, `scale` times as bright; its first value is `first`
-// unless that is 0.
+// Writes a frame's layers, times `scale`, as a reference file; `first` replaces its first value
+// unless 0.
 static const char *frame_as_reference(const char *name, float scale, float first)
 {
     const char *frame = path_of("frame.exr"), *path = path_of(name);
@@ -198,7 +197,7 @@ TEST(a_method_equal_to_the_reference_has_no_error)
     json_t *indirect = json_object_get(method, "indirect");
     CHECK(number(indirect, "relmse") == 0 && number(indirect, "mae") == 0);
     CHECK(number(indirect, "energy") == 1);
-    // Without indirect light all of it is missing.
+    // The method none lacks all indirect light.
     indirect = json_object_get(method_of(report, 1), "indirect");
     CHECK(number(indirect, "energy") == 0);
     CHECK(number(method_of(report, 1), "energy") < 0.9 &&
@@ -217,7 +216,7 @@ TEST(a_method_equal_to_the_reference_has_no_error)
     json_decref(report);
 }
 
-TEST(pixels_that_are_no_numbers_are_an_error_or_left_out)
+TEST(nan_pixels_are_an_error_or_ignored)
 {
     require_device();
     const char *given = frame_as_reference("nan.exr", 1, NAN), *folder = path_of("nan");
@@ -233,7 +232,7 @@ TEST(pixels_that_are_no_numbers_are_an_error_or_left_out)
     json_decref(report);
 }
 
-// ---- what is the same twice
+// ---- reproducibility
 
 static void check_equal_numbers(const json_t *a, const json_t *b)
 {
@@ -249,7 +248,7 @@ TEST(equal_methods_and_equal_commands_have_equal_results)
     require_device();
     own_cache("twice-cache");
     const char *a = path_of("twice-a"), *b = path_of("twice-b");
-    // The first of the two meters the exposure too.
+    // The first method also meters the exposure.
     run_expect(0, SCENE " --frames 2 --spp 2 --gi lpv --gi lpv -o", a, NULL);
     run_expect(0, SCENE " --frames 2 --spp 2 --gi lpv --gi lpv --no-cache -o", b, NULL);
     json_t *first = report_of(a), *second = report_of(b);
@@ -269,7 +268,7 @@ TEST(equal_methods_and_equal_commands_have_equal_results)
     CHECK(files_are_equal(in(a, "reference.exr"), in(b, "reference.exr")));
 }
 
-TEST(one_exposure_is_renders_own_or_the_one_that_was_asked_for)
+TEST(the_exposure_is_that_of_render_or_the_given_one)
 {
     require_device();
     own_cache("exposure-cache");
@@ -289,9 +288,9 @@ TEST(one_exposure_is_renders_own_or_the_one_that_was_asked_for)
     CHECK(files_are_equal(png, in(folder, "1-none.png")));
 }
 
-// ---- references that are kept
+// ---- cached references
 
-TEST(a_reference_is_traced_once_and_gone_on_with)
+TEST(a_reference_is_traced_once_and_continued)
 {
     require_device();
     const char *cache = own_cache("kept-cache"), *folder = path_of("kept");
@@ -307,7 +306,7 @@ TEST(a_reference_is_traced_once_and_gone_on_with)
     CHECK(of_reference(first, "rays") == of_reference(second, "rays"));
     CHECK_RELATIVE(of_reference(first, "noise"), of_reference(second, "noise"),
                    1e-5); // 32-bit floats
-    // More samples go on from those; fewer are there already.
+    // More samples continue the cached ones; fewer need no tracing.
     run_expect(0, SMALL " --spp 5 -o", folder, NULL);
     json_t *third = report_of(folder);
     CHECK(json_is_false(json_object_get(json_object_get(third, "reference"), "cached")));
@@ -325,7 +324,7 @@ TEST(a_reference_is_traced_once_and_gone_on_with)
     CHECK(json_is_true(json_object_get(json_object_get(fourth, "reference"), "cached")));
     assert_int_equal((int)of_reference(fourth, "spp"), 5);
     assert_int_equal(count_files(cache), 1);
-    // Another image has a file of its own, and --no-cache leaves none.
+    // Another image has its own file; --no-cache writes none.
     run_expect(0, SMALL " --bounces 1 -o", folder, NULL);
     assert_int_equal(count_files(cache), 2);
     run_expect(0, SMALL " --bounces 2 --no-cache -o", folder, NULL);
@@ -336,7 +335,7 @@ TEST(a_reference_is_traced_once_and_gone_on_with)
     json_decref(fourth);
 }
 
-TEST(a_cache_that_is_damaged_or_cannot_be_written_costs_time_alone)
+TEST(a_damaged_or_unwritable_cache_is_no_error)
 {
     require_device();
     const char *cache = own_cache("damaged-cache"), *folder = path_of("damaged");
@@ -357,7 +356,7 @@ TEST(a_cache_that_is_damaged_or_cannot_be_written_costs_time_alone)
     run_expect(0, SMALL " -o", folder, NULL);
 }
 
-// A sparse file of 3 GB that nobody has used for years.
+// A sparse file of 3 GB, unused for years.
 static void make_old(const char *path)
 {
     int fd = open(path, O_WRONLY | O_CREAT, 0600);
@@ -366,7 +365,7 @@ static void make_old(const char *path)
                 close(fd) == 0);
 }
 
-TEST(the_cache_keeps_within_its_bound_and_to_its_own)
+TEST(the_cache_respects_its_size_limit_and_foreign_files)
 {
     require_device();
     const char *cache = own_cache("bound-cache"), *folder = path_of("bound");
@@ -406,7 +405,7 @@ TEST(a_reference_of_another_image_is_refused)
     check_one_error_line(
         run_expect(1, SCENE " -o", folder, "--reference", path_of("none.exr"), NULL));
     CHECK(!file_exists(folder));
-    // Without the layer of indirect light there is the image to go by.
+    // Without the layer of indirect light only the image is compared.
     const char *bare = path_of("bare.exr");
     run_expect(0, "reference @cornell --size 24x18 --quiet --spp 2 --aov color -o", bare, NULL);
     run_expect(0, SCENE " --frames 1 --gi none -o", folder, "--reference", bare, NULL);
@@ -426,7 +425,7 @@ static int count_lines(const char *text)
     return count;
 }
 
-TEST(a_method_beyond_a_bound_fails_after_the_report)
+TEST(a_method_exceeding_a_bound_fails_after_the_report)
 {
     require_device();
     own_cache("bounds-cache");
@@ -441,7 +440,7 @@ TEST(a_method_beyond_a_bound_fails_after_the_report)
     run_expect(0, SMALL " --max-flip 1 --max-relmse 1e9 --max-ms 1e9 -o", folder, NULL);
 }
 
-TEST(wrong_usage_is_said_before_the_work)
+TEST(wrong_usage_is_reported_before_the_work)
 {
     static const char *const wrong[] = {
         "--gi lvp",
@@ -468,7 +467,7 @@ TEST(wrong_usage_is_said_before_the_work)
     CHECK(!file_exists(path_of("wrong")));
 }
 
-TEST(a_folder_that_is_not_of_compare_is_left_alone)
+TEST(a_foreign_folder_is_left_alone)
 {
     require_device();
     own_cache("folders-cache");
@@ -490,19 +489,19 @@ TEST(a_folder_that_is_not_of_compare_is_left_alone)
     check_one_error_line(r);
     CHECK(strstr(r->err, "notes.txt"));
     unlink(file);
-    // Through a link, and with a slash at its end.
+    // Through a symbolic link, and with a trailing slash.
     const char *link = path_of("link");
     assert_int_equal(symlink(folder, link), 0);
     run_expect(0, SMALL " --gi ambient -o", in(link, ""), NULL);
     CHECK(file_exists(in(folder, "2-ambient.png")));
     struct stat info;
     CHECK(lstat(link, &info) == 0 && S_ISLNK(info.st_mode));
-    // Where it stands is not taken away under the feet of who stands there.
+    // The current folder is never replaced.
     char before[1000];
     assert_true(getcwd(before, sizeof before) && chdir(folder) == 0);
     check_one_error_line(run_expect(1, SMALL " -o .", NULL));
     assert_int_equal(chdir(before), 0);
-    // By default it is named after the scene.
+    // The default name is that of the scene.
     assert_int_equal(chdir(make_folder("elsewhere")), 0);
     run_expect(0, SMALL, NULL);
     CHECK(file_exists("cornell-compare/report.json"));
@@ -510,7 +509,7 @@ TEST(a_folder_that_is_not_of_compare_is_left_alone)
     assert_int_equal(chdir(before), 0);
 }
 
-// ---- ended in the middle
+// ---- interruption
 
 static void pause_ms(long ms)
 {
@@ -565,7 +564,7 @@ TEST(ctrl_c_keeps_the_samples_and_leaves_no_folder)
     CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 1);
     CHECK(!file_exists(folder) && !has_entry(home, ".tmp-"));
     assert_int_equal(count_files(cache), 1);
-    // They are there for the next run.
+    // The next run uses them.
     run_expect(0, SMALL " -o", folder, NULL);
     json_t *report = report_of(folder);
     CHECK(json_is_true(json_object_get(json_object_get(report, "reference"), "cached")));

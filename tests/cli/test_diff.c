@@ -1,4 +1,4 @@
-// diff: figures that can be worked out by hand, and files that cannot be compared.
+// diff: known errors, and files that cannot be compared.
 #include "cli/program.h"
 
 #include "image/exr.h"
@@ -10,7 +10,7 @@
 
 enum { WIDTH = 8, HEIGHT = 4 };
 
-// Every value `value`, but for the first pixel, which is `first`.
+// An image of `value` with `first` as first pixel.
 static const char *write_exr(const char *name, int width, float value, float first)
 {
     struct image color = { 0 }, depth = { 0 };
@@ -51,7 +51,7 @@ TEST(a_constant_difference_has_the_errors_of_its_size)
     CHECK_NEAR(json_number_value(json_array_get(json_object_get(d, "mean_a"), 2)), 0.75, 1e-9);
     CHECK_NEAR(json_number_value(json_array_get(json_object_get(d, "mean_b"), 0)), 0.5, 1e-9);
     json_decref(d);
-    // The table says the same.
+    // The table shows the same values.
     const struct run *r = run_expect(0, "diff", a, b, NULL);
     CHECK(strstr(r->out, "mse     0.0625\n") && strstr(r->out, "mae     0.25\n"));
     CHECK(strstr(r->out, "\nssim    0.") && strstr(r->out, "\nflip    0."));
@@ -67,7 +67,7 @@ TEST(equal_images_have_no_error_and_no_finite_psnr)
     json_decref(d);
 }
 
-TEST(a_layer_can_be_compared_by_its_name)
+TEST(a_layer_is_compared_by_name)
 {
     char a[300], b[300];
     snprintf(a, sizeof a, "%s", write_exr("la.exr", WIDTH, 1.0f, 1.0f));
@@ -80,7 +80,7 @@ TEST(a_layer_can_be_compared_by_its_name)
     CHECK(strstr(r->err, "indirect") && strstr(r->err, "color") && strstr(r->err, "depth"));
 }
 
-TEST(what_cannot_be_compared_is_named)
+TEST(messages_name_images_that_cannot_be_compared)
 {
     char a[300], b[300], bad[300];
     snprintf(a, sizeof a, "%s", write_exr("wide.exr", 2 * WIDTH, 1.0f, 1.0f));
@@ -120,7 +120,7 @@ TEST(a_failed_comparison_writes_no_map)
     CHECK(!file_exists(map));
 }
 
-TEST(the_exposure_is_one_for_both_and_can_be_given)
+TEST(both_images_have_the_same_exposure)
 {
     char a[300], b[300];
     snprintf(a, sizeof a, "%s", write_exr("ea.exr", WIDTH, 4.0f, 2.0f));
@@ -135,7 +135,7 @@ TEST(the_exposure_is_one_for_both_and_can_be_given)
     json_decref(dark);
 }
 
-TEST(a_mask_and_ignored_pixels_leave_the_rest)
+TEST(a_mask_and_ignored_pixels_are_excluded)
 {
     char a[300], b[300];
     snprintf(a, sizeof a, "%s", write_exr("ma.exr", WIDTH, 1.0f, NAN));
@@ -148,7 +148,7 @@ TEST(a_mask_and_ignored_pixels_leave_the_rest)
     assert_int_equal((int)metric(d, "pixels"), WIDTH * HEIGHT - 1);
     CHECK(metric(d, "mse") == 0 && metric(d, "flip") == 0);
     json_decref(d);
-    // The depth is 2 everywhere: nothing is above 2.
+    // Depth is 2 everywhere, so no pixel exceeds 2.
     r = run_expect(1, "diff --ignore-nan --mask depth=2", a, b, NULL);
     check_one_error_line(r);
     r = run_expect(1, "diff --mask indirect", a, b, NULL);
@@ -174,7 +174,7 @@ TEST(each_metric_has_its_map)
     run_expect(2, "diff --metric psnr --map", map, a, b, NULL);
 }
 
-TEST(what_only_radiance_has_is_wrong_usage_of_images)
+TEST(options_for_radiance_are_wrong_usage_for_png)
 {
     char png[300];
     struct image image = { 0 };

@@ -1,4 +1,4 @@
-// info and list: what they say can be read by programs, and is so.
+// info and list: their output can be parsed.
 #include "cli/program.h"
 
 #include <math.h>
@@ -64,7 +64,7 @@ static const char *write_dark_scene(void)
     return path;
 }
 
-TEST(a_dark_scene_says_which_options_ask_for_its_defaults)
+TEST(a_dark_scene_shows_the_options_of_its_defaults)
 {
     json_t *info = run_json(run_expect(0, "info --json", write_dark_scene(), NULL));
     const json_t *defaults = json_object_get(info, "defaults");

@@ -1,5 +1,4 @@
-// Ends the program, or takes its streams away, in the middle of its work: no file is ever left half
-// written.
+// Interrupts the program or closes its streams during work: files are never left half written.
 #include "cli/program.h"
 
 #include <dirent.h>
@@ -40,8 +39,7 @@ static pid_t start(char **words)
     return child;
 }
 
-// Pictures one after the other, most of the time in the middle of one; the signal comes when a
-// part of one is seen.
+// Writes many images; the signal comes while one is being written.
 static void check_signal(int number, const char *name)
 {
     char folder[300], pattern[400], first[400];
@@ -91,7 +89,7 @@ TEST(signals_that_are_ignored_stay_ignored)
     CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
-// Two runs, the second without standard streams: its notes must not end up in its files.
+// Two runs, the second without standard streams: its messages must not end up in its files.
 TEST(closed_streams_leave_files_alone)
 {
     require_device();

@@ -1,5 +1,4 @@
-// reference: the same command gives the same bytes, a longer run can be made of shorter ones,
-// layers add up, and what is interrupted leaves what there is.
+// reference: reproducible, resumable, layers add up, interruptions keep the samples.
 #include "cli/program.h"
 
 #include "image/exr.h"
@@ -64,7 +63,7 @@ TEST(the_number_of_threads_does_not_change_the_file)
     CHECK(files_are_equal(one, three));
 }
 
-// Doubling is exact in floats, so the same numbers drawn must give the double to the bit.
+// Doubling is exact in floats: equal random numbers must give exactly twice the values.
 TEST(a_doubled_light_doubles_every_pixel)
 {
     static const char *const layers[] = { "color", "direct", "indirect", "irradiance", "error" };
@@ -88,7 +87,7 @@ TEST(a_doubled_light_doubles_every_pixel)
     }
 }
 
-TEST(layers_are_those_that_resuming_needs)
+TEST(the_default_layers_allow_resuming)
 {
     const char *path = path_of("layers.exr");
     run_expect(0, SMALL, "--spp", "4", "-o", path, NULL);
@@ -121,7 +120,7 @@ TEST(former_layer_names_are_accepted_with_a_warning)
     run_expect(0, "diff --layer gathered", path, path, NULL);
 }
 
-TEST(parts_of_the_light_are_what_they_are_called)
+TEST(direct_and_indirect_only_add_up)
 {
     const char *all = path_of("all.exr"), *direct = path_of("direct.exr"),
                *indirect = path_of("indirect.exr");
@@ -136,7 +135,7 @@ TEST(parts_of_the_light_are_what_they_are_called)
     CHECK(mean_of(indirect, NULL) < 0.97 * mean_of(all, NULL));
 }
 
-// Of the mean over all pixels, whose errors are independent.
+// Error of the mean over all pixels, whose errors are independent.
 static double error_of_mean(const char *path)
 {
     struct image error = read_layer(path, "error");
@@ -151,7 +150,7 @@ static double error_of_mean(const char *path)
     return sqrt(variance) / (3.0 * pixels);
 }
 
-TEST(the_first_bounce_is_what_one_bounce_adds_to_none)
+TEST(one_bounce_adds_the_first_bounce_to_direct_light)
 {
     const char *one = path_of("one.exr"), *none = path_of("none.exr"),
                *alone = path_of("alone.exr");
@@ -163,13 +162,13 @@ TEST(the_first_bounce_is_what_one_bounce_adds_to_none)
     CHECK_NEAR(mean_of(one, NULL) - mean_of(none, NULL), mean_of(alone, NULL), 4 * noise);
 }
 
-TEST(the_radius_of_obscurance_is_that_of_the_option)
+TEST(the_option_sets_the_radius_of_obscurance)
 {
     const char *small = path_of("small.exr"), *large = path_of("large.exr"),
                *whole = path_of("whole.exr");
     run_expect(0, SMALL " --spp 16 --aov obscurance --obscurance-radius 0.05 -o", small, NULL);
     run_expect(0, SMALL " --spp 16 --aov obscurance --obscurance-radius 2 -o", large, NULL);
-    // A square shows nothing but the room.
+    // A square image shows only the room.
     run_expect(0,
                "reference @cornell --size 24x24 --quiet --spp 16 --aov obscurance "
                "--obscurance-radius 0.05 --obscurance-sphere -o",
@@ -179,19 +178,20 @@ TEST(the_radius_of_obscurance_is_that_of_the_option)
     CHECK_NEAR(mean_of(whole, "obscurance"), 0.5, 0.1);
 }
 
-TEST(the_decay_of_occlusion_is_that_of_the_option)
+TEST(the_option_sets_the_decay_of_occlusion)
 {
     const char *far = path_of("far.exr"), *decayed = path_of("decayed.exr");
     const char *words = "reference @cornell --size 24x24 --quiet --spp 16 --aov ambient_occlusion "
                         "--obscurance-radius 100 --occlusion-decay";
     run_expect(0, words, "0", "-o", far, NULL);
     run_expect(0, words, "1000", "-o", decayed, NULL);
-    // The room lacks its front alone; at the radius of a hand nothing hides a thousandth.
+    // Only the front of the room is open; with this decay occluders at a hand's distance count
+    // less than a thousandth.
     CHECK(mean_of(far, "ambient_occlusion") < 0.5);
     CHECK(mean_of(decayed, "ambient_occlusion") > 0.98);
 }
 
-TEST(a_longer_run_can_be_made_of_shorter_ones)
+TEST(a_resumed_run_equals_a_longer_one)
 {
     const char *whole = path_of("whole.exr"), *parts = path_of("parts.exr");
     run_expect(0, SMALL " --spp 9 -o", whole, NULL);
@@ -209,7 +209,7 @@ TEST(a_longer_run_can_be_made_of_shorter_ones)
     check_one_error_line(run_expect(1, SMALL " --spp 4 --resume -o", bare, NULL));
 }
 
-TEST(json_says_what_was_traced)
+TEST(json_describes_the_traced_image)
 {
     const char *path = path_of("json.png");
     const struct run *r = run_expect(0, SMALL " --spp 3 --json -o", path, NULL);
@@ -240,7 +240,7 @@ TEST(each_layer_makes_an_image)
         run_expect(0, SMALL " --spp 2 --aov", layers[i], "-o", path_of("layer.png"), NULL);
 }
 
-TEST(wrong_usage_is_said_before_the_work)
+TEST(wrong_usage_is_reported_before_the_work)
 {
     static const char *const wrong[] = { "--spp 0",
                                          "--spp x",
@@ -263,7 +263,7 @@ TEST(wrong_usage_is_said_before_the_work)
     check_one_error_line(run_expect(1, SMALL, "--camera", "nobody", "-o", path_of("x.exr"), NULL));
 }
 
-TEST(an_interrupt_leaves_an_image_to_go_on_with)
+TEST(an_interrupt_leaves_an_image_to_resume)
 {
     const char *path = path_of("interrupted.exr");
     fflush(NULL);

@@ -1,5 +1,4 @@
-// render: the same command gives the same bytes, the layers add up, options do what they say,
-// failure leaves nothing.
+// render: reproducible, layers add up, options work, failures leave no file.
 #include "cli/program.h"
 
 #include "image/exr.h"
@@ -76,7 +75,7 @@ TEST(direct_and_indirect_light_add_up_to_colour)
     image_finish(&depth, test_host());
 }
 
-TEST(an_exr_says_how_it_was_made)
+TEST(an_exr_records_how_it_was_made)
 {
     require_device();
     char path[300];
@@ -113,13 +112,14 @@ TEST(light_options_add_and_remove_light)
                "point:0,2.7,0:100,100,100", "-o", path, NULL);
     CHECK(once > 0);
     CHECK_RELATIVE(mean_of(path, NULL), 2 * once, 2e-3);
-    // An area light lights others through a technique; direct light shows the rectangle alone.
+    // Light of an area light on other surfaces comes from techniques; direct light shows only the
+    // rectangle.
     run_expect(0, SMALL, "--no-scene-lights", "--light", "area:0,3,-2:0,0,1:1,1:100,100,100",
                "--gi", "ambient", "--aov", "color,direct,indirect", "-o", path, NULL);
     CHECK(mean_of(path, "direct") > 0 && mean_of(path, "indirect") > 0);
 }
 
-TEST(what_a_technique_makes_of_a_scene_is_said)
+TEST(a_technique_logs_how_it_handles_a_scene)
 {
     require_device();
     char path[300];
@@ -132,7 +132,7 @@ TEST(what_a_technique_makes_of_a_scene_is_said)
     CHECK(strstr(r->err, "light 1 of @cornell:light=point is outside of the grid"));
 }
 
-TEST(a_sky_is_seen_where_there_is_nothing)
+TEST(the_sky_is_visible_where_there_is_no_surface)
 {
     require_device();
     char path[300];
@@ -162,8 +162,8 @@ TEST(a_brighter_exposure_is_a_brighter_png_and_the_same_exr)
     for (int i = 0; i < 2; i++) image_finish(&images[i], test_host());
 }
 
-// A scene without light and camera, and what the program says about it on standard error.
-TEST(the_defaults_that_are_said_give_the_same_image)
+// A scene without light and camera, and the notes about its defaults.
+TEST(the_printed_defaults_give_the_same_image)
 {
     require_device();
     static const char obj[] = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\n"
@@ -186,7 +186,7 @@ TEST(the_defaults_that_are_said_give_the_same_image)
     CHECK(mean_of(first, NULL) > 0);
 }
 
-TEST(a_scene_that_only_glows_is_said_to_where_nothing_gathers_it)
+TEST(a_scene_lit_only_by_emission_causes_a_warning)
 {
     require_device();
     const char *path = test_path("glow.png");
@@ -214,8 +214,8 @@ TEST(a_number_in_the_name_writes_every_frame_and_time_moves)
     CHECK_NEAR(mean_of(frames[0], NULL), mean_of(frames[1], NULL), 0);
 }
 
-// The scene has a box that turns and rises, and one that stands still.
-TEST(motion_is_of_what_moves_and_begins_with_the_second_frame)
+// The scene has a moving box and a static one.
+TEST(motion_is_that_of_moving_objects_from_the_second_frame_on)
 {
     require_device();
     const char *scene = test_scene_path("box-animated.gltf");
@@ -289,7 +289,7 @@ TEST(statistics_have_the_keys_that_scripts_rely_on)
     json_decref(stats);
 }
 
-TEST(json_goes_to_standard_output_alone)
+TEST(json_goes_only_to_standard_output)
 {
     require_device();
     const char *path = test_path("json.png");
@@ -320,7 +320,7 @@ TEST(every_layer_can_be_a_png)
     }
 }
 
-TEST(validation_has_no_complaints_about_a_render)
+TEST(a_render_causes_no_validation_message)
 {
     require_device();
     const char *path = test_path("validated.exr");
@@ -341,7 +341,7 @@ TEST(a_wrong_device_fails_and_leaves_nothing)
     assert_int_equal(count_files(folder), 0);
 }
 
-TEST(without_a_name_the_image_is_called_like_the_scene)
+TEST(the_default_file_name_is_that_of_the_scene)
 {
     require_device();
     char before[1024];

@@ -1,6 +1,5 @@
-// The page of compare as a file: it holds all that it shows, no name in it is more than text, and a
-// image that is not there is an error that leaves nothing behind. test_report_page_browser.c uses
-// it.
+// The file of the report page: self-contained, names are escaped, a missing image is an error
+// that leaves nothing behind. test_report_page_browser.c uses the page.
 #include "report_page.h" // before cmocka, whose fail() is a macro
 
 #include "cli/program.h"
@@ -51,7 +50,7 @@ static json_t *data_of(const char *page, const char *name)
     return data;
 }
 
-// What the writer says on standard error, and whether it failed.
+// The message on standard error of a failing write.
 static const char *failure(const char *folder, const json_t *report)
 {
     static char text[1024];
@@ -120,9 +119,8 @@ TEST(the_page_holds_every_image_to_the_byte)
     free(page);
 }
 
-// An address that is fetched stands behind one of these; the policy in the page forbids all that is
-// no data: URI.
-TEST(the_page_names_nothing_that_would_be_fetched)
+// URLs follow one of these; the policy in the page allows only data: URIs.
+TEST(the_page_loads_nothing)
 {
     static const char *const fetching[] = {
         "src=\"h", "src='",    "src=\"/", "src=\"f", "href=\"h",
@@ -142,7 +140,7 @@ TEST(the_page_names_nothing_that_would_be_fetched)
     free(page);
 }
 
-TEST(no_name_ends_the_block_that_it_stands_in)
+TEST(no_name_ends_its_block)
 {
     char plain[300], hostile[300];
     snprintf(plain, sizeof plain, "%s", make_folder("plain"));
@@ -167,7 +165,7 @@ TEST(no_name_ends_the_block_that_it_stands_in)
     free(b);
 }
 
-TEST(an_image_that_is_not_there_leaves_the_page_as_it_was)
+TEST(a_missing_image_leaves_the_page_unchanged)
 {
     char folder[300], path[400];
     snprintf(folder, sizeof folder, "%s", make_folder("missing"));
@@ -190,7 +188,7 @@ TEST(an_image_that_is_not_there_leaves_the_page_as_it_was)
     json_decref(report);
 }
 
-TEST(images_from_elsewhere_are_refused)
+TEST(images_outside_the_folder_are_refused)
 {
     static const char *const names[] = {
         "../reference.png", "/reference.png", "a/../../reference.png", "..", "", "a/.."
@@ -232,7 +230,7 @@ TEST(the_legend_has_the_colours_of_the_maps)
     CHECK(last >= 16);
     CHECK_STRING(json_string_value(json_array_get(scale, 0)), "#000000");
     CHECK_STRING(json_string_value(json_array_get(scale, last)), "#ffffff");
-    // Half of the error is a red: metrics.c turns the hue from blue-violet over red to yellow.
+    // Half of the maximum is red: the hue of metrics.c runs from blue-violet over red to yellow.
     unsigned red, green, blue;
     assert_int_equal(sscanf(json_string_value(json_array_get(scale, last / 2)), "#%2x%2x%2x", &red,
                             &green, &blue),

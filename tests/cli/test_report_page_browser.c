@@ -1,4 +1,4 @@
-// The page of compare as its readers use it, in a real browser with real input.
+// The report page in a real browser with real input.
 #include "report_page.h" // before cmocka, whose fail() is a macro
 
 #include "cli/browser.h"
@@ -18,7 +18,7 @@ struct fixture {
     char folder[300], page[400];
 };
 
-// Writes the report's page, and releases the report.
+// Writes the page and releases the report.
 static void write_page(struct fixture *f, json_t *report)
 {
     assert_int_equal(report_page_write(f->folder, report), DONE);
@@ -26,7 +26,7 @@ static void write_page(struct fixture *f, json_t *report)
     json_decref(report);
 }
 
-// One browser for all tests, each of which loads its page anew.
+// All tests share one browser and reload their page.
 static struct browser *shared;
 
 static bool close_shared(void)
@@ -73,7 +73,7 @@ static struct box stage_in_sight(struct fixture *f)
     return box_of(f, "#stage");
 }
 
-// The share of the stage that the left image has, from its clip.
+// Share of the left image, from its clip.
 static double split_of(struct fixture *f)
 {
     return 1 - browser_number(
@@ -82,7 +82,7 @@ static double split_of(struct fixture *f)
                    ".replace(/^inset\\(0(px)? /, '')) / 100");
 }
 
-// What has scrolled is under the pointer where it is seen only once frames have been drawn.
+// Scrolled elements receive the pointer only after frames are drawn.
 static void let_frames_pass(struct fixture *f)
 {
     browser_true(f->browser, "new Promise(done => requestAnimationFrame(() => "
@@ -109,7 +109,7 @@ static void drag(struct fixture *f, double from_x, double from_y, double to_x, d
     browser_mouse(f->browser, "mouseReleased", to_x, to_y, 1);
 }
 
-// Input travels through other threads of the browser than what asks for its effect.
+// Input passes through other threads of the browser than the query for its effect.
 static bool becomes_true(struct fixture *f, const char *expression)
 {
     const struct timespec pause = { .tv_nsec = 20000000 };
@@ -130,7 +130,7 @@ TEST(the_divider_follows_the_pointer_and_the_arrow_keys)
     drag(&f, stage.x + 0.5 * stage.width, y, stage.x + 0.2 * stage.width, y);
     CHECK_NEAR(split_of(&f), 0.2, 2 / stage.width); // of a pixel or two
     CHECK_NEAR(box_of(&f, ".divider").x - stage.x, 0.2 * stage.width, 3);
-    // The range has the focus now, and its steps are hundredths.
+    // The range input has the focus; its step is a hundredth.
     browser_key(f.browser, "ArrowRight", ARROW_RIGHT);
     browser_key(f.browser, "ArrowRight", ARROW_RIGHT);
     CHECK_NEAR(split_of(&f), 0.22, 1e-3);
@@ -143,8 +143,7 @@ TEST(the_divider_follows_the_pointer_and_the_arrow_keys)
     end(&f);
 }
 
-// Where the point of the image is that began at (u, v), both 0…1 of the stage's image, as a
-// share of the frame.
+// Position of the image point that began at (u, v), 0…1, as a share of the frame.
 static double place_of(struct fixture *f, const char *frame, char axis, double u)
 {
     char image[64];
@@ -175,8 +174,7 @@ TEST(the_wheel_zooms_about_the_pointer_in_all_images_alike)
     CHECK(browser_true(
         f.browser,
         "getComputedStyle(document.querySelector('#left-image')).imageRendering === 'pixelated'"));
-    // The place and both values under the pointer: the left image is of method 3, the right one
-    // the reference.
+    // Position and both values under the pointer: left method 3, right the reference.
     browser_mouse(f.browser, "mouseMoved", stage.x + u * stage.width + 1,
                   stage.y + v * stage.height, 0);
     browser_mouse(f.browser, "mouseMoved", stage.x + u * stage.width, stage.y + v * stage.height,
@@ -200,7 +198,7 @@ TEST(the_wheel_zooms_about_the_pointer_in_all_images_alike)
     end(&f);
 }
 
-TEST(what_cannot_zoom_out_lets_the_page_scroll)
+TEST(the_page_scrolls_at_the_smallest_zoom)
 {
     struct fixture f = { 0 };
     begin(&f, "scroll");
@@ -213,7 +211,7 @@ TEST(what_cannot_zoom_out_lets_the_page_scroll)
     end(&f);
 }
 
-// Pixels of a canvas that are not empty. They are read from a copy, as reading makes a canvas slow.
+// Number of non-empty pixels of a canvas, from a copy, since reading slows a canvas down.
 static double drawn(struct fixture *f, const char *selector)
 {
     return browser_number(f->browser,
@@ -249,7 +247,7 @@ TEST(a_click_on_a_heading_sorts_and_the_best_are_marked)
     begin(&f, "sort");
     static const char order[] =
         "[...document.querySelectorAll('#table tbody tr')].map(row => row.dataset.method).join('')";
-    // Of the sample the last is nearest to the reference and the first is fastest.
+    // In the sample the last method is closest to the reference and the first is fastest.
     CHECK(browser_true(f.browser, "%s === '0123'", order));
     CHECK(browser_true(f.browser,
                        "[...document.querySelectorAll('#table tr[data-method=\"3\"] td')]"
@@ -279,7 +277,7 @@ static bool stage_shows(struct fixture *f, const char *left, const char *right)
                         left, right);
 }
 
-TEST(any_two_images_can_be_held_against_each_other)
+TEST(any_two_images_can_be_compared)
 {
     struct fixture f = { 0 };
     begin(&f, "pairs");
@@ -297,14 +295,14 @@ TEST(any_two_images_can_be_held_against_each_other)
     browser_true(f.browser, "document.querySelector('#sheet').scrollIntoView()");
     click(&f, ".row:nth-child(1) .tile:nth-child(3) .view");
     CHECK(stage_shows(&f, "0-indirect_error.png", "2-indirect.png"));
-    // Methods of one technique are told apart by the option in which they differ.
+    // Labels of methods with equal techniques show the option that differs.
     CHECK(browser_true(
         f.browser, "[...document.querySelectorAll('.method')].map(m => m.textContent).join() === "
                    "'none,ambient,lpv steps=8,lpv steps=64'"));
     end(&f);
 }
 
-TEST(names_are_text_whatever_they_hold)
+TEST(names_are_never_parsed_as_html)
 {
     static const char scene[] = "</script><script>window.caught = 1</script><!--";
     static const char gi[] = "<img src=x onerror='window.caught = 1'>";
@@ -321,7 +319,7 @@ TEST(names_are_text_whatever_they_hold)
     end(&f);
 }
 
-TEST(what_a_report_lacks_is_left_out)
+TEST(missing_values_are_left_out)
 {
     struct fixture f = { 0 };
     begin(&f, "lacking");

@@ -1,5 +1,4 @@
-// Wrong input ends with its status and one line that names what is wrong, and leaves nothing
-// behind.
+// Wrong input: exit status, one line that names the cause, no files left.
 #include "cli/program.h"
 
 #include <stdio.h>
@@ -161,7 +160,7 @@ TEST(wrong_output_names_are_wrong_usage)
     CHECK_WRONG(cases, 2);
 }
 
-TEST(what_cannot_be_read_or_written_fails)
+TEST(unreadable_and_unwritable_files_fail)
 {
     static const struct wrong cases[] = {
         { "render no/such/file.glb -o out.png", "no/such/file.glb" },
@@ -189,9 +188,9 @@ TEST(a_folder_is_no_output)
     assert_int_equal(count_files(inside), 0);
 }
 
-TEST(a_cut_off_glb_fails_and_leaves_nothing)
+TEST(a_truncated_glb_fails_and_leaves_nothing)
 {
-    // A header that promises 1000 bytes, and the beginning of its JSON.
+    // A header that declares 1000 bytes, and the beginning of its JSON.
     static const char cut[] = "glTF\2\0\0\0\xe8\3\0\0\xd0\3\0\0JSON{\"asset\":{\"vers";
     char folder[256], scene[300], image[300];
     snprintf(folder, sizeof folder, "%s", make_folder("cut"));
@@ -229,7 +228,7 @@ static int count_words(const char *text, size_t length)
     return words;
 }
 
-// Lines of text and of help, from `column` on in tables; command lines are as long as they are.
+// Checks lines of text, and of help from `column` on in tables; command lines are exempt.
 static void check_lines(const char *text, size_t column)
 {
     for (size_t length; *text; text += length + (text[length] == '\n')) {
@@ -273,7 +272,7 @@ TEST(the_help_of_an_option_fits_two_lines)
     json_decref(list);
 }
 
-TEST(help_teaches_with_examples)
+TEST(help_has_examples)
 {
     static const char *const commands[] = { "render", "info", "list", "diff" };
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
