@@ -41,8 +41,7 @@ static enum status check_parent(const char *path)
     size_t length = slash == path ? 1 : slash ? (size_t)(slash - path) : 0;
     snprintf(parent, sizeof parent, "%.*s", length ? (int)length : 1, length ? path : ".");
     struct stat info;
-    if (stat(parent, &info) != 0)
-        return fail("cannot write %s: no folder %s", path, parent);
+    if (stat(parent, &info) != 0) return fail("cannot write %s: no folder %s", path, parent);
     if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is not a folder", path, parent);
     if (access(parent, W_OK | X_OK) != 0)
         return fail("cannot write %s: %s: %s", path, parent, strerror(errno));
