@@ -123,7 +123,7 @@ TEST(a_technique_logs_how_it_handles_a_scene)
 {
     require_device();
     char path[300];
-    snprintf(path, sizeof path, "%s", test_path("remarks.png"));
+    snprintf(path, sizeof path, "%s", test_path("diagnostics.png"));
     const struct run *r = run_expect(0,
                                      "render @cornell:light=point --size 16x16 --gi lpv --verbose "
                                      "--light point:90,0,0:1,1,1 -o",
@@ -189,7 +189,7 @@ TEST(the_printed_defaults_give_the_same_image)
 TEST(a_scene_lit_only_by_emission_causes_a_warning)
 {
     require_device();
-    const char *path = test_path("glow.png");
+    const char *path = test_path("emitter.png");
     CHECK(strstr(run_expect(0, "render @cornell --size 16x16 -o", path, NULL)->err, "--gi lpv"));
     CHECK_STRING(run_expect(0, "render @cornell --gi lpv --size 16x16 -o", path, NULL)->err, "");
     CHECK_STRING(run_expect(0, "render @cornell:light=point --size 16x16 -o", path, NULL)->err, "");

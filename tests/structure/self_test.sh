@@ -106,7 +106,7 @@ passes "plain terms" "$here/wording.sh" "$tree"
 printf 'Surfaces that glow.\n' >"$tree/notes.md"
 fails "a phrase that has a term" 'notes.md:1:Surfaces that glow' "$here/wording.sh" "$tree"
 rm "$tree/notes.md"
-printf 'int x; // a picture\n' >"$tree/src/core/bad.c"
+printf 'int x; // a picture of it\n' >"$tree/src/core/bad.c"
 fails "a phrase in a comment" 'write instead: image' "$here/wording.sh" "$tree"
 
 fresh
