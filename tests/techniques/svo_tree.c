@@ -7,14 +7,14 @@ struct svo_tree svo_tree_of(const struct vct_rig *rig)
     const struct vct_svo *svo = &rig->vct->svo;
     struct gpu *gpu = rig->studio.gpu;
     const size_t node_bytes = gpu_buffer_bytes(gpu, svo->nodes),
-                 place_bytes = gpu_buffer_bytes(gpu, svo->places);
+                 place_bytes = gpu_buffer_bytes(gpu, svo->brick_coords);
     struct svo_tree tree = { .params = svo->params,
                              .nodes = malloc(node_bytes),
                              .places = malloc(place_bytes),
                              .node_count = node_bytes / sizeof(uint32_t) };
     CHECK(tree.params.depths <= SVO_MOST_DEPTHS);
     CHECK(gpu_buffer_download(gpu, svo->nodes, 0, tree.nodes, node_bytes));
-    CHECK(gpu_buffer_download(gpu, svo->places, 0, tree.places, place_bytes));
+    CHECK(gpu_buffer_download(gpu, svo->brick_coords, 0, tree.places, place_bytes));
     CHECK(gpu_buffer_download(gpu, svo->levels, 0, tree.levels,
                               tree.params.depths * sizeof *tree.levels));
     return tree;
@@ -47,7 +47,7 @@ struct svo_pool svo_pool_of(const struct vct_rig *rig)
 {
     struct svo_pool pool = { .desc = vct_svo_pool(&rig->vct->options),
                              .row = rig->vct->svo.params.row,
-                             .ways = (int)vct_ways(&rig->vct->options) };
+                             .directions = (int)vct_direction_count(&rig->vct->options) };
     const size_t floats =
         4 * (size_t)pool.desc.width * (size_t)pool.desc.height * (size_t)pool.desc.depth;
     pool.light = malloc(floats * sizeof *pool.light);

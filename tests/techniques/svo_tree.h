@@ -22,7 +22,7 @@ void svo_tree_place(const struct svo_tree *tree, int brick, int node[3]);
 struct svo_pool {
     float *light; // to be freed
     struct gpu_image_desc desc;
-    int row, ways;
+    int row, directions;
 };
 
 struct svo_pool svo_pool_of(const struct vct_rig *rig);

@@ -92,7 +92,7 @@ TEST_GPU(bricks_of_each_level_are_those_of_the_twin)
         for (int a = 0; a < 3; a++)
             last[a] = (rig.vct->clips[0].grid.cells[a] / 2 + (1 << height) - 1) >> height;
         brick_values *expected = calloc((size_t)count, sizeof *expected);
-        for (int way = 0; way < pool.ways; way++) {
+        for (int way = 0; way < pool.directions; way++) {
             for (int i = 0; i < count; i++)
                 for (int p = 0; p < 27; p++) {
                     const int point[3] = { p % 3, p / 3 % 3, p / 9 };
@@ -141,7 +141,7 @@ TEST_GPU(neighbours_agree_on_what_they_share)
             int here[3] = { 1, 1, 1 }, there[3] = { 1, 1, 1 };
             here[axis] = 2;
             there[axis] = 0;
-            for (int way = 0; way < pool.ways; way++) {
+            for (int way = 0; way < pool.directions; way++) {
                 const float *a = svo_pool_at(&pool, brick, way, here),
                             *b = svo_pool_at(&pool, other, way, there);
                 CHECK(memcmp(a, b, 4 * sizeof *a) == 0);

@@ -139,7 +139,7 @@ static double leak(struct gpu *gpu, const char *options)
 
 TEST_GPU(a_wall_thinner_than_a_coarse_voxel_leaks_less_with_levels)
 {
-    static const char *const ways[] = { "anisotropic=true", "anisotropic=false" };
+    static const char *const directions[] = { "anisotropic=true", "anisotropic=false" };
     // One volume for all ways mixes what both sides of a voxel send out: there the wall has to have
     // texels of its own. Six ways keep the sides apart; what is left with levels is what cones miss
     // by its foot, and comes with a grid that is as fine everywhere too.
@@ -149,11 +149,11 @@ TEST_GPU(a_wall_thinner_than_a_coarse_voxel_leaks_less_with_levels)
         for (int k = 0; k < 2; k++) {
             char options[96];
             snprintf(options, sizeof options, "resolution=32,bounces=1,levels=%d,%s", 1 + 2 * k,
-                     ways[i]);
+                     directions[i]);
             got[k] = leak(gpu, options);
         }
-        print_message("%s: %.3f lx behind a thin wall with one grid, %.3f with three\n", ways[i],
-                      got[0], got[1]);
+        print_message("%s: %.3f lx behind a thin wall with one grid, %.3f with three\n",
+                      directions[i], got[0], got[1]);
         CHECK(got[1] < most[i] * got[0]);
     }
 }
@@ -242,7 +242,7 @@ TEST_GPU(a_pan_changes_from_frame_to_frame_as_with_one_grid)
     const struct pan one = pan_with(gpu, "resolution=32"),
                      three = pan_with(gpu, "resolution=32,levels=3");
     print_message("worst change between frames: %.4f with one grid, %.4f with three over %d steps; "
-                  "of the picture's mean %.4f and %.4f\n",
+                  "of the image's mean %.4f and %.4f\n",
                   one.worst, three.worst, three.steps, one.level, three.level);
     CHECK(three.steps >= 3);
     // Smaller voxels show more of what moves past.
@@ -269,7 +269,7 @@ TEST_GPU(an_eye_outside_or_far_away_sees_finite_light)
 
 struct viewer {
     struct vct *vct;
-    gpu_image picture;
+    gpu_image image;
     const char *view;
 };
 
@@ -277,7 +277,7 @@ static void record_view(void *user, struct gpu_cmd *cmd, const struct frame_view
 {
     struct viewer *viewer = user;
     technique_vct.record(viewer->vct, cmd, view);
-    technique_vct.debug_view(viewer->vct, cmd, view, viewer->view, viewer->picture);
+    technique_vct.debug_view(viewer->vct, cmd, view, viewer->view, viewer->image);
 }
 
 // Pixels of a view in red, the finest level's colour, and in others. All of it is finite.
@@ -286,7 +286,7 @@ static void count_pixels(struct vct_rig *rig, struct viewer *viewer, const char 
     float rgba[32 * 32 * 4];
     viewer->view = view;
     studio_render(&rig->studio);
-    CHECK(gpu_image_download_float(rig->studio.gpu, viewer->picture, 0, 0, rgba, 4,
+    CHECK(gpu_image_download_float(rig->studio.gpu, viewer->image, 0, 0, rgba, 4,
                                    sizeof rgba / sizeof *rgba));
     count[0] = count[1] = 0;
     for (int i = 0; i < 32 * 32; i++) {
@@ -309,7 +309,7 @@ TEST_GPU(views_show_the_finest_level_about_the_eye_and_others_beyond)
                                          .width = 32,
                                          .height = 32,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    CHECK(gpu_image_create(gpu, &desc, &viewer.picture));
+    CHECK(gpu_image_create(gpu, &desc, &viewer.image));
     rig.studio.indirect.record = record_view;
     rig.studio.indirect.user = &viewer;
     int count[2];
@@ -325,6 +325,6 @@ TEST_GPU(views_show_the_finest_level_about_the_eye_and_others_beyond)
     studio_look(&rig.studio, vec3_of(60, 30, 50), vec3_of(13, 6, 10));
     count_pixels(&rig, &viewer, "levels", count);
     CHECK(count[1] > 20);
-    gpu_image_destroy(gpu, &viewer.picture);
+    gpu_image_destroy(gpu, &viewer.image);
     vct_rig_finish(&rig);
 }

@@ -3,7 +3,7 @@
 #include "techniques/vct_rig.h"
 
 #include "core/rng.h"
-#include "techniques/vct/vct_diagnostics.h"
+#include "techniques/vct_voxel_count.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,9 +28,9 @@ TEST(a_part_lies_in_the_scene_on_texels_of_the_next_coarser_one)
         for (int i = 0; i < 60; i++) {
             const int halvings = 1 + i % 5;
             const vec3s eye = random_eye(&rng);
-            const struct vct_grid grid = vct_grid_about(&scene, dim, halvings, eye),
-                                  coarse = vct_grid_about(&scene, dim, halvings - 1, eye);
-            const struct box3 used = vct_grid_used(&scene, dim, halvings, eye, 4.0f);
+            const struct vct_grid grid = vct_grid_around(&scene, dim, halvings, eye),
+                                  coarse = vct_grid_around(&scene, dim, halvings - 1, eye);
+            const struct box3 used = vct_grid_cone_box(&scene, dim, halvings, eye, 4.0f);
             CHECK(grid.cell_m == ldexpf(scene.cell_m, -halvings));
             for (int a = 0; a < 3; a++) {
                 const int last = grid.first[a] + grid.cells[a];
@@ -58,11 +58,11 @@ TEST(what_is_used_of_a_part_moves_with_the_eye)
     struct vct_grid scene;
     CHECK(vct_grid_fit(bounds, 32, &scene));
     const float step = 0.01f / ldexpf(scene.cell_m, -2); // voxels
-    struct box3 last = vct_grid_used(&scene, 32, 2, vec3_of(-3, 1, 1), 4.0f);
+    struct box3 last = vct_grid_cone_box(&scene, 32, 2, vec3_of(-3, 1, 1), 4.0f);
     int moved = 0, stood = 0;
     for (int i = 1; i < 3300; i++) {
         const vec3s eye = vec3_of(-3 + 0.01f * (float)i, 1, 1);
-        const struct box3 used = vct_grid_used(&scene, 32, 2, eye, 4.0f);
+        const struct box3 used = vct_grid_cone_box(&scene, 32, 2, eye, 4.0f);
         const float low = used.min.x - last.min.x, high = used.max.x - last.max.x;
         CHECK(low > -1e-3f && low < 6.0f * step && high > -1e-3f && high < 6.0f * step);
         moved += low > 0.5f * step;
@@ -72,7 +72,7 @@ TEST(what_is_used_of_a_part_moves_with_the_eye)
     CHECK(moved > 1000 && stood > 300);
     const vec3s odd[] = { { { 1e30f, -1e30f, 0 } }, { { NAN, INFINITY, -INFINITY } } };
     for (int i = 0; i < 2; i++) {
-        const struct vct_grid grid = vct_grid_about(&scene, 32, 2, odd[i]);
+        const struct vct_grid grid = vct_grid_around(&scene, 32, 2, odd[i]);
         for (int a = 0; a < 3; a++)
             CHECK(grid.first[a] >= 0 && grid.first[a] + grid.cells[a] <= grid.scene[a]);
     }
@@ -112,12 +112,12 @@ struct voxels {
 static struct voxels voxels_of(const struct vct_rig *rig, int clip)
 {
     const struct vct_clip *c = &rig->vct->clips[clip];
-    const size_t bytes = (size_t)gpu_groups(vct_capacity(&rig->vct->options), VCT_RECORD_ROW) * 2 *
-                         VCT_RECORD_ROW * 16;
-    struct voxels v = { c->grid, vct_rig_words(rig, c->rest.mask),
-                        vct_rig_words(rig, c->rest.before), malloc(bytes) };
+    const size_t bytes = (size_t)gpu_groups(vct_capacity(&rig->vct->options), VCT_VOXEL_ROW) * 2 *
+                         VCT_VOXEL_ROW * 16;
+    struct voxels v = { c->grid, vct_rig_words(rig, c->static_set.mask),
+                        vct_rig_words(rig, c->static_set.word_offsets), malloc(bytes) };
     CHECK(v.surfaces &&
-          gpu_image_download(rig->studio.gpu, c->rest.surfaces, 0, 0, v.surfaces, bytes));
+          gpu_image_download(rig->studio.gpu, c->static_set.surfaces, 0, 0, v.surfaces, bytes));
     return v;
 }
 
@@ -314,8 +314,8 @@ TEST_GPU(what_moves_is_in_every_level)
     studio_render(&still.studio);
     for (int clip = 0; clip < 3; clip++) {
         const struct vct_clip *c = &moved.vct->clips[clip];
-        uint32_t *rest = vct_rig_mask(&moved, &c->rest), *moving = vct_rig_mask(&moved, &c->moving),
-                 *expected = vct_rig_mask(&still, &still.vct->clips[clip].rest);
+        uint32_t *rest = vct_rig_mask(&moved, &c->static_set), *moving = vct_rig_mask(&moved, &c->dynamic_set),
+                 *expected = vct_rig_mask(&still, &still.vct->clips[clip].static_set);
         int count = 0;
         for (int i = 0; i < 32 * 32 * 32 / 32; i++) {
             CHECK((rest[i] | moving[i]) == expected[i]);

@@ -11,34 +11,34 @@ static const double PI = 3.14159265358979323846;
 static const float HEIGHT = 2.5f, HALF = 0.3f, RADIANCE = 100.0f;
 
 // A dark floor seen from above, with square lamps over it that shine down.
-static void furnish(struct vct_rig *rig, struct gpu *gpu, int lamps, const vec3s *at)
+static void furnish(struct vct_rig *rig, struct gpu *gpu, int small_emitters, const vec3s *at)
 {
     vct_rig_init(rig, gpu);
     struct studio *s = &rig->studio;
     s->width = s->height = SIZE;
-    struct material glow = material_default();
-    glow.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
-    const int lamp = studio_material(s, &glow);
+    struct material light = material_default();
+    light.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
+    const int emitter = studio_material(s, &light);
     studio_floor(s, 4, studio_matte(s, vec3_of(0, 0, 0)));
-    for (int i = 0; i < lamps; i++) {
+    for (int i = 0; i < small_emitters; i++) {
         const vec3s c = at[i];
         studio_quad(s, vec3_of(c.x - HALF, c.y, c.z - HALF), vec3_of(c.x + HALF, c.y, c.z - HALF),
                     vec3_of(c.x + HALF, c.y, c.z + HALF), vec3_of(c.x - HALF, c.y, c.z + HALF),
-                    lamp);
+                    emitter);
     }
     studio_look(s, vec3_of(0, 2.3f, 3.5f), vec3_of(0, 0, 0.2f));
 }
 
 // ∫ L cos θ cos θ'/d² dA over the lamp, by midpoints; lux.
-static double irradiance_by(vec3s lamp, double x, double z)
+static double irradiance_by(vec3s emitter, double x, double z)
 {
     enum { N = 20 };
-    const double half = (double)HALF, h = (double)lamp.y, part = 2.0 * half / N;
+    const double half = (double)HALF, h = (double)emitter.y, part = 2.0 * half / N;
     double sum = 0.0;
     for (int i = 0; i < N; i++)
         for (int k = 0; k < N; k++) {
-            const double dx = (double)lamp.x - half + (i + 0.5) * part - x,
-                         dz = (double)lamp.z - half + (k + 0.5) * part - z;
+            const double dx = (double)emitter.x - half + (i + 0.5) * part - x,
+                         dz = (double)emitter.z - half + (k + 0.5) * part - z;
             const double d2 = dx * dx + dz * dz + h * h;
             sum += (double)RADIANCE * h * h / (d2 * d2) * part * part;
         }
@@ -51,7 +51,7 @@ struct lit_floor {
 };
 
 // The lit floor against the sum over all lamps.
-static struct lit_floor measure(struct vct_rig *rig, int lamps, const vec3s *at)
+static struct lit_floor measure(struct vct_rig *rig, int small_emitters, const vec3s *at)
 {
     struct lit_floor m = { 0 };
     float *e = studio_read(&rig->studio, READ_IRRADIANCE),
@@ -63,7 +63,7 @@ static struct lit_floor measure(struct vct_rig *rig, int lamps, const vec3s *at)
         if (depth[i] <= 0.0f || n[3 * i + 1] < 0.9f || p[3 * i + 1] > 0.1f) continue;
         if (fabsf(p[3 * i]) > 2.0f || fabsf(p[3 * i + 2]) > 1.5f) continue;
         double expected = 0.0;
-        for (int k = 0; k < lamps; k++)
+        for (int k = 0; k < small_emitters; k++)
             expected += irradiance_by(at[k], (double)p[3 * i], (double)p[3 * i + 2]);
         const double off = fabs((double)e[3 * i + 1] - expected);
         m.error += off;
@@ -80,7 +80,7 @@ static struct lit_floor measure(struct vct_rig *rig, int lamps, const vec3s *at)
 TEST_GPU(a_lamp_lights_the_floor_below_it_as_its_integral_says)
 {
     static const char *const options[] = { "bounces=1,interleave=1", "bounces=1",
-                                           "bounces=1,lamps=false" };
+                                           "bounces=1,small_emitters=false" };
     const vec3s at = vec3_of(0.4f, HEIGHT, -0.3f);
     struct lit_floor m[3];
     for (int i = 0; i < 3; i++) {
@@ -113,9 +113,9 @@ TEST_GPU(many_lamps_bring_what_all_of_them_bring)
     furnish(&rig, gpu, MOST_LAMPS, at);
     vct_rig_open(&rig, "resolution=64,bounces=1");
     studio_render(&rig.studio);
-    CHECK(rig.vct->lamps.count == VCT_LAMPS_MAX);
+    CHECK(rig.vct->small_emitters.count == VCT_MAX_SMALL_EMITTERS);
     const struct lit_floor m = measure(&rig, MOST_LAMPS, at);
-    print_message("%d lamps: off by %.3f of the mean\n", MOST_LAMPS, m.error / m.mean);
+    print_message("%d small emitters: off by %.3f of the mean\n", MOST_LAMPS, m.error / m.mean);
     CHECK(m.error < 0.1 * m.mean);
     vct_rig_finish(&rig);
 }
@@ -123,11 +123,11 @@ TEST_GPU(many_lamps_bring_what_all_of_them_bring)
 // Light behind a wall between lamp and floor, over light without it.
 TEST_GPU(what_stands_before_a_lamp_throws_a_shadow)
 {
-    const vec3s lamp = vec3_of(0, HEIGHT, 0);
+    const vec3s emitter = vec3_of(0, HEIGHT, 0);
     double light[2];
     for (int wall = 0; wall < 2; wall++) {
         struct vct_rig rig;
-        furnish(&rig, gpu, 1, &lamp);
+        furnish(&rig, gpu, 1, &emitter);
         struct studio *s = &rig.studio;
         // A board over the floor: from 0.5 m on to its right all of the lamp is behind it.
         if (wall)
@@ -172,7 +172,7 @@ TEST_GPU(a_lamp_takes_its_light_along)
         apart += fabs((double)a[i] - (double)b[i]);
         sum += (double)b[i];
     }
-    print_message("a moved lamp: %.6f of the light off\n", apart / sum);
+    print_message("a moved emitter: %.6f of the light off\n", apart / sum);
     // Its points are moved by a matrix instead of standing where they are: rounding.
     CHECK(sum > 0.0 && apart < 1e-3 * sum);
     free(a), free(b);
@@ -233,17 +233,17 @@ TEST_GPU(voxels_reflect_what_lamps_bring_them)
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
     struct studio *s = &rig.studio;
-    struct material glow = material_default();
-    glow.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
+    struct material shining = material_default();
+    shining.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
     studio_box(s, vec3_of(0, 0, 0), vec3_of(ROOM[0], ROOM[1], ROOM[2]), true,
                studio_matte(s, vec3_of((float)ALBEDO, (float)ALBEDO, (float)ALBEDO)));
     studio_quad(s, vec3_of(2 - HALF, 1, 2 + HALF), vec3_of(2 + HALF, 1, 2 + HALF),
                 vec3_of(2 + HALF, 1, 2 - HALF), vec3_of(2 - HALF, 1, 2 - HALF),
-                studio_material(s, &glow));
+                studio_material(s, &shining));
     studio_look(s, vec3_of(2, 2.5f, 3.8f), vec3_of(2, 0, 1.5f));
     vct_rig_open(&rig, "resolution=64,bounces=1");
     studio_render(s);
-    CHECK(rig.vct->lamps.count == 1);
+    CHECK(rig.vct->small_emitters.count == 1);
     float *e = studio_read(s, READ_IRRADIANCE), *p = studio_read(s, READ_POSITION);
     double light = 0.0, expected = 0.0;
     for (uint32_t k = 0; k < s->width * s->height; k += 3) {

@@ -88,7 +88,7 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
     struct vct_rig rig;
     furnish(&rig, gpu);
     rig.studio.input.sky = vec3_of(3, 2, 1);
-    vct_rig_open(&rig, "resolution=48,cones=5,interleave=1,stride=0.5");
+    vct_rig_open(&rig, "resolution=48,cones=5,interleave=1,step_size=0.5");
     studio_render(&rig.studio);
     const struct vct *vct = rig.vct;
     struct vct_twin twin = vct_twin_of(&rig);
@@ -96,7 +96,7 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
     const double texel_m = 2.0 * (double)vct->clips[0].grid.cell_m;
     const double wide = 0.5 * (double)vct_cone_width(VCT_CONES_5);
     vec3s lines[VCT_MAX_CONES];
-    vct_cone_lines(VCT_CONES_5, lines);
+    vct_cone_axes(VCT_CONES_5, lines);
     int lit = 0;
     for (uint32_t y = 1; y < 32; y += 6)
         for (uint32_t x = 1; x < 32; x += 6) {

@@ -180,7 +180,7 @@ TEST(lines_are_spread_evenly)
                                    [VCT_CONES_25] = 0.03 };
     for (int choice = VCT_CONES_5; choice <= VCT_CONES_25; choice++) {
         vec3s lines[VCT_MAX_CONES];
-        vct_cone_lines(choice, lines);
+        vct_cone_axes(choice, lines);
         const int count = vct_cone_count(choice);
         double worst = 0.0;
         for (int k = 0; k < 500; k++) {

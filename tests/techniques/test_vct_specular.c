@@ -16,14 +16,14 @@ static double spread_px(struct gpu *gpu, const char *options, float roughness)
     vct_rig_init(&rig, gpu);
     struct studio *s = &rig.studio;
     s->width = s->height = SIZE;
-    struct material metal = material_default(), lamp = material_default();
+    struct material metal = material_default(), emitter = material_default();
     metal.base_color = vec4_of(vec3_of(1, 1, 1), 1);
     metal.metallic = 1;
     metal.roughness = roughness;
-    lamp.emissive = vec3_of(100, 100, 100);
+    emitter.emissive = vec3_of(100, 100, 100);
     studio_floor(s, 4, studio_material(s, &metal));
     studio_quad(s, vec3_of(-0.2f, 3, -1.7f), vec3_of(0.2f, 3, -1.7f), vec3_of(0.2f, 3, -1.3f),
-                vec3_of(-0.2f, 3, -1.3f), studio_material(s, &lamp));
+                vec3_of(-0.2f, 3, -1.3f), studio_material(s, &emitter));
     studio_look(s, vec3_of(0, 2.5f, 3), vec3_of(0, 0, 0.3f));
     vct_rig_open(&rig, options);
     s->indirect.needs |= technique_vct.more_needs(&rig.vct->options);

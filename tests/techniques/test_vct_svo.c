@@ -40,8 +40,8 @@ static bool *nodes_of_twin(const struct vct_rig *rig, const uint32_t *rest, cons
 
 static void check_nodes(const struct vct_rig *rig, const struct svo_tree *tree)
 {
-    uint32_t *rest = vct_rig_mask(rig, &rig->vct->clips[0].rest),
-             *moving = vct_rig_mask(rig, &rig->vct->clips[0].moving);
+    uint32_t *rest = vct_rig_mask(rig, &rig->vct->clips[0].static_set),
+             *moving = vct_rig_mask(rig, &rig->vct->clips[0].dynamic_set);
     uint32_t bricks = 0;
     for (uint32_t depth = 0; depth < tree->params.depths; depth++) {
         const int dim = 1 << depth;
@@ -61,7 +61,7 @@ static void check_nodes(const struct vct_rig *rig, const struct svo_tree *tree)
                     CHECK((uint32_t)brick >= bricks); // bricks of one level stand together
                 }
         CHECK(tree->levels[depth].first == bricks && tree->levels[depth].count == count);
-        CHECK(tree->levels[depth].left_out == 0);
+        CHECK(tree->levels[depth].overflow == 0);
         bricks += count;
         free(there);
     }
@@ -153,12 +153,12 @@ TEST_GPU(a_tree_that_does_not_fit_leaves_nodes_out_and_says_how_many)
         studio_render(&rig.studio);
         studio_render(&rig.studio);
         struct svo_tree tree = svo_tree_of(&rig);
-        uint32_t bricks = 0, left_out = 0;
+        uint32_t bricks = 0, overflow = 0;
         for (uint32_t depth = 0; depth < tree.params.depths; depth++) {
             const struct vct_svo_level *level = &tree.levels[depth];
             CHECK(level->first == bricks);
             bricks += level->count;
-            left_out += level->left_out;
+            overflow += level->overflow;
             // Groups for all of them and at least one, which finds nothing to do.
             CHECK(level->texel_groups[0] >= 1 && level->side_groups[0] >= 1);
             CHECK(level->texel_groups[0] <= room[i] / 4 + 1);
@@ -167,7 +167,7 @@ TEST_GPU(a_tree_that_does_not_fit_leaves_nodes_out_and_says_how_many)
             CHECK(level->texel_groups[1] == 1 && level->side_groups[2] == 1);
         }
         CHECK(bricks <= room[i]);
-        CHECK(left_out > 0);
+        CHECK(overflow > 0);
         float *e = studio_read(&rig.studio, READ_IRRADIANCE);
         for (int k = 0; k < 32 * 32 * 3; k++) CHECK(isfinite(e[k]) && e[k] >= 0.0f);
         free(e);

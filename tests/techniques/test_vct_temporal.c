@@ -137,22 +137,22 @@ static void turn_eye(struct studio *s, int frame)
 {
     const float turn = 0.012f * (float)(frame - PAN / 2);
     const vec3s to = glms_vec3_sub(TARGET, EYE);
-    const vec3s turned =
+    const vec3s rotated =
         vec3_of(to.x * cosf(turn) - to.z * sinf(turn), to.y, to.x * sinf(turn) + to.z * cosf(turn));
-    studio_look(s, EYE, glms_vec3_add(EYE, turned));
+    studio_look(s, EYE, glms_vec3_add(EYE, rotated));
 }
 
-struct picture {
+struct image {
     float *position, *normal, *irradiance;
 };
 
-static struct picture picture_of(struct studio *s)
+static struct image picture_of(struct studio *s)
 {
-    return (struct picture){ studio_read(s, READ_POSITION), studio_read(s, READ_NORMAL),
-                             studio_read(s, READ_IRRADIANCE) };
+    return (struct image){ studio_read(s, READ_POSITION), studio_read(s, READ_NORMAL),
+                           studio_read(s, READ_IRRADIANCE) };
 }
 
-static void picture_free(struct picture *p)
+static void picture_free(struct image *p)
 {
     free(p->position), free(p->normal), free(p->irradiance);
 }
@@ -164,7 +164,7 @@ static vec3s vector(const float *of, size_t pixel)
 
 // Irradiance at a point of the world as the picture has it: bilinear, where all four pixels show
 // its plane within 0.1 m. False elsewhere: creases and silhouettes mix what is of other surfaces.
-static bool seen_at(const struct studio *s, vec3s p, vec3s n, const struct picture *picture,
+static bool seen_at(const struct studio *s, vec3s p, vec3s n, const struct image *image,
                     double out[3])
 {
     const struct world_camera *c = &s->input.camera;
@@ -185,13 +185,12 @@ static bool seen_at(const struct studio *s, vec3s p, vec3s n, const struct pictu
     memset(out, 0, 3 * sizeof *out);
     for (int i = 0; i < 4; i++) {
         const size_t at = (size_t)((top + (i >> 1)) * width + left + (i & 1));
-        const vec3s off = glms_vec3_sub(vector(picture->position, at), p);
-        if (glms_vec3_dot(vector(picture->normal, at), n) < 0.99f) return false;
+        const vec3s off = glms_vec3_sub(vector(image->position, at), p);
+        if (glms_vec3_dot(vector(image->normal, at), n) < 0.99f) return false;
         if (fabsf(glms_vec3_dot(off, n)) > 0.1f || glms_vec3_norm(off) > 0.2f * along) return false;
         const double fx = (double)(x - (float)left), fy = (double)(y - (float)top);
         const double share = (i & 1 ? fx : 1.0 - fx) * (i >> 1 ? fy : 1.0 - fy);
-        for (int k = 0; k < 3; k++)
-            out[k] += share * (double)picture->irradiance[3 * at + (size_t)k];
+        for (int k = 0; k < 3; k++) out[k] += share * (double)image->irradiance[3 * at + (size_t)k];
     }
     return true;
 }
@@ -210,7 +209,7 @@ static double flicker_in_pan(struct gpu *gpu, const char *options)
     for (int i = 0; i < WARM; i++) studio_render(s);
     turn_eye(s, PAN / 2);
     studio_render(s);
-    struct picture middle = picture_of(s);
+    struct image middle = picture_of(s);
     turn_eye(s, 0);
     for (int i = 0; i < WARM; i++) studio_render(s);
     const size_t pixels = (size_t)s->width * s->height;
@@ -219,11 +218,11 @@ static double flicker_in_pan(struct gpu *gpu, const char *options)
     for (int frame = 0; frame < PAN; frame++) {
         turn_eye(s, frame);
         studio_render(s);
-        struct picture picture = picture_of(s);
+        struct image image = picture_of(s);
         for (size_t i = 0; i < pixels; i++) {
             double now[3];
             const vec3s p = vector(middle.position, i), n = vector(middle.normal, i);
-            const bool seen = seen_at(s, p, n, &picture, now);
+            const bool seen = seen_at(s, p, n, &image, now);
             for (int k = 0; seen && k < 3; k++) {
                 if (last[4 * i + 3] > 0.0) {
                     changes +=
@@ -235,7 +234,7 @@ static double flicker_in_pan(struct gpu *gpu, const char *options)
             }
             last[4 * i + 3] = seen;
         }
-        picture_free(&picture);
+        picture_free(&image);
     }
     CHECK(count > PAN * (long)pixels);
     picture_free(&middle);
@@ -269,12 +268,12 @@ TEST_GPU(what_an_object_leaves_behind_goes_as_the_weight_says)
     vct_rig_open(&rig, "resolution=32,temporal=true,frames=16");
     const size_t count = floats_of(&rig);
     free(irradiance_after(&rig, 200));
-    struct picture old = picture_of(&rig.studio);
+    struct image old = picture_of(&rig.studio);
     move_box(&rig, box, vec3_of(-1.5f, 3, 2)); // under the light
     float *trail[LAST + 1];
     for (int n = 1; n <= LAST; n++) trail[n] = irradiance_after(&rig, 1);
     free(irradiance_after(&rig, 400));
-    struct picture settled = picture_of(&rig.studio);
+    struct image settled = picture_of(&rig.studio);
     for (size_t i = 0; i < count / 3; i++) { // others do not count
         const vec3s moved = glms_vec3_sub(vector(old.position, i), vector(settled.position, i));
         if (glms_vec3_norm(moved) == 0.0f) continue;
@@ -338,9 +337,9 @@ TEST_GPU(history_follows_what_moves_and_begins_where_it_was)
         studio_render(s);
         move_box(&rig, box, step);
     }
-    struct picture before = picture_of(s);
+    struct image before = picture_of(s);
     studio_render(s);
-    struct picture after = picture_of(s);
+    struct image after = picture_of(s);
     float *history = channels(&rig, rig.vct->temporal.light[rig.vct->temporal.newest], 4);
     int on_box = 0, followed = 0, uncovered = 0, begun = 0, still = 0, kept = 0;
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
@@ -482,7 +481,7 @@ TEST_GPU(a_jump_has_no_ghost)
                  begun = mean_difference(fresh, settled, count) / average;
     const double ghost = mean_difference(jump, settled, count) / average;
     print_message(
-        "a jump leaves %.4f of the mean, the frame alone %.4f, the old picture would %.4f\n", ghost,
+        "a jump leaves %.4f of the mean, the frame alone %.4f, the old image would %.4f\n", ghost,
         begun, mean_difference(there, settled, count) / average);
     CHECK(ghost <= begun);
     free(fresh), free(there), free(jump), free(settled);

@@ -3,7 +3,7 @@
 #include "techniques/vct_rig.h"
 
 #include "core/rng.h"
-#include "techniques/vct/vct_diagnostics.h"
+#include "techniques/vct_voxel_count.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -80,7 +80,8 @@ static void twin_add(struct twin *twin, const struct vct_grid *grid, const vec3s
                     twin->voxels[z][y][x] = true;
 }
 
-static int check_same(const struct vct_rig *rig, const struct twin *twin, const struct vct_set *set)
+static int check_same(const struct vct_rig *rig, const struct twin *twin,
+                      const struct vct_voxel_set *set)
 {
     uint32_t *mask = vct_rig_mask(rig, set);
     int count = 0;
@@ -134,7 +135,7 @@ static void check_random_triangles(struct gpu *gpu, const char *options)
         const struct vct_grid *grid = &rig.vct->clips[clip].grid;
         struct twin twin = { 0 };
         for (int i = 0; i < TRIANGLES; i++) twin_add(&twin, grid, triangles[i]);
-        const int count = check_same(&rig, &twin, &rig.vct->clips[clip].rest);
+        const int count = check_same(&rig, &twin, &rig.vct->clips[clip].static_set);
         CHECK(count > 100 && count < DIM * DIM * DIM / 2); // neither all nor nothing
         // The count on the CPU, but for triangles that touch a face exactly.
         uint32_t counted = 0;
@@ -206,10 +207,10 @@ TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
         vct_rig_open(rig, i == 0 ? "resolution=48" : "resolution=48,voxels=raster");
         studio_render(&rig->studio);
     }
-    check_same_words(&rigs[0], rigs[0].vct->clips[0].rest.mask, &rigs[1],
-                     rigs[1].vct->clips[0].rest.mask);
-    check_same_texels(&rigs[0], rigs[0].vct->clips[0].rest.surfaces, &rigs[1],
-                      rigs[1].vct->clips[0].rest.surfaces);
+    check_same_words(&rigs[0], rigs[0].vct->clips[0].static_set.mask, &rigs[1],
+                     rigs[1].vct->clips[0].static_set.mask);
+    check_same_texels(&rigs[0], rigs[0].vct->clips[0].static_set.surfaces, &rigs[1],
+                      rigs[1].vct->clips[0].static_set.surfaces);
     for (int i = 0; i < 2; i++) vct_rig_finish(&rigs[i]);
 }
 
@@ -228,7 +229,7 @@ TEST_GPU(what_is_no_triangle_touches_nothing)
     vct_rig_open(&rig, "resolution=16");
     studio_render(&rig.studio);
     twin_add(&twin, &rig.vct->clips[0].grid, real);
-    CHECK(check_same(&rig, &twin, &rig.vct->clips[0].rest) > 0);
+    CHECK(check_same(&rig, &twin, &rig.vct->clips[0].static_set) > 0);
     vct_rig_finish(&rig);
 }
 
@@ -243,7 +244,7 @@ TEST_GPU(walls_on_the_border_of_the_grid_are_kept)
     studio_render(&rig.studio);
     CHECK(rig.vct->clips[0].grid.cell_m == 1.0f && rig.vct->clips[0].grid.origin_m.x == 0.0f);
     for (int axis = 0; axis < 3; axis++) CHECK(rig.vct->clips[0].grid.cells[axis] == 12);
-    uint32_t *mask = vct_rig_mask(&rig, &rig.vct->clips[0].rest);
+    uint32_t *mask = vct_rig_mask(&rig, &rig.vct->clips[0].static_set);
     for (int z = 0; z < DIM; z++)
         for (int y = 0; y < DIM; y++)
             for (int x = 0; x < DIM; x++) {
@@ -275,7 +276,7 @@ TEST_GPU(what_moves_is_voxelised_anew_and_what_stands_is_kept)
     for (int i = 0; i < 3; i++) other[i] = glms_vec3_add(other[i], step);
     twin_add(&still, &rig.vct->clips[0].grid, one);
     twin_add(&moving, &rig.vct->clips[0].grid, other);
-    CHECK(check_same(&rig, &still, &rig.vct->clips[0].rest) > 0);
-    CHECK(check_same(&rig, &moving, &rig.vct->clips[0].moving) > 0);
+    CHECK(check_same(&rig, &still, &rig.vct->clips[0].static_set) > 0);
+    CHECK(check_same(&rig, &moving, &rig.vct->clips[0].dynamic_set) > 0);
     vct_rig_finish(&rig);
 }

@@ -100,18 +100,18 @@ static struct span tilted_plane(struct gpu *gpu, vec3s n, const char *options)
 
 TEST_GPU(an_open_plane_is_open_however_it_leans)
 {
-    static const float ways[][3] = { { 0, 1, 0 },       { 0, 0, 1 }, { 1, 1, 0 },
-                                     { 0.3f, 1, 0.1f }, { 1, 1, 1 }, { -1, 0.4f, 0.7f },
-                                     { 0.05f, 1, 0 } };
+    static const float directions[][3] = { { 0, 1, 0 },       { 0, 0, 1 }, { 1, 1, 0 },
+                                           { 0.3f, 1, 0.1f }, { 1, 1, 1 }, { -1, 0.4f, 0.7f },
+                                           { 0.05f, 1, 0 } };
     static const char *const options[] = { "resolution=32,decay=0",
                                            "resolution=32,decay=0,storage=svo" };
     for (int o = 0; o < 2; o++)
-        for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
-            const struct span s =
-                tilted_plane(gpu, vec3_of(ways[i][0], ways[i][1], ways[i][2]), options[o]);
+        for (size_t i = 0; i < sizeof directions / sizeof directions[0]; i++) {
+            const struct span s = tilted_plane(
+                gpu, vec3_of(directions[i][0], directions[i][1], directions[i][2]), options[o]);
             print_message("%s, normal %g %g %g: %.3f, %.3f at least\n", options[o],
-                          (double)ways[i][0], (double)ways[i][1], (double)ways[i][2], s.mean,
-                          s.least);
+                          (double)directions[i][0], (double)directions[i][1],
+                          (double)directions[i][2], s.mean, s.least);
             // Cones along a leaning plane are as wide as its texels, which have steps: they meet
             // its own sheet, and hide less than a twentieth.
             CHECK(s.least > 0.95);
@@ -252,24 +252,25 @@ TEST_GPU(each_storage_sees_what_rays_see_and_the_same_in_every_frame)
     static const struct {
         const char *options;
         double worst; // mean error
-    } ways[] = {      // All cones for each pixel: what is left is that of 25 cones and of voxels.
-                 { "resolution=48,interleave=1", 0.025 },
-                 { "resolution=48,interleave=1,storage=svo", 0.03 },
-                 // Five pixels of this small picture are a metre.
-                 { "resolution=48", 0.045 },
-                 { "resolution=48,storage=svo", 0.045 },
-                 { "resolution=48,voxels=raster", 0.045 },
-                 { "resolution=48,keep_static=false", 0.045 },
-                 // Surfaces without sides stand in the way of their own cones; not where points of
-                 // the octree lie in them.
-                 { "resolution=48,anisotropic=false", 0.2 },
-                 { "resolution=48,storage=svo,anisotropic=false", 0.06 }
+    } directions[] = {
+        // All cones for each pixel: what is left is that of 25 cones and of voxels.
+        { "resolution=48,interleave=1", 0.025 },
+        { "resolution=48,interleave=1,storage=svo", 0.03 },
+        // Five pixels of this small picture are a metre.
+        { "resolution=48", 0.045 },
+        { "resolution=48,storage=svo", 0.045 },
+        { "resolution=48,voxels=raster", 0.045 },
+        { "resolution=48,keep_static=false", 0.045 },
+        // Surfaces without sides stand in the way of their own cones; not where points of
+        // the octree lie in them.
+        { "resolution=48,anisotropic=false", 0.2 },
+        { "resolution=48,storage=svo,anisotropic=false", 0.06 }
     };
-    for (size_t o = 0; o < sizeof ways / sizeof ways[0]; o++) {
+    for (size_t o = 0; o < sizeof directions / sizeof directions[0]; o++) {
         struct vct_rig rig;
         struct raycast raycast;
         court(&rig, gpu);
-        vct_rig_open(&rig, ways[o].options);
+        vct_rig_open(&rig, directions[o].options);
         CHECK(raycast_init(&raycast, test_host(), &rig.studio.pose));
         float *v = seen(&rig), *later = seen(&rig);
         float *at = studio_read(&rig.studio, READ_POSITION),
@@ -286,9 +287,9 @@ TEST_GPU(each_storage_sees_what_rays_see_and_the_same_in_every_frame)
             off += d;
             count++;
         }
-        print_message("%-48s mean error %.4f, bias %+.4f\n", ways[o].options, sum / count,
+        print_message("%-48s mean error %.4f, bias %+.4f\n", directions[o].options, sum / count,
                       off / count);
-        CHECK(count > 100 && sum / count < ways[o].worst);
+        CHECK(count > 100 && sum / count < directions[o].worst);
         assert_memory_equal(v, later, PIXELS * sizeof *v);
         free(v), free(later), free(at), free(normal), free(depth);
         raycast_finish(&raycast);
@@ -302,14 +303,14 @@ TEST_GPU(cones_of_occlusion_find_what_those_of_the_twin_do)
 {
     struct vct_rig rig;
     court(&rig, gpu);
-    vct_rig_open(&rig, "resolution=48,cones=5,interleave=1,stride=0.5,decay=0.5");
+    vct_rig_open(&rig, "resolution=48,cones=5,interleave=1,step_size=0.5,decay=0.5");
     float *v = seen(&rig);
     const struct vct_clip *clip = &rig.vct->clips[0];
     struct vct_twin twin = vct_twin_of(&rig);
     const double texel_m = 2.0 * (double)clip->grid.cell_m;
     const double wide = 0.5 * (double)vct_cone_width(VCT_CONES_5);
     vec3s lines[VCT_MAX_CONES];
-    vct_cone_lines(VCT_CONES_5, lines);
+    vct_cone_axes(VCT_CONES_5, lines);
     int compared = 0;
     for (uint32_t y = 1; y < SIZE; y += 5)
         for (uint32_t x = 1; x < SIZE; x += 5) {
@@ -441,13 +442,13 @@ TEST_GPU(occlusion_changes_while_it_lives)
     struct vct_options options = rig.vct->options;
     options.decay = 0.1f;
     options.offset = 1.5f;
-    options.stride = 0.4f;
+    options.step_size = 0.4f;
     options.cones = VCT_CONES_9;
     options.interleave = 3;
     technique_vctao.set_options(rig.vct, &options);
     float *got = seen(&rig);
     court(&fresh, gpu);
-    vct_rig_open(&fresh, "resolution=32,decay=0.1,offset=1.5,stride=0.4,cones=9,interleave=3");
+    vct_rig_open(&fresh, "resolution=32,decay=0.1,offset=1.5,step_size=0.4,cones=9,interleave=3");
     float *due = seen(&fresh);
     assert_memory_equal(got, due, PIXELS * sizeof *got);
     free(got), free(due);

@@ -1,6 +1,6 @@
 add_library(ag_test_techniques STATIC techniques/geometry_fixture.c techniques/geometry_twin.c techniques/lpv_fixture.c
   techniques/lpv_twin.c techniques/mesh_fixture.c techniques/rsm_fixture.c
-  techniques/svo_tree.c techniques/vct_rig.c techniques/vct_twin.c techniques/vo_fixture.c)
+  techniques/svo_tree.c techniques/vct_rig.c techniques/vct_twin.c techniques/vct_voxel_count.c techniques/vo_fixture.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_studio ag_techniques PRIVATE afterglow_flags m)
 
 foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_math lpv_occlusion lpv_sky lpv_twin

@@ -11,7 +11,10 @@ void vct_rig_init(struct vct_rig *rig, struct gpu *gpu)
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    technique_vct.record(user, cmd, view); // vctao has the same
+    struct vct *vct = user;
+    gpu_owner_push(vct->gpu, "vct");
+    technique_vct.record(vct, cmd, view); // also that of vctao
+    gpu_owner_pop(vct->gpu);
 }
 
 void vct_rig_open(struct vct_rig *rig, const char *text)
@@ -22,7 +25,7 @@ void vct_rig_open(struct vct_rig *rig, const char *text)
     struct vct_options options = { 0 };
     option_defaults(&technique->options, &options);
     CHECK(option_parse(test_host(), &technique->options, technique->name, text, &options));
-    const struct technique_create how = { .host = test_host(),
+    const struct technique_create how = { .host = rig->host ? rig->host : test_host(),
                                           .gpu = s->gpu,
                                           .pose = &s->pose,
                                           .options = &options,
@@ -30,7 +33,9 @@ void vct_rig_open(struct vct_rig *rig, const char *text)
                                           .height = s->height };
     rig->vct = calloc(1, technique->state_size);
     CHECK(technique->check(&how));
+    gpu_owner_push(s->gpu, "vct");
     CHECK(technique->create(rig->vct, &how));
+    gpu_owner_pop(s->gpu);
     s->indirect =
         (struct frame_indirect){ .record = record,
                                  .user = rig->vct,
@@ -81,7 +86,7 @@ uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer)
     return words;
 }
 
-uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set)
+uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_voxel_set *set)
 {
     return vct_rig_words(rig, set->mask);
 }
@@ -98,7 +103,7 @@ bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, 
 float *vct_rig_light(const struct vct_rig *rig, uint32_t level)
 {
     const size_t dim = vct_volume_dim(&rig->vct->options) >> level;
-    const size_t floats = vct_ways(&rig->vct->options) * dim * dim * dim * 4;
+    const size_t floats = vct_direction_count(&rig->vct->options) * dim * dim * dim * 4;
     float *light = malloc(floats * sizeof *light);
     CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->light, level, 0, light, 4, floats));
     // Of occlusion there is opacity alone, in the first channel.

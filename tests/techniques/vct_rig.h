@@ -9,6 +9,7 @@
 struct vct_rig {
     struct studio studio;              // vct_rig_open takes it over
     const struct technique *technique; // technique_vct unless it is set before it is opened
+    struct host *host;                 // of the technique; NULL: the test's
     struct vct *vct;
 };
 
@@ -25,7 +26,7 @@ void vct_rig_hall(struct vct_rig *rig, struct gpu *gpu);
 // All words of a buffer. To be freed.
 uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer);
 // One word for each 32 voxels of a set, as many as resolution³ need. To be freed.
-uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_set *set);
+uint32_t *vct_rig_mask(const struct vct_rig *rig, const struct vct_voxel_set *set);
 bool vct_rig_has(const struct vct_rig *rig, const uint32_t *mask, int x, int y, int z);
 // As volume/over.glsl says it.
 double vct_rig_shown(double left, double alpha, double sheet);

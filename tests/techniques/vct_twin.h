@@ -1,5 +1,5 @@
-// Cones through the light volume in plain C, as cones/trace.glsl and volume/sample.glsl say them. Six
-// ways, mips.
+// Cones through the light volume in plain C, as cones/trace.glsl and volume/sample.glsl say them.
+// Six ways, mips.
 #pragma once
 
 #include "techniques/vct_rig.h"

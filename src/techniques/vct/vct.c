@@ -1,16 +1,22 @@
 // Voxel cone tracing with interleaved sampling (Hong 2015, ch. 2.5.3 and 4; Crassin et al. 2011).
 //
-// The scene is turned into voxels that know what surfaces in them are like (voxelise), light is put
-// on them (inject) and filtered into a pyramid of coarser ones (fill, filter); pixels gather it
-// along cones, each a few of them, and share what they found with their neighbours (cones, gather).
-// README.md says what differs from the paper and how good it is.
+// The scene is voxelized (voxelize/), the voxels are lit (lighting/) and prefiltered into mips of a
+// light volume (volume/) or into an octree (octree/). Each pixel traces some of the cones of its
+// hemisphere and gathers the others from its neighbours (cones/). README.md says what differs from
+// the paper.
 //
-// vctao looks along the same cones for what is in the way alone: ambient occlusion
-// (sec. 2.5.3.3.8).
+// vctao traces the same cones through opacity alone: ambient occlusion (sec. 2.5.3.3.8).
 #include "techniques/vct/vct.h"
 
+#include "techniques/vct/cones/specular.h"
+#include "techniques/vct/vct_bindings.h"
+#include "techniques/vct/vct_debug.h"
 #include "techniques/vct/vct_diagnostics.h"
+#include "techniques/vct/vct_pipelines.h"
+#include "techniques/vct/vct_resources.h"
 #include "techniques/vct/vct_state.h"
+
+#include "frame/scene_gpu.h"
 
 #include <string.h>
 
@@ -31,28 +37,21 @@ static const struct option_row occlusion_rows[] = {
 };
 #undef OPTION
 
-static const struct technique_debug_view debug_views[] = {
-    { "reflectance", "the voxels that the eye sees, by what they reflect", NULL },
-    { "normals", "the voxels that the eye sees, by the way of their front", NULL },
-    { "radiance", "the voxels that the eye sees, by the light that they send to it", NULL },
-    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red",
-      NULL },
-    { "room", "the voxels that the eye sees, red where there was no room for their light", NULL },
-    { NULL, NULL, NULL },
+static const struct option_alias aliases[] = {
+    { "half", "half_resolution" },
+    { "stride", "step_size" },
+    { "lamps", "small_emitters" },
+    { NULL, NULL },
+};
+static const struct option_alias occlusion_aliases[] = {
+    { "half", "half_resolution" },
+    { "stride", "step_size" },
+    { NULL, NULL },
 };
 
-static const struct technique_debug_view occlusion_views[] = {
-    { "normals", "the voxels that the eye sees, by the way of their front", NULL },
-    { "levels", "the voxels that the eye sees, by the grid that they are of: the finest one red",
-      NULL },
-    { "room", "the voxels that the eye sees, red where there was no room for what they cover",
-      NULL },
-    { NULL, NULL, NULL },
-};
-
-// Chosen by measured error and time, see README.md.
+// Chosen by measured error and time: bench/results/vct.md.
 static const struct technique_preset presets[] = {
-    { "low", "resolution=32,half=true" },
+    { "low", "resolution=32,half_resolution=true" },
     { "medium", "" },
     { "high", "resolution=128,temporal=true,specular=true" },
     { NULL, NULL },
@@ -64,63 +63,37 @@ static const struct technique_preset occlusion_presets[] = {
     { NULL, NULL },
 };
 
-// ---- What the options say -----------------------------------------------------------------------
-
-static struct vct_options light_options(const void *options)
-{
-    struct vct_options out = *(const struct vct_options *)options;
-    out.decay = 0.0f;
-    out.occlusion = false;
-    return out;
-}
-
-// In even light of the radiance 1/π the irradiance is how much of it comes in.
-static struct vct_options occlusion_options(const void *options)
-{
-    struct vct_options out = *(const struct vct_options *)options;
-    out.specular = false;
-    out.aperture = 0.0f;
-    out.gain = GLM_1_PIf;
-    out.bounces = 1;
-    out.lamps = false;
-    out.occlusion = true;
-    return out;
-}
-
-static bool check(const char *name, const struct technique_create *how,
-                  const struct vct_options *options)
-{
-    if (options->resolution % 16 != 0)
-        return host_fail(how->host, FAIL_ARGUMENT, "gi %s: resolution=%d is not a multiple of 16",
-                         name, (int)options->resolution);
-    if (options->levels > 1 && vct_has_svo(options))
-        return host_fail(how->host, FAIL_ARGUMENT,
-                         "gi %s: levels=%d needs storage=mips: with storage=svo there is one grid",
-                         name, (int)options->levels);
-    const struct gpu_image_desc light = vct_light_desc(options);
-    const uint32_t most = gpu_limits(how->gpu)->max_image_3d,
-                   width = light.width > light.depth ? light.width : light.depth;
-    if (most < width)
-        return host_fail(how->host, FAIL_UNSUPPORTED,
-                         "gi %s: resolution=%d, levels=%d: the device has 3D images of at most %u, "
-                         "%u are needed",
-                         name, (int)options->resolution, (int)options->levels, most, width);
-    return true;
-}
+#define LEVELS_HELP "visible voxels by level of the clip map, red is the finest"
+static const struct technique_debug_view debug_views[] = {
+    { "reflectance", "visible voxels: diffuse reflectance", NULL },
+    { "normals", "visible voxels: normal of the front", NULL },
+    { "radiance", "visible voxels: radiance towards the camera", NULL },
+    { "levels", LEVELS_HELP, NULL },
+    { "overflow", "visible voxels: red where the capacity is exceeded and light is missing",
+      "room" },
+    { NULL, NULL, NULL },
+};
+static const struct technique_debug_view occlusion_views[] = {
+    { "normals", "visible voxels: normal of the front", NULL },
+    { "levels", LEVELS_HELP, NULL },
+    { "overflow", "visible voxels: red where the capacity is exceeded and occlusion is missing",
+      "room" },
+    { NULL, NULL, NULL },
+};
 
 static bool vct_check(const struct technique_create *how)
 {
-    const struct vct_options options = light_options(how->options);
-    return check("vct", how, &options);
+    const struct vct_options options = vct_light_options(how->options);
+    return vct_check_options("vct", how, &options);
 }
 
 static bool vctao_check(const struct technique_create *how)
 {
-    const struct vct_options options = occlusion_options(how->options);
-    return check("vctao", how, &options);
+    const struct vct_options options = vct_occlusion_options(how->options);
+    return vct_check_options("vctao", how, &options);
 }
 
-// ---- Life ---------------------------------------------------------------------------------------
+// ---- Creation and changes -----------------------------------------------------------------------
 
 static bool vct_resize(void *state, uint32_t width, uint32_t height)
 {
@@ -132,14 +105,15 @@ static bool vct_resize(void *state, uint32_t width, uint32_t height)
 static bool create(struct vct *vct, const char *name, const struct technique_create *how,
                    struct vct_options options)
 {
-    if (how->pose) vct_remark_on_scene(how->host, name, &options, how->pose);
-    vct->name = vct->temporal.owner = name;
+    if (how->pose) vct_log_diagnostics(how->host, name, &options, how->pose);
+    vct->name = name;
+    vct->host = how->host;
     vct->gpu = how->gpu;
     vct->options = options;
     vct->temporal.unlit = options.occlusion;
     vct->clip_count = vct_clip_count(&vct->options);
-    vct_cone_lines(vct->options.cones, vct->lines);
-    if (vct->options.specular) vct_fill_shares(&vct->shares);
+    vct_cone_axes(vct->options.cones, vct->cone_axes);
+    if (vct->options.specular) vct_fill_environment_brdf(&vct->environment_brdf);
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
            vct_create_pipelines(vct) &&
            (!vct->options.temporal || vct_temporal_create(&vct->temporal, vct->gpu));
@@ -147,60 +121,64 @@ static bool create(struct vct *vct, const char *name, const struct technique_cre
 
 static bool vct_create(void *state, const struct technique_create *how)
 {
-    return create(state, "vct", how, light_options(how->options));
+    return create(state, "vct", how, vct_light_options(how->options));
 }
 
 static bool vctao_create(void *state, const struct technique_create *how)
 {
-    return create(state, "vctao", how, occlusion_options(how->options));
+    return create(state, "vctao", how, vct_occlusion_options(how->options));
 }
 
-static void forget_voxels(struct vct *vct)
+static void invalidate_voxels(struct vct *vct)
 {
-    for (int i = 0; i < vct->clip_count; i++) vct->clips[i].rest_valid = false;
-    vct->lamps.chosen = false;
-}
-
-static void set_options(struct vct *vct, struct vct_options options)
-{
-    const struct vct_options had = vct->options;
-    vct->options = options;
-    vct->options.resolution = had.resolution; // what the buffers and pipelines are for
-    vct->options.levels = had.levels;
-    vct->options.anisotropic = had.anisotropic;
-    vct->options.storage = had.storage;
-    vct->options.temporal = had.temporal;
-    vct->options.half = had.half;
-    vct->options.specular = had.specular;
-    if (vct->options.lamps != had.lamps) forget_voxels(vct);
-    // What shapes the light from voxel to voxel; what only shapes pixels leaves it as it is.
-    if (vct->options.bounces != had.bounces || vct->options.offset != had.offset ||
-        vct->options.stride != had.stride)
-        vct->light_valid = vct->brought_valid = false;
-    vct_cone_lines(vct->options.cones, vct->lines);
-    vct_temporal_forget(&vct->temporal);
+    for (int i = 0; i < vct->clip_count; i++) vct->clips[i].static_valid = false;
+    vct->small_emitters.chosen = false;
 }
 
 static void vct_set_options(void *state, const void *options)
 {
-    set_options(state, light_options(options));
-}
-
-static void vctao_set_options(void *state, const void *options)
-{
-    set_options(state, occlusion_options(options));
+    struct vct *vct = state;
+    const struct vct_options previous = vct->options;
+    option_copy_live(vct->options.occlusion ? &technique_vctao.options : &technique_vct.options,
+                     options, &vct->options);
+    if (vct->options.small_emitters != previous.small_emitters) invalidate_voxels(vct);
+    // Options of the cones of voxels; those of the pixels' cones alone keep bounced light.
+    if (vct->options.bounces != previous.bounces || vct->options.offset != previous.offset ||
+        vct->options.step_size != previous.step_size)
+        vct->light_valid = vct->bounced_valid = false;
+    vct_cone_axes(vct->options.cones, vct->cone_axes);
+    vct_temporal_invalidate(&vct->temporal);
 }
 
 static void vct_invalidate(void *state, uint32_t changes)
 {
     struct vct *vct = state;
-    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) forget_voxels(vct);
-    vct_temporal_forget(&vct->temporal);
+    if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) invalidate_voxels(vct);
+    vct_temporal_invalidate(&vct->temporal);
 }
 
 // ---- Frames -------------------------------------------------------------------------------------
 
-// Without anything in the grid there is no light, and nothing in the way.
+// The parameters of all passes but for the placement of a grid.
+static struct vct_params params_of(const struct vct *vct, const struct frame_view *view)
+{
+    const float strongest = view->scene->max_emissive;
+    return (struct vct_params){
+        .dim = vct->options.resolution,
+        .capacity = vct_capacity(&vct->options),
+        .emission_fixed = strongest > 0.0f ? (float)VCT_EMISSION_ONE / strongest : 0.0f,
+        .emission_scaled = strongest / (float)VCT_EMISSION_ONE * view->constants->radiance_scale,
+        .shadow_size = (float)view->shadow_size,
+        .shadow_radius = view->shadow_radius,
+        .volume_dim = (int32_t)vct_volume_dim(&vct->options),
+        .light_count = vct->options.occlusion ? 0 : view->constants->light_count,
+        .light_scale = 1.0f,
+        .decay_per_m = vct->options.decay,
+        .offset = vct->options.offset,
+    };
+}
+
+// An empty grid: no light, everything visible.
 static void clear(const struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const float open = vct->options.occlusion ? 1.0f : 0.0f;
@@ -210,32 +188,48 @@ static void clear(const struct vct *vct, struct gpu_cmd *cmd, const struct frame
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
 }
 
-// Lamps are mirrored as they lie in the light volume, and then taken out of it.
+static void record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    vct_voxelize(vct, cmd, view);
+    vct->revoxelized = false;
+    for (int i = 0; i < vct->clip_count; i++) {
+        if (!vct->clips[i].revoxelized) continue;
+        vct_volume_list_texels(vct, &vct->clips[i], cmd);
+        vct->revoxelized = true;
+    }
+    if (vct->revoxelized && vct_has_svo(&vct->options)) vct_octree_build(vct, cmd);
+    vct_watch_overflow(vct, cmd);
+}
+
+// Specular cones see small emitters in the light volume; diffuse cones must not, as they are
+// sampled by shadow cones.
 static void record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const bool specular = vct->options.specular, lamps = vct->lamps.count > 0;
-    vct->params.lamps_shown = specular && lamps;
+    const bool specular = vct->options.specular, emitters = vct->small_emitters.count > 0;
+    vct->params.small_emitters_shown = specular && emitters;
     vct_record_light(vct, cmd, view);
     if (specular) vct_record_specular(vct, cmd, view);
-    vct->params.lamps_shown = false;
-    if (specular && lamps) vct_record_fill(vct, cmd);
+    vct->params.small_emitters_shown = false;
+    if (specular && emitters) vct_refill_volume(vct, cmd);
 }
 
 static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vct *vct = state;
-    if (!vct_prepare(vct, view)) {
+    vct->ready = vct_clipmap_update(vct, view);
+    if (!vct->ready) {
         clear(vct, cmd, view);
-        vct_temporal_forget(&vct->temporal);
+        vct_temporal_invalidate(&vct->temporal);
         return;
     }
+    vct->params = params_of(vct, view);
     if (vct->options.temporal)
         vct_temporal_begin(&vct->temporal, view, vct->options.frames, vct->options.clamp);
-    if (vct->options.lamps)
-        vct_lamps_update(&vct->lamps, view, vct->temporal.number);
+    if (vct->options.small_emitters)
+        vct_small_emitters_update(&vct->small_emitters, view, vct->temporal.number);
     else
-        vct->lamps.count = 0;
-    vct_record_voxels(vct, cmd, view);
+        vct->small_emitters.count = 0;
+    record_voxels(vct, cmd, view);
     if (!vct->options.occlusion) vct_record_bounce(vct, cmd, view);
     record_light(vct, cmd, view);
     vct_record_cones(vct, cmd, view);
@@ -254,7 +248,7 @@ static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
     vct_record_debug(vct, cmd, view,
                      strcmp(name, "normals") == 0    ? VCT_VIEW_NORMAL
                      : strcmp(name, "radiance") == 0 ? VCT_VIEW_RADIANCE
-                     : strcmp(name, "room") == 0     ? VCT_VIEW_ROOM
+                     : strcmp(name, "overflow") == 0 ? VCT_VIEW_OVERFLOW
                      : strcmp(name, "levels") == 0   ? VCT_VIEW_LEVELS
                                                      : VCT_VIEW_REFLECTANCE,
                      out);
@@ -264,6 +258,7 @@ static void vct_destroy(void *state)
 {
     struct vct *vct = state;
     if (!vct->gpu) return;
+    vct_report_overflow(vct);
     vct_temporal_destroy(&vct->temporal, vct->gpu);
     vct_destroy_pipelines(vct);
     vct_destroy_resources(vct);
@@ -277,9 +272,11 @@ static uint32_t vct_more_needs(const void *options)
 
 static uint32_t vctao_more_needs(const void *options)
 {
-    const struct vct_options plain = occlusion_options(options);
-    return vct_more_needs(&plain);
+    const struct vct_options occlusion = vct_occlusion_options(options);
+    return vct_more_needs(&occlusion);
 }
+
+// ---- Memory -------------------------------------------------------------------------------------
 
 static uint64_t memory_estimate(struct vct_options options, uint32_t width, uint32_t height)
 {
@@ -289,12 +286,12 @@ static uint64_t memory_estimate(struct vct_options options, uint32_t width, uint
 
 static uint64_t vct_memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
-    return memory_estimate(light_options(options), width, height);
+    return memory_estimate(vct_light_options(options), width, height);
 }
 
 static uint64_t vctao_memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
-    return memory_estimate(occlusion_options(options), width, height);
+    return memory_estimate(vct_occlusion_options(options), width, height);
 }
 
 const struct technique technique_vct = {
@@ -305,7 +302,7 @@ const struct technique technique_vct = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE,
-    .options = OPTION_TABLE(struct vct_options, option_rows, NULL),
+    .options = OPTION_TABLE(struct vct_options, option_rows, aliases),
     .presets = presets,
     .debug_views = debug_views,
     .state_size = sizeof(struct vct),
@@ -330,7 +327,7 @@ const struct technique technique_vctao = {
     .role = ROLE_VISIBILITY,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS,
     .needs = FRAME_WRITES_VISIBILITY,
-    .options = OPTION_TABLE(struct vct_options, occlusion_rows, NULL),
+    .options = OPTION_TABLE(struct vct_options, occlusion_rows, occlusion_aliases),
     .presets = occlusion_presets,
     .debug_views = occlusion_views,
     .state_size = sizeof(struct vct),
@@ -338,7 +335,7 @@ const struct technique technique_vctao = {
     .check = vctao_check,
     .create = vctao_create,
     .resize = vct_resize,
-    .set_options = vctao_set_options,
+    .set_options = vct_set_options,
     .invalidate = vct_invalidate,
     .record = vct_record,
     .debug_view = vct_debug_view,

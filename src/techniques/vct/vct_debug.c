@@ -1,4 +1,6 @@
-// Debug views: grid by grid, in the order in which the eye's ray goes through them.
+#include "techniques/vct/vct_debug.h"
+
+#include "techniques/vct/vct_bindings.h"
 #include "techniques/vct/vct_state.h"
 
 static void march(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
@@ -7,20 +9,20 @@ static void march(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *
     gpu_dispatch(cmd, vct->debug,
                  GPU_BIND(vct_grid_binding(vct, clip, cmd), vct_clipmap_binding(vct, cmd),
                           view->constants_binding, VCT_BOTH_SETS(clip),
-                          { .name = "picture", .image = out }, vct_svo_binding(vct, cmd),
+                          { .name = "result_image", .image = out }, vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);
 }
 
-// Into the finest grid, and out of it again.
+// Along the view ray: into the finest level, and out of it again.
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                       uint32_t what, gpu_image out)
 {
     // Reflectance and normals are shown as bright as a surface in the strongest light is.
     struct vct_view_push push = { .view = what, .reflectance_shown = 4.0f };
     const int last = vct->clip_count - 1;
-    vct_pass_begin(vct->name, cmd, "debug");
+    gpu_scope_begin(cmd, "debug");
     for (int i = 0; i <= 2 * last; i++) {
         push.march = i <= last ? VCT_MARCH_INTO : VCT_MARCH_OUT;
         if (i == 0) push.march |= VCT_MARCH_FIRST;

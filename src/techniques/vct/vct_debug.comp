@@ -23,9 +23,10 @@ layout(push_constant, scalar) uniform push_block
 {
     vct_view_push push;
 };
-layout(set = 0, binding = 5) uniform usampler2D static_records;
-layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
-layout(set = 0, binding = 7, rgba16f) uniform image2D picture; // alpha: what is seen has been found
+layout(set = 0, binding = 5) uniform usampler2D static_lit_voxels;
+layout(set = 0, binding = 6) uniform usampler2D dynamic_lit_voxels;
+layout(set = 0, binding = 7,
+       rgba16f) uniform image2D result_image; // alpha: what is seen has been found
 
 #if VCT_SVO
 layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes
@@ -50,7 +51,7 @@ bool surface_at(ivec3 voxel, out bool room)
     return still || moving;
 }
 
-vec3 shown(vct_record r, vec3 direction)
+vec3 shown(vct_lit_voxel r, vec3 direction)
 {
     if (push.view == VCT_VIEW_REFLECTANCE) return r.reflectance * push.reflectance_shown;
     if (push.view == VCT_VIEW_NORMAL) return (r.normal * 0.5 + 0.5) * push.reflectance_shown;
@@ -58,27 +59,27 @@ vec3 shown(vct_record r, vec3 direction)
                                           : r.back + vct_emitted(r.emitted_back, true);
 }
 
-bool voxel_at(ivec3 voxel, out vct_record r)
+bool voxel_at(ivec3 voxel, out vct_lit_voxel r)
 {
     uint index = vct_index(voxel), slot = dynamic_slot(index);
     if (slot != VCT_NO_SLOT) {
-        r = vct_record_at(dynamic_records, slot);
+        r = vct_lit_voxel_at(dynamic_lit_voxels, slot);
         return true;
     }
     slot = static_slot(index);
     if (slot == VCT_NO_SLOT) return false;
-    r = vct_record_at(static_records, slot);
+    r = vct_lit_voxel_at(static_lit_voxels, slot);
     return true;
 }
 
-vec3 shown_room(ivec3 voxel, bool room)
+vec3 shown_overflow(ivec3 voxel, bool room)
 {
-    vct_record r;
+    vct_lit_voxel r;
     float grey = voxel_at(voxel, r) ? 0.2 * dot(r.reflectance, vec3(0.2126, 0.7152, 0.0722)) : 0.0;
     return (room ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_shown;
 }
 
-vec3 shown_level(vct_record r, vec3 direction)
+vec3 shown_level(vct_lit_voxel r, vec3 direction)
 {
     const vec3 colours[VCT_MAX_CLIPS] =
         vec3[](vec3(0.9, 0.2, 0.15), vec3(0.9, 0.6, 0.1), vec3(0.4, 0.75, 0.2),
@@ -90,11 +91,11 @@ vec3 shown_level(vct_record r, vec3 direction)
 // What is shown of a voxel; false where it is empty.
 bool shows(ivec3 voxel, vec3 direction, out vec3 colour)
 {
-    vct_record r;
+    vct_lit_voxel r;
     bool room;
-    if (push.view == VCT_VIEW_ROOM) {
+    if (push.view == VCT_VIEW_OVERFLOW) {
         if (!surface_at(voxel, room)) return false;
-        colour = shown_room(voxel, room);
+        colour = shown_overflow(voxel, room);
         return true;
     }
     if (!voxel_at(voxel, r)) return false;
@@ -162,12 +163,12 @@ void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    vec4 before = (push.march & VCT_MARCH_FIRST) != 0u ? vec4(0.0) : imageLoad(picture, pixel);
+    vec4 before = (push.march & VCT_MARCH_FIRST) != 0u ? vec4(0.0) : imageLoad(result_image, pixel);
     if (before.a > 0.0) return;
     vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0), colour = vec3(0.0);
     bool found = march(vct_voxels_from_world(frame.camera_position),
                        normalize(through - frame.camera_position), colour);
     bool done = found || (push.march & VCT_MARCH_LAST) != 0u;
-    imageStore(picture, pixel,
+    imageStore(result_image, pixel,
                vec4(found ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));
 }

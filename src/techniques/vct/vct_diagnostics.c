@@ -1,20 +1,20 @@
-// Remarks on scenes without extent, on voxels so large that little is left of the light's detail,
-// and on surfaces for which there is no room.
 #include "techniques/vct/vct_diagnostics.h"
 
 #include "techniques/vct/vct_state.h"
 
-// Doors, furniture and people are larger than this, and their light with them.
+#include <math.h>
+
+// Doors, furniture and people are smaller than this, and so is the detail of their light.
 static const float COARSE_M = 1.0f;
 
-static const char *what_is_found(const struct vct_options *options)
+static const char *result_of(const struct vct_options *options)
 {
     return options->occlusion ? "ambient occlusion" : "indirect light";
 }
 
-static void remark_on_voxels(struct host *host, const char *technique,
-                             const struct vct_options *options, const struct vct_grid *grid,
-                             const char *scene)
+static void log_voxel_size(struct host *host, const char *technique,
+                           const struct vct_options *options, const struct vct_grid *grid,
+                           const char *scene)
 {
     const int32_t *cells = grid->cells;
     const double side = (double)grid->cell_m;
@@ -26,57 +26,64 @@ static void remark_on_voxels(struct host *host, const char *technique,
                  "gi %s: %s is %.3g m long: with resolution=%d a voxel is %.3g m, and %s "
                  "has no finer detail",
                  technique, scene, side * (double)options->resolution, (int)options->resolution,
-                 side, what_is_found(options));
+                 side, result_of(options));
 }
 
-static void remark_on_room(struct host *host, const char *technique,
-                           const struct vct_options *options, const struct vct_grid *grid,
-                           const struct scene_pose *pose)
-{
-    const uint32_t room = vct_capacity(options);
-    uint32_t touched = 0;
-    if (!vct_count_touched(host, pose, grid, options->resolution, room, &touched)) return;
-    if (touched > room)
-        host_log(host, LOG_WARNING,
-                 "gi %s: surfaces of %s fill more than %u voxels, for which there is room: what "
-                 "lies beyond them along z is left out; with a lower resolution it is less",
-                 technique, pose->scene->name, (unsigned)room);
-}
-
-// About the first camera: where the eye will go is not known.
-static void remark_on_parts(struct host *host, const char *technique,
-                            const struct vct_options *options, const struct vct_grid *scene,
-                            const struct scene_pose *pose)
-{
-    const uint32_t room = vct_capacity(options);
-    const vec3s eye =
-        pose->scene->camera_count > 0 ? pose_camera(pose, 0).eye : box3_centre(pose->bounds);
-    for (int i = 1; i < options->levels; i++) {
-        const struct vct_grid grid = vct_grid_about(scene, options->resolution, i, eye);
-        uint32_t touched = 0;
-        if (!vct_count_touched(host, pose, &grid, options->resolution, room, &touched)) return;
-        host_log(host, LOG_INFO, "gi %s: level %d has voxels of %.3g m", technique, i + 1,
-                 (double)grid.cell_m);
-        if (touched > room)
-            host_log(host, LOG_WARNING,
-                     "gi %s: in level %d, voxels of %.3g m, surfaces of %s about its first camera "
-                     "fill more than %u voxels, for which there is room: what lies beyond them "
-                     "along z is left out there",
-                     technique, i + 1, (double)grid.cell_m, pose->scene->name, (unsigned)room);
-    }
-}
-
-void vct_remark_on_scene(struct host *host, const char *technique,
+void vct_log_diagnostics(struct host *host, const char *technique,
                          const struct vct_options *options, const struct scene_pose *pose)
 {
     struct vct_grid grid;
     if (!vct_grid_fit(pose->bounds, options->resolution, &grid)) {
-        host_log(host, LOG_WARNING,
-                 "gi %s: %s has no extent that a grid could cover: there is no %s", technique,
-                 pose->scene->name, what_is_found(options));
+        host_log(host, LOG_WARNING, "gi %s: %s has no extent that a grid could cover: no %s",
+                 technique, pose->scene->name, result_of(options));
         return;
     }
-    remark_on_voxels(host, technique, options, &grid, pose->scene->name);
-    remark_on_room(host, technique, options, &grid, pose);
-    remark_on_parts(host, technique, options, &grid, pose);
+    log_voxel_size(host, technique, options, &grid, pose->scene->name);
+    for (int i = 1; i < options->levels; i++)
+        host_log(host, LOG_INFO, "gi %s: level %d has voxels of %.3g m", technique, i + 1,
+                 ldexp((double)grid.cell_m, -i));
+}
+
+// ---- Overflow -----------------------------------------------------------------------------------
+
+struct counters {
+    uint32_t of[VCT_MAX_CLIPS][2]; // static and moving voxels of each level
+};
+
+static void copy_counters(struct vct *vct, struct gpu_cmd *cmd)
+{
+    for (int i = 0; i < vct->clip_count; i++) {
+        const struct vct_voxel_set *sets[] = { &vct->clips[i].static_set,
+                                               &vct->clips[i].dynamic_set };
+        for (int k = 0; k < 2; k++)
+            gpu_readback_copy(
+                cmd, &vct->overflow.readback,
+                offsetof(struct counters, of) + (size_t)(2 * i + k) * sizeof(uint32_t),
+                sets[k]->arguments, offsetof(struct vct_voxel_counts, overflow), sizeof(uint32_t));
+    }
+}
+
+void vct_watch_overflow(struct vct *vct, struct gpu_cmd *cmd)
+{
+    vct_report_overflow(vct);
+    if (vct->revoxelized) vct->overflow.pending = true;
+    if (!vct->overflow.pending || vct->overflow.readback.serial != 0) return;
+    copy_counters(vct, cmd);
+    vct->overflow.pending = false;
+}
+
+void vct_report_overflow(struct vct *vct)
+{
+    struct counters counters;
+    if (!gpu_readback_poll(vct->gpu, &vct->overflow.readback, &counters, sizeof counters)) return;
+    for (int i = 0; i < vct->clip_count; i++) {
+        if (vct->overflow.reported[i] || (counters.of[i][0] == 0 && counters.of[i][1] == 0))
+            continue;
+        vct->overflow.reported[i] = true;
+        host_log(vct->host, LOG_WARNING,
+                 "gi %s: level %d, voxels of %.3g m: surfaces occupy more than the %u voxels for "
+                 "which there is room; those beyond along z have no %s; use a lower resolution",
+                 vct->name, i + 1, (double)vct->clips[i].grid.cell_m,
+                 (unsigned)vct_capacity(&vct->options), result_of(&vct->options));
+    }
 }

@@ -1,17 +1,19 @@
-// What the grid makes of a scene that does not suit it, in sentences for the log. Said once, when a
-// technique is created.
+// Log messages about scenes that do not suit the grid.
 #pragma once
 
 #include "core/host.h"
+#include "gpu/gpu.h"
 #include "scene/pose.h"
+#include "techniques/vct/vct_options.h"
 
-struct vct_grid;
-struct vct_options;
+struct vct;
 
-void vct_remark_on_scene(struct host *host, const char *technique,
+// Size of the voxels, and scenes without extent. At creation.
+void vct_log_diagnostics(struct host *host, const char *technique,
                          const struct vct_options *options, const struct scene_pose *pose);
 
-// The voxels that surfaces touch at this moment, as the GPU finds them but for rounding; counting
-// ends beyond `enough`. `dim` numbers them along a side. false: no memory.
-bool vct_count_touched(struct host *host, const struct scene_pose *pose,
-                       const struct vct_grid *grid, int32_t dim, uint32_t enough, uint32_t *count);
+// Reads the overflow counters of new voxels back without waiting. Once a frame, after voxelization.
+// A level whose voxels exceed the capacity logs one warning, some frames later.
+void vct_watch_overflow(struct vct *vct, struct gpu_cmd *cmd);
+// Logs what has been read back. Before destruction too: a short run ends before the next frame.
+void vct_report_overflow(struct vct *vct);

@@ -1,20 +1,19 @@
-// Lamps: small things that glow, which pixels and voxels look for one by one instead of meeting
-// them with a cone by chance. Chosen once for a scene; their points follow them.
+// Small emitters: draws that shadow cones sample, as diffuse cones would hit them by chance.
+// Selected once for a scene; their sample points follow them.
 #pragma once
 
 #include "frame/frame.h"
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/cones/cones_shared.h"
 
-struct vct_lamps {
-    bool chosen;              // of the scene as it stands
-    int draws[VCT_LAMPS_MAX]; // of the scene's draws
+struct vct_small_emitters {
+    bool chosen;                       // for the scene as it is
+    int draws[VCT_MAX_SMALL_EMITTERS]; // of the scene's draws
     int count;
-    struct vct_lamp list[VCT_LAMPS_MAX]; // as shaders read them
+    struct vct_small_emitter list[VCT_MAX_SMALL_EMITTERS]; // as shaders read them
 };
 
-// Chooses where `chosen` is false, then brings the list to this frame's places and unit. `turn`:
-// another number gives other points on the same lamps.
-void vct_lamps_update(struct vct_lamps *lamps, const struct frame_view *view, uint32_t turn);
-bool vct_lamps_have(const struct vct_lamps *lamps, int draw);
-// Storage block "vct_lamps".
-struct gpu_binding vct_lamps_binding(const struct vct_lamps *lamps, struct gpu_cmd *cmd);
+// Selects where `chosen` is false, then updates the sample points to this frame's positions and
+// radiance scale. Each value of `frame` gives other points.
+void vct_small_emitters_update(struct vct_small_emitters *emitters, const struct frame_view *view,
+                               uint32_t frame);
+bool vct_small_emitters_have(const struct vct_small_emitters *emitters, int draw);

@@ -6,19 +6,19 @@
 #include "frame/octahedral.glsl"
 
 // Of the first of the two texels.
-ivec2 vct_record_place(uint slot)
+ivec2 vct_voxel_texel(uint slot)
 {
-    return ivec2(2u * (slot % VCT_RECORD_ROW), slot / VCT_RECORD_ROW);
+    return ivec2(2u * (slot % VCT_VOXEL_ROW), slot / VCT_VOXEL_ROW);
 }
 
 // Of irradiance on the front and the back, as six half floats.
-ivec2 vct_brought_place(uint slot)
+ivec2 vct_bounced_texel(uint slot)
 {
-    return ivec2(slot % VCT_RECORD_ROW, slot / VCT_RECORD_ROW);
+    return ivec2(slot % VCT_VOXEL_ROW, slot / VCT_VOXEL_ROW);
 }
 
-// 12 + 12 bits. Fronts turn to one half of all ways (voxelize/add.glsl), and none of these has the code
-// 0.
+// 12 + 12 bits. Fronts turn to one half of all ways (voxelize/add.glsl), and none of these has the
+// code 0.
 uint vct_pack_normal(vec3 normal)
 {
     uvec2 code = uvec2(roundEven((octahedral_encode(normal) * 0.5 + 0.5) * 4095.0));

@@ -7,9 +7,10 @@
 #ifndef AG_VCT_CLIPMAP_GLSL
 #define AG_VCT_CLIPMAP_GLSL
 
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/clipmap/clipmap_shared.h"
+#include "techniques/vct/vct_constants.h"
 
-layout(constant_id = 13) const int VCT_CLIPS = 1; // grids
+layout(constant_id = VCT_CONSTANT_CLIPS) const int VCT_CLIPS = 1; // grids
 
 layout(set = 0, binding = 22, scalar) uniform vct_clipmap
 {

@@ -51,7 +51,7 @@ static double begin_of(const struct span *s)
     return s->wish > s->most - 0.5 * s->step ? s->most : s->step * round(s->wish / s->step);
 }
 
-struct vct_grid vct_grid_about(const struct vct_grid *scene, int dim, int halvings, vec3s eye)
+struct vct_grid vct_grid_around(const struct vct_grid *scene, int dim, int halvings, vec3s eye)
 {
     const double cell = ldexp((double)scene->cell_m, -halvings);
     struct vct_grid grid = { .cell_m = (float)cell };
@@ -76,8 +76,8 @@ static double side_of(const struct span *s, double wish, double fade)
     return wish >= half ? wish + half + 1.0 : (s->step + 1.0 + fade) * wish / half - fade;
 }
 
-struct box3 vct_grid_used(const struct vct_grid *scene, int dim, int halvings, vec3s eye,
-                          float fade)
+struct box3 vct_grid_cone_box(const struct vct_grid *scene, int dim, int halvings, vec3s eye,
+                              float fade)
 {
     struct box3 used;
     for (int axis = 0; axis < 3; axis++) {

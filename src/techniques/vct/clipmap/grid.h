@@ -20,9 +20,9 @@ bool vct_grid_fit(struct box3 bounds, int dim, struct vct_grid *out);
 // The part about `eye` of the grid over a scene, `dim` voxels wide, which are halved `halvings`
 // times. It lies within the scene's grid, begins on the border of a texel of the next coarser part,
 // and stays where it is while the eye moves by less than some voxels.
-struct vct_grid vct_grid_about(const struct vct_grid *scene, int dim, int halvings, vec3s eye);
+struct vct_grid vct_grid_around(const struct vct_grid *scene, int dim, int halvings, vec3s eye);
 // What of it cones look into, in its voxels from the scene's corner. It moves with the eye, not in
 // steps, and always is within it; where it reaches the border of the scene it ends beyond that by
 // `fade` voxels at least.
-struct box3 vct_grid_used(const struct vct_grid *scene, int dim, int halvings, vec3s eye,
-                          float fade);
+struct box3 vct_grid_cone_box(const struct vct_grid *scene, int dim, int halvings, vec3s eye,
+                              float fade);

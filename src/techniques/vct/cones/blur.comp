@@ -10,6 +10,7 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/vct/clipmap/clipmap.glsl"
+#include "techniques/vct/cones/cones_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

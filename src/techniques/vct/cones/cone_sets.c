@@ -75,7 +75,7 @@ static vec3s push_of(const vec3s *lines, int count, int at)
 }
 
 // Equal charges at both ends of each line push each other apart (Thomson's problem).
-void vct_cone_lines(int choice, vec3s *out)
+void vct_cone_axes(int choice, vec3s *out)
 {
     enum { STEPS = 200 };
     const int count = sets[choice].count;
@@ -95,19 +95,20 @@ static double wrap(double x)
 
 // A unit quaternion (x, y, z; w) for three numbers in 0…1: even numbers make even turns (Shoemake
 // 1992).
-static vec4s turn_of(double u, double v, double w)
+static vec4s rotation_of(double u, double v, double w)
 {
     const double a = sqrt(1.0 - u), b = sqrt(u), p = 2.0 * GLM_PI * v, q = 2.0 * GLM_PI * w;
     return (vec4s){ { (float)(a * sin(p)), (float)(a * cos(p)), (float)(b * sin(q)),
                       (float)(b * cos(q)) } };
 }
 
-void vct_turn_lines(uint32_t number, int count, vec3s *lines)
+void vct_rotate_cone_axes(uint32_t number, int count, vec3s *lines)
 {
     if (number == 0) return;
     // Numbers that fill the cube evenly (Roberts 2018, the sequence R3).
-    const vec4s turn = turn_of(wrap(0.8191725133961645 * number), wrap(0.6710436067037893 * number),
-                               wrap(0.5497004779019702 * number));
+    const vec4s turn =
+        rotation_of(wrap(0.8191725133961645 * number), wrap(0.6710436067037893 * number),
+                    wrap(0.5497004779019702 * number));
     const vec3s axis = vec3_of(turn.x, turn.y, turn.z);
     for (int i = 0; i < count; i++) {
         const vec3s across = glms_vec3_scale(glms_vec3_cross(axis, lines[i]), 2.0f);

@@ -20,7 +20,7 @@ float vct_cone_width(int choice);
 // As many lines through the sphere's centre, spread evenly: unit vectors of which it does not
 // matter to which side they point. On every hemisphere they are a set of cones of nearly equal
 // solid angles, whatever its normal.
-void vct_cone_lines(int choice, vec3s *out);
+void vct_cone_axes(int choice, vec3s *out);
 // Turns them all by the same rotation, number 0 by none; many numbers turn a line to everywhere
 // evenly.
-void vct_turn_lines(uint32_t number, int count, vec3s *lines);
+void vct_rotate_cone_axes(uint32_t number, int count, vec3s *lines);

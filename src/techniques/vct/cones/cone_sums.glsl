@@ -6,15 +6,15 @@
 
 const float VCT_PI = 3.14159265;
 
-struct vct_vectors {
-    mat3 light; // columns: Σ L d of red, green and blue
-    vec3 way;   // Σ d
+struct vct_cone_sums {
+    mat3 light;           // columns: Σ L d of red, green and blue
+    vec3 direction_index; // Σ d
 };
 
-void vct_add_cone(inout vct_vectors v, vec3 radiance, vec3 weighted_direction)
+void vct_add_cone(inout vct_cone_sums v, vec3 radiance, vec3 weighted_direction)
 {
     v.light += outerProduct(weighted_direction, radiance);
-    v.way += weighted_direction;
+    v.direction_index += weighted_direction;
 }
 
 const float VCT_LEAST_COSINE =
@@ -22,9 +22,10 @@ const float VCT_LEAST_COSINE =
 
 // A normal turned towards Σ d where it is far from it. There (1) counts light from below the normal
 // as if it took away from what comes from above.
-vec3 vct_within_reach(vct_vectors v, vec3 n)
+vec3 vct_within_reach(vct_cone_sums v, vec3 n)
 {
-    vec3 middle = v.way * inversesqrt(max(dot(v.way, v.way), 1e-12));
+    vec3 middle =
+        v.direction_index * inversesqrt(max(dot(v.direction_index, v.direction_index), 1e-12));
     float cosine = dot(n, middle);
     vec3 across = n - cosine * middle;
     float length2 = dot(across, across);
@@ -33,10 +34,10 @@ vec3 vct_within_reach(vct_vectors v, vec3 n)
            across * (sqrt(1.0 - VCT_LEAST_COSINE * VCT_LEAST_COSINE) * inversesqrt(length2));
 }
 
-vec3 vct_irradiance(vct_vectors v, vec3 n, float gain)
+vec3 vct_irradiance(vct_cone_sums v, vec3 n, float gain)
 {
     n = vct_within_reach(v, n);
-    float share = dot(n, v.way);
+    float share = dot(n, v.direction_index);
     float nothing =
         VCT_OCCLUSION ? 1.0 : 0.0; // where no cone says anything, as where there is no surface
     return share > 0.0 ? clamp(n * v.light * (VCT_PI * gain / share), 0.0, HALF_MAX)

@@ -1,10 +1,11 @@
-// Cones of the pixels, and the gathering of what neighbours have traced.
+#include "techniques/vct/cones/cones.h"
+
+#include "techniques/vct/vct_bindings.h"
 #include "techniques/vct/vct_state.h"
 
 #include <math.h>
 
-// Parts of a block that trace cone `cone`, see cones/cones.comp. A cone that several trace counts
-// once.
+// How many pixels of a block trace cone `cone`: see cones/cones.comp.
 static int parts_with(uint32_t cone, uint32_t parts, uint32_t cones)
 {
     int count = 0;
@@ -23,7 +24,7 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
         .step = 1,
         .width = view->width,
         .height = view->height,
-        .width_per_m = options->stride * vct_cone_width(choice),
+        .width_per_m = options->step_size * vct_cone_width(choice),
         .offset = options->offset,
         .gain = options->gain,
         .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
@@ -42,7 +43,7 @@ struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame
     return params;
 }
 
-// Those of the picture: lines of the world, each with its share of the hemisphere.
+// Cones of the pixels: axes in world space, each weighted by its share of the hemisphere.
 static struct vct_cone_params pixel_cones(const struct vct *vct, const struct frame_view *view)
 {
     const uint32_t side = (uint32_t)vct->options.interleave;
@@ -53,30 +54,30 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
     params.height = vct->height;
     for (uint32_t i = 0; i < count; i++)
         params.cones[i] = vec4_of(
-            vct->lines[i], 1.0f / (float)(count * (uint32_t)parts_with(i, side * side, count)));
+            vct->cone_axes[i], 1.0f / (float)(count * (uint32_t)parts_with(i, side * side, count)));
     return params;
 }
 
 // Bindings that the stages over pixels share.
 struct pixels {
-    struct gpu_binding clipmap, cones, depth, normal, edges, start;
-    uint32_t across, down; // workgroups of one invocation for each pixel that traces cones
+    struct gpu_binding clipmap, cones, depth, normal, edges, cone_normal;
+    uint32_t across, down; // workgroups for one invocation per pixel that traces cones
 };
 
 static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                         const struct pixels *p, gpu_image result)
 {
     const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
-    vct_pass_begin(vct->name, cmd, "cones");
-    gpu_dispatch(cmd, vct->cones[vct->lamps.count > 0],
+    gpu_scope_begin(cmd, "cones");
+    gpu_dispatch(cmd, vct->cones[vct->small_emitters.count > 0],
                  GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap,
-                          view->constants_binding, p->cones, p->depth, p->normal, p->start,
+                          view->constants_binding, p->cones, p->depth, p->normal, p->cone_normal,
                           { .name = "light", .image = vct->light, .sampler = vct->linear },
                           { .name = "red", .image = vct->traced[0] },
                           { .name = "green", .image = vct->traced[1] },
                           { .name = "blue", .image = vct->traced[2] },
                           { .name = "irradiance", .image = result },
-                          vct_lamps_binding(&vct->lamps, cmd), vct_svo_binding(vct, cmd),
+                          vct_small_emitters_binding(vct, cmd), vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  NULL, 0, side * side * gpu_groups(gpu_groups(vct->width, side), VCT_LOCAL_2D),
                  gpu_groups(gpu_groups(vct->height, side), VCT_LOCAL_2D), 1);
@@ -93,24 +94,24 @@ static void gather(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p,
                  { .name = "green", .image = from[1] }, { .name = "blue", .image = from[2] },
                  { .name = "red_sum", .image = to[0] }, { .name = "green_sum", .image = to[1] },
                  { .name = "blue_sum", .image = to[2] },
-                 { .name = "irradiance", .image = vct->found }),
+                 { .name = "irradiance", .image = vct->gathered_irradiance }),
         NULL, 0, across, down, 1);
 }
 
 static void find_edges(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                        const struct pixels *p)
 {
-    vct_pass_begin(vct->name, cmd, "edges");
+    gpu_scope_begin(cmd, "edges");
     gpu_dispatch(cmd, vct->edges,
                  GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
-                          p->edges, p->start),
+                          p->edges, p->cone_normal),
                  NULL, 0, p->across, p->down, 1);
     gpu_scope_end(cmd);
 }
 
 static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p)
 {
-    vct_pass_begin(vct->name, cmd, "gather");
+    gpu_scope_begin(cmd, "gather");
     gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
            gpu_groups(vct->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
     gather(vct, cmd, p, vct->gather_columns, vct->gathered, vct->traced, p->across,
@@ -118,27 +119,27 @@ static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixel
     gpu_scope_end(cmd);
 }
 
-// For the pixels that found few of the cones, where each traces some.
+// For pixels that gathered only a small fraction of the cone set.
 static void blur(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                  const struct pixels *p, gpu_image result)
 {
-    vct_pass_begin(vct->name, cmd, "blur");
+    gpu_scope_begin(cmd, "blur");
     gpu_dispatch(cmd, vct->blur,
                  GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
-                          { .name = "gathered", .image = vct->found },
+                          { .name = "gathered", .image = vct->gathered_irradiance },
                           { .name = "irradiance", .image = result }),
                  NULL, 0, p->across, p->down, 1);
     gpu_scope_end(cmd);
 }
 
-// For the pixels between those that trace cones, and for these.
-static void fit(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                const struct pixels *p, gpu_image result)
+// From half resolution to the pixels of the frame.
+static void upsample(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                     const struct pixels *p, gpu_image result)
 {
-    vct_pass_begin(vct->name, cmd, "fit");
-    gpu_dispatch(cmd, vct->fit,
+    gpu_scope_begin(cmd, "upsample");
+    gpu_dispatch(cmd, vct->upsample,
                  GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
-                          p->start, { .name = "red", .image = vct->traced[0] },
+                          p->cone_normal, { .name = "red", .image = vct->traced[0] },
                           { .name = "green", .image = vct->traced[1] },
                           { .name = "blue", .image = vct->traced[2] },
                           { .name = "irradiance", .image = result }),
@@ -146,23 +147,19 @@ static void fit(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *v
     gpu_scope_end(cmd);
 }
 
-gpu_image vct_result(const struct vct *vct, const struct frame_view *view)
-{
-    return view->layers[vct->options.occlusion ? FRAME_VISIBILITY : FRAME_IRRADIANCE];
-}
-
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool temporal = vct->options.temporal;
     struct vct_cone_params params = pixel_cones(vct, view);
-    if (temporal) vct_temporal_turn(&vct->temporal, &params);
+    if (temporal) vct_temporal_rotate_cones(&vct->temporal, &params);
     const gpu_image result = temporal ? vct->temporal.now : vct_result(vct, view);
     const struct pixels p = { .clipmap = vct_clipmap_binding(vct, cmd),
                               .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
                               .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                               .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                               .edges = { .name = "edges", .image = vct->edge_image },
-                              .start = { .name = "start", .image = vct->start_image },
+                              .cone_normal = { .name = "cone_normal",
+                                               .image = vct->cone_normal_image },
                               .across = gpu_groups(vct->width, VCT_LOCAL_2D),
                               .down = gpu_groups(vct->height, VCT_LOCAL_2D) };
     find_edges(vct, cmd, view, &p);
@@ -170,7 +167,7 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     const bool shared = params.interleave > 1;
     if (shared) share_cones(vct, cmd, &p);
     if (params.step > 1)
-        fit(vct, cmd, view, &p, result);
+        upsample(vct, cmd, view, &p, result);
     else if (shared)
         blur(vct, cmd, view, &p, result);
 }

@@ -6,9 +6,9 @@
 // nothing is copied.
 //
 // Cones point along lines that are the same all over the world, each to the side on which the
-// normal is: neighbours complete each other's set however their normals differ (cones/edges.comp: the
-// normal that they start along). What they found is kept as vectors, Σ L d of each colour with Σ d,
-// which any normal n near theirs can turn into irradiance:
+// normal is: neighbours complete each other's set however their normals differ (cones/edges.comp:
+// the normal that they start along). What they found is kept as vectors, Σ L d of each colour with
+// Σ d, which any normal n near theirs can turn into irradiance:
 //     E(n) = π n·(Σ L d) / n·(Σ d). (1)
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -19,6 +19,7 @@
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/cones/cones_shared.h"
 #include "techniques/vct/cones/trace.glsl"
 #include "techniques/vct/cones/cone_sums.glsl"
 
@@ -35,18 +36,18 @@ layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D red;   // Σ L d
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D green; // Σ d.y
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D blue;  // Σ d.z
 layout(set = 0, binding = 9) uniform writeonly image2D irradiance; // where pixels trace all cones
-layout(set = 0, binding = 12) uniform sampler2D start;             // the way in which they start
+layout(set = 0, binding = 12) uniform sampler2D cone_normal;       // the way in which they start
 
-#define VCT_LAMPS_BINDING 10
+#define VCT_SMALL_EMITTERS_BINDING 10
 #include "techniques/vct/cones/small_emitters.glsl"
 
 // Irradiance from one direction, as a part of (1): a whole set of cones has the share n·(Σ d) = ½,
 // one alone has 1.
-void add_lamps(inout vct_vectors sum, uint part, uint parts, vec3 at, vec3 up, int first)
+void add_small_emitters(inout vct_cone_sums sum, uint part, uint parts, vec3 at, vec3 up, int first)
 {
     float share = set.cone_count == 1u ? 1.0 : 0.5;
-    for (uint i = part * 7u % parts; i < VCT_LAMP_POINTS; i += parts) {
-        vec3 to, found = vct_lamp_light(light, i, at, up, first, to);
+    for (uint i = part * 7u % parts; i < VCT_EMITTER_POINTS; i += parts) {
+        vec3 to, found = vct_small_emitter_light(light, i, at, up, first, to);
         sum.light += outerProduct(to, found * (share / VCT_PI));
     }
 }
@@ -64,12 +65,12 @@ void main()
     if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
     ivec2 seen = pixel * int(set.step);
     float z = texelFetch(depth, seen, 0).r;
-    vct_vectors sum = vct_vectors(mat3(0.0), vec3(0.0));
+    vct_cone_sums sum = vct_cone_sums(mat3(0.0), vec3(0.0));
     vec3 n = vec3(0.0);
     if (z > 0.0) {
         n = octahedral_decode(texelFetch(normal, seen, 0).rg);
         vec3 at = (frame_world_position(frame_uv(uvec2(seen)), z) - clips.origin_m) / set.texel_m;
-        vec3 up = octahedral_decode(texelFetch(start, pixel, 0).rg);
+        vec3 up = octahedral_decode(texelFetch(cone_normal, pixel, 0).rg);
         vct_start first_grid = vct_start_at(at);
         // Parts that neighbours have are far apart in the set: 7 has no factor in common with 4, 9,
         // 16 and 25.
@@ -83,13 +84,13 @@ void main()
             if (VCT_OCCLUSION) found = 1.0 - met.rgb;
             vct_add_cone(sum, found, set.cones[i].w * direction);
         }
-        if (VCT_HAS_LAMPS) add_lamps(sum, part, parts, at, up, first_grid.level);
+        if (VCT_HAS_SMALL_EMITTERS) add_small_emitters(sum, part, parts, at, up, first_grid.level);
     }
     if (side == 1u && set.step == 1u) {
         imageStore(irradiance, pixel, vec4(vct_irradiance(sum, n, set.gain), 1.0));
         return;
     }
-    imageStore(red, pixel, clamp(vec4(sum.light[0], sum.way.x), -HALF_MAX, HALF_MAX));
-    imageStore(green, pixel, clamp(vec4(sum.light[1], sum.way.y), -HALF_MAX, HALF_MAX));
-    imageStore(blue, pixel, clamp(vec4(sum.light[2], sum.way.z), -HALF_MAX, HALF_MAX));
+    imageStore(red, pixel, clamp(vec4(sum.light[0], sum.direction_index.x), -HALF_MAX, HALF_MAX));
+    imageStore(green, pixel, clamp(vec4(sum.light[1], sum.direction_index.y), -HALF_MAX, HALF_MAX));
+    imageStore(blue, pixel, clamp(vec4(sum.light[2], sum.direction_index.z), -HALF_MAX, HALF_MAX));
 }

@@ -13,6 +13,7 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/vct/clipmap/clipmap.glsl"
+#include "techniques/vct/cones/cones_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -23,7 +24,7 @@ layout(set = 0, binding = 2, scalar) uniform vct_cones
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5, r8) uniform writeonly image2D edges;
-layout(set = 0, binding = 6, rg16f) uniform writeonly image2D start;
+layout(set = 0, binding = 6, rg16f) uniform writeonly image2D cone_normal;
 
 const float LEAST_COSINE = 0.4; // of normals next to each other on one surface: 66 degrees
 
@@ -55,7 +56,7 @@ float texel_at(ivec2 pixel)
     return set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m);
 }
 
-vec3 in_eye_space(vec3 world)
+vec3 to_view_space(vec3 world)
 {
     return mat3(frame.view_from_world) * world * vec3(1.0, -1.0, -1.0);
 }
@@ -95,11 +96,11 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
     point here = point_at(pixel);
-    vec3 normal_seen = in_eye_space(here.normal);
+    vec3 normal_seen = to_view_space(here.normal);
     float texel_m = texel_at(pixel);
     float bits = apart(here, normal_seen, point_at(pixel + ivec2(1, 0)), texel_m) ? 1.0 : 0.0;
     bits += apart(here, normal_seen, point_at(pixel + ivec2(0, 1)), texel_m) ? 2.0 : 0.0;
     imageStore(edges, pixel, vec4(bits / 255.0));
     vec2 up = here.valid ? octahedral_encode(start_of(pixel, here, texel_m)) : vec2(0.0);
-    imageStore(start, pixel, vec4(up, 0.0, 0.0));
+    imageStore(cone_normal, pixel, vec4(up, 0.0, 0.0));
 }

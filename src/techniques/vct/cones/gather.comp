@@ -14,14 +14,15 @@
 #include "core/half.glsl"
 #include "frame/frame_shared.h"
 #include "frame/octahedral.glsl"
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/vct_constants.h"
+#include "techniques/vct/cones/cones_shared.h"
 #include "techniques/vct/cones/cone_sums.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool COLUMNS = false;
-layout(constant_id = 1) const
-    bool EACH = true; // pixel of the frame traces cones: columns write irradiance
+layout(constant_id = VCT_CONSTANT_COLUMNS) const bool COLUMNS = false;
+layout(constant_id = VCT_CONSTANT_EACH_PIXEL) const
+    bool EACH_PIXEL = true; // pixel of the frame traces cones: columns write irradiance
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
@@ -78,11 +79,12 @@ float weight_of(int step, ivec2 reach, int n)
 void finish(ivec2 pixel, sums s)
 {
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-    vct_vectors v =
-        vct_vectors(mat3(s.red.xyz, s.green.xyz, s.blue.xyz), vec3(s.red.w, s.green.w, s.blue.w));
+    vct_cone_sums v =
+        vct_cone_sums(mat3(s.red.xyz, s.green.xyz, s.blue.xyz), vec3(s.red.w, s.green.w, s.blue.w));
     // A whole set has the mean of |n·d| over the sphere, a half.
-    imageStore(irradiance, pixel,
-               vec4(vct_irradiance(v, n, set.gain), clamp(2.0 * dot(n, v.way), 0.0, 1.0)));
+    imageStore(
+        irradiance, pixel,
+        vec4(vct_irradiance(v, n, set.gain), clamp(2.0 * dot(n, v.direction_index), 0.0, 1.0)));
 }
 
 void keep(ivec2 pixel, sums s)
@@ -123,7 +125,7 @@ void main()
     for (int o = 0; o < ROW; o++) {
         ivec2 pixel = first + o * along;
         if (any(greaterThanEqual(pixel, size))) continue;
-        if (COLUMNS && EACH)
+        if (COLUMNS && EACH_PIXEL)
             finish(pixel, s[o]);
         else
             keep(pixel, s[o]);

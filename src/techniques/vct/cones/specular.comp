@@ -17,6 +17,7 @@
 #include "frame/octahedral.glsl"
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/cones/cones_shared.h"
 #include "techniques/vct/cones/trace.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,9 +33,9 @@ layout(set = 0, binding = 6) uniform sampler2D albedo;
 layout(set = 0, binding = 7) uniform sampler2D material;
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
 
-layout(set = 0, binding = 9, scalar) uniform vct_shares
+layout(set = 0, binding = 9, scalar) uniform vct_environment_brdf
 {
-    vct_share_table shares;
+    vct_environment_brdf_table environment_brdf;
 };
 
 const float WIDEST =
@@ -48,14 +49,14 @@ float tan_half_angle(float alpha)
 
 vec2 share_at(ivec2 node)
 {
-    int at = 2 * (node.y * VCT_SHARE_NODES + node.x);
-    return vec2(shares.pairs[at], shares.pairs[at + 1]);
+    int at = 2 * (node.y * VCT_BRDF_NODES + node.x);
+    return vec2(environment_brdf.pairs[at], environment_brdf.pairs[at + 1]);
 }
 
 vec3 share_of(vec3 f0, float n_v, float roughness)
 {
-    vec2 at = clamp(vec2(n_v, roughness), 0.0, 1.0) * float(VCT_SHARE_NODES - 1);
-    ivec2 low = min(ivec2(at), ivec2(VCT_SHARE_NODES - 2));
+    vec2 at = clamp(vec2(n_v, roughness), 0.0, 1.0) * float(VCT_BRDF_NODES - 1);
+    ivec2 low = min(ivec2(at), ivec2(VCT_BRDF_NODES - 2));
     vec2 part = at - vec2(low);
     vec2 ab = mix(mix(share_at(low), share_at(low + ivec2(1, 0)), part.x),
                   mix(share_at(low + ivec2(0, 1)), share_at(low + ivec2(1, 1)), part.x), part.y);
@@ -63,9 +64,9 @@ vec3 share_of(vec3 f0, float n_v, float roughness)
 }
 
 // The mirrored direction, or where a normal map turns it below the surface the one along it.
-vec3 mirrored(vec3 to_eye, vec3 n)
+vec3 mirrored(vec3 to_viewer, vec3 n)
 {
-    vec3 r = reflect(-to_eye, n);
+    vec3 r = reflect(-to_viewer, n);
     return normalize(r + max(0.0, 0.01 - dot(r, n)) * n);
 }
 
@@ -73,14 +74,14 @@ vec3 reflected(ivec2 pixel, float z)
 {
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg),
-         to_eye = normalize(frame.camera_position - position);
+         to_viewer = normalize(frame.camera_position - position);
     vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
     vec3 at = (position - clips.origin_m) / set.texel_m;
-    float wide = 2.0 * set.stride * tan_half_angle(brdf_alpha(roughness_metallic.x));
-    vec4 met = vct_cone(light, at, n, mirrored(to_eye, n), set.offset, wide, set.last_mip,
+    float wide = 2.0 * set.step_size * tan_half_angle(brdf_alpha(roughness_metallic.x));
+    vec4 met = vct_cone(light, at, n, mirrored(to_viewer, n), set.offset, wide, set.last_mip,
                         vct_start_at(at));
     vec3 f0 = brdf_f0(texelFetch(albedo, pixel, 0).rgb, roughness_metallic.y);
-    vec3 share = share_of(f0, dot(n, to_eye), roughness_metallic.x);
+    vec3 share = share_of(f0, dot(n, to_viewer), roughness_metallic.x);
     return set.gain * share * (met.rgb + (1.0 - met.a) * frame.sky);
 }
 

@@ -1,12 +1,10 @@
-// Reverse reprojection and temporal refinement (Hong 2015, sec. 4.3): the mean over the frames in
-// which a surface has been seen. With the weight w of the history and 1 for a frame,
-//     new = (w · old + now)/(w + 1),   w ← min(w + 1, most),   w = 0 where the reprojection is
-//     rejected.
-// Each frame has other cones, so that the mean is over more directions than a frame has.
+// Temporal accumulation with reverse reprojection (Hong 2015, sec. 4.3): the mean over the frames
+// in which a surface was visible. With the weight w of the history,
+//     new = (w · old + now)/(w + 1),   w ← min(w + 1, most),   w = 0 where the history is rejected.
+// Each frame rotates the cones, so that the mean covers more directions than one frame.
 //
-// Differs from the paper in `most`: while nothing changes it grows with the time for which nothing
-// has, so that a still picture comes to rest instead of wavering within 1/most of each frame's
-// noise for ever. What moves finds it as it is given.
+// Differs from the paper in `most`: it grows while nothing changes, so that a static image
+// converges, where a constant limit keeps 1/most of each frame's noise.
 #include "techniques/vct/cones/temporal.h"
 
 #include "techniques/vct/vct_state.h"
@@ -19,33 +17,35 @@ static const enum gpu_format NOW_FORMAT = GPU_RGBA16F, LIGHT_FORMAT = GPU_RGBA32
                              SURFACE_FORMAT = GPU_RG32F;
 static const float STILL_FRAMES = 4096.0f; // weight at most, while nothing changes
 
-// ---- Life ---------------------------------------------------------------------------------------
+// ---- Creation and
+// destruction----------------------------------------------------------------------
 
 bool vct_temporal_create(struct vct_temporal *t, struct gpu *gpu)
 {
-    return vct_create_compute(t->owner, gpu, "temporal", &shader_vct_cones_temporal_comp, NULL, 0,
-                              &t->filter);
+    return gpu_compute_pipeline_create(gpu, "temporal", &shader_vct_cones_temporal_comp, NULL, 0,
+                                       &t->filter);
 }
 
-static bool create_image(const struct vct_temporal *t, struct gpu *gpu, const char *name,
-                         enum gpu_format format, uint32_t width, uint32_t height, gpu_image *out)
+static bool create_image(struct gpu *gpu, const char *name, enum gpu_format format, uint32_t width,
+                         uint32_t height, gpu_image *out)
 {
     const struct gpu_image_desc desc = { .name = name,
                                          .format = format,
                                          .width = width,
                                          .height = height,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    return vct_create_image(t->owner, gpu, desc, out);
+    gpu_image_destroy(gpu, out);
+    return gpu_image_create(gpu, &desc, out);
 }
 
 bool vct_temporal_resize(struct vct_temporal *t, struct gpu *gpu, uint32_t width, uint32_t height)
 {
-    vct_temporal_forget(t);
+    vct_temporal_invalidate(t);
     for (int i = 0; i < 2; i++)
-        if (!create_image(t, gpu, "history", LIGHT_FORMAT, width, height, &t->light[i]) ||
-            !create_image(t, gpu, "seen", SURFACE_FORMAT, width, height, &t->surface[i]))
+        if (!create_image(gpu, "history", LIGHT_FORMAT, width, height, &t->light[i]) ||
+            !create_image(gpu, "history_surface", SURFACE_FORMAT, width, height, &t->surface[i]))
             return false;
-    return create_image(t, gpu, "now", NOW_FORMAT, width, height, &t->now);
+    return create_image(gpu, "now", NOW_FORMAT, width, height, &t->now);
 }
 
 void vct_temporal_destroy(struct vct_temporal *t, struct gpu *gpu)
@@ -65,7 +65,7 @@ uint64_t vct_temporal_memory(uint32_t width, uint32_t height)
     return (uint64_t)width * height * (uint64_t)pixel;
 }
 
-void vct_temporal_forget(struct vct_temporal *t)
+void vct_temporal_invalidate(struct vct_temporal *t)
 {
     t->known = false;
 }
@@ -83,17 +83,17 @@ static bool same_camera(const struct world_camera *a, const struct world_camera 
            a->vertical_fov_rad == b->vertical_fov_rad && a->near_m == b->near_m;
 }
 
-static bool stands_still(const struct vct_temporal *t, const struct frame_view *view)
+static bool nothing_changed(const struct vct_temporal *t, const struct frame_view *view)
 {
     const bool same_light = !view->lights_changed && same(t->sky, view->constants->sky);
     return !view->geometry_moved && same_camera(&t->camera, &view->camera) &&
            (t->unlit || same_light);
 }
 
-// The last picture's geometry: the point at the distance d along the axis that is seen at a pixel
-// (whole numbers: centres) is d · (forward + x · right + y · down), seen from the eye.
-static void place_picture(const struct world_camera *camera, uint32_t width, uint32_t height,
-                          struct vct_history_params *out)
+// The image plane of the previous frame: the point at distance d along the view axis behind pixel
+// (x, y), whole numbers for centres, is d · (forward + x · right + y · down) from the camera.
+static void previous_image_plane(const struct world_camera *camera, uint32_t width, uint32_t height,
+                                 struct vct_history_params *out)
 {
     const float pixel = 2.0f * tanf(0.5f * camera->vertical_fov_rad) / (float)height;
     out->right = glms_vec3_scale(glms_vec3_cross(camera->forward, camera->up), pixel);
@@ -104,9 +104,9 @@ static void place_picture(const struct world_camera *camera, uint32_t width, uin
     out->pixel = pixel;
 }
 
-// Once ten times `most` frames have left nothing (e⁻¹⁰) of what was before the last change, all
-// frames from then on weigh the same.
-static float weight_at_rest(uint32_t still, int32_t most)
+// After ten times `most` frames a fraction e⁻¹⁰ of the light before the last change is left. From
+// then on all frames weigh the same.
+static float history_weight(uint32_t still, int32_t most)
 {
     const float grown = (float)still - 9.0f * (float)most;
     return fmaxf((float)most, fminf(grown, STILL_FRAMES));
@@ -117,11 +117,11 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
 {
     const bool known = t->known && !view->camera_cut && view->index == t->index + 1;
     t->number = known ? t->number + 1 : 0;
-    t->still = known && stands_still(t, view) ? t->still + 1 : 0;
+    t->still = known && nothing_changed(t, view) ? t->still + 1 : 0;
     t->params = (struct vct_history_params){ .known = known, .clamp = clamp };
     t->params.scale = t->unlit ? 1.0f : view->constants->previous_scale_ratio;
-    t->params.most = weight_at_rest(t->still, most);
-    place_picture(&t->camera, view->width, view->height, &t->params);
+    t->params.most = history_weight(t->still, most);
+    previous_image_plane(&t->camera, view->width, view->height, &t->params);
     t->known = true;
     t->index = view->index;
     t->camera = view->camera;
@@ -129,41 +129,43 @@ void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, i
     t->newest = 1 - t->newest;
 }
 
-static int common_factor(int a, int b)
+static int common_divisor(int a, int b)
 {
     while (b) {
-        const int rest = a % b;
+        const int remainder = a % b;
         a = b;
-        b = rest;
+        b = remainder;
     }
     return a;
 }
 
-// A step through `count` things that meets all of them and whose first ones lie far apart.
+// A step coprime with `count`, near the golden ratio: it visits all indices, the first ones far
+// apart.
 static int step_through(int count)
 {
     int step = (int)(0.618 * (double)count);
-    while (step > 1 && common_factor(step, count) != 1) step--;
+    while (step > 1 && common_divisor(step, count) != 1) step--;
     return step > 1 ? step : 1;
 }
 
-void vct_temporal_turn(const struct vct_temporal *t, struct vct_cone_params *params)
+void vct_temporal_rotate_cones(const struct vct_temporal *t, struct vct_cone_params *params)
 {
     const int count = (int)params->cone_count;
     vec3s lines[VCT_MAX_CONES];
     for (int i = 0; i < count; i++)
         lines[i] = vec3_of(params->cones[i].x, params->cones[i].y, params->cones[i].z);
-    vct_turn_lines(t->number, count, lines);
+    vct_rotate_cone_axes(t->number, count, lines);
     const int first = (int)((uint64_t)t->number * (uint64_t)step_through(count) % (uint64_t)count);
-    for (int i = 0; i < count; i++) // each keeps its share of the pixels that trace it
+    for (int i = 0; i < count;
+         i++) // the weight stays with the index: it counts the pixels that trace it
         params->cones[i] = vec4_of(lines[(first + i) % count], params->cones[i].w);
 }
 
 void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view,
                          gpu_image result)
 {
-    const int newest = t->newest, last = 1 - newest;
-    vct_pass_begin(t->owner, cmd, "temporal");
+    const int newest = t->newest, previous = 1 - newest;
+    gpu_scope_begin(cmd, "temporal");
     gpu_dispatch(cmd, t->filter,
                  GPU_BIND(view->constants_binding,
                           gpu_transient(cmd, "vct_history", &t->params, sizeof t->params),
@@ -171,8 +173,8 @@ void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const stru
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "motion", .image = view->layers[FRAME_MOTION] },
                           { .name = "now", .image = t->now },
-                          { .name = "last_light", .image = t->light[last] },
-                          { .name = "last_surface", .image = t->surface[last] },
+                          { .name = "last_light", .image = t->light[previous] },
+                          { .name = "last_surface", .image = t->surface[previous] },
                           { .name = "light", .image = t->light[newest] },
                           { .name = "surface", .image = t->surface[newest] },
                           { .name = "irradiance", .image = result }),

@@ -12,7 +12,7 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/common/reproject.glsl"
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/cones/cones_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -61,9 +61,9 @@ float like(vec3 a, vec3 b)
 }
 
 // Irradiance and frames; 0 frames: nothing is known.
-vec4 remembered(vec2 place, float distance_m, vec3 n)
+vec4 sample_history(vec2 place, float distance_m, vec3 n)
 {
-    vec3 looked_for = before(place, distance_m);
+    vec3 expected = before(place, distance_m);
     float per_metre = 1.0 / (TOLERANCE_PX * set.pixel * distance_m), weights = 0.0;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 4; i++) {
@@ -74,7 +74,7 @@ vec4 remembered(vec2 place, float distance_m, vec3 n)
         vec2 seen = texelFetch(last_surface, at, 0).rg;
         if (seen.x <= 0.0) continue;
         vec3 seen_normal = unpacked_normal(seen.y);
-        float apart_m = abs(dot(seen_normal, before(vec2(at), seen.x) - looked_for));
+        float apart_m = abs(dot(seen_normal, before(vec2(at), seen.x) - expected));
         float weight =
             reproject_share(place, i) * max(1.0 - apart_m * per_metre, 0.0) * like(n, seen_normal);
         sum += weight * texelFetch(last_light, at, 0);
@@ -130,8 +130,8 @@ void main()
         float distance_before = reproject_distance(moved, distance_m);
         vec4 old = vec4(0.0);
         if (set.known != 0u && distance_before > 0.0)
-            old = remembered(reproject_place(moved, pixel, vec2(frame.width, frame.height)),
-                             distance_before, n);
+            old = sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height)),
+                                 distance_before, n);
         old.rgb *= set.scale;
         if (set.clamp > 0.0 && old.w > 0.0)
             old.rgb = clamped(old.rgb, pixel, position(pixel, z), n,

@@ -29,7 +29,7 @@
 
 #include "techniques/vct/clipmap/clipmap.glsl"
 
-struct vct_met {
+struct vct_volume_sample {
     vec4 light; // premultiplied radiance, opacity
     vec3 axes;  // opacity along each axis that is looked along
 };
@@ -64,8 +64,8 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wi
     float out_speed = max(abs(out_of.x), max(abs(out_of.y), abs(out_of.z)));
     vec4 sum = vec4(0.0);
     vec3 level_with = direction - dot(direction, normal) * normal;
-    vct_met behind =
-        vct_look(light, from - 0.5 * float(1 << first) * level_with, direction, level_with, first);
+    vct_volume_sample behind = vct_sample_volume(light, from - 0.5 * float(1 << first) * level_with,
+                                                 direction, level_with, first);
     vec3 before = behind.axes;
     float leaves[VCT_MAX_CLIPS]; // grids but the coarsest one
     for (int k = 0; k < VCT_CLIPS - 1; k++) {
@@ -86,7 +86,8 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wi
         bool left_grid = middle > end;
         if (left_grid && (middle - end) * out_speed > texel) break;
         vec3 at = from + direction * min(middle, end);
-        vct_met here = vct_look(light, at, direction, left_grid ? out_of : direction, level);
+        vct_volume_sample here =
+            vct_sample_volume(light, at, direction, left_grid ? out_of : direction, level);
         if (i == 0) {
             float ahead =
                 smoothstep(0.25, 0.5, here.light.a / max(here.light.a + behind.light.a, 1e-6));
@@ -99,7 +100,7 @@ vec4 vct_trace(sampler3D light, vec3 from, vec3 normal, vec3 direction, float wi
         if (alpha > 0.0) {
             vec3 two = before + here.axes;
             float sheet = min(max(two.x, max(two.y, two.z)), 1.0);
-            sum += vct_shown(1.0 - sum.a, alpha, sheet) * vec4(here.light.rgb / alpha, 1.0);
+            sum += vct_visible_alpha(1.0 - sum.a, alpha, sheet) * vec4(here.light.rgb / alpha, 1.0);
             if (sum.a > VCT_OPAQUE) return vec4(sum.rgb / sum.a, 1.0);
         }
         if (VCT_OCCLUSION && 1.0 - sum.a < VCT_UNSEEN * (1.0 + decay * (ahead_of_surface + t)))

@@ -8,7 +8,7 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/cones/cones_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -21,7 +21,7 @@ layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler2D red;
 layout(set = 0, binding = 6) uniform sampler2D green;
 layout(set = 0, binding = 7) uniform sampler2D blue;
-layout(set = 0, binding = 8) uniform sampler2D start;
+layout(set = 0, binding = 8) uniform sampler2D cone_normal;
 layout(set = 0, binding = 9) uniform writeonly image2D irradiance;
 
 #include "techniques/vct/cones/upsample.glsl"
@@ -38,21 +38,21 @@ float share_in_picture(int of, int pixel)
 
 // Where none of the four shows the pixel's surface: places farther off; and where they do not
 // either, what each place about has for itself.
-vec3 found_farther(ivec2 at, vct_point here)
+vec3 gather_farther(ivec2 at, vct_surface_point here)
 {
-    vct_vectors sum = vct_vectors(mat3(0.0), vec3(0.0));
+    vct_cone_sums sum = vct_cone_sums(mat3(0.0), vec3(0.0));
     vec4 any = vec4(0.0);
     for (int i = 0; i < 8; i++) {
         ivec2 side = (i & 1) == 0 ? ivec2(1 - (i & 2), 0) : ivec2(0, 1 - (i & 2));
         ivec2 corner = ivec2(1 - (i & 2), 1 - 2 * (i & 1));
         ivec2 there = vct_within(at + (i < 4 ? side : 2 * corner));
-        vct_place p = vct_place_at(there);
+        vct_half_pixel p = vct_half_pixel_at(there);
         float near = i < 4 ? 1.0 : 0.25;
-        vct_vectors found = vct_found_at(there);
-        vct_add(sum, found, near * vct_like(p, here) * vct_share_of(found, p.up));
+        vct_cone_sums found = vct_cone_sums_at(there);
+        vct_add(sum, found, near * vct_similarity(p, here) * vct_cone_fraction(found, p.up));
         if (p.valid) any += near * vec4(vct_irradiance(found, p.up, set.gain), 1.0);
     }
-    if (vct_share_of(sum, here.normal) > LEAST_LIKE)
+    if (vct_cone_fraction(sum, here.normal) > LEAST_LIKE)
         return vct_irradiance(sum, here.normal, set.gain);
     return any.rgb / max(any.a, 1e-6);
 }
@@ -61,37 +61,39 @@ void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = ivec2(frame.width, frame.height);
     if (any(greaterThanEqual(at, ivec2(set.width, set.height)))) return;
-    vct_place near[4];
-    vct_vectors found[4];
+    vct_half_pixel near[4];
+    vct_cone_sums found[4];
     float share[4]; // of the cones: places that found few count little
     for (int i = 0; i < 4; i++) {
         ivec2 there = vct_within(at + ivec2(i & 1, i >> 1));
-        near[i] = vct_place_at(there);
-        found[i] = vct_found_at(there);
-        share[i] = vct_share_of(found[i], near[i].up);
+        near[i] = vct_half_pixel_at(there);
+        found[i] = vct_cone_sums_at(there);
+        share[i] = vct_cone_fraction(found[i], near[i].up);
     }
     uint lost = 0u; // pixels of whose surface none of these places is
     for (int i = 0; i < 4; i++) {
         ivec2 pixel = 2 * at + ivec2(i & 1, i >> 1);
         if (any(greaterThanEqual(pixel, size))) continue;
         float z = texelFetch(depth, pixel, 0).r;
-        vct_point here = vct_point_at(frame_world_position(frame_uv(uvec2(pixel)), max(z, 1e-12)),
-                                      octahedral_decode(texelFetch(normal, pixel, 0).rg));
-        vct_vectors sum = vct_vectors(mat3(0.0), vec3(0.0));
+        vct_surface_point here =
+            vct_surface_point_at(frame_world_position(frame_uv(uvec2(pixel)), max(z, 1e-12)),
+                                 octahedral_decode(texelFetch(normal, pixel, 0).rg));
+        vct_cone_sums sum = vct_cone_sums(mat3(0.0), vec3(0.0));
         for (int k = 0; k < 4; k++)
-            vct_add(sum, found[k], share_in_picture(k, i) * share[k] * vct_like(near[k], here));
+            vct_add(sum, found[k],
+                    share_in_picture(k, i) * share[k] * vct_similarity(near[k], here));
         if (z <= 0.0)
-            sum.way = vec3(0.0);
-        else if (vct_share_of(sum, here.normal) < LEAST_LIKE)
+            sum.direction_index = vec3(0.0);
+        else if (vct_cone_fraction(sum, here.normal) < LEAST_LIKE)
             lost |= 1u << i;
         imageStore(irradiance, pixel, vec4(vct_irradiance(sum, here.normal, set.gain), 1.0));
     }
     for (; lost != 0u; lost &= lost - 1u) {
         int i = findLSB(lost);
         ivec2 pixel = 2 * at + ivec2(i & 1, i >> 1);
-        vct_point here = vct_point_at(
+        vct_surface_point here = vct_surface_point_at(
             frame_world_position(frame_uv(uvec2(pixel)), texelFetch(depth, pixel, 0).r),
             octahedral_decode(texelFetch(normal, pixel, 0).rg));
-        imageStore(irradiance, pixel, vec4(found_farther(at, here), 1.0));
+        imageStore(irradiance, pixel, vec4(gather_farther(at, here), 1.0));
     }
 }

@@ -7,15 +7,15 @@
 #include "techniques/vct/clipmap/clipmap.glsl"
 #include "techniques/vct/cones/cone_sums.glsl"
 
-struct vct_place {
+struct vct_half_pixel {
     bool valid;
     vec3 position, up; // up: the normal that its cones start along
 };
 
-vct_vectors vct_found_at(ivec2 at)
+vct_cone_sums vct_cone_sums_at(ivec2 at)
 {
     vec4 r = texelFetch(red, at, 0), g = texelFetch(green, at, 0), b = texelFetch(blue, at, 0);
-    return vct_vectors(mat3(r.xyz, g.xyz, b.xyz), vec3(r.w, g.w, b.w));
+    return vct_cone_sums(mat3(r.xyz, g.xyz, b.xyz), vec3(r.w, g.w, b.w));
 }
 
 ivec2 vct_within(ivec2 at)
@@ -23,31 +23,31 @@ ivec2 vct_within(ivec2 at)
     return clamp(at, ivec2(0), ivec2(set.width, set.height) - 1);
 }
 
-vct_place vct_place_at(ivec2 at)
+vct_half_pixel vct_half_pixel_at(ivec2 at)
 {
     ivec2 pixel = at * int(set.step);
     float z = texelFetch(depth, pixel, 0).r;
-    vct_place p;
+    vct_half_pixel p;
     p.valid = z > 0.0;
     p.position = frame_world_position(frame_uv(uvec2(pixel)), max(z, 1e-12));
-    p.up = octahedral_decode(texelFetch(start, at, 0).rg);
+    p.up = octahedral_decode(texelFetch(cone_normal, at, 0).rg);
     return p;
 }
 
 // A point that something is looked for at.
-struct vct_point {
+struct vct_surface_point {
     vec3 position, normal;
     float texel_m; // of the light volume there
 };
 
-vct_point vct_point_at(vec3 position, vec3 normal)
+vct_surface_point vct_surface_point_at(vec3 position, vec3 normal)
 {
-    return vct_point(position, normal,
-                     set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m));
+    return vct_surface_point(position, normal,
+                             set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m));
 }
 
 // How much a place says about a point: as far as both are in one plane and look the same way.
-float vct_like(vct_place p, vct_point here)
+float vct_similarity(vct_half_pixel p, vct_surface_point here)
 {
     float off = abs(dot(p.up, here.position - p.position));
     float c = max(dot(p.up, here.normal), 0.0);
@@ -55,15 +55,15 @@ float vct_like(vct_place p, vct_point here)
 }
 
 // Of the cones, 0…1. A whole set has the mean of |n·d| over the sphere, a half.
-float vct_share_of(vct_vectors v, vec3 n)
+float vct_cone_fraction(vct_cone_sums v, vec3 n)
 {
-    return clamp(2.0 * dot(n, v.way), 0.0, 1.0);
+    return clamp(2.0 * dot(n, v.direction_index), 0.0, 1.0);
 }
 
-void vct_add(inout vct_vectors sum, vct_vectors more, float weight)
+void vct_add(inout vct_cone_sums sum, vct_cone_sums more, float weight)
 {
     sum.light += weight * more.light;
-    sum.way += weight * more.way;
+    sum.direction_index += weight * more.direction_index;
 }
 
 #endif

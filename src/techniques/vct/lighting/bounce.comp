@@ -9,11 +9,14 @@
 #define FRAME_CONSTANTS_BINDING 1
 #include "frame/frame.glsl"
 #define VCT_GRID_BINDING 0
+#include "techniques/vct/vct_constants.h"
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/volume/volume_shared.h"
+#include "techniques/vct/cones/cones_shared.h"
 
-layout(local_size_x = VCT_BOUNCE_LOCAL) in;
+layout(local_size_x = VCT_BLOCK_LOCAL) in;
 
-layout(constant_id = 15) const uint VCT_BLOCK = 2u; // texels along a block: 2 or 4
+layout(constant_id = VCT_CONSTANT_BLOCK) const uint VCT_BLOCK = 2u; // texels along a block: 2 or 4
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
@@ -24,17 +27,17 @@ layout(set = 0, binding = 4, scalar) readonly buffer vct_texels
 {
     uint texels[];
 };
-layout(set = 0, binding = 5, scalar) readonly buffer vct_texel_state
+layout(set = 0, binding = 5, scalar) readonly buffer vct_texel_counts
 {
     vct_texel_levels state;
 };
 layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
-layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_brought;
+layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_bounced;
 layout(set = 0, binding = 8, scalar) readonly buffer vct_mask
 {
     uint mask[];
 };
-layout(set = 0, binding = 9, scalar) readonly buffer vct_before
+layout(set = 0, binding = 9, scalar) readonly buffer vct_word_offsets
 {
     uint before[];
 };
@@ -43,20 +46,20 @@ layout(set = 0, binding = 9, scalar) readonly buffer vct_before
 #include "techniques/vct/voxelize/surface.glsl"
 #include "techniques/vct/cones/trace.glsl"
 
-#define VCT_LAMPS_BINDING 10
+#define VCT_SMALL_EMITTERS_BINDING 10
 #include "techniques/vct/cones/small_emitters.glsl"
 
-const uint LAMP_SAMPLES = 4u; // of the points that a lamp has
+const uint EMITTER_SAMPLES = 4u; // of the points that a lamp has
 
-vec3 lamps_at(vec3 at, vec3 normal)
+vec3 small_emitters_at(vec3 at, vec3 normal)
 {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < LAMP_SAMPLES; i++) {
-        vec3 to, found = vct_lamp_light(light, i * (VCT_LAMP_POINTS / LAMP_SAMPLES), at, normal,
-                                        vct.level, to);
+    for (uint i = 0u; i < EMITTER_SAMPLES; i++) {
+        vec3 to, found = vct_small_emitter_light(light, i * (VCT_EMITTER_POINTS / EMITTER_SAMPLES),
+                                                 at, normal, vct.level, to);
         sum += found * dot(normal, to);
     }
-    return sum * (float(VCT_LAMP_POINTS) / float(LAMP_SAMPLES));
+    return sum * (float(VCT_EMITTER_POINTS) / float(EMITTER_SAMPLES));
 }
 
 vec3 irradiance(vec3 position, vec3 normal)
@@ -71,7 +74,7 @@ vec3 irradiance(vec3 position, vec3 normal)
                             set.width_per_m, set.last_mip, vct_start(vct.level, 0.0));
         sum += set.cones[i].w * (met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky);
     }
-    if (VCT_HAS_LAMPS) sum += lamps_at(at, normal);
+    if (VCT_HAS_SMALL_EMITTERS) sum += small_emitters_at(at, normal);
     return min(sum, vec3(HALF_MAX));
 }
 
@@ -87,12 +90,12 @@ float one_plane()
 // other: their bits, those that are in no sheet yet, those of the sheet at hand, and the first
 // one's slot. Each invocation has its own.
 const uint ROWS = VCT_BLOCK * VCT_BLOCK, MOST_ROWS = 16u;
-shared uint rows_all[MOST_ROWS * VCT_BOUNCE_LOCAL], rows_left[MOST_ROWS * VCT_BOUNCE_LOCAL],
-    rows_part[MOST_ROWS * VCT_BOUNCE_LOCAL], rows_first[MOST_ROWS * VCT_BOUNCE_LOCAL];
+shared uint rows_all[MOST_ROWS * VCT_BLOCK_LOCAL], rows_left[MOST_ROWS * VCT_BLOCK_LOCAL],
+    rows_part[MOST_ROWS * VCT_BLOCK_LOCAL], rows_first[MOST_ROWS * VCT_BLOCK_LOCAL];
 
 uint own(uint row)
 {
-    return row * VCT_BOUNCE_LOCAL + gl_LocalInvocationID.x;
+    return row * VCT_BLOCK_LOCAL + gl_LocalInvocationID.x;
 }
 
 void read_rows(ivec3 first_texel)
@@ -150,7 +153,7 @@ bool take_part(out vct_part part)
         uint bit = uint(findLSB(rest));
         rest &= rest - 1u;
         vct_surface surface =
-            vct_unpack_surface(texelFetch(vct_surfaces, vct_record_place(slot_of(row, bit)), 0));
+            vct_unpack_surface(texelFetch(vct_surfaces, vct_voxel_texel(slot_of(row, bit)), 0));
         vec3 position = place_of(row, bit) + 0.5 + surface.position;
         if (first) {
             first_normal = surface.normal;
@@ -169,7 +172,7 @@ bool take_part(out vct_part part)
     }
 }
 
-void bring_to_part(vec3 front, vec3 back)
+void store_part(vec3 front, vec3 back)
 {
     uint row = 0u, rest = rows_part[own(0u)];
     uvec4 texel = uvec4(packHalf2x16(front.rg), packHalf2x16(vec2(front.b, back.r)),
@@ -177,7 +180,7 @@ void bring_to_part(vec3 front, vec3 back)
     for (;;) {
         while (rest == 0u && ++row < ROWS) rest = rows_part[own(row)];
         if (rest == 0u) return;
-        imageStore(vct_brought, vct_brought_place(slot_of(row, uint(findLSB(rest)))), texel);
+        imageStore(vct_bounced, vct_bounced_texel(slot_of(row, uint(findLSB(rest)))), texel);
         rest &= rest - 1u;
     }
 }
@@ -210,6 +213,6 @@ void main()
     while (take_part(part)) {
         vec3 front, back;
         gather(2 * texel, part, front, back);
-        bring_to_part(front, back);
+        store_part(front, back);
     }
 }

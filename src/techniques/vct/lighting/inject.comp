@@ -12,6 +12,7 @@
 #include "frame/light.glsl"
 #include "frame/shadow/shadow.glsl"
 #define VCT_GRID_BINDING 4
+#include "techniques/vct/vct_constants.h"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/volume/lit_voxel.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
@@ -27,14 +28,14 @@ layout(set = 0, binding = 5, scalar) readonly buffer vct_list
     uint list[];
 };
 layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
-layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_records;
+layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_lit_voxels;
 layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments
 {
     vct_voxel_counts counts;
 };
-layout(set = 0, binding = 9) uniform usampler2D vct_brought;
+layout(set = 0, binding = 9) uniform usampler2D vct_bounced;
 
-layout(constant_id = 0) const bool HAS_LIGHTS = true;
+layout(constant_id = VCT_CONSTANT_HAS_LIGHTS) const bool HAS_LIGHTS = true;
 
 const float PI = 3.14159265;
 const float SHADOW_LIFT =
@@ -77,10 +78,10 @@ void main()
 {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= counts.listed) return;
-    ivec2 to = vct_record_place(slot);
+    ivec2 to = vct_voxel_texel(slot);
     vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, to, 0));
     vec3 position = vct_world_from_voxels(vec3(vct_voxel(list[slot])) + 0.5 + surface.position);
-    vct_record r;
+    vct_lit_voxel r;
     r.opacity = surface.opacity;
     r.normal = surface.normal;
     r.reflectance = surface.reflectance;
@@ -99,16 +100,16 @@ void main()
         else
             back += e;
     }
-    if (kept(vct.brought) != 0u) {
-        uvec4 brought = texelFetch(vct_brought, vct_brought_place(slot), 0);
-        vec2 middle = unpackHalf2x16(brought.y);
-        front += vec3(unpackHalf2x16(brought.x), middle.x);
-        back += vec3(middle.y, unpackHalf2x16(brought.z));
+    if (kept(vct.bounced) != 0u) {
+        uvec4 bounced = texelFetch(vct_bounced, vct_bounced_texel(slot), 0);
+        vec2 middle = unpackHalf2x16(bounced.y);
+        front += vec3(unpackHalf2x16(bounced.x), middle.x);
+        back += vec3(middle.y, unpackHalf2x16(bounced.z));
     }
     r.front = min(front * r.reflectance / PI, vec3(HALF_MAX));
     r.back = min(back * r.reflectance / PI, vec3(HALF_MAX));
     uvec4 first, second;
     vct_pack(r, first, second);
-    imageStore(vct_records, to, first);
-    imageStore(vct_records, to + ivec2(1, 0), second);
+    imageStore(vct_lit_voxels, to, first);
+    imageStore(vct_lit_voxels, to + ivec2(1, 0), second);
 }

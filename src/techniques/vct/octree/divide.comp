@@ -6,6 +6,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/octree/octree_shared.h"
 
 layout(local_size_x = VCT_LOCAL) in;
 
@@ -21,9 +22,9 @@ layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_blocks
 {
     uint blocks[];
 };
-layout(set = 0, binding = 3, scalar) buffer vct_svo_places
+layout(set = 0, binding = 3, scalar) buffer vct_svo_brick_coords
 {
-    uint places[];
+    uint brick_coords[];
 }; // of the node that a brick is of
 #define VCT_SVO_LEVELS_BINDING 4
 #define VCT_SVO_LEVELS_ACCESS  readonly
@@ -34,7 +35,7 @@ ivec3 place_of(uint node)
 {
     uint tile = node / 8u;
     ivec3 child = ivec3(node & 1u, node >> 1 & 1u, node >> 2 & 1u);
-    return tile == 0u ? child : 2 * svo_unpack(places[tile - 1u]) + child;
+    return tile == 0u ? child : 2 * svo_unpack(brick_coords[tile - 1u]) + child;
 }
 
 void main()
@@ -51,7 +52,7 @@ void main()
         rank++;
         nodes[i] = room ? brick + 1u : 0u;
         if (!room) continue;
-        places[brick] = svo_pack(place_of(i));
+        brick_coords[brick] = svo_pack(place_of(i));
         if (push.depth + 1u == svo.depths) continue;
         for (uint child = 0u; child < 8u; child++) nodes[8u * (brick + 1u) + child] = 0u;
     }

@@ -7,6 +7,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/octree/octree_shared.h"
 #include "techniques/vct/volume/prefilter.glsl"
 
 layout(local_size_x = VCT_SVO_LOCAL) in;
@@ -20,9 +21,9 @@ layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes
 {
     uint nodes[];
 };
-layout(set = 0, binding = 9, scalar) readonly buffer vct_svo_places
+layout(set = 0, binding = 9, scalar) readonly buffer vct_svo_brick_coords
 {
-    uint places[];
+    uint brick_coords[];
 };
 #define VCT_SVO_LEVELS_BINDING 10
 #define VCT_SVO_LEVELS_ACCESS  readonly
@@ -37,11 +38,11 @@ void main()
     ivec3 point = ivec3(texel % 3u, texel / 3u % 3u, texel / 9u);
     // Of the four voxels across a leaf the points have the first, the two in the middle, and the
     // last.
-    ivec3 from = 4 * svo_unpack(places[brick]) + point + (point >> 1);
+    ivec3 from = 4 * svo_unpack(brick_coords[brick]) + point + (point >> 1);
     ivec3 size = min(1 + (point & 1), vct_cells() - from);
     vec4 sum[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-    if (all(greaterThan(size, ivec3(0)))) vct_see(from, size, sum);
+    if (all(greaterThan(size, ivec3(0)))) vct_prefilter_block(from, size, sum);
     ivec3 to = svo_brick_texel(brick) + point;
-    for (int k = 0; k < VCT_WAYS; k++)
+    for (int k = 0; k < VCT_DIRECTIONS; k++)
         imageStore(light, to + ivec3(3 * k * svo.row, 0, 0), min(sum[k], vec4(HALF_MAX)));
 }

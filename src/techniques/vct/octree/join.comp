@@ -11,6 +11,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/octree/octree_shared.h"
 #include "techniques/vct/volume/over.glsl"
 #include "techniques/vct/volume/directions.glsl"
 
@@ -25,9 +26,9 @@ layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_nodes
 {
     uint nodes[];
 };
-layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_places
+layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_brick_coords
 {
-    uint places[];
+    uint brick_coords[];
 };
 #define VCT_SVO_LEVELS_BINDING 4
 #define VCT_SVO_LEVELS_ACCESS  readonly
@@ -40,7 +41,7 @@ void main()
     if (i >= levels[push.depth].count || texel >= 9u) return;
     uint brick = levels[push.depth].first + i;
     int axis = int(push.axis);
-    ivec3 next = svo_unpack(places[brick]);
+    ivec3 next = svo_unpack(brick_coords[brick]);
     next[axis]++;
     bool leaf = push.depth + 1u == svo.depths;
     if (next[axis] >= svo_nodes_in_use(int(svo.depths - 1u - push.depth))[axis]) return;
@@ -52,12 +53,12 @@ void main()
     ivec3 there = svo_brick_texel(other) + point;
     point[axis] = 2;
     ivec3 here = svo_brick_texel(brick) + point;
-    for (int way = 0; way < VCT_WAYS; way++) {
-        ivec3 side = ivec3(3 * way * svo.row, 0, 0);
+    for (int direction_index = 0; direction_index < VCT_DIRECTIONS; direction_index++) {
+        ivec3 side = ivec3(3 * direction_index * svo.row, 0, 0);
         vec4 low = imageLoad(light, here + side), high = imageLoad(light, there + side),
              joined = 0.5 * (low + high);
-        if (VCT_ANISOTROPIC && leaf && way / 2 == axis)
-            joined = (way & 1) == 0 ? vct_over(low, high) : vct_over(high, low);
+        if (VCT_ANISOTROPIC && leaf && direction_index / 2 == axis)
+            joined = (direction_index & 1) == 0 ? vct_over(low, high) : vct_over(high, low);
         imageStore(light, here + side, joined);
         imageStore(light, there + side, joined);
     }

@@ -7,6 +7,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/octree/octree_shared.h"
 
 layout(local_size_x = VCT_LOCAL) in;
 
@@ -22,7 +23,7 @@ layout(set = 0, binding = 2, scalar) readonly buffer vct_arguments
 {
     uint groups[3];
     uint listed;
-    uint left_out;
+    uint overflow;
 };
 layout(set = 0, binding = 3, scalar) buffer vct_svo_nodes
 {

@@ -13,6 +13,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/octree/octree_shared.h"
 #include "techniques/vct/volume/over.glsl"
 #include "techniques/vct/volume/directions.glsl"
 
@@ -27,9 +28,9 @@ layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_nodes
 {
     uint nodes[];
 };
-layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_places
+layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_brick_coords
 {
-    uint places[];
+    uint brick_coords[];
 };
 #define VCT_SVO_LEVELS_BINDING 4
 #define VCT_SVO_LEVELS_ACCESS  readonly
@@ -37,9 +38,9 @@ layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_places
 #include "techniques/vct/octree/octree.glsl"
 
 // An octant of a brick along a way, of which `size` points along each axis lie in the grid.
-vec4 octant(ivec3 from, int way, ivec3 size)
+vec4 octant(ivec3 from, int direction_index, ivec3 size)
 {
-    int axis = way / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;
+    int axis = direction_index / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 4; i++) {
         ivec3 at = ivec3(0);
@@ -53,7 +54,7 @@ vec4 octant(ivec3 from, int way, ivec3 size)
             if (!VCT_ANISOTROPIC)
                 near = 0.5 * (near + far);
             else
-                near = (way & 1) == 0 ? vct_over(near, far) : vct_over(far, near);
+                near = (direction_index & 1) == 0 ? vct_over(near, far) : vct_over(far, near);
         }
         sum += near;
     }
@@ -65,7 +66,8 @@ void main()
     uint i = gl_GlobalInvocationID.x / 32u, texel = gl_GlobalInvocationID.x % 32u;
     if (i >= levels[push.depth].count || texel >= 27u) return;
     uint brick = levels[push.depth].first + i;
-    ivec3 point = ivec3(texel % 3u, texel / 3u % 3u, texel / 9u), node = svo_unpack(places[brick]);
+    ivec3 point = ivec3(texel % 3u, texel / 3u % 3u, texel / 9u),
+          node = svo_unpack(brick_coords[brick]);
     ivec3 last = svo_last_point(int(svo.depths - 2u - push.depth)); // of the children
     vec4 sum[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     float octants = 0.0;
@@ -82,10 +84,12 @@ void main()
         if (word == 0u) continue;
         ivec3 from = svo_brick_texel(word - 1u) + first,
               size = min(last - (2 * at + first) + 1, ivec3(2));
-        for (int way = 0; way < VCT_WAYS; way++)
-            sum[way] += octant(from + ivec3(3 * way * svo.row, 0, 0), way, size);
+        for (int direction_index = 0; direction_index < VCT_DIRECTIONS; direction_index++)
+            sum[direction_index] +=
+                octant(from + ivec3(3 * direction_index * svo.row, 0, 0), direction_index, size);
     }
     ivec3 to = svo_brick_texel(brick) + point;
-    for (int way = 0; way < VCT_WAYS; way++)
-        imageStore(light, to + ivec3(3 * way * svo.row, 0, 0), sum[way] / max(octants, 1.0));
+    for (int direction_index = 0; direction_index < VCT_DIRECTIONS; direction_index++)
+        imageStore(light, to + ivec3(3 * direction_index * svo.row, 0, 0),
+                   sum[direction_index] / max(octants, 1.0));
 }

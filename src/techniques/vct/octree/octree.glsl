@@ -13,6 +13,8 @@
 #ifndef AG_VCT_SVO_GLSL
 #define AG_VCT_SVO_GLSL
 
+#include "techniques/vct/octree/octree_shared.h"
+
 layout(set = 0, binding = 20, scalar) uniform vct_svo
 {
     vct_svo_params svo;

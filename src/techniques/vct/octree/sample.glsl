@@ -1,5 +1,6 @@
-// A look into the octree, as volume/sample.glsl is one into the mips: down from the root to the node of
-// the level that has the place, and into its brick. There is nothing where the tree has no node.
+// A look into the octree, as volume/sample.glsl is one into the mips: down from the root to the
+// node of the level that has the place, and into its brick. There is nothing where the tree has no
+// node.
 #ifndef AG_VCT_SVO_LOOK_GLSL
 #define AG_VCT_SVO_LOOK_GLSL
 
@@ -12,26 +13,28 @@ layout(set = 0, binding = 21, scalar) readonly buffer vct_svo_nodes
 
 #include "techniques/vct/octree/octree.glsl"
 
-vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int level)
+vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 counted,
+                                    int level)
 {
     // Texels of level 0 are distances of points; a level's are twice as large each.
     vec3 points = clamp(at, vec3(0.0), vec3(vct_cells() / 2)) / float(1 << level);
     ivec3 node = min(ivec3(0.5 * points), svo_nodes_in_use(level) - 1);
     uint brick = svo_find(node, svo.depths - 1u - uint(level));
-    if (brick == SVO_NONE) return vct_met(vec4(0.0), vec3(0.0));
-    vec3 size = vec3(3 * svo.row * ivec2(VCT_WAYS, 1), textureSize(light, 0).z);
+    if (brick == SVO_NONE) return vct_volume_sample(vec4(0.0), vec3(0.0));
+    vec3 size = vec3(3 * svo.row * ivec2(VCT_DIRECTIONS, 1), textureSize(light, 0).z);
     vec3 uv = (vec3(svo_brick_texel(brick)) + 0.5 + points - vec3(2 * node)) / size;
     if (!VCT_ANISOTROPIC) {
         vec4 all = textureLod(light, uv, 0.0);
-        return vct_met(all, vec3(all.a));
+        return vct_volume_sample(all, vec3(all.a));
     }
     vec3 share = abs(counted),
-         way = uv.x + (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0)))) / 6.0;
-    vec4 x = textureLod(light, vec3(way.x, uv.yz), 0.0);
-    vec4 y = textureLod(light, vec3(way.y, uv.yz), 0.0);
-    vec4 z = textureLod(light, vec3(way.z, uv.yz), 0.0);
+         direction_index =
+             uv.x + (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0)))) / 6.0;
+    vec4 x = textureLod(light, vec3(direction_index.x, uv.yz), 0.0);
+    vec4 y = textureLod(light, vec3(direction_index.y, uv.yz), 0.0);
+    vec4 z = textureLod(light, vec3(direction_index.z, uv.yz), 0.0);
     vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
-    return vct_met(share.x * x + share.y * y + share.z * z, met);
+    return vct_volume_sample(share.x * x + share.y * y + share.z * z, met);
 }
 
 #endif

@@ -6,6 +6,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/octree/octree_shared.h"
 
 layout(local_size_x = VCT_SCAN_LOCAL) in;
 
@@ -63,7 +64,7 @@ void main()
     uint kept = min(running, most - min(taken, most));
     levels[push.depth].first = taken;
     levels[push.depth].count = kept;
-    levels[push.depth].left_out = running - kept;
+    levels[push.depth].overflow = running - kept;
     levels[push.depth].node_groups[0] = groups_of(8u * kept, VCT_SVO_BLOCK * VCT_LOCAL);
     levels[push.depth].texel_groups[0] = groups_of(kept, VCT_SVO_LOCAL / 32u);
     levels[push.depth].side_groups[0] = groups_of(kept, VCT_SVO_LOCAL / 16u);

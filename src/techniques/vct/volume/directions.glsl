@@ -3,9 +3,11 @@
 #ifndef AG_VCT_WAYS_GLSL
 #define AG_VCT_WAYS_GLSL
 
-layout(constant_id = 10) const bool VCT_ANISOTROPIC = true;
+#include "techniques/vct/vct_constants.h"
+
+layout(constant_id = VCT_CONSTANT_ANISOTROPIC) const bool VCT_ANISOTROPIC = true;
 // Of occlusion (vctao) opacity alone is kept, in one channel where it is in mips.
-layout(constant_id = 12) const bool VCT_OCCLUSION = false;
-const int VCT_WAYS = VCT_ANISOTROPIC ? 6 : 1;
+layout(constant_id = VCT_CONSTANT_OCCLUSION) const bool VCT_OCCLUSION = false;
+const int VCT_DIRECTIONS = VCT_ANISOTROPIC ? 6 : 1;
 
 #endif

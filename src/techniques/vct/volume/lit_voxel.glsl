@@ -6,7 +6,7 @@
 
 #include "techniques/vct/vct_voxel_images.glsl"
 
-struct vct_record {
+struct vct_lit_voxel {
     vec3 front, back;                 // scaled cd/m²: reflected light of lights
     vec3 emitted_front, emitted_back; // scaled cd/m²; negative: a lamp's
     vec3 reflectance;
@@ -14,7 +14,7 @@ struct vct_record {
     vec3 normal;  // unit, of the front; 0 where the sides cannot be told apart
 };
 
-void vct_pack(vct_record r, out uvec4 first, out uvec4 second)
+void vct_pack(vct_lit_voxel r, out uvec4 first, out uvec4 second)
 {
     first = uvec4(packHalf2x16(r.front.rg), packHalf2x16(vec2(r.front.b, r.back.r)),
                   packHalf2x16(r.back.gb), packHalf2x16(r.emitted_front.rg));
@@ -24,11 +24,11 @@ void vct_pack(vct_record r, out uvec4 first, out uvec4 second)
     second.w = vct_pack_normal(r.normal) | uint(roundEven(r.opacity.y * 255.0)) << 24;
 }
 
-vct_record vct_unpack(uvec4 first, uvec4 second)
+vct_lit_voxel vct_unpack(uvec4 first, uvec4 second)
 {
     vec2 a = unpackHalf2x16(first.y), b = unpackHalf2x16(second.x);
     vec4 c = unpackUnorm4x8(second.z);
-    vct_record r;
+    vct_lit_voxel r;
     r.front = vec3(unpackHalf2x16(first.x), a.x);
     r.back = vec3(a.y, unpackHalf2x16(first.z));
     r.emitted_front = vec3(unpackHalf2x16(first.w), b.x);
@@ -40,14 +40,14 @@ vct_record vct_unpack(uvec4 first, uvec4 second)
 }
 
 // What of it is seen, with or without lamps.
-vec3 vct_emitted(vec3 emitted, bool lamps)
+vec3 vct_emitted(vec3 emitted, bool small_emitters)
 {
-    return lamps ? abs(emitted) : max(emitted, vec3(0.0));
+    return small_emitters ? abs(emitted) : max(emitted, vec3(0.0));
 }
 
-vct_record vct_record_at(usampler2D records, uint slot)
+vct_lit_voxel vct_lit_voxel_at(usampler2D records, uint slot)
 {
-    ivec2 place = vct_record_place(slot);
+    ivec2 place = vct_voxel_texel(slot);
     return vct_unpack(texelFetch(records, place, 0), texelFetch(records, place + ivec2(1, 0), 0));
 }
 

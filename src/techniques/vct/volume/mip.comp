@@ -8,6 +8,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/volume/volume_shared.h"
 #include "techniques/vct/volume/over.glsl"
 #include "techniques/vct/volume/directions.glsl"
 
@@ -23,27 +24,29 @@ layout(set = 0, binding = 3, scalar) readonly buffer vct_texels
 {
     uint texels[];
 };
-layout(set = 0, binding = 4, scalar) readonly buffer vct_texel_state
+layout(set = 0, binding = 4, scalar) readonly buffer vct_texel_counts
 {
     vct_texel_levels state;
 };
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x / uint(VCT_WAYS);
-    int way = int(gl_GlobalInvocationID.x % uint(VCT_WAYS));
+    uint i = gl_GlobalInvocationID.x / uint(VCT_DIRECTIONS);
+    int direction_index = int(gl_GlobalInvocationID.x % uint(VCT_DIRECTIONS));
     if (i >= state.count[push.level]) return;
     ivec3 texel = vct_unpack_texel(texels[push.first + i]);
-    ivec3 from = 2 * texel + ivec3(way * push.source_tile, 0, 0);
-    ivec3 along = way < 2 ? ivec3(1, 0, 0) : way < 4 ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
+    ivec3 from = 2 * texel + ivec3(direction_index * push.source_tile, 0, 0);
+    ivec3 along = direction_index < 2   ? ivec3(1, 0, 0)
+                  : direction_index < 4 ? ivec3(0, 1, 0)
+                                        : ivec3(0, 0, 1);
     ivec3 size = ivec3(push.source_x, push.source_y, push.source_z);
     // What lies outside of the grid is not averaged over: it is neither open nor closed.
     vec4 sum = vec4(0.0);
     float columns = 0.0;
     for (int i = 0; i < 4; i++) {
-        ivec3 side = (way < 2   ? ivec3(0, i & 1, i >> 1)
-                      : way < 4 ? ivec3(i & 1, 0, i >> 1)
-                                : ivec3(i & 1, i >> 1, 0));
+        ivec3 side = (direction_index < 2   ? ivec3(0, i & 1, i >> 1)
+                      : direction_index < 4 ? ivec3(i & 1, 0, i >> 1)
+                                            : ivec3(i & 1, i >> 1, 0));
         if (any(greaterThanEqual(2 * texel + side, size))) continue;
         bool whole = all(lessThan(2 * texel + side + along, size));
         ivec3 at = from + side;
@@ -54,10 +57,10 @@ void main()
             second = second.rrrr;
         }
         if (VCT_ANISOTROPIC)
-            sum += (way & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
+            sum += (direction_index & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
         else
             sum += whole ? 0.5 * (first + second) : first;
         columns++;
     }
-    imageStore(target, texel + ivec3(way * push.target_tile, 0, 0), sum / columns);
+    imageStore(target, texel + ivec3(direction_index * push.target_tile, 0, 0), sum / columns);
 }

@@ -13,6 +13,7 @@
 
 #include "core/half.glsl"
 #include "frame/frame_shared.h"
+#include "techniques/vct/vct_constants.h"
 #include "techniques/vct/volume/over.glsl"
 #include "techniques/vct/volume/lit_voxel.glsl"
 #include "techniques/vct/volume/directions.glsl"
@@ -23,22 +24,23 @@
 #define VCT_SLOTS_BINDING 3
 #include "techniques/vct/voxelize/slots.glsl"
 
-layout(set = 0, binding = 5) uniform usampler2D static_records;
-layout(set = 0, binding = 6) uniform usampler2D dynamic_records;
+layout(set = 0, binding = 5) uniform usampler2D static_lit_voxels;
+layout(set = 0, binding = 6) uniform usampler2D dynamic_lit_voxels;
 
-layout(constant_id = 11) const bool VCT_HAS_MOVING = true; // false: the second set is empty
+layout(constant_id = VCT_CONSTANT_HAS_DYNAMIC) const
+    bool VCT_HAS_DYNAMIC = true; // false: the second set is empty
 
 struct seen {
     vec4 along[6]; // +x −x +y −y +z −z: premultiplied radiance and opacity
 };
 
-void look_at(vct_record r, inout seen s)
+void add_voxel(vct_lit_voxel r, inout seen s)
 {
     vec3 slopes = abs(r.normal);
     float steepest = max(slopes.x, max(slopes.y, slopes.z));
-    bool lamps = vct.lamps_shown != 0u;
-    vec4 front = vec4(r.front + vct_emitted(r.emitted_front, lamps), 1.0) * r.opacity.x;
-    vec4 back = vec4(r.back + vct_emitted(r.emitted_back, lamps), 1.0) * r.opacity.y;
+    bool small_emitters = vct.small_emitters_shown != 0u;
+    vec4 front = vec4(r.front + vct_emitted(r.emitted_front, small_emitters), 1.0) * r.opacity.x;
+    vec4 back = vec4(r.back + vct_emitted(r.emitted_back, small_emitters), 1.0) * r.opacity.y;
     if (!VCT_ANISOTROPIC) {
         vec4 both = (front + back) * (max(front.a, back.a) / max(front.a + back.a, 1e-6));
         s.along[0] = both.a > s.along[0].a ? both : s.along[0];
@@ -59,17 +61,17 @@ void look_at(vct_record r, inout seen s)
 void look(uint static_at, uint dynamic_at, out seen s)
 {
     for (int i = 0; i < 6; i++) s.along[i] = vec4(0.0);
-    if (static_at != VCT_NO_SLOT) look_at(vct_record_at(static_records, static_at), s);
-    if (VCT_HAS_MOVING && dynamic_at != VCT_NO_SLOT)
-        look_at(vct_record_at(dynamic_records, dynamic_at), s);
+    if (static_at != VCT_NO_SLOT) add_voxel(vct_lit_voxel_at(static_lit_voxels, static_at), s);
+    if (VCT_HAS_DYNAMIC && dynamic_at != VCT_NO_SLOT)
+        add_voxel(vct_lit_voxel_at(dynamic_lit_voxels, dynamic_at), s);
 }
 
-void look_in_block(ivec3 from, ivec3 at, ivec3 size, out seen s)
+void gather_in_block(ivec3 from, ivec3 at, ivec3 size, out seen s)
 {
     bool inside = all(lessThan(at, size)) && vct_inside(from + at);
     uint index = vct_index(inside ? from + at : ivec3(0));
     look(inside ? static_slot(index) : VCT_NO_SLOT,
-         VCT_HAS_MOVING && inside ? dynamic_slot(index) : VCT_NO_SLOT, s);
+         VCT_HAS_DYNAMIC && inside ? dynamic_slot(index) : VCT_NO_SLOT, s);
 }
 
 // Two voxels behind each other along an axis, the lower one first.
@@ -82,17 +84,17 @@ void pair(seen low, seen high, const int axis, float column, inout vec4 sum[6])
 // A block of at most 2 × 2 × 2 voxels as one texel: along each axis the nearer of two covers the
 // farther, and columns are averaged. Written out, as drivers keep in memory what loops that they do
 // not unroll have in arrays.
-void vct_see(ivec3 from, ivec3 size, out vec4 sum[6])
+void vct_prefilter_block(ivec3 from, ivec3 size, out vec4 sum[6])
 {
     seen a, b, c, d, e, f, g, h;
-    look_in_block(from, ivec3(0, 0, 0), size, a);
-    look_in_block(from, ivec3(1, 0, 0), size, b);
-    look_in_block(from, ivec3(0, 1, 0), size, c);
-    look_in_block(from, ivec3(1, 1, 0), size, d);
-    look_in_block(from, ivec3(0, 0, 1), size, e);
-    look_in_block(from, ivec3(1, 0, 1), size, f);
-    look_in_block(from, ivec3(0, 1, 1), size, g);
-    look_in_block(from, ivec3(1, 1, 1), size, h);
+    gather_in_block(from, ivec3(0, 0, 0), size, a);
+    gather_in_block(from, ivec3(1, 0, 0), size, b);
+    gather_in_block(from, ivec3(0, 1, 0), size, c);
+    gather_in_block(from, ivec3(1, 1, 0), size, d);
+    gather_in_block(from, ivec3(0, 0, 1), size, e);
+    gather_in_block(from, ivec3(1, 0, 1), size, f);
+    gather_in_block(from, ivec3(0, 1, 1), size, g);
+    gather_in_block(from, ivec3(1, 1, 1), size, h);
     sum = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     float each = 1.0 / float(size.x * size.y * size.z);
     if (!VCT_ANISOTROPIC) {

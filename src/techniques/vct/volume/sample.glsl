@@ -8,7 +8,8 @@
 // of level 0. Six volumes lie side by side along x, grids along z: what is filtered keeps half a
 // texel away from its neighbour. One volume for all ways knows no direction: whatever fills its
 // texels stands in every way.
-vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int level)
+vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 counted,
+                                    int level)
 {
     vec3 share = abs(counted);
     int grid = min(level, VCT_CLIPS - 1),
@@ -21,19 +22,20 @@ vct_met vct_look(sampler3D light, vec3 at, vec3 direction, vec3 counted, int lev
     if (!VCT_ANISOTROPIC) {
         vec4 all = textureLod(light, uv, float(mip));
         if (VCT_OCCLUSION) all = all.rrrr;
-        return vct_met(all, vec3(all.a));
+        return vct_volume_sample(all, vec3(all.a));
     }
-    vec3 way = (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
-    vec4 x = textureLod(light, vec3(way.x, uv.yz), float(mip));
-    vec4 y = textureLod(light, vec3(way.y, uv.yz), float(mip));
-    vec4 z = textureLod(light, vec3(way.z, uv.yz), float(mip));
+    vec3 direction_index =
+        (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
+    vec4 x = textureLod(light, vec3(direction_index.x, uv.yz), float(mip));
+    vec4 y = textureLod(light, vec3(direction_index.y, uv.yz), float(mip));
+    vec4 z = textureLod(light, vec3(direction_index.z, uv.yz), float(mip));
     if (VCT_OCCLUSION) {
         x = x.rrrr;
         y = y.rrrr;
         z = z.rrrr;
     }
     vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
-    return vct_met(share.x * x + share.y * y + share.z * z, met);
+    return vct_volume_sample(share.x * x + share.y * y + share.z * z, met);
 }
 
 #endif

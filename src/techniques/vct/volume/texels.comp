@@ -6,6 +6,7 @@
 
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/volume/volume_shared.h"
 
 layout(local_size_x = VCT_LOCAL) in;
 
@@ -29,7 +30,7 @@ layout(set = 0, binding = 4, scalar) writeonly buffer vct_texels
 {
     uint texels[];
 };
-layout(set = 0, binding = 5, scalar) buffer vct_texel_state
+layout(set = 0, binding = 5, scalar) buffer vct_texel_counts
 {
     vct_texel_levels state;
 };
@@ -37,9 +38,9 @@ layout(set = 0, binding = 5, scalar) buffer vct_texel_state
 void enter(uint level, uint place, ivec3 texel)
 {
     texels[push.first[level] + place] = vct_pack_texel(texel);
-    uint each = level == 0u ? 1u : push.ways; // invocations for a texel: see volume/mip.comp
+    uint each = level == 0u ? 1u : push.directions; // invocations for a texel: see volume/mip.comp
     atomicMax(state.groups[3u * level], ((place + 1u) * each + VCT_LOCAL - 1u) / VCT_LOCAL);
-    if (level == push.block_level) atomicMax(state.block_groups[0], place / VCT_BOUNCE_LOCAL + 1u);
+    if (level == push.block_level) atomicMax(state.block_groups[0], place / VCT_BLOCK_LOCAL + 1u);
 }
 
 void enter_above(ivec3 texel)

@@ -11,9 +11,10 @@
 
 #ifndef VCT_RASTER
 #if VCT_LARGE
-#define VCT_PUTS_OFF
+#define VCT_DEFERS
 #endif
 #endif
+#include "techniques/vct/vct_constants.h"
 #include "techniques/vct/voxelize/voxelize.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
 #define VCT_SLOTS(name)   vct_##name
@@ -26,17 +27,19 @@ layout(set = 0, binding = 18, scalar) buffer vct_sum_words
 {
     uint sums[];
 };
-#ifdef VCT_PUTS_OFF
-layout(set = 0, binding = 19, scalar) readonly buffer vct_again
+#ifdef VCT_DEFERS
+layout(set = 0, binding = 19, scalar) readonly buffer vct_accumulated
 {
-    uint again[];
+    uint accumulated[];
 };
 layout(set = 0, binding = 20, rgba32ui) uniform writeonly uimage2D vct_surfaces;
 #endif
 
-// What lamps emit is negative: who looks for lamps one by one passes over it (cones/small_emitters.glsl).
-layout(constant_id = 14) const bool IS_LAMP = false;
-layout(constant_id = 5) const bool GLOWS = true; // false: no surface of the draw emits
+// What lamps emit is negative: who looks for lamps one by one passes over it
+// (cones/small_emitters.glsl).
+layout(constant_id = VCT_CONSTANT_SMALL_EMITTERS) const bool IS_SMALL_EMITTER = false;
+layout(constant_id = VCT_CONSTANT_EMISSIVE) const
+    bool EMISSIVE = true; // false: no surface of the draw emits
 
 // Barycentric coordinates of the point of a triangle that is nearest to the origin (Ericson 2005,
 // sec. 5.1.5).
@@ -61,23 +64,23 @@ vec3 nearest_point(vec3 a, vec3 b, vec3 c)
 
 // A map's coordinates at the corners, and the mip whose texels are as large as a voxel on the
 // triangle.
-struct map_place {
+struct map_coords {
     vec2 a, b, c;
     float lod;
 };
 
-vec2 map_at(map_place map, vec3 at)
+vec2 map_at(map_coords map, vec3 at)
 {
     return map.a * at.x + map.b * at.y + map.c * at.z;
 }
 
-map_place map_place_of(uint map, scene_surface a, scene_surface b, scene_surface c)
+map_coords map_coords_of(uint map, scene_surface a, scene_surface b, scene_surface c)
 {
-    return map_place(scene_map_uv(map, a), scene_map_uv(map, b), scene_map_uv(map, c), 0.0);
+    return map_coords(scene_map_uv(map, a), scene_map_uv(map, b), scene_map_uv(map, c), 0.0);
 }
 
 // faces: twice the area of the triangle in faces of a voxel.
-float voxel_lod(sampler2D map, map_place place, float faces)
+float voxel_lod(sampler2D map, map_coords place, float faces)
 {
     vec2 size = vec2(textureSize(map, 0)), p = (place.b - place.a) * size,
          q = (place.c - place.a) * size;
@@ -87,7 +90,7 @@ float voxel_lod(sampler2D map, map_place place, float faces)
 
 // What does not change over a triangle: looked up once, before its voxels.
 vec4 corner_a, corner_b, corner_c; // colours
-map_place base_color_place, metallic_place, emissive_place;
+map_coords base_color_coords, metallic_coords, emissive_coords;
 vec3 front_normal; // unit, to the sheet's front
 int first_row;     // of the tile
 bvec2 sides;       // whether there is a surface to the front, the back
@@ -96,7 +99,7 @@ bvec2 sides;       // whether there is a surface to the front, the back
 // no usual wall is.
 const vec3 FRONT = vec3(0.4743, 0.8165, 0.3294);
 
-void vct_meet(vct_triangle t, ivec2 first)
+void vct_begin_triangle(vct_triangle t, ivec2 first)
 {
     first_row = first.y;
     vec3 normal = cross(t.b - t.a, t.c - t.b);
@@ -114,11 +117,11 @@ void vct_meet(vct_triangle t, ivec2 first)
     corner_b = unpackUnorm4x8(b.color);
     corner_c = unpackUnorm4x8(c.color);
     if (!HAS_BASE_COLOR_MAP) return;
-    base_color_place = map_place_of(SCENE_MAP_BASE_COLOR, a, b, c);
-    base_color_place.lod = voxel_lod(base_color_map, base_color_place, faces);
-    metallic_place = map_place_of(SCENE_MAP_METALLIC_ROUGHNESS, a, b, c);
-    emissive_place = map_place_of(SCENE_MAP_EMISSIVE, a, b, c);
-    emissive_place.lod = voxel_lod(emissive_map, emissive_place, faces);
+    base_color_coords = map_coords_of(SCENE_MAP_BASE_COLOR, a, b, c);
+    base_color_coords.lod = voxel_lod(base_color_map, base_color_coords, faces);
+    metallic_coords = map_coords_of(SCENE_MAP_METALLIC_ROUGHNESS, a, b, c);
+    emissive_coords = map_coords_of(SCENE_MAP_EMISSIVE, a, b, c);
+    emissive_coords.lod = voxel_lod(emissive_map, emissive_coords, faces);
 }
 
 struct surface_point {
@@ -136,9 +139,10 @@ surface_point surface_at(vec3 at)
     float metallic = scene_material_table[m].metallic;
     s.emission = scene_material_table[m].emissive;
     if (HAS_BASE_COLOR_MAP) {
-        s.color *= textureLod(base_color_map, map_at(base_color_place, at), base_color_place.lod);
-        metallic *= textureLod(metallic_roughness_map, map_at(metallic_place, at), 4.0).b;
-        s.emission *= textureLod(emissive_map, map_at(emissive_place, at), emissive_place.lod).rgb;
+        s.color *= textureLod(base_color_map, map_at(base_color_coords, at), base_color_coords.lod);
+        metallic *= textureLod(metallic_roughness_map, map_at(metallic_coords, at), 4.0).b;
+        s.emission *=
+            textureLod(emissive_map, map_at(emissive_coords, at), emissive_coords.lod).rgb;
     }
     if ((scene_material_table[m].flags & SCENE_UNLIT) != 0u) metallic = 0.0;
     s.reflectance = s.color.rgb * (1.0 - metallic);
@@ -150,7 +154,7 @@ surface_point surface_at(vec3 at)
 // surface in one voxel of their column: what the voxels of a slanted wall cover adds up to all.
 uint covered_lines(ivec3 voxel, vct_triangle t)
 {
-    ivec3 cell = ivec3(turned(vec3(voxel), t.turn));
+    ivec3 cell = ivec3(permuted(vec3(voxel), t.turn));
     float facing = t.normal.z < 0.0 ? -1.0 : 1.0;
     vec2 ab = facing * (t.v.xy - t.u.xy), bc = facing * (t.w.xy - t.v.xy),
          ca = facing * (t.u.xy - t.w.xy);
@@ -187,8 +191,8 @@ vct_sums part_of(ivec3 voxel, vct_triangle t)
     float covered = float(covered_lines(voxel, t)) * VCT_WEIGHT_LINE, weight = max(covered, 1.0);
     float opaque = weight * s.color.a;
     uvec3 emission =
-        GLOWS ? uvec3(whole(s.emission * vct.emission_fixed * opaque, 1.0)) : uvec3(0u);
-    if (IS_LAMP) emission = uvec3(-ivec3(emission));
+        EMISSIVE ? uvec3(whole(s.emission * vct.emission_fixed * opaque, 1.0)) : uvec3(0u);
+    if (IS_SMALL_EMITTER) emission = uvec3(-ivec3(emission));
     vct_sums sums;
     sums.weight = uint(weight);
     sums.opacity = uint(opaque);
@@ -219,38 +223,38 @@ void add_part(uint slot, vct_sums part)
     add(to + VCT_SUM_POSITION, uvec3(part.position));
     if (part.fronts != 0u) atomicAdd(sums[to + VCT_SUM_FRONTS], part.fronts);
     if (part.backs != 0u) atomicAdd(sums[to + VCT_SUM_BACKS], part.backs);
-    if (!GLOWS || (part.front == uvec3(0u) && part.back == uvec3(0u))) return;
+    if (!EMISSIVE || (part.front == uvec3(0u) && part.back == uvec3(0u))) return;
     add(to + VCT_SUM_FRONT, part.front);
     add(to + VCT_SUM_BACK, part.back);
 }
 
-#ifdef VCT_PUTS_OFF
+#ifdef VCT_DEFERS
 
-bool is_again(uint index)
+bool is_accumulated(uint index)
 {
-    return (again[index >> 5] >> (index & 31u) & 1u) != 0u;
+    return (accumulated[index >> 5] >> (index & 31u) & 1u) != 0u;
 }
 
 void vct_visit(ivec3 voxel, vct_triangle t)
 {
     uint index = vct_index(voxel);
-    if (is_again(index)) {
-        vct_put_off |= 1u << uint(ivec3(turned(vec3(voxel), t.turn)).y - first_row);
+    if (is_accumulated(index)) {
+        vct_deferred |= 1u << uint(ivec3(permuted(vec3(voxel), t.turn)).y - first_row);
         return;
     }
     uint slot = vct_slot(index);
     if (slot == VCT_NO_SLOT) return;
     uvec4 first, second;
     vct_pack_sums(part_of(voxel, t), first, second);
-    ivec2 to = vct_record_place(slot);
+    ivec2 to = vct_voxel_texel(slot);
     imageStore(vct_surfaces, to, first);
-    if (GLOWS) imageStore(vct_surfaces, to + ivec2(1, 0), second);
+    if (EMISSIVE) imageStore(vct_surfaces, to + ivec2(1, 0), second);
 }
 
-void vct_visit_put_off(ivec3 voxel, vct_triangle t)
+void vct_visit_deferred(ivec3 voxel, vct_triangle t)
 {
     uint index = vct_index(voxel);
-    uint slot = is_again(index) ? vct_slot(index) : VCT_NO_SLOT;
+    uint slot = is_accumulated(index) ? vct_slot(index) : VCT_NO_SLOT;
     if (slot != VCT_NO_SLOT) add_part(slot, part_of(voxel, t));
 }
 

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/voxelize/voxelize_shared.h"
 
 layout(local_size_x = VCT_LOCAL) in;
 

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/voxelize/voxelize_shared.h"
 
 layout(local_size_x = VCT_LOCAL) in;
 
@@ -16,7 +17,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer vct_blocks
 {
     uint blocks[];
 };
-layout(set = 0, binding = 2, scalar) writeonly buffer vct_before
+layout(set = 0, binding = 2, scalar) writeonly buffer vct_word_offsets
 {
     uint before[];
 };
@@ -24,13 +25,13 @@ layout(set = 0, binding = 3, scalar) writeonly buffer vct_list
 {
     uint list[];
 };
-layout(set = 0, binding = 4, scalar) readonly buffer vct_again
+layout(set = 0, binding = 4, scalar) readonly buffer vct_accumulated
 {
-    uint again[];
+    uint accumulated[];
 };
-layout(set = 0, binding = 5, scalar) writeonly buffer vct_again_list
+layout(set = 0, binding = 5, scalar) writeonly buffer vct_accumulated_list
 {
-    uint again_list[];
+    uint accumulated_list[];
 };
 layout(set = 0, binding = 6, scalar) buffer vct_arguments
 {
@@ -50,21 +51,21 @@ void main()
     uint block = gl_GlobalInvocationID.x;
     if (block >= blocks.length()) return;
     uint first = block * VCT_BLOCK_WORDS, end = min(first + VCT_BLOCK_WORDS, mask.length());
-    uint slot = blocks[block], again_count = 0u;
+    uint slot = blocks[block], accumulated_count = 0u;
     for (uint i = first; i < end; i++) {
         before[i] = slot;
         uint word = with_room(mask[i], slot);
-        again_count += uint(bitCount(again[i] & word));
+        accumulated_count += uint(bitCount(accumulated[i] & word));
         for (; word != 0u; word &= word - 1u, slot++) list[slot] = i * 32u + uint(findLSB(word));
     }
-    if (again_count == 0u) return;
-    uint to = atomicAdd(counts.again, again_count);
-    atomicMax(counts.again_groups[0], (to + again_count + VCT_LOCAL - 1u) / VCT_LOCAL);
+    if (accumulated_count == 0u) return;
+    uint to = atomicAdd(counts.accumulated, accumulated_count);
+    atomicMax(counts.accumulated_groups[0], (to + accumulated_count + VCT_LOCAL - 1u) / VCT_LOCAL);
     slot = blocks[block];
     for (uint i = first; i < end; i++) {
         uint word = with_room(mask[i], slot);
-        for (uint rest = again[i] & word; rest != 0u; rest &= rest - 1u, to++)
-            again_list[to] = slot + uint(bitCount(word & ((rest & -rest) - 1u)));
+        for (uint rest = accumulated[i] & word; rest != 0u; rest &= rest - 1u, to++)
+            accumulated_list[to] = slot + uint(bitCount(word & ((rest & -rest) - 1u)));
         slot += uint(bitCount(word));
     }
 }

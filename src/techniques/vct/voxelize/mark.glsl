@@ -10,12 +10,12 @@ layout(set = 0, binding = 16, scalar) buffer vct_mask
 {
     uint mask[];
 };
-layout(set = 0, binding = 17, scalar) buffer vct_again
+layout(set = 0, binding = 17, scalar) buffer vct_accumulated
 {
-    uint again[];
+    uint accumulated[];
 };
 
-void vct_meet(vct_triangle t, ivec2 first)
+void vct_begin_triangle(vct_triangle t, ivec2 first)
 {
 }
 
@@ -26,5 +26,5 @@ void vct_visit(ivec3 voxel, vct_triangle t)
 #if defined(VCT_RASTER) || !VCT_LARGE
     touched = true;
 #endif
-    if (touched) atomicOr(again[word], bit);
+    if (touched) atomicOr(accumulated[word], bit);
 }

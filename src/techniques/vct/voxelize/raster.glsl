@@ -1,7 +1,7 @@
 // The columns of triangles by rasterisation: the plane that a triangle is nearest to is the
 // picture, a pixel is a column (Hong 2015, sec. 2.5.3.1). The paper's geometry shader is not
-// needed: vertices are pulled, so each knows its triangle. Include after voxelize/voxelize.glsl with
-// VCT_RASTER.
+// needed: vertices are pulled, so each knows its triangle. Include after voxelize/voxelize.glsl
+// with VCT_RASTER.
 #ifndef AG_VCT_RASTER_GLSL
 #define AG_VCT_RASTER_GLSL
 

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "techniques/vct/vct_grid.glsl"
+#include "techniques/vct/voxelize/voxelize_shared.h"
 
 layout(local_size_x = VCT_SCAN_LOCAL) in;
 
@@ -44,10 +45,10 @@ void main()
     if (me == VCT_SCAN_LOCAL - 1u) {
         uint listed = min(running, vct.capacity);
         counts.listed = listed;
-        counts.left_out = running - listed;
-        counts.again = 0u; // voxelize/list.comp counts them
+        counts.overflow = running - listed;
+        counts.accumulated = 0u; // voxelize/list.comp counts them
         counts.groups[0] = (listed + VCT_LOCAL - 1u) / VCT_LOCAL;
-        counts.again_groups[0] = 1u;
-        for (int i = 1; i < 3; i++) counts.groups[i] = counts.again_groups[i] = 1u;
+        counts.accumulated_groups[0] = 1u;
+        for (int i = 1; i < 3; i++) counts.groups[i] = counts.accumulated_groups[i] = 1u;
     }
 }

@@ -6,9 +6,9 @@ layout(set = 0, binding = VCT_SLOTS_BINDING, scalar) readonly buffer VCT_SLOTS(m
 {
     uint VCT_SLOTS(mask_words)[];
 };
-layout(set = 0, binding = VCT_SLOTS_BINDING + 1, scalar) readonly buffer VCT_SLOTS(before)
+layout(set = 0, binding = VCT_SLOTS_BINDING + 1, scalar) readonly buffer VCT_SLOTS(word_offsets)
 {
-    uint VCT_SLOTS(before_words)[];
+    uint VCT_SLOTS(offsets)[];
 };
 
 // VCT_NO_SLOT where the voxel is empty, or there was no room for it.
@@ -17,7 +17,7 @@ uint VCT_SLOTS(slot)(uint index)
     uint word = VCT_SLOTS(mask_words)[index >> 5];
     uint bit = 1u << (index & 31u);
     if ((word & bit) == 0u) return VCT_NO_SLOT;
-    uint slot = VCT_SLOTS(before_words)[index >> 5] + uint(bitCount(word & (bit - 1u)));
+    uint slot = VCT_SLOTS(offsets)[index >> 5] + uint(bitCount(word & (bit - 1u)));
     return slot < vct.capacity ? slot : VCT_NO_SLOT;
 }
 #undef VCT_SLOTS

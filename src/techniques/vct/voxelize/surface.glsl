@@ -4,6 +4,7 @@
 #define AG_VCT_SURFACE_GLSL
 
 #include "techniques/vct/vct_voxel_images.glsl"
+#include "techniques/vct/voxelize/voxelize_shared.h"
 
 // Whole numbers, so that no order of triangles changes a bit. Each triangle counts by what it
 // covers.

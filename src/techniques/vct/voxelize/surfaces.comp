@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/voxelize/voxelize_shared.h"
 #include "techniques/vct/voxelize/surface.glsl"
 
 layout(local_size_x = VCT_LOCAL) in;
@@ -12,9 +12,9 @@ layout(set = 0, binding = 0, scalar) readonly buffer vct_arguments
 {
     vct_voxel_counts counts;
 };
-layout(set = 0, binding = 1, scalar) readonly buffer vct_again_list
+layout(set = 0, binding = 1, scalar) readonly buffer vct_accumulated_list
 {
-    uint again_list[];
+    uint accumulated_list[];
 };
 layout(set = 0, binding = 2, scalar) readonly buffer vct_sum_words
 {
@@ -30,8 +30,8 @@ uvec3 three(uint at)
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= counts.again) return;
-    uint slot = again_list[i], at = slot * VCT_SUM_WORDS;
+    if (i >= counts.accumulated) return;
+    uint slot = accumulated_list[i], at = slot * VCT_SUM_WORDS;
     vct_sums s;
     s.weight = sums[at + VCT_SUM_WEIGHT];
     s.opacity = sums[at + VCT_SUM_OPACITY];
@@ -44,7 +44,7 @@ void main()
     s.backs = sums[at + VCT_SUM_BACKS];
     uvec4 first, second;
     vct_pack_sums(s, first, second);
-    ivec2 to = vct_record_place(slot);
+    ivec2 to = vct_voxel_texel(slot);
     imageStore(vct_surfaces, to, first);
     imageStore(vct_surfaces, to + ivec2(1, 0), second);
 }

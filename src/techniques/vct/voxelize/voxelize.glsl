@@ -5,11 +5,12 @@
 // each.
 //
 // Permutations: VCT_LARGE is 0 for small triangles and 1 for the queued tiles of large ones;
-// VCT_RASTER takes the columns from the rasteriser (voxelize/raster.glsl), in its fragment stage with
-// VCT_FRAGMENT. The includer defines vct_meet() and vct_visit() after the inclusion.
+// VCT_RASTER takes the columns from the rasteriser (voxelize/raster.glsl), in its fragment stage
+// with VCT_FRAGMENT. The includer defines vct_meet() and vct_visit() after the inclusion.
 #include "frame/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/voxelize/overlap.glsl"
+#include "techniques/vct/voxelize/voxelize_shared.h"
 
 #ifndef VCT_RASTER
 // x, y, z of an indirect dispatch; how many tiles were asked for.
@@ -40,12 +41,12 @@ struct vct_triangle {
     ivec2 depths;    // the first and the last of them in a column, also beyond this grid
 };
 
-void vct_meet(vct_triangle t, ivec2 first); // before its voxels, from a column on
+void vct_begin_triangle(vct_triangle t, ivec2 first); // before its voxels, from a column on
 void vct_visit(ivec3 voxel, vct_triangle t);
-#ifdef VCT_PUTS_OFF
+#ifdef VCT_DEFERS
 // Rows in which vct_visit() has left voxels to vct_visit_put_off(), a bit for each of the tile.
-uint vct_put_off = 0u;
-void vct_visit_put_off(ivec3 voxel, vct_triangle t);
+uint vct_deferred = 0u;
+void vct_visit_deferred(ivec3 voxel, vct_triangle t);
 #endif
 
 // What lies on the border of the scene's grid but for rounding belongs to the last voxel, and is
@@ -63,12 +64,12 @@ vec3 vertex_at(uint vertex)
     return kept_inside(at);
 }
 
-vec3 turned(vec3 v, int turn)
+vec3 permuted(vec3 v, int turn)
 {
     return turn == 0 ? v : turn == 1 ? v.yzx : v.zxy;
 }
 
-ivec3 turned_back(ivec3 v, int turn)
+ivec3 unpermuted(ivec3 v, int turn)
 {
     return turn == 0 ? v : turn == 1 ? v.zxy : v.yzx;
 }
@@ -92,13 +93,13 @@ bool triangle_at(uint triangle, out vct_triangle t)
     precise vec3 n = p.yzx * q.zxy - p.zxy * q.yzx;
     vec3 length = abs(n);
     t.turn = length.z >= length.x && length.z >= length.y ? 0 : length.x >= length.y ? 1 : 2;
-    t.normal = turned(n, t.turn);
-    t.u = turned(t.a, t.turn);
-    t.v = turned(t.b, t.turn);
-    t.w = turned(t.c, t.turn);
-    t.low = ivec3(turned(max(low, vec3(0.0)), t.turn));
-    t.high = ivec3(turned(min(high, end), t.turn));
-    t.depths = ivec2(turned(low, t.turn).z, turned(high, t.turn).z);
+    t.normal = permuted(n, t.turn);
+    t.u = permuted(t.a, t.turn);
+    t.v = permuted(t.b, t.turn);
+    t.w = permuted(t.c, t.turn);
+    t.low = ivec3(permuted(max(low, vec3(0.0)), t.turn));
+    t.high = ivec3(permuted(min(high, end), t.turn));
+    t.depths = ivec2(permuted(low, t.turn).z, permuted(high, t.turn).z);
     return abs(t.normal.z) > 0.0;
 }
 
@@ -125,7 +126,7 @@ bool touches(vct_triangle t, ivec3 voxel)
 // All voxels that the triangle touches in columns from `first` to `last`. What is touched is looked
 // for in a loop of its own: invocations of a group that have found something wait there for the
 // others, and then visit together.
-void walk_columns(vct_triangle t, ivec2 first, ivec2 last)
+void visit_columns(vct_triangle t, ivec2 first, ivec2 last)
 {
     ivec2 column = first, depths = depths_of(t, first);
     for (;;) {
@@ -141,7 +142,7 @@ void walk_columns(vct_triangle t, ivec2 first, ivec2 last)
             depths = depths_of(t, column);
         }
         if (!found) return;
-        vct_visit(turned_back(voxel, t.turn), t);
+        vct_visit(unpermuted(voxel, t.turn), t);
     }
 }
 
@@ -157,8 +158,8 @@ void main()
     if (!triangle_at(vary_triangle, t) || any(lessThan(column, t.low.xy)) ||
         any(greaterThan(column, t.high.xy)))
         return;
-    vct_meet(t, column);
-    walk_columns(t, column, column);
+    vct_begin_triangle(t, column);
+    visit_columns(t, column, column);
 }
 
 #endif
@@ -189,27 +190,27 @@ ivec2 rows_of(vct_triangle t, int x)
     return ivec2(max(int(floor(low)), t.low.y), min(int(floor(high)), t.high.y));
 }
 
-#ifdef VCT_PUTS_OFF
-shared uint put_off_count, put_off_columns[VCT_TILE * VCT_TILE];
+#ifdef VCT_DEFERS
+shared uint deferred_count, deferred_columns[VCT_TILE * VCT_TILE];
 
 // What invocations have left is shared out among all of them: there is little of it, in lines along
 // the triangle's sides, and one that has a whole line would keep the others waiting.
-void walk_put_off(vct_triangle t, ivec2 first)
+void visit_deferred_columns(vct_triangle t, ivec2 first)
 {
-    if (gl_LocalInvocationID.x == 0u) put_off_count = 0u;
+    if (gl_LocalInvocationID.x == 0u) deferred_count = 0u;
     barrier();
-    uint to = atomicAdd(put_off_count, uint(bitCount(vct_put_off)));
-    for (; vct_put_off != 0u; vct_put_off &= vct_put_off - 1u)
-        put_off_columns[to++] = gl_LocalInvocationID.x | uint(findLSB(vct_put_off)) << 16;
+    uint to = atomicAdd(deferred_count, uint(bitCount(vct_deferred)));
+    for (; vct_deferred != 0u; vct_deferred &= vct_deferred - 1u)
+        deferred_columns[to++] = gl_LocalInvocationID.x | uint(findLSB(vct_deferred)) << 16;
     barrier();
     uint i = gl_LocalInvocationID.x;
     ivec2 column = ivec2(0), depths = ivec2(0, -1);
     for (;;) {
         ivec3 voxel = ivec3(0);
         bool found = false;
-        while (!found && (depths.x <= depths.y || i < put_off_count)) {
+        while (!found && (depths.x <= depths.y || i < deferred_count)) {
             if (depths.x > depths.y) {
-                column = first + ivec2(put_off_columns[i] & 0xffffu, put_off_columns[i] >> 16);
+                column = first + ivec2(deferred_columns[i] & 0xffffu, deferred_columns[i] >> 16);
                 depths = depths_of(t, column);
                 i += VCT_TILE;
             }
@@ -218,7 +219,7 @@ void walk_put_off(vct_triangle t, ivec2 first)
             depths.x++;
         }
         if (!found) return;
-        vct_visit_put_off(turned_back(voxel, t.turn), t);
+        vct_visit_deferred(unpermuted(voxel, t.turn), t);
     }
 }
 #endif
@@ -234,10 +235,10 @@ void main()
     int x = first.x + int(gl_LocalInvocationID.x);
     ivec2 rows = rows_of(t, x);
     rows = ivec2(max(first.y, rows.x), x > last.x ? first.y - 1 : min(last.y, rows.y));
-    vct_meet(t, first);
-    walk_columns(t, ivec2(x, rows.x), ivec2(x, rows.y));
-#ifdef VCT_PUTS_OFF
-    walk_put_off(t, first);
+    vct_begin_triangle(t, first);
+    visit_columns(t, ivec2(x, rows.x), ivec2(x, rows.y));
+#ifdef VCT_DEFERS
+    visit_deferred_columns(t, first);
 #endif
 }
 
@@ -265,10 +266,10 @@ void main()
     ivec2 tile = small ? size : ivec2(VCT_TILE), tiles = (size - 1) / tile + 1;
     uint count = uint(tiles.x * tiles.y), queued = 0u;
     if (!small) queued = queue_tiles(triangle, count);
-    vct_meet(t, t.low.xy);
+    vct_begin_triangle(t, t.low.xy);
     for (uint i = queued; i < count; i++) {
         ivec2 corner = t.low.xy + ivec2(int(i) % tiles.x, int(i) / tiles.x) * tile;
-        walk_columns(t, corner, min(corner + tile - 1, t.high.xy));
+        visit_columns(t, corner, min(corner + tile - 1, t.high.xy));
     }
 }
 

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/voxelize/voxelize_shared.h"
 
 layout(local_size_x = VCT_LOCAL) in;
 
@@ -11,9 +11,9 @@ layout(set = 0, binding = 0, scalar) readonly buffer vct_arguments
 {
     vct_voxel_counts counts;
 };
-layout(set = 0, binding = 1, scalar) readonly buffer vct_again_list
+layout(set = 0, binding = 1, scalar) readonly buffer vct_accumulated_list
 {
-    uint again_list[];
+    uint accumulated_list[];
 };
 layout(set = 0, binding = 2, scalar) writeonly buffer vct_sum_words
 {
@@ -23,7 +23,7 @@ layout(set = 0, binding = 2, scalar) writeonly buffer vct_sum_words
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= counts.again) return;
-    uint at = again_list[i] * VCT_SUM_WORDS;
+    if (i >= counts.accumulated) return;
+    uint at = accumulated_list[i] * VCT_SUM_WORDS;
     for (uint k = 0u; k < VCT_SUM_WORDS; k++) sums[at + k] = 0u;
 }

@@ -1,8 +1,5 @@
-// The voxels that surfaces touch, counted on the CPU: voxelize/voxelize.glsl and
-// voxelize/overlap.glsl once more, so that it can be said before the first frame what there is no
-// room for.
-#include "techniques/vct/clipmap/grid.h"
-#include "techniques/vct/vct_diagnostics.h"
+// voxelize/voxelize.glsl and voxelize/overlap.glsl in C.
+#include "techniques/vct_voxel_count.h"
 
 #include "core/vec.h"
 #include "scene/scene.h"

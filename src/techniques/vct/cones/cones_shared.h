@@ -1,0 +1,76 @@
+// What the shaders that trace cones share with the host. Scalar layout.
+#ifndef AG_VCT_CONES_SHARED_H
+#define AG_VCT_CONES_SHARED_H
+
+#include "techniques/vct/vct_shared.h"
+
+#define VCT_MAX_CONES      25
+#define VCT_MAX_INTERLEAVE 5
+#define VCT_GATHER_ROW     4 // pixels that one invocation gathers for
+
+// Uniform block "vct_cones".
+struct vct_cone_params {
+    // Direction and weight. Of voxels: about +z, weights in sr, Σ = π. Of pixels: in world space,
+    // Σ = 1.
+    vec4s cones[VCT_MAX_CONES];
+    uint32_t cone_count;
+    uint32_t interleave;
+    uint32_t step;          // pixels of the frame per pixel that traces cones, in x and y
+    uint32_t width, height; // of the images of traced pixels
+    float width_per_m;      // cone width in step sizes over the distance
+    float offset;           // texels of the light volume
+    float gain;
+    float texel_m; // of the finest level
+    uint32_t last_mip;
+    float pixel; // width of a pixel over the distance
+};
+
+// Storage block "vct_small_emitters".
+#define VCT_MAX_SMALL_EMITTERS 16
+#define VCT_EMITTER_POINTS     12
+struct vct_small_emitter {
+    vec3s radiance; // scaled
+    float area_m2;  // of each point
+    uint32_t both_sides;
+    vec3s positions[VCT_EMITTER_POINTS]; // world space
+    vec3s normals[VCT_EMITTER_POINTS];   // unit, of the front
+};
+
+// Uniform block "vct_specular".
+struct vct_specular_params {
+    float tan_half; // of each cone's half-angle; 0: from the roughness
+    float step_size;
+    float offset; // texels of the light volume
+    float gain;
+    float texel_m; // of the finest level
+    uint32_t last_mip;
+};
+
+// Uniform block "vct_environment_brdf": specular albedo under uniform light is F0 · first + second;
+// nodes evenly in n·v, then roughness.
+#define VCT_BRDF_NODES 16
+struct vct_environment_brdf_table {
+    float pairs[VCT_BRDF_NODES * VCT_BRDF_NODES * 2];
+};
+
+// Uniform block "vct_history": the image plane of the previous frame. Pixel (x, y) sees along
+// forward + x · right + y · down, per distance along the view axis; world space.
+struct vct_history_params {
+    vec3s right, down, forward;
+    float pixel;    // width of a pixel over the distance
+    float most;     // largest weight of the history, frames
+    float clamp;    // standard deviations; 0: none
+    float scale;    // radiance scale of this frame over that of the previous one
+    uint32_t known; // bool: there is a previous frame
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
+               "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_small_emitter) == (5 + 6 * VCT_EMITTER_POINTS) * 4,
+               "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_specular_params) == 6 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 14 * 4, "layout is shared with GLSL");
+#endif
+
+#endif

@@ -1,0 +1,10 @@
+// Specular cones: one for each pixel.
+#pragma once
+
+#include "frame/frame.h"
+#include "techniques/vct/cones/cones_shared.h"
+
+struct vct;
+
+void vct_fill_environment_brdf(struct vct_environment_brdf_table *out);
+void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -1,0 +1,19 @@
+// Light on the voxels: direct light, emission, and light from other voxels.
+#pragma once
+
+#include "frame/frame.h"
+
+// What else the light that emitters and the sky cast on voxels depends on.
+struct vct_bounce_inputs {
+    vec3s sky; // scaled
+    float radiance_scale;
+};
+
+struct vct;
+
+// Gathers light from other voxels. Before vct_record_light.
+void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+// Lights the voxels and fills the light volume.
+void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+// Fills the light volume again from voxels that are lit already.
+void vct_refill_volume(struct vct *vct, struct gpu_cmd *cmd);

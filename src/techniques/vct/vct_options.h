@@ -1,0 +1,29 @@
+// The options of vct and vctao.
+#pragma once
+
+#include "core/option.h"
+#include "techniques/technique.h"
+#include "techniques/vct/cones/cone_sets.h"
+#include "techniques/vct/vct_shared.h"
+#include "techniques/vct/voxelize/voxelize.h"
+
+enum vct_storage { VCT_MIPS, VCT_SVO }; // choices of the option
+
+// Of both techniques.
+struct vct_options {
+#define OPTION       OPTION_FIELD
+#define VCT_OPTION   OPTION_FIELD
+#define VCTAO_OPTION OPTION_FIELD
+#include "techniques/vct/vct_options.def"
+#undef VCTAO_OPTION
+#undef VCT_OPTION
+#undef OPTION
+    bool occlusion; // vctao: cones measure visibility, not light
+};
+
+// The options of a technique with fixed values in place of those that it lacks.
+struct vct_options vct_light_options(const void *options);
+struct vct_options vct_occlusion_options(const void *options);
+// Whether the options go together and fit the device.
+bool vct_check_options(const char *technique, const struct technique_create *how,
+                       const struct vct_options *options);
