@@ -1,4 +1,4 @@
-// Any two axes with a normal, as columns x, y, n (Duff et al. 2017).
+// An orthonormal basis around a normal, columns x, y, n (Duff et al. 2017).
 #ifndef AG_VCT_AXES_GLSL
 #define AG_VCT_AXES_GLSL
 

@@ -1,7 +1,7 @@
-// Light that other voxels and the sky bring to each voxel, by cones: irradiance on both sides of
-// its sheet. What surfaces that glow bring on their straight way, and with more bounces all that
-// the voxels sent out in the last frame. Voxels of one block that are parts of one sheet get what
-// is brought to their middle: such light changes slowly.
+// Light from other voxels and the sky on each voxel, by cones: irradiance on both sides of its
+// surface. With one bounce from emission and sky only, with more from all light that the voxels
+// sent in the previous frame. Voxels of one block that lie on one surface share the irradiance at
+// their centre: bounced light varies slowly.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -49,7 +49,7 @@ layout(set = 0, binding = 9, scalar) readonly buffer vct_word_offsets
 #define VCT_SMALL_EMITTERS_BINDING 10
 #include "techniques/vct/cones/small_emitters.glsl"
 
-const uint EMITTER_SAMPLES = 4u; // of the points that a lamp has
+const uint EMITTER_SAMPLES = 4u; // of the points on a small emitter
 
 vec3 small_emitters_at(vec3 at, vec3 normal)
 {
@@ -65,8 +65,7 @@ vec3 small_emitters_at(vec3 at, vec3 normal)
 vec3 irradiance(vec3 position, vec3 normal)
 {
     mat3 world_from_local = vct_axes_about(normal);
-    // With one grid both are the same, and the origin that is in the position goes out again
-    // without rounding.
+    // With one grid both origins are equal, and the subtraction is exact.
     vec3 at = (position - (VCT_CLIPS > 1 ? clips.origin_m : vct.origin_m)) / set.texel_m;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < set.cone_count; i++) {
@@ -78,20 +77,20 @@ vec3 irradiance(vec3 position, vec3 normal)
     return min(sum, vec3(HALF_MAX));
 }
 
-const float ONE_SHEET = 0.9; // least cosine of the normals of voxels that are one sheet: 26 degrees
+const float ONE_SURFACE = 0.9; // least cosine between normals of one surface: 26 degrees
 
-// How far they lie at most from the plane of the first: a quarter of the block, in voxels.
-float one_plane()
+// Largest distance from the plane of the first voxel: a quarter of the block, in voxels.
+float max_plane_distance()
 {
     return 0.5 * float(VCT_BLOCK);
 }
 
-// A block's voxels lie in rows of texels along x, whose voxels have 8 bits each and follow on each
-// other: their bits, those that are in no sheet yet, those of the sheet at hand, and the first
-// one's slot. Each invocation has its own.
-const uint ROWS = VCT_BLOCK * VCT_BLOCK, MOST_ROWS = 16u;
-shared uint rows_all[MOST_ROWS * VCT_BLOCK_LOCAL], rows_left[MOST_ROWS * VCT_BLOCK_LOCAL],
-    rows_part[MOST_ROWS * VCT_BLOCK_LOCAL], rows_first[MOST_ROWS * VCT_BLOCK_LOCAL];
+// The voxels of a block are stored in rows of texels along x, 8 bits per texel. Per row: all
+// occupied bits, those without a part yet, those of the current part, and the slot of the first
+// voxel. Each invocation has its own rows.
+const uint ROWS = VCT_BLOCK * VCT_BLOCK, MAX_ROWS = 16u;
+shared uint rows_occupied[MAX_ROWS * VCT_BLOCK_LOCAL], rows_left[MAX_ROWS * VCT_BLOCK_LOCAL],
+    rows_part[MAX_ROWS * VCT_BLOCK_LOCAL], rows_first[MAX_ROWS * VCT_BLOCK_LOCAL];
 
 uint own(uint row)
 {
@@ -105,16 +104,17 @@ void read_rows(ivec3 first_texel)
         uint shift = 8u * (index & 3u), word = mask[index >> 2];
         uint bits = word >> shift & (VCT_BLOCK == 4u ? ~0u : 0xffffu);
         uint first = before[index >> 2] + uint(bitCount(word & ((1u << shift) - 1u)));
-        // Those that there was no room for are none.
-        for (uint room = vct.capacity - min(first, vct.capacity); uint(bitCount(bits)) > room;)
+        // Voxels beyond the capacity do not exist.
+        for (uint capacity = vct.capacity - min(first, vct.capacity);
+             uint(bitCount(bits)) > capacity;)
             bits &= ~(1u << uint(findMSB(bits)));
-        rows_all[own(row)] = rows_left[own(row)] = bits;
+        rows_occupied[own(row)] = rows_left[own(row)] = bits;
         rows_first[own(row)] = first;
     }
 }
 
-// Bit of a voxel in its row to its place in the block.
-vec3 place_of(uint row, uint bit)
+// Position of a voxel in the block, from its bit in a row.
+vec3 position_of(uint row, uint bit)
 {
     return vec3(uvec3(bit >> 3, row % VCT_BLOCK, row / VCT_BLOCK) * 2u +
                 (uvec3(bit) >> uvec3(0u, 1u, 2u) & 1u));
@@ -122,10 +122,10 @@ vec3 place_of(uint row, uint bit)
 
 uint slot_of(uint row, uint bit)
 {
-    return rows_first[own(row)] + uint(bitCount(rows_all[own(row)] & ((1u << bit) - 1u)));
+    return rows_first[own(row)] + uint(bitCount(rows_occupied[own(row)] & ((1u << bit) - 1u)));
 }
 
-// Voxels of one block that are parts of one sheet.
+// Voxels of one block that lie on one surface.
 struct vct_part {
     vec3 normal;
     vec3 position; // voxels from the block's corner × weight
@@ -133,8 +133,8 @@ struct vct_part {
     bvec2 covers; // whether there is a front, a back
 };
 
-// Takes those that are left and have the normal of the first of them and lie in its plane. False:
-// there was none.
+// Takes the first voxel without a part and all others with its normal and plane. False: none is
+// left.
 bool take_part(out vct_part part)
 {
     part = vct_part(vec3(0.0), vec3(0.0), 0.0, bvec2(false));
@@ -154,12 +154,12 @@ bool take_part(out vct_part part)
         rest &= rest - 1u;
         vct_surface surface =
             vct_unpack_surface(texelFetch(vct_surfaces, vct_voxel_texel(slot_of(row, bit)), 0));
-        vec3 position = place_of(row, bit) + 0.5 + surface.position;
+        vec3 position = position_of(row, bit) + 0.5 + surface.position;
         if (first) {
             first_normal = surface.normal;
             first_position = position;
-        } else if (dot(surface.normal, first_normal) < ONE_SHEET ||
-                   abs(dot(position - first_position, first_normal)) > one_plane()) {
+        } else if (dot(surface.normal, first_normal) < ONE_SURFACE ||
+                   abs(dot(position - first_position, first_normal)) > max_plane_distance()) {
             continue;
         }
         first = false;
@@ -185,7 +185,7 @@ void store_part(vec3 front, vec3 back)
     }
 }
 
-// One side after the other, in a loop that ends where no invocation of a group has a second one.
+// Both sides in a loop, which ends early where no invocation of a group has a second side.
 void gather(ivec3 corner, vct_part part, out vec3 front, out vec3 back)
 {
     front = back = vec3(0.0);

@@ -1,9 +1,9 @@
-// Light on the voxels: what lights make both sides of each reflect, and what they emit.
+// Light of the voxels: direct light reflected by both sides, bounced light, and emission.
 //
-// Differs from Hong 2015, sec. 2.5.3.3.9, where the texels of reflective shadow maps are scattered
-// into voxels and leave cracks where these maps are coarser than the voxels (figure 47): here each
-// voxel asks the shadow maps what it gets. There are no cracks and no order of additions, and no
-// reflective shadow map has to be drawn.
+// Differs from Hong 2015, sec. 2.5.3.3.9, which scatters texels of reflective shadow maps into
+// voxels and leaves cracks where these maps are coarser than the voxels (figure 47). Here each
+// voxel samples the shadow maps: no cracks, no dependence on the order of additions, and no
+// reflective shadow maps.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -38,18 +38,17 @@ layout(set = 0, binding = 9) uniform usampler2D vct_bounced;
 layout(constant_id = VCT_CONSTANT_HAS_LIGHTS) const bool HAS_LIGHTS = true;
 
 const float PI = 3.14159265;
-const float SHADOW_LIFT =
-    0.25; // voxels: a surface lies that far from where its voxel thinks, if it is curved
+const float SHADOW_LIFT = 0.25; // voxels: offset of curved surfaces from the mean of their voxel
 
-// A small number that loops or branches depend on. Where it comes from uniforms alone, Mesa 22.3's
-// lavapipe compiles the shader again for its value in each dispatch, which takes longer than the
-// dispatch. The length of a buffer, which is never less, keeps it from that.
-uint kept(uint number)
+// A small value that loops or branches depend on. Mesa 22.3's lavapipe recompiles a shader for each
+// value that comes from uniforms alone, which takes longer than the dispatch. A minimum with the
+// length of a buffer, which is never less, prevents that.
+uint no_recompile(uint number)
 {
     return min(number, list.length());
 }
 
-// Irradiance by one light, scaled lux; `front` says of which side.
+// Irradiance from one light, scaled lux; `front`: the lit side.
 vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
 {
     vec3 to_light = -light.direction;
@@ -58,7 +57,7 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
         to_light = light.position - position;
         float distance2 = dot(to_light, to_light);
         to_light *= inversesqrt(max(distance2, 1e-12));
-        // A light in a voxel is not nearer to it than its side is long.
+        // Limits the distance to a light inside of the voxel.
         float nearest = max(LIGHT_MIN_DISTANCE_M, 0.5 * vct.cell_m);
         attenuation = light_cone(light, -to_light) * light_window(light, distance2) /
                       max(distance2, nearest * nearest);
@@ -70,7 +69,7 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
     if (light.shadow_first >= 0)
         attenuation *=
             shadow_visibility(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light,
-                              true, vct.shadow_size, int(kept(uint(vct.shadow_radius))));
+                              true, vct.shadow_size, int(no_recompile(uint(vct.shadow_radius))));
     return light.intensity * (attenuation * abs(cosine));
 }
 
@@ -92,7 +91,7 @@ void main()
     r.emitted_back = clamp(r.emitted_back * emission_scaled, -HALF_MAX, HALF_MAX);
 
     vec3 front = vec3(0.0), back = vec3(0.0);
-    for (uint i = 0; HAS_LIGHTS && i < kept(vct.light_count); i++) {
+    for (uint i = 0; HAS_LIGHTS && i < no_recompile(vct.light_count); i++) {
         bool at_front;
         vec3 e = irradiance(frame_light_table[i], position, surface.normal, at_front);
         if (at_front)
@@ -100,7 +99,7 @@ void main()
         else
             back += e;
     }
-    if (kept(vct.bounced) != 0u) {
+    if (no_recompile(vct.bounced) != 0u) {
         uvec4 bounced = texelFetch(vct_bounced, vct_bounced_texel(slot), 0);
         vec2 middle = unpackHalf2x16(bounced.y);
         front += vec3(unpackHalf2x16(bounced.x), middle.x);

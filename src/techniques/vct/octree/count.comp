@@ -1,4 +1,4 @@
-// Marked nodes in each block of nodes at a depth.
+// Counts the marked nodes in each block of nodes at a depth.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

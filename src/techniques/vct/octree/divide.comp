@@ -1,5 +1,5 @@
-// Marked nodes get a brick each, in the order of their places, and empty children but for the
-// leaves. Those that there is no room for become empty.
+// Subdivides marked nodes: each gets a brick, in node order, and above the leaves eight empty
+// children. Nodes beyond the capacity become empty.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -24,14 +24,14 @@ layout(set = 0, binding = 2, scalar) readonly buffer vct_svo_blocks
 };
 layout(set = 0, binding = 3, scalar) buffer vct_svo_brick_coords
 {
-    uint brick_coords[];
-}; // of the node that a brick is of
+    uint brick_coords[]; // of the brick's node
+};
 #define VCT_SVO_LEVELS_BINDING 4
 #define VCT_SVO_LEVELS_ACCESS  readonly
 #include "techniques/vct/octree/levels.glsl"
 #include "techniques/vct/octree/octree.glsl"
 
-ivec3 place_of(uint node)
+ivec3 coord_of(uint node)
 {
     uint tile = node / 8u;
     ivec3 child = ivec3(node & 1u, node >> 1 & 1u, node >> 2 & 1u);
@@ -47,12 +47,12 @@ void main()
     uint rank = blocks[block];
     for (uint i = first; i < end; i++) {
         if ((nodes[i] & SVO_MARKED) == 0u) continue;
-        bool room = rank < levels[push.depth].count;
+        bool fits = rank < levels[push.depth].count;
         uint brick = levels[push.depth].first + rank;
         rank++;
-        nodes[i] = room ? brick + 1u : 0u;
-        if (!room) continue;
-        brick_coords[brick] = svo_pack(place_of(i));
+        nodes[i] = fits ? brick + 1u : 0u;
+        if (!fits) continue;
+        brick_coords[brick] = svo_pack(coord_of(i));
         if (push.depth + 1u == svo.depths) continue;
         for (uint child = 0u; child < 8u; child++) nodes[8u * (brick + 1u) + child] = 0u;
     }

@@ -1,6 +1,6 @@
-// Light of the voxels in each leaf on the points of its brick. A point within has 2 × 2 × 2 voxels,
-// as a texel of the finest mip has; one on a side gets half of its voxels here and the other half
-// by the neighbour (octree/join.comp).
+// Light of the voxels in each leaf to the points of its brick. An inner point covers 2 × 2 × 2
+// voxels, like a texel of the finest mip; a point on a side gets half of its voxels here and the
+// other half in the neighbour (octree/join.comp).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -36,8 +36,7 @@ void main()
     if (i >= levels[push.depth].count || texel >= 27u) return;
     uint brick = levels[push.depth].first + i;
     ivec3 point = ivec3(texel % 3u, texel / 3u % 3u, texel / 9u);
-    // Of the four voxels across a leaf the points have the first, the two in the middle, and the
-    // last.
+    // Of the four voxels across a leaf the points cover the first, the middle two and the last.
     ivec3 from = 4 * svo_unpack(brick_coords[brick]) + point + (point >> 1);
     ivec3 size = min(1 + (point & 1), vct_cells() - from);
     vec4 sum[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));

@@ -1,10 +1,9 @@
-// Points that two neighbours along an axis share get one value in both bricks (Hong 2015,
-// sec. 2.5.3.3.9, figure 48, where two passes an axis do this; here the lower one of two nodes does
-// it for both). One dispatch an axis.
+// Makes the points that two neighbours share equal in both bricks (Hong 2015, sec. 2.5.3.3.9,
+// figure 48, in two passes per axis; here the lower node writes both). One dispatch per axis.
 //
-// Both have half of what is at the point. In the leaves these are the voxels on both sides of it:
-// of two that lie one behind the other the nearer covers the farther, and what lies side by side is
-// averaged. Further up each has twice its half of the Gaussian, and the mean of both is the whole.
+// Each brick holds half of the point. Leaves: the voxels on either side; voxels behind each other
+// are composited front to back, adjacent ones averaged. Above: each holds twice its half of the
+// Gaussian, so that the mean of both is the whole.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

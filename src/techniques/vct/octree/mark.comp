@@ -1,6 +1,5 @@
-// Which nodes at a depth have something in their bricks: every voxel marks those that its point
-// lies in or on (Hong 2015, sec. 2.5.3.2.4). A point on a border is in up to eight bricks, and all
-// of them get what is there.
+// Marks the nodes at a depth that will have a brick: every voxel marks the nodes that contain or
+// touch its point (Hong 2015, sec. 2.5.3.2.4). A point on a border is in up to eight bricks.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

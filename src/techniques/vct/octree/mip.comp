@@ -1,12 +1,12 @@
-// The bricks of a level from those of their nodes' children (Hong 2015, sec. 2.5.3.3.3): an octant
-// of a child's brick, 2 × 2 × 2 points, makes one as 2 × 2 × 2 texels of a mip do, and a point is
-// the mean of the octants about it. As octants overlap in the points that they share, this weighs 3
-// × 3 × 3 points with 1 2 1 along each axis, which is the paper's Gaussian. Along the way of one of
-// six volumes the nearer point covers the farther, so that a thin wall stays as opaque as it is.
+// Bricks of a level from the bricks of their nodes' children (Hong 2015, sec. 2.5.3.3.3). An octant
+// of a child's brick, 2 × 2 × 2 points, is reduced like 2 × 2 × 2 texels of a mip, and a point is
+// the mean of its octants. Octants overlap in shared points, so that 3 × 3 × 3 points have the
+// weights 1 2 1 along each axis: the paper's Gaussian. Anisotropic voxels composite the nearer
+// point over the farther one along their direction, so that a thin wall keeps its opacity.
 //
-// Of a point on a side only the octants within are known here: its half of the Gaussian, doubled.
-// octree/join.comp makes it whole. Where there is no neighbour it stays: nothing is lost where the
-// tree ends.
+// A point on a side knows only the octants inside of the node: its half of the Gaussian, doubled.
+// octree/join.comp adds the other half. Without a neighbour the value stays, so that no light is
+// lost where the tree ends.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -37,7 +37,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer vct_svo_brick_coords
 #include "techniques/vct/octree/levels.glsl"
 #include "techniques/vct/octree/octree.glsl"
 
-// An octant of a brick along a way, of which `size` points along each axis lie in the grid.
+// An octant of a brick for a direction; `size` points along each axis lie in the grid.
 vec4 octant(ivec3 from, int direction_index, ivec3 size)
 {
     int axis = direction_index / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;

@@ -1,5 +1,5 @@
-// The nodes are made from the list of occupied voxels, level by level from the root, the bricks of
-// radiance from the leaves up (Hong 2015, sec. 2.5.3.2 and 2.5.3.3.3).
+// Nodes are built from the list of occupied voxels, level by level from the root; bricks of
+// radiance are filled from the leaves up (Hong 2015, sec. 2.5.3.2 and 2.5.3.3.3).
 #include "techniques/vct/octree/octree.h"
 
 #include "techniques/vct/vct_bindings.h"
@@ -25,7 +25,7 @@ static void mark(struct vct *vct, struct gpu_cmd *cmd, const struct vct_voxel_se
                           &push, sizeof push, set->arguments, 0);
 }
 
-// A pass over blocks of nodes at a depth. The level above counts them.
+// A pass over blocks of nodes at a depth; the level above holds the group count.
 static void over_nodes(struct gpu_cmd *cmd, const struct vct_svo *svo, gpu_pipeline pipeline,
                        const struct gpu_binding *bindings, int count, uint32_t depth)
 {

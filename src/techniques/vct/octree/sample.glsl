@@ -1,8 +1,8 @@
-// A look into the octree, as volume/sample.glsl is one into the mips: down from the root to the
-// node of the level that has the place, and into its brick. There is nothing where the tree has no
+// Sampling of the octree, with the interface of volume/sample.glsl: descends from the root to the
+// node of the level that contains the position, and samples its brick. Empty where the tree has no
 // node.
-#ifndef AG_VCT_SVO_LOOK_GLSL
-#define AG_VCT_SVO_LOOK_GLSL
+#ifndef AG_VCT_SVO_SAMPLE_GLSL
+#define AG_VCT_SVO_SAMPLE_GLSL
 
 #include "techniques/vct/volume/directions.glsl"
 
@@ -16,7 +16,7 @@ layout(set = 0, binding = 21, scalar) readonly buffer vct_svo_nodes
 vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 counted,
                                     int level)
 {
-    // Texels of level 0 are distances of points; a level's are twice as large each.
+    // A texel of level 0 is one point spacing; it doubles with each level.
     vec3 points = clamp(at, vec3(0.0), vec3(vct_cells() / 2)) / float(1 << level);
     ivec3 node = min(ivec3(0.5 * points), svo_nodes_in_use(level) - 1);
     uint brick = svo_find(node, svo.depths - 1u - uint(level));

@@ -1,5 +1,5 @@
-// From the marked nodes in each block to those before it, by one workgroup; which bricks they get,
-// how many there is no room for, and how many groups the passes over them have.
+// Exclusive prefix sum of the marked nodes in each block, by one workgroup. Allocates bricks,
+// counts the overflow and writes the group counts of indirect dispatches.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -36,38 +36,38 @@ uint groups_of(uint count, uint local)
 
 void main()
 {
-    uint me = gl_LocalInvocationID.x;
+    uint lane = gl_LocalInvocationID.x;
     uint count = (svo_node_count(push.depth) + VCT_SVO_BLOCK - 1u) / VCT_SVO_BLOCK;
     uint each = (count + VCT_SCAN_LOCAL - 1u) / VCT_SCAN_LOCAL;
-    uint first = min(me * each, count), end = min(first + each, count);
+    uint first = min(lane * each, count), end = min(first + each, count);
     uint sum = 0u;
     for (uint i = first; i < end; i++) sum += blocks[i];
-    before[me] = sum;
+    before[lane] = sum;
     barrier();
     for (uint step = 1u; step < VCT_SCAN_LOCAL; step *= 2u) {
-        uint add = me >= step ? before[me - step] : 0u;
+        uint add = lane >= step ? before[lane - step] : 0u;
         barrier();
-        before[me] += add;
+        before[lane] += add;
         barrier();
     }
-    uint running = before[me] - sum;
+    uint running = before[lane] - sum;
     for (uint i = first; i < end; i++) {
         uint here = blocks[i];
         blocks[i] = running;
         running += here;
     }
-    if (me != VCT_SCAN_LOCAL - 1u) return;
+    if (lane != VCT_SCAN_LOCAL - 1u) return;
     uint taken =
         push.depth == 0u ? 0u : levels[push.depth - 1u].first + levels[push.depth - 1u].count;
-    // What has children needs a tile for them too.
-    uint most = push.depth + 1u < svo.depths ? min(svo.bricks, svo.tiles) : svo.bricks;
-    uint kept = min(running, most - min(taken, most));
+    // Inner nodes also need a tile for their children.
+    uint capacity = push.depth + 1u < svo.depths ? min(svo.bricks, svo.tiles) : svo.bricks;
+    uint allocated = min(running, capacity - min(taken, capacity));
     levels[push.depth].first = taken;
-    levels[push.depth].count = kept;
-    levels[push.depth].overflow = running - kept;
-    levels[push.depth].node_groups[0] = groups_of(8u * kept, VCT_SVO_BLOCK * VCT_LOCAL);
-    levels[push.depth].texel_groups[0] = groups_of(kept, VCT_SVO_LOCAL / 32u);
-    levels[push.depth].side_groups[0] = groups_of(kept, VCT_SVO_LOCAL / 16u);
+    levels[push.depth].count = allocated;
+    levels[push.depth].overflow = running - allocated;
+    levels[push.depth].node_groups[0] = groups_of(8u * allocated, VCT_SVO_BLOCK * VCT_LOCAL);
+    levels[push.depth].texel_groups[0] = groups_of(allocated, VCT_SVO_LOCAL / 32u);
+    levels[push.depth].side_groups[0] = groups_of(allocated, VCT_SVO_LOCAL / 16u);
     for (int k = 1; k < 3; k++)
         levels[push.depth].node_groups[k] = levels[push.depth].texel_groups[k] =
             levels[push.depth].side_groups[k] = 1u;
