@@ -102,7 +102,7 @@ struct gpu *gpu_create(struct host *host, const struct gpu_desc *desc)
         gpu->shader_dir = host_strdup(host, desc->shader_dir);
         if (!gpu->shader_dir) goto fail;
         if (access(gpu->shader_dir, R_OK | X_OK) != 0)
-            host_log(host, LOG_WARNING, "gpu shaders %s: %s; the built-in ones are used",
+            host_log(host, LOG_WARNING, "gpu shaders %s: %s; the embedded ones are used",
                      gpu->shader_dir, strerror(errno));
     }
     if (!create_shared(gpu)) goto fail;

@@ -1,5 +1,5 @@
 // Direct light against closed forms and a C twin of the reflection.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,37 +23,37 @@ static double reflect(double albedo, double metallic, double roughness, vec3s n,
 }
 
 // Reflection of the visible point of y = 0 at a pixel, with the G-buffer's own albedo.
-static double reflect_at(struct studio *s, uint32_t x, uint32_t y, vec3s l)
+static double reflect_at(struct frame_fixture *s, uint32_t x, uint32_t y, vec3s l)
 {
-    vec3s n = vec3_of(0, 1, 0), p = studio_ray_on_plane(s, x, y, n, 0);
+    vec3s n = vec3_of(0, 1, 0), p = fixture_ray_on_plane(s, x, y, n, 0);
     vec3s v = glms_vec3_normalize(glms_vec3_sub(s->input.camera.eye, p));
-    vec3s rm = studio_pixel(s, READ_ROUGHNESS_METALLIC, x, y);
-    return reflect((double)studio_pixel(s, READ_ALBEDO, x, y).x, (double)rm.y, (double)rm.x, n, v,
+    vec3s rm = fixture_pixel(s, READ_ROUGHNESS_METALLIC, x, y);
+    return reflect((double)fixture_pixel(s, READ_ALBEDO, x, y).x, (double)rm.y, (double)rm.x, n, v,
                    l);
 }
 
-static void begin_on_floor(struct studio *s, struct gpu *gpu, float albedo)
+static void begin_on_floor(struct frame_fixture *s, struct gpu *gpu, float albedo)
 {
-    studio_init(s, gpu);
-    studio_floor(s, 8, studio_matte(s, vec3_of(albedo, albedo, albedo)));
-    studio_look(s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
+    fixture_init(s, gpu);
+    fixture_floor(s, 8, fixture_matte(s, vec3_of(albedo, albedo, albedo)));
+    fixture_look(s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
 }
 
 TEST_GPU(sun_on_a_plane_reads_e_cos_times_the_reflection)
 {
     for (int i = 0; i < 4; i++) {
-        struct studio s;
+        struct frame_fixture s;
         begin_on_floor(&s, gpu, 0.5f);
         vec3s to_sun = glms_vec3_normalize(vec3_of(0.5f * (float)i, 1, 0.2f));
-        studio_add_sun(&s, glms_vec3_negate(to_sun), vec3_of(1000, 1000, 1000));
-        studio_open(&s);
-        studio_render(&s);
-        double lambert = (double)studio_pixel(&s, READ_ALBEDO, 10, 20).x / PI;
+        fixture_add_sun(&s, glms_vec3_negate(to_sun), vec3_of(1000, 1000, 1000));
+        fixture_open(&s);
+        fixture_render(&s);
+        double lambert = (double)fixture_pixel(&s, READ_ALBEDO, 10, 20).x / PI;
         double expected = 1000 * (double)to_sun.y * reflect_at(&s, 10, 20, to_sun);
-        CHECK_RELATIVE(studio_pixel(&s, READ_DIRECT, 10, 20).x, expected, 2e-3);
+        CHECK_RELATIVE(fixture_pixel(&s, READ_DIRECT, 10, 20).x, expected, 2e-3);
         // Almost all of it is Lambert's: at full roughness GGX adds a few per cent.
         CHECK_RELATIVE(expected, 1000 * (double)to_sun.y * lambert, 0.05);
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
@@ -63,78 +63,78 @@ TEST_GPU(glossy_and_metallic_reflection_equals_its_twin)
         { 0, 0.2f }, { 1, 0.2f }, { 1, 0.6f }, { 0.4f, 0.4f }, { 1, 1 }
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct studio s;
-        studio_init(&s, gpu);
+        struct frame_fixture s;
+        fixture_init(&s, gpu);
         struct material m = material_default();
         m.base_color = (vec4s){ { 0.8f, 0.8f, 0.8f, 1 } };
         m.metallic = cases[i][0];
         m.roughness = cases[i][1];
-        studio_floor(&s, 8, studio_material(&s, &m));
-        studio_look(&s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
+        fixture_floor(&s, 8, fixture_material(&s, &m));
+        fixture_look(&s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
         vec3s to_sun =
             glms_vec3_normalize(vec3_of(0, 1, -1)); // mirrors into the middle of the picture
-        studio_add_sun(&s, glms_vec3_negate(to_sun), vec3_of(10, 10, 10));
-        studio_open(&s);
-        studio_render(&s);
+        fixture_add_sun(&s, glms_vec3_negate(to_sun), vec3_of(10, 10, 10));
+        fixture_open(&s);
+        fixture_render(&s);
         for (uint32_t y = 12; y < 20; y += 2) {
             double expected = 10 * (double)to_sun.y * reflect_at(&s, 17, y, to_sun);
             // Normals of 11 bits turn a narrow lobe a little.
-            CHECK_RELATIVE(studio_pixel(&s, READ_DIRECT, 17, y).x, expected, 1e-2);
+            CHECK_RELATIVE(fixture_pixel(&s, READ_DIRECT, 17, y).x, expected, 1e-2);
         }
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 TEST_GPU(point_light_falls_off_with_the_square_of_the_distance)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
     vec3s light = vec3_of(0.3f, 1.5f, -0.4f);
-    studio_add_point(&s, light, vec3_of(100, 100, 100));
-    studio_open(&s);
-    studio_render(&s);
+    fixture_add_point(&s, light, vec3_of(100, 100, 100));
+    fixture_open(&s);
+    fixture_render(&s);
     for (uint32_t y = 14; y < 32; y += 4) {
-        vec3s p = studio_ray_on_plane(&s, 5, y, vec3_of(0, 1, 0), 0);
+        vec3s p = fixture_ray_on_plane(&s, 5, y, vec3_of(0, 1, 0), 0);
         vec3s to_light = glms_vec3_sub(light, p);
         double r2 = (double)glms_vec3_norm2(to_light);
         vec3s l = glms_vec3_normalize(to_light);
         double expected = 100 / r2 * (double)l.y * reflect_at(&s, 5, y, l);
-        CHECK_RELATIVE(studio_pixel(&s, READ_DIRECT, 5, y).x, expected, 3e-3);
+        CHECK_RELATIVE(fixture_pixel(&s, READ_DIRECT, 5, y).x, expected, 3e-3);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(limited_range_ends_at_the_range)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
-    struct world_light *light = studio_add_point(&s, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
-    studio_open(&s);
-    studio_render(&s);
-    double unlimited = (double)studio_pixel(&s, READ_DIRECT, 16, 16).x;
-    vec3s p = studio_ray_on_plane(&s, 16, 16, vec3_of(0, 1, 0), 0);
+    struct world_light *light = fixture_add_point(&s, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
+    fixture_open(&s);
+    fixture_render(&s);
+    double unlimited = (double)fixture_pixel(&s, READ_DIRECT, 16, 16).x;
+    vec3s p = fixture_ray_on_plane(&s, 16, 16, vec3_of(0, 1, 0), 0);
     double ratio2 = (double)glms_vec3_norm2(glms_vec3_sub(light->position, p)) / (1.5 * 1.5);
     light->range_m = 1.5f;
-    studio_render(&s);
-    CHECK_RELATIVE(studio_pixel(&s, READ_DIRECT, 16, 16).x, unlimited * (1 - ratio2 * ratio2),
+    fixture_render(&s);
+    CHECK_RELATIVE(fixture_pixel(&s, READ_DIRECT, 16, 16).x, unlimited * (1 - ratio2 * ratio2),
                    2e-3);
     light->range_m = 0.9f;
-    studio_render(&s);
-    CHECK(studio_pixel(&s, READ_DIRECT, 16, 16).x == 0.0f);
-    studio_finish(&s);
+    fixture_render(&s);
+    CHECK(fixture_pixel(&s, READ_DIRECT, 16, 16).x == 0.0f);
+    fixture_finish(&s);
 }
 
 TEST_GPU(spot_falls_off_between_its_inner_and_outer_angle)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
     vec3s from = vec3_of(0, 2, 0);
-    studio_add_spot(&s, from, vec3_of(0, -1, 0), 0.2f, 0.6f, vec3_of(100, 100, 100));
-    studio_open(&s);
-    studio_render(&s);
+    fixture_add_spot(&s, from, vec3_of(0, -1, 0), 0.2f, 0.6f, vec3_of(100, 100, 100));
+    fixture_open(&s);
+    fixture_render(&s);
     int inside = 0, between = 0, outside = 0;
     for (uint32_t x = 0; x < 32; x++) {
-        vec3s p = studio_ray_on_plane(&s, x, 16, vec3_of(0, 1, 0), 0);
+        vec3s p = fixture_ray_on_plane(&s, x, 16, vec3_of(0, 1, 0), 0);
         vec3s to_light = glms_vec3_sub(from, p);
         vec3s l = glms_vec3_normalize(to_light);
         double t = ((double)l.y - cos(0.6)) / (cos(0.2) - cos(0.6));
@@ -142,106 +142,106 @@ TEST_GPU(spot_falls_off_between_its_inner_and_outer_angle)
         inside += t >= 1, between += t > 0 && t < 1, outside += t <= 0;
         double expected = 100 * cone / (double)glms_vec3_norm2(to_light) * (double)l.y;
         expected *= reflect_at(&s, x, 16, l);
-        CHECK_NEAR(studio_pixel(&s, READ_DIRECT, x, 16).x, expected, 3e-3 * (expected + 0.01));
+        CHECK_NEAR(fixture_pixel(&s, READ_DIRECT, x, 16).x, expected, 3e-3 * (expected + 0.01));
     }
     CHECK(inside > 0 && between > 0 && outside > 0);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(half_the_sun_is_exactly_half_the_light)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.7f);
     struct world_light *sun =
-        studio_add_sun(&s, vec3_of(-0.3f, -1, -0.2f), vec3_of(98765, 43210, 1234));
-    studio_open(&s);
-    studio_render(&s);
-    float *whole = studio_read(&s, READ_DIRECT), scale = frame_radiance_scale(s.frame);
+        fixture_add_sun(&s, vec3_of(-0.3f, -1, -0.2f), vec3_of(98765, 43210, 1234));
+    fixture_open(&s);
+    fixture_render(&s);
+    float *whole = fixture_read(&s, READ_DIRECT), scale = frame_radiance_scale(s.frame);
     sun->intensity = glms_vec3_scale(sun->intensity, 0.5f);
-    studio_render(&s);
-    float *half = studio_read(&s, READ_DIRECT);
+    fixture_render(&s);
+    float *half = fixture_read(&s, READ_DIRECT);
     CHECK(frame_radiance_scale(s.frame) == 2 * scale);
     for (size_t i = 0; i < 32 * 32 * 3; i++) CHECK(half[i] == 0.5f * whole[i]);
     CHECK(whole[3 * (20 * 32 + 16)] > 0);
     free(whole);
     free(half);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(light_of_two_lights_is_the_sum)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
-    studio_add_sun(&s, vec3_of(-0.3f, -1, 0), vec3_of(200, 100, 50));
-    studio_add_point(&s, vec3_of(0.5f, 1, 0), vec3_of(50, 100, 200));
-    studio_open(&s);
-    studio_render(&s);
-    float *both = studio_read(&s, READ_DIRECT);
+    fixture_add_sun(&s, vec3_of(-0.3f, -1, 0), vec3_of(200, 100, 50));
+    fixture_add_point(&s, vec3_of(0.5f, 1, 0), vec3_of(50, 100, 200));
+    fixture_open(&s);
+    fixture_render(&s);
+    float *both = fixture_read(&s, READ_DIRECT);
     s.input.light_count = 1;
-    studio_render(&s);
-    float *first = studio_read(&s, READ_DIRECT);
+    fixture_render(&s);
+    float *first = fixture_read(&s, READ_DIRECT);
     s.lights[0] = s.lights[1];
-    studio_render(&s);
-    float *second = studio_read(&s, READ_DIRECT);
+    fixture_render(&s);
+    float *second = fixture_read(&s, READ_DIRECT);
     for (size_t i = 0; i < 32 * 32 * 3; i++)
         CHECK_NEAR(both[i], (double)first[i] + (double)second[i], 2e-3 * (double)both[i] + 1e-6);
     free(both);
     free(first);
     free(second);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(without_light_all_is_exactly_black)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
-    studio_open(&s);
-    studio_render(&s);
-    float *color = studio_read(&s, READ_COLOR);
+    fixture_open(&s);
+    fixture_render(&s);
+    float *color = fixture_read(&s, READ_COLOR);
     for (size_t i = 0; i < 32 * 32 * 3; i++) CHECK(color[i] == 0.0f);
     free(color);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(surfaces_turned_away_from_the_light_are_black)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
-    studio_add_sun(&s, vec3_of(0.2f, 1, 0), vec3_of(1000, 1000, 1000));
-    studio_open(&s);
-    studio_render(&s);
-    CHECK(studio_pixel(&s, READ_DIRECT, 16, 24).x == 0.0f);
-    studio_finish(&s);
+    fixture_add_sun(&s, vec3_of(0.2f, 1, 0), vec3_of(1000, 1000, 1000));
+    fixture_open(&s);
+    fixture_render(&s);
+    CHECK(fixture_pixel(&s, READ_DIRECT, 16, 24).x == 0.0f);
+    fixture_finish(&s);
 }
 
 TEST_GPU(emission_is_seen_as_its_radiance)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     struct material m = material_default();
     m.emissive = vec3_of(1200, 300, 7);
-    studio_floor(&s, 8, studio_material(&s, &m));
-    studio_look(&s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
-    studio_open(&s);
-    studio_render(&s);
-    vec3s seen = studio_pixel(&s, READ_COLOR, 16, 24);
+    fixture_floor(&s, 8, fixture_material(&s, &m));
+    fixture_look(&s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
+    fixture_open(&s);
+    fixture_render(&s);
+    vec3s seen = fixture_pixel(&s, READ_COLOR, 16, 24);
     for (int k = 0; k < 3; k++) CHECK_RELATIVE(seen.raw[k], m.emissive.raw[k], 1e-3);
-    CHECK_RELATIVE(studio_pixel(&s, READ_EMISSIVE, 16, 24).x, 1200, 1e-3);
-    studio_finish(&s);
+    CHECK_RELATIVE(fixture_pixel(&s, READ_EMISSIVE, 16, 24).x, 1200, 1e-3);
+    fixture_finish(&s);
 }
 
 TEST_GPU(empty_scene_is_the_sky)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     s.input.sky = vec3_of(1000, 2000, 4000);
-    studio_add_sun(&s, vec3_of(0, -1, 0), vec3_of(100, 100, 100));
-    studio_add_point(&s, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
-    studio_open(&s);
-    studio_render(&s);
-    float *color = studio_read(&s, READ_COLOR);
+    fixture_add_sun(&s, vec3_of(0, -1, 0), vec3_of(100, 100, 100));
+    fixture_add_point(&s, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
+    fixture_open(&s);
+    fixture_render(&s);
+    float *color = fixture_read(&s, READ_COLOR);
     for (size_t i = 0; i < 32 * 32; i++)
         for (size_t k = 0; k < 3; k++) CHECK_RELATIVE(color[3 * i + k], s.input.sky.raw[k], 1e-3);
     free(color);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

@@ -1,6 +1,6 @@
 // Emissive surfaces as virtual lights: the list holds their light, all of it, where it is.
 #include "frame/emitters.h"
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include "image/png_file.h"
 #include "image/tonemap.h"
@@ -20,41 +20,41 @@ static struct material glow(vec3s radiance)
     return m;
 }
 
-static int grey_glow(struct studio *s, float radiance)
+static int grey_glow(struct frame_fixture *s, float radiance)
 {
     struct material m = glow(vec3_of(radiance, radiance, radiance));
-    return studio_material(s, &m);
+    return fixture_material(s, &m);
 }
 
 // A square in the plane y, facing up.
-static int square(struct studio *s, float x, float y, float size, int material)
+static int square(struct frame_fixture *s, float x, float y, float size, int material)
 {
-    return studio_quad(s, vec3_of(x, y, size), vec3_of(x + size, y, size), vec3_of(x + size, y, 0),
-                       vec3_of(x, y, 0), material);
+    return fixture_quad(s, vec3_of(x, y, size), vec3_of(x + size, y, size), vec3_of(x + size, y, 0),
+                        vec3_of(x, y, 0), material);
 }
 
 struct list {
-    struct studio studio;
+    struct frame_fixture fixture;
     struct emitters emitters;
 };
 
 static void list_begin(struct list *l)
 {
-    studio_init(&l->studio, NULL);
+    fixture_init(&l->fixture, NULL);
     l->emitters = (struct emitters){ 0 };
 }
 
 static void list_make(struct list *l)
 {
-    assert_true(pose_init(&l->studio.pose, l->studio.scene, -1, 0));
-    assert_true(emitters_init(&l->emitters, test_host(), l->studio.scene));
-    emitters_update(&l->emitters, &l->studio.pose);
+    assert_true(pose_init(&l->fixture.pose, l->fixture.scene, -1, 0));
+    assert_true(emitters_init(&l->emitters, test_host(), l->fixture.scene));
+    emitters_update(&l->emitters, &l->fixture.pose);
 }
 
 static void list_finish(struct list *l)
 {
     emitters_finish(&l->emitters);
-    studio_finish(&l->studio);
+    fixture_finish(&l->fixture);
 }
 
 static vec3s sum_of(const struct emitters *e, bool (*counts)(const struct frame_emitter *))
@@ -82,7 +82,7 @@ TEST(total_flux_is_pi_times_radiance_times_area)
     struct list l;
     list_begin(&l);
     struct material m = glow(vec3_of(10, 20, 30));
-    square(&l.studio, 0, 1, 2, studio_material(&l.studio, &m));
+    square(&l.fixture, 0, 1, 2, fixture_material(&l.fixture, &m));
     list_make(&l);
     vec3s sum = sum_of(&l.emitters, NULL);
     for (int c = 0; c < 3; c++) {
@@ -133,7 +133,7 @@ TEST(both_sides_of_a_double_sided_surface_emit_the_same)
     list_begin(&l);
     struct material m = glow(vec3_of(7, 7, 7));
     m.double_sided = true;
-    square(&l.studio, 0, 0, 1, studio_material(&l.studio, &m));
+    square(&l.fixture, 0, 0, 1, fixture_material(&l.fixture, &m));
     list_make(&l);
     CHECK_RELATIVE(l.emitters.flux.x, 2 * PI * 7, 1e-6);
     CHECK_RELATIVE(sum_of(&l.emitters, faces_up).x, PI * 7, 1e-5);
@@ -141,7 +141,7 @@ TEST(both_sides_of_a_double_sided_surface_emit_the_same)
 }
 
 // A texture that is bright on the left quarter and dim elsewhere, with noise of a texel's size.
-static int texture(struct studio *s, int size, double *mean, double *mean_left)
+static int texture(struct frame_fixture *s, int size, double *mean, double *mean_left)
 {
     uint8_t *rgba = calloc((size_t)size * (size_t)size, 4);
     assert_non_null(rgba);
@@ -172,8 +172,8 @@ TEST(a_textured_emitter_has_the_mean_of_its_texture_where_the_texture_is)
         list_begin(&l);
         struct material m = glow(vec3_of(100, 50, 25));
         double mean, left;
-        m.emissive_map.image = texture(&l.studio, sizes[i], &mean, &left);
-        square(&l.studio, 0, 0, 1, studio_material(&l.studio, &m));
+        m.emissive_map.image = texture(&l.fixture, sizes[i], &mean, &left);
+        square(&l.fixture, 0, 0, 1, fixture_material(&l.fixture, &m));
         list_make(&l);
         // Both triangles are looked up at 1024 places each, bilinearly between texels.
         CHECK_RELATIVE(l.emitters.flux.x, PI * 100 * mean, 0.01);
@@ -189,13 +189,13 @@ TEST(what_a_mask_cuts_away_does_not_emit)
     list_begin(&l);
     double mean, left;
     struct material m = glow(vec3_of(1, 1, 1));
-    m.base_color_map.image = texture(&l.studio, 64, &mean, &left);
+    m.base_color_map.image = texture(&l.fixture, 64, &mean, &left);
     m.alpha_mode = ALPHA_MASK;
     m.alpha_cutoff = 0.5f;
-    square(&l.studio, 0, 0, 1, studio_material(&l.studio, &m));
+    square(&l.fixture, 0, 0, 1, fixture_material(&l.fixture, &m));
     m.base_color_map.image = -1;
     m.base_color.w = 0.25f;
-    square(&l.studio, 0, 1, 1, studio_material(&l.studio, &m)); // all of it
+    square(&l.fixture, 0, 1, 1, fixture_material(&l.fixture, &m)); // all of it
     list_make(&l);
     CHECK_RELATIVE(l.emitters.flux.x, PI / 4, 0.01);
     // The texture repeats: a little of its left edge is seen at the right one.
@@ -207,8 +207,8 @@ TEST(a_dim_wall_does_not_starve_a_lamp_nor_a_lamp_the_wall)
 {
     struct list l;
     list_begin(&l);
-    square(&l.studio, 0, 0, 100, grey_glow(&l.studio, 0.01f));   // 314 lm
-    square(&l.studio, 50, 2, 0.01f, grey_glow(&l.studio, 1e6f)); // 314 lm as well
+    square(&l.fixture, 0, 0, 100, grey_glow(&l.fixture, 0.01f));   // 314 lm
+    square(&l.fixture, 50, 2, 0.01f, grey_glow(&l.fixture, 1e6f)); // 314 lm as well
     list_make(&l);
     int lamp = 0, cells[8][8] = { { 0 } };
     for (int i = 0; i < l.emitters.count; i++) {
@@ -231,11 +231,11 @@ TEST(more_triangles_than_points_lose_no_light)
     list_begin(&l);
     struct material m = glow(vec3_of(3, 2, 1));
     m.double_sided = true;
-    int material = studio_material(&l.studio, &m);
+    int material = fixture_material(&l.fixture, &m);
     for (int i = 0; i < ACROSS * ACROSS; i++) {
         float x = (float)(i % ACROSS) / ACROSS, z = (float)(i / ACROSS) / ACROSS, d = 1.0f / ACROSS;
-        studio_quad(&l.studio, vec3_of(x, 0, z + d), vec3_of(x + d, 0, z + d), vec3_of(x + d, 0, z),
-                    vec3_of(x, 0, z), material);
+        fixture_quad(&l.fixture, vec3_of(x, 0, z + d), vec3_of(x + d, 0, z + d),
+                     vec3_of(x + d, 0, z), vec3_of(x, 0, z), material);
     }
     list_make(&l);
     CHECK(l.emitters.count == EMITTERS_MAX);
@@ -249,23 +249,23 @@ TEST(points_move_with_their_surface_and_leave_nothing_behind)
 {
     struct list l;
     list_begin(&l);
-    int instance = square(&l.studio, 0, 0, 1, grey_glow(&l.studio, 5));
-    square(&l.studio, 3, 0, 1, studio_matte(&l.studio, vec3_of(1, 1, 1)));
+    int instance = square(&l.fixture, 0, 0, 1, grey_glow(&l.fixture, 5));
+    square(&l.fixture, 3, 0, 1, fixture_matte(&l.fixture, vec3_of(1, 1, 1)));
     list_make(&l);
     size_t bytes = EMITTERS_MAX * sizeof *l.emitters.points;
     struct frame_emitter *before = malloc(bytes);
     assert_non_null(before);
     memcpy(before, l.emitters.points, bytes);
-    mat4s *node = &l.studio.pose.world_from_node[l.studio.scene->instances[instance].node];
+    mat4s *node = &l.fixture.pose.world_from_node[l.fixture.scene->instances[instance].node];
     node->raw[3][1] = 2;
-    emitters_update(&l.emitters, &l.studio.pose);
+    emitters_update(&l.emitters, &l.fixture.pose);
     for (int i = 0; i < EMITTERS_MAX; i++) {
         CHECK(l.emitters.points[i].position.y == 2);
         CHECK_NEAR(l.emitters.points[i].position.x, before[i].position.x, 1e-6);
     }
     CHECK_RELATIVE(l.emitters.flux.x, PI * 5, 1e-6);
     node->raw[3][1] = 0;
-    emitters_update(&l.emitters, &l.studio.pose);
+    emitters_update(&l.emitters, &l.fixture.pose);
     CHECK(memcmp(before, l.emitters.points, bytes) == 0);
     free(before);
     list_finish(&l);
@@ -275,11 +275,11 @@ TEST(a_mirrored_instance_emits_from_its_front)
 {
     struct list l;
     list_begin(&l);
-    int instance = square(&l.studio, 0, 0, 1, grey_glow(&l.studio, 5));
+    int instance = square(&l.fixture, 0, 0, 1, grey_glow(&l.fixture, 5));
     list_make(&l);
-    mat4s *node = &l.studio.pose.world_from_node[l.studio.scene->instances[instance].node];
+    mat4s *node = &l.fixture.pose.world_from_node[l.fixture.scene->instances[instance].node];
     node->raw[0][0] = -2; // twice as wide, and turned over
-    emitters_update(&l.emitters, &l.studio.pose);
+    emitters_update(&l.emitters, &l.fixture.pose);
     CHECK(faces_up(&l.emitters.points[0]) && l.emitters.points[0].position.x < 0);
     CHECK_RELATIVE(l.emitters.flux.x, 2 * PI * 5, 1e-6);
     list_finish(&l);
@@ -289,8 +289,8 @@ TEST(half_the_strength_is_half_the_flux_at_the_same_places)
 {
     struct list full, half;
     list_begin(&full), list_begin(&half);
-    square(&full.studio, 0, 0, 1, grey_glow(&full.studio, 8));
-    square(&half.studio, 0, 0, 1, grey_glow(&half.studio, 4));
+    square(&full.fixture, 0, 0, 1, grey_glow(&full.fixture, 8));
+    square(&half.fixture, 0, 0, 1, grey_glow(&half.fixture, 4));
     list_make(&full), list_make(&half);
     for (int i = 0; i < EMITTERS_MAX; i++) {
         const struct frame_emitter *a = &full.emitters.points[i], *b = &half.emitters.points[i];
@@ -304,9 +304,9 @@ TEST(nothing_that_glows_is_no_list)
 {
     struct list l;
     list_begin(&l);
-    square(&l.studio, 0, 0, 1, studio_matte(&l.studio, vec3_of(1, 1, 1)));
+    square(&l.fixture, 0, 0, 1, fixture_matte(&l.fixture, vec3_of(1, 1, 1)));
     list_make(&l);
-    vec3s e = emitters_irradiance(&l.emitters, l.studio.pose.bounds);
+    vec3s e = emitters_irradiance(&l.emitters, l.fixture.pose.bounds);
     CHECK(l.emitters.count == 0 && l.emitters.flux.x == 0 && e.x == 0);
     list_finish(&l);
     emitters_finish(&(struct emitters){ 0 });
@@ -317,9 +317,9 @@ TEST(mean_irradiance_of_a_glowing_cube_is_flux_over_surface)
 {
     struct list l;
     list_begin(&l);
-    studio_box(&l.studio, vec3_of(-1, 2, 3), vec3_of(4, 7, 8), true, grey_glow(&l.studio, 10));
+    fixture_box(&l.fixture, vec3_of(-1, 2, 3), vec3_of(4, 7, 8), true, grey_glow(&l.fixture, 10));
     list_make(&l);
-    CHECK_RELATIVE(emitters_irradiance(&l.emitters, l.studio.pose.bounds).x, PI * 10, 1e-4);
+    CHECK_RELATIVE(emitters_irradiance(&l.emitters, l.fixture.pose.bounds).x, PI * 10, 1e-4);
     list_finish(&l);
 }
 
@@ -327,10 +327,10 @@ TEST(a_flat_scene_keeps_no_light)
 {
     struct list l;
     list_begin(&l);
-    square(&l.studio, 0, 0, 1, grey_glow(&l.studio, 10));
+    square(&l.fixture, 0, 0, 1, grey_glow(&l.fixture, 10));
     list_make(&l);
     CHECK(l.emitters.count > 0);
-    CHECK(emitters_irradiance(&l.emitters, l.studio.pose.bounds).x == 0);
+    CHECK(emitters_irradiance(&l.emitters, l.fixture.pose.bounds).x == 0);
     CHECK(emitters_irradiance(&l.emitters, box3_empty()).x == 0);
     list_finish(&l);
 }
@@ -356,33 +356,33 @@ static void look(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 }
 
 // A room 4 m wide with a lamp below its ceiling, seen from inside.
-static void room(struct studio *s, struct gpu *gpu, float lamp_m, float radiance)
+static void room(struct frame_fixture *s, struct gpu *gpu, float lamp_m, float radiance)
 {
-    studio_init(s, gpu);
-    studio_box(s, vec3_of(-2, 0, -2), vec3_of(2, 4, 2), true,
-               studio_matte(s, vec3_of(0.5f, 0.6f, 0.7f)));
+    fixture_init(s, gpu);
+    fixture_box(s, vec3_of(-2, 0, -2), vec3_of(2, 4, 2), true,
+                fixture_matte(s, vec3_of(0.5f, 0.6f, 0.7f)));
     float h = lamp_m / 2;
-    studio_quad(s, vec3_of(-h, 3.9f, -h), vec3_of(h, 3.9f, -h), vec3_of(h, 3.9f, h),
-                vec3_of(-h, 3.9f, h), grey_glow(s, radiance));
-    studio_look(s, vec3_of(0, 2, 1.9f), vec3_of(0, 2.5f, -2));
+    fixture_quad(s, vec3_of(-h, 3.9f, -h), vec3_of(h, 3.9f, -h), vec3_of(h, 3.9f, h),
+                 vec3_of(-h, 3.9f, h), grey_glow(s, radiance));
+    fixture_look(s, vec3_of(0, 2, 1.9f), vec3_of(0, 2.5f, -2));
     s->input.auto_exposure = true;
 }
 
 TEST_GPU(techniques_get_the_list_when_they_ask_for_it)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu, 1, 1000);
     struct seen seen;
     s.indirect = (struct frame_indirect){ look, &seen, 0 };
-    studio_open(&s);
-    studio_render(&s);
+    fixture_open(&s);
+    fixture_render(&s);
     CHECK(seen.count == 0 && !seen.bound);
     s.indirect.needs = FRAME_NEEDS_EMITTERS;
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(seen.count == EMITTERS_MAX && seen.bound);
     CHECK_RELATIVE(seen.flux, PI * 1000, 1e-5);
     CHECK_RELATIVE(seen.irradiance, PI * 1000 * (2.0 / 3.0 * 3.9) / (4 * 64), 1e-4);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // From a candle's glow to a LED die's 10⁶ cd/m², tiny or wide: what is seen of the lamp is right,
@@ -391,40 +391,40 @@ TEST_GPU(no_strength_of_emission_leaves_the_range_of_the_images)
 {
     static const float sizes[] = { 0.02f, 3 }, radiances[] = { 1e-3f, 1, 1e6f };
     for (int i = 0; i < 6; i++) {
-        struct studio s;
+        struct frame_fixture s;
         room(&s, gpu, sizes[i / 3], radiances[i % 3]);
-        studio_look(&s, vec3_of(0, 3.85f, 0), vec3_of(0, 4, 0));
+        fixture_look(&s, vec3_of(0, 3.85f, 0), vec3_of(0, 4, 0));
         struct seen seen;
         s.indirect = (struct frame_indirect){ look, &seen, FRAME_NEEDS_EMITTERS };
-        studio_open(&s);
-        studio_render(&s);
-        CHECK_RELATIVE(studio_pixel(&s, READ_EMISSIVE, 16, 16).x, radiances[i % 3], 1e-3);
-        CHECK_RELATIVE(studio_pixel(&s, READ_COLOR, 16, 16).x, radiances[i % 3], 1e-3);
+        fixture_open(&s);
+        fixture_render(&s);
+        CHECK_RELATIVE(fixture_pixel(&s, READ_EMISSIVE, 16, 16).x, radiances[i % 3], 1e-3);
+        CHECK_RELATIVE(fixture_pixel(&s, READ_COLOR, 16, 16).x, radiances[i % 3], 1e-3);
         double scaled = seen.irradiance * (double)frame_radiance_scale(s.frame);
         CHECK(scaled > 0.03 && scaled < 1000); // 2⁻¹⁴ is the least normal half
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 TEST_GPU(what_emission_lights_is_metered_with_the_direct_light)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu, 0.5f, 5000);
     struct seen seen;
     s.indirect = (struct frame_indirect){ look, &seen, FRAME_NEEDS_EMITTERS };
-    studio_open(&s);
-    studio_render(&s);
+    fixture_open(&s);
+    fixture_render(&s);
     float ev, again;
     assert_true(frame_exposure(s.frame, &ev));
-    float *direct = studio_read(&s, READ_DIRECT), *albedo = studio_read(&s, READ_ALBEDO);
+    float *direct = fixture_read(&s, READ_DIRECT), *albedo = fixture_read(&s, READ_ALBEDO);
     for (size_t i = 0; i < 32 * 32 * 3; i++)
         direct[i] += (float)((double)albedo[i] / PI * seen.irradiance);
     struct image image = { 32, 32, 3, direct };
     CHECK_NEAR(ev, auto_exposure(&image), 4e-3); // the albedo is decoded from sRGB by the GPU
     s.indirect = (struct frame_indirect){ 0 };   // whoever lights the frame
-    studio_render(&s);
+    fixture_render(&s);
     assert_true(frame_exposure(s.frame, &again));
     CHECK(ev == again);
     free(direct), free(albedo);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

@@ -1,5 +1,5 @@
 // The frame as a whole: the contract's sum, exposure, sizes, time.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include "image/png_file.h"
 #include "image/tonemap.h"
@@ -10,16 +10,16 @@
 
 static const double PI = 3.14159265358979323846;
 
-static void begin(struct studio *s, struct gpu *gpu)
+static void begin(struct frame_fixture *s, struct gpu *gpu)
 {
-    studio_init(s, gpu);
-    int matte = studio_matte(s, vec3_of(0.6f, 0.5f, 0.4f));
-    studio_floor(s, 4, matte);
-    studio_quad(s, vec3_of(-0.5f, 0.5f, 0.5f), vec3_of(0.5f, 0.5f, 0.5f),
-                vec3_of(0.5f, 0.5f, -0.5f), vec3_of(-0.5f, 0.5f, -0.5f), matte);
-    studio_add_sun(s, vec3_of(0.4f, -1, 0.2f), vec3_of(1000, 900, 800));
-    studio_add_point(s, vec3_of(-1, 1, 0), vec3_of(100, 200, 300));
-    studio_look(s, vec3_of(0, 2, 3), vec3_of(0, 0, 0));
+    fixture_init(s, gpu);
+    int matte = fixture_matte(s, vec3_of(0.6f, 0.5f, 0.4f));
+    fixture_floor(s, 4, matte);
+    fixture_quad(s, vec3_of(-0.5f, 0.5f, 0.5f), vec3_of(0.5f, 0.5f, 0.5f),
+                 vec3_of(0.5f, 0.5f, -0.5f), vec3_of(-0.5f, 0.5f, -0.5f), matte);
+    fixture_add_sun(s, vec3_of(0.4f, -1, 0.2f), vec3_of(1000, 900, 800));
+    fixture_add_point(s, vec3_of(-1, 1, 0), vec3_of(100, 200, 300));
+    fixture_look(s, vec3_of(0, 2, 3), vec3_of(0, 0, 0));
     s->input.want_display = true;
     s->input.auto_exposure = true;
 }
@@ -45,20 +45,20 @@ static void fill(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 
 TEST_GPU(composite_is_the_contracts_sum)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
     struct filler f = { .irradiance = 500, .specular = 20, .visibility = 0.5f };
     s.indirect = (struct frame_indirect){
         fill, &f, FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR | FRAME_WRITES_VISIBILITY
     };
     s.input.want_indirect_layer = true;
-    studio_open(&s);
-    studio_render(&s);
+    fixture_open(&s);
+    fixture_render(&s);
     CHECK(f.saw_everything);
-    float *color = studio_read(&s, READ_COLOR), *direct = studio_read(&s, READ_DIRECT);
-    float *indirect = studio_read(&s, READ_INDIRECT), *albedo = studio_read(&s, READ_ALBEDO);
-    float *depth = studio_read(&s, READ_DEPTH),
-          visibility = studio_pixel(&s, READ_VISIBILITY, 1, 1).x;
+    float *color = fixture_read(&s, READ_COLOR), *direct = fixture_read(&s, READ_DIRECT);
+    float *indirect = fixture_read(&s, READ_INDIRECT), *albedo = fixture_read(&s, READ_ALBEDO);
+    float *depth = fixture_read(&s, READ_DEPTH),
+          visibility = fixture_pixel(&s, READ_VISIBILITY, 1, 1).x;
     CHECK_NEAR(visibility, 0.5, 0.003);
     for (size_t i = 0; i < 32 * 32 * 3; i++) {
         double expected = (double)albedo[i] / PI * 500 * (double)visibility + 20;
@@ -67,34 +67,34 @@ TEST_GPU(composite_is_the_contracts_sum)
         CHECK_RELATIVE(color[i], (double)direct[i] + (double)indirect[i], 2e-3);
     }
     free(color), free(direct), free(indirect), free(albedo), free(depth);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(without_a_technique_the_sum_is_direct_light)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    studio_open(&s);
-    studio_render(&s);
-    float *color = studio_read(&s, READ_COLOR), *direct = studio_read(&s, READ_DIRECT);
+    fixture_open(&s);
+    fixture_render(&s);
+    float *color = fixture_read(&s, READ_COLOR), *direct = fixture_read(&s, READ_DIRECT);
     CHECK(memcmp(color, direct, 32 * 32 * 3 * sizeof *color) == 0);
-    CHECK(studio_pixel(&s, READ_VISIBILITY, 3, 3).x == 1);
-    CHECK(studio_pixel(&s, READ_IRRADIANCE, 3, 3).x == 0);
+    CHECK(fixture_pixel(&s, READ_VISIBILITY, 3, 3).x == 1);
+    CHECK(fixture_pixel(&s, READ_IRRADIANCE, 3, 3).x == 0);
     free(color), free(direct);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(exposure_is_what_the_cpu_finds)
 {
     for (int i = 0; i < 3; i++) {
-        struct studio s;
+        struct frame_fixture s;
         begin(&s, gpu);
         s.width = i == 0 ? 32 : i == 1 ? 131 : 640;
         s.height = i == 0 ? 32 : i == 1 ? 77 : 360;
-        studio_look(&s, vec3_of(0, 1, 3), vec3_of(0, 1, 0)); // half of it sees nothing
-        studio_open(&s);
-        studio_render(&s);
-        float *direct = studio_read(&s, READ_DIRECT), *depth = studio_read(&s, READ_DEPTH), ev;
+        fixture_look(&s, vec3_of(0, 1, 3), vec3_of(0, 1, 0)); // half of it sees nothing
+        fixture_open(&s);
+        fixture_render(&s);
+        float *direct = fixture_read(&s, READ_DIRECT), *depth = fixture_read(&s, READ_DEPTH), ev;
         struct image image;
         assert_true(image_init(&image, test_host(), (int)s.width, (int)s.height, 4));
         for (size_t p = 0; p < (size_t)s.width * s.height; p++) {
@@ -105,7 +105,7 @@ TEST_GPU(exposure_is_what_the_cpu_finds)
         CHECK_NEAR(ev, auto_exposure(&image), 1e-3);
         image_finish(&image, test_host());
         free(direct), free(depth);
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
@@ -114,17 +114,17 @@ TEST_GPU(exposure_of_what_lies_in_shadow_follows_the_lights)
 {
     float ev[3];
     for (int i = 0; i < 3; i++) {
-        struct studio s;
+        struct frame_fixture s;
         begin(&s, gpu);
         s.input.light_count = 0;
-        studio_add_sun(&s, vec3_of(0, 1, 0), vec3_of(1000 * (i == 1 ? 2 : 1), 0, 0)); // from below
+        fixture_add_sun(&s, vec3_of(0, 1, 0), vec3_of(1000 * (i == 1 ? 2 : 1), 0, 0)); // from below
         if (i == 2) s.input.sky = vec3_of(50, 50, 50);
-        studio_look(&s, vec3_of(0, 2, 0.5f), vec3_of(0, 0, 0));
-        studio_open(&s);
-        studio_render(&s);
-        CHECK(studio_pixel(&s, READ_DIRECT, 16, 16).x == 0);
+        fixture_look(&s, vec3_of(0, 2, 0.5f), vec3_of(0, 0, 0));
+        fixture_open(&s);
+        fixture_render(&s);
+        CHECK(fixture_pixel(&s, READ_DIRECT, 16, 16).x == 0);
         assert_true(frame_exposure(s.frame, &ev[i]));
-        studio_finish(&s);
+        fixture_finish(&s);
     }
     CHECK_NEAR(ev[0], log2(0.02 * 0.5 / PI * 1000 / (1.2 * 0.18)), 1e-3);
     CHECK_NEAR(ev[1], (double)ev[0] + 1, 1e-4);
@@ -133,27 +133,27 @@ TEST_GPU(exposure_of_what_lies_in_shadow_follows_the_lights)
 
 TEST_GPU(exposure_of_a_dark_frame_is_zero_and_a_fixed_one_is_kept)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
     s.input.light_count = 0;
-    studio_open(&s);
-    studio_render(&s);
+    fixture_open(&s);
+    fixture_render(&s);
     float ev = 7;
     CHECK(frame_exposure(s.frame, &ev) && ev == 0);
     s.input.auto_exposure = false;
     s.input.exposure_ev = 3.25f;
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(frame_exposure(s.frame, &ev) && ev == 3.25f);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(display_is_the_tone_mapped_color)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    studio_open(&s);
-    studio_render(&s);
-    float *color = studio_read(&s, READ_COLOR), *display = studio_read(&s, READ_DISPLAY), ev;
+    fixture_open(&s);
+    fixture_render(&s);
+    float *color = fixture_read(&s, READ_COLOR), *display = fixture_read(&s, READ_DISPLAY), ev;
     assert_true(frame_exposure(s.frame, &ev));
     for (size_t i = 0; i < 32 * 32; i++) {
         vec3s exposed = glms_vec3_scale(vec3_of(color[3 * i], color[3 * i + 1], color[3 * i + 2]),
@@ -164,43 +164,43 @@ TEST_GPU(display_is_the_tone_mapped_color)
                        0.6 / 255);
     }
     free(color), free(display);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(frames_of_a_still_scene_are_equal)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    studio_open(&s);
-    studio_render(&s);
-    float *first = studio_read(&s, READ_COLOR);
-    studio_render(&s);
-    float *second = studio_read(&s, READ_COLOR);
+    fixture_open(&s);
+    fixture_render(&s);
+    float *first = fixture_read(&s, READ_COLOR);
+    fixture_render(&s);
+    float *second = fixture_read(&s, READ_COLOR);
     CHECK(memcmp(first, second, 32 * 32 * 3 * sizeof *first) == 0);
     free(first), free(second);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(every_size_renders)
 {
     static const uint32_t sizes[][2] = { { 1, 1 }, { 7, 3 }, { 9, 17 }, { 1, 40 }, { 64, 8 } };
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
     s.indirect.needs = FRAME_NEEDS_MOTION | FRAME_NEEDS_RSM;
-    studio_open(&s);
+    fixture_open(&s);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        studio_look(&s, vec3_of(0, 2, 3), vec3_of(0, 0.5f, 0));
-        studio_resize(&s, sizes[i][0], sizes[i][1]);
-        studio_render(&s);
-        float *color = studio_read(&s, READ_COLOR), *display = studio_read(&s, READ_DISPLAY);
-        float *motion = studio_read(&s, READ_MOTION);
+        fixture_look(&s, vec3_of(0, 2, 3), vec3_of(0, 0.5f, 0));
+        fixture_resize(&s, sizes[i][0], sizes[i][1]);
+        fixture_render(&s);
+        float *color = fixture_read(&s, READ_COLOR), *display = fixture_read(&s, READ_DISPLAY);
+        float *motion = fixture_read(&s, READ_MOTION);
         for (size_t p = 0; p < (size_t)s.width * s.height * 3; p++)
             CHECK(isfinite(color[p]) && isfinite(display[p]) && isfinite(motion[p]));
         // The middle of the picture looks at the sheet, whatever the size.
         CHECK(color[3 * ((s.height / 2) * s.width + s.width / 2)] > 0);
         free(color), free(display), free(motion);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 struct changes {
@@ -219,60 +219,60 @@ static void remember(void *user, struct gpu_cmd *cmd, const struct frame_view *v
 
 TEST_GPU(changes_are_told_once)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
     struct changes c;
     s.indirect = (struct frame_indirect){ remember, &c, 0 };
-    studio_open(&s);
-    studio_render(&s);
+    fixture_open(&s);
+    fixture_render(&s);
     CHECK(c.cut && c.moved && c.lights && c.index == 0 && c.ratio == 1);
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(!c.cut && !c.moved && !c.lights && c.index == 1 && c.ratio == 1);
     s.lights[0].intensity = glms_vec3_scale(s.lights[0].intensity, 8);
     s.lights[1].intensity = glms_vec3_scale(s.lights[1].intensity, 8);
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(!c.cut && !c.moved && c.lights && c.ratio == 0.125f);
     s.pose.world_from_node[s.scene->instances[1].node].raw[3][1] += 0.1f;
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(!c.cut && c.moved && !c.lights && c.ratio == 1);
     s.input.camera_cut = true;
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(c.cut && !c.moved && !c.lights);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(wrong_requests_are_refused_with_a_reason)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
     struct frame *bare = frame_create(test_host(), gpu, &s.options);
     assert_non_null(bare);
     CHECK(!frame_prepare(bare, &s.input, NULL));
     CHECK_STRING(test_last_message(), "frame: no scene was set");
     frame_destroy(bare);
-    studio_open(&s);
+    fixture_open(&s);
     CHECK(!frame_resize(s.frame, 0, 8) && !frame_resize(s.frame, 8, 16385));
     float pixel[3 * 32 * 32];
     CHECK(!frame_read(s.frame, READ_COLOR, pixel, 3)); // nothing rendered yet
     s.input.light_count = FRAME_MAX_LIGHTS + 1;
     CHECK(!frame_prepare(s.frame, &s.input, NULL));
     s.input.light_count = 1;
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(!frame_read(s.frame, READ_COLOR, pixel, 4));
     CHECK(!frame_read(s.frame, READ_MOTION, pixel, 3));
     CHECK_STRING(test_last_message(), "frame layer motion: it was not requested");
     frame_destroy(NULL);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(memory_estimate_bounds_what_a_frame_takes)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
     s.indirect.needs = FRAME_NEEDS_MOTION | FRAME_NEEDS_RSM;
-    studio_open(&s);
-    studio_resize(&s, 200, 100);
-    studio_render(&s);
+    fixture_open(&s);
+    fixture_resize(&s, 200, 100);
+    fixture_render(&s);
     struct gpu_memory memory[16];
     int count = gpu_memory_by_owner(gpu, memory, 16);
     uint64_t taken = 0;
@@ -280,5 +280,5 @@ TEST_GPU(memory_estimate_bounds_what_a_frame_takes)
         if (strcmp(memory[i].owner, "frame") == 0) taken = memory[i].bytes;
     uint64_t estimate = frame_memory_estimate(&s.options, 200, 100, s.input.light_count);
     CHECK(taken > 0 && taken <= estimate && estimate < 4 * taken);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

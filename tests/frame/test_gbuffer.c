@@ -1,5 +1,5 @@
 // What the camera sees, against rays.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,18 +8,18 @@ static const vec3s UP = { { 0, 1, 0 } };
 
 TEST_GPU(depth_and_position_are_where_the_ray_meets_the_plane)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    studio_floor(&s, 50, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
-    studio_look(&s, vec3_of(1, 2, 3), vec3_of(0.3f, 0, 0));
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    fixture_floor(&s, 50, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    fixture_look(&s, vec3_of(1, 2, 3), vec3_of(0.3f, 0, 0));
     s.width = 40, s.height = 24;
-    studio_open(&s);
-    studio_render(&s);
-    float *depth = studio_read(&s, READ_DEPTH), *position = studio_read(&s, READ_POSITION);
+    fixture_open(&s);
+    fixture_render(&s);
+    float *depth = fixture_read(&s, READ_DEPTH), *position = fixture_read(&s, READ_POSITION);
     int seen = 0;
     for (uint32_t y = 0; y < 24; y++) {
         for (uint32_t x = 0; x < 40; x++) {
-            vec3s p = studio_ray_on_plane(&s, x, y, UP, 0);
+            vec3s p = fixture_ray_on_plane(&s, x, y, UP, 0);
             vec3s to = glms_vec3_sub(p, s.input.camera.eye);
             float along = glms_vec3_dot(to, s.input.camera.forward);
             bool hit = along > 0 && fabsf(p.x) < 49 && fabsf(p.z) < 49;
@@ -34,46 +34,46 @@ TEST_GPU(depth_and_position_are_where_the_ray_meets_the_plane)
     CHECK(seen > 400);
     free(depth);
     free(position);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(where_there_is_nothing_all_layers_are_zero)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    studio_open(&s);
-    studio_render(&s);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    fixture_open(&s);
+    fixture_render(&s);
     static const enum frame_readback layers[] = { READ_DEPTH, READ_POSITION, READ_NORMAL,
                                                   READ_ALBEDO, READ_EMISSIVE };
     for (size_t i = 0; i < sizeof layers / sizeof *layers; i++) {
-        vec3s v = studio_pixel(&s, layers[i], 3, 4);
+        vec3s v = fixture_pixel(&s, layers[i], 3, 4);
         CHECK(v.x == 0 && v.y == 0 && v.z == 0);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(normals_point_out_of_a_turned_and_stretched_surface)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    int instance = studio_floor(&s, 1, studio_matte(&s, vec3_of(1, 1, 1)));
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    int instance = fixture_floor(&s, 1, fixture_matte(&s, vec3_of(1, 1, 1)));
     struct node node = node_default();
     node.scale = vec3_of(3, 1, 0.5f);
     node.rotation = glms_quatv(0.4f, vec3_of(0, 0, 1));
-    studio_instance(&s, s.scene->instances[instance].mesh, &node);
+    fixture_instance(&s, s.scene->instances[instance].mesh, &node);
     s.scene->instance_count = 2;
-    studio_look(&s, vec3_of(-0.8f, 3, 0.01f), vec3_of(-0.8f, 0, 0));
-    studio_open(&s);
-    studio_render(&s);
+    fixture_look(&s, vec3_of(-0.8f, 3, 0.01f), vec3_of(-0.8f, 0, 0));
+    fixture_open(&s);
+    fixture_render(&s);
     // Left of the middle the turned sheet is below the flat one, right of it above.
-    vec3s n = studio_pixel(&s, READ_NORMAL, 28, 15);
+    vec3s n = fixture_pixel(&s, READ_NORMAL, 28, 15);
     CHECK_NEAR(n.x, -sin(0.4), 2e-3);
     CHECK_NEAR(n.y, cos(0.4), 2e-3);
     CHECK_NEAR(n.z, 0, 2e-3);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
-static int image_of(struct studio *s, int width, int height, uint8_t *rgba, bool has_alpha)
+static int image_of(struct frame_fixture *s, int width, int height, uint8_t *rgba, bool has_alpha)
 {
     int index = scene_add_image(s->scene, &(struct scene_image){ .name = "test",
                                                                  .width = width,
@@ -95,151 +95,151 @@ static struct texture_use use_of(int image)
 
 // A wall in the plane z = −1 that fills the view; u to the right, v downwards, seen from the
 // origin.
-static void wall(struct studio *s, int material)
+static void wall(struct frame_fixture *s, int material)
 {
-    studio_quad(s, vec3_of(-1, -1, -1), vec3_of(1, -1, -1), vec3_of(1, 1, -1), vec3_of(-1, 1, -1),
-                material);
-    studio_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
+    fixture_quad(s, vec3_of(-1, -1, -1), vec3_of(1, -1, -1), vec3_of(1, 1, -1), vec3_of(-1, 1, -1),
+                 material);
+    fixture_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
 }
 
 TEST_GPU(normal_map_leans_along_u_and_against_v)
 {
     // glTF: red leans along +u (the tangent), green along the bitangent, which is up the image: −v.
     for (int axis = 0; axis < 2; axis++) {
-        struct studio s;
-        studio_init(&s, gpu);
+        struct frame_fixture s;
+        fixture_init(&s, gpu);
         uint8_t lean[4] = { axis == 0 ? 218 : 128, axis == 1 ? 218 : 128, 218, 255 };
         struct material m = material_default();
         m.normal_map = use_of(image_of(&s, 1, 1, lean, false));
-        wall(&s, studio_material(&s, &m));
-        studio_open(&s);
-        studio_render(&s);
-        vec3s n = studio_pixel(&s, READ_NORMAL, 16, 16);
+        wall(&s, fixture_material(&s, &m));
+        fixture_open(&s);
+        fixture_render(&s);
+        vec3s n = fixture_pixel(&s, READ_NORMAL, 16, 16);
         CHECK_NEAR(n.x, axis == 0 ? sqrt(0.5) : 0, 0.01);
         CHECK_NEAR(n.y, axis == 1 ? sqrt(0.5) : 0, 0.01);
         CHECK_NEAR(n.z, sqrt(0.5), 0.01);
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 TEST_GPU(normal_map_of_a_mirrored_instance_is_mirrored_with_it)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     uint8_t lean[4] = { 218, 218, 218, 255 };
     struct material m = material_default();
     m.normal_map = use_of(image_of(&s, 1, 1, lean, false));
-    wall(&s, studio_material(&s, &m));
+    wall(&s, fixture_material(&s, &m));
     struct node mirror = node_default();
     mirror.scale = vec3_of(-1, 1, 1);
     mirror.translation = vec3_of(0, 0, 0.1f); // in front of the other
-    studio_instance(&s, 0, &mirror);
-    studio_open(&s);
-    studio_render(&s);
-    vec3s n = studio_pixel(&s, READ_NORMAL, 16, 16);
-    CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, 0.9, 1e-4);
+    fixture_instance(&s, 0, &mirror);
+    fixture_open(&s);
+    fixture_render(&s);
+    vec3s n = fixture_pixel(&s, READ_NORMAL, 16, 16);
+    CHECK_NEAR(fixture_pixel(&s, READ_DEPTH, 16, 16).x, 0.9, 1e-4);
     CHECK_NEAR(n.x, -sqrt(1.0 / 3), 0.01);
     CHECK_NEAR(n.y, sqrt(1.0 / 3), 0.01);
     CHECK_NEAR(n.z, sqrt(1.0 / 3), 0.01);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(mirrored_instance_is_lit_on_its_right_side)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    studio_floor(&s, 2, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    fixture_floor(&s, 2, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     struct node mirror = node_default();
     mirror.scale = vec3_of(-1, 1, 1);
     mirror.translation = vec3_of(0, 0.1f, 0);
-    studio_instance(&s, 0, &mirror);
-    studio_add_sun(&s, vec3_of(0, -1, 0), vec3_of(100, 100, 100));
-    studio_look(&s, vec3_of(0, 2, 0.01f), vec3_of(0, 0, 0));
-    studio_open(&s);
-    studio_render(&s);
-    CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, 1.9, 1e-3);
-    CHECK(studio_pixel(&s, READ_DIRECT, 16, 16).x > 10);
-    studio_finish(&s);
+    fixture_instance(&s, 0, &mirror);
+    fixture_add_sun(&s, vec3_of(0, -1, 0), vec3_of(100, 100, 100));
+    fixture_look(&s, vec3_of(0, 2, 0.01f), vec3_of(0, 0, 0));
+    fixture_open(&s);
+    fixture_render(&s);
+    CHECK_NEAR(fixture_pixel(&s, READ_DEPTH, 16, 16).x, 1.9, 1e-3);
+    CHECK(fixture_pixel(&s, READ_DIRECT, 16, 16).x > 10);
+    fixture_finish(&s);
 }
 
 TEST_GPU(back_faces_show_only_where_double_sided_and_face_the_viewer)
 {
     for (int double_sided = 0; double_sided < 2; double_sided++) {
-        struct studio s;
-        studio_init(&s, gpu);
+        struct frame_fixture s;
+        fixture_init(&s, gpu);
         struct material m = material_default();
         m.double_sided = double_sided == 1;
-        studio_floor(&s, 2, studio_material(&s, &m));
-        studio_look(&s, vec3_of(0, -1, 0.01f), vec3_of(0, 0, 0)); // from below
-        studio_open(&s);
-        studio_render(&s);
-        CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, double_sided ? 1 : 0, 1e-3);
-        CHECK_NEAR(studio_pixel(&s, READ_NORMAL, 16, 16).y, double_sided ? -1 : 0, 1e-3);
-        studio_finish(&s);
+        fixture_floor(&s, 2, fixture_material(&s, &m));
+        fixture_look(&s, vec3_of(0, -1, 0.01f), vec3_of(0, 0, 0)); // from below
+        fixture_open(&s);
+        fixture_render(&s);
+        CHECK_NEAR(fixture_pixel(&s, READ_DEPTH, 16, 16).x, double_sided ? 1 : 0, 1e-3);
+        CHECK_NEAR(fixture_pixel(&s, READ_NORMAL, 16, 16).y, double_sided ? -1 : 0, 1e-3);
+        fixture_finish(&s);
     }
 }
 
 TEST_GPU(alpha_mask_cuts_a_hole)
 {
     for (int mode = 0; mode < 3; mode++) { // opaque, mask at 0.8, blend
-        struct studio s;
-        studio_init(&s, gpu);
+        struct frame_fixture s;
+        fixture_init(&s, gpu);
         uint8_t rgba[16] = { 255, 0, 0, 255, 0, 255, 0, 180, 0, 0, 255, 100, 255, 255, 255, 255 };
         struct material m = material_default();
         m.base_color_map = use_of(image_of(&s, 2, 2, rgba, true));
         m.alpha_mode = (enum alpha_mode[]){ ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND }[mode];
         m.alpha_cutoff = 0.8f;
-        wall(&s, studio_material(&s, &m));
-        studio_open(&s);
-        studio_render(&s);
+        wall(&s, fixture_material(&s, &m));
+        fixture_open(&s);
+        fixture_render(&s);
         // 255/255 stays, 180/255 = 0.71 stays unless cut at 0.8, 100/255 goes unless opaque.
-        CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).x, 1, 1e-3);
-        CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 24, 8).y, mode == 1 ? 0 : 1, 1e-3);
-        CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 24).z, mode == 0 ? 1 : 0, 1e-3);
-        CHECK(studio_pixel(&s, READ_DEPTH, 8, 8).x > 0);
-        CHECK((studio_pixel(&s, READ_DEPTH, 8, 24).x > 0) == (mode == 0));
-        studio_finish(&s);
+        CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 8).x, 1, 1e-3);
+        CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 24, 8).y, mode == 1 ? 0 : 1, 1e-3);
+        CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 24).z, mode == 0 ? 1 : 0, 1e-3);
+        CHECK(fixture_pixel(&s, READ_DEPTH, 8, 8).x > 0);
+        CHECK((fixture_pixel(&s, READ_DEPTH, 8, 24).x > 0) == (mode == 0));
+        fixture_finish(&s);
     }
 }
 
 TEST_GPU(texture_transform_and_wrap_choose_the_texel)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     uint8_t rgba[16] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255 };
     struct material m = material_default();
     m.base_color_map = use_of(image_of(&s, 2, 2, rgba, false));
     m.base_color_map.wrap_u = WRAP_REPEAT;
     m.base_color_map.uv_offset[0] = 1.5f; // half the image to the left, once around
-    wall(&s, studio_material(&s, &m));
-    studio_open(&s);
-    studio_render(&s);
-    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).y, 1, 1e-3); // green is now on the left
-    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).x, 0, 1e-3);
-    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 24, 8).x, 1, 1e-3);
-    studio_finish(&s);
+    wall(&s, fixture_material(&s, &m));
+    fixture_open(&s);
+    fixture_render(&s);
+    CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 8).y, 1, 1e-3); // green is now on the left
+    CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 8).x, 0, 1e-3);
+    CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 24, 8).x, 1, 1e-3);
+    fixture_finish(&s);
 }
 
 TEST_GPU(texture_rotation_is_counter_clockwise_in_the_image)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     uint8_t rgba[16] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255 };
     struct material m = material_default();
     m.base_color_map = use_of(image_of(&s, 2, 2, rgba, false));
     m.base_color_map.wrap_u = m.base_color_map.wrap_v = WRAP_REPEAT;
     m.base_color_map.uv_rotation_rad = 1.57079633f; // (u, v) → (v, −u)
-    wall(&s, studio_material(&s, &m));
-    studio_open(&s);
-    studio_render(&s);
+    wall(&s, fixture_material(&s, &m));
+    fixture_open(&s);
+    fixture_render(&s);
     // Top left, uv = (¼, ¼) → (¼, −¼) = (¼, ¾): the blue texel.
-    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).z, 1, 1e-3);
-    CHECK_NEAR(studio_pixel(&s, READ_ALBEDO, 8, 8).x, 0, 1e-3);
-    studio_finish(&s);
+    CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 8).z, 1, 1e-3);
+    CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 8).x, 0, 1e-3);
+    fixture_finish(&s);
 }
 
 // A wall like `wall`, of n × n quads.
-static void tiled_wall(struct studio *s, int n, int material)
+static void tiled_wall(struct frame_fixture *s, int n, int material)
 {
     vec3s positions[17 * 17];
     vec2s uv[17 * 17];
@@ -263,7 +263,7 @@ static void tiled_wall(struct studio *s, int n, int material)
                                                  .indices = indices,
                                                  .material = material });
     assert_true(mesh >= 0);
-    studio_instance(s, mesh, NULL);
+    fixture_instance(s, mesh, NULL);
 }
 
 TEST_GPU(textures_do_not_depend_on_how_a_surface_is_tiled)
@@ -275,16 +275,16 @@ TEST_GPU(textures_do_not_depend_on_how_a_surface_is_tiled)
         for (int k = 0; k < 4; k++) rgba[4 * i + k] = k == 3 || white ? 255 : 0;
     }
     for (int i = 0; i < 2; i++) {
-        struct studio s;
-        studio_init(&s, gpu);
+        struct frame_fixture s;
+        fixture_init(&s, gpu);
         s.width = s.height = 64;
         struct material m = material_default();
         m.base_color_map.image = image_of(&s, 64, 64, rgba, false);
-        tiled_wall(&s, i == 0 ? 1 : 16, studio_material(&s, &m));
-        studio_open(&s);
-        studio_render(&s);
-        albedo[i] = studio_read(&s, READ_ALBEDO);
-        studio_finish(&s);
+        tiled_wall(&s, i == 0 ? 1 : 16, fixture_material(&s, &m));
+        fixture_open(&s);
+        fixture_render(&s);
+        albedo[i] = fixture_read(&s, READ_ALBEDO);
+        fixture_finish(&s);
     }
     float most = 0;
     for (size_t i = 0; i < 64 * 64 * 3; i++) {
@@ -297,8 +297,8 @@ TEST_GPU(textures_do_not_depend_on_how_a_surface_is_tiled)
 
 TEST_GPU(morphed_vertices_are_drawn_and_moved_where_the_pose_has_them)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     s.indirect.needs = FRAME_NEEDS_MOTION;
     vec3s positions[3] = { vec3_of(-9, -9, -1), vec3_of(9, -9, -1), vec3_of(0, 9, -1) };
     vec3s back[3] = { vec3_of(0, 0, -2), vec3_of(0, 0, -2), vec3_of(0, 0, -2) };
@@ -312,7 +312,7 @@ TEST_GPU(morphed_vertices_are_drawn_and_moved_where_the_pose_has_them)
                                                 .indices = indices,
                                                 .morphs = &morph,
                                                 .morph_count = 1,
-                                                .material = studio_matte(&s, vec3_of(1, 1, 1)) });
+                                                .material = fixture_matte(&s, vec3_of(1, 1, 1)) });
     float weight = 0.5f;
     struct node node = node_default();
     node.translation = vec3_of(0, 0, -1);
@@ -320,30 +320,30 @@ TEST_GPU(morphed_vertices_are_drawn_and_moved_where_the_pose_has_them)
         .node = scene_add_node(s.scene, &node), .mesh = mesh, .skin = -1, .morph_weights = &weight
     };
     assert_true(scene_add_instance(s.scene, &instance) >= 0);
-    studio_open(&s);
-    studio_render(&s);
-    CHECK_NEAR(studio_pixel(&s, READ_DEPTH, 16, 16).x, 1 + 1 + 1, 1e-5);
-    CHECK_NEAR(studio_pixel(&s, READ_NORMAL, 16, 16).z, 1, 1e-3);
+    fixture_open(&s);
+    fixture_render(&s);
+    CHECK_NEAR(fixture_pixel(&s, READ_DEPTH, 16, 16).x, 1 + 1 + 1, 1e-5);
+    CHECK_NEAR(fixture_pixel(&s, READ_NORMAL, 16, 16).z, 1, 1e-3);
     // What the vertices do from one pose to the next is motion: here, a tenth of a metre to the
     // right.
     for (int v = 0; v < 3; v++) s.pose.deformed[0].positions[v].x += 0.1f;
-    studio_render(&s);
-    CHECK_NEAR(studio_pixel(&s, READ_MOTION, 16, 16).x, 0.1 / (2 * tan(0.5) * 3), 1e-4);
-    CHECK_NEAR(studio_pixel(&s, READ_MOTION, 16, 16).y, 0, 1e-6);
-    studio_finish(&s);
+    fixture_render(&s);
+    CHECK_NEAR(fixture_pixel(&s, READ_MOTION, 16, 16).x, 0.1 / (2 * tan(0.5) * 3), 1e-4);
+    CHECK_NEAR(fixture_pixel(&s, READ_MOTION, 16, 16).y, 0, 1e-6);
+    fixture_finish(&s);
 }
 
 TEST_GPU(factors_and_vertex_colors_multiply)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     struct material m = material_default();
     m.base_color = (vec4s){ { 0.5f, 1, 1, 1 } };
     m.metallic = 0.6f;
     m.roughness = 0.4f;
     uint8_t data[4] = { 0, 128, 51, 255 }; // roughness ½, metallic 1/5
     m.metallic_roughness_map = use_of(image_of(&s, 1, 1, data, false));
-    int material = studio_material(&s, &m);
+    int material = fixture_material(&s, &m);
     vec3s positions[3] = { vec3_of(-4, -4, -1), vec3_of(4, -4, -1), vec3_of(0, 4, -1) };
     vec4s colors[3];
     for (int i = 0; i < 3; i++) colors[i] = (vec4s){ { 1, 0.5f, 0.25f, 1 } };
@@ -357,32 +357,32 @@ TEST_GPU(factors_and_vertex_colors_multiply)
                                                        .colors = colors,
                                                        .indices = indices,
                                                        .material = material });
-    studio_instance(&s, mesh, NULL);
-    studio_open(&s);
-    studio_render(&s);
-    vec3s albedo = studio_pixel(&s, READ_ALBEDO, 16, 16);
+    fixture_instance(&s, mesh, NULL);
+    fixture_open(&s);
+    fixture_render(&s);
+    vec3s albedo = fixture_pixel(&s, READ_ALBEDO, 16, 16);
     CHECK_NEAR(albedo.x, 0.5, 0.005);
     CHECK_NEAR(albedo.y, 0.5, 0.005);
     CHECK_NEAR(albedo.z, 0.25, 0.005);
-    vec3s rm = studio_pixel(&s, READ_ROUGHNESS_METALLIC, 16, 16);
+    vec3s rm = fixture_pixel(&s, READ_ROUGHNESS_METALLIC, 16, 16);
     CHECK_NEAR(rm.x, 0.4 * 128 / 255, 0.005);
     CHECK_NEAR(rm.y, 0.6 * 51 / 255, 0.005);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(unlit_materials_are_matte)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     struct material m = material_default();
     m.unlit = true;
-    wall(&s, studio_material(&s, &m));
-    studio_open(&s);
-    studio_render(&s);
-    vec3s rm = studio_pixel(&s, READ_ROUGHNESS_METALLIC, 16, 16);
+    wall(&s, fixture_material(&s, &m));
+    fixture_open(&s);
+    fixture_render(&s);
+    vec3s rm = fixture_pixel(&s, READ_ROUGHNESS_METALLIC, 16, 16);
     CHECK(rm.x == 1 && rm.y == 0);
-    CHECK(studio_pixel(&s, READ_EMISSIVE, 16, 16).x == 0);
-    studio_finish(&s);
+    CHECK(fixture_pixel(&s, READ_EMISSIVE, 16, 16).x == 0);
+    fixture_finish(&s);
 }
 
 // Screen position (0…1) of a world point, and its distance along the view axis.
@@ -396,12 +396,12 @@ static vec3s screen_of(const struct world_camera *c, uint32_t width, uint32_t he
 }
 
 // Half floats have 11 bits: motions up to 0.4 are right to 2e-4.
-static void check_motion(struct studio *s, const struct world_camera *before, uint32_t x,
+static void check_motion(struct frame_fixture *s, const struct world_camera *before, uint32_t x,
                          uint32_t y, vec3s now, vec3s then)
 {
     vec3s from = screen_of(before, s->width, s->height, then);
     vec3s to = screen_of(&s->input.camera, s->width, s->height, now);
-    vec3s motion = studio_pixel(s, READ_MOTION, x, y);
+    vec3s motion = fixture_pixel(s, READ_MOTION, x, y);
     CHECK_NEAR(motion.x, ((float)x + 0.5f) / (float)s->width - from.x, 2e-4);
     CHECK_NEAR(motion.y, ((float)y + 0.5f) / (float)s->height - from.y, 2e-4);
     CHECK_NEAR(motion.z, from.z / to.z - 1, 2e-4);
@@ -409,92 +409,92 @@ static void check_motion(struct studio *s, const struct world_camera *before, ui
 
 TEST_GPU(motion_leads_back_to_where_a_point_was)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    studio_floor(&s, 20, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    fixture_floor(&s, 20, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
     s.indirect.needs = FRAME_NEEDS_MOTION;
     s.width = 40, s.height = 24;
-    studio_look(&s, vec3_of(0, 2, 4), vec3_of(0, 0, 0));
-    studio_open(&s);
-    studio_render(&s);
-    vec3s still = studio_pixel(&s, READ_MOTION, 20, 15);
+    fixture_look(&s, vec3_of(0, 2, 4), vec3_of(0, 0, 0));
+    fixture_open(&s);
+    fixture_render(&s);
+    vec3s still = fixture_pixel(&s, READ_MOTION, 20, 15);
     CHECK(still.x == 0 && still.y == 0); // the first frame has no past
     struct world_camera before = s.input.camera;
     // The camera moves, and the floor shifts by half a metre at the same time.
-    studio_look(&s, vec3_of(0.2f, 2.1f, 3.9f), vec3_of(0.1f, 0, 0.1f));
+    fixture_look(&s, vec3_of(0.2f, 2.1f, 3.9f), vec3_of(0.1f, 0, 0.1f));
     s.pose.world_from_node[s.scene->instances[0].node].raw[3][0] += 0.5f;
-    studio_render(&s);
+    fixture_render(&s);
     for (uint32_t y = 10; y < 24; y += 4) {
-        vec3s now = studio_ray_on_plane(&s, 7, y, UP, 0);
+        vec3s now = fixture_ray_on_plane(&s, 7, y, UP, 0);
         check_motion(&s, &before, 7, y, now, glms_vec3_sub(now, vec3_of(0.5f, 0, 0)));
     }
-    studio_render(&s);
-    vec3s after = studio_pixel(&s, READ_MOTION, 20, 15);
+    fixture_render(&s);
+    vec3s after = fixture_pixel(&s, READ_MOTION, 20, 15);
     CHECK(after.x == 0 && after.y == 0 && after.z == 0);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // A pan: the eye stands and turns, and where a pixel looks in the last picture follows from that
 // alone, whatever the distance.
 TEST_GPU(motion_in_a_pan_is_that_of_directions)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    const int white = studio_matte(&s, vec3_of(1, 1, 1));
-    studio_box(&s, vec3_of(-3, -2, -5), vec3_of(4, 3, 6), true, white);
-    studio_box(&s, vec3_of(0, -2, -3), vec3_of(1, 0, -2), false, white);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    const int white = fixture_matte(&s, vec3_of(1, 1, 1));
+    fixture_box(&s, vec3_of(-3, -2, -5), vec3_of(4, 3, 6), true, white);
+    fixture_box(&s, vec3_of(0, -2, -3), vec3_of(1, 0, -2), false, white);
     s.input.want_motion_layer = true; // which no technique asks for here
     s.width = 48, s.height = 32;
-    studio_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
-    studio_open(&s);
-    studio_render(&s);
+    fixture_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
+    fixture_open(&s);
+    fixture_render(&s);
     for (int step = 1; step <= 3; step++) {
         struct world_camera before = s.input.camera;
         const float turn = 0.1f * (float)step;
-        studio_look(&s, vec3_of(0, 0, 0), vec3_of(sinf(turn), -0.05f, -cosf(turn)));
-        studio_render(&s);
-        float *depth = studio_read(&s, READ_DEPTH);
+        fixture_look(&s, vec3_of(0, 0, 0), vec3_of(sinf(turn), -0.05f, -cosf(turn)));
+        fixture_render(&s);
+        float *depth = fixture_read(&s, READ_DEPTH);
         for (uint32_t y = 0; y < 32; y += 5)
             for (uint32_t x = 0; x < 48; x += 5) {
-                vec3s ray = studio_ray_on_plane(&s, x, y, s.input.camera.forward, 1);
+                vec3s ray = fixture_ray_on_plane(&s, x, y, s.input.camera.forward, 1);
                 check_motion(&s, &before, x, y, ray, ray);
                 CHECK(depth[y * 48 + x] > 0.0f); // a surface, as far as it may be
             }
         free(depth);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // A plate comes 0.3 m nearer and goes 0.2 m to the right and 0.1 m up; what is behind it stays.
 TEST_GPU(motion_of_an_object_has_its_depth_too)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    const int white = studio_matte(&s, vec3_of(1, 1, 1));
-    studio_quad(&s, vec3_of(-9, -9, -6), vec3_of(9, -9, -6), vec3_of(9, 9, -6), vec3_of(-9, 9, -6),
-                white);
-    const int plate = studio_quad(&s, vec3_of(-1, -1, -4), vec3_of(1, -1, -4), vec3_of(1, 1, -4),
-                                  vec3_of(-1, 1, -4), white);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    const int white = fixture_matte(&s, vec3_of(1, 1, 1));
+    fixture_quad(&s, vec3_of(-9, -9, -6), vec3_of(9, -9, -6), vec3_of(9, 9, -6), vec3_of(-9, 9, -6),
+                 white);
+    const int plate = fixture_quad(&s, vec3_of(-1, -1, -4), vec3_of(1, -1, -4), vec3_of(1, 1, -4),
+                                   vec3_of(-1, 1, -4), white);
     const vec3s by = vec3_of(0.2f, 0.1f, 0.3f);
     s.input.want_motion_layer = true;
-    studio_open(&s);
-    studio_render(&s);
+    fixture_open(&s);
+    fixture_render(&s);
     mat4s *place = &s.pose.world_from_node[s.scene->instances[plate].node];
     for (int k = 0; k < 3; k++) place->raw[3][k] += by.raw[k];
-    studio_render(&s);
+    fixture_render(&s);
     const vec3s back = vec3_of(0, 0, 1);
     for (uint32_t i = 12; i < 20; i += 3) {
-        vec3s now = studio_ray_on_plane(&s, i, 31 - i, back, -3.7f);
+        vec3s now = fixture_ray_on_plane(&s, i, 31 - i, back, -3.7f);
         check_motion(&s, &s.input.camera, i, 31 - i, now, glms_vec3_sub(now, by));
     }
-    vec3s behind = studio_pixel(&s, READ_MOTION, 1, 1);
+    vec3s behind = fixture_pixel(&s, READ_MOTION, 1, 1);
     CHECK(behind.x == 0 && behind.y == 0 && behind.z == 0);
     // A cut forgets where things were.
     for (int k = 0; k < 3; k++) place->raw[3][k] += by.raw[k];
     s.input.camera_cut = true;
-    studio_look(&s, vec3_of(1, 0, 0), vec3_of(0, 0, -4));
-    studio_render(&s);
-    vec3s cut = studio_pixel(&s, READ_MOTION, 16, 16);
+    fixture_look(&s, vec3_of(1, 0, 0), vec3_of(0, 0, -4));
+    fixture_render(&s);
+    vec3s cut = fixture_pixel(&s, READ_MOTION, 16, 16);
     CHECK(cut.x == 0 && cut.y == 0 && cut.z == 0);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

@@ -1,6 +1,6 @@
 // Reflective shadow maps, read as techniques read them: the light in them is all the light there
 // is.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include "frame_test_shaders.h"
 
@@ -37,9 +37,9 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
                  (uint32_t)r->faces);
 }
 
-static void begin(struct studio *s, struct reader *r, struct gpu *gpu)
+static void begin(struct frame_fixture *s, struct reader *r, struct gpu *gpu)
 {
-    studio_init(s, gpu);
+    fixture_init(s, gpu);
     *r = (struct reader){ .pipeline = test_gpu_compute(gpu, &shader_rsm_totals_comp) };
     struct gpu_sampler_desc nearest = { .name = "test.nearest" };
     assert_true(gpu_sampler_get(gpu, &nearest, &r->nearest));
@@ -48,9 +48,9 @@ static void begin(struct studio *s, struct reader *r, struct gpu *gpu)
 }
 
 // The texels of all faces, in physical lumen; owned by the caller.
-static struct texel *render(struct studio *s, struct reader *r)
+static struct texel *render(struct frame_fixture *s, struct reader *r)
 {
-    studio_render(s);
+    fixture_render(s);
     size_t count = (size_t)r->faces * r->size * r->size;
     struct texel *t = malloc(count * sizeof *t);
     assert_non_null(t);
@@ -60,11 +60,11 @@ static struct texel *render(struct studio *s, struct reader *r)
     return t;
 }
 
-static void finish(struct studio *s, struct reader *r)
+static void finish(struct frame_fixture *s, struct reader *r)
 {
     gpu_pipeline_destroy(s->gpu, &r->pipeline);
     gpu_buffer_destroy(s->gpu, &r->texels);
-    studio_finish(s);
+    fixture_finish(s);
 }
 
 static double total(const struct reader *r, const struct texel *t, int channel)
@@ -77,13 +77,13 @@ static double total(const struct reader *r, const struct texel *t, int channel)
 
 TEST_GPU(all_of_a_point_lights_flux_comes_back_from_a_closed_box)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
-    studio_box(&s, vec3_of(-1, -2, -1.5f), vec3_of(2, 1, 1), true,
-               studio_matte(&s, vec3_of(1, 0.5f, 0)));
-    studio_add_point(&s, vec3_of(0.3f, -0.2f, 0.1f), vec3_of(10, 20, 30));
-    studio_open(&s);
+    fixture_box(&s, vec3_of(-1, -2, -1.5f), vec3_of(2, 1, 1), true,
+                fixture_matte(&s, vec3_of(1, 0.5f, 0)));
+    fixture_add_point(&s, vec3_of(0.3f, -0.2f, 0.1f), vec3_of(10, 20, 30));
+    fixture_open(&s);
     struct texel *t = render(&s, &r);
     CHECK(r.faces == 6);
     CHECK_RELATIVE(total(&r, t, 0), 4 * PI * 10, 1e-3);
@@ -95,15 +95,15 @@ TEST_GPU(all_of_a_point_lights_flux_comes_back_from_a_closed_box)
 
 TEST_GPU(texels_lie_on_surfaces_and_face_the_light)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
     // Faces that look outwards: the light still sees them from inside.
-    studio_box(&s, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), false,
-               studio_matte(&s, vec3_of(1, 1, 1)));
+    fixture_box(&s, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), false,
+                fixture_matte(&s, vec3_of(1, 1, 1)));
     vec3s light = vec3_of(0.3f, -0.2f, 0.1f);
-    studio_add_point(&s, light, vec3_of(10, 10, 10));
-    studio_open(&s);
+    fixture_add_point(&s, light, vec3_of(10, 10, 10));
+    fixture_open(&s);
     struct texel *t = render(&s, &r);
     for (size_t i = 0; i < (size_t)r.faces * r.size * r.size; i++) {
         CHECK(t[i].valid == 1);
@@ -119,13 +119,13 @@ TEST_GPU(texels_lie_on_surfaces_and_face_the_light)
 TEST_GPU(suns_flux_on_a_tilted_plane_is_lux_times_the_area_it_sees)
 {
     for (int i = 0; i < 4; i++) {
-        struct studio s;
+        struct frame_fixture s;
         struct reader r;
         begin(&s, &r, gpu);
-        studio_floor(&s, 2, studio_matte(&s, vec3_of(1, 1, 1)));
+        fixture_floor(&s, 2, fixture_matte(&s, vec3_of(1, 1, 1)));
         float angle = 0.4f * (float)i;
-        studio_add_sun(&s, vec3_of(-sinf(angle), -cosf(angle), 0), vec3_of(1000, 1000, 1000));
-        studio_open(&s);
+        fixture_add_sun(&s, vec3_of(-sinf(angle), -cosf(angle), 0), vec3_of(1000, 1000, 1000));
+        fixture_open(&s);
         struct texel *t = render(&s, &r);
         // 16 m² seen at an angle. A border of 64 texels is known to half a texel on either side.
         CHECK_RELATIVE(total(&r, t, 0), 1000 * 16 * (double)cosf(angle), 0.06);
@@ -136,14 +136,14 @@ TEST_GPU(suns_flux_on_a_tilted_plane_is_lux_times_the_area_it_sees)
 
 TEST_GPU(spots_flux_is_its_intensity_over_its_cone)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
-    studio_floor(&s, 20, studio_matte(&s, vec3_of(1, 1, 1)));
+    fixture_floor(&s, 20, fixture_matte(&s, vec3_of(1, 1, 1)));
     double inner = 0.3, outer = 0.7;
-    studio_add_spot(&s, vec3_of(0, 3, 0), vec3_of(0, -1, 0), (float)inner, (float)outer,
-                    vec3_of(100, 100, 100));
-    studio_open(&s);
+    fixture_add_spot(&s, vec3_of(0, 3, 0), vec3_of(0, -1, 0), (float)inner, (float)outer,
+                     vec3_of(100, 100, 100));
+    fixture_open(&s);
     struct texel *t = render(&s, &r);
     // ∫ over the cone: full to the inner angle, then ((cos θ − cos outer) / (cos inner − cos
     // outer))²; a third of it.
@@ -156,14 +156,14 @@ TEST_GPU(spots_flux_is_its_intensity_over_its_cone)
 TEST_GPU(metals_and_what_lies_beyond_the_range_reflect_no_diffuse_flux)
 {
     for (int i = 0; i < 2; i++) {
-        struct studio s;
+        struct frame_fixture s;
         struct reader r;
         begin(&s, &r, gpu);
         struct material m = material_default();
         m.metallic = i == 0 ? 1 : 0;
-        studio_box(&s, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), true, studio_material(&s, &m));
-        studio_add_point(&s, vec3_of(0, 0, 0), vec3_of(10, 10, 10))->range_m = i == 1 ? 0.9f : 0;
-        studio_open(&s);
+        fixture_box(&s, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), true, fixture_material(&s, &m));
+        fixture_add_point(&s, vec3_of(0, 0, 0), vec3_of(10, 10, 10))->range_m = i == 1 ? 0.9f : 0;
+        fixture_open(&s);
         struct texel *t = render(&s, &r);
         CHECK(total(&r, t, 0) == 0);
         free(t);
@@ -173,13 +173,13 @@ TEST_GPU(metals_and_what_lies_beyond_the_range_reflect_no_diffuse_flux)
 
 TEST_GPU(faces_follow_the_lights_and_vanish_with_them)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
-    studio_floor(&s, 2, studio_matte(&s, vec3_of(1, 1, 1)));
-    studio_add_sun(&s, vec3_of(0, -1, 0), vec3_of(1, 1, 1));
-    studio_add_point(&s, vec3_of(0, 1, 0), vec3_of(1, 1, 1));
-    studio_open(&s);
+    fixture_floor(&s, 2, fixture_matte(&s, vec3_of(1, 1, 1)));
+    fixture_add_sun(&s, vec3_of(0, -1, 0), vec3_of(1, 1, 1));
+    fixture_add_point(&s, vec3_of(0, 1, 0), vec3_of(1, 1, 1));
+    fixture_open(&s);
     free(render(&s, &r));
     CHECK(r.faces == 7);
     s.input.light_count = 1;

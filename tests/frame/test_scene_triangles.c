@@ -1,6 +1,6 @@
 // What a technique sees of the scene's triangles in compute, and how still draws are told from
 // moving ones.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include "frame/scene_gpu.h"
 #include "frame_test_shaders.h"
@@ -36,9 +36,9 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
     }
 }
 
-static void begin(struct studio *s, struct reader *r, struct gpu *gpu)
+static void begin(struct frame_fixture *s, struct reader *r, struct gpu *gpu)
 {
-    studio_init(s, gpu);
+    fixture_init(s, gpu);
     *r = (struct reader){ .opaque = test_gpu_compute(gpu, &shader_triangle_areas_comp) };
     const struct gpu_constant is_masked = { SCENE_CONSTANT_MASKED, true };
     assert_true(gpu_compute_pipeline_create(gpu, "test.masked", &shader_triangle_areas_comp,
@@ -47,36 +47,36 @@ static void begin(struct studio *s, struct reader *r, struct gpu *gpu)
     s->indirect = (struct frame_indirect){ .record = record, .user = r };
 }
 
-static struct totals render(struct studio *s, struct reader *r)
+static struct totals render(struct frame_fixture *s, struct reader *r)
 {
     struct totals t;
-    studio_render(s);
+    fixture_render(s);
     assert_true(gpu_buffer_download(s->gpu, r->totals, 0, &t, sizeof t));
     return t;
 }
 
-static void finish(struct studio *s, struct reader *r)
+static void finish(struct frame_fixture *s, struct reader *r)
 {
     gpu_pipeline_destroy(s->gpu, &r->opaque);
     gpu_pipeline_destroy(s->gpu, &r->masked);
     gpu_buffer_destroy(s->gpu, &r->totals);
-    studio_finish(s);
+    fixture_finish(s);
 }
 
 // Many small meshes, so that their indices begin at all kinds of places.
 TEST_GPU(every_triangle_is_seen_once_in_world_space)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
-    const int matte = studio_matte(&s, vec3_of(1, 1, 1));
-    studio_floor(&s, 2, matte);                                         // 16 m²
-    studio_box(&s, vec3_of(-1, 0, -1), vec3_of(0, 1, 1), false, matte); // 10 m²
+    const int matte = fixture_matte(&s, vec3_of(1, 1, 1));
+    fixture_floor(&s, 2, matte);                                         // 16 m²
+    fixture_box(&s, vec3_of(-1, 0, -1), vec3_of(0, 1, 1), false, matte); // 10 m²
     struct node twice = node_default();
     twice.scale = vec3_of(-2, 1, 2); // mirrored
     twice.translation = vec3_of(5, 6, 7);
-    studio_instance(&s, 0, &twice); // 64 m²
-    studio_open(&s);
+    fixture_instance(&s, 0, &twice); // 64 m²
+    fixture_open(&s);
     const struct totals t = render(&s, &r);
     assert_int_equal(t.triangles, 16);
     assert_int_equal(t.solid, 16);
@@ -88,7 +88,7 @@ TEST_GPU(every_triangle_is_seen_once_in_world_space)
 TEST_GPU(long_meshes_are_seen_to_their_end)
 {
     enum { STRIPES = 333 };
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
     vec3s positions[2 * (STRIPES + 1)], normals[2 * (STRIPES + 1)];
@@ -102,8 +102,8 @@ TEST_GPU(long_meshes_are_seen_to_their_end)
         const uint32_t quad[6] = { 0, 1, 3, 0, 3, 2 };
         for (uint32_t k = 0; k < 6; k++) indices[6 * i + k] = 2 * i + quad[k];
     }
-    const int matte = studio_matte(&s, vec3_of(1, 1, 1));
-    studio_floor(&s, 1, matte); // 4 m²
+    const int matte = fixture_matte(&s, vec3_of(1, 1, 1));
+    fixture_floor(&s, 1, matte); // 4 m²
     const int mesh = scene_add_mesh(s.scene, &(struct mesh){ .name = "stripes",
                                                              .vertex_count = 2 * (STRIPES + 1),
                                                              .index_count = 6 * STRIPES,
@@ -111,8 +111,8 @@ TEST_GPU(long_meshes_are_seen_to_their_end)
                                                              .normals = normals,
                                                              .indices = indices,
                                                              .material = matte });
-    studio_instance(&s, mesh, NULL);
-    studio_open(&s);
+    fixture_instance(&s, mesh, NULL);
+    fixture_open(&s);
     const struct totals t = render(&s, &r);
     assert_int_equal(t.triangles, 2 + 2 * STRIPES);
     CHECK_NEAR(t.area / 1024.0, 4.0 + STRIPES, 1e-2);
@@ -123,7 +123,7 @@ TEST_GPU(long_meshes_are_seen_to_their_end)
 // its middle there.
 TEST_GPU(what_a_mask_cuts_away_is_not_solid)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
     uint8_t pixels[2 * 4] = { 255, 255, 255, 255, 255, 255, 255, 0 };
@@ -135,11 +135,11 @@ TEST_GPU(what_a_mask_cuts_away_is_not_solid)
     m.alpha_cutoff = 0.5f;
     m.base_color_map.image = image;
     m.base_color_map.nearest = true;
-    studio_floor(&s, 1, studio_material(&s, &m));
+    fixture_floor(&s, 1, fixture_material(&s, &m));
     m.base_color_map.image = -1;
     m.base_color.w = 0.4f;
-    studio_floor(&s, 1, studio_material(&s, &m)); // all of it
-    studio_open(&s);
+    fixture_floor(&s, 1, fixture_material(&s, &m)); // all of it
+    fixture_open(&s);
     const struct totals t = render(&s, &r);
     assert_int_equal(t.triangles, 4);
     assert_int_equal(t.solid, 1);
@@ -148,13 +148,13 @@ TEST_GPU(what_a_mask_cuts_away_is_not_solid)
 
 TEST_GPU(what_has_moved_once_is_told_from_what_never_did)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
-    const int matte = studio_matte(&s, vec3_of(1, 1, 1));
-    studio_floor(&s, 2, matte);
-    studio_floor(&s, 1, matte);
-    studio_open(&s);
+    const int matte = fixture_matte(&s, vec3_of(1, 1, 1));
+    fixture_floor(&s, 2, matte);
+    fixture_floor(&s, 1, matte);
+    fixture_open(&s);
     render(&s, &r);
     CHECK(r.moving == 0); // all have just come
     render(&s, &r);

@@ -1,5 +1,5 @@
 // Shadows: where they fall, that they stay, and that nothing shadows itself.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,24 +9,24 @@ static const vec3s GREY = { { 0.5f, 0.5f, 0.5f } };
 static const vec3s LUX = { { 1000, 1000, 1000 } };
 
 // A floor and a square sheet of 1 m that hovers 1 m above the origin, seen at a slant.
-static void begin(struct studio *s, struct gpu *gpu, uint32_t size)
+static void begin(struct frame_fixture *s, struct gpu *gpu, uint32_t size)
 {
-    studio_init(s, gpu);
-    int matte = studio_matte(s, GREY);
-    studio_floor(s, 10, matte);
-    studio_quad(s, vec3_of(-0.5f, 1, 0.5f), vec3_of(0.5f, 1, 0.5f), vec3_of(0.5f, 1, -0.5f),
-                vec3_of(-0.5f, 1, -0.5f), matte);
-    studio_look(s, vec3_of(0, 3, 4), vec3_of(0, 0, 0));
+    fixture_init(s, gpu);
+    int matte = fixture_matte(s, GREY);
+    fixture_floor(s, 10, matte);
+    fixture_quad(s, vec3_of(-0.5f, 1, 0.5f), vec3_of(0.5f, 1, 0.5f), vec3_of(0.5f, 1, -0.5f),
+                 vec3_of(-0.5f, 1, -0.5f), matte);
+    fixture_look(s, vec3_of(0, 3, 4), vec3_of(0, 0, 0));
     s->width = s->height = size;
     s->options.shadow_size = 512;
 }
 
 // Counts floor pixels that should be lit or shadowed and are not; those within `margin_m` of an
 // edge do not count.
-static int count_wrong(struct studio *s, vec3s (*towards_light)(vec3s p), float margin_m,
+static int count_wrong(struct frame_fixture *s, vec3s (*towards_light)(vec3s p), float margin_m,
                        int *checked)
 {
-    float *direct = studio_read(s, READ_DIRECT), *position = studio_read(s, READ_POSITION);
+    float *direct = fixture_read(s, READ_DIRECT), *position = fixture_read(s, READ_POSITION);
     int wrong = 0;
     *checked = 0;
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
@@ -58,48 +58,48 @@ static vec3s towards_lamp(vec3s p)
 TEST_GPU(sun_shadow_lies_where_the_rays_say)
 {
     for (int cascades = 1; cascades <= 4; cascades++) {
-        struct studio s;
+        struct frame_fixture s;
         begin(&s, gpu, 64);
         s.options.cascades = cascades;
-        studio_add_sun(&s, glms_vec3_negate(towards_sun(UP)), LUX);
-        studio_open(&s);
-        studio_render(&s);
+        fixture_add_sun(&s, glms_vec3_negate(towards_sun(UP)), LUX);
+        fixture_open(&s);
+        fixture_render(&s);
         int checked, wrong = count_wrong(&s, towards_sun, 0.35f, &checked);
         CHECK(checked > 1000 && wrong == 0);
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 TEST_GPU(point_shadow_lies_where_the_rays_say)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu, 64);
-    studio_add_point(&s, vec3_of(0.3f, 2.5f, 0.2f), LUX);
-    studio_open(&s);
-    studio_render(&s);
+    fixture_add_point(&s, vec3_of(0.3f, 2.5f, 0.2f), LUX);
+    fixture_open(&s);
+    fixture_render(&s);
     int checked, wrong = count_wrong(&s, towards_lamp, 0.2f, &checked);
     CHECK(checked > 1000 && wrong == 0);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(spot_shadow_lies_where_the_rays_say)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu, 64);
-    studio_look(&s, vec3_of(1.5f, 2, 0), vec3_of(0, 0, 0));
-    studio_add_spot(&s, vec3_of(0.3f, 2.5f, 0.2f), vec3_of(0, -1, 0), 1.25f, 1.3f,
-                    vec3_of(10000, 10000, 10000));
-    studio_open(&s);
-    studio_render(&s);
+    fixture_look(&s, vec3_of(1.5f, 2, 0), vec3_of(0, 0, 0));
+    fixture_add_spot(&s, vec3_of(0.3f, 2.5f, 0.2f), vec3_of(0, -1, 0), 1.25f, 1.3f,
+                     vec3_of(10000, 10000, 10000));
+    fixture_open(&s);
+    fixture_render(&s);
     int checked, wrong = count_wrong(&s, towards_lamp, 0.2f, &checked);
     CHECK(checked > 1000 && wrong == 0);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(masked_casters_let_light_through_their_holes)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     uint8_t rgba[16] = {
         255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 0, 255, 255, 255, 255
     };
@@ -111,38 +111,38 @@ TEST_GPU(masked_casters_let_light_through_their_holes)
     m.base_color_map.nearest = true;
     m.alpha_mode = ALPHA_MASK;
     m.alpha_cutoff = 0.5f;
-    int checker = studio_material(&s, &m);
-    studio_floor(&s, 3, studio_matte(&s, GREY));
-    studio_quad(&s, vec3_of(-1, 2, 1), vec3_of(1, 2, 1), vec3_of(1, 2, -1), vec3_of(-1, 2, -1),
-                checker);
-    studio_add_sun(&s, vec3_of(0, -1, 0), LUX);
-    studio_look(&s, vec3_of(0, 1.5f, 0.01f), vec3_of(0, 0, 0));
-    studio_open(&s);
-    studio_render(&s);
+    int checker = fixture_material(&s, &m);
+    fixture_floor(&s, 3, fixture_matte(&s, GREY));
+    fixture_quad(&s, vec3_of(-1, 2, 1), vec3_of(1, 2, 1), vec3_of(1, 2, -1), vec3_of(-1, 2, -1),
+                 checker);
+    fixture_add_sun(&s, vec3_of(0, -1, 0), LUX);
+    fixture_look(&s, vec3_of(0, 1.5f, 0.01f), vec3_of(0, 0, 0));
+    fixture_open(&s);
+    fixture_render(&s);
     // Texels: opaque at top left (−x, −z) and bottom right; the camera's up is −z.
-    CHECK(studio_pixel(&s, READ_DIRECT, 8, 8).x == 0);
-    CHECK(studio_pixel(&s, READ_DIRECT, 24, 24).x == 0);
-    CHECK(studio_pixel(&s, READ_DIRECT, 24, 8).x > 100);
-    CHECK(studio_pixel(&s, READ_DIRECT, 8, 24).x > 100);
-    studio_finish(&s);
+    CHECK(fixture_pixel(&s, READ_DIRECT, 8, 8).x == 0);
+    CHECK(fixture_pixel(&s, READ_DIRECT, 24, 24).x == 0);
+    CHECK(fixture_pixel(&s, READ_DIRECT, 24, 8).x > 100);
+    CHECK(fixture_pixel(&s, READ_DIRECT, 8, 24).x > 100);
+    fixture_finish(&s);
 }
 
 TEST_GPU(casters_far_behind_a_cascade_still_cast)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu, 32);
     // A roof high above all that the near cascades cover.
-    studio_quad(&s, vec3_of(-9, 60, 9), vec3_of(9, 60, 9), vec3_of(9, 60, -9), vec3_of(-9, 60, -9),
-                0);
-    studio_add_sun(&s, vec3_of(0, -1, 0), LUX);
-    studio_open(&s);
-    studio_render(&s);
-    float *direct = studio_read(&s, READ_DIRECT), *position = studio_read(&s, READ_POSITION);
+    fixture_quad(&s, vec3_of(-9, 60, 9), vec3_of(9, 60, 9), vec3_of(9, 60, -9), vec3_of(-9, 60, -9),
+                 0);
+    fixture_add_sun(&s, vec3_of(0, -1, 0), LUX);
+    fixture_open(&s);
+    fixture_render(&s);
+    float *direct = fixture_read(&s, READ_DIRECT), *position = fixture_read(&s, READ_POSITION);
     for (size_t i = 0; i < 32 * 32; i++)
         if (fabsf(position[3 * i]) < 8 && fabsf(position[3 * i + 2]) < 8) CHECK(direct[3 * i] == 0);
     free(direct);
     free(position);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // A box lit from inside, or a floor in the sun, has no shadow at all: light is the closed form's
@@ -150,37 +150,37 @@ TEST_GPU(casters_far_behind_a_cascade_still_cast)
 TEST_GPU(plane_does_not_shadow_itself_at_any_angle)
 {
     for (int i = 1; i < 9; i++) {
-        struct studio s;
-        studio_init(&s, gpu);
-        studio_floor(&s, 10, studio_matte(&s, GREY));
+        struct frame_fixture s;
+        fixture_init(&s, gpu);
+        fixture_floor(&s, 10, fixture_matte(&s, GREY));
         float angle = 1.5f * (float)i / 9;
-        studio_add_sun(&s, vec3_of(-sinf(angle), -cosf(angle), 0.1f), LUX);
-        studio_look(&s, vec3_of(0, 1, 2), vec3_of(0, 0, 0));
-        studio_open(&s);
-        studio_render(&s);
-        float *shadowed = studio_read(&s, READ_DIRECT);
+        fixture_add_sun(&s, vec3_of(-sinf(angle), -cosf(angle), 0.1f), LUX);
+        fixture_look(&s, vec3_of(0, 1, 2), vec3_of(0, 0, 0));
+        fixture_open(&s);
+        fixture_render(&s);
+        float *shadowed = fixture_read(&s, READ_DIRECT);
         float lambert = 1000 * s.lights[0].direction.y * -0.5f / 3.14159f;
         for (size_t p = 16 * 32; p < 32 * 32; p++) CHECK(shadowed[3 * p] > 0.97f * lambert);
         free(shadowed);
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 // at_edges: share of the light that a pixel along an edge keeps at least.
 static void check_closed_box(struct gpu *gpu, int radius, float at_edges)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     s.options.shadow_filter = radius;
-    studio_box(&s, vec3_of(-2, 0, -3), vec3_of(2, 3, 3), true, studio_matte(&s, GREY));
+    fixture_box(&s, vec3_of(-2, 0, -3), vec3_of(2, 3, 3), true, fixture_matte(&s, GREY));
     vec3s lamp = vec3_of(0.5f, 1.9f, -0.3f);
-    studio_add_point(&s, lamp, LUX);
-    studio_look(&s, vec3_of(1.8f, 0.3f, 2.8f), vec3_of(-1, 1.8f, -2));
+    fixture_add_point(&s, lamp, LUX);
+    fixture_look(&s, vec3_of(1.8f, 0.3f, 2.8f), vec3_of(-1, 1.8f, -2));
     s.width = s.height = 64;
-    studio_open(&s);
-    studio_render(&s);
-    float *direct = studio_read(&s, READ_DIRECT), *position = studio_read(&s, READ_POSITION);
-    float *normal = studio_read(&s, READ_NORMAL);
+    fixture_open(&s);
+    fixture_render(&s);
+    float *direct = fixture_read(&s, READ_DIRECT), *position = fixture_read(&s, READ_POSITION);
+    float *normal = fixture_read(&s, READ_NORMAL);
     for (size_t i = 0; i < 64 * 64; i++) {
         vec3s to =
             glms_vec3_sub(lamp, vec3_of(position[3 * i], position[3 * i + 1], position[3 * i + 2]));
@@ -196,7 +196,7 @@ static void check_closed_box(struct gpu *gpu, int radius, float at_edges)
     free(direct);
     free(position);
     free(normal);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // Half of the filter's box lies around the corner; of a box of three texels, half a texel of
@@ -210,25 +210,25 @@ TEST_GPU(lamp_in_a_closed_box_lights_every_pixel)
 // The light of every floor point that both pictures see, as a function of the point, must not
 // depend on the camera: compare at the same world positions by looking straight down from two
 // places a whole pixel apart.
-static float *top_view(struct studio *s, float shift_x, float shift_z, float turn)
+static float *top_view(struct frame_fixture *s, float shift_x, float shift_z, float turn)
 {
     s->input.camera = (struct world_camera){ .eye = vec3_of(shift_x, 4, shift_z),
                                              .forward = vec3_of(0, -1, 0),
                                              .up = vec3_of(sinf(turn), 0, -cosf(turn)),
                                              .vertical_fov_rad = 0.9f,
                                              .near_m = 0.05f };
-    studio_render(s);
-    return studio_read(s, READ_DIRECT);
+    fixture_render(s);
+    return fixture_read(s, READ_DIRECT);
 }
 
 TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_moves)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu, 64);
-    studio_floor(&s, 100, 0); // far beyond: the first cascade is smaller than the scene
+    fixture_floor(&s, 100, 0); // far beyond: the first cascade is smaller than the scene
     s.options.cascades = 3;
-    studio_add_sun(&s, vec3_of(-0.9f, -1, -0.3f), LUX);
-    studio_open(&s);
+    fixture_add_sun(&s, vec3_of(-0.9f, -1, -0.3f), LUX);
+    fixture_open(&s);
     // Pixels on the floor are 8 tan(0.45) / 64 m wide: shift by exactly one.
     float pixel = 8 * tanf(0.45f) / 64;
     float *a = top_view(&s, 0, 0, 0), *b = top_view(&s, pixel, 0, 0);
@@ -244,16 +244,16 @@ TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_moves)
     CHECK(edges > 10);
     free(a);
     free(b);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_turns)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu, 64);
-    studio_floor(&s, 100, 0);
-    studio_add_sun(&s, vec3_of(-0.9f, -1, -0.3f), LUX);
-    studio_open(&s);
+    fixture_floor(&s, 100, 0);
+    fixture_add_sun(&s, vec3_of(-0.9f, -1, -0.3f), LUX);
+    fixture_open(&s);
     // A quarter turn maps pixel centres onto pixel centres: up turns from −z to +x.
     float *a = top_view(&s, 0, 0, 0), *b = top_view(&s, 0, 0, 1.57079633f);
     for (uint32_t y = 0; y < 64; y++) {
@@ -265,5 +265,5 @@ TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_turns)
     }
     free(a);
     free(b);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

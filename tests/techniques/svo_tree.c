@@ -5,7 +5,7 @@
 struct svo_tree svo_tree_of(const struct vct_rig *rig)
 {
     const struct vct_svo *svo = &rig->vct->svo;
-    struct gpu *gpu = rig->studio.gpu;
+    struct gpu *gpu = rig->frame_fixture.gpu;
     const size_t node_bytes = gpu_buffer_bytes(gpu, svo->nodes),
                  place_bytes = gpu_buffer_bytes(gpu, svo->brick_coords);
     struct svo_tree tree = { .params = svo->params,
@@ -51,7 +51,8 @@ struct svo_pool svo_pool_of(const struct vct_rig *rig)
     const size_t floats =
         4 * (size_t)pool.desc.width * (size_t)pool.desc.height * (size_t)pool.desc.depth;
     pool.light = malloc(floats * sizeof *pool.light);
-    CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->light, 0, 0, pool.light, 4, floats));
+    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, rig->vct->light, 0, 0, pool.light, 4,
+                                   floats));
     return pool;
 }
 
@@ -66,12 +67,12 @@ const float *svo_pool_at(const struct svo_pool *pool, int brick, int way, const 
 void svo_furnish(struct vct_rig *rig, struct gpu *gpu, bool block)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
-    studio_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
-               studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    struct frame_fixture *s = &rig->frame_fixture;
+    fixture_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
+                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
     if (block)
-        studio_box(s, vec3_of(6, 0.2f, 3), vec3_of(8, 4, 6), false,
-                   studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
-    studio_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    studio_look(s, vec3_of(1, 6, 9), vec3_of(8, 2, 3));
+        fixture_box(s, vec3_of(6, 0.2f, 3), vec3_of(8, 4, 6), false,
+                    fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
+    fixture_look(s, vec3_of(1, 6, 9), vec3_of(8, 2, 3));
 }

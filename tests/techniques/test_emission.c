@@ -1,5 +1,5 @@
 // Emissive surfaces as lights, in the full frame, for every source that gathers emission.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 #include "techniques/gi.h"
 #include "techniques/registry.h"
 
@@ -12,61 +12,61 @@ enum { SIZE = 32, FLOATS = SIZE * SIZE * 3 };
 static const double PI = 3.14159265358979323846;
 
 struct room {
-    struct studio studio;
+    struct frame_fixture frame_fixture;
     struct gi_spec spec;
     struct gi *gi;
     int emitter; // instance
 };
 
-static int emissive_material(struct studio *s, vec3s radiance)
+static int emissive_material(struct frame_fixture *s, vec3s radiance)
 {
     struct material m = material_default();
     m.emissive = radiance;
     m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
     m.metallic = 0;
-    return studio_material(s, &m);
+    return fixture_material(s, &m);
 }
 
 static void room_open(struct room *r, const char *gi)
 {
-    studio_open(&r->studio);
+    fixture_open(&r->frame_fixture);
     CHECK(gi_spec_parse(&r->spec, test_host(), gi));
-    r->gi = gi_create(test_host(), r->studio.gpu, &r->spec, &r->studio.pose, r->studio.width,
-                      r->studio.height);
+    r->gi = gi_create(test_host(), r->frame_fixture.gpu, &r->spec, &r->frame_fixture.pose,
+                      r->frame_fixture.width, r->frame_fixture.height);
     assert_non_null(r->gi);
-    r->studio.indirect = gi_hook(r->gi);
+    r->frame_fixture.indirect = gi_hook(r->gi);
 }
 
 static void room_finish(struct room *r)
 {
     gi_destroy(r->gi);
     gi_spec_finish(&r->spec);
-    studio_finish(&r->studio);
+    fixture_finish(&r->frame_fixture);
 }
 
 static float *room_render(struct room *r)
 {
-    studio_render(&r->studio);
-    return studio_read(&r->studio, READ_IRRADIANCE);
+    fixture_render(&r->frame_fixture);
+    return fixture_read(&r->frame_fixture, READ_IRRADIANCE);
 }
 
 // A closed room with an emissive box and a block, viewed from a corner.
 static void furnish(struct room *r, struct gpu *gpu, const char *gi, float emission, float point)
 {
     *r = (struct room){ 0 };
-    struct studio *s = &r->studio;
-    studio_init(s, gpu);
-    studio_box(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
-               studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
-    studio_box(s, vec3_of(0.2f, 0, -0.5f), vec3_of(1, 1, 0.3f), false,
-               studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    struct frame_fixture *s = &r->frame_fixture;
+    fixture_init(s, gpu);
+    fixture_box(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
+                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    fixture_box(s, vec3_of(0.2f, 0, -0.5f), vec3_of(1, 1, 0.3f), false,
+                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
     r->emitter =
-        studio_quad(s, vec3_of(-1, 2.9f, -1), vec3_of(-0.5f, 2.9f, -1), vec3_of(-0.5f, 2.9f, -0.5f),
-                    vec3_of(-1, 2.9f, -0.5f),
-                    emissive_material(s, vec3_of(300 * emission, 200 * emission, 100 * emission)));
+        fixture_quad(s, vec3_of(-1, 2.9f, -1), vec3_of(-0.5f, 2.9f, -1),
+                     vec3_of(-0.5f, 2.9f, -0.5f), vec3_of(-1, 2.9f, -0.5f),
+                     emissive_material(s, vec3_of(300 * emission, 200 * emission, 100 * emission)));
     if (point > 0.0f)
-        studio_add_point(s, vec3_of(-1, 2, 0), vec3_of(40 * point, 60 * point, 20 * point));
-    studio_look(s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
+        fixture_add_point(s, vec3_of(-1, 2, 0), vec3_of(40 * point, 60 * point, 20 * point));
+    fixture_look(s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
     room_open(r, gi);
 }
 
@@ -151,8 +151,8 @@ TEST_GPU(no_emission_gives_exactly_zero)
 
 static void move_lamp(struct room *r, float x)
 {
-    int node = r->studio.scene->instances[r->emitter].node;
-    r->studio.pose.world_from_node[node].raw[3][0] = x;
+    int node = r->frame_fixture.scene->instances[r->emitter].node;
+    r->frame_fixture.pose.world_from_node[node].raw[3][0] = x;
 }
 
 // Bounces that take several frames are tested by test_vct_bounces; this is the first frame.
@@ -210,11 +210,11 @@ static double facing_squares(void)
 static double facing_wall(struct gpu *gpu, const char *gi)
 {
     struct room r = { 0 };
-    struct studio *s = &r.studio;
-    studio_init(s, gpu);
-    studio_box(s, vec3_of(0, 0, 0), vec3_of(10, 10, 10), true, studio_matte(s, vec3_of(0, 0, 0)));
-    studio_quad(s, vec3_of(0, 0, 0.01f), vec3_of(10, 0, 0.01f), vec3_of(10, 10, 0.01f),
-                vec3_of(0, 10, 0.01f), emissive_material(s, vec3_of(1, 1, 1)));
+    struct frame_fixture *s = &r.frame_fixture;
+    fixture_init(s, gpu);
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(10, 10, 10), true, fixture_matte(s, vec3_of(0, 0, 0)));
+    fixture_quad(s, vec3_of(0, 0, 0.01f), vec3_of(10, 0, 0.01f), vec3_of(10, 10, 0.01f),
+                 vec3_of(0, 10, 0.01f), emissive_material(s, vec3_of(1, 1, 1)));
     s->input.camera =
         camera_look_at(vec3_of(5, 5, 0.1f), vec3_of(5, 5, 10), 2.0f * atanf(5.0f / 9.9f), 0.01f);
     room_open(&r, gi);
@@ -255,9 +255,9 @@ TEST_GPU(ambient_is_the_mean_fluence_of_a_box)
 {
     CHECK_RELATIVE(facing_wall(gpu, "ambient"), PI * 100 * (2.0 / 3.0 * 9.99) / 4000, 2e-3);
     struct room r = { 0 };
-    studio_init(&r.studio, gpu);
-    studio_box(&r.studio, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), true,
-               emissive_material(&r.studio, vec3_of(7, 7, 7)));
+    fixture_init(&r.frame_fixture, gpu);
+    fixture_box(&r.frame_fixture, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), true,
+                emissive_material(&r.frame_fixture, vec3_of(7, 7, 7)));
     room_open(&r, "ambient");
     float *e = room_render(&r);
     CHECK_RELATIVE(mean_of(e), PI * 7, 2e-3);
@@ -271,15 +271,15 @@ TEST_GPU(ambient_light_leaves_an_open_courtyard)
 {
     for (int i = 0; i < 2; i++) {
         struct room r = { 0 };
-        struct studio *s = &r.studio;
+        struct frame_fixture *s = &r.frame_fixture;
         const float h = i == 0 ? 1 : 9;
-        studio_init(s, gpu);
-        int matte = studio_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
-        studio_floor(s, 4, matte);
-        studio_quad(s, vec3_of(-4, 0, -4), vec3_of(4, 0, -4), vec3_of(4, h, -4), vec3_of(-4, h, -4),
-                    matte);
-        studio_add_sun(s, vec3_of(0, -1, 0), vec3_of(1000, 1000, 1000));
-        studio_look(s, vec3_of(0, 2, 0), vec3_of(0, 0, -0.5f));
+        fixture_init(s, gpu);
+        int matte = fixture_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
+        fixture_floor(s, 4, matte);
+        fixture_quad(s, vec3_of(-4, 0, -4), vec3_of(4, 0, -4), vec3_of(4, h, -4),
+                     vec3_of(-4, h, -4), matte);
+        fixture_add_sun(s, vec3_of(0, -1, 0), vec3_of(1000, 1000, 1000));
+        fixture_look(s, vec3_of(0, 2, 0), vec3_of(0, 0, -0.5f));
         room_open(&r, "ambient");
         float *e = room_render(&r);
         // Albedo 0.5 in 8 bits of sRGB, and a map of 64² texels over the floor's edges.
@@ -294,9 +294,9 @@ TEST_GPU(a_flat_emissive_scene_is_finite)
     size_t at = 0;
     for (const struct technique *t; (t = next_gatherer(&at));) {
         struct room r = { 0 };
-        studio_init(&r.studio, gpu);
-        studio_floor(&r.studio, 1, emissive_material(&r.studio, vec3_of(9, 9, 9)));
-        studio_look(&r.studio, vec3_of(0, 1, 1), vec3_of(0, 0, 0));
+        fixture_init(&r.frame_fixture, gpu);
+        fixture_floor(&r.frame_fixture, 1, emissive_material(&r.frame_fixture, vec3_of(9, 9, 9)));
+        fixture_look(&r.frame_fixture, vec3_of(0, 1, 1), vec3_of(0, 0, 0));
         room_open(&r, t->name);
         float *e = room_render(&r);
         for (int i = 0; i < FLOATS; i++) CHECK(isfinite(e[i]) && e[i] >= 0.0f);

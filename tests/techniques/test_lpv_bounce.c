@@ -1,5 +1,5 @@
 // Further bounces: reflecting surfaces by cell, and the light that they reflect.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 #include "techniques/lpv_fixture.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
     technique_lpv.record(user, cmd, view);
 }
 
-static void use(struct studio *s, struct lpv *lpv)
+static void use(struct frame_fixture *s, struct lpv *lpv)
 {
     s->indirect = (struct frame_indirect){ record, lpv, technique_lpv.needs };
 }
@@ -33,35 +33,35 @@ static void read_areas(struct lpv *lpv, double out[NUMBERS])
     free(words);
 }
 
-static void begin(struct studio *s, struct gpu *gpu)
+static void begin(struct frame_fixture *s, struct gpu *gpu)
 {
-    studio_init(s, gpu);
-    studio_look(s, vec3_of(0, 2, 5), vec3_of(0, 1, 0));
-    studio_add_sun(s, vec3_of(0.3f, -1, -0.2f), vec3_of(1, 1, 1));
+    fixture_init(s, gpu);
+    fixture_look(s, vec3_of(0, 2, 5), vec3_of(0, 1, 0));
+    fixture_add_sun(s, vec3_of(0.3f, -1, -0.2f), vec3_of(1, 1, 1));
 }
 
 // Lines sample the area, with an error of a border's length times half their spacing.
 TEST_GPU(lpv_surfaces_have_the_area_and_colour_of_the_scene)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = studio_matte(&s, vec3_of(0.2f, 0.5f, 0.8f));
-    studio_floor(&s, 3, matte);                                            // +y
-    studio_box(&s, vec3_of(-1, 1, -1), vec3_of(1, 2, 1.5f), false, matte); // outwards
+    const int matte = fixture_matte(&s, vec3_of(0.2f, 0.5f, 0.8f));
+    fixture_floor(&s, 3, matte);                                            // +y
+    fixture_box(&s, vec3_of(-1, 1, -1), vec3_of(1, 2, 1.5f), false, matte); // outwards
     struct node flip = node_default();
     flip.scale = vec3_of(1, -1, 1);
     flip.translation = vec3_of(0, 3, 0);
-    studio_instance(&s, 0, &flip); // the floor as a ceiling, −y
+    fixture_instance(&s, 0, &flip); // the floor as a ceiling, −y
     // A slope of 4 × 5 m, n = (3/5, 4/5, 0).
-    studio_quad(&s, vec3_of(-2, 2, 2), vec3_of(2, -1, 2), vec3_of(2, -1, -2), vec3_of(-2, 2, -2),
-                matte);
+    fixture_quad(&s, vec3_of(-2, 2, 2), vec3_of(2, -1, 2), vec3_of(2, -1, -2), vec3_of(-2, 2, -2),
+                 matte);
     struct material metal = material_default();
     metal.metallic = 1;
-    studio_floor(&s, 2, studio_material(&s, &metal)); // reflects nothing diffusely
-    studio_open(&s);
+    fixture_floor(&s, 2, fixture_material(&s, &metal)); // reflects nothing diffusely
+    fixture_open(&s);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
     use(&s, lpv);
-    studio_render(&s);
+    fixture_render(&s);
     double areas[NUMBERS];
     read_areas(lpv, areas);
     // +x −x +y −y +z −z
@@ -71,13 +71,13 @@ TEST_GPU(lpv_surfaces_have_the_area_and_colour_of_the_scene)
         for (int c = 0; c < LPV_FIXTURE_COLOURS; c++)
             CHECK_RELATIVE(areas[SIDE_NUMBERS * side + c], albedo[c] * expected[side], 0.06);
     lpv_fixture_destroy(lpv);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // An alpha mask and a double-sided material.
 TEST_GPU(lpv_surfaces_respect_masks_and_sides)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
     uint8_t pixels[2 * 4] = { 255, 255, 255, 255, 255, 255, 255, 0 }; // the right half is masked
     const int image = scene_add_image(
@@ -90,27 +90,27 @@ TEST_GPU(lpv_surfaces_respect_masks_and_sides)
     m.double_sided = true;
     m.base_color_map.image = image;
     m.base_color_map.nearest = true;
-    studio_floor(&s, 2, studio_material(&s, &m));
-    studio_quad(&s, vec3_of(-2, 0, -2), vec3_of(2, 0, -2), vec3_of(2, 2, -2), vec3_of(-2, 2, -2),
-                studio_matte(&s, vec3_of(1, 1, 1))); // +z, 8 m²
-    studio_open(&s);
+    fixture_floor(&s, 2, fixture_material(&s, &m));
+    fixture_quad(&s, vec3_of(-2, 0, -2), vec3_of(2, 0, -2), vec3_of(2, 2, -2), vec3_of(-2, 2, -2),
+                 fixture_matte(&s, vec3_of(1, 1, 1))); // +z, 8 m²
+    fixture_open(&s);
     struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=32,steps=2,bounces=1,cell_margin=1");
     use(&s, lpv);
-    studio_render(&s);
+    fixture_render(&s);
     double areas[NUMBERS];
     read_areas(lpv, areas);
     const double expected[SIDES] = { 0, 0, 8, 8, 8, 0 };
     for (int side = 0; side < SIDES; side++)
         CHECK_NEAR(areas[SIDE_NUMBERS * side], expected[side], 0.06 * 8);
     lpv_fixture_destroy(lpv);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // Sum of the irradiance of an image.
-static double render_sum(struct studio *s)
+static double render_sum(struct frame_fixture *s)
 {
-    studio_render(s);
-    float *e = studio_read(s, READ_IRRADIANCE);
+    fixture_render(s);
+    float *e = fixture_read(s, READ_IRRADIANCE);
     double sum = 0;
     for (uint32_t i = 0; i < 3 * s->width * s->height; i++) sum += (double)e[i];
     free(e);
@@ -119,18 +119,18 @@ static double render_sum(struct studio *s)
 
 static double closed_box(struct gpu *gpu, const char *gi, float albedo)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    studio_look(&s, vec3_of(1.8f, 1.8f, 1.8f), vec3_of(-1, -1, -1));
-    studio_add_point(&s, vec3_of(0, 0, 0), vec3_of(100, 100, 100));
-    studio_box(&s, vec3_of(-2, -2, -2), vec3_of(2, 2, 2), true,
-               studio_matte(&s, vec3_of(albedo, albedo, albedo)));
-    studio_open(&s);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    fixture_look(&s, vec3_of(1.8f, 1.8f, 1.8f), vec3_of(-1, -1, -1));
+    fixture_add_point(&s, vec3_of(0, 0, 0), vec3_of(100, 100, 100));
+    fixture_box(&s, vec3_of(-2, -2, -2), vec3_of(2, 2, 2), true,
+                fixture_matte(&s, vec3_of(albedo, albedo, albedo)));
+    fixture_open(&s);
     struct lpv *lpv = lpv_fixture_create(gpu, gi);
     use(&s, lpv);
     const double sum = render_sum(&s);
     lpv_fixture_destroy(lpv);
-    studio_finish(&s);
+    fixture_finish(&s);
     return sum;
 }
 
@@ -174,14 +174,14 @@ TEST_GPU(lpv_bounces_of_cascades_are_near_the_geometric_series)
 
 TEST_GPU(lpv_bounces_are_linear)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = studio_matte(&s, vec3_of(0.7f, 0.5f, 0.3f));
-    studio_floor(&s, 3, matte);
-    studio_quad(&s, vec3_of(-3, 0, -2), vec3_of(3, 0, -2), vec3_of(3, 3, -2), vec3_of(-3, 3, -2),
-                matte);
-    studio_add_point(&s, vec3_of(1, 1, 1), vec3_of(3, 2, 1));
-    studio_open(&s);
+    const int matte = fixture_matte(&s, vec3_of(0.7f, 0.5f, 0.3f));
+    fixture_floor(&s, 3, matte);
+    fixture_quad(&s, vec3_of(-3, 0, -2), vec3_of(3, 0, -2), vec3_of(3, 3, -2), vec3_of(-3, 3, -2),
+                 matte);
+    fixture_add_point(&s, vec3_of(1, 1, 1), vec3_of(3, 2, 1));
+    fixture_open(&s);
     float *e[4];
     double most = 0;
     for (int lights = 1; lights < 4; lights++) {
@@ -191,8 +191,8 @@ TEST_GPU(lpv_bounces_are_linear)
         s.lights[0].intensity = one;
         s.lights[1].intensity = two;
         use(&s, lpv);
-        studio_render(&s);
-        e[lights] = studio_read(&s, READ_IRRADIANCE);
+        fixture_render(&s);
+        e[lights] = fixture_read(&s, READ_IRRADIANCE);
         lpv_fixture_destroy(lpv);
     }
     const size_t count = (size_t)s.width * s.height * 3;
@@ -201,19 +201,19 @@ TEST_GPU(lpv_bounces_are_linear)
         if (e[1][i] > 0 && e[2][i] > 0)
             CHECK_NEAR((double)e[3][i], (double)e[1][i] + (double)e[2][i], 2e-3 * most);
     for (int i = 1; i < 4; i++) free(e[i]);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // Surfaces are cached while nothing moves and recomputed after a move.
 TEST_GPU(lpv_surfaces_follow_moving_meshes)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = studio_matte(&s, vec3_of(0.7f, 0.5f, 0.3f));
-    studio_floor(&s, 3, matte);
-    const int slab = studio_quad(&s, vec3_of(-1, 1, 0), vec3_of(1, 1, 0), vec3_of(1, 2, 0),
-                                 vec3_of(-1, 2, 0), matte);
-    studio_open(&s);
+    const int matte = fixture_matte(&s, vec3_of(0.7f, 0.5f, 0.3f));
+    fixture_floor(&s, 3, matte);
+    const int slab = fixture_quad(&s, vec3_of(-1, 1, 0), vec3_of(1, 1, 0), vec3_of(1, 2, 0),
+                                  vec3_of(-1, 2, 0), matte);
+    fixture_open(&s);
     struct lpv *kept = lpv_fixture_create(gpu, "lpv:dim=16,steps=16,bounces=1");
     use(&s, kept);
     const double first = render_sum(&s), second = render_sum(&s);
@@ -230,5 +230,5 @@ TEST_GPU(lpv_surfaces_follow_moving_meshes)
     use(&s, fresh);
     CHECK(render_sum(&s) == turned);
     lpv_fixture_destroy(fresh);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

@@ -1,5 +1,5 @@
 // Light of the sky, which enters through the border of the grid.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 #include "techniques/gi.h"
 #include "techniques/lpv_fixture.h"
 
@@ -98,19 +98,19 @@ TEST_GPU(lpv_sky_adds_to_other_light)
 // Range of irradiance over πL in the middle of an unoccluded floor of 6 m.
 static void floor_under_sky(struct gpu *gpu, const char *text, double *least, double *most)
 {
-    struct studio s;
+    struct frame_fixture s;
     struct gi_spec spec;
-    studio_init(&s, gpu);
-    studio_floor(&s, 3, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
-    studio_look(&s, vec3_of(0, 2, 0.1f), vec3_of(0, 0, 0));
+    fixture_init(&s, gpu);
+    fixture_floor(&s, 3, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    fixture_look(&s, vec3_of(0, 2, 0.1f), vec3_of(0, 0, 0));
     s.input.sky = SKY;
-    studio_open(&s);
+    fixture_open(&s);
     CHECK(gi_spec_parse(&spec, test_host(), text));
     struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);
     assert_non_null(gi);
     s.indirect = gi_hook(gi);
-    studio_render(&s);
-    float *e = studio_read(&s, READ_IRRADIANCE), *depth = studio_read(&s, READ_DEPTH);
+    fixture_render(&s);
+    float *e = fixture_read(&s, READ_IRRADIANCE), *depth = fixture_read(&s, READ_DEPTH);
     *least = HUGE_VAL;
     *most = 0;
     for (uint32_t k = 0; k < s.width * s.height; k++)
@@ -123,7 +123,7 @@ static void floor_under_sky(struct gpu *gpu, const char *text, double *least, do
     free(depth);
     gi_destroy(gi);
     gi_spec_finish(&spec);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 #define LPV   "cascades=1,steps=64,bounces=0,"

@@ -1,5 +1,5 @@
 // Invariants of every source in the full frame: linearity, black without light, determinism.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 #include "techniques/gi.h"
 #include "techniques/registry.h"
 
@@ -13,28 +13,28 @@ enum { SIZE = 32, FLOATS = SIZE * SIZE * 3 };
 static float *layer(struct gpu *gpu, const char *text, int lights, float strength, int frames,
                     enum frame_readback what)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    studio_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
-               studio_matte(&s, vec3_of(0.7f, 0.5f, 0.3f)));
-    studio_box(&s, vec3_of(0.2f, 0, -0.5f), vec3_of(1, 1, 0.3f), false,
-               studio_matte(&s, vec3_of(0.2f, 0.5f, 0.8f)));
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true,
+                fixture_matte(&s, vec3_of(0.7f, 0.5f, 0.3f)));
+    fixture_box(&s, vec3_of(0.2f, 0, -0.5f), vec3_of(1, 1, 0.3f), false,
+                fixture_matte(&s, vec3_of(0.2f, 0.5f, 0.8f)));
     const vec3s one = { { 100 * strength, 60 * strength, 20 * strength } };
     const vec3s two = { { 10 * strength, 40 * strength, 90 * strength } };
-    if (lights & 1) studio_add_point(&s, vec3_of(-1, 2, 0), one);
-    if (lights & 2) studio_add_spot(&s, vec3_of(1, 2.5f, 1), vec3_of(-1, -2, -1), 0.3f, 0.7f, two);
-    studio_look(&s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
-    studio_open(&s);
+    if (lights & 1) fixture_add_point(&s, vec3_of(-1, 2, 0), one);
+    if (lights & 2) fixture_add_spot(&s, vec3_of(1, 2.5f, 1), vec3_of(-1, -2, -1), 0.3f, 0.7f, two);
+    fixture_look(&s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
+    fixture_open(&s);
     struct gi_spec spec;
     CHECK(gi_spec_parse(&spec, test_host(), text));
     struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);
     assert_non_null(gi);
     s.indirect = gi_hook(gi);
-    for (int i = 0; i < frames; i++) studio_render(&s);
-    float *out = studio_read(&s, what);
+    for (int i = 0; i < frames; i++) fixture_render(&s);
+    float *out = fixture_read(&s, what);
     gi_destroy(gi);
     gi_spec_finish(&spec);
-    studio_finish(&s);
+    fixture_finish(&s);
     return out;
 }
 

@@ -1,5 +1,5 @@
 // Every technique in the full frame: creation to destruction, with every option at both ends.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 #include "techniques/gi.h"
 #include "techniques/registry.h"
 
@@ -9,22 +9,22 @@
 #include <string.h>
 
 // A room with a box, a sun and a point light.
-static void room(struct studio *s, struct gpu *gpu)
+static void room(struct frame_fixture *s, struct gpu *gpu)
 {
-    studio_init(s, gpu);
-    const int matte = studio_matte(s, vec3_of(0.7f, 0.6f, 0.5f));
-    studio_floor(s, 3, matte);
-    studio_box(s, vec3_of(-0.5f, 0, -0.5f), vec3_of(0.5f, 1, 0.5f), false, matte);
-    studio_quad(s, vec3_of(-3, 0, -3), vec3_of(3, 0, -3), vec3_of(3, 3, -3), vec3_of(-3, 3, -3),
-                matte);
-    studio_add_sun(s, vec3_of(0.3f, -1, -0.4f), vec3_of(20000, 18000, 15000));
-    studio_add_point(s, vec3_of(1, 2, 1), vec3_of(50, 300, 100));
-    studio_look(s, vec3_of(1, 2, 4), vec3_of(0, 0.5f, 0));
+    fixture_init(s, gpu);
+    const int matte = fixture_matte(s, vec3_of(0.7f, 0.6f, 0.5f));
+    fixture_floor(s, 3, matte);
+    fixture_box(s, vec3_of(-0.5f, 0, -0.5f), vec3_of(0.5f, 1, 0.5f), false, matte);
+    fixture_quad(s, vec3_of(-3, 0, -3), vec3_of(3, 0, -3), vec3_of(3, 3, -3), vec3_of(-3, 3, -3),
+                 matte);
+    fixture_add_sun(s, vec3_of(0.3f, -1, -0.4f), vec3_of(20000, 18000, 15000));
+    fixture_add_point(s, vec3_of(1, 2, 1), vec3_of(50, 300, 100));
+    fixture_look(s, vec3_of(1, 2, 4), vec3_of(0, 0.5f, 0));
     s->input.sky = vec3_of(10, 20, 30);
-    studio_open(s);
+    fixture_open(s);
 }
 
-static struct gi *create(struct studio *s, const char *text)
+static struct gi *create(struct frame_fixture *s, const char *text)
 {
     struct gi_spec spec;
     if (!gi_spec_parse(&spec, test_host(), text)) fail_msg("%s: %s", text, test_last_message());
@@ -35,21 +35,21 @@ static struct gi *create(struct studio *s, const char *text)
     return gi;
 }
 
-static void finite_frames(struct studio *s, int count)
+static void finite_frames(struct frame_fixture *s, int count)
 {
-    for (int i = 0; i < count; i++) studio_render(s);
-    float *e = studio_read(s, READ_IRRADIANCE);
+    for (int i = 0; i < count; i++) fixture_render(s);
+    float *e = fixture_read(s, READ_IRRADIANCE);
     for (size_t i = 0; i < (size_t)s->width * s->height * 3; i++)
         CHECK(isfinite(e[i]) && e[i] >= 0.0f);
     free(e);
-    float *v = studio_read(s, READ_VISIBILITY);
+    float *v = fixture_read(s, READ_VISIBILITY);
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) CHECK(v[i] >= 0.0f && v[i] <= 1.0f);
     free(v);
 }
 
 TEST_GPU(techniques_survive_frames_resizes_and_debug_views)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
         char text[64];
@@ -58,7 +58,7 @@ TEST_GPU(techniques_survive_frames_resizes_and_debug_views)
         struct gi *gi = create(&s, text);
         finite_frames(&s, 3);
         CHECK(gi_resize(gi, 45, 27));
-        studio_resize(&s, 45, 27);
+        fixture_resize(&s, 45, 27);
         gi_invalidate(gi, CHANGED_GEOMETRY | CHANGED_LIGHT | CHANGED_CAMERA);
         finite_frames(&s, 1);
         const struct technique_debug_view *view = techniques[i]->debug_views;
@@ -79,10 +79,10 @@ TEST_GPU(techniques_survive_frames_resizes_and_debug_views)
         CHECK(gi_set_debug_view(gi, NULL));
         CHECK(gi_debug_image(gi).id == 0);
         CHECK(gi_resize(gi, 32, 32));
-        studio_resize(&s, 32, 32);
+        fixture_resize(&s, 32, 32);
         gi_destroy(gi);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // "technique:option=value" with the smallest or the largest value.
@@ -106,7 +106,7 @@ static void print_end(const struct technique *technique, const struct option_row
 }
 
 // Live options change in `running`; others create a new stack.
-static void run_with(struct studio *s, struct gi *running, const char *text)
+static void run_with(struct frame_fixture *s, struct gi *running, const char *text)
 {
     struct gi_spec spec;
     CHECK(gi_spec_parse(&spec, test_host(), text));
@@ -120,7 +120,7 @@ static void run_with(struct studio *s, struct gi *running, const char *text)
 
 TEST_GPU(techniques_run_with_every_option_at_both_ends)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
         struct gi *running = create(&s, techniques[i]->name);
@@ -133,26 +133,26 @@ TEST_GPU(techniques_run_with_every_option_at_both_ends)
             }
         gi_destroy(running);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(techniques_survive_empty_scenes)
 {
-    struct studio s;
-    studio_init(&s, gpu);
-    studio_add_sun(&s, vec3_of(0, -1, 0), vec3_of(1, 1, 1));
-    studio_open(&s);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
+    fixture_add_sun(&s, vec3_of(0, -1, 0), vec3_of(1, 1, 1));
+    fixture_open(&s);
     for (size_t i = 0; techniques[i]; i++) {
         struct gi *gi = create(&s, techniques[i]->name);
         finite_frames(&s, 2);
         gi_destroy(gi);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(techniques_estimate_their_memory)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu);
     for (size_t i = 0; techniques[i]; i++) {
         struct gi_spec spec;
@@ -171,23 +171,24 @@ TEST_GPU(techniques_estimate_their_memory)
         CHECK(taken >= estimate && (double)taken <= 1.02 * (double)estimate + 4096);
         gi_destroy(gi);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(gi_changes_live_options_in_place_and_refuses_others)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu);
     struct gi *gi = create(&s, "ambient");
-    studio_render(&s);
-    const float before = studio_pixel(&s, READ_IRRADIANCE, 16, 20).y;
+    fixture_render(&s);
+    const float before = fixture_pixel(&s, READ_IRRADIANCE, 16, 20).y;
     struct gi_spec spec;
     CHECK(gi_spec_parse(&spec, test_host(), "ambient:strength=2"));
     CHECK(gi_set_options(gi, &spec));
     gi_spec_finish(&spec);
-    studio_render(&s);
+    fixture_render(&s);
     CHECK(before > 0.0f);
-    CHECK_RELATIVE((double)studio_pixel(&s, READ_IRRADIANCE, 16, 20).y, 2.0 * (double)before, 1e-3);
+    CHECK_RELATIVE((double)fixture_pixel(&s, READ_IRRADIANCE, 16, 20).y, 2.0 * (double)before,
+                   1e-3);
     CHECK(gi_spec_parse(&spec, test_host(), "lpv"));
     CHECK(!gi_set_options(gi, &spec));
     gi_spec_finish(&spec);
@@ -201,7 +202,7 @@ TEST_GPU(gi_changes_live_options_in_place_and_refuses_others)
     CHECK(!gi_set_options(gi, &spec));
     gi_spec_finish(&spec);
     gi_destroy(gi);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 static bool fake_create(void *state, const struct technique_create *how)
@@ -241,7 +242,7 @@ static const struct technique fake = { .name = "fake",
 
 TEST_GPU(gi_accepts_the_old_name_of_a_debug_view)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu);
     const struct gi_spec spec = {
         .host = test_host(), .count = 1, .technique = { &fake }, .options = { NULL }
@@ -254,23 +255,23 @@ TEST_GPU(gi_accepts_the_old_name_of_a_debug_view)
         CHECK(gi_set_debug_view(gi, names[i]));
         CHECK_STRING(test_last_message(), "fake: debug view room is now overflow; the old name "
                                           "will be removed in the next release");
-        studio_render(&s);
+        fixture_render(&s);
         test_forget_messages();
     }
     CHECK(gi_set_debug_view(gi, "overflow") && gi_set_debug_view(gi, "fake.overflow"));
     CHECK_STRING(test_last_message(), "");
     gi_destroy(gi);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(lpv_refuses_a_dimension_that_does_not_fit_its_workgroups)
 {
-    struct studio s;
+    struct frame_fixture s;
     room(&s, gpu);
     struct gi_spec spec;
     CHECK(gi_spec_parse(&spec, test_host(), "lpv:dim=20"));
     CHECK(gi_create(test_host(), gpu, &spec, &s.pose, 32, 32) == NULL);
     CHECK(strstr(test_last_message(), "dim=20 is not a multiple of 8"));
     gi_spec_finish(&spec);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

@@ -12,24 +12,24 @@ enum { FLOATS = 32 * 32 * 3 };
 static void furnish(struct vct_rig *rig, struct gpu *gpu, const char *options)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
-    studio_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-               studio_matte(s, vec3_of(0.6f, 0.6f, 0.6f)));
-    studio_add_point(s, vec3_of(5.3f, 6, 4.2f), vec3_of(300, 300, 300));
-    studio_look(s, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
+    struct frame_fixture *s = &rig->frame_fixture;
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_matte(s, vec3_of(0.6f, 0.6f, 0.6f)));
+    fixture_add_point(s, vec3_of(5.3f, 6, 4.2f), vec3_of(300, 300, 300));
+    fixture_look(s, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
     vct_rig_open(rig, options);
 }
 
 static void dim_and_move(struct vct_rig *rig)
 {
-    rig->studio.lights[0].position = vec3_of(2, 2, 2);
-    rig->studio.lights[0].intensity = vec3_of(20, 40, 30);
+    rig->frame_fixture.lights[0].position = vec3_of(2, 2, 2);
+    rig->frame_fixture.lights[0].intensity = vec3_of(20, 40, 30);
 }
 
 static float *irradiance_after(struct vct_rig *rig, int frames)
 {
-    for (int i = 0; i < frames; i++) studio_render(&rig->studio);
-    return studio_read(&rig->studio, READ_IRRADIANCE);
+    for (int i = 0; i < frames; i++) fixture_render(&rig->frame_fixture);
+    return fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
 }
 
 static double mean(const float *values)
@@ -66,12 +66,12 @@ TEST_GPU(blocks_of_one_size_get_the_same_from_smaller_voxels)
     for (int i = 0; i < 2; i++) {
         struct vct_rig rig;
         vct_rig_init(&rig, gpu);
-        struct studio *s = &rig.studio;
-        const int white = studio_matte(s, vec3_of(0.6f, 0.6f, 0.6f));
-        studio_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, white);
-        studio_box(s, vec3_of(6, 0, 2), vec3_of(8.3f, 3.1f, 4.4f), false, white);
-        studio_add_point(s, vec3_of(5.3f, 6, 4.2f), vec3_of(300, 300, 300));
-        studio_look(s, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
+        struct frame_fixture *s = &rig.frame_fixture;
+        const int white = fixture_matte(s, vec3_of(0.6f, 0.6f, 0.6f));
+        fixture_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, white);
+        fixture_box(s, vec3_of(6, 0, 2), vec3_of(8.3f, 3.1f, 4.4f), false, white);
+        fixture_add_point(s, vec3_of(5.3f, 6, 4.2f), vec3_of(300, 300, 300));
+        fixture_look(s, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
         vct_rig_open(&rig, options[i]);
         got[i] = irradiance_after(&rig, 1);
         vct_rig_finish(&rig);
@@ -123,13 +123,13 @@ TEST_GPU(bounces_stay_while_something_moves)
 {
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
-    struct studio *s = &rig.studio;
-    const int white = studio_matte(s, vec3_of(0.6f, 0.6f, 0.6f));
-    studio_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, white);
+    struct frame_fixture *s = &rig.frame_fixture;
+    const int white = fixture_matte(s, vec3_of(0.6f, 0.6f, 0.6f));
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, white);
     const int box = s->scene->instance_count;
-    studio_box(s, vec3_of(4, 0, 4), vec3_of(5, 1, 5), false, white);
-    studio_add_point(s, vec3_of(5.3f, 6, 4.2f), vec3_of(300, 300, 300));
-    studio_look(s, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
+    fixture_box(s, vec3_of(4, 0, 4), vec3_of(5, 1, 5), false, white);
+    fixture_add_point(s, vec3_of(5.3f, 6, 4.2f), vec3_of(300, 300, 300));
+    fixture_look(s, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
     vct_rig_open(&rig, "resolution=32");
     float *still = irradiance_after(&rig, 2);
     double least = 1e9, most = 0.0;

@@ -81,7 +81,7 @@ TEST_GPU(bricks_of_each_level_are_those_of_the_twin)
     struct vct_rig rig;
     svo_furnish(&rig, gpu, true);
     vct_rig_open(&rig, "storage=svo,resolution=48");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     struct svo_tree tree = svo_tree_of(&rig);
     struct svo_pool pool = svo_pool_of(&rig);
     double most = 0.0;
@@ -125,7 +125,7 @@ TEST_GPU(neighbours_agree_on_what_they_share)
     struct vct_rig rig;
     svo_furnish(&rig, gpu, true);
     vct_rig_open(&rig, "storage=svo,resolution=48");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     struct svo_tree tree = svo_tree_of(&rig);
     struct svo_pool pool = svo_pool_of(&rig);
     const uint32_t leaves = tree.params.depths - 1;
@@ -205,7 +205,7 @@ TEST_GPU(leaves_have_the_light_of_the_finest_mip)
         svo_furnish(&rig, gpu, false);
         vct_rig_open(&rig, svo ? "storage=svo,resolution=48,bounces=1"
                                : "storage=mips,resolution=48,bounces=1");
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
         for (int way = 0; way < 6; way++)
             (svo ? sum_of_leaves : sum_of_mip)(&rig, way, sums[svo][way]);
         vct_rig_finish(&rig);

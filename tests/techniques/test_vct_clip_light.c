@@ -13,8 +13,8 @@ static const double PI = 3.14159265358979323846;
 // Irradiance of one more frame, all of it finite. To be freed.
 static float *irradiance(struct vct_rig *rig)
 {
-    studio_render(&rig->studio);
-    float *e = studio_read(&rig->studio, READ_IRRADIANCE);
+    fixture_render(&rig->frame_fixture);
+    float *e = fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
     for (int i = 0; i < FLOATS; i++) CHECK(isfinite(e[i]) && e[i] >= 0.0f);
     return e;
 }
@@ -50,9 +50,9 @@ static void shine(struct vct_rig *rig, struct gpu *gpu, bool glows)
     if (glows) m.emissive = vec3_of(10, 10, 10);
     m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
     m.metallic = 0;
-    studio_box(&rig->studio, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-               studio_material(&rig->studio, &m));
-    if (!glows) rig->studio.input.sky = vec3_of(10, 10, 10);
+    fixture_box(&rig->frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_material(&rig->frame_fixture, &m));
+    if (!glows) rig->frame_fixture.input.sky = vec3_of(10, 10, 10);
 }
 
 static const char *const level_options[] = { "resolution=48,levels=3", "resolution=32,levels=4",
@@ -68,7 +68,7 @@ TEST_GPU(a_furnace_has_pi_times_its_radiance_with_levels)
         vct_rig_open(&rig, level_options[i]);
         const vec3s eyes[] = { { { 2, 3, 8 } }, { { 5.5f, 4, 4.5f } }, { { 1, 1, 1 } } };
         for (int k = 0; k < 3; k++) {
-            studio_look(&rig.studio, eyes[k], vec3_of(9, 3, 1.5f));
+            fixture_look(&rig.frame_fixture, eyes[k], vec3_of(9, 3, 1.5f));
             const double got = mean_irradiance(&rig) / (PI * 10.0);
             print_message("%s: furnace %.3f\n", level_options[i], got);
             CHECK(got > 0.93 && got < 1.01);
@@ -83,7 +83,7 @@ TEST_GPU(a_closed_room_keeps_the_sky_out_with_levels)
         struct vct_rig rig;
         shine(&rig, gpu, false);
         vct_rig_open(&rig, level_options[i]);
-        studio_look(&rig.studio, vec3_of(2, 3, 8), vec3_of(9, 3, 1.5f));
+        fixture_look(&rig.frame_fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1.5f));
         const double got = mean_irradiance(&rig) / (PI * 10.0);
         print_message("%s: %.4f of the sky in a closed room\n", level_options[i], got);
         CHECK(got < 0.01); // as with one grid: test_vct_storage
@@ -97,8 +97,8 @@ static double mean_visibility(struct gpu *gpu, const char *options)
     vct_rig_hall(&rig, gpu);
     rig.technique = &technique_vctao;
     vct_rig_open(&rig, options);
-    studio_render(&rig.studio);
-    float *v = studio_read(&rig.studio, READ_VISIBILITY);
+    fixture_render(&rig.frame_fixture);
+    float *v = fixture_read(&rig.frame_fixture, READ_VISIBILITY);
     double sum = 0.0;
     for (int i = 0; i < 32 * 32; i++) sum += (double)v[i] / (32 * 32);
     free(v);
@@ -124,13 +124,13 @@ static double leak(struct gpu *gpu, const char *options)
 {
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
-    struct studio *s = &rig.studio;
-    const int white = studio_matte(s, vec3_of(0.7f, 0.7f, 0.7f));
-    studio_box(s, vec3_of(0, 0, 0), vec3_of(24, 8, 9), true, white);
-    studio_box(s, vec3_of(12.05f, 0, 0), vec3_of(12.45f, 8, 9), false, white);
-    studio_add_point(s, vec3_of(8, 4, 4.5f), vec3_of(900, 900, 900));
+    struct frame_fixture *s = &rig.frame_fixture;
+    const int white = fixture_matte(s, vec3_of(0.7f, 0.7f, 0.7f));
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(24, 8, 9), true, white);
+    fixture_box(s, vec3_of(12.05f, 0, 0), vec3_of(12.45f, 8, 9), false, white);
+    fixture_add_point(s, vec3_of(8, 4, 4.5f), vec3_of(900, 900, 900));
     vct_rig_open(&rig, options);
-    studio_look(s, vec3_of(14, 2.5f, 4.5f), vec3_of(12.45f, 1, 4.4f));
+    fixture_look(s, vec3_of(14, 2.5f, 4.5f), vec3_of(12.45f, 1, 4.4f));
     const double e = mean_irradiance(&rig);
     CHECK(rig.vct->clips[0].grid.cell_m > 0.8f);
     vct_rig_finish(&rig);
@@ -162,7 +162,7 @@ TEST_GPU(a_wall_thinner_than_a_coarse_voxel_leaks_less_with_levels)
 
 static float *seen_from(struct vct_rig *rig, float x)
 {
-    studio_look(&rig->studio, vec3_of(x, 5, 15), vec3_of(x + 1, 4, 4));
+    fixture_look(&rig->frame_fixture, vec3_of(x, 5, 15), vec3_of(x + 1, 4, 4));
     return irradiance(rig);
 }
 
@@ -260,7 +260,7 @@ TEST_GPU(an_eye_outside_or_far_away_sees_finite_light)
     const vec3s eyes[] = { { { -5, 6, 30 } },     { { 0, 0, 0 } },    { { 13, 400, 10 } },
                            { { 1e6f, 0, 1e6f } }, { { 27, 12, 20 } }, { { 12, 5, 15 } } };
     for (int i = 0; i < 6; i++) {
-        studio_look(&rig.studio, eyes[i], vec3_of(13, 6, 10));
+        fixture_look(&rig.frame_fixture, eyes[i], vec3_of(13, 6, 10));
         mean_irradiance(&rig);
     }
     CHECK(mean_irradiance(&rig) > 0.0);
@@ -285,8 +285,8 @@ static void count_pixels(struct vct_rig *rig, struct viewer *viewer, const char 
 {
     float rgba[32 * 32 * 4];
     viewer->view = view;
-    studio_render(&rig->studio);
-    CHECK(gpu_image_download_float(rig->studio.gpu, viewer->image, 0, 0, rgba, 4,
+    fixture_render(&rig->frame_fixture);
+    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, viewer->image, 0, 0, rgba, 4,
                                    sizeof rgba / sizeof *rgba));
     count[0] = count[1] = 0;
     for (int i = 0; i < 32 * 32; i++) {
@@ -310,10 +310,10 @@ TEST_GPU(views_show_the_finest_level_about_the_eye_and_others_beyond)
                                          .height = 32,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
     CHECK(gpu_image_create(gpu, &desc, &viewer.image));
-    rig.studio.indirect.record = record_view;
-    rig.studio.indirect.user = &viewer;
+    rig.frame_fixture.indirect.record = record_view;
+    rig.frame_fixture.indirect.user = &viewer;
     int count[2];
-    studio_look(&rig.studio, vec3_of(12, 2, 15), vec3_of(13, 0, 5));
+    fixture_look(&rig.frame_fixture, vec3_of(12, 2, 15), vec3_of(13, 0, 5));
     count_pixels(&rig, &viewer, "levels", count);
     CHECK(count[0] > 50 && count[1] > 200 && count[0] + count[1] == 32 * 32); // a closed room
     static const char *const views[] = { "reflectance", "normals", "radiance", "room" };
@@ -322,7 +322,7 @@ TEST_GPU(views_show_the_finest_level_about_the_eye_and_others_beyond)
         CHECK(count[0] + count[1] > 700); // reflectance, and normals plus a half, are in all pixels
     }
     // From afar the scene's grid comes before the finer ones about the nearest place.
-    studio_look(&rig.studio, vec3_of(60, 30, 50), vec3_of(13, 6, 10));
+    fixture_look(&rig.frame_fixture, vec3_of(60, 30, 50), vec3_of(13, 6, 10));
     count_pixels(&rig, &viewer, "levels", count);
     CHECK(count[1] > 20);
     gpu_image_destroy(gpu, &viewer.image);

@@ -94,7 +94,7 @@ static vec3s lattice_point(struct rng *rng, vec3s about, float reach)
 static void add_rubble(struct vct_rig *rig, int count)
 {
     struct rng rng = rng_for(21, 0, 0);
-    const int red = studio_matte(&rig->studio, vec3_of(0.7f, 0.3f, 0.1f));
+    const int red = fixture_matte(&rig->frame_fixture, vec3_of(0.7f, 0.3f, 0.1f));
     for (int i = 0; i < count; i++) {
         const vec3s middle = lattice_point(&rng, vec3_of(13.5f, 13.5f, 13.5f), 13.5f);
         const float reach = i % 3 == 0 ? 9.0f : i % 3 == 1 ? 2.0f : 0.2f;
@@ -116,8 +116,8 @@ static struct voxels voxels_of(const struct vct_rig *rig, int clip)
                          VCT_VOXEL_ROW * 16;
     struct voxels v = { c->grid, vct_rig_words(rig, c->static_set.mask),
                         vct_rig_words(rig, c->static_set.word_offsets), malloc(bytes) };
-    CHECK(v.surfaces &&
-          gpu_image_download(rig->studio.gpu, c->static_set.surfaces, 0, 0, v.surfaces, bytes));
+    CHECK(v.surfaces && gpu_image_download(rig->frame_fixture.gpu, c->static_set.surfaces, 0, 0,
+                                           v.surfaces, bytes));
     return v;
 }
 
@@ -177,11 +177,11 @@ static void check_voxels_wherever_the_eye_is(struct gpu *gpu, const char *option
     for (int i = 0; i < 3; i++) {
         vct_rig_init(&rigs[i], gpu);
         add_rubble(&rigs[i], 600);
-        studio_box(&rigs[i].studio, vec3_of(0, 0, 0), vec3_of(27, 27, 27), true,
-                   studio_matte(&rigs[i].studio, vec3_of(0.5f, 0.5f, 0.5f)));
-        studio_look(&rigs[i].studio, eyes[i], vec3_of(0, 13, 27));
+        fixture_box(&rigs[i].frame_fixture, vec3_of(0, 0, 0), vec3_of(27, 27, 27), true,
+                    fixture_matte(&rigs[i].frame_fixture, vec3_of(0.5f, 0.5f, 0.5f)));
+        fixture_look(&rigs[i].frame_fixture, eyes[i], vec3_of(0, 13, 27));
         vct_rig_open(&rigs[i], options);
-        studio_render(&rigs[i].studio);
+        fixture_render(&rigs[i].frame_fixture);
         CHECK(rigs[i].vct->clips[0].grid.cell_m == 1.0f);
     }
     for (int clip = 1; clip < rigs[0].vct->clip_count; clip++) {
@@ -221,20 +221,21 @@ TEST_GPU(the_rasteriser_finds_the_same_in_every_level)
     for (int i = 0; i < 2; i++) {
         vct_rig_init(&rigs[i], gpu);
         add_rubble(&rigs[i], 150);
-        studio_box(&rigs[i].studio, vec3_of(9.2f, 8.1f, 10.9f), vec3_of(10.7f, 10.3f, 13.1f), false,
-                   studio_matte(&rigs[i].studio, vec3_of(0.5f, 0.5f, 0.5f)));
-        studio_look(&rigs[i].studio, vec3_of(10, 9, 12), vec3_of(0, 13, 27));
+        fixture_box(&rigs[i].frame_fixture, vec3_of(9.2f, 8.1f, 10.9f),
+                    vec3_of(10.7f, 10.3f, 13.1f), false,
+                    fixture_matte(&rigs[i].frame_fixture, vec3_of(0.5f, 0.5f, 0.5f)));
+        fixture_look(&rigs[i].frame_fixture, vec3_of(10, 9, 12), vec3_of(0, 13, 27));
         vct_rig_open(&rigs[i],
                      i == 0 ? "resolution=32,levels=5" : "resolution=32,levels=5,voxels=raster");
-        studio_render(&rigs[i].studio);
+        fixture_render(&rigs[i].frame_fixture);
     }
     for (int clip = 0; clip < 5; clip++) {
         struct voxels a = voxels_of(&rigs[0], clip), b = voxels_of(&rigs[1], clip);
         const int count = check_same_voxels(&rigs[0], &a, &b);
         CHECK(count > 50 && count == occupied(&a, 32) && count == occupied(&b, 32));
         uint32_t counted = 0; // on the CPU, but for triangles that touch a face exactly
-        CHECK(vct_count_touched(test_host(), &rigs[0].studio.pose, &a.grid, 32, UINT32_MAX - 1,
-                                &counted));
+        CHECK(vct_count_touched(test_host(), &rigs[0].frame_fixture.pose, &a.grid, 32,
+                                UINT32_MAX - 1, &counted));
         print_message("level %d: %d voxels, %u on the CPU\n", clip + 1, count, counted);
         CHECK(abs((int)counted - count) <= 2 + count / 100);
         free_voxels(&a);
@@ -256,10 +257,10 @@ static bool ran(const struct gpu *gpu, const char *pass)
 
 static bool voxelised(struct vct_rig *rig)
 {
-    studio_render(&rig->studio);
-    CHECK(gpu_wait(rig->studio.gpu));
-    CHECK(ran(rig->studio.gpu, "vct.cones"));
-    return ran(rig->studio.gpu, "vct.mark") || ran(rig->studio.gpu, "vct.add");
+    fixture_render(&rig->frame_fixture);
+    CHECK(gpu_wait(rig->frame_fixture.gpu));
+    CHECK(ran(rig->frame_fixture.gpu, "vct.cones"));
+    return ran(rig->frame_fixture.gpu, "vct.mark") || ran(rig->frame_fixture.gpu, "vct.add");
 }
 
 TEST_GPU(a_grid_is_kept_until_the_eye_has_gone_a_step)
@@ -270,11 +271,11 @@ TEST_GPU(a_grid_is_kept_until_the_eye_has_gone_a_step)
     CHECK(voxelised(&rig));
     CHECK(!voxelised(&rig));
     const struct vct_grid finest = rig.vct->clips[2].grid, middle = rig.vct->clips[1].grid;
-    studio_look(&rig.studio, vec3_of(12.01f, 5, 15), vec3_of(13, 5, 4));
+    fixture_look(&rig.frame_fixture, vec3_of(12.01f, 5, 15), vec3_of(13, 5, 4));
     CHECK(!voxelised(&rig));
     int first = finest.first[0];
     for (int i = 1; i < 40 && rig.vct->clips[2].grid.first[0] == first; i++) {
-        studio_look(&rig.studio, vec3_of(12 + 0.05f * (float)i, 5, 15), vec3_of(13, 5, 4));
+        fixture_look(&rig.frame_fixture, vec3_of(12 + 0.05f * (float)i, 5, 15), vec3_of(13, 5, 4));
         const bool anew = voxelised(&rig);
         CHECK(anew == (rig.vct->clips[2].grid.first[0] != first));
     }
@@ -287,9 +288,9 @@ TEST_GPU(a_grid_is_kept_until_the_eye_has_gone_a_step)
 // Returns the first of the instances of its six faces.
 static int add_box(struct vct_rig *rig, vec3s at)
 {
-    const int instance = rig->studio.scene->instance_count;
-    studio_box(&rig->studio, at, glms_vec3_add(at, vec3_of(1.5f, 2.25f, 1.25f)), false,
-               studio_matte(&rig->studio, vec3_of(0.3f, 0.8f, 0.5f)));
+    const int instance = rig->frame_fixture.scene->instance_count;
+    fixture_box(&rig->frame_fixture, at, glms_vec3_add(at, vec3_of(1.5f, 2.25f, 1.25f)), false,
+                fixture_matte(&rig->frame_fixture, vec3_of(0.3f, 0.8f, 0.5f)));
     return instance;
 }
 
@@ -301,20 +302,21 @@ TEST_GPU(what_moves_is_in_every_level)
     vct_rig_hall(&moved, gpu);
     const int box = add_box(&moved, from);
     vct_rig_open(&moved, "resolution=32,levels=3");
-    studio_render(&moved.studio);
+    fixture_render(&moved.frame_fixture);
     for (int face = 0; face < 6; face++) {
-        const int node = moved.studio.scene->instances[box + face].node;
-        mat4s *world = &moved.studio.pose.world_from_node[node];
+        const int node = moved.frame_fixture.scene->instances[box + face].node;
+        mat4s *world = &moved.frame_fixture.pose.world_from_node[node];
         *world = glms_translate(*world, step);
     }
-    studio_render(&moved.studio);
+    fixture_render(&moved.frame_fixture);
     vct_rig_hall(&still, gpu);
     add_box(&still, glms_vec3_add(from, step));
     vct_rig_open(&still, "resolution=32,levels=3");
-    studio_render(&still.studio);
+    fixture_render(&still.frame_fixture);
     for (int clip = 0; clip < 3; clip++) {
         const struct vct_clip *c = &moved.vct->clips[clip];
-        uint32_t *rest = vct_rig_mask(&moved, &c->static_set), *moving = vct_rig_mask(&moved, &c->dynamic_set),
+        uint32_t *rest = vct_rig_mask(&moved, &c->static_set),
+                 *moving = vct_rig_mask(&moved, &c->dynamic_set),
                  *expected = vct_rig_mask(&still, &still.vct->clips[clip].static_set);
         int count = 0;
         for (int i = 0; i < 32 * 32 * 32 / 32; i++) {

@@ -14,19 +14,19 @@ static const float HEIGHT = 2.5f, HALF = 0.3f, RADIANCE = 100.0f;
 static void furnish(struct vct_rig *rig, struct gpu *gpu, int small_emitters, const vec3s *at)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
+    struct frame_fixture *s = &rig->frame_fixture;
     s->width = s->height = SIZE;
     struct material light = material_default();
     light.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
-    const int emitter = studio_material(s, &light);
-    studio_floor(s, 4, studio_matte(s, vec3_of(0, 0, 0)));
+    const int emitter = fixture_material(s, &light);
+    fixture_floor(s, 4, fixture_matte(s, vec3_of(0, 0, 0)));
     for (int i = 0; i < small_emitters; i++) {
         const vec3s c = at[i];
-        studio_quad(s, vec3_of(c.x - HALF, c.y, c.z - HALF), vec3_of(c.x + HALF, c.y, c.z - HALF),
-                    vec3_of(c.x + HALF, c.y, c.z + HALF), vec3_of(c.x - HALF, c.y, c.z + HALF),
-                    emitter);
+        fixture_quad(s, vec3_of(c.x - HALF, c.y, c.z - HALF), vec3_of(c.x + HALF, c.y, c.z - HALF),
+                     vec3_of(c.x + HALF, c.y, c.z + HALF), vec3_of(c.x - HALF, c.y, c.z + HALF),
+                     emitter);
     }
-    studio_look(s, vec3_of(0, 2.3f, 3.5f), vec3_of(0, 0, 0.2f));
+    fixture_look(s, vec3_of(0, 2.3f, 3.5f), vec3_of(0, 0, 0.2f));
 }
 
 // ∫ L cos θ cos θ'/d² dA over the lamp, by midpoints; lux.
@@ -54,10 +54,10 @@ struct lit_floor {
 static struct lit_floor measure(struct vct_rig *rig, int small_emitters, const vec3s *at)
 {
     struct lit_floor m = { 0 };
-    float *e = studio_read(&rig->studio, READ_IRRADIANCE),
-          *p = studio_read(&rig->studio, READ_POSITION),
-          *n = studio_read(&rig->studio, READ_NORMAL),
-          *depth = studio_read(&rig->studio, READ_DEPTH);
+    float *e = fixture_read(&rig->frame_fixture, READ_IRRADIANCE),
+          *p = fixture_read(&rig->frame_fixture, READ_POSITION),
+          *n = fixture_read(&rig->frame_fixture, READ_NORMAL),
+          *depth = fixture_read(&rig->frame_fixture, READ_DEPTH);
     for (int i = 0; i < SIZE * SIZE; i++) {
         // Farther off a block of pixels that share what they found is as wide as light changes.
         if (depth[i] <= 0.0f || n[3 * i + 1] < 0.9f || p[3 * i + 1] > 0.1f) continue;
@@ -87,7 +87,7 @@ TEST_GPU(a_lamp_lights_the_floor_below_it_as_its_integral_says)
         struct vct_rig rig;
         furnish(&rig, gpu, 1, &at);
         vct_rig_open(&rig, options[i]);
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
         m[i] = measure(&rig, 1, &at);
         vct_rig_finish(&rig);
         print_message("%s: off by %.3f of the mean, %.2f at most, %d pixels\n", options[i],
@@ -112,7 +112,7 @@ TEST_GPU(many_lamps_bring_what_all_of_them_bring)
     struct vct_rig rig;
     furnish(&rig, gpu, MOST_LAMPS, at);
     vct_rig_open(&rig, "resolution=64,bounces=1");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     CHECK(rig.vct->small_emitters.count == VCT_MAX_SMALL_EMITTERS);
     const struct lit_floor m = measure(&rig, MOST_LAMPS, at);
     print_message("%d small emitters: off by %.3f of the mean\n", MOST_LAMPS, m.error / m.mean);
@@ -128,15 +128,15 @@ TEST_GPU(what_stands_before_a_lamp_throws_a_shadow)
     for (int wall = 0; wall < 2; wall++) {
         struct vct_rig rig;
         furnish(&rig, gpu, 1, &emitter);
-        struct studio *s = &rig.studio;
+        struct frame_fixture *s = &rig.frame_fixture;
         // A board over the floor: from 0.5 m on to its right all of the lamp is behind it.
         if (wall)
-            studio_box(s, vec3_of(0.2f, 1.0f, -1.5f), vec3_of(3.5f, 1.1f, 1.5f), false,
-                       studio_matte(s, vec3_of(0, 0, 0)));
-        studio_look(s, vec3_of(1.2f, 0.6f, 3.9f), vec3_of(1.2f, 0, 0));
+            fixture_box(s, vec3_of(0.2f, 1.0f, -1.5f), vec3_of(3.5f, 1.1f, 1.5f), false,
+                        fixture_matte(s, vec3_of(0, 0, 0)));
+        fixture_look(s, vec3_of(1.2f, 0.6f, 3.9f), vec3_of(1.2f, 0, 0));
         vct_rig_open(&rig, "resolution=64,bounces=1");
-        studio_render(s);
-        float *e = studio_read(s, READ_IRRADIANCE), *p = studio_read(s, READ_POSITION);
+        fixture_render(s);
+        float *e = fixture_read(s, READ_IRRADIANCE), *p = fixture_read(s, READ_POSITION);
         light[wall] = 0.0;
         for (int i = 0; i < SIZE * SIZE; i++)
             if (fabsf(p[3 * i + 1]) < 0.01f && fabsf(p[3 * i] - 1.5f) < 0.5f &&
@@ -158,15 +158,15 @@ TEST_GPU(a_lamp_takes_its_light_along)
     struct vct_rig moved, there;
     furnish(&moved, gpu, 1, &from);
     vct_rig_open(&moved, "resolution=32,bounces=1");
-    studio_render(&moved.studio);
-    const struct scene *scene = moved.studio.scene;
-    moved.studio.pose.world_from_node[scene->instances[1].node].raw[3][0] += to.x - from.x;
-    studio_render(&moved.studio);
+    fixture_render(&moved.frame_fixture);
+    const struct scene *scene = moved.frame_fixture.scene;
+    moved.frame_fixture.pose.world_from_node[scene->instances[1].node].raw[3][0] += to.x - from.x;
+    fixture_render(&moved.frame_fixture);
     furnish(&there, gpu, 1, &to);
     vct_rig_open(&there, "resolution=32,bounces=1");
-    studio_render(&there.studio);
-    float *a = studio_read(&moved.studio, READ_IRRADIANCE),
-          *b = studio_read(&there.studio, READ_IRRADIANCE);
+    fixture_render(&there.frame_fixture);
+    float *a = fixture_read(&moved.frame_fixture, READ_IRRADIANCE),
+          *b = fixture_read(&there.frame_fixture, READ_IRRADIANCE);
     double apart = 0.0, sum = 0.0;
     for (int i = 0; i < SIZE * SIZE * 3; i++) {
         apart += fabs((double)a[i] - (double)b[i]);
@@ -232,19 +232,19 @@ TEST_GPU(voxels_reflect_what_lamps_bring_them)
 {
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
-    struct studio *s = &rig.studio;
+    struct frame_fixture *s = &rig.frame_fixture;
     struct material shining = material_default();
     shining.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
-    studio_box(s, vec3_of(0, 0, 0), vec3_of(ROOM[0], ROOM[1], ROOM[2]), true,
-               studio_matte(s, vec3_of((float)ALBEDO, (float)ALBEDO, (float)ALBEDO)));
-    studio_quad(s, vec3_of(2 - HALF, 1, 2 + HALF), vec3_of(2 + HALF, 1, 2 + HALF),
-                vec3_of(2 + HALF, 1, 2 - HALF), vec3_of(2 - HALF, 1, 2 - HALF),
-                studio_material(s, &shining));
-    studio_look(s, vec3_of(2, 2.5f, 3.8f), vec3_of(2, 0, 1.5f));
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(ROOM[0], ROOM[1], ROOM[2]), true,
+                fixture_matte(s, vec3_of((float)ALBEDO, (float)ALBEDO, (float)ALBEDO)));
+    fixture_quad(s, vec3_of(2 - HALF, 1, 2 + HALF), vec3_of(2 + HALF, 1, 2 + HALF),
+                 vec3_of(2 + HALF, 1, 2 - HALF), vec3_of(2 - HALF, 1, 2 - HALF),
+                 fixture_material(s, &shining));
+    fixture_look(s, vec3_of(2, 2.5f, 3.8f), vec3_of(2, 0, 1.5f));
     vct_rig_open(&rig, "resolution=64,bounces=1");
-    studio_render(s);
+    fixture_render(s);
     CHECK(rig.vct->small_emitters.count == 1);
-    float *e = studio_read(s, READ_IRRADIANCE), *p = studio_read(s, READ_POSITION);
+    float *e = fixture_read(s, READ_IRRADIANCE), *p = fixture_read(s, READ_POSITION);
     double light = 0.0, expected = 0.0;
     for (uint32_t k = 0; k < s->width * s->height; k += 3) {
         if (fabsf(p[3 * k + 1]) > 0.01f) continue;

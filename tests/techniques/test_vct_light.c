@@ -10,13 +10,13 @@ static const double PI = 3.14159265358979323846;
 static void furnish(struct vct_rig *rig, struct gpu *gpu)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
-    studio_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
-               studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
-    studio_box(s, vec3_of(6, 0.2f, 3), vec3_of(8, 4, 6), false,
-               studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
-    studio_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    studio_look(s, vec3_of(1, 6, 9), vec3_of(8, 2, 3));
+    struct frame_fixture *s = &rig->frame_fixture;
+    fixture_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
+                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    fixture_box(s, vec3_of(6, 0.2f, 3), vec3_of(8, 4, 6), false,
+                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
+    fixture_look(s, vec3_of(1, 6, 9), vec3_of(8, 2, 3));
 }
 
 // ---- Mips
@@ -53,7 +53,7 @@ TEST_GPU(each_level_of_the_light_volume_is_that_of_the_twin)
     struct vct_rig rig;
     furnish(&rig, gpu);
     vct_rig_open(&rig, "resolution=48");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     const uint32_t mips = vct_volume_mips(&rig.vct->options);
     CHECK(mips >= 3);
     double most = 0.0;
@@ -87,12 +87,12 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
 {
     struct vct_rig rig;
     furnish(&rig, gpu);
-    rig.studio.input.sky = vec3_of(3, 2, 1);
+    rig.frame_fixture.input.sky = vec3_of(3, 2, 1);
     vct_rig_open(&rig, "resolution=48,cones=5,interleave=1,step_size=0.5");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     const struct vct *vct = rig.vct;
     struct vct_twin twin = vct_twin_of(&rig);
-    const double scale = (double)frame_radiance_scale(rig.studio.frame);
+    const double scale = (double)frame_radiance_scale(rig.frame_fixture.frame);
     const double texel_m = 2.0 * (double)vct->clips[0].grid.cell_m;
     const double wide = 0.5 * (double)vct_cone_width(VCT_CONES_5);
     vec3s lines[VCT_MAX_CONES];
@@ -100,9 +100,9 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
     int lit = 0;
     for (uint32_t y = 1; y < 32; y += 6)
         for (uint32_t x = 1; x < 32; x += 6) {
-            const vec3s p = studio_pixel(&rig.studio, READ_POSITION, x, y);
-            const vec3s n = studio_pixel(&rig.studio, READ_NORMAL, x, y);
-            const vec3s got = studio_pixel(&rig.studio, READ_IRRADIANCE, x, y);
+            const vec3s p = fixture_pixel(&rig.frame_fixture, READ_POSITION, x, y);
+            const vec3s n = fixture_pixel(&rig.frame_fixture, READ_NORMAL, x, y);
+            const vec3s got = fixture_pixel(&rig.frame_fixture, READ_IRRADIANCE, x, y);
             double from[3], normal[3], expected[3] = { 0 }, cosines = 0.0;
             for (int a = 0; a < 3; a++) {
                 normal[a] = (double)n.raw[a];
@@ -116,7 +116,7 @@ TEST_GPU(cones_bring_what_those_of_the_twin_do)
                     direction[a] = (cosine < 0.0 ? -1.0 : 1.0) * (double)lines[i].raw[a];
                 vct_twin_trace(&twin, from, normal, direction, wide, sum);
                 for (int k = 0; k < 3; k++) {
-                    const double sky = (double)rig.studio.input.sky.raw[k];
+                    const double sky = (double)rig.frame_fixture.input.sky.raw[k];
                     expected[k] += fabs(cosine) * (sum[k] / scale + (1.0 - sum[3]) * sky);
                 }
                 cosines += fabs(cosine);
@@ -151,12 +151,12 @@ TEST_GPU(a_furnace_has_pi_times_its_radiance)
     m.emissive = vec3_of(10, 10, 10);
     m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
     m.metallic = 0;
-    studio_box(&rig.studio, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-               studio_material(&rig.studio, &m));
-    studio_look(&rig.studio, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
+    fixture_box(&rig.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_material(&rig.frame_fixture, &m));
+    fixture_look(&rig.frame_fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
     vct_rig_open(&rig, "resolution=48");
-    studio_render(&rig.studio);
-    float *e = studio_read(&rig.studio, READ_IRRADIANCE);
+    fixture_render(&rig.frame_fixture);
+    float *e = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
     const double got = mean(e, 32 * 32 * 3) / (PI * 10.0);
     print_message("furnace: %.3f of the irradiance\n", got);
     // Cones lose a little where the width of their texels changes inside of a wall.
@@ -171,13 +171,13 @@ TEST_GPU(a_closed_room_keeps_the_sky_out)
 {
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
-    studio_box(&rig.studio, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-               studio_matte(&rig.studio, vec3_of(0, 0, 0)));
-    studio_look(&rig.studio, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
-    rig.studio.input.sky = vec3_of(10, 10, 10);
+    fixture_box(&rig.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_matte(&rig.frame_fixture, vec3_of(0, 0, 0)));
+    fixture_look(&rig.frame_fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
+    rig.frame_fixture.input.sky = vec3_of(10, 10, 10);
     vct_rig_open(&rig, "resolution=48");
-    studio_render(&rig.studio);
-    float *e = studio_read(&rig.studio, READ_IRRADIANCE);
+    fixture_render(&rig.frame_fixture);
+    float *e = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
     const double got = mean(e, 32 * 32 * 3) / (PI * 10.0);
     print_message("closed room: %.3f of the sky\n", got);
     CHECK(got < 0.07);

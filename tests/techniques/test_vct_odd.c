@@ -12,8 +12,8 @@ enum { PIXELS = 32 * 32 };
 // Of a frame's irradiance, all of which has to be finite.
 static double mean_irradiance(struct vct_rig *rig)
 {
-    studio_render(&rig->studio);
-    float *e = studio_read(&rig->studio, READ_IRRADIANCE);
+    fixture_render(&rig->frame_fixture);
+    float *e = fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
     double sum = 0.0;
     for (int i = 0; i < 3 * PIXELS; i++) {
         CHECK(isfinite(e[i]) && e[i] >= 0.0f);
@@ -26,7 +26,7 @@ static double mean_irradiance(struct vct_rig *rig)
 static uint32_t argument(const struct vct_rig *rig, int which)
 {
     uint32_t arguments[5];
-    CHECK(gpu_buffer_download(rig->studio.gpu, rig->vct->clips[0].static_set.arguments, 0,
+    CHECK(gpu_buffer_download(rig->frame_fixture.gpu, rig->vct->clips[0].static_set.arguments, 0,
                               arguments, sizeof arguments));
     return arguments[which];
 }
@@ -45,8 +45,8 @@ TEST_GPU(an_empty_scene_has_no_indirect_light)
 {
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
-    studio_add_point(&rig.studio, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
-    rig.studio.input.sky = vec3_of(5, 5, 5);
+    fixture_add_point(&rig.frame_fixture, vec3_of(0, 1, 0), vec3_of(100, 100, 100));
+    rig.frame_fixture.input.sky = vec3_of(5, 5, 5);
     vct_rig_open(&rig, "resolution=32");
     CHECK(mean_irradiance(&rig) == 0.0);
     vct_rig_finish(&rig);
@@ -62,12 +62,12 @@ TEST_GPU(a_light_within_a_wall_stays_finite)
     for (int i = 0; i < 3; i++) {
         struct vct_rig rig;
         vct_rig_init(&rig, gpu);
-        struct studio *s = &rig.studio;
-        const int matte = studio_matte(s, vec3_of(0.8f, 0.8f, 0.8f));
-        studio_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, matte);
-        studio_box(s, vec3_of(3, 0, 0), vec3_of(3.05f, 7, 9), false, matte);
-        studio_add_point(s, places[i], vec3_of(100, 100, 100));
-        studio_look(s, vec3_of(1, 6, 8), vec3_of(3, 3, 3));
+        struct frame_fixture *s = &rig.frame_fixture;
+        const int matte = fixture_matte(s, vec3_of(0.8f, 0.8f, 0.8f));
+        fixture_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, matte);
+        fixture_box(s, vec3_of(3, 0, 0), vec3_of(3.05f, 7, 9), false, matte);
+        fixture_add_point(s, places[i], vec3_of(100, 100, 100));
+        fixture_look(s, vec3_of(1, 6, 8), vec3_of(3, 3, 3));
         vct_rig_open(&rig, "resolution=32,bounces=2");
         double last = 0.0;
         for (int frame = 0; frame < 4; frame++) last = mean_irradiance(&rig);
@@ -92,7 +92,8 @@ static void add_field(struct vct_rig *rig, int squares)
                          .index_count = 6 * (uint32_t)squares * (uint32_t)squares,
                          .positions = malloc(vertices * sizeof(vec3s)),
                          .normals = malloc(vertices * sizeof(vec3s)),
-                         .material = studio_matte(&rig->studio, vec3_of(0.5f, 0.5f, 0.5f)) };
+                         .material =
+                             fixture_matte(&rig->frame_fixture, vec3_of(0.5f, 0.5f, 0.5f)) };
     mesh.indices = malloc(mesh.index_count * sizeof *mesh.indices);
     CHECK(mesh.positions && mesh.normals && mesh.indices);
     for (uint32_t i = 0; i < vertices; i++) {
@@ -109,9 +110,9 @@ static void add_field(struct vct_rig *rig, int squares)
                                         first, first + across + 1, first + 1 };
             memcpy(at, square, sizeof square);
         }
-    const int index = scene_add_mesh(rig->studio.scene, &mesh);
+    const int index = scene_add_mesh(rig->frame_fixture.scene, &mesh);
     CHECK(index >= 0);
-    studio_instance(&rig->studio, index, NULL);
+    fixture_instance(&rig->frame_fixture, index, NULL);
     free(mesh.positions);
     free(mesh.normals);
     free(mesh.indices);
@@ -123,11 +124,11 @@ static double field(struct gpu *gpu, int squares, uint32_t *mask, size_t mask_by
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
     add_field(&rig, squares);
-    studio_quad(&rig.studio, vec3_of(0.3f, 0.4f, 0.3f), vec3_of(11.7f, 0.4f, 0.3f),
-                vec3_of(11.7f, 9, 0.3f), vec3_of(0.3f, 9, 0.3f),
-                studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f)));
-    studio_add_sun(&rig.studio, vec3_of(0, -1, -0.1f), vec3_of(1000, 1000, 1000));
-    studio_look(&rig.studio, vec3_of(6, 5, 10), vec3_of(6, 4, 0));
+    fixture_quad(&rig.frame_fixture, vec3_of(0.3f, 0.4f, 0.3f), vec3_of(11.7f, 0.4f, 0.3f),
+                 vec3_of(11.7f, 9, 0.3f), vec3_of(0.3f, 9, 0.3f),
+                 fixture_matte(&rig.frame_fixture, vec3_of(0.5f, 0.5f, 0.5f)));
+    fixture_add_sun(&rig.frame_fixture, vec3_of(0, -1, -0.1f), vec3_of(1000, 1000, 1000));
+    fixture_look(&rig.frame_fixture, vec3_of(6, 5, 10), vec3_of(6, 4, 0));
     vct_rig_open(&rig, "resolution=16");
     const double e = mean_irradiance(&rig);
     uint32_t *now = vct_rig_mask(&rig, &rig.vct->clips[0].static_set);
@@ -162,14 +163,14 @@ static void listen(void *user, enum log_level level, const char *message)
 // Sheets one above the other, a voxel apart.
 static void stack(struct vct_rig *rig, int sheets)
 {
-    const int matte = studio_matte(&rig->studio, vec3_of(0.5f, 0.5f, 0.5f));
+    const int matte = fixture_matte(&rig->frame_fixture, vec3_of(0.5f, 0.5f, 0.5f));
     for (int i = 0; i < sheets; i++) {
         const float y = 0.5f + (float)i;
-        studio_quad(&rig->studio, vec3_of(0, y, 28), vec3_of(28, y, 28), vec3_of(28, y, 0),
-                    vec3_of(0, y, 0), matte);
+        fixture_quad(&rig->frame_fixture, vec3_of(0, y, 28), vec3_of(28, y, 28), vec3_of(28, y, 0),
+                     vec3_of(0, y, 0), matte);
     }
-    studio_add_sun(&rig->studio, vec3_of(-0.2f, -1, -0.4f), vec3_of(1000, 1000, 1000));
-    studio_look(&rig->studio, vec3_of(14, 40, 40), vec3_of(14, 20, 14));
+    fixture_add_sun(&rig->frame_fixture, vec3_of(-0.2f, -1, -0.4f), vec3_of(1000, 1000, 1000));
+    fixture_look(&rig->frame_fixture, vec3_of(14, 40, 40), vec3_of(14, 20, 14));
 }
 
 TEST_GPU(voxels_beyond_the_capacity_are_dropped_with_one_warning)
@@ -192,12 +193,12 @@ TEST_GPU(voxels_beyond_the_capacity_are_dropped_with_one_warning)
         CHECK(listed(&rig) == (all < room ? all : room));
         CHECK(overflow(&rig) == (all > room ? all - room : 0));
         // The counter is read back some frames later, and each level warns once.
-        for (int frame = 0; frame < 4; frame++) studio_render(&rig.studio);
+        for (int frame = 0; frame < 4; frame++) fixture_render(&rig.frame_fixture);
         CHECK(gpu_wait(gpu));
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
         CHECK(warnings == (all > room));
         technique_vct.invalidate(rig.vct, CHANGED_GEOMETRY);
-        for (int frame = 0; frame < 4; frame++) studio_render(&rig.studio);
+        for (int frame = 0; frame < 4; frame++) fixture_render(&rig.frame_fixture);
         CHECK(gpu_wait(gpu));
         vct_rig_finish(&rig);
         CHECK(warnings == (all > room));

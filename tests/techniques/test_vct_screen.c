@@ -12,30 +12,30 @@ enum { WIDTH = 160, HEIGHT = 96, VALUES = WIDTH * HEIGHT * 3 };
 static void furnish(struct vct_rig *rig, struct gpu *gpu)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
+    struct frame_fixture *s = &rig->frame_fixture;
     s->width = WIDTH;
     s->height = HEIGHT;
-    studio_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-               studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
-    studio_box(s, vec3_of(6, 0.1f, 3), vec3_of(8, 4, 5), false,
-               studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
-    studio_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    studio_look(s, vec3_of(1, 6, 8), vec3_of(8, 2, 3));
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    fixture_box(s, vec3_of(6, 0.1f, 3), vec3_of(8, 4, 5), false,
+                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
+    fixture_look(s, vec3_of(1, 6, 8), vec3_of(8, 2, 3));
 }
 
 // A curtain before the far wall, in pleats of half the size of a texel of the light volume (0.7 m
 // with 32 voxels), whose sides are 30° from the whole.
 static void hang_curtain(struct vct_rig *rig)
 {
-    struct studio *s = &rig->studio;
-    const int cloth = studio_matte(s, vec3_of(0.6f, 0.6f, 0.6f));
+    struct frame_fixture *s = &rig->frame_fixture;
+    const int cloth = fixture_matte(s, vec3_of(0.6f, 0.6f, 0.6f));
     const float half = 0.18f, deep = 0.104f;
     for (int i = 0; i < 35; i++) {
         const float z = 1.0f + half * (float)i, near = i % 2 ? 0.0f : deep, far = deep - near;
-        studio_quad(s, vec3_of(10 + near, 0.5f, z), vec3_of(10 + far, 0.5f, z + half),
-                    vec3_of(10 + far, 6, z + half), vec3_of(10 + near, 6, z), cloth);
+        fixture_quad(s, vec3_of(10 + near, 0.5f, z), vec3_of(10 + far, 0.5f, z + half),
+                     vec3_of(10 + far, 6, z + half), vec3_of(10 + near, 6, z), cloth);
     }
-    studio_look(s, vec3_of(6, 4, 4), vec3_of(10, 3, 4));
+    fixture_look(s, vec3_of(6, 4, 4), vec3_of(10, 3, 4));
 }
 
 struct look {
@@ -64,10 +64,10 @@ static struct look look_at_room(struct gpu *gpu, const char *options, bool curta
     vct_rig_open(&rig, options);
     struct look look = { .ms = 1e30 };
     for (int f = 0; f < 10; f++) {
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
         look.ms = fmin(look.ms, stages_ms(gpu));
     }
-    look.irradiance = studio_read(&rig.studio, READ_IRRADIANCE);
+    look.irradiance = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
     vct_rig_finish(&rig);
     return look;
 }
@@ -156,13 +156,13 @@ TEST_GPU(cones_change_while_it_lives)
     struct vct_rig rig;
     furnish(&rig, gpu);
     vct_rig_open(&rig, "resolution=32,cones=25,interleave=5");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     struct vct_options options = rig.vct->options;
     options.cones = VCT_CONES_9;
     options.interleave = 3;
     technique_vct.set_options(rig.vct, &options);
-    studio_render(&rig.studio);
-    float *got = studio_read(&rig.studio, READ_IRRADIANCE);
+    fixture_render(&rig.frame_fixture);
+    float *got = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
     assert_memory_equal(got, due.irradiance, VALUES * sizeof *got);
     free(got), free(due.irradiance);
     vct_rig_finish(&rig);

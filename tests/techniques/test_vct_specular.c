@@ -14,21 +14,21 @@ static double spread_px(struct gpu *gpu, const char *options, float roughness)
 {
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
-    struct studio *s = &rig.studio;
+    struct frame_fixture *s = &rig.frame_fixture;
     s->width = s->height = SIZE;
     struct material metal = material_default(), emitter = material_default();
     metal.base_color = vec4_of(vec3_of(1, 1, 1), 1);
     metal.metallic = 1;
     metal.roughness = roughness;
     emitter.emissive = vec3_of(100, 100, 100);
-    studio_floor(s, 4, studio_material(s, &metal));
-    studio_quad(s, vec3_of(-0.2f, 3, -1.7f), vec3_of(0.2f, 3, -1.7f), vec3_of(0.2f, 3, -1.3f),
-                vec3_of(-0.2f, 3, -1.3f), studio_material(s, &emitter));
-    studio_look(s, vec3_of(0, 2.5f, 3), vec3_of(0, 0, 0.3f));
+    fixture_floor(s, 4, fixture_material(s, &metal));
+    fixture_quad(s, vec3_of(-0.2f, 3, -1.7f), vec3_of(0.2f, 3, -1.7f), vec3_of(0.2f, 3, -1.3f),
+                 vec3_of(-0.2f, 3, -1.3f), fixture_material(s, &emitter));
+    fixture_look(s, vec3_of(0, 2.5f, 3), vec3_of(0, 0, 0.3f));
     vct_rig_open(&rig, options);
     s->indirect.needs |= technique_vct.more_needs(&rig.vct->options);
-    studio_render(s);
-    float *seen = studio_read(s, READ_SPECULAR), *depth = studio_read(s, READ_DEPTH);
+    fixture_render(s);
+    float *seen = fixture_read(s, READ_SPECULAR), *depth = fixture_read(s, READ_DEPTH);
     double sum = 0.0, x1 = 0.0, x2 = 0.0;
     for (int i = 0; i < SIZE * SIZE; i++) {
         if (depth[i] <= 0.0f) continue;
@@ -113,19 +113,20 @@ TEST_GPU(even_light_is_reflected_by_its_share)
         m.roughness = of[i].roughness;
         const float white = of[i].metallic; // what is no metal reflects nothing else
         m.base_color = vec4_of(vec3_of(white, white, white), 1);
-        studio_box(&rig.studio, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-                   studio_material(&rig.studio, &m));
+        fixture_box(&rig.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                    fixture_material(&rig.frame_fixture, &m));
         const vec3s eye = vec3_of(2, 3, 8);
-        studio_look(&rig.studio, eye, vec3_of(9, 3, 1));
+        fixture_look(&rig.frame_fixture, eye, vec3_of(9, 3, 1));
         vct_rig_open(&rig, "resolution=48,specular=true");
-        rig.studio.indirect.needs |= technique_vct.more_needs(&rig.vct->options);
-        studio_render(&rig.studio);
+        rig.frame_fixture.indirect.needs |= technique_vct.more_needs(&rig.vct->options);
+        fixture_render(&rig.frame_fixture);
         double worst = 0.0;
         for (uint32_t k = 3; k < 32; k += 5) {
-            const vec3s p = studio_pixel(&rig.studio, READ_POSITION, k, k);
-            const vec3s n = studio_pixel(&rig.studio, READ_NORMAL, k, k);
+            const vec3s p = fixture_pixel(&rig.frame_fixture, READ_POSITION, k, k);
+            const vec3s n = fixture_pixel(&rig.frame_fixture, READ_NORMAL, k, k);
             const double n_v = (double)glms_vec3_dot(n, glms_vec3_normalize(glms_vec3_sub(eye, p)));
-            const double got = (double)studio_pixel(&rig.studio, READ_SPECULAR, k, k).x / 10.0;
+            const double got =
+                (double)fixture_pixel(&rig.frame_fixture, READ_SPECULAR, k, k).x / 10.0;
             const double f0 = of[i].metallic > 0.0f ? 1.0 : 0.04;
             const double due = reflected_share(f0, n_v, (double)of[i].roughness);
             worst = fmax(worst, fabs(got - due));

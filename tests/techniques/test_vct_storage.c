@@ -9,9 +9,9 @@
 
 static double mean_irradiance(struct vct_rig *rig, vec3s eye, vec3s target)
 {
-    studio_look(&rig->studio, eye, target);
-    studio_render(&rig->studio);
-    float *e = studio_read(&rig->studio, READ_IRRADIANCE);
+    fixture_look(&rig->frame_fixture, eye, target);
+    fixture_render(&rig->frame_fixture);
+    float *e = fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
     double sum = 0.0;
     for (int i = 0; i < 32 * 32 * 3; i++) sum += (double)e[i];
     free(e);
@@ -26,8 +26,8 @@ static const struct box3 ROOM = { { { 0, 0, 0 } }, { { 12, 8, 9 } } };
 static void divide(struct vct_rig *rig, struct gpu *gpu, int resolution)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
-    studio_box(s, ROOM.min, ROOM.max, true, studio_matte(s, vec3_of(0.7f, 0.7f, 0.7f)));
+    struct frame_fixture *s = &rig->frame_fixture;
+    fixture_box(s, ROOM.min, ROOM.max, true, fixture_matte(s, vec3_of(0.7f, 0.7f, 0.7f)));
     struct vct_grid grid;
     CHECK(vct_grid_fit(ROOM, resolution, &grid));
     // The wall is a sheet in the middle of its voxels, seen and lit from both sides.
@@ -36,9 +36,9 @@ static void divide(struct vct_rig *rig, struct gpu *gpu, int resolution)
     sheet.base_color = vec4_of(vec3_of(0.7f, 0.7f, 0.7f), 1);
     sheet.metallic = 0;
     sheet.double_sided = true;
-    studio_quad(s, vec3_of(x, 0, 9), vec3_of(x, 0, 0), vec3_of(x, 8, 0), vec3_of(x, 8, 9),
-                studio_material(s, &sheet));
-    studio_add_point(s, vec3_of(3, 5, 4), vec3_of(300, 300, 300));
+    fixture_quad(s, vec3_of(x, 0, 9), vec3_of(x, 0, 0), vec3_of(x, 8, 0), vec3_of(x, 8, 9),
+                 fixture_material(s, &sheet));
+    fixture_add_point(s, vec3_of(3, 5, 4), vec3_of(300, 300, 300));
 }
 
 // Irradiance on the floor behind the wall over that before it. In truth there is none behind it.
@@ -89,7 +89,7 @@ TEST_GPU(one_volume_for_all_ways_has_the_mean_of_what_it_holds)
     struct vct_rig rig;
     divide(&rig, gpu, 32);
     vct_rig_open(&rig, "resolution=32,anisotropic=false");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     double most = 0.0;
     // 16 texels along a side, 12 of them and more in use: a level's are halves as long as both are
     // even.
@@ -135,9 +135,9 @@ static double closed_box(struct gpu *gpu, const char *storage, bool glows)
     if (glows) m.emissive = vec3_of(10, 10, 10);
     m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
     m.metallic = 0;
-    studio_box(&rig.studio, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-               studio_material(&rig.studio, &m));
-    if (!glows) rig.studio.input.sky = vec3_of(10, 10, 10);
+    fixture_box(&rig.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_material(&rig.frame_fixture, &m));
+    if (!glows) rig.frame_fixture.input.sky = vec3_of(10, 10, 10);
     snprintf(options, sizeof options, "resolution=48,storage=%s", storage);
     vct_rig_open(&rig, options);
     const double e = mean_irradiance(&rig, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
@@ -166,12 +166,12 @@ TEST_GPU(six_ways_keep_light_before_a_thin_wall_in_the_octree_too)
 static void furnish(struct vct_rig *rig, struct gpu *gpu)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
-    studio_box(s, ROOM.min, ROOM.max, true, studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
-    studio_box(s, vec3_of(6, 0, 3), vec3_of(8, 4, 6), false,
-               studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
-    studio_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    studio_look(s, vec3_of(1, 6, 8), vec3_of(8, 2, 3));
+    struct frame_fixture *s = &rig->frame_fixture;
+    fixture_box(s, ROOM.min, ROOM.max, true, fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    fixture_box(s, vec3_of(6, 0, 3), vec3_of(8, 4, 6), false,
+                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
+    fixture_look(s, vec3_of(1, 6, 8), vec3_of(8, 2, 3));
 }
 
 TEST_GPU(pictures_of_both_storages_are_close)
@@ -186,8 +186,8 @@ TEST_GPU(pictures_of_both_storages_are_close)
             snprintf(options, sizeof options, "resolution=64,storage=%s,%s", storages[k],
                      bounces[i]);
             vct_rig_open(&rig, options);
-            for (int frame = 0; frame < 1 + 2 * i; frame++) studio_render(&rig.studio);
-            e[k] = studio_read(&rig.studio, READ_IRRADIANCE);
+            for (int frame = 0; frame < 1 + 2 * i; frame++) fixture_render(&rig.frame_fixture);
+            e[k] = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
             vct_rig_finish(&rig);
         }
         double sum[2] = { 0 }, apart = 0.0;
@@ -227,7 +227,7 @@ static void build_once(struct gpu *gpu, struct build *build)
     static const char *const filters[] = { "vct.texels", "vct.fill",    "vct.mips", "vct.nodes",
                                            "vct.leaves", "vct.borders", NULL };
     struct gpu_timing timings[32];
-    studio_render(&build->rig.studio);
+    fixture_render(&build->rig.frame_fixture);
     CHECK(gpu_wait(gpu));
     const int count = gpu_frame_timings(gpu, timings, 32);
     const double filter = ms_of(timings, count, filters);

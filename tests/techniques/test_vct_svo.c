@@ -78,17 +78,17 @@ static int add_triangle(struct vct_rig *rig, struct rng *rng, float part)
     for (int i = 1; i < 3; i++) p[i] = glms_vec3_lerp(p[0], p[i], part);
     vec3s normals[3] = { vec3_of(0, 1, 0), vec3_of(0, 1, 0), vec3_of(0, 1, 0) };
     uint32_t indices[3] = { 0, 1, 2 };
-    const int mesh =
-        scene_add_mesh(rig->studio.scene,
-                       &(struct mesh){ .name = "triangle",
-                                       .vertex_count = 3,
-                                       .index_count = 3,
-                                       .positions = p,
-                                       .normals = normals,
-                                       .indices = indices,
-                                       .material = studio_matte(&rig->studio, vec3_of(1, 1, 1)) });
+    const int mesh = scene_add_mesh(
+        rig->frame_fixture.scene,
+        &(struct mesh){ .name = "triangle",
+                        .vertex_count = 3,
+                        .index_count = 3,
+                        .positions = p,
+                        .normals = normals,
+                        .indices = indices,
+                        .material = fixture_matte(&rig->frame_fixture, vec3_of(1, 1, 1)) });
     CHECK(mesh >= 0);
-    return studio_instance(&rig->studio, mesh, NULL);
+    return fixture_instance(&rig->frame_fixture, mesh, NULL);
 }
 
 TEST_GPU(nodes_are_those_of_the_twin)
@@ -102,14 +102,15 @@ TEST_GPU(nodes_are_those_of_the_twin)
         for (int k = 0; k < 9; k++) add_triangle(&rig, &rng, k % 3 == 0 ? 0.7f : 0.1f);
         const int moves = add_triangle(&rig, &rng, 0.2f);
         vct_rig_open(&rig, options[i]);
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
         struct svo_tree tree = svo_tree_of(&rig);
         check_nodes(&rig, &tree);
         svo_tree_finish(&tree);
-        mat4s *world = &rig.studio.pose.world_from_node[rig.studio.scene->instances[moves].node];
+        mat4s *world =
+            &rig.frame_fixture.pose.world_from_node[rig.frame_fixture.scene->instances[moves].node];
         *world = glms_translate(*world, vec3_of(0.5f, -0.3f, 1));
-        studio_render(&rig.studio);
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
+        fixture_render(&rig.frame_fixture);
         tree = svo_tree_of(&rig);
         check_nodes(&rig, &tree);
         svo_tree_finish(&tree);
@@ -124,9 +125,9 @@ TEST_GPU(the_tree_is_the_same_each_time_it_is_built)
     vct_rig_init(&rig, gpu);
     for (int k = 0; k < 12; k++) add_triangle(&rig, &rng, 0.5f);
     vct_rig_open(&rig, "storage=svo,resolution=48,keep_static=false");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     struct svo_tree first = svo_tree_of(&rig);
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     struct svo_tree second = svo_tree_of(&rig);
     const uint32_t leaves = first.params.depths - 1;
     const uint32_t bricks = first.levels[leaves].first + first.levels[leaves].count;
@@ -150,8 +151,8 @@ TEST_GPU(a_tree_that_does_not_fit_leaves_nodes_out_and_says_how_many)
         svo_furnish(&rig, gpu, true);
         vct_rig_open(&rig, "storage=svo,resolution=48,keep_static=false");
         rig.vct->svo.params.bricks = room[i];
-        studio_render(&rig.studio);
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
+        fixture_render(&rig.frame_fixture);
         struct svo_tree tree = svo_tree_of(&rig);
         uint32_t bricks = 0, overflow = 0;
         for (uint32_t depth = 0; depth < tree.params.depths; depth++) {
@@ -168,7 +169,7 @@ TEST_GPU(a_tree_that_does_not_fit_leaves_nodes_out_and_says_how_many)
         }
         CHECK(bricks <= room[i]);
         CHECK(overflow > 0);
-        float *e = studio_read(&rig.studio, READ_IRRADIANCE);
+        float *e = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
         for (int k = 0; k < 32 * 32 * 3; k++) CHECK(isfinite(e[k]) && e[k] >= 0.0f);
         free(e);
         svo_tree_finish(&tree);

@@ -12,23 +12,23 @@ static const vec3s EYE = { { 1, 6, 9 } }, TARGET = { { 8, 2, 3 } };
 static int furnish(struct vct_rig *rig, struct gpu *gpu)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
-    studio_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
-               studio_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
-    studio_box(s, vec3_of(8, 0.2f, 3), vec3_of(10, 4, 6), false,
-               studio_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    struct frame_fixture *s = &rig->frame_fixture;
+    fixture_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
+                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    fixture_box(s, vec3_of(8, 0.2f, 3), vec3_of(10, 4, 6), false,
+                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
     const int first = s->scene->instance_count;
-    studio_box(s, vec3_of(4, 0.2f, 2), vec3_of(5.5f, 3, 3.5f), false,
-               studio_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
-    studio_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    studio_look(s, EYE, TARGET);
+    fixture_box(s, vec3_of(4, 0.2f, 2), vec3_of(5.5f, 3, 3.5f), false,
+                fixture_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
+    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
+    fixture_look(s, EYE, TARGET);
     return first;
 }
 
 // The box's six sides.
 static void move_box(struct vct_rig *rig, int first, vec3s by)
 {
-    struct studio *s = &rig->studio;
+    struct frame_fixture *s = &rig->frame_fixture;
     for (int i = first; i < first + 6; i++)
         for (int k = 0; k < 3; k++)
             s->pose.world_from_node[s->scene->instances[i].node].raw[3][k] += by.raw[k];
@@ -36,13 +36,13 @@ static void move_box(struct vct_rig *rig, int first, vec3s by)
 
 static float *irradiance_after(struct vct_rig *rig, int frames)
 {
-    for (int i = 0; i < frames; i++) studio_render(&rig->studio);
-    return studio_read(&rig->studio, READ_IRRADIANCE);
+    for (int i = 0; i < frames; i++) fixture_render(&rig->frame_fixture);
+    return fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
 }
 
 static size_t floats_of(const struct vct_rig *rig)
 {
-    return (size_t)rig->studio.width * rig->studio.height * 3;
+    return (size_t)rig->frame_fixture.width * rig->frame_fixture.height * 3;
 }
 
 static double mean(const float *values, size_t count)
@@ -62,9 +62,10 @@ static double mean_difference(const float *a, const float *b, size_t count)
 // What a channel of an image of the filter holds; to be freed.
 static float *channels(const struct vct_rig *rig, gpu_image image, int count)
 {
-    const size_t floats = (size_t)rig->studio.width * rig->studio.height * (size_t)count;
+    const size_t floats =
+        (size_t)rig->frame_fixture.width * rig->frame_fixture.height * (size_t)count;
     float *out = malloc(floats * sizeof *out);
-    CHECK(gpu_image_download_float(rig->studio.gpu, image, 0, 0, out, count, floats));
+    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, image, 0, 0, out, count, floats));
     return out;
 }
 
@@ -77,10 +78,10 @@ TEST_GPU(history_is_the_weighted_mean_of_the_frames)
     struct vct_rig rig;
     furnish(&rig, gpu);
     vct_rig_open(&rig, "resolution=32,temporal=true,frames=4");
-    const size_t pixels = (size_t)rig.studio.width * rig.studio.height;
+    const size_t pixels = (size_t)rig.frame_fixture.width * rig.frame_fixture.height;
     double *mean_of_them = calloc(3 * pixels, sizeof *mean_of_them);
     for (int frame = 0; frame < 9; frame++) {
-        studio_render(&rig.studio);
+        fixture_render(&rig.frame_fixture);
         float *now = channels(&rig, rig.vct->temporal.now, 3);
         float *got = channels(&rig, rig.vct->temporal.light[rig.vct->temporal.newest], 4);
         const double w = frame < 4 ? frame : 4; // frames=4: no more than four of them weigh
@@ -133,23 +134,23 @@ TEST_GPU(a_still_picture_comes_to_rest)
 
 enum { PAN = 30, WARM = 8 };
 
-static void turn_eye(struct studio *s, int frame)
+static void turn_eye(struct frame_fixture *s, int frame)
 {
     const float turn = 0.012f * (float)(frame - PAN / 2);
     const vec3s to = glms_vec3_sub(TARGET, EYE);
     const vec3s rotated =
         vec3_of(to.x * cosf(turn) - to.z * sinf(turn), to.y, to.x * sinf(turn) + to.z * cosf(turn));
-    studio_look(s, EYE, glms_vec3_add(EYE, rotated));
+    fixture_look(s, EYE, glms_vec3_add(EYE, rotated));
 }
 
 struct image {
     float *position, *normal, *irradiance;
 };
 
-static struct image picture_of(struct studio *s)
+static struct image picture_of(struct frame_fixture *s)
 {
-    return (struct image){ studio_read(s, READ_POSITION), studio_read(s, READ_NORMAL),
-                           studio_read(s, READ_IRRADIANCE) };
+    return (struct image){ fixture_read(s, READ_POSITION), fixture_read(s, READ_NORMAL),
+                           fixture_read(s, READ_IRRADIANCE) };
 }
 
 static void picture_free(struct image *p)
@@ -164,7 +165,7 @@ static vec3s vector(const float *of, size_t pixel)
 
 // Irradiance at a point of the world as the picture has it: bilinear, where all four pixels show
 // its plane within 0.1 m. False elsewhere: creases and silhouettes mix what is of other surfaces.
-static bool seen_at(const struct studio *s, vec3s p, vec3s n, const struct image *image,
+static bool seen_at(const struct frame_fixture *s, vec3s p, vec3s n, const struct image *image,
                     double out[3])
 {
     const struct world_camera *c = &s->input.camera;
@@ -202,22 +203,22 @@ static double flicker_in_pan(struct gpu *gpu, const char *options)
 {
     struct vct_rig rig;
     furnish(&rig, gpu);
-    struct studio *s = &rig.studio;
+    struct frame_fixture *s = &rig.frame_fixture;
     s->width = s->height = 48;
     turn_eye(s, 0);
     vct_rig_open(&rig, options);
-    for (int i = 0; i < WARM; i++) studio_render(s);
+    for (int i = 0; i < WARM; i++) fixture_render(s);
     turn_eye(s, PAN / 2);
-    studio_render(s);
+    fixture_render(s);
     struct image middle = picture_of(s);
     turn_eye(s, 0);
-    for (int i = 0; i < WARM; i++) studio_render(s);
+    for (int i = 0; i < WARM; i++) fixture_render(s);
     const size_t pixels = (size_t)s->width * s->height;
     double *last = calloc(4 * pixels, sizeof *last), changes = 0.0, sum = 0.0;
     long count = 0;
     for (int frame = 0; frame < PAN; frame++) {
         turn_eye(s, frame);
-        studio_render(s);
+        fixture_render(s);
         struct image image = picture_of(s);
         for (size_t i = 0; i < pixels; i++) {
             double now[3];
@@ -268,12 +269,12 @@ TEST_GPU(what_an_object_leaves_behind_goes_as_the_weight_says)
     vct_rig_open(&rig, "resolution=32,temporal=true,frames=16");
     const size_t count = floats_of(&rig);
     free(irradiance_after(&rig, 200));
-    struct image old = picture_of(&rig.studio);
+    struct image old = picture_of(&rig.frame_fixture);
     move_box(&rig, box, vec3_of(-1.5f, 3, 2)); // under the light
     float *trail[LAST + 1];
     for (int n = 1; n <= LAST; n++) trail[n] = irradiance_after(&rig, 1);
     free(irradiance_after(&rig, 400));
-    struct image settled = picture_of(&rig.studio);
+    struct image settled = picture_of(&rig.frame_fixture);
     for (size_t i = 0; i < count / 3; i++) { // others do not count
         const vec3s moved = glms_vec3_sub(vector(old.position, i), vector(settled.position, i));
         if (glms_vec3_norm(moved) == 0.0f) continue;
@@ -311,7 +312,7 @@ TEST_GPU(the_clamp_shortens_the_trail)
                                    : "resolution=32,temporal=true");
         const size_t count = floats_of(&rig);
         float *old = irradiance_after(&rig, 40);
-        rig.studio.lights[0].position = vec3_of(9, 7, 8);
+        rig.frame_fixture.lights[0].position = vec3_of(9, 7, 8);
         float *trail = irradiance_after(&rig, 4), *settled = irradiance_after(&rig, 200);
         left[clamped] =
             mean_difference(trail, settled, count) / mean_difference(old, settled, count);
@@ -329,16 +330,16 @@ TEST_GPU(history_follows_what_moves_and_begins_where_it_was)
 {
     struct vct_rig rig;
     const int box = furnish(&rig, gpu);
-    rig.studio.width = rig.studio.height = 48;
+    rig.frame_fixture.width = rig.frame_fixture.height = 48;
     vct_rig_open(&rig, "resolution=32,temporal=true,frames=16");
-    struct studio *s = &rig.studio;
+    struct frame_fixture *s = &rig.frame_fixture;
     const vec3s step = vec3_of(0.12f, 0, 0.03f);
     for (int i = 0; i < 12; i++) {
-        studio_render(s);
+        fixture_render(s);
         move_box(&rig, box, step);
     }
     struct image before = picture_of(s);
-    studio_render(s);
+    fixture_render(s);
     struct image after = picture_of(s);
     float *history = channels(&rig, rig.vct->temporal.light[rig.vct->temporal.newest], 4);
     int on_box = 0, followed = 0, uncovered = 0, begun = 0, still = 0, kept = 0;
@@ -376,13 +377,13 @@ TEST_GPU(history_goes_on_when_the_unit_changes)
     vct_rig_open(&rig, "resolution=32,temporal=true,frames=1");
     const size_t count = floats_of(&rig);
     float *old = irradiance_after(&rig, 1);
-    struct world_light *light = &rig.studio.lights[0];
-    const float scale = frame_radiance_scale(rig.studio.frame);
+    struct world_light *light = &rig.frame_fixture.lights[0];
+    const float scale = frame_radiance_scale(rig.frame_fixture.frame);
     light->intensity = glms_vec3_scale(light->intensity, 1024);
     float *mixed = irradiance_after(&rig, 1);
-    CHECK(frame_radiance_scale(rig.studio.frame) < scale);
+    CHECK(frame_radiance_scale(rig.frame_fixture.frame) < scale);
     float *now = channels(&rig, rig.vct->temporal.now, 3);
-    const double unit = (double)frame_radiance_scale(rig.studio.frame);
+    const double unit = (double)frame_radiance_scale(rig.frame_fixture.frame);
     // Half floats of the frame: 11 bits.
     for (size_t i = 0; i < count; i++) {
         const double expected = 0.5 * ((double)old[i] + (double)now[i] / unit);
@@ -399,8 +400,8 @@ static float *first_frame(struct gpu *gpu, const char *options, vec3s eye, vec3s
 {
     struct vct_rig rig;
     furnish(&rig, gpu);
-    rig.studio.width = rig.studio.height = size;
-    studio_look(&rig.studio, eye, target);
+    rig.frame_fixture.width = rig.frame_fixture.height = size;
+    fixture_look(&rig.frame_fixture, eye, target);
     vct_rig_open(&rig, options);
     float *e = irradiance_after(&rig, 1);
     vct_rig_finish(&rig);
@@ -418,13 +419,13 @@ TEST_GPU(a_cut_forgets_to_the_bit)
     vct_rig_open(&rig, on);
     const size_t bytes = floats_of(&rig) * sizeof *fresh;
     free(irradiance_after(&rig, 5));
-    studio_look(&rig.studio, OTHER_EYE, OTHER_TARGET);
-    rig.studio.input.camera_cut = true;
+    fixture_look(&rig.frame_fixture, OTHER_EYE, OTHER_TARGET);
+    rig.frame_fixture.input.camera_cut = true;
     float *cut = irradiance_after(&rig, 1);
     assert_memory_equal(cut, fresh, bytes);
     free(cut);
     // Other options, too; what it is told of a change; another size.
-    rig.studio.input.camera_cut = false;
+    rig.frame_fixture.input.camera_cut = false;
     free(irradiance_after(&rig, 3));
     struct vct_options options = rig.vct->options;
     options.gain = 2.0f;
@@ -442,7 +443,7 @@ TEST_GPU(a_cut_forgets_to_the_bit)
     free(cut), free(fresh);
     fresh = first_frame(gpu, off, OTHER_EYE, OTHER_TARGET, 40);
     CHECK(technique_vct.resize(rig.vct, 40, 40));
-    studio_resize(&rig.studio, 40, 40);
+    fixture_resize(&rig.frame_fixture, 40, 40);
     cut = irradiance_after(&rig, 1);
     assert_memory_equal(cut, fresh, floats_of(&rig) * sizeof *fresh);
     free(cut), free(fresh);
@@ -453,9 +454,9 @@ TEST_GPU(a_cut_forgets_to_the_bit)
 static float *alone(const struct vct_rig *rig, size_t count)
 {
     const size_t pixels = count / 3;
-    const float scale = frame_radiance_scale(rig->studio.frame);
+    const float scale = frame_radiance_scale(rig->frame_fixture.frame);
     float *rgba = malloc(pixels * 4 * sizeof *rgba), *out = malloc(count * sizeof *out);
-    CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->temporal.now, 0, 0, rgba, 4,
+    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, rig->vct->temporal.now, 0, 0, rgba, 4,
                                    pixels * 4));
     for (size_t i = 0; i < count; i++) out[i] = rgba[i / 3 * 4 + i % 3] / scale;
     free(rgba);
@@ -469,12 +470,12 @@ TEST_GPU(a_jump_has_no_ghost)
     struct vct_rig rig;
     furnish(&rig, gpu);
     // A picture as fine as the frame alone is exact: history is taken from between its pixels.
-    rig.studio.width = rig.studio.height = 64;
+    rig.frame_fixture.width = rig.frame_fixture.height = 64;
     // All bounces make the light so even that the frame alone is as exact.
     vct_rig_open(&rig, "resolution=32,bounces=1,temporal=true");
     const size_t count = floats_of(&rig);
     float *there = irradiance_after(&rig, 60);
-    studio_look(&rig.studio, OTHER_EYE, OTHER_TARGET);
+    fixture_look(&rig.frame_fixture, OTHER_EYE, OTHER_TARGET);
     float *jump = irradiance_after(&rig, 1), *fresh = alone(&rig, count);
     float *settled = irradiance_after(&rig, 200);
     const double average = mean(settled, count),

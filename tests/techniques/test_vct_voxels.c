@@ -123,14 +123,14 @@ static void check_random_triangles(struct gpu *gpu, const char *options)
     vec3s triangles[TRIANGLES][3];
     struct rng rng = rng_for(11, 0, 0);
     vct_rig_init(&rig, gpu);
-    const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
+    const int matte = fixture_matte(&rig.frame_fixture, vec3_of(0.5f, 0.5f, 0.5f));
     for (int i = 0; i < TRIANGLES; i++) {
         random_triangle(&rng, i % 3, triangles[i]);
         vct_rig_add_triangle(&rig, triangles[i], matte);
     }
-    studio_look(&rig.studio, vec3_of(5, 4, 6), vec3_of(6, 4, 4));
+    fixture_look(&rig.frame_fixture, vec3_of(5, 4, 6), vec3_of(6, 4, 4));
     vct_rig_open(&rig, options);
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     for (int clip = 0; clip < rig.vct->clip_count; clip++) {
         const struct vct_grid *grid = &rig.vct->clips[clip].grid;
         struct twin twin = { 0 };
@@ -139,8 +139,8 @@ static void check_random_triangles(struct gpu *gpu, const char *options)
         CHECK(count > 100 && count < DIM * DIM * DIM / 2); // neither all nor nothing
         // The count on the CPU, but for triangles that touch a face exactly.
         uint32_t counted = 0;
-        CHECK(
-            vct_count_touched(test_host(), &rig.studio.pose, grid, DIM, UINT32_MAX - 1, &counted));
+        CHECK(vct_count_touched(test_host(), &rig.frame_fixture.pose, grid, DIM, UINT32_MAX - 1,
+                                &counted));
         CHECK(abs((int)counted - count) <= 2);
     }
     vct_rig_finish(&rig);
@@ -160,18 +160,18 @@ static void check_same_words(const struct vct_rig *a, gpu_buffer in_a, const str
                              gpu_buffer in_b)
 {
     uint32_t *p = vct_rig_words(a, in_a), *q = vct_rig_words(b, in_b);
-    CHECK(memcmp(p, q, gpu_buffer_bytes(a->studio.gpu, in_a)) == 0);
+    CHECK(memcmp(p, q, gpu_buffer_bytes(a->frame_fixture.gpu, in_a)) == 0);
     free(p);
     free(q);
 }
 
 static uint32_t *texels_of(const struct vct_rig *rig, gpu_image image, size_t *bytes)
 {
-    const struct gpu_image_desc *desc = gpu_image_info(rig->studio.gpu, image);
+    const struct gpu_image_desc *desc = gpu_image_info(rig->frame_fixture.gpu, image);
     *bytes = (size_t)desc->width * desc->height * (size_t)gpu_format_bytes(desc->format);
     uint32_t *texels = malloc(*bytes);
     assert_non_null(texels);
-    assert_true(gpu_image_download(rig->studio.gpu, image, 0, 0, texels, *bytes));
+    assert_true(gpu_image_download(rig->frame_fixture.gpu, image, 0, 0, texels, *bytes));
     return texels;
 }
 
@@ -194,9 +194,9 @@ TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
         struct vct_rig *rig = &rigs[i];
         struct rng rng = rng_for(12, 0, 0);
         vct_rig_init(rig, gpu);
-        const int red = studio_matte(&rig->studio, vec3_of(0.7f, 0.3f, 0.1f));
-        studio_box(&rig->studio, vec3_of(0, 0, 0), vec3_of(12, 9, 10), true, red);
-        studio_box(&rig->studio, vec3_of(3, 0, 3), vec3_of(4.1f, 5.3f, 5.7f), false, red);
+        const int red = fixture_matte(&rig->frame_fixture, vec3_of(0.7f, 0.3f, 0.1f));
+        fixture_box(&rig->frame_fixture, vec3_of(0, 0, 0), vec3_of(12, 9, 10), true, red);
+        fixture_box(&rig->frame_fixture, vec3_of(3, 0, 3), vec3_of(4.1f, 5.3f, 5.7f), false, red);
         for (int k = 0; k < 200; k++) {
             vec3s corners[3];
             random_triangle(&rng, k % 3, corners);
@@ -205,7 +205,7 @@ TEST_GPU(the_rasteriser_finds_the_same_in_the_voxels)
         }
         // More than one tile of columns for what is large.
         vct_rig_open(rig, i == 0 ? "resolution=48" : "resolution=48,voxels=raster");
-        studio_render(&rig->studio);
+        fixture_render(&rig->frame_fixture);
     }
     check_same_words(&rigs[0], rigs[0].vct->clips[0].static_set.mask, &rigs[1],
                      rigs[1].vct->clips[0].static_set.mask);
@@ -219,7 +219,7 @@ TEST_GPU(what_is_no_triangle_touches_nothing)
     struct vct_rig rig;
     struct twin twin = { 0 };
     vct_rig_init(&rig, gpu);
-    const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
+    const int matte = fixture_matte(&rig.frame_fixture, vec3_of(0.5f, 0.5f, 0.5f));
     const vec3s real[3] = { vec3_of(0, 0, 0), vec3_of(2, 0, 0.5f), vec3_of(0.3f, 2, 1) };
     const vec3s line[3] = { vec3_of(0, 0, 0), vec3_of(4, 4, 4), vec3_of(8, 8, 8) };
     const vec3s point[3] = { vec3_of(7, 7, 7), vec3_of(7, 7, 7), vec3_of(7, 7, 7) };
@@ -227,7 +227,7 @@ TEST_GPU(what_is_no_triangle_touches_nothing)
     vct_rig_add_triangle(&rig, line, matte);
     vct_rig_add_triangle(&rig, point, matte);
     vct_rig_open(&rig, "resolution=16");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     twin_add(&twin, &rig.vct->clips[0].grid, real);
     CHECK(check_same(&rig, &twin, &rig.vct->clips[0].static_set) > 0);
     vct_rig_finish(&rig);
@@ -238,10 +238,10 @@ TEST_GPU(walls_on_the_border_of_the_grid_are_kept)
 {
     struct vct_rig rig;
     vct_rig_init(&rig, gpu);
-    studio_box(&rig.studio, vec3_of(0, 0, 0), vec3_of(12, 12, 12), true,
-               studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f)));
+    fixture_box(&rig.frame_fixture, vec3_of(0, 0, 0), vec3_of(12, 12, 12), true,
+                fixture_matte(&rig.frame_fixture, vec3_of(0.5f, 0.5f, 0.5f)));
     vct_rig_open(&rig, "resolution=16");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     CHECK(rig.vct->clips[0].grid.cell_m == 1.0f && rig.vct->clips[0].grid.origin_m.x == 0.0f);
     for (int axis = 0; axis < 3; axis++) CHECK(rig.vct->clips[0].grid.cells[axis] == 12);
     uint32_t *mask = vct_rig_mask(&rig, &rig.vct->clips[0].static_set);
@@ -261,18 +261,19 @@ TEST_GPU(what_moves_is_voxelised_anew_and_what_stands_is_kept)
     struct vct_rig rig;
     struct twin still = { 0 }, moving = { 0 };
     vct_rig_init(&rig, gpu);
-    const int matte = studio_matte(&rig.studio, vec3_of(0.5f, 0.5f, 0.5f));
+    const int matte = fixture_matte(&rig.frame_fixture, vec3_of(0.5f, 0.5f, 0.5f));
     const vec3s one[3] = { vec3_of(0, 0, 0), vec3_of(12, 0, 0), vec3_of(0, 0.3f, 12) };
     vec3s other[3] = { vec3_of(3, 5.2f, 3), vec3_of(8, 5.4f, 3), vec3_of(3, 9.7f, 3.3f) };
     vct_rig_add_triangle(&rig, one, matte);
     const int instance = vct_rig_add_triangle(&rig, other, matte);
     vct_rig_open(&rig, "resolution=16");
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
     const vec3s step = vec3_of(1.5f, -1, 2);
-    mat4s *world = &rig.studio.pose.world_from_node[rig.studio.scene->instances[instance].node];
+    mat4s *world =
+        &rig.frame_fixture.pose.world_from_node[rig.frame_fixture.scene->instances[instance].node];
     *world = glms_translate(*world, step);
-    studio_render(&rig.studio);
-    studio_render(&rig.studio);
+    fixture_render(&rig.frame_fixture);
+    fixture_render(&rig.frame_fixture);
     for (int i = 0; i < 3; i++) other[i] = glms_vec3_add(other[i], step);
     twin_add(&still, &rig.vct->clips[0].grid, one);
     twin_add(&moving, &rig.vct->clips[0].grid, other);

@@ -22,14 +22,14 @@ static void begin(struct vct_rig *rig, struct gpu *gpu)
 
 static int grey(struct vct_rig *rig)
 {
-    return studio_matte(&rig->studio, vec3_of(0.5f, 0.5f, 0.5f));
+    return fixture_matte(&rig->frame_fixture, vec3_of(0.5f, 0.5f, 0.5f));
 }
 
 // To be freed.
 static float *seen(struct vct_rig *rig)
 {
-    studio_render(&rig->studio);
-    return studio_read(&rig->studio, READ_VISIBILITY);
+    fixture_render(&rig->frame_fixture);
+    return fixture_read(&rig->frame_fixture, READ_VISIBILITY);
 }
 
 struct span {
@@ -88,10 +88,10 @@ static struct span tilted_plane(struct gpu *gpu, vec3s n, const char *options)
     n = glms_vec3_normalize(n);
     basis_of(n, &x, &y);
     const vec3s a = glms_vec3_scale(x, 6), b = glms_vec3_scale(y, 6);
-    studio_quad(&rig.studio, glms_vec3_negate(glms_vec3_add(a, b)), glms_vec3_sub(a, b),
-                glms_vec3_add(a, b), glms_vec3_sub(b, a), grey(&rig));
-    studio_look(&rig.studio, glms_vec3_add(glms_vec3_scale(n, 4), glms_vec3_scale(x, 0.3f)),
-                vec3_of(0, 0, 0));
+    fixture_quad(&rig.frame_fixture, glms_vec3_negate(glms_vec3_add(a, b)), glms_vec3_sub(a, b),
+                 glms_vec3_add(a, b), glms_vec3_sub(b, a), grey(&rig));
+    fixture_look(&rig.frame_fixture, glms_vec3_add(glms_vec3_scale(n, 4), glms_vec3_scale(x, 0.3f)),
+                 vec3_of(0, 0, 0));
     vct_rig_open(&rig, options);
     const struct span s = span_now(&rig);
     vct_rig_finish(&rig);
@@ -122,8 +122,8 @@ TEST_GPU(a_closed_room_is_closed_up_to_its_leaks)
 {
     struct vct_rig rig;
     begin(&rig, gpu);
-    studio_box(&rig.studio, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, grey(&rig));
-    studio_look(&rig.studio, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
+    fixture_box(&rig.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true, grey(&rig));
+    fixture_look(&rig.frame_fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
     vct_rig_open(&rig, "resolution=48,decay=0");
     const struct span s = span_now(&rig);
     print_message("closed room: %.4f of the sky, %.4f at most\n", s.mean, s.most);
@@ -148,10 +148,10 @@ TEST_GPU(where_there_is_nothing_all_is_open)
                                            "resolution=32,temporal=true" };
     for (int o = 0; o < 3; o++) {
         begin(&rig, gpu);
-        studio_quad(&rig.studio, vec3_of(-1, -1, -9), vec3_of(1, -1, -9), vec3_of(1, 1, -9),
-                    vec3_of(-1, 1, -9), grey(&rig));
+        fixture_quad(&rig.frame_fixture, vec3_of(-1, -1, -9), vec3_of(1, -1, -9), vec3_of(1, 1, -9),
+                     vec3_of(-1, 1, -9), grey(&rig));
         vct_rig_open(&rig, options[o]);
-        float *v = seen(&rig), *depth = studio_read(&rig.studio, READ_DEPTH);
+        float *v = seen(&rig), *depth = fixture_read(&rig.frame_fixture, READ_DEPTH);
         int beside = 0;
         for (int i = 0; i < PIXELS; i++) {
             if (depth[i] > 0.0f) continue;
@@ -173,11 +173,11 @@ static void crease(struct vct_rig *rig, struct gpu *gpu)
 {
     begin(rig, gpu);
     const int matte = grey(rig);
-    studio_quad(&rig->studio, vec3_of(0, 0, HALF_M), vec3_of(9, 0, HALF_M), vec3_of(9, 0, -HALF_M),
-                vec3_of(0, 0, -HALF_M), matte);
-    studio_quad(&rig->studio, vec3_of(0, 0, HALF_M), vec3_of(0, 0, -HALF_M),
-                vec3_of(0, HEIGHT_M, -HALF_M), vec3_of(0, HEIGHT_M, HALF_M), matte);
-    studio_look(&rig->studio, vec3_of(3, 7, 0.1f), vec3_of(3, 0, 0));
+    fixture_quad(&rig->frame_fixture, vec3_of(0, 0, HALF_M), vec3_of(9, 0, HALF_M),
+                 vec3_of(9, 0, -HALF_M), vec3_of(0, 0, -HALF_M), matte);
+    fixture_quad(&rig->frame_fixture, vec3_of(0, 0, HALF_M), vec3_of(0, 0, -HALF_M),
+                 vec3_of(0, HEIGHT_M, -HALF_M), vec3_of(0, HEIGHT_M, HALF_M), matte);
+    fixture_look(&rig->frame_fixture, vec3_of(3, 7, 0.1f), vec3_of(3, 0, 0));
 }
 
 // A wall of the height h hides the directions below the angle β = atan(h/x) on its side: of a strip
@@ -194,8 +194,8 @@ static void check_crease(struct gpu *gpu, const char *options, double decay, dou
     struct raycast raycast;
     crease(&rig, gpu);
     vct_rig_open(&rig, options);
-    CHECK(raycast_init(&raycast, test_host(), &rig.studio.pose));
-    float *v = seen(&rig), *at = studio_read(&rig.studio, READ_POSITION);
+    CHECK(raycast_init(&raycast, test_host(), &rig.frame_fixture.pose));
+    float *v = seen(&rig), *at = fixture_read(&rig.frame_fixture, READ_POSITION);
     double off = 0.0, sum = 0.0, apart = 0.0;
     int count = 0;
     for (int i = 0; i < PIXELS; i += 3) {
@@ -237,14 +237,14 @@ TEST_GPU(beside_a_wall_it_is_as_open_as_rays_say)
 static void court(struct vct_rig *rig, struct gpu *gpu)
 {
     begin(rig, gpu);
-    struct studio *s = &rig->studio;
+    struct frame_fixture *s = &rig->frame_fixture;
     const int matte = grey(rig);
     const float w = 10, h = 5;
-    studio_quad(s, vec3_of(0, 0, w), vec3_of(w, 0, w), vec3_of(w, 0, 0), vec3_of(0, 0, 0), matte);
-    studio_quad(s, vec3_of(0, 0, 0), vec3_of(w, 0, 0), vec3_of(w, h, 0), vec3_of(0, h, 0), matte);
-    studio_quad(s, vec3_of(0, 0, w), vec3_of(0, 0, 0), vec3_of(0, h, 0), vec3_of(0, h, w), matte);
-    studio_box(s, vec3_of(4, 0, 3), vec3_of(6, 2.5f, 5), false, matte);
-    studio_look(s, vec3_of(9, 6, 9), vec3_of(3, 1, 3));
+    fixture_quad(s, vec3_of(0, 0, w), vec3_of(w, 0, w), vec3_of(w, 0, 0), vec3_of(0, 0, 0), matte);
+    fixture_quad(s, vec3_of(0, 0, 0), vec3_of(w, 0, 0), vec3_of(w, h, 0), vec3_of(0, h, 0), matte);
+    fixture_quad(s, vec3_of(0, 0, w), vec3_of(0, 0, 0), vec3_of(0, h, 0), vec3_of(0, h, w), matte);
+    fixture_box(s, vec3_of(4, 0, 3), vec3_of(6, 2.5f, 5), false, matte);
+    fixture_look(s, vec3_of(9, 6, 9), vec3_of(3, 1, 3));
 }
 
 TEST_GPU(each_storage_sees_what_rays_see_and_the_same_in_every_frame)
@@ -271,11 +271,11 @@ TEST_GPU(each_storage_sees_what_rays_see_and_the_same_in_every_frame)
         struct raycast raycast;
         court(&rig, gpu);
         vct_rig_open(&rig, directions[o].options);
-        CHECK(raycast_init(&raycast, test_host(), &rig.studio.pose));
+        CHECK(raycast_init(&raycast, test_host(), &rig.frame_fixture.pose));
         float *v = seen(&rig), *later = seen(&rig);
-        float *at = studio_read(&rig.studio, READ_POSITION),
-              *normal = studio_read(&rig.studio, READ_NORMAL),
-              *depth = studio_read(&rig.studio, READ_DEPTH);
+        float *at = fixture_read(&rig.frame_fixture, READ_POSITION),
+              *normal = fixture_read(&rig.frame_fixture, READ_NORMAL),
+              *depth = fixture_read(&rig.frame_fixture, READ_DEPTH);
         double sum = 0.0, off = 0.0;
         int count = 0;
         for (int i = 0; i < PIXELS; i += 5) {
@@ -314,9 +314,9 @@ TEST_GPU(cones_of_occlusion_find_what_those_of_the_twin_do)
     int compared = 0;
     for (uint32_t y = 1; y < SIZE; y += 5)
         for (uint32_t x = 1; x < SIZE; x += 5) {
-            if (studio_pixel(&rig.studio, READ_DEPTH, x, y).x <= 0.0f) continue;
-            const vec3s p = studio_pixel(&rig.studio, READ_POSITION, x, y);
-            const vec3s n = studio_pixel(&rig.studio, READ_NORMAL, x, y);
+            if (fixture_pixel(&rig.frame_fixture, READ_DEPTH, x, y).x <= 0.0f) continue;
+            const vec3s p = fixture_pixel(&rig.frame_fixture, READ_POSITION, x, y);
+            const vec3s n = fixture_pixel(&rig.frame_fixture, READ_NORMAL, x, y);
             double from[3], normal[3], open = 0.0, cosines = 0.0;
             for (int a = 0; a < 3; a++) {
                 normal[a] = (double)n.raw[a];
@@ -359,14 +359,14 @@ TEST_GPU(what_moves_takes_its_shade_along)
         const char *options = svo ? "resolution=48,storage=svo" : "resolution=48";
         struct vct_rig rig, fresh;
         court(&rig, gpu);
-        const int box = rig.studio.scene->instance_count;
-        studio_box(&rig.studio, vec3_of(7, 0.01f, 6), vec3_of(8, 1, 7), false, grey(&rig));
+        const int box = rig.frame_fixture.scene->instance_count;
+        fixture_box(&rig.frame_fixture, vec3_of(7, 0.01f, 6), vec3_of(8, 1, 7), false, grey(&rig));
         vct_rig_open(&rig, options);
         float *before = seen(&rig);
         free(seen(&rig));
         CHECK(!has_pass(gpu, "vctao.fill") && !has_pass(gpu, "vctao.leaves"));
         CHECK(has_pass(gpu, "vctao.cones"));
-        struct studio *s = &rig.studio;
+        struct frame_fixture *s = &rig.frame_fixture;
         for (int i = box; i < s->scene->instance_count; i++) // its faces
             s->pose.world_from_node[s->scene->instances[i].node].raw[3][0] -= 5.0f;
         float *moved = seen(&rig), *later = seen(&rig);
@@ -376,7 +376,8 @@ TEST_GPU(what_moves_takes_its_shade_along)
         // All that depends on it is there at once, and nothing is left behind.
         assert_memory_equal(moved, later, PIXELS * sizeof *moved);
         court(&fresh, gpu);
-        studio_box(&fresh.studio, vec3_of(2, 0.01f, 6), vec3_of(3, 1, 7), false, grey(&fresh));
+        fixture_box(&fresh.frame_fixture, vec3_of(2, 0.01f, 6), vec3_of(3, 1, 7), false,
+                    grey(&fresh));
         vct_rig_open(&fresh, options);
         float *due = seen(&fresh);
         double apart = 0.0;
@@ -400,8 +401,8 @@ TEST_GPU(occlusion_is_where_the_eye_has_gone)
     float *before = seen(&rig);
     court(&fresh, gpu);
     vct_rig_open(&fresh, "resolution=32,levels=3");
-    studio_look(&rig.studio, vec3_of(1, 3, 8), vec3_of(3, 0, 1));
-    studio_look(&fresh.studio, vec3_of(1, 3, 8), vec3_of(3, 0, 1));
+    fixture_look(&rig.frame_fixture, vec3_of(1, 3, 8), vec3_of(3, 0, 1));
+    fixture_look(&fresh.frame_fixture, vec3_of(1, 3, 8), vec3_of(3, 0, 1));
     float *gone = seen(&rig), *due = seen(&fresh);
     CHECK(memcmp(before, gone, PIXELS * sizeof *gone) != 0);
     assert_memory_equal(gone, due, PIXELS * sizeof *gone);
@@ -417,15 +418,15 @@ TEST_GPU(history_of_occlusion_does_not_know_of_light)
     for (int brighter = 0; brighter < 2; brighter++) {
         struct vct_rig rig;
         court(&rig, gpu);
-        studio_add_point(&rig.studio, vec3_of(5, 4, 7), vec3_of(300, 300, 300));
+        fixture_add_point(&rig.frame_fixture, vec3_of(5, 4, 7), vec3_of(300, 300, 300));
         vct_rig_open(&rig, "resolution=32,temporal=true");
         for (int f = 0; f < 6; f++) {
             const float candela = brighter && f >= 3 ? 30000.0f : 300.0f;
-            rig.studio.lights[0].intensity = vec3_of(candela, candela, candela);
-            rig.studio.input.sky = vec3_of(0.1f * candela, 0, 0);
-            studio_render(&rig.studio);
+            rig.frame_fixture.lights[0].intensity = vec3_of(candela, candela, candela);
+            rig.frame_fixture.input.sky = vec3_of(0.1f * candela, 0, 0);
+            fixture_render(&rig.frame_fixture);
         }
-        v[brighter] = studio_read(&rig.studio, READ_VISIBILITY);
+        v[brighter] = fixture_read(&rig.frame_fixture, READ_VISIBILITY);
         vct_rig_finish(&rig);
     }
     assert_memory_equal(v[0], v[1], PIXELS * sizeof *v[0]);

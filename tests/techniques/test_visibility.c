@@ -1,7 +1,7 @@
 // Requirements on every screen-space technique of the role visibility.
 #include "techniques/gi.h"
 
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,9 +29,9 @@ enum { WAYS = sizeof specs / sizeof specs[0] };
 
 static const double STEP = 1.0 / 255.0; // of the layer's 8 bits
 
-static void begin(struct studio *s, struct gpu *gpu)
+static void begin(struct frame_fixture *s, struct gpu *gpu)
 {
-    studio_init(s, gpu);
+    fixture_init(s, gpu);
     s->width = WIDTH;
     s->height = HEIGHT;
 }
@@ -41,7 +41,7 @@ struct look {
     struct gi_spec spec;
 };
 
-static struct look look_begin(struct studio *s, const char *way, double radius_m)
+static struct look look_begin(struct frame_fixture *s, const char *way, double radius_m)
 {
     char text[160];
     struct look look;
@@ -61,11 +61,11 @@ static void look_end(struct look *look)
 }
 
 // Visibility after one frame; to be freed.
-static float *seen(struct studio *s, const char *way, double radius_m)
+static float *seen(struct frame_fixture *s, const char *way, double radius_m)
 {
     struct look look = look_begin(s, way, radius_m);
-    studio_render(s);
-    float *out = studio_read(s, READ_VISIBILITY);
+    fixture_render(s);
+    float *out = fixture_read(s, READ_VISIBILITY);
     look_end(&look);
     return out;
 }
@@ -78,35 +78,35 @@ static void check_all(const char *way, const float *v, double least, double most
 }
 
 // A floor with a box on it, seen from above at an angle.
-static void box_on_floor(struct studio *s, struct gpu *gpu)
+static void box_on_floor(struct frame_fixture *s, struct gpu *gpu)
 {
     begin(s, gpu);
-    const int matte = studio_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
-    studio_floor(s, 20, matte);
-    studio_box(s, vec3_of(-0.4f, 0, -0.4f), vec3_of(0.4f, 0.8f, 0.4f), false, matte);
-    studio_look(s, vec3_of(1.5f, 2, 2.5f), vec3_of(0, 0.2f, 0));
-    studio_open(s);
+    const int matte = fixture_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
+    fixture_floor(s, 20, matte);
+    fixture_box(s, vec3_of(-0.4f, 0, -0.4f), vec3_of(0.4f, 0.8f, 0.4f), false, matte);
+    fixture_look(s, vec3_of(1.5f, 2, 2.5f), vec3_of(0, 0.2f, 0));
+    fixture_open(s);
 }
 
 TEST_GPU(empty_images_have_full_visibility)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    studio_quad(&s, vec3_of(-1, -1, 9), vec3_of(1, -1, 9), vec3_of(1, 1, 9), vec3_of(-1, 1, 9),
-                studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
-    studio_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1)); // the quad is behind the camera
-    studio_open(&s);
+    fixture_quad(&s, vec3_of(-1, -1, 9), vec3_of(1, -1, 9), vec3_of(1, 1, 9), vec3_of(-1, 1, 9),
+                 fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    fixture_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1)); // the quad is behind the camera
+    fixture_open(&s);
     for (int i = 0; i < WAYS; i++) {
         float *v = seen(&s, specs[i], 0.5);
         check_all(specs[i], v, 1.0, 1.0);
         free(v);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 TEST_GPU(a_sphere_of_radius_0_is_open_and_one_beyond_the_scene_is_finite)
 {
-    struct studio s;
+    struct frame_fixture s;
     box_on_floor(&s, gpu);
     for (int i = 0; i < WAYS; i++) {
         float *v = seen(&s, specs[i], 0.0);
@@ -117,26 +117,27 @@ TEST_GPU(a_sphere_of_radius_0_is_open_and_one_beyond_the_scene_is_finite)
         check_all(specs[i], v, 0.0, 1.0);
         free(v);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // Up to the horizon, where neighbouring pixels are as far apart as from the camera, and without
 // change while the camera moves.
 TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_camera_moves)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    studio_floor(&s, 20000, studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
-    studio_open(&s);
+    fixture_floor(&s, 20000, fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f)));
+    fixture_open(&s);
     for (int i = 0; i < WAYS; i++) {
         struct look look = look_begin(&s, specs[i], 0.5);
         double least = 1.0, change = 0.0;
         float *last = NULL;
         for (int k = 0; k < 4; k++) {
             const float x = 0.013f * (float)k;
-            studio_look(&s, vec3_of(x, 1.5f, x), vec3_of(x + 0.2f, 1.5f - 0.02f * (float)k, x - 1));
-            studio_render(&s);
-            float *v = studio_read(&s, READ_VISIBILITY);
+            fixture_look(&s, vec3_of(x, 1.5f, x),
+                         vec3_of(x + 0.2f, 1.5f - 0.02f * (float)k, x - 1));
+            fixture_render(&s);
+            float *v = fixture_read(&s, READ_VISIBILITY);
             // Away from the image center the slope exceeds its bound while spheres still have two
             // pixels: an area fetches farther from its pixel than a line.
             check_all(specs[i], v, 1.0 - (strstr(specs[i], "areas") ? 5 : 1) * STEP, 1.0);
@@ -151,27 +152,27 @@ TEST_GPU(a_grazing_plane_stays_open_up_to_the_horizon_while_the_camera_moves)
         print_message("%-36s %.3f at least, %.3f from frame to frame\n", specs[i], least, change);
         look_end(&look);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // Two walls along the y axis, z = 0 and x = 0, viewed from between them. A wall at the distance a
 // (radii) leaves (2 + 3a − a³)/4 of the hemisphere over the other.
 TEST_GPU(visibility_beside_a_wall_is_the_closed_form)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
-    studio_quad(&s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
-                matte);
-    studio_quad(&s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
-                matte);
-    studio_look(&s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
-    studio_open(&s);
+    const int matte = fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
+    fixture_quad(&s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
+                 matte);
+    fixture_quad(&s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
+                 matte);
+    fixture_look(&s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
+    fixture_open(&s);
     const double radius_m = 0.6; // nine pixels
     for (int i = 0; i < WAYS; i++) {
         if (strstr(specs[i], "radius2") || strstr(specs[i], "quadratic"))
             continue; // something else
-        float *v = seen(&s, specs[i], radius_m), *at = studio_read(&s, READ_POSITION);
+        float *v = seen(&s, specs[i], radius_m), *at = fixture_read(&s, READ_POSITION);
         double sum = 0.0, squares = 0.0;
         int count = 0;
         for (int k = 0; k < PIXELS; k++) {
@@ -194,13 +195,13 @@ TEST_GPU(visibility_beside_a_wall_is_the_closed_form)
         free(v);
         free(at);
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // A board four metres in front of a wall. The wall is open up to the board's silhouette.
-static double darkest_background(struct studio *s, const char *way)
+static double darkest_background(struct frame_fixture *s, const char *way)
 {
-    float *v = seen(s, way, 0.5), *depth = studio_read(s, READ_DEPTH);
+    float *v = seen(s, way, 0.5), *depth = fixture_read(s, READ_DEPTH);
     double least = 1.0;
     for (int i = 0; i < PIXELS; i++)
         if ((double)depth[i] > 5.0) least = fmin(least, (double)v[i]);
@@ -211,15 +212,15 @@ static double darkest_background(struct studio *s, const char *way)
 
 TEST_GPU(silhouettes_have_no_halo_on_distant_backgrounds)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
-    studio_quad(&s, vec3_of(-30, -30, -6), vec3_of(30, -30, -6), vec3_of(30, 30, -6),
-                vec3_of(-30, 30, -6), matte);
-    studio_quad(&s, vec3_of(-0.5f, -0.3f, -2), vec3_of(0.5f, -0.4f, -2), vec3_of(0.4f, 0.5f, -2),
-                vec3_of(-0.5f, 0.4f, -2), matte);
-    studio_look(&s, vec3_of(0, 0, 0), vec3_of(0.05f, 0, -1));
-    studio_open(&s);
+    const int matte = fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
+    fixture_quad(&s, vec3_of(-30, -30, -6), vec3_of(30, -30, -6), vec3_of(30, 30, -6),
+                 vec3_of(-30, 30, -6), matte);
+    fixture_quad(&s, vec3_of(-0.5f, -0.3f, -2), vec3_of(0.5f, -0.4f, -2), vec3_of(0.4f, 0.5f, -2),
+                 vec3_of(-0.5f, 0.4f, -2), matte);
+    fixture_look(&s, vec3_of(0, 0, 0), vec3_of(0.05f, 0, -1));
+    fixture_open(&s);
     for (int i = 0; i < WAYS; i++) {
         const double least = darkest_background(&s, specs[i]);
         print_message("%-36s %.3f\n", specs[i], least);
@@ -231,13 +232,13 @@ TEST_GPU(silhouettes_have_no_halo_on_distant_backgrounds)
     CHECK(darkest_background(&s, "vo:samples=5,thickness=1000") < 0.8);
     CHECK(darkest_background(&s, "vo:mode=points,samples=12,thickness=1000") < 0.8);
     CHECK(darkest_background(&s, "ssao:range=1000") < 0.8);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // ---- a moving camera
 
 // Mean difference from frame to frame of a pan of a third of a pixel a frame.
-static double change_in_pan(struct studio *s, const char *way)
+static double change_in_pan(struct frame_fixture *s, const char *way)
 {
     enum { FRAMES = 30 };
     struct look look = look_begin(s, way, 0.5);
@@ -245,10 +246,10 @@ static double change_in_pan(struct studio *s, const char *way)
     double sum = 0.0;
     for (int f = 0; f < FRAMES; f++) {
         const float a = 0.0052f * (float)f; // a pixel is 1/64 rad
-        studio_look(s, vec3_of(2.5f, 2.2f, 3.5f),
-                    vec3_of(2.5f - 3.5f * sinf(0.6f + a), 0.4f, 3.5f - 3.5f * cosf(0.6f + a)));
-        studio_render(s);
-        float *now = studio_read(s, READ_VISIBILITY);
+        fixture_look(s, vec3_of(2.5f, 2.2f, 3.5f),
+                     vec3_of(2.5f - 3.5f * sinf(0.6f + a), 0.4f, 3.5f - 3.5f * cosf(0.6f + a)));
+        fixture_render(s);
+        float *now = fixture_read(s, READ_VISIBILITY);
         for (int i = 0; last && i < PIXELS; i++)
             sum += fabs((double)(now[i] - last[i])) / (PIXELS * (FRAMES - 1));
         free(last);
@@ -263,15 +264,15 @@ static double change_in_pan(struct studio *s, const char *way)
 // and grooves without silhouettes, where both would jump.
 TEST_GPU(five_lines_change_less_than_twelve_points_while_the_camera_rotates)
 {
-    struct studio s;
+    struct frame_fixture s;
     begin(&s, gpu);
-    const int matte = studio_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
+    const int matte = fixture_matte(&s, vec3_of(0.5f, 0.5f, 0.5f));
     for (int i = -16; i < 16; i++) {
         const float x = 0.4f * (float)i, low = i & 1 ? 0.3f : 0.0f, high = 0.3f - low;
-        studio_quad(&s, vec3_of(x, low, 6), vec3_of(x + 0.4f, high, 6), vec3_of(x + 0.4f, high, -6),
-                    vec3_of(x, low, -6), matte);
+        fixture_quad(&s, vec3_of(x, low, 6), vec3_of(x + 0.4f, high, 6),
+                     vec3_of(x + 0.4f, high, -6), vec3_of(x, low, -6), matte);
     }
-    studio_open(&s);
+    fixture_open(&s);
     const double lines = change_in_pan(&s, "vo:samples=5"),
                  points = change_in_pan(&s, "ssao:samples=12"),
                  same = change_in_pan(&s, "vo:mode=points,samples=12"),
@@ -279,21 +280,21 @@ TEST_GPU(five_lines_change_less_than_twelve_points_while_the_camera_rotates)
     print_message("five lines %.5f, ssao's points %.5f, vo's points %.5f, with history %.5f\n",
                   lines, points, same, still);
     CHECK(lines < points && lines < 0.9 * same && still < lines);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // In a static scene each frame adds a rotation: the noise that remains without blur.
 TEST_GPU(temporal_accumulation_reduces_the_noise_of_a_static_image)
 {
-    struct studio s;
+    struct frame_fixture s;
     box_on_floor(&s, gpu);
     float *exact = seen(&s, "vo:samples=33", 0.5);
     double noise[2];
     for (int k = 0; k < 2; k++) {
         struct look look = look_begin(
             &s, k ? "vo:samples=5,blur=false,temporal=true" : "vo:samples=5,blur=false", 0.5);
-        for (int f = 0; f < 17; f++) studio_render(&s);
-        float *v = studio_read(&s, READ_VISIBILITY);
+        for (int f = 0; f < 17; f++) fixture_render(&s);
+        float *v = fixture_read(&s, READ_VISIBILITY);
         noise[k] = 0.0;
         for (int i = 0; i < PIXELS; i++) noise[k] += fabs((double)(v[i] - exact[i])) / PIXELS;
         free(v);
@@ -302,13 +303,13 @@ TEST_GPU(temporal_accumulation_reduces_the_noise_of_a_static_image)
     print_message("without history %.4f, with it %.4f\n", noise[0], noise[1]);
     CHECK(noise[1] < 0.8 * noise[0]); // the rest is bias and the blur of `exact`
     free(exact);
-    studio_finish(&s);
+    fixture_finish(&s);
 }
 
 // Obscurance is linear in the falloff.
 TEST_GPU(two_radii_give_the_mean_of_both)
 {
-    struct studio s;
+    struct frame_fixture s;
     box_on_floor(&s, gpu);
     float *a = seen(&s, "vo:samples=5,blur=false", 0.5),
           *b = seen(&s, "vo:samples=5,blur=false", 0.2),
@@ -317,5 +318,5 @@ TEST_GPU(two_radii_give_the_mean_of_both)
     free(a);
     free(b);
     free(both);
-    studio_finish(&s);
+    fixture_finish(&s);
 }

@@ -11,9 +11,9 @@ enum { WIDTH = 96, HEIGHT = 61 }; // not a multiple of the eight rows of an invo
 static const int counts[] = { 5, 6, 7, 9, 12, 13, 16, 33 };
 enum { COUNTS = sizeof counts / sizeof counts[0] };
 
-static void begin(struct studio *s, struct gpu *gpu)
+static void begin(struct frame_fixture *s, struct gpu *gpu)
 {
-    studio_init(s, gpu);
+    fixture_init(s, gpu);
     s->width = WIDTH;
     s->height = HEIGHT;
 }
@@ -21,21 +21,21 @@ static void begin(struct studio *s, struct gpu *gpu)
 // ---- planes
 
 // The camera is `height` above an infinite floor and looks `degrees` below the horizon.
-static void floor_seen(struct studio *s, struct gpu *gpu, float height, float degrees)
+static void floor_seen(struct frame_fixture *s, struct gpu *gpu, float height, float degrees)
 {
     begin(s, gpu);
-    studio_floor(s, 200, studio_matte(s, vec3_of(0.5f, 0.5f, 0.5f)));
+    fixture_floor(s, 200, fixture_matte(s, vec3_of(0.5f, 0.5f, 0.5f)));
     const float a = degrees * GLM_PIf / 180.0f;
-    studio_look(s, vec3_of(0.1f, height, 0),
-                vec3_of(0.1f + 0.3f * cosf(a), height - sinf(a), -cosf(a)));
-    studio_open(s);
+    fixture_look(s, vec3_of(0.1f, height, 0),
+                 vec3_of(0.1f + 0.3f * cosf(a), height - sinf(a), -cosf(a)));
+    fixture_open(s);
 }
 
 // Largest difference from `expected` on surfaces at least `margin` pixels from the image border.
 static double farthest(struct vo_fixture *fixture, float expected, uint32_t margin)
 {
     float *estimate = vo_fixture_estimate(fixture),
-          *depth = studio_read(fixture->studio, READ_DEPTH);
+          *depth = fixture_read(fixture->frame_fixture, READ_DEPTH);
     double most = 0.0;
     int looked_at = 0;
     for (uint32_t y = margin; y < HEIGHT - margin; y++)
@@ -50,7 +50,7 @@ static double farthest(struct vo_fixture *fixture, float expected, uint32_t marg
     return most;
 }
 
-static double off(struct studio *s, const char *options, float expected, uint32_t margin)
+static double off(struct frame_fixture *s, const char *options, float expected, uint32_t margin)
 {
     struct vo_fixture fixture = vo_fixture_create(s, options);
     const double most = farthest(&fixture, expected, margin);
@@ -63,7 +63,7 @@ static const float slants[] = { 90, 60, 35, 20 };
 TEST_GPU(vo_of_a_plane_is_exactly_half_without_the_normal)
 {
     for (int i = 0; i < 4; i++) {
-        struct studio s;
+        struct frame_fixture s;
         floor_seen(&s, gpu, 1.5f, slants[i]);
         double most = 0.0;
         for (int k = 0; k < COUNTS; k++) {
@@ -80,14 +80,14 @@ TEST_GPU(vo_of_a_plane_is_exactly_half_without_the_normal)
                       areas);
         CHECK(most < 1e-4);
         CHECK(areas < 1e-4);
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 TEST_GPU(vo_of_a_plane_is_one_up_to_the_image_border)
 {
     for (int i = 0; i < 4; i++) {
-        struct studio s;
+        struct frame_fixture s;
         floor_seen(&s, gpu, 1.5f, slants[i]);
         double most = 0.0;
         for (int k = 0; k < COUNTS; k++) {
@@ -100,23 +100,23 @@ TEST_GPU(vo_of_a_plane_is_one_up_to_the_image_border)
         }
         print_message("slant %2.0f: all to %.1e\n", (double)slants[i], most);
         CHECK(most < 1e-4);
-        studio_finish(&s);
+        fixture_finish(&s);
     }
 }
 
 // ---- a crease
 
 // Two walls that meet at a right angle along the y axis, z = 0 and x = 0, viewed from between them.
-static void crease(struct studio *s, struct gpu *gpu)
+static void crease(struct frame_fixture *s, struct gpu *gpu)
 {
     begin(s, gpu);
-    const int matte = studio_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
-    studio_quad(s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
-                matte);
-    studio_quad(s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
-                matte);
-    studio_look(s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
-    studio_open(s);
+    const int matte = fixture_matte(s, vec3_of(0.5f, 0.5f, 0.5f));
+    fixture_quad(s, vec3_of(0, -20, 0), vec3_of(20, -20, 0), vec3_of(20, 20, 0), vec3_of(0, 20, 0),
+                 matte);
+    fixture_quad(s, vec3_of(0, -20, 20), vec3_of(0, -20, 0), vec3_of(0, 20, 0), vec3_of(0, 20, 20),
+                 matte);
+    fixture_look(s, vec3_of(3, 0, 3), vec3_of(0, 0, 0));
+    fixture_open(s);
 }
 
 // Volume of the sphere that is on the open side of a plane at the distance a (radii) from its
@@ -134,7 +134,7 @@ static void by_distance(struct vo_fixture *fixture, float radius_m, double mean[
                         double exact[BINS], int count[BINS])
 {
     float *estimate = vo_fixture_estimate(fixture),
-          *at = studio_read(fixture->studio, READ_POSITION);
+          *at = fixture_read(fixture->frame_fixture, READ_POSITION);
     for (int b = 0; b < BINS; b++) mean[b] = exact[b] = count[b] = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         const double a = (double)fmaxf(at[3 * i], at[3 * i + 2]) / (double)radius_m;
@@ -154,7 +154,7 @@ static void by_distance(struct vo_fixture *fixture, float radius_m, double mean[
 
 TEST_GPU(vo_beside_a_wall_is_the_closed_form_up_to_the_sets_bias)
 {
-    struct studio s;
+    struct frame_fixture s;
     crease(&s, gpu);
     const float radius_m = 0.6f; // a seventh of the distance, nine pixels
     for (int normal = 0; normal < 2; normal++) {
@@ -183,5 +183,5 @@ TEST_GPU(vo_beside_a_wall_is_the_closed_form_up_to_the_sets_bias)
         }
         CHECK(before < 0.02); // 33
     }
-    studio_finish(&s);
+    fixture_finish(&s);
 }

@@ -6,7 +6,7 @@
 void vct_rig_init(struct vct_rig *rig, struct gpu *gpu)
 {
     *rig = (struct vct_rig){ .technique = &technique_vct };
-    studio_init(&rig->studio, gpu);
+    fixture_init(&rig->frame_fixture, gpu);
 }
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -19,9 +19,9 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
 
 void vct_rig_open(struct vct_rig *rig, const char *text)
 {
-    struct studio *s = &rig->studio;
+    struct frame_fixture *s = &rig->frame_fixture;
     const struct technique *technique = rig->technique;
-    studio_open(s);
+    fixture_open(s);
     struct vct_options options = { 0 };
     option_defaults(&technique->options, &options);
     CHECK(option_parse(test_host(), &technique->options, technique->name, text, &options));
@@ -46,20 +46,20 @@ void vct_rig_finish(struct vct_rig *rig)
 {
     rig->technique->destroy(rig->vct);
     free(rig->vct);
-    studio_finish(&rig->studio);
+    fixture_finish(&rig->frame_fixture);
 }
 
 void vct_rig_hall(struct vct_rig *rig, struct gpu *gpu)
 {
     vct_rig_init(rig, gpu);
-    struct studio *s = &rig->studio;
-    studio_box(s, vec3_of(0, 0, 0), vec3_of(27, 12, 20), true,
-               studio_matte(s, vec3_of(0.7f, 0.6f, 0.5f)));
+    struct frame_fixture *s = &rig->frame_fixture;
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(27, 12, 20), true,
+                fixture_matte(s, vec3_of(0.7f, 0.6f, 0.5f)));
     for (int i = 0; i < 5; i++)
-        studio_box(s, vec3_of(3.0f + 5.0f * (float)i, 0, 8), vec3_of(4.1f + 5.0f * (float)i, 9, 9),
-                   false, studio_matte(s, vec3_of(0.3f, 0.5f, 0.8f)));
-    studio_add_point(s, vec3_of(9, 9, 15), vec3_of(900, 900, 900));
-    studio_look(s, vec3_of(12, 5, 15), vec3_of(13, 4, 4));
+        fixture_box(s, vec3_of(3.0f + 5.0f * (float)i, 0, 8), vec3_of(4.1f + 5.0f * (float)i, 9, 9),
+                    false, fixture_matte(s, vec3_of(0.3f, 0.5f, 0.8f)));
+    fixture_add_point(s, vec3_of(9, 9, 15), vec3_of(900, 900, 900));
+    fixture_look(s, vec3_of(12, 5, 15), vec3_of(13, 4, 4));
 }
 
 int vct_rig_add_triangle(struct vct_rig *rig, const vec3s corners[3], int material)
@@ -67,22 +67,23 @@ int vct_rig_add_triangle(struct vct_rig *rig, const vec3s corners[3], int materi
     vec3s positions[3] = { corners[0], corners[1], corners[2] };
     vec3s normals[3] = { vec3_of(0, 1, 0), vec3_of(0, 1, 0), vec3_of(0, 1, 0) };
     uint32_t indices[3] = { 0, 1, 2 };
-    const int mesh = scene_add_mesh(rig->studio.scene, &(struct mesh){ .name = "triangle",
-                                                                       .vertex_count = 3,
-                                                                       .index_count = 3,
-                                                                       .positions = positions,
-                                                                       .normals = normals,
-                                                                       .indices = indices,
-                                                                       .material = material });
+    const int mesh =
+        scene_add_mesh(rig->frame_fixture.scene, &(struct mesh){ .name = "triangle",
+                                                                 .vertex_count = 3,
+                                                                 .index_count = 3,
+                                                                 .positions = positions,
+                                                                 .normals = normals,
+                                                                 .indices = indices,
+                                                                 .material = material });
     CHECK(mesh >= 0);
-    return studio_instance(&rig->studio, mesh, NULL);
+    return fixture_instance(&rig->frame_fixture, mesh, NULL);
 }
 
 uint32_t *vct_rig_words(const struct vct_rig *rig, gpu_buffer buffer)
 {
-    const size_t bytes = gpu_buffer_bytes(rig->studio.gpu, buffer);
+    const size_t bytes = gpu_buffer_bytes(rig->frame_fixture.gpu, buffer);
     uint32_t *words = malloc(bytes);
-    CHECK(gpu_buffer_download(rig->studio.gpu, buffer, 0, words, bytes));
+    CHECK(gpu_buffer_download(rig->frame_fixture.gpu, buffer, 0, words, bytes));
     return words;
 }
 
@@ -105,7 +106,8 @@ float *vct_rig_light(const struct vct_rig *rig, uint32_t level)
     const size_t dim = vct_volume_dim(&rig->vct->options) >> level;
     const size_t floats = vct_direction_count(&rig->vct->options) * dim * dim * dim * 4;
     float *light = malloc(floats * sizeof *light);
-    CHECK(gpu_image_download_float(rig->studio.gpu, rig->vct->light, level, 0, light, 4, floats));
+    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, rig->vct->light, level, 0, light, 4,
+                                   floats));
     // Of occlusion there is opacity alone, in the first channel.
     for (size_t i = 0; rig->vct->options.occlusion && i < floats; i++) light[i] = light[i / 4 * 4];
     return light;

@@ -1,19 +1,19 @@
-// Voxel cone tracing, of light or of occlusion, in a studio, with its voxels and its light volume
-// open to the tests.
+// Voxel cone tracing, of light or of occlusion, in a frame_fixture, with its voxels and its light
+// volume open to the tests.
 #pragma once
 
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 #include "techniques/vct/vct.h"
 #include "techniques/vct/vct_state.h"
 
 struct vct_rig {
-    struct studio studio;              // vct_rig_open takes it over
-    const struct technique *technique; // technique_vct unless it is set before it is opened
-    struct host *host;                 // of the technique; NULL: the test's
+    struct frame_fixture frame_fixture; // vct_rig_open takes it over
+    const struct technique *technique;  // technique_vct unless it is set before it is opened
+    struct host *host;                  // of the technique; NULL: the test's
     struct vct *vct;
 };
 
-// Fill the studio between these two.
+// Fill the frame_fixture between these two.
 void vct_rig_init(struct vct_rig *rig, struct gpu *gpu);
 // Between the two: a triangle of its own mesh; returns its instance.
 int vct_rig_add_triangle(struct vct_rig *rig, const vec3s corners[3], int material);

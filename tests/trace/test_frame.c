@@ -1,5 +1,5 @@
 // Direct light and surfaces of the real-time frame against the reference.
-#include "frame/studio.h"
+#include "frame/frame_fixture.h"
 #include "trace/trace.h"
 
 #include <math.h>
@@ -9,22 +9,22 @@ enum { WIDTH = 128, HEIGHT = 72, PIXELS = WIDTH * HEIGHT };
 
 static float *frame_layer_of(struct gpu *gpu, const char *name, enum frame_readback what)
 {
-    struct studio s;
-    studio_init(&s, gpu);
+    struct frame_fixture s;
+    fixture_init(&s, gpu);
     scene_destroy(s.scene);
     s.scene = scene_load(test_host(), name);
     assert_non_null(s.scene);
     s.options.shadow_size = 1024;
     s.width = WIDTH;
     s.height = HEIGHT;
-    studio_open(&s);
+    fixture_open(&s);
     s.input.camera = pose_camera(&s.pose, 0);
     s.input.sky = s.scene->sky;
     for (int i = 0; i < s.scene->light_count; i++)
         s.lights[s.input.light_count++] = pose_light(&s.pose, i);
-    studio_render(&s);
-    float *pixels = studio_read(&s, what);
-    studio_finish(&s);
+    fixture_render(&s);
+    float *pixels = fixture_read(&s, what);
+    fixture_finish(&s);
     return pixels;
 }
 

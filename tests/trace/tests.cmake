@@ -3,5 +3,5 @@ target_link_libraries(ag_test_trace_fixture PUBLIC ag_test_framework ag_trace PR
 foreach(name bsdf direct furnace reference_layers light_sample obscurance reference surface texture)
   ag_test(trace/${name} USES trace LIBRARIES ag_test_trace_fixture)
 endforeach()
-ag_test(trace/frame USES trace frame LIBRARIES ag_test_studio)
+ag_test(trace/frame USES trace frame LIBRARIES ag_test_frame_fixture)
 target_link_libraries(test_trace_reference PRIVATE OpenMP::OpenMP_C)

@@ -1,47 +1,47 @@
-// A small scene, a camera, lights and a frame of it.
-#include "frame/studio.h"
+// A small scene, a camera, lights and a rendered frame.
+#include "frame/frame_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-void studio_init(struct studio *s, struct gpu *gpu)
+void fixture_init(struct frame_fixture *s, struct gpu *gpu)
 {
-    *s = (struct studio){ .gpu = gpu, .width = 32, .height = 32 };
-    s->scene = scene_create(test_host(), "studio");
+    *s = (struct frame_fixture){ .gpu = gpu, .width = 32, .height = 32 };
+    s->scene = scene_create(test_host(), "fixture");
     assert_non_null(s->scene);
     option_defaults(&frame_option_table, &s->options);
     s->options.shadow_size = 256;
     s->options.rsm_size = 64;
     s->input.lights = s->lights;
-    studio_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
+    fixture_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
 }
 
-void studio_finish(struct studio *s)
+void fixture_finish(struct frame_fixture *s)
 {
     frame_destroy(s->frame);
     pose_finish(&s->pose);
     scene_destroy(s->scene);
 }
 
-void studio_open(struct studio *s)
+void fixture_open(struct frame_fixture *s)
 {
     assert_true(pose_init(&s->pose, s->scene, s->scene->animation_count ? 0 : -1, 0));
     s->frame = frame_create(test_host(), s->gpu, &s->options);
     assert_non_null(s->frame);
     assert_true(frame_set_scene(s->frame, s->scene));
     s->input.pose = &s->pose;
-    studio_resize(s, s->width, s->height);
+    fixture_resize(s, s->width, s->height);
 }
 
-void studio_resize(struct studio *s, uint32_t width, uint32_t height)
+void fixture_resize(struct frame_fixture *s, uint32_t width, uint32_t height)
 {
     s->width = width;
     s->height = height;
     assert_true(frame_resize(s->frame, width, height));
 }
 
-void studio_render(struct studio *s)
+void fixture_render(struct frame_fixture *s)
 {
     const struct frame_indirect *indirect =
         s->indirect.needs || s->indirect.record ? &s->indirect : NULL;
@@ -53,23 +53,23 @@ void studio_render(struct studio *s)
     assert_true(gpu_wait(s->gpu));
 }
 
-int studio_material(struct studio *s, const struct material *material)
+int fixture_material(struct frame_fixture *s, const struct material *material)
 {
     int index = scene_add_material(s->scene, material);
     assert_true(index >= 0);
     return index;
 }
 
-int studio_matte(struct studio *s, vec3s albedo)
+int fixture_matte(struct frame_fixture *s, vec3s albedo)
 {
     struct material m = material_default();
     m.base_color = vec4_of(albedo, 1);
     m.metallic = 0;
     m.roughness = 1;
-    return studio_material(s, &m);
+    return fixture_material(s, &m);
 }
 
-int studio_instance(struct studio *s, int mesh, const struct node *node)
+int fixture_instance(struct frame_fixture *s, int mesh, const struct node *node)
 {
     struct node still = node_default();
     int n = scene_add_node(s->scene, node ? node : &still);
@@ -79,7 +79,7 @@ int studio_instance(struct studio *s, int mesh, const struct node *node)
     return index;
 }
 
-int studio_quad(struct studio *s, vec3s a, vec3s b, vec3s c, vec3s d, int material)
+int fixture_quad(struct frame_fixture *s, vec3s a, vec3s b, vec3s c, vec3s d, int material)
 {
     vec3s positions[4] = { a, b, c, d };
     vec2s uv[4] = { { { 0, 1 } }, { { 1, 1 } }, { { 1, 0 } }, { { 0, 0 } } };
@@ -95,16 +95,16 @@ int studio_quad(struct studio *s, vec3s a, vec3s b, vec3s c, vec3s d, int materi
                                                         .indices = indices,
                                                         .material = material });
     assert_true(mesh >= 0);
-    return studio_instance(s, mesh, NULL);
+    return fixture_instance(s, mesh, NULL);
 }
 
-int studio_floor(struct studio *s, float half, int material)
+int fixture_floor(struct frame_fixture *s, float half, int material)
 {
-    return studio_quad(s, vec3_of(-half, 0, half), vec3_of(half, 0, half), vec3_of(half, 0, -half),
-                       vec3_of(-half, 0, -half), material);
+    return fixture_quad(s, vec3_of(-half, 0, half), vec3_of(half, 0, half), vec3_of(half, 0, -half),
+                        vec3_of(-half, 0, -half), material);
 }
 
-void studio_box(struct studio *s, vec3s min, vec3s max, bool inwards, int material)
+void fixture_box(struct frame_fixture *s, vec3s min, vec3s max, bool inwards, int material)
 {
     for (int face = 0; face < 6; face++) {
         int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -115,26 +115,26 @@ void studio_box(struct studio *s, vec3s min, vec3s max, bool inwards, int materi
             corners[i].raw[v] = i >= 2 ? max.raw[v] : min.raw[v];
         }
         bool forwards = (face % 2 == 0) != inwards;
-        studio_quad(s, corners[0], corners[forwards ? 1 : 3], corners[2], corners[forwards ? 3 : 1],
-                    material);
+        fixture_quad(s, corners[0], corners[forwards ? 1 : 3], corners[2],
+                     corners[forwards ? 3 : 1], material);
     }
 }
 
-static struct world_light *add_light(struct studio *s, struct world_light light)
+static struct world_light *add_light(struct frame_fixture *s, struct world_light light)
 {
     assert_true(s->input.light_count < (int)(sizeof s->lights / sizeof *s->lights));
     s->lights[s->input.light_count] = light;
     return &s->lights[s->input.light_count++];
 }
 
-struct world_light *studio_add_sun(struct studio *s, vec3s direction, vec3s lux)
+struct world_light *fixture_add_sun(struct frame_fixture *s, vec3s direction, vec3s lux)
 {
     return add_light(s, (struct world_light){ .type = LIGHT_SUN,
                                               .direction = glms_vec3_normalize(direction),
                                               .intensity = lux });
 }
 
-struct world_light *studio_add_point(struct studio *s, vec3s position, vec3s candela)
+struct world_light *fixture_add_point(struct frame_fixture *s, vec3s position, vec3s candela)
 {
     return add_light(s, (struct world_light){ .type = LIGHT_POINT,
                                               .position = position,
@@ -142,8 +142,8 @@ struct world_light *studio_add_point(struct studio *s, vec3s position, vec3s can
                                               .intensity = candela });
 }
 
-struct world_light *studio_add_spot(struct studio *s, vec3s position, vec3s direction,
-                                    float inner_rad, float outer_rad, vec3s candela)
+struct world_light *fixture_add_spot(struct frame_fixture *s, vec3s position, vec3s direction,
+                                     float inner_rad, float outer_rad, vec3s candela)
 {
     return add_light(s, (struct world_light){ .type = LIGHT_SPOT,
                                               .position = position,
@@ -153,12 +153,12 @@ struct world_light *studio_add_spot(struct studio *s, vec3s position, vec3s dire
                                               .intensity = candela });
 }
 
-void studio_look(struct studio *s, vec3s eye, vec3s target)
+void fixture_look(struct frame_fixture *s, vec3s eye, vec3s target)
 {
     s->input.camera = camera_look_at(eye, target, 1.0f, 0.05f);
 }
 
-float *studio_read(struct studio *s, enum frame_readback what)
+float *fixture_read(struct frame_fixture *s, enum frame_readback what)
 {
     int channels = what == READ_DEPTH || what == READ_VISIBILITY ? 1 : 3;
     float *pixels = calloc((size_t)s->width * s->height, (size_t)channels * sizeof *pixels);
@@ -167,9 +167,9 @@ float *studio_read(struct studio *s, enum frame_readback what)
     return pixels;
 }
 
-vec3s studio_pixel(struct studio *s, enum frame_readback what, uint32_t x, uint32_t y)
+vec3s fixture_pixel(struct frame_fixture *s, enum frame_readback what, uint32_t x, uint32_t y)
 {
-    float *pixels = studio_read(s, what);
+    float *pixels = fixture_read(s, what);
     size_t channels = what == READ_DEPTH || what == READ_VISIBILITY ? 1 : 3;
     const float *p = &pixels[((size_t)y * s->width + x) * channels];
     vec3s value = channels == 3 ? vec3_of(p[0], p[1], p[2]) : vec3_of(p[0], p[0], p[0]);
@@ -177,8 +177,8 @@ vec3s studio_pixel(struct studio *s, enum frame_readback what, uint32_t x, uint3
     return value;
 }
 
-vec3s studio_ray_on_plane(const struct studio *s, uint32_t x, uint32_t y, vec3s normal,
-                          float offset)
+vec3s fixture_ray_on_plane(const struct frame_fixture *s, uint32_t x, uint32_t y, vec3s normal,
+                           float offset)
 {
     const struct world_camera *c = &s->input.camera;
     float tan_y = tanf(0.5f * c->vertical_fov_rad);
