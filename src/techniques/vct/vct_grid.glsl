@@ -1,5 +1,5 @@
-// The grid's uniform block and where things lie in it. Binding: VCT_GRID_BINDING, 13 unless defined
-// before.
+// The uniform block of a grid, and indices of its voxels and texels. Binding: VCT_GRID_BINDING, 13
+// unless defined before.
 #ifndef AG_VCT_GRID_GLSL
 #define AG_VCT_GRID_GLSL
 
@@ -24,7 +24,7 @@ bool vct_inside(ivec3 voxel)
     return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, vct_cells()));
 }
 
-// Texels of 2 × 2 × 2 voxels are numbered along x, y and z.
+// A texel has 2 × 2 × 2 voxels. x varies fastest.
 uint vct_texel_index(ivec3 texel)
 {
     return uint((texel.z * vct.volume_dim + texel.y) * vct.volume_dim + texel.x);
@@ -36,7 +36,7 @@ ivec3 vct_texel(uint index)
     return ivec3(index % dim, index / dim % dim, index / (dim * dim));
 }
 
-// The eight voxels of a texel come one after the other: their bits are one byte of a mask.
+// The eight voxels of a texel are consecutive: one byte of a mask.
 uint vct_index(ivec3 voxel)
 {
     ivec3 low = voxel & 1;

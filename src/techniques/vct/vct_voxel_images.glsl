@@ -5,13 +5,13 @@
 
 #include "frame/octahedral.glsl"
 
-// Of the first of the two texels.
+// First of the two texels of a surface or a lit voxel.
 ivec2 vct_voxel_texel(uint slot)
 {
     return ivec2(2u * (slot % VCT_VOXEL_ROW), slot / VCT_VOXEL_ROW);
 }
 
-// Of irradiance on the front and the back, as six half floats.
+// Texel with the irradiance on the front and the back, six half floats.
 ivec2 vct_bounced_texel(uint slot)
 {
     return ivec2(slot % VCT_VOXEL_ROW, slot / VCT_VOXEL_ROW);

@@ -1,17 +1,15 @@
-// What a lit voxel is, as 8 words: what its two sides send out, and what light on them would add.
-// Half floats and bytes, in two texels of an image that is filled row by row: software drivers
-// fetch texels several times as fast as words of buffers.
+// Lit voxels: reflected and emitted radiance of both sides, packed into two RGBA32U texels.
 #ifndef AG_VCT_LIT_VOXEL_GLSL
 #define AG_VCT_LIT_VOXEL_GLSL
 
 #include "techniques/vct/vct_voxel_images.glsl"
 
 struct vct_lit_voxel {
-    vec3 front, back;                 // scaled cd/m²: reflected light of lights
-    vec3 emitted_front, emitted_back; // scaled cd/m²; negative: a lamp's
+    vec3 front, back;                 // scaled cd/m²: reflected radiance
+    vec3 emitted_front, emitted_back; // scaled cd/m²; negative for small emitters
     vec3 reflectance;
-    vec2 opacity; // to ways that meet the front, the back
-    vec3 normal;  // unit, of the front; 0 where the sides cannot be told apart
+    vec2 opacity; // seen from the front, from the back
+    vec3 normal;  // unit, of the front; 0 where the sides are ambiguous
 };
 
 void vct_pack(vct_lit_voxel r, out uvec4 first, out uvec4 second)
@@ -39,7 +37,7 @@ vct_lit_voxel vct_unpack(uvec4 first, uvec4 second)
     return r;
 }
 
-// What of it is seen, with or without lamps.
+// Emitted radiance, with or without small emitters.
 vec3 vct_emitted(vec3 emitted, bool small_emitters)
 {
     return small_emitters ? abs(emitted) : max(emitted, vec3(0.0));

@@ -1,7 +1,6 @@
-// The next level of the light volume. Of each of the six volumes 2 × 2 × 2 texels make one: of two
-// that lie one behind the other on the volume's way the nearer covers the farther, and four such
-// pairs are averaged. One volume for all ways is averaged over all eight. Texels in which there is
-// nothing are not here, and stay 0.
+// The next mip of the light volume. In each of the six volumes 2 × 2 × 2 texels make one: pairs
+// along the volume's direction are composited front to back, the four pairs are averaged. The
+// isotropic volume averages all eight. Unlisted texels are empty and stay 0.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -32,21 +31,19 @@ layout(set = 0, binding = 4, scalar) readonly buffer vct_texel_counts
 void main()
 {
     uint i = gl_GlobalInvocationID.x / uint(VCT_DIRECTIONS);
-    int direction_index = int(gl_GlobalInvocationID.x % uint(VCT_DIRECTIONS));
+    int direction = int(gl_GlobalInvocationID.x % uint(VCT_DIRECTIONS));
     if (i >= state.count[push.level]) return;
     ivec3 texel = vct_unpack_texel(texels[push.first + i]);
-    ivec3 from = 2 * texel + ivec3(direction_index * push.source_tile, 0, 0);
-    ivec3 along = direction_index < 2   ? ivec3(1, 0, 0)
-                  : direction_index < 4 ? ivec3(0, 1, 0)
-                                        : ivec3(0, 0, 1);
+    ivec3 from = 2 * texel + ivec3(direction * push.source_tile, 0, 0);
+    ivec3 along = direction < 2 ? ivec3(1, 0, 0) : direction < 4 ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
     ivec3 size = ivec3(push.source_x, push.source_y, push.source_z);
-    // What lies outside of the grid is not averaged over: it is neither open nor closed.
+    // Texels outside of the grid do not count.
     vec4 sum = vec4(0.0);
     float columns = 0.0;
     for (int i = 0; i < 4; i++) {
-        ivec3 side = (direction_index < 2   ? ivec3(0, i & 1, i >> 1)
-                      : direction_index < 4 ? ivec3(i & 1, 0, i >> 1)
-                                            : ivec3(i & 1, i >> 1, 0));
+        ivec3 side = (direction < 2   ? ivec3(0, i & 1, i >> 1)
+                      : direction < 4 ? ivec3(i & 1, 0, i >> 1)
+                                      : ivec3(i & 1, i >> 1, 0));
         if (any(greaterThanEqual(2 * texel + side, size))) continue;
         bool whole = all(lessThan(2 * texel + side + along, size));
         ivec3 at = from + side;
@@ -57,10 +54,10 @@ void main()
             second = second.rrrr;
         }
         if (VCT_ANISOTROPIC)
-            sum += (direction_index & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
+            sum += (direction & 1) == 0 ? vct_over(first, second) : vct_over(second, first);
         else
             sum += whole ? 0.5 * (first + second) : first;
         columns++;
     }
-    imageStore(target, texel + ivec3(direction_index * push.target_tile, 0, 0), sum / columns);
+    imageStore(target, texel + ivec3(direction * push.target_tile, 0, 0), sum / columns);
 }

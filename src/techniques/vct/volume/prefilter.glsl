@@ -1,15 +1,14 @@
-// What the lit voxels of both sets send and hide along the ways of the light volume. Premultiplied
-// with opacity. Include after vct_grid.glsl; takes the bindings 1 to 6.
+// Radiance and opacity of a block of lit voxels of both sets along the axis directions,
+// premultiplied with opacity. Include after vct_grid.glsl; takes the bindings 1 to 6.
 //
-// A voxel is a sheet: on a way that meets its front it shows what the front sends out and hides
-// what is behind, as much of it as the sheet covers when it is seen along the axis. A side that is
-// the back of a surface of one side neither shows nor hides anything: what is looked for from a
-// floor is not hidden by the floor, however coarse its texels are.
+// A voxel is a sheet: seen from its front it has the radiance of the front and the opacity of the
+// sheet projected along the axis. The culled back of a single-sided surface has no opacity: a floor
+// does not occlude cones that start on it, however coarse its texels are.
 //
-// One volume for all ways has the mean of what both sides send out, and of the voxels: the
-// isotropic pyramid of figure 49, through whose thin walls light leaks.
-#ifndef AG_VCT_SEEN_GLSL
-#define AG_VCT_SEEN_GLSL
+// The isotropic volume averages both sides and all voxels: figure 49, with leaks through thin
+// walls.
+#ifndef AG_VCT_PREFILTER_GLSL
+#define AG_VCT_PREFILTER_GLSL
 
 #include "core/half.glsl"
 #include "frame/frame_shared.h"
@@ -30,11 +29,11 @@ layout(set = 0, binding = 6) uniform usampler2D dynamic_lit_voxels;
 layout(constant_id = VCT_CONSTANT_HAS_DYNAMIC) const
     bool VCT_HAS_DYNAMIC = true; // false: the second set is empty
 
-struct seen {
+struct directional {
     vec4 along[6]; // +x −x +y −y +z −z: premultiplied radiance and opacity
 };
 
-void add_voxel(vct_lit_voxel r, inout seen s)
+void add_voxel(vct_lit_voxel r, inout directional s)
 {
     vec3 slopes = abs(r.normal);
     float steepest = max(slopes.x, max(slopes.y, slopes.z));
@@ -49,16 +48,16 @@ void add_voxel(vct_lit_voxel r, inout seen s)
     vec4 middle = 0.5 * (front + back);
     for (int axis = 0; axis < 3; axis++) {
         float share = steepest > 0.0 ? slopes[axis] / steepest : 1.0;
-        bool meets_front = r.normal[axis] < 0.0;
-        vec4 up = share * (steepest == 0.0 ? middle : meets_front ? front : back);
-        vec4 down = share * (steepest == 0.0 ? middle : meets_front ? back : front);
-        // Of two sheets in a voxel the one that hides more is seen.
+        bool faces_front = r.normal[axis] < 0.0;
+        vec4 up = share * (steepest == 0.0 ? middle : faces_front ? front : back);
+        vec4 down = share * (steepest == 0.0 ? middle : faces_front ? back : front);
+        // Of a static and a moving sheet the more opaque one counts.
         s.along[2 * axis] = up.a > s.along[2 * axis].a ? up : s.along[2 * axis];
         s.along[2 * axis + 1] = down.a > s.along[2 * axis + 1].a ? down : s.along[2 * axis + 1];
     }
 }
 
-void look(uint static_at, uint dynamic_at, out seen s)
+void sample_voxels(uint static_at, uint dynamic_at, out directional s)
 {
     for (int i = 0; i < 6; i++) s.along[i] = vec4(0.0);
     if (static_at != VCT_NO_SLOT) add_voxel(vct_lit_voxel_at(static_lit_voxels, static_at), s);
@@ -66,27 +65,27 @@ void look(uint static_at, uint dynamic_at, out seen s)
         add_voxel(vct_lit_voxel_at(dynamic_lit_voxels, dynamic_at), s);
 }
 
-void gather_in_block(ivec3 from, ivec3 at, ivec3 size, out seen s)
+void gather_in_block(ivec3 from, ivec3 at, ivec3 size, out directional s)
 {
     bool inside = all(lessThan(at, size)) && vct_inside(from + at);
     uint index = vct_index(inside ? from + at : ivec3(0));
-    look(inside ? static_slot(index) : VCT_NO_SLOT,
-         VCT_HAS_DYNAMIC && inside ? dynamic_slot(index) : VCT_NO_SLOT, s);
+    sample_voxels(inside ? static_slot(index) : VCT_NO_SLOT,
+                  VCT_HAS_DYNAMIC && inside ? dynamic_slot(index) : VCT_NO_SLOT, s);
 }
 
-// Two voxels behind each other along an axis, the lower one first.
-void pair(seen low, seen high, const int axis, float column, inout vec4 sum[6])
+// Composites two voxels along an axis, the lower one first.
+void pair(directional low, directional high, const int axis, float column, inout vec4 sum[6])
 {
     sum[2 * axis] += column * vct_over(low.along[2 * axis], high.along[2 * axis]);
     sum[2 * axis + 1] += column * vct_over(high.along[2 * axis + 1], low.along[2 * axis + 1]);
 }
 
-// A block of at most 2 × 2 × 2 voxels as one texel: along each axis the nearer of two covers the
-// farther, and columns are averaged. Written out, as drivers keep in memory what loops that they do
-// not unroll have in arrays.
+// A block of at most 2 × 2 × 2 voxels as one texel: pairs along each axis are composited front to
+// back, the four columns are averaged. Unrolled by hand: software drivers spill arrays of loops to
+// memory.
 void vct_prefilter_block(ivec3 from, ivec3 size, out vec4 sum[6])
 {
-    seen a, b, c, d, e, f, g, h;
+    directional a, b, c, d, e, f, g, h;
     gather_in_block(from, ivec3(0, 0, 0), size, a);
     gather_in_block(from, ivec3(1, 0, 0), size, b);
     gather_in_block(from, ivec3(0, 1, 0), size, c);

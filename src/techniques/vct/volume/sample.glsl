@@ -1,19 +1,19 @@
-// A look into the light volume: what is sent against a way by what lies about a place.
-#ifndef AG_VCT_LOOK_GLSL
-#define AG_VCT_LOOK_GLSL
+// Samples the mips of the light volume.
+#ifndef AG_VCT_SAMPLE_GLSL
+#define AG_VCT_SAMPLE_GLSL
 
 #include "techniques/vct/volume/directions.glsl"
 
-// What light comes against `direction`, or the part of it that is `counted`, at a place in texels
-// of level 0. Six volumes lie side by side along x, grids along z: what is filtered keeps half a
-// texel away from its neighbour. One volume for all ways knows no direction: whatever fills its
-// texels stands in every way.
-vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 counted,
+// Radiance against `direction` and opacity, at a position in texels of level 0. `counted`: the
+// components of the direction to weight with. Six volumes lie side by side along x, clip-map levels
+// along z: filtering stays half a texel away from the next one. The isotropic volume ignores the
+// direction.
+vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 weights,
                                     int level)
 {
-    vec3 share = abs(counted);
+    vec3 share = abs(weights);
     int grid = min(level, VCT_CLIPS - 1),
-        mip = level - grid; // grids but the coarsest one have no mips
+        mip = level - grid; // only the coarsest level has mips
     vec3 own = VCT_CLIPS > 1 ? (at - clips.levels[grid].corner) / float(1 << grid) : at;
     float dim = float(vct.volume_dim >> mip), half_texel = 0.5 / dim;
     vec3 size = vec3((ivec3(clips.levels[grid].size) + (1 << mip) - 1) >> mip) / dim;

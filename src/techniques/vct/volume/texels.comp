@@ -1,5 +1,5 @@
-// Which texels of the light volume hold something: a list for each of its levels. Of a coarser
-// texel the first of its children to come here enters it; the order of a list changes nothing.
+// Lists the occupied texels of the light volume, for each mip. The first child that arrives enters
+// its coarser texel. Results do not depend on the order of a list.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -38,12 +38,12 @@ layout(set = 0, binding = 5, scalar) buffer vct_texel_counts
 void enter(uint level, uint place, ivec3 texel)
 {
     texels[push.first[level] + place] = vct_pack_texel(texel);
-    uint each = level == 0u ? 1u : push.directions; // invocations for a texel: see volume/mip.comp
+    uint each = level == 0u ? 1u : push.directions; // invocations per texel: see mip.comp
     atomicMax(state.groups[3u * level], ((place + 1u) * each + VCT_LOCAL - 1u) / VCT_LOCAL);
     if (level == push.block_level) atomicMax(state.block_groups[0], place / VCT_BLOCK_LOCAL + 1u);
 }
 
-void enter_above(ivec3 texel)
+void enter_parents(ivec3 texel)
 {
     for (uint level = 1u; level < push.levels; level++) {
         texel >>= 1;
@@ -60,7 +60,7 @@ void main()
 {
     uint word = gl_GlobalInvocationID.x;
     if (word >= static_mask_words.length()) return;
-    // A byte is a texel; its lowest bit is set where any is.
+    // A byte is a texel. Its lowest bit becomes the or of its bits.
     uint any = static_mask_words[word] | dynamic_mask_words[word];
     any |= any >> 4;
     any |= any >> 2;
@@ -71,6 +71,6 @@ void main()
     for (; any != 0u; any &= any - 1u, place++) {
         ivec3 texel = vct_texel(4u * word + uint(findLSB(any)) / 8u);
         enter(0u, place, texel);
-        enter_above(texel);
+        enter_parents(texel);
     }
 }

@@ -1,10 +1,9 @@
-// Second walk: what the surfaces in each voxel are, weighted with the triangle's size. What a large
-// triangle has alone is written at once; elsewhere whole numbers are summed up, and
-// voxelize/surfaces.comp makes the same of them.
+// Second pass: surface attributes of each voxel, weighted with the covered area. The attributes of
+// a voxel with a single large triangle are written at once; others are summed up in fixed point,
+// from which surfaces.comp makes the same attributes.
 //
-// A voxel is taken for a sheet with two sides. Which side of a triangle is the voxel's front
-// follows from its plane alone, so that the two faces of a thin wall, which turn opposite ways,
-// agree on the sheet and do not cancel.
+// A voxel is a sheet with two sides. Which side of a triangle is the front of the sheet follows
+// from its plane alone, so that the opposite faces of a thin wall share a sheet and do not cancel.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -62,8 +61,7 @@ vec3 nearest_point(vec3 a, vec3 b, vec3 c)
     return sum > 0.0 ? vec3(va, vb, vc) / sum : vec3(1, 0, 0);
 }
 
-// A map's coordinates at the corners, and the mip whose texels are as large as a voxel on the
-// triangle.
+// Texture coordinates at the corners, and the mip whose texels are as large as a voxel.
 struct map_coords {
     vec2 a, b, c;
     float lod;
@@ -79,7 +77,7 @@ map_coords map_coords_of(uint map, scene_surface a, scene_surface b, scene_surfa
     return map_coords(scene_map_uv(map, a), scene_map_uv(map, b), scene_map_uv(map, c), 0.0);
 }
 
-// faces: twice the area of the triangle in faces of a voxel.
+// faces: twice the area of the triangle in voxel faces.
 float voxel_lod(sampler2D map, map_coords place, float faces)
 {
     vec2 size = vec2(textureSize(map, 0)), p = (place.b - place.a) * size,
@@ -88,15 +86,15 @@ float voxel_lod(sampler2D map, map_coords place, float faces)
     return 0.5 * log2(max(texels, 1e-6) / max(faces, 1e-6));
 }
 
-// What does not change over a triangle: looked up once, before its voxels.
+// Constant over a triangle: fetched once, before its voxels.
 vec4 corner_a, corner_b, corner_c; // colours
 map_coords base_color_coords, metallic_coords, emissive_coords;
-vec3 front_normal; // unit, to the sheet's front
+vec3 front_normal; // unit, of the front of the sheet
 int first_row;     // of the tile
-bvec2 sides;       // whether there is a surface to the front, the back
+bvec2 sides;       // whether there is a front face, a back face
 
-// Planes whose normal is all but perpendicular to this are those whose sides cannot be told apart;
-// no usual wall is.
+// The hemisphere of front normals. The sides of planes parallel to this axis are ambiguous; common
+// walls are not parallel to it.
 const vec3 FRONT = vec3(0.4743, 0.8165, 0.3294);
 
 void vct_begin_triangle(vct_triangle t, ivec2 first)
@@ -105,11 +103,10 @@ void vct_begin_triangle(vct_triangle t, ivec2 first)
     vec3 normal = cross(t.b - t.a, t.c - t.b);
     float faces = length(normal);
     normal /= faces;
-    bool turned_over = dot(normal, FRONT) < 0.0;
-    bool front =
-        turned_over == (push.mirrored != 0u); // whether the triangle's front is the sheet's
+    bool flipped = dot(normal, FRONT) < 0.0;
+    bool front = flipped == (push.mirrored != 0u); // whether the triangle's front is the sheet's
     bool both = (scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u;
-    front_normal = turned_over ? -normal : normal;
+    front_normal = flipped ? -normal : normal;
     sides = bvec2(front || both, !front || both);
     scene_surface a = scene_surface_of(t.vertices.x), b = scene_surface_of(t.vertices.y),
                   c = scene_surface_of(t.vertices.z);
@@ -149,9 +146,9 @@ surface_point surface_at(vec3 at)
     return s;
 }
 
-// How much of a voxel's face the triangle covers in it, seen along its dominant axis, in
-// sixteenths: of as many lines along that axis those that cross it there. Lines cross a closed
-// surface in one voxel of their column: what the voxels of a slanted wall cover adds up to all.
+// Coverage of a voxel's face along the triangle's dominant axis, in sixteenths: sample lines along
+// that axis which cross the triangle in this voxel. A line crosses a surface in one voxel of its
+// column, so that the coverage of a slanted wall adds up to 1.
 uint covered_lines(ivec3 voxel, vct_triangle t)
 {
     ivec3 cell = ivec3(permuted(vec3(voxel), t.turn));
@@ -176,7 +173,7 @@ ivec3 whole(vec3 value, float one)
     return ivec3(roundEven(value * one));
 }
 
-// What the triangle brings to the sums of a voxel.
+// Contribution of the triangle to the sums of a voxel.
 vct_sums part_of(ivec3 voxel, vct_triangle t)
 {
     vec3 centre = vec3(voxel) + 0.5;

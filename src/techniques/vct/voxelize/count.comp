@@ -1,4 +1,4 @@
-// Occupied voxels in each block of words.
+// Counts the occupied voxels in each block of words.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

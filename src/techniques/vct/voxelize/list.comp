@@ -1,5 +1,5 @@
-// The list of occupied voxels, in the order of their numbers, and the voxels before each word; and,
-// in no order, the places of those whose sums are added up.
+// Lists the occupied voxels by index, with the number of voxels before each word, and in any order
+// the slots of the voxels whose triangles are summed up.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -19,7 +19,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer vct_blocks
 };
 layout(set = 0, binding = 2, scalar) writeonly buffer vct_word_offsets
 {
-    uint before[];
+    uint offsets[];
 };
 layout(set = 0, binding = 3, scalar) writeonly buffer vct_list
 {
@@ -38,7 +38,7 @@ layout(set = 0, binding = 6, scalar) buffer vct_arguments
     vct_voxel_counts counts;
 };
 
-// The first bits of a word, as many as there is room for from a slot on.
+// The first bits of a word whose slots are within the capacity.
 uint with_room(uint word, uint slot)
 {
     for (uint room = vct.capacity - min(slot, vct.capacity); uint(bitCount(word)) > room;)
@@ -53,7 +53,7 @@ void main()
     uint first = block * VCT_BLOCK_WORDS, end = min(first + VCT_BLOCK_WORDS, mask.length());
     uint slot = blocks[block], accumulated_count = 0u;
     for (uint i = first; i < end; i++) {
-        before[i] = slot;
+        offsets[i] = slot;
         uint word = with_room(mask[i], slot);
         accumulated_count += uint(bitCount(accumulated[i] & word));
         for (; word != 0u; word &= word - 1u, slot++) list[slot] = i * 32u + uint(findLSB(word));
@@ -64,8 +64,8 @@ void main()
     slot = blocks[block];
     for (uint i = first; i < end; i++) {
         uint word = with_room(mask[i], slot);
-        for (uint rest = accumulated[i] & word; rest != 0u; rest &= rest - 1u, to++)
-            accumulated_list[to] = slot + uint(bitCount(word & ((rest & -rest) - 1u)));
+        for (uint bits = accumulated[i] & word; bits != 0u; bits &= bits - 1u, to++)
+            accumulated_list[to] = slot + uint(bitCount(word & ((bits & -bits) - 1u)));
         slot += uint(bitCount(word));
     }
 }

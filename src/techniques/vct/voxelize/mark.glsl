@@ -1,5 +1,5 @@
-// First walk: a bit for each voxel that a triangle touches; and one more for those that are not a
-// single large triangle's, whose parts have to be added up.
+// First pass: marks each voxel that a triangle touches. A second bit marks the voxels that have
+// more than a single large triangle: their attributes are summed up.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,5 @@
-// Whether a triangle and a voxel touch: the separating axes of a box and a triangle (Akenine-Möller
-// 2001). Touching counts. `precise`: the C twin gives the same set, to the voxel.
+// Triangle and voxel overlap: separating axes of a box and a triangle (Akenine-Möller 2001).
+// Touching counts. `precise`: the C twin gives exactly the same voxels.
 #ifndef AG_VCT_OVERLAP_GLSL
 #define AG_VCT_OVERLAP_GLSL
 

@@ -5,8 +5,7 @@
 #ifndef AG_VCT_RASTER_GLSL
 #define AG_VCT_RASTER_GLSL
 
-// Beyond the half pixel by which a square reaches out of its middle: what rasterisers round
-// positions by.
+// Rounding of positions by the rasterizer, in pixels, added to the half pixel of the enlargement.
 const float VCT_RASTER_ROUNDING = 0.02;
 
 vec3 edge_moved_out(vec2 from, vec2 to, float facing)
@@ -16,9 +15,9 @@ vec3 edge_moved_out(vec2 from, vec2 to, float facing)
                 (0.5 + VCT_RASTER_ROUNDING) * (abs(inward.x) + abs(inward.y)) - dot(inward, from));
 }
 
-// Corner k of a triangle that covers the middle of every pixel that t touches: its edges, moved out
-// by half a pixel (Hasselgren, Akenine-Möller, Ohlsson 2005). Where they all but coincide, one
-// around the triangle's box.
+// Corner k of a triangle that covers the centre of every pixel that t touches: its edges, moved out
+// by half a pixel (Hasselgren, Akenine-Möller, Ohlsson 2005). Degenerate triangles get one around
+// their box.
 vec2 vct_raster_corner(vct_triangle t, uint k)
 {
     float facing = t.normal.z < 0.0 ? -1.0 : 1.0;
@@ -31,7 +30,7 @@ vec2 vct_raster_corner(vct_triangle t, uint k)
     for (uint i = 0u; i < 3u; i++) {
         vec3 at = cross(edges[i], edges[(i + 1u) % 3u]);
         corners[i] = at.xy / at.z;
-        // Also false for what is not finite.
+        // False for values that are not finite, too.
         sound = sound && at.z > 0.0 && all(lessThan(abs(corners[i] - low), vec2(1e4)));
     }
     if (sound) return corners[k];

@@ -1,4 +1,4 @@
-// The corners of triangles for the rasteriser that finds their columns.
+// Vertices of the enlarged triangles whose fragments are columns of voxels.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -20,7 +20,7 @@ void main()
 {
     vary_triangle = uint(gl_VertexIndex) / 3u;
     vct_triangle t;
-    vec2 corner = vec2(-4.0); // outside, as are the other two
+    vec2 corner = vec2(-4.0); // clipped, as are the other two
     if (triangle_at(vary_triangle, t))
         corner = vct_raster_corner(t, uint(gl_VertexIndex) % 3u) * (2.0 / vct.dim) - 1.0;
     gl_Position = vec4(corner, 0.5, 1.0);

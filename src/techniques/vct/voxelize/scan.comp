@@ -1,5 +1,5 @@
-// From the voxels in each block to the voxels before it, by one workgroup; and how many groups
-// shade them.
+// Prefix sum over the occupied voxels of the blocks, by one workgroup, and the dispatch over all
+// occupied voxels.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -18,7 +18,7 @@ layout(set = 0, binding = 1, scalar) writeonly buffer vct_arguments
     vct_voxel_counts counts;
 };
 
-shared uint before[VCT_SCAN_LOCAL];
+shared uint sums[VCT_SCAN_LOCAL];
 
 void main()
 {
@@ -28,15 +28,15 @@ void main()
     uint first = min(me * each, count), end = min(first + each, count);
     uint sum = 0u;
     for (uint i = first; i < end; i++) sum += blocks[i];
-    before[me] = sum;
+    sums[me] = sum;
     barrier();
     for (uint step = 1u; step < VCT_SCAN_LOCAL; step *= 2u) {
-        uint add = me >= step ? before[me - step] : 0u;
+        uint add = me >= step ? sums[me - step] : 0u;
         barrier();
-        before[me] += add;
+        sums[me] += add;
         barrier();
     }
-    uint running = before[me] - sum;
+    uint running = sums[me] - sum;
     for (uint i = first; i < end; i++) {
         uint here = blocks[i];
         blocks[i] = running;
@@ -46,7 +46,7 @@ void main()
         uint listed = min(running, vct.capacity);
         counts.listed = listed;
         counts.overflow = running - listed;
-        counts.accumulated = 0u; // voxelize/list.comp counts them
+        counts.accumulated = 0u; // list.comp counts them
         counts.groups[0] = (listed + VCT_LOCAL - 1u) / VCT_LOCAL;
         counts.accumulated_groups[0] = 1u;
         for (int i = 1; i < 3; i++) counts.groups[i] = counts.accumulated_groups[i] = 1u;

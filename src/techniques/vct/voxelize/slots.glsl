@@ -1,7 +1,7 @@
-// Which voxels hold a surface: a bit each, and for each word of bits the number of voxels before
-// it. Together they give every occupied voxel a slot in compact buffers. Define VCT_SLOTS(name) as
-// what a block or variable of this set is called, and VCT_SLOTS_BINDING as the first of two
-// bindings; may be included for several sets.
+// Occupancy: a bit for each voxel, and for each word the number of occupied voxels before it. Both
+// give the slot of an occupied voxel in compact buffers. Define VCT_SLOTS(name), the names of
+// blocks and variables of this set, and VCT_SLOTS_BINDING, the first of two bindings. May be
+// included for several sets.
 layout(set = 0, binding = VCT_SLOTS_BINDING, scalar) readonly buffer VCT_SLOTS(mask)
 {
     uint VCT_SLOTS(mask_words)[];
@@ -11,7 +11,7 @@ layout(set = 0, binding = VCT_SLOTS_BINDING + 1, scalar) readonly buffer VCT_SLO
     uint VCT_SLOTS(offsets)[];
 };
 
-// VCT_NO_SLOT where the voxel is empty, or there was no room for it.
+// VCT_NO_SLOT where the voxel is empty or beyond the capacity.
 uint VCT_SLOTS(slot)(uint index)
 {
     uint word = VCT_SLOTS(mask_words)[index >> 5];

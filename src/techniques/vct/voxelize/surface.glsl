@@ -1,29 +1,29 @@
-// What the surfaces in a voxel are, as 8 words in two texels of an image that is filled row by row:
-// made of the sums over its triangles. The second texel is what it emits, where it does.
+// Surface attributes of a voxel, averaged over its triangles and packed into two RGBA32U texels.
+// The second one holds emission, where the voxel emits.
 #ifndef AG_VCT_SURFACE_GLSL
 #define AG_VCT_SURFACE_GLSL
 
 #include "techniques/vct/vct_voxel_images.glsl"
 #include "techniques/vct/voxelize/voxelize_shared.h"
 
-// Whole numbers, so that no order of triangles changes a bit. Each triangle counts by what it
-// covers.
+// Sums in fixed point, so that results do not depend on the order of triangles. Triangles are
+// weighted with the area that they cover.
 struct vct_sums {
     uint weight, opacity;
     uvec3 reflectance;  // × opacity
     ivec3 normal;       // of the front
     ivec3 position;     // from the voxel's centre
-    uvec3 front, back;  // emission of both sides × opacity; signed, negative: a lamp's
-    uint fronts, backs; // weight of what is covered to the side of the normal, to the other side
+    uvec3 front, back;  // emission of both sides × opacity; negative for small emitters
+    uint fronts, backs; // covered weight of front faces, of back faces
 };
 
 struct vct_surface {
     vec3 reflectance;
-    vec2 opacity;  // to ways that meet the front, the back
+    vec2 opacity;  // seen from the front, from the back
     bvec2 covers;  // whether there is a front, a back
-    vec3 normal;   // unit, of the front; 0 where the sides cannot be told apart
+    vec3 normal;   // unit, of the front; 0 where the sides are ambiguous
     vec3 position; // from the voxel's centre, in voxels
-    float weight;  // how much of surfaces there is, in 32 units
+    float weight;  // of the surfaces, in units of 32
     bool emits;
 };
 
@@ -41,7 +41,7 @@ void vct_pack_sums(vct_sums s, out uvec4 first, out uvec4 second)
     precise vec2 opacity = vec2(s.fronts, s.backs) / VCT_WEIGHT_ONE;
     precise vec3 front = vec3(ivec3(s.front)) * per_opaque, back = vec3(ivec3(s.back)) * per_opaque;
     uvec3 place =
-        uvec3(roundEven((clamp(position, -1.0, 1.0) * 0.5 + 0.5) * 1022.0)); // the middle is whole
+        uvec3(roundEven((clamp(position, -1.0, 1.0) * 0.5 + 0.5) * 1022.0)); // the centre is exact
     uint weight = min((s.weight + uint(VCT_SURFACE_WEIGHT) - 1u) / uint(VCT_SURFACE_WEIGHT), 127u);
     first.x = packUnorm2x16(reflectance.rg);
     first.y = packUnorm2x16(vec2(reflectance.b, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, opacity));
@@ -66,7 +66,7 @@ vct_surface vct_unpack_surface(uvec4 first)
     return s;
 }
 
-// Emission of both sides, in whole numbers (VCT_EMISSION_ONE).
+// Emission of both sides, in fixed point (VCT_EMISSION_ONE).
 void vct_unpack_emission(uvec4 second, out vec3 front, out vec3 back)
 {
     vec2 middle = unpackHalf2x16(second.y);

@@ -1,4 +1,4 @@
-// From sums over triangles to what the surfaces in a voxel are.
+// From the sums over triangles to surface attributes.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

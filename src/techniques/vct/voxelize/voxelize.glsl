@@ -1,11 +1,10 @@
-// Walking the triangles of a draw over the voxels that they touch. A triangle is walked in columns
-// along the axis to which its plane is nearest to perpendicular (the dominant axis of Crassin &
-// Green 2012; Hong 2015, sec. 2.5.3.1), where it is at most a few voxels deep. Small triangles take
-// one invocation; large ones are cut into tiles of columns that wait in a queue for a workgroup
-// each.
+// Traversal of the voxels that the triangles of a draw touch. A triangle is traversed in columns
+// along its dominant axis (Crassin & Green 2012; Hong 2015, sec. 2.5.3.1), where it is at most a
+// few voxels deep. One invocation takes a small triangle; large ones are split into tiles of
+// columns, which are queued for a workgroup each.
 //
 // Permutations: VCT_LARGE is 0 for small triangles and 1 for the queued tiles of large ones;
-// VCT_RASTER takes the columns from the rasteriser (voxelize/raster.glsl), in its fragment stage
+// VCT_RASTER takes the columns from the rasterizer (voxelize/raster.glsl), in its fragment stage
 // with VCT_FRAGMENT. The includer defines vct_meet() and vct_visit() after the inclusion.
 #include "frame/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
@@ -13,7 +12,7 @@
 #include "techniques/vct/voxelize/voxelize_shared.h"
 
 #ifndef VCT_RASTER
-// x, y, z of an indirect dispatch; how many tiles were asked for.
+// The indirect dispatch over tiles, and the number of tiles requested.
 layout(set = 0, binding = 14, scalar) buffer vct_queue_state
 {
     uint queue_groups[3];
@@ -34,14 +33,15 @@ layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
 struct vct_triangle {
     uvec3 vertices;
     vec3 a, b, c;    // in voxels from the grid's corner
-    int turn;        // 0…2: the axis along which columns run is (turn + 2) % 3
-    vec3 u, v, w;    // a, b, c with axes turned so that the third is the columns'
-    vec3 normal;     // turned; not unit: its length is twice the area in faces of a voxel
-    ivec3 low, high; // turned: voxels that its box touches
-    ivec2 depths;    // the first and the last of them in a column, also beyond this grid
+    int turn;        // 0…2: permutation of axes; columns run along (turn + 2) % 3
+    vec3 u, v, w;    // a, b, c with permuted axes, the third along the columns
+    vec3 normal;     // permuted; its length is twice the area in voxel faces
+    ivec3 low, high; // permuted: voxels that its box touches
+    ivec2 depths;    // first and last voxel of a column, also beyond this grid
 };
 
-void vct_begin_triangle(vct_triangle t, ivec2 first); // before its voxels, from a column on
+void vct_begin_triangle(vct_triangle t,
+                        ivec2 first); // before its voxels, from the column `first` on
 void vct_visit(ivec3 voxel, vct_triangle t);
 #ifdef VCT_DEFERS
 // Rows in which vct_visit() has left voxels to vct_visit_put_off(), a bit for each of the tile.
@@ -49,8 +49,7 @@ uint vct_deferred = 0u;
 void vct_visit_deferred(ivec3 voxel, vct_triangle t);
 #endif
 
-// What lies on the border of the scene's grid but for rounding belongs to the last voxel, and is
-// not lost.
+// Points on the border of the scene's grid, up to rounding, belong to its last voxel.
 vec3 kept_inside(vec3 at)
 {
     vec3 inside = clamp(at, vct.scene_low, vct.scene_high);
@@ -74,15 +73,15 @@ ivec3 unpermuted(ivec3 v, int turn)
     return turn == 0 ? v : turn == 1 ? v.zxy : v.yzx;
 }
 
-// False where it has no area, is not finite or not in this grid.
+// False where the triangle has no area, is not finite or is outside of this grid.
 bool triangle_at(uint triangle, out vct_triangle t)
 {
     t.vertices = scene_triangle(triangle);
     t.a = vertex_at(t.vertices.x);
     t.b = vertex_at(t.vertices.y);
     t.c = vertex_at(t.vertices.z);
-    // What only touches a border from below is not in the voxel above; what lies in the border is
-    // in that one alone.
+    // A triangle that only touches a border from below is not in the voxel above; one that lies in
+    // the border is in that voxel alone.
     vec3 low = floor(min(min(t.a, t.b), t.c)), high = max(ceil(max(max(t.a, t.b), t.c)) - 1.0, low);
     if (!all(lessThan(max(abs(low), abs(high)), vec3(1e6)))) return false;
     low = clamp(low, vct.scene_low, vct.scene_high - 1.0);
@@ -123,9 +122,8 @@ bool touches(vct_triangle t, ivec3 voxel)
     return vct_overlaps(u, v, w, t.normal);
 }
 
-// All voxels that the triangle touches in columns from `first` to `last`. What is touched is looked
-// for in a loop of its own: invocations of a group that have found something wait there for the
-// others, and then visit together.
+// Visits all voxels that the triangle touches in columns from `first` to `last`. The search has a
+// loop of its own, so that the invocations of a subgroup visit voxels together.
 void visit_columns(vct_triangle t, ivec2 first, ivec2 last)
 {
     ivec2 column = first, depths = depths_of(t, first);
@@ -165,8 +163,7 @@ void main()
 #endif
 #elif VCT_LARGE
 
-// How far an edge reaches up and down between two places along x; nothing where it does not come
-// there.
+// Extent of an edge along y between `left` and `right`; empty where it does not reach them.
 vec2 reach_of(vec2 from, vec2 to, float left, float right)
 {
     vec2 a = from.x <= to.x ? from : to, b = from.x <= to.x ? to : from;
@@ -179,8 +176,7 @@ vec2 reach_of(vec2 from, vec2 to, float left, float right)
     return vec2(min(first, last), max(first, last));
 }
 
-// First and last of the columns along y that the triangle may touch at x: the others of a tile are
-// not looked at.
+// First and last column along y that the triangle may touch at x. The others of a tile are skipped.
 ivec2 rows_of(vct_triangle t, int x)
 {
     float left = float(x) - 0.01, right = float(x) + 1.01;
@@ -193,8 +189,8 @@ ivec2 rows_of(vct_triangle t, int x)
 #ifdef VCT_DEFERS
 shared uint deferred_count, deferred_columns[VCT_TILE * VCT_TILE];
 
-// What invocations have left is shared out among all of them: there is little of it, in lines along
-// the triangle's sides, and one that has a whole line would keep the others waiting.
+// Deferred columns are distributed over all invocations of the workgroup: they lie along the edges
+// of the triangle, and one invocation with a whole edge would stall the others.
 void visit_deferred_columns(vct_triangle t, ivec2 first)
 {
     if (gl_LocalInvocationID.x == 0u) deferred_count = 0u;
@@ -244,7 +240,7 @@ void main()
 
 #else
 
-// Puts tiles of a triangle into the queue, as many as there is room for, and returns how many.
+// Queues as many tiles of a triangle as fit, and returns their number.
 uint queue_tiles(uint triangle, uint count)
 {
     uint first = atomicAdd(queue_asked, count);
@@ -254,8 +250,8 @@ uint queue_tiles(uint triangle, uint count)
     return fitting;
 }
 
-// A small triangle is one tile, and walked here; so are tiles of large ones for which the queue has
-// no room.
+// A small triangle is one tile, which is traversed here, as are tiles that do not fit into the
+// queue.
 void main()
 {
     uint triangle = gl_GlobalInvocationID.x;

@@ -1,4 +1,4 @@
-// No sums yet where they will be added up.
+// Clears the sums of the voxels whose triangles are summed up.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
