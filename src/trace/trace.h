@@ -64,11 +64,11 @@ enum reference_layer {
     REFERENCE_COLOR,  // cd/m²: direct + indirect, to the bit
     REFERENCE_DIRECT, // cd/m²: visible emission and sky, and reflected light that arrives directly
                       // from lights, emitters and the sky
-    REFERENCE_INDIRECT,              // cd/m²: the rest
-    REFERENCE_INDIRECT_EMITTERS_SKY, // cd/m²: indirect light plus reflected direct light of
-                                     // emitters and the sky: the light that techniques add to the
-                                     // frame's direct light. The latter part alone with
-                                     // direct_only, the former with indirect_only
+    REFERENCE_INDIRECT,                // cd/m²: the rest
+    REFERENCE_INDIRECT_EMITTERS_SKY,   // cd/m²: indirect light plus reflected direct light of
+                                       // emitters and the sky: the light that techniques add to the
+                                       // frame's direct light. The latter part alone with
+                                       // direct_only, the former with indirect_only
     REFERENCE_IRRADIANCE,              // lux: of the indirect light; 0 with direct_only
     REFERENCE_IRRADIANCE_EMITTERS_SKY, // lux: of the same light, as a technique's irradiance
     REFERENCE_ALBEDO,                  // at the pixel centre, as all below except error and samples
