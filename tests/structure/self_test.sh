@@ -81,6 +81,12 @@ printf 'int x; \n' >"$tree/src/core/bad.c"
 fails "a blank at the end of a line" 'src/core/bad.c:1' "$here/source_text.sh" "$tree"
 printf 'int x;\t\n' >"$tree/src/core/bad.c"
 fails "a tabulator at the end of a line" 'src/core/bad.c:1' "$here/source_text.sh" "$tree"
+long=$(printf 'x%.0s' 1 2 3 4 5 6 7 8 9 10)
+long=$long$long$long$long$long$long$long$long$long
+printf '// %s…ü…ü…ü\n' "$long" >"$tree/src/core/bad.c"
+passes "a line of 99 characters" "$here/source_text.sh" "$tree"
+printf '// %s…ü…ü…ü…ü\n' "$long" >"$tree/src/core/bad.c"
+fails "a line of 101 characters" 'src/core/bad.c:1: 101' "$here/source_text.sh" "$tree"
 fresh
 printf 'later: TO''DO\n' >"$tree/notes.md"
 fails "work left for later" 'notes.md:1' "$here/source_text.sh" "$tree"

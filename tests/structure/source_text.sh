@@ -1,6 +1,6 @@
 #!/bin/sh
-# source_text.sh ROOT: no tracked file below ROOT leaves work for later, and no source has blanks at the end of a line.
-# Without git (a source archive) all files outside build/ are checked.
+# source_text.sh ROOT: no tracked file below ROOT leaves work for later, and no source has blanks at the end of a line or
+# more than 100 characters on it. Without git (a source archive) all files outside build/ are checked.
 set -eu
 cd "$1"
 list() {
@@ -23,4 +23,9 @@ if list '*.c' '*.h' '*.cpp' '*.def' '*.glsl' '*.comp' '*.vert' '*.frag' | tr '\n
     echo "blanks at the end of a line, above"
     bad=1
 fi
+# Bytes 128 to 191 continue a UTF-8 character.
+list '*.c' '*.h' '*.cpp' '*.def' '*.glsl' '*.comp' '*.vert' '*.frag' | tr '\n' '\0' | LC_ALL=C xargs -0 awk '
+    { characters = $0; gsub(/[\200-\277]/, "", characters) }
+    length(characters) > 100 { print FILENAME ":" FNR ": " length(characters) " characters"; bad = 1 }
+    END { exit bad }' /dev/null || { echo "lines of more than 100 characters, above"; bad=1; }
 exit $bad
