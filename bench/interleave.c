@@ -18,10 +18,10 @@ enum { MAX_RESOLUTIONS = 8 };
 
 enum { PER_PIXEL, INTERLEAVED, HALF, VARIANTS };
 static const char *const variants[VARIANTS] = { "interleave=1", "interleave=5",
-                                                "interleave=5,half=true" };
+                                                "interleave=5,half_resolution=true" };
 
 // The per-pixel passes. Voxelization and lighting are the same for all variants.
-static const char *const stages[] = { "cones", "edges", "gather", "blur", "fit", "upsample" };
+static const char *const stages[] = { "cones", "edges", "gather", "blur", "upsample" };
 enum { STAGES = sizeof stages / sizeof stages[0] };
 
 struct interleave_bench {

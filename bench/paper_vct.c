@@ -50,8 +50,8 @@ static const struct vct_stage pipeline[] = {
     { "light injection", BOTH("vct.inject") },
     { "mips", BOTH("vct.texels", "vct.fill", "vct.mips") },
     { "light of sky and emitters", BOTH("vct.bounce") },
-    { "cone tracing", BOTH("vct.cones", "vct.edges", "vct.gather", "vct.blur", "vct.fit",
-                           "vct.upsample", "vct.specular") },
+    { "cone tracing",
+      BOTH("vct.cones", "vct.edges", "vct.gather", "vct.blur", "vct.upsample", "vct.specular") },
     { "direct light, image", BOTH("direct", "exposure", "composite") },
 };
 enum { PIPELINE = sizeof pipeline / sizeof pipeline[0] };
