@@ -23,7 +23,7 @@ struct scene_draw {
     struct scene_push push;
     bool deformed;      // vertices are uploaded each frame, in world space
     bool mirrored;      // the transform reverses the winding order in this frame
-    bool moves;         // dynamic: has moved since the scene was set
+    bool dynamic;       // has moved since the scene was set
     bool moved;         // since the previous frame
     struct box3 bounds; // world space
     struct box3 swept;  // union of this frame's and the previous frame's bounds
@@ -56,8 +56,8 @@ struct scene_gpu {
     vec3s *deformed_positions, *deformed_previous; // [deformed_vertex_count]
     uint32_t (*deformed_frames)[2];
     bool has_previous, moved;
-    uint64_t updates; // number of uploaded poses
-    int moving_count; // number of dynamic draws
+    uint64_t updates;  // number of uploaded poses
+    int dynamic_count; // number of dynamic draws
     struct gpu_binding instances_binding, deformed_positions_binding, deformed_previous_binding,
         deformed_frames_binding;
 };
@@ -68,7 +68,7 @@ bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu,
 void scene_gpu_finish(struct scene_gpu *scene); // accepts zero
 
 // Uploads a pose. reset_motion: previous positions become the current ones. Updates `moved` and
-// `moves` of the scene and its draws.
+// `dynamic` of the scene and its draws.
 void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct scene_pose *pose,
                       bool reset_motion);
 

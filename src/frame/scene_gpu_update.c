@@ -10,9 +10,9 @@
 static void mark_moved(struct scene_gpu *s, struct scene_draw *draw)
 {
     s->moved = draw->moved = true;
-    if (draw->moves || !s->has_previous) return; // the first frame is no movement
-    draw->moves = true;
-    s->moving_count++;
+    if (draw->dynamic || !s->has_previous) return; // the first frame is no movement
+    draw->dynamic = true;
+    s->dynamic_count++;
 }
 
 // Copies a deformed instance's vertices and computes the draw's bounds.

@@ -14,18 +14,18 @@ struct totals {
 struct reader {
     gpu_pipeline opaque, masked;
     gpu_buffer totals;
-    int moving;     // draws
-    bool moves[16]; // by instance
+    int dynamic_count;
+    bool dynamic[16]; // by instance
 };
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct reader *r = user;
     gpu_fill_buffer(cmd, r->totals, 0, sizeof(struct totals), 0);
-    r->moving = view->scene->moving_count;
+    r->dynamic_count = view->scene->dynamic_count;
     for (int i = 0; i < view->scene->draw_count; i++) {
         const struct scene_draw *draw = &view->scene->draws[i];
-        r->moves[draw->instance] = draw->moves;
+        r->dynamic[draw->instance] = draw->dynamic;
         const struct gpu_binding own = { .name = "totals", .buffer = r->totals };
         scene_gpu_dispatch(view->scene, cmd,
                            &(struct scene_dispatch_call){
@@ -156,15 +156,15 @@ TEST_GPU(what_has_moved_once_is_told_from_what_never_did)
     fixture_floor(&s, 1, matte);
     fixture_open(&s);
     render(&s, &r);
-    CHECK(r.moving == 0); // all have just come
+    CHECK(r.dynamic_count == 0); // all have just come
     render(&s, &r);
-    CHECK(r.moving == 0);
+    CHECK(r.dynamic_count == 0);
     s.pose.world_from_node[s.scene->instances[1].node].raw[3][1] += 0.1f;
     s.input.camera_cut = true; // forgets how it moved, not that it moves
     render(&s, &r);
-    CHECK(r.moving == 1 && !r.moves[0] && r.moves[1]);
+    CHECK(r.dynamic_count == 1 && !r.dynamic[0] && r.dynamic[1]);
     s.input.camera_cut = false;
     render(&s, &r);
-    CHECK(r.moving == 1 && r.moves[1]);
+    CHECK(r.dynamic_count == 1 && r.dynamic[1]);
     finish(&s, &r);
 }

@@ -10,12 +10,12 @@
 
 static bool is_static(const struct scene_draw *draw)
 {
-    return !draw->moves;
+    return !draw->dynamic;
 }
 
 static bool is_moving(const struct scene_draw *draw)
 {
-    return draw->moves;
+    return draw->dynamic;
 }
 
 static void record_coverage(struct lpv *lpv, struct gpu_cmd *cmd, const struct scene_gpu *scene,
@@ -39,7 +39,7 @@ static bool is_cached(const struct lpv *lpv, const struct frame_view *view, int 
 bool lpv_record_geometry_scene(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct lpv_volumes *v = &lpv->volumes;
-    const int moving_count = view->scene ? view->scene->moving_count : 0;
+    const int moving_count = view->scene ? view->scene->dynamic_count : 0;
     const bool cached = is_cached(lpv, view, moving_count);
     if (cached && moving_count == 0) return false;
     if (!cached) record_coverage(lpv, cmd, view->scene, is_static, v->static_coverage);

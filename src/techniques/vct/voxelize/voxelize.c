@@ -51,7 +51,7 @@ static void traverse(struct vct *vct, const struct vct_clip *clip, struct gpu_cm
                                                          .read_count = view->scene->read_count });
     for (int i = 0; i < view->scene->draw_count; i++) {
         const struct scene_draw *draw = &view->scene->draws[i];
-        if (draw->moves != moving || !may_touch(draw, &clip->grid)) continue;
+        if (draw->dynamic != moving || !may_touch(draw, &clip->grid)) continue;
         const enum vct_draw_kind kind = kind_of(vct, view->scene, i);
         const struct vct_voxelize_pipelines *pipelines = add ? &vct->add[kind] : &vct->mark;
         scene_gpu_dispatch(view->scene, cmd,
@@ -153,7 +153,7 @@ static void voxelize(struct vct *vct, const struct vct_clip *clip, struct gpu_cm
 static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cmd *cmd,
                            const struct frame_view *view)
 {
-    const int moving = view->scene->moving_count;
+    const int moving = view->scene->dynamic_count;
     const bool statics =
         !clip->static_valid || !vct->options.keep_static || moving != vct->moving_draws;
     if (statics) voxelize(vct, clip, cmd, view, &clip->static_set, false);
@@ -166,5 +166,5 @@ static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cm
 void vct_voxelize(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     for (int i = 0; i < vct->clip_count; i++) voxelize_level(vct, &vct->clips[i], cmd, view);
-    vct->moving_draws = view->scene->moving_count;
+    vct->moving_draws = view->scene->dynamic_count;
 }
