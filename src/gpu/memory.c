@@ -11,7 +11,7 @@
 static const VkDeviceSize BLOCK_BYTES = 64u << 20;
 static const VkDeviceSize LARGE_BYTES = 16u << 20;
 
-struct piece {
+struct free_range {
     VkDeviceSize offset, bytes;
 };
 
@@ -23,7 +23,7 @@ struct memory_block {
     bool linear, single; // single: a dedicated block
     bool recycled;       // part of it was in use before
     void *mapped;
-    struct piece *free;
+    struct free_range *free;
     uint32_t free_count, free_capacity;
 };
 
@@ -67,22 +67,23 @@ static int score(VkMemoryPropertyFlags flags, enum memory_kind kind)
     }
 }
 
-static bool add_piece(struct gpu *gpu, struct memory_block *block, uint32_t at, struct piece piece)
+static bool add_free_range(struct gpu *gpu, struct memory_block *block, uint32_t at,
+                           struct free_range range)
 {
     if (block->free_count == block->free_capacity) {
         uint32_t capacity = block->free_capacity ? 2 * block->free_capacity : 16;
-        struct piece *bigger = host_realloc(gpu->host, block->free, capacity, sizeof *bigger);
+        struct free_range *bigger = host_realloc(gpu->host, block->free, capacity, sizeof *bigger);
         if (!bigger) return false;
         block->free = bigger;
         block->free_capacity = capacity;
     }
     memmove(block->free + at + 1, block->free + at, (block->free_count - at) * sizeof *block->free);
-    block->free[at] = piece;
+    block->free[at] = range;
     block->free_count++;
     return true;
 }
 
-static void remove_piece(struct memory_block *block, uint32_t at)
+static void remove_free_range(struct memory_block *block, uint32_t at)
 {
     block->free_count--;
     memmove(block->free + at, block->free + at + 1, (block->free_count - at) * sizeof *block->free);
@@ -115,7 +116,7 @@ static struct memory_block *block_new(struct gpu *gpu, uint32_t type, VkDeviceSi
             linear ? "gpu.buffers" : "gpu.images");
     if ((mapped && vkMapMemory(gpu->device, block->memory, 0, VK_WHOLE_SIZE, 0, &block->mapped) !=
                        VK_SUCCESS) ||
-        !add_piece(gpu, block, 0, (struct piece){ 0, bytes })) {
+        !add_free_range(gpu, block, 0, (struct free_range){ 0, bytes })) {
         block_free(gpu, block);
         return NULL;
     }
@@ -129,21 +130,21 @@ static bool block_take(struct gpu *gpu, struct memory_block *block,
                        const VkMemoryRequirements *needs, VkDeviceSize *offset)
 {
     for (uint32_t i = 0; i < block->free_count; i++) {
-        struct piece piece = block->free[i];
-        VkDeviceSize start = (piece.offset + needs->alignment - 1) & ~(needs->alignment - 1);
-        VkDeviceSize before = start - piece.offset;
-        if (before > piece.bytes || piece.bytes - before < needs->size) continue;
-        VkDeviceSize after = piece.bytes - before - needs->size;
+        struct free_range range = block->free[i];
+        VkDeviceSize start = (range.offset + needs->alignment - 1) & ~(needs->alignment - 1);
+        VkDeviceSize before = start - range.offset;
+        if (before > range.bytes || range.bytes - before < needs->size) continue;
+        VkDeviceSize after = range.bytes - before - needs->size;
         if (before && after &&
-            !add_piece(gpu, block, i + 1, (struct piece){ start + needs->size, after })) {
+            !add_free_range(gpu, block, i + 1, (struct free_range){ start + needs->size, after })) {
             return false;
         }
         if (before) {
             block->free[i].bytes = before;
         } else if (after) {
-            block->free[i] = (struct piece){ start + needs->size, after };
+            block->free[i] = (struct free_range){ start + needs->size, after };
         } else {
-            remove_piece(block, i);
+            remove_free_range(block, i);
         }
         *offset = start;
         return true;
@@ -212,23 +213,23 @@ bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum me
                      (unsigned long long)needs->size);
 }
 
-static void block_give(struct gpu *gpu, struct memory_block *block, struct piece piece)
+static void block_give(struct gpu *gpu, struct memory_block *block, struct free_range range)
 {
     uint32_t i = 0;
-    while (i < block->free_count && block->free[i].offset < piece.offset) i++;
-    bool joins_last = i > 0 && block->free[i - 1].offset + block->free[i - 1].bytes == piece.offset;
-    bool joins_next = i < block->free_count && piece.offset + piece.bytes == block->free[i].offset;
+    while (i < block->free_count && block->free[i].offset < range.offset) i++;
+    bool joins_last = i > 0 && block->free[i - 1].offset + block->free[i - 1].bytes == range.offset;
+    bool joins_next = i < block->free_count && range.offset + range.bytes == block->free[i].offset;
     if (joins_last && joins_next) {
-        block->free[i - 1].bytes += piece.bytes + block->free[i].bytes;
-        remove_piece(block, i);
+        block->free[i - 1].bytes += range.bytes + block->free[i].bytes;
+        remove_free_range(block, i);
     } else if (joins_last) {
-        block->free[i - 1].bytes += piece.bytes;
+        block->free[i - 1].bytes += range.bytes;
     } else if (joins_next) {
-        block->free[i].offset = piece.offset;
-        block->free[i].bytes += piece.bytes;
+        block->free[i].offset = range.offset;
+        block->free[i].bytes += range.bytes;
     } else {
-        (void)add_piece(gpu, block, i,
-                        piece); // on failure the range is lost until the block is freed
+        // On failure the range is lost until the block is freed.
+        (void)add_free_range(gpu, block, i, range);
     }
 }
 
@@ -238,7 +239,7 @@ void memory_free(struct gpu *gpu, struct allocation *allocation)
     if (!block) return;
     gpu->memory.owners[allocation->owner].bytes -= allocation->bytes;
     block->recycled = true;
-    block_give(gpu, block, (struct piece){ allocation->offset, allocation->bytes });
+    block_give(gpu, block, (struct free_range){ allocation->offset, allocation->bytes });
     *allocation = (struct allocation){ 0 };
     bool empty = block->free_count == 1 && block->free[0].bytes == block->bytes;
     if (!block->single || !empty) return;

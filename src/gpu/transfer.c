@@ -4,7 +4,7 @@
 #include <string.h>
 
 enum { UPLOAD, DOWNLOAD };
-static const size_t KEPT_BYTES = 64u << 20; // larger staging buffers are freed after use
+static const size_t STAGING_KEEP_BYTES = 64u << 20; // larger staging buffers are freed after use
 
 static struct buffer *staging(struct gpu *gpu, int direction, size_t bytes)
 {
@@ -21,7 +21,7 @@ static struct buffer *staging(struct gpu *gpu, int direction, size_t bytes)
 static void staging_trim(struct gpu *gpu, int direction)
 {
     struct buffer **slot = &gpu->staging[direction];
-    if (!*slot || (*slot)->bytes <= KEPT_BYTES) return;
+    if (!*slot || (*slot)->bytes <= STAGING_KEEP_BYTES) return;
     buffer_free(gpu, *slot);
     *slot = NULL;
 }

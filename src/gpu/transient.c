@@ -14,11 +14,11 @@ void ring_start(struct gpu_cmd *cmd)
 void ring_stop(struct gpu_cmd *cmd)
 {
     struct ring *ring = &cmd->ring;
-    for (int i = 0; i < ring->outgrown_count; i++) {
-        gpu_buffer_destroy(cmd->gpu, &ring->outgrown[i]);
+    for (int i = 0; i < ring->replaced_count; i++) {
+        gpu_buffer_destroy(cmd->gpu, &ring->replaced[i]);
         cmd->gpu->internal_buffers--;
     }
-    ring->outgrown_count = 0;
+    ring->replaced_count = 0;
 }
 
 static void ring_free(struct gpu *gpu, gpu_buffer buffer)
@@ -31,7 +31,7 @@ static void ring_free(struct gpu *gpu, gpu_buffer buffer)
 void ring_finish(struct gpu_cmd *cmd)
 {
     struct ring *ring = &cmd->ring;
-    for (int i = 0; i < ring->outgrown_count; i++) ring_free(cmd->gpu, ring->outgrown[i]);
+    for (int i = 0; i < ring->replaced_count; i++) ring_free(cmd->gpu, ring->replaced[i]);
     ring_free(cmd->gpu, ring->buffer);
     *ring = (struct ring){ 0 };
 }
@@ -44,7 +44,7 @@ static bool ring_grow(struct gpu_cmd *cmd, size_t bytes)
     while (size < bytes && size < SIZE_MAX / 2) size *= 2;
     const uint32_t usage =
         GPU_BUFFER_STORAGE | GPU_BUFFER_UNIFORM | GPU_BUFFER_INDEX | GPU_BUFFER_INDIRECT;
-    if (cmd->ring.outgrown_count == RING_OUTGROWN) return false;
+    if (cmd->ring.replaced_count == MAX_REPLACED_RINGS) return false;
     struct buffer *buffer = buffer_new(gpu, "gpu.transient", size, usage, MEMORY_RING);
     if (!buffer) return false;
     buffer->constant = true;
@@ -53,7 +53,7 @@ static bool ring_grow(struct gpu_cmd *cmd, size_t bytes)
         buffer_free(gpu, buffer);
         return false;
     }
-    if (cmd->ring.buffer.id) cmd->ring.outgrown[cmd->ring.outgrown_count++] = cmd->ring.buffer;
+    if (cmd->ring.buffer.id) cmd->ring.replaced[cmd->ring.replaced_count++] = cmd->ring.buffer;
     gpu->internal_buffers++;
     cmd->ring.buffer = (gpu_buffer){ id };
     cmd->ring.used = 0;

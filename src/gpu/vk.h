@@ -251,13 +251,13 @@ struct rendering {
     uint64_t op;
 };
 
-enum { RING_OUTGROWN = 40 }; // each ring is twice as large as the previous one
+enum { MAX_REPLACED_RINGS = 40 }; // each ring is twice as large as the previous one
 
 struct ring { // transient data
     gpu_buffer buffer;
     size_t used;
-    gpu_buffer outgrown[RING_OUTGROWN]; // replaced, but used by bindings of this recording
-    int outgrown_count;
+    gpu_buffer replaced[MAX_REPLACED_RINGS]; // still used by bindings of this recording
+    int replaced_count;
 };
 
 struct scope {
