@@ -16,27 +16,27 @@ static enum ag_result find(const char *function, struct ag_renderer *r, struct p
     return api_done(context, gi_probes(r->gi, out));
 }
 
-static void place_of(const struct probe_volume *volume, float first[3], float *spacing,
-                     int counts[3])
+static void grid_of(const struct probe_volume *volume, float first[3], float *spacing,
+                    int counts[3])
 {
-    const struct frame_probes *place = &volume->place;
-    api_store(first, place->first_m);
-    *spacing = place->spacing_m;
-    counts[0] = place->count_x;
-    counts[1] = place->count_y;
-    counts[2] = place->count_z;
+    const struct frame_probes *grid = &volume->grid;
+    api_store(first, grid->first_m);
+    *spacing = grid->spacing_m;
+    counts[0] = grid->count_x;
+    counts[1] = grid->count_y;
+    counts[2] = grid->count_z;
 }
 
 // Converts slabs of texels (frame/probes.glsl) to arrays of coefficients.
 static void unpack(const struct ag_probes *probes, const float *texels,
-                   const struct gpu_image_desc *size, const struct frame_probes *place, float scale)
+                   const struct gpu_image_desc *size, const struct frame_probes *grid, float scale)
 {
     float *out = probes->coefficients;
     for (int z = 0; z < probes->counts[2]; z++)
         for (int y = 0; y < probes->counts[1]; y++)
             for (int x = 0; x < probes->counts[0]; x++)
                 for (int k = 0; k < NUMBERS; k++) {
-                    size_t row = (size_t)(z + k / 4 * place->slab) * size->height + (size_t)y;
+                    size_t row = (size_t)(z + k / 4 * grid->slab) * size->height + (size_t)y;
                     *out++ = texels[4 * (row * size->width + (size_t)x) + (size_t)(k % 4)] / scale;
                 }
 }
@@ -45,7 +45,7 @@ static struct ag_probes *create(struct host *host, const struct probe_volume *vo
 {
     struct ag_probes *probes = host_alloc(host, 1, sizeof *probes);
     if (!probes) return NULL;
-    place_of(volume, probes->first, &probes->spacing, probes->counts);
+    grid_of(volume, probes->first, &probes->spacing, probes->counts);
     size_t count =
         (size_t)probes->counts[0] * (size_t)probes->counts[1] * (size_t)probes->counts[2];
     probes->coefficients = host_alloc(host, count, NUMBERS * sizeof *probes->coefficients);
@@ -63,7 +63,7 @@ static bool download(struct ag_renderer *r, const struct probe_volume *volume,
     size_t texels = (size_t)size->width * size->height * size->depth;
     float *values = host_alloc(host, texels, 4 * sizeof *values);
     bool ok = values && gpu_image_download_float(gpu, volume->image, 0, 0, values, 4, 4 * texels);
-    if (ok) unpack(probes, values, size, &volume->place, frame_radiance_scale(r->frame));
+    if (ok) unpack(probes, values, size, &volume->grid, frame_radiance_scale(r->frame));
     host_free(host, values);
     return ok;
 }
@@ -111,15 +111,15 @@ static void corners_of(const struct ag_probes *probes, const float *position, st
         share[axis] = at - (float)low[axis];
     }
     for (int c = 0; c < 8; c++) {
-        size_t place[3];
+        size_t cell[3];
         out[c].weight = 1.0f;
         for (int axis = 0; axis < 3; axis++) {
             bool high = (c >> axis) & 1;
-            place[axis] = (size_t)(low[axis] + (high && low[axis] + 1 < probes->counts[axis]));
+            cell[axis] = (size_t)(low[axis] + (high && low[axis] + 1 < probes->counts[axis]));
             out[c].weight *= high ? share[axis] : 1.0f - share[axis];
         }
-        size_t row = place[2] * (size_t)probes->counts[1] + place[1];
-        out[c].probe = row * (size_t)probes->counts[0] + place[0];
+        size_t row = cell[2] * (size_t)probes->counts[1] + cell[1];
+        out[c].probe = row * (size_t)probes->counts[0] + cell[0];
     }
 }
 
@@ -147,8 +147,8 @@ enum ag_result ag_renderer_probes_handle(struct ag_renderer *r, struct ag_probes
     *out = (struct ag_probes_handle){ 0 };
     enum ag_result result = find(__func__, r, &volume);
     if (result != AG_OK) return result;
-    place_of(&volume, out->first, &out->spacing, out->counts);
-    out->slab = volume.place.slab;
+    grid_of(&volume, out->first, &out->spacing, out->counts);
+    out->slab = volume.grid.slab;
     out->vk_image = gpu_image_handle(r->device->gpu, volume.image, &out->vk_layout);
     out->scale = frame_radiance_scale(r->frame);
     return api_done(context, true);

@@ -44,7 +44,7 @@ struct technique_preset {
 // Irradiance at the points of a grid, in the format of frame/probes.glsl. Each record fills it.
 struct probe_volume {
     gpu_image image; // RGBA16F
-    struct frame_probes place;
+    struct frame_probes grid;
 };
 
 struct technique_create {

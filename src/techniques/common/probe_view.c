@@ -25,18 +25,18 @@ void probe_view_destroy(struct probe_view *view, struct gpu *gpu)
 }
 
 // Probes from one sphere to the next, so that a side has at most MAX_SPHERES.
-static int32_t sphere_spacing(struct frame_probes place)
+static int32_t sphere_spacing(struct frame_probes grid)
 {
-    int32_t most = place.count_x > place.count_y ? place.count_x : place.count_y;
-    if (place.count_z > most) most = place.count_z;
+    int32_t most = grid.count_x > grid.count_y ? grid.count_x : grid.count_y;
+    if (grid.count_z > most) most = grid.count_z;
     return (most + MAX_SPHERES - 1) / MAX_SPHERES;
 }
 
 void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd,
-                       const struct frame_view *frame, gpu_image probes, struct frame_probes place,
+                       const struct frame_view *frame, gpu_image probes, struct frame_probes grid,
                        gpu_image out)
 {
-    const struct probe_view_push push = { place, sphere_spacing(place) };
+    const struct probe_view_push push = { grid, sphere_spacing(grid) };
     gpu_scope_begin(cmd, "probe_view");
     gpu_dispatch(
         cmd, view->pipeline,

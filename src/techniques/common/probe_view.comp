@@ -52,8 +52,8 @@ vec3 trace_spheres(vec3 from, vec3 direction, float limit, ivec3 spheres)
         vec3 center = vec3(cell) + 0.5;
         if (intersect_sphere(from, direction, center, distance) && distance < end) {
             vec3 n = normalize(from + direction * distance - center);
-            vec3 probe = push.place.first_m + float(push.every) * push.place.spacing_m * vec3(cell);
-            return probes_irradiance(probes, push.place, probe, n) / PI;
+            vec3 probe = push.grid.first_m + float(push.every) * push.grid.spacing_m * vec3(cell);
+            return probes_irradiance(probes, push.grid, probe, n) / PI;
         }
         int axis = next.x <= next.y ? (next.x <= next.z ? 0 : 2) : (next.y <= next.z ? 1 : 2);
         begin = next[axis];
@@ -74,15 +74,14 @@ void main()
     if (z > 0.0) {
         vec3 n = octahedral_decode(texelFetch(normal, ivec2(pixel), 0).rg);
         vec3 reflected = texelFetch(albedo, ivec2(pixel), 0).rgb / PI;
-        colour =
-            DIM * reflected *
-            probes_irradiance(probes, push.place, position + 0.5 * push.place.spacing_m * n, n);
+        colour = DIM * reflected *
+                 probes_irradiance(probes, push.grid, position + 0.5 * push.grid.spacing_m * n, n);
     }
-    float unit = float(push.every) * push.place.spacing_m;
-    vec3 from = (frame.camera_position - push.place.first_m) / unit + 0.5,
-         to = (position - push.place.first_m) / unit + 0.5;
+    float unit = float(push.every) * push.grid.spacing_m;
+    vec3 from = (frame.camera_position - push.grid.first_m) / unit + 0.5,
+         to = (position - push.grid.first_m) / unit + 0.5;
     ivec3 spheres =
-        (ivec3(push.place.count_x, push.place.count_y, push.place.count_z) + push.every - 1) /
+        (ivec3(push.grid.count_x, push.grid.count_y, push.grid.count_z) + push.every - 1) /
         push.every;
     float limit = distance(from, to);
     vec3 direction = (to - from) / limit;

@@ -13,5 +13,5 @@ bool probe_view_create(struct probe_view *view, struct gpu *gpu);
 void probe_view_destroy(struct probe_view *view, struct gpu *gpu); // accepts zero
 // Draws into `out`, RGBA16F of the frame's size, scaled radiance.
 void probe_view_record(const struct probe_view *view, struct gpu_cmd *cmd,
-                       const struct frame_view *frame, gpu_image probes, struct frame_probes place,
+                       const struct frame_view *frame, gpu_image probes, struct frame_probes grid,
                        gpu_image out);

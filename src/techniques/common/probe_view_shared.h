@@ -9,7 +9,7 @@
 #endif
 
 struct probe_view_push {
-    AG_STRUCT(frame_probes) place;
+    AG_STRUCT(frame_probes) grid;
     int32_t every; // probes from one sphere to the next
 };
 
