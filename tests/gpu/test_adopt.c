@@ -1,4 +1,4 @@
-// A host's own device: made here with plain Vulkan, lent to the layer, and used by both.
+// An adopted device: created with plain Vulkan, used by the layer and by the host.
 #include "framework/gpu_test.h"
 #include "framework/own_device.h"
 #include "gpu_test_shaders.h"
@@ -18,7 +18,7 @@ static struct gpu *adopt(struct own_device *own)
     return gpu_create(test_host(), &(struct gpu_desc){ .validation = true, .adopt = &adopt });
 }
 
-TEST(an_adopted_device_does_what_our_own_does)
+TEST(an_adopted_device_runs_frames_and_transfers)
 {
     struct own_device own;
     open_own(&own, 0);
@@ -54,7 +54,7 @@ static bool owns(struct gpu *gpu, const char *owner)
     return false;
 }
 
-TEST(commands_go_into_the_hosts_command_buffer)
+TEST(commands_are_recorded_into_the_hosts_command_buffer)
 {
     enum { FRAMES = 3 };
     struct own_device own;
@@ -68,7 +68,7 @@ TEST(commands_go_into_the_hosts_command_buffer)
         const uint32_t data[2] = { i, 10 };
         VkCommandBuffer commands = own_device_begin(&own);
         CHECK(gpu_buffer_create(
-            gpu, &(struct gpu_buffer_desc){ "passing.words", 400, GPU_BUFFER_STORAGE }, &words));
+            gpu, &(struct gpu_buffer_desc){ "temporary.words", 400, GPU_BUFFER_STORAGE }, &words));
         cmds[i] = gpu_frame_begin_adopted(gpu, commands);
         CHECK(cmds[i] != NULL);
         gpu_scope_begin(cmds[i], "test.sum");
@@ -88,9 +88,9 @@ TEST(commands_go_into_the_hosts_command_buffer)
     assert_int_equal(own.locks, 0); // the host submitted
     vkQueueWaitIdle(own.queue);
     CHECK(gpu_wait(gpu));
-    assert_true(owns(gpu, "passing")); // the layer does not know yet
+    assert_true(owns(gpu, "temporary")); // completion is not reported yet
     for (int i = 0; i < FRAMES; i++) gpu_frame_adopted_done(gpu, cmds[i]);
-    assert_false(owns(gpu, "passing"));
+    assert_false(owns(gpu, "temporary"));
     uint32_t got;
     CHECK(gpu_buffer_download(gpu, total, 0, &got, 4));
     assert_int_equal(got, 3 * 100 + 3 * 10 + 0 + 1 + 2);
@@ -163,8 +163,7 @@ static void host_returns(VkCommandBuffer commands, VkImage image, VkImageLayout 
                                  .subresourceRange = { VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1 } });
 }
 
-// Fetches the image into `texels`, in a host's command buffer in which the host has just cleared
-// it.
+// Copies the image to `texels` in the host's command buffer, after the host's clear.
 static void fetch(struct own_device *own, struct gpu *gpu, VkCommandBuffer commands,
                   gpu_image image, gpu_buffer texels)
 {
@@ -201,7 +200,7 @@ TEST(a_wrapped_image_is_shared_with_the_host)
     CHECK(gpu_buffer_download(gpu, texels, 0, got, sizeof got));
     for (int i = 0; i < 64; i++) CHECK_NEAR(got[i], 3, 0);
 
-    uint32_t layout = 0; // the host takes it as it is, and gives it back so
+    uint32_t layout = 0; // the host uses the image and restores this layout
     assert_ptr_equal(gpu_image_handle(gpu, image, &layout), (void *)vk_image);
     assert_int_equal(layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     commands = own_device_begin(&own);
@@ -220,7 +219,7 @@ TEST(a_wrapped_image_is_shared_with_the_host)
     own_device_close(&own);
 }
 
-TEST(unfinished_adopted_frames_are_limited_with_a_sentence)
+TEST(a_fifth_pending_adopted_frame_is_refused)
 {
     struct own_device own;
     open_own(&own, 0);
@@ -249,7 +248,7 @@ TEST(unfinished_adopted_frames_are_limited_with_a_sentence)
     own_device_close(&own);
 }
 
-TEST(a_device_that_cannot_be_adopted_is_refused_with_a_sentence)
+TEST(an_unsuitable_adopted_device_is_refused_with_the_reason)
 {
     struct own_device own;
     open_own(&own, OWN_DEVICE_NO_PUSH_DESCRIPTORS);

@@ -1,5 +1,4 @@
-// Devices: which there are, which is taken, what is said where none will do; objects that are
-// refused.
+// Device list and selection, error messages, refused objects, device loss.
 #include "framework/gpu_test.h"
 #include "gpu_test_shaders.h"
 
@@ -10,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-TEST(devices_are_listed_with_what_they_lack)
+TEST(devices_are_listed_with_their_missing_features)
 {
     test_gpu_require();
     struct gpu_device_info infos[16];
@@ -29,7 +28,7 @@ static struct gpu *open_device(const char *device)
     return gpu_create(test_host(), &(struct gpu_desc){ .device = device });
 }
 
-TEST(a_device_is_found_by_number_and_by_part_of_its_name)
+TEST(a_device_is_selected_by_number_or_part_of_its_name)
 {
     struct gpu *best = test_gpu();
     char part[256];
@@ -53,7 +52,7 @@ TEST(a_device_is_found_by_number_and_by_part_of_its_name)
     test_gpu_finish(best);
 }
 
-TEST(an_unknown_device_is_answered_with_the_known_ones)
+TEST(an_unknown_device_lists_the_available_ones)
 {
     test_gpu_require();
     struct gpu_device_info infos[16];
@@ -80,7 +79,7 @@ TEST(a_missing_validation_layer_is_named)
     assert_int_equal(test_host()->failure, FAIL_UNSUPPORTED);
 }
 
-TEST(the_required_features_are_one_a_line)
+TEST(required_features_are_listed_one_per_line)
 {
     const char *text = gpu_required_features();
     assert_non_null(strstr(text, "\ndynamicRendering\n"));
@@ -122,7 +121,7 @@ static uint32_t run_sum(struct gpu *gpu, uint32_t word)
     return got;
 }
 
-TEST(two_devices_live_side_by_side)
+TEST(two_devices_are_independent)
 {
     test_gpu_require();
     const struct gpu_desc desc = { .validation = true };
@@ -137,7 +136,7 @@ TEST(two_devices_live_side_by_side)
     gpu_destroy(b);
 }
 
-TEST(objects_left_behind_are_named_and_freed)
+TEST(leaked_objects_are_named_and_freed)
 {
     test_gpu_require();
     struct gpu *gpu = gpu_create(test_host(), &(struct gpu_desc){ .validation = true });
@@ -147,7 +146,7 @@ TEST(objects_left_behind_are_named_and_freed)
         gpu, &(struct gpu_buffer_desc){ "forgotten.buffer", 4, GPU_BUFFER_STORAGE }, &buffer));
     assert_int_equal(gpu_live_objects(gpu), 1);
     test_forget_messages();
-    gpu_destroy(gpu); // the validation layer would complain of what the device still has
+    gpu_destroy(gpu); // the validation layer reports objects that still exist
     assert_non_null(strstr(test_last_message(), "forgotten.buffer"));
 }
 
@@ -161,7 +160,7 @@ static void check_refused(struct gpu *gpu, struct gpu_image_desc desc, enum fail
     assert_int_equal(test_host()->failure, kind);
 }
 
-TEST_GPU(images_that_cannot_be_are_refused_with_a_sentence)
+TEST_GPU(invalid_images_and_buffers_are_refused_with_the_reason)
 {
     const struct gpu_limits *l = gpu_limits(gpu);
     const uint32_t s = GPU_SAMPLED;
@@ -203,7 +202,7 @@ TEST_GPU(images_that_cannot_be_are_refused_with_a_sentence)
         gpu_buffer_create(gpu, &(struct gpu_buffer_desc){ "test.bad", 4, 1u << 20 }, &buffer));
 }
 
-TEST_GPU(handles_of_destroyed_objects_find_nothing)
+TEST_GPU(handles_of_destroyed_objects_are_invalid)
 {
     gpu_image image = test_gpu_image(gpu, GPU_2D, GPU_R8, 4, 4, 1, 1, GPU_SAMPLED), stale = image,
               none = { 0 };
@@ -212,14 +211,14 @@ TEST_GPU(handles_of_destroyed_objects_find_nothing)
     gpu_image_destroy(gpu, &none);
     assert_null(gpu_image_info(gpu, stale));
     gpu_image other =
-        test_gpu_image(gpu, GPU_2D, GPU_R8, 4, 4, 1, 1, GPU_SAMPLED); // in the same place
+        test_gpu_image(gpu, GPU_2D, GPU_R8, 4, 4, 1, 1, GPU_SAMPLED); // reuses the table entry
     assert_null(gpu_image_info(gpu, stale));
     gpu_image_destroy(gpu, &stale);
     CHECK_STRING(gpu_image_info(gpu, other)->name, "test.image");
     gpu_image_destroy(gpu, &other);
 }
 
-TEST_GPU(equal_samplers_are_one)
+TEST_GPU(equal_sampler_descriptions_share_one_sampler)
 {
     gpu_sampler a, b, c;
     struct gpu_sampler_desc desc = { .name = "test.a", .filter = GPU_LINEAR, .wrap_u = GPU_MIRROR };
@@ -235,7 +234,7 @@ TEST_GPU(equal_samplers_are_one)
     assert_false(gpu_sampler_get(gpu, &desc, &c));
 }
 
-TEST(a_lost_device_fails_every_call_and_no_more)
+TEST(after_device_loss_every_call_fails_without_a_crash)
 {
     test_gpu_require();
     struct gpu *gpu = gpu_create(test_host(), &(struct gpu_desc){ .validation = true });
@@ -263,6 +262,6 @@ TEST(a_lost_device_fails_every_call_and_no_more)
     gpu_buffer_destroy(gpu, &buffer);
     gpu_pipeline_destroy(gpu, &sum);
     assert_int_equal(gpu_live_objects(gpu), 0);
-    vkDeviceWaitIdle(gpu->device); // this one was not really lost
+    vkDeviceWaitIdle(gpu->device); // the loss was simulated
     gpu_destroy(gpu);
 }

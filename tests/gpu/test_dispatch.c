@@ -1,4 +1,4 @@
-// Compute: order through every kind of resource, constants, indirect counts, what is refused.
+// Compute: ordering through every kind of resource, constants, indirect dispatch, refused shaders.
 #include "framework/gpu_test.h"
 #include "gpu_test_shaders.h"
 
@@ -90,7 +90,7 @@ TEST_GPU(ping_pong_between_images_keeps_order)
     gpu_pipeline_destroy(gpu, &step);
 }
 
-TEST_GPU(a_volume_is_changed_in_place_step_by_step)
+TEST_GPU(in_place_updates_of_a_volume_keep_order)
 {
     enum { SIZE = 8, DEPTH = 5, STEPS = 6 };
     gpu_image volume =
@@ -110,8 +110,8 @@ TEST_GPU(a_volume_is_changed_in_place_step_by_step)
     gpu_pipeline_destroy(gpu, &step);
 }
 
-// The usages differ in the layouts that the mips pass through.
-TEST_GPU(each_mip_is_made_of_the_one_above)
+// Each mip is written as a storage image, then sampled.
+TEST_GPU(each_mip_is_computed_from_the_previous_one)
 {
     enum { SIZE = 64, MIPS = 7 };
     gpu_image image =
@@ -135,7 +135,7 @@ TEST_GPU(each_mip_is_made_of_the_one_above)
     gpu_pipeline_destroy(gpu, &reduce);
 }
 
-TEST_GPU(each_layer_is_made_of_the_one_below)
+TEST_GPU(each_layer_is_computed_from_the_previous_one)
 {
     enum { SIZE = 8, LAYERS = 6 };
     gpu_image image = test_gpu_image(gpu, GPU_2D_ARRAY, GPU_R32F, SIZE, SIZE, LAYERS, 1,
@@ -226,7 +226,7 @@ TEST_GPU(specialization_and_push_constants_reach_the_shader)
     gpu_pipeline_destroy(gpu, &hundred);
 }
 
-TEST_GPU(an_indirect_dispatch_reads_what_was_just_written)
+TEST_GPU(an_indirect_dispatch_waits_for_its_arguments)
 {
     enum { COUNT = 512 };
     gpu_buffer values = test_gpu_buffer(gpu, COUNT * 4), arguments = test_gpu_buffer(gpu, 16);
@@ -252,10 +252,10 @@ TEST_GPU(an_indirect_dispatch_reads_what_was_just_written)
     gpu_pipeline_destroy(gpu, &add);
 }
 
-TEST_GPU(transient_data_outgrows_its_ring_and_stays_right)
+TEST_GPU(transient_data_larger_than_its_ring_is_correct)
 {
     enum {
-        PIECES = 60,
+        BLOCKS = 60,
         WORDS = 3000,
         FRAMES = 5
     }; // 700 KiB a frame, from a ring that begins with 64
@@ -265,8 +265,8 @@ TEST_GPU(transient_data_outgrows_its_ring_and_stays_right)
     uint32_t expected = 0, got;
     for (int frame = 0; frame < FRAMES; frame++) {
         struct gpu_cmd *cmd = gpu_frame_begin(gpu);
-        for (uint32_t piece = 0; piece < PIECES; piece++) {
-            for (uint32_t i = 0; i < WORDS; i++) expected += words[i] = piece * i + (uint32_t)frame;
+        for (uint32_t block = 0; block < BLOCKS; block++) {
+            for (uint32_t i = 0; i < WORDS; i++) expected += words[i] = block * i + (uint32_t)frame;
             gpu_dispatch(cmd, sum,
                          GPU_BIND(gpu_transient(cmd, "Words", words, sizeof words),
                                   { "Total", .buffer = total }),
@@ -280,18 +280,17 @@ TEST_GPU(transient_data_outgrows_its_ring_and_stays_right)
     gpu_pipeline_destroy(gpu, &sum);
 }
 
-// A frame binds what it made first, its constants say, to the end, however much it makes in
-// between.
-TEST_GPU(a_binding_made_before_the_ring_grew_stays_right_to_the_frames_end)
+// A frame uses its first binding (its constants, for example) to the end.
+TEST_GPU(a_binding_stays_valid_when_the_ring_grows)
 {
-    enum { WORDS = 3000, PIECES = 100 };
+    enum { WORDS = 3000, BLOCKS = 100 };
     static uint32_t ones[WORDS], zeros[WORDS];
     for (int i = 0; i < WORDS; i++) ones[i] = 1;
     gpu_buffer total = test_gpu_buffer(gpu, 4);
     gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
     const struct gpu_binding first = gpu_transient(cmd, "Words", ones, sizeof ones);
-    for (int piece = 0; piece < PIECES; piece++) gpu_transient(cmd, "Words", zeros, sizeof zeros);
+    for (int block = 0; block < BLOCKS; block++) gpu_transient(cmd, "Words", zeros, sizeof zeros);
     gpu_dispatch(cmd, sum, GPU_BIND(first, { "Total", .buffer = total }), NULL, 0, 1, 1, 1);
     CHECK(gpu_frame_end(gpu, cmd));
     uint32_t got;
@@ -301,7 +300,7 @@ TEST_GPU(a_binding_made_before_the_ring_grew_stays_right_to_the_frames_end)
     gpu_pipeline_destroy(gpu, &sum);
 }
 
-TEST_GPU(bindings_that_a_shader_only_declares_need_not_be_given)
+TEST_GPU(bindings_that_a_shader_does_not_use_are_optional)
 {
     gpu_buffer values = test_gpu_buffer(gpu, 8 * 4);
     gpu_pipeline pipeline = test_gpu_compute(gpu, &shader_test_unused_comp);
@@ -315,7 +314,7 @@ TEST_GPU(bindings_that_a_shader_only_declares_need_not_be_given)
     gpu_pipeline_destroy(gpu, &pipeline);
 }
 
-TEST_GPU(a_cube_shows_its_faces_in_vulkans_order)
+TEST_GPU(cube_faces_are_in_vulkans_order)
 {
     gpu_image cube = test_gpu_image(gpu, GPU_CUBE, GPU_R32F, 4, 4, 0, 1, GPU_SAMPLED);
     gpu_buffer faces = test_gpu_buffer(gpu, 6 * 4);
@@ -337,7 +336,7 @@ TEST_GPU(a_cube_shows_its_faces_in_vulkans_order)
     gpu_pipeline_destroy(gpu, &pipeline);
 }
 
-TEST_GPU(no_groups_dispatch_nothing_and_too_many_are_refused)
+TEST_GPU(zero_groups_dispatch_nothing_and_too_many_are_refused)
 {
     gpu_buffer buffer = test_gpu_buffer(gpu, 64 * 4);
     gpu_pipeline pipeline = affine(gpu, 1);
@@ -368,7 +367,7 @@ static void check_refused(struct gpu *gpu, const struct gpu_shader *shader, cons
         fail_msg("\"%s\" does not say \"%s\"", test_last_message(), why);
 }
 
-TEST_GPU(shaders_that_cannot_be_are_refused_with_a_sentence)
+TEST_GPU(invalid_shaders_are_refused_with_the_reason)
 {
     uint32_t words[4096];
     struct gpu_shader shader = shader_test_affine_comp;
@@ -378,7 +377,7 @@ TEST_GPU(shaders_that_cannot_be_are_refused_with_a_sentence)
     check_refused(gpu, &shader_test_triangle_vert, "another stage");
     shader.words = words;
     for (size_t count = 0; count < shader_test_affine_comp.word_count;
-         count++) { // cut at every length
+         count++) { // truncated at every length
         shader.word_count = count;
         check_refused(gpu, &shader, count < 5 ? "not SPIR-V" : "");
     }
@@ -393,7 +392,7 @@ TEST_GPU(shaders_that_cannot_be_are_refused_with_a_sentence)
 }
 
 #ifdef NDEBUG // debug builds assert instead
-// Ends the frame: it fails, and the message says why.
+// Expects the frame to fail with this message.
 static void check_misused(struct gpu *gpu, struct gpu_cmd *cmd, const char *says)
 {
     if (!strstr(test_last_message(), says)) fail_msg("\"%s\"", test_last_message());

@@ -1,5 +1,4 @@
-// Device memory: pieces that never overlap, bytes by owner, and objects that outlive their handles
-// while in use.
+// Device memory: suballocation, bytes by owner, deferred deletes, failing allocations.
 #include "framework/gpu_test.h"
 #include "gpu_test_shaders.h"
 
@@ -19,7 +18,7 @@ static uint64_t bytes_of(struct gpu *gpu, const char *owner)
     return 0;
 }
 
-TEST_GPU(pieces_of_memory_are_aligned_and_never_overlap)
+TEST_GPU(allocations_are_aligned_and_never_overlap)
 {
     enum { SLOTS = 60, STEPS = 3000 };
     struct allocation slots[SLOTS] = { 0 };
@@ -34,7 +33,7 @@ TEST_GPU(pieces_of_memory_are_aligned_and_never_overlap)
                                        .alignment = 1u << rng_u32(&rng) % 13,
                                        .memoryTypeBits = 1 };
         bool linear = rng_u32(&rng) % 2;
-        CHECK(memory_allocate(gpu, &needs, MEMORY_DEVICE, linear, "pieces.any", slot));
+        CHECK(memory_allocate(gpu, &needs, MEMORY_DEVICE, linear, "ranges.any", slot));
         assert_int_equal(slot->offset % needs.alignment, 0);
         for (int i = 0; i < SLOTS; i++) {
             if (&slots[i] == slot || !slots[i].block || slots[i].memory != slot->memory) continue;
@@ -44,14 +43,14 @@ TEST_GPU(pieces_of_memory_are_aligned_and_never_overlap)
     }
     uint64_t sum = 0;
     for (int i = 0; i < SLOTS; i++) sum += slots[i].bytes;
-    assert_int_equal(bytes_of(gpu, "pieces"), sum);
+    assert_int_equal(bytes_of(gpu, "ranges"), sum);
     for (int i = 0; i < SLOTS; i++) memory_free(gpu, &slots[i]);
-    assert_int_equal(bytes_of(gpu, "pieces"), 0);
-    // Nothing is left in pieces: the whole block can be had again, where it was.
+    assert_int_equal(bytes_of(gpu, "ranges"), 0);
+    // Free ranges are merged: the block has room for large allocations again.
     VkMemoryRequirements needs = { .size = 15u << 20, .alignment = 16, .memoryTypeBits = 1 };
     struct allocation large[4];
     for (int i = 0; i < 4; i++) {
-        CHECK(memory_allocate(gpu, &needs, MEMORY_DEVICE, true, "pieces.large", &large[i]));
+        CHECK(memory_allocate(gpu, &needs, MEMORY_DEVICE, true, "ranges.large", &large[i]));
         assert_ptr_equal(large[i].memory, large[0].memory);
     }
     for (int i = 0; i < 4; i++) memory_free(gpu, &large[i]);
@@ -81,7 +80,7 @@ static gpu_buffer named_buffer(struct gpu *gpu, const char *name, size_t bytes)
 TEST_GPU(bytes_are_counted_by_owner_largest_first)
 {
     gpu_image a = named_image(gpu, "grid.colour", 64), b = named_image(gpu, "grid.normal", 64);
-    gpu_image c = named_image(gpu, "huge.image", 2048); // in a block of its own
+    gpu_image c = named_image(gpu, "huge.image", 2048); // a dedicated block
     gpu_owner_push(gpu, "probes");
     gpu_buffer d = named_buffer(gpu, "sh", 1000);
     gpu_owner_pop(gpu);
@@ -101,7 +100,7 @@ TEST_GPU(bytes_are_counted_by_owner_largest_first)
     assert_int_equal(bytes_of(gpu, "grid") + bytes_of(gpu, "huge") + bytes_of(gpu, "probes"), 0);
 }
 
-TEST_GPU(what_a_frame_uses_lives_until_the_gpu_is_done)
+TEST_GPU(objects_in_use_are_freed_after_the_gpu_is_done)
 {
     gpu_buffer used = named_buffer(gpu, "used.words", 4000), total = test_gpu_buffer(gpu, 4);
     gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
@@ -112,7 +111,7 @@ TEST_GPU(what_a_frame_uses_lives_until_the_gpu_is_done)
     gpu_buffer_destroy(gpu, &used);
     assert_int_equal(used.id, 0);
     gpu_pipeline_destroy(gpu, &sum);
-    gpu_buffer other = named_buffer(gpu, "other.words", 4000); // must not get that memory
+    gpu_buffer other = named_buffer(gpu, "other.words", 4000); // must not reuse that memory
     assert_true(bytes_of(gpu, "used") > 0);
     CHECK(gpu_frame_end(gpu, cmd));
     uint32_t got;
@@ -124,14 +123,14 @@ TEST_GPU(what_a_frame_uses_lives_until_the_gpu_is_done)
     gpu_buffer_destroy(gpu, &total);
 }
 
-TEST_GPU(objects_come_and_go_over_many_frames)
+TEST_GPU(objects_are_created_and_destroyed_over_many_frames)
 {
     uint32_t expected = 0, got;
     gpu_buffer total = test_gpu_buffer(gpu, 4);
     gpu_pipeline sum = test_gpu_compute(gpu, &shader_test_sum_comp);
     for (uint32_t frame = 0; frame < 20; frame++) {
         struct gpu_cmd *cmd = gpu_frame_begin(gpu);
-        gpu_buffer words = named_buffer(gpu, "passing.words", 400 + 4 * frame);
+        gpu_buffer words = named_buffer(gpu, "temporary.words", 400 + 4 * frame);
         gpu_fill_buffer(cmd, words, 0, 400, frame); // the rest is zero
         gpu_dispatch(cmd, sum, GPU_BIND({ "Words", .buffer = words }, { "Total", .buffer = total }),
                      NULL, 0, 1, 1, 1);
@@ -141,47 +140,47 @@ TEST_GPU(objects_come_and_go_over_many_frames)
     }
     CHECK(gpu_buffer_download(gpu, total, 0, &got, 4));
     assert_int_equal(got, expected);
-    assert_int_equal(bytes_of(gpu, "passing"), 0);
+    assert_int_equal(bytes_of(gpu, "temporary"), 0);
     gpu_buffer_destroy(gpu, &total);
     gpu_pipeline_destroy(gpu, &sum);
 }
 
-// A host whose n-th allocation fails, and which knows what is still out.
-struct poor {
-    int left, out;
+// A host allocator that fails after `left` allocations and counts live ones.
+struct failing_allocator {
+    int left, live;
 };
 
-static void *poor_reallocate(void *user, void *old, size_t bytes)
+static void *failing_reallocate(void *user, void *old, size_t bytes)
 {
-    struct poor *poor = user;
+    struct failing_allocator *allocator = user;
     if (!bytes) {
-        if (old) poor->out--;
+        if (old) allocator->live--;
         free(old);
         return NULL;
     }
-    if (poor->left-- <= 0) return NULL;
-    if (!old) poor->out++;
+    if (allocator->left-- <= 0) return NULL;
+    if (!old) allocator->live++;
     return realloc(old, bytes);
 }
 
-// A whole small life. Some failures are survived: what cannot be remembered to be freed later is
-// freed at once.
-static bool live(struct host *host)
+// Creates a device, runs one frame and destroys everything. Some failures are no errors: an object
+// that cannot be queued for a deferred delete is freed at once.
+static bool use_device(struct host *host)
 {
     struct gpu *gpu = gpu_create(host, &(struct gpu_desc){ .device = NULL });
     if (!gpu) return false;
     const struct gpu_image_desc image_desc = {
-        "poor.image", GPU_2D, GPU_R32F, 16, 16, 1, 2, GPU_SAMPLED | GPU_STORAGE
+        "test.image", GPU_2D, GPU_R32F, 16, 16, 1, 2, GPU_SAMPLED | GPU_STORAGE
     };
-    const struct gpu_buffer_desc buffer_desc = { "poor.buffer", 4, GPU_BUFFER_STORAGE };
+    const struct gpu_buffer_desc buffer_desc = { "test.buffer", 4, GPU_BUFFER_STORAGE };
     const uint32_t words[4] = { 1, 2, 3, 4 };
     gpu_image image;
     gpu_buffer total;
     gpu_pipeline sum, reduce;
     bool ok = gpu_image_create(gpu, &image_desc, &image);
     ok = gpu_buffer_create(gpu, &buffer_desc, &total) && ok;
-    ok = gpu_compute_pipeline_create(gpu, "poor.sum", &shader_test_sum_comp, NULL, 0, &sum) && ok;
-    ok = gpu_compute_pipeline_create(gpu, "poor.reduce", &shader_test_reduce_comp, NULL, 0,
+    ok = gpu_compute_pipeline_create(gpu, "test.sum", &shader_test_sum_comp, NULL, 0, &sum) && ok;
+    ok = gpu_compute_pipeline_create(gpu, "test.reduce", &shader_test_reduce_comp, NULL, 0,
                                      &reduce) &&
          ok;
     struct gpu_cmd *cmd = ok ? gpu_frame_begin(gpu) : NULL;
@@ -207,21 +206,21 @@ static bool live(struct host *host)
     return ok;
 }
 
-TEST(whichever_allocation_fails_nothing_is_lost)
+TEST(no_failing_allocation_leaks)
 {
     test_gpu_require();
     struct host host = host_default();
-    struct poor poor = { 0 };
-    host.reallocate = poor_reallocate;
-    host.user = &poor;
+    struct failing_allocator allocator = { 0 };
+    host.reallocate = failing_reallocate;
+    host.user = &allocator;
     int n = 0;
     do {
         assert_true(n < 200);
-        poor = (struct poor){ .left = n++ };
+        allocator = (struct failing_allocator){ .left = n++ };
         host.failure = FAIL_NONE;
-        bool done = live(&host);
-        assert_int_equal(poor.out, 0);
+        bool done = use_device(&host);
+        assert_int_equal(allocator.live, 0);
         if (!done) assert_int_equal(host.failure, FAIL_MEMORY);
-    } while (poor.left < 0);
+    } while (allocator.left < 0);
     assert_true(n > 10);
 }

@@ -1,4 +1,4 @@
-// Shaders that change on disk.
+// Reloading of shaders that changed on disk.
 #include "framework/gpu_test.h"
 #include "gpu_test_shaders.h"
 
@@ -13,7 +13,7 @@ static void write_file(const char *path, const void *data, size_t bytes)
     CHECK(file && fwrite(data, 1, bytes, file) == bytes && fclose(file) == 0);
 }
 
-// What the pipeline writes, with a frame before it still in flight.
+// The value that the pipeline writes.
 static uint32_t run(struct gpu *gpu, gpu_pipeline pipeline)
 {
     const uint32_t push[2] = { 0 };
@@ -28,7 +28,7 @@ static uint32_t run(struct gpu *gpu, gpu_pipeline pipeline)
     return got;
 }
 
-TEST(a_changed_shader_is_reloaded_and_a_bad_one_is_not)
+TEST(a_changed_shader_is_reloaded_and_an_invalid_one_is_not)
 {
     test_gpu_require();
     char path[512];
@@ -48,7 +48,7 @@ TEST(a_changed_shader_is_reloaded_and_a_bad_one_is_not)
     assert_int_equal(run(gpu, pipeline), 2); // another value, through another binding
     assert_int_equal(gpu_reload_shaders(gpu), 0);
 
-    write_file(path, second->words, second->word_count * 4 - 20); // cut off
+    write_file(path, second->words, second->word_count * 4 - 20); // truncated
     test_forget_messages();
     assert_int_equal(gpu_reload_shaders(gpu), 0);
     assert_non_null(strstr(test_last_message(), "the previous one is kept"));
@@ -62,8 +62,8 @@ TEST(a_changed_shader_is_reloaded_and_a_bad_one_is_not)
     assert_int_equal(run(gpu, pipeline), 1);
     gpu_pipeline_destroy(gpu, &pipeline);
 
-    write_file(path, second->words,
-               second->word_count * 4); // a file that is there from the start is used
+    // An existing file is used.
+    write_file(path, second->words, second->word_count * 4);
     pipeline = test_gpu_compute(gpu, first);
     assert_int_equal(run(gpu, pipeline), 2);
     gpu_pipeline_destroy(gpu, &pipeline);
@@ -77,11 +77,11 @@ TEST(a_changed_shader_is_reloaded_and_a_bad_one_is_not)
     gpu_destroy(gpu);
 }
 
-TEST(a_folder_that_is_not_there_is_said_to_be_missing)
+TEST(a_missing_shader_folder_is_reported)
 {
     test_gpu_require();
     struct host host = *test_host();
-    host.log_up_to = LOG_WARNING; // nothing comes after it
+    host.log_up_to = LOG_WARNING; // the warning is then the last message
     test_forget_messages();
     struct gpu *gpu = gpu_create(&host, &(struct gpu_desc){ .shader_dir = test_path("nowhere") });
     CHECK(gpu != NULL);

@@ -1,5 +1,4 @@
-// Rendering: depth, fronts, blending, targets of every shape, and what is read and written around
-// them.
+// Rendering: depth, culling, blending, every kind of target, barriers around renderings.
 #include "framework/gpu_test.h"
 #include "gpu_test_shaders.h"
 
@@ -81,7 +80,7 @@ TEST_GPU(the_nearer_triangle_wins_with_reversed_depth)
     gpu_pipeline_destroy(gpu, &pipeline);
 }
 
-TEST_GPU(counter_clockwise_in_the_image_is_the_front)
+TEST_GPU(counter_clockwise_faces_are_front_faces)
 {
     const struct {
         enum gpu_cull cull;
@@ -134,7 +133,7 @@ TEST_GPU(a_viewport_bounds_what_is_drawn)
     gpu_pipeline_destroy(gpu, &pipeline);
 }
 
-TEST_GPU(renderings_add_up_where_they_load_and_blend)
+TEST_GPU(loaded_targets_are_blended)
 {
     gpu_image color = target(gpu, GPU_RGBA32F, 0);
     struct gpu_graphics_desc desc = triangle_desc;
@@ -189,7 +188,7 @@ TEST_GPU(a_smaller_rendering_leaves_the_rest_zero)
     gpu_image_destroy(gpu, &color);
 }
 
-TEST_GPU(what_is_rendered_can_be_sampled_and_rendered_again)
+TEST_GPU(a_target_is_sampled_and_rendered_again)
 {
     gpu_image images[2] = { target(gpu, GPU_RGBA32F, GPU_SAMPLED),
                             target(gpu, GPU_RGBA32F, GPU_SAMPLED) };
@@ -207,7 +206,7 @@ TEST_GPU(what_is_rendered_can_be_sampled_and_rendered_again)
         expected = 3;
         for (int i = 0; i < 6; i++) {
             struct gpu_binding source = { .name = "image", .image = images[i % 2] };
-            // Announced in every other rendering: both ways must wait.
+            // Some renderings list the texture in `reads`, others not: all must wait.
             gpu_render_begin(cmd,
                              &(struct gpu_render_desc){ .color = { { .image = images[1 - i % 2] } },
                                                         .color_count = 1,
@@ -233,9 +232,9 @@ TEST_GPU(what_is_rendered_can_be_sampled_and_rendered_again)
     gpu_pipeline_destroy(gpu, &doubling);
 }
 
-// The second draw needs an image that a dispatch wrote and nobody announced: the rendering is
-// interrupted, and what the first draw left must be there afterwards.
-TEST_GPU(a_draw_that_must_wait_keeps_what_was_drawn)
+// The second draw samples an image that was just cleared and is not listed in `reads`: the
+// rendering is interrupted and must then load its target.
+TEST_GPU(an_interrupted_rendering_keeps_its_target)
 {
     gpu_image color = target(gpu, GPU_RGBA32F, 0), values = target(gpu, GPU_RGBA32F, GPU_SAMPLED);
     struct gpu_graphics_desc desc = triangle_desc;
@@ -263,14 +262,14 @@ TEST_GPU(a_draw_that_must_wait_keeps_what_was_drawn)
     gpu_pipeline_destroy(gpu, &doubling);
 }
 
-TEST_GPU(what_is_rendered_can_be_read_by_a_dispatch)
+TEST_GPU(a_dispatch_reads_a_target)
 {
     gpu_image color = target(gpu, GPU_RGBA32F, GPU_SAMPLED | GPU_STORAGE);
     gpu_buffer texels = test_gpu_buffer(gpu, PIXELS * 16);
     gpu_pipeline plain = graphics(gpu, &triangle_desc),
                  fetch = test_gpu_compute(gpu, &shader_test_fetch_comp);
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
-    for (int i = 1; i <= 3; i++) { // and the next rendering waits for the dispatch to have read
+    for (int i = 1; i <= 3; i++) { // each rendering waits for the previous dispatch
         begin(cmd, color, false);
         draw(cmd, plain, (float)i, 0);
         gpu_render_end(cmd);
@@ -288,7 +287,7 @@ TEST_GPU(what_is_rendered_can_be_read_by_a_dispatch)
     gpu_pipeline_destroy(gpu, &fetch);
 }
 
-TEST_GPU(a_depth_image_is_compared_layer_by_layer)
+TEST_GPU(each_layer_of_a_depth_array_is_compared)
 {
     enum { LAYERS = 3 };
     gpu_image depth = test_gpu_image(gpu, GPU_2D_ARRAY, GPU_D32F, WIDTH, HEIGHT, LAYERS, 1,
@@ -338,7 +337,7 @@ TEST_GPU(a_depth_image_is_compared_layer_by_layer)
     gpu_pipeline_destroy(gpu, &compare);
 }
 
-TEST_GPU(each_mip_is_rendered_from_the_one_above)
+TEST_GPU(each_mip_is_rendered_from_the_previous_one)
 {
     enum { MIPS = 4 };
     gpu_image image = test_gpu_image(gpu, GPU_2D, GPU_RGBA32F, WIDTH, HEIGHT, 1, MIPS,
@@ -440,7 +439,7 @@ TEST_GPU(fragments_write_buffers_that_the_next_pass_reads)
     gpu_pipeline_destroy(gpu, &sum);
 }
 
-TEST_GPU(indices_choose_vertices_from_an_offset_on)
+TEST_GPU(indices_are_read_from_an_offset)
 {
     gpu_image color = target(gpu, GPU_RGBA32F, 0);
     gpu_buffer indices = test_gpu_buffer(gpu, 7 * 4);
@@ -467,7 +466,7 @@ TEST_GPU(indices_choose_vertices_from_an_offset_on)
 }
 
 #ifdef NDEBUG // debug builds assert instead
-// Ends the frame: it fails, and the message says why.
+// Expects the frame to fail with this message.
 static void check_misused(struct gpu *gpu, struct gpu_cmd *cmd, const char *says)
 {
     if (!strstr(test_last_message(), says)) fail_msg("\"%s\"", test_last_message());

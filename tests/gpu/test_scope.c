@@ -1,4 +1,4 @@
-// Scopes and their times.
+// Scopes and their timings.
 #include "framework/gpu_test.h"
 #include "gpu_test_shaders.h"
 
@@ -32,7 +32,8 @@ TEST_GPU(scopes_nest_and_sum_in_the_order_first_begun)
     CHECK(gpu_frame_end(gpu, cmd));
     CHECK(gpu_wait(gpu));
     struct gpu_timing t[8];
-    assert_int_equal(gpu_frame_timings(gpu, t, 8), 4); // the outer one has others inside
+    // Only the frame and innermost scopes are listed.
+    assert_int_equal(gpu_frame_timings(gpu, t, 8), 4);
     CHECK_STRING(t[0].name, "frame");
     CHECK_STRING(t[1].name, "b.once");
     CHECK_STRING(t[2].name, "a.thrice");
@@ -91,7 +92,7 @@ TEST_GPU(scopes_without_a_dot_have_the_innermost_owner)
     for (int i = 0; i < 5; i++) CHECK_STRING(t[i + 1].name, names[i]);
 }
 
-TEST_GPU(more_scopes_than_are_timed_do_no_harm)
+TEST_GPU(scopes_beyond_the_limit_are_not_timed)
 {
     struct gpu_timing t[300];
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
@@ -110,7 +111,7 @@ TEST_GPU(more_scopes_than_are_timed_do_no_harm)
     if (gpu_limits(gpu)->timestamps) assert_in_range(count, 100, 199);
 }
 
-TEST_GPU(scopes_may_stand_inside_a_rendering)
+TEST_GPU(scopes_may_be_inside_a_rendering)
 {
     gpu_image color = test_gpu_image(gpu, GPU_2D, GPU_RGBA8, 8, 8, 1, 1, GPU_ATTACHMENT);
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);

@@ -1,4 +1,4 @@
-// Uploads, downloads, conversions to float, and the zeros of what is new.
+// Uploads, downloads, conversion to float, zero initialisation.
 #include "framework/gpu_test.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ static void fill(uint8_t *bytes, size_t count, uint32_t seed)
     }
 }
 
-// Floats keep any bits but those of NaNs, which copies may quiet; small exponents have none.
+// Copies may change the bits of a NaN; a small exponent avoids them.
 static void avoid_nan(enum gpu_format format, uint8_t *bytes, size_t count)
 {
     bool half = format == GPU_R16F || format == GPU_RG16F || format == GPU_RGBA16F;
@@ -36,7 +36,7 @@ static void check_identity(struct gpu *gpu, enum gpu_dimension dimension, enum g
     gpu_image image = test_gpu_image(gpu, dimension, format, SIZE, SIZE, depth, MIPS, GPU_SAMPLED);
     uint32_t layers = dimension == GPU_3D ? 1 : depth;
     uint8_t sent[SIZE * SIZE * 16 * 16], got[sizeof sent];
-    for (int pass = 0; pass < 2; pass++) { // all are sent before any is fetched
+    for (int pass = 0; pass < 2; pass++) { // all uploads before the first download
         for (uint32_t layer = 0; layer < layers; layer++) {
             for (uint32_t mip = 0; mip < MIPS; mip++) {
                 uint32_t slices = dimension == GPU_3D ? shrink(depth, mip) : 1;
@@ -57,12 +57,12 @@ static void check_identity(struct gpu *gpu, enum gpu_dimension dimension, enum g
     gpu_image_destroy(gpu, &image);
 }
 
-TEST_GPU(what_is_uploaded_is_downloaded_in_every_format)
+TEST_GPU(uploads_are_downloaded_unchanged_in_every_format)
 {
     for (enum gpu_format f = GPU_R8; f < GPU_FORMAT_COUNT; f++) check_identity(gpu, GPU_2D, f, 1);
 }
 
-TEST_GPU(what_is_uploaded_is_downloaded_in_every_dimension)
+TEST_GPU(uploads_are_downloaded_unchanged_in_every_dimension)
 {
     check_identity(gpu, GPU_2D_ARRAY, GPU_RG16F, 3);
     check_identity(gpu, GPU_3D, GPU_RGBA16F, 10);
@@ -70,7 +70,7 @@ TEST_GPU(what_is_uploaded_is_downloaded_in_every_dimension)
     check_identity(gpu, GPU_CUBE_ARRAY, GPU_D32F, 12);
 }
 
-TEST_GPU(a_buffer_keeps_what_is_written_to_its_parts)
+TEST_GPU(partial_buffer_uploads_keep_the_rest)
 {
     uint8_t expected[1003], got[1003];
     gpu_buffer buffer = test_gpu_buffer(gpu, sizeof expected);
@@ -87,8 +87,8 @@ TEST_GPU(a_buffer_keeps_what_is_written_to_its_parts)
     gpu_buffer_destroy(gpu, &buffer);
 }
 
-// Memory that was in use before, so that zeros are not there by chance.
-static void soil(struct gpu *gpu)
+// Leaves nonzero bytes in freed memory, so that a new object is not zero by chance.
+static void dirty_memory(struct gpu *gpu)
 {
     gpu_buffer buffer = test_gpu_buffer(gpu, 1 << 20);
     gpu_image image = test_gpu_image(gpu, GPU_2D, GPU_RGBA32F, 256, 256, 1, 1, GPU_SAMPLED);
@@ -105,7 +105,7 @@ static void soil(struct gpu *gpu)
 TEST_GPU(new_images_are_zero_in_every_format)
 {
     for (enum gpu_format f = GPU_R8; f < GPU_FORMAT_COUNT; f++) {
-        soil(gpu);
+        dirty_memory(gpu);
         gpu_image image = test_gpu_image(gpu, GPU_2D_ARRAY, f, 16, 16, 3, 2, GPU_SAMPLED);
         uint8_t got[16 * 16 * 16];
         for (uint32_t layer = 0; layer < 3; layer++) {
@@ -119,7 +119,7 @@ TEST_GPU(new_images_are_zero_in_every_format)
 
 TEST_GPU(new_buffers_are_zero)
 {
-    soil(gpu);
+    dirty_memory(gpu);
     uint8_t got[4099];
     gpu_buffer buffer = test_gpu_buffer(gpu, sizeof got);
     CHECK(gpu_buffer_download(gpu, buffer, 0, got, sizeof got));
@@ -127,9 +127,9 @@ TEST_GPU(new_buffers_are_zero)
     gpu_buffer_destroy(gpu, &buffer);
 }
 
-TEST_GPU(a_part_upload_leaves_the_rest_of_an_image_zero)
+TEST_GPU(a_partial_upload_leaves_the_rest_of_an_image_zero)
 {
-    soil(gpu);
+    dirty_memory(gpu);
     gpu_image image = test_gpu_image(gpu, GPU_2D, GPU_R32U, 4, 4, 1, 2, GPU_STORAGE);
     uint32_t ones[16], got[4];
     memset(ones, 0xff, sizeof ones);
@@ -150,7 +150,7 @@ static void check_float(struct gpu *gpu, enum gpu_format format, const void *tex
     gpu_image_destroy(gpu, &image);
 }
 
-TEST_GPU(every_format_becomes_floats_by_its_definition)
+TEST_GPU(every_format_converts_to_float)
 {
     check_float(gpu, GPU_R8, (uint8_t[]){ 51 }, (float[]){ 0.2f, 0, 0, 1 });
     check_float(gpu, GPU_RG8, (uint8_t[]){ 0, 255 }, (float[]){ 0, 1, 0, 1 });
@@ -161,7 +161,7 @@ TEST_GPU(every_format_becomes_floats_by_its_definition)
     check_float(gpu, GPU_RGBA8_SNORM, (int8_t[]){ -128, -127, 127, 0 }, (float[]){ -1, -1, 1, 0 });
     check_float(gpu, GPU_RG16_SNORM, (int16_t[]){ -32768, 16384 },
                 (float[]){ -1, 16384.0f / 32767, 0, 1 });
-    // One, the least subnormal, minus the largest, a third rounded.
+    // 1, the smallest subnormal, the most negative finite value, 1/3 rounded.
     check_float(gpu, GPU_RGBA16F, (uint16_t[]){ 0x3c00, 0x0001, 0xfbff, 0x3555 },
                 (float[]){ 1, 5.9604645e-8f, -65504, 0.33325195f });
     check_float(gpu, GPU_RG16F, (uint16_t[]){ 0x7c00, 0x8400 },
@@ -176,7 +176,7 @@ TEST_GPU(every_format_becomes_floats_by_its_definition)
     check_float(gpu, GPU_B10G11R11F, &packed, (float[]){ 1, 1.5f, 2, 1 });
 }
 
-TEST_GPU(mips_are_means_of_four)
+TEST_GPU(mips_are_means_of_four_texels)
 {
     gpu_image image = test_gpu_image(gpu, GPU_2D_ARRAY, GPU_RGBA8, 4, 4, 2, 3, GPU_SAMPLED);
     uint8_t texels[16][4];
@@ -193,7 +193,7 @@ TEST_GPU(mips_are_means_of_four)
     gpu_image_destroy(gpu, &image);
 }
 
-TEST_GPU(transfers_of_the_wrong_size_or_place_are_refused)
+TEST_GPU(transfers_of_a_wrong_size_or_range_are_refused)
 {
     gpu_image image = test_gpu_image(gpu, GPU_2D, GPU_RGBA8, 4, 4, 1, 1, GPU_SAMPLED);
     gpu_buffer buffer = test_gpu_buffer(gpu, 64), none = { 0 };
@@ -246,7 +246,7 @@ TEST_GPU(a_readback_returns_a_frames_bytes_once_the_frame_is_done)
     CHECK(gpu_wait(gpu));
     CHECK(gpu_readback_poll(gpu, &readback, got, sizeof got));
     CHECK(got[0] == 3 && got[1] == 4 && got[2] == 1 && got[3] == 2);
-    CHECK(!gpu_readback_poll(gpu, &readback, got, sizeof got)); // each copy once
+    CHECK(!gpu_readback_poll(gpu, &readback, got, sizeof got)); // each copy is returned once
     gpu_readback_destroy(gpu, &readback);
     gpu_buffer_destroy(gpu, &buffer);
 }

@@ -1,5 +1,5 @@
 #version 460
-// Arguments for an indirect dispatch: one group for each 64 of the count.
+// Arguments for an indirect dispatch: one work group per 64 of the count.
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 0, std140) uniform Count
 {

@@ -1,5 +1,5 @@
 #version 460
-// The six faces of a cube along the axes, in the order +x, −x, +y, −y, +z, −z.
+// Samples the six faces of a cube map along the axes, in the order +x, −x, +y, −y, +z, −z.
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 0) uniform samplerCube cube;
 layout(set = 0, binding = 1, std430) writeonly buffer Faces

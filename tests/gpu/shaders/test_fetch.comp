@@ -1,5 +1,5 @@
 #version 460
-// The texels of a texture's first seen mip, to a buffer.
+// Copies the first mip of an image view to a buffer.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2D image;
 layout(set = 0, binding = 1, std430) writeonly buffer Texels

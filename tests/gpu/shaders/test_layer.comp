@@ -1,5 +1,5 @@
 #version 460
-// A layer, seen as a 2D image, from the one below it in an array of layers: its value plus one.
+// layer = below + 1; both are 2D views of layers of one array.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2D below;
 layout(set = 0, binding = 1, r32f) uniform writeonly image2D layer;

@@ -1,5 +1,5 @@
 #version 460
-// A mip from the one above: the sum of four texels, read through a sampler.
+// Computes a mip: sums of four texels of the previous mip.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2D above;
 layout(set = 0, binding = 1, r32f) uniform writeonly image2D below;

@@ -1,5 +1,5 @@
 #version 460
-// What test_reload.comp is changed to: another value, and another binding.
+// The changed version of test_reload.comp: another value and another binding.
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 1, std430) writeonly buffer Values
 {

@@ -1,5 +1,5 @@
 #version 460
-// Total += the sum of some words: a chain through transient data.
+// total += sum of all words.
 layout(local_size_x = 8) in;
 layout(set = 0, binding = 0, std430) readonly buffer Words
 {

@@ -1,5 +1,5 @@
 #version 460
-// Twice the texel below the pixel.
+// Twice the texel at the pixel.
 layout(set = 0, binding = 0) uniform sampler2D image;
 layout(location = 0) out vec4 color;
 

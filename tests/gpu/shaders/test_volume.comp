@@ -1,5 +1,5 @@
 #version 460
-// In place: value × 2 + z.
+// In place: value = 2 · value + z.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, r32f) uniform image3D volume;
 
