@@ -71,8 +71,8 @@ int fixture_matte(struct frame_fixture *s, vec3s albedo)
 
 int fixture_instance(struct frame_fixture *s, int mesh, const struct node *node)
 {
-    struct node still = node_default();
-    int n = scene_add_node(s->scene, node ? node : &still);
+    struct node identity = node_default();
+    int n = scene_add_node(s->scene, node ? node : &identity);
     int index =
         scene_add_instance(s->scene, &(struct instance){ .node = n, .mesh = mesh, .skin = -1 });
     assert_true(n >= 0 && index >= 0);
@@ -153,9 +153,9 @@ struct world_light *fixture_add_spot(struct frame_fixture *s, vec3s position, ve
                                               .intensity = candela });
 }
 
-void fixture_look(struct frame_fixture *s, vec3s eye, vec3s target)
+void fixture_look(struct frame_fixture *s, vec3s position, vec3s target)
 {
-    s->input.camera = camera_look_at(eye, target, 1.0f, 0.05f);
+    s->input.camera = camera_look_at(position, target, 1.0f, 0.05f);
 }
 
 float *fixture_read(struct frame_fixture *s, enum frame_readback what)

@@ -46,7 +46,7 @@ struct world_light *fixture_add_sun(struct frame_fixture *s, vec3s direction, ve
 struct world_light *fixture_add_point(struct frame_fixture *s, vec3s position, vec3s candela);
 struct world_light *fixture_add_spot(struct frame_fixture *s, vec3s position, vec3s direction,
                                      float inner_rad, float outer_rad, vec3s candela);
-void fixture_look(struct frame_fixture *s, vec3s eye, vec3s target);
+void fixture_look(struct frame_fixture *s, vec3s position, vec3s target);
 
 // Owned by the caller (free); 3 channels, depth and visibility 1.
 float *fixture_read(struct frame_fixture *s, enum frame_readback what);

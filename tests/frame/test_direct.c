@@ -1,4 +1,4 @@
-// Direct light against closed forms and a C twin of the reflection.
+// Direct light against closed forms and the BRDF in double precision.
 #include "frame/frame_fixture.h"
 
 #include <math.h>
@@ -7,8 +7,8 @@
 
 static const double PI = 3.14159265358979323846;
 
-// The twin of brdf.glsl, in double: Lambert + D V F.
-static double reflect(double albedo, double metallic, double roughness, vec3s n, vec3s v, vec3s l)
+// brdf.glsl in double precision: Lambert + D V F.
+static double brdf(double albedo, double metallic, double roughness, vec3s n, vec3s v, vec3s l)
 {
     double r = fmax(roughness, 0.045), a = r * r, a2 = a * a;
     vec3s h = glms_vec3_normalize(glms_vec3_add(v, l));
@@ -22,14 +22,13 @@ static double reflect(double albedo, double metallic, double roughness, vec3s n,
     return albedo * (1 - metallic) / PI + d * vis * f;
 }
 
-// Reflection of the visible point of y = 0 at a pixel, with the G-buffer's own albedo.
-static double reflect_at(struct frame_fixture *s, uint32_t x, uint32_t y, vec3s l)
+// BRDF at a pixel's point of the plane y = 0, with the G-buffer's albedo.
+static double brdf_at(struct frame_fixture *s, uint32_t x, uint32_t y, vec3s l)
 {
     vec3s n = vec3_of(0, 1, 0), p = fixture_ray_on_plane(s, x, y, n, 0);
     vec3s v = glms_vec3_normalize(glms_vec3_sub(s->input.camera.eye, p));
     vec3s rm = fixture_pixel(s, READ_ROUGHNESS_METALLIC, x, y);
-    return reflect((double)fixture_pixel(s, READ_ALBEDO, x, y).x, (double)rm.y, (double)rm.x, n, v,
-                   l);
+    return brdf((double)fixture_pixel(s, READ_ALBEDO, x, y).x, (double)rm.y, (double)rm.x, n, v, l);
 }
 
 static void begin_on_floor(struct frame_fixture *s, struct gpu *gpu, float albedo)
@@ -39,7 +38,7 @@ static void begin_on_floor(struct frame_fixture *s, struct gpu *gpu, float albed
     fixture_look(s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
 }
 
-TEST_GPU(sun_on_a_plane_reads_e_cos_times_the_reflection)
+TEST_GPU(sun_on_a_plane_gives_irradiance_times_the_brdf)
 {
     for (int i = 0; i < 4; i++) {
         struct frame_fixture s;
@@ -49,15 +48,15 @@ TEST_GPU(sun_on_a_plane_reads_e_cos_times_the_reflection)
         fixture_open(&s);
         fixture_render(&s);
         double lambert = (double)fixture_pixel(&s, READ_ALBEDO, 10, 20).x / PI;
-        double expected = 1000 * (double)to_sun.y * reflect_at(&s, 10, 20, to_sun);
+        double expected = 1000 * (double)to_sun.y * brdf_at(&s, 10, 20, to_sun);
         CHECK_RELATIVE(fixture_pixel(&s, READ_DIRECT, 10, 20).x, expected, 2e-3);
-        // Almost all of it is Lambert's: at full roughness GGX adds a few per cent.
+        // Mostly Lambertian: at roughness 1 GGX adds a few per cent.
         CHECK_RELATIVE(expected, 1000 * (double)to_sun.y * lambert, 0.05);
         fixture_finish(&s);
     }
 }
 
-TEST_GPU(glossy_and_metallic_reflection_equals_its_twin)
+TEST_GPU(glossy_and_metallic_reflection_equals_the_brdf)
 {
     static const float cases[][2] = {
         { 0, 0.2f }, { 1, 0.2f }, { 1, 0.6f }, { 0.4f, 0.4f }, { 1, 1 }
@@ -72,13 +71,13 @@ TEST_GPU(glossy_and_metallic_reflection_equals_its_twin)
         fixture_floor(&s, 8, fixture_material(&s, &m));
         fixture_look(&s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
         vec3s to_sun =
-            glms_vec3_normalize(vec3_of(0, 1, -1)); // mirrors into the middle of the picture
+            glms_vec3_normalize(vec3_of(0, 1, -1)); // mirror reflection at the image centre
         fixture_add_sun(&s, glms_vec3_negate(to_sun), vec3_of(10, 10, 10));
         fixture_open(&s);
         fixture_render(&s);
         for (uint32_t y = 12; y < 20; y += 2) {
-            double expected = 10 * (double)to_sun.y * reflect_at(&s, 17, y, to_sun);
-            // Normals of 11 bits turn a narrow lobe a little.
+            double expected = 10 * (double)to_sun.y * brdf_at(&s, 17, y, to_sun);
+            // 11-bit normals rotate a narrow lobe slightly.
             CHECK_RELATIVE(fixture_pixel(&s, READ_DIRECT, 17, y).x, expected, 1e-2);
         }
         fixture_finish(&s);
@@ -98,7 +97,7 @@ TEST_GPU(point_light_falls_off_with_the_square_of_the_distance)
         vec3s to_light = glms_vec3_sub(light, p);
         double r2 = (double)glms_vec3_norm2(to_light);
         vec3s l = glms_vec3_normalize(to_light);
-        double expected = 100 / r2 * (double)l.y * reflect_at(&s, 5, y, l);
+        double expected = 100 / r2 * (double)l.y * brdf_at(&s, 5, y, l);
         CHECK_RELATIVE(fixture_pixel(&s, READ_DIRECT, 5, y).x, expected, 3e-3);
     }
     fixture_finish(&s);
@@ -141,14 +140,14 @@ TEST_GPU(spot_falls_off_between_its_inner_and_outer_angle)
         double cone = pow(fmin(fmax(t, 0), 1), 2);
         inside += t >= 1, between += t > 0 && t < 1, outside += t <= 0;
         double expected = 100 * cone / (double)glms_vec3_norm2(to_light) * (double)l.y;
-        expected *= reflect_at(&s, x, 16, l);
+        expected *= brdf_at(&s, x, 16, l);
         CHECK_NEAR(fixture_pixel(&s, READ_DIRECT, x, 16).x, expected, 3e-3 * (expected + 0.01));
     }
     CHECK(inside > 0 && between > 0 && outside > 0);
     fixture_finish(&s);
 }
 
-TEST_GPU(half_the_sun_is_exactly_half_the_light)
+TEST_GPU(half_the_sun_gives_exactly_half_the_radiance)
 {
     struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.7f);
@@ -191,7 +190,7 @@ TEST_GPU(light_of_two_lights_is_the_sum)
     fixture_finish(&s);
 }
 
-TEST_GPU(without_light_all_is_exactly_black)
+TEST_GPU(without_light_the_image_is_exactly_black)
 {
     struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
@@ -203,7 +202,7 @@ TEST_GPU(without_light_all_is_exactly_black)
     fixture_finish(&s);
 }
 
-TEST_GPU(surfaces_turned_away_from_the_light_are_black)
+TEST_GPU(surfaces_facing_away_from_the_light_are_black)
 {
     struct frame_fixture s;
     begin_on_floor(&s, gpu, 0.5f);
@@ -214,7 +213,7 @@ TEST_GPU(surfaces_turned_away_from_the_light_are_black)
     fixture_finish(&s);
 }
 
-TEST_GPU(emission_is_seen_as_its_radiance)
+TEST_GPU(emission_equals_its_radiance)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -230,7 +229,7 @@ TEST_GPU(emission_is_seen_as_its_radiance)
     fixture_finish(&s);
 }
 
-TEST_GPU(empty_scene_is_the_sky)
+TEST_GPU(empty_scene_shows_the_sky)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);

@@ -1,4 +1,4 @@
-// The frame as a whole: the contract's sum, exposure, sizes, time.
+// The whole frame: composite, exposure, sizes, change flags, refused requests.
 #include "frame/frame_fixture.h"
 
 #include "image/png_file.h"
@@ -24,37 +24,37 @@ static void begin(struct frame_fixture *s, struct gpu *gpu)
     s->input.auto_exposure = true;
 }
 
-// Fills what a technique would write with one value each.
-struct filler {
+// A technique that fills each layer with a constant.
+struct constant_layers {
     float irradiance, specular, visibility;
-    bool saw_everything;
+    bool view_is_complete;
 };
 
 static void fill(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    struct filler *f = user;
+    struct constant_layers *f = user;
     float e = f->irradiance * view->constants->radiance_scale;
     float l = f->specular * view->constants->radiance_scale;
     gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE], (float[4]){ e, e, e, 1 });
     gpu_clear_image(cmd, view->layers[FRAME_SPECULAR], (float[4]){ l, l, l, 1 });
     gpu_clear_image(cmd, view->layers[FRAME_VISIBILITY], (float[4]){ f->visibility });
-    f->saw_everything = view->width == 32 && view->light_count == 2 && view->pose &&
-                        view->constants_binding.buffer.id && view->lights_binding.buffer.id &&
-                        view->layers[FRAME_DIRECT].id && !box3_is_empty(view->bounds);
+    f->view_is_complete = view->width == 32 && view->light_count == 2 && view->pose &&
+                          view->constants_binding.buffer.id && view->lights_binding.buffer.id &&
+                          view->layers[FRAME_DIRECT].id && !box3_is_empty(view->bounds);
 }
 
-TEST_GPU(composite_is_the_contracts_sum)
+TEST_GPU(composite_is_the_sum_of_the_layers)
 {
     struct frame_fixture s;
     begin(&s, gpu);
-    struct filler f = { .irradiance = 500, .specular = 20, .visibility = 0.5f };
+    struct constant_layers f = { .irradiance = 500, .specular = 20, .visibility = 0.5f };
     s.indirect = (struct frame_indirect){
         fill, &f, FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR | FRAME_WRITES_VISIBILITY
     };
     s.input.want_indirect_layer = true;
     fixture_open(&s);
     fixture_render(&s);
-    CHECK(f.saw_everything);
+    CHECK(f.view_is_complete);
     float *color = fixture_read(&s, READ_COLOR), *direct = fixture_read(&s, READ_DIRECT);
     float *indirect = fixture_read(&s, READ_INDIRECT), *albedo = fixture_read(&s, READ_ALBEDO);
     float *depth = fixture_read(&s, READ_DEPTH),
@@ -70,7 +70,7 @@ TEST_GPU(composite_is_the_contracts_sum)
     fixture_finish(&s);
 }
 
-TEST_GPU(without_a_technique_the_sum_is_direct_light)
+TEST_GPU(without_a_technique_the_image_is_direct_light)
 {
     struct frame_fixture s;
     begin(&s, gpu);
@@ -84,14 +84,14 @@ TEST_GPU(without_a_technique_the_sum_is_direct_light)
     fixture_finish(&s);
 }
 
-TEST_GPU(exposure_is_what_the_cpu_finds)
+TEST_GPU(exposure_equals_the_cpus)
 {
     for (int i = 0; i < 3; i++) {
         struct frame_fixture s;
         begin(&s, gpu);
         s.width = i == 0 ? 32 : i == 1 ? 131 : 640;
         s.height = i == 0 ? 32 : i == 1 ? 77 : 360;
-        fixture_look(&s, vec3_of(0, 1, 3), vec3_of(0, 1, 0)); // half of it sees nothing
+        fixture_look(&s, vec3_of(0, 1, 3), vec3_of(0, 1, 0)); // half of the image is background
         fixture_open(&s);
         fixture_render(&s);
         float *direct = fixture_read(&s, READ_DIRECT), *depth = fixture_read(&s, READ_DEPTH), ev;
@@ -109,8 +109,8 @@ TEST_GPU(exposure_is_what_the_cpu_finds)
     }
 }
 
-// Where nothing in sight is lit, the lights' strength says what to expect.
-TEST_GPU(exposure_of_what_lies_in_shadow_follows_the_lights)
+// If no visible surface is lit, exposure follows from the lights' intensity.
+TEST_GPU(exposure_of_surfaces_in_shadow_follows_the_lights)
 {
     float ev[3];
     for (int i = 0; i < 3; i++) {
@@ -167,7 +167,7 @@ TEST_GPU(display_is_the_tone_mapped_color)
     fixture_finish(&s);
 }
 
-TEST_GPU(frames_of_a_still_scene_are_equal)
+TEST_GPU(frames_of_a_static_scene_are_equal)
 {
     struct frame_fixture s;
     begin(&s, gpu);
@@ -196,7 +196,7 @@ TEST_GPU(every_size_renders)
         float *motion = fixture_read(&s, READ_MOTION);
         for (size_t p = 0; p < (size_t)s.width * s.height * 3; p++)
             CHECK(isfinite(color[p]) && isfinite(display[p]) && isfinite(motion[p]));
-        // The middle of the picture looks at the sheet, whatever the size.
+        // The image centre shows the quad at every size.
         CHECK(color[3 * ((s.height / 2) * s.width + s.width / 2)] > 0);
         free(color), free(display), free(motion);
     }
@@ -209,7 +209,7 @@ struct changes {
     uint64_t index;
 };
 
-static void remember(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
+static void store_changes(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     (void)cmd;
     *(struct changes *)user =
@@ -217,12 +217,12 @@ static void remember(void *user, struct gpu_cmd *cmd, const struct frame_view *v
                           view->constants->previous_scale_ratio, view->index };
 }
 
-TEST_GPU(changes_are_told_once)
+TEST_GPU(changes_are_reported_once)
 {
     struct frame_fixture s;
     begin(&s, gpu);
     struct changes c;
-    s.indirect = (struct frame_indirect){ remember, &c, 0 };
+    s.indirect = (struct frame_indirect){ store_changes, &c, 0 };
     fixture_open(&s);
     fixture_render(&s);
     CHECK(c.cut && c.moved && c.lights && c.index == 0 && c.ratio == 1);
@@ -265,7 +265,7 @@ TEST_GPU(wrong_requests_are_refused_with_a_reason)
     fixture_finish(&s);
 }
 
-TEST_GPU(memory_estimate_bounds_what_a_frame_takes)
+TEST_GPU(memory_estimate_bounds_a_frames_memory)
 {
     struct frame_fixture s;
     begin(&s, gpu);

@@ -1,4 +1,4 @@
-// What the camera sees, against rays.
+// G-buffer layers against ray intersections and material values.
 #include "frame/frame_fixture.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 static const vec3s UP = { { 0, 1, 0 } };
 
-TEST_GPU(depth_and_position_are_where_the_ray_meets_the_plane)
+TEST_GPU(depth_and_position_equal_the_ray_intersection)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -37,7 +37,7 @@ TEST_GPU(depth_and_position_are_where_the_ray_meets_the_plane)
     fixture_finish(&s);
 }
 
-TEST_GPU(where_there_is_nothing_all_layers_are_zero)
+TEST_GPU(all_layers_of_the_background_are_zero)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -52,7 +52,7 @@ TEST_GPU(where_there_is_nothing_all_layers_are_zero)
     fixture_finish(&s);
 }
 
-TEST_GPU(normals_point_out_of_a_turned_and_stretched_surface)
+TEST_GPU(normals_point_out_of_a_rotated_and_scaled_surface)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -65,7 +65,7 @@ TEST_GPU(normals_point_out_of_a_turned_and_stretched_surface)
     fixture_look(&s, vec3_of(-0.8f, 3, 0.01f), vec3_of(-0.8f, 0, 0));
     fixture_open(&s);
     fixture_render(&s);
-    // Left of the middle the turned sheet is below the flat one, right of it above.
+    // The rotated floor is below the flat one left of the centre, above it on the right.
     vec3s n = fixture_pixel(&s, READ_NORMAL, 28, 15);
     CHECK_NEAR(n.x, -sin(0.4), 2e-3);
     CHECK_NEAR(n.y, cos(0.4), 2e-3);
@@ -102,15 +102,15 @@ static void wall(struct frame_fixture *s, int material)
     fixture_look(s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
 }
 
-TEST_GPU(normal_map_leans_along_u_and_against_v)
+TEST_GPU(normal_map_red_is_along_u_and_green_against_v)
 {
-    // glTF: red leans along +u (the tangent), green along the bitangent, which is up the image: −v.
+    // glTF: red is the tangent, +u; green is the bitangent, −v (up in the image).
     for (int axis = 0; axis < 2; axis++) {
         struct frame_fixture s;
         fixture_init(&s, gpu);
-        uint8_t lean[4] = { axis == 0 ? 218 : 128, axis == 1 ? 218 : 128, 218, 255 };
+        uint8_t texel[4] = { axis == 0 ? 218 : 128, axis == 1 ? 218 : 128, 218, 255 };
         struct material m = material_default();
-        m.normal_map = use_of(image_of(&s, 1, 1, lean, false));
+        m.normal_map = use_of(image_of(&s, 1, 1, texel, false));
         wall(&s, fixture_material(&s, &m));
         fixture_open(&s);
         fixture_render(&s);
@@ -126,13 +126,13 @@ TEST_GPU(normal_map_of_a_mirrored_instance_is_mirrored_with_it)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
-    uint8_t lean[4] = { 218, 218, 218, 255 };
+    uint8_t texel[4] = { 218, 218, 218, 255 };
     struct material m = material_default();
-    m.normal_map = use_of(image_of(&s, 1, 1, lean, false));
+    m.normal_map = use_of(image_of(&s, 1, 1, texel, false));
     wall(&s, fixture_material(&s, &m));
     struct node mirror = node_default();
     mirror.scale = vec3_of(-1, 1, 1);
-    mirror.translation = vec3_of(0, 0, 0.1f); // in front of the other
+    mirror.translation = vec3_of(0, 0, 0.1f); // in front of the original
     fixture_instance(&s, 0, &mirror);
     fixture_open(&s);
     fixture_render(&s);
@@ -144,7 +144,7 @@ TEST_GPU(normal_map_of_a_mirrored_instance_is_mirrored_with_it)
     fixture_finish(&s);
 }
 
-TEST_GPU(mirrored_instance_is_lit_on_its_right_side)
+TEST_GPU(mirrored_instance_is_lit_on_its_front_side)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -162,7 +162,7 @@ TEST_GPU(mirrored_instance_is_lit_on_its_right_side)
     fixture_finish(&s);
 }
 
-TEST_GPU(back_faces_show_only_where_double_sided_and_face_the_viewer)
+TEST_GPU(back_faces_are_visible_if_double_sided_and_face_the_camera)
 {
     for (int double_sided = 0; double_sided < 2; double_sided++) {
         struct frame_fixture s;
@@ -192,7 +192,8 @@ TEST_GPU(alpha_mask_cuts_a_hole)
         wall(&s, fixture_material(&s, &m));
         fixture_open(&s);
         fixture_render(&s);
-        // 255/255 stays, 180/255 = 0.71 stays unless cut at 0.8, 100/255 goes unless opaque.
+        // Alpha 255/255 is kept in all modes, 180/255 = 0.71 except with cutoff 0.8, 100/255 only
+        // if opaque.
         CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 8).x, 1, 1e-3);
         CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 24, 8).y, mode == 1 ? 0 : 1, 1e-3);
         CHECK_NEAR(fixture_pixel(&s, READ_ALBEDO, 8, 24).z, mode == 0 ? 1 : 0, 1e-3);
@@ -210,7 +211,7 @@ TEST_GPU(texture_transform_and_wrap_choose_the_texel)
     struct material m = material_default();
     m.base_color_map = use_of(image_of(&s, 2, 2, rgba, false));
     m.base_color_map.wrap_u = WRAP_REPEAT;
-    m.base_color_map.uv_offset[0] = 1.5f; // half the image to the left, once around
+    m.base_color_map.uv_offset[0] = 1.5f; // shifts left by half the image, wraps once
     wall(&s, fixture_material(&s, &m));
     fixture_open(&s);
     fixture_render(&s);
@@ -239,7 +240,7 @@ TEST_GPU(texture_rotation_is_counter_clockwise_in_the_image)
 }
 
 // A wall like `wall`, of n × n quads.
-static void tiled_wall(struct frame_fixture *s, int n, int material)
+static void tessellated_wall(struct frame_fixture *s, int n, int material)
 {
     vec3s positions[17 * 17];
     vec2s uv[17 * 17];
@@ -266,7 +267,7 @@ static void tiled_wall(struct frame_fixture *s, int n, int material)
     fixture_instance(s, mesh, NULL);
 }
 
-TEST_GPU(textures_do_not_depend_on_how_a_surface_is_tiled)
+TEST_GPU(textures_do_not_depend_on_the_tessellation)
 {
     float *albedo[2];
     uint8_t rgba[64 * 64 * 4];
@@ -280,7 +281,7 @@ TEST_GPU(textures_do_not_depend_on_how_a_surface_is_tiled)
         s.width = s.height = 64;
         struct material m = material_default();
         m.base_color_map.image = image_of(&s, 64, 64, rgba, false);
-        tiled_wall(&s, i == 0 ? 1 : 16, fixture_material(&s, &m));
+        tessellated_wall(&s, i == 0 ? 1 : 16, fixture_material(&s, &m));
         fixture_open(&s);
         fixture_render(&s);
         albedo[i] = fixture_read(&s, READ_ALBEDO);
@@ -291,11 +292,11 @@ TEST_GPU(textures_do_not_depend_on_how_a_surface_is_tiled)
         CHECK_NEAR(albedo[0][i], albedo[1][i], 0.03);
         most = fmaxf(most, albedo[0][i]);
     }
-    CHECK(most > 0.7f); // magnified: texels are told apart
+    CHECK(most > 0.7f); // magnified: single texels are visible
     free(albedo[0]), free(albedo[1]);
 }
 
-TEST_GPU(morphed_vertices_are_drawn_and_moved_where_the_pose_has_them)
+TEST_GPU(morphed_vertices_and_their_motion_follow_the_pose)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -324,8 +325,7 @@ TEST_GPU(morphed_vertices_are_drawn_and_moved_where_the_pose_has_them)
     fixture_render(&s);
     CHECK_NEAR(fixture_pixel(&s, READ_DEPTH, 16, 16).x, 1 + 1 + 1, 1e-5);
     CHECK_NEAR(fixture_pixel(&s, READ_NORMAL, 16, 16).z, 1, 1e-3);
-    // What the vertices do from one pose to the next is motion: here, a tenth of a metre to the
-    // right.
+    // Motion includes deformation between two poses: 0.1 m to the right.
     for (int v = 0; v < 3; v++) s.pose.deformed[0].positions[v].x += 0.1f;
     fixture_render(&s);
     CHECK_NEAR(fixture_pixel(&s, READ_MOTION, 16, 16).x, 0.1 / (2 * tan(0.5) * 3), 1e-4);
@@ -395,7 +395,7 @@ static vec3s screen_of(const struct world_camera *c, uint32_t width, uint32_t he
                    0.5f - 0.5f * glms_vec3_dot(to, c->up) / (along * tan_y), along);
 }
 
-// Half floats have 11 bits: motions up to 0.4 are right to 2e-4.
+// Half floats have 11 bits: motion up to 0.4 is exact to 2e-4.
 static void check_motion(struct frame_fixture *s, const struct world_camera *before, uint32_t x,
                          uint32_t y, vec3s now, vec3s then)
 {
@@ -407,7 +407,7 @@ static void check_motion(struct frame_fixture *s, const struct world_camera *bef
     CHECK_NEAR(motion.z, from.z / to.z - 1, 2e-4);
 }
 
-TEST_GPU(motion_leads_back_to_where_a_point_was)
+TEST_GPU(motion_is_the_offset_from_the_previous_position)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -418,7 +418,7 @@ TEST_GPU(motion_leads_back_to_where_a_point_was)
     fixture_open(&s);
     fixture_render(&s);
     vec3s still = fixture_pixel(&s, READ_MOTION, 20, 15);
-    CHECK(still.x == 0 && still.y == 0); // the first frame has no past
+    CHECK(still.x == 0 && still.y == 0); // the first frame has no history
     struct world_camera before = s.input.camera;
     // The camera moves, and the floor shifts by half a metre at the same time.
     fixture_look(&s, vec3_of(0.2f, 2.1f, 3.9f), vec3_of(0.1f, 0, 0.1f));
@@ -434,39 +434,38 @@ TEST_GPU(motion_leads_back_to_where_a_point_was)
     fixture_finish(&s);
 }
 
-// A pan: the eye stands and turns, and where a pixel looks in the last picture follows from that
-// alone, whatever the distance.
-TEST_GPU(motion_in_a_pan_is_that_of_directions)
+// While the camera rotates, motion depends on the pixel's direction only, not on depth.
+TEST_GPU(motion_of_a_rotating_camera_does_not_depend_on_depth)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
     const int white = fixture_matte(&s, vec3_of(1, 1, 1));
     fixture_box(&s, vec3_of(-3, -2, -5), vec3_of(4, 3, 6), true, white);
     fixture_box(&s, vec3_of(0, -2, -3), vec3_of(1, 0, -2), false, white);
-    s.input.want_motion_layer = true; // which no technique asks for here
+    s.input.want_motion_layer = true; // no technique needs it here
     s.width = 48, s.height = 32;
     fixture_look(&s, vec3_of(0, 0, 0), vec3_of(0, 0, -1));
     fixture_open(&s);
     fixture_render(&s);
     for (int step = 1; step <= 3; step++) {
         struct world_camera before = s.input.camera;
-        const float turn = 0.1f * (float)step;
-        fixture_look(&s, vec3_of(0, 0, 0), vec3_of(sinf(turn), -0.05f, -cosf(turn)));
+        const float angle = 0.1f * (float)step;
+        fixture_look(&s, vec3_of(0, 0, 0), vec3_of(sinf(angle), -0.05f, -cosf(angle)));
         fixture_render(&s);
         float *depth = fixture_read(&s, READ_DEPTH);
         for (uint32_t y = 0; y < 32; y += 5)
             for (uint32_t x = 0; x < 48; x += 5) {
                 vec3s ray = fixture_ray_on_plane(&s, x, y, s.input.camera.forward, 1);
                 check_motion(&s, &before, x, y, ray, ray);
-                CHECK(depth[y * 48 + x] > 0.0f); // a surface, as far as it may be
+                CHECK(depth[y * 48 + x] > 0.0f); // a surface at any distance
             }
         free(depth);
     }
     fixture_finish(&s);
 }
 
-// A plate comes 0.3 m nearer and goes 0.2 m to the right and 0.1 m up; what is behind it stays.
-TEST_GPU(motion_of_an_object_has_its_depth_too)
+// A plate moves 0.3 m nearer, 0.2 m right and 0.1 m up; the wall behind it is static.
+TEST_GPU(motion_of_an_object_includes_depth)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -479,8 +478,8 @@ TEST_GPU(motion_of_an_object_has_its_depth_too)
     s.input.want_motion_layer = true;
     fixture_open(&s);
     fixture_render(&s);
-    mat4s *place = &s.pose.world_from_node[s.scene->instances[plate].node];
-    for (int k = 0; k < 3; k++) place->raw[3][k] += by.raw[k];
+    mat4s *transform = &s.pose.world_from_node[s.scene->instances[plate].node];
+    for (int k = 0; k < 3; k++) transform->raw[3][k] += by.raw[k];
     fixture_render(&s);
     const vec3s back = vec3_of(0, 0, 1);
     for (uint32_t i = 12; i < 20; i += 3) {
@@ -489,8 +488,8 @@ TEST_GPU(motion_of_an_object_has_its_depth_too)
     }
     vec3s behind = fixture_pixel(&s, READ_MOTION, 1, 1);
     CHECK(behind.x == 0 && behind.y == 0 && behind.z == 0);
-    // A cut forgets where things were.
-    for (int k = 0; k < 3; k++) place->raw[3][k] += by.raw[k];
+    // A camera cut resets motion.
+    for (int k = 0; k < 3; k++) transform->raw[3][k] += by.raw[k];
     s.input.camera_cut = true;
     fixture_look(&s, vec3_of(1, 0, 0), vec3_of(0, 0, -4));
     fixture_render(&s);

@@ -1,5 +1,4 @@
-// Reflective shadow maps, read as techniques read them: the light in them is all the light there
-// is.
+// Reflective shadow maps through rsm_fetch: their total flux is the flux that the lights emit.
 #include "frame/frame_fixture.h"
 
 #include "frame_test_shaders.h"
@@ -75,7 +74,7 @@ static double total(const struct reader *r, const struct texel *t, int channel)
     return sum;
 }
 
-TEST_GPU(all_of_a_point_lights_flux_comes_back_from_a_closed_box)
+TEST_GPU(a_closed_box_reflects_all_flux_of_a_point_light)
 {
     struct frame_fixture s;
     struct reader r;
@@ -98,7 +97,7 @@ TEST_GPU(texels_lie_on_surfaces_and_face_the_light)
     struct frame_fixture s;
     struct reader r;
     begin(&s, &r, gpu);
-    // Faces that look outwards: the light still sees them from inside.
+    // Normals point outwards: the light inside sees back faces.
     fixture_box(&s, vec3_of(-1, -1, -1), vec3_of(1, 1, 1), false,
                 fixture_matte(&s, vec3_of(1, 1, 1)));
     vec3s light = vec3_of(0.3f, -0.2f, 0.1f);
@@ -116,7 +115,7 @@ TEST_GPU(texels_lie_on_surfaces_and_face_the_light)
     finish(&s, &r);
 }
 
-TEST_GPU(suns_flux_on_a_tilted_plane_is_lux_times_the_area_it_sees)
+TEST_GPU(suns_flux_on_a_plane_is_lux_times_projected_area)
 {
     for (int i = 0; i < 4; i++) {
         struct frame_fixture s;
@@ -127,14 +126,14 @@ TEST_GPU(suns_flux_on_a_tilted_plane_is_lux_times_the_area_it_sees)
         fixture_add_sun(&s, vec3_of(-sinf(angle), -cosf(angle), 0), vec3_of(1000, 1000, 1000));
         fixture_open(&s);
         struct texel *t = render(&s, &r);
-        // 16 m² seen at an angle. A border of 64 texels is known to half a texel on either side.
+        // 16 m² at an angle; each border is exact to half a texel of 64.
         CHECK_RELATIVE(total(&r, t, 0), 1000 * 16 * (double)cosf(angle), 0.06);
         free(t);
         finish(&s, &r);
     }
 }
 
-TEST_GPU(spots_flux_is_its_intensity_over_its_cone)
+TEST_GPU(spots_flux_is_the_integral_of_its_intensity)
 {
     struct frame_fixture s;
     struct reader r;
@@ -153,7 +152,7 @@ TEST_GPU(spots_flux_is_its_intensity_over_its_cone)
     finish(&s, &r);
 }
 
-TEST_GPU(metals_and_what_lies_beyond_the_range_reflect_no_diffuse_flux)
+TEST_GPU(metals_and_surfaces_beyond_the_range_reflect_no_diffuse_flux)
 {
     for (int i = 0; i < 2; i++) {
         struct frame_fixture s;
@@ -171,7 +170,7 @@ TEST_GPU(metals_and_what_lies_beyond_the_range_reflect_no_diffuse_flux)
     }
 }
 
-TEST_GPU(faces_follow_the_lights_and_vanish_with_them)
+TEST_GPU(face_count_follows_the_lights)
 {
     struct frame_fixture s;
     struct reader r;

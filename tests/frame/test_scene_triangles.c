@@ -1,5 +1,4 @@
-// What a technique sees of the scene's triangles in compute, and how still draws are told from
-// moving ones.
+// Compute dispatches over the scene's triangles; static and dynamic draws.
 #include "frame/frame_fixture.h"
 
 #include "frame/scene_gpu.h"
@@ -63,8 +62,8 @@ static void finish(struct frame_fixture *s, struct reader *r)
     fixture_finish(s);
 }
 
-// Many small meshes, so that their indices begin at all kinds of places.
-TEST_GPU(every_triangle_is_seen_once_in_world_space)
+// Many small meshes, whose indices begin at various alignments.
+TEST_GPU(every_triangle_is_dispatched_once_in_world_space)
 {
     struct frame_fixture s;
     struct reader r;
@@ -85,7 +84,7 @@ TEST_GPU(every_triangle_is_seen_once_in_world_space)
 }
 
 // More indices than one alignment, and more triangles than one workgroup.
-TEST_GPU(long_meshes_are_seen_to_their_end)
+TEST_GPU(long_meshes_are_dispatched_completely)
 {
     enum { STRIPES = 333 };
     struct frame_fixture s;
@@ -119,9 +118,8 @@ TEST_GPU(long_meshes_are_seen_to_their_end)
     finish(&s, &r);
 }
 
-// A picture whose right half is cut away: of the two triangles, split along the diagonal, one has
-// its middle there.
-TEST_GPU(what_a_mask_cuts_away_is_not_solid)
+// The mask cuts the right half of a quad, with the centroid of one of its two triangles.
+TEST_GPU(masked_centroids_are_not_solid)
 {
     struct frame_fixture s;
     struct reader r;
@@ -146,7 +144,7 @@ TEST_GPU(what_a_mask_cuts_away_is_not_solid)
     finish(&s, &r);
 }
 
-TEST_GPU(what_has_moved_once_is_told_from_what_never_did)
+TEST_GPU(draws_are_dynamic_from_their_first_movement)
 {
     struct frame_fixture s;
     struct reader r;
@@ -156,11 +154,11 @@ TEST_GPU(what_has_moved_once_is_told_from_what_never_did)
     fixture_floor(&s, 1, matte);
     fixture_open(&s);
     render(&s, &r);
-    CHECK(r.dynamic_count == 0); // all have just come
+    CHECK(r.dynamic_count == 0); // the first frame is no movement
     render(&s, &r);
     CHECK(r.dynamic_count == 0);
     s.pose.world_from_node[s.scene->instances[1].node].raw[3][1] += 0.1f;
-    s.input.camera_cut = true; // forgets how it moved, not that it moves
+    s.input.camera_cut = true; // resets motion, keeps the dynamic flag
     render(&s, &r);
     CHECK(r.dynamic_count == 1 && !r.dynamic[0] && r.dynamic[1]);
     s.input.camera_cut = false;

@@ -1,4 +1,4 @@
-// Shadows: where they fall, that they stay, and that nothing shadows itself.
+// Shadows: position against rays, stability under camera motion, no self-shadowing.
 #include "frame/frame_fixture.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@ static const vec3s UP = { { 0, 1, 0 } };
 static const vec3s GREY = { { 0.5f, 0.5f, 0.5f } };
 static const vec3s LUX = { { 1000, 1000, 1000 } };
 
-// A floor and a square sheet of 1 m that hovers 1 m above the origin, seen at a slant.
+// A floor and a 1 m quad, 1 m above the origin, viewed obliquely.
 static void begin(struct frame_fixture *s, struct gpu *gpu, uint32_t size)
 {
     fixture_init(s, gpu);
@@ -21,8 +21,7 @@ static void begin(struct frame_fixture *s, struct gpu *gpu, uint32_t size)
     s->options.shadow_size = 512;
 }
 
-// Counts floor pixels that should be lit or shadowed and are not; those within `margin_m` of an
-// edge do not count.
+// Counts floor pixels whose shadow differs from the ray's, except within `margin_m` of an edge.
 static int count_wrong(struct frame_fixture *s, vec3s (*towards_light)(vec3s p), float margin_m,
                        int *checked)
 {
@@ -33,7 +32,7 @@ static int count_wrong(struct frame_fixture *s, vec3s (*towards_light)(vec3s p),
         vec3s p = vec3_of(position[3 * i], position[3 * i + 1], position[3 * i + 2]);
         if (fabsf(p.y) > 1e-3f || (p.x == 0 && p.z == 0)) continue;
         vec3s to = towards_light(p);
-        vec3s at = glms_vec3_muladds(to, (1 - p.y) / to.y, p); // on the sheet's plane
+        vec3s at = glms_vec3_muladds(to, (1 - p.y) / to.y, p); // on the quad's plane
         float out = fmaxf(fabsf(at.x), fabsf(at.z)) - 0.5f;
         if (fabsf(out) < margin_m) continue;
         (*checked)++;
@@ -50,12 +49,12 @@ static vec3s towards_sun(vec3s p)
     return vec3_of(0.4f, 1, 0.1f);
 }
 
-static vec3s towards_lamp(vec3s p)
+static vec3s towards_point(vec3s p)
 {
     return glms_vec3_sub(vec3_of(0.3f, 2.5f, 0.2f), p);
 }
 
-TEST_GPU(sun_shadow_lies_where_the_rays_say)
+TEST_GPU(sun_shadow_matches_rays)
 {
     for (int cascades = 1; cascades <= 4; cascades++) {
         struct frame_fixture s;
@@ -70,19 +69,19 @@ TEST_GPU(sun_shadow_lies_where_the_rays_say)
     }
 }
 
-TEST_GPU(point_shadow_lies_where_the_rays_say)
+TEST_GPU(point_shadow_matches_rays)
 {
     struct frame_fixture s;
     begin(&s, gpu, 64);
     fixture_add_point(&s, vec3_of(0.3f, 2.5f, 0.2f), LUX);
     fixture_open(&s);
     fixture_render(&s);
-    int checked, wrong = count_wrong(&s, towards_lamp, 0.2f, &checked);
+    int checked, wrong = count_wrong(&s, towards_point, 0.2f, &checked);
     CHECK(checked > 1000 && wrong == 0);
     fixture_finish(&s);
 }
 
-TEST_GPU(spot_shadow_lies_where_the_rays_say)
+TEST_GPU(spot_shadow_matches_rays)
 {
     struct frame_fixture s;
     begin(&s, gpu, 64);
@@ -91,12 +90,12 @@ TEST_GPU(spot_shadow_lies_where_the_rays_say)
                      vec3_of(10000, 10000, 10000));
     fixture_open(&s);
     fixture_render(&s);
-    int checked, wrong = count_wrong(&s, towards_lamp, 0.2f, &checked);
+    int checked, wrong = count_wrong(&s, towards_point, 0.2f, &checked);
     CHECK(checked > 1000 && wrong == 0);
     fixture_finish(&s);
 }
 
-TEST_GPU(masked_casters_let_light_through_their_holes)
+TEST_GPU(masked_casters_are_transparent_where_cut)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
@@ -127,11 +126,11 @@ TEST_GPU(masked_casters_let_light_through_their_holes)
     fixture_finish(&s);
 }
 
-TEST_GPU(casters_far_behind_a_cascade_still_cast)
+TEST_GPU(casters_far_outside_a_cascade_cast_shadows)
 {
     struct frame_fixture s;
     begin(&s, gpu, 32);
-    // A roof high above all that the near cascades cover.
+    // A roof far above the near cascades.
     fixture_quad(&s, vec3_of(-9, 60, 9), vec3_of(9, 60, 9), vec3_of(9, 60, -9), vec3_of(-9, 60, -9),
                  0);
     fixture_add_sun(&s, vec3_of(0, -1, 0), LUX);
@@ -145,8 +144,7 @@ TEST_GPU(casters_far_behind_a_cascade_still_cast)
     fixture_finish(&s);
 }
 
-// A box lit from inside, or a floor in the sun, has no shadow at all: light is the closed form's
-// everywhere.
+// A floor in the sun has no shadow: direct light equals the closed form.
 TEST_GPU(plane_does_not_shadow_itself_at_any_angle)
 {
     for (int i = 1; i < 9; i++) {
@@ -166,15 +164,15 @@ TEST_GPU(plane_does_not_shadow_itself_at_any_angle)
     }
 }
 
-// at_edges: share of the light that a pixel along an edge keeps at least.
+// at_edges: minimum fraction of the unshadowed light along edges.
 static void check_closed_box(struct gpu *gpu, int radius, float at_edges)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
     s.options.shadow_filter = radius;
     fixture_box(&s, vec3_of(-2, 0, -3), vec3_of(2, 3, 3), true, fixture_matte(&s, GREY));
-    vec3s lamp = vec3_of(0.5f, 1.9f, -0.3f);
-    fixture_add_point(&s, lamp, LUX);
+    vec3s light = vec3_of(0.5f, 1.9f, -0.3f);
+    fixture_add_point(&s, light, LUX);
     fixture_look(&s, vec3_of(1.8f, 0.3f, 2.8f), vec3_of(-1, 1.8f, -2));
     s.width = s.height = 64;
     fixture_open(&s);
@@ -182,12 +180,11 @@ static void check_closed_box(struct gpu *gpu, int radius, float at_edges)
     float *direct = fixture_read(&s, READ_DIRECT), *position = fixture_read(&s, READ_POSITION);
     float *normal = fixture_read(&s, READ_NORMAL);
     for (size_t i = 0; i < 64 * 64; i++) {
-        vec3s to =
-            glms_vec3_sub(lamp, vec3_of(position[3 * i], position[3 * i + 1], position[3 * i + 2]));
+        vec3s to = glms_vec3_sub(
+            light, vec3_of(position[3 * i], position[3 * i + 1], position[3 * i + 2]));
         vec3s n = vec3_of(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]);
         float r2 = glms_vec3_norm2(to), cosine = glms_vec3_dot(n, to) / sqrtf(r2);
-        // Along the edges the filter reaches around the corner, where the other wall is nearer to
-        // the lamp.
+        // Along edges the filter also covers the other wall, which is nearer to the light.
         int walls = (fabsf(position[3 * i]) > 1.88f) + (fabsf(position[3 * i + 1] - 1.5f) > 1.38f) +
                     (fabsf(position[3 * i + 2]) > 2.88f);
         float least = walls > 1 ? at_edges : 0.97f;
@@ -199,33 +196,32 @@ static void check_closed_box(struct gpu *gpu, int radius, float at_edges)
     fixture_finish(&s);
 }
 
-// Half of the filter's box lies around the corner; of a box of three texels, half a texel of
-// rasterisation is a sixth more.
-TEST_GPU(lamp_in_a_closed_box_lights_every_pixel)
+// Along edges half of the filter covers the other wall; rasterisation adds half a texel, a sixth of
+// a filter of three texels.
+TEST_GPU(point_light_in_a_closed_box_lights_every_pixel)
 {
     check_closed_box(gpu, 1, 1.0f / 3.0f);
     check_closed_box(gpu, 2, 0.5f);
 }
 
-// The light of every floor point that both pictures see, as a function of the point, must not
-// depend on the camera: compare at the same world positions by looking straight down from two
-// places a whole pixel apart.
-static float *top_view(struct frame_fixture *s, float shift_x, float shift_z, float turn)
+// Direct light seen from above. Views that differ by a whole pixel or a quarter turn sample the
+// same floor points, whose light must not depend on the camera.
+static float *top_view(struct frame_fixture *s, float shift_x, float shift_z, float angle)
 {
     s->input.camera = (struct world_camera){ .eye = vec3_of(shift_x, 4, shift_z),
                                              .forward = vec3_of(0, -1, 0),
-                                             .up = vec3_of(sinf(turn), 0, -cosf(turn)),
+                                             .up = vec3_of(sinf(angle), 0, -cosf(angle)),
                                              .vertical_fov_rad = 0.9f,
                                              .near_m = 0.05f };
     fixture_render(s);
     return fixture_read(s, READ_DIRECT);
 }
 
-TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_moves)
+TEST_GPU(sun_shadow_edge_is_stable_while_the_camera_moves)
 {
     struct frame_fixture s;
     begin(&s, gpu, 64);
-    fixture_floor(&s, 100, 0); // far beyond: the first cascade is smaller than the scene
+    fixture_floor(&s, 100, 0); // larger than the first cascade
     s.options.cascades = 3;
     fixture_add_sun(&s, vec3_of(-0.9f, -1, -0.3f), LUX);
     fixture_open(&s);
@@ -237,8 +233,7 @@ TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_moves)
         for (uint32_t x = 1; x < 64; x++) {
             float was = a[3 * (y * 64 + x)], is = b[3 * (y * 64 + x - 1)];
             edges += was > 10 && was < 210;
-            CHECK_NEAR(is, was,
-                       12.0); // of 230 lx/sr: the highlight of GGX moves, the shadow must not
+            CHECK_NEAR(is, was, 12.0); // of 230 lx/sr: only the GGX highlight moves
         }
     }
     CHECK(edges > 10);
@@ -247,7 +242,7 @@ TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_moves)
     fixture_finish(&s);
 }
 
-TEST_GPU(sun_shadow_edge_stands_still_while_the_camera_turns)
+TEST_GPU(sun_shadow_edge_is_stable_while_the_camera_rotates)
 {
     struct frame_fixture s;
     begin(&s, gpu, 64);

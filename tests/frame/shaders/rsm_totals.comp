@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Every texel of a reflective shadow map as techniques read it: reflected flux, position, normal.
+// Writes rsm_fetch of every texel of a reflective shadow map: validity, flux, position, normal.
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/rsm/rsm.glsl"

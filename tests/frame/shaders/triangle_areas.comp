@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// What techniques see of the triangles of a draw: how many there are, how many are solid at their
-// middle, and their area in whole 1/1024 m², which sums in any order.
+// Totals of a draw's triangles: count, count of solid centroids, and area in 1/1024 m². Integer
+// sums do not depend on the order.
 #include "frame/scene_triangles.glsl"
 
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
