@@ -1,6 +1,6 @@
-// Light in a clip map: it is as it is in one grid, thin walls keep it out better, and a picture
-// does not show when grids move on.
-#include "techniques/vct_rig.h"
+// Light in a clip map: equal to that of one grid, less leaking through thin walls, and no visible
+// change when a level moves.
+#include "techniques/vct_fixture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,10 +11,10 @@ enum { FLOATS = 32 * 32 * 3 };
 static const double PI = 3.14159265358979323846;
 
 // Irradiance of one more frame, all of it finite. To be freed.
-static float *irradiance(struct vct_rig *rig)
+static float *irradiance(struct vct_fixture *fixture)
 {
-    fixture_render(&rig->frame_fixture);
-    float *e = fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
+    fixture_render(&fixture->frame_fixture);
+    float *e = fixture_read(&fixture->frame_fixture, READ_IRRADIANCE);
     for (int i = 0; i < FLOATS; i++) CHECK(isfinite(e[i]) && e[i] >= 0.0f);
     return e;
 }
@@ -26,15 +26,15 @@ static double mean(const float *values)
     return sum / FLOATS;
 }
 
-static double mean_irradiance(struct vct_rig *rig)
+static double mean_irradiance(struct vct_fixture *fixture)
 {
-    float *e = irradiance(rig);
+    float *e = irradiance(fixture);
     const double sum = mean(e);
     free(e);
     return sum;
 }
 
-static double apart(const float *a, const float *b)
+static double mean_difference(const float *a, const float *b)
 {
     double sum = 0.0;
     for (int i = 0; i < FLOATS; i++) sum += fabs((double)a[i] - (double)b[i]);
@@ -43,106 +43,106 @@ static double apart(const float *a, const float *b)
 
 // ---- Light
 
-static void shine(struct vct_rig *rig, struct gpu *gpu, bool glows)
+static void make_closed_room(struct vct_fixture *fixture, struct gpu *gpu, bool emissive)
 {
-    vct_rig_init(rig, gpu);
+    vct_fixture_init(fixture, gpu);
     struct material m = material_default();
-    if (glows) m.emissive = vec3_of(10, 10, 10);
+    if (emissive) m.emissive = vec3_of(10, 10, 10);
     m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
     m.metallic = 0;
-    fixture_box(&rig->frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-                fixture_material(&rig->frame_fixture, &m));
-    if (!glows) rig->frame_fixture.input.sky = vec3_of(10, 10, 10);
+    fixture_box(&fixture->frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_material(&fixture->frame_fixture, &m));
+    if (!emissive) fixture->frame_fixture.input.sky = vec3_of(10, 10, 10);
 }
 
 static const char *const level_options[] = { "resolution=48,levels=3", "resolution=32,levels=4",
                                              "resolution=48,levels=2,interleave=1" };
 
-// Black walls that shine evenly: E = π L everywhere, within the bounds of one grid. From places
-// where the picture shows the borders of levels.
-TEST_GPU(a_furnace_has_pi_times_its_radiance_with_levels)
+// Black walls of uniform radiance: E = π L, within the bounds of one grid. The cameras see borders
+// of levels.
+TEST_GPU(furnace_irradiance_is_pi_times_radiance_with_levels)
 {
     for (int i = 0; i < 3; i++) {
-        struct vct_rig rig;
-        shine(&rig, gpu, true);
-        vct_rig_open(&rig, level_options[i]);
-        const vec3s eyes[] = { { { 2, 3, 8 } }, { { 5.5f, 4, 4.5f } }, { { 1, 1, 1 } } };
+        struct vct_fixture fixture;
+        make_closed_room(&fixture, gpu, true);
+        vct_fixture_open(&fixture, level_options[i]);
+        const vec3s cameras[] = { { { 2, 3, 8 } }, { { 5.5f, 4, 4.5f } }, { { 1, 1, 1 } } };
         for (int k = 0; k < 3; k++) {
-            fixture_look(&rig.frame_fixture, eyes[k], vec3_of(9, 3, 1.5f));
-            const double got = mean_irradiance(&rig) / (PI * 10.0);
+            fixture_look(&fixture.frame_fixture, cameras[k], vec3_of(9, 3, 1.5f));
+            const double got = mean_irradiance(&fixture) / (PI * 10.0);
             print_message("%s: furnace %.3f\n", level_options[i], got);
             CHECK(got > 0.93 && got < 1.01);
         }
-        vct_rig_finish(&rig);
+        vct_fixture_finish(&fixture);
     }
 }
 
-TEST_GPU(a_closed_room_keeps_the_sky_out_with_levels)
+TEST_GPU(a_closed_room_occludes_the_sky_with_levels)
 {
     for (int i = 0; i < 3; i++) {
-        struct vct_rig rig;
-        shine(&rig, gpu, false);
-        vct_rig_open(&rig, level_options[i]);
-        fixture_look(&rig.frame_fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1.5f));
-        const double got = mean_irradiance(&rig) / (PI * 10.0);
+        struct vct_fixture fixture;
+        make_closed_room(&fixture, gpu, false);
+        vct_fixture_open(&fixture, level_options[i]);
+        fixture_look(&fixture.frame_fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1.5f));
+        const double got = mean_irradiance(&fixture) / (PI * 10.0);
         print_message("%s: %.4f of the sky in a closed room\n", level_options[i], got);
         CHECK(got < 0.01); // as with one grid: test_vct_storage
-        vct_rig_finish(&rig);
+        vct_fixture_finish(&fixture);
     }
 }
 
 static double mean_visibility(struct gpu *gpu, const char *options)
 {
-    struct vct_rig rig;
-    vct_rig_hall(&rig, gpu);
-    rig.technique = &technique_vctao;
-    vct_rig_open(&rig, options);
-    fixture_render(&rig.frame_fixture);
-    float *v = fixture_read(&rig.frame_fixture, READ_VISIBILITY);
+    struct vct_fixture fixture;
+    vct_fixture_hall(&fixture, gpu);
+    fixture.technique = &technique_vctao;
+    vct_fixture_open(&fixture, options);
+    fixture_render(&fixture.frame_fixture);
+    float *v = fixture_read(&fixture.frame_fixture, READ_VISIBILITY);
     double sum = 0.0;
     for (int i = 0; i < 32 * 32; i++) sum += (double)v[i] / (32 * 32);
     free(v);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
     return sum;
 }
 
-// Occlusion decays with metres in every grid: levels see what one grid as fine does.
-TEST_GPU(occlusion_by_levels_is_that_of_one_fine_grid)
+// Occlusion decays per metre in every grid: the levels equal one grid as fine.
+TEST_GPU(occlusion_of_levels_equals_one_fine_grid)
 {
     const double fine = mean_visibility(gpu, "resolution=128"),
                  levels = mean_visibility(gpu, "resolution=32,levels=3"),
                  coarse = mean_visibility(gpu, "resolution=32");
     print_message("visibility: %.3f, with levels %.3f, with the coarse grid alone %.3f\n", fine,
                   levels, coarse);
-    // Twice or half the fall-off would change it by 0.05 and more.
+    // Twice or half the decay would change it by 0.05 and more.
     CHECK_NEAR(levels, fine, 0.02);
 }
 
-// A slab of half a coarse voxel between a bright half of a room and a dark one, seen from close by
-// on the dark side. In truth there is no light there.
+// A slab of half a coarse voxel between a lit and a dark half of a room, seen from the dark side.
+// The reference is 0 there.
 static double leak(struct gpu *gpu, const char *options)
 {
-    struct vct_rig rig;
-    vct_rig_init(&rig, gpu);
-    struct frame_fixture *s = &rig.frame_fixture;
+    struct vct_fixture fixture;
+    vct_fixture_init(&fixture, gpu);
+    struct frame_fixture *s = &fixture.frame_fixture;
     const int white = fixture_matte(s, vec3_of(0.7f, 0.7f, 0.7f));
     fixture_box(s, vec3_of(0, 0, 0), vec3_of(24, 8, 9), true, white);
     fixture_box(s, vec3_of(12.05f, 0, 0), vec3_of(12.45f, 8, 9), false, white);
     fixture_add_point(s, vec3_of(8, 4, 4.5f), vec3_of(900, 900, 900));
-    vct_rig_open(&rig, options);
+    vct_fixture_open(&fixture, options);
     fixture_look(s, vec3_of(14, 2.5f, 4.5f), vec3_of(12.45f, 1, 4.4f));
-    const double e = mean_irradiance(&rig);
-    CHECK(rig.vct->clips[0].grid.cell_m > 0.8f);
-    vct_rig_finish(&rig);
+    const double e = mean_irradiance(&fixture);
+    CHECK(fixture.vct->clips[0].grid.cell_m > 0.8f);
+    vct_fixture_finish(&fixture);
     return e;
 }
 
 TEST_GPU(a_wall_thinner_than_a_coarse_voxel_leaks_less_with_levels)
 {
     static const char *const directions[] = { "anisotropic=true", "anisotropic=false" };
-    // One volume for all ways mixes what both sides of a voxel send out: there the wall has to have
-    // texels of its own. Six ways keep the sides apart; what is left with levels is what cones miss
-    // by its foot, and comes with a grid that is as fine everywhere too.
+    // Isotropic voxels mix the radiance of both sides of a wall unless it has texels of its own.
+    // Anisotropic voxels separate the sides; what still leaks with levels passes at the foot of the
+    // wall, as with one grid as fine.
     const double most[] = { 0.7, 0.3 };
     for (int i = 0; i < 2; i++) {
         double got[2];
@@ -158,86 +158,86 @@ TEST_GPU(a_wall_thinner_than_a_coarse_voxel_leaks_less_with_levels)
     }
 }
 
-// ---- While the eye moves
+// ---- Camera motion
 
-static float *seen_from(struct vct_rig *rig, float x)
+static float *irradiance_from(struct vct_fixture *fixture, float x)
 {
-    fixture_look(&rig->frame_fixture, vec3_of(x, 5, 15), vec3_of(x + 1, 4, 4));
-    return irradiance(rig);
+    fixture_look(&fixture->frame_fixture, vec3_of(x, 5, 15), vec3_of(x + 1, 4, 4));
+    return irradiance(fixture);
 }
 
-static int finest_first(const struct vct_rig *rig)
+static int finest_first(const struct vct_fixture *fixture)
 {
-    return rig->vct->clips[2].grid.first[0];
+    return fixture->vct->clips[2].grid.first[0];
 }
 
-// The eye goes over the place where the finest grid moves on, by a tenth of a millimetre in all.
-TEST_GPU(a_step_of_the_grids_is_not_seen)
+// The camera moves by 0.1 mm across the position where the finest grid moves.
+TEST_GPU(a_moving_level_does_not_change_the_image)
 {
-    struct vct_rig rig;
-    vct_rig_hall(&rig, gpu);
-    vct_rig_open(&rig, "resolution=32,levels=3");
+    struct vct_fixture fixture;
+    vct_fixture_hall(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=32,levels=3");
     float low = 11.0f, high = 12.1f;
-    free(seen_from(&rig, high));
-    const int after = finest_first(&rig);
-    free(seen_from(&rig, low));
-    const int before = finest_first(&rig);
+    free(irradiance_from(&fixture, high));
+    const int after = finest_first(&fixture);
+    free(irradiance_from(&fixture, low));
+    const int before = finest_first(&fixture);
     CHECK(after == before + 4); // a step
     while (high - low > 1e-4f) {
         const float middle = 0.5f * (low + high);
-        free(seen_from(&rig, middle));
-        *(finest_first(&rig) == before ? &low : &high) = middle;
+        free(irradiance_from(&fixture, middle));
+        *(finest_first(&fixture) == before ? &low : &high) = middle;
     }
-    for (int i = 0; i < 20; i++) free(seen_from(&rig, low)); // light has come to rest
-    float *last = seen_from(&rig, low), *now = seen_from(&rig, high);
-    CHECK(finest_first(&rig) == after);
-    double most = apart(now, last) / mean(last);
+    for (int i = 0; i < 20; i++) free(irradiance_from(&fixture, low)); // until converged
+    float *last = irradiance_from(&fixture, low), *now = irradiance_from(&fixture, high);
+    CHECK(finest_first(&fixture) == after);
+    double most = mean_difference(now, last) / mean(last);
     print_message("change at a step: %.5f of the mean", most);
-    // The frames after it, in which light goes on from voxel to voxel.
+    // The next frames, in which bounced irradiance adapts.
     for (int i = 0; i < 20; i++) {
-        float *then = seen_from(&rig, high);
-        most = fmax(most, apart(then, last) / mean(last));
+        float *then = irradiance_from(&fixture, high);
+        most = fmax(most, mean_difference(then, last) / mean(last));
         free(then);
     }
     print_message(", of the 20 frames after it %.5f at most\n", most);
-    // A grey level of 8 bits is some parts in a thousand.
+    // One step of 8 bits is some parts in a thousand.
     CHECK(most < 0.0005);
     free(last);
     free(now);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
 struct pan {
-    double worst, level; // change of a pixel's mean and of the picture's, over its mean
+    double worst, level; // mean change of pixels, change of the image's mean; over that mean
     int steps;
 };
 
 static struct pan pan_with(struct gpu *gpu, const char *options)
 {
-    struct vct_rig rig;
-    vct_rig_hall(&rig, gpu);
-    vct_rig_open(&rig, options);
+    struct vct_fixture fixture;
+    vct_fixture_hall(&fixture, gpu);
+    vct_fixture_open(&fixture, options);
     struct pan pan = { 0 };
     float *last = NULL;
     int first = 0;
     for (int i = 0; i < 32; i++) {
-        float *now = seen_from(&rig, 5.0f + 0.1f * (float)i);
-        const int clip = rig.vct->clip_count - 1;
+        float *now = irradiance_from(&fixture, 5.0f + 0.1f * (float)i);
+        const int clip = fixture.vct->clip_count - 1;
         if (last) {
-            pan.worst = fmax(pan.worst, apart(now, last) / mean(now));
+            pan.worst = fmax(pan.worst, mean_difference(now, last) / mean(now));
             pan.level = fmax(pan.level, fabs(mean(now) / mean(last) - 1.0));
-            pan.steps += rig.vct->clips[clip].grid.first[0] != first;
+            pan.steps += fixture.vct->clips[clip].grid.first[0] != first;
         }
-        first = rig.vct->clips[clip].grid.first[0];
+        first = fixture.vct->clips[clip].grid.first[0];
         free(last);
         last = now;
     }
     free(last);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
     return pan;
 }
 
-TEST_GPU(a_pan_changes_from_frame_to_frame_as_with_one_grid)
+TEST_GPU(levels_do_not_flicker_more_than_one_grid_in_a_pan)
 {
     const struct pan one = pan_with(gpu, "resolution=32"),
                      three = pan_with(gpu, "resolution=32,levels=3");
@@ -245,26 +245,26 @@ TEST_GPU(a_pan_changes_from_frame_to_frame_as_with_one_grid)
                   "of the image's mean %.4f and %.4f\n",
                   one.worst, three.worst, three.steps, one.level, three.level);
     CHECK(three.steps >= 3);
-    // Smaller voxels show more of what moves past.
+    // Smaller voxels resolve more parallax.
     CHECK(three.worst < 1.25 * one.worst);
     CHECK(three.level < 1.25 * one.level);
 }
 
-// ---- Odd places, views
+// ---- Cameras outside, debug views
 
-TEST_GPU(an_eye_outside_or_far_away_sees_finite_light)
+TEST_GPU(cameras_outside_of_the_scene_have_finite_light)
 {
-    struct vct_rig rig;
-    vct_rig_hall(&rig, gpu);
-    vct_rig_open(&rig, "resolution=16,levels=6,specular=true");
-    const vec3s eyes[] = { { { -5, 6, 30 } },     { { 0, 0, 0 } },    { { 13, 400, 10 } },
-                           { { 1e6f, 0, 1e6f } }, { { 27, 12, 20 } }, { { 12, 5, 15 } } };
+    struct vct_fixture fixture;
+    vct_fixture_hall(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=16,levels=6,specular=true");
+    const vec3s cameras[] = { { { -5, 6, 30 } },     { { 0, 0, 0 } },    { { 13, 400, 10 } },
+                              { { 1e6f, 0, 1e6f } }, { { 27, 12, 20 } }, { { 12, 5, 15 } } };
     for (int i = 0; i < 6; i++) {
-        fixture_look(&rig.frame_fixture, eyes[i], vec3_of(13, 6, 10));
-        mean_irradiance(&rig);
+        fixture_look(&fixture.frame_fixture, cameras[i], vec3_of(13, 6, 10));
+        mean_irradiance(&fixture);
     }
-    CHECK(mean_irradiance(&rig) > 0.0);
-    vct_rig_finish(&rig);
+    CHECK(mean_irradiance(&fixture) > 0.0);
+    vct_fixture_finish(&fixture);
 }
 
 struct viewer {
@@ -281,12 +281,13 @@ static void record_view(void *user, struct gpu_cmd *cmd, const struct frame_view
 }
 
 // Pixels of a view in red, the finest level's colour, and in others. All of it is finite.
-static void count_pixels(struct vct_rig *rig, struct viewer *viewer, const char *view, int count[2])
+static void count_pixels(struct vct_fixture *fixture, struct viewer *viewer, const char *view,
+                         int count[2])
 {
     float rgba[32 * 32 * 4];
     viewer->view = view;
-    fixture_render(&rig->frame_fixture);
-    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, viewer->image, 0, 0, rgba, 4,
+    fixture_render(&fixture->frame_fixture);
+    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, viewer->image, 0, 0, rgba, 4,
                                    sizeof rgba / sizeof *rgba));
     count[0] = count[1] = 0;
     for (int i = 0; i < 32 * 32; i++) {
@@ -298,33 +299,33 @@ static void count_pixels(struct vct_rig *rig, struct viewer *viewer, const char 
     }
 }
 
-TEST_GPU(views_show_the_finest_level_about_the_eye_and_others_beyond)
+TEST_GPU(debug_views_show_the_finest_level_near_the_camera)
 {
-    struct vct_rig rig;
-    vct_rig_hall(&rig, gpu);
-    vct_rig_open(&rig, "resolution=32,levels=3");
-    struct viewer viewer = { .vct = rig.vct };
+    struct vct_fixture fixture;
+    vct_fixture_hall(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=32,levels=3");
+    struct viewer viewer = { .vct = fixture.vct };
     const struct gpu_image_desc desc = { .name = "test.view",
                                          .format = GPU_RGBA16F,
                                          .width = 32,
                                          .height = 32,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
     CHECK(gpu_image_create(gpu, &desc, &viewer.image));
-    rig.frame_fixture.indirect.record = record_view;
-    rig.frame_fixture.indirect.user = &viewer;
+    fixture.frame_fixture.indirect.record = record_view;
+    fixture.frame_fixture.indirect.user = &viewer;
     int count[2];
-    fixture_look(&rig.frame_fixture, vec3_of(12, 2, 15), vec3_of(13, 0, 5));
-    count_pixels(&rig, &viewer, "levels", count);
+    fixture_look(&fixture.frame_fixture, vec3_of(12, 2, 15), vec3_of(13, 0, 5));
+    count_pixels(&fixture, &viewer, "levels", count);
     CHECK(count[0] > 50 && count[1] > 200 && count[0] + count[1] == 32 * 32); // a closed room
-    static const char *const views[] = { "reflectance", "normals", "radiance", "room" };
+    static const char *const views[] = { "reflectance", "normals", "radiance", "overflow" };
     for (int i = 0; i < 4; i++) {
-        count_pixels(&rig, &viewer, views[i], count);
+        count_pixels(&fixture, &viewer, views[i], count);
         CHECK(count[0] + count[1] > 700); // reflectance, and normals plus a half, are in all pixels
     }
-    // From afar the scene's grid comes before the finer ones about the nearest place.
-    fixture_look(&rig.frame_fixture, vec3_of(60, 30, 50), vec3_of(13, 6, 10));
-    count_pixels(&rig, &viewer, "levels", count);
+    // From a distance the coarsest grid is in front of the finer ones.
+    fixture_look(&fixture.frame_fixture, vec3_of(60, 30, 50), vec3_of(13, 6, 10));
+    count_pixels(&fixture, &viewer, "levels", count);
     CHECK(count[1] > 20);
     gpu_image_destroy(gpu, &viewer.image);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }

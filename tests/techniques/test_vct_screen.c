@@ -1,6 +1,5 @@
-// Pixels that share cones: against pixels that trace them all, in what they find and in what it
-// takes.
-#include "techniques/vct_rig.h"
+// Interleaved sampling and half resolution: error and speed-up against all cones at each pixel.
+#include "techniques/vct_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,11 +7,11 @@
 
 enum { WIDTH = 160, HEIGHT = 96, VALUES = WIDTH * HEIGHT * 3 };
 
-// A room with a block and a ball in it, a point light, a little light from all sides.
-static void furnish(struct vct_rig *rig, struct gpu *gpu)
+// A room with a block and a point light.
+static void make_scene(struct vct_fixture *fixture, struct gpu *gpu)
 {
-    vct_rig_init(rig, gpu);
-    struct frame_fixture *s = &rig->frame_fixture;
+    vct_fixture_init(fixture, gpu);
+    struct frame_fixture *s = &fixture->frame_fixture;
     s->width = WIDTH;
     s->height = HEIGHT;
     fixture_box(s, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
@@ -23,11 +22,11 @@ static void furnish(struct vct_rig *rig, struct gpu *gpu)
     fixture_look(s, vec3_of(1, 6, 8), vec3_of(8, 2, 3));
 }
 
-// A curtain before the far wall, in pleats of half the size of a texel of the light volume (0.7 m
-// with 32 voxels), whose sides are 30° from the whole.
-static void hang_curtain(struct vct_rig *rig)
+// A pleated curtain before the far wall. Pleats are half a texel of the light volume (0.7 m with 32
+// voxels) wide, their sides at 30° to the plane of the curtain.
+static void add_curtain(struct vct_fixture *fixture)
 {
-    struct frame_fixture *s = &rig->frame_fixture;
+    struct frame_fixture *s = &fixture->frame_fixture;
     const int cloth = fixture_matte(s, vec3_of(0.6f, 0.6f, 0.6f));
     const float half = 0.18f, deep = 0.104f;
     for (int i = 0; i < 35; i++) {
@@ -38,15 +37,15 @@ static void hang_curtain(struct vct_rig *rig)
     fixture_look(s, vec3_of(6, 4, 4), vec3_of(10, 3, 4));
 }
 
-struct look {
+struct trace_result {
     float *irradiance;
-    double ms; // of the stages over pixels, the least of some frames
+    double ms; // of the screen-space passes, the minimum of some frames
 };
 
 static double stages_ms(const struct gpu *gpu)
 {
     static const char *const stages[] = { "vct.cones", "vct.edges", "vct.gather", "vct.blur",
-                                          "vct.fit" };
+                                          "vct.upsample" };
     struct gpu_timing timings[64];
     const int count = gpu_frame_timings(gpu, timings, 64);
     double sum = 0.0;
@@ -56,25 +55,25 @@ static double stages_ms(const struct gpu *gpu)
     return sum;
 }
 
-static struct look look_at_room(struct gpu *gpu, const char *options, bool curtain)
+static struct trace_result trace_room(struct gpu *gpu, const char *options, bool curtain)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    if (curtain) hang_curtain(&rig);
-    vct_rig_open(&rig, options);
-    struct look look = { .ms = 1e30 };
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    if (curtain) add_curtain(&fixture);
+    vct_fixture_open(&fixture, options);
+    struct trace_result result = { .ms = 1e30 };
     for (int f = 0; f < 10; f++) {
-        fixture_render(&rig.frame_fixture);
-        look.ms = fmin(look.ms, stages_ms(gpu));
+        fixture_render(&fixture.frame_fixture);
+        result.ms = fmin(result.ms, stages_ms(gpu));
     }
-    look.irradiance = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
-    vct_rig_finish(&rig);
-    return look;
+    result.irradiance = fixture_read(&fixture.frame_fixture, READ_IRRADIANCE);
+    vct_fixture_finish(&fixture);
+    return result;
 }
 
-static struct look look_with(struct gpu *gpu, const char *options)
+static struct trace_result trace_with(struct gpu *gpu, const char *options)
 {
-    return look_at_room(gpu, options, false);
+    return trace_room(gpu, options, false);
 }
 
 // Mean of |a − b| over that of b.
@@ -88,12 +87,12 @@ static double difference(const float *a, const float *b)
     return off / sum;
 }
 
-TEST_GPU(blocks_that_share_cones_find_what_each_pixel_would)
+TEST_GPU(interleaved_cones_match_all_cones_per_pixel)
 {
-    struct look raw = look_with(gpu, "resolution=32,interleave=1");
-    // A block of 5 × 5 is a 16th of this small picture's width: the light changes within it by some
-    // percent. Where sub-images are not interpolated it is 7 %, where each cone turns with its
-    // pixel's normal more.
+    struct trace_result raw = trace_with(gpu, "resolution=32,interleave=1");
+    // A block of 5 × 5 pixels is a 16th of this small image's width; the light changes within it by
+    // some percent. Without interpolation of the sub-images the error is 7 %, with cones rotated to
+    // each pixel's normal more.
     static const struct {
         const char *options;
         double most;
@@ -101,77 +100,78 @@ TEST_GPU(blocks_that_share_cones_find_what_each_pixel_would)
                    { "resolution=32,interleave=3", 0.03 },
                    { "resolution=32,interleave=5", 0.045 } };
     for (int i = 0; i < 3; i++) {
-        struct look look = look_with(gpu, shared[i].options);
-        const double off = difference(look.irradiance, raw.irradiance);
-        print_message("%s: %.4f off, %.1f times faster\n", shared[i].options, off,
-                      raw.ms / look.ms);
+        struct trace_result result = trace_with(gpu, shared[i].options);
+        const double off = difference(result.irradiance, raw.irradiance);
+        print_message("%s: error %.4f, %.1f times faster\n", shared[i].options, off,
+                      raw.ms / result.ms);
         CHECK(off < shared[i].most);
-        // At 640x360 25 cones that are shared take an eighth to a fifteenth of the time; here
-        // pixels without neighbours to share with are many.
-        if (i == 2) CHECK(look.ms < 0.25 * raw.ms);
-        free(look.irradiance);
+        // At 640x360 25 interleaved cones take a 15th to an eighth of the time. Here many pixels
+        // have no neighbours to share with.
+        if (i == 2) CHECK(result.ms < 0.25 * raw.ms);
+        free(result.irradiance);
     }
     free(raw.irradiance);
 }
 
-// What is smaller than the light volume's texels does not turn cones' starts from pixel to pixel.
-TEST_GPU(pleats_share_cones_as_well)
+// Normals that vary below the texel size must not change the cone origins from pixel to pixel.
+TEST_GPU(interleaved_cones_match_on_pleated_surfaces)
 {
-    struct look raw = look_at_room(gpu, "resolution=32,interleave=1", true);
-    struct look shared = look_at_room(gpu, "resolution=32,interleave=5", true);
+    struct trace_result raw = trace_room(gpu, "resolution=32,interleave=1", true);
+    struct trace_result shared = trace_room(gpu, "resolution=32,interleave=5", true);
     const double off = difference(shared.irradiance, raw.irradiance);
-    print_message("%.4f off\n", off);
-    // 0.022; where each cone starts along its pixel's own normal, and 45° are the end of a surface,
+    print_message("error %.4f\n", off);
+    // Measured 0.022. With cone origins along each pixel's normal and an edge threshold of 45°:
     // 0.045.
     CHECK(off < 0.035);
     free(raw.irradiance);
     free(shared.irradiance);
 }
 
-// Cones at every second pixel of every second row: a quarter of them.
-TEST_GPU(half_the_size_is_as_good_nearly)
+// Half resolution: a quarter of the cones.
+TEST_GPU(half_resolution_matches_full_resolution)
 {
-    struct look full = look_with(gpu, "resolution=32,half=false");
-    struct look half = look_with(gpu, "resolution=32,half=true");
+    struct trace_result full = trace_with(gpu, "resolution=32,half_resolution=false");
+    struct trace_result half = trace_with(gpu, "resolution=32,half_resolution=true");
     const double off = difference(half.irradiance, full.irradiance);
-    print_message("%.4f off, %.1f times faster\n", off, full.ms / half.ms);
-    // Within a block, which is twice as wide, light changes as much again as in the test above.
+    print_message("error %.4f, %.1f times faster\n", off, full.ms / half.ms);
+    // A block is twice as wide: the error of interleaving increases accordingly.
     CHECK(off < 0.045);
-    // No pixel is left dark between surfaces: each has a tenth of what it should have and more.
+    // Upsampling leaves no dark pixels between surfaces: each has a tenth of the full-resolution
+    // value or more.
     int dark = 0;
     for (int i = 0; i < VALUES; i++) dark += half.irradiance[i] < 0.1f * full.irradiance[i];
     print_message("%d of %d values dark\n", dark, VALUES);
     CHECK(dark < VALUES / 1000);
-    // Four times less of everything but the last step, which is for all pixels: 0.3 to 0.4 of the
-    // time, but a host that others share has made 0.6 of it.
+    // Every pass but the upsampling costs a quarter: 0.3 to 0.4 of the time, up to 0.6 measured on
+    // a shared host.
     CHECK(half.ms < 0.85 * full.ms);
     free(full.irradiance);
     free(half.irradiance);
 }
 
-// Options that change while it lives do what they do from the start.
-TEST_GPU(cones_change_while_it_lives)
+// Options changed at run time have the effect of options at creation.
+TEST_GPU(cone_options_change_at_run_time)
 {
-    struct look due = look_with(gpu, "resolution=32,cones=9,interleave=3");
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    vct_rig_open(&rig, "resolution=32,cones=25,interleave=5");
-    fixture_render(&rig.frame_fixture);
-    struct vct_options options = rig.vct->options;
+    struct trace_result due = trace_with(gpu, "resolution=32,cones=9,interleave=3");
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=32,cones=25,interleave=5");
+    fixture_render(&fixture.frame_fixture);
+    struct vct_options options = fixture.vct->options;
     options.cones = VCT_CONES_9;
     options.interleave = 3;
-    technique_vct.set_options(rig.vct, &options);
-    fixture_render(&rig.frame_fixture);
-    float *got = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
+    technique_vct.set_options(fixture.vct, &options);
+    fixture_render(&fixture.frame_fixture);
+    float *got = fixture_read(&fixture.frame_fixture, READ_IRRADIANCE);
     assert_memory_equal(got, due.irradiance, VALUES * sizeof *got);
     free(got), free(due.irradiance);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// ---- Lines
+// ---- Cone axes
 
-// Whatever the normal: the mean of |n·d| is a half, as it is over all directions.
-TEST(lines_are_spread_evenly)
+// The mean of |n·d| is ½ for any normal, as over the whole sphere.
+TEST(cone_axes_are_distributed_uniformly)
 {
     static const double most[] = { [VCT_CONES_5] = 0.13,
                                    [VCT_CONES_6] = 0.06,
@@ -196,11 +196,11 @@ TEST(lines_are_spread_evenly)
             for (int k = 0; k < i; k++)
                 nearest = fmin(nearest, 1.0 - fabs((double)glms_vec3_dot(lines[i], lines[k])));
         }
-        print_message("%d lines: mean |n·d| within %.3f, %.1f degrees apart\n", count, worst,
-                      acos(1.0 - nearest) * 180.0 / 3.14159265);
+        print_message("%d axes: mean |n·d| within %.3f, smallest angle %.1f degrees\n", count,
+                      worst, acos(1.0 - nearest) * 180.0 / 3.14159265);
         CHECK(worst < most[choice]);
-        // Round caps that touch fill a part of the half sphere, at most 0.91 of it in the plane; 5
-        // lines fill 0.65.
+        // Disjoint caps of this radius cover at most 0.91 of the hemisphere (disk packing); 5 axes
+        // cover 0.65.
         CHECK(count * (1.0 - cos(0.5 * acos(1.0 - nearest))) > 0.6);
     }
 }

@@ -1,17 +1,17 @@
-// How the light of voxels is kept, in mips of six ways or one and in an octree: what goes through
-// walls, how much of the light is there, and how long it takes.
-#include "techniques/vct_rig.h"
+// Storages of radiance, isotropic and anisotropic mips and the octree: leaks, energy, build time
+// and memory.
+#include "techniques/vct_fixture.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static double mean_irradiance(struct vct_rig *rig, vec3s eye, vec3s target)
+static double mean_irradiance(struct vct_fixture *fixture, vec3s camera, vec3s target)
 {
-    fixture_look(&rig->frame_fixture, eye, target);
-    fixture_render(&rig->frame_fixture);
-    float *e = fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
+    fixture_look(&fixture->frame_fixture, camera, target);
+    fixture_render(&fixture->frame_fixture);
+    float *e = fixture_read(&fixture->frame_fixture, READ_IRRADIANCE);
     double sum = 0.0;
     for (int i = 0; i < 32 * 32 * 3; i++) sum += (double)e[i];
     free(e);
@@ -22,15 +22,15 @@ static double mean_irradiance(struct vct_rig *rig, vec3s eye, vec3s target)
 
 static const struct box3 ROOM = { { { 0, 0, 0 } }, { { 12, 8, 9 } } };
 
-// A room of which a wall, one voxel thick, cuts off a third; a light in the larger part.
-static void divide(struct vct_rig *rig, struct gpu *gpu, int resolution)
+// A room with a partition one voxel thick that separates a third; a light in the larger part.
+static void divide(struct vct_fixture *fixture, struct gpu *gpu, int resolution)
 {
-    vct_rig_init(rig, gpu);
-    struct frame_fixture *s = &rig->frame_fixture;
+    vct_fixture_init(fixture, gpu);
+    struct frame_fixture *s = &fixture->frame_fixture;
     fixture_box(s, ROOM.min, ROOM.max, true, fixture_matte(s, vec3_of(0.7f, 0.7f, 0.7f)));
     struct vct_grid grid;
     CHECK(vct_grid_fit(ROOM, resolution, &grid));
-    // The wall is a sheet in the middle of its voxels, seen and lit from both sides.
+    // A two-sided sheet in the middle of its voxels.
     const float x = grid.cell_m * (floorf(8.0f / grid.cell_m) + 0.5f);
     struct material sheet = material_default();
     sheet.base_color = vec4_of(vec3_of(0.7f, 0.7f, 0.7f), 1);
@@ -41,28 +41,29 @@ static void divide(struct vct_rig *rig, struct gpu *gpu, int resolution)
     fixture_add_point(s, vec3_of(3, 5, 4), vec3_of(300, 300, 300));
 }
 
-// Irradiance on the floor behind the wall over that before it. In truth there is none behind it.
+// Irradiance of the floor behind the wall over that before it. The reference is 0.
 static double leak(struct gpu *gpu, int resolution, const char *more)
 {
-    struct vct_rig rig;
+    struct vct_fixture fixture;
     char options[128];
-    divide(&rig, gpu, resolution);
-    // One bounce: further ones raise what little light there is behind the wall.
+    divide(&fixture, gpu, resolution);
+    // Further bounces would amplify the leak.
     snprintf(options, sizeof options, "resolution=%d,bounces=1,%s", resolution, more);
-    vct_rig_open(&rig, options);
-    const double lit = mean_irradiance(&rig, vec3_of(4.5f, 6, 4.5f), vec3_of(4.51f, 0, 4.5f));
-    const double dark = mean_irradiance(&rig, vec3_of(10.2f, 6, 4.5f), vec3_of(10.21f, 0, 4.5f));
+    vct_fixture_open(&fixture, options);
+    const double lit = mean_irradiance(&fixture, vec3_of(4.5f, 6, 4.5f), vec3_of(4.51f, 0, 4.5f));
+    const double dark =
+        mean_irradiance(&fixture, vec3_of(10.2f, 6, 4.5f), vec3_of(10.21f, 0, 4.5f));
     CHECK(lit > 0.0);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
     return dark / lit;
 }
 
-// One volume for all ways has the light of both sides in one texel, and half of the wall's
-// opacity: a tenth comes through at least. Six ways keep the sides apart; what they let through
-// are cones that meet the wall between two of their steps.
+// Isotropic voxels mix the radiance of both sides in one texel and halve the opacity of the wall:
+// at least a tenth leaks. Anisotropic voxels separate the sides; the rest leaks where cones step
+// across the wall.
 static void check_thin_wall(struct gpu *gpu, const char *storage, double most)
 {
-    print_message("%s: light behind a wall one voxel thick, over that before it\n", storage);
+    print_message("%s: leak through a wall one voxel thick\n", storage);
     for (int resolution = 32; resolution <= 64; resolution *= 2) {
         double through[2];
         for (int anisotropic = 0; anisotropic < 2; anisotropic++) {
@@ -79,26 +80,27 @@ static void check_thin_wall(struct gpu *gpu, const char *storage, double most)
     }
 }
 
-TEST_GPU(six_ways_keep_light_before_a_thin_wall)
+TEST_GPU(anisotropic_mips_leak_less_through_a_thin_wall)
 {
     check_thin_wall(gpu, "mips", 0.08);
 }
 
-TEST_GPU(one_volume_for_all_ways_has_the_mean_of_what_it_holds)
+TEST_GPU(isotropic_mips_are_means_of_the_finer_level)
 {
-    struct vct_rig rig;
-    divide(&rig, gpu, 32);
-    vct_rig_open(&rig, "resolution=32,anisotropic=false");
-    fixture_render(&rig.frame_fixture);
+    struct vct_fixture fixture;
+    divide(&fixture, gpu, 32);
+    vct_fixture_open(&fixture, "resolution=32,anisotropic=false");
+    fixture_render(&fixture.frame_fixture);
     double most = 0.0;
-    // 16 texels along a side, 12 of them and more in use: a level's are halves as long as both are
-    // even.
-    for (uint32_t level = 1; level < vct_volume_mips(&rig.vct->options); level++) {
+    // 16 texels along a side, 12 and more in use: sizes halve exactly while both are even.
+    for (uint32_t level = 1; level < vct_volume_mips(&fixture.vct->options); level++) {
         const int dim = 16 >> level, fine_dim = 2 * dim;
-        float *fine = vct_rig_light(&rig, level - 1), *coarse = vct_rig_light(&rig, level);
+        float *fine = vct_fixture_light(&fixture, level - 1),
+              *coarse = vct_fixture_light(&fixture, level);
         int size[3], checked = 0;
         for (int a = 0; a < 3; a++)
-            size[a] = (rig.vct->clips[0].grid.cells[a] / 2 + (1 << (level - 1)) - 1) >> (level - 1);
+            size[a] =
+                (fixture.vct->clips[0].grid.cells[a] / 2 + (1 << (level - 1)) - 1) >> (level - 1);
         for (int z = 0; 2 * z + 1 < size[2]; z++)
             for (int y = 0; 2 * y + 1 < size[1]; y++)
                 for (int x = 0; 2 * x + 1 < size[0]; x++)
@@ -119,33 +121,33 @@ TEST_GPU(one_volume_for_all_ways_has_the_mean_of_what_it_holds)
         free(coarse);
     }
     CHECK(most > 0.0);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// ---- The octree beside the mips
+// ---- Octree and mips
 
 static const char *const storages[] = { "mips", "svo" };
 
-static double closed_box(struct gpu *gpu, const char *storage, bool glows)
+static double closed_box(struct gpu *gpu, const char *storage, bool emissive)
 {
-    struct vct_rig rig;
+    struct vct_fixture fixture;
     char options[64];
-    vct_rig_init(&rig, gpu);
+    vct_fixture_init(&fixture, gpu);
     struct material m = material_default();
-    if (glows) m.emissive = vec3_of(10, 10, 10);
+    if (emissive) m.emissive = vec3_of(10, 10, 10);
     m.base_color = vec4_of(vec3_of(0, 0, 0), 1);
     m.metallic = 0;
-    fixture_box(&rig.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
-                fixture_material(&rig.frame_fixture, &m));
-    if (!glows) rig.frame_fixture.input.sky = vec3_of(10, 10, 10);
+    fixture_box(&fixture.frame_fixture, vec3_of(0, 0, 0), vec3_of(11, 8, 9), true,
+                fixture_material(&fixture.frame_fixture, &m));
+    if (!emissive) fixture.frame_fixture.input.sky = vec3_of(10, 10, 10);
     snprintf(options, sizeof options, "resolution=48,storage=%s", storage);
-    vct_rig_open(&rig, options);
-    const double e = mean_irradiance(&rig, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
-    vct_rig_finish(&rig);
+    vct_fixture_open(&fixture, options);
+    const double e = mean_irradiance(&fixture, vec3_of(2, 3, 8), vec3_of(9, 3, 1));
+    vct_fixture_finish(&fixture);
     return e / (3.14159265358979323846 * 10.0);
 }
 
-TEST_GPU(both_storages_have_the_light_of_a_furnace_and_keep_the_sky_out)
+TEST_GPU(both_storages_pass_furnace_and_closed_room)
 {
     for (int i = 0; i < 2; i++) {
         const double furnace = closed_box(gpu, storages[i], true),
@@ -156,17 +158,17 @@ TEST_GPU(both_storages_have_the_light_of_a_furnace_and_keep_the_sky_out)
     }
 }
 
-TEST_GPU(six_ways_keep_light_before_a_thin_wall_in_the_octree_too)
+TEST_GPU(an_anisotropic_octree_leaks_less_through_a_thin_wall)
 {
-    // The Gaussian spreads a wall over two points of a level where a mip may have it in one texel:
-    // a little more than with mips comes through.
+    // The Gaussian filter spreads a wall over two points of a level, a mip over one texel: the
+    // octree leaks slightly more.
     check_thin_wall(gpu, "svo", 0.09);
 }
 
-static void furnish(struct vct_rig *rig, struct gpu *gpu)
+static void make_scene(struct vct_fixture *fixture, struct gpu *gpu)
 {
-    vct_rig_init(rig, gpu);
-    struct frame_fixture *s = &rig->frame_fixture;
+    vct_fixture_init(fixture, gpu);
+    struct frame_fixture *s = &fixture->frame_fixture;
     fixture_box(s, ROOM.min, ROOM.max, true, fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
     fixture_box(s, vec3_of(6, 0, 3), vec3_of(8, 4, 6), false,
                 fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
@@ -174,38 +176,38 @@ static void furnish(struct vct_rig *rig, struct gpu *gpu)
     fixture_look(s, vec3_of(1, 6, 8), vec3_of(8, 2, 3));
 }
 
-TEST_GPU(pictures_of_both_storages_are_close)
+TEST_GPU(irradiance_of_both_storages_is_close)
 {
     static const char *const bounces[] = { "bounces=1", "bounces=2" };
     for (int i = 0; i < 2; i++) {
         float *e[2];
         for (int k = 0; k < 2; k++) {
-            struct vct_rig rig;
+            struct vct_fixture fixture;
             char options[96];
-            furnish(&rig, gpu);
+            make_scene(&fixture, gpu);
             snprintf(options, sizeof options, "resolution=64,storage=%s,%s", storages[k],
                      bounces[i]);
-            vct_rig_open(&rig, options);
-            for (int frame = 0; frame < 1 + 2 * i; frame++) fixture_render(&rig.frame_fixture);
-            e[k] = fixture_read(&rig.frame_fixture, READ_IRRADIANCE);
-            vct_rig_finish(&rig);
+            vct_fixture_open(&fixture, options);
+            for (int frame = 0; frame < 1 + 2 * i; frame++) fixture_render(&fixture.frame_fixture);
+            e[k] = fixture_read(&fixture.frame_fixture, READ_IRRADIANCE);
+            vct_fixture_finish(&fixture);
         }
-        double sum[2] = { 0 }, apart = 0.0;
+        double sum[2] = { 0 }, difference = 0.0;
         for (int p = 0; p < 32 * 32 * 3; p++) {
             sum[0] += (double)e[0][p];
             sum[1] += (double)e[1][p];
-            apart += fabs((double)e[0][p] - (double)e[1][p]);
+            difference += fabs((double)e[0][p] - (double)e[1][p]);
         }
         print_message("%s: mean of svo over that of mips %.4f, mean difference %.4f of it\n",
-                      bounces[i], sum[1] / sum[0], apart / sum[0]);
-        // Their points lie half a texel from those of mips, and coarse ones are filtered wider.
+                      bounces[i], sum[1] / sum[0], difference / sum[0]);
+        // Points of the octree are half a texel off those of mips, and the coarse filter is wider.
         CHECK_NEAR(sum[1] / sum[0], 1.0, 0.05);
-        CHECK(apart < 0.15 * sum[0]);
+        CHECK(difference < 0.15 * sum[0]);
         for (int k = 0; k < 2; k++) free(e[k]);
     }
 }
 
-// ---- What they cost
+// ---- Build time and memory
 
 static double ms_of(const struct gpu_timing *timings, int count, const char *const *names)
 {
@@ -217,8 +219,8 @@ static double ms_of(const struct gpu_timing *timings, int count, const char *con
 }
 
 struct build {
-    struct vct_rig rig;
-    double all, filter; // ms: voxels, light on them and its filtering; the latter alone
+    struct vct_fixture fixture;
+    double all, filter; // ms: voxelization, injection and filtering; filtering alone
 };
 
 static void build_once(struct gpu *gpu, struct build *build)
@@ -227,7 +229,7 @@ static void build_once(struct gpu *gpu, struct build *build)
     static const char *const filters[] = { "vct.texels", "vct.fill",    "vct.mips", "vct.nodes",
                                            "vct.leaves", "vct.borders", NULL };
     struct gpu_timing timings[32];
-    fixture_render(&build->rig.frame_fixture);
+    fixture_render(&build->fixture.frame_fixture);
     CHECK(gpu_wait(gpu));
     const int count = gpu_frame_timings(gpu, timings, 32);
     const double filter = ms_of(timings, count, filters);
@@ -240,24 +242,23 @@ TEST_GPU(mips_are_built_faster_than_the_octree)
     struct build builds[2];
     for (int i = 0; i < 2; i++) {
         char options[96];
-        furnish(&builds[i].rig, gpu);
+        make_scene(&builds[i].fixture, gpu);
         snprintf(options, sizeof options,
                  "resolution=64,cones=1,bounces=1,keep_static=false,storage=%s", storages[i]);
-        vct_rig_open(&builds[i].rig, options);
+        vct_fixture_open(&builds[i].fixture, options);
         builds[i].all = builds[i].filter = INFINITY;
     }
-    // In turns, and the fastest of many: the machine may have other work.
+    // Alternating, and the minimum of many frames: other processes may load the machine.
     for (int frame = 0; frame < 24; frame++) build_once(gpu, &builds[frame % 2]);
     for (int i = 0; i < 2; i++) {
-        print_message("%s: built in %.1f ms, of it %.1f after the light is on the voxels\n",
-                      storages[i], builds[i].all, builds[i].filter);
-        vct_rig_finish(&builds[i].rig);
+        print_message("%s: built in %.1f ms, filtering %.1f ms\n", storages[i], builds[i].all,
+                      builds[i].filter);
+        vct_fixture_finish(&builds[i].fixture);
     }
     const double all = builds[1].all / builds[0].all, filter = builds[1].filter / builds[0].filter;
-    print_message("the octree takes %.2f times as long, and %.2f times for what differs\n", all,
-                  filter);
-    // 2.7 and more than 8 where this was written. The tree has to be made, a brick has 27 points
-    // for 8, and neighbours have to agree.
+    print_message("the octree takes %.2f times as long, filtering %.2f times\n", all, filter);
+    // Measured 2.7, and more than 8 for the passes that differ: the octree is built each time, a
+    // brick has 27 points for 8 texels, and borders are averaged.
     CHECK(all > 2.0);
     CHECK(filter > 4.0);
 }
@@ -272,29 +273,30 @@ static double estimate(const char *text)
 
 static double taken(struct gpu *gpu, const char *text)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    vct_rig_open(&rig, text);
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    vct_fixture_open(&fixture, text);
     struct gpu_memory owners[32];
     const int count = gpu_memory_by_owner(gpu, owners, 32);
     double bytes = 0.0;
     for (int i = 0; i < count; i++)
         if (strcmp(owners[i].owner, "vct") == 0) bytes = (double)owners[i].bytes;
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
     return bytes;
 }
 
-TEST_GPU(both_storages_say_how_much_memory_they_take)
+TEST_GPU(memory_estimate_of_storages_matches_the_allocation)
 {
     for (int resolution = 16; resolution <= 256; resolution *= 2)
         for (int i = 0; i < 2; i++) {
             char text[64];
             snprintf(text, sizeof text, "resolution=%d,storage=%s", resolution, storages[i]);
-            const double said = estimate(text);
-            print_message("%d voxels, %s: %.1f MiB\n", resolution, storages[i], said / 1048576.0);
+            const double estimated = estimate(text);
+            print_message("%d voxels, %s: %.1f MiB\n", resolution, storages[i],
+                          estimated / 1048576.0);
             if (resolution > 64) continue;
-            // The device may round each object up.
-            const double is = taken(gpu, text);
-            CHECK(is >= said && is <= 1.02 * said + 4096);
+            // The device may round each allocation up.
+            const double used = taken(gpu, text);
+            CHECK(used >= estimated && used <= 1.02 * estimated + 4096);
         }
 }

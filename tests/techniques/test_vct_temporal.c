@@ -1,18 +1,18 @@
-// The temporal filter of voxel cone tracing: what a still picture, a pan, a moving object and a cut
-// show. Figures are printed.
-#include "techniques/vct_rig.h"
+// Temporal filter of cone tracing: a static camera, a pan, a moving object, and cuts. Figures are
+// printed.
+#include "techniques/vct_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const vec3s EYE = { { 1, 6, 9 } }, TARGET = { { 8, 2, 3 } };
+static const vec3s CAMERA = { { 1, 6, 9 } }, TARGET = { { 8, 2, 3 } };
 
-// A room 11 m wide with a block and a red box in it, and a point light. Returns the box.
-static int furnish(struct vct_rig *rig, struct gpu *gpu)
+// A room 11 m wide with a block, a red box and a point light. Returns the box.
+static int make_scene(struct vct_fixture *fixture, struct gpu *gpu)
 {
-    vct_rig_init(rig, gpu);
-    struct frame_fixture *s = &rig->frame_fixture;
+    vct_fixture_init(fixture, gpu);
+    struct frame_fixture *s = &fixture->frame_fixture;
     fixture_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
                 fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
     fixture_box(s, vec3_of(8, 0.2f, 3), vec3_of(10, 4, 6), false,
@@ -21,28 +21,28 @@ static int furnish(struct vct_rig *rig, struct gpu *gpu)
     fixture_box(s, vec3_of(4, 0.2f, 2), vec3_of(5.5f, 3, 3.5f), false,
                 fixture_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
     fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    fixture_look(s, EYE, TARGET);
+    fixture_look(s, CAMERA, TARGET);
     return first;
 }
 
 // The box's six sides.
-static void move_box(struct vct_rig *rig, int first, vec3s by)
+static void move_box(struct vct_fixture *fixture, int first, vec3s by)
 {
-    struct frame_fixture *s = &rig->frame_fixture;
+    struct frame_fixture *s = &fixture->frame_fixture;
     for (int i = first; i < first + 6; i++)
         for (int k = 0; k < 3; k++)
             s->pose.world_from_node[s->scene->instances[i].node].raw[3][k] += by.raw[k];
 }
 
-static float *irradiance_after(struct vct_rig *rig, int frames)
+static float *irradiance_after(struct vct_fixture *fixture, int frames)
 {
-    for (int i = 0; i < frames; i++) fixture_render(&rig->frame_fixture);
-    return fixture_read(&rig->frame_fixture, READ_IRRADIANCE);
+    for (int i = 0; i < frames; i++) fixture_render(&fixture->frame_fixture);
+    return fixture_read(&fixture->frame_fixture, READ_IRRADIANCE);
 }
 
-static size_t floats_of(const struct vct_rig *rig)
+static size_t floats_of(const struct vct_fixture *fixture)
 {
-    return (size_t)rig->frame_fixture.width * rig->frame_fixture.height * 3;
+    return (size_t)fixture->frame_fixture.width * fixture->frame_fixture.height * 3;
 }
 
 static double mean(const float *values, size_t count)
@@ -59,32 +59,33 @@ static double mean_difference(const float *a, const float *b, size_t count)
     return sum / (double)count;
 }
 
-// What a channel of an image of the filter holds; to be freed.
-static float *channels(const struct vct_rig *rig, gpu_image image, int count)
+// Channels of an image of the filter; to be freed.
+static float *channels(const struct vct_fixture *fixture, gpu_image image, int count)
 {
     const size_t floats =
-        (size_t)rig->frame_fixture.width * rig->frame_fixture.height * (size_t)count;
+        (size_t)fixture->frame_fixture.width * fixture->frame_fixture.height * (size_t)count;
     float *out = malloc(floats * sizeof *out);
-    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, image, 0, 0, out, count, floats));
+    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, image, 0, 0, out, count, floats));
     return out;
 }
 
-// ---- A still picture
+// ---- Static camera
 
-// In a still picture each pixel's history is its own: what the frames alone have, put together as
-// the formula says.
+// With a static camera history is the weighted mean of the unfiltered frames.
 TEST_GPU(history_is_the_weighted_mean_of_the_frames)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    vct_rig_open(&rig, "resolution=32,temporal=true,frames=4");
-    const size_t pixels = (size_t)rig.frame_fixture.width * rig.frame_fixture.height;
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=4");
+    const size_t pixels = (size_t)fixture.frame_fixture.width * fixture.frame_fixture.height;
     double *mean_of_them = calloc(3 * pixels, sizeof *mean_of_them);
     for (int frame = 0; frame < 9; frame++) {
-        fixture_render(&rig.frame_fixture);
-        float *now = channels(&rig, rig.vct->temporal.now, 3);
-        float *got = channels(&rig, rig.vct->temporal.light[rig.vct->temporal.newest], 4);
-        const double w = frame < 4 ? frame : 4; // frames=4: no more than four of them weigh
+        fixture_render(&fixture.frame_fixture);
+        float *now = channels(&fixture, fixture.vct->temporal.now, 3);
+        float *got =
+            channels(&fixture, fixture.vct->temporal.light[fixture.vct->temporal.newest], 4);
+        const double w =
+            frame < 4 ? frame : 4; // frames=4: the weight of history is at most four frames
         for (size_t i = 0; i < 3 * pixels; i++) {
             mean_of_them[i] = (w * mean_of_them[i] + (double)now[i]) / (w + 1.0);
             const double value = (double)got[i / 3 * 4 + i % 3];
@@ -95,19 +96,19 @@ TEST_GPU(history_is_the_weighted_mean_of_the_frames)
         free(got);
     }
     free(mean_of_them);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// Each frame has other cones, by a tenth of the light, and the mean over n of them changes by an
-// n-th of that from frame to frame: after 500 frames by less than a thousandth.
-TEST_GPU(a_still_picture_comes_to_rest)
+// Each frame has other cones: the light differs by a tenth, and the mean over n frames changes by
+// 1/n of that per frame, after 500 frames by less than a thousandth.
+TEST_GPU(history_converges_with_a_static_camera)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    vct_rig_open(&rig, "resolution=32,temporal=true,frames=4");
-    const size_t count = floats_of(&rig);
-    float *first = irradiance_after(&rig, 1), *second = irradiance_after(&rig, 1);
-    float *before = irradiance_after(&rig, 497), *after = irradiance_after(&rig, 1);
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=4");
+    const size_t count = floats_of(&fixture);
+    float *first = irradiance_after(&fixture, 1), *second = irradiance_after(&fixture, 1);
+    float *before = irradiance_after(&fixture, 497), *after = irradiance_after(&fixture, 1);
     const double average = mean(after, count);
     double squares = 0.0, most = 0.0;
     size_t resting = 0;
@@ -125,35 +126,35 @@ TEST_GPU(a_still_picture_comes_to_rest)
         100.0 * (double)resting / (double)count);
     CHECK(change < 1e-3);
     CHECK((double)resting > 0.95 * (double)count);
-    CHECK(mean_difference(first, second, count) > 1e-2 * average); // or nothing is filtered
+    CHECK(mean_difference(first, second, count) > 1e-2 * average); // without noise the test is void
     free(first), free(second), free(before), free(after);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
 // ---- A pan
 
 enum { PAN = 30, WARM = 8 };
 
-static void turn_eye(struct frame_fixture *s, int frame)
+static void pan_camera(struct frame_fixture *s, int frame)
 {
     const float turn = 0.012f * (float)(frame - PAN / 2);
-    const vec3s to = glms_vec3_sub(TARGET, EYE);
+    const vec3s to = glms_vec3_sub(TARGET, CAMERA);
     const vec3s rotated =
         vec3_of(to.x * cosf(turn) - to.z * sinf(turn), to.y, to.x * sinf(turn) + to.z * cosf(turn));
-    fixture_look(s, EYE, glms_vec3_add(EYE, rotated));
+    fixture_look(s, CAMERA, glms_vec3_add(CAMERA, rotated));
 }
 
 struct image {
     float *position, *normal, *irradiance;
 };
 
-static struct image picture_of(struct frame_fixture *s)
+static struct image image_of(struct frame_fixture *s)
 {
     return (struct image){ fixture_read(s, READ_POSITION), fixture_read(s, READ_NORMAL),
                            fixture_read(s, READ_IRRADIANCE) };
 }
 
-static void picture_free(struct image *p)
+static void image_free(struct image *p)
 {
     free(p->position), free(p->normal), free(p->irradiance);
 }
@@ -163,10 +164,10 @@ static vec3s vector(const float *of, size_t pixel)
     return vec3_of(of[3 * pixel], of[3 * pixel + 1], of[3 * pixel + 2]);
 }
 
-// Irradiance at a point of the world as the picture has it: bilinear, where all four pixels show
-// its plane within 0.1 m. False elsewhere: creases and silhouettes mix what is of other surfaces.
-static bool seen_at(const struct frame_fixture *s, vec3s p, vec3s n, const struct image *image,
-                    double out[3])
+// Bilinear irradiance of the image at a point of the world. False unless all four pixels are within
+// 0.1 m of its plane: creases and silhouettes mix surfaces.
+static bool irradiance_at(const struct frame_fixture *s, vec3s p, vec3s n,
+                          const struct image *image, double out[3])
 {
     const struct world_camera *c = &s->input.camera;
     const int width = (int)s->width, height = (int)s->height;
@@ -196,34 +197,33 @@ static bool seen_at(const struct frame_fixture *s, vec3s p, vec3s n, const struc
     return true;
 }
 
-// How much the light at points of the room changes from frame to frame while the eye turns, as the
-// root of the mean square, over its mean. Nothing of it is real: irradiance does not depend on the
-// eye.
+// Root mean square change of irradiance from frame to frame at points of the room, over its mean,
+// in a pan. All of it is error: irradiance does not depend on the camera.
 static double flicker_in_pan(struct gpu *gpu, const char *options)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    struct frame_fixture *s = &rig.frame_fixture;
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    struct frame_fixture *s = &fixture.frame_fixture;
     s->width = s->height = 48;
-    turn_eye(s, 0);
-    vct_rig_open(&rig, options);
+    pan_camera(s, 0);
+    vct_fixture_open(&fixture, options);
     for (int i = 0; i < WARM; i++) fixture_render(s);
-    turn_eye(s, PAN / 2);
+    pan_camera(s, PAN / 2);
     fixture_render(s);
-    struct image middle = picture_of(s);
-    turn_eye(s, 0);
+    struct image middle = image_of(s);
+    pan_camera(s, 0);
     for (int i = 0; i < WARM; i++) fixture_render(s);
     const size_t pixels = (size_t)s->width * s->height;
     double *last = calloc(4 * pixels, sizeof *last), changes = 0.0, sum = 0.0;
     long count = 0;
     for (int frame = 0; frame < PAN; frame++) {
-        turn_eye(s, frame);
+        pan_camera(s, frame);
         fixture_render(s);
-        struct image image = picture_of(s);
+        struct image image = image_of(s);
         for (size_t i = 0; i < pixels; i++) {
             double now[3];
             const vec3s p = vector(middle.position, i), n = vector(middle.normal, i);
-            const bool seen = seen_at(s, p, n, &image, now);
+            const bool seen = irradiance_at(s, p, n, &image, now);
             for (int k = 0; seen && k < 3; k++) {
                 if (last[4 * i + 3] > 0.0) {
                     changes +=
@@ -235,16 +235,16 @@ static double flicker_in_pan(struct gpu *gpu, const char *options)
             }
             last[4 * i + 3] = seen;
         }
-        picture_free(&image);
+        image_free(&image);
     }
     CHECK(count > PAN * (long)pixels);
-    picture_free(&middle);
+    image_free(&middle);
     free(last);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
     return sqrt(changes / (double)count) / (sum / (double)count);
 }
 
-TEST_GPU(light_flickers_a_third_in_a_pan)
+TEST_GPU(the_filter_reduces_flicker_in_a_pan)
 {
     const double with = flicker_in_pan(gpu, "resolution=32,temporal=true");
     const double without = flicker_in_pan(gpu, "resolution=32");
@@ -254,28 +254,27 @@ TEST_GPU(light_flickers_a_third_in_a_pan)
     CHECK(with < without / 3.0);
 }
 
-// ---- Things that move
+// ---- Moving objects
 
 enum { FRAMES = 16 };
 
-// Light at surfaces that stand still all the time, from which the box takes it: by 1/(FRAMES + 1)
-// of the rest a frame. What is left of the change after n frames is (FRAMES/(FRAMES + 1))ⁿ of it,
-// and what frames differ by.
-TEST_GPU(what_an_object_leaves_behind_goes_as_the_weight_says)
+// Irradiance of static surfaces after the box has moved. The remaining change after n frames is
+// (FRAMES/(FRAMES + 1))ⁿ of the first, plus the noise of frames.
+TEST_GPU(a_trail_decays_with_the_history_weight)
 {
     enum { LAST = 80 };
-    struct vct_rig rig;
-    const int box = furnish(&rig, gpu);
-    vct_rig_open(&rig, "resolution=32,temporal=true,frames=16");
-    const size_t count = floats_of(&rig);
-    free(irradiance_after(&rig, 200));
-    struct image old = picture_of(&rig.frame_fixture);
-    move_box(&rig, box, vec3_of(-1.5f, 3, 2)); // under the light
+    struct vct_fixture fixture;
+    const int box = make_scene(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=16");
+    const size_t count = floats_of(&fixture);
+    free(irradiance_after(&fixture, 200));
+    struct image old = image_of(&fixture.frame_fixture);
+    move_box(&fixture, box, vec3_of(-1.5f, 3, 2)); // under the light
     float *trail[LAST + 1];
-    for (int n = 1; n <= LAST; n++) trail[n] = irradiance_after(&rig, 1);
-    free(irradiance_after(&rig, 400));
-    struct image settled = picture_of(&rig.frame_fixture);
-    for (size_t i = 0; i < count / 3; i++) { // others do not count
+    for (int n = 1; n <= LAST; n++) trail[n] = irradiance_after(&fixture, 1);
+    free(irradiance_after(&fixture, 400));
+    struct image settled = image_of(&fixture.frame_fixture);
+    for (size_t i = 0; i < count / 3; i++) { // surfaces that moved are excluded
         const vec3s moved = glms_vec3_sub(vector(old.position, i), vector(settled.position, i));
         if (glms_vec3_norm(moved) == 0.0f) continue;
         for (int n = 1; n <= LAST; n++) memset(trail[n] + 3 * i, 0, 3 * sizeof(float));
@@ -291,33 +290,33 @@ TEST_GPU(what_an_object_leaves_behind_goes_as_the_weight_says)
         const double due = pow((double)FRAMES / (FRAMES + 1), n) * change;
         if (n == 1 || n % 16 == 0)
             print_message(
-                "%d frames after a change by %.3f of the mean: %.4f is left, %.4f is due\n", n,
+                "%d frames after a change by %.3f of the mean: %.4f is left, expected %.4f\n", n,
                 change / average, left / average, due / average);
         CHECK(left < due + 2.0 * noise);
-        CHECK(left > due - 2.0 * noise); // there is a trail, or nothing is tested
+        CHECK(left > due - 2.0 * noise); // without a trail the test is void
         free(trail[n]);
     }
-    picture_free(&old), picture_free(&settled);
-    vct_rig_finish(&rig);
+    image_free(&old), image_free(&settled);
+    vct_fixture_finish(&fixture);
 }
 
-// The clamp ends the trail where the new light is not in doubt.
+// The clamp ends the trail where the noise of the new light is small.
 TEST_GPU(the_clamp_shortens_the_trail)
 {
     double left[2];
     for (int clamped = 0; clamped < 2; clamped++) {
-        struct vct_rig rig;
-        furnish(&rig, gpu);
-        vct_rig_open(&rig, clamped ? "resolution=32,temporal=true,clamp=2"
-                                   : "resolution=32,temporal=true");
-        const size_t count = floats_of(&rig);
-        float *old = irradiance_after(&rig, 40);
-        rig.frame_fixture.lights[0].position = vec3_of(9, 7, 8);
-        float *trail = irradiance_after(&rig, 4), *settled = irradiance_after(&rig, 200);
+        struct vct_fixture fixture;
+        make_scene(&fixture, gpu);
+        vct_fixture_open(&fixture, clamped ? "resolution=32,temporal=true,clamp=2"
+                                           : "resolution=32,temporal=true");
+        const size_t count = floats_of(&fixture);
+        float *old = irradiance_after(&fixture, 40);
+        fixture.frame_fixture.lights[0].position = vec3_of(9, 7, 8);
+        float *trail = irradiance_after(&fixture, 4), *settled = irradiance_after(&fixture, 200);
         left[clamped] =
             mean_difference(trail, settled, count) / mean_difference(old, settled, count);
         free(old), free(trail), free(settled);
-        vct_rig_finish(&rig);
+        vct_fixture_finish(&fixture);
     }
     print_message(
         "4 frames after the light has moved %.3f of the change is left, %.3f with the clamp\n",
@@ -325,28 +324,29 @@ TEST_GPU(the_clamp_shortens_the_trail)
     CHECK(left[1] < 0.6 * left[0]);
 }
 
-// While the box moves its own sides keep their history, and what it uncovers has none.
-TEST_GPU(history_follows_what_moves_and_begins_where_it_was)
+// The sides of the moving box keep their history; pixels that it uncovers have none.
+TEST_GPU(history_follows_objects_and_resets_where_uncovered)
 {
-    struct vct_rig rig;
-    const int box = furnish(&rig, gpu);
-    rig.frame_fixture.width = rig.frame_fixture.height = 48;
-    vct_rig_open(&rig, "resolution=32,temporal=true,frames=16");
-    struct frame_fixture *s = &rig.frame_fixture;
+    struct vct_fixture fixture;
+    const int box = make_scene(&fixture, gpu);
+    fixture.frame_fixture.width = fixture.frame_fixture.height = 48;
+    vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=16");
+    struct frame_fixture *s = &fixture.frame_fixture;
     const vec3s step = vec3_of(0.12f, 0, 0.03f);
     for (int i = 0; i < 12; i++) {
         fixture_render(s);
-        move_box(&rig, box, step);
+        move_box(&fixture, box, step);
     }
-    struct image before = picture_of(s);
+    struct image before = image_of(s);
     fixture_render(s);
-    struct image after = picture_of(s);
-    float *history = channels(&rig, rig.vct->temporal.light[rig.vct->temporal.newest], 4);
+    struct image after = image_of(s);
+    float *history =
+        channels(&fixture, fixture.vct->temporal.light[fixture.vct->temporal.newest], 4);
     int on_box = 0, followed = 0, uncovered = 0, begun = 0, still = 0, kept = 0;
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
         const vec3s was = vector(before.position, i), is = vector(after.position, i);
         const float frames = history[4 * i + 3];
-        // The box, 12 steps from where it was: x 5.44 … 6.94, y up to 3, z 2.36 … 3.86.
+        // The box after 12 steps: x 5.44 … 6.94, y up to 3, z 2.36 … 3.86.
         const bool box_now =
             is.y > 0.3f && is.y < 3.1f && is.x > 5.4f && is.x < 7.0f && is.z > 2.3f && is.z < 3.9f;
         const bool same = glms_vec3_norm(glms_vec3_sub(was, is)) < 1e-3f;
@@ -363,137 +363,136 @@ TEST_GPU(history_follows_what_moves_and_begins_where_it_was)
     CHECK(on_box > 50 && followed > 0.8 * on_box);
     CHECK(uncovered > 3 && begun > 0.8 * uncovered);
     CHECK(kept > 0.95 * still);
-    picture_free(&before), picture_free(&after);
+    image_free(&before), image_free(&after);
     free(history);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// Light is kept in physical units while the frame's change: a light 2¹⁰ times as strong is mixed
-// with what was.
-TEST_GPU(history_goes_on_when_the_unit_changes)
+// History is in physical units while the frame's unit changes: a light 2¹⁰ times as strong is mixed
+// with the history.
+TEST_GPU(history_is_independent_of_the_exposure)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    vct_rig_open(&rig, "resolution=32,temporal=true,frames=1");
-    const size_t count = floats_of(&rig);
-    float *old = irradiance_after(&rig, 1);
-    struct world_light *light = &rig.frame_fixture.lights[0];
-    const float scale = frame_radiance_scale(rig.frame_fixture.frame);
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=1");
+    const size_t count = floats_of(&fixture);
+    float *old = irradiance_after(&fixture, 1);
+    struct world_light *light = &fixture.frame_fixture.lights[0];
+    const float scale = frame_radiance_scale(fixture.frame_fixture.frame);
     light->intensity = glms_vec3_scale(light->intensity, 1024);
-    float *mixed = irradiance_after(&rig, 1);
-    CHECK(frame_radiance_scale(rig.frame_fixture.frame) < scale);
-    float *now = channels(&rig, rig.vct->temporal.now, 3);
-    const double unit = (double)frame_radiance_scale(rig.frame_fixture.frame);
-    // Half floats of the frame: 11 bits.
+    float *mixed = irradiance_after(&fixture, 1);
+    CHECK(frame_radiance_scale(fixture.frame_fixture.frame) < scale);
+    float *now = channels(&fixture, fixture.vct->temporal.now, 3);
+    const double unit = (double)frame_radiance_scale(fixture.frame_fixture.frame);
+    // Half floats: 11 bits.
     for (size_t i = 0; i < count; i++) {
         const double expected = 0.5 * ((double)old[i] + (double)now[i] / unit);
         CHECK_NEAR((double)mixed[i], expected, 1e-3 * expected + 1e-6);
     }
     free(old), free(mixed), free(now);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// ---- Where the past ends
+// ---- Reset of history
 
-static float *first_frame(struct gpu *gpu, const char *options, vec3s eye, vec3s target,
-                          uint32_t size)
+static float *render_first_frame(struct gpu *gpu, const char *options, vec3s camera, vec3s target,
+                                 uint32_t size)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    rig.frame_fixture.width = rig.frame_fixture.height = size;
-    fixture_look(&rig.frame_fixture, eye, target);
-    vct_rig_open(&rig, options);
-    float *e = irradiance_after(&rig, 1);
-    vct_rig_finish(&rig);
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    fixture.frame_fixture.width = fixture.frame_fixture.height = size;
+    fixture_look(&fixture.frame_fixture, camera, target);
+    vct_fixture_open(&fixture, options);
+    float *e = irradiance_after(&fixture, 1);
+    vct_fixture_finish(&fixture);
     return e;
 }
 
-static const vec3s OTHER_EYE = { { 10, 3, 9 } }, OTHER_TARGET = { { 2, 1, 1 } };
+static const vec3s OTHER_CAMERA = { { 10, 3, 9 } }, OTHER_TARGET = { { 2, 1, 1 } };
 
-TEST_GPU(a_cut_forgets_to_the_bit)
+TEST_GPU(a_camera_cut_resets_history)
 {
     static const char *const off = "resolution=32", *const on = "resolution=32,temporal=true";
-    float *fresh = first_frame(gpu, off, OTHER_EYE, OTHER_TARGET, 32);
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    vct_rig_open(&rig, on);
-    const size_t bytes = floats_of(&rig) * sizeof *fresh;
-    free(irradiance_after(&rig, 5));
-    fixture_look(&rig.frame_fixture, OTHER_EYE, OTHER_TARGET);
-    rig.frame_fixture.input.camera_cut = true;
-    float *cut = irradiance_after(&rig, 1);
+    float *fresh = render_first_frame(gpu, off, OTHER_CAMERA, OTHER_TARGET, 32);
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    vct_fixture_open(&fixture, on);
+    const size_t bytes = floats_of(&fixture) * sizeof *fresh;
+    free(irradiance_after(&fixture, 5));
+    fixture_look(&fixture.frame_fixture, OTHER_CAMERA, OTHER_TARGET);
+    fixture.frame_fixture.input.camera_cut = true;
+    float *cut = irradiance_after(&fixture, 1);
     assert_memory_equal(cut, fresh, bytes);
     free(cut);
-    // Other options, too; what it is told of a change; another size.
-    rig.frame_fixture.input.camera_cut = false;
-    free(irradiance_after(&rig, 3));
-    struct vct_options options = rig.vct->options;
+    // Reset by options, by an invalidation and by another size.
+    fixture.frame_fixture.input.camera_cut = false;
+    free(irradiance_after(&fixture, 3));
+    struct vct_options options = fixture.vct->options;
     options.gain = 2.0f;
-    technique_vct.set_options(rig.vct, &options);
-    float *gained = irradiance_after(&rig, 1);
-    for (size_t i = 0; i < floats_of(&rig); i++)
+    technique_vct.set_options(fixture.vct, &options);
+    float *gained = irradiance_after(&fixture, 1);
+    for (size_t i = 0; i < floats_of(&fixture); i++)
         CHECK_NEAR(gained[i], 2.0f * fresh[i], 1e-3f * gained[i]);
     free(gained);
     options.gain = 1.0f;
-    technique_vct.set_options(rig.vct, &options);
-    free(irradiance_after(&rig, 3));
-    technique_vct.invalidate(rig.vct, CHANGED_CAMERA);
-    cut = irradiance_after(&rig, 1);
+    technique_vct.set_options(fixture.vct, &options);
+    free(irradiance_after(&fixture, 3));
+    technique_vct.invalidate(fixture.vct, CHANGED_CAMERA);
+    cut = irradiance_after(&fixture, 1);
     assert_memory_equal(cut, fresh, bytes);
     free(cut), free(fresh);
-    fresh = first_frame(gpu, off, OTHER_EYE, OTHER_TARGET, 40);
-    CHECK(technique_vct.resize(rig.vct, 40, 40));
-    fixture_resize(&rig.frame_fixture, 40, 40);
-    cut = irradiance_after(&rig, 1);
-    assert_memory_equal(cut, fresh, floats_of(&rig) * sizeof *fresh);
+    fresh = render_first_frame(gpu, off, OTHER_CAMERA, OTHER_TARGET, 40);
+    CHECK(technique_vct.resize(fixture.vct, 40, 40));
+    fixture_resize(&fixture.frame_fixture, 40, 40);
+    cut = irradiance_after(&fixture, 1);
+    assert_memory_equal(cut, fresh, floats_of(&fixture) * sizeof *fresh);
     free(cut), free(fresh);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// What the newest frame has found alone, with its own cones.
-static float *alone(const struct vct_rig *rig, size_t count)
+// The unfiltered irradiance of the last frame.
+static float *alone(const struct vct_fixture *fixture, size_t count)
 {
     const size_t pixels = count / 3;
-    const float scale = frame_radiance_scale(rig->frame_fixture.frame);
+    const float scale = frame_radiance_scale(fixture->frame_fixture.frame);
     float *rgba = malloc(pixels * 4 * sizeof *rgba), *out = malloc(count * sizeof *out);
-    CHECK(gpu_image_download_float(rig->frame_fixture.gpu, rig->vct->temporal.now, 0, 0, rgba, 4,
-                                   pixels * 4));
+    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, fixture->vct->temporal.now, 0, 0,
+                                   rgba, 4, pixels * 4));
     for (size_t i = 0; i < count; i++) out[i] = rgba[i / 3 * 4 + i % 3] / scale;
     free(rgba);
     return out;
 }
 
-// A host that jumps and does not say so: what was seen before is the same surface, or does not
-// count. No picture is farther from what it comes to than the frame alone would be.
-TEST_GPU(a_jump_has_no_ghost)
+// A jump without a cut: history is of the same surface or rejected. The error is not larger than
+// that of the unfiltered frame.
+TEST_GPU(a_camera_jump_has_no_ghosting)
 {
-    struct vct_rig rig;
-    furnish(&rig, gpu);
-    // A picture as fine as the frame alone is exact: history is taken from between its pixels.
-    rig.frame_fixture.width = rig.frame_fixture.height = 64;
-    // All bounces make the light so even that the frame alone is as exact.
-    vct_rig_open(&rig, "resolution=32,bounces=1,temporal=true");
-    const size_t count = floats_of(&rig);
-    float *there = irradiance_after(&rig, 60);
-    fixture_look(&rig.frame_fixture, OTHER_EYE, OTHER_TARGET);
-    float *jump = irradiance_after(&rig, 1), *fresh = alone(&rig, count);
-    float *settled = irradiance_after(&rig, 200);
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu);
+    // At this resolution the bilinear history lookup is as exact as the unfiltered frame.
+    fixture.frame_fixture.width = fixture.frame_fixture.height = 64;
+    // With all bounces the light is so even that the unfiltered frame is as exact.
+    vct_fixture_open(&fixture, "resolution=32,bounces=1,temporal=true");
+    const size_t count = floats_of(&fixture);
+    float *there = irradiance_after(&fixture, 60);
+    fixture_look(&fixture.frame_fixture, OTHER_CAMERA, OTHER_TARGET);
+    float *jump = irradiance_after(&fixture, 1), *fresh = alone(&fixture, count);
+    float *settled = irradiance_after(&fixture, 200);
     const double average = mean(settled, count),
                  begun = mean_difference(fresh, settled, count) / average;
     const double ghost = mean_difference(jump, settled, count) / average;
-    print_message(
-        "a jump leaves %.4f of the mean, the frame alone %.4f, the old image would %.4f\n", ghost,
-        begun, mean_difference(there, settled, count) / average);
+    print_message("error after a jump %.4f of the mean, unfiltered %.4f, of the old image %.4f\n",
+                  ghost, begun, mean_difference(there, settled, count) / average);
     CHECK(ghost <= begun);
     free(fresh), free(there), free(jump), free(settled);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// What is off costs nothing and changes nothing.
-TEST_GPU(the_first_frame_is_that_of_the_unfiltered)
+// Without history the filter is the identity.
+TEST_GPU(the_first_frame_is_unfiltered)
 {
-    float *off = first_frame(gpu, "resolution=32", EYE, TARGET, 32);
-    float *on = first_frame(gpu, "resolution=32,temporal=true", EYE, TARGET, 32);
+    float *off = render_first_frame(gpu, "resolution=32", CAMERA, TARGET, 32);
+    float *on = render_first_frame(gpu, "resolution=32,temporal=true", CAMERA, TARGET, 32);
     assert_memory_equal(off, on, 32 * 32 * 3 * sizeof *off);
     free(off), free(on);
 }

@@ -1,11 +1,11 @@
 add_library(ag_test_techniques STATIC techniques/geometry_fixture.c techniques/geometry_twin.c techniques/lpv_fixture.c
   techniques/lpv_twin.c techniques/mesh_fixture.c techniques/rsm_fixture.c
-  techniques/svo_tree.c techniques/vct_rig.c techniques/vct_twin.c techniques/vct_voxel_count.c techniques/vo_fixture.c)
+  techniques/svo_tree.c techniques/vct_fixture.c techniques/vct_twin.c techniques/vct_voxel_count.c techniques/vo_fixture.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
 
 foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_math lpv_occlusion lpv_sky lpv_twin
-    technique_invariants technique_smoke vct_bounces vct_clips vct_clip_light vct_lamps vct_light vct_odd vct_screen vct_specular vct_storage vct_temporal vct_voxels visibility vo
-    vct_svo vct_bricks vctao)
+    technique_invariants technique_smoke vct_bounces vct_clips vct_clip_light vct_small_emitters vct_light vct_edge_cases vct_screen vct_specular vct_storage vct_temporal vct_voxels visibility vo
+    vct_octree_nodes vct_octree_bricks vctao)
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")

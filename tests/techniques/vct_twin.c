@@ -3,20 +3,20 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct vct_twin_volume vct_twin_volume(const struct vct_rig *rig, uint32_t level)
+struct vct_twin_volume vct_twin_volume(const struct vct_fixture *fixture, uint32_t level)
 {
-    struct vct_twin_volume v = { .light = vct_rig_light(rig, level),
-                                 .dim = (int)vct_volume_dim(&rig->vct->options) >> level };
+    struct vct_twin_volume v = { .light = vct_fixture_light(fixture, level),
+                                 .dim = (int)vct_volume_dim(&fixture->vct->options) >> level };
     for (int a = 0; a < 3; a++)
-        v.size[a] = (rig->vct->clips[0].grid.cells[a] / 2 + (1 << level) - 1) >> level;
+        v.size[a] = (fixture->vct->clips[0].grid.cells[a] / 2 + (1 << level) - 1) >> level;
     return v;
 }
 
-const float *vct_twin_texel(const struct vct_twin_volume *v, int way, const int at[3])
+const float *vct_twin_texel(const struct vct_twin_volume *v, int direction, const int at[3])
 {
-    return v->light +
-           4 * (((size_t)at[2] * (size_t)v->dim + (size_t)at[1]) * VCT_TWIN_WAYS * (size_t)v->dim +
-                (size_t)(way * v->dim + at[0]));
+    return v->light + 4 * (((size_t)at[2] * (size_t)v->dim + (size_t)at[1]) * VCT_TWIN_DIRECTIONS *
+                               (size_t)v->dim +
+                           (size_t)(direction * v->dim + at[0]));
 }
 
 bool vct_twin_in_use(const struct vct_twin_volume *v, const int at[3])
@@ -24,16 +24,17 @@ bool vct_twin_in_use(const struct vct_twin_volume *v, const int at[3])
     return at[0] < v->size[0] && at[1] < v->size[1] && at[2] < v->size[2];
 }
 
-struct vct_twin vct_twin_of(const struct vct_rig *rig)
+struct vct_twin vct_twin_of(const struct vct_fixture *fixture)
 {
-    const struct vct_options *o = &rig->vct->options;
+    const struct vct_options *o = &fixture->vct->options;
     struct vct_twin twin = {
         .level_count = (int)vct_volume_mips(o),
         .occlusion = o->occlusion,
-        .decay = 2.0 * (double)rig->vct->clips[0].grid.cell_m * (double)o->decay,
+        .decay = 2.0 * (double)fixture->vct->clips[0].grid.cell_m * (double)o->decay,
         .offset = (double)o->offset,
     };
-    for (int i = 0; i < twin.level_count; i++) twin.levels[i] = vct_twin_volume(rig, (uint32_t)i);
+    for (int i = 0; i < twin.level_count; i++)
+        twin.levels[i] = vct_twin_volume(fixture, (uint32_t)i);
     return twin;
 }
 
@@ -42,7 +43,8 @@ void vct_twin_finish(struct vct_twin *twin)
     for (int i = 0; i < twin->level_count; i++) free(twin->levels[i].light);
 }
 
-static void filtered(const struct vct_twin_volume *v, int way, const double at[3], double out[4])
+static void filtered(const struct vct_twin_volume *v, int direction, const double at[3],
+                     double out[4])
 {
     int low[3], high[3];
     double f[3];
@@ -59,7 +61,7 @@ static void filtered(const struct vct_twin_volume *v, int way, const double at[3
                                 i & 4 ? high[2] : low[2] };
         const double weight =
             (i & 1 ? f[0] : 1 - f[0]) * (i & 2 ? f[1] : 1 - f[1]) * (i & 4 ? f[2] : 1 - f[2]);
-        const float *t = vct_twin_texel(v, way, corner);
+        const float *t = vct_twin_texel(v, direction, corner);
         for (int k = 0; k < 4; k++) out[k] += weight * (double)t[k];
     }
 }
@@ -68,8 +70,8 @@ struct sample {
     double light[4], axes[3];
 };
 
-static struct sample look(const struct vct_twin_volume *v, const double at[3],
-                          const double direction[3], const double counted[3])
+static struct sample sample_volume(const struct vct_twin_volume *v, const double at[3],
+                                   const double direction[3], const double counted[3])
 {
     struct sample s = { 0 };
     for (int a = 0; a < 3; a++) {
@@ -87,7 +89,7 @@ static void cover(double sum[4], const struct sample *here, const struct sample 
     double sheet = 0.0;
     for (int a = 0; a < 3; a++) sheet = fmax(sheet, before->axes[a] + here->axes[a]);
     if (alpha <= 0.0) return;
-    const double covered = vct_rig_shown(1.0 - sum[3], alpha, fmin(sheet, 1.0));
+    const double covered = vct_fixture_visible_alpha(1.0 - sum[3], alpha, fmin(sheet, 1.0));
     for (int k = 0; k < 3; k++) sum[k] += covered * here->light[k] / alpha;
     sum[3] += covered;
 }
@@ -98,9 +100,9 @@ static double smooth(double low, double high, double x)
     return t * t * (3.0 - 2.0 * t);
 }
 
-// What lies half a texel back along the surface, to which `here` is added.
-static struct sample behind(const struct vct_twin_volume *fine, const double from[3],
-                            const double normal[3], const double direction[3], double add[4])
+// The sample half a texel back along the surface; it is added to `add`.
+static struct sample sample_behind(const struct vct_twin_volume *fine, const double from[3],
+                                   const double normal[3], const double direction[3], double add[4])
 {
     double along = 0.0, level_with[3], at[3];
     for (int a = 0; a < 3; a++) along += direction[a] * normal[a];
@@ -108,24 +110,23 @@ static struct sample behind(const struct vct_twin_volume *fine, const double fro
         level_with[a] = direction[a] - along * normal[a];
         at[a] = from[a] - 0.5 * level_with[a];
     }
-    const struct sample s = look(fine, at, direction, level_with);
+    const struct sample s = sample_volume(fine, at, direction, level_with);
     const double ahead = smooth(0.25, 0.5, add[3] / fmax(add[3] + s.light[3], 1e-6));
     for (int k = 0; k < 4; k++) add[k] += s.light[k];
     for (int k = 0; k < 3; k++) add[k] *= ahead;
     return s;
 }
 
-// As much of what is behind it as a sample hides, in place of what it shows.
-static void hide(const struct vct_twin *twin, const double normal[3], const double direction[3],
-                 double middle, double light[4])
+// Replaces radiance with the occlusion of the sample.
+static void use_occlusion(const struct vct_twin *twin, const double normal[3],
+                          const double direction[3], double middle, double light[4])
 {
     double r = middle;
     for (int a = 0; a < 3; a++) r += twin->offset * normal[a] * direction[a];
     for (int k = 0; k < 3; k++) light[k] = light[3] / (1.0 + twin->decay * r);
 }
 
-// As cones/trace.glsl says it, step by step. Where it ends since the rest can hide next to nothing
-// this goes on.
+// As cones/trace.glsl, step by step, but without its early termination.
 void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
                     const double direction[3], double wide, double sum[4])
 {
@@ -151,9 +152,10 @@ void vct_twin_trace(const struct vct_twin *twin, const double from[3], const dou
         if (middle > end && (middle - end) * speed > length) return;
         double at[3];
         for (int a = 0; a < 3; a++) at[a] = (from[a] + direction[a] * fmin(middle, end)) / length;
-        struct sample here = look(&levels[level], at, direction, middle > end ? out_of : direction);
-        if (i == 0) before = behind(&levels[0], from, normal, direction, here.light);
-        if (twin->occlusion) hide(twin, normal, direction, middle, here.light);
+        struct sample here =
+            sample_volume(&levels[level], at, direction, middle > end ? out_of : direction);
+        if (i == 0) before = sample_behind(&levels[0], from, normal, direction, here.light);
+        if (twin->occlusion) use_occlusion(twin, normal, direction, middle, here.light);
         cover(sum, &here, &before);
         before = here;
         t += length;

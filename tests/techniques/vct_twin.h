@@ -1,24 +1,23 @@
-// Cones through the light volume in plain C, as cones/trace.glsl and volume/sample.glsl say them.
-// Six ways, mips.
+// Cone tracing in plain C: twin of cones/trace.glsl and volume/sample.glsl for anisotropic mips.
 #pragma once
 
-#include "techniques/vct_rig.h"
+#include "techniques/vct_fixture.h"
 
-enum { VCT_TWIN_WAYS = 6, VCT_TWIN_LEVELS = 8 };
+enum { VCT_TWIN_DIRECTIONS = 6, VCT_TWIN_LEVELS = 8 };
 
 // A level of the light volume.
 struct vct_twin_volume {
     float *light; // to be freed
-    int dim;      // texels along a side of one way
+    int dim;      // texels along a side of one direction
     int size[3];  // in use
 };
 
-struct vct_twin_volume vct_twin_volume(const struct vct_rig *rig, uint32_t level);
+struct vct_twin_volume vct_twin_volume(const struct vct_fixture *fixture, uint32_t level);
 // Premultiplied radiance and opacity.
-const float *vct_twin_texel(const struct vct_twin_volume *v, int way, const int at[3]);
+const float *vct_twin_texel(const struct vct_twin_volume *v, int direction, const int at[3]);
 bool vct_twin_in_use(const struct vct_twin_volume *v, const int at[3]);
 
-// All levels of the rig's volume.
+// All levels of the fixture's volume.
 struct vct_twin {
     struct vct_twin_volume levels[VCT_TWIN_LEVELS];
     int level_count;
@@ -26,11 +25,11 @@ struct vct_twin {
     double decay, offset; // per texel; texels
 };
 
-struct vct_twin vct_twin_of(const struct vct_rig *rig);
+struct vct_twin vct_twin_of(const struct vct_fixture *fixture);
 void vct_twin_finish(struct vct_twin *twin);
 
-// Premultiplied radiance and opacity along a cone. Lengths in texels; from: where it starts, off a
-// surface of that normal; wide: width of texels over the distance. Of a rig of occlusion what is
-// hidden is in place of the radiance.
+// Premultiplied radiance and opacity of a cone. Lengths are in texels. from: the origin, off a
+// surface of that normal; wide: cone width in texels over the distance. For vctao the attenuated
+// occlusion replaces radiance.
 void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
                     const double direction[3], double wide, double sum[4]);

@@ -1,4 +1,4 @@
-// voxelize/voxelize.glsl and voxelize/overlap.glsl in C.
+// CPU twin of voxelize/voxelize.glsl and voxelize/overlap.glsl.
 #include "techniques/vct_voxel_count.h"
 
 #include "core/vec.h"
@@ -25,7 +25,7 @@ static bool edge_separates(vec3s edge, vec3s p, vec3s q)
     return false;
 }
 
-// Corners from the middle of the voxel, in voxels.
+// Corners relative to the voxel centre, in voxels.
 static bool overlaps(const vec3s at[3], vec3s normal)
 {
     float height = 0.0f, reach = 0.0f;
@@ -51,14 +51,14 @@ static void enter(struct count *c, const int voxel[3])
     c->touched++;
 }
 
-// A coordinate in voxels of a grid, or with rim = 1 a voxel, kept within the scene's grid.
+// Clamps a coordinate in voxels (rim = 0) or a voxel index (rim = 1) to the grid of the scene.
 static float clamp_to_scene(const struct vct_grid *grid, int axis, float at, float rim)
 {
     const float low = (float)-grid->first[axis], high = low + (float)grid->scene[axis] - rim;
     return fminf(fmaxf(at, low), high);
 }
 
-// Columns along the axis to which the plane is nearest to perpendicular, a few voxels in each.
+// Visits the columns along the dominant axis of the normal, a few voxels in each.
 static void walk(struct count *c, const vec3s at[3])
 {
     const vec3s normal = glms_vec3_cross(glms_vec3_sub(at[1], at[0]), glms_vec3_sub(at[2], at[1]));
@@ -99,7 +99,7 @@ static void walk(struct count *c, const vec3s at[3])
         }
 }
 
-// World to voxels; what lies on the scene's border but for rounding is inside.
+// World to voxels. Snaps points within rounding of the scene's border to it.
 static vec3s voxels_from_world(const struct vct_grid *grid, vec3s world)
 {
     vec3s at = glms_vec3_scale(glms_vec3_sub(world, grid->origin_m), 1.0f / grid->cell_m);

@@ -1,20 +1,21 @@
-// Light of small things that glow: as much as there is, with a shadow, wherever they go.
-#include "techniques/vct_rig.h"
+// Small emitters, sampled with visibility cones: irradiance, shadows, motion, and their bounce.
+#include "techniques/vct_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIZE = 48, MOST_LAMPS = 20 };
+enum { SIZE = 48, EMITTER_COUNT = 20 };
 
 static const double PI = 3.14159265358979323846;
 static const float HEIGHT = 2.5f, HALF = 0.3f, RADIANCE = 100.0f;
 
-// A dark floor seen from above, with square lamps over it that shine down.
-static void furnish(struct vct_rig *rig, struct gpu *gpu, int small_emitters, const vec3s *at)
+// A black floor seen from above; square emitters over it face down.
+static void make_scene(struct vct_fixture *fixture, struct gpu *gpu, int small_emitters,
+                       const vec3s *at)
 {
-    vct_rig_init(rig, gpu);
-    struct frame_fixture *s = &rig->frame_fixture;
+    vct_fixture_init(fixture, gpu);
+    struct frame_fixture *s = &fixture->frame_fixture;
     s->width = s->height = SIZE;
     struct material light = material_default();
     light.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
@@ -29,7 +30,7 @@ static void furnish(struct vct_rig *rig, struct gpu *gpu, int small_emitters, co
     fixture_look(s, vec3_of(0, 2.3f, 3.5f), vec3_of(0, 0, 0.2f));
 }
 
-// ∫ L cos θ cos θ'/d² dA over the lamp, by midpoints; lux.
+// ∫ L cos θ cos θ'/d² dA over the emitter by the midpoint rule; lux.
 static double irradiance_by(vec3s emitter, double x, double z)
 {
     enum { N = 20 };
@@ -50,16 +51,16 @@ struct lit_floor {
     int pixels;
 };
 
-// The lit floor against the sum over all lamps.
-static struct lit_floor measure(struct vct_rig *rig, int small_emitters, const vec3s *at)
+// Irradiance of the floor against the sum of the integrals of all emitters.
+static struct lit_floor measure(struct vct_fixture *fixture, int small_emitters, const vec3s *at)
 {
     struct lit_floor m = { 0 };
-    float *e = fixture_read(&rig->frame_fixture, READ_IRRADIANCE),
-          *p = fixture_read(&rig->frame_fixture, READ_POSITION),
-          *n = fixture_read(&rig->frame_fixture, READ_NORMAL),
-          *depth = fixture_read(&rig->frame_fixture, READ_DEPTH);
+    float *e = fixture_read(&fixture->frame_fixture, READ_IRRADIANCE),
+          *p = fixture_read(&fixture->frame_fixture, READ_POSITION),
+          *n = fixture_read(&fixture->frame_fixture, READ_NORMAL),
+          *depth = fixture_read(&fixture->frame_fixture, READ_DEPTH);
     for (int i = 0; i < SIZE * SIZE; i++) {
-        // Farther off a block of pixels that share what they found is as wide as light changes.
+        // Beyond this region a block of pixels that share cones is as wide as the light's gradient.
         if (depth[i] <= 0.0f || n[3 * i + 1] < 0.9f || p[3 * i + 1] > 0.1f) continue;
         if (fabsf(p[3 * i]) > 2.0f || fabsf(p[3 * i + 2]) > 1.5f) continue;
         double expected = 0.0;
@@ -77,64 +78,64 @@ static struct lit_floor measure(struct vct_rig *rig, int small_emitters, const v
     return m;
 }
 
-TEST_GPU(a_lamp_lights_the_floor_below_it_as_its_integral_says)
+TEST_GPU(a_small_emitter_matches_its_irradiance_integral)
 {
     static const char *const options[] = { "bounces=1,interleave=1", "bounces=1",
                                            "bounces=1,small_emitters=false" };
     const vec3s at = vec3_of(0.4f, HEIGHT, -0.3f);
     struct lit_floor m[3];
     for (int i = 0; i < 3; i++) {
-        struct vct_rig rig;
-        furnish(&rig, gpu, 1, &at);
-        vct_rig_open(&rig, options[i]);
-        fixture_render(&rig.frame_fixture);
-        m[i] = measure(&rig, 1, &at);
-        vct_rig_finish(&rig);
-        print_message("%s: off by %.3f of the mean, %.2f at most, %d pixels\n", options[i],
+        struct vct_fixture fixture;
+        make_scene(&fixture, gpu, 1, &at);
+        vct_fixture_open(&fixture, options[i]);
+        fixture_render(&fixture.frame_fixture);
+        m[i] = measure(&fixture, 1, &at);
+        vct_fixture_finish(&fixture);
+        print_message("%s: error %.3f of the mean, %.2f at most, %d pixels\n", options[i],
                       m[i].error / m[i].mean, m[i].most, m[i].pixels);
     }
     CHECK(m[0].pixels > 300);
-    // Twelve points in place of an area, half floats, and cones of which n·(Σ d) is ½ but for 2 %.
+    // Error of 12 sample points, half floats, and n·(Σ d) = ½ within 2 %.
     CHECK(m[0].error < 0.03 * m[0].mean);
     CHECK(m[0].most < 0.06);
-    // What is interpolated between pixels.
+    // Interpolation between pixels.
     CHECK(m[1].error < 0.04 * m[1].mean);
-    // Cones of 1/25 of the hemisphere meet a lamp of 1/40 of it by chance.
+    // Cones of 1/25 of the hemisphere undersample an emitter of 1/40 of it.
     CHECK(m[2].error > 4.0 * m[1].error);
 }
 
-// Sixteen are looked for, of which each sample takes one; the others stay with the cones.
-TEST_GPU(many_lamps_bring_what_all_of_them_bring)
+// At most 16 emitters have visibility cones, one per sample; diffuse cones gather the others.
+TEST_GPU(many_small_emitters_match_the_sum_of_integrals)
 {
-    vec3s at[MOST_LAMPS];
-    for (int i = 0; i < MOST_LAMPS; i++)
+    vec3s at[EMITTER_COUNT];
+    for (int i = 0; i < EMITTER_COUNT; i++)
         at[i] = vec3_of(-3.2f + 1.6f * (float)(i % 5), HEIGHT, -2.4f + 1.6f * (float)(i / 5));
-    struct vct_rig rig;
-    furnish(&rig, gpu, MOST_LAMPS, at);
-    vct_rig_open(&rig, "resolution=64,bounces=1");
-    fixture_render(&rig.frame_fixture);
-    CHECK(rig.vct->small_emitters.count == VCT_MAX_SMALL_EMITTERS);
-    const struct lit_floor m = measure(&rig, MOST_LAMPS, at);
-    print_message("%d small emitters: off by %.3f of the mean\n", MOST_LAMPS, m.error / m.mean);
+    struct vct_fixture fixture;
+    make_scene(&fixture, gpu, EMITTER_COUNT, at);
+    vct_fixture_open(&fixture, "resolution=64,bounces=1");
+    fixture_render(&fixture.frame_fixture);
+    CHECK(fixture.vct->small_emitters.count == VCT_MAX_SMALL_EMITTERS);
+    const struct lit_floor m = measure(&fixture, EMITTER_COUNT, at);
+    print_message("%d small emitters: error %.3f of the mean\n", EMITTER_COUNT, m.error / m.mean);
     CHECK(m.error < 0.1 * m.mean);
-    vct_rig_finish(&rig);
+    vct_fixture_finish(&fixture);
 }
 
-// Light behind a wall between lamp and floor, over light without it.
-TEST_GPU(what_stands_before_a_lamp_throws_a_shadow)
+// Irradiance below an occluder over that without it.
+TEST_GPU(an_occluder_shadows_a_small_emitter)
 {
     const vec3s emitter = vec3_of(0, HEIGHT, 0);
     double light[2];
     for (int wall = 0; wall < 2; wall++) {
-        struct vct_rig rig;
-        furnish(&rig, gpu, 1, &emitter);
-        struct frame_fixture *s = &rig.frame_fixture;
-        // A board over the floor: from 0.5 m on to its right all of the lamp is behind it.
+        struct vct_fixture fixture;
+        make_scene(&fixture, gpu, 1, &emitter);
+        struct frame_fixture *s = &fixture.frame_fixture;
+        // A board over the floor: from 0.5 m on to its right the whole emitter is occluded.
         if (wall)
             fixture_box(s, vec3_of(0.2f, 1.0f, -1.5f), vec3_of(3.5f, 1.1f, 1.5f), false,
                         fixture_matte(s, vec3_of(0, 0, 0)));
         fixture_look(s, vec3_of(1.2f, 0.6f, 3.9f), vec3_of(1.2f, 0, 0));
-        vct_rig_open(&rig, "resolution=64,bounces=1");
+        vct_fixture_open(&fixture, "resolution=64,bounces=1");
         fixture_render(s);
         float *e = fixture_read(s, READ_IRRADIANCE), *p = fixture_read(s, READ_POSITION);
         light[wall] = 0.0;
@@ -143,49 +144,49 @@ TEST_GPU(what_stands_before_a_lamp_throws_a_shadow)
                 fabsf(p[3 * i + 2]) < 0.6f)
                 light[wall] += (double)e[3 * i + 1];
         free(e), free(p);
-        vct_rig_finish(&rig);
+        vct_fixture_finish(&fixture);
     }
     print_message("behind a board: %.4f of the light\n", light[1] / light[0]);
     CHECK(light[0] > 0.0);
-    // What six ways let through a wall one voxel thick (test_vct_storage).
+    // The leak of anisotropic voxels through a wall one voxel thick (test_vct_storage).
     CHECK(light[1] < 0.05 * light[0]);
 }
 
-// A lamp that has moved lights as one that was there from the first: nothing of it is left behind.
-TEST_GPU(a_lamp_takes_its_light_along)
+// A moved emitter equals a static one at the same position; its old position is dark.
+TEST_GPU(a_moved_emitter_equals_a_static_one)
 {
     const vec3s from = vec3_of(-1, HEIGHT, 0), to = vec3_of(1, HEIGHT, 0);
-    struct vct_rig moved, there;
-    furnish(&moved, gpu, 1, &from);
-    vct_rig_open(&moved, "resolution=32,bounces=1");
+    struct vct_fixture moved, there;
+    make_scene(&moved, gpu, 1, &from);
+    vct_fixture_open(&moved, "resolution=32,bounces=1");
     fixture_render(&moved.frame_fixture);
     const struct scene *scene = moved.frame_fixture.scene;
     moved.frame_fixture.pose.world_from_node[scene->instances[1].node].raw[3][0] += to.x - from.x;
     fixture_render(&moved.frame_fixture);
-    furnish(&there, gpu, 1, &to);
-    vct_rig_open(&there, "resolution=32,bounces=1");
+    make_scene(&there, gpu, 1, &to);
+    vct_fixture_open(&there, "resolution=32,bounces=1");
     fixture_render(&there.frame_fixture);
     float *a = fixture_read(&moved.frame_fixture, READ_IRRADIANCE),
           *b = fixture_read(&there.frame_fixture, READ_IRRADIANCE);
-    double apart = 0.0, sum = 0.0;
+    double difference = 0.0, sum = 0.0;
     for (int i = 0; i < SIZE * SIZE * 3; i++) {
-        apart += fabs((double)a[i] - (double)b[i]);
+        difference += fabs((double)a[i] - (double)b[i]);
         sum += (double)b[i];
     }
-    print_message("a moved emitter: %.6f of the light off\n", apart / sum);
-    // Its points are moved by a matrix instead of standing where they are: rounding.
-    CHECK(sum > 0.0 && apart < 1e-3 * sum);
+    print_message("a moved emitter: difference %.6f of the light\n", difference / sum);
+    // Rounding: its sample points are transformed by another matrix.
+    CHECK(sum > 0.0 && difference < 1e-3 * sum);
     free(a), free(b);
-    vct_rig_finish(&moved);
-    vct_rig_finish(&there);
+    vct_fixture_finish(&moved);
+    vct_fixture_finish(&there);
 }
 
-// ---- What voxels reflect of it
+// ---- First bounce of an emitter
 
 static const float ROOM[3] = { 4, 3, 4 };
 static const double ALBEDO = 0.6;
 
-// A lamp that shines up, in the middle of a room, to a place of this normal; lux.
+// Irradiance by an emitter facing up in the middle of the room, at a point of this normal; lux.
 static double irradiance_from_below(vec3s at, vec3s normal)
 {
     enum { N = 6 };
@@ -194,16 +195,16 @@ static double irradiance_from_below(vec3s at, vec3s normal)
     for (int i = 0; i < N * N; i++) {
         const vec3s from = vec3_of(2.0f - HALF + (float)((i % N + 0.5) * part), 1,
                                    2.0f - HALF + (float)((i / N + 0.5) * part));
-        const vec3s way = glms_vec3_sub(from, at);
-        const double d2 = (double)glms_vec3_norm2(way), there = (double)-way.y,
-                     here = (double)glms_vec3_dot(way, normal);
+        const vec3s to_emitter = glms_vec3_sub(from, at);
+        const double d2 = (double)glms_vec3_norm2(to_emitter), there = (double)-to_emitter.y,
+                     here = (double)glms_vec3_dot(to_emitter, normal);
         if (there > 0.0 && here > 0.0)
             sum += (double)RADIANCE * there * here / (d2 * d2) * part * part;
     }
     return sum;
 }
 
-// What ceiling and walls reflect of it to a place on the floor, by midpoints of their squares; lux.
+// First bounce off ceiling and walls at a point of the floor, by the midpoint rule; lux.
 static double reflected_to(vec3s floor)
 {
     enum { N = 24 };
@@ -218,9 +219,9 @@ static double reflected_to(vec3s floor)
         for (int i = 0; i < N * N; i++) {
             at.raw[b] = ((float)(i % N) + 0.5f) / N * ROOM[b];
             at.raw[c] = ((float)(i / N) + 0.5f) / N * ROOM[c];
-            const vec3s way = glms_vec3_sub(at, floor);
-            const double d2 = (double)glms_vec3_norm2(way), here = (double)way.y,
-                         there = -(double)glms_vec3_dot(way, normal);
+            const vec3s to_surface = glms_vec3_sub(at, floor);
+            const double d2 = (double)glms_vec3_norm2(to_surface), here = (double)to_surface.y,
+                         there = -(double)glms_vec3_dot(to_surface, normal);
             sum +=
                 ALBEDO / PI * irradiance_from_below(at, normal) * here * there / (d2 * d2) * area;
         }
@@ -228,22 +229,22 @@ static double reflected_to(vec3s floor)
     return sum;
 }
 
-TEST_GPU(voxels_reflect_what_lamps_bring_them)
+TEST_GPU(voxels_reflect_light_of_small_emitters)
 {
-    struct vct_rig rig;
-    vct_rig_init(&rig, gpu);
-    struct frame_fixture *s = &rig.frame_fixture;
-    struct material shining = material_default();
-    shining.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
+    struct vct_fixture fixture;
+    vct_fixture_init(&fixture, gpu);
+    struct frame_fixture *s = &fixture.frame_fixture;
+    struct material emissive = material_default();
+    emissive.emissive = vec3_of(RADIANCE, RADIANCE, RADIANCE);
     fixture_box(s, vec3_of(0, 0, 0), vec3_of(ROOM[0], ROOM[1], ROOM[2]), true,
                 fixture_matte(s, vec3_of((float)ALBEDO, (float)ALBEDO, (float)ALBEDO)));
     fixture_quad(s, vec3_of(2 - HALF, 1, 2 + HALF), vec3_of(2 + HALF, 1, 2 + HALF),
                  vec3_of(2 + HALF, 1, 2 - HALF), vec3_of(2 - HALF, 1, 2 - HALF),
-                 fixture_material(s, &shining));
+                 fixture_material(s, &emissive));
     fixture_look(s, vec3_of(2, 2.5f, 3.8f), vec3_of(2, 0, 1.5f));
-    vct_rig_open(&rig, "resolution=64,bounces=1");
+    vct_fixture_open(&fixture, "resolution=64,bounces=1");
     fixture_render(s);
-    CHECK(rig.vct->small_emitters.count == 1);
+    CHECK(fixture.vct->small_emitters.count == 1);
     float *e = fixture_read(s, READ_IRRADIANCE), *p = fixture_read(s, READ_POSITION);
     double light = 0.0, expected = 0.0;
     for (uint32_t k = 0; k < s->width * s->height; k += 3) {
@@ -252,8 +253,8 @@ TEST_GPU(voxels_reflect_what_lamps_bring_them)
         expected += reflected_to(vec3_of(p[3 * k], 0, p[3 * k + 2]));
     }
     free(e), free(p);
-    vct_rig_finish(&rig);
-    print_message("reflected light: %.3f of what there is\n", light / expected);
-    // Cones lose some hundredths of what they look for, and blocks of voxels are lit in one place.
+    vct_fixture_finish(&fixture);
+    print_message("reflected light: %.3f of the reference\n", light / expected);
+    // Visibility cones lose some hundredths, and each block of voxels is lit at one point.
     CHECK(expected > 0.0 && light / expected > 0.9 && light / expected < 1.1);
 }

@@ -1,0 +1,122 @@
+#include "techniques/vct_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void vct_fixture_init(struct vct_fixture *fixture, struct gpu *gpu)
+{
+    *fixture = (struct vct_fixture){ .technique = &technique_vct };
+    fixture_init(&fixture->frame_fixture, gpu);
+}
+
+static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct vct *vct = user;
+    gpu_owner_push(vct->gpu, "vct");
+    technique_vct.record(vct, cmd, view); // also that of vctao
+    gpu_owner_pop(vct->gpu);
+}
+
+void vct_fixture_open(struct vct_fixture *fixture, const char *text)
+{
+    struct frame_fixture *s = &fixture->frame_fixture;
+    const struct technique *technique = fixture->technique;
+    fixture_open(s);
+    struct vct_options options = { 0 };
+    option_defaults(&technique->options, &options);
+    CHECK(option_parse(test_host(), &technique->options, technique->name, text, &options));
+    const struct technique_create how = { .host = fixture->host ? fixture->host : test_host(),
+                                          .gpu = s->gpu,
+                                          .pose = &s->pose,
+                                          .options = &options,
+                                          .width = s->width,
+                                          .height = s->height };
+    fixture->vct = calloc(1, technique->state_size);
+    CHECK(technique->check(&how));
+    gpu_owner_push(s->gpu, "vct");
+    CHECK(technique->create(fixture->vct, &how));
+    gpu_owner_pop(s->gpu);
+    s->indirect =
+        (struct frame_indirect){ .record = record,
+                                 .user = fixture->vct,
+                                 .needs = technique->needs | technique->more_needs(&options) };
+}
+
+void vct_fixture_finish(struct vct_fixture *fixture)
+{
+    fixture->technique->destroy(fixture->vct);
+    free(fixture->vct);
+    fixture_finish(&fixture->frame_fixture);
+}
+
+void vct_fixture_hall(struct vct_fixture *fixture, struct gpu *gpu)
+{
+    vct_fixture_init(fixture, gpu);
+    struct frame_fixture *s = &fixture->frame_fixture;
+    fixture_box(s, vec3_of(0, 0, 0), vec3_of(27, 12, 20), true,
+                fixture_matte(s, vec3_of(0.7f, 0.6f, 0.5f)));
+    for (int i = 0; i < 5; i++)
+        fixture_box(s, vec3_of(3.0f + 5.0f * (float)i, 0, 8), vec3_of(4.1f + 5.0f * (float)i, 9, 9),
+                    false, fixture_matte(s, vec3_of(0.3f, 0.5f, 0.8f)));
+    fixture_add_point(s, vec3_of(9, 9, 15), vec3_of(900, 900, 900));
+    fixture_look(s, vec3_of(12, 5, 15), vec3_of(13, 4, 4));
+}
+
+int vct_fixture_add_triangle(struct vct_fixture *fixture, const vec3s corners[3], int material)
+{
+    vec3s positions[3] = { corners[0], corners[1], corners[2] };
+    vec3s normals[3] = { vec3_of(0, 1, 0), vec3_of(0, 1, 0), vec3_of(0, 1, 0) };
+    uint32_t indices[3] = { 0, 1, 2 };
+    const int mesh =
+        scene_add_mesh(fixture->frame_fixture.scene, &(struct mesh){ .name = "triangle",
+                                                                     .vertex_count = 3,
+                                                                     .index_count = 3,
+                                                                     .positions = positions,
+                                                                     .normals = normals,
+                                                                     .indices = indices,
+                                                                     .material = material });
+    CHECK(mesh >= 0);
+    return fixture_instance(&fixture->frame_fixture, mesh, NULL);
+}
+
+uint32_t *vct_fixture_buffer_words(const struct vct_fixture *fixture, gpu_buffer buffer)
+{
+    const size_t bytes = gpu_buffer_bytes(fixture->frame_fixture.gpu, buffer);
+    uint32_t *words = malloc(bytes);
+    CHECK(gpu_buffer_download(fixture->frame_fixture.gpu, buffer, 0, words, bytes));
+    return words;
+}
+
+uint32_t *vct_fixture_mask(const struct vct_fixture *fixture, const struct vct_voxel_set *set)
+{
+    return vct_fixture_buffer_words(fixture, set->mask);
+}
+
+bool vct_fixture_occupied(const struct vct_fixture *fixture, const uint32_t *mask, int x, int y,
+                          int z)
+{
+    // As vct_index of vct_grid.glsl: texels of eight voxels.
+    const int dim = fixture->vct->options.resolution / 2;
+    const int texel = ((z / 2) * dim + y / 2) * dim + x / 2;
+    const uint32_t index = (uint32_t)(8 * texel + x % 2 + 2 * (y % 2) + 4 * (z % 2));
+    return mask[index / 32] >> (index % 32) & 1u;
+}
+
+float *vct_fixture_light(const struct vct_fixture *fixture, uint32_t level)
+{
+    const size_t dim = vct_volume_dim(&fixture->vct->options) >> level;
+    const size_t floats = vct_direction_count(&fixture->vct->options) * dim * dim * dim * 4;
+    float *light = malloc(floats * sizeof *light);
+    CHECK(gpu_image_download_float(fixture->frame_fixture.gpu, fixture->vct->light, level, 0, light,
+                                   4, floats));
+    // The volume of occlusion has one channel, opacity.
+    for (size_t i = 0; fixture->vct->options.occlusion && i < floats; i++)
+        light[i] = light[i / 4 * 4];
+    return light;
+}
+
+double vct_fixture_visible_alpha(double left, double alpha, double sheet)
+{
+    const double by_chance = left * fmin(alpha, 1.0), next_to = fmin(alpha, left);
+    return by_chance + pow(sheet, 4.0) * (next_to - by_chance);
+}

@@ -1,0 +1,35 @@
+// Voxel cone tracing of light or occlusion in a frame_fixture. Tests can read its voxels and light
+// volume.
+#pragma once
+
+#include "frame/frame_fixture.h"
+#include "techniques/vct/vct.h"
+#include "techniques/vct/vct_state.h"
+
+struct vct_fixture {
+    struct frame_fixture frame_fixture; // vct_fixture_open takes it over
+    const struct technique *technique;  // technique_vct unless it is set before it is opened
+    struct host *host;                  // of the technique; NULL: the test's
+    struct vct *vct;
+};
+
+// Set up the frame_fixture between vct_fixture_init and vct_fixture_open.
+void vct_fixture_init(struct vct_fixture *fixture, struct gpu *gpu);
+// Before vct_fixture_open: adds a triangle as a mesh of its own; returns its instance.
+int vct_fixture_add_triangle(struct vct_fixture *fixture, const vec3s corners[3], int material);
+void vct_fixture_open(struct vct_fixture *fixture, const char *options);
+void vct_fixture_finish(struct vct_fixture *fixture);
+// Instead of vct_fixture_init: a closed hall, 27 by 12 by 20 m, with pillars, a point light and a
+// camera.
+void vct_fixture_hall(struct vct_fixture *fixture, struct gpu *gpu);
+
+// The content of a buffer. To be freed.
+uint32_t *vct_fixture_buffer_words(const struct vct_fixture *fixture, gpu_buffer buffer);
+// A bit per voxel of a set, resolution³ bits. To be freed.
+uint32_t *vct_fixture_mask(const struct vct_fixture *fixture, const struct vct_voxel_set *set);
+bool vct_fixture_occupied(const struct vct_fixture *fixture, const uint32_t *mask, int x, int y,
+                          int z);
+// As vct_visible_alpha of volume/over.glsl.
+double vct_fixture_visible_alpha(double left, double alpha, double sheet);
+// A level of the light volume, 4 floats per texel, all directions. To be freed.
+float *vct_fixture_light(const struct vct_fixture *fixture, uint32_t level);
