@@ -12,7 +12,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-static struct material glow(vec3s radiance)
+static struct material emissive_material(vec3s radiance)
 {
     struct material m = material_default();
     m.emissive = radiance;
@@ -20,9 +20,9 @@ static struct material glow(vec3s radiance)
     return m;
 }
 
-static int grey_glow(struct frame_fixture *s, float radiance)
+static int grey_emissive(struct frame_fixture *s, float radiance)
 {
-    struct material m = glow(vec3_of(radiance, radiance, radiance));
+    struct material m = emissive_material(vec3_of(radiance, radiance, radiance));
     return fixture_material(s, &m);
 }
 
@@ -81,7 +81,7 @@ TEST(total_flux_is_pi_times_radiance_times_area)
 {
     struct list l;
     list_begin(&l);
-    struct material m = glow(vec3_of(10, 20, 30));
+    struct material m = emissive_material(vec3_of(10, 20, 30));
     square(&l.fixture, 0, 1, 2, fixture_material(&l.fixture, &m));
     list_make(&l);
     vec3s sum = sum_of(&l.emitters, NULL);
@@ -131,7 +131,7 @@ TEST(both_sides_of_a_double_sided_surface_emit_the_same)
 {
     struct list l;
     list_begin(&l);
-    struct material m = glow(vec3_of(7, 7, 7));
+    struct material m = emissive_material(vec3_of(7, 7, 7));
     m.double_sided = true;
     square(&l.fixture, 0, 0, 1, fixture_material(&l.fixture, &m));
     list_make(&l);
@@ -158,7 +158,7 @@ static int texture(struct frame_fixture *s, int size, double *mean, double *mean
     *mean_left = left / ((double)size * size);
     int image = scene_add_image(
         s->scene,
-        &(struct scene_image){ .name = "glow", .width = size, .height = size, .rgba = rgba });
+        &(struct scene_image){ .name = "emission", .width = size, .height = size, .rgba = rgba });
     free(rgba);
     assert_true(image >= 0);
     return image;
@@ -170,7 +170,7 @@ TEST(a_textured_emitter_has_the_mean_of_its_texture_where_the_texture_is)
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         struct list l;
         list_begin(&l);
-        struct material m = glow(vec3_of(100, 50, 25));
+        struct material m = emissive_material(vec3_of(100, 50, 25));
         double mean, left;
         m.emissive_map.image = texture(&l.fixture, sizes[i], &mean, &left);
         square(&l.fixture, 0, 0, 1, fixture_material(&l.fixture, &m));
@@ -188,7 +188,7 @@ TEST(what_a_mask_cuts_away_does_not_emit)
     struct list l;
     list_begin(&l);
     double mean, left;
-    struct material m = glow(vec3_of(1, 1, 1));
+    struct material m = emissive_material(vec3_of(1, 1, 1));
     m.base_color_map.image = texture(&l.fixture, 64, &mean, &left);
     m.alpha_mode = ALPHA_MASK;
     m.alpha_cutoff = 0.5f;
@@ -207,8 +207,8 @@ TEST(a_dim_wall_does_not_starve_a_lamp_nor_a_lamp_the_wall)
 {
     struct list l;
     list_begin(&l);
-    square(&l.fixture, 0, 0, 100, grey_glow(&l.fixture, 0.01f));   // 314 lm
-    square(&l.fixture, 50, 2, 0.01f, grey_glow(&l.fixture, 1e6f)); // 314 lm as well
+    square(&l.fixture, 0, 0, 100, grey_emissive(&l.fixture, 0.01f));   // 314 lm
+    square(&l.fixture, 50, 2, 0.01f, grey_emissive(&l.fixture, 1e6f)); // 314 lm as well
     list_make(&l);
     int lamp = 0, cells[8][8] = { { 0 } };
     for (int i = 0; i < l.emitters.count; i++) {
@@ -229,7 +229,7 @@ TEST(more_triangles_than_points_lose_no_light)
     enum { ACROSS = 100 };
     struct list l;
     list_begin(&l);
-    struct material m = glow(vec3_of(3, 2, 1));
+    struct material m = emissive_material(vec3_of(3, 2, 1));
     m.double_sided = true;
     int material = fixture_material(&l.fixture, &m);
     for (int i = 0; i < ACROSS * ACROSS; i++) {
@@ -249,7 +249,7 @@ TEST(points_move_with_their_surface_and_leave_nothing_behind)
 {
     struct list l;
     list_begin(&l);
-    int instance = square(&l.fixture, 0, 0, 1, grey_glow(&l.fixture, 5));
+    int instance = square(&l.fixture, 0, 0, 1, grey_emissive(&l.fixture, 5));
     square(&l.fixture, 3, 0, 1, fixture_matte(&l.fixture, vec3_of(1, 1, 1)));
     list_make(&l);
     size_t bytes = EMITTERS_MAX * sizeof *l.emitters.points;
@@ -275,7 +275,7 @@ TEST(a_mirrored_instance_emits_from_its_front)
 {
     struct list l;
     list_begin(&l);
-    int instance = square(&l.fixture, 0, 0, 1, grey_glow(&l.fixture, 5));
+    int instance = square(&l.fixture, 0, 0, 1, grey_emissive(&l.fixture, 5));
     list_make(&l);
     mat4s *node = &l.fixture.pose.world_from_node[l.fixture.scene->instances[instance].node];
     node->raw[0][0] = -2; // twice as wide, and turned over
@@ -289,8 +289,8 @@ TEST(half_the_strength_is_half_the_flux_at_the_same_places)
 {
     struct list full, half;
     list_begin(&full), list_begin(&half);
-    square(&full.fixture, 0, 0, 1, grey_glow(&full.fixture, 8));
-    square(&half.fixture, 0, 0, 1, grey_glow(&half.fixture, 4));
+    square(&full.fixture, 0, 0, 1, grey_emissive(&full.fixture, 8));
+    square(&half.fixture, 0, 0, 1, grey_emissive(&half.fixture, 4));
     list_make(&full), list_make(&half);
     for (int i = 0; i < EMITTERS_MAX; i++) {
         const struct frame_emitter *a = &full.emitters.points[i], *b = &half.emitters.points[i];
@@ -300,7 +300,7 @@ TEST(half_the_strength_is_half_the_flux_at_the_same_places)
     list_finish(&full), list_finish(&half);
 }
 
-TEST(nothing_that_glows_is_no_list)
+TEST(a_scene_without_emitters_has_an_empty_list)
 {
     struct list l;
     list_begin(&l);
@@ -312,12 +312,13 @@ TEST(nothing_that_glows_is_no_list)
     emitters_finish(&(struct emitters){ 0 });
 }
 
-// A closed cube with glowing walls: Φ/S, which is π L.
-TEST(mean_irradiance_of_a_glowing_cube_is_flux_over_surface)
+// A closed cube with emissive walls: Φ/S = π L.
+TEST(mean_irradiance_of_an_emissive_cube_is_flux_over_surface)
 {
     struct list l;
     list_begin(&l);
-    fixture_box(&l.fixture, vec3_of(-1, 2, 3), vec3_of(4, 7, 8), true, grey_glow(&l.fixture, 10));
+    fixture_box(&l.fixture, vec3_of(-1, 2, 3), vec3_of(4, 7, 8), true,
+                grey_emissive(&l.fixture, 10));
     list_make(&l);
     CHECK_RELATIVE(emitters_irradiance(&l.emitters, l.fixture.pose.bounds).x, PI * 10, 1e-4);
     list_finish(&l);
@@ -327,7 +328,7 @@ TEST(a_flat_scene_keeps_no_light)
 {
     struct list l;
     list_begin(&l);
-    square(&l.fixture, 0, 0, 1, grey_glow(&l.fixture, 10));
+    square(&l.fixture, 0, 0, 1, grey_emissive(&l.fixture, 10));
     list_make(&l);
     CHECK(l.emitters.count > 0);
     CHECK(emitters_irradiance(&l.emitters, l.fixture.pose.bounds).x == 0);
@@ -363,7 +364,7 @@ static void room(struct frame_fixture *s, struct gpu *gpu, float lamp_m, float r
                 fixture_matte(s, vec3_of(0.5f, 0.6f, 0.7f)));
     float h = lamp_m / 2;
     fixture_quad(s, vec3_of(-h, 3.9f, -h), vec3_of(h, 3.9f, -h), vec3_of(h, 3.9f, h),
-                 vec3_of(-h, 3.9f, h), grey_glow(s, radiance));
+                 vec3_of(-h, 3.9f, h), grey_emissive(s, radiance));
     fixture_look(s, vec3_of(0, 2, 1.9f), vec3_of(0, 2.5f, -2));
     s->input.auto_exposure = true;
 }
@@ -385,8 +386,8 @@ TEST_GPU(techniques_get_the_list_when_they_ask_for_it)
     fixture_finish(&s);
 }
 
-// From a candle's glow to a LED die's 10⁶ cd/m², tiny or wide: what is seen of the lamp is right,
-// and the light that it brings to the walls is well inside the range of half floats.
+// From 10⁻³ to an LED die's 10⁶ cd/m², small or large: the emitter's own radiance is exact, and the
+// irradiance of the walls is well inside of the range of half floats.
 TEST_GPU(no_strength_of_emission_leaves_the_range_of_the_images)
 {
     static const float sizes[] = { 0.02f, 3 }, radiances[] = { 1e-3f, 1, 1e6f };
