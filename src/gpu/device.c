@@ -259,7 +259,6 @@ bool device_create(struct gpu *gpu)
     features_init(&use);
     vkGetPhysicalDeviceFeatures2(gpu->physical, &has.core);
     for (int i = 0; i < REQUIRED_COUNT; i++) *feature_at(&use, i) = VK_TRUE;
-    use.core.features.samplerAnisotropy = has.core.features.samplerAnisotropy;
     use.core.features.geometryShader = has.core.features.geometryShader;
 
     const char *extensions[2] = { VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME };
@@ -289,7 +288,6 @@ bool device_create(struct gpu *gpu)
         return false;
     }
     vkGetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue);
-    gpu->limits.anisotropy = use.core.features.samplerAnisotropy;
     gpu->limits.geometry_shader = use.core.features.geometryShader;
     return true;
 }

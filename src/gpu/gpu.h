@@ -72,7 +72,7 @@ int gpu_live_objects(const struct gpu *gpu);
 struct gpu_limits {
     uint32_t max_image_2d, max_image_3d, max_layers, max_push_bytes, max_groups[3];
     uint64_t max_storage_bytes, memory_bytes;
-    bool timestamps, anisotropy, geometry_shader, ray_query;
+    bool timestamps, geometry_shader, ray_query;
 };
 const struct gpu_limits *gpu_limits(const struct gpu *gpu);
 
@@ -151,13 +151,12 @@ void gpu_buffer_destroy(struct gpu *gpu, gpu_buffer *buffer);
 size_t gpu_buffer_bytes(const struct gpu *gpu, gpu_buffer buffer);
 
 enum gpu_filter { GPU_NEAREST, GPU_LINEAR };
-enum gpu_wrap { GPU_REPEAT, GPU_MIRROR, GPU_CLAMP, GPU_BORDER_ZERO, GPU_BORDER_ONE };
+enum gpu_wrap { GPU_REPEAT, GPU_MIRROR, GPU_CLAMP };
 struct gpu_sampler_desc {
     const char *name;
     enum gpu_filter filter, mip_filter;
     enum gpu_wrap wrap_u, wrap_v, wrap_w;
     bool compare_greater; // comparison sampler for reversed-Z shadow maps: 1 if reference ≥ texel
-    float max_anisotropy; // ≤ 1: off
 };
 // Equal descriptions share one sampler; gpu_destroy frees them.
 bool gpu_sampler_get(struct gpu *gpu, const struct gpu_sampler_desc *desc, gpu_sampler *out);
@@ -216,7 +215,7 @@ bool gpu_compute_pipeline_create(struct gpu *gpu, const char *name, const struct
                                  const struct gpu_constant *constants, int constant_count,
                                  gpu_pipeline *out);
 
-enum gpu_compare { GPU_ALWAYS, GPU_GREATER, GPU_GREATER_EQUAL, GPU_EQUAL };
+enum gpu_compare { GPU_ALWAYS, GPU_GREATER };
 enum gpu_blend { GPU_BLEND_NONE, GPU_BLEND_ADD };
 
 struct gpu_graphics_desc {
@@ -228,7 +227,7 @@ struct gpu_graphics_desc {
     enum gpu_format depth_format;     // GPU_FORMAT_NONE: no depth
     enum gpu_compare depth_compare;   // reversed Z: GPU_GREATER
     bool depth_write, depth_clamp;
-    float depth_bias, depth_bias_slope; // as in Vulkan; negative values for reversed Z
+    float depth_bias_slope; // as in Vulkan; negative for reversed Z
     enum gpu_blend blend;
     // Triangle lists without vertex input (vertex pulling); the cull mode is set per draw. Vulkan
     // clip space (y down, row 0 at y = -1); front faces are counter-clockwise in the image.
@@ -300,8 +299,6 @@ struct gpu_render_desc {
     int read_count;
 };
 void gpu_render_begin(struct gpu_cmd *cmd, const struct gpu_render_desc *desc);
-void gpu_render_viewport(struct gpu_cmd *cmd, uint32_t x, uint32_t y, uint32_t width,
-                         uint32_t height); // and scissor
 enum gpu_cull { GPU_CULL_NONE, GPU_CULL_BACK, GPU_CULL_FRONT };
 struct gpu_draw_desc {
     gpu_pipeline pipeline;
@@ -312,8 +309,6 @@ struct gpu_draw_desc {
     gpu_buffer indices;  // 32-bit; empty: not indexed
     size_t index_offset; // bytes
     uint32_t count;      // indices, or vertices
-    uint32_t instances;  // 0 is 1
-    int32_t vertex_offset;
     enum gpu_cull cull;
     bool flip_front; // for mirrored transforms
 };

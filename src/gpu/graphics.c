@@ -1,20 +1,6 @@
 // Fixed state of graphics pipelines. Cull mode, front face, viewport and scissor are dynamic.
 #include "gpu/vk.h"
 
-static VkCompareOp compare_op(enum gpu_compare compare)
-{
-    switch (compare) {
-    case GPU_GREATER:
-        return VK_COMPARE_OP_GREATER;
-    case GPU_GREATER_EQUAL:
-        return VK_COMPARE_OP_GREATER_OR_EQUAL;
-    case GPU_EQUAL:
-        return VK_COMPARE_OP_EQUAL;
-    default:
-        return VK_COMPARE_OP_ALWAYS;
-    }
-}
-
 static VkPipelineColorBlendAttachmentState blend_state(enum gpu_blend blend)
 {
     return (VkPipelineColorBlendAttachmentState){
@@ -36,8 +22,7 @@ static VkPipelineRasterizationStateCreateInfo raster_state(const struct gpu_grap
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
         .depthClampEnable = d->depth_clamp,
         .polygonMode = VK_POLYGON_MODE_FILL,
-        .depthBiasEnable = d->depth_bias != 0 || d->depth_bias_slope != 0,
-        .depthBiasConstantFactor = d->depth_bias,
+        .depthBiasEnable = d->depth_bias_slope != 0,
         .depthBiasSlopeFactor = d->depth_bias_slope,
         .lineWidth = 1,
     };
@@ -93,7 +78,8 @@ VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *p,
                     .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
                     .depthTestEnable = depth,
                     .depthWriteEnable = depth && d->depth_write,
-                    .depthCompareOp = compare_op(d->depth_compare) },
+                    .depthCompareOp = d->depth_compare == GPU_GREATER ? VK_COMPARE_OP_GREATER
+                                                                      : VK_COMPARE_OP_ALWAYS },
             .pColorBlendState =
                 &(VkPipelineColorBlendStateCreateInfo){
                     .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,

@@ -298,7 +298,7 @@ static bool check_graphics(struct gpu *gpu, struct pipeline *p)
         p->color_count++;
     if ((uint32_t)p->color_count > gpu->vk_limits.maxColorAttachments ||
         (d->depth_format != GPU_FORMAT_NONE && d->depth_format != GPU_D32F) ||
-        (unsigned)d->depth_compare > GPU_EQUAL || (unsigned)d->blend > GPU_BLEND_ADD) {
+        (unsigned)d->depth_compare > GPU_GREATER || (unsigned)d->blend > GPU_BLEND_ADD) {
         return host_fail(gpu->host, FAIL_ARGUMENT,
                          "gpu pipeline %s: too many colour targets, no depth format, or an unknown "
                          "comparison or "

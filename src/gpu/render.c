@@ -105,8 +105,9 @@ static bool resume(struct gpu_cmd *cmd)
                                          .pDepthAttachment = r->depth.image.id ? &depth : NULL,
                                      });
     r->active = r->begun = true;
-    vkCmdSetViewport(cmd->buffer, 0, 1, &r->viewport);
-    vkCmdSetScissor(cmd->buffer, 0, 1, &r->scissor);
+    vkCmdSetViewport(cmd->buffer, 0, 1,
+                     &(VkViewport){ 0, 0, (float)r->width, (float)r->height, 0, 1 });
+    vkCmdSetScissor(cmd->buffer, 0, 1, &(VkRect2D){ .extent = { r->width, r->height } });
     return true;
 }
 
@@ -152,28 +153,10 @@ void gpu_render_begin(struct gpu_cmd *cmd, const struct gpu_render_desc *desc)
     r->depth = desc->depth;
     r->width = desc->width;
     r->height = desc->height;
-    gpu_render_viewport(cmd, 0, 0, desc->width, desc->height);
     hazard_next_op(cmd);
     prepare_reads(cmd, desc);
     hazard_next_op(cmd);
     r->op = cmd->op;
-}
-
-void gpu_render_viewport(struct gpu_cmd *cmd, uint32_t x, uint32_t y, uint32_t width,
-                         uint32_t height)
-{
-    struct rendering *r = &cmd->rendering;
-    if (!r->open || r->invalid) return;
-    if (x > r->width || y > r->height || width > r->width - x || height > r->height - y) {
-        gpu_misuse(cmd->gpu, "viewport: %u x %u at %u, %u is outside of %u x %u", width, height, x,
-                   y, r->width, r->height);
-        return;
-    }
-    r->viewport = (VkViewport){ (float)x, (float)y, (float)width, (float)height, 0, 1 };
-    r->scissor = (VkRect2D){ { (int32_t)x, (int32_t)y }, { width, height } };
-    if (!r->active) return;
-    vkCmdSetViewport(cmd->buffer, 0, 1, &r->viewport);
-    vkCmdSetScissor(cmd->buffer, 0, 1, &r->scissor);
 }
 
 static bool formats_match(struct gpu_cmd *cmd, const struct pipeline *pipeline)
@@ -209,16 +192,15 @@ static void record_draw(struct gpu_cmd *cmd, const struct gpu_draw_desc *draw,
 {
     static const VkCullModeFlags culls[] = { VK_CULL_MODE_NONE, VK_CULL_MODE_BACK_BIT,
                                              VK_CULL_MODE_FRONT_BIT };
-    uint32_t instances = draw->instances ? draw->instances : 1;
     vkCmdSetCullMode(cmd->buffer, culls[draw->cull]);
     vkCmdSetFrontFace(cmd->buffer,
                       draw->flip_front ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     if (indices) {
         vkCmdBindIndexBuffer(cmd->buffer, indices->handle, draw->index_offset,
                              VK_INDEX_TYPE_UINT32);
-        vkCmdDrawIndexed(cmd->buffer, draw->count, instances, 0, draw->vertex_offset, 0);
+        vkCmdDrawIndexed(cmd->buffer, draw->count, 1, 0, 0, 0);
     } else {
-        vkCmdDraw(cmd->buffer, draw->count, instances, (uint32_t)draw->vertex_offset, 0);
+        vkCmdDraw(cmd->buffer, draw->count, 1, 0, 0);
     }
 }
 

@@ -8,10 +8,8 @@ static VkSamplerAddressMode address_mode(enum gpu_wrap wrap)
         return VK_SAMPLER_ADDRESS_MODE_REPEAT;
     case GPU_MIRROR:
         return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    case GPU_CLAMP:
-        return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     default:
-        return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+        return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     }
 }
 
@@ -19,32 +17,22 @@ static bool equal(const struct gpu_sampler_desc *a, const struct gpu_sampler_des
 {
     return a->filter == b->filter && a->mip_filter == b->mip_filter && a->wrap_u == b->wrap_u &&
            a->wrap_v == b->wrap_v && a->wrap_w == b->wrap_w &&
-           a->compare_greater == b->compare_greater && a->max_anisotropy == b->max_anisotropy;
+           a->compare_greater == b->compare_greater;
 }
 
 static bool check_desc(struct gpu *gpu, const struct gpu_sampler_desc *d)
 {
     const char *name = d->name ? d->name : "";
     if ((unsigned)d->filter > GPU_LINEAR || (unsigned)d->mip_filter > GPU_LINEAR ||
-        (unsigned)d->wrap_u > GPU_BORDER_ONE || (unsigned)d->wrap_v > GPU_BORDER_ONE ||
-        (unsigned)d->wrap_w > GPU_BORDER_ONE) {
+        (unsigned)d->wrap_u > GPU_CLAMP || (unsigned)d->wrap_v > GPU_CLAMP ||
+        (unsigned)d->wrap_w > GPU_CLAMP) {
         return host_fail(gpu->host, FAIL_ARGUMENT, "gpu sampler %s: unknown filter or wrap", name);
-    }
-    bool zero = d->wrap_u == GPU_BORDER_ZERO || d->wrap_v == GPU_BORDER_ZERO ||
-                d->wrap_w == GPU_BORDER_ZERO;
-    bool one =
-        d->wrap_u == GPU_BORDER_ONE || d->wrap_v == GPU_BORDER_ONE || d->wrap_w == GPU_BORDER_ONE;
-    if (zero && one) {
-        return host_fail(gpu->host, FAIL_ARGUMENT,
-                         "gpu sampler %s: one border cannot be both zero and one", name);
     }
     return true;
 }
 
-static VkSamplerCreateInfo create_info(const struct gpu *gpu, const struct gpu_sampler_desc *d)
+static VkSamplerCreateInfo create_info(const struct gpu_sampler_desc *d)
 {
-    bool one =
-        d->wrap_u == GPU_BORDER_ONE || d->wrap_v == GPU_BORDER_ONE || d->wrap_w == GPU_BORDER_ONE;
     VkSamplerCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
         .magFilter = d->filter == GPU_LINEAR ? VK_FILTER_LINEAR : VK_FILTER_NEAREST,
@@ -56,15 +44,8 @@ static VkSamplerCreateInfo create_info(const struct gpu *gpu, const struct gpu_s
         .compareEnable = d->compare_greater,
         .compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL,
         .maxLod = VK_LOD_CLAMP_NONE,
-        .borderColor =
-            one ? VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE : VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK,
     };
     info.minFilter = info.magFilter;
-    if (d->max_anisotropy > 1 && gpu->limits.anisotropy) {
-        float most = gpu->vk_limits.maxSamplerAnisotropy;
-        info.anisotropyEnable = VK_TRUE;
-        info.maxAnisotropy = d->max_anisotropy < most ? d->max_anisotropy : most;
-    }
     return info;
 }
 
@@ -83,7 +64,7 @@ bool gpu_sampler_get(struct gpu *gpu, const struct gpu_sampler_desc *desc, gpu_s
     if (!sampler) return false;
     sampler->desc = *desc;
     sampler->desc.name = NULL;
-    VkSamplerCreateInfo info = create_info(gpu, desc);
+    VkSamplerCreateInfo info = create_info(desc);
     if (!VK_CHECK(gpu, vkCreateSampler(gpu->device, &info, NULL, &sampler->handle))) goto fail;
     char name[NAME_SIZE];
     VK_NAME(gpu, VK_OBJECT_TYPE_SAMPLER, sampler->handle, owner_name(gpu, desc->name, name));

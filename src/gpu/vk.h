@@ -246,8 +246,6 @@ struct rendering {
     struct gpu_target colors[MAX_COLORS], depth;
     int color_count;
     uint32_t width, height;
-    VkViewport viewport;
-    VkRect2D scissor;
     uint64_t op;
 };
 
