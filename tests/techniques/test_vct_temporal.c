@@ -84,8 +84,7 @@ TEST_GPU(history_is_the_weighted_mean_of_the_frames)
         float *now = channels(&fixture, fixture.vct->temporal.now, 3);
         float *got =
             channels(&fixture, fixture.vct->temporal.light[fixture.vct->temporal.newest], 4);
-        const double w =
-            frame < 4 ? frame : 4; // frames=4: the weight of history is at most four frames
+        const double w = frame < 4 ? frame : 4; // at most `frames`
         for (size_t i = 0; i < 3 * pixels; i++) {
             mean_of_them[i] = (w * mean_of_them[i] + (double)now[i]) / (w + 1.0);
             const double value = (double)got[i / 3 * 4 + i % 3];

@@ -57,7 +57,7 @@ static struct span span_now(struct vct_fixture *fixture)
 }
 
 // Cosine-weighted visibility by ray casting: 1 − mean of f(r) = 1/(1 + γ r) over the hits.
-static double by_rays(const struct raycast *raycast, vec3s p, vec3s n, double decay)
+static double visibility_by_rays(const struct raycast *raycast, vec3s p, vec3s n, double decay)
 {
     enum { SIDE = 40 };
     vec3s x, y;
@@ -202,7 +202,7 @@ static void check_crease(struct gpu *gpu, const char *options, double decay, dou
     for (int i = 0; i < PIXELS; i += 3) {
         const vec3s p = vec3_of(at[3 * i], at[3 * i + 1], at[3 * i + 2]);
         if (fabsf(p.y) > 1e-3f || p.x < 0.05f || p.x > 8.0f) continue; // the floor
-        const double due = by_rays(&raycast, p, vec3_of(0, 1, 0), decay);
+        const double due = visibility_by_rays(&raycast, p, vec3_of(0, 1, 0), decay);
         if (decay == 0.0) difference = fmax(difference, fabs(due - open_beside((double)p.x)));
         sum += fabs((double)v[i] - due);
         off += (double)v[i] - due;
@@ -283,8 +283,8 @@ TEST_GPU(each_storage_matches_ray_casting_and_is_static)
             if (depth[i] <= 0.0f) continue;
             const vec3s p = vec3_of(at[3 * i], at[3 * i + 1], at[3 * i + 2]);
             const vec3s n = vec3_of(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]);
-            const double d =
-                (double)v[i] - by_rays(&raycast, p, n, (double)fixture.vct->options.decay);
+            const double d = (double)v[i] -
+                             visibility_by_rays(&raycast, p, n, (double)fixture.vct->options.decay);
             sum += fabs(d);
             off += d;
             count++;

@@ -13,7 +13,7 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
 {
     struct vct *vct = user;
     gpu_owner_push(vct->gpu, "vct");
-    technique_vct.record(vct, cmd, view); // also that of vctao
+    technique_vct.record(vct, cmd, view); // the same function for vctao
     gpu_owner_pop(vct->gpu);
 }
 

@@ -7,9 +7,9 @@
 #include "techniques/vct/vct_state.h"
 
 struct vct_fixture {
-    struct frame_fixture frame_fixture; // vct_fixture_open takes it over
-    const struct technique *technique;  // technique_vct unless it is set before it is opened
-    struct host *host;                  // of the technique; NULL: the test's
+    struct frame_fixture frame_fixture; // rendered after vct_fixture_open
+    const struct technique *technique;  // technique_vct unless set before vct_fixture_open
+    struct host *host;                  // for the technique; NULL: test_host()
     struct vct *vct;
 };
 

@@ -42,7 +42,7 @@ static bool overlaps(const vec3s at[3], vec3s normal)
            !edge_separates(ca, at[2], at[1]);
 }
 
-static void enter(struct count *c, const int voxel[3])
+static void mark_occupied(struct count *c, const int voxel[3])
 {
     const size_t index = ((size_t)voxel[2] * c->dim + (size_t)voxel[1]) * c->dim + (size_t)voxel[0];
     const uint32_t bit = 1u << (index % 32);
@@ -59,7 +59,7 @@ static float clamp_to_scene(const struct vct_grid *grid, int axis, float at, flo
 }
 
 // Visits the columns along the dominant axis of the normal, a few voxels in each.
-static void walk(struct count *c, const vec3s at[3])
+static void visit_columns(struct count *c, const vec3s at[3])
 {
     const vec3s normal = glms_vec3_cross(glms_vec3_sub(at[1], at[0]), glms_vec3_sub(at[2], at[1]));
     const vec3s n = glms_vec3_abs(normal);
@@ -94,7 +94,7 @@ static void walk(struct count *c, const vec3s at[3])
                 for (int k = 0; k < 3; k++)
                     for (int i = 0; i < 3; i++)
                         from[k].raw[i] = at[k].raw[i] - ((float)voxel[i] + 0.5f);
-                if (overlaps(from, normal)) enter(c, voxel);
+                if (overlaps(from, normal)) mark_occupied(c, voxel);
             }
         }
 }
@@ -120,7 +120,7 @@ static void count_instance(struct count *c, const struct scene_pose *pose, int i
         vec3s at[3];
         for (uint32_t k = 0; k < 3; k++)
             at[k] = voxels_from_world(c->grid, mat4_point(world, positions[mesh->indices[i + k]]));
-        walk(c, at);
+        visit_columns(c, at);
     }
 }
 
