@@ -384,8 +384,8 @@ TEST_GPU(occlusion_follows_moving_objects)
         float *due = visibility(&fresh);
         double difference = 0.0;
         for (int i = 0; i < PIXELS; i++) difference += fabs((double)(moved[i] - due[i])) / PIXELS;
-        print_message("%s: changed by %.4f, %.4f from where it stands there from the start\n",
-                      options, change, difference);
+        print_message("%s: change %.4f, difference to a static scene %.4f\n", options, change,
+                      difference);
         // Static and dynamic voxels in one texel are not composited as one sheet.
         CHECK(difference < 0.1 * change);
         free(before), free(moved), free(later), free(due);

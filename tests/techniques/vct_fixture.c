@@ -12,7 +12,7 @@ void vct_fixture_init(struct vct_fixture *fixture, struct gpu *gpu)
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vct *vct = user;
-    gpu_owner_push(vct->gpu, "vct");
+    gpu_owner_push(vct->gpu, vct->name);
     technique_vct.record(vct, cmd, view); // the same function for vctao
     gpu_owner_pop(vct->gpu);
 }
@@ -33,7 +33,7 @@ void vct_fixture_open(struct vct_fixture *fixture, const char *text)
                                           .height = s->height };
     fixture->vct = calloc(1, technique->state_size);
     CHECK(technique->check(&how));
-    gpu_owner_push(s->gpu, "vct");
+    gpu_owner_push(s->gpu, technique->name);
     CHECK(technique->create(fixture->vct, &how));
     gpu_owner_pop(s->gpu);
     s->indirect =
