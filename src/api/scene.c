@@ -440,7 +440,7 @@ enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int ani
 enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animation, double time_s,
                                        struct ag_camera *out, bool *made_up)
 {
-    const struct scene_pose *pose;
+    const struct scene_pose *pose = NULL;
     enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
     if (result != AG_OK) return result;
     bool none = scene->scene->camera_count == 0;
@@ -454,7 +454,7 @@ enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animation, do
 
 enum ag_result ag_scene_default_lighting(struct ag_scene *scene, struct ag_default_lighting *out)
 {
-    const struct scene_pose *pose;
+    const struct scene_pose *pose = NULL;
     enum ag_result result = pose_for(__func__, scene, out, 0, 0.0, &pose);
     if (result != AG_OK) return result;
     struct default_lighting lighting = default_lighting(pose);
