@@ -13,8 +13,8 @@ static bool same_grid(const struct vct_grid *a, const struct vct_grid *b)
     return same;
 }
 
-// Texels of a level, inside its cone box, over which it blends into the next coarser level: of 13
-// between the camera and the border with resolution=64.
+// Texels along the border of a level's cone box over which it blends into the next coarser level.
+// With resolution=64 the border is 13 texels from the camera.
 static float fade_of(const struct vct *vct)
 {
     return fminf((float)vct->options.resolution / 16.0f, 4.0f);
@@ -49,7 +49,7 @@ bool vct_clipmap_update(struct vct *vct, const struct frame_view *view)
 
 // ---- The uniform block --------------------------------------------------------------------------
 
-// `box`: in voxels of the grid, from the corner of the scene's grid.
+// box: in voxels of the grid, from the corner of the scene's grid.
 static struct vct_clip_level level_of(const struct vct_grid *grid, struct box3 box, int level)
 {
     struct vct_clip_level out;
@@ -63,7 +63,8 @@ static struct vct_clip_level level_of(const struct vct_grid *grid, struct box3 b
     return out;
 }
 
-// A grid without its outermost voxel, half a texel. Beyond the border of the scene the box goes on.
+// A grid without its outermost voxel, half a texel. On the border of the scene the box extends far
+// beyond it instead.
 static struct box3 box_of(const struct vct_grid *grid)
 {
     struct box3 box;

@@ -1,27 +1,27 @@
-// Grids about the eye, each with voxels half as large as the last one's: which of them has what is
-// looked for at a place. Cones count levels from the finest grid's texels on, of which the coarsest
-// grid's mips go on; places are in texels of level 0 from the corner of the scene's grid.
+// Selects the level of the clip map that cones sample. Level 0 is the finest grid; levels beyond
+// the coarsest grid are its mips. Positions are in texels of level 0 from the corner of the scene's
+// grid.
 //
-// The boxes in which grids are looked into move with the eye, and lie within the grids, which move
-// in steps: a picture does not show the steps.
+// Grids move with the camera in steps. Cones sample a smaller box within each grid that moves
+// continuously, so that images do not show the steps.
 #ifndef AG_VCT_CLIPMAP_GLSL
 #define AG_VCT_CLIPMAP_GLSL
 
 #include "techniques/vct/clipmap/clipmap_shared.h"
 #include "techniques/vct/vct_constants.h"
 
-layout(constant_id = VCT_CONSTANT_CLIPS) const int VCT_CLIPS = 1; // grids
+layout(constant_id = VCT_CONSTANT_CLIPS) const int VCT_CLIPS = 1; // levels
 
 layout(set = 0, binding = 22, scalar) uniform vct_clipmap
 {
     vct_clip_table clips;
 };
 
-// Cones that leave a place do so from the finest grid there. By its border they also leave it from
-// the next one, and what they find changes over.
+// Cones start in the finest level whose box contains the position. Near its border they blend with
+// cones that start in the next level.
 struct vct_start {
     int level;
-    float next; // share of the next level, 0…1
+    float next; // weight of the next level, 0…1
 };
 
 vct_start vct_start_at(vec3 at)
@@ -35,7 +35,7 @@ vct_start vct_start_at(vec3 at)
     return start;
 }
 
-// Width of the texels that cones from a place start with.
+// Texel size of the level in which cones from a position start.
 float vct_texel_at(vec3 at)
 {
     return VCT_CLIPS > 1 ? float(1 << vct_start_at(at).level) : 1.0;

@@ -1,10 +1,10 @@
-// What the shaders that read the clip map share with the host. Scalar layout.
+// Data of the clip map that the host writes for shaders. Scalar layout.
 #ifndef AG_VCT_CLIPMAP_SHARED_H
 #define AG_VCT_CLIPMAP_SHARED_H
 
 #include "techniques/vct/vct_shared.h"
 
-// A level as cones see it: in texels of the finest level, from the corner of the scene's grid.
+// A level as cones sample it: in texels of the finest level, from the corner of the scene's grid.
 struct vct_clip_level {
     vec3s corner;    // of its first texel
     vec3s size;      // in use, in its own texels

@@ -1,7 +1,6 @@
-// The blur (Hong 2015, sec. 4.2): pixels that have found few of the cones, on surfaces too small
-// for a whole block, borrow from others that look the same way from about the same plane.
-// Bilateral, with a step that grows with the distance. Where all cones were found there is nothing
-// to smooth, since sub-images have been interpolated.
+// Bilateral blur (Hong 2015, sec. 4.2) of pixels that gathered only part of the cone set: their
+// surface is smaller than a pixel block. The step doubles from ring to ring. Pixels with the whole
+// set need no blur: gathering interpolates the sub-images.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -20,10 +19,10 @@ layout(set = 0, binding = 2, scalar) uniform vct_cones
 };
 layout(set = 0, binding = 3) uniform sampler2D depth;
 layout(set = 0, binding = 4) uniform sampler2D normal;
-layout(set = 0, binding = 5) uniform sampler2D gathered; // irradiance, share of the cones
+layout(set = 0, binding = 5) uniform sampler2D gathered; // irradiance, fraction of the cone set
 layout(set = 0, binding = 6) uniform writeonly image2D irradiance;
 
-const float ENOUGH = 0.9; // of the cones
+const float COMPLETE = 0.9; // fraction of the cone set that needs no blur
 const int RINGS = 4;
 
 vec3 position_of(ivec2 pixel, float z)
@@ -31,20 +30,20 @@ vec3 position_of(ivec2 pixel, float z)
     return frame_world_position(frame_uv(uvec2(pixel)), z);
 }
 
-// How much a pixel says about another: its share of the cones, if it looks the same way from the
-// same plane.
-float like(ivec2 there, vec3 position, vec3 n, float share, float texel_m)
+// Weight of a neighbour: its squared fraction of the cone set, times similarity of normal and
+// position.
+float weight_of(ivec2 neighbour, vec3 position, vec3 n, float fraction, float texel_m)
 {
-    float z = texelFetch(depth, there, 0).r;
+    float z = texelFetch(depth, neighbour, 0).r;
     if (z <= 0.0) return 0.0;
-    vec3 off = position_of(there, z) - position;
-    float cosine = max(dot(n, octahedral_decode(texelFetch(normal, there, 0).rg)), 0.0);
-    float near = clamp(1.0 - length(off) / texel_m, 0.0, 1.0);
+    vec3 offset = position_of(neighbour, z) - position;
+    float cosine = max(dot(n, octahedral_decode(texelFetch(normal, neighbour, 0).rg)), 0.0);
+    float near = clamp(1.0 - length(offset) / texel_m, 0.0, 1.0);
     float c4 = cosine * cosine * cosine * cosine;
-    return share * share * c4 * c4 * near;
+    return fraction * fraction * c4 * c4 * near;
 }
 
-vec3 borrowed(ivec2 pixel, vec4 own)
+vec3 blurred(ivec2 pixel, vec4 own)
 {
     vec3 position = position_of(pixel, texelFetch(depth, pixel, 0).r);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
@@ -53,16 +52,16 @@ vec3 borrowed(ivec2 pixel, vec4 own)
     for (int ring = 0; ring < RINGS; ring++) {
         int step = 1 << ring;
         for (int i = 0; i < 4; i++) {
-            // To the sides and to the corners by turns.
+            // Rings alternate between edge neighbours and diagonal ones.
             ivec2 side = (i & 1) == 0 ? ivec2(1 - (i & 2), 0) : ivec2(0, 1 - (i & 2));
             ivec2 corner = ivec2(1 - (i & 2), 1 - 2 * (i & 1));
-            ivec2 there = pixel + step * ((ring & 1) == 0 ? side : corner);
-            if (any(lessThan(there, ivec2(0))) ||
-                any(greaterThanEqual(there, ivec2(set.width, set.height))))
+            ivec2 neighbour = pixel + step * ((ring & 1) == 0 ? side : corner);
+            if (any(lessThan(neighbour, ivec2(0))) ||
+                any(greaterThanEqual(neighbour, ivec2(set.width, set.height))))
                 continue;
-            vec4 other = texelFetch(gathered, there, 0);
+            vec4 other = texelFetch(gathered, neighbour, 0);
             if (other.a > 0.0)
-                sum += like(there, position, n, other.a, texel_m) * vec4(other.rgb, 1.0);
+                sum += weight_of(neighbour, position, n, other.a, texel_m) * vec4(other.rgb, 1.0);
         }
     }
     return sum.a > 0.0 ? sum.rgb / sum.a : own.rgb;
@@ -74,6 +73,6 @@ void main()
     if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
     vec4 own = texelFetch(gathered, pixel, 0);
     vec3 result = own.rgb;
-    if (own.a > 0.0 && own.a < ENOUGH) result = borrowed(pixel, own);
+    if (own.a > 0.0 && own.a < COMPLETE) result = blurred(pixel, own);
     imageStore(irradiance, pixel, vec4(result, 1.0));
 }

@@ -1,4 +1,4 @@
-// Sets of cones over a hemisphere. Pure CPU.
+// Cone sets over a hemisphere. Pure CPU.
 #pragma once
 
 #include "core/vec.h"
@@ -7,20 +7,18 @@ enum { VCT_CONES_1, VCT_CONES_5, VCT_CONES_6, VCT_CONES_9, VCT_CONES_16, VCT_CON
 
 struct vct_cone {
     vec3s direction; // unit, about +z
-    float weight;    // ∫ cos dω over its part of the hemisphere, sr
+    float weight;    // ∫ cos θ dω over its part of the hemisphere, sr
 };
 
-// How many cones a choice has.
+// Number of cones of a choice.
 int vct_cone_count(int choice);
-// The hemisphere in parts of equal solid angle 2π/count: a cap and rings, whose parts are equal.
+// Stratifies the hemisphere into a cap and rings of cones with equal solid angle 2π/count.
 // Weights sum to π.
 void vct_cone_set(int choice, struct vct_cone *out);
-// Width over distance of a cone of solid angle 2π/count: 2 tan of its half-angle.
+// Width over distance of a cone of solid angle 2π/count: twice the tangent of the half-angle.
 float vct_cone_width(int choice);
-// As many lines through the sphere's centre, spread evenly: unit vectors of which it does not
-// matter to which side they point. On every hemisphere they are a set of cones of nearly equal
-// solid angles, whatever its normal.
+// `count` evenly spread lines through the centre of the sphere, as unit vectors of either sign. For
+// any normal, one end of each line lies in the hemisphere: a cone set of nearly equal solid angles.
 void vct_cone_axes(int choice, vec3s *out);
-// Turns them all by the same rotation, number 0 by none; many numbers turn a line to everywhere
-// evenly.
+// Rotates all lines by rotation `number` of a low-discrepancy sequence; 0 is the identity.
 void vct_rotate_cone_axes(uint32_t number, int count, vec3s *lines);

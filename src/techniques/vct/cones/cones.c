@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-// How many pixels of a block trace cone `cone`: see cones/cones.comp.
-static int parts_with(uint32_t cone, uint32_t parts, uint32_t cones)
+// Number of pixels in a block that trace `cone`: see cones/cones.comp.
+static int pixels_tracing(uint32_t cone, uint32_t parts, uint32_t cones)
 {
     int count = 0;
     for (uint32_t part = 0; part < parts; part++)
@@ -43,7 +43,8 @@ struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame
     return params;
 }
 
-// Cones of the pixels: axes in world space, each weighted by its share of the hemisphere.
+// World-space axes. Each cone's weight, 1/count, is divided among the pixels of a block that trace
+// it.
 static struct vct_cone_params pixel_cones(const struct vct *vct, const struct frame_view *view)
 {
     const uint32_t side = (uint32_t)vct->options.interleave;
@@ -53,21 +54,22 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
     params.width = vct->width;
     params.height = vct->height;
     for (uint32_t i = 0; i < count; i++)
-        params.cones[i] = vec4_of(
-            vct->cone_axes[i], 1.0f / (float)(count * (uint32_t)parts_with(i, side * side, count)));
+        params.cones[i] =
+            vec4_of(vct->cone_axes[i],
+                    1.0f / (float)(count * (uint32_t)pixels_tracing(i, side * side, count)));
     return params;
 }
 
-// Bindings that the stages over pixels share.
+// Bindings that the per-pixel passes share.
 struct pixels {
     struct gpu_binding clipmap, cones, depth, normal, edges, cone_normal;
-    uint32_t across, down; // workgroups for one invocation per pixel that traces cones
+    uint32_t across, down; // workgroups, one invocation per traced pixel
 };
 
 static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                         const struct pixels *p, gpu_image result)
 {
-    const uint32_t side = (uint32_t)vct->options.interleave; // of blocks of pixels
+    const uint32_t side = (uint32_t)vct->options.interleave; // of a block
     gpu_scope_begin(cmd, "cones");
     gpu_dispatch(cmd, vct->cones[vct->small_emitters.count > 0],
                  GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap,
@@ -109,7 +111,7 @@ static void find_edges(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     gpu_scope_end(cmd);
 }
 
-static void share_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p)
+static void gather_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p)
 {
     gpu_scope_begin(cmd, "gather");
     gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
@@ -132,7 +134,7 @@ static void blur(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
     gpu_scope_end(cmd);
 }
 
-// From half resolution to the pixels of the frame.
+// From half resolution to full resolution.
 static void upsample(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
                      const struct pixels *p, gpu_image result)
 {
@@ -164,10 +166,10 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
                               .down = gpu_groups(vct->height, VCT_LOCAL_2D) };
     find_edges(vct, cmd, view, &p);
     trace_cones(vct, cmd, view, &p, result);
-    const bool shared = params.interleave > 1;
-    if (shared) share_cones(vct, cmd, &p);
+    const bool interleaved = params.interleave > 1;
+    if (interleaved) gather_cones(vct, cmd, &p);
     if (params.step > 1)
         upsample(vct, cmd, view, &p, result);
-    else if (shared)
+    else if (interleaved)
         blur(vct, cmd, view, &p, result);
 }

@@ -1,4 +1,4 @@
-// Diffuse cones of the pixels, and gathering them from neighbours.
+// Diffuse cones of the pixels: tracing, gathering from neighbours, upsampling.
 #pragma once
 
 #include "frame/frame.h"
@@ -7,7 +7,7 @@
 
 struct vct;
 
-// The cones of a voxel, about its normal.
+// The cone set of a voxel, around its normal.
 struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view);
-// Fills irradiance or visibility.
+// Writes irradiance or visibility.
 void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);

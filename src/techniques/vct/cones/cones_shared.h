@@ -1,4 +1,4 @@
-// What the shaders that trace cones share with the host. Scalar layout.
+// Data of the cone tracing shaders that the host writes. Scalar layout.
 #ifndef AG_VCT_CONES_SHARED_H
 #define AG_VCT_CONES_SHARED_H
 
@@ -6,23 +6,22 @@
 
 #define VCT_MAX_CONES      25
 #define VCT_MAX_INTERLEAVE 5
-#define VCT_GATHER_ROW     4 // pixels that one invocation gathers for
+#define VCT_GATHER_ROW     4 // pixels per invocation of cones/gather.comp
 
 // Uniform block "vct_cones".
 struct vct_cone_params {
-    // Direction and weight. Of voxels: about +z, weights in sr, Σ = π. Of pixels: in world space,
-    // Σ = 1.
+    // Direction, weight. Voxels: around +z, weights in sr, Σ = π. Pixels: world space, Σ = 1.
     vec4s cones[VCT_MAX_CONES];
     uint32_t cone_count;
     uint32_t interleave;
-    uint32_t step;          // pixels of the frame per pixel that traces cones, in x and y
-    uint32_t width, height; // of the images of traced pixels
-    float width_per_m;      // cone width in step sizes over the distance
-    float offset;           // texels of the light volume
+    uint32_t step;          // frame pixels per traced pixel, in x and y
+    uint32_t width, height; // in traced pixels
+    float width_per_m;      // texel width over distance: cone width times step size
+    float offset;           // of the apex along the normal, texels of the light volume
     float gain;
     float texel_m; // of the finest level
     uint32_t last_mip;
-    float pixel; // width of a pixel over the distance
+    float pixel; // width of a pixel at distance 1
 };
 
 // Storage block "vct_small_emitters".
@@ -30,15 +29,15 @@ struct vct_cone_params {
 #define VCT_EMITTER_POINTS     12
 struct vct_small_emitter {
     vec3s radiance; // scaled
-    float area_m2;  // of each point
+    float area_m2;  // per sample point
     uint32_t both_sides;
     vec3s positions[VCT_EMITTER_POINTS]; // world space
-    vec3s normals[VCT_EMITTER_POINTS];   // unit, of the front
+    vec3s normals[VCT_EMITTER_POINTS];   // unit, front side
 };
 
 // Uniform block "vct_specular".
 struct vct_specular_params {
-    float tan_half; // of each cone's half-angle; 0: from the roughness
+    float tan_half; // tangent of all cones' half-angle; 0: from the roughness
     float step_size;
     float offset; // texels of the light volume
     float gain;
@@ -46,22 +45,22 @@ struct vct_specular_params {
     uint32_t last_mip;
 };
 
-// Uniform block "vct_environment_brdf": specular albedo under uniform light is F0 · first + second;
-// nodes evenly in n·v, then roughness.
+// Uniform block "vct_environment_brdf": directional albedo is F0 · first + second (Karis 2013).
+// Nodes are equidistant in n·v, which varies fastest, and in roughness.
 #define VCT_BRDF_NODES 16
 struct vct_environment_brdf_table {
     float pairs[VCT_BRDF_NODES * VCT_BRDF_NODES * 2];
 };
 
-// Uniform block "vct_history": the image plane of the previous frame. Pixel (x, y) sees along
-// forward + x · right + y · down, per distance along the view axis; world space.
+// Uniform block "vct_history": the image plane of the previous frame. The view ray of pixel (x, y)
+// is forward + x · right + y · down at distance 1 along the view axis; world space.
 struct vct_history_params {
     vec3s right, down, forward;
-    float pixel;    // width of a pixel over the distance
-    float most;     // largest weight of the history, frames
-    float clamp;    // standard deviations; 0: none
+    float pixel;    // width of a pixel at distance 1
+    float most;     // maximum weight of the history, frames
+    float clamp;    // standard deviations; 0: off
     float scale;    // radiance scale of this frame over that of the previous one
-    uint32_t known; // bool: there is a previous frame
+    uint32_t known; // bool: the history is valid
 };
 
 #ifndef AG_GLSL

@@ -1,12 +1,11 @@
-// Half of the gathering stage (Hong 2015, sec. 4.2): each pixel adds up what the pixels beside it
-// in a row (or, then, a column) have traced, as far as one surface reaches. After rows and columns
-// each has the light of all cones.
+// The gathering pass (Hong 2015, sec. 4.2), separable: one dispatch sums cones along rows, a second
+// one along columns. Sums stop at discontinuities. After both, each pixel has the whole cone set.
 //
-// Of the pixels that trace the same part of the cones the two next to a pixel, before and after it,
-// are interpolated: each sub-image is magnified bilinearly, and no lattice of the blocks' size is
-// left. Where the surface ends on one side the other stands for both.
+// Differs from the paper: the two nearest pixels of each sub-image, one on either side, are
+// interpolated linearly, which leaves no pattern of the block size. If a discontinuity excludes
+// one of the two, the other gets the full weight.
 //
-// One invocation does four pixels in a row: they share what they read.
+// Each invocation computes four adjacent pixels, which reuse its fetches.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -21,8 +20,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = VCT_CONSTANT_COLUMNS) const bool COLUMNS = false;
-layout(constant_id = VCT_CONSTANT_EACH_PIXEL) const
-    bool EACH_PIXEL = true; // pixel of the frame traces cones: columns write irradiance
+// At full resolution the column pass writes irradiance.
+layout(constant_id = VCT_CONSTANT_EACH_PIXEL) const bool EACH_PIXEL = true;
 
 layout(set = 0, binding = 2, scalar) uniform vct_cones
 {
@@ -36,8 +35,8 @@ layout(set = 0, binding = 7) uniform sampler2D normal;
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D red_sum;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D green_sum;
 layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D blue_sum;
-layout(set = 0, binding = 11,
-       rgba16f) uniform writeonly image2D irradiance; // alpha: share of the cones
+// Alpha: fraction of the cone set.
+layout(set = 0, binding = 11, rgba16f) uniform writeonly image2D irradiance;
 
 const int ROW = VCT_GATHER_ROW, REACH = VCT_MAX_INTERLEAVE - 1;
 
@@ -45,21 +44,21 @@ struct sums {
     vec4 red, green, blue;
 };
 
-// Bit i: between the pixels i and i + 1 of those that are read a surface ends, or the picture.
-uint ends_of(ivec2 first, ivec2 along, int here, int count)
+// Bit i: a discontinuity or the image border between fetched pixels i and i + 1.
+uint ends_of(ivec2 first, ivec2 axis, int here, int count)
 {
     uint ends = 0u;
     for (int i = 0; i < ROW + 2 * REACH - 1; i++) {
         int at = here + i - REACH;
         bool inside = at >= 0 && at < count - 1;
         uint bits =
-            inside ? uint(texelFetch(edges, first + (i - REACH) * along, 0).r * 255.0 + 0.5) : 3u;
+            inside ? uint(texelFetch(edges, first + (i - REACH) * axis, 0).r * 255.0 + 0.5) : 3u;
         ends |= (bits & (COLUMNS ? 2u : 1u)) != 0u ? 1u << i : 0u;
     }
     return ends;
 }
 
-// How far the surface of pixel `at` of those reaches before and after it, n − 1 pixels at most.
+// Pixels without a discontinuity before and after fetched pixel `at`, n − 1 at most.
 ivec2 reach_of(uint ends, int at, int n)
 {
     int before = at - 1 - findMSB(ends & ((1u << at) - 1u));
@@ -67,27 +66,28 @@ ivec2 reach_of(uint ends, int at, int n)
     return ivec2(min(before, n - 1), after);
 }
 
-// Weight of the pixel `step` after (negative: before) one whose surface has that reach.
+// Interpolation weight of the pixel `step` after (negative: before) the one with this reach.
 float weight_of(int step, ivec2 reach, int n)
 {
     int other = n - abs(step);
-    bool has = step < 0 ? -step <= reach.x : step <= reach.y;
-    bool has_other = step < 0 ? other <= reach.y : other <= reach.x;
-    return !has || other <= 0 ? 0.0 : step == 0 || !has_other ? 1.0 : float(other) / float(n);
+    bool included = step < 0 ? -step <= reach.x : step <= reach.y;
+    bool includes_other = step < 0 ? other <= reach.y : other <= reach.x;
+    return !included || other <= 0        ? 0.0
+           : step == 0 || !includes_other ? 1.0
+                                          : float(other) / float(n);
 }
 
-void finish(ivec2 pixel, sums s)
+void store_irradiance(ivec2 pixel, sums s)
 {
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     vct_cone_sums v =
         vct_cone_sums(mat3(s.red.xyz, s.green.xyz, s.blue.xyz), vec3(s.red.w, s.green.w, s.blue.w));
-    // A whole set has the mean of |n·d| over the sphere, a half.
-    imageStore(
-        irradiance, pixel,
-        vec4(vct_irradiance(v, n, set.gain), clamp(2.0 * dot(n, v.direction_index), 0.0, 1.0)));
+    // A whole cone set has n·(Σ d) of about ½, the mean of |n·d| over the sphere.
+    imageStore(irradiance, pixel,
+               vec4(vct_irradiance(v, n, set.gain), clamp(2.0 * dot(n, v.direction), 0.0, 1.0)));
 }
 
-void keep(ivec2 pixel, sums s)
+void store_sums(ivec2 pixel, sums s)
 {
     imageStore(red_sum, pixel, clamp(s.red, -HALF_MAX, HALF_MAX));
     imageStore(green_sum, pixel, clamp(s.green, -HALF_MAX, HALF_MAX));
@@ -96,15 +96,15 @@ void keep(ivec2 pixel, sums s)
 
 void main()
 {
-    // Not COLUMNS ? ivec2(…) : ivec2(…): a vector chosen by a specialisation constant comes out as
-    // the second one on Mesa 22.3.
-    ivec2 along = ivec2(COLUMNS ? 0 : 1, COLUMNS ? 1 : 0);
+    // Mesa 22.3 evaluates COLUMNS ? ivec2(…) : ivec2(…) to the second operand when COLUMNS is a
+    // specialization constant.
+    ivec2 axis = ivec2(COLUMNS ? 0 : 1, COLUMNS ? 1 : 0);
     ivec2 size = ivec2(set.width, set.height);
-    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * (ivec2(1) + along * (ROW - 1));
+    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * (ivec2(1) + axis * (ROW - 1));
     if (any(greaterThanEqual(first, size))) return;
     int n = int(set.interleave), here = COLUMNS ? first.y : first.x,
         count = COLUMNS ? size.y : size.x;
-    uint ends = ends_of(first, along, here, count);
+    uint ends = ends_of(first, axis, here, count);
     ivec2 reach[ROW];
     sums s[ROW];
     for (int o = 0; o < ROW; o++) {
@@ -112,7 +112,7 @@ void main()
         s[o] = sums(vec4(0.0), vec4(0.0), vec4(0.0));
     }
     for (int i = REACH + 1 - n; i < ROW + REACH - 1 + n; i++) {
-        ivec2 from = clamp(first + (i - REACH) * along, ivec2(0), size - 1);
+        ivec2 from = clamp(first + (i - REACH) * axis, ivec2(0), size - 1);
         vec4 r = texelFetch(red, from, 0), g = texelFetch(green, from, 0),
              b = texelFetch(blue, from, 0);
         for (int o = 0; o < ROW; o++) {
@@ -123,11 +123,11 @@ void main()
         }
     }
     for (int o = 0; o < ROW; o++) {
-        ivec2 pixel = first + o * along;
+        ivec2 pixel = first + o * axis;
         if (any(greaterThanEqual(pixel, size))) continue;
         if (COLUMNS && EACH_PIXEL)
-            finish(pixel, s[o]);
+            store_irradiance(pixel, s[o]);
         else
-            keep(pixel, s[o]);
+            store_sums(pixel, s[o]);
     }
 }

@@ -35,7 +35,7 @@ static void directional_albedo(double n_v, double roughness, float out[2])
 
 void vct_fill_environment_brdf(struct vct_environment_brdf_table *out)
 {
-    // BRDF_MIN_ROUGHNESS; n·v has the same lower bound, as the terms divide by it.
+    // BRDF_MIN_ROUGHNESS; n·v has the same lower bound, since the terms divide by it.
     const double least = 0.045;
     for (int r = 0; r < VCT_BRDF_NODES; r++)
         for (int v = 0; v < VCT_BRDF_NODES; v++)

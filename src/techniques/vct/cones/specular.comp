@@ -1,12 +1,12 @@
-// One cone the way a pixel's surface reflects the eye's ray, as wide as the roughness says (Hong
-// 2015, sec. 2.5.3.3.7; Crassin et al. 2011), times the share that GGX reflects of even light.
+// One cone per pixel along the mirror direction, with the width of the specular lobe (Hong 2015,
+// sec. 2.5.3.3.7; Crassin et al. 2011), times the directional albedo of the GGX BRDF.
 //
-// The paper's lobe is Phong's; ours is glTF's GGX. Of its half-vectors, seen along the normal,
-// those with tan θ < α have half of the weight: D cos θ dω is in tan² θ the share t²/(t² + α²). A
-// reflected direction is twice as far off, so that half of what is reflected comes from within
+// Differs from the paper: the lobe is glTF's GGX, not Phong's. At normal incidence half of the
+// half-vectors have tan θ < α, as the distribution D cos θ dω has the CDF t²/(t² + α²) in t = tan
+// θ. Reflection doubles the angle, so half of the reflected light comes from within
 //     2 atan α (1)
-// of the mirror's direction. An even cone of this half-angle also has the lobe's peak, D(0)/4 =
-// 1/(4πα²) per sr, up to the powers of α beyond: it has 1/(π (2α)²).
+// of the mirror direction. A uniform cone of this half-angle, 1/(π (2α)²) per sr, also has the peak
+// of the lobe, D(0)/4 = 1/(4πα²) per sr, for small α.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -38,8 +38,8 @@ layout(set = 0, binding = 9, scalar) uniform vct_environment_brdf
     vct_environment_brdf_table environment_brdf;
 };
 
-const float WIDEST =
-    1.0; // tangent of the half-angle: beyond 45° a cone says no more than its texels
+// Tangent of the half-angle: a cone wider than 45° is no better resolved by the texels.
+const float WIDEST = 1.0;
 
 float tan_half_angle(float alpha)
 {
@@ -47,42 +47,45 @@ float tan_half_angle(float alpha)
     return alpha < 1.0 ? min(2.0 * alpha / (1.0 - alpha * alpha), WIDEST) : WIDEST; // (1)
 }
 
-vec2 share_at(ivec2 node)
+vec2 albedo_terms_at(ivec2 node)
 {
     int at = 2 * (node.y * VCT_BRDF_NODES + node.x);
     return vec2(environment_brdf.pairs[at], environment_brdf.pairs[at + 1]);
 }
 
-vec3 share_of(vec3 f0, float n_v, float roughness)
+// Directional albedo, bilinear in the table.
+vec3 directional_albedo(vec3 f0, float n_v, float roughness)
 {
     vec2 at = clamp(vec2(n_v, roughness), 0.0, 1.0) * float(VCT_BRDF_NODES - 1);
     ivec2 low = min(ivec2(at), ivec2(VCT_BRDF_NODES - 2));
-    vec2 part = at - vec2(low);
-    vec2 ab = mix(mix(share_at(low), share_at(low + ivec2(1, 0)), part.x),
-                  mix(share_at(low + ivec2(0, 1)), share_at(low + ivec2(1, 1)), part.x), part.y);
-    return f0 * ab.x + ab.y;
+    vec2 fraction = at - vec2(low);
+    vec2 terms =
+        mix(mix(albedo_terms_at(low), albedo_terms_at(low + ivec2(1, 0)), fraction.x),
+            mix(albedo_terms_at(low + ivec2(0, 1)), albedo_terms_at(low + ivec2(1, 1)), fraction.x),
+            fraction.y);
+    return f0 * terms.x + terms.y;
 }
 
-// The mirrored direction, or where a normal map turns it below the surface the one along it.
-vec3 mirrored(vec3 to_viewer, vec3 n)
+// Mirror direction, lifted to the horizon where a normal map bends it below the surface.
+vec3 mirror_direction(vec3 to_viewer, vec3 n)
 {
     vec3 r = reflect(-to_viewer, n);
     return normalize(r + max(0.0, 0.01 - dot(r, n)) * n);
 }
 
-vec3 reflected(ivec2 pixel, float z)
+vec3 reflected_radiance(ivec2 pixel, float z)
 {
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg),
          to_viewer = normalize(frame.camera_position - position);
     vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
     vec3 at = (position - clips.origin_m) / set.texel_m;
-    float wide = 2.0 * set.step_size * tan_half_angle(brdf_alpha(roughness_metallic.x));
-    vec4 met = vct_cone(light, at, n, mirrored(to_viewer, n), set.offset, wide, set.last_mip,
-                        vct_start_at(at));
+    float width = 2.0 * set.step_size * tan_half_angle(brdf_alpha(roughness_metallic.x));
+    vec4 traced = vct_cone(light, at, n, mirror_direction(to_viewer, n), set.offset, width,
+                           set.last_mip, vct_start_at(at));
     vec3 f0 = brdf_f0(texelFetch(albedo, pixel, 0).rgb, roughness_metallic.y);
-    vec3 share = share_of(f0, dot(n, to_viewer), roughness_metallic.x);
-    return set.gain * share * (met.rgb + (1.0 - met.a) * frame.sky);
+    vec3 reflectance = directional_albedo(f0, dot(n, to_viewer), roughness_metallic.x);
+    return set.gain * reflectance * (traced.rgb + (1.0 - traced.a) * frame.sky);
 }
 
 void main()
@@ -90,6 +93,6 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
-    vec3 radiance = z > 0.0 ? reflected(pixel, z) : vec3(0.0);
+    vec3 radiance = z > 0.0 ? reflected_radiance(pixel, z) : vec3(0.0);
     imageStore(specular, pixel, vec4(clamp(radiance, 0.0, HALF_MAX), 1.0));
 }

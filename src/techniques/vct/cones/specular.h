@@ -1,4 +1,4 @@
-// Specular cones: one for each pixel.
+// Specular cones: one per pixel.
 #pragma once
 
 #include "frame/frame.h"

@@ -15,10 +15,9 @@
 
 static const enum gpu_format NOW_FORMAT = GPU_RGBA16F, LIGHT_FORMAT = GPU_RGBA32F,
                              SURFACE_FORMAT = GPU_RG32F;
-static const float STILL_FRAMES = 4096.0f; // weight at most, while nothing changes
+static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
 
-// ---- Creation and
-// destruction----------------------------------------------------------------------
+// ---- Creation and destruction -------------------------------------------------------------------
 
 bool vct_temporal_create(struct vct_temporal *t, struct gpu *gpu)
 {
@@ -156,8 +155,8 @@ void vct_temporal_rotate_cones(const struct vct_temporal *t, struct vct_cone_par
         lines[i] = vec3_of(params->cones[i].x, params->cones[i].y, params->cones[i].z);
     vct_rotate_cone_axes(t->number, count, lines);
     const int first = (int)((uint64_t)t->number * (uint64_t)step_through(count) % (uint64_t)count);
-    for (int i = 0; i < count;
-         i++) // the weight stays with the index: it counts the pixels that trace it
+    // The weight belongs to the index: it depends on the number of pixels that trace it.
+    for (int i = 0; i < count; i++)
         params->cones[i] = vec4_of(lines[(first + i) % count], params->cones[i].w);
 }
 

@@ -1,9 +1,8 @@
-// The temporal filter: goes on from what the last frames found on the same surface, see
-// cones/temporal.c.
+// The temporal filter: blends this frame with the reprojected history, see cones/temporal.c.
 //
-// A pixel of the last frame counts the less the farther what it showed lies off the plane of what
-// is looked for, in that frame, and the more its normal differs: both are known where they were,
-// whatever moved.
+// A history pixel is weighted by its distance from the plane of the reprojected surface and by the
+// difference of normals. The history stores depth and normal, so that the test holds for moving
+// cameras and objects.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -24,20 +23,20 @@ layout(set = 0, binding = 2) uniform sampler2D depth;
 layout(set = 0, binding = 3) uniform sampler2D normal;
 layout(set = 0, binding = 4) uniform sampler2D motion;
 layout(set = 0, binding = 5) uniform sampler2D now;
-layout(set = 0, binding = 6) uniform sampler2D last_light; // irradiance, frames in it
-layout(set = 0,
-       binding = 7) uniform sampler2D last_surface; // distance along the view axis, 0: none; normal
+layout(set = 0, binding = 6) uniform sampler2D last_light; // irradiance, accumulated frames
+// Distance along the view axis, 0: none; packed normal.
+layout(set = 0, binding = 7) uniform sampler2D last_surface;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D light;
 layout(set = 0, binding = 9, rg32f) uniform writeonly image2D surface;
 layout(set = 0, binding = 10) uniform writeonly image2D irradiance;
 
 const float LEAST_COSINE = 0.9; // of two normals of one surface: 26 degrees
-const float TOLERANCE_PX = 4.0; // off the plane, in widths of a pixel there
-const float LEAST = 0.1;        // of the weights of the four pixels: with less there is no history
+const float TOLERANCE_PX = 4.0; // distance from the plane, in pixel widths at that depth
+const float LEAST = 0.1;        // sum of the four tap weights below which history is rejected
 const float NORMAL_STEPS = 4096.0;
-const int NEIGHBOURS = 2; // on each side, for the clamp
+const int RADIUS = 2; // of the neighbourhood of the clamp, px
 
-// Octahedral, 12 bits each, as a whole number, which a float holds.
+// Octahedral, two times 12 bits as an integer that a float represents exactly.
 float packed_normal(vec3 n)
 {
     vec2 whole = round(clamp(octahedral_encode(n) * 0.5 + 0.5, 0.0, 1.0) * (NORMAL_STEPS - 1.0));
@@ -50,33 +49,36 @@ vec3 unpacked_normal(float bits)
     return octahedral_decode(vec2(bits - NORMAL_STEPS * y, y) / (NORMAL_STEPS - 1.0) * 2.0 - 1.0);
 }
 
-vec3 before(vec2 pixel, float distance_m)
+// Point relative to the previous camera.
+vec3 previous_point(vec2 pixel, float distance_m)
 {
     return distance_m * (set.forward + pixel.x * set.right + pixel.y * set.down);
 }
 
-float like(vec3 a, vec3 b)
+float normal_similarity(vec3 a, vec3 b)
 {
     return clamp((dot(a, b) - LEAST_COSINE) / (1.0 - LEAST_COSINE), 0.0, 1.0);
 }
 
-// Irradiance and frames; 0 frames: nothing is known.
-vec4 sample_history(vec2 place, float distance_m, vec3 n)
+// Irradiance, accumulated frames; 0 frames: rejected.
+vec4 sample_history(vec2 history_pixel, float distance_m, vec3 n)
 {
-    vec3 expected = before(place, distance_m);
+    vec3 expected = previous_point(history_pixel, distance_m);
     float per_metre = 1.0 / (TOLERANCE_PX * set.pixel * distance_m), weights = 0.0;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 4; i++) {
-        ivec2 at = reproject_tap(place, i);
+        ivec2 at = reproject_tap(history_pixel, i);
         if (any(lessThan(at, ivec2(0))) ||
             any(greaterThanEqual(at, ivec2(frame.width, frame.height))))
             continue;
-        vec2 seen = texelFetch(last_surface, at, 0).rg;
-        if (seen.x <= 0.0) continue;
-        vec3 seen_normal = unpacked_normal(seen.y);
-        float apart_m = abs(dot(seen_normal, before(vec2(at), seen.x) - expected));
-        float weight =
-            reproject_share(place, i) * max(1.0 - apart_m * per_metre, 0.0) * like(n, seen_normal);
+        vec2 stored = texelFetch(last_surface, at, 0).rg;
+        if (stored.x <= 0.0) continue;
+        vec3 stored_normal = unpacked_normal(stored.y);
+        float plane_distance_m =
+            abs(dot(stored_normal, previous_point(vec2(at), stored.x) - expected));
+        float weight = reproject_share(history_pixel, i) *
+                       max(1.0 - plane_distance_m * per_metre, 0.0) *
+                       normal_similarity(n, stored_normal);
         sum += weight * texelFetch(last_light, at, 0);
         weights += weight;
     }
@@ -88,14 +90,14 @@ vec3 position(ivec2 pixel, float z)
     return frame_world_position(frame_uv(uvec2(pixel)), z);
 }
 
-// Between what the pixel's neighbours on its surface have now: so many standard deviations about
-// their mean.
-vec3 clamped(vec3 old, ivec2 pixel, vec3 here, vec3 n, float tolerance_m)
+// Variance clamping: limits the history to mean ± set.clamp standard deviations of this frame's
+// neighbours on the same surface.
+vec3 clamped(vec3 history, ivec2 pixel, vec3 here, vec3 n, float tolerance_m)
 {
     vec3 sum = vec3(0.0), squares = vec3(0.0);
     float count = 0.0;
-    for (int y = -NEIGHBOURS; y <= NEIGHBOURS; y++)
-        for (int x = -NEIGHBOURS; x <= NEIGHBOURS; x++) {
+    for (int y = -RADIUS; y <= RADIUS; y++)
+        for (int x = -RADIUS; x <= RADIUS; x++) {
             ivec2 at = pixel + ivec2(x, y);
             if (any(lessThan(at, ivec2(0))) ||
                 any(greaterThanEqual(at, ivec2(frame.width, frame.height))))
@@ -112,7 +114,7 @@ vec3 clamped(vec3 old, ivec2 pixel, vec3 here, vec3 n, float tolerance_m)
         }
     vec3 mean = sum / max(count, 1.0);
     vec3 spread = set.clamp * sqrt(max(squares / max(count, 1.0) - mean * mean, 0.0));
-    return clamp(old, mean - spread, mean + spread);
+    return clamp(history, mean - spread, mean + spread);
 }
 
 void main()
@@ -121,27 +123,27 @@ void main()
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
     vec3 mean = texelFetch(now, pixel, 0).rgb;
-    vec2 seen = vec2(0.0);
+    vec2 stored = vec2(0.0);
     float frames = 0.0;
     if (z > 0.0) {
         vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
         float distance_m = frame_view_distance(z);
         vec4 moved = texelFetch(motion, pixel, 0);
         float distance_before = reproject_distance(moved, distance_m);
-        vec4 old = vec4(0.0);
+        vec4 history = vec4(0.0);
         if (set.known != 0u && distance_before > 0.0)
-            old = sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height)),
-                                 distance_before, n);
-        old.rgb *= set.scale;
-        if (set.clamp > 0.0 && old.w > 0.0)
-            old.rgb = clamped(old.rgb, pixel, position(pixel, z), n,
-                              TOLERANCE_PX * set.pixel * distance_m);
-        float weight = min(old.w, set.most);
-        mean = (weight * old.rgb + mean) / (weight + 1.0);
+            history = sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height)),
+                                     distance_before, n);
+        history.rgb *= set.scale;
+        if (set.clamp > 0.0 && history.w > 0.0)
+            history.rgb = clamped(history.rgb, pixel, position(pixel, z), n,
+                                  TOLERANCE_PX * set.pixel * distance_m);
+        float weight = min(history.w, set.most);
+        mean = (weight * history.rgb + mean) / (weight + 1.0);
         frames = min(weight + 1.0, set.most);
-        seen = vec2(distance_m, packed_normal(n));
+        stored = vec2(distance_m, packed_normal(n));
     }
     imageStore(light, pixel, vec4(mean, frames));
-    imageStore(surface, pixel, vec4(seen, 0.0, 0.0));
+    imageStore(surface, pixel, vec4(stored, 0.0, 0.0));
     imageStore(irradiance, pixel, vec4(mean, 1.0));
 }

@@ -1,15 +1,15 @@
-// Where cones have been traced: what was found there, as vectors, and what the surface is like. The
-// shader that includes this has the frame's constants, the block `set` and the images depth, start,
-// red, green and blue.
-#ifndef AG_VCT_PLACES_GLSL
-#define AG_VCT_PLACES_GLSL
+// Cone sums and surfaces at half resolution, and their similarity to full-resolution pixels. The
+// including shader declares frame.glsl, the block `set` and the images depth, cone_normal, red,
+// green and blue.
+#ifndef AG_VCT_UPSAMPLE_GLSL
+#define AG_VCT_UPSAMPLE_GLSL
 
 #include "techniques/vct/clipmap/clipmap.glsl"
 #include "techniques/vct/cones/cone_sums.glsl"
 
 struct vct_half_pixel {
     bool valid;
-    vec3 position, up; // up: the normal that its cones start along
+    vec3 position, up; // up: the cone normal
 };
 
 vct_cone_sums vct_cone_sums_at(ivec2 at)
@@ -18,7 +18,7 @@ vct_cone_sums vct_cone_sums_at(ivec2 at)
     return vct_cone_sums(mat3(r.xyz, g.xyz, b.xyz), vec3(r.w, g.w, b.w));
 }
 
-ivec2 vct_within(ivec2 at)
+ivec2 vct_clamp_to_image(ivec2 at)
 {
     return clamp(at, ivec2(0), ivec2(set.width, set.height) - 1);
 }
@@ -34,10 +34,10 @@ vct_half_pixel vct_half_pixel_at(ivec2 at)
     return p;
 }
 
-// A point that something is looked for at.
+// A surface point at full resolution.
 struct vct_surface_point {
     vec3 position, normal;
-    float texel_m; // of the light volume there
+    float texel_m; // texel size of the light volume there
 };
 
 vct_surface_point vct_surface_point_at(vec3 position, vec3 normal)
@@ -46,24 +46,26 @@ vct_surface_point vct_surface_point_at(vec3 position, vec3 normal)
                              set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m));
 }
 
-// How much a place says about a point: as far as both are in one plane and look the same way.
+// Bilateral weight 0…1: distance of the point from the plane of the half-resolution pixel, and
+// cosine of the normals.
 float vct_similarity(vct_half_pixel p, vct_surface_point here)
 {
-    float off = abs(dot(p.up, here.position - p.position));
+    float distance = abs(dot(p.up, here.position - p.position));
     float c = max(dot(p.up, here.normal), 0.0);
-    return p.valid ? c * c * c * c * clamp(1.0 - 2.0 * off / here.texel_m, 0.0, 1.0) : 0.0;
+    return p.valid ? c * c * c * c * clamp(1.0 - 2.0 * distance / here.texel_m, 0.0, 1.0) : 0.0;
 }
 
-// Of the cones, 0…1. A whole set has the mean of |n·d| over the sphere, a half.
+// Fraction of the cone set, 0…1. A whole set has n·(Σ d) of about ½, the mean of |n·d| over the
+// sphere.
 float vct_cone_fraction(vct_cone_sums v, vec3 n)
 {
-    return clamp(2.0 * dot(n, v.direction_index), 0.0, 1.0);
+    return clamp(2.0 * dot(n, v.direction), 0.0, 1.0);
 }
 
 void vct_add(inout vct_cone_sums sum, vct_cone_sums more, float weight)
 {
     sum.light += weight * more.light;
-    sum.direction_index += weight * more.direction_index;
+    sum.direction += weight * more.direction;
 }
 
 #endif
