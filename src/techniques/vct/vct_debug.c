@@ -15,12 +15,13 @@ static void march(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *
                  gpu_groups(view->height, VCT_LOCAL_2D), 1);
 }
 
-// Along the view ray: into the finest level, and out of it again.
+// Marches each view ray through the levels: from the coarsest to the finest and back.
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                      uint32_t what, gpu_image out)
+                      uint32_t which, gpu_image out)
 {
-    // Reflectance and normals are shown as bright as a surface in the strongest light is.
-    struct vct_view_push push = { .view = what, .reflectance_shown = 4.0f };
+    // Tone mapping expects scaled radiance: a reflectance of 1 is displayed as a brightly lit
+    // surface.
+    struct vct_view_push push = { .view = which, .reflectance_shown = 4.0f };
     const int last = vct->clip_count - 1;
     gpu_scope_begin(cmd, "debug");
     for (int i = 0; i <= 2 * last; i++) {

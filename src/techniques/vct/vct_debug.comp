@@ -1,5 +1,5 @@
-// Debug views: the first voxel that the eye's ray meets. A grid shows the parts of the ray in which
-// cones look into it, before and behind the next finer one.
+// Debug views: the first occupied voxel along the view ray. Each level of the clip map is marched
+// where cones sample it: before and behind the box of the next finer level.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -25,8 +25,7 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 5) uniform usampler2D static_lit_voxels;
 layout(set = 0, binding = 6) uniform usampler2D dynamic_lit_voxels;
-layout(set = 0, binding = 7,
-       rgba16f) uniform image2D result_image; // alpha: what is seen has been found
+layout(set = 0, binding = 7, rgba16f) uniform image2D result_image; // alpha: the pixel is done
 
 #if VCT_SVO
 layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes
@@ -36,22 +35,22 @@ layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes
 #include "techniques/vct/octree/octree.glsl"
 #endif
 
-// Whether a voxel holds a surface, and whether there was room for its light.
-bool surface_at(ivec3 voxel, out bool room)
+// Whether a voxel is occupied. stored: it is within the capacity and has light.
+bool occupied(ivec3 voxel, out bool stored)
 {
     uint index = vct_index(voxel), bit = index & 31u, word = index >> 5;
-    bool still = (static_mask_words[word] >> bit & 1u) != 0u,
-         moving = (dynamic_mask_words[word] >> bit & 1u) != 0u;
-    room = (!still || static_slot(index) != VCT_NO_SLOT) &&
-           (!moving || dynamic_slot(index) != VCT_NO_SLOT);
+    bool is_static = (static_mask_words[word] >> bit & 1u) != 0u,
+         is_dynamic = (dynamic_mask_words[word] >> bit & 1u) != 0u;
+    stored = (!is_static || static_slot(index) != VCT_NO_SLOT) &&
+             (!is_dynamic || dynamic_slot(index) != VCT_NO_SLOT);
 #if VCT_SVO
     ivec3 leaf = min((voxel + 1) >> 2, svo_nodes_in_use(0) - 1);
-    room = room && svo_find(leaf, svo.depths - 1u) != SVO_NONE;
+    stored = stored && svo_find(leaf, svo.depths - 1u) != SVO_NONE;
 #endif
-    return still || moving;
+    return is_static || is_dynamic;
 }
 
-vec3 shown(vct_lit_voxel r, vec3 direction)
+vec3 surface_colour(vct_lit_voxel r, vec3 direction)
 {
     if (push.view == VCT_VIEW_REFLECTANCE) return r.reflectance * push.reflectance_shown;
     if (push.view == VCT_VIEW_NORMAL) return (r.normal * 0.5 + 0.5) * push.reflectance_shown;
@@ -72,14 +71,14 @@ bool voxel_at(ivec3 voxel, out vct_lit_voxel r)
     return true;
 }
 
-vec3 shown_overflow(ivec3 voxel, bool room)
+vec3 overflow_colour(ivec3 voxel, bool stored)
 {
     vct_lit_voxel r;
     float grey = voxel_at(voxel, r) ? 0.2 * dot(r.reflectance, vec3(0.2126, 0.7152, 0.0722)) : 0.0;
-    return (room ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_shown;
+    return (stored ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_shown;
 }
 
-vec3 shown_level(vct_lit_voxel r, vec3 direction)
+vec3 level_colour(vct_lit_voxel r, vec3 direction)
 {
     const vec3 colours[VCT_MAX_CLIPS] =
         vec3[](vec3(0.9, 0.2, 0.15), vec3(0.9, 0.6, 0.1), vec3(0.4, 0.75, 0.2),
@@ -88,63 +87,65 @@ vec3 shown_level(vct_lit_voxel r, vec3 direction)
            ((0.3 + 0.7 * abs(dot(r.normal, direction))) * push.reflectance_shown);
 }
 
-// What is shown of a voxel; false where it is empty.
-bool shows(ivec3 voxel, vec3 direction, out vec3 colour)
+// Colour of a voxel in the view. False: empty.
+bool colour_of(ivec3 voxel, vec3 direction, out vec3 colour)
 {
     vct_lit_voxel r;
-    bool room;
+    bool stored;
     if (push.view == VCT_VIEW_OVERFLOW) {
-        if (!surface_at(voxel, room)) return false;
-        colour = shown_overflow(voxel, room);
+        if (!occupied(voxel, stored)) return false;
+        colour = overflow_colour(voxel, stored);
         return true;
     }
     if (!voxel_at(voxel, r)) return false;
-    colour = push.view == VCT_VIEW_LEVELS ? shown_level(r, direction) : shown(r, direction);
+    colour =
+        push.view == VCT_VIEW_LEVELS ? level_colour(r, direction) : surface_colour(r, direction);
     return true;
 }
 
-// Where a ray enters a box and leaves it.
-vec2 passage(vec3 low, vec3 high, vec3 from, vec3 inverse)
+// Distances at which a ray enters and leaves a box.
+vec2 intersect_box(vec3 low, vec3 high, vec3 from, vec3 inverse)
 {
     vec3 a = (low - from) * inverse, b = (high - from) * inverse, near = min(a, b), far = max(a, b);
     return vec2(max(max(near.x, max(near.y, near.z)), 0.0), min(far.x, min(far.y, far.z)));
 }
 
-// A grid's box for cones, in voxels of this one. The coarsest one is looked into everywhere.
-vec2 passage_of(int level, vec3 from, vec3 inverse)
+// Intersects the cone box of a level, in voxels of this one. The coarsest level is sampled
+// everywhere.
+vec2 intersect_level(int level, vec3 from, vec3 inverse)
 {
-    if (level == VCT_CLIPS - 1) return passage(vec3(0.0), vec3(vct_cells()), from, inverse);
+    if (level == VCT_CLIPS - 1) return intersect_box(vec3(0.0), vec3(vct_cells()), from, inverse);
     float voxels = 2.0 / float(1 << vct.level);
-    return passage(clips.levels[level].low * voxels + vct.scene_low,
-                   clips.levels[level].high * voxels + vct.scene_low, from, inverse);
+    return intersect_box(clips.levels[level].low * voxels + vct.scene_low,
+                         clips.levels[level].high * voxels + vct.scene_low, from, inverse);
 }
 
-// The part of the ray that is this grid's: before the next finer one, or behind it.
-vec2 part_of(vec3 from, vec3 inverse)
+// Segment of the ray in this level: before or behind the next finer one.
+vec2 segment_of(vec3 from, vec3 inverse)
 {
-    vec2 own = passage_of(vct.level, from, inverse), finer = vec2(0.0);
-    own = vec2(max(own.x, passage(vec3(0.0), vec3(vct_cells()), from, inverse).x), own.y);
+    vec2 own = intersect_level(vct.level, from, inverse), finer = vec2(0.0);
+    own = vec2(max(own.x, intersect_box(vec3(0.0), vec3(vct_cells()), from, inverse).x), own.y);
     if (vct.level == 0) return own;
-    finer = passage_of(vct.level - 1, from, inverse);
+    finer = intersect_level(vct.level - 1, from, inverse);
     bool crosses = finer.x < finer.y;
     if ((push.march & VCT_MARCH_INTO) != 0u)
         return vec2(own.x, crosses ? min(own.y, finer.x) : own.y);
     return vec2(max(own.x, finer.y), crosses ? own.y : 0.0);
 }
 
-// From voxel to voxel along the ray (Amanatides & Woo 1987).
+// Voxel traversal (Amanatides & Woo 1987).
 bool march(vec3 from, vec3 direction, out vec3 colour)
 {
     vec3 inverse = 1.0 / mix(direction, vec3(1e-12), lessThan(abs(direction), vec3(1e-12)));
-    vec2 part = part_of(from, inverse);
-    float start = part.x + 1e-3;
+    vec2 segment = segment_of(from, inverse);
+    float start = segment.x + 1e-3;
     vec3 at = from + direction * start;
     ivec3 voxel = ivec3(floor(at)), step = ivec3(sign(direction));
     vec3 next = (vec3(voxel) + max(vec3(step), vec3(0.0)) - at) * inverse;
     for (int i = 0; i < 3 * vct.dim && vct_inside(voxel); i++) {
-        if (shows(voxel, direction, colour)) return true;
-        float soonest = min(next.x, min(next.y, next.z));
-        if (VCT_CLIPS > 1 && start + soonest >= part.y) return false;
+        if (colour_of(voxel, direction, colour)) return true;
+        float nearest = min(next.x, min(next.y, next.z));
+        if (VCT_CLIPS > 1 && start + nearest >= segment.y) return false;
         if (next.x <= next.y && next.x <= next.z) {
             voxel.x += step.x;
             next.x += abs(inverse.x);
@@ -166,9 +167,9 @@ void main()
     vec4 before = (push.march & VCT_MARCH_FIRST) != 0u ? vec4(0.0) : imageLoad(result_image, pixel);
     if (before.a > 0.0) return;
     vec3 through = frame_world_position(frame_uv(uvec2(pixel)), 1.0), colour = vec3(0.0);
-    bool found = march(vct_voxels_from_world(frame.camera_position),
-                       normalize(through - frame.camera_position), colour);
-    bool done = found || (push.march & VCT_MARCH_LAST) != 0u;
+    bool hit = march(vct_voxels_from_world(frame.camera_position),
+                     normalize(through - frame.camera_position), colour);
+    bool done = hit || (push.march & VCT_MARCH_LAST) != 0u;
     imageStore(result_image, pixel,
-               vec4(found ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));
+               vec4(hit ? clamp(colour, 0.0, HALF_MAX) : vec3(0.0), done ? 1.0 : 0.0));
 }

@@ -5,6 +5,6 @@
 
 struct vct;
 
-// what: VCT_VIEW_…
+// which: VCT_VIEW_…
 void vct_record_debug(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                      uint32_t what, gpu_image out);
+                      uint32_t which, gpu_image out);
