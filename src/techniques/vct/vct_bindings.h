@@ -1,4 +1,4 @@
-// Bindings that the shaders of several rooms need.
+// Bindings that shaders of several folders share.
 #pragma once
 
 #include "frame/frame.h"

@@ -28,7 +28,7 @@ static uint32_t voxel_count(const struct vct_options *options)
 }
 
 // The surfaces of a scene occupy a multiple of the voxels in a face of the grid: 6 for an empty
-// room. A capacity of 20 leaves room for much furniture.
+// room. A capacity of 20 also fits densely furnished scenes.
 uint32_t vct_capacity(const struct vct_options *options)
 {
     const uint32_t dim = (uint32_t)options->resolution, most = 20 * dim * dim;

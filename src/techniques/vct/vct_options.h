@@ -21,9 +21,9 @@ struct vct_options {
     bool occlusion; // vctao: cones measure visibility, not light
 };
 
-// The options of a technique with fixed values in place of those that it lacks.
+// The options of a technique, with fixed values for those that it lacks.
 struct vct_options vct_light_options(const void *options);
 struct vct_options vct_occlusion_options(const void *options);
-// Whether the options go together and fit the device.
+// False if options contradict each other or exceed limits of the device.
 bool vct_check_options(const char *technique, const struct technique_create *how,
                        const struct vct_options *options);

@@ -9,8 +9,8 @@
 
 #include <string.h>
 
-// Specialization constants that differ from the defaults of the shaders, as sets of bits. The first
-// ones are in turn those of frame/scene.glsl.
+// Specialization constants that differ from the defaults of the shaders, as bit sets. The first
+// ones are those of frame/scene.glsl, in the same order.
 enum {
     MAPPED = 1 << 0,
     MASKED = 1 << 1,
@@ -62,7 +62,7 @@ static int constants_of(const struct vct *vct, uint32_t bits,
     return count;
 }
 
-// Of both voxelize, which the rasteriser may make as well.
+// Mark and add, by compute shaders or by the rasterizer.
 enum { VOXELIZE_PIPELINES = 12 };
 
 static void plan_voxelize(struct vct *vct, struct pipeline_plan out[VOXELIZE_PIPELINES])

@@ -11,7 +11,8 @@ struct buffer_plan {
     uint32_t usage;
 };
 
-// ---- Plans ----
+// ---- Plans
+// -----------------------------------------------------------------------------------------
 
 enum { SET_BUFFERS = 8 };
 
@@ -195,8 +196,7 @@ bool vct_create_resources(struct vct *vct)
            gpu_image_create(vct->gpu, &light, &vct->light);
 }
 
-// ---- Destruction,
-// bytes---------------------------------------------------------------------------
+// ---- Destruction and sizes ----------------------------------------------------------------------
 
 void vct_destroy_resources(struct vct *vct)
 {

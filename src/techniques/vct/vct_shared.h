@@ -1,12 +1,12 @@
-// What shaders of all rooms share with the host. Scalar layout.
+// Data of all folders' shaders that the host writes. Scalar layout.
 #ifndef AG_VCT_SHARED_H
 #define AG_VCT_SHARED_H
 
 #include "core/shared.h"
 
-#define VCT_LOCAL      64  // invocations of a workgroup over a list
-#define VCT_LOCAL_2D   8   // and of one over pixels, in x and y
-#define VCT_SCAN_LOCAL 256 // and of a prefix sum
+#define VCT_LOCAL      64  // workgroup size over a list
+#define VCT_LOCAL_2D   8   // workgroup size over pixels, in x and y
+#define VCT_SCAN_LOCAL 256 // workgroup size of a prefix sum
 #define VCT_MAX_CLIPS  6   // levels of the clip map; the first one covers the whole scene
 
 // Occupied voxels in a row of the images that store voxels: two texels each for surfaces and lit
@@ -52,7 +52,7 @@ struct vct_params {
 struct vct_view_push {
     uint32_t view;
     uint32_t march;
-    float reflectance_shown; // scaled radiance that stands for a reflectance of 1
+    float reflectance_shown; // scaled radiance displayed for a reflectance of 1
 };
 
 #ifndef AG_GLSL

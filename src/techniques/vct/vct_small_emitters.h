@@ -1,12 +1,12 @@
 // Small emitters: draws that shadow cones sample, as diffuse cones would hit them by chance.
-// Selected once for a scene; their sample points follow them.
+// Selected once per scene; their sample points move with them.
 #pragma once
 
 #include "frame/frame.h"
 #include "techniques/vct/cones/cones_shared.h"
 
 struct vct_small_emitters {
-    bool chosen;                       // for the scene as it is
+    bool chosen;                       // `draws` is valid for the scene
     int draws[VCT_MAX_SMALL_EMITTERS]; // of the scene's draws
     int count;
     struct vct_small_emitter list[VCT_MAX_SMALL_EMITTERS]; // as shaders read them

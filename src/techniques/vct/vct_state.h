@@ -1,4 +1,4 @@
-// The state of voxel cone tracing, shared by its rooms.
+// The state of voxel cone tracing, shared by its folders.
 #pragma once
 
 #include "techniques/vct/clipmap/clipmap.h"
@@ -18,7 +18,7 @@ struct vct_clip {
     struct vct_grid grid;                         // of this frame
     struct vct_grid lit_grid;                     // when the light volume was filled
     struct box3 cone_box;                         // see vct_grid_cone_box
-    struct vct_voxel_set static_set, dynamic_set; // of draws that have never moved, of the others
+    struct vct_voxel_set static_set, dynamic_set; // of draws that have never moved; of the others
     gpu_buffer texels, texel_mask, texel_counts;  // occupied texels of the light volume
     bool static_valid;                            // static_set is that of the scene
     bool revoxelized;                             // in this frame
@@ -66,13 +66,13 @@ struct vct {
     struct vct_environment_brdf_table environment_brdf; // with specular
     struct vct_temporal temporal;                       // with temporal
 
-    // From frame to frame.
-    struct vct_params params; // of the frame being recorded; a grid's placement comes later
+    // Kept between frames.
+    struct vct_params params; // of the frame being recorded, but for the placement of a grid
     bool ready;               // the grids are placed
     bool revoxelized;         // some voxels of this frame are new
     bool light_valid;         // the light volume is that of the previous frame, of this grid
-    bool light_outdated;      // it has texels that hold no voxels any more
-    bool bounced_valid;       // so is the bounced irradiance, from `bounce_inputs`
+    bool light_outdated;      // it has texels whose voxels are gone
+    bool bounced_valid;       // bounced irradiance is that of `bounce_inputs`
     struct vct_bounce_inputs bounce_inputs;
     int bounces_left;          // frames that still propagate a change of light
     const struct scene *scene; // of the voxels

@@ -1,5 +1,5 @@
-// Images with one row-major entry per occupied voxel, its slot: where the entry lies, and how it
-// packs a normal. Software drivers fetch texels several times as fast as words of buffers.
+// Images with one row-major entry, its slot, per occupied voxel: addresses, and packed normals.
+// Software drivers fetch texels several times as fast as words of buffers.
 #ifndef AG_VCT_VOXEL_IMAGES_GLSL
 #define AG_VCT_VOXEL_IMAGES_GLSL
 
@@ -17,8 +17,8 @@ ivec2 vct_bounced_texel(uint slot)
     return ivec2(slot % VCT_VOXEL_ROW, slot / VCT_VOXEL_ROW);
 }
 
-// 12 + 12 bits. Fronts turn to one half of all ways (voxelize/add.glsl), and none of these has the
-// code 0.
+// 12 + 12 bits. Front normals lie in one half of the sphere (voxelize/add.glsl) that contains no
+// direction of code 0.
 uint vct_pack_normal(vec3 normal)
 {
     uvec2 code = uvec2(roundEven((octahedral_encode(normal) * 0.5 + 0.5) * 4095.0));

@@ -13,7 +13,7 @@ layout(set = 0, binding = 21, scalar) readonly buffer vct_svo_nodes
 
 #include "techniques/vct/octree/octree.glsl"
 
-vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 counted,
+vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 weights,
                                     int level)
 {
     // A texel of level 0 is one point spacing; it doubles with each level.
@@ -27,12 +27,11 @@ vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, ve
         vec4 all = textureLod(light, uv, 0.0);
         return vct_volume_sample(all, vec3(all.a));
     }
-    vec3 share = abs(counted),
-         direction_index =
-             uv.x + (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0)))) / 6.0;
-    vec4 x = textureLod(light, vec3(direction_index.x, uv.yz), 0.0);
-    vec4 y = textureLod(light, vec3(direction_index.y, uv.yz), 0.0);
-    vec4 z = textureLod(light, vec3(direction_index.z, uv.yz), 0.0);
+    vec3 share = abs(weights),
+         volume_u = uv.x + (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0)))) / 6.0;
+    vec4 x = textureLod(light, vec3(volume_u.x, uv.yz), 0.0);
+    vec4 y = textureLod(light, vec3(volume_u.y, uv.yz), 0.0);
+    vec4 z = textureLod(light, vec3(volume_u.z, uv.yz), 0.0);
     vec3 met = mix(vec3(0.0), vec3(x.a, y.a, z.a), greaterThan(share, vec3(0.0)));
     return vct_volume_sample(share.x * x + share.y * y + share.z * z, met);
 }

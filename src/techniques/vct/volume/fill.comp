@@ -1,7 +1,7 @@
-// The finest level of the light volume, from the lit voxels of both sets: 2 × 2 × 2 of them make a
-// texel of six volumes, one for each way along an axis that light is looked for (anisotropic
-// voxels: Crassin et al. 2011; Hong 2015, sec. 2.5.3.3.10). volume/prefilter.glsl says what voxels
-// show and hide. Texels without a voxel are not here, and stay 0.
+// Fills mip 0 of the light volume from the lit voxels of both sets. 2 × 2 × 2 voxels make a texel
+// of each of the six directional volumes (anisotropic voxels: Crassin et al. 2011; Hong 2015, sec.
+// 2.5.3.3.10), prefiltered by volume/prefilter.glsl. Texels without a voxel are not in the list and
+// stay 0.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

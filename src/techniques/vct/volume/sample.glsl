@@ -4,7 +4,7 @@
 
 #include "techniques/vct/volume/directions.glsl"
 
-// Radiance against `direction` and opacity, at a position in texels of level 0. `counted`: the
+// Radiance against `direction` and opacity, at a position in texels of level 0. `weights`: the
 // components of the direction to weight with. Six volumes lie side by side along x, clip-map levels
 // along z: filtering stays half a texel away from the next one. The isotropic volume ignores the
 // direction.
@@ -24,11 +24,10 @@ vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, ve
         if (VCT_OCCLUSION) all = all.rrrr;
         return vct_volume_sample(all, vec3(all.a));
     }
-    vec3 direction_index =
-        (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
-    vec4 x = textureLod(light, vec3(direction_index.x, uv.yz), float(mip));
-    vec4 y = textureLod(light, vec3(direction_index.y, uv.yz), float(mip));
-    vec4 z = textureLod(light, vec3(direction_index.z, uv.yz), float(mip));
+    vec3 volume_u = (vec3(0.0, 2.0, 4.0) + vec3(lessThan(direction, vec3(0.0))) + uv.x) / 6.0;
+    vec4 x = textureLod(light, vec3(volume_u.x, uv.yz), float(mip));
+    vec4 y = textureLod(light, vec3(volume_u.y, uv.yz), float(mip));
+    vec4 z = textureLod(light, vec3(volume_u.z, uv.yz), float(mip));
     if (VCT_OCCLUSION) {
         x = x.rrrr;
         y = y.rrrr;

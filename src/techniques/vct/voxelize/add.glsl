@@ -34,7 +34,7 @@ layout(set = 0, binding = 19, scalar) readonly buffer vct_accumulated
 layout(set = 0, binding = 20, rgba32ui) uniform writeonly uimage2D vct_surfaces;
 #endif
 
-// What lamps emit is negative: who looks for lamps one by one passes over it
+// Emission of small emitters is stored negated: diffuse cones ignore it, as shadow cones sample it
 // (cones/small_emitters.glsl).
 layout(constant_id = VCT_CONSTANT_SMALL_EMITTERS) const bool IS_SMALL_EMITTER = false;
 layout(constant_id = VCT_CONSTANT_EMISSIVE) const

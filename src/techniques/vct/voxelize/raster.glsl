@@ -1,6 +1,6 @@
-// The columns of triangles by rasterisation: the plane that a triangle is nearest to is the
-// picture, a pixel is a column (Hong 2015, sec. 2.5.3.1). The paper's geometry shader is not
-// needed: vertices are pulled, so each knows its triangle. Include after voxelize/voxelize.glsl
+// Voxelization by the rasterizer: a triangle is projected along the dominant axis of its normal,
+// and each pixel is a column of voxels (Hong 2015, sec. 2.5.3.1). Vertex pulling gives each vertex
+// its triangle, which replaces the paper's geometry shader. Include after voxelize/voxelize.glsl
 // with VCT_RASTER.
 #ifndef AG_VCT_RASTER_GLSL
 #define AG_VCT_RASTER_GLSL
@@ -15,9 +15,9 @@ vec3 edge_moved_out(vec2 from, vec2 to, float facing)
                 (0.5 + VCT_RASTER_ROUNDING) * (abs(inward.x) + abs(inward.y)) - dot(inward, from));
 }
 
-// Corner k of a triangle that covers the centre of every pixel that t touches: its edges, moved out
-// by half a pixel (Hasselgren, Akenine-Möller, Ohlsson 2005). Degenerate triangles get one around
-// their box.
+// Conservative rasterization: corner k of a triangle that covers the centre of every pixel that t
+// touches, by moving the edges outwards by half a pixel (Hasselgren, Akenine-Möller, Ohlsson 2005).
+// A degenerate triangle is replaced by one around its bounding box.
 vec2 vct_raster_corner(vct_triangle t, uint k)
 {
     float facing = t.normal.z < 0.0 ? -1.0 : 1.0;
@@ -30,7 +30,7 @@ vec2 vct_raster_corner(vct_triangle t, uint k)
     for (uint i = 0u; i < 3u; i++) {
         vec3 at = cross(edges[i], edges[(i + 1u) % 3u]);
         corners[i] = at.xy / at.z;
-        // False for values that are not finite, too.
+        // Also false for values that are not finite.
         sound = sound && at.z > 0.0 && all(lessThan(abs(corners[i] - low), vec2(1e4)));
     }
     if (sound) return corners[k];
