@@ -6,9 +6,10 @@ add_test(NAME structure.headers_alone
   COMMAND sh ${structure}/headers_alone.sh ${CMAKE_SOURCE_DIR}/include ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
 add_test(NAME structure.self_test COMMAND sh ${structure}/self_test.sh ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
 add_test(NAME structure.format COMMAND sh ${structure}/format.sh ${CMAKE_SOURCE_DIR})
+add_test(NAME structure.wording COMMAND sh ${structure}/wording.sh ${CMAKE_SOURCE_DIR})
 add_test(NAME structure.cycles COMMAND sh ${structure}/cycles.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
 set_tests_properties(structure.include_table structure.source_text structure.headers_alone structure.self_test
-  structure.format structure.cycles PROPERTIES TIMEOUT 300 LABELS structure)
+  structure.format structure.wording structure.cycles PROPERTIES TIMEOUT 300 LABELS structure)
 set_tests_properties(structure.format PROPERTIES SKIP_RETURN_CODE 77)
 
 # The public headers are part of the build, so that errors in them appear early.
