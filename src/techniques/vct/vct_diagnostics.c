@@ -34,8 +34,8 @@ void vct_log_diagnostics(struct host *host, const char *technique,
 {
     struct vct_grid grid;
     if (!vct_grid_fit(pose->bounds, options->resolution, &grid)) {
-        host_log(host, LOG_WARNING, "gi %s: %s has no extent that a grid could cover: no %s",
-                 technique, pose->scene->name, result_of(options));
+        host_log(host, LOG_WARNING, "gi %s: %s has no extent for a grid: there is no %s", technique,
+                 pose->scene->name, result_of(options));
         return;
     }
     log_voxel_size(host, technique, options, &grid, pose->scene->name);
