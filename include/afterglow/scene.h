@@ -21,6 +21,11 @@ struct ag_material_desc {
     float metallic, roughness; ///< default 0, 1
     float emissive[3];         ///< cd/m², default 0
     bool double_sided;
+    float ior;      ///< index of refraction of dielectrics: ≥ 1, or 0 for F0 = 1; default 1.5
+    float specular; ///< weight of the dielectric's specular lobe, 0…1; 0: purely diffuse; default 1
+    float specular_color[3]; ///< F0 = min(((ior − 1)/(ior + 1))² · colour, 1) · specular; ≥ 0,
+                             ///< default 1
+    bool unlit; ///< shown by its base colour; neither reflects nor emits (docs/units.md)
 };
 AG_API void ag_material_desc_default(struct ag_material_desc *desc);
 
@@ -141,6 +146,7 @@ struct ag_material_info {
     const char *name;                 ///< valid until the scene is destroyed
     struct ag_material_desc material; ///< factors, without textures
     bool base_color_map, metallic_roughness_map, normal_map, emissive_map;
+    bool specular_map, specular_color_map;
     const char *alpha_mode; ///< "opaque", "mask" or "blend"
 };
 AG_API enum ag_result ag_scene_get_material(struct ag_scene *scene, int index,

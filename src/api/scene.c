@@ -141,7 +141,11 @@ static enum ag_result added(struct ag_scene *scene, int index, int *out)
 void ag_material_desc_default(struct ag_material_desc *desc)
 {
     if (!desc) return;
-    *desc = (struct ag_material_desc){ .base_color = { 0.8f, 0.8f, 0.8f, 1.0f }, .roughness = 1 };
+    *desc = (struct ag_material_desc){ .base_color = { 0.8f, 0.8f, 0.8f, 1.0f },
+                                       .roughness = 1,
+                                       .ior = MATERIAL_DEFAULT_IOR,
+                                       .specular = 1,
+                                       .specular_color = { 1, 1, 1 } };
 }
 
 static bool in_unit_range(const float *values, int count)
@@ -163,12 +167,22 @@ enum ag_result ag_scene_add_material(struct ag_scene *scene, const struct ag_mat
                (double)desc->roughness);
     AG_REQUIRE(context, api_finite_at_least(desc->emissive, 3, 0.0f),
                "emissive is negative or not finite");
+    AG_REQUIRE(context, desc->ior == 0 || api_finite_at_least(&desc->ior, 1, 1.0f),
+               "ior must be 0 or at least 1, not %g", (double)desc->ior);
+    AG_REQUIRE(context, in_unit_range(&desc->specular, 1), "specular must be 0 to 1, not %g",
+               (double)desc->specular);
+    AG_REQUIRE(context, api_finite_at_least(desc->specular_color, 3, 0.0f),
+               "specular_color must be 0 or more");
     struct material material = material_default();
     memcpy(material.base_color.raw, desc->base_color, sizeof desc->base_color);
     material.metallic = desc->metallic;
     material.roughness = desc->roughness;
     material.emissive = api_vec3(desc->emissive);
     material.double_sided = desc->double_sided;
+    material.ior = desc->ior;
+    material.specular = desc->specular;
+    material.specular_color = api_vec3(desc->specular_color);
+    material.unlit = desc->unlit;
     return added(scene, scene_add_material(scene->scene, &material), index);
 }
 
@@ -564,11 +578,18 @@ enum ag_result ag_scene_get_material(struct ag_scene *scene, int index,
                       .metallic = m->metallic,
                       .roughness = m->roughness,
                       .emissive = { m->emissive.x, m->emissive.y, m->emissive.z },
-                      .double_sided = m->double_sided },
+                      .double_sided = m->double_sided,
+                      .ior = m->ior,
+                      .specular = m->specular,
+                      .specular_color = { m->specular_color.x, m->specular_color.y,
+                                          m->specular_color.z },
+                      .unlit = m->unlit },
         .base_color_map = m->base_color_map.image >= 0,
         .metallic_roughness_map = m->metallic_roughness_map.image >= 0,
         .normal_map = m->normal_map.image >= 0,
         .emissive_map = m->emissive_map.image >= 0,
+        .specular_map = m->specular_map.image >= 0,
+        .specular_color_map = m->specular_color_map.image >= 0,
         .alpha_mode = alpha_name(m->alpha_mode),
     };
     return AG_OK;

@@ -118,6 +118,10 @@ int scene_add_material(struct scene *scene, const struct material *material)
         why = "its base colour is negative or not finite";
     } else if (!is_fraction(material->metallic) || !is_fraction(material->roughness)) {
         why = "its metallic or roughness factor is not in 0…1";
+    } else if (!is_fraction(material->specular) || !is_colour(material->specular_color)) {
+        why = "its specular weight is not in 0…1, or its specular colour negative or not finite";
+    } else if (!isfinite(material->ior) || (material->ior != 0.0f && !(material->ior >= 1.0f))) {
+        why = "its index of refraction is neither 0 nor at least 1";
     } else if (!is_colour(material->emissive)) {
         why = "its emission is negative or not finite";
     } else if (!isfinite(material->normal_scale) || !isfinite(material->alpha_cutoff)) {
@@ -125,7 +129,9 @@ int scene_add_material(struct scene *scene, const struct material *material)
     } else if (!texture_use_is_valid(scene, &material->base_color_map) ||
                !texture_use_is_valid(scene, &material->metallic_roughness_map) ||
                !texture_use_is_valid(scene, &material->normal_map) ||
-               !texture_use_is_valid(scene, &material->emissive_map)) {
+               !texture_use_is_valid(scene, &material->emissive_map) ||
+               !texture_use_is_valid(scene, &material->specular_map) ||
+               !texture_use_is_valid(scene, &material->specular_color_map)) {
         why = "a texture refers to an image or coordinate set that does not exist";
     }
     if (why) {
@@ -133,6 +139,7 @@ int scene_add_material(struct scene *scene, const struct material *material)
         return -1;
     }
     struct material copy = *material;
+    if (copy.unlit) material_clear_emission(&copy);
     if (!copy_name(scene, &copy.name)) return -1;
     return APPEND(scene, materials, material, copy);
 }
@@ -306,7 +313,31 @@ struct material material_default(void)
         .metallic_roughness_map = texture_use_none(),
         .normal_map = texture_use_none(),
         .emissive_map = texture_use_none(),
+        .specular_map = texture_use_none(),
+        .specular_color_map = texture_use_none(),
+        .ior = MATERIAL_DEFAULT_IOR,
+        .specular = 1.0f,
+        .specular_color = { { 1, 1, 1 } },
     };
+}
+
+void material_clear_emission(struct material *m)
+{
+    m->emissive = vec3_of(0, 0, 0);
+    m->emissive_map = texture_use_none();
+}
+
+vec3s material_specular_f0(const struct material *m)
+{
+    float root = (m->ior - 1.0f) / (m->ior + 1.0f);
+    return glms_vec3_scale(m->specular_color, root * root);
+}
+
+bool material_has_default_specular(const struct material *m)
+{
+    return m->ior == MATERIAL_DEFAULT_IOR && m->specular == 1.0f && m->specular_color.x == 1.0f &&
+           m->specular_color.y == 1.0f && m->specular_color.z == 1.0f &&
+           m->specular_map.image < 0 && m->specular_color_map.image < 0;
 }
 
 struct node node_default(void)

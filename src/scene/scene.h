@@ -33,17 +33,26 @@ struct texture_use {
 
 enum alpha_mode { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND };
 
-// glTF 2.0 metallic-roughness. Factors multiply their textures; an absent texture is white.
+// glTF 2.0 metallic-roughness with KHR_materials_specular, _ior and _unlit (docs/materials.md).
+// Factors multiply their textures; an absent texture is white.
 struct material {
     const char *name;
     vec4s base_color;
     float metallic, roughness;
-    vec3s emissive; // cd/m², strength included
+    // The dielectric's specular lobe: F90 = weight, F0 = min(((ior − 1)/(ior + 1))² · colour, 1) ·
+    // weight. Weight 0 is purely diffuse.
+    float ior;            // ≥ 1, or 0 for F0 = 1
+    float specular;       // weight, 0…1
+    vec3s specular_color; // ≥ 0
+    vec3s emissive;       // cd/m², strength included
     float normal_scale;
     float alpha_cutoff; // for ALPHA_MASK; ALPHA_BLEND is drawn as a mask at 0.5
     enum alpha_mode alpha_mode;
-    bool double_sided, unlit;
+    bool double_sided;
+    bool unlit; // shown as base_color × unlit_white (unlit.h); occludes, neither reflects nor emits
     struct texture_use base_color_map, metallic_roughness_map, normal_map, emissive_map;
+    struct texture_use specular_map;       // A: weight
+    struct texture_use specular_color_map; // RGB
 };
 
 struct morph_target {
@@ -184,6 +193,12 @@ int scene_add_node_looking(struct scene *scene, const char *name, vec3s position
 void scene_remove_lights(struct scene *scene); // all punctual lights
 
 struct material material_default(void);
+#define MATERIAL_DEFAULT_IOR 1.5f // F0 = 0.04
+// Unlit materials do not emit: their colour is no light (KHR_materials_unlit).
+void material_clear_emission(struct material *material);
+// ((ior − 1)/(ior + 1))² · specular colour, before the clamp to 1 and the weight.
+vec3s material_specular_f0(const struct material *material);
+bool material_has_default_specular(const struct material *material); // factors and textures
 struct node node_default(void);
 struct texture_use texture_use_none(void);
 

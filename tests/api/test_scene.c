@@ -42,6 +42,37 @@ static int add_square(void)
     return mesh;
 }
 
+TEST(specular_and_unlit_materials_are_kept_and_checked)
+{
+    begin();
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    assert_true(material.ior == 1.5f && material.specular == 1 && !material.unlit);
+    assert_true(material.specular_color[2] == 1);
+    material.ior = 1.8f;
+    material.specular = 0.5f;
+    material.specular_color[1] = 3;
+    material.unlit = true;
+    int index = -1;
+    assert_int_equal(ag_scene_add_material(scene, &material, &index), AG_OK);
+    struct ag_material_info info;
+    assert_int_equal(ag_scene_get_material(scene, index, &info), AG_OK);
+    assert_true(info.material.ior == 1.8f && info.material.specular == 0.5f);
+    assert_true(info.material.specular_color[1] == 3 && info.material.unlit);
+    assert_true(!info.specular_map && !info.specular_color_map);
+    static const struct {
+        float ior, specular, color;
+    } wrong[] = { { 0.5f, 1, 1 }, { NAN, 1, 1 },    { INFINITY, 1, 1 }, { 1.5f, -1, 1 },
+                  { 1.5f, 2, 1 }, { 1.5f, NAN, 1 }, { 1.5f, 1, -1 },    { 1.5f, 1, NAN } };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        material.ior = wrong[i].ior;
+        material.specular = wrong[i].specular;
+        material.specular_color[0] = wrong[i].color;
+        assert_int_equal(ag_scene_add_material(scene, &material, NULL), AG_ERROR_ARGUMENT);
+    }
+    end();
+}
+
 TEST(instances_are_placed_by_their_transform)
 {
     begin();

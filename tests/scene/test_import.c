@@ -176,8 +176,9 @@ TEST(materials_have_the_values_of_the_file_and_glTF_defaults)
         "{'index':0,'texCoord':1,'extensions':{'KHR_texture_transform':{'offset':[1,2],"
         "'scale':[3,4],'rotation':0.5}}}},'emissiveFactor':[1,0.5,0],'alphaMode':'MASK',"
         "'alphaCutoff':0.7,'doubleSided':true,'normalTexture':{'index':0,'scale':2},"
-        "'extensions':{'KHR_materials_unlit':{},'KHR_materials_emissive_strength':"
-        "{'emissiveStrength':200}}}],'textures':[{'source':0,'sampler':0}],"
+        "'extensions':{'KHR_materials_emissive_strength':"
+        "{'emissiveStrength':200}}},{'emissiveFactor':[1,1,1],'extensions':{"
+        "'KHR_materials_unlit':{}}}],'textures':[{'source':0,'sampler':0}],"
         "'samplers':[{'wrapS':33071,'wrapT':33648,'magFilter':9728}],"
         "'images':[{'uri':'" PNG_2X2 "'}]}",
         NULL, 0);
@@ -190,7 +191,9 @@ TEST(materials_have_the_values_of_the_file_and_glTF_defaults)
     CHECK_NEAR(m->base_color.z, 0.3, 1e-6);
     CHECK_NEAR(m->emissive.y, 100.0, 1e-4);
     CHECK(m->metallic == 0.5f && m->roughness == 0.25f && m->normal_scale == 2.0f);
-    CHECK(m->alpha_mode == ALPHA_MASK && m->double_sided && m->unlit);
+    CHECK(m->alpha_mode == ALPHA_MASK && m->double_sided && !m->unlit);
+    // What is unlit does not emit.
+    CHECK(scene->materials[2].unlit && luminance(scene->materials[2].emissive) == 0.0f);
     CHECK_NEAR(m->alpha_cutoff, 0.7, 1e-6);
     const struct texture_use *use = &m->base_color_map;
     CHECK(use->image == 0 && use->uv_set == 1 && use->nearest);
@@ -198,6 +201,51 @@ TEST(materials_have_the_values_of_the_file_and_glTF_defaults)
     CHECK(use->uv_offset[1] == 2.0f && use->uv_scale[0] == 3.0f && use->uv_rotation_rad == 0.5f);
     CHECK(m->normal_map.uv_scale[0] == 1.0f);
     scene_destroy(scene);
+}
+
+TEST(specular_and_ior_of_gltf_are_read)
+{
+    struct scene *scene = load_gltf(
+        "{" ASSET
+        ",'extensionsUsed':['KHR_materials_ior','KHR_materials_specular'],'materials':[{},"
+        "{'extensions':{'KHR_materials_ior':{'ior':1.8},'KHR_materials_specular':{"
+        "'specularFactor':0.25,'specularColorFactor':[0.5,1,4],'specularTexture':{'index':0},"
+        "'specularColorTexture':{'index':0,'extensions':{'KHR_texture_transform':{'scale':[3,4]}}}"
+        "}}},{'extensions':{'KHR_materials_ior':{'ior':0}}}],"
+        "'textures':[{'source':0}],'images':[{'uri':'" PNG_2X2 "'}]}",
+        NULL, 0);
+    if (!scene) fail_msg("%s", test_last_message());
+    CHECK_STRING(test_last_message(), "");
+    const struct material *d = &scene->materials[0], *m = &scene->materials[1];
+    CHECK(material_has_default_specular(d) && !material_has_default_specular(m));
+    CHECK_NEAR(material_specular_f0(d).x, 0.04, 1e-7);
+    CHECK_NEAR(material_specular_f0(m).y, 0.8 * 0.8 / 2.8 / 2.8, 1e-7);
+    CHECK_NEAR(material_specular_f0(&scene->materials[2]).z, 1, 0);
+    CHECK(m->specular == 0.25f && m->specular_color.x == 0.5f && m->specular_color.z == 4.0f);
+    CHECK(m->specular_map.image == 0 && m->specular_color_map.uv_scale[1] == 4.0f);
+    scene_destroy(scene);
+}
+
+TEST(hostile_specular_values_are_clamped_or_refused)
+{
+    static const char *const refused[] = { "'KHR_materials_ior':{'ior':0.5}",
+                                           "'KHR_materials_ior':{'ior':'glass'}",
+                                           "'KHR_materials_specular':{'specularFactor':'x'}" };
+    for (int i = 0; i < 3; i++) {
+        char json[256];
+        snprintf(json, sizeof json, "{" ASSET ",'materials':[{'extensions':{%s}}]}", refused[i]);
+        CHECK(!load_gltf(json, NULL, 0));
+    }
+    struct scene *scene =
+        load_gltf("{" ASSET ",'materials':[{'extensions':{'KHR_materials_specular':{"
+                  "'specularFactor':7,'specularColorFactor':[-1,1e30,2]}}}]}",
+                  NULL, 0);
+    if (scene) {
+        const struct material *m = &scene->materials[0];
+        CHECK(m->specular <= 1.0f && m->specular_color.x == 0.0f);
+        CHECK(isfinite(m->specular_color.y));
+        scene_destroy(scene);
+    }
 }
 
 TEST(images_are_decoded_top_row_first_and_shared)

@@ -39,6 +39,33 @@ TEST(obj_faces_become_triangles_with_their_material)
     scene_destroy(scene);
 }
 
+// docs/materials.md: Ks 0 and illum 0 or 1 are purely diffuse, else F0 = 0.08 Ks.
+TEST(phong_materials_of_obj_map_to_a_dielectric)
+{
+    static const struct {
+        const char *text;
+        double weight, f0, roughness;
+    } of[] = {
+        { "Ks 0 0 0\nillum 2\nNs 14\n", 0, 0, 0.5946 }, // α = √(2/16)
+        { "Ks 0.5 0.5 0.5\nillum 1\n", 0, 0.04, 1 },
+        { "Ks 0.5 0.5 0.5\nillum 0\n", 0, 0.04, 1 },
+        { "Ks 0.5 0.5 0.5\nillum 2\nNs 198\n", 1, 0.04, 0.3162 }, // α = 0.1
+        { "Ks 1 1 1\nillum 2\n", 1, 0.08, 1 },
+    };
+    for (int i = 0; i < 5; i++) {
+        char mtl[128];
+        const int length = snprintf(mtl, sizeof mtl, "newmtl red\nKd 0.8 0.1 0.2\n%s", of[i].text);
+        write_bytes("made.mtl", mtl, (size_t)length);
+        struct scene *scene = load_text("made.obj", cube_corner);
+        CHECK(scene);
+        const struct material *m = &scene->materials[scene->meshes[0].material];
+        CHECK_NEAR(m->specular, of[i].weight, 0);
+        CHECK_NEAR(material_specular_f0(m).y, of[i].f0, 1e-6);
+        CHECK_NEAR(m->roughness, of[i].roughness, 1e-3);
+        scene_destroy(scene);
+    }
+}
+
 TEST(an_obj_without_its_materials_still_loads)
 {
     remove(test_path("made.mtl"));

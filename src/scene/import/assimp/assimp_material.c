@@ -89,6 +89,19 @@ static float roughness_of_shininess(float shininess)
     return shininess > 0.0f ? sqrtf(sqrtf(2.0f / (shininess + 2.0f))) : 1.0f;
 }
 
+// The specular lobe of Phong materials (OBJ, FBX, …), none where Ks is 0 or OBJ's illum 0 or 1:
+// then the material is purely diffuse. Else F0 = 0.08 · Ks, as Blender exports it: 0.5 is ior 1.5.
+// Assimp reports illum 1 where an OBJ file has none.
+static void load_phong_specular(const struct aiMaterial *from, struct material *m)
+{
+    vec4s color;
+    int illum = 2;
+    if (!get_color(from, "$clr.specular", &color)) return;
+    aiGetMaterialIntegerArray(from, "$mat.illum", 0, 0, &illum, NULL);
+    for (int k = 0; k < 3; k++) m->specular_color.raw[k] = 2.0f * clamp01(color.raw[k]);
+    if (illum == 0 || illum == 1 || luminance(m->specular_color) == 0.0f) m->specular = 0.0f;
+}
+
 static bool load_material(struct import *import, struct textures *textures,
                           const struct aiMaterial *from, unsigned i, struct material *out)
 {
@@ -105,6 +118,7 @@ static bool load_material(struct import *import, struct textures *textures,
     float shininess = get_float(from, "$mat.shininess", 0.0f);
     m.roughness =
         clamp01(get_float(from, "$mat.roughnessFactor", roughness_of_shininess(shininess)));
+    if (get_float(from, "$mat.roughnessFactor", -1.0f) < 0.0f) load_phong_specular(from, &m);
     int two_sided = 0;
     aiGetMaterialIntegerArray(from, AI_MATKEY_TWOSIDED, &two_sided, NULL);
     m.double_sided = two_sided != 0;

@@ -82,6 +82,21 @@ static struct material gltf_default(void)
     return material;
 }
 
+// KHR_materials_ior and KHR_materials_specular.
+static void load_specular(struct gltf *gltf, struct gltf_object object, struct material *m)
+{
+    struct gltf_object ior = gltf_extension(object, "KHR_materials_ior");
+    struct gltf_object specular = gltf_extension(object, "KHR_materials_specular");
+    m->ior = gltf_float(ior, "ior", MATERIAL_DEFAULT_IOR, 0.0f, 1e6f);
+    if (m->ior > 0.0f && m->ior < 1.0f) gltf_wrong(ior, "ior is neither 0 nor at least 1");
+    m->specular = gltf_float(specular, "specularFactor", 1.0f, 0.0f, 1.0f);
+    gltf_floats(specular, "specularColorFactor", 3, m->specular_color.raw);
+    for (int k = 0; k < 3; k++)
+        m->specular_color.raw[k] = fminf(fmaxf(m->specular_color.raw[k], 0.0f), 1e6f);
+    m->specular_map = texture_use_of(gltf, gltf_child(specular, "specularTexture"));
+    m->specular_color_map = texture_use_of(gltf, gltf_child(specular, "specularColorTexture"));
+}
+
 static bool load_material(struct gltf *gltf, size_t i, struct material *out)
 {
     struct gltf_object object = gltf_element(gltf, gltf->materials, "material", i);
@@ -108,14 +123,20 @@ static bool load_material(struct gltf *gltf, size_t i, struct material *out)
     m.metallic_roughness_map = texture_use_of(gltf, gltf_child(pbr, "metallicRoughnessTexture"));
     m.normal_map = texture_use_of(gltf, normal);
     m.emissive_map = texture_use_of(gltf, gltf_child(object, "emissiveTexture"));
+    load_specular(gltf, object, &m);
+    if (m.unlit) material_clear_emission(&m);
     *out = m;
     return m.name && !gltf->failed;
 }
 
+enum { MAP_COUNT = 6 };
+
 static struct texture_use *map_of(struct material *material, int k)
 {
-    struct texture_use *maps[] = { &material->base_color_map, &material->metallic_roughness_map,
-                                   &material->normal_map, &material->emissive_map };
+    struct texture_use *maps[MAP_COUNT] = {
+        &material->base_color_map, &material->metallic_roughness_map, &material->normal_map,
+        &material->emissive_map,   &material->specular_map,           &material->specular_color_map
+    };
     return maps[k];
 }
 
@@ -196,14 +217,14 @@ bool gltf_load_materials(struct gltf *gltf)
     for (size_t i = 0; i < count; i++) {
         if (!load_material(gltf, i, &scene->materials[i])) return false;
         scene->material_count++;
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < MAP_COUNT; k++) {
             int image = map_of(&scene->materials[i], k)->image;
             if (image >= 0) gltf->image_of[image] = 0;
         }
     }
     if (!load_used_images(gltf)) return false;
     for (int i = 0; i < scene->material_count; i++) {
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < MAP_COUNT; k++) {
             struct texture_use *use = map_of(&scene->materials[i], k);
             if (use->image >= 0) use->image = gltf->image_of[use->image];
         }
