@@ -1,17 +1,37 @@
-// The BSDF of a surface: brdf.glsl on the CPU, with importance sampling. Lambert plus GGX; the
-// specular lobe is sampled by the distribution of visible normals (bsdf.c), the diffuse lobe by the
-// cosine.
+// The BSDF of a surface: brdf.glsl on the CPU, with importance sampling. docs/materials.md derives
+// it.
 //
-// Functions called per ray are inline: passing vectors by value costs more than their arithmetic.
+// A dielectric is a GGX lobe over a Lambertian base that receives what the lobe does not reflect; a
+// metal is a GGX lobe alone; `metallic` mixes both (glTF 2.0, appendix B). With the directional
+// albedo E = F0 A + F90 B of ggx_albedo.h and the compensation k = 1 + F0 (1 − Ess)/Ess:
+//
+//     f = (1 − metallic) · [albedo/π · (1 − max(E_d k_d)) + k_d D V F_d] + metallic · k_m D V F_m
+//
+// F_d has F0 and F90 of the dielectric, F_m has F0 = albedo and F90 = 1. E, k and so the diffuse
+// lobe depend on the outgoing direction alone (OpenPBR, MaterialX): irradiance stays separable, and
+// f is not reciprocal. As F is linear in F0 and F90, both lobes are one of mixed F0 and F90.
+//
+// The specular lobe is sampled by the distribution of visible normals (bsdf.c), the diffuse lobe by
+// the cosine. Functions called per ray are inline: passing vectors by value costs more than their
+// arithmetic.
 #pragma once
 
+#include "core/ggx_albedo.h"
 #include "core/sampling.h"
+
+// Parameters of a surface point, 0…1.
+struct bsdf_material {
+    vec3s albedo; // base colour
+    float metallic, roughness;
+    vec3s dielectric_f0; // of the dielectric at normal incidence
+    float dielectric_f90;
+};
 
 struct bsdf {
     vec3s normal, tangent, bitangent; // orthonormal
     vec3s to_viewer;                  // unit
-    vec3s diffuse;                    // Lambertian BRDF, 1/sr: albedo · (1 − metallic) / π
-    vec3s f0;                         // reflectance at normal incidence
+    vec3s diffuse;                    // diffuse lobe, 1/sr
+    vec3s f0, f90;                    // of the specular lobe, with compensation: may exceed 1
     float alpha, alpha2;              // roughness², at least 0.045², and its square
     float specular_probability;       // of sampling the specular lobe; 0: no such lobe
     float n_v, smith_v;               // |n·v|, and the square root in Smith's term for the viewer
@@ -19,9 +39,9 @@ struct bsdf {
     bool backfacing;   // the shading normal points away from the viewer
 };
 
-// normal and to_viewer: unit. diffuse_only: without the specular lobe.
-static inline struct bsdf bsdf_of(vec3s normal, vec3s to_viewer, vec3s albedo, float metallic,
-                                  float roughness, bool diffuse_only);
+// normal and to_viewer: unit. diffuse_only: the base alone, albedo · (1 − metallic)/π.
+static inline struct bsdf bsdf_of(vec3s normal, vec3s to_viewer,
+                                  const struct bsdf_material *material, bool diffuse_only);
 // Reserves at least `share` of the samples for the diffuse lobe, so that irradiance estimates
 // converge on any material.
 static inline void bsdf_reserve_diffuse_samples(struct bsdf *bsdf, float share);
@@ -39,7 +59,6 @@ static inline vec3s bsdf_sample(const struct bsdf *bsdf, float choice, vec2s u);
 // ---- implementation
 
 static const float BSDF_INV_PI = 0.31830988618f;
-static const float BSDF_MIN_ROUGHNESS = 0.045f;  // brdf.glsl: BRDF_MIN_ROUGHNESS
 static const float BSDF_MIN_COSINE = 1e-4f;      // as in brdf.glsl: keeps G / (4 n·l n·v) finite
 static const float BSDF_MIN_PROBABILITY = 0.05f; // of each lobe with albedo above 0
 
@@ -57,10 +76,12 @@ static inline float bsdf_clamp(float x, float low, float high)
     return x < low ? low : x < high ? x : high;
 }
 
-static inline vec3s bsdf_fresnel(vec3s f0, float v_h)
+// Schlick 1994.
+static inline vec3s bsdf_fresnel(const struct bsdf *b, float v_h)
 {
     float m = 1.0f - v_h, m2 = m * m, s = m2 * m2 * m;
-    return vec3_of(f0.x + (1.0f - f0.x) * s, f0.y + (1.0f - f0.y) * s, f0.z + (1.0f - f0.z) * s);
+    return vec3_of(b->f0.x + (b->f90.x - b->f0.x) * s, b->f0.y + (b->f90.y - b->f0.y) * s,
+                   b->f0.z + (b->f90.z - b->f0.z) * s);
 }
 
 static inline vec3s bsdf_to_world(const struct bsdf *b, vec3s v)
@@ -70,29 +91,47 @@ static inline vec3s bsdf_to_world(const struct bsdf *b, vec3s v)
     return glms_vec3_muladds(b->normal, v.z, p);
 }
 
-static inline struct bsdf bsdf_of(vec3s normal, vec3s to_viewer, vec3s albedo, float metallic,
-                                  float roughness, bool diffuse_only)
+// Sets the lobes at b->n_v.
+static inline void bsdf_set_lobes(struct bsdf *b, const struct bsdf_material *m, float roughness)
 {
-    float rough = bsdf_max(roughness, BSDF_MIN_ROUGHNESS), alpha = rough * rough;
+    struct ggx_albedo e = ggx_albedo_at(b->n_v, roughness);
+    float ess = e.a + e.b, loss = (1.0f - ess) / ess;
+    float metal = m->metallic, dielectric = 1.0f - metal, f90 = m->dielectric_f90;
+    float reflected = 0.0f; // the largest channel of the dielectric lobe's albedo
+    for (int c = 0; c < 3; c++) {
+        float f0 = m->dielectric_f0.raw[c], albedo = m->albedo.raw[c];
+        float k = 1.0f + f0 * loss, k_metal = 1.0f + albedo * loss;
+        b->f0.raw[c] = dielectric * f0 * k + metal * albedo * k_metal;
+        b->f90.raw[c] = dielectric * f90 * k + metal * k_metal;
+        reflected = bsdf_max(reflected, (f0 * e.a + f90 * e.b) * k);
+    }
+    b->diffuse = glms_vec3_scale(b->diffuse, bsdf_max(1.0f - reflected, 0.0f));
+    vec3s albedo = glms_vec3_muladds(b->f90, e.b, glms_vec3_scale(b->f0, e.a));
+    float specular = luminance(albedo), diffuse = luminance(b->diffuse) / BSDF_INV_PI;
+    if (!(specular > 0.0f)) return;
+    b->specular_probability = 1.0f;
+    if (diffuse > 0.0f)
+        b->specular_probability = bsdf_clamp(specular / (specular + diffuse), BSDF_MIN_PROBABILITY,
+                                             1.0f - BSDF_MIN_PROBABILITY);
+}
+
+static inline struct bsdf bsdf_of(vec3s normal, vec3s to_viewer, const struct bsdf_material *m,
+                                  bool diffuse_only)
+{
+    float roughness = bsdf_clamp(m->roughness, GGX_MIN_ROUGHNESS, 1.0f);
+    float alpha = roughness * roughness;
     struct bsdf b = {
         .normal = normal, .to_viewer = to_viewer, .alpha = alpha, .alpha2 = alpha * alpha
     };
     basis_of(normal, &b.tangent, &b.bitangent);
-    b.diffuse = glms_vec3_scale(albedo, (1.0f - metallic) * BSDF_INV_PI);
+    b.diffuse = glms_vec3_scale(m->albedo, (1.0f - m->metallic) * BSDF_INV_PI);
     if (diffuse_only) return b;
     float n_v = glms_vec3_dot(normal, to_viewer);
     b.n_v = bsdf_clamp(fabsf(n_v), BSDF_MIN_COSINE, 1.0f);
     b.smith_v = sqrtf(b.n_v * b.n_v * (1.0f - b.alpha2) + b.alpha2);
     b.backfacing = n_v < BSDF_MIN_COSINE;
     b.lobe_viewer = b.backfacing ? bsdf_mirrored_viewer(&b) : to_viewer;
-    float d = 0.04f * (1.0f - metallic); // F0 of a dielectric is 0.04
-    b.f0 = vec3_of(d + albedo.x * metallic, d + albedo.y * metallic, d + albedo.z * metallic);
-    float specular = luminance(bsdf_fresnel(b.f0, b.n_v));
-    float diffuse = luminance(albedo) * (1.0f - metallic);
-    b.specular_probability = 1.0f;
-    if (diffuse > 0.0f)
-        b.specular_probability = bsdf_clamp(specular / (specular + diffuse), BSDF_MIN_PROBABILITY,
-                                            1.0f - BSDF_MIN_PROBABILITY);
+    bsdf_set_lobes(&b, m, roughness);
     return b;
 }
 
@@ -136,7 +175,7 @@ static inline struct reflection bsdf_reflect(const struct bsdf *b, vec3s to_ligh
     float smith_l = sqrtf(n_l * n_l * (1.0f - b->alpha2) + b->alpha2);
     float scale = d * 0.5f / (n_l * b->smith_v + b->n_v * smith_l);
     float v_h = bsdf_clamp(0.5f * sqrtf(sum2), 0.0f, 1.0f); // |v + l|² = 2 + 2 v·l = 4 (v·h)²
-    r.f = glms_vec3_muladds(bsdf_fresnel(b->f0, v_h), scale, r.f);
+    r.f = glms_vec3_muladds(bsdf_fresnel(b, v_h), scale, r.f);
     return r;
 }
 

@@ -7,6 +7,7 @@
 #include "trace/surface.h"
 
 #include "core/sampling.h"
+#include "scene/unlit.h"
 
 #include <math.h>
 
@@ -75,6 +76,7 @@ static bool choose_by_power(struct trace_scene *scene)
         power[i] = area * (double)mean_emission(mesh, t->emitters[i].triangle);
         if (!isfinite(power[i])) power[i] = 0.0;
         total += power[i];
+        t->flux += GLM_PIf * (float)power[i] * (mesh->material->double_sided ? 2.0f : 1.0f);
     }
     t->has_emitters = ok && total > 0.0 && isfinite(total);
     for (uint32_t i = 0; t->has_emitters && i < t->emitter_count; i++) {
@@ -143,7 +145,9 @@ bool light_table_init(struct trace_scene *scene, const struct scene_pose *pose)
     t->punctual = host_alloc(scene->host, (size_t)count, sizeof *t->punctual);
     if (!t->punctual) return false;
     for (int i = 0; i < count; i++) t->punctual[t->punctual_count++] = pose_light(pose, i);
-    return list_emitters(scene);
+    if (!list_emitters(scene)) return false;
+    t->unlit_white = unlit_white(t->punctual, t->punctual_count, t->sky, t->flux, pose->bounds);
+    return true;
 }
 
 void light_table_finish(struct trace_scene *scene)

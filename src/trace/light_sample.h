@@ -28,6 +28,8 @@ struct light_table {
     uint32_t emitter_count;
     vec3s sky;
     bool has_sky, has_emitters; // has_emitters: of power above 0
+    float flux;                 // of all emitters, lumen
+    float unlit_white;          // scene/unlit.h, cd/m²
 };
 
 // Fills scene->lights and the meshes' emitter_first. light_table_finish accepts a half-built table.

@@ -38,8 +38,8 @@ static bool first_surface(const struct path_settings *settings, struct ray ray,
 static struct bsdf bsdf_at(const struct path_settings *settings, const struct surface *s,
                            vec3s to_viewer)
 {
-    return bsdf_of(s->normal, to_viewer, s->albedo, s->metallic, s->roughness,
-                   settings->diffuse_only);
+    static const struct bsdf_material black = { .roughness = 1.0f };
+    return bsdf_of(s->normal, to_viewer, s->unlit ? &black : &s->material, settings->diffuse_only);
 }
 
 struct path_start path_begin(const struct path_settings *settings, const struct ray *ray,
@@ -51,7 +51,10 @@ struct path_start path_begin(const struct path_settings *settings, const struct 
         vec3s to_viewer = glms_vec3_normalize(glms_vec3_negate(ray->direction));
         start.bsdf = bsdf_at(settings, &start.surface, to_viewer);
         bsdf_reserve_diffuse_samples(&start.bsdf, DIFFUSE_SHARE);
-        if (settings->direct)
+        if (settings->direct && start.surface.unlit)
+            start.radiance =
+                glms_vec3_scale(start.surface.material.albedo, settings->scene->lights.unlit_white);
+        else if (settings->direct)
             start.radiance = glms_vec3_add(
                 start.surface.emission,
                 next_event_all_punctual(settings->scene, &start.surface, &start.bsdf, rays));
@@ -258,7 +261,7 @@ static void begin(struct batch *batch, const struct path_settings *settings,
 {
     const struct path_start *start = sample->start;
     sample->light = (struct path_light){ .direct = start->radiance };
-    if (!start->hit) return;
+    if (!start->hit || start->surface.unlit) return;
     struct path *p = batch->active[batch->count] = &batch->paths[batch->count];
     p->settings = settings;
     p->sample = sample;

@@ -405,7 +405,7 @@ static void read_surface(const struct reference *r, enum reference_layer layer, 
 {
     struct path_start start = centre_of(r, x, y);
     if (!start.hit) return;
-    vec3s v = layer == REFERENCE_ALBEDO   ? start.surface.albedo
+    vec3s v = layer == REFERENCE_ALBEDO   ? start.surface.material.albedo
               : layer == REFERENCE_NORMAL ? start.surface.normal
                                           : start.surface.position;
     if (layer == REFERENCE_DEPTH) {

@@ -161,21 +161,38 @@ static vec3s shading_normal(const struct triangle_point *s)
     return length2 > 1e-12f ? glms_vec3_scale(n, 1.0f / sqrtf(length2)) : s->facet->normal;
 }
 
+// KHR_materials_specular and KHR_materials_ior, as gbuffer_fragment.glsl.
+static void read_specular(const struct triangle_point *s, struct bsdf_material *out)
+{
+    const struct trace_material *m = s->mesh->material;
+    vec3s f0 = m->specular_f0;
+    float weight = m->specular;
+    if (m->specular_color_map.texture)
+        f0 = glms_vec3_mul(f0, vec3_xyz(sample_map(s, &m->specular_color_map)));
+    if (m->specular_map.texture) weight *= sample_map(s, &m->specular_map).w;
+    out->dielectric_f0 = glms_vec3_scale(glms_vec3_minv(f0, vec3_of(1, 1, 1)), weight);
+    out->dielectric_f90 = weight;
+}
+
 static void read_maps(const struct triangle_point *s, struct surface *out)
 {
     const struct trace_material *m = s->mesh->material;
-    // Clamped as the G-buffer's 8-bit albedo.
-    out->albedo = glms_vec3_clamp(vec3_xyz(base_color(s)), 0.0f, 1.0f);
-    out->metallic = m->metallic;
-    out->roughness = m->roughness;
+    out->material = (struct bsdf_material){
+        // Clamped as the G-buffer's 8-bit albedo.
+        .albedo = glms_vec3_clamp(vec3_xyz(base_color(s)), 0.0f, 1.0f),
+        .metallic = m->metallic,
+        .roughness = m->roughness,
+    };
+    read_specular(s, &out->material);
     if (m->metallic_roughness_map.texture) {
         vec4s v = sample_map(s, &m->metallic_roughness_map);
-        out->roughness *= v.y;
-        out->metallic *= v.z;
+        out->material.roughness *= v.y;
+        out->material.metallic *= v.z;
     }
+    out->unlit = m->unlit;
     if (m->unlit) {
-        out->roughness = 1.0f;
-        out->metallic = 0.0f;
+        out->material.roughness = 1.0f;
+        out->material.metallic = 0.0f;
     }
     bool emits = m->emissive && (out->front || m->double_sided);
     out->emission = emits ? emission_of(s) : vec3_of(0, 0, 0);
@@ -232,4 +249,6 @@ void surface_prefetch_texels(const struct trace_scene *scene, const struct ray_h
     prefetch_map(&s, &m->metallic_roughness_map);
     prefetch_map(&s, &m->normal_map);
     if (m->emissive) prefetch_map(&s, &m->emissive_map);
+    prefetch_map(&s, &m->specular_map);
+    prefetch_map(&s, &m->specular_color_map);
 }

@@ -16,8 +16,8 @@ struct surface {
     vec3s normal;    // shading normal, unit, same side
     float reach;     // offset of rays that leave the surface, m
     bool front;
-    vec3s albedo;
-    float metallic, roughness;
+    struct bsdf_material material;
+    bool unlit;     // shown by its base colour at the primary hit, black for all other light
     vec3s emission; // cd/m², towards the ray origin
     uint32_t mesh, triangle;
 };

@@ -37,17 +37,22 @@ static bool create_material(struct trace_scene *s, const struct material *m,
         .metallic = m->metallic,
         .roughness = m->roughness,
         .normal_scale = m->normal_scale,
+        .specular_f0 = material_specular_f0(m),
+        .specular = m->specular,
         .masked = m->alpha_mode != ALPHA_OPAQUE,
         .double_sided = m->double_sided,
         .unlit = m->unlit,
         .emissive = m->emissive.x > 0.0f || m->emissive.y > 0.0f || m->emissive.z > 0.0f,
     };
     out->mapped = m->base_color_map.image >= 0 || m->metallic_roughness_map.image >= 0 ||
-                  m->normal_map.image >= 0 || m->emissive_map.image >= 0;
+                  m->normal_map.image >= 0 || m->emissive_map.image >= 0 ||
+                  m->specular_map.image >= 0 || m->specular_color_map.image >= 0;
     return texture_of(s, &m->base_color_map, true, &out->base_color_map) &&
            texture_of(s, &m->metallic_roughness_map, false, &out->metallic_roughness_map) &&
            texture_of(s, &m->normal_map, false, &out->normal_map) &&
-           texture_of(s, &m->emissive_map, true, &out->emissive_map);
+           texture_of(s, &m->emissive_map, true, &out->emissive_map) &&
+           texture_of(s, &m->specular_map, false, &out->specular_map) &&
+           texture_of(s, &m->specular_color_map, true, &out->specular_color_map);
 }
 
 static bool create_materials(struct trace_scene *s)
@@ -196,14 +201,16 @@ static uint64_t add_map(uint64_t key, const struct texture_map *map)
 
 static uint64_t add_material(uint64_t key, const struct trace_material *m)
 {
-    const float values[] = { m->base_color.x, m->base_color.y, m->base_color.z, m->alpha,
-                             m->emission.x,   m->emission.y,   m->emission.z,   m->alpha_cutoff,
-                             m->metallic,     m->roughness,    m->normal_scale };
+    const float values[] = { m->specular_f0.x, m->specular_f0.y, m->specular_f0.z, m->specular,
+                             m->base_color.x,  m->base_color.y,  m->base_color.z,  m->alpha,
+                             m->emission.x,    m->emission.y,    m->emission.z,    m->alpha_cutoff,
+                             m->metallic,      m->roughness,     m->normal_scale };
     const int flags[] = { m->masked, m->double_sided, m->unlit };
     key = add_floats(key, values, sizeof values / sizeof *values);
     key = add(key, flags, 3, sizeof *flags);
     key = add_map(add_map(key, &m->base_color_map), &m->metallic_roughness_map);
-    return add_map(add_map(key, &m->normal_map), &m->emissive_map);
+    key = add_map(add_map(key, &m->normal_map), &m->emissive_map);
+    return add_map(add_map(key, &m->specular_map), &m->specular_color_map);
 }
 
 static uint64_t add_mesh(uint64_t key, const struct trace_mesh *m)
@@ -292,9 +299,9 @@ bool trace_closest(const struct trace_scene *scene, vec3s origin, vec3s directio
         .geometric = s.front ? s.geometric : glms_vec3_negate(s.geometric),
         .normal = s.normal,
         .front = s.front,
-        .albedo = s.albedo,
-        .metallic = s.metallic,
-        .roughness = s.roughness,
+        .albedo = s.material.albedo,
+        .metallic = s.material.metallic,
+        .roughness = s.material.roughness,
         .emission = s.emission,
         .reach_m = s.reach,
     };
