@@ -1,42 +1,118 @@
-// BRDF of glTF 2.0's metallic-roughness material: a Lambert lobe plus a GGX lobe.
+// BRDF of glTF 2.0's metallic-roughness material with energy conservation; bsdf.h of the reference
+// has the same formulas and docs/materials.md their derivation.
 //
 // D: Trowbridge & Reitz 1975 (GGX, Walter et al. 2007, eq. 33). V = G / (4 n·l n·v): Heitz 2014
-// (height-correlated Smith, eq. 99). F: Schlick 1994. alpha = roughness². The Lambert lobe is not
-// scaled by 1 − F, so that direct and indirect light see the same albedo·(1−metallic)/π.
+// (height-correlated Smith, eq. 99). F: Schlick 1994. alpha = roughness². Multiple scattering:
+// Turquin 2019. The diffuse lobe is scaled by 1 − E(n·v), E the directional albedo of the
+// dielectric lobe; it does not depend on the light, so that irradiance stays separable.
+//
+// A shader that reflects light towards the viewer defines GGX_ALBEDO_BINDING before.
 #ifndef AG_FRAME_BRDF_GLSL
 #define AG_FRAME_BRDF_GLSL
 
+#include "core/ggx_albedo.glsl"
+
 const float BRDF_INV_PI = 0.31830988618;
-// Keeps alpha² a normal float and a highlight at least about one pixel wide.
-const float BRDF_MIN_ROUGHNESS = 0.045;
+
+// 0…1 each. The dielectric's reflectance at normal and at grazing incidence: 0.04 and 1 by default.
+struct brdf_material {
+    vec3 albedo;
+    float metallic, roughness;
+    vec3 dielectric_f0;
+    float dielectric_f90;
+};
+
+// The dielectric as the G-buffer has it (FRAME_DIELECTRIC): √F0 and F90. Of ior 1.5:
+const vec4 BRDF_DEFAULT_DIELECTRIC = vec4(0.2, 0.2, 0.2, 1.0);
+
+brdf_material brdf_material_of(vec3 albedo, vec2 roughness_metallic, vec4 dielectric)
+{
+    return brdf_material(albedo, roughness_metallic.y, roughness_metallic.x,
+                         dielectric.rgb * dielectric.rgb, dielectric.a);
+}
+
+// Both lobes for one outgoing direction.
+struct brdf_lobes {
+    vec3 diffuse;         // 1/sr
+    vec3 f0, f90;         // of the specular lobe, with compensation: may exceed 1
+    vec3 specular_albedo; // directional, 0…1
+    float alpha;
+};
+
+float brdf_roughness(float roughness)
+{
+    return clamp(roughness, GGX_MIN_ROUGHNESS, 1.0);
+}
 
 float brdf_alpha(float roughness)
 {
-    float r = max(roughness, BRDF_MIN_ROUGHNESS);
+    float r = brdf_roughness(roughness);
     return r * r;
 }
 
-// Reflectance at normal incidence; 4 % for dielectrics.
-vec3 brdf_f0(vec3 albedo, float metallic)
+// What single scattering loses, relative to what it reflects without Fresnel losses.
+float brdf_loss(vec2 ab)
 {
-    return mix(vec3(0.04), albedo, metallic);
+    float ess = ab.x + ab.y;
+    return (1.0 - ess) / ess;
 }
 
-vec3 brdf_diffuse(vec3 albedo, float metallic)
+// Albedo of the dielectric's specular lobe from the table's A and B.
+vec3 brdf_dielectric_albedo(brdf_material m, vec2 ab)
 {
-    return albedo * ((1.0 - metallic) * BRDF_INV_PI);
+    return (m.dielectric_f0 * ab.x + m.dielectric_f90 * ab.y) *
+           (1.0 + m.dielectric_f0 * brdf_loss(ab));
+}
+
+// Share of light that the lobe transmits to the base: by the channel that reflects most
+// (KHR_materials_specular), so that a coloured lobe does not tint the base.
+float brdf_transmitted(vec3 lobe_albedo)
+{
+    float most = max(lobe_albedo.r, max(lobe_albedo.g, lobe_albedo.b));
+    return clamp(1.0 - most, 0.0, 1.0);
+}
+
+// Hemispherical reflectance of the dielectric, for bounces, which are diffuse. It contains the
+// specular lobe: without it a closed room of default materials is 7 to 34 % too dark after all
+// bounces, with it 0.5 to 10 % too bright (docs/materials.md). Metals reflect no diffuse light.
+vec3 brdf_bounce_reflectance(brdf_material m)
+{
+    vec3 lobe = brdf_dielectric_albedo(m, ggx_albedo_mean(brdf_roughness(m.roughness)));
+    return (1.0 - m.metallic) * (m.albedo * brdf_transmitted(lobe) + lobe);
+}
+
+#ifdef GGX_ALBEDO_BINDING
+float brdf_cosine(vec3 n, vec3 v)
+{
+    return clamp(abs(dot(n, v)), 1e-4, 1.0);
+}
+
+brdf_lobes brdf_lobes_at(brdf_material m, float n_v)
+{
+    vec2 ab = ggx_albedo_at(n_v, brdf_roughness(m.roughness));
+    float loss = brdf_loss(ab);
+    vec3 dielectric = (1.0 - m.metallic) * (1.0 + m.dielectric_f0 * loss);
+    vec3 metal = m.metallic * (1.0 + m.albedo * loss);
+    brdf_lobes lobes;
+    lobes.diffuse = m.albedo * ((1.0 - m.metallic) *
+                                brdf_transmitted(brdf_dielectric_albedo(m, ab)) * BRDF_INV_PI);
+    lobes.f0 = dielectric * m.dielectric_f0 + metal * m.albedo;
+    lobes.f90 = dielectric * m.dielectric_f90 + metal;
+    lobes.specular_albedo = lobes.f0 * ab.x + lobes.f90 * ab.y;
+    lobes.alpha = brdf_alpha(m.roughness);
+    return lobes;
 }
 
 // D·V·F in 1/sr, without the cosine. n, v (outgoing), l (incident) are unit vectors away from the
-// surface; alpha comes from brdf_alpha.
-vec3 brdf_specular(vec3 n, vec3 v, vec3 l, float alpha, vec3 f0)
+// surface.
+vec3 brdf_specular(brdf_lobes lobes, vec3 n, vec3 v, vec3 l)
 {
     vec3 h = normalize(v + l);
     float n_l = clamp(dot(n, l), 1e-4, 1.0);
-    float n_v = clamp(abs(dot(n, v)), 1e-4, 1.0);
+    float n_v = brdf_cosine(n, v);
     float n_h = clamp(dot(n, h), 0.0, 1.0);
     float v_h = clamp(dot(v, h), 0.0, 1.0);
-    float a2 = alpha * alpha;
+    float a2 = lobes.alpha * lobes.alpha;
 
     // sin² from the cross product: 1 − n_h² cancels within the narrow lobe of a smooth surface.
     vec3 n_x_h = cross(n, h);
@@ -47,8 +123,9 @@ vec3 brdf_specular(vec3 n, vec3 v, vec3 l, float alpha, vec3 f0)
     float visibility = 0.5 / (smith_v + smith_l);
     float m = 1.0 - v_h;
     float m2 = m * m;
-    vec3 f = f0 + (1.0 - f0) * (m2 * m2 * m);
+    vec3 f = lobes.f0 + (lobes.f90 - lobes.f0) * (m2 * m2 * m);
     return f * (d * visibility);
 }
+#endif
 
 #endif

@@ -2,6 +2,8 @@
 // of earlier passes as arguments.
 #include "frame/frame_state.h"
 
+#include "core/ggx_albedo.h"
+
 static const struct option_row option_rows[] = {
 #define OPTION(...) OPTION_ROW(struct frame_options, __VA_ARGS__)
 #include "frame/frame_options.def"
@@ -11,6 +13,19 @@ const struct option_table frame_option_table =
     OPTION_TABLE(struct frame_options, option_rows, NULL);
 
 static const uint32_t MAX_SIZE = 16384;
+
+static bool create_ggx_albedo(struct frame *f)
+{
+    struct gpu_buffer_desc desc = { "frame.ggx_albedo", sizeof ggx_albedo_table,
+                                    GPU_BUFFER_STORAGE };
+    return gpu_buffer_create(f->gpu, &desc, &f->ggx_albedo) &&
+           gpu_buffer_upload(f->gpu, f->ggx_albedo, 0, ggx_albedo_table, sizeof ggx_albedo_table);
+}
+
+static struct gpu_binding ggx_albedo_binding(const struct frame *f)
+{
+    return (struct gpu_binding){ "ggx_albedo", .buffer = f->ggx_albedo };
+}
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options)
 {
@@ -22,7 +37,8 @@ struct frame *frame_create(struct host *host, struct gpu *gpu, const struct fram
     if (shadow_init(&f->shadow, host, gpu, (uint32_t)options->shadow_size,
                     (uint32_t)options->cascades) &&
         rsm_init(&f->rsm, host, gpu, (uint32_t)options->rsm_size) && direct_init(&f->direct, gpu) &&
-        exposure_init(&f->exposure, gpu) && composite_init(&f->composite, gpu)) {
+        exposure_init(&f->exposure, gpu) && composite_init(&f->composite, gpu) &&
+        create_ggx_albedo(f)) {
         return f;
     }
     frame_destroy(f);
@@ -33,6 +49,7 @@ void frame_destroy(struct frame *f)
 {
     if (!f) return;
     frame_destroy_layers(f);
+    gpu_buffer_destroy(f->gpu, &f->ggx_albedo);
     composite_finish(&f->composite);
     exposure_finish(&f->exposure);
     direct_finish(&f->direct);
@@ -78,12 +95,13 @@ bool frame_resize(struct frame *f, uint32_t width, uint32_t height)
 
 // ---- Preparation --------------------------------------------------------------------------------
 
-static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs)
+static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs, bool has_dielectrics)
 {
     uint32_t wanted = 1u << FRAME_DEPTH | 1u << FRAME_NORMAL | 1u << FRAME_ALBEDO |
                       1u << FRAME_MATERIAL | 1u << FRAME_EMISSIVE | 1u << FRAME_DIRECT |
                       1u << FRAME_COLOR;
     if (needs & FRAME_NEEDS_MOTION) wanted |= 1u << FRAME_MOTION;
+    if (has_dielectrics) wanted |= 1u << FRAME_DIELECTRIC;
     if (needs & FRAME_WRITES_IRRADIANCE) wanted |= 1u << FRAME_IRRADIANCE;
     if (needs & FRAME_WRITES_SPECULAR) wanted |= 1u << FRAME_SPECULAR;
     if (needs & FRAME_WRITES_VISIBILITY) wanted |= 1u << FRAME_VISIBILITY;
@@ -130,11 +148,13 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
     f->needs =
         (indirect ? indirect->needs : 0) | (input->want_motion_layer ? FRAME_NEEDS_MOTION : 0);
-    f->composite_variant = composite_variant_of(input, f->needs);
-    f->prepared = frame_make_layers(f, wanted_layers(input, f->needs)) &&
+    const uint32_t gbuffer_layers = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
+                                    (f->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0);
+    f->composite_variant = composite_variant_of(input, f->needs) |
+                           (f->scene.has_dielectrics ? COMPOSITE_DIELECTRIC : 0);
+    f->prepared = frame_make_layers(f, wanted_layers(input, f->needs, f->scene.has_dielectrics)) &&
                   prepare_lights(f, input) &&
-                  gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used,
-                                  (f->needs & FRAME_NEEDS_MOTION) != 0) &&
+                  gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used, gbuffer_layers) &&
                   composite_prepare(&f->composite, f->composite_variant);
     return f->prepared;
 }
@@ -150,6 +170,7 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
         .material = f->layers[FRAME_MATERIAL],
         .emissive = f->layers[FRAME_EMISSIVE],
         .motion = f->layers[FRAME_MOTION],
+        .dielectric = f->layers[FRAME_DIELECTRIC],
         .width = f->width,
         .height = f->height,
     };
@@ -179,6 +200,7 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .normal = f->layers[FRAME_NORMAL],
         .albedo = f->layers[FRAME_ALBEDO],
         .material = f->layers[FRAME_MATERIAL],
+        .dielectric = f->layers[FRAME_DIELECTRIC],
         .emissive = f->layers[FRAME_EMISSIVE],
         .shadow_maps = f->shadow.maps,
         .shadow_sampler = f->shadow.sampler,
@@ -187,6 +209,7 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .constants = f->constants_binding,
         .lights = f->lights_binding,
         .shadow_faces = f->view.shadow_faces_binding,
+        .ggx_albedo = ggx_albedo_binding(f),
         .light_count = f->light_count,
         .width = f->width,
         .height = f->height,
@@ -235,6 +258,7 @@ static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct f
     view->constants = &f->constants;
     view->constants_binding = f->constants_binding;
     view->lights_binding = f->lights_binding;
+    view->ggx_albedo_binding = ggx_albedo_binding(f);
     view->lights = f->lights;
     view->light_count = f->light_count;
     view->pose = input->pose;
@@ -270,9 +294,12 @@ static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct f
 static void record_composite(struct frame *f, struct gpu_cmd *cmd)
 {
     struct composite_images images = {
+        .depth = f->layers[FRAME_DEPTH],
+        .normal = f->layers[FRAME_NORMAL],
         .direct = f->layers[FRAME_DIRECT],
         .albedo = f->layers[FRAME_ALBEDO],
         .material = f->layers[FRAME_MATERIAL],
+        .dielectric = f->layers[FRAME_DIELECTRIC],
         .irradiance = f->layers[FRAME_IRRADIANCE],
         .specular = f->layers[FRAME_SPECULAR],
         .visibility = f->layers[FRAME_VISIBILITY],
@@ -280,9 +307,13 @@ static void record_composite(struct frame *f, struct gpu_cmd *cmd)
         .indirect = f->layers[FRAME_INDIRECT],
         .display = f->layers[FRAME_DISPLAY],
     };
-    struct gpu_binding exposure = { "exposure_state", .buffer = f->exposure.state };
-    composite_record(&f->composite, cmd, f->composite_variant, &images, f->constants_binding,
-                     exposure, f->width, f->height);
+    const struct gpu_binding bindings[3] = {
+        f->constants_binding,
+        { "exposure_state", .buffer = f->exposure.state },
+        ggx_albedo_binding(f),
+    };
+    composite_record(&f->composite, cmd, f->composite_variant, &images, bindings, f->width,
+                     f->height);
 }
 
 void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,

@@ -21,6 +21,13 @@ layout(set = 0, binding = FRAME_CONSTANTS_BINDING, scalar) uniform frame_constan
     frame_constants_data frame;
 };
 
+// Whether a pixel's surface reflects light, by the alpha of FRAME_ALBEDO: 0 without a surface, ½
+// for unlit materials, 1 else.
+bool frame_is_lit(float alpha)
+{
+    return alpha > 0.75;
+}
+
 // Centre of a pixel in 0…1, +y down.
 vec2 frame_uv(uvec2 pixel)
 {

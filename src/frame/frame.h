@@ -4,7 +4,8 @@
 //
 // Contract of light: a source writes irradiance E (lux) without albedo and without 1/π; specular is
 // reflected radiance; visibility is 0 (closed) … 1 (open). composite: L = Le + direct +
-// albedo·(1−metallic)/π · E · visibility + specular. All GPU values are scaled, see frame_shared.h.
+// albedo·(1−metallic)/π · (1−E_d) · E · visibility + specular, with E_d the directional albedo of
+// the dielectric specular lobe (brdf.glsl). All GPU values are scaled, see frame_shared.h.
 #pragma once
 
 #include "core/option.h"
@@ -28,8 +29,11 @@ extern const struct option_table frame_option_table;
 enum frame_layer {
     FRAME_DEPTH,    // D32F, reversed Z; 0: no surface
     FRAME_NORMAL,   // RG16F: octahedral shading normal, world space (frame/octahedral.glsl)
-    FRAME_ALBEDO,   // RGBA8_SRGB: base colour; alpha 1: surface, 0: none
+    FRAME_ALBEDO,   // RGBA8_SRGB: base colour; alpha 1: surface, ½: unlit, 0: none
     FRAME_MATERIAL, // RG8: roughness, metallic
+    // RGBA8: √F0 of the dielectric specular lobe in rgb, F90 in a. Only in scenes with other values
+    // than √0.04 and 1.
+    FRAME_DIELECTRIC,
     FRAME_EMISSIVE, // RGBA16F: scaled radiance
     // RGBA16F. xy: screen position minus previous screen position, in 0…1 units, +y down; z:
     // previous over current distance along the view axis, minus 1; w: 1 where there is a surface.
@@ -38,9 +42,9 @@ enum frame_layer {
     FRAME_IRRADIANCE, // RGBA16F: scaled irradiance, indirect
     FRAME_SPECULAR,   // RGBA16F: scaled radiance, indirect
     FRAME_VISIBILITY, // R8
-    FRAME_INDIRECT,   // RGBA16F: scaled radiance, albedo/π·E·visibility + specular; optional
-    FRAME_COLOR,      // RGBA16F: scaled radiance, direct + indirect
-    FRAME_DISPLAY,    // RGBA8: exposed, tone mapped, sRGB-encoded
+    FRAME_INDIRECT, // RGBA16F: scaled radiance, albedo/π·(1−E_d)·E·visibility + specular; optional
+    FRAME_COLOR,   // RGBA16F: scaled radiance, direct + indirect
+    FRAME_DISPLAY, // RGBA8: exposed, tone mapped, sRGB-encoded
     FRAME_LAYER_COUNT
 };
 
@@ -52,6 +56,7 @@ struct frame_view {
     const struct frame_constants *constants; // CPU copy of the block
     struct gpu_binding constants_binding;    // named "frame_constants"
     struct gpu_binding lights_binding;       // named "frame_lights"
+    struct gpu_binding ggx_albedo_binding;   // named "ggx_albedo": core/ggx_albedo.glsl
     const struct frame_light *lights;
     int light_count;
     // Virtual point lights on emissive surfaces (frame/emitters.h), with FRAME_NEEDS_EMITTERS only.
@@ -72,7 +77,7 @@ struct frame_view {
     struct gpu_binding rsm_faces_binding; // named "rsm_faces"
     gpu_image rsm_depth;                  // D32F array, reversed Z; 0: no surface
     gpu_image rsm_normal;                 // RG16F array: octahedral, on the light's side
-    // RGBA8_SRGB array: reflectance ρ of the texel (albedo × (1−metallic) × spot and range
+    // RGBA8_SRGB array: reflectance ρ of the texel (brdf_bounce_reflectance × spot and range
     // falloff). Reflected flux in scaled lumen = ρ × flux through the texel, see
     // frame/rsm/rsm.glsl.
     gpu_image rsm_flux;

@@ -4,6 +4,8 @@
 #include "frame/frame_scale.h"
 #include "frame/projection.h"
 
+#include "scene/unlit.h"
+
 #include <string.h>
 
 static struct frame_light scaled_light(const struct world_light *light, float scale)
@@ -75,7 +77,12 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
         .bounds = input->pose->bounds,
     };
     c->radiance_scale = frame_scale(&light);
+    c->unlit_white =
+        c->radiance_scale * unlit_white(input->lights, input->light_count, input->sky,
+                                        luminance(f->emitters.flux), input->pose->bounds);
     f->fallback_luminance = frame_fallback_luminance(&light) * c->radiance_scale;
+    // Where all that is seen is unlit, its white exposes to 1.
+    if (f->scene.has_unlit) f->fallback_luminance = 0.18f * c->unlit_white;
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
     f->emitted_irradiance =

@@ -1,6 +1,8 @@
 // The images of a frame: formats, creation, destruction, memory estimate.
 #include "frame/frame_state.h"
 
+#include "core/ggx_albedo.h"
+
 struct layer {
     const char *name;
     enum gpu_format format;
@@ -12,6 +14,7 @@ static const struct layer table[FRAME_LAYER_COUNT] = {
     [FRAME_NORMAL] = { "frame.normal", GPU_RG16F, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_ALBEDO] = { "frame.albedo", GPU_RGBA8_SRGB, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_MATERIAL] = { "frame.material", GPU_RG8, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_DIELECTRIC] = { "frame.dielectric", GPU_RGBA8, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_EMISSIVE] = { "frame.emissive", GPU_RGBA16F, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_MOTION] = { "frame.motion", GPU_RGBA16F, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_DIRECT] = { "frame.direct", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
@@ -66,7 +69,7 @@ uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t wid
     uint64_t shadow = (uint64_t)options->shadow_size, rsm = (uint64_t)options->rsm_size;
     int rsm_bytes = gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) +
                     gpu_format_bytes(GPU_RGBA8_SRGB); // per texel
-    return texel_bytes * width * height +
+    return sizeof ggx_albedo_table + texel_bytes * width * height +
            faces * (shadow * shadow * (uint64_t)gpu_format_bytes(GPU_D32F) +
                     rsm * rsm * (uint64_t)rsm_bytes);
 }

@@ -28,6 +28,7 @@ struct frame {
     struct exposure exposure;
     struct composite composite;
     gpu_image layers[FRAME_LAYER_COUNT];
+    gpu_buffer ggx_albedo; // core/ggx_albedo.h
 
     // Set by frame_prepare.
     uint32_t needs;             // frame_need bits

@@ -138,6 +138,8 @@ static const struct texture_use *map_of(const struct material *m, int map)
         [SCENE_MAP_METALLIC_ROUGHNESS] = &m->metallic_roughness_map,
         [SCENE_MAP_NORMAL] = &m->normal_map,
         [SCENE_MAP_EMISSIVE] = &m->emissive_map,
+        [SCENE_MAP_SPECULAR] = &m->specular_map,
+        [SCENE_MAP_SPECULAR_COLOR] = &m->specular_color_map,
     };
     return maps[map];
 }
@@ -151,6 +153,8 @@ static struct scene_material pack_material(const struct material *m)
         .metallic = m->metallic,
         .roughness = m->roughness,
         .normal_scale = m->normal_scale,
+        .specular_f0 = material_specular_f0(m),
+        .specular = m->specular,
         .flags = (m->double_sided ? SCENE_DOUBLE_SIDED : 0) | (m->unlit ? SCENE_UNLIT : 0),
     };
     for (int i = 0; i < SCENE_MAP_COUNT; i++) {
@@ -240,6 +244,9 @@ static bool make_draws(struct scene_gpu *s)
             fmaxf(s->max_emissive, strongest(s->scene->materials[draw.material].emissive));
         if (mesh->index_count == 0) continue;
         s->variants_used |= 1u << draw.variant;
+        if (s->scene->materials[draw.material].unlit) s->has_unlit = true;
+        if (!material_has_default_specular(&s->scene->materials[draw.material]))
+            s->has_dielectrics = true;
         s->draws[s->draw_count++] = draw;
     }
     host_free(s->host, vertex_base);

@@ -34,6 +34,8 @@ struct scene_gpu {
     struct gpu *gpu;
     const struct scene *scene;
     float max_emissive; // largest channel of all instanced materials, cd/m²
+    bool has_unlit;
+    bool has_dielectrics; // a drawn material has another specular lobe than the default
 
     // Static: positions (vec3), tangent frames (two words, see scene.glsl), surfaces, indices,
     // materials.

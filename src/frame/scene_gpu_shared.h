@@ -14,7 +14,9 @@ struct scene_surface {
 #define SCENE_MAP_METALLIC_ROUGHNESS 1
 #define SCENE_MAP_NORMAL             2
 #define SCENE_MAP_EMISSIVE           3
-#define SCENE_MAP_COUNT              4
+#define SCENE_MAP_SPECULAR           4 // these two are read where FRAME_DIELECTRIC is written
+#define SCENE_MAP_SPECULAR_COLOR     5
+#define SCENE_MAP_COUNT              6
 
 // Specialization constants of shaders that read materials (scene.glsl).
 #define SCENE_CONSTANT_BASE_COLOR_MAP         0
@@ -25,8 +27,8 @@ struct scene_surface {
 #define SCENE_CONSTANT_COUNT                  5
 
 // Bits of scene_material.flags; bit m (m < SCENE_MAP_COUNT): map m uses texture coordinate set 1.
-#define SCENE_DOUBLE_SIDED 16
-#define SCENE_UNLIT        32
+#define SCENE_DOUBLE_SIDED 64
+#define SCENE_UNLIT        128
 
 struct scene_material {
     vec4s base_color;
@@ -34,8 +36,10 @@ struct scene_material {
     float alpha_cutoff;
     float metallic, roughness, normal_scale;
     uint32_t flags;
+    vec3s specular_f0; // before the clamp to 1 and the weight
+    float specular;    // weight
     // For each map, uv' = (row_u · (u, v, 1), row_v · (u, v, 1)): KHR_texture_transform.
-    vec3s map_u[4], map_v[4];
+    vec3s map_u[6], map_v[6];
 };
 
 struct scene_instance {
@@ -55,7 +59,7 @@ struct scene_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct scene_surface) == 20, "layout is shared with GLSL");
-_Static_assert(sizeof(struct scene_material) == 48 + 4 * 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct scene_material) == 64 + 6 * 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct scene_instance) == 128, "layout is shared with GLSL");
 _Static_assert(sizeof(struct scene_push) == 16, "layout is shared with GLSL");
 #endif

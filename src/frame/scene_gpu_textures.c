@@ -4,7 +4,8 @@
 
 static bool is_color(int map)
 {
-    return map == SCENE_MAP_BASE_COLOR || map == SCENE_MAP_EMISSIVE;
+    return map == SCENE_MAP_BASE_COLOR || map == SCENE_MAP_EMISSIVE ||
+           map == SCENE_MAP_SPECULAR_COLOR;
 }
 
 static const struct texture_use *use_of(const struct material *m, int map)
@@ -16,6 +17,10 @@ static const struct texture_use *use_of(const struct material *m, int map)
         return &m->metallic_roughness_map;
     case SCENE_MAP_NORMAL:
         return &m->normal_map;
+    case SCENE_MAP_SPECULAR:
+        return &m->specular_map;
+    case SCENE_MAP_SPECULAR_COLOR:
+        return &m->specular_color_map;
     default:
         return &m->emissive_map;
     }
@@ -78,6 +83,8 @@ static bool make_map(struct scene_gpu *s, const struct material *material, int m
         [SCENE_MAP_METALLIC_ROUGHNESS] = "metallic_roughness_map",
         [SCENE_MAP_NORMAL] = "normal_map",
         [SCENE_MAP_EMISSIVE] = "emissive_map",
+        [SCENE_MAP_SPECULAR] = "specular_map",
+        [SCENE_MAP_SPECULAR_COLOR] = "specular_color_map",
     };
     const struct texture_use *use = use_of(material, map);
     enum gpu_filter filter = use->image >= 0 && use->nearest ? GPU_NEAREST : GPU_LINEAR;

@@ -101,7 +101,7 @@ bool scene_gpu_unchanged_in(const struct scene_gpu *s, mat4s clip_from_world)
 }
 
 // Bindings that every draw and dispatch of the scene may read; returns the count.
-enum { SCENE_BINDINGS = 10 };
+enum { SCENE_BINDINGS = 12 };
 static int scene_bindings(const struct scene_gpu *s, const struct scene_draw *draw,
                           struct gpu_binding out[SCENE_BINDINGS])
 {
@@ -121,6 +121,8 @@ static int scene_bindings(const struct scene_gpu *s, const struct scene_draw *dr
         maps[1],
         maps[2],
         maps[3],
+        maps[4],
+        maps[5],
     };
     memcpy(out, bindings, sizeof bindings);
     return SCENE_BINDINGS;
@@ -130,7 +132,7 @@ void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
                     const struct scene_draw_call *call)
 {
     const struct scene_draw *draw = call->draw;
-    struct gpu_binding bindings[16];
+    struct gpu_binding bindings[SCENE_BINDINGS + 8];
     int count = scene_bindings(s, draw, bindings);
     for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
     memcpy(call->push, &draw->push, sizeof draw->push);

@@ -66,6 +66,7 @@ int fixture_matte(struct frame_fixture *s, vec3s albedo)
     m.base_color = vec4_of(albedo, 1);
     m.metallic = 0;
     m.roughness = 1;
+    m.specular = 0;
     return fixture_material(s, &m);
 }
 

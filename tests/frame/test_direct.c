@@ -1,13 +1,16 @@
 // Direct light against closed forms and the BRDF in double precision.
 #include "frame/frame_fixture.h"
 
+#include "core/ggx_albedo.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
-// brdf.glsl in double precision: Lambert + D V F.
+// brdf.glsl in double precision, for grey: (1 − metallic) · [albedo/π · (1 − E) + k D V F] +
+// metallic · k D V F, each lobe with its own F0, k = 1 + F0 (1 − Ess)/Ess.
 static double brdf(double albedo, double metallic, double roughness, vec3s n, vec3s v, vec3s l)
 {
     double r = fmax(roughness, 0.045), a = r * r, a2 = a * a;
@@ -17,9 +20,15 @@ static double brdf(double albedo, double metallic, double roughness, vec3s n, ve
     double base = nh * nh * (a2 - 1) + 1;
     double d = a2 / (PI * base * base);
     double vis = 0.5 / (nl * sqrt(nv * nv * (1 - a2) + a2) + nv * sqrt(nl * nl * (1 - a2) + a2));
-    double f0 = 0.04 + (albedo - 0.04) * metallic;
-    double f = f0 + (1 - f0) * pow(1 - vh, 5);
-    return albedo * (1 - metallic) / PI + d * vis * f;
+    struct ggx_albedo e = ggx_albedo_at((float)nv, (float)r);
+    double ess = (double)e.a + (double)e.b, schlick = pow(1 - vh, 5), sum = 0;
+    for (int metal = 0; metal < 2; metal++) {
+        double f0 = metal ? albedo : 0.04, k = 1 + f0 * (1 - ess) / ess;
+        double directional = (f0 * (double)e.a + (double)e.b) * k;
+        double lobe = d * vis * k * (f0 + (1 - f0) * schlick);
+        sum += metal ? metallic * lobe : (1 - metallic) * (albedo / PI * (1 - directional) + lobe);
+    }
+    return sum;
 }
 
 // BRDF at a pixel's point of the plane y = 0, with the G-buffer's albedo.
@@ -34,7 +43,9 @@ static double brdf_at(struct frame_fixture *s, uint32_t x, uint32_t y, vec3s l)
 static void begin_on_floor(struct frame_fixture *s, struct gpu *gpu, float albedo)
 {
     fixture_init(s, gpu);
-    fixture_floor(s, 8, fixture_matte(s, vec3_of(albedo, albedo, albedo)));
+    struct material m = material_default();
+    m.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
+    fixture_floor(s, 8, fixture_material(s, &m));
     fixture_look(s, vec3_of(0, 2, 2), vec3_of(0, 0, 0));
 }
 
@@ -42,7 +53,7 @@ TEST_GPU(sun_on_a_plane_gives_irradiance_times_the_brdf)
 {
     for (int i = 0; i < 4; i++) {
         struct frame_fixture s;
-        begin_on_floor(&s, gpu, 0.5f);
+        begin_on_floor(&s, gpu, 1.0f); // drivers decode the sRGB value 1 exactly
         vec3s to_sun = glms_vec3_normalize(vec3_of(0.5f * (float)i, 1, 0.2f));
         fixture_add_sun(&s, glms_vec3_negate(to_sun), vec3_of(1000, 1000, 1000));
         fixture_open(&s);

@@ -129,7 +129,9 @@ TEST_GPU(specular_matches_the_directional_albedo)
             const double got =
                 (double)fixture_pixel(&fixture.frame_fixture, READ_SPECULAR, k, k).x / 10.0;
             const double f0 = of[i].metallic > 0.0f ? 1.0 : 0.04;
-            const double due = reflected_share(f0, n_v, (double)of[i].roughness);
+            const double ess = reflected_share(1.0, n_v, (double)of[i].roughness);
+            const double due =
+                reflected_share(f0, n_v, (double)of[i].roughness) * (1.0 + f0 * (1.0 - ess) / ess);
             worst = fmax(worst, fabs(got - due));
         }
         print_message("metallic %g, roughness %g: within %.3f\n", (double)of[i].metallic,

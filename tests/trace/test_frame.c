@@ -7,13 +7,18 @@
 
 enum { WIDTH = 128, HEIGHT = 72, PIXELS = WIDTH * HEIGHT };
 
-static float *frame_layer_of(struct gpu *gpu, const char *name, enum frame_readback what)
+// Changes a scene's materials after loading; NULL: as they are.
+typedef void change_scene(struct scene *scene);
+
+static float *frame_layer_of(struct gpu *gpu, const char *name, change_scene *change,
+                             enum frame_readback what)
 {
     struct frame_fixture s;
     fixture_init(&s, gpu);
     scene_destroy(s.scene);
     s.scene = scene_load(test_host(), name);
     assert_non_null(s.scene);
+    if (change) change(s.scene);
     s.options.shadow_size = 1024;
     s.width = WIDTH;
     s.height = HEIGHT;
@@ -28,11 +33,13 @@ static float *frame_layer_of(struct gpu *gpu, const char *name, enum frame_readb
     return pixels;
 }
 
-static struct image reference_layer_of(const char *name, enum reference_layer layer)
+static struct image reference_layer_of(const char *name, change_scene *change,
+                                       enum reference_layer layer)
 {
     struct scene *scene = scene_load(test_host(), name);
     struct scene_pose pose;
     assert_non_null(scene);
+    if (change) change(scene);
     assert_true(pose_init(&pose, scene, scene->animation_count ? 0 : -1, 0));
     struct world_camera camera = pose_camera(&pose, 0);
     struct reference_options options = reference_options_default();
@@ -55,11 +62,11 @@ static int compare(const void *a, const void *b)
 }
 
 // Sorted relative differences of pixels that are not black in both; returns their number.
-static int differences(struct gpu *gpu, const char *name, enum frame_readback what,
-                       enum reference_layer layer, double out[PIXELS])
+static int differences(struct gpu *gpu, const char *name, change_scene *change,
+                       enum frame_readback what, enum reference_layer layer, double out[PIXELS])
 {
-    float *frame = frame_layer_of(gpu, name, what);
-    struct image reference = reference_layer_of(name, layer);
+    float *frame = frame_layer_of(gpu, name, change, what);
+    struct image reference = reference_layer_of(name, change, layer);
     int count = 0, channels = reference.channels;
     for (int i = 0; i < PIXELS; i++) {
         double difference = 0, size = 0;
@@ -80,11 +87,35 @@ static int differences(struct gpu *gpu, const char *name, enum frame_readback wh
 TEST_GPU(direct_light_of_the_frame_equals_the_reference)
 {
     static double d[PIXELS];
-    int count = differences(gpu, "@cornell:light=point", READ_DIRECT, REFERENCE_DIRECT, d);
+    int count = differences(gpu, "@cornell:light=point", NULL, READ_DIRECT, REFERENCE_DIRECT, d);
     CHECK(count > PIXELS / 4);
     // Errors of half floats, 8-bit albedo and approximate sRGB decoding; the last tenth are edges.
     CHECK(d[count / 2] < 0.007);
     CHECK(d[count * 9 / 10] < 0.01);
+}
+
+static void change_materials(struct scene *scene)
+{
+    for (int i = 0; i < scene->material_count; i++) {
+        struct material *m = &scene->materials[i];
+        m->ior = 1.2f + 0.3f * (float)(i % 3);
+        m->specular = i % 4 == 0 ? 0.0f : 0.8f;
+        m->specular_color = vec3_of(1, 0.6f, 0.3f);
+        m->roughness = 0.3f + 0.2f * (float)(i % 3);
+        m->metallic = i % 5 == 4 ? 0.7f : 0.0f;
+        m->unlit = i % 6 == 5;
+    }
+}
+
+TEST_GPU(specular_ior_and_unlit_of_the_frame_equal_the_reference)
+{
+    static double d[PIXELS];
+    int count = differences(gpu, "@cornell:light=point", change_materials, READ_DIRECT,
+                            REFERENCE_DIRECT, d);
+    CHECK(count > PIXELS / 4);
+    CHECK(d[count / 2] < 0.007);
+    CHECK(d[count * 9 / 10] < 0.015);
+    print_message("median %.4f, nine in ten %.4f\n", d[count / 2], d[count * 9 / 10]);
 }
 
 TEST_GPU(surfaces_of_the_frame_equal_the_reference)
@@ -106,7 +137,7 @@ TEST_GPU(surfaces_of_the_frame_equal_the_reference)
     };
     static double d[PIXELS];
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        int count = differences(gpu, cases[i].scene, cases[i].what, cases[i].layer, d);
+        int count = differences(gpu, cases[i].scene, NULL, cases[i].what, cases[i].layer, d);
         CHECK(count > PIXELS / 4);
         CHECK_NEAR(d[count * 9 / 10], 0, cases[i].tolerance);
     }

@@ -2,12 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Outgoing radiance L = direct (with emission and sky) + albedo·(1−metallic)/π · E · visibility +
-// specular, and the tone-mapped display image.
+// Outgoing radiance L = direct (with emission and sky) + diffuse lobe (brdf.glsl) · E · visibility
+// + specular, and the tone-mapped display image.
+#define GGX_ALBEDO_BINDING 11
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/composite/composite_shared.h"
 #include "frame/composite/exposure_shared.h"
+#include "frame/octahedral.glsl"
 #include "image/tonemap.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -17,6 +19,7 @@ layout(constant_id = COMPOSITE_CONSTANT_SPECULAR) const bool HAS_SPECULAR = fals
 layout(constant_id = COMPOSITE_CONSTANT_VISIBILITY) const bool HAS_VISIBILITY = false;
 layout(constant_id = COMPOSITE_CONSTANT_INDIRECT) const bool WRITES_INDIRECT = false;
 layout(constant_id = COMPOSITE_CONSTANT_DISPLAY) const bool WRITES_DISPLAY = false;
+layout(constant_id = COMPOSITE_CONSTANT_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 
 layout(set = 0, binding = 1) uniform sampler2D direct_layer;
 layout(set = 0, binding = 2) uniform sampler2D albedo_layer;
@@ -31,18 +34,33 @@ layout(set = 0, binding = 10, scalar) readonly buffer exposure_state
 {
     exposure_values state;
 };
+layout(set = 0, binding = 12) uniform sampler2D depth_layer;
+layout(set = 0, binding = 13) uniform sampler2D normal_layer;
+layout(set = 0, binding = 14) uniform sampler2D dielectric_layer;
+
+vec3 diffuse_lobe(ivec2 pixel, vec3 albedo)
+{
+    float depth = texelFetch(depth_layer, pixel, 0).r;
+    if (!(depth > 0.0)) return vec3(0.0);
+    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), depth);
+    vec3 normal = octahedral_decode(texelFetch(normal_layer, pixel, 0).rg);
+    vec2 material = texelFetch(material_layer, pixel, 0).rg;
+    float n_v = brdf_cosine(normal, normalize(frame.camera_position - position));
+    vec4 dielectric =
+        HAS_DIELECTRIC ? texelFetch(dielectric_layer, pixel, 0) : BRDF_DEFAULT_DIELECTRIC;
+    return brdf_lobes_at(brdf_material_of(albedo, material, dielectric), n_v).diffuse;
+}
 
 vec3 indirect_light(ivec2 pixel)
 {
     vec3 light = vec3(0.0);
     vec4 albedo = texelFetch(albedo_layer, pixel, 0); // alpha: 0 where no surface is visible
     if (HAS_IRRADIANCE) {
-        light = brdf_diffuse(albedo.rgb, texelFetch(material_layer, pixel, 0).g) *
-                texelFetch(irradiance_layer, pixel, 0).rgb;
+        light = diffuse_lobe(pixel, albedo.rgb) * texelFetch(irradiance_layer, pixel, 0).rgb;
         if (HAS_VISIBILITY) light *= texelFetch(visibility_layer, pixel, 0).r;
     }
     if (HAS_SPECULAR) light += texelFetch(specular_layer, pixel, 0).rgb;
-    return albedo.a > 0.0 ? min(light, vec3(HALF_MAX)) : vec3(0.0);
+    return frame_is_lit(albedo.a) ? min(light, vec3(HALF_MAX)) : vec3(0.0);
 }
 
 // IEC 61966-2-1.

@@ -5,7 +5,6 @@
 // Sum of log2 luminances per work group. The order of additions depends on the image size only, so
 // equal images give equal bits. The first pass stores its log2 luminances for the second.
 #include "frame/frame.glsl"
-#include "frame/brdf.glsl"
 #include "frame/composite/exposure_shared.h"
 #include "frame/composite/exposure_reduce.glsl"
 
@@ -27,6 +26,7 @@ layout(set = 0, binding = 6, rgba16f) uniform image2D metered_layer;
 
 layout(constant_id = EXPOSURE_CONSTANT_SECOND_PASS) const bool SECOND_PASS = false;
 
+const float INV_PI = 0.31830988618;
 const float NO_SURFACE = 0.0, UNLIT = 1.0, LIT = 2.0;
 
 layout(push_constant, scalar) uniform push_block
@@ -39,16 +39,19 @@ layout(push_constant, scalar) uniform push_block
 vec3 metered_radiance(ivec2 pixel)
 {
     vec3 radiance = texelFetch(direct_layer, pixel, 0).rgb;
+    vec3 albedo = texelFetch(albedo_layer, pixel, 0).rgb;
     float metallic = texelFetch(material_layer, pixel, 0).g;
-    return radiance + brdf_diffuse(texelFetch(albedo_layer, pixel, 0).rgb, metallic) * push.emitted;
+    return radiance + albedo * ((1.0 - metallic) * INV_PI) * push.emitted;
 }
 
-// x: log2 of the luminance, y: kind of pixel. Sky pixels are not metered.
+// x: log2 of the luminance, y: kind of pixel. Sky and unlit materials are not metered.
 vec2 meter(ivec2 pixel)
 {
     float l = dot(metered_radiance(pixel), vec3(0.2126, 0.7152, 0.0722));
     bool lit = l > 0.0 && !isinf(l);
-    float kind = texelFetch(albedo_layer, pixel, 0).a == 0.0 ? NO_SURFACE : lit ? LIT : UNLIT;
+    float kind = !frame_is_lit(texelFetch(albedo_layer, pixel, 0).a) ? NO_SURFACE
+                 : lit                                               ? LIT
+                                                                     : UNLIT;
     return vec2(kind == LIT ? log2(l) : 0.0, kind);
 }
 

@@ -4,6 +4,7 @@
 
 // Direct light: emission plus reflected light of all punctual lights with shadows. Pixels without a
 // surface get the sky radiance.
+#define GGX_ALBEDO_BINDING 10
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/direct/direct_shared.h"
@@ -22,6 +23,7 @@ layout(set = 0, binding = 5) uniform sampler2D normal_layer;
 layout(set = 0, binding = 6) uniform sampler2D albedo_layer;
 layout(set = 0, binding = 7) uniform sampler2D material_layer;
 layout(set = 0, binding = 8) uniform sampler2D emissive_layer;
+layout(set = 0, binding = 11) uniform sampler2D dielectric_layer;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D direct_layer;
 
 layout(push_constant, scalar) uniform push_block
@@ -32,12 +34,12 @@ layout(push_constant, scalar) uniform push_block
 // A variant without lights reads depth and emission only: software drivers execute a loop body once
 // even for zero iterations.
 layout(constant_id = DIRECT_CONSTANT_HAS_LIGHTS) const bool HAS_LIGHTS = true;
+layout(constant_id = DIRECT_CONSTANT_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 
 struct surface {
     vec3 position, normal, to_viewer;
     vec3 geometric_normal; // of the triangle, on the viewer's side
-    vec3 diffuse, f0;
-    float alpha;
+    brdf_lobes lobes;
 };
 
 // Depth at a pixel, clamped to the image.
@@ -85,9 +87,10 @@ surface read_surface(ivec2 pixel, float depth)
     s.geometric_normal = geometric_normal(pixel, depth, s.position, s.to_viewer);
     vec3 albedo = texelFetch(albedo_layer, pixel, 0).rgb;
     vec2 material = texelFetch(material_layer, pixel, 0).rg;
-    s.diffuse = brdf_diffuse(albedo, material.y);
-    s.f0 = brdf_f0(albedo, material.y);
-    s.alpha = brdf_alpha(material.x);
+    vec4 dielectric =
+        HAS_DIELECTRIC ? texelFetch(dielectric_layer, pixel, 0) : BRDF_DEFAULT_DIELECTRIC;
+    s.lobes = brdf_lobes_at(brdf_material_of(albedo, material, dielectric),
+                            brdf_cosine(s.normal, s.to_viewer));
     return s;
 }
 
@@ -109,7 +112,7 @@ vec3 reflected_radiance(surface s, frame_light light)
         attenuation *= shadow_visibility(light, s.position, s.geometric_normal, to_light, facing,
                                          push.shadow_size, push.shadow_radius);
     if (!facing) return vec3(0.0);
-    vec3 brdf = s.diffuse + brdf_specular(s.normal, s.to_viewer, to_light, s.alpha, s.f0);
+    vec3 brdf = s.lobes.diffuse + brdf_specular(s.lobes, s.normal, s.to_viewer, to_light);
     return brdf * light.intensity * (attenuation * cosine);
 }
 
@@ -121,7 +124,7 @@ void main()
     vec3 radiance = frame.sky;
     if (depth > 0.0) {
         radiance = texelFetch(emissive_layer, pixel, 0).rgb;
-        if (HAS_LIGHTS) {
+        if (HAS_LIGHTS && frame_is_lit(texelFetch(albedo_layer, pixel, 0).a)) {
             surface s = read_surface(pixel, depth);
             for (uint i = 0; i < frame.light_count; i++)
                 radiance += reflected_radiance(s, frame_light_table[i]);

@@ -4,7 +4,9 @@
 
 #include "core/shared.h"
 
-#define DIRECT_CONSTANT_HAS_LIGHTS 0 // specialization constant
+// Specialization constants.
+#define DIRECT_CONSTANT_HAS_LIGHTS 0
+#define DIRECT_CONSTANT_DIELECTRIC 1
 
 struct direct_push {
     float shadow_size;     // texels

@@ -5,31 +5,47 @@
 
 #include "frame_shaders.h"
 
-static bool make_pipeline(struct gbuffer *g, uint32_t variant, bool motion)
+enum { BASE_COLORS = 4 }; // normal, albedo, material, emissive
+
+static bool make_pipeline(struct gbuffer *g, uint32_t variant, uint32_t layers)
 {
+    static const struct gpu_shader *const vertex[GBUFFER_LAYER_SETS] = {
+        &shader_gbuffer_still_vert,
+        &shader_gbuffer_motion_vert,
+        &shader_gbuffer_dielectric_vert,
+        &shader_gbuffer_dielectric_motion_vert,
+    };
+    static const struct gpu_shader *const fragment[GBUFFER_LAYER_SETS] = {
+        &shader_gbuffer_still_frag,
+        &shader_gbuffer_motion_frag,
+        &shader_gbuffer_dielectric_frag,
+        &shader_gbuffer_dielectric_motion_frag,
+    };
     struct gpu_constant constants[SCENE_CONSTANT_COUNT];
     gpu_constants_of_bits(variant, constants, SCENE_CONSTANT_COUNT);
     struct gpu_graphics_desc desc = {
         .name = "frame.gbuffer",
-        .vertex = motion ? &shader_gbuffer_motion_vert : &shader_gbuffer_vert,
-        .fragment = motion ? &shader_gbuffer_motion_frag : &shader_gbuffer_frag,
+        .vertex = vertex[layers],
+        .fragment = fragment[layers],
         .constants = constants,
         .constant_count = SCENE_CONSTANT_COUNT,
-        .color_formats = { GPU_RG16F, GPU_RGBA8_SRGB, GPU_RG8, GPU_RGBA16F,
-                           motion ? GPU_RGBA16F : GPU_FORMAT_NONE },
+        .color_formats = { GPU_RG16F, GPU_RGBA8_SRGB, GPU_RG8, GPU_RGBA16F },
         .depth_format = GPU_D32F,
         .depth_compare = GPU_GREATER,
         .depth_write = true,
     };
-    return gpu_graphics_pipeline_create(g->gpu, &desc, &g->pipelines[motion][variant]);
+    int count = BASE_COLORS;
+    if (layers & GBUFFER_DIELECTRIC) desc.color_formats[count++] = GPU_RGBA8;
+    if (layers & GBUFFER_MOTION) desc.color_formats[count++] = GPU_RGBA16F;
+    return gpu_graphics_pipeline_create(g->gpu, &desc, &g->pipelines[layers][variant]);
 }
 
-bool gbuffer_prepare(struct gbuffer *g, struct gpu *gpu, uint32_t variants, bool motion)
+bool gbuffer_prepare(struct gbuffer *g, struct gpu *gpu, uint32_t variants, uint32_t layers)
 {
     g->gpu = gpu;
     for (uint32_t v = 0; v < VARIANT_COUNT; v++) {
-        if (!(variants >> v & 1u) || g->pipelines[motion][v].id) continue;
-        if (!make_pipeline(g, v, motion)) return false;
+        if (!(variants >> v & 1u) || g->pipelines[layers][v].id) continue;
+        if (!make_pipeline(g, v, layers)) return false;
     }
     return true;
 }
@@ -37,27 +53,29 @@ bool gbuffer_prepare(struct gbuffer *g, struct gpu *gpu, uint32_t variants, bool
 static void begin(struct gpu_cmd *cmd, const struct scene_gpu *scene,
                   const struct gbuffer_targets *t)
 {
-    bool motion = t->motion.id != 0;
-    gpu_render_begin(cmd, &(struct gpu_render_desc){
-                              .color = { { .image = t->normal },
-                                         { .image = t->albedo },
-                                         { .image = t->material },
-                                         { .image = t->emissive },
-                                         { .image = t->motion } },
-                              .color_count = motion ? 5 : 4,
-                              .depth = { .image = t->depth },
-                              .width = t->width,
-                              .height = t->height,
-                              .reads = scene->reads,
-                              .read_count = scene->read_count,
-                          });
+    struct gpu_render_desc desc = {
+        .color = { { .image = t->normal },
+                   { .image = t->albedo },
+                   { .image = t->material },
+                   { .image = t->emissive } },
+        .color_count = BASE_COLORS,
+        .depth = { .image = t->depth },
+        .width = t->width,
+        .height = t->height,
+        .reads = scene->reads,
+        .read_count = scene->read_count,
+    };
+    if (t->dielectric.id) desc.color[desc.color_count++].image = t->dielectric;
+    if (t->motion.id) desc.color[desc.color_count++].image = t->motion;
+    gpu_render_begin(cmd, &desc);
 }
 
 void gbuffer_record(const struct gbuffer *g, struct gpu_cmd *cmd, const struct scene_gpu *scene,
                     const struct gbuffer_targets *targets, mat4s clip_from_world,
                     struct gpu_binding constants)
 {
-    bool motion = targets->motion.id != 0;
+    uint32_t layers = (targets->motion.id ? GBUFFER_MOTION : 0) |
+                      (targets->dielectric.id ? GBUFFER_DIELECTRIC : 0);
     gpu_scope_begin(cmd, "gbuffer");
     begin(cmd, scene, targets);
     for (int i = 0; i < scene->draw_count; i++) {
@@ -67,7 +85,7 @@ void gbuffer_record(const struct gbuffer *g, struct gpu_cmd *cmd, const struct s
         bool double_sided = scene->scene->materials[draw->material].double_sided;
         scene_gpu_draw(scene, cmd,
                        &(struct scene_draw_call){
-                           .pipeline = g->pipelines[motion][draw->variant],
+                           .pipeline = g->pipelines[layers][draw->variant],
                            .draw = draw,
                            .push = &push,
                            .push_bytes = sizeof push,
@@ -83,7 +101,7 @@ void gbuffer_record(const struct gbuffer *g, struct gpu_cmd *cmd, const struct s
 void gbuffer_finish(struct gbuffer *g)
 {
     if (!g->gpu) return;
-    for (int m = 0; m < 2; m++) {
+    for (int m = 0; m < GBUFFER_LAYER_SETS; m++) {
         for (int v = 0; v < VARIANT_COUNT; v++) gpu_pipeline_destroy(g->gpu, &g->pipelines[m][v]);
     }
     *g = (struct gbuffer){ 0 };

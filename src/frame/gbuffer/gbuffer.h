@@ -3,19 +3,26 @@
 
 #include "frame/scene_gpu.h"
 
+// The optional layers.
+enum gbuffer_layers {
+    GBUFFER_MOTION = 1,
+    GBUFFER_DIELECTRIC = 2,
+    GBUFFER_LAYER_SETS = 4,
+};
+
 struct gbuffer {
     struct gpu *gpu;
-    gpu_pipeline pipelines[2][VARIANT_COUNT]; // [with motion]
+    gpu_pipeline pipelines[GBUFFER_LAYER_SETS][VARIANT_COUNT]; // [gbuffer_layers]
 };
 
 struct gbuffer_targets {
     gpu_image depth, normal, albedo, material, emissive;
-    gpu_image motion; // optional
+    gpu_image motion, dielectric; // may be empty
     uint32_t width, height;
 };
 
 // Creates missing pipelines for these variants (bit v: variant v).
-bool gbuffer_prepare(struct gbuffer *gbuffer, struct gpu *gpu, uint32_t variants, bool motion);
+bool gbuffer_prepare(struct gbuffer *gbuffer, struct gpu *gpu, uint32_t variants, uint32_t layers);
 void gbuffer_record(const struct gbuffer *gbuffer, struct gpu_cmd *cmd,
                     const struct scene_gpu *scene, const struct gbuffer_targets *targets,
                     mat4s clip_from_world, struct gpu_binding constants);

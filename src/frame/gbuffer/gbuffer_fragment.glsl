@@ -1,7 +1,7 @@
 // Fragment shader of the G-buffer. Formats: frame.h.
 //
-// Unlit materials (KHR_materials_unlit) are purely diffuse with their base colour as albedo: as
-// emitters they would add light that the scene does not have, as black surfaces remove light.
+// Unlit materials (KHR_materials_unlit) have the radiance base colour × unlit_white in the emissive
+// layer and the alpha ½ in the albedo layer: they reflect nothing.
 #define GBUFFER_FRAGMENT
 #define SCENE_FRAGMENT
 #include "frame/frame.glsl"
@@ -16,8 +16,16 @@ layout(location = 0) out vec2 out_normal;
 layout(location = 1) out vec4 out_albedo;
 layout(location = 2) out vec2 out_material;
 layout(location = 3) out vec4 out_emissive;
+#ifdef GBUFFER_DIELECTRIC
+layout(set = 0, binding = 12) uniform sampler2D specular_map;
+layout(set = 0, binding = 13) uniform sampler2D specular_color_map;
+layout(location = 4) out vec4 out_dielectric; // see FRAME_DIELECTRIC
+#define MOTION_LOCATION 5
+#else
+#define MOTION_LOCATION 4
+#endif
 #ifdef GBUFFER_MOTION
-layout(location = 4) out vec4 out_motion; // see FRAME_MOTION
+layout(location = MOTION_LOCATION) out vec4 out_motion; // see FRAME_MOTION
 #endif
 
 // glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w. Back faces of double-sided
@@ -43,12 +51,30 @@ vec3 emitted_radiance()
     return min(radiance * frame.radiance_scale, vec3(HALF_MAX));
 }
 
+#ifdef GBUFFER_DIELECTRIC
+// √F0 and F90.
+vec4 dielectric()
+{
+    uint m = push.draw.material;
+    vec3 f0 = scene_material_table[m].specular_f0 *
+              texture(specular_color_map, vary_specular_color_uv).rgb;
+    float weight = scene_material_table[m].specular * texture(specular_map, vary_specular_uv).a;
+    return vec4(sqrt(min(f0, 1.0) * weight), weight);
+}
+#endif
+
 void main()
 {
-    out_albedo = vec4(scene_base_color(vary_base_color_uv, vary_color).rgb, 1.0);
+    bool unlit = (scene_material_table[push.draw.material].flags & SCENE_UNLIT) != 0u;
+    out_albedo = vec4(scene_base_color(vary_base_color_uv, vary_color).rgb, unlit ? 0.5 : 1.0);
     out_normal = octahedral_encode(shading_normal());
     out_material = scene_roughness_metallic(vary_metallic_roughness_uv);
-    out_emissive = vec4(emitted_radiance(), 0.0);
+    vec3 emitted =
+        unlit ? min(out_albedo.rgb * frame.unlit_white, vec3(HALF_MAX)) : emitted_radiance();
+    out_emissive = vec4(emitted, 0.0);
+#ifdef GBUFFER_DIELECTRIC
+    out_dielectric = dielectric();
+#endif
 #ifdef GBUFFER_MOTION
     vec2 current = vary_current.xy / vary_current.z;
     // A point behind the previous camera has no previous position: the largest motion marks it.

@@ -20,6 +20,11 @@ layout(location = 7) VARY vec3 vary_current;
 layout(location = 8) VARY vec3 vary_previous;
 #endif
 
+#ifdef GBUFFER_DIELECTRIC
+layout(location = 9) VARY vec2 vary_specular_uv;
+layout(location = 10) VARY vec2 vary_specular_color_uv;
+#endif
+
 layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;

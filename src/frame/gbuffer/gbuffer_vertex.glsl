@@ -25,6 +25,10 @@ void main()
                                      : vec2(0.0);
     vary_normal_uv = HAS_NORMAL_MAP ? scene_map_uv(SCENE_MAP_NORMAL, surface) : vec2(0.0);
     vary_emissive_uv = HAS_EMISSIVE_MAP ? scene_map_uv(SCENE_MAP_EMISSIVE, surface) : vec2(0.0);
+#ifdef GBUFFER_DIELECTRIC
+    vary_specular_uv = scene_map_uv(SCENE_MAP_SPECULAR, surface);
+    vary_specular_color_uv = scene_map_uv(SCENE_MAP_SPECULAR_COLOR, surface);
+#endif
     vary_color = unpackUnorm4x8(surface.color);
 #ifdef GBUFFER_MOTION
     vec4 previous =

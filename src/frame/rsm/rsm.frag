@@ -11,6 +11,7 @@
 #include "frame/octahedral.glsl"
 #include "frame/rsm/rsm_varyings.glsl"
 #include "frame/scene.glsl"
+#include "frame/scene_reflectance.glsl"
 
 layout(set = 0, binding = 13, scalar) readonly buffer frame_lights
 {
@@ -23,7 +24,7 @@ layout(location = 1) out vec4 out_flux;
 void main()
 {
     vec3 base = scene_base_color(vary_base_color_uv, vary_color).rgb;
-    float metallic = scene_roughness_metallic(vary_metallic_roughness_uv).y;
+    vec2 material = scene_roughness_metallic(vary_metallic_roughness_uv);
 
     frame_light light = frame_light_table[rsm_face_table[push.face].light];
     vec3 from_light = light.type == FRAME_LIGHT_SUN ? light.direction : vary_world - light.position;
@@ -36,5 +37,6 @@ void main()
     float length2 = dot(vary_normal, vary_normal);
     vec3 n = length2 > 1e-12 ? vary_normal * inversesqrt(length2) : -from_light;
     out_normal = octahedral_encode(dot(n, from_light) > 0.0 ? -n : n);
-    out_flux = vec4(base * ((1.0 - metallic) * falloff), 1.0);
+    vec3 reflectance = scene_reflectance(push.draw.material, base, material);
+    out_flux = vec4(reflectance * falloff, 1.0);
 }

@@ -10,6 +10,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "frame/scene_triangles.glsl"
+#include "frame/scene_reflectance.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 
 layout(local_size_x = SCENE_TRIANGLES_LOCAL) in;
@@ -101,8 +102,9 @@ vec3 reflectance_at(triangle t, vec3 weight)
         colour += weight[k] * unpackUnorm4x8(scene_surface_of(t.vertices[k]).color).rgb;
     }
     colour *= material.base_color.rgb * textureLod(base_color_map, uv, t.lod).rgb;
-    return colour *
-           (1.0 - material.metallic * textureLod(metallic_roughness_map, metallic_uv, t.lod).b);
+    vec2 roughness_metallic = vec2(material.roughness, material.metallic) *
+                              textureLod(metallic_roughness_map, metallic_uv, t.lod).gb;
+    return scene_reflectance(push.draw.material, colour, roughness_metallic);
 }
 
 void add_side(vec3 position, vec3 normal, vec4 amount)

@@ -113,7 +113,6 @@ static bool create(struct vct *vct, const char *name, const struct technique_cre
     vct->temporal.unlit = options.occlusion;
     vct->clip_count = vct_clip_count(&vct->options);
     vct_cone_axes(vct->options.cones, vct->cone_axes);
-    if (vct->options.specular) vct_fill_environment_brdf(&vct->environment_brdf);
     return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
            vct_create_pipelines(vct) &&
            (!vct->options.temporal || vct_temporal_create(&vct->temporal, vct->gpu));

@@ -63,8 +63,7 @@ struct vct {
     gpu_image gathered_irradiance;    // RGBA16F: irradiance, fraction of the cone set
 
     vec3s cone_axes[VCT_MAX_CONES];
-    struct vct_environment_brdf_table environment_brdf; // with specular
-    struct vct_temporal temporal;                       // with temporal
+    struct vct_temporal temporal; // with temporal
 
     // Kept between frames.
     struct vct_params params; // of the frame being recorded, but for the placement of a grid

@@ -43,13 +43,7 @@ struct vct_specular_params {
     float gain;
     float texel_m; // of the finest level
     uint32_t last_mip;
-};
-
-// Uniform block "vct_environment_brdf": directional albedo is F0 · first + second (Karis 2013).
-// Nodes are equidistant in n·v, which varies fastest, and in roughness.
-#define VCT_BRDF_NODES 16
-struct vct_environment_brdf_table {
-    float pairs[VCT_BRDF_NODES * VCT_BRDF_NODES * 2];
+    uint32_t has_dielectric; // bool: FRAME_DIELECTRIC is bound
 };
 
 // Uniform block "vct_history": the image plane of the previous frame. The view ray of pixel (x, y)
@@ -68,7 +62,7 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_small_emitter) == (5 + 6 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_specular_params) == 6 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_specular_params) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_history_params) == 14 * 4, "layout is shared with GLSL");
 #endif
 

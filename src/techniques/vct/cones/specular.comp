@@ -12,6 +12,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 1
+#define GGX_ALBEDO_BINDING      9
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
@@ -31,12 +32,8 @@ layout(set = 0, binding = 4) uniform sampler2D normal;
 layout(set = 0, binding = 5) uniform sampler3D light;
 layout(set = 0, binding = 6) uniform sampler2D albedo;
 layout(set = 0, binding = 7) uniform sampler2D material;
+layout(set = 0, binding = 10) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
-
-layout(set = 0, binding = 9, scalar) uniform vct_environment_brdf
-{
-    vct_environment_brdf_table environment_brdf;
-};
 
 // Tangent of the half-angle: a cone wider than 45° is no better resolved by the texels.
 const float WIDEST = 1.0;
@@ -45,25 +42,6 @@ float tan_half_angle(float alpha)
 {
     if (set.tan_half > 0.0) return min(set.tan_half, WIDEST);
     return alpha < 1.0 ? min(2.0 * alpha / (1.0 - alpha * alpha), WIDEST) : WIDEST; // (1)
-}
-
-vec2 albedo_terms_at(ivec2 node)
-{
-    int at = 2 * (node.y * VCT_BRDF_NODES + node.x);
-    return vec2(environment_brdf.pairs[at], environment_brdf.pairs[at + 1]);
-}
-
-// Directional albedo, bilinear in the table.
-vec3 directional_albedo(vec3 f0, float n_v, float roughness)
-{
-    vec2 at = clamp(vec2(n_v, roughness), 0.0, 1.0) * float(VCT_BRDF_NODES - 1);
-    ivec2 low = min(ivec2(at), ivec2(VCT_BRDF_NODES - 2));
-    vec2 fraction = at - vec2(low);
-    vec2 terms =
-        mix(mix(albedo_terms_at(low), albedo_terms_at(low + ivec2(1, 0)), fraction.x),
-            mix(albedo_terms_at(low + ivec2(0, 1)), albedo_terms_at(low + ivec2(1, 1)), fraction.x),
-            fraction.y);
-    return f0 * terms.x + terms.y;
 }
 
 // Mirror direction, lifted to the horizon where a normal map bends it below the surface.
@@ -83,8 +61,10 @@ vec3 reflected_radiance(ivec2 pixel, float z)
     float width = 2.0 * set.step_size * tan_half_angle(brdf_alpha(roughness_metallic.x));
     vec4 traced = vct_cone(light, at, n, mirror_direction(to_viewer, n), set.offset, width,
                            set.last_mip, vct_start_at(at));
-    vec3 f0 = brdf_f0(texelFetch(albedo, pixel, 0).rgb, roughness_metallic.y);
-    vec3 reflectance = directional_albedo(f0, dot(n, to_viewer), roughness_metallic.x);
+    vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
+    if (set.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);
+    brdf_material m = brdf_material_of(texelFetch(albedo, pixel, 0).rgb, roughness_metallic, lobe);
+    vec3 reflectance = brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo;
     return set.gain * reflectance * (traced.rgb + (1.0 - traced.a) * frame.sky);
 }
 

@@ -6,5 +6,4 @@
 
 struct vct;
 
-void vct_fill_environment_brdf(struct vct_environment_brdf_table *out);
 void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);

@@ -15,6 +15,7 @@
 #endif
 #include "techniques/vct/vct_constants.h"
 #include "techniques/vct/voxelize/voxelize.glsl"
+#include "frame/scene_reflectance.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
 #define VCT_SLOTS(name)   vct_##name
 #define VCT_SLOTS_BINDING 16
@@ -133,16 +134,15 @@ surface_point surface_at(vec3 at)
     surface_point s;
     s.color =
         scene_material_table[m].base_color * (corner_a * at.x + corner_b * at.y + corner_c * at.z);
-    float metallic = scene_material_table[m].metallic;
+    vec2 material = vec2(scene_material_table[m].roughness, scene_material_table[m].metallic);
     s.emission = scene_material_table[m].emissive;
     if (HAS_BASE_COLOR_MAP) {
         s.color *= textureLod(base_color_map, map_at(base_color_coords, at), base_color_coords.lod);
-        metallic *= textureLod(metallic_roughness_map, map_at(metallic_coords, at), 4.0).b;
+        material *= textureLod(metallic_roughness_map, map_at(metallic_coords, at), 4.0).gb;
         s.emission *=
             textureLod(emissive_map, map_at(emissive_coords, at), emissive_coords.lod).rgb;
     }
-    if ((scene_material_table[m].flags & SCENE_UNLIT) != 0u) metallic = 0.0;
-    s.reflectance = s.color.rgb * (1.0 - metallic);
+    s.reflectance = scene_reflectance(m, s.color.rgb, material);
     return s;
 }
 

@@ -1,8 +1,0 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
-
-#define GBUFFER_MOTION
-#define SCENE_VERTEX_MOTION
-#include "frame/scene_gpu_shared.h"
-#include "frame/gbuffer/gbuffer_vertex.glsl"
