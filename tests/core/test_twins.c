@@ -1,11 +1,14 @@
-// The GLSL twin sh.glsl, run on the GPU, against sh.c.
+// The GLSL twins sh.glsl and ggx_albedo.glsl, run on the GPU, against C.
 #include "framework/gpu_test.h"
 
+#include "core/ggx_albedo.h"
 #include "core/rng.h"
 #include "core/sampling.h"
 #include "core/sh.h"
 
 #include "core_test_shaders.h"
+
+#include <math.h>
 
 enum { COUNT = 200 };
 
@@ -105,4 +108,56 @@ TEST_GPU(evaluation_and_irradiance_equal_those_of_c)
         CHECK_NEAR(twins[i].value4, sh_dot(2, coefficients, directions[i]), 3e-6);
         CHECK_NEAR(twins[i].irradiance4, sh_dot(2, irradiance, directions[i]), 1e-5);
     }
+}
+
+// A and B averaged over the cosine-weighted hemisphere, ∫ E d(μ²), by the table.
+static void mean_albedo(float roughness, double out[2])
+{
+    enum { STEPS = 2000 };
+    out[0] = out[1] = 0;
+    for (int i = 0; i < STEPS; i++) {
+        const struct ggx_albedo e = ggx_albedo_at(sqrtf(((float)i + 0.5f) / STEPS), roughness);
+        out[0] += (double)e.a / STEPS;
+        out[1] += (double)e.b / STEPS;
+    }
+}
+
+TEST_GPU(albedo_of_ggx_equals_that_of_c_and_its_mean_fits)
+{
+    static vec2s places[COUNT];
+    static vec4s albedos[COUNT];
+    for (uint32_t i = 0; i < COUNT; i++) {
+        struct rng rng = rng_for(2, i, 0);
+        const float u = rng_float(&rng);
+        places[i].x = i == 0 ? 0.0f : i == 1 ? 1.0f : u * u;
+        places[i].y = i < 2 ? (i ? 1.0f : GGX_MIN_ROUGHNESS)
+                            : GGX_MIN_ROUGHNESS + (1.0f - GGX_MIN_ROUGHNESS) * rng_float(&rng);
+    }
+    gpu_buffer table = make_buffer(gpu, "test.table", ggx_albedo_table, sizeof ggx_albedo_table);
+    gpu_buffer in = make_buffer(gpu, "test.places", places, sizeof places);
+    gpu_buffer out = make_buffer(gpu, "test.albedos", albedos, sizeof albedos);
+    gpu_pipeline pipeline = { 0 };
+    CHECK(gpu_compute_pipeline_create(gpu, "test.ggx_albedo", &shader_core_ggx_albedo_comp, NULL, 0,
+                                      &pipeline));
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    CHECK(cmd != NULL);
+    gpu_dispatch(cmd, pipeline,
+                 GPU_BIND({ .name = "ggx_albedo", .buffer = table },
+                          { .name = "Places", .buffer = in }, { .name = "Albedos", .buffer = out }),
+                 NULL, 0, gpu_groups(COUNT, 64), 1, 1);
+    CHECK(gpu_frame_end(gpu, cmd));
+    CHECK(gpu_buffer_download(gpu, out, 0, albedos, sizeof albedos));
+    for (int i = 0; i < COUNT; i++) {
+        const struct ggx_albedo e = ggx_albedo_at(places[i].x, places[i].y);
+        double mean[2];
+        mean_albedo(places[i].y, mean);
+        CHECK_NEAR(albedos[i].x, e.a, 2e-5);
+        CHECK_NEAR(albedos[i].y, e.b, 2e-5);
+        CHECK_NEAR(albedos[i].z, mean[0], 1e-3);
+        CHECK_NEAR(albedos[i].w, mean[1], 1e-3);
+    }
+    gpu_buffer_destroy(gpu, &table);
+    gpu_buffer_destroy(gpu, &in);
+    gpu_buffer_destroy(gpu, &out);
+    gpu_pipeline_destroy(gpu, &pipeline);
 }
