@@ -41,6 +41,21 @@ static gpu_buffer make_buffer(struct gpu *gpu, const char *name, const void *dat
     return buffer;
 }
 
+// One invocation for each of COUNT elements; reads the buffer `out` back.
+static void run_and_read(struct gpu *gpu, const struct gpu_shader *shader,
+                         const struct gpu_binding *bindings, int binding_count, gpu_buffer out,
+                         void *data, size_t bytes)
+{
+    gpu_pipeline pipeline = { 0 };
+    CHECK(gpu_compute_pipeline_create(gpu, "test.twins", shader, NULL, 0, &pipeline));
+    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
+    CHECK(cmd != NULL);
+    gpu_dispatch(cmd, pipeline, bindings, binding_count, NULL, 0, gpu_groups(COUNT, 64), 1, 1);
+    CHECK(gpu_frame_end(gpu, cmd));
+    CHECK(gpu_buffer_download(gpu, out, 0, data, bytes));
+    gpu_pipeline_destroy(gpu, &pipeline);
+}
+
 // Runs once per program; `twins` keeps the results.
 static void run_shader(struct gpu *gpu)
 {
@@ -50,22 +65,14 @@ static void run_shader(struct gpu *gpu)
     gpu_buffer in = make_buffer(gpu, "test.directions", directions, sizeof directions);
     gpu_buffer c = make_buffer(gpu, "test.coefficients", coefficients, sizeof coefficients);
     gpu_buffer out = make_buffer(gpu, "test.twins", twins, sizeof twins);
-    gpu_pipeline pipeline = { 0 };
-    CHECK(gpu_compute_pipeline_create(gpu, "test.twins", &shader_core_twins_comp, NULL, 0,
-                                      &pipeline));
-    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
-    CHECK(cmd != NULL);
-    gpu_dispatch(cmd, pipeline,
+    run_and_read(gpu, &shader_core_twins_comp,
                  GPU_BIND({ .name = "Directions", .buffer = in },
                           { .name = "Coefficients", .buffer = c },
                           { .name = "Twins", .buffer = out }),
-                 NULL, 0, gpu_groups(COUNT, 64), 1, 1);
-    CHECK(gpu_frame_end(gpu, cmd));
-    CHECK(gpu_buffer_download(gpu, out, 0, twins, sizeof twins));
+                 out, twins, sizeof twins);
     gpu_buffer_destroy(gpu, &in);
     gpu_buffer_destroy(gpu, &c);
     gpu_buffer_destroy(gpu, &out);
-    gpu_pipeline_destroy(gpu, &pipeline);
     ran = true;
 }
 
@@ -136,17 +143,10 @@ TEST_GPU(albedo_of_ggx_equals_that_of_c_and_its_mean_fits)
     gpu_buffer table = make_buffer(gpu, "test.table", ggx_albedo_table, sizeof ggx_albedo_table);
     gpu_buffer in = make_buffer(gpu, "test.places", places, sizeof places);
     gpu_buffer out = make_buffer(gpu, "test.albedos", albedos, sizeof albedos);
-    gpu_pipeline pipeline = { 0 };
-    CHECK(gpu_compute_pipeline_create(gpu, "test.ggx_albedo", &shader_core_ggx_albedo_comp, NULL, 0,
-                                      &pipeline));
-    struct gpu_cmd *cmd = gpu_frame_begin(gpu);
-    CHECK(cmd != NULL);
-    gpu_dispatch(cmd, pipeline,
+    run_and_read(gpu, &shader_core_ggx_albedo_comp,
                  GPU_BIND({ .name = "ggx_albedo", .buffer = table },
                           { .name = "Places", .buffer = in }, { .name = "Albedos", .buffer = out }),
-                 NULL, 0, gpu_groups(COUNT, 64), 1, 1);
-    CHECK(gpu_frame_end(gpu, cmd));
-    CHECK(gpu_buffer_download(gpu, out, 0, albedos, sizeof albedos));
+                 out, albedos, sizeof albedos);
     for (int i = 0; i < COUNT; i++) {
         const struct ggx_albedo e = ggx_albedo_at(places[i].x, places[i].y);
         double mean[2];
@@ -159,5 +159,4 @@ TEST_GPU(albedo_of_ggx_equals_that_of_c_and_its_mean_fits)
     gpu_buffer_destroy(gpu, &table);
     gpu_buffer_destroy(gpu, &in);
     gpu_buffer_destroy(gpu, &out);
-    gpu_pipeline_destroy(gpu, &pipeline);
 }
