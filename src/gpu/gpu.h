@@ -177,9 +177,9 @@ bool gpu_image_download_float(struct gpu *gpu, gpu_image image, uint32_t mip, ui
 bool gpu_buffer_download(struct gpu *gpu, gpu_buffer buffer, size_t offset, void *data,
                          size_t bytes);
 
-// A readback without waiting. The command copies part of a buffer as it is at this point of the
-// frame; when the GPU has finished the frame, gpu_readback_poll returns true and the bytes. A
-// second copy before that replaces the first.
+// Asynchronous readback. gpu_readback_copy records a copy of part of a buffer; gpu_readback_poll
+// returns true and the bytes once the GPU has completed that frame. A second copy before then
+// replaces the first.
 struct gpu_readback {
     gpu_buffer buffer; // mapped
     uint64_t serial;   // of the frame; 0: none

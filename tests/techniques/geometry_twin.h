@@ -1,5 +1,5 @@
-// The geometry volume in plain C and double precision: surfels are added to corners one by one, and
-// every line is tested against every triangle.
+// The geometry volume in plain C and double precision: each surfel is accumulated at each corner,
+// each coverage line intersected with each triangle.
 #pragma once
 
 #include "techniques/lpv/lpv_grid.h"

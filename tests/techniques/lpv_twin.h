@@ -1,6 +1,5 @@
-// Light propagation volumes in plain C and double precision, step by step as in the paper: each
-// step has a grid of its own, and light passes the faces one by one. Two or three bands, six or 26
-// neighbours.
+// Light propagation volumes in plain C and double precision, as in the paper: one grid per
+// propagation step, one loop iteration per face. Two or three bands, six or 26 neighbours.
 #pragma once
 
 #include "techniques/lpv/lpv_grid.h"

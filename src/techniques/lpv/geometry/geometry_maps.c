@@ -1,5 +1,5 @@
 // The geometry volume of the paper: surfels of each light's reflective shadow maps and of the
-// camera's G-buffer. Sources are summed one by one and merged by the maximum.
+// camera's G-buffer. Each source has its own sum; the volume is their maximum.
 #include "techniques/lpv/geometry/geometry.h"
 
 #include "techniques/lpv/lpv_bindings.h"
