@@ -3,6 +3,9 @@ add_library(ag_test_techniques STATIC techniques/geometry_fixture.c techniques/g
   techniques/svo_tree.c techniques/vct_fixture.c techniques/vct_twin.c techniques/vct_voxel_count.c techniques/vo_fixture.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
 
+add_library(ag_test_light_trial STATIC techniques/light_trial.c techniques/light_trial_scenes.c)
+target_link_libraries(ag_test_light_trial PUBLIC ag_test_frame_fixture ag_techniques ag_trace PRIVATE afterglow_flags m)
+
 foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_math lpv_occlusion lpv_sky lpv_twin
     technique_invariants technique_smoke vct_bounces vct_clips vct_clip_light vct_small_emitters vct_light vct_edge_cases vct_screen vct_specular vct_storage vct_temporal vct_voxels visibility vo
     vct_octree_nodes vct_octree_bricks vctao)
@@ -11,6 +14,7 @@ endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
-set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clip_light PROPERTIES TIMEOUT 900)
+ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
+set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clip_light techniques.light_trials PROPERTIES TIMEOUT 900)
 # It compares times.
 set_tests_properties(techniques.vct_screen PROPERTIES RUN_SERIAL TRUE)

@@ -1,0 +1,82 @@
+// Irradiance of a fixture's scene by techniques and by the reference.
+#include "techniques/light_trial.h"
+
+#include "techniques/gi.h"
+#include "trace/trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct trial_irradiance summary(const float *irradiance, const float *depth, size_t pixels)
+{
+    struct trial_irradiance sum = { .least = HUGE_VAL };
+    size_t count = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        if (!(depth[i] > 0)) continue;
+        count++;
+        for (size_t c = 0; c < 3; c++) {
+            const double e = (double)irradiance[3 * i + c];
+            sum.mean[c] += e;
+            sum.least = fmin(sum.least, e);
+            sum.most = fmax(sum.most, e);
+        }
+    }
+    assert_true(count > 0);
+    for (int c = 0; c < 3; c++) sum.mean[c] /= (double)count;
+    return sum;
+}
+
+struct trial_irradiance trial_technique(struct frame_fixture *s, const char *text)
+{
+    struct gi_spec spec;
+    fixture_open(s);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    struct gi *gi = gi_create(test_host(), s->gpu, &spec, &s->pose, s->width, s->height);
+    assert_non_null(gi);
+    s->indirect = gi_hook(gi);
+    fixture_render(s);
+    float *irradiance = fixture_read(s, READ_IRRADIANCE), *depth = fixture_read(s, READ_DEPTH);
+    const struct trial_irradiance result = summary(irradiance, depth, s->width * s->height);
+    free(irradiance);
+    free(depth);
+    gi_destroy(gi);
+    gi_spec_finish(&spec);
+    return result;
+}
+
+static void add_to_scene(struct scene *scene, const struct world_light *light)
+{
+    const bool spot = light->type == LIGHT_SPOT;
+    const struct light copy = { .name = "light",
+                                .type = light->type,
+                                .node = scene_add_node_looking(scene, "light", light->position,
+                                                               light->direction),
+                                .intensity = light->intensity,
+                                .inner_rad = spot ? acosf(light->cos_inner) : 0,
+                                .outer_rad = spot ? acosf(light->cos_outer) : GLM_PI_4f,
+                                .range_m = light->range_m };
+    assert_true(copy.node >= 0 && scene_add_light(scene, &copy) >= 0);
+}
+
+struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples)
+{
+    for (int i = 0; i < s->input.light_count; i++) add_to_scene(s->scene, &s->lights[i]);
+    s->scene->sky = s->input.sky;
+    assert_true(pose_init(&s->pose, s->scene, -1, 0));
+    struct reference_options options = reference_options_default();
+    options.bounces = bounces;
+    options.diffuse_only = true;
+    struct reference *reference = reference_create(test_host(), &s->pose, &s->input.camera,
+                                                   (int)s->width, (int)s->height, &options);
+    assert_non_null(reference);
+    assert_true(reference_render(reference, samples, NULL, NULL));
+    struct image irradiance, depth;
+    assert_true(reference_read(reference, REFERENCE_IRRADIANCE_EMITTERS_SKY, &irradiance));
+    assert_true(reference_read(reference, REFERENCE_DEPTH, &depth));
+    const struct trial_irradiance result =
+        summary(irradiance.pixels, depth.pixels, s->width * s->height);
+    image_finish(&irradiance, test_host());
+    image_finish(&depth, test_host());
+    reference_destroy(reference);
+    return result;
+}

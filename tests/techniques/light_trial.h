@@ -1,0 +1,17 @@
+// Physical trials of indirect light: small scenes made by code, and their irradiance by a technique
+// or by the reference with the same lights.
+#pragma once
+
+#include "frame/frame_fixture.h"
+
+// Irradiance over the pixels of the camera's image, scene's own unit (lux).
+struct trial_irradiance {
+    double mean[3], least, most; // least and most: of all channels
+};
+
+// Both open the fixture, which must not be open, and leave it to be finished. Pixels without a
+// surface do not count.
+struct trial_irradiance trial_technique(struct frame_fixture *s, const char *gi);
+// Light of the same kinds as the technique's: without direct light of punctual lights. All bounces,
+// or `bounces` of them; −1: all.
+struct trial_irradiance trial_reference(struct frame_fixture *s, int bounces, int samples);

@@ -1,0 +1,157 @@
+// Scenes of the physical trials.
+#include "techniques/light_trial_scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const float SLAB = 0.05f;
+
+static vec3s grey(float value)
+{
+    return vec3_of(value, value, value);
+}
+
+void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_dark_room)
+{
+    const float t = SLAB;
+    const struct box3 slabs[] = {
+        { vec3_of(-4, -t, -2), vec3_of(4, 0, 2) },                  // floor
+        { vec3_of(-t / 2, 3, -2), vec3_of(4, 3 + t, 2) },           // roof of the right room
+        { vec3_of(-4 - t, -t, -2 - t), vec3_of(-4, 3 + t, 2 + t) }, // left, right
+        { vec3_of(4, -t, -2 - t), vec3_of(4 + t, 3 + t, 2 + t) },
+        { vec3_of(-4, -t, -2 - t), vec3_of(4, 3 + t, -2) }, // back, front
+        { vec3_of(-4, -t, 2), vec3_of(4, 3 + t, 2 + t) },
+        { vec3_of(-t / 2, 0, -2), vec3_of(t / 2, 3, 2) }, // between the rooms
+    };
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    const int white = fixture_matte(s, grey(0.7f));
+    for (size_t i = 0; i < sizeof slabs / sizeof slabs[0]; i++)
+        fixture_box(s, slabs[i].min, slabs[i].max, false, white);
+    fixture_add_sun(s, vec3_of(0.3f, -1, 0.2f), grey(1000));
+    if (camera_in_dark_room)
+        fixture_look(s, vec3_of(3.8f, 2.5f, 1.8f), vec3_of(0, 0.8f, -1.5f));
+    else
+        fixture_look(s, vec3_of(-3.8f, 2.5f, 1.8f), vec3_of(0, 0.8f, -1.5f));
+}
+
+void trial_open_plane(struct frame_fixture *s, struct gpu *gpu, const struct trial_plane *plane)
+{
+    const float half = 3, c = cosf(plane->tilt_rad), d = sinf(plane->tilt_rad);
+    const vec3s across = vec3_of(half * c, half * d, 0), down = vec3_of(0, 0, half);
+    const vec3s normal = vec3_of(-d, c, 0);
+    struct material m = material_default();
+    m.base_color = vec4_of(grey(0.7f), 1);
+    m.metallic = 0;
+    m.roughness = 1;
+    m.specular = 0;
+    m.double_sided = plane->double_sided;
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    fixture_quad(s, glms_vec3_sub(down, across), glms_vec3_add(down, across),
+                 glms_vec3_sub(across, down), glms_vec3_negate(glms_vec3_add(across, down)),
+                 fixture_material(s, &m));
+    if (plane->sun)
+        fixture_add_sun(s, vec3_of(0.2f, -1, 0.3f), grey(1000));
+    else
+        s->input.sky = grey(1);
+    const vec3s beside = vec3_of(0, 0, 0.1f);
+    fixture_look(s, glms_vec3_muladds(normal, 4, beside), vec3_of(0, 0, 0));
+}
+
+// The six walls of a room, faces inwards: −x +x −y +y −z +z.
+static void add_walls(struct frame_fixture *s, vec3s min, vec3s max, const int materials[6])
+{
+    for (int face = 0; face < 6; face++) {
+        const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+        vec3s corners[4];
+        for (int i = 0; i < 4; i++) {
+            corners[i].raw[axis] = face % 2 ? max.raw[axis] : min.raw[axis];
+            corners[i].raw[u] = i == 1 || i == 2 ? max.raw[u] : min.raw[u];
+            corners[i].raw[v] = i >= 2 ? max.raw[v] : min.raw[v];
+        }
+        fixture_quad(s, corners[0], corners[face % 2 ? 3 : 1], corners[2],
+                     corners[face % 2 ? 1 : 3], materials[face]);
+    }
+}
+
+void trial_empty_room(struct frame_fixture *s, struct gpu *gpu)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    const int black = fixture_matte(s, grey(0)), white = fixture_matte(s, grey(0.8f));
+    const int materials[6] = { white, black, black, black, black, black };
+    add_walls(s, vec3_of(-3, 0, -1.5f), vec3_of(3, 3, 1.5f), materials);
+    fixture_add_spot(s, vec3_of(2.9f, 1.5f, 0), vec3_of(-1, 0, 0), 0.1f, 0.22f, grey(1000));
+    fixture_look(s, vec3_of(-2.8f, 1.5f, 0), vec3_of(3, 1.5f, 0));
+    s->input.camera.vertical_fov_rad = 0.5f; // sees the other end wall alone
+}
+
+void trial_small_patch(struct frame_fixture *s, struct gpu *gpu)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    s->options.rsm_size = 256;
+    const int white = fixture_matte(s, grey(0.7f));
+    const int materials[6] = { white, white, white, white, white, white };
+    add_walls(s, vec3_of(-3, 0, -2), vec3_of(3, 3, 2), materials);
+    fixture_add_spot(s, vec3_of(1, 2.95f, 0.5f), vec3_of(0, -1, 0), 0.06f, 0.085f, grey(1000));
+    fixture_look(s, vec3_of(-2.8f, 2.6f, 1.8f), vec3_of(1, 0.8f, -1));
+}
+
+static int add_strips(struct frame_fixture *s, int count, vec2s size, float spacing, float height,
+                      int material)
+{
+    const uint32_t strips = (uint32_t)(count * count);
+    vec3s *positions = calloc(4 * strips, sizeof *positions);
+    uint32_t *indices = calloc(6 * strips, sizeof *indices);
+    assert_non_null(positions);
+    assert_non_null(indices);
+    for (uint32_t i = 0; i < strips; i++) {
+        const float x = spacing * ((float)(i % (uint32_t)count) - 0.5f * (float)(count - 1)),
+                    z = spacing * ((float)(i / (uint32_t)count) - 0.5f * (float)(count - 1));
+        for (uint32_t k = 0; k < 4; k++)
+            positions[4 * i + k] = vec3_of(x + size.x * (k == 1 || k == 2 ? 0.5f : -0.5f), height,
+                                           z + size.y * (k >= 2 ? 0.5f : -0.5f));
+        const uint32_t quad[6] = { 0, 1, 2, 0, 2, 3 }; // faces down
+        for (uint32_t k = 0; k < 6; k++) indices[6 * i + k] = 4 * i + quad[k];
+    }
+    const int mesh = scene_add_mesh(s->scene, &(struct mesh){ .name = "strips",
+                                                              .vertex_count = 4 * strips,
+                                                              .index_count = 6 * strips,
+                                                              .positions = positions,
+                                                              .indices = indices,
+                                                              .material = material });
+    assert_true(mesh >= 0);
+    free(positions);
+    free(indices);
+    return fixture_instance(s, mesh, NULL);
+}
+
+void trial_strips(struct frame_fixture *s, struct gpu *gpu)
+{
+    struct material m = material_default();
+    m.emissive = grey(1000);
+    m.base_color = vec4_of(grey(0), 1);
+    m.metallic = 0;
+    fixture_init(s, gpu);
+    fixture_floor(s, 3, fixture_matte(s, grey(0.5f)));
+    add_strips(s, 12, (vec2s){ { 0.4f, 0.02f } }, 0.5f, 2.5f, fixture_material(s, &m));
+    fixture_look(s, vec3_of(0, 2.2f, 2.8f), vec3_of(0, 0, 0));
+}
+
+void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap)
+{
+    fixture_init(s, gpu);
+    s->options.shadow_size = 1024;
+    s->options.rsm_size = 256;
+    const int white = fixture_matte(s, grey(0.7f)),
+              green = fixture_matte(s, vec3_of(0.05f, 0.6f, 0.05f));
+    const int materials[6] = { gap > 0 ? white : green, white, white, white, white, white };
+    add_walls(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), materials);
+    if (gap > 0)
+        fixture_quad(s, vec3_of(-2 + gap, 0, 2), vec3_of(-2 + gap, 0, -2), vec3_of(-2 + gap, 3, -2),
+                     vec3_of(-2 + gap, 3, 2), green);
+    fixture_add_point(s, vec3_of(1, 1.5f, 0), grey(100));
+    fixture_look(s, vec3_of(-1.4f, 2, 0), vec3_of(-1.4f, 0, -0.1f));
+}

@@ -1,0 +1,30 @@
+// Scenes of the physical trials. Each initializes the fixture, which trial_technique or
+// trial_reference opens and fixture_finish ends. Lengths in metres.
+#pragma once
+
+#include "frame/frame_fixture.h"
+
+// Two rooms of 4 × 3 × 4, side by side, of slabs 0.05 thick. The left one is open to the sun of
+// 1000 lux above, the right one is closed. The camera is in one of them.
+void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_dark_room);
+
+// A square plane of 6 in the sun (1000 lux) or under a uniform sky (1 cd/m²), tilted around z.
+struct trial_plane {
+    float tilt_rad;
+    bool double_sided, sun;
+};
+void trial_open_plane(struct frame_fixture *s, struct gpu *gpu, const struct trial_plane *plane);
+
+// A black room of 6 × 3 × 3 whose white end wall (albedo 0.8) is lit by a spot on the other one,
+// which the camera sees: one bounce across the empty room.
+void trial_empty_room(struct frame_fixture *s, struct gpu *gpu);
+
+// A room of 6 × 3 × 4 (albedo 0.7); a spot in the ceiling lights a patch of 0.5 on the floor.
+void trial_small_patch(struct frame_fixture *s, struct gpu *gpu);
+
+// A grey floor of 6 under one mesh of 12 × 12 emissive strips of 0.4 × 0.02 at a height of 2.5.
+void trial_strips(struct frame_fixture *s, struct gpu *gpu);
+
+// A room of 4 × 3 × 4 with a point light; its left wall is white, and green in front of it at a
+// distance of `gap`; 0: green alone. The camera sees the floor next to that wall.
+void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap);

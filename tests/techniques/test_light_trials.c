@@ -1,0 +1,184 @@
+// Physical trials of the sources that trace light through the scene: thin walls, a plane's own
+// light, the sky, an empty room, small emitters. Each prints its figures.
+#include "techniques/light_trial.h"
+#include "techniques/light_trial_scenes.h"
+
+#include <math.h>
+
+static double dark_room_share(struct gpu *gpu, const char *gi)
+{
+    struct trial_irradiance e[2];
+    for (int dark = 0; dark < 2; dark++) {
+        struct frame_fixture s;
+        trial_two_rooms(&s, gpu, dark);
+        e[dark] = trial_technique(&s, gi);
+        fixture_finish(&s);
+    }
+    print_message("%s: dark room %.4f of the sunlit one (%.3f lux)\n", gi,
+                  e[1].mean[1] / e[0].mean[1], e[0].mean[1]);
+    return e[1].mean[1] / e[0].mean[1];
+}
+
+TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
+{
+    const struct {
+        const char *gi;
+        double most;
+    } cases[] = { { "lpv", 0.01 },
+                  { "holpv", 0.08 },
+                  { "vct:bounces=1", 0.05 },
+                  { "vct", 0.25 },
+                  { "vct:resolution=128", 0.2 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        CHECK(dark_room_share(gpu, cases[i].gi) <= cases[i].most);
+}
+
+static const float TILTS[] = { 0, 0.35f, 0.7853982f };
+enum { TILT_COUNT = sizeof TILTS / sizeof TILTS[0] };
+
+// Irradiance in the middle of the plane; of the largest mean over the tilts.
+static double own_light(struct gpu *gpu, const char *gi, bool double_sided)
+{
+    double worst = 0;
+    for (int i = 0; i < TILT_COUNT; i++) {
+        struct frame_fixture s;
+        trial_open_plane(&s, gpu, &(struct trial_plane){ TILTS[i], double_sided, .sun = true });
+        const struct trial_irradiance e = trial_technique(&s, gi);
+        print_message("%s: plane, tilt %.2f, %s: %.4f of the sun, at most %.4f\n", gi,
+                      (double)TILTS[i], double_sided ? "double-sided" : "single-sided",
+                      e.mean[1] / 1000, e.most / 1000);
+        worst = fmax(worst, e.mean[1] / 1000);
+        fixture_finish(&s);
+    }
+    return worst;
+}
+
+TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
+{
+    const struct {
+        const char *gi;
+        double most;
+    } cases[] = {
+        { "lpv", 0.3 }, { "holpv", 0.11 }, { "vct", 0.05 }, { "vct:resolution=128", 0.07 }
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        CHECK(fmax(own_light(gpu, cases[i].gi, false), own_light(gpu, cases[i].gi, true)) <=
+              cases[i].most);
+}
+
+struct range {
+    double least, most;
+};
+
+static struct range sky_share(struct gpu *gpu, const char *gi)
+{
+    struct range range = { HUGE_VAL, 0 };
+    for (int i = 0; i < 2 * TILT_COUNT; i++) {
+        struct frame_fixture s;
+        trial_open_plane(&s, gpu, &(struct trial_plane){ TILTS[i / 2], i % 2, .sun = false });
+        const struct trial_irradiance e = trial_technique(&s, gi);
+        // A tilted plane's sky fills the sphere: a half of it is above the plane.
+        print_message("%s: sky, tilt %.2f, %s: %.4f, %.4f to %.4f of its irradiance\n", gi,
+                      (double)TILTS[i / 2], i % 2 ? "double-sided" : "single-sided",
+                      e.mean[1] / GLM_PI, e.least / GLM_PI, e.most / GLM_PI);
+        range.least = fmin(range.least, e.least / GLM_PI);
+        range.most = fmax(range.most, e.most / GLM_PI);
+        fixture_finish(&s);
+    }
+    return range;
+}
+
+TEST_GPU(an_open_plane_gets_the_whole_sky)
+{
+    const struct {
+        const char *gi;
+        double least, most;
+    } cases[] = { { "lpv", 0.7, 1.01 }, { "holpv", 0.8, 1.01 }, { "vct", 0.7, 1.01 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct range got = sky_share(gpu, cases[i].gi);
+        CHECK(got.least >= cases[i].least && got.most <= cases[i].most);
+    }
+}
+
+typedef void (*trial_scene)(struct frame_fixture *s, struct gpu *gpu);
+
+// Mean irradiance over that of the reference.
+static double reference_share(struct gpu *gpu, trial_scene build, const char *name, const char *gi,
+                              int bounces)
+{
+    struct frame_fixture s;
+    build(&s, gpu);
+    const struct trial_irradiance expected = trial_reference(&s, bounces, 64);
+    fixture_finish(&s);
+    build(&s, gpu);
+    const struct trial_irradiance e = trial_technique(&s, gi);
+    fixture_finish(&s);
+    print_message("%s: %s: %.3f of the reference's %.3f lux\n", gi, name,
+                  e.mean[1] / expected.mean[1], expected.mean[1]);
+    return e.mean[1] / expected.mean[1];
+}
+
+TEST_GPU(light_crosses_an_empty_room)
+{
+    const struct {
+        const char *gi;
+        double least;
+    } cases[] = { { "lpv", 0.5 }, { "holpv", 0.25 }, { "vct", 0.5 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const double share =
+            reference_share(gpu, trial_empty_room, "across an empty room", cases[i].gi, 1);
+        CHECK(share >= cases[i].least && share <= 1.3);
+    }
+}
+
+TEST_GPU(a_small_sunlit_patch_lights_its_room)
+{
+    const struct {
+        const char *gi;
+        double least;
+    } cases[] = {
+        { "lpv", 0.05 }, { "lpv:quality=high", 0.02 }, { "holpv", 0.05 }, { "vct", 0.5 }
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const double share =
+            reference_share(gpu, trial_small_patch, "small patch", cases[i].gi, -1);
+        CHECK(share >= cases[i].least && share <= 1.5);
+    }
+}
+
+TEST_GPU(many_small_emitters_give_their_light)
+{
+    const struct {
+        const char *gi;
+        double least;
+    } cases[] = { { "lpv", 0.3 }, { "holpv", 0.3 }, { "vct", 0.3 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const double share = reference_share(gpu, trial_strips, "strips", cases[i].gi, -1);
+        CHECK(share >= cases[i].least && share <= 1.6);
+    }
+}
+
+static double red_over_green(struct gpu *gpu, const char *gi, float gap)
+{
+    struct frame_fixture s;
+    trial_wall_before_slab(&s, gpu, gap);
+    const struct trial_irradiance e = gi ? trial_technique(&s, gi) : trial_reference(&s, -1, 64);
+    fixture_finish(&s);
+    return e.mean[0] / e.mean[1];
+}
+
+// A hidden white slab must not change the colour that the wall before it reflects.
+TEST_GPU(a_hidden_surface_does_not_dilute_the_colour_before_it)
+{
+    const struct {
+        const char *gi;
+        double tolerance;
+    } cases[] = { { "lpv", 0.3 }, { "holpv", 0.3 }, { "vct", 0.3 } };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const double alone = red_over_green(gpu, cases[i].gi, 0),
+                     hidden = red_over_green(gpu, cases[i].gi, 0.02f);
+        print_message("%s: red over green %.3f, with a white slab behind %.3f; reference %.3f\n",
+                      cases[i].gi, alone, hidden, red_over_green(gpu, NULL, 0.02f));
+        CHECK_RELATIVE(alone, hidden, cases[i].tolerance);
+    }
+}
