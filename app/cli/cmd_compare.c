@@ -1,8 +1,8 @@
 // afterglow compare: measures methods against the reference.
 #include "commands.h"
-#include "compare.h"
+#include "cli/compare/compare.h"
 #include "json.h"
-#include "report_page.h"
+#include "cli/compare/report_page.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // The file of the report page: self-contained, names are escaped, a missing image is an error
 // that leaves nothing behind. test_report_page_browser.c uses the page.
-#include "report_page.h" // before cmocka, whose fail() is a macro
+#include "cli/compare/report_page.h" // before cmocka, whose fail() is a macro
 
 #include "cli/program.h"
 #include "cli/report_sample.h"

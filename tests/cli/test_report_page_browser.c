@@ -1,5 +1,5 @@
 // The report page in a real browser with real input.
-#include "report_page.h" // before cmocka, whose fail() is a macro
+#include "cli/compare/report_page.h" // before cmocka, whose fail() is a macro
 
 #include "cli/browser.h"
 #include "cli/program.h"

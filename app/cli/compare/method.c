@@ -1,6 +1,6 @@
 // Renders and times one method and reads its layers.
 #include "compare.h"
-#include "statistics.h"
+#include "cli/statistics.h"
 
 #include <ctype.h>
 #include <stdio.h>

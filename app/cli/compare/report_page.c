@@ -3,7 +3,7 @@
 // that no name can end a block or begin another.
 #include "report_page.h"
 #include "report_files.h"
-#include "whole_file.h"
+#include "cli/whole_file.h"
 
 #include <afterglow/image.h>
 

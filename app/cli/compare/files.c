@@ -1,7 +1,7 @@
 // Image files of a comparison: rendered, reference and error maps, which share a scale.
 #include "compare.h"
-#include "interrupt.h"
-#include "values.h"
+#include "cli/interrupt.h"
+#include "cli/values.h"
 
 #include <ctype.h>
 #include <math.h>

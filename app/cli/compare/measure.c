@@ -1,6 +1,6 @@
 // Errors of images and of indirect light.
 #include "compare.h"
-#include "images.h"
+#include "cli/images.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 // The reference of a comparison: a given file, or cached samples plus missing ones.
-#include "cache.h"
+#include "cli/cache.h"
 #include "compare.h"
-#include "images.h"
-#include "interrupt.h"
-#include "values.h"
+#include "cli/images.h"
+#include "cli/interrupt.h"
+#include "cli/values.h"
 
 #include <math.h>
 #include <stdio.h>

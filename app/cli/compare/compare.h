@@ -1,10 +1,10 @@
 // Shared state of the parts of compare; cmd_compare.c calls them in order.
 #pragma once
 
-#include "arguments.h"
-#include "folder.h"
-#include "session.h"
-#include "tracing.h"
+#include "cli/arguments.h"
+#include "cli/folder.h"
+#include "cli/session.h"
+#include "cli/tracing.h"
 
 #include <jansson.h>
 
@@ -54,14 +54,14 @@ struct comparison {
     float full_indirect; // cd/m²: error shown white in maps of indirect light
 };
 
-// compare_method.c
+// method.c
 // Checks --gi, --size and --frame-options before the work.
 enum status methods_plan(struct comparison *c);
 // Renders a method and reads its layers, times and memory. Method 0 determines the exposure.
 enum status method_render(struct comparison *c, int index);
 void methods_finish(struct comparison *c);
 
-// compare_reference.c
+// reference.c
 // Reads the given file, or cached samples. Fails if the file shows another image.
 enum status reference_begin(struct comparison *c);
 // Traces missing samples (none with --reference) and fills the rest of c->reference.
@@ -70,16 +70,16 @@ enum status reference_complete(struct comparison *c);
 enum status reference_write_exr(struct comparison *c, const char *path);
 void reference_finish(struct comparison *c);
 
-// compare_measure.c
+// measure.c
 enum status methods_measure(struct comparison *c);
 
-// compare_files.c
+// files.c
 // Writes images and EXR files into the new folder.
 enum status files_write(struct comparison *c);
 // Is this the name of a file that compare writes?
 bool files_are_named(const char *name);
 
-// compare_report.c
+// report.c
 json_t *report_json(const struct comparison *c); // NULL: out of memory
 void report_print(const struct comparison *c);   // the table, on standard output
 // Prints a line for each exceeded bound; FAILED if there is one.
