@@ -223,7 +223,8 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     }
     vct->params = params_of(vct, view);
     if (vct->options.temporal)
-        vct_temporal_begin(&vct->temporal, view, vct->options.frames, vct->options.clamp);
+        vct_temporal_begin(&vct->temporal, view, vct->options.frames, vct->options.clamp,
+                           vct->bounces_left > 0);
     if (vct->options.small_emitters)
         vct_small_emitters_update(&vct->small_emitters, view, vct->temporal.number);
     else

@@ -73,8 +73,9 @@ struct vct {
     bool light_outdated;      // it has texels whose voxels are gone
     bool bounced_valid;       // bounced irradiance is that of `bounce_inputs`
     struct vct_bounce_inputs bounce_inputs;
-    int bounces_left;          // frames that still propagate a change of light
+    int bounces_left;          // that still propagate a change of light
     const struct scene *scene; // of the voxels
     int moving_draws;          // in the previous frame
+    uint64_t voxelized_index;  // of the previous frame
     struct vct_overflow overflow;
 };

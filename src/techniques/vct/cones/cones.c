@@ -154,7 +154,7 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
     const bool temporal = vct->options.temporal;
     struct vct_cone_params params = pixel_cones(vct, view);
     if (temporal) vct_temporal_rotate_cones(&vct->temporal, &params);
-    const gpu_image result = temporal ? vct->temporal.now : vct_result(vct, view);
+    const gpu_image result = temporal ? vct_temporal_now(&vct->temporal) : vct_result(vct, view);
     const struct pixels p = { .clipmap = vct_clipmap_binding(vct, cmd),
                               .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
                               .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },

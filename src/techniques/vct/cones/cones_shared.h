@@ -46,15 +46,22 @@ struct vct_specular_params {
     uint32_t has_dielectric; // bool: FRAME_DIELECTRIC is bound
 };
 
+// How the history follows a change of light: see cones/temporal.c.
+#define VCT_KEEP            0 // no light has changed
+#define VCT_FOLLOW_KNOWN    1 // by the difference of two frames of one rotation
+#define VCT_FOLLOW_EXPECTED 2 // by the last known difference
+#define VCT_SETTLE          3 // the last bounces follow: with less weight
+
 // Uniform block "vct_history": the image plane of the previous frame. The view ray of pixel (x, y)
 // is forward + x · right + y · down at distance 1 along the view axis; world space.
 struct vct_history_params {
     vec3s right, down, forward;
-    float pixel;    // width of a pixel at distance 1
-    float most;     // maximum weight of the history, frames
-    float clamp;    // standard deviations; 0: off
-    float scale;    // radiance scale of this frame over that of the previous one
-    uint32_t known; // bool: the history is valid
+    float pixel;     // width of a pixel at distance 1
+    float most;      // maximum weight of the history, frames
+    float clamp;     // standard deviations; 0: off
+    float scale;     // radiance scale of this frame over that of the previous one
+    uint32_t known;  // bool: the history is valid
+    uint32_t follow; // VCT_KEEP, …
 };
 
 #ifndef AG_GLSL
@@ -63,7 +70,7 @@ _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
 _Static_assert(sizeof(struct vct_small_emitter) == (5 + 6 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_specular_params) == 7 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_history_params) == 14 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct vct_history_params) == 15 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -1,10 +1,20 @@
 // Temporal accumulation with reverse reprojection (Hong 2015, sec. 4.3): the mean over the frames
-// in which a surface was visible. With the weight w of the history,
+// in which a surface was visible. With the weight w of the history, in frames,
 //     new = (w · old + now)/(w + 1),   w ← min(w + 1, most),   w = 0 where the history is rejected.
 // Each frame rotates the cones, so that the mean covers more directions than one frame.
 //
-// Differs from the paper in `most`: it grows while nothing changes, so that a static image
-// converges, where a constant limit keeps 1/most of each frame's noise.
+// Differs from the paper in `most`, which grows while nothing changes, so that a static image
+// converges, where a constant limit keeps 1/most of each frame's noise; and in that the history
+// follows a change of light. Two frames of one rotation, before and after the change, have the same
+// noise but for the change, and are a control variate of the history:
+//     old ← after + c · (old − before),   1/w ← c²/w + 1 − c². (1)
+// c estimates the correlation of their noise by 1 − |after − before|/max(after, before): the error
+// is zero where no light has changed or all light is scaled down, and that of one frame where the
+// light is another. Temporal gradients of SVGF (Schied et al. 2018) also compare samples of equal
+// random numbers, but only to shorten the history.
+//
+// While light changes, the rotation is therefore held in three of four frames. In the fourth one
+// (1) takes the last difference as expected, and its possible error reduces w.
 #include "techniques/vct/cones/temporal.h"
 
 #include "techniques/vct/vct_state.h"
@@ -16,6 +26,8 @@
 static const enum gpu_format NOW_FORMAT = GPU_RGBA16F, LIGHT_FORMAT = GPU_RGBA32F,
                              SURFACE_FORMAT = GPU_RG32F;
 static const float STILL_FRAMES = 4096.0f; // maximum weight while nothing changes
+
+enum { HELD_FRAMES = 3 }; // of four with one rotation, while light changes
 
 // ---- Creation and destruction -------------------------------------------------------------------
 
@@ -42,16 +54,19 @@ bool vct_temporal_resize(struct vct_temporal *t, struct gpu *gpu, uint32_t width
     vct_temporal_invalidate(t);
     for (int i = 0; i < 2; i++)
         if (!create_image(gpu, "history", LIGHT_FORMAT, width, height, &t->light[i]) ||
-            !create_image(gpu, "history_surface", SURFACE_FORMAT, width, height, &t->surface[i]))
+            !create_image(gpu, "history_surface", SURFACE_FORMAT, width, height, &t->surface[i]) ||
+            !create_image(gpu, "now", NOW_FORMAT, width, height, &t->now[i]) ||
+            !create_image(gpu, "change", NOW_FORMAT, width, height, &t->change[i]))
             return false;
-    return create_image(gpu, "now", NOW_FORMAT, width, height, &t->now);
+    return true;
 }
 
 void vct_temporal_destroy(struct vct_temporal *t, struct gpu *gpu)
 {
     gpu_pipeline_destroy(gpu, &t->filter);
-    gpu_image_destroy(gpu, &t->now);
     for (int i = 0; i < 2; i++) {
+        gpu_image_destroy(gpu, &t->now[i]);
+        gpu_image_destroy(gpu, &t->change[i]);
         gpu_image_destroy(gpu, &t->light[i]);
         gpu_image_destroy(gpu, &t->surface[i]);
     }
@@ -59,9 +74,9 @@ void vct_temporal_destroy(struct vct_temporal *t, struct gpu *gpu)
 
 uint64_t vct_temporal_memory(uint32_t width, uint32_t height)
 {
-    const int pixel = gpu_format_bytes(NOW_FORMAT) +
-                      2 * (gpu_format_bytes(LIGHT_FORMAT) + gpu_format_bytes(SURFACE_FORMAT));
-    return (uint64_t)width * height * (uint64_t)pixel;
+    const int pixel = 2 * gpu_format_bytes(NOW_FORMAT) + gpu_format_bytes(LIGHT_FORMAT) +
+                      gpu_format_bytes(SURFACE_FORMAT);
+    return 2 * (uint64_t)width * height * (uint64_t)pixel;
 }
 
 void vct_temporal_invalidate(struct vct_temporal *t)
@@ -82,11 +97,10 @@ static bool same_camera(const struct world_camera *a, const struct world_camera 
            a->vertical_fov_rad == b->vertical_fov_rad && a->near_m == b->near_m;
 }
 
-static bool nothing_changed(const struct vct_temporal *t, const struct frame_view *view)
+static bool light_changed(const struct vct_temporal *t, const struct frame_view *view)
 {
-    const bool same_light = !view->lights_changed && same(t->sky, view->constants->sky);
-    return !view->geometry_moved && same_camera(&t->camera, &view->camera) &&
-           (t->unlit || same_light);
+    return view->geometry_moved ||
+           (!t->unlit && (view->lights_changed || !same(t->sky, view->constants->sky)));
 }
 
 // The image plane of the previous frame: the point at distance d along the view axis behind pixel
@@ -111,15 +125,28 @@ static float history_weight(uint32_t still, int32_t most)
     return fmaxf((float)most, fminf(grown, STILL_FRAMES));
 }
 
+// Selects the rotation of this frame and how the history follows.
+static void follow(struct vct_temporal *t, bool moves, bool settles)
+{
+    t->held = moves && t->held < HELD_FRAMES ? t->held + 1 : 0;
+    t->params.follow = t->held > 0 ? VCT_FOLLOW_KNOWN
+                       : moves     ? VCT_FOLLOW_EXPECTED
+                       : settles   ? VCT_SETTLE
+                                   : VCT_KEEP;
+}
+
 void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, int32_t most,
-                        float clamp)
+                        float clamp, bool settles)
 {
     const bool known = t->known && !view->camera_cut && view->index == t->index + 1;
-    t->number = known ? t->number + 1 : 0;
-    t->still = known && nothing_changed(t, view) ? t->still + 1 : 0;
+    const bool moves = known && light_changed(t, view);
+    t->still =
+        known && !moves && !settles && same_camera(&t->camera, &view->camera) ? t->still + 1 : 0;
     t->params = (struct vct_history_params){ .known = known, .clamp = clamp };
     t->params.scale = t->unlit ? 1.0f : view->constants->previous_scale_ratio;
     t->params.most = history_weight(t->still, most);
+    follow(t, moves, known && settles);
+    t->number = known ? t->number + (t->held == 0) : 0;
     previous_image_plane(&t->camera, view->width, view->height, &t->params);
     t->known = true;
     t->index = view->index;
@@ -160,6 +187,11 @@ void vct_temporal_rotate_cones(const struct vct_temporal *t, struct vct_cone_par
         params->cones[i] = vec4_of(lines[(first + i) % count], params->cones[i].w);
 }
 
+gpu_image vct_temporal_now(const struct vct_temporal *t)
+{
+    return t->now[t->newest];
+}
+
 void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view,
                          gpu_image result)
 {
@@ -171,7 +203,10 @@ void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const stru
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "motion", .image = view->layers[FRAME_MOTION] },
-                          { .name = "now", .image = t->now },
+                          { .name = "now", .image = t->now[newest] },
+                          { .name = "last_now", .image = t->now[previous] },
+                          { .name = "last_change", .image = t->change[previous] },
+                          { .name = "change", .image = t->change[newest] },
                           { .name = "last_light", .image = t->light[previous] },
                           { .name = "last_surface", .image = t->surface[previous] },
                           { .name = "light", .image = t->light[newest] },

@@ -8,6 +8,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define FRAME_CONSTANTS_BINDING 0
+#include "core/half.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/common/reproject.glsl"
@@ -29,12 +30,22 @@ layout(set = 0, binding = 7) uniform sampler2D last_surface;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D light;
 layout(set = 0, binding = 9, rg32f) uniform writeonly image2D surface;
 layout(set = 0, binding = 10) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 11) uniform sampler2D last_now;
+layout(set = 0, binding = 12) uniform sampler2D last_change;
+layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D change;
 
 const float LEAST_COSINE = 0.9; // of two normals of one surface: 26 degrees
 const float TOLERANCE_PX = 4.0; // distance from the plane, in pixel widths at that depth
 const float LEAST = 0.1;        // sum of the four tap weights below which history is rejected
 const float NORMAL_STEPS = 4096.0;
-const int RADIUS = 2; // of the neighbourhood of the clamp, px
+// Relative deviation of one frame from the mean over rotations: measured in a room with all
+// bounces.
+const float FRAME_NOISE = 0.025;
+// Weight of a difference in a moving mean where pixels move: pixels that trace other cones of a
+// block differ without a change of light.
+const float MOVED_SHARE = 0.25;
+const float LATER_BOUNCE = 0.5; // change of light by a bounce over that of the bounce before
+const int RADIUS = 2;           // of the neighbourhood of the clamp, px
 
 // Octahedral, two times 12 bits as an integer that a float represents exactly.
 float packed_normal(vec3 n)
@@ -60,12 +71,17 @@ float normal_similarity(vec3 a, vec3 b)
     return clamp((dot(a, b) - LEAST_COSINE) / (1.0 - LEAST_COSINE), 0.0, 1.0);
 }
 
-// Irradiance, accumulated frames; 0 frames: rejected.
-vec4 sample_history(vec2 history_pixel, float distance_m, vec3 n)
+struct history_sample {
+    vec4 light;  // irradiance, weight in frames; 0 frames: rejected
+    vec3 now;    // of the previous frame alone
+    vec3 change; // last known change of it
+};
+
+history_sample sample_history(vec2 history_pixel, float distance_m, vec3 n)
 {
     vec3 expected = previous_point(history_pixel, distance_m);
     float per_metre = 1.0 / (TOLERANCE_PX * set.pixel * distance_m), weights = 0.0;
-    vec4 sum = vec4(0.0);
+    history_sample sum = history_sample(vec4(0.0), vec3(0.0), vec3(0.0));
     for (int i = 0; i < 4; i++) {
         ivec2 at = reproject_tap(history_pixel, i);
         if (any(lessThan(at, ivec2(0))) ||
@@ -79,10 +95,56 @@ vec4 sample_history(vec2 history_pixel, float distance_m, vec3 n)
         float weight = reproject_share(history_pixel, i) *
                        max(1.0 - plane_distance_m * per_metre, 0.0) *
                        normal_similarity(n, stored_normal);
-        sum += weight * texelFetch(last_light, at, 0);
+        sum.light += weight * texelFetch(last_light, at, 0);
+        if (set.follow != VCT_KEEP) sum.now += weight * texelFetch(last_now, at, 0).rgb;
+        if (set.follow != VCT_KEEP) sum.change += weight * texelFetch(last_change, at, 0).rgb;
         weights += weight;
     }
-    return weights > LEAST ? sum / weights : vec4(0.0);
+    float w = weights > LEAST ? 1.0 / weights : 0.0, scale = set.scale * w;
+    return history_sample(vec4(scale, scale, scale, w) * sum.light, scale * sum.now,
+                          scale * sum.change);
+}
+
+float total(vec3 v)
+{
+    return v.r + v.g + v.b;
+}
+
+// Of the noise of two frames of one rotation: see (1) of cones/temporal.c.
+float correlation(vec3 before, vec3 after)
+{
+    float most = total(max(before, after));
+    return most > 0.0 ? 1.0 - min(total(abs(after - before)) / most, 1.0) : 1.0;
+}
+
+// (1) of cones/temporal.c.
+vec4 followed(vec4 history, vec3 before, vec3 after)
+{
+    float c = correlation(before, after), c2 = c * c;
+    return vec4(max(after + c * (history.rgb - before), 0.0),
+                history.w / (c2 + (1.0 - c2) * history.w));
+}
+
+// The variance of an unknown change, relative to that of one frame, adds to 1/w.
+float less_certain(float w, vec3 before, vec3 after)
+{
+    float error = (1.0 - correlation(before, after)) / FRAME_NOISE;
+    return w / (1.0 + error * error * w);
+}
+
+// The history after the change of light since the previous frame. `change`: of one frame alone.
+vec4 follow(history_sample history, vec3 now, bool moves, out vec3 change)
+{
+    change = history.change;
+    if (set.follow == VCT_FOLLOW_KNOWN) {
+        change = mix(change, now - history.now, moves ? MOVED_SHARE : 1.0);
+        return followed(history.light, history.now, max(history.now + change, 0.0));
+    }
+    vec4 light = history.light;
+    vec3 expected = max(history.now + change, 0.0);
+    if (set.follow == VCT_FOLLOW_EXPECTED) light = followed(light, history.now, expected);
+    change *= LATER_BOUNCE;
+    return vec4(light.rgb, less_certain(light.w, history.now, expected));
 }
 
 vec3 position(ivec2 pixel, float z)
@@ -122,7 +184,7 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
-    vec3 mean = texelFetch(now, pixel, 0).rgb;
+    vec3 mean = texelFetch(now, pixel, 0).rgb, known = vec3(0.0);
     vec2 stored = vec2(0.0);
     float frames = 0.0;
     if (z > 0.0) {
@@ -130,20 +192,27 @@ void main()
         float distance_m = frame_view_distance(z);
         vec4 moved = texelFetch(motion, pixel, 0);
         float distance_before = reproject_distance(moved, distance_m);
-        vec4 history = vec4(0.0);
+        history_sample history = history_sample(vec4(0.0), vec3(0.0), vec3(0.0));
         if (set.known != 0u && distance_before > 0.0)
             history = sample_history(reproject_place(moved, pixel, vec2(frame.width, frame.height)),
                                      distance_before, n);
-        history.rgb *= set.scale;
-        if (set.clamp > 0.0 && history.w > 0.0)
-            history.rgb = clamped(history.rgb, pixel, position(pixel, z), n,
-                                  TOLERANCE_PX * set.pixel * distance_m);
-        float weight = min(history.w, set.most);
-        mean = (weight * history.rgb + mean) / (weight + 1.0);
-        frames = min(weight + 1.0, set.most);
+        if (set.clamp > 0.0 && history.light.w > 0.0)
+            history.light.rgb = clamped(history.light.rgb, pixel, position(pixel, z), n,
+                                        TOLERANCE_PX * set.pixel * distance_m);
+        bool moves = moved.xyz != vec3(0.0);
+        vec4 old = vec4(history.light.rgb, min(history.light.w, set.most));
+        float added = 1.0; // frames
+        if (set.follow != VCT_KEEP && old.w > 0.0) {
+            old = follow(history_sample(old, history.now, history.change), mean, moves, known);
+            // A held rotation adds nothing to the mean.
+            added = set.follow == VCT_FOLLOW_KNOWN && !moves ? 0.0 : 1.0;
+        }
+        mean = (old.w * old.rgb + added * mean) / (old.w + added);
+        frames = min(old.w + added, set.most);
         stored = vec2(distance_m, packed_normal(n));
     }
     imageStore(light, pixel, vec4(mean, frames));
     imageStore(surface, pixel, vec4(stored, 0.0, 0.0));
+    imageStore(change, pixel, vec4(clamp(known, -HALF_MAX, HALF_MAX), 0.0));
     imageStore(irradiance, pixel, vec4(mean, 1.0));
 }

@@ -6,14 +6,17 @@
 
 struct vct_temporal {
     gpu_pipeline filter;
-    gpu_image now;              // RGBA16F: irradiance of this frame alone
-    gpu_image light[2];         // RGBA32F: irradiance, accumulated frames; ping-pong
+    // Ping-pong: of this frame and of the previous one.
+    gpu_image now[2];           // RGBA16F: irradiance of the frame alone
+    gpu_image change[2];        // RGBA16F: last known change of it
+    gpu_image light[2];         // RGBA32F: irradiance, weight in frames
     gpu_image surface[2];       // RG32F: depth and normal, see temporal.comp
     int newest;                 // index of this frame's history
     bool unlit;                 // visibility is filtered: independent of lights and radiance scale
     bool known;                 // the history is valid
     uint64_t index;             // of the previous frame
-    uint32_t number;            // frames since the history began
+    uint32_t number;            // rotations since the history began
+    int held;                   // frames with the rotation of this one before it
     uint32_t still;             // frames since anything changed
     struct world_camera camera; // of the previous frame
     vec3s sky;                  // of the previous frame, scaled
@@ -26,12 +29,15 @@ void vct_temporal_destroy(struct vct_temporal *t, struct gpu *gpu); // accepts a
 uint64_t vct_temporal_memory(uint32_t width, uint32_t height);
 void vct_temporal_invalidate(struct vct_temporal *t);
 
-// Once per frame, before its cones. most: maximum history weight while anything moves.
+// Once per frame, before its cones. most: maximum history weight while anything moves; settles: the
+// light volume still follows an earlier change.
 void vct_temporal_begin(struct vct_temporal *t, const struct frame_view *view, int32_t most,
-                        float clamp);
+                        float clamp, bool settles);
 // Rotates the cones of this frame and permutes them over the pixels. The first frame of a history
 // keeps them.
 void vct_temporal_rotate_cones(const struct vct_temporal *t, struct vct_cone_params *params);
-// Blends `now` with the history; writes `result` and the new history.
+// The image of this frame's cones.
+gpu_image vct_temporal_now(const struct vct_temporal *t);
+// Blends it with the history; writes `result` and the new history.
 void vct_temporal_record(struct vct_temporal *t, struct gpu_cmd *cmd, const struct frame_view *view,
                          gpu_image result);

@@ -103,7 +103,8 @@ static bool same_inputs(const struct vct *vct, const struct vct_bounce_inputs *i
 // With a reflectance of 0.7 the 17th bounce has 0.3 % of the light of the first.
 enum {
     BOUNCES_AT_ONCE = 8,       // without bounced light of a previous frame
-    BOUNCES_AFTER_CHANGE = 16, // one per frame, until the light from before the change is gone
+    BOUNCES_OF_FRAME = 2,      // in the first frame of a change and after the last one
+    BOUNCES_AFTER_CHANGE = 16, // until the light from before the change is gone
 };
 
 // Bounces to trace in this frame.
@@ -116,8 +117,12 @@ static int bounces_now(struct vct *vct, const struct frame_view *view,
         vct->bounces_left = vct->light_valid ? BOUNCES_AFTER_CHANGE : 0;
         return vct->light_valid ? 1 : BOUNCES_AT_ONCE;
     }
-    if (!same || view->lights_changed) vct->bounces_left = BOUNCES_AFTER_CHANGE;
-    return vct->bounces_left > 0 ? (vct->bounces_left--, 1) : 0;
+    const bool changed = !same || view->lights_changed, moves = changed && vct->bounces_left > 0;
+    if (changed) vct->bounces_left = BOUNCES_AFTER_CHANGE;
+    const int most = moves ? 1 : BOUNCES_OF_FRAME;
+    const int now = vct->bounces_left < most ? vct->bounces_left : most;
+    vct->bounces_left -= now;
+    return now;
 }
 
 // Fills the light volume without bounced light: direct light with `direct`, emission always.
