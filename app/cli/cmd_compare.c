@@ -95,6 +95,7 @@ static enum status compare(const struct arguments *arguments)
     for (int i = 0; i < c->method_count && status == DONE; i++) status = method_render(c, i);
     if (status == DONE) status = check_device(c);
     if (status == DONE) status = reference_complete(c);
+    if (status == DONE) status = reference_expose(c);
     if (status == DONE) status = methods_measure(c);
     if (status == DONE) status = publish(c);
 

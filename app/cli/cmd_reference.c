@@ -1,5 +1,6 @@
 // afterglow reference: progressive path tracing.
 #include "commands.h"
+#include "images.h"
 #include "interrupt.h"
 #include "json.h"
 #include "tracing.h"
@@ -66,11 +67,12 @@ static enum ag_result find_exposure(struct job *job)
     const struct arguments *a = job->arguments;
     job->exposure_ev = a->exposure_ev;
     if (a->has_exposure) return AG_OK;
-    struct ag_image *image = NULL;
-    enum ag_result result =
-        ag_reference_read(job->tracing.reference, a->indirect_only ? "color" : "direct", &image);
-    if (result == AG_OK) job->exposure_ev = ag_image_auto_exposure(image);
-    ag_image_destroy(job->session.context, image);
+    struct ag_image *color = NULL, *depth = NULL;
+    enum ag_result result = ag_reference_read(job->tracing.reference, "color", &color);
+    if (result == AG_OK) result = ag_reference_read(job->tracing.reference, "depth", &depth);
+    if (result == AG_OK) result = image_exposure(&job->session, color, depth, &job->exposure_ev);
+    ag_image_destroy(job->session.context, color);
+    ag_image_destroy(job->session.context, depth);
     return result;
 }
 

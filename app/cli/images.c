@@ -17,6 +17,24 @@ double image_luminance(const float rgb[3])
     return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
 }
 
+enum ag_result image_exposure(const struct session *session, const struct ag_image *radiance,
+                              const struct ag_image *depth, float *ev)
+{
+    struct ag_image *metered = NULL;
+    enum ag_result result =
+        ag_image_create(session->context, radiance->width, radiance->height, 4, &metered);
+    if (result != AG_OK) return result;
+    size_t count = (size_t)radiance->width * (size_t)radiance->height;
+    for (size_t i = 0; i < count; i++) {
+        const float *rgb = &radiance->pixels[i * (size_t)radiance->channels];
+        for (size_t k = 0; k < 3; k++) metered->pixels[4 * i + k] = rgb[k];
+        metered->pixels[4 * i + 3] = depth->pixels[i * (size_t)depth->channels] > 0.0f;
+    }
+    *ev = ag_image_auto_exposure(metered);
+    ag_image_destroy(session->context, metered);
+    return AG_OK;
+}
+
 static size_t count_not_finite(const struct ag_image *image, const struct ag_image *mask)
 {
     size_t count = 0, channels = (size_t)image->channels;

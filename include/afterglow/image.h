@@ -49,8 +49,8 @@ AG_API enum ag_result ag_image_read_attribute(struct ag_context *context, const 
 /// Khronos PBR Neutral tone mapper.
 AG_API enum ag_result ag_image_tonemap(struct ag_context *context, const struct ag_image *radiance,
                                        float ev, struct ag_image **out);
-/// EV that maps the log-average luminance of a radiance image to middle grey. A fourth channel is
-/// alpha; pixels with alpha 0 are ignored.
+/// EV that maps the log-average luminance of a radiance image, clamped to its 10th and 90th
+/// percentile, to middle grey. A fourth channel is alpha; pixels with alpha 0 are ignored.
 AG_API float ag_image_auto_exposure(const struct ag_image *radiance);
 /// Places two images of equal height side by side, with `gap` black columns between them.
 AG_API enum ag_result ag_image_side_by_side(struct ag_context *context, const struct ag_image *a,

@@ -39,8 +39,7 @@ struct ag_frame_desc {
     struct ag_camera camera;
     double time_s;      ///< animation time
     int animation;      ///< see ag_scene_camera; default 0: the first, if any
-    bool auto_exposure; ///< meter the log-average of direct light and light of emitters; default
-                        ///< true
+    bool auto_exposure; ///< meter the log-average of the frame's radiance; default true
     float exposure_ev;  ///< EV at ISO 100 if auto_exposure is false
     bool camera_cut;    ///< discard history of earlier frames; default false
 };

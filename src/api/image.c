@@ -7,6 +7,7 @@
 #include "image/image.h"
 #include "image/metrics.h"
 #include "image/png_file.h"
+#include "image/exposure.h"
 #include "image/tonemap.h"
 
 #include <stdio.h>

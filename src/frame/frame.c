@@ -119,6 +119,22 @@ static uint32_t composite_variant_of(const struct frame_input *input, uint32_t n
            (input->want_display ? COMPOSITE_DISPLAY : 0);
 }
 
+// The same radiance, without images.
+static uint32_t meter_variant_of(uint32_t variant)
+{
+    const uint32_t outputs = COMPOSITE_INDIRECT | COMPOSITE_DISPLAY;
+    return (variant & ~outputs) | COMPOSITE_METER;
+}
+
+static bool prepare_composite(struct frame *f, const struct frame_input *input)
+{
+    f->composite_variant = composite_variant_of(input, f->needs) |
+                           (f->scene.has_dielectrics ? COMPOSITE_DIELECTRIC : 0);
+    return composite_prepare(&f->composite, f->composite_variant) &&
+           (!input->auto_exposure ||
+            composite_prepare(&f->composite, meter_variant_of(f->composite_variant)));
+}
+
 static bool prepare_lights(struct frame *f, const struct frame_input *input)
 {
     static const uint32_t types[] = { FRAME_LIGHT_SUN, FRAME_LIGHT_POINT, FRAME_LIGHT_SPOT };
@@ -150,12 +166,10 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
         (indirect ? indirect->needs : 0) | (input->want_motion_layer ? FRAME_NEEDS_MOTION : 0);
     const uint32_t gbuffer_layers = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
                                     (f->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0);
-    f->composite_variant = composite_variant_of(input, f->needs) |
-                           (f->scene.has_dielectrics ? COMPOSITE_DIELECTRIC : 0);
     f->prepared = frame_make_layers(f, wanted_layers(input, f->needs, f->scene.has_dielectrics)) &&
                   prepare_lights(f, input) &&
                   gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used, gbuffer_layers) &&
-                  composite_prepare(&f->composite, f->composite_variant);
+                  prepare_composite(f, input);
     return f->prepared;
 }
 
@@ -272,26 +286,7 @@ static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct f
     if (indirect && indirect->record) indirect->record(indirect->user, cmd, view);
 }
 
-static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
-{
-    if (!input->auto_exposure) {
-        exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);
-        return;
-    }
-    struct exposure_input in = {
-        .direct = f->layers[FRAME_DIRECT],
-        .albedo = f->layers[FRAME_ALBEDO],
-        .material = f->layers[FRAME_MATERIAL],
-        .scratch = f->layers[FRAME_COLOR], // written by the composite pass only
-        .emitted = f->emitted_irradiance,
-        .fallback = f->fallback_luminance,
-        .width = f->width,
-        .height = f->height,
-    };
-    exposure_record_auto(&f->exposure, cmd, f->constants_binding, &in);
-}
-
-static void record_composite(struct frame *f, struct gpu_cmd *cmd)
+static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
 {
     struct composite_images images = {
         .depth = f->layers[FRAME_DEPTH],
@@ -307,13 +302,33 @@ static void record_composite(struct frame *f, struct gpu_cmd *cmd)
         .indirect = f->layers[FRAME_INDIRECT],
         .display = f->layers[FRAME_DISPLAY],
     };
-    const struct gpu_binding bindings[3] = {
+    const struct gpu_binding bindings[4] = {
         f->constants_binding,
         { "exposure_state", .buffer = f->exposure.state },
+        { "exposure_histogram", .buffer = f->exposure.histogram },
         ggx_albedo_binding(f),
     };
-    composite_record(&f->composite, cmd, f->composite_variant, &images, bindings, f->width,
-                     f->height);
+    composite_record(&f->composite, cmd, variant, &images, bindings, f->width, f->height);
+}
+
+static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
+{
+    gpu_scope_begin(cmd, "exposure");
+    if (input->auto_exposure) {
+        exposure_record_clear(&f->exposure, cmd);
+        composite(f, cmd, meter_variant_of(f->composite_variant));
+        exposure_record_auto(&f->exposure, cmd, f->constants_binding, f->fallback_luminance);
+    } else {
+        exposure_record_fixed(&f->exposure, cmd, input->exposure_ev);
+    }
+    gpu_scope_end(cmd);
+}
+
+static void record_composite(struct frame *f, struct gpu_cmd *cmd)
+{
+    gpu_scope_begin(cmd, "composite");
+    composite(f, cmd, f->composite_variant);
+    gpu_scope_end(cmd);
 }
 
 void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,

@@ -113,12 +113,12 @@ struct frame_input {
     const struct world_light *lights; // physical units
     int light_count;                  // ≤ FRAME_MAX_LIGHTS
     vec3s sky;                        // cd/m²
-    bool auto_exposure;       // log-average of direct light and emission (composite/exposure.h)
-    float exposure_ev;        // used if auto_exposure is false
-    bool camera_cut;          // invalidate history
-    bool want_indirect_layer; // fill FRAME_INDIRECT
-    bool want_motion_layer;   // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
-    bool want_display;        // fill FRAME_DISPLAY
+    bool auto_exposure;               // from the frame's radiance, see image/exposure.h
+    float exposure_ev;                // used if auto_exposure is false
+    bool camera_cut;                  // invalidate history
+    bool want_indirect_layer;         // fill FRAME_INDIRECT
+    bool want_motion_layer;           // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
+    bool want_display;                // fill FRAME_DISPLAY
 };
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);

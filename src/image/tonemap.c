@@ -1,5 +1,5 @@
 // Exposure, the Khronos PBR Neutral tone mapper (Khronos 2024, "PBR Neutral Tone Mapper
-// Specification") and automatic exposure. tonemap.glsl is the GPU twin of the first two.
+// Specification"). tonemap.glsl is the GPU twin.
 #include "image/tonemap.h"
 
 #include <math.h>
@@ -9,10 +9,6 @@ static const float COMPRESSION_START = 0.76f; // 0.8 − 0.04: values below are 
 static const float DESATURATION = 0.15f;      // rate at which compressed colours go to white
 static const float TOE_END = 0.08f;           // below it the offset shrinks, so that 0 stays 0
 static const float EXPOSED_MAX = 1e30f;       // replaces infinity, so that no product overflows
-
-static const double MIDDLE_GREY = 0.18;
-static const double DARK_SHARE = 0.25; // luminance floor, relative to the log average of lit pixels
-static const double EV_LIMIT = 100.0;  // keeps exposure_scale a normal float
 
 float exposure_scale(float ev)
 {
@@ -63,51 +59,4 @@ bool image_tonemap(struct image *out, struct host *host, const struct image *in,
         }
     }
     return true;
-}
-
-// Luminance of a pixel, 0 where it is negative, NaN or infinite.
-static double lit_luminance(const struct image *image, int x, int y)
-{
-    const float *p = image_at(image, x, y);
-    float value = image->channels >= 3 ? luminance(vec3_of(p[0], p[1], p[2])) : p[0];
-    return value > 0.0f && isfinite(value) ? (double)value : 0.0;
-}
-
-// Pixels with an alpha of 0 are empty and do not count.
-static bool counts(const struct image *image, int x, int y)
-{
-    return image->channels < 4 || image_at(image, x, y)[3] != 0.0f;
-}
-
-// Log-average luminance of the lit pixels; 0 when none is lit.
-static double lit_mean(const struct image *image)
-{
-    double sum = 0.0;
-    size_t lit = 0;
-    for (int y = 0; y < image->height; y++) {
-        for (int x = 0; x < image->width; x++) {
-            double value = counts(image, x, y) ? lit_luminance(image, x, y) : 0.0;
-            if (value > 0.0) sum += log2(value), lit++;
-        }
-    }
-    return lit ? exp2(sum / (double)lit) : 0.0;
-}
-
-float auto_exposure(const struct image *radiance)
-{
-    double floor_value = DARK_SHARE * lit_mean(radiance);
-    if (!(floor_value > 0.0)) return 0.0f;
-    double sum = 0.0;
-    size_t count = 0;
-    for (int y = 0; y < radiance->height; y++) {
-        for (int x = 0; x < radiance->width; x++) {
-            if (!counts(radiance, x, y)) continue;
-            sum += log2(fmax(lit_luminance(radiance, x, y), floor_value));
-            count++;
-        }
-    }
-    double mean_log2 = sum / (double)count;
-    // exposure_scale(EV) · mean = middle grey, solved for EV.
-    double ev = mean_log2 - log2(1.2 * MIDDLE_GREY);
-    return (float)fmax(-EV_LIMIT, fmin(EV_LIMIT, ev));
 }

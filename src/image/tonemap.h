@@ -10,6 +10,3 @@ float exposure_scale(float ev);
 vec3s tonemap_pbr_neutral(vec3s exposed);
 // out: display-linear 0…1, same size, 3 channels. in has 3 or 4 channels, cd/m².
 bool image_tonemap(struct image *out, struct host *host, const struct image *in, float ev);
-// The EV that maps the log-average luminance of a radiance image to middle grey; see docs/units.md.
-// Of images with 4 channels, pixels with an alpha of 0 do not count.
-float auto_exposure(const struct image *radiance);

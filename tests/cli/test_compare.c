@@ -121,8 +121,9 @@ TEST(the_report_has_the_documented_fields_and_files)
         json_t *method = method_of(report, i);
         check_keys(method,
                    "gi options relmse flip mae ssim energy indirect frame_ms passes memory_bytes "
-                   "flip_hdr images");
+                   "flip_hdr images irradiance");
         check_keys(json_object_get(method, "indirect"), "relmse mae energy");
+        check_keys(json_object_get(method, "irradiance"), "relmse mae energy");
         check_keys(json_object_get(method, "frame_ms"), "median p95");
         check_keys(json_object_get(method, "images"), "picture error indirect indirect_error");
         check_images(folder, json_object_get(method, "images"), 24, 18);
@@ -248,7 +249,6 @@ TEST(equal_methods_and_equal_commands_have_equal_results)
     require_device();
     own_cache("twice-cache");
     const char *a = path_of("twice-a"), *b = path_of("twice-b");
-    // The first method also meters the exposure.
     run_expect(0, SCENE " --frames 2 --spp 2 --gi lpv --gi lpv -o", a, NULL);
     run_expect(0, SCENE " --frames 2 --spp 2 --gi lpv --gi lpv --no-cache -o", b, NULL);
     json_t *first = report_of(a), *second = report_of(b);
@@ -268,18 +268,19 @@ TEST(equal_methods_and_equal_commands_have_equal_results)
     CHECK(files_are_equal(in(a, "reference.exr"), in(b, "reference.exr")));
 }
 
-TEST(the_exposure_is_that_of_render_or_the_given_one)
+TEST(the_exposure_is_that_of_the_reference_or_the_given_one)
 {
     require_device();
     own_cache("exposure-cache");
     const char *folder = path_of("exposure"), *png = path_of("exposure.png");
     run_expect(0, SMALL " -o", folder, NULL);
     json_t *report = report_of(folder);
-    json_t *frame = run_json(
-        run_expect(0, "render @cornell --size 24x18 --quiet --json --gi lpv -o", png, NULL));
-    CHECK(number(report, "exposure_ev") == number(frame, "exposure_ev"));
+    json_t *traced = run_json(
+        run_expect(0, "reference @cornell --size 24x18 --spp 2 --quiet --json -o", png, NULL));
+    CHECK(number(report, "exposure_ev") == number(traced, "exposure_ev"));
+    CHECK(files_are_equal(png, in(folder, "reference.png")));
     json_decref(report);
-    json_decref(frame);
+    json_decref(traced);
     run_expect(0, SMALL " --exposure 3.25 -o", folder, NULL);
     run_expect(0, "render @cornell --size 24x18 --quiet --exposure 3.25 -o", png, NULL);
     report = report_of(folder);

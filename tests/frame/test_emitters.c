@@ -3,7 +3,6 @@
 #include "frame/frame_fixture.h"
 
 #include "image/png_file.h"
-#include "image/tonemap.h"
 #include "scene/builtin/builtin.h"
 
 #include <math.h>
@@ -366,7 +365,6 @@ static void room(struct frame_fixture *s, struct gpu *gpu, float lamp_m, float r
     fixture_quad(s, vec3_of(-h, 3.9f, -h), vec3_of(h, 3.9f, -h), vec3_of(h, 3.9f, h),
                  vec3_of(-h, 3.9f, h), grey_emissive(s, radiance));
     fixture_look(s, vec3_of(0, 2, 1.9f), vec3_of(0, 2.5f, -2));
-    s->input.auto_exposure = true;
 }
 
 TEST_GPU(techniques_get_the_list_when_they_ask_for_it)
@@ -405,27 +403,4 @@ TEST_GPU(no_strength_of_emission_leaves_the_range_of_the_images)
         CHECK(scaled > 0.03 && scaled < 1000); // 2⁻¹⁴ is the least normal half
         fixture_finish(&s);
     }
-}
-
-TEST_GPU(what_emission_lights_is_metered_with_the_direct_light)
-{
-    struct frame_fixture s;
-    room(&s, gpu, 0.5f, 5000);
-    struct seen seen;
-    s.indirect = (struct frame_indirect){ look, &seen, FRAME_NEEDS_EMITTERS };
-    fixture_open(&s);
-    fixture_render(&s);
-    float ev, again;
-    assert_true(frame_exposure(s.frame, &ev));
-    float *direct = fixture_read(&s, READ_DIRECT), *albedo = fixture_read(&s, READ_ALBEDO);
-    for (size_t i = 0; i < 32 * 32 * 3; i++)
-        direct[i] += (float)((double)albedo[i] / PI * seen.irradiance);
-    struct image image = { 32, 32, 3, direct };
-    CHECK_NEAR(ev, auto_exposure(&image), 4e-3); // the albedo is decoded from sRGB by the GPU
-    s.indirect = (struct frame_indirect){ 0 };   // whoever lights the frame
-    fixture_render(&s);
-    assert_true(frame_exposure(s.frame, &again));
-    CHECK(ev == again);
-    free(direct), free(albedo);
-    fixture_finish(&s);
 }

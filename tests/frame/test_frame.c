@@ -2,6 +2,7 @@
 #include "frame/frame_fixture.h"
 
 #include "image/png_file.h"
+#include "image/exposure.h"
 #include "image/tonemap.h"
 
 #include <math.h>
@@ -84,29 +85,72 @@ TEST_GPU(without_a_technique_the_image_is_direct_light)
     fixture_finish(&s);
 }
 
+// The EV that the CPU finds in the color layer.
+static float cpu_exposure(struct frame_fixture *s)
+{
+    float *color = fixture_read(s, READ_COLOR), *depth = fixture_read(s, READ_DEPTH);
+    struct image image;
+    assert_true(image_init(&image, test_host(), (int)s->width, (int)s->height, 4));
+    for (size_t p = 0; p < (size_t)s->width * s->height; p++) {
+        memcpy(image.pixels + 4 * p, color + 3 * p, 3 * sizeof *color);
+        image.pixels[4 * p + 3] = depth[p] > 0 ? 1 : 0;
+    }
+    float ev = auto_exposure(&image);
+    image_finish(&image, test_host());
+    free(color), free(depth);
+    return ev;
+}
+
 TEST_GPU(exposure_equals_the_cpus)
 {
-    for (int i = 0; i < 3; i++) {
+    struct constant_layers f = { .irradiance = 500, .specular = 20, .visibility = 0.5f };
+    for (int i = 0; i < 4; i++) {
         struct frame_fixture s;
         begin(&s, gpu);
         s.width = i == 0 ? 32 : i == 1 ? 131 : 640;
         s.height = i == 0 ? 32 : i == 1 ? 77 : 360;
+        if (i == 3)
+            s.indirect = (struct frame_indirect){
+                fill, &f, FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR | FRAME_WRITES_VISIBILITY
+            };
         fixture_look(&s, vec3_of(0, 1, 3), vec3_of(0, 1, 0)); // half of the image is background
         fixture_open(&s);
         fixture_render(&s);
-        float *direct = fixture_read(&s, READ_DIRECT), *depth = fixture_read(&s, READ_DEPTH), ev;
-        struct image image;
-        assert_true(image_init(&image, test_host(), (int)s.width, (int)s.height, 4));
-        for (size_t p = 0; p < (size_t)s.width * s.height; p++) {
-            memcpy(image.pixels + 4 * p, direct + 3 * p, 3 * sizeof *direct);
-            image.pixels[4 * p + 3] = depth[p] > 0 ? 1 : 0;
-        }
+        float ev;
         assert_true(frame_exposure(s.frame, &ev));
-        CHECK_NEAR(ev, auto_exposure(&image), 1e-3);
-        image_finish(&image, test_host());
-        free(direct), free(depth);
+        CHECK_NEAR(ev, cpu_exposure(&s), i == 3 ? 2e-3 : 1e-4); // the layer is of half floats
         fixture_finish(&s);
     }
+}
+
+// Without punctual lights only the technique lights the image.
+TEST_GPU(light_of_a_technique_alone_is_exposed_to_middle_grey)
+{
+    unsigned char *shown[2];
+    float ev[2];
+    for (int i = 0; i < 2; i++) {
+        struct frame_fixture s;
+        begin(&s, gpu);
+        s.input.light_count = 0;
+        struct constant_layers f = { .irradiance = i ? 1400 : 700, .visibility = 1 };
+        s.indirect = (struct frame_indirect){
+            fill, &f, FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR | FRAME_WRITES_VISIBILITY
+        };
+        fixture_open(&s);
+        fixture_render(&s);
+        assert_true(frame_exposure(s.frame, &ev[i]));
+        vec3s color = fixture_pixel(&s, READ_COLOR, 16, 16);
+        CHECK_RELATIVE(luminance(color) * exposure_scale(ev[i]), 0.18, 0.02);
+        float *display = fixture_read(&s, READ_DISPLAY);
+        shown[i] = malloc(32 * 32 * 3);
+        for (size_t k = 0; k < 32 * 32 * 3; k++)
+            shown[i][k] = (unsigned char)lrintf(255 * srgb_encode(display[k]));
+        free(display);
+        fixture_finish(&s);
+    }
+    CHECK(ev[1] == ev[0] + 1);
+    CHECK(memcmp(shown[0], shown[1], 32 * 32 * 3) == 0);
+    free(shown[0]), free(shown[1]);
 }
 
 // If no visible surface is lit, exposure follows from the lights' intensity.

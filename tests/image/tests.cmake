@@ -1,6 +1,7 @@
 ag_test(image/image USES image)
 ag_test(image/exr USES image LIBRARIES OpenEXR::OpenEXRCore)
 ag_test(image/png USES image LIBRARIES PkgConfig::PNG)
+ag_test(image/exposure USES image)
 ag_test(image/tonemap USES image)
 target_sources(test_image_tonemap PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/image/tonemap_twin.cpp)
 ag_test(image/metrics USES image)

@@ -23,7 +23,8 @@ struct method {
     struct ag_image *color, *indirect, *irradiance;
     char *spelled;                                // the GI spec with all options
     json_t *options, *passes, *frame_ms, *memory; // as in --stats
-    struct measured image_error, indirect_error;  // indirect_error: where the reference has it
+    struct measured image_error;
+    struct measured indirect_error, irradiance_error; // where the reference has the layers
 };
 
 // The reference: traced, cached, or a given file.
@@ -32,13 +33,14 @@ struct reference {
     struct output kept;         // the layers of its files
     char cache_path[PATH_SIZE]; // "": not cached
     struct ag_image *color;
-    struct ag_image *indirect; // layer indirect_emitters_sky; NULL: absent in the given file
-    int spp;                   // 0: unknown
-    int bounces;               // or UNLIMITED, or NOT_KNOWN
-    double seconds, rays;      // total of all runs; NaN: unknown
-    double noise;              // relative standard error; NaN: unknown
-    double noise_relmse;       // relmse of a perfect image with this noise; NaN: unknown
-    bool cached;               // all samples were cached
+    // Layers indirect_emitters_sky and irradiance_emitters_sky; NULL: absent in the given file.
+    struct ag_image *indirect, *irradiance;
+    int spp;              // 0: unknown
+    int bounces;          // or UNLIMITED, or NOT_KNOWN
+    double seconds, rays; // total of all runs; NaN: unknown
+    double noise;         // relative standard error; NaN: unknown
+    double noise_relmse;  // relmse of a perfect image with this noise; NaN: unknown
+    bool cached;          // all samples were cached
 };
 
 struct comparison {
@@ -46,9 +48,10 @@ struct comparison {
     struct session session;
     struct ag_camera camera;
     struct ag_device *device;
-    float exposure_ev; // of all images
+    float exposure_ev; // of all images: --exposure, or the reference's
     struct method methods[MAX_METHODS];
     int method_count;
+    struct ag_image *depth; // of the first method
     struct reference reference;
     struct folder folder;
     float full_indirect; // cd/m²: error shown white in maps of indirect light
@@ -57,7 +60,7 @@ struct comparison {
 // method.c
 // Checks --gi, --size and --frame-options before the work.
 enum status methods_plan(struct comparison *c);
-// Renders a method and reads its layers, times and memory. Method 0 determines the exposure.
+// Renders a method and reads its layers, times and memory.
 enum status method_render(struct comparison *c, int index);
 void methods_finish(struct comparison *c);
 
@@ -66,6 +69,8 @@ void methods_finish(struct comparison *c);
 enum status reference_begin(struct comparison *c);
 // Traces missing samples (none with --reference) and fills the rest of c->reference.
 enum status reference_complete(struct comparison *c);
+// Determines the exposure of all images.
+enum status reference_expose(struct comparison *c);
 // Writes reference.exr: the traced layers or a copy of the given file.
 enum status reference_write_exr(struct comparison *c, const char *path);
 void reference_finish(struct comparison *c);

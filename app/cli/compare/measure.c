@@ -45,9 +45,10 @@ static enum status measure_method(struct comparison *c, struct method *m)
     desc.radiance = false; // only relmse, mae and energy are reported, which ignore it
     snprintf(name, sizeof name, "the indirect light of %s", m->gi);
     status = image_check(&c->session, m->indirect, NULL, name);
-    return status == DONE
-               ? measure(c, m->indirect, c->reference.indirect, &desc, &m->indirect_error)
-               : status;
+    if (status == DONE)
+        status = measure(c, m->indirect, c->reference.indirect, &desc, &m->indirect_error);
+    if (status != DONE || !c->reference.irradiance) return status;
+    return measure(c, m->irradiance, c->reference.irradiance, &desc, &m->irradiance_error);
 }
 
 enum status methods_measure(struct comparison *c)

@@ -72,26 +72,10 @@ static void frame_desc(const struct comparison *c, struct ag_frame_desc *desc)
     desc->camera = c->camera;
     desc->time_s = c->arguments->time_s;
     desc->animation = c->session.animation;
-    desc->auto_exposure = false;
-    desc->exposure_ev = c->exposure_ev;
+    desc->auto_exposure = false; // images are exposed later
 }
 
-// Exposure does not depend on the method, so one renderer meters it.
-static enum status find_exposure(struct rendering *r)
-{
-    struct comparison *c = r->c;
-    c->exposure_ev = c->arguments->exposure_ev;
-    if (c->arguments->has_exposure) return DONE;
-    struct ag_frame_desc desc;
-    frame_desc(c, &desc);
-    desc.auto_exposure = true;
-    enum ag_result result = ag_renderer_render(r->renderer, &desc);
-    if (result == AG_OK) result = ag_renderer_exposure(r->renderer, &c->exposure_ev);
-    return result == AG_OK ? DONE : fail_library(c->session.context, result);
-}
-
-// The first frame discards the history of metering. It includes one-time work, so it is not
-// measured if there are others.
+// The first frame includes one-time work, so it is not measured if there are others.
 static enum status render_frame(struct rendering *r, int index)
 {
     struct comparison *c = r->c;
@@ -129,6 +113,8 @@ static enum status take_layers(struct rendering *r)
     enum ag_result result = ag_renderer_read(r->renderer, "color", &m->color);
     if (result == AG_OK) result = ag_renderer_read(r->renderer, "indirect", &m->indirect);
     if (result == AG_OK) result = ag_renderer_read(r->renderer, "irradiance", &m->irradiance);
+    if (result == AG_OK && !r->c->depth)
+        result = ag_renderer_read(r->renderer, "depth", &r->c->depth);
     return result == AG_OK ? DONE : fail_library(r->c->session.context, result);
 }
 
@@ -162,7 +148,6 @@ enum status method_render(struct comparison *c, int index)
     r->c = c;
     r->method = &c->methods[index];
     enum status status = create(r, index);
-    if (status == DONE && index == 0) status = find_exposure(r);
     if (status == DONE) status = render_frames(r);
     if (status == DONE) status = take_layers(r);
     if (status == DONE) status = take_costs(r);
@@ -174,6 +159,7 @@ enum status method_render(struct comparison *c, int index)
 
 void methods_finish(struct comparison *c)
 {
+    ag_image_destroy(c->session.context, c->depth);
     for (int i = 0; i < c->method_count; i++) {
         struct method *m = &c->methods[i];
         ag_image_destroy(c->session.context, m->color);

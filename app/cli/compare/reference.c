@@ -16,6 +16,7 @@ static const char SECONDS[] = "afterglow.seconds", RAYS[] = "afterglow.rays"; //
 
 // Counterpart of the frame's layer indirect, which includes light from emitters and sky.
 static const char INDIRECT[] = "indirect_emitters_sky";
+static const char IRRADIANCE[] = "irradiance_emitters_sky";
 
 // Standard error of luminance (root mean square) over mean luminance, as printed by reference.
 static double relative_noise(const struct ag_image *color, const struct ag_image *error)
@@ -87,6 +88,14 @@ static enum status check_size(const struct comparison *c)
     return DONE;
 }
 
+// Checkpoints end with a hash of the image; the number before it is that of the sampling, which
+// may differ.
+static bool same_image(const char *a, const char *b)
+{
+    const char *hash_a = strrchr(a, ' '), *hash_b = strrchr(b, ' ');
+    return hash_a && hash_b && strcmp(hash_a, hash_b) == 0;
+}
+
 // Without the attribute only the size can be checked.
 static enum status check_same_image(struct comparison *c)
 {
@@ -96,7 +105,7 @@ static enum status check_same_image(struct comparison *c)
     if (status != DONE) return status;
     if (!checkpoint[0])
         note("%s has no checkpoint attribute: only its size can be checked", path);
-    else if (strcmp(checkpoint, ag_reference_checkpoint(c->reference.tracing.reference)) != 0)
+    else if (!same_image(checkpoint, ag_reference_checkpoint(c->reference.tracing.reference)))
         return fail("cannot compare with %s: its scene, light, camera, size or options differ "
                     "(--bounces, --seed)",
                     path);
@@ -145,6 +154,7 @@ static enum status take_given(struct comparison *c)
     if (status == DONE) status = read_bounces(c);
     if (status != DONE) return status;
     reference->indirect = load_if_there(c, INDIRECT, 3);
+    reference->irradiance = load_if_there(c, IRRADIANCE, 3);
     struct ag_image *error = load_if_there(c, "error", 3),
                     *samples = load_if_there(c, "samples", 1);
     enum ag_result result = error ? find_noise(c, error) : AG_OK;
@@ -262,6 +272,7 @@ static enum status take_traced(struct comparison *c)
     struct ag_image *error = NULL;
     enum ag_result result = ag_reference_read(tracer, "color", &reference->color);
     if (result == AG_OK) result = ag_reference_read(tracer, INDIRECT, &reference->indirect);
+    if (result == AG_OK) result = ag_reference_read(tracer, IRRADIANCE, &reference->irradiance);
     if (result == AG_OK) result = ag_reference_read(tracer, "error", &error);
     if (result == AG_OK) result = find_noise(c, error);
     ag_image_destroy(c->session.context, error);
@@ -278,6 +289,17 @@ enum status reference_complete(struct comparison *c)
     if (c->arguments->reference) return DONE;
     enum status status = trace(c);
     return status == DONE ? take_traced(c) : status;
+}
+
+// ---- exposure
+
+enum status reference_expose(struct comparison *c)
+{
+    c->exposure_ev = c->arguments->exposure_ev;
+    if (c->arguments->has_exposure) return DONE;
+    enum ag_result result =
+        image_exposure(&c->session, c->reference.color, c->depth, &c->exposure_ev);
+    return result == AG_OK ? DONE : fail_library(c->session.context, result);
 }
 
 // ---- reference.exr
@@ -297,5 +319,6 @@ void reference_finish(struct comparison *c)
 {
     ag_image_destroy(c->session.context, c->reference.color);
     ag_image_destroy(c->session.context, c->reference.indirect);
+    ag_image_destroy(c->session.context, c->reference.irradiance);
     tracing_end(&c->reference.tracing);
 }

@@ -23,12 +23,12 @@ static json_t *method_images(const struct comparison *c, const struct method *m)
     return images;
 }
 
-static json_t *indirect_json(const struct comparison *c, const struct method *m)
+// layer: NULL if the reference lacks it.
+static json_t *error_json(const struct ag_image *layer, const struct measured *error)
 {
-    if (!c->reference.indirect) return json_null();
-    return json_pack("{s:o, s:o, s:o}", "relmse", json_double(m->indirect_error.metrics.relmse),
-                     "mae", json_double(m->indirect_error.metrics.mae), "energy",
-                     json_double(m->indirect_error.energy));
+    if (!layer) return json_null();
+    return json_pack("{s:o, s:o, s:o}", "relmse", json_double(error->metrics.relmse), "mae",
+                     json_double(error->metrics.mae), "energy", json_double(error->energy));
 }
 
 static json_t *method_json(const struct comparison *c, const struct method *m)
@@ -38,9 +38,14 @@ static json_t *method_json(const struct comparison *c, const struct method *m)
         json_pack("{s:o, s:O, s:o, s:o, s:o, s:o, s:o, s:o, s:O, s:O, s:O, s:o, s:o}", "gi",
                   json_text(m->gi), "options", m->options, "relmse", json_double(p->relmse), "flip",
                   json_double(p->flip), "mae", json_double(p->mae), "ssim", json_double(p->ssim),
-                  "energy", json_double(m->image_error.energy), "indirect", indirect_json(c, m),
+                  "energy", json_double(m->image_error.energy), "indirect",
+                  error_json(c->reference.indirect, &m->indirect_error),
+
                   "frame_ms", m->frame_ms, "passes", m->passes, "memory_bytes", m->memory,
                   "flip_hdr", json_double(p->flip_hdr), "images", method_images(c, m));
+    if (object && c->reference.irradiance)
+        json_object_set_new(object, "irradiance",
+                            error_json(c->reference.irradiance, &m->irradiance_error));
     if (object && c->arguments->ignore_nan)
         json_object_set_new(object, "pixels", json_integer((json_int_t)p->counted));
     return object;

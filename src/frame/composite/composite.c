@@ -1,6 +1,8 @@
 // Host code of the composite pass.
 #include "frame/composite/composite.h"
 
+#include "image/exposure.h"
+
 #include "frame_shaders.h"
 
 static bool make_placeholder(struct composite *c, const char *name, enum gpu_format format,
@@ -46,7 +48,7 @@ bool composite_prepare(struct composite *c, uint32_t variant)
 }
 
 void composite_record(const struct composite *c, struct gpu_cmd *cmd, uint32_t variant,
-                      const struct composite_images *images, const struct gpu_binding bindings[3],
+                      const struct composite_images *images, const struct gpu_binding bindings[4],
                       uint32_t width, uint32_t height)
 {
     // Every binding of the shader needs an image: the direct layer fills inputs that are not read.
@@ -56,9 +58,11 @@ void composite_record(const struct composite *c, struct gpu_cmd *cmd, uint32_t v
     gpu_image dielectric = variant & COMPOSITE_DIELECTRIC ? images->dielectric : images->direct;
     gpu_image indirect = variant & COMPOSITE_INDIRECT ? images->indirect : c->no_radiance;
     gpu_image display = variant & COMPOSITE_DISPLAY ? images->display : c->no_display;
-    gpu_scope_begin(cmd, "composite");
+    struct composite_push push = { 1 };
+    if (variant & COMPOSITE_METER) push.stride = exposure_stride(width, height);
+    width = gpu_groups(width, push.stride), height = gpu_groups(height, push.stride);
     gpu_dispatch(cmd, c->pipelines[variant],
-                 GPU_BIND(bindings[0], bindings[1], bindings[2],
+                 GPU_BIND(bindings[0], bindings[1], bindings[2], bindings[3],
                           { "direct_layer", .image = images->direct, .sampler = c->nearest },
                           { "depth_layer", .image = images->depth, .sampler = c->nearest },
                           { "normal_layer", .image = images->normal, .sampler = c->nearest },
@@ -71,6 +75,5 @@ void composite_record(const struct composite *c, struct gpu_cmd *cmd, uint32_t v
                           { "color_layer", .image = images->color },
                           { "indirect_layer", .image = indirect },
                           { "display_layer", .image = display }),
-                 NULL, 0, gpu_groups(width, 8), gpu_groups(height, 8), 1);
-    gpu_scope_end(cmd);
+                 &push, sizeof push, gpu_groups(width, 8), gpu_groups(height, 8), 1);
 }

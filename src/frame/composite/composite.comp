@@ -3,12 +3,15 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // Outgoing radiance L = direct (with emission and sky) + diffuse lobe (brdf.glsl) · E · visibility
-// + specular, and the tone-mapped display image.
+// + specular, and the tone-mapped display image. The METER variant counts luminances of a grid of
+// pixels for automatic exposure instead, before the exposure of the display image is known.
 #define GGX_ALBEDO_BINDING 11
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/composite/composite_shared.h"
+#define exposure_histogram exposure_histogram_data
 #include "frame/composite/exposure_shared.h"
+#undef exposure_histogram
 #include "frame/octahedral.glsl"
 #include "image/tonemap.glsl"
 
@@ -20,6 +23,7 @@ layout(constant_id = COMPOSITE_CONSTANT_VISIBILITY) const bool HAS_VISIBILITY = 
 layout(constant_id = COMPOSITE_CONSTANT_INDIRECT) const bool WRITES_INDIRECT = false;
 layout(constant_id = COMPOSITE_CONSTANT_DISPLAY) const bool WRITES_DISPLAY = false;
 layout(constant_id = COMPOSITE_CONSTANT_DIELECTRIC) const bool HAS_DIELECTRIC = false;
+layout(constant_id = COMPOSITE_CONSTANT_METER) const bool METERS = false;
 
 layout(set = 0, binding = 1) uniform sampler2D direct_layer;
 layout(set = 0, binding = 2) uniform sampler2D albedo_layer;
@@ -37,6 +41,15 @@ layout(set = 0, binding = 10, scalar) readonly buffer exposure_state
 layout(set = 0, binding = 12) uniform sampler2D depth_layer;
 layout(set = 0, binding = 13) uniform sampler2D normal_layer;
 layout(set = 0, binding = 14) uniform sampler2D dielectric_layer;
+layout(set = 0, binding = 15, scalar) buffer exposure_histogram
+{
+    exposure_histogram_data histogram;
+};
+
+layout(push_constant, scalar) uniform push_block
+{
+    composite_push push;
+};
 
 vec3 diffuse_lobe(ivec2 pixel, vec3 albedo)
 {
@@ -70,19 +83,42 @@ vec3 srgb_encoded(vec3 linear)
                lessThanEqual(linear, vec3(0.0031308)));
 }
 
+// Unlit materials and pixels without a surface are not metered.
+void meter(ivec2 pixel, vec3 radiance)
+{
+    if (!frame_is_lit(texelFetch(albedo_layer, pixel, 0).a)) return;
+    float l = dot(radiance, vec3(0.2126, 0.7152, 0.0722));
+    if (l > 0.0) {
+        uint bin = max(floatBitsToUint(l) >> EXPOSURE_BIN_SHIFT, EXPOSURE_FIRST_BIN);
+        atomicAdd(histogram.lit[min(bin - EXPOSURE_FIRST_BIN, EXPOSURE_BINS - 1)], 1);
+    } else {
+        atomicAdd(histogram.black, 1);
+    }
+}
+
+void show(ivec2 pixel, vec3 radiance)
+{
+    vec3 display =
+        tonemap_pbr_neutral(radiance * (exposure_scale(state.ev) / frame.radiance_scale));
+    imageStore(display_layer, pixel, vec4(srgb_encoded(clamp(display, 0.0, 1.0)), 1.0));
+}
+
 void main()
 {
+    ivec2 size = ivec2(frame.width, frame.height);
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
+    if (METERS) pixel *= int(push.stride);
+    if (any(greaterThanEqual(pixel, size))) return;
+    if (METERS) pixel = min(pixel + int(push.stride) / 2, size - 1);
     vec3 radiance = texelFetch(direct_layer, pixel, 0).rgb;
     vec3 indirect = vec3(0.0);
     if (HAS_IRRADIANCE || HAS_SPECULAR) indirect = indirect_light(pixel);
     radiance = min(radiance + indirect, vec3(HALF_MAX));
+    if (METERS) {
+        meter(pixel, radiance);
+        return;
+    }
     imageStore(color_layer, pixel, vec4(radiance, 1.0));
     if (WRITES_INDIRECT) imageStore(indirect_layer, pixel, vec4(indirect, 1.0));
-    if (WRITES_DISPLAY) {
-        vec3 display =
-            tonemap_pbr_neutral(radiance * (exposure_scale(state.ev) / frame.radiance_scale));
-        imageStore(display_layer, pixel, vec4(srgb_encoded(clamp(display, 0.0, 1.0)), 1.0));
-    }
+    if (WRITES_DISPLAY) show(pixel, radiance);
 }

@@ -13,6 +13,7 @@ enum composite_variant {
     COMPOSITE_INDIRECT = 1 << COMPOSITE_CONSTANT_INDIRECT,
     COMPOSITE_DISPLAY = 1 << COMPOSITE_CONSTANT_DISPLAY,
     COMPOSITE_DIELECTRIC = 1 << COMPOSITE_CONSTANT_DIELECTRIC,
+    COMPOSITE_METER = 1 << COMPOSITE_CONSTANT_METER,
     COMPOSITE_VARIANT_COUNT = 1 << COMPOSITE_CONSTANT_COUNT,
 };
 
@@ -32,7 +33,8 @@ struct composite_images {
 bool composite_init(struct composite *composite, struct gpu *gpu);
 void composite_finish(struct composite *composite); // accepts zero
 bool composite_prepare(struct composite *composite, uint32_t variant);
-// bindings: "frame_constants", "exposure_state", "ggx_albedo".
+// bindings: "frame_constants", "exposure_state", "exposure_histogram", "ggx_albedo". With
+// COMPOSITE_METER no image is written, the histogram is filled.
 void composite_record(const struct composite *composite, struct gpu_cmd *cmd, uint32_t variant,
-                      const struct composite_images *images, const struct gpu_binding bindings[3],
+                      const struct composite_images *images, const struct gpu_binding bindings[4],
                       uint32_t width, uint32_t height);

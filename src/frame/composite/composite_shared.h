@@ -1,6 +1,8 @@
-// Specialization constants of composite.comp.
+// Specialization constants and parameters of composite.comp.
 #ifndef AG_FRAME_COMPOSITE_SHARED_H
 #define AG_FRAME_COMPOSITE_SHARED_H
+
+#include "core/shared.h"
 
 #define COMPOSITE_CONSTANT_IRRADIANCE 0 // inputs
 #define COMPOSITE_CONSTANT_SPECULAR   1
@@ -8,6 +10,11 @@
 #define COMPOSITE_CONSTANT_INDIRECT   3 // outputs
 #define COMPOSITE_CONSTANT_DISPLAY    4
 #define COMPOSITE_CONSTANT_DIELECTRIC 5 // reads FRAME_DIELECTRIC
-#define COMPOSITE_CONSTANT_COUNT      6
+#define COMPOSITE_CONSTANT_METER      6 // no image: fills the histogram of automatic exposure
+#define COMPOSITE_CONSTANT_COUNT      7
+
+struct composite_push {
+    uint32_t stride; // between pixels; above 1 for METER only
+};
 
 #endif

@@ -2,22 +2,22 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-// Reduces the sums of all work groups to the luminance floor (pass 0) and the exposure value
-// (pass 1): the GPU twin of auto_exposure in image/tonemap.c. Luminance is clamped from below to
-// DARK_SHARE of the log-average of lit pixels.
+// The exposure value from the histogram of metered luminances: the GPU's version of
+// image/exposure.c. One work group; each thread has a run of neighbouring bins.
 #include "frame/frame.glsl"
+#define exposure_histogram exposure_histogram_data
 #include "frame/composite/exposure_shared.h"
-#include "frame/composite/exposure_reduce.glsl"
+#undef exposure_histogram
 
 layout(local_size_x = EXPOSURE_THREADS) in;
 
-layout(set = 0, binding = 1, scalar) buffer exposure_state
+layout(set = 0, binding = 1, scalar) writeonly buffer exposure_state
 {
     exposure_values state;
 };
-layout(set = 0, binding = 2, scalar) readonly buffer exposure_sums
+layout(set = 0, binding = 2, scalar) readonly buffer exposure_histogram
 {
-    vec2 sums[];
+    exposure_histogram_data histogram;
 };
 
 layout(push_constant, scalar) uniform push_block
@@ -25,24 +25,77 @@ layout(push_constant, scalar) uniform push_block
     exposure_push push;
 };
 
-const float DARK_SHARE = 0.25;
-const float MIDDLE_GREY = 0.18;
-const float EV_LIMIT = 100.0;
+const uint RUN = EXPOSURE_BINS / EXPOSURE_THREADS;
+const int LOW = 0, HIGH = 1;
+
+shared uint counts[EXPOSURE_THREADS]; // of lit pixels, per run
+shared float sums[EXPOSURE_THREADS];  // of log2 luminances
+shared uint percentiles[2];           // bins
+
+// log2 of the luminance in the middle of a bin.
+float bin_log2(uint bin)
+{
+    uint octave = 1 << EXPOSURE_OCTAVE_BITS;
+    uint all = bin + EXPOSURE_FIRST_BIN;
+    float fraction = (float(all % octave) + 0.5) / float(octave);
+    return float(int(all / octave) - EXPOSURE_BIAS) + log2(1.0 + fraction);
+}
+
+uint sum_of_counts(uint end)
+{
+    uint sum = 0;
+    for (uint i = 0; i < end; i++) sum += counts[i];
+    return sum;
+}
+
+// Lowest bin up to which more than a share of the lit pixels lie; one thread has it in its run.
+void find_percentile(int which, float wanted, uint before, uint first)
+{
+    uint sum = before;
+    for (uint i = 0; i < RUN; i++) {
+        bool below = float(sum) <= wanted;
+        sum += histogram.lit[first + i];
+        if (below && float(sum) > wanted) percentiles[which] = first + i;
+    }
+}
+
+float sum_of_run(uint first)
+{
+    float sum = 0.0;
+    for (uint i = 0; i < RUN; i++) {
+        uint bin = clamp(first + i, percentiles[LOW], percentiles[HIGH]);
+        sum += float(histogram.lit[first + i]) * bin_log2(bin);
+    }
+    return sum;
+}
+
+float mean_log2(uint lit)
+{
+    float sum = float(histogram.black) * bin_log2(percentiles[LOW]);
+    for (uint i = 0; i < EXPOSURE_THREADS; i++) sum += sums[i];
+    return sum / float(lit + histogram.black);
+}
 
 void main()
 {
-    vec2 sum = vec2(0.0);
-    for (uint i = gl_LocalInvocationID.x; i < push.groups; i += EXPOSURE_THREADS) sum += sums[i];
-    sum = sum_of_group(sum);
-    if (gl_LocalInvocationID.x != 0) return;
-    float mean_log2 = sum.x / max(sum.y, 1.0);
-    if (push.pass_index == 0) {
-        state.lit = sum.y > 0.0 ? 1 : 0;
-        state.floor_log2 = mean_log2 + log2(DARK_SHARE);
-        return;
-    }
-    if (state.lit == 0) mean_log2 = log2(max(push.fallback, 1e-30));
-    // exposure_scale(ev) · mean = middle grey, with the mean in physical units.
-    float ev = mean_log2 - log2(frame.radiance_scale) - log2(1.2 * MIDDLE_GREY);
-    state.ev = state.lit != 0 || push.fallback > 0.0 ? clamp(ev, -EV_LIMIT, EV_LIMIT) : 0.0;
+    uint thread = gl_LocalInvocationID.x, first = thread * RUN;
+    uint own = 0;
+    for (uint i = 0; i < RUN; i++) own += histogram.lit[first + i];
+    counts[thread] = own;
+    barrier();
+    uint lit = sum_of_counts(EXPOSURE_THREADS), before = sum_of_counts(thread);
+    find_percentile(LOW, EXPOSURE_LOW * float(lit), before, first);
+    find_percentile(HIGH, EXPOSURE_HIGH * float(lit), before, first);
+    barrier();
+    sums[thread] = lit > 0 ? sum_of_run(first) : 0.0;
+    barrier();
+    if (thread != 0) return;
+    float mean = lit > 0 ? mean_log2(lit) : log2(max(push.fallback, 1e-30));
+    // exposure_scale(ev) · mean = middle grey, with the mean in physical units. Rounded so that
+    // twice the light adds exactly 1.
+    float scaled = mean - log2(1.2 * EXPOSURE_MIDDLE_GREY);
+    scaled = round(scaled * EXPOSURE_EV_STEPS) / EXPOSURE_EV_STEPS;
+    float ev = scaled - round(log2(frame.radiance_scale)); // the scale is a power of two
+    bool any = lit > 0 || push.fallback > 0.0;
+    state.ev = any ? clamp(ev, -EXPOSURE_EV_LIMIT, EXPOSURE_EV_LIMIT) : 0.0;
 }
