@@ -4,6 +4,8 @@
 
 #include "frame/emission_map.h"
 
+#include "scene/mesh_parts.h"
+
 #include "core/rng.h"
 #include "core/sampling.h"
 
@@ -23,6 +25,7 @@ struct emission_maps {
 struct emitter_triangle {
     vec3s radiance; // mean, cd/m²
     float area_m2;
+    float part_extent; // diagonal of the bounds of its connected part, in the mesh's unit
 };
 
 struct emitter_instance {
@@ -33,6 +36,7 @@ struct emitter_instance {
     size_t first;     // index of its first triangle
     bool areas_valid; // for world_from_mesh
     mat4s world_from_mesh;
+    float scale; // largest one of world_from_mesh along an axis
 };
 
 static size_t triangle_count(const struct mesh *mesh)
@@ -157,18 +161,46 @@ static vec3s mean_radiance(const struct emission *e)
     return glms_vec3_scale(sum, share);
 }
 
-static void fill_radiance(struct emitters *e, const struct emitter_instance *it)
+static struct box3 triangle_bounds(const struct mesh *mesh, size_t triangle)
+{
+    struct box3 box = box3_empty();
+    for (size_t i = 0; i < 3; i++)
+        box = box3_add_point(box, mesh->positions[mesh->indices[3 * triangle + i]]);
+    return box;
+}
+
+static bool fill_part_extents(struct emitters *e, const struct mesh *mesh,
+                              struct emitter_triangle *out)
+{
+    const size_t triangles = triangle_count(mesh);
+    uint32_t *part = host_alloc(e->host, triangles, sizeof *part);
+    const int parts = part ? mesh_parts(e->host, mesh, part) : -1;
+    struct box3 *bounds = parts < 0 ? NULL : host_alloc(e->host, (size_t)parts, sizeof *bounds);
+    for (int i = 0; bounds && i < parts; i++) bounds[i] = box3_empty();
+    for (size_t t = 0; bounds && t < triangles; t++)
+        bounds[part[t]] = box3_union(bounds[part[t]], triangle_bounds(mesh, t));
+    for (size_t t = 0; bounds && t < triangles; t++)
+        out[t].part_extent = glms_vec3_norm(box3_size(bounds[part[t]]));
+    const bool done = bounds != NULL;
+    host_free(e->host, bounds);
+    host_free(e->host, part);
+    return done;
+}
+
+// Radiance and connected parts.
+static bool fill_triangles(struct emitters *e, const struct emitter_instance *it)
 {
     struct emitter_triangle *out = &e->triangles[it->first];
     for (const struct emitter_instance *other = e->instances; other < it; other++) {
         if (other->mesh != it->mesh) continue;
         memcpy(out, &e->triangles[other->first], triangle_count(it->mesh) * sizeof *out);
-        return;
+        return true;
     }
     for (size_t t = 0; t < triangle_count(it->mesh); t++) {
         struct emission emission = emission_of(it, t);
         out[t].radiance = mean_radiance(&emission);
     }
+    return fill_part_extents(e, it->mesh, out);
 }
 
 static bool list_instances(struct emitters *e)
@@ -193,7 +225,8 @@ static bool list_instances(struct emitters *e)
     }
     e->triangles = host_alloc(e->host, triangles, sizeof *e->triangles);
     if (!e->triangles) return false;
-    for (int i = 0; i < e->instance_count; i++) fill_radiance(e, &e->instances[i]);
+    for (int i = 0; i < e->instance_count; i++)
+        if (!fill_triangles(e, &e->instances[i])) return false;
     return true;
 }
 
@@ -206,7 +239,8 @@ bool emitters_init(struct emitters *out, struct host *host, const struct scene *
     size_t capacity = out->instance_count ? EMITTERS_MAX : 1; // a storage block is never empty
     out->points = host_alloc(host, capacity, sizeof *out->points);
     out->scaled = host_alloc(host, capacity, sizeof *out->scaled);
-    return out->points && out->scaled;
+    out->origins = host_alloc(host, capacity, sizeof *out->origins);
+    return out->points && out->scaled && out->origins;
 }
 
 void emitters_finish(struct emitters *e)
@@ -221,6 +255,7 @@ void emitters_finish(struct emitters *e)
     host_free(e->host, e->triangles);
     host_free(e->host, e->points);
     host_free(e->host, e->scaled);
+    host_free(e->host, e->origins);
     *e = (struct emitters){ 0 };
 }
 
@@ -253,6 +288,13 @@ static struct world_triangle world_triangle_of(const struct emitter_instance *it
     return t;
 }
 
+static float largest_scale(const mat4s *m)
+{
+    float most = 0.0f;
+    for (int axis = 0; axis < 3; axis++) most = fmaxf(most, glms_vec3_norm(vec3_xyz(m->col[axis])));
+    return most;
+}
+
 // False if no emissive instance moved. Deformed instances always count as moved.
 static bool update_areas(struct emitters *e, const struct scene_pose *pose)
 {
@@ -266,6 +308,7 @@ static bool update_areas(struct emitters *e, const struct scene_pose *pose)
         }
         it->areas_valid = changed = true;
         it->world_from_mesh = world_from_mesh;
+        it->scale = largest_scale(&world_from_mesh);
         struct emitter_triangle *triangles = &e->triangles[it->first];
         for (size_t t = 0; t < triangle_count(it->mesh); t++)
             triangles[t].area_m2 = world_triangle_of(it, pose, t, false).area_m2;
@@ -302,6 +345,7 @@ struct allocation {
     double expected; // points for the sides so far
     int placed;
     struct flux carried; // lumen of sides that got no point
+    double carried_m2;   // their area
 };
 
 static void measure(const struct emitters *e, struct allocation *a)
@@ -362,13 +406,22 @@ static void place_on_triangle(struct emitters *e, struct allocation *a,
                    0.5 * root_flux_area(triangle, &f) / a->total_root_flux_area;
     a->expected += share * EMITTERS_MAX;
     for (int c = 0; c < 3; c++) a->carried.channel[c] += f.channel[c];
+    a->carried_m2 += (double)triangle->area_m2;
     int until = (int)fmin(floor(a->expected + 0.5), EMITTERS_MAX);
     if (until <= a->placed) return;
     struct world_triangle side = world_triangle_of(it, pose, t, mirrored != back);
     struct emission emission = emission_of(it, t);
     place_on_side(&e->points[a->placed], until - a->placed, &side, &emission, &a->carried);
+    for (int i = a->placed; i < until; i++)
+        e->origins[i] = (struct frame_emitter_origin){
+            .instance = it->instance,
+            .back = back,
+            .area_m2 = (float)(a->carried_m2 / (double)(until - a->placed)),
+            .part_extent_m = triangle->part_extent * it->scale,
+        };
     a->placed = until;
     a->carried = (struct flux){ { 0 } };
+    a->carried_m2 = 0.0;
 }
 
 // All front sides, then all back sides: with alternating sides, rounding would favour one of them.

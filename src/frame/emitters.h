@@ -12,8 +12,7 @@
 // without a point is added to the next point of the list.
 #pragma once
 
-#include "frame/frame_shared.h"
-#include "scene/pose.h"
+#include "frame/frame.h"
 
 #define EMITTERS_MAX 4096
 
@@ -23,9 +22,10 @@ struct emitters {
     struct emission_maps *maps;         // [material_count], private to emitters.c
     struct emitter_instance *instances; // [instance_count], emissive instances
     int instance_count;
-    struct emitter_triangle *triangles; // of all emissive instances in order
-    struct frame_emitter *points;       // [EMITTERS_MAX], lumen
-    struct frame_emitter *scaled;       // [EMITTERS_MAX], scaled lumen, see emitters_scale
+    struct emitter_triangle *triangles;   // of all emissive instances in order
+    struct frame_emitter *points;         // [EMITTERS_MAX], lumen
+    struct frame_emitter *scaled;         // [EMITTERS_MAX], scaled lumen, see emitters_scale
+    struct frame_emitter_origin *origins; // [EMITTERS_MAX]
     int count;
     vec3s flux; // of all points, lumen
 };

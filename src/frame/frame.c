@@ -257,6 +257,7 @@ static void record_emitters(struct frame *f, struct gpu_cmd *cmd)
     size_t count = f->emitters.count ? (size_t)f->emitters.count : 1; // never an empty block
     view->emitter_count = f->emitters.count;
     view->emitters = f->emitters.scaled;
+    view->emitter_origins = f->emitters.origins;
     view->emitters_binding = gpu_transient(cmd, "frame_emitters", f->emitters.scaled,
                                            count * sizeof *f->emitters.scaled);
     view->emitted_irradiance = f->emitted_irradiance;

@@ -17,6 +17,14 @@
 struct frame;
 struct scene_gpu;
 
+// Where a virtual point light of the frame is from.
+struct frame_emitter_origin {
+    int instance;        // of the scene
+    bool back;           // of a double-sided surface: the point is on its back
+    float area_m2;       // of the surface that it stands for
+    float part_extent_m; // diagonal of the bounds of the connected part (scene/mesh_parts.h)
+};
+
 struct frame_options {
 #define OPTION OPTION_FIELD
 #include "frame/frame_options.def"
@@ -62,7 +70,8 @@ struct frame_view {
     // Virtual point lights on emissive surfaces (frame/emitters.h), with FRAME_NEEDS_EMITTERS only.
     int emitter_count;
     const struct frame_emitter *emitters; // CPU copy
-    struct gpu_binding emitters_binding;  // named "frame_emitters"
+    const struct frame_emitter_origin *emitter_origins;
+    struct gpu_binding emitters_binding; // named "frame_emitters"
     vec3s emitted_irradiance; // scaled lux: mean over the scene, unoccluded (emitters_irradiance)
     const struct scene_pose *pose;
     const struct scene_gpu *scene; // triangles and materials on the GPU (frame/scene_gpu.h)
