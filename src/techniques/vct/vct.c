@@ -267,7 +267,8 @@ static void vct_destroy(void *state)
 static uint32_t vct_more_needs(const void *options)
 {
     const struct vct_options *o = options;
-    return (o->temporal ? FRAME_NEEDS_MOTION : 0) | (o->specular ? FRAME_WRITES_SPECULAR : 0);
+    return (o->temporal ? FRAME_NEEDS_MOTION : 0) | (o->specular ? FRAME_WRITES_SPECULAR : 0) |
+           (o->occlusion ? 0 : FRAME_NEEDS_EMITTERS);
 }
 
 static uint32_t vctao_more_needs(const void *options)

@@ -63,14 +63,15 @@ static int constants_of(const struct vct *vct, uint32_t bits,
 }
 
 // Mark and add, by compute shaders or by the rasterizer.
-enum { VOXELIZE_PIPELINES = 12 };
+enum { VOXELIZE_PIPELINES = 14 };
 
 static void plan_voxelize(struct vct *vct, struct pipeline_plan out[VOXELIZE_PIPELINES])
 {
     struct vct_voxelize_pipelines *plain = &vct->add[VCT_PLAIN],
                                   *emissive = &vct->add[VCT_EMISSIVE],
                                   *emitter = &vct->add[VCT_SMALL_EMITTER],
-                                  *maps = &vct->add[VCT_MAPPED], *masks = &vct->add[VCT_MASKED];
+                                  *maps = &vct->add[VCT_MAPPED], *masks = &vct->add[VCT_MASKED],
+                                  *mapped_emitter = &vct->add[VCT_MAPPED_SMALL_EMITTER];
     const bool raster = vct->options.voxels == VCT_BY_RASTER;
     const struct gpu_shader *mark = raster ? &shader_vct_voxelize_mark_raster_frag
                                            : &shader_vct_voxelize_mark_small_comp,
@@ -89,6 +90,9 @@ static void plan_voxelize(struct vct *vct, struct pipeline_plan out[VOXELIZE_PIP
         { &emitter->large, "add_small_emitter_large", add_large, SMALL_EMITTERS },
         { &maps->small, "add_mapped", add, MAPPED },
         { &maps->large, "add_mapped_large", add_large, MAPPED },
+        { &mapped_emitter->small, "add_mapped_small_emitter", add, MAPPED | SMALL_EMITTERS },
+        { &mapped_emitter->large, "add_mapped_small_emitter_large", add_large,
+          MAPPED | SMALL_EMITTERS },
         { &masks->small, "add_masked", add, MAPPED | MASKED },
         { &masks->large, "add_masked_large", add_large, MAPPED | MASKED },
     };

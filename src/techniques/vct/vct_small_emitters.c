@@ -1,154 +1,204 @@
-// A small emitter is represented by points spread evenly over its area: see
-// cones/small_emitters.glsl.
+// A group is represented by a point for each of its parts: see cones/small_emitters.glsl.
 #include "techniques/vct/vct_small_emitters.h"
 
 #include "core/rng.h"
-#include "core/sampling.h"
 #include "frame/scene_gpu.h"
 
 #include <math.h>
-#include <string.h>
 
 // Largest extent, as a fraction of the scene's. Cones sample larger emitters well, and from nearby
 // better than points do.
 static const float LARGEST = 0.25f;
-enum { MOST_TRIANGLES = 20000 }; // they are traversed in each frame
 
-// The triangles of a draw in world space.
-struct emitter_mesh {
-    const struct mesh *mesh;
-    const vec3s *positions;
-    mat4s world;
-    float side; // 1, or −1 where the transform turns triangles over
-};
-
-static struct emitter_mesh mesh_of(const struct scene_pose *pose, const struct scene_draw *draw)
+static double flux_of(const struct frame_view *view, int light)
 {
-    struct emitter_mesh m = { .mesh = &pose->scene->meshes[draw->mesh],
-                              .world = pose_world_from_instance(pose, draw->instance),
-                              .side = draw->mirrored ? -1.0f : 1.0f };
-    const vec3s *deformed = pose->deformed[draw->instance].positions;
-    m.positions = deformed ? deformed : m.mesh->positions;
-    if (deformed) m.world = glms_mat4_identity();
-    return m;
+    const vec3s flux = view->emitters[light].flux;
+    return (double)flux.x + (double)flux.y + (double)flux.z;
 }
 
-// Corner, two edges; returns the area, m².
-static float triangle_of(const struct emitter_mesh *m, uint32_t triangle, vec3s out[3])
+// ---- Selection, once per scene ------------------------------------------------------------------
+
+static float largest_extent(const struct frame_view *view)
 {
-    const uint32_t *index = &m->mesh->indices[3 * triangle];
-    for (int i = 0; i < 3; i++) out[i] = mat4_point(m->world, m->positions[index[i]]);
-    out[1] = glms_vec3_sub(out[1], out[0]);
-    out[2] = glms_vec3_sub(out[2], out[0]);
-    const float area = 0.5f * glms_vec3_norm(glms_vec3_cross(out[1], out[2]));
-    return isfinite(area) ? area : 0.0f;
+    return LARGEST * glms_vec3_norm(box3_size(view->bounds));
 }
 
-static double area_of(const struct emitter_mesh *m)
+static bool fits(const struct frame_view *view, const struct scene_draw *draw)
 {
-    double area = 0.0;
-    vec3s t[3];
-    for (uint32_t i = 0; i < m->mesh->index_count / 3; i++) area += (double)triangle_of(m, i, t);
-    return area;
+    return glms_vec3_norm(box3_size(draw->bounds)) <= largest_extent(view);
 }
 
-static bool may_be_small_emitter(const struct frame_view *view, const struct scene_draw *draw)
+// The voxels of a draw are sampled all or none: most of its flux is from small connected parts.
+static bool is_small_emitter(const struct frame_view *view, const struct scene_draw *draw)
 {
     const vec3s e = view->pose->scene->materials[draw->material].emissive;
-    if (!(fmaxf(e.x, fmaxf(e.y, e.z)) > 0.0f)) return false;
-    if (draw->variant & ~(uint32_t)VARIANT_NORMAL_MAP)
-        return false; // emission varies over the surface
-    if (view->pose->scene->meshes[draw->mesh].index_count / 3 > MOST_TRIANGLES) return false;
-    return glms_vec3_norm(box3_size(draw->bounds)) <=
-           LARGEST * glms_vec3_norm(box3_size(view->bounds));
-}
-
-// Up to a factor. The strongest emitters are sampled, the others are left to the cones.
-static double flux_of(const struct frame_view *view, const struct scene_draw *draw)
-{
-    const struct emitter_mesh m = mesh_of(view->pose, draw);
-    const vec3s e = view->pose->scene->materials[draw->material].emissive;
-    return area_of(&m) * ((double)e.x + (double)e.y + (double)e.z);
-}
-
-// Inserts a draw into the list, strongest first.
-static void insert(struct vct_small_emitters *small_emitters, double flux[VCT_MAX_SMALL_EMITTERS],
-                   int draw, double draw_flux)
-{
-    if (!(draw_flux > 0.0)) return;
-    int at = small_emitters->count;
-    while (at > 0 && flux[at - 1] < draw_flux) at--;
-    if (at == VCT_MAX_SMALL_EMITTERS) return;
-    if (small_emitters->count < VCT_MAX_SMALL_EMITTERS) small_emitters->count++;
-    for (int i = small_emitters->count - 1; i > at; i--) {
-        flux[i] = flux[i - 1];
-        small_emitters->draws[i] = small_emitters->draws[i - 1];
+    if (!(fmaxf(e.x, fmaxf(e.y, e.z)) > 0.0f) || draw->variant & VARIANT_MASKED) return false;
+    double small = 0.0, all = 0.0;
+    for (int i = 0; i < view->emitter_count; i++) {
+        const struct frame_emitter_origin *origin = &view->emitter_origins[i];
+        if (origin->instance != draw->instance) continue;
+        all += flux_of(view, i);
+        if (fits(view, draw) || origin->part_extent_m <= largest_extent(view))
+            small += flux_of(view, i);
     }
-    flux[at] = draw_flux;
-    small_emitters->draws[at] = draw;
+    return all > 0.0 && small > 0.5 * all;
 }
 
-static void choose(struct vct_small_emitters *small_emitters, const struct frame_view *view)
+static void choose_draws(struct vct_small_emitters *s, const struct frame_view *view)
 {
-    double flux[VCT_MAX_SMALL_EMITTERS];
-    small_emitters->count = 0;
-    for (int i = 0; i < view->scene->draw_count; i++) {
-        const struct scene_draw *draw = &view->scene->draws[i];
-        if (may_be_small_emitter(view, draw)) insert(small_emitters, flux, i, flux_of(view, draw));
+    s->draw_count = 0;
+    for (int i = 0; i < view->scene->draw_count && s->draw_count < VCT_MAX_EMITTER_LIGHTS; i++)
+        if (is_small_emitter(view, &view->scene->draws[i])) s->draws[s->draw_count++] = i;
+}
+
+// ---- Groups, once per scene and after changes of the frame's lights -----------------------------
+
+// Lights of the front sides; the points of double-sided surfaces emit to both sides.
+static void add_lights(struct vct_small_emitters *s, const struct frame_view *view,
+                       const struct scene_draw *draw)
+{
+    const int first = s->light_count;
+    vec3s sum = vec3_of(0, 0, 0);
+    for (int i = 0; i < view->emitter_count && s->light_count < VCT_MAX_EMITTER_LIGHTS; i++) {
+        const double flux = flux_of(view, i);
+        if (view->emitter_origins[i].instance != draw->instance || view->emitter_origins[i].back ||
+            !(flux > 0.0))
+            continue;
+        const vec3s at = view->emitters[i].position;
+        s->instances[s->light_count] = draw->instance;
+        s->lights[s->light_count++] = (struct vct_light){ at, at, flux, i };
+        sum = glms_vec3_add(sum, at);
     }
-    small_emitters->chosen = true;
+    if (!fits(view, draw)) return;
+    const float count = (float)(s->light_count - first);
+    for (int i = first; i < s->light_count; i++)
+        s->lights[i].key = glms_vec3_scale(sum, 1.0f / count);
 }
 
-// Points of equal area, stratified over the triangles in order; within a triangle they follow a
-// low-discrepancy sequence.
-static void place_points(struct vct_small_emitter *emitter, const struct emitter_mesh *m,
-                         double area, uint32_t frame)
+// The light at `flux` of the group's flux, in order; *before: flux of the lights before `at`.
+static int light_at(const struct vct_light *lights, int count, double flux, int at, double *before)
 {
+    while (at + 1 < count && *before + lights[at].flux < flux) *before += lights[at++].flux;
+    return at;
+}
+
+static int middle_of(const struct vct_light *lights, int first, int last)
+{
+    vec3s sum = vec3_of(0, 0, 0);
+    double flux = 0.0;
+    for (int i = first; i <= last; i++) {
+        sum = glms_vec3_muladds(lights[i].position, (float)lights[i].flux, sum);
+        flux += lights[i].flux;
+    }
+    const vec3s centroid = glms_vec3_scale(sum, (float)(1.0 / flux));
+    int middle = first;
+    float least = INFINITY;
+    for (int i = first; i <= last; i++) {
+        const float distance = glms_vec3_distance2(lights[i].position, centroid);
+        if (distance < least) middle = i;
+        least = fminf(least, distance);
+    }
+    return middle;
+}
+
+static double group_flux(const struct vct_light *lights, int count)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) sum += lights[i].flux;
+    return sum;
+}
+
+static void find_middles(const struct vct_light *lights, int count, int middles[VCT_EMITTER_POINTS])
+{
+    const double part = group_flux(lights, count) / VCT_EMITTER_POINTS;
     double before = 0.0;
-    int placed = 0;
-    for (uint32_t i = 0; i < m->mesh->index_count / 3 && placed < VCT_EMITTER_POINTS; i++) {
-        vec3s t[3];
-        before += (double)triangle_of(m, i, t);
-        const bool last = i + 1 == m->mesh->index_count / 3;
-        const vec3s normal = glms_vec3_scale(glms_vec3_cross(t[1], t[2]), m->side);
-        const float length = glms_vec3_norm(normal);
-        while (placed < VCT_EMITTER_POINTS &&
-               (last || (placed + 0.5) / VCT_EMITTER_POINTS * area < before)) {
-            const vec2s at =
-                sample_triangle(r2_sequence((uint32_t)placed + VCT_EMITTER_POINTS * frame));
-            emitter->positions[placed] = glms_vec3_add(
-                t[0], glms_vec3_add(glms_vec3_scale(t[1], at.x), glms_vec3_scale(t[2], at.y)));
-            emitter->normals[placed] =
-                length > 0.0f ? glms_vec3_scale(normal, 1.0f / length) : vec3_of(0, 0, 0);
-            placed++;
-        }
+    for (int k = 0, at = 0; k < VCT_EMITTER_POINTS; k++) {
+        const int first = at;
+        at = light_at(lights, count, (k + 1) * part, at, &before);
+        middles[k] = middle_of(lights, first, at);
     }
 }
 
-static void sample_draw(struct vct_small_emitter *emitter, const struct frame_view *view,
-                        const struct scene_draw *draw, uint32_t frame)
+static void make_groups(struct vct_small_emitters *s, const struct frame_view *view)
 {
-    const struct material *material = &view->pose->scene->materials[draw->material];
-    const struct emitter_mesh m = mesh_of(view->pose, draw);
-    const double area = area_of(&m);
-    emitter->radiance = glms_vec3_scale(material->emissive, view->constants->radiance_scale);
-    emitter->area_m2 = (float)(area / VCT_EMITTER_POINTS);
-    emitter->both_sides = material->double_sided;
-    place_points(emitter, &m, area, frame);
+    s->light_count = 0;
+    for (int i = 0; i < s->draw_count; i++) add_lights(s, view, &view->scene->draws[s->draws[i]]);
+    s->count = vct_group_lights(s->lights, s->light_count, VCT_MAX_SMALL_EMITTERS, s->groups);
+    for (int i = 0; i < s->count; i++)
+        find_middles(s->lights + s->groups[i].first, s->groups[i].count, s->middles[i]);
+    for (int i = 0; i < s->light_count; i++)
+        s->instances[i] = view->emitter_origins[s->lights[i].index].instance;
 }
 
-void vct_small_emitters_update(struct vct_small_emitters *small_emitters,
-                               const struct frame_view *view, uint32_t frame)
+// The frame has the same lights at other places. False: it has allocated them to other surfaces.
+static bool update_lights(struct vct_small_emitters *s, const struct frame_view *view)
 {
-    if (!small_emitters->chosen) choose(small_emitters, view);
-    for (int i = 0; i < small_emitters->count; i++)
-        sample_draw(&small_emitters->list[i], view, &view->scene->draws[small_emitters->draws[i]],
-                    frame);
+    for (int i = 0; i < s->light_count; i++) {
+        struct vct_light *light = &s->lights[i];
+        if (light->index >= view->emitter_count ||
+            view->emitter_origins[light->index].instance != s->instances[i])
+            return false;
+        light->flux = flux_of(view, light->index);
+    }
+    return true;
 }
 
-bool vct_small_emitters_have(const struct vct_small_emitters *small_emitters, int draw)
+// ---- Sample points, each frame ------------------------------------------------------------------
+
+// flux: of the part of the group.
+static void place_point(struct vct_small_emitter *emitter, int point, const struct frame_view *view,
+                        const struct vct_light *light, double flux)
 {
-    for (int i = 0; i < small_emitters->count; i++)
-        if (small_emitters->draws[i] == draw) return true;
+    const struct frame_emitter *from = &view->emitters[light->index];
+    const int instance = view->emitter_origins[light->index].instance;
+    const struct scene *scene = view->pose->scene;
+    const int material = scene->meshes[scene->instances[instance].mesh].material;
+    emitter->positions[point] = from->position;
+    emitter->normals[point] = from->normal;
+    emitter->intensities[point] =
+        glms_vec3_scale(from->flux, (float)(flux / (light->flux * GLM_PI)));
+    if (scene->materials[material].double_sided) emitter->both_sides |= 1u << point;
+}
+
+static void place_points(struct vct_small_emitter *emitter, const struct vct_light *lights,
+                         const struct vct_emitter_group *group,
+                         const int middles[VCT_EMITTER_POINTS], const struct frame_view *view,
+                         uint32_t frame)
+{
+    const struct vct_light *first = lights + group->first;
+    const double part = group_flux(first, group->count) / VCT_EMITTER_POINTS;
+    double area = 0.0, before = 0.0;
+    for (int i = 0; i < group->count; i++)
+        area += (double)view->emitter_origins[first[i].index].area_m2;
+    *emitter = (struct vct_small_emitter){ .area_m2 = (float)(area / VCT_EMITTER_POINTS) };
+    for (int k = 0, at = 0; k < VCT_EMITTER_POINTS; k++) {
+        const float within = r2_sequence(frame * VCT_EMITTER_POINTS + (uint32_t)k).x;
+        at = light_at(first, group->count, (k + (double)within) * part, at, &before);
+        place_point(emitter, k, view, &first[frame == 0 ? middles[k] : at], part);
+    }
+}
+
+void vct_small_emitters_update(struct vct_small_emitters *s, const struct frame_view *view,
+                               uint32_t frame)
+{
+    const bool chosen = s->chosen;
+    if (!chosen) choose_draws(s, view);
+    if (!chosen || !update_lights(s, view)) make_groups(s, view);
+    s->chosen = true;
+    for (int i = 0; i < s->count; i++)
+        place_points(&s->list[i], s->lights, &s->groups[i], s->middles[i], view, frame);
+}
+
+bool vct_small_emitters_have(const struct vct_small_emitters *s, int draw)
+{
+    int low = 0, high = s->count > 0 ? s->draw_count : 0;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (s->draws[middle] == draw) return true;
+        if (s->draws[middle] < draw)
+            low = middle + 1;
+        else
+            high = middle;
+    }
     return false;
 }

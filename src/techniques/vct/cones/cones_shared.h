@@ -28,11 +28,11 @@ struct vct_cone_params {
 #define VCT_MAX_SMALL_EMITTERS 16
 #define VCT_EMITTER_POINTS     12
 struct vct_small_emitter {
-    vec3s radiance; // scaled
-    float area_m2;  // per sample point
-    uint32_t both_sides;
-    vec3s positions[VCT_EMITTER_POINTS]; // world space
-    vec3s normals[VCT_EMITTER_POINTS];   // unit, front side
+    float area_m2;                         // per sample point
+    uint32_t both_sides;                   // bit i: point i emits to both sides
+    vec3s positions[VCT_EMITTER_POINTS];   // world space
+    vec3s normals[VCT_EMITTER_POINTS];     // unit, front side
+    vec3s intensities[VCT_EMITTER_POINTS]; // along the normal, scaled candela
 };
 
 // Uniform block "vct_specular".
@@ -67,7 +67,7 @@ struct vct_history_params {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 11 * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct vct_small_emitter) == (5 + 6 * VCT_EMITTER_POINTS) * 4,
+_Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_specular_params) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_history_params) == 15 * 4, "layout is shared with GLSL");

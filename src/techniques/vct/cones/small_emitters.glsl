@@ -1,6 +1,7 @@
 // Direct light of small emitters by shadow cones: diffuse cones hit them by chance or not at all.
-// Sample points are spread evenly over an emitter. The irradiance of one at normal incidence is
-//     L a cos θ / (d² + a/π), (1)
+// An emitter is a group of emissive surfaces whose sample points have equal flux. The irradiance of
+// one of intensity I = L a along its normal is at normal incidence
+//     I cos θ / (d² + a/π), (1)
 // with a the emitter's area per point. It is exact at a large distance and on the axis of a disk.
 // The light volume gives the visibility.
 //
@@ -67,11 +68,13 @@ float vct_emitter_visibility(sampler3D light, vec3 at, vec3 normal, int first, v
 vec3 vct_emitter_point_irradiance(uint emitter, uint point, vec3 position, out vec3 to)
 {
     vec3 path = small_emitters[emitter].positions[point] - position;
-    float d2 = dot(path, path), a = small_emitters[emitter].area_m2;
+    float d2 = dot(path, path);
     to = path * inversesqrt(max(d2, 1e-12));
     float cosine = -dot(small_emitters[emitter].normals[point], to);
-    cosine = small_emitters[emitter].both_sides != 0u ? abs(cosine) : max(cosine, 0.0);
-    return small_emitters[emitter].radiance * (a * cosine / max(d2 + a / 3.14159265, 1e-12));
+    bool both_sides = (small_emitters[emitter].both_sides >> point & 1u) != 0u;
+    cosine = both_sides ? abs(cosine) : max(cosine, 0.0);
+    return small_emitters[emitter].intensities[point] *
+           (cosine / max(d2 + small_emitters[emitter].area_m2 / 3.14159265, 1e-12));
 }
 
 struct vct_emitter_sample {

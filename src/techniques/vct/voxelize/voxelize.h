@@ -23,6 +23,7 @@ enum vct_draw_kind {
     VCT_EMISSIVE,
     VCT_SMALL_EMITTER,
     VCT_MAPPED, // with maps, of emission too
+    VCT_MAPPED_SMALL_EMITTER,
     VCT_MASKED,
     VCT_DRAW_KINDS
 };
