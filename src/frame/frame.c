@@ -36,7 +36,8 @@ struct frame *frame_create(struct host *host, struct gpu *gpu, const struct fram
     f->options = *options;
     if (shadow_init(&f->shadow, host, gpu, (uint32_t)options->shadow_size,
                     (uint32_t)options->cascades) &&
-        rsm_init(&f->rsm, host, gpu, (uint32_t)options->rsm_size) && direct_init(&f->direct, gpu) &&
+        rsm_init(&f->rsm, host, gpu, (uint32_t)options->rsm_size) &&
+        direct_init(&f->direct, gpu, (uint32_t)options->cascades) &&
         exposure_init(&f->exposure, gpu) && composite_init(&f->composite, gpu) &&
         create_ggx_albedo(f)) {
         return f;
@@ -138,13 +139,19 @@ static bool prepare_composite(struct frame *f, const struct frame_input *input)
 static bool prepare_lights(struct frame *f, const struct frame_input *input)
 {
     static const uint32_t types[] = { FRAME_LIGHT_SUN, FRAME_LIGHT_POINT, FRAME_LIGHT_SPOT };
-    int shadow_faces = 0, rsm_faces = 0;
+    int suns = 0, sun_faces = 0, shadow_faces = 0, rsm_faces = 0;
     for (int i = 0; i < input->light_count; i++) {
-        shadow_faces += shadow_faces_of(&f->shadow, types[input->lights[i].type]);
+        const bool sun = input->lights[i].type == LIGHT_SUN;
+        suns += sun;
+        *(sun ? &sun_faces : &shadow_faces) +=
+            shadow_faces_of(&f->shadow, types[input->lights[i].type]);
         rsm_faces += rsm_faces_of(types[input->lights[i].type]);
     }
     if (!(f->needs & FRAME_NEEDS_RSM)) rsm_faces = 0;
-    return shadow_prepare(&f->shadow, shadow_faces) &&
+    f->direct_variant = direct_variant(suns, input->light_count - suns, f->scene.has_dielectrics,
+                                       f->options.shadow_filter > 0);
+    return shadow_prepare(&f->shadow, sun_faces, shadow_faces) &&
+           direct_prepare(&f->direct, f->direct_variant) &&
            rsm_prepare(&f->rsm, rsm_faces, f->scene.variants_used);
 }
 
@@ -198,8 +205,9 @@ static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
     // A storage block is never empty.
     size_t faces = f->shadow.face_count ? (size_t)f->shadow.face_count : 1;
     view->shadow_maps = f->shadow.maps;
+    view->shadow_sun_maps = f->shadow.sun_maps;
     view->shadow_sampler = f->shadow.sampler;
-    view->shadow_size = f->shadow.size;
+    view->shadow_size = f->shadow.sun_size;
     view->shadow_radius = f->options.shadow_filter;
     view->shadow_faces_binding =
         gpu_transient(cmd, "shadow_faces", f->shadow.faces, faces * sizeof *f->shadow.faces);
@@ -210,6 +218,8 @@ static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
 static void record_direct(struct frame *f, struct gpu_cmd *cmd)
 {
     struct direct_input in = {
+        .first_shadow_faces = gpu_transient(cmd, "first_shadow_faces", f->shadow.faces,
+                                            FRAME_MAX_CASCADES * sizeof *f->shadow.faces),
         .depth = f->layers[FRAME_DEPTH],
         .normal = f->layers[FRAME_NORMAL],
         .albedo = f->layers[FRAME_ALBEDO],
@@ -217,14 +227,14 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .dielectric = f->layers[FRAME_DIELECTRIC],
         .emissive = f->layers[FRAME_EMISSIVE],
         .shadow_maps = f->shadow.maps,
+        .shadow_sun_maps = f->shadow.sun_maps,
         .shadow_sampler = f->shadow.sampler,
-        .shadow_size = f->shadow.size,
         .shadow_radius = f->options.shadow_filter,
         .constants = f->constants_binding,
         .lights = f->lights_binding,
         .shadow_faces = f->view.shadow_faces_binding,
         .ggx_albedo = ggx_albedo_binding(f),
-        .light_count = f->light_count,
+        .variant = f->direct_variant,
         .width = f->width,
         .height = f->height,
     };

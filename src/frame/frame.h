@@ -91,9 +91,10 @@ struct frame_view {
     // frame/rsm/rsm.glsl.
     gpu_image rsm_flux;
     // Shadow maps of all lights, sampled by frame/shadow/shadow.glsl.
-    gpu_image shadow_maps;      // D32F array, reversed Z
-    gpu_sampler shadow_sampler; // comparison sampler
-    uint32_t shadow_size;
+    gpu_image shadow_maps;                   // D32F array, reversed Z: of points and spots
+    gpu_image shadow_sun_maps;               // D32F array, reversed Z
+    gpu_sampler shadow_sampler;              // comparison sampler
+    uint32_t shadow_size;                    // texels, of suns
     int shadow_radius;                       // filter radius, texels
     struct gpu_binding shadow_faces_binding; // named "shadow_faces"
     int maps_drawn; // layers of shadow maps and reflective shadow maps rendered in this frame

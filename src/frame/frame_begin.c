@@ -102,6 +102,6 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
                  });
     rsm_place(&f->rsm, f->lights, f->light_count, input->pose->bounds);
     f->constants_binding = gpu_transient(cmd, "frame_constants", c, sizeof *c);
-    size_t lights = f->light_count ? (size_t)f->light_count : 1; // never an empty block
-    f->lights_binding = gpu_transient(cmd, "frame_lights", f->lights, lights * sizeof *f->lights);
+    // Whole: direct.comp has a uniform block of this size.
+    f->lights_binding = gpu_transient(cmd, "frame_lights", f->lights, sizeof f->lights);
 }

@@ -58,18 +58,20 @@ gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer)
     return frame->layers[layer];
 }
 
-// Upper bound: all layers, and every light a point light, which has the most maps.
+// Upper bound: all layers, and every light a sun or a point light, whichever has more texels.
 uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t width, uint32_t height,
                                int light_count)
 {
     uint64_t texel_bytes = 0;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++)
         texel_bytes += (uint64_t)gpu_format_bytes(table[l].format);
-    uint64_t faces = 6 * (uint64_t)(light_count > 0 ? light_count : 0);
+    uint64_t lights = (uint64_t)(light_count > 0 ? light_count : 0);
     uint64_t shadow = (uint64_t)options->shadow_size, rsm = (uint64_t)options->rsm_size;
+    uint64_t sun = (uint64_t)options->cascades * shadow * shadow,
+             local = 6 * (shadow / 2) * (shadow / 2);
     int rsm_bytes = gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) +
                     gpu_format_bytes(GPU_RGBA8_SRGB); // per texel
     return sizeof ggx_albedo_table + texel_bytes * width * height +
-           faces * (shadow * shadow * (uint64_t)gpu_format_bytes(GPU_D32F) +
-                    rsm * rsm * (uint64_t)rsm_bytes);
+           lights * ((sun > local ? sun : local) * (uint64_t)gpu_format_bytes(GPU_D32F) +
+                     6 * rsm * rsm * (uint64_t)rsm_bytes);
 }

@@ -33,6 +33,7 @@ struct frame {
     // Set by frame_prepare.
     uint32_t needs;             // frame_need bits
     uint32_t composite_variant; // composite_variant bits
+    uint32_t direct_variant;    // of direct_variant()
     bool prepared;
 
     // State of the newest recorded frame.

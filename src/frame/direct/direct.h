@@ -1,27 +1,35 @@
 // Direct light: one compute pass from the G-buffer and the shadow maps to FRAME_DIRECT.
 #pragma once
 
+#include "frame/direct/direct_shared.h"
 #include "gpu/gpu.h"
+
+enum { DIRECT_VARIANTS = 1 << DIRECT_CONSTANT_BITS };
 
 struct direct {
     struct gpu *gpu;
-    gpu_pipeline lit[2], unlit; // frames with lights, [with FRAME_DIELECTRIC], and without
+    gpu_pipeline pipelines[DIRECT_VARIANTS]; // bit DIRECT_CONSTANT_…
+    uint32_t cascades;                       // per sun
     gpu_sampler nearest;
 };
 
 struct direct_input {
     gpu_image depth, normal, albedo, material, emissive;
     gpu_image dielectric; // may be empty
-    gpu_image shadow_maps;
+    gpu_image shadow_maps, shadow_sun_maps;
     gpu_sampler shadow_sampler;
-    uint32_t shadow_size;
     int shadow_radius; // filter radius, texels
-    struct gpu_binding constants, lights, shadow_faces, ggx_albedo;
-    int light_count;
+    // lights: FRAME_MAX_LIGHTS; first_shadow_faces: FRAME_MAX_CASCADES.
+    struct gpu_binding constants, lights, shadow_faces, first_shadow_faces, ggx_albedo;
+    uint32_t variant; // of direct_variant
     uint32_t width, height;
 };
 
-bool direct_init(struct direct *direct, struct gpu *gpu);
+bool direct_init(struct direct *direct, struct gpu *gpu, uint32_t cascades);
+// The pipeline for a number of suns and of other lights.
+uint32_t direct_variant(int suns, int locals, bool dielectric, bool filtered);
+// Creates the pipeline if it is missing.
+bool direct_prepare(struct direct *direct, uint32_t variant);
 void direct_record(const struct direct *direct, struct gpu_cmd *cmd, const struct direct_input *in,
                    gpu_image out);
 void direct_finish(struct direct *direct); // accepts zero

@@ -10,7 +10,6 @@
 #include <math.h>
 
 static const float CONSTANT_BIAS = 0.1f; // texels
-static const float SLOPE_BIAS = -1.0f;   // texels of slope, away from the light (reversed depth)
 
 struct push {
     struct scene_push draw;
@@ -26,7 +25,6 @@ static bool make_pipelines(struct shadow *s)
         .depth_compare = GPU_GREATER,
         .depth_write = true,
         .depth_clamp = true,
-        .depth_bias_slope = SLOPE_BIAS,
     };
     if (!gpu_graphics_pipeline_create(s->gpu, &desc, &s->opaque)) return false;
     desc.name = "frame.shadow_masked";
@@ -42,12 +40,15 @@ static bool make_pipelines(struct shadow *s)
     return true;
 }
 
-bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t size,
+bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t sun_size,
                  uint32_t cascades)
 {
-    *s = (struct shadow){
-        .host = host, .gpu = gpu, .size = size, .cascades = cascades, .capacity = -1
-    };
+    *s = (struct shadow){ .host = host,
+                          .gpu = gpu,
+                          .sun_size = sun_size,
+                          .size = sun_size / 2,
+                          .cascades = cascades,
+                          .sun_capacity = -1 };
     struct gpu_sampler_desc sampler = {
         .name = "frame.shadow_sampler",
         .filter = GPU_LINEAR,
@@ -57,7 +58,19 @@ bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t 
         .wrap_w = GPU_CLAMP,
         .compare_greater = true,
     };
-    return gpu_sampler_get(gpu, &sampler, &s->sampler) && make_pipelines(s) && shadow_prepare(s, 0);
+    return gpu_sampler_get(gpu, &sampler, &s->sampler) && make_pipelines(s) &&
+           shadow_prepare(s, 0, 0);
+}
+
+static void destroy_maps(struct shadow *s)
+{
+    gpu_image_destroy(s->gpu, &s->sun_maps);
+    gpu_image_destroy(s->gpu, &s->maps);
+    host_free(s->host, s->faces);
+    host_free(s->host, s->cache);
+    s->faces = NULL;
+    s->cache = NULL;
+    s->sun_capacity = s->capacity = -1;
 }
 
 void shadow_finish(struct shadow *s)
@@ -65,9 +78,7 @@ void shadow_finish(struct shadow *s)
     if (!s->gpu) return;
     gpu_pipeline_destroy(s->gpu, &s->opaque);
     for (int i = 0; i < 2; i++) gpu_pipeline_destroy(s->gpu, &s->masked[i]);
-    gpu_image_destroy(s->gpu, &s->maps);
-    host_free(s->host, s->faces);
-    host_free(s->host, s->cache);
+    destroy_maps(s);
     *s = (struct shadow){ 0 };
 }
 
@@ -77,30 +88,40 @@ int shadow_faces_of(const struct shadow *s, uint32_t light_type)
     return light_type == FRAME_LIGHT_POINT ? 6 : 1;
 }
 
-bool shadow_prepare(struct shadow *s, int face_count)
+static bool make_array(struct shadow *s, const char *name, uint32_t size, int layers,
+                       gpu_image *out)
 {
-    if (face_count == s->capacity) return true;
-    if ((uint32_t)face_count > gpu_limits(s->gpu)->max_layers) {
-        return host_fail(s->host, FAIL_UNSUPPORTED, "frame shadows: %d maps, device %s supports %u",
-                         face_count, gpu_info(s->gpu)->name, gpu_limits(s->gpu)->max_layers);
-    }
-    gpu_image_destroy(s->gpu, &s->maps);
-    host_free(s->host, s->faces);
-    host_free(s->host, s->cache);
-    s->capacity = -1;
-    s->faces = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->faces);
-    s->cache = host_alloc(s->host, (size_t)face_count + 1, sizeof *s->cache);
     struct gpu_image_desc desc = {
-        .name = "frame.shadow_maps",
+        .name = name,
         .dimension = GPU_2D_ARRAY,
         .format = GPU_D32F,
-        .width = face_count ? s->size : 8,
-        .height = face_count ? s->size : 8,
-        .depth = face_count ? (uint32_t)face_count : 1,
+        .width = layers ? size : 8,
+        .height = layers ? size : 8,
+        .depth = layers ? (uint32_t)layers : 1,
         .usage = GPU_SAMPLED | GPU_ATTACHMENT,
     };
-    if (!s->faces || !s->cache || !gpu_image_create(s->gpu, &desc, &s->maps)) return false;
-    s->capacity = face_count;
+    return gpu_image_create(s->gpu, &desc, out);
+}
+
+bool shadow_prepare(struct shadow *s, int sun_faces, int faces)
+{
+    if (sun_faces == s->sun_capacity && faces == s->capacity) return true;
+    int most = sun_faces > faces ? sun_faces : faces;
+    if ((uint32_t)most > gpu_limits(s->gpu)->max_layers) {
+        return host_fail(s->host, FAIL_UNSUPPORTED, "frame shadows: %d maps, device %s supports %u",
+                         most, gpu_info(s->gpu)->name, gpu_limits(s->gpu)->max_layers);
+    }
+    destroy_maps(s);
+    size_t count = (size_t)sun_faces + (size_t)faces;
+    s->faces = host_alloc(s->host, count + FRAME_MAX_CASCADES, sizeof *s->faces);
+    s->cache = host_alloc(s->host, count + 1, sizeof *s->cache);
+    if (!s->faces || !s->cache ||
+        !make_array(s, "frame.shadow_sun_maps", s->sun_size, sun_faces, &s->sun_maps) ||
+        !make_array(s, "frame.shadow_maps", s->size, faces, &s->maps)) {
+        return false;
+    }
+    s->sun_capacity = sun_faces;
+    s->capacity = faces;
     return true;
 }
 
@@ -118,26 +139,32 @@ static void place_perspective(const struct shadow *s, struct shadow_face *face, 
             point ? light_cube_face(light->position, index, tan_half, near_m)
                   : light_spot_face(light->position, light->direction, tan_half, near_m),
         .texel_m = 2.0f * tan_half / (float)s->size,
+        .size = (float)s->size,
     };
-    face->depth_scale = 1.0f + CONSTANT_BIAS * face->texel_m; // depth = near / distance
+    // Depth is near / distance, w the distance, and a texel's edge texel_m · distance.
+    face->depth_scale = 1.0f + CONSTANT_BIAS * face->texel_m;
+    face->depth_texels = 1.0f / (near_m * face->texel_m);
 }
 
 void shadow_place(struct shadow *s, struct frame_light *lights, int light_count,
                   const struct shadow_view *view)
 {
+    int used[2] = { 0, 0 }; // layers: of suns, of other lights
+    const int capacity[2] = { s->sun_capacity, s->capacity };
     s->face_count = 0;
     for (int i = 0; i < light_count; i++) {
         struct frame_light *light = &lights[i];
-        int count = shadow_faces_of(s, light->type);
+        int count = shadow_faces_of(s, light->type), array = light->type != FRAME_LIGHT_SUN;
         light->shadow_first = -1;
         light->shadow_count = 0;
-        if (count > s->capacity - s->face_count) continue;
+        if (count > capacity[array] - used[array]) continue;
         struct shadow_face *faces = &s->faces[s->face_count];
         if (light->type == FRAME_LIGHT_SUN) {
             shadow_place_sun(s, faces, count, light->direction, view);
         } else {
             for (int k = 0; k < count; k++) place_perspective(s, &faces[k], k, light, view);
         }
+        for (int k = 0; k < count; k++) faces[k].layer = used[array]++;
         light->shadow_first = s->face_count;
         light->shadow_count = count;
         s->face_count += count;
@@ -145,16 +172,18 @@ void shadow_place(struct shadow *s, struct frame_light *lights, int light_count,
 }
 
 static void record_face(const struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,
-                        int layer)
+                        const struct shadow_face *face, bool sun)
 {
-    struct push push = { .clip_from_world = s->faces[layer].clip_from_world };
-    gpu_render_begin(cmd, &(struct gpu_render_desc){
-                              .depth = { .image = s->maps, .layer = (uint32_t)layer },
-                              .width = s->size,
-                              .height = s->size,
-                              .reads = scene->reads,
-                              .read_count = scene->read_count,
-                          });
+    struct push push = { .clip_from_world = face->clip_from_world };
+    const uint32_t size = sun ? s->sun_size : s->size;
+    gpu_render_begin(
+        cmd, &(struct gpu_render_desc){
+                 .depth = { .image = sun ? s->sun_maps : s->maps, .layer = (uint32_t)face->layer },
+                 .width = size,
+                 .height = size,
+                 .reads = scene->reads,
+                 .read_count = scene->read_count,
+             });
     for (int i = 0; i < scene->draw_count; i++) {
         const struct scene_draw *draw = &scene->draws[i];
         if (!projection_may_see(push.clip_from_world, draw->bounds)) continue;
@@ -182,11 +211,12 @@ void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu
         if (lights[i].shadow_count == 0) continue;
         gpu_scope_begin(cmd, scopes[lights[i].type]);
         for (int k = 0; k < lights[i].shadow_count; k++) {
-            const int layer = lights[i].shadow_first + k;
-            const bool valid = cached_map_is_valid(&s->cache[layer], scene, &lights[i],
-                                                   s->faces[layer].clip_from_world);
+            const int index = lights[i].shadow_first + k;
+            const struct shadow_face *face = &s->faces[index];
+            const bool valid =
+                cached_map_is_valid(&s->cache[index], scene, &lights[i], face->clip_from_world);
             if (valid && reuse) continue;
-            record_face(s, cmd, scene, layer);
+            record_face(s, cmd, scene, face, lights[i].type == FRAME_LIGHT_SUN);
             s->drawn++;
         }
         gpu_scope_end(cmd);

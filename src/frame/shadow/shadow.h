@@ -1,4 +1,5 @@
-// Shadow maps of all lights: the layers of one array.
+// Shadow maps of all lights: the layers of two arrays. Maps of suns cover the scene, those of
+// points and spots their surroundings; the latter have half the size, since a point light has six.
 #pragma once
 
 #include "frame/frame_shared.h"
@@ -9,14 +10,14 @@
 struct shadow {
     struct host *host;
     struct gpu *gpu;
-    uint32_t size;                  // texels
+    uint32_t sun_size, size;        // texels: maps of suns, of other lights
     uint32_t cascades;              // per sun
     gpu_pipeline opaque, masked[2]; // [with a base-colour map]
-    gpu_image maps;                 // D32F array; 8×8×1 without lights
-    int capacity;                   // layers
+    gpu_image sun_maps, maps;       // D32F arrays; 8×8×1 if empty
+    int sun_capacity, capacity;     // layers
     gpu_sampler sampler;            // comparison sampler
-    struct shadow_face *faces;      // [capacity]
-    struct cached_map *cache;       // [capacity]
+    struct shadow_face *faces;      // [sun_capacity + capacity]
+    struct cached_map *cache;       // [sun_capacity + capacity]
     int face_count;                 // in this frame
     int drawn;                      // faces rendered in this frame, not reused
 };
@@ -30,13 +31,14 @@ struct shadow_view {
     int filter_radius; // texels
 };
 
-bool shadow_init(struct shadow *shadow, struct host *host, struct gpu *gpu, uint32_t size,
+// sun_size: texels of a sun's map; other maps have half of it.
+bool shadow_init(struct shadow *shadow, struct host *host, struct gpu *gpu, uint32_t sun_size,
                  uint32_t cascades);
 void shadow_finish(struct shadow *shadow); // accepts zero
 // Number of layers for a light of this type.
 int shadow_faces_of(const struct shadow *shadow, uint32_t light_type);
-// Allocates face_count layers.
-bool shadow_prepare(struct shadow *shadow, int face_count);
+// Allocates layers for the faces of suns and of other lights.
+bool shadow_prepare(struct shadow *shadow, int sun_faces, int faces);
 
 // Computes the map transforms and sets shadow_first and shadow_count of the lights. Lights beyond
 // the capacity cast no shadow.

@@ -4,18 +4,21 @@
 
 #include "core/shared.h"
 
-// Storage block "shadow_faces": one per layer of the shadow map array; frame_light.shadow_first
-// points here.
+// Storage block "shadow_faces": one per face; frame_light.shadow_first points here.
 struct shadow_face {
     mat4s clip_from_world;
-    float texel_m; // edge of a texel; points and spots: at distance 1
-    // Depth bias: the receiver's depth is depth · depth_scale + depth_offset.
+    float texel_m; // longer edge of a texel; points and spots: at distance 1
+    // Depth bias of filtered lookups: the receiver's depth is depth · depth_scale + depth_offset.
     float depth_scale, depth_offset;
-    uint32_t padding;
+    // A difference of NDC depth times clip w times this is a distance in texels.
+    float depth_texels;
+    float size;    // texels along an edge of the map
+    int32_t layer; // of shadow_sun_maps for suns, of shadow_maps for other lights
+    uint32_t padding[2];
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct shadow_face) == 80, "layout is shared with GLSL");
+_Static_assert(sizeof(struct shadow_face) == 96, "layout is shared with GLSL");
 #endif
 
 #endif

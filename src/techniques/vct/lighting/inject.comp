@@ -69,7 +69,7 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
     if (light.shadow_first >= 0)
         attenuation *=
             shadow_visibility(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light,
-                              true, vct.shadow_size, int(no_recompile(uint(vct.shadow_radius))));
+                              true, int(no_recompile(uint(vct.shadow_radius))));
     return light.intensity * (attenuation * abs(cosine));
 }
 
