@@ -111,6 +111,7 @@ TEST(the_report_has_the_documented_fields_and_files)
         0, SCENE " --frames 3 --spp 2 --gi ambient --gi ambient:strength=0.5 -o", folder, NULL);
     CHECK(strstr(r->out, "\nambient:strength=0.5  ") && strstr(r->out, "2 samples"));
     CHECK(file_exists(in(folder, "report.html")));
+    CHECK(file_exists(in(folder, "sheet.png")));
     json_t *report = report_of(folder);
     check_keys(report, "scene camera size exposure_ev reference methods device driver frames");
     json_t *reference = json_object_get(report, "reference");

@@ -9,8 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const fixed_names[] = { "report.json", "report.html", "reference.png",
-                                           "reference.exr", "reference-indirect.png" };
+enum { GAP_PX = 4, MAX_WIDTH_PX = 16384 }; // of sheet.png
+
+static const char *const fixed_names[] = {
+    "report.json", "report.html", "reference.png", "reference.exr", "reference-indirect.png",
+    "sheet.png"
+};
 
 bool files_are_named(const char *name)
 {
@@ -144,6 +148,37 @@ static enum status write_reference(struct comparison *c)
     return status == DONE ? reference_write_exr(c, path) : status;
 }
 
+// Appends an image, exposed, on the right.
+static enum ag_result append_to_sheet(struct comparison *c, const struct ag_image *radiance,
+                                      struct ag_image **sheet)
+{
+    struct ag_context *context = c->session.context;
+    struct ag_image *display = NULL, *both = NULL;
+    enum ag_result result = ag_image_tonemap(context, radiance, c->exposure_ev, &display);
+    if (result == AG_OK) result = ag_image_side_by_side(context, *sheet, display, GAP_PX, &both);
+    ag_image_destroy(context, display);
+    if (result != AG_OK) return result;
+    ag_image_destroy(context, *sheet);
+    *sheet = both;
+    return AG_OK;
+}
+
+// The reference and all methods side by side, as many as one image holds.
+static enum status write_sheet(struct comparison *c)
+{
+    struct ag_image *sheet = NULL;
+    enum ag_result result =
+        ag_image_tonemap(c->session.context, c->reference.color, c->exposure_ev, &sheet);
+    for (int i = 0; i < c->method_count && result == AG_OK; i++) {
+        if (sheet->width + c->reference.color->width + GAP_PX > MAX_WIDTH_PX) break;
+        result = append_to_sheet(c, c->methods[i].color, &sheet);
+    }
+    if (result == AG_OK) return write_png(c, result, sheet, "sheet", ".png");
+    ag_image_destroy(c->session.context, sheet);
+    fail_library(c->session.context, result);
+    return FAILED;
+}
+
 enum status files_write(struct comparison *c)
 {
     if (c->reference.indirect && !find_full_indirect(c))
@@ -153,6 +188,7 @@ enum status files_write(struct comparison *c)
         progress("writing", i, c->method_count);
         status = write_method(c, &c->methods[i]);
     }
+    if (status == DONE) status = write_sheet(c);
     progress_end();
     return status;
 }
