@@ -42,7 +42,7 @@ struct scene_gpu {
     gpu_buffer positions, frames, surfaces, indices, materials;
     size_t *index_offset; // [mesh_count] bytes
     // Textures: [image_count] as colours (sRGB) and as data; empty if no material uses them so.
-    gpu_image *color_textures, *data_textures;
+    gpu_image *color_textures, *data_textures, *normal_textures;
     gpu_image white, flat_normal;                // 1×1 placeholders
     struct gpu_binding (*maps)[SCENE_MAP_COUNT]; // [material_count]
     struct gpu_binding *reads;                   // all textures, see gpu_render_desc.reads

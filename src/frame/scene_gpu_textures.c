@@ -1,6 +1,12 @@
-// Textures of a scene: each image as colours (sRGB), as data or as both, depending on its
-// materials, with full mip chains generated on the GPU. Alpha is averaged like any other channel.
+// Textures of a scene: each image as colours (sRGB), as data, as normals or as several of them,
+// depending on its materials, with full mip chains generated on the GPU. Alpha is averaged like any
+// other channel.
+//
+// Normals have 16-bit floats: filters of 8-bit textures may round every product down, as lavapipe's
+// do, which turns normals by half a degree to one side.
 #include "frame/scene_gpu.h"
+
+#include <math.h>
 
 static bool is_color(int map)
 {
@@ -46,19 +52,50 @@ static bool make_texture(struct scene_gpu *s, const char *name, enum gpu_format 
         .usage = GPU_SAMPLED,
     };
     return gpu_image_create(s->gpu, &desc, out) &&
-           gpu_image_upload(s->gpu, *out, 0, 0, texels, (size_t)width * (size_t)height * 4) &&
+           gpu_image_upload(s->gpu, *out, 0, 0, texels,
+                            (size_t)width * (size_t)height * (size_t)gpu_format_bytes(format)) &&
            (desc.mips == 1 || gpu_image_generate_mips(s->gpu, *out));
 }
 
-static bool make_image(struct scene_gpu *s, int index, bool color)
+// A 16-bit float, 1/255 to 1; 0 for 0.
+static uint16_t half_of_unorm8(uint32_t value)
 {
-    gpu_image *out = color ? &s->color_textures[index] : &s->data_textures[index];
+    if (value == 0) return 0;
+    int exponent;
+    float mantissa = frexpf((float)value / 255.0f, &exponent); // 0.5 to 1
+    return (uint16_t)((exponent + 14) * 1024 + (int)lroundf((mantissa * 2.0f - 1.0f) * 1024.0f));
+}
+
+static bool make_normals(struct scene_gpu *s, const char *name, const struct scene_image *image,
+                         gpu_image *out)
+{
+    size_t count = 4 * (size_t)image->width * (size_t)image->height;
+    uint16_t *texels = host_alloc(s->host, count, sizeof *texels), table[256];
+    if (!texels) return false;
+    for (uint32_t i = 0; i < 256; i++) table[i] = half_of_unorm8(i);
+    for (size_t i = 0; i < count; i++) texels[i] = table[image->rgba[i]];
+    bool ok = make_texture(s, name, GPU_RGBA16F, image->width, image->height, texels, out);
+    host_free(s->host, texels);
+    return ok;
+}
+
+static gpu_image *texture_of(const struct scene_gpu *s, int map, int index)
+{
+    if (map == SCENE_MAP_NORMAL) return &s->normal_textures[index];
+    return is_color(map) ? &s->color_textures[index] : &s->data_textures[index];
+}
+
+static bool make_image(struct scene_gpu *s, int index, int map)
+{
+    gpu_image *out = texture_of(s, map, index);
     if (out->id) return true;
     const struct scene_image *image = &s->scene->images[index];
     char *name = host_sprintf(s->host, "scene.%s", image->name ? image->name : "texture");
     if (!name) return false;
-    bool ok = make_texture(s, name, color ? GPU_RGBA8_SRGB : GPU_RGBA8, image->width, image->height,
-                           image->rgba, out);
+    bool ok = map == SCENE_MAP_NORMAL
+                  ? make_normals(s, name, image, out)
+                  : make_texture(s, name, is_color(map) ? GPU_RGBA8_SRGB : GPU_RGBA8, image->width,
+                                 image->height, image->rgba, out);
     host_free(s->host, name);
     return ok;
 }
@@ -102,23 +139,24 @@ static bool make_map(struct scene_gpu *s, const struct material *material, int m
         out->image = map == SCENE_MAP_NORMAL ? s->flat_normal : s->white;
         return true;
     }
-    if (!make_image(s, use->image, is_color(map))) return false;
-    out->image = is_color(map) ? s->color_textures[use->image] : s->data_textures[use->image];
+    if (!make_image(s, use->image, map)) return false;
+    out->image = *texture_of(s, map, use->image);
     return true;
 }
 
 static bool list_reads(struct scene_gpu *s)
 {
     size_t images = (size_t)s->scene->image_count;
-    s->reads = host_alloc(s->host, 2 * images + 2, sizeof *s->reads);
+    s->reads = host_alloc(s->host, 3 * images + 2, sizeof *s->reads);
     if (!s->reads) return false;
     s->reads[s->read_count++] = (struct gpu_binding){ .name = "white", .image = s->white };
     s->reads[s->read_count++] = (struct gpu_binding){ .name = "flat", .image = s->flat_normal };
     for (size_t i = 0; i < images; i++) {
-        const gpu_image both[2] = { s->color_textures[i], s->data_textures[i] };
-        for (int k = 0; k < 2; k++) {
-            if (!both[k].id) continue;
-            s->reads[s->read_count++] = (struct gpu_binding){ .name = "texture", .image = both[k] };
+        const gpu_image all[3] = { s->color_textures[i], s->data_textures[i],
+                                   s->normal_textures[i] };
+        for (int k = 0; k < 3; k++) {
+            if (!all[k].id) continue;
+            s->reads[s->read_count++] = (struct gpu_binding){ .name = "texture", .image = all[k] };
         }
     }
     return true;
@@ -130,8 +168,9 @@ bool scene_gpu_make_textures(struct scene_gpu *s)
     size_t images = (size_t)s->scene->image_count, materials = (size_t)s->scene->material_count;
     s->color_textures = host_alloc(s->host, images, sizeof *s->color_textures);
     s->data_textures = host_alloc(s->host, images, sizeof *s->data_textures);
+    s->normal_textures = host_alloc(s->host, images, sizeof *s->normal_textures);
     s->maps = host_alloc(s->host, materials, sizeof *s->maps);
-    if (!s->color_textures || !s->data_textures || !s->maps) return false;
+    if (!s->color_textures || !s->data_textures || !s->normal_textures || !s->maps) return false;
     if (!make_texture(s, "scene.white", GPU_RGBA8, 1, 1, white, &s->white) ||
         !make_texture(s, "scene.flat_normal", GPU_RGBA8, 1, 1, flat, &s->flat_normal)) {
         return false;
@@ -149,11 +188,13 @@ void scene_gpu_destroy_textures(struct scene_gpu *s)
     for (int i = 0; i < s->scene->image_count; i++) {
         if (s->color_textures) gpu_image_destroy(s->gpu, &s->color_textures[i]);
         if (s->data_textures) gpu_image_destroy(s->gpu, &s->data_textures[i]);
+        if (s->normal_textures) gpu_image_destroy(s->gpu, &s->normal_textures[i]);
     }
     gpu_image_destroy(s->gpu, &s->white);
     gpu_image_destroy(s->gpu, &s->flat_normal);
     host_free(s->host, s->color_textures);
     host_free(s->host, s->data_textures);
+    host_free(s->host, s->normal_textures);
     host_free(s->host, s->maps);
     host_free(s->host, s->reads);
 }
