@@ -104,18 +104,17 @@ TEST_GPU(traced_cones_match_the_twin)
             const vec3s p = fixture_pixel(&fixture.frame_fixture, READ_POSITION, x, y);
             const vec3s n = fixture_pixel(&fixture.frame_fixture, READ_NORMAL, x, y);
             const vec3s got = fixture_pixel(&fixture.frame_fixture, READ_IRRADIANCE, x, y);
-            double from[3], normal[3], expected[3] = { 0 }, cosines = 0.0;
+            double at[3], normal[3], expected[3] = { 0 }, cosines = 0.0;
             for (int a = 0; a < 3; a++) {
                 normal[a] = (double)n.raw[a];
-                from[a] =
-                    (double)(p.raw[a] - vct->clips[0].grid.origin_m.raw[a]) / texel_m + normal[a];
+                at[a] = (double)(p.raw[a] - vct->clips[0].grid.origin_m.raw[a]) / texel_m;
             }
             for (int i = 0; i < vct_cone_count(VCT_CONES_5); i++) {
                 double direction[3], sum[4];
                 const double cosine = (double)glms_vec3_dot(n, lines[i]);
                 for (int a = 0; a < 3; a++)
                     direction[a] = (cosine < 0.0 ? -1.0 : 1.0) * (double)lines[i].raw[a];
-                vct_twin_trace(&twin, from, normal, direction, wide, sum);
+                vct_twin_trace(&twin, at, normal, direction, wide, sum);
                 for (int k = 0; k < 3; k++) {
                     const double sky = (double)fixture.frame_fixture.input.sky.raw[k];
                     expected[k] += fabs(cosine) * (sum[k] / scale + (1.0 - sum[3]) * sky);

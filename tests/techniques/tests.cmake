@@ -15,6 +15,7 @@ target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMA
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
+ag_test(techniques/vct_open_plane USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clip_light techniques.light_trials PROPERTIES TIMEOUT 900)
 # It compares times.
 set_tests_properties(techniques.vct_screen PROPERTIES RUN_SERIAL TRUE)

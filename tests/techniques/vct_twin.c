@@ -66,20 +66,82 @@ static void filtered(const struct vct_twin_volume *v, int direction, const doubl
     }
 }
 
+// ---- The receiver's own sheet: see cones/receiver.glsl ------------------------------------------
+
+struct receiver {
+    int axis;
+    double slope[3], height, spread;
+};
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static struct receiver receiver_at(const double at[3], const double normal[3])
+{
+    struct receiver r = { 0 };
+    for (int a = 1; a < 3; a++)
+        if (fabs(normal[a]) > fabs(normal[r.axis])) r.axis = a;
+    for (int a = 0; a < 3; a++) r.slope[a] = normal[a] / normal[r.axis];
+    r.height = dot(r.slope, at);
+    r.spread = sqrt(fmax(3.0 * (dot(r.slope, r.slope) - 1.0), 1e-6));
+    return r;
+}
+
+// Fraction of the heights of the plane that are below `end`.
+static double below(const struct receiver *r, double end)
+{
+    return fmin(fmax(end / r->spread + 0.5, 0.0), 1.0);
+}
+
+// at: in texels of the level.
+static double receiver_opacity(const struct receiver *r, const double at[3], double texel)
+{
+    const double place = at[r->axis] - 0.5, layer = floor(place), slack = 0.02 / texel;
+    const double plane = at[r->axis] - dot(r->slope, at) + r->height / texel - layer;
+    const double low = below(r, 1.0 - plane + slack) - below(r, -plane - slack),
+                 high = below(r, 2.0 - plane + slack) - below(r, 1.0 - plane - slack);
+    return low + (place - layer) * (high - low);
+}
+
 struct sample {
     double light[4], axes[3];
 };
 
-static struct sample sample_volume(const struct vct_twin_volume *v, const double at[3],
-                                   const double direction[3], const double counted[3])
+// 1 within the volume, 0 from half a texel beyond it on; `within`: the nearest position inside of
+// the outermost centres.
+static double weight_at(const struct vct_twin_volume *v, const double at[3], double within[3])
+{
+    double weight = 1.0;
+    for (int a = 0; a < 3; a++) {
+        within[a] = fmin(fmax(at[a], 0.5), v->size[a] - 0.5);
+        weight *= fmin(fmax(2.0 - 2.0 * fabs(at[a] - within[a]), 0.0), 1.0);
+    }
+    return weight;
+}
+
+// Without the receiver's own sheet. place: in texels of the level.
+static struct sample sample_volume(const struct vct_twin_volume *v, const struct receiver *r,
+                                   double texel, const double place[3], const double direction[3],
+                                   const double counted[3])
 {
     struct sample s = { 0 };
+    double at[3];
+    const double weight = weight_at(v, place, at);
+    const double own = receiver_opacity(r, at, texel);
+    double others = 0.0;
     for (int a = 0; a < 3; a++) {
         double t[4];
         filtered(v, 2 * a + (direction[a] < 0.0), at, t);
         for (int k = 0; k < 4; k++) s.light[k] += fabs(counted[a]) * t[k];
-        if (fabs(counted[a]) > 0.0) s.axes[a] = t[3];
+        const double plane = own * fabs(r->slope[a]);
+        if (fabs(counted[a]) > 0.0) s.axes[a] = fmax(t[3] - plane, 0.0) / fmax(1.0 - plane, 1e-3);
+        others += fabs(counted[a]) * s.axes[a];
     }
+    const double part = s.light[3] > 0.0 ? weight * others / s.light[3] : 0.0;
+    for (int k = 0; k < 4; k++) s.light[k] *= part;
+    for (int a = 0; a < 3; a++) s.axes[a] *= weight;
     return s;
 }
 
@@ -101,16 +163,17 @@ static double smooth(double low, double high, double x)
 }
 
 // The sample half a texel back along the surface; it is added to `add`.
-static struct sample sample_behind(const struct vct_twin_volume *fine, const double from[3],
-                                   const double normal[3], const double direction[3], double add[4])
+static struct sample sample_behind(const struct vct_twin_volume *fine, const struct receiver *r,
+                                   const double from[3], const double normal[3],
+                                   const double direction[3], double add[4])
 {
-    double along = 0.0, level_with[3], at[3];
-    for (int a = 0; a < 3; a++) along += direction[a] * normal[a];
+    const double along = dot(direction, normal);
+    double level_with[3], at[3];
     for (int a = 0; a < 3; a++) {
         level_with[a] = direction[a] - along * normal[a];
         at[a] = from[a] - 0.5 * level_with[a];
     }
-    const struct sample s = sample_volume(fine, at, direction, level_with);
+    const struct sample s = sample_volume(fine, r, 1.0, at, direction, level_with);
     const double ahead = smooth(0.25, 0.5, add[3] / fmax(add[3] + s.light[3], 1e-6));
     for (int k = 0; k < 4; k++) add[k] += s.light[k];
     for (int k = 0; k < 3; k++) add[k] *= ahead;
@@ -126,39 +189,42 @@ static void use_occlusion(const struct vct_twin *twin, const double normal[3],
     for (int k = 0; k < 3; k++) light[k] = light[3] / (1.0 + twin->decay * r);
 }
 
+// Whether the ray has left the volume and the reach of its filter.
+static bool beyond(const struct vct_twin_volume *v, const double at[3], const double direction[3])
+{
+    bool left = false;
+    for (int a = 0; a < 3; a++)
+        left = left || (direction[a] > 0.0 ? at[a] - v->size[a] : -at[a]) > 0.5;
+    return left;
+}
+
 // As cones/trace.glsl, step by step, but without its early termination.
-void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
+void vct_twin_trace(const struct vct_twin *twin, const double surface[3], const double normal[3],
                     const double direction[3], double wide, double sum[4])
 {
     const struct vct_twin_volume *levels = twin->levels;
-    const int level_count = twin->level_count;
-    double end = 1e6, out_of[3] = { 0 }, speed = 0.0;
-    for (int a = 0; a < 3; a++) {
-        if (fabs(direction[a]) < 1e-6) continue;
-        const double until =
-            ((direction[a] > 0.0 ? levels[0].size[a] : 0.0) - from[a]) / direction[a];
-        if (until >= end) continue;
-        end = until;
-        speed = fabs(direction[a]);
-        for (int b = 0; b < 3; b++) out_of[b] = b == a ? direction[a] : 0.0;
-    }
-    double t = 0.0;
+    const struct receiver receiver = receiver_at(surface, normal);
+    double from[3], distance = 0.5;
+    for (int a = 0; a < 3; a++) from[a] = surface[a] + twin->offset * normal[a];
     struct sample before = { 0 };
     for (int k = 0; k < 4; k++) sum[k] = 0.0;
-    for (int i = 0; i < 256 && sum[3] <= 0.98; i++) {
-        int level = (int)(log2(fmax(wide * t, 1.0)) + 0.5);
-        if (level >= level_count) level = level_count - 1;
-        const double length = (double)(1 << level), middle = t + 0.5 * length;
-        if (middle > end && (middle - end) * speed > length) return;
+    for (int i = 0, previous = 0; i < 256 && sum[3] <= 0.98; i++) {
+        const double start = distance - 0.5 * (double)(1 << previous);
+        int level = (int)(log2(fmax(wide * start, 1.0)) + 0.5);
+        if (level >= twin->level_count) level = twin->level_count - 1;
+        level = previous = level > previous ? level : previous;
+        const double texel = (double)(1 << level);
         double at[3];
-        for (int a = 0; a < 3; a++) at[a] = (from[a] + direction[a] * fmin(middle, end)) / length;
+        for (int a = 0; a < 3; a++) at[a] = (from[a] + direction[a] * distance) / texel;
+        if (beyond(&levels[level], at, direction)) return;
         struct sample here =
-            sample_volume(&levels[level], at, direction, middle > end ? out_of : direction);
-        if (i == 0) before = sample_behind(&levels[0], from, normal, direction, here.light);
-        if (twin->occlusion) use_occlusion(twin, normal, direction, middle, here.light);
+            sample_volume(&levels[level], &receiver, texel, at, direction, direction);
+        if (i == 0)
+            before = sample_behind(&levels[0], &receiver, from, normal, direction, here.light);
+        if (twin->occlusion) use_occlusion(twin, normal, direction, distance, here.light);
         cover(sum, &here, &before);
         before = here;
-        t += length;
+        distance += texel;
     }
     if (sum[3] <= 0.98) return;
     for (int k = 0; k < 4; k++) sum[k] /= sum[3];

@@ -28,8 +28,8 @@ struct vct_twin {
 struct vct_twin vct_twin_of(const struct vct_fixture *fixture);
 void vct_twin_finish(struct vct_twin *twin);
 
-// Premultiplied radiance and opacity of a cone. Lengths are in texels. from: the origin, off a
+// Premultiplied radiance and opacity of a cone. Lengths are in texels. surface: a point of the
 // surface of that normal; wide: cone width in texels over the distance. For vctao the attenuated
 // occlusion replaces radiance.
-void vct_twin_trace(const struct vct_twin *twin, const double from[3], const double normal[3],
+void vct_twin_trace(const struct vct_twin *twin, const double surface[3], const double normal[3],
                     const double direction[3], double wide, double sum[4]);

@@ -41,8 +41,9 @@ float vct_emitter_visibility(sampler3D light, vec3 at, vec3 normal, int first, v
     vec3 direction = path / distance;
     float narrowing = -VCT_WIDTH_FROM_EMITTER * dot(direction, emitter_normal);
     vec3 tangential = direction - dot(direction, normal) * normal;
-    vct_volume_sample behind = vct_sample_volume(light, from - 0.5 * float(1 << first) * tangential,
-                                                 direction, tangential, first);
+    vct_receiver receiver = vct_receiver_at(at, normal);
+    vct_volume_sample behind = vct_sample_others(
+        light, receiver, from - 0.5 * float(1 << first) * tangential, direction, tangential, first);
     vec3 previous_axes = behind.axes;
     float occlusion = 0.0, t = 0.0;
     for (int i = 0; i < 256 * VCT_CLIPS && t < end; i++) {
@@ -51,8 +52,9 @@ float vct_emitter_visibility(sampler3D light, vec3 at, vec3 normal, int first, v
         if (VCT_CLIPS > 1)
             level = max(level, i == 0 ? first : vct_start_at(from + t * direction).level);
         float texel = float(1 << level);
-        vct_volume_sample here = vct_sample_volume(
-            light, from + direction * min(t + 0.5 * texel, end), direction, direction, level);
+        vct_volume_sample here =
+            vct_sample_others(light, receiver, from + direction * min(t + 0.5 * texel, end),
+                              direction, direction, level);
         float alpha = here.light.a + (i == 0 ? behind.light.a : 0.0);
         vec3 both = previous_axes + here.axes;
         occlusion +=

@@ -13,11 +13,22 @@ layout(set = 0, binding = 21, scalar) readonly buffer vct_svo_nodes
 
 #include "techniques/vct/octree/octree.glsl"
 
+const float VCT_TEXEL_CENTRE = 0.0; // of point 0, point spacings
+
+// As in volume/sample.glsl; the outermost points are on the border.
+vec3 vct_within_volume(vec3 at, int level, out float weight)
+{
+    vec3 within = clamp(at, vec3(0.0), vec3(vct_cells() / 2));
+    vec3 inside = clamp(2.0 - 2.0 * abs(at - within) / float(1 << level), 0.0, 1.0);
+    weight = inside.x * inside.y * inside.z;
+    return within;
+}
+
 vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, vec3 weights,
                                     int level)
 {
     // A texel of level 0 is one point spacing; it doubles with each level.
-    vec3 points = clamp(at, vec3(0.0), vec3(vct_cells() / 2)) / float(1 << level);
+    vec3 points = at / float(1 << level);
     ivec3 node = min(ivec3(0.5 * points), svo_nodes_in_use(level) - 1);
     uint brick = svo_find(node, svo.depths - 1u - uint(level));
     if (brick == SVO_NONE) return vct_volume_sample(vec4(0.0), vec3(0.0));

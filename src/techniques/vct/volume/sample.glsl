@@ -4,7 +4,24 @@
 
 #include "techniques/vct/volume/directions.glsl"
 
-// Radiance against `direction` and opacity, at a position in texels of level 0. `weights`: the
+const float VCT_TEXEL_CENTRE = 0.5; // of texel 0, texels
+
+// Nearest position that the texels of a level filter without a border, in texels of level 0.
+// weight: 1 within the volume, 0 from half a texel beyond it on: the scene has empty space around
+// it.
+vec3 vct_within_volume(vec3 at, int level, out float weight)
+{
+    int grid = min(level, VCT_CLIPS - 1);
+    float texel = float(1 << level);
+    vec3 low = VCT_CLIPS > 1 ? clips.levels[grid].corner : vec3(0.0),
+         size = ceil(clips.levels[grid].size * float(1 << grid) / texel) * texel;
+    vec3 within = clamp(at, low + 0.5 * texel, low + size - 0.5 * texel);
+    vec3 inside = clamp(2.0 - 2.0 * abs(at - within) / texel, 0.0, 1.0);
+    weight = inside.x * inside.y * inside.z;
+    return within;
+}
+
+// Radiance against `direction` and opacity, at a position of vct_within_volume. `weights`: the
 // components of the direction to weight with. Six volumes lie side by side along x, clip-map levels
 // along z: filtering stays half a texel away from the next one. The isotropic volume ignores the
 // direction.
@@ -15,9 +32,7 @@ vct_volume_sample vct_sample_volume(sampler3D light, vec3 at, vec3 direction, ve
     int grid = min(level, VCT_CLIPS - 1),
         mip = level - grid; // only the coarsest level has mips
     vec3 own = VCT_CLIPS > 1 ? (at - clips.levels[grid].corner) / float(1 << grid) : at;
-    float dim = float(vct.volume_dim >> mip), half_texel = 0.5 / dim;
-    vec3 size = vec3((ivec3(clips.levels[grid].size) + (1 << mip) - 1) >> mip) / dim;
-    vec3 uv = clamp(own / float(vct.volume_dim), vec3(half_texel), size - half_texel);
+    vec3 uv = own / float(vct.volume_dim);
     uv.z = (uv.z + float(VCT_CLIPS - 1 - grid)) / float(VCT_CLIPS);
     if (!VCT_ANISOTROPIC) {
         vec4 all = textureLod(light, uv, float(mip));
