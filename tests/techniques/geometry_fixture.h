@@ -15,5 +15,4 @@ size_t geometry_floats(const struct lpv *lpv);
 // Checks that the volume equals the twin.
 void geometry_check(struct lpv *lpv, const struct geometry_twin *twin, double tolerance);
 // Checks that the light after all steps equals that of a twin with this geometry.
-void geometry_check_light(struct lpv *lpv, struct rsm_fixture *rsm,
-                          const struct geometry_twin *twin);
+void geometry_check_light(struct lpv *lpv, const struct geometry_twin *twin);

@@ -24,6 +24,7 @@ void geometry_twin_init(struct geometry_twin *twin, struct lpv_grid grid, int ki
     twin->volume = calloc(count_of(twin), sizeof *twin->volume);
     twin->source = calloc(count_of(twin), sizeof *twin->source);
     twin->covered = calloc(count_of(twin), (size_t)3 * LPV_LINES * LPV_LINES);
+    twin->places = calloc(count_of(twin), (size_t)3 * LPV_PLACES);
 }
 
 void geometry_twin_finish(struct geometry_twin *twin)
@@ -31,6 +32,7 @@ void geometry_twin_finish(struct geometry_twin *twin)
     free(twin->volume);
     free(twin->source);
     free(twin->covered);
+    free(twin->places);
 }
 
 static double in_cells(const struct geometry_twin *twin, vec3s position, int axis)
@@ -108,12 +110,10 @@ static void cross(struct geometry_twin *twin, double corners[3][3], int axis, in
     at[(axis + 2) % 3] = v / LPV_LINES;
     for (int i = 0; i < 3; i++)
         if (at[i] < 0 || at[i] >= twin->grid.cells[i]) return;
-    const int index = index_of(twin, at[0], at[1], at[2]);
-    unsigned char *line =
-        &twin->covered[((index * 3 + axis) * LPV_LINES + u % LPV_LINES) * LPV_LINES +
-                       v % LPV_LINES];
-    if (!*line) twin->volume[index][axis] += 1.0 / (LPV_LINES * LPV_LINES);
-    *line = 1;
+    const int face = 3 * index_of(twin, at[0], at[1], at[2]) + axis;
+    const int place = (int)((where + 0.5 - floor(where + 0.5)) * (double)LPV_PLACES);
+    twin->covered[(face * LPV_LINES + u % LPV_LINES) * LPV_LINES + v % LPV_LINES] = 1;
+    twin->places[face * (int)LPV_PLACES + place] = 1;
 }
 
 void geometry_twin_triangle(struct geometry_twin *twin, const vec3s corners[3])
@@ -170,32 +170,80 @@ static double corner_occlusion(const struct geometry_twin *twin, const int cell[
     return occluded * (double)glms_vec3_norm(back) / 0.75; // the peak of a clamped cosine
 }
 
-// Product over the axes of the offset: transmittance of the mean of the faces around the crossing.
-static double face_transmittance(const struct geometry_twin *twin, const int cell[3],
+static bool is_inside(const struct geometry_twin *twin, const int cell[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (cell[axis] < 0 || cell[axis] >= twin->grid.cells[axis]) return false;
+    return true;
+}
+
+static bool is_covered(const struct geometry_twin *twin, const int cell[3], int axis, int u, int v)
+{
+    const int face = 3 * index_of(twin, cell[0], cell[1], cell[2]) + axis;
+    return twin->covered[(face * LPV_LINES + u) * LPV_LINES + v] != 0;
+}
+
+// Whether a surface is between the centre of a cell and its line `along` of axis b. `across`: the
+// row of lines, of the next axis, or LPV_LINES more of the one after it.
+static bool is_cut_off(const struct geometry_twin *twin, const int cell[3], int b, int along,
+                       int across)
+{
+    const bool above = along >= LPV_LINES / 2;
+    const double distance = fabs((along + 0.5) / LPV_LINES - 0.5);
+    int at[3] = { cell[0], cell[1], cell[2] }, lines = 0;
+    if (above) at[b]++;
+    if (!is_inside(twin, at)) return false;
+    for (int i = 0; i < LPV_LINES; i++)
+        lines += across < LPV_LINES ? is_covered(twin, at, b, across, i)
+                                    : is_covered(twin, at, b, i, across - LPV_LINES);
+    if (2 * lines < LPV_LINES) return false;
+    const unsigned char *places =
+        &twin->places[(3 * index_of(twin, at[0], at[1], at[2]) + b) * (int)LPV_PLACES];
+    for (int p = 0; p < (int)LPV_PLACES; p++) {
+        const double from_centre = above ? p : (double)LPV_PLACES - 1.0 - p;
+        if (places[p] && from_centre < distance * (double)LPV_PLACES) return true;
+    }
+    return false;
+}
+
+// Whether line (u, v) along an axis is on the side of the cell's centre.
+static bool is_reached(const struct geometry_twin *twin, const int cell[3], int axis, int u, int v)
+{
+    return !is_cut_off(twin, cell, (axis + 1) % 3, u, v) &&
+           !is_cut_off(twin, cell, (axis + 2) % 3, v, LPV_LINES + u);
+}
+
+double geometry_twin_occluded(const struct geometry_twin *twin, const int cell[3], int axis,
+                              int side)
+{
+    int to[3] = { cell[0], cell[1], cell[2] }, from = 0, passed = 0;
+    to[axis] += side;
+    const int *face = side > 0 ? to : cell;
+    for (int u = 0; u < LPV_LINES; u++)
+        for (int v = 0; v < LPV_LINES; v++) {
+            if (!is_reached(twin, cell, axis, u, v)) continue;
+            from++;
+            passed += is_reached(twin, to, axis, u, v) && !is_covered(twin, face, axis, u, v);
+        }
+    return from == 0 ? 1.0 : 1.0 - (double)passed / from;
+}
+
+// Mean over all orders of the axes of the offset.
+static double path_transmittance(const struct geometry_twin *twin, const int cell[3],
                                  const int offset[3], double occlusion)
 {
-    double transmittance = 1.0;
+    double sum = 0.0;
+    int count = 0;
     for (int axis = 0; axis < 3; axis++) {
         if (offset[axis] == 0) continue;
-        double sum = 0.0;
-        int count = 0;
-        // Over the other axes: at the source's coordinate, or at the neighbour's.
-        for (int k = 0; k < 8; k++) {
-            int at[3];
-            bool touches = true;
-            for (int i = 0; i < 3; i++) {
-                const int moved = k >> i & 1;
-                if (i == axis || offset[i] == 0) touches = touches && !moved;
-                at[i] = cell[i] + moved * offset[i];
-            }
-            if (!touches) continue;
-            if (offset[axis] > 0) at[axis]++;
-            sum += geometry_twin_at(twin, at[0], at[1], at[2])[axis];
-            count++;
-        }
-        transmittance *= transmitted(sum / count, occlusion);
+        int next[3] = { cell[0], cell[1], cell[2] }, rest[3] = { offset[0], offset[1], offset[2] };
+        next[axis] += offset[axis];
+        rest[axis] = 0;
+        sum += transmitted(geometry_twin_occluded(twin, cell, axis, offset[axis]), occlusion) *
+               path_transmittance(twin, next, rest, occlusion);
+        count++;
     }
-    return transmittance;
+    return count == 0 ? 1.0 : sum / count;
 }
 
 double geometry_twin_transmittance(const struct geometry_twin *twin, const int cell[3],
@@ -203,5 +251,5 @@ double geometry_twin_transmittance(const struct geometry_twin *twin, const int c
 {
     if (twin->kind == LPV_GEOMETRY_MAPS)
         return transmitted(corner_occlusion(twin, cell, offset), occlusion);
-    return face_transmittance(twin, cell, offset, occlusion);
+    return path_transmittance(twin, cell, offset, occlusion);
 }

@@ -7,11 +7,11 @@
 struct geometry_twin {
     struct lpv_grid grid;
     int kind; // LPV_GEOMETRY_MAPS or LPV_GEOMETRY_SCENE
-    // [z][y][x], cells[axis] + 1 along each axis. Maps: coefficients of the corner; scene: covered
-    // fractions of the cell's low faces (−x, −y, −z).
-    double (*volume)[4];
+    // [z][y][x], cells[axis] + 1 along each axis.
+    double (*volume)[4];    // maps: coefficients of the corner
     double (*source)[4];    // maps: of the source being added
-    unsigned char *covered; // scene: [corner][axis][line]
+    unsigned char *covered; // scene: [cell][axis][line] of the low faces
+    unsigned char *places;  // scene: [cell][axis][LPV_PLACES] of surfaces between two centres
 };
 
 void geometry_twin_init(struct geometry_twin *twin, struct lpv_grid grid, int kind);
@@ -22,8 +22,11 @@ void geometry_twin_surfel(struct geometry_twin *twin, vec3s position, vec3s norm
 // Merges the source into the volume.
 void geometry_twin_merge(struct geometry_twin *twin);
 void geometry_twin_triangle(struct geometry_twin *twin, const vec3s corners[3]); // world space
-// Texel of the volume.
+// Maps: texel of the volume.
 const double *geometry_twin_at(const struct geometry_twin *twin, int x, int y, int z);
+// Scene: occluded share of the light of a cell that moves to the next one on the side ±1.
+double geometry_twin_occluded(const struct geometry_twin *twin, const int cell[3], int axis,
+                              int side);
 // Fraction of the light of a cell that reaches the neighbour at `offset`.
 double geometry_twin_transmittance(const struct geometry_twin *twin, const int cell[3],
                                    const int offset[3], double occlusion);

@@ -17,8 +17,8 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
     twin->grid = grid;
     twin->bands = bands;
     twin->scheme = scheme;
-    twin->steps = 0;
     twin->geometry = NULL;
+    twin->injected_1 = lpv_crossing_of(scheme).injected_1;
     twin->light = calloc(twin_cells(twin), sizeof *twin->light);
     twin->accumulated = calloc(twin_cells(twin), sizeof *twin->accumulated);
 }
@@ -47,12 +47,13 @@ void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux)
                         0.5f * normal.raw[axis]);
     const int at = index_of(twin, cell);
     if (at < 0) return;
-    float zonal[3], lobe[9];
-    zh_clamped_cosine(twin->bands, zonal);
-    zh_rotate(twin->bands, zonal, normal, lobe);
+    const double band[3] = { 1.0, twin->injected_1, 0.25 };
+    float basis[9];
+    sh_eval(twin->bands, normal, basis);
     for (int i = 0; i < SH_COUNT(twin->bands); i++) {
-        twin->light[at][i] += flux / GLM_PI * (double)lobe[i];
-        twin->accumulated[at][i] += flux / GLM_PI * (double)lobe[i];
+        const double coefficient = flux * band[i == 0 ? 0 : i < 4 ? 1 : 2] * (double)basis[i];
+        twin->light[at][i] += coefficient;
+        twin->accumulated[at][i] += coefficient;
     }
 }
 
@@ -77,15 +78,17 @@ static void send(const struct twin *twin, const double *light, double transmitta
 
 static double transmittance_of(const struct twin *twin, const int cell[3], const int offset[3])
 {
-    if (!twin->geometry || twin->steps == 0) return 1.0;
+    if (!twin->geometry) return 1.0;
     return geometry_twin_transmittance(twin->geometry, cell, offset, twin->occlusion);
 }
 
-void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)
+void twin_propagate(struct twin *twin, const struct lpv_options *how)
 {
     const int count = (int)twin_cells(twin);
     const int32_t *cells = twin->grid.cells;
-    const struct lpv_lobe_weights weights = lpv_lobe_weights_of(twin->scheme, lobe, focus);
+    const enum lpv_lobe lobe = (enum lpv_lobe)how->lobe;
+    const struct lpv_lobe_weights weights =
+        lpv_lobe_weights_of(twin->scheme, lobe, (double)how->focus, (double)how->filter);
     struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
     const int neighbour_count = lpv_neighbours(twin->scheme, neighbours);
     double(*next)[9] = calloc((size_t)count, sizeof *next);
@@ -104,7 +107,6 @@ void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus)
         for (int k = 0; k < 9; k++) twin->accumulated[i][k] += next[i][k];
     free(twin->light);
     twin->light = next;
-    twin->steps++;
 }
 
 double twin_flux(const struct twin *twin)
@@ -169,7 +171,12 @@ double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,
     float zonal[3], lobe[9];
     zh_clamped_cosine(twin->bands, zonal);
     zh_rotate(twin->bands, zonal, glms_vec3_negate(normal), lobe);
-    for (int i = 1; i < SH_COUNT(twin->bands); i++) lobe[i] *= how->window;
+    const struct lpv_crossing crossing = lpv_crossing_of(twin->scheme);
+    const double staircase = twin->scheme == LPV_SIX
+                                 ? (double)(fabsf(normal.x) + fabsf(normal.y) + fabsf(normal.z))
+                                 : 1.0;
+    for (int i = 1; i < SH_COUNT(twin->bands); i++)
+        lobe[i] *= how->window * (float)(i < 4 ? crossing.band_1 / staircase : crossing.band_2);
     const enum lpv_reconstruction reconstruction = (enum lpv_reconstruction)how->reconstruction;
     const double first = gather(twin, here, reconstruction, lobe);
     const double loss = fmax(first - gather(twin, further, reconstruction, lobe), 0.0);

@@ -14,8 +14,8 @@ struct twin {
     enum lpv_scheme scheme;
     double (*light)[9];                   // of this step, [z][y][x]
     double (*accumulated)[9];             // of all steps so far, including the injected light
-    int steps;                            // so far
-    const struct geometry_twin *geometry; // occluders from the second step on; NULL: none
+    double injected_1;                    // band 1 of injected light: that of struct lpv_crossing
+    const struct geometry_twin *geometry; // occluders; NULL: none
     double occlusion;                     // the option
 };
 
@@ -24,7 +24,8 @@ void twin_finish(struct twin *twin);
 size_t twin_cells(const struct twin *twin);
 // A virtual point light of `flux` (lumen); outside the grid it is dropped.
 void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux);
-void twin_propagate(struct twin *twin, enum lpv_lobe lobe, double focus);
+// A step, with the options lobe, focus, filter.
+void twin_propagate(struct twin *twin, const struct lpv_options *how);
 double twin_flux(const struct twin *twin); // of this step, lumen
 // Irradiance (lux) at a surface point, with the options offset, window, damping, reconstruction.
 double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,

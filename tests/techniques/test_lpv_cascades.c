@@ -273,7 +273,7 @@ static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
     refine_twin(lpv, coarser, begin);
     memcpy(twin.light, begin, (size_t)count * sizeof *begin);
     for (int step = 0; step < lpv->options.steps; step++) {
-        twin_propagate(&twin, (enum lpv_lobe)lpv->options.lobe, (double)lpv->options.focus);
+        twin_propagate(&twin, &lpv->options);
         for (int i = 0; i < count; i++)
             for (int k = 0; k < 9; k++)
                 twin.light[i][k] =

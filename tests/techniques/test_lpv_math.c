@@ -104,7 +104,7 @@ TEST(lpv_lobe_at_two_thirds_is_the_clamped_cosine)
     zh_clamped_cosine(3, zonal);
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
         const struct lpv_lobe_weights weights =
-            lpv_lobe_weights_of((enum lpv_scheme)scheme, LPV_LOBE_PROPAGATION, 2.0 / 3.0);
+            lpv_lobe_weights_of((enum lpv_scheme)scheme, LPV_LOBE_PROPAGATION, 2.0 / 3.0, 0.0);
         for (int i = 0; i < 9; i++) {
             const int band = i == 0 ? 0 : i < 4 ? 1 : 2;
             const double cosine =
@@ -123,7 +123,7 @@ static void received(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus, c
 {
     struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
     const int count = lpv_neighbours(scheme, neighbours);
-    const struct lpv_lobe_weights weights = lpv_lobe_weights_of(scheme, lobe, focus);
+    const struct lpv_lobe_weights weights = lpv_lobe_weights_of(scheme, lobe, focus, 0.0);
     memset(out, 0, 9 * sizeof *out);
     for (int n = 0; n < count; n++)
         for (int f = 0; f < neighbours[n].face_count; f++) {
@@ -176,7 +176,7 @@ TEST(lpv_lobes_of_higher_powers_of_the_cosine_have_their_band_2)
             legendre += weight * (1.5 * c * c - 0.5);
         }
         const struct lpv_lobe_weights weights =
-            lpv_lobe_weights_of(LPV_TWENTY_SIX, LPV_LOBE_PROPAGATION, mean / flux);
+            lpv_lobe_weights_of(LPV_TWENTY_SIX, LPV_LOBE_PROPAGATION, mean / flux, 0.0);
         const double band_2 = 5.0 / (2.0 / weights.square + 3.0 / weights.product);
         CHECK_NEAR(band_2, legendre / flux, 1e-4);
     }
@@ -194,7 +194,7 @@ static void wave_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focu
 {
     struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
     const int count = lpv_neighbours(scheme, neighbours);
-    const struct lpv_lobe_weights weights = lpv_lobe_weights_of(scheme, lobe, focus);
+    const struct lpv_lobe_weights weights = lpv_lobe_weights_of(scheme, lobe, focus, 0.0);
     memset(out, 0, sizeof *out);
     for (int n = 0; n < count; n++) {
         double phase = 0.0;

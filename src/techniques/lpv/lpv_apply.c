@@ -23,6 +23,7 @@ static void apply(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view 
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "light", .image = lpv->volumes.light, .sampler = lpv->linear },
+                          { .name = "lpv_walls", .buffer = lpv_walls(lpv) },
                           { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
                  &push, sizeof push, gpu_groups(view->width, LPV_LOCAL),
                  gpu_groups(view->height, LPV_LOCAL), 1);

@@ -6,11 +6,7 @@
 // radiance: L(ω) = I(ω) (w a) / a³, and E = ∫ L(ω) (−n·ω)₊ dω. Hence irradiance_scale = w / a²; the
 // tests compare it with form factors.
 //
-// Window. Light of the direction ω, c = −n·ω, has the irradiance ∝ 1 + w 2 c in two bands and
-// ∝ 1 + w (2 c + 5/4 P2(c)) in three, w being the weight of the directional bands. w = 1 is exact,
-// but negative behind the surface (−1 at c = −1; −0.158 at c = −8/15): next to a bright wall, which
-// all its light leaves, it cancels other light and shows the complementary colour. 1/2 in two bands
-// and 0.863 in three are the largest weights that keep every positive intensity positive.
+// Directional bands: lpv_irradiance.glsl. `window` scales them; 1 conserves energy.
 //
 // Damping. Light that arrives from elsewhere does not decrease along the normal; light that the
 // surface itself sends, or that leaks through it, does. The decrease of irradiance over a cell
@@ -30,6 +26,8 @@
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
 #include "techniques/lpv/lpv_irradiance.glsl"
+#define LPV_WALLS_BINDING 6
+#include "techniques/lpv/lpv_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -92,7 +90,7 @@ vec3 damped_irradiance(vec3 at, vec3 n)
 
 vec3 surface_irradiance(vec3 surface, vec3 n)
 {
-    vec3 at = lpv_cells_from_world(surface + lpv.offset_m * n);
+    vec3 at = lpv_visible(lpv_cells_from_world(surface + lpv.offset_m * n), lpv_cells());
     return min(lpv.irradiance_scale * damped_irradiance(at, n), vec3(HALF_MAX));
 }
 

@@ -44,6 +44,6 @@ void lpv_record_bounce(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image arrived)
                                 { .name = "lpv_surfaces", .buffer = v->surfaces },
                                 { .name = "injected", .image = v->injected },
                                 { .name = "arrived", .image = arrived, .sampler = lpv->linear },
-                                { .name = "reflected", .image = v->reflected },
-                                { .name = "sent", .image = v->sent }));
+                                { .name = "sent", .image = v->sent },
+                                { .name = "lpv_walls", .buffer = lpv_walls(lpv) }));
 }

@@ -9,6 +9,8 @@
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
 #include "techniques/lpv/lpv_irradiance.glsl"
+#define LPV_WALLS_BINDING 5
+#include "techniques/lpv/lpv_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -16,10 +18,9 @@ layout(set = 0, binding = 1, scalar) readonly buffer lpv_surfaces
 {
     uvec4 surfaces[]; // [cell][direction]
 };
-layout(set = 0, binding = 2) uniform sampler3D injected; // from lights and emissive surfaces
-layout(set = 0, binding = 3) uniform sampler3D arrived;  // accumulated so far
-layout(set = 0, binding = 4) uniform writeonly image3D reflected;
-layout(set = 0, binding = 5) uniform writeonly image3D sent; // reflected + injected
+layout(set = 0, binding = 2) uniform sampler3D injected;     // from lights and emissive surfaces
+layout(set = 0, binding = 3) uniform sampler3D arrived;      // accumulated so far
+layout(set = 0, binding = 4) uniform writeonly image3D sent; // injected + reflected
 
 // Reflectance × area in cells². All surfaces of one direction receive at most the light through one
 // side of the cell.
@@ -33,7 +34,8 @@ vec3 reflecting_area(int at)
 vec3 reflected_flux(ivec3 cell, vec3 area, vec3 n)
 {
     vec3 at = vec3(cell) + 0.5 + (lpv.bounce_offset - 0.5) * n; // the surface is half a cell behind
-    return lpv.mean_path * area * lpv_irradiance(lpv_sample(arrived, at), n);
+    return lpv.mean_path * area *
+           lpv_irradiance(lpv_sample(arrived, lpv_visible(at, lpv_cells())), n);
 }
 
 void main()
@@ -48,14 +50,14 @@ void main()
         n[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
         vec3 flux = reflected_flux(cell, area, n);
         float lobe[9];
-        sh9_clamped_cosine(n, lobe);
+        sh9_eval(n, lobe);
+        for (int i = 1; i < 9; i++) lobe[i] *= i < 4 ? lpv.injected_1 : 0.25;
         for (int i = 0; i < LPV_BANDS * LPV_BANDS; i++)
             for (int colour = 0; colour < 3; colour++) {
                 int value = 3 * i + colour;
-                slabs[value / 4][value % 4] += flux[colour] * lobe[i] / SH_COSINE_0;
+                slabs[value / 4][value % 4] += flux[colour] * lobe[i];
             }
     }
-    lpv_store_slabs(reflected, cell, slabs);
     lpv_fetch_slabs(injected, cell, before);
     for (int i = 0; i < LPV_SLABS; i++) slabs[i] += before[i];
     lpv_store_slabs(sent, cell, slabs);

@@ -32,8 +32,8 @@ static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid
     for (int axis = 0; axis < 3; axis++)
         longest = grid->cells[axis] > longest ? grid->cells[axis] : longest;
     const int32_t steps = finest->options.steps;
-    const int32_t needed = finest->options.neighbours == LPV_SIX ? 2 * longest : longest;
-    return needed < steps ? steps : needed < 4 * steps ? needed : 4 * steps;
+    const int32_t needed = finest->options.neighbours == LPV_SIX ? 4 * longest : 2 * longest;
+    return needed < steps ? steps : needed < 8 * steps ? needed : 8 * steps;
 }
 
 bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view)
@@ -67,6 +67,7 @@ void lpv_record_refinement(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image to)
         GPU_BIND(
             lpv_grid_binding(lpv, cmd),
             { .name = "coarser", .image = lpv->coarser->volumes.light, .sampler = lpv->linear },
-            { .name = "refined", .image = to }),
+            { .name = "refined", .image = to },
+            { .name = "lpv_walls", .buffer = lpv_walls(lpv->coarser) }),
         &push, sizeof push);
 }

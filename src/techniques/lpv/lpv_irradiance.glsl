@@ -2,7 +2,9 @@
 #ifndef AG_LPV_IRRADIANCE_GLSL
 #define AG_LPV_IRRADIANCE_GLSL
 
-// ∫ I(ω) (−n·ω)₊ dω in the bands of I, weighted by the window.
+// The flux that a step sends across a side of a cell with the normal −n (lpv_crossing_of): a wall
+// gets all light that arrives and none of its own. On a slope, stairs of |x| + |y| + |z| sides per
+// area let the light that leaves have that many times the directional band.
 vec3 lpv_irradiance(lpv_light light, vec3 n)
 {
     vec3 sum = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);
@@ -11,7 +13,9 @@ vec3 lpv_irradiance(lpv_light light, vec3 n)
         band_1 -= SH_Y1 * n[a] * light.along[a];
         band_2 += n[a] * n[a] * light.square[a] + SH_Y2_XY * products[a] * light.product[a];
     }
-    return sum + lpv.window * (SH_COSINE_1 * band_1 + SH_COSINE_2 * band_2);
+    float sides = mix(1.0, abs(n.x) + abs(n.y) + abs(n.z), lpv.staircase);
+    return sum + (lpv.window_1 / sides) * SH_COSINE_1 * band_1 +
+           lpv.window_2 * SH_COSINE_2 * band_2;
 }
 
 #endif

@@ -76,6 +76,42 @@ double lpv_mean_path(enum lpv_scheme scheme)
     return scheme == LPV_SIX ? 2.0 / 3.0 : GLM_PI / (3.0 * root * atan(1.0 / root));
 }
 
+// Over the faces of all neighbours beyond the side +z, of direction cosine c: flux_l = Σ Ω/4π
+// (2l + 1) P_l(c), and the sum of 3 c² Ω/4π.
+static void sum_of_side(enum lpv_scheme scheme, double flux[3], double *square)
+{
+    enum { Z = 2 };
+    struct lpv_neighbour neighbours[LPV_MAX_NEIGHBOURS];
+    const int count = lpv_neighbours(scheme, neighbours);
+    flux[0] = flux[1] = flux[2] = *square = 0.0;
+    for (int n = 0; n < count; n++)
+        for (int f = 0; f < neighbours[n].face_count && neighbours[n].offset[Z] == 1; f++) {
+            const struct lpv_face *face = &neighbours[n].faces[f];
+            const double c = (double)face->direction.raw[Z];
+            const double share = face->solid_angle_sr / (4.0 * GLM_PI);
+            flux[0] += share;
+            flux[1] += 3.0 * share * c;
+            flux[2] += 5.0 * share * (1.5 * c * c - 0.5);
+            *square += 3.0 * share * c * c;
+        }
+}
+
+// A clamped cosine has the bands 1/4, 1/2 and 5/16 (of ∫ I dω, ∫ I c dω, ∫ I P2 dω).
+//
+// injected_1: above a lit wall all layers hold the same light, φ in band 0 and J in band 1, and
+// none returns: flux_0 φ = flux_1 J. A layer receives from the one below flux_0 φ + flux_1 J in
+// band 0 and flux_1/3 φ + square J in band 1. A wall that injects the same light loses none of it.
+struct lpv_crossing lpv_crossing_of(enum lpv_scheme scheme)
+{
+    double flux[3], square;
+    sum_of_side(scheme, flux, &square);
+    return (struct lpv_crossing){
+        .band_1 = 0.5 * flux[1] / flux[0],
+        .band_2 = 0.8 * flux[2] / flux[0],
+        .injected_1 = 0.5 * (flux[1] / (3.0 * flux[0]) + square / flux[1]),
+    };
+}
+
 // Quadrature of the squares of x² − y² and xy with the faces as nodes and their solid angles as
 // weights: 1 each if it were exact. By the symmetry of the cube these two determine band 2.
 static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double *product)
@@ -108,9 +144,9 @@ static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double 
 // direction is scaled alike. For lobes along the normals, six directions of weight 4π/6, x² − y²
 // counts 5/2 times and xy not at all: √(5/2 q) G ≤ 1 bounds the weight.
 struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
-                                            double focus)
+                                            double focus, double filter)
 {
-    const double band_2 = fmax(2.0 * focus - 1.0, 0.0) / (2.0 - focus);
+    const double band_2 = (1.0 - filter) * fmax(2.0 * focus - 1.0, 0.0) / (2.0 - focus);
     double square, product;
     quadrature_of_band_2(scheme, &square, &product);
     if (lobe == LPV_LOBE_PROPAGATION)
@@ -145,7 +181,7 @@ static struct lpv_reprojection reprojection_of(struct lpv_face face, int p_axis,
     };
 }
 
-struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus)
+struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus, double filter)
 {
     enum { X, Y };
     const int ahead[3] = { 1, 0, 0 }, edge[3] = { 1, 1, 0 }, corner[3] = { 1, 1, 1 };
@@ -154,6 +190,6 @@ struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double f
         .far_face = reprojection_of(face_of(ahead, X, 1), X, Y, lobe),
         .side_face = reprojection_of(beside, X, Y, lobe),
         .corner_face = reprojection_of(face_of(corner, X, 1), X, Y, lobe),
-        .lobe = lpv_lobe_weights_of(scheme, lobe, focus),
+        .lobe = lpv_lobe_weights_of(scheme, lobe, focus, filter),
     };
 }

@@ -38,6 +38,13 @@ double lpv_rectangle_sr(double x0, double x1, double y0, double y1, double dista
 // Mean path of light in a step, over all directions, in cells; light travels in straight lines.
 double lpv_mean_path(enum lpv_scheme scheme);
 
+// The light that a step sends across one side of a cell, by bands around the side's normal.
+struct lpv_crossing {
+    double band_1, band_2; // of the flux; 1 each: a clamped cosine
+    double injected_1; // band 1 of the light that a lit wall sends across the side; 2/3: Lambert
+};
+struct lpv_crossing lpv_crossing_of(enum lpv_scheme scheme);
+
 // A re-projected lobe of unit flux: coefficient i is weight_i Y_i(axis). `along`: weight of band 1;
 // band 2: `square` for 3z² − 1 and x² − y², `product` for xy, yz and xz. Band 0 has the weight 1,
 // which conserves flux.
@@ -45,8 +52,9 @@ struct lpv_lobe_weights {
     double along, square, product;
 };
 // `focus`: mean cosine of the lobe, 0…1, which is the weight of band 1; band 2 in lpv_math.c.
+// `filter`: share of band 2 that is removed (filtered spherical harmonics, McClarren & Hauck 2010).
 struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
-                                            double focus);
+                                            double focus, double filter);
 double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient);
 
 // Shader parameters of one step: one face of each class, and the lobes' weights.
@@ -56,4 +64,5 @@ struct lpv_step {
     struct lpv_reprojection corner_face; // 26 neighbours: faces at a corner
     struct lpv_lobe_weights lobe;
 };
-struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus);
+struct lpv_step lpv_step_of(enum lpv_scheme scheme, enum lpv_lobe lobe, double focus,
+                            double filter);

@@ -2,6 +2,8 @@
 #include "techniques/lpv/lpv_stages.h"
 
 static const float Y0 = 0.282094792f; // √(1/4π)
+// Band 1 of a clamped cosine: without geometry no wall occludes the light behind its surface.
+static const float LAMBERT_1 = 2.0f / 3.0f;
 
 // Flux of a cell that the sky's radiance L reaches from all directions: 4π I with
 // L = I (w a) / a³ (lpv_apply.comp).
@@ -31,8 +33,9 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
     const struct lpv_options *options = &lpv->options;
     const struct lpv_grid *grid = &lpv->grid;
     const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
-    const struct lpv_step step =
-        lpv_step_of(scheme, (enum lpv_lobe)options->lobe, (double)options->focus);
+    const struct lpv_step step = lpv_step_of(scheme, (enum lpv_lobe)options->lobe,
+                                             (double)options->focus, (double)options->filter);
+    const struct lpv_crossing crossing = lpv_crossing_of(scheme);
     const float mean_path = (float)lpv_mean_path(scheme); // see lpv_apply.comp
     return (struct lpv_params){
         .origin_m = grid->origin_m,
@@ -56,7 +59,11 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .offset_m = options->offset * grid->cell_m,
         .bounce_offset =
             options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
-        .window = options->window,
+        .window_1 = options->window * (float)crossing.band_1,
+        .window_2 = options->window * (float)crossing.band_2,
+        .staircase = scheme == LPV_SIX ? 1.0f : 0.0f,
+        .injected_1 =
+            options->geometry == LPV_GEOMETRY_OFF ? LAMBERT_1 : (float)crossing.injected_1,
         .occlusion = options->occlusion,
         .damping = options->damping,
         .rsm_size = view->rsm_size,

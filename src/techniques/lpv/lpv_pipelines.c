@@ -14,7 +14,6 @@ enum {
     HALF = 1 << LPV_CONSTANT_HALF,
     GEOMETRY = 1 << LPV_CONSTANT_GEOMETRY,
     NEIGHBOURS = 1 << LPV_CONSTANT_NEIGHBOURS,
-    OCCLUDED = 1 << LPV_CONSTANT_OCCLUDED,
     CUBIC = 1 << LPV_CONSTANT_CUBIC,
     DAMPED = 1 << LPV_CONSTANT_DAMPED,
     LIGHT = BANDS | HALF, // shaders that include lpv_light.glsl
@@ -40,8 +39,6 @@ static struct gpu_constant constant_of(const struct lpv_options *options, uint32
     case NEIGHBOURS:
         return (struct gpu_constant){ LPV_CONSTANT_NEIGHBOURS,
                                       options->neighbours == LPV_SIX ? 6 : 26 };
-    case OCCLUDED:
-        return (struct gpu_constant){ LPV_CONSTANT_OCCLUDED, 1 };
     case CUBIC:
         return (struct gpu_constant){ LPV_CONSTANT_CUBIC, options->reconstruction == LPV_CUBIC };
     case DAMPED:
@@ -79,17 +76,15 @@ static bool create_stages(struct lpv *lpv)
         { &p->inject_emitters, "inject_emitters", &shader_lpv_inject_emitters_comp, LIGHT },
         { &p->resolve, "resolve", &shader_lpv_resolve_comp, LIGHT },
         { &p->propagate, "propagate", &shader_lpv_propagate_comp, step },
-        { &p->apply, "apply", &shader_lpv_apply_comp, LIGHT | CUBIC },
-        { &p->apply_damped, "apply", &shader_lpv_apply_comp, LIGHT | CUBIC | DAMPED },
+        { &p->apply, "apply", &shader_lpv_apply_comp, LIGHT | GEOMETRY | CUBIC },
+        { &p->apply_damped, "apply", &shader_lpv_apply_comp, LIGHT | GEOMETRY | CUBIC | DAMPED },
         { &p->debug, "debug", &shader_lpv_debug_comp, LIGHT | GEOMETRY },
     };
-    const struct pipeline occluded = { &p->propagate_occluded, "propagate",
-                                       &shader_lpv_propagate_comp, step | OCCLUDED };
-    const struct pipeline refine = { &p->refine, "refine", &shader_lpv_refine_comp, LIGHT };
+    const struct pipeline refine = { &p->refine, "refine", &shader_lpv_refine_comp,
+                                     LIGHT | GEOMETRY };
     const struct pipeline probes = { &p->probes, "probes", &shader_lpv_probes_comp, BANDS };
     const struct lpv_options *options = &lpv->options;
     return create_all(lpv, stages, COUNT(stages)) &&
-           (options->geometry == LPV_GEOMETRY_OFF || create(lpv, &occluded)) &&
            (options->cascades == 1 || create(lpv, &refine)) &&
            (!options->probes || create(lpv, &probes));
 }
@@ -100,7 +95,7 @@ static bool create_bounces(struct lpv *lpv)
     const struct pipeline bounces[] = {
         { &p->surfaces, "surfaces", &shader_lpv_surfaces_comp, 0 },
         { &p->masked_surfaces, "masked_surfaces", &shader_lpv_surfaces_comp, MASKED },
-        { &p->bounce, "bounce", &shader_lpv_bounce_comp, LIGHT },
+        { &p->bounce, "bounce", &shader_lpv_bounce_comp, LIGHT | GEOMETRY },
     };
     return lpv->options.bounces == 0 || create_all(lpv, bounces, COUNT(bounces));
 }
@@ -148,7 +143,6 @@ void lpv_pipelines_destroy(struct lpv *lpv)
         &p->bounce,
         &p->refine,
         &p->propagate,
-        &p->propagate_occluded,
         &p->apply,
         &p->apply_damped,
         &p->probes,

@@ -31,7 +31,10 @@ void main()
     lpv_fetch_slabs(light, cell, slabs);
     vec3 coefficients[9];
     for (int i = 0; i < 9; i++) {
-        float weight = sh9_cosine_weight(i) * lpv.irradiance_scale * (i == 0 ? 1.0 : lpv.window) *
+        float weight = sh9_cosine_weight(i) * lpv.irradiance_scale *
+                       (i == 0  ? 1.0
+                        : i < 4 ? lpv.window_1
+                                : lpv.window_2) *
                        (i > 0 && i < 4 ? -1.0 : 1.0);
         for (int colour = 0; colour < 3; colour++) {
             int value = 3 * i + colour;

@@ -26,7 +26,6 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = LPV_CONSTANT_GEOMETRY) const int LPV_GEOMETRY = LPV_GEOMETRY_OFF;
-layout(constant_id = LPV_CONSTANT_OCCLUDED) const bool LPV_OCCLUDED = false;
 
 layout(set = 0, binding = 1) uniform sampler3D injected;
 layout(set = 0, binding = 2) uniform sampler3D before;
@@ -45,15 +44,12 @@ sums empty_sums()
     return sums(vec3(0.0), none, none, none);
 }
 
-// Transmittance of the light of `cell` to four neighbours (geometry_transmittance.glsl); with
-// LPV_OCCLUDED the occluded remainder. Light from outside of the grid is never occluded.
+// Transmittance of the light of `cell` to four neighbours (geometry_transmittance.glsl). Light from
+// outside of the grid is never occluded.
 vec4 transmittance_of(ivec3 cell, int word)
 {
-    if (!lpv_inside(cell)) return vec4(LPV_OCCLUDED ? 0.0 : 1.0);
-    if (LPV_GEOMETRY == LPV_GEOMETRY_OFF) return vec4(1.0);
-    vec4 transmitted =
-        unpackUnorm4x8(transmittance_words[LPV_TRANSMITTANCE_WORDS * lpv_index(cell) + word]);
-    return LPV_OCCLUDED ? 1.0 - transmitted : transmitted;
+    if (LPV_GEOMETRY == LPV_GEOMETRY_OFF || !lpv_inside(cell)) return vec4(1.0);
+    return unpackUnorm4x8(transmittance_words[LPV_TRANSMITTANCE_WORDS * lpv_index(cell) + word]);
 }
 
 // The neighbour along axis a: its far face (±1, 0, 0).

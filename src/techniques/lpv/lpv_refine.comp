@@ -11,6 +11,8 @@
 #include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#define LPV_WALLS_BINDING 3 // of the coarser cascade
+#include "techniques/lpv/lpv_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,8 +28,9 @@ void main()
     ivec3 cell = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(cell)) return;
     vec4 slabs[7];
-    vec3 at = push.first + push.ratio * (vec3(cell) + 0.5);
-    lpv_sample_slabs(coarser, at, ivec3(push.cells_x, push.cells_y, push.cells_z), slabs);
+    ivec3 cells = ivec3(push.cells_x, push.cells_y, push.cells_z);
+    vec3 at = lpv_visible(push.first + push.ratio * (vec3(cell) + 0.5), cells);
+    lpv_sample_slabs(coarser, at, cells, slabs);
     for (int i = 0; i < 7; i++) slabs[i] *= push.ratio * push.ratio;
     lpv_store_slabs(refined, cell, slabs);
 }

@@ -14,6 +14,7 @@
 // Sampling lines along each side of a cell's face: of reflecting surfaces, of coverage masks.
 #define LPV_SURFACE_LINES 4
 #define LPV_LINES         4
+#define LPV_PLACES        16u     // of a surface between two cells' centres
 #define LPV_SURFACE_UNIT  65536.0 // of reflectance × area, per cells²
 
 #define LPV_MAX_CASCADES     4
@@ -26,9 +27,8 @@
 #define LPV_CONSTANT_HALF       1 // volumes are half floats
 #define LPV_CONSTANT_GEOMETRY   2 // LPV_GEOMETRY_…
 #define LPV_CONSTANT_NEIGHBOURS 3 // 6 or 26
-#define LPV_CONSTANT_OCCLUDED   4 // propagate the occluded light instead of the transmitted
-#define LPV_CONSTANT_CUBIC      5 // cubic reconstruction between cells, or trilinear
-#define LPV_CONSTANT_DAMPED     6 // damping is on
+#define LPV_CONSTANT_CUBIC      4 // cubic reconstruction between cells, or trilinear
+#define LPV_CONSTANT_DAMPED     5 // damping is on
 
 // Source of the geometry volume: none, surfels of maps and camera, triangles of the scene.
 #define LPV_GEOMETRY_OFF   0
@@ -56,17 +56,19 @@ struct lpv_params {
     AG_STRUCT(lpv_reprojection) far_face, side_face, corner_face; // struct lpv_step
     float lobe_along, lobe_square, lobe_product;                  // struct lpv_lobe_weights
     vec3s sky; // band 0 of a cell that only the sky lights, in the grid's unit; 0: no sky
-    float fixed_from_flux;  // integer per scaled lumen
-    float grid_from_fixed;  // the grid's unit per integer
-    float irradiance_scale; // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
-    float mean_path;        // mean path of light in a step, cells
-    float offset_m;         // of a surface's lookup, along the normal
-    float bounce_offset;    // of a reflecting surface's lookup, cells of this cascade
-    float window;           // weight of the bands above the first in a lookup
-    float occlusion;        // factor on the occlusion of the geometry volume
-    float damping;          // of irradiance that decreases along the normal
-    uint32_t rsm_size;      // texels
-    uint32_t width, height; // of the frame, pixels
+    float fixed_from_flux;    // integer per scaled lumen
+    float grid_from_fixed;    // the grid's unit per integer
+    float irradiance_scale;   // scaled lux per ∫ intensity · (cosine)₊ dω in the grid's unit
+    float mean_path;          // mean path of light in a step, cells
+    float offset_m;           // of a surface's lookup, along the normal
+    float bounce_offset;      // of a reflecting surface's lookup, cells of this cascade
+    float window_1, window_2; // weights of bands 1 and 2 in a lookup, relative to a clamped cosine
+    float injected_1;         // band 1 of injected light
+    float staircase;          // 1: sides of cells approximate slopes by stairs (six neighbours)
+    float occlusion;          // factor on the occlusion of the geometry volume
+    float damping;            // of irradiance that decreases along the normal
+    uint32_t rsm_size;        // texels
+    uint32_t width, height;   // of the frame, pixels
     uint32_t emitter_count;
     uint32_t boundary; // LPV_OPEN sides whose outermost cells keep the coarser cascade's light
 };
@@ -101,7 +103,7 @@ struct lpv_view_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct lpv_reprojection) == 9 * 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct lpv_params) == 55 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct lpv_params) == 58 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_refine_push) == 7 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_apply_push) == 10 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct lpv_view_push) == 8, "layout is shared with GLSL");

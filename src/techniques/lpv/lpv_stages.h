@@ -16,7 +16,7 @@ void lpv_record_resolve(struct lpv *lpv, struct gpu_cmd *cmd); // the second of 
 void lpv_record_surfaces(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 // Whether a bounce follows a step; `left` steps remain after it.
 bool lpv_bounces_after(const struct lpv *lpv, int left);
-// Fills `reflected` from the light `arrived`, and `sent`.
+// Fills `sent` from the injected light and the light `arrived`.
 void lpv_record_bounce(struct lpv *lpv, struct gpu_cmd *cmd, gpu_image arrived);
 
 // lpv_cascades.c

@@ -24,11 +24,11 @@ struct lpv_volumes {
     gpu_image light;    // RGBA16F: accumulated over all steps
     gpu_image probes;   // RGBA16F: irradiance probes, FRAME_PROBE_SLABS slabs
     // Further bounces.
-    gpu_image reflected; // light that surfaces reflect
-    gpu_image sent;      // reflected + injected
+    gpu_image sent;      // injected light + light that surfaces reflect
     gpu_buffer surfaces; // [cell][direction][colour]: reflecting area (lpv_surfaces.comp)
     // Occlusion.
     gpu_image geometry;       // RGBA16F: the geometry volume (geometry.glsl)
+    gpu_buffer walls;         // LPV_GEOMETRY_SCENE: [cell] lpv_lookup.glsl
     gpu_buffer transmittance; // [cell][word]: geometry_transmittance.glsl
     gpu_buffer surfels;       // LPV_GEOMETRY_MAPS: [corner][coefficient] of one source
     // LPV_GEOMETRY_SCENE: [cell][axis] coverage masks of static and of moving geometry.
@@ -39,7 +39,6 @@ struct lpv_pipelines {
     gpu_pipeline inject, inject_emitters, resolve;
     gpu_pipeline surfaces, masked_surfaces, bounce;
     gpu_pipeline refine, propagate;
-    gpu_pipeline propagate_occluded; // light that geometry blocks
     gpu_pipeline apply, apply_damped, probes, debug;
     gpu_pipeline geometry_light, geometry_camera, geometry_merge;    // LPV_GEOMETRY_MAPS
     gpu_pipeline geometry_coverage, masked_coverage, geometry_faces; // LPV_GEOMETRY_SCENE
@@ -75,13 +74,19 @@ struct lpv {
     struct lpv *coarser;      // the next cascade; NULL: this is the coarsest
 };
 
+// Any buffer where there are no walls.
+static inline gpu_buffer lpv_walls(const struct lpv *lpv)
+{
+    return lpv->options.geometry == LPV_GEOMETRY_SCENE ? lpv->volumes.walls : lpv->volumes.sums;
+}
+
 // The state of the technique.
 struct lpv_cascades {
     struct lpv levels[LPV_MAX_CASCADES]; // from the finest
 };
 
-// Empty cells around the scene. With a sky at least one, so that its light enters through cells
-// without surfaces.
+// Empty cells around the scene. At least a half: every surface lies between the centres of two
+// cells. With a sky at least one: its light enters through cells without surfaces.
 static inline float lpv_margin(const struct lpv_options *options, vec3s sky)
 {
     const bool has_sky = options->sky && fmaxf(sky.x, fmaxf(sky.y, sky.z)) > 0.0f;

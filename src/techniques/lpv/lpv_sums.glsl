@@ -48,8 +48,8 @@ int lpv_injection_cell(vec3 position, vec3 normal)
 // Coefficients of 1/π (n·ω)₊, a flux of 1. Those of unused bands are never read.
 void lpv_unit_lobe(vec3 normal, out float lobe[9])
 {
-    sh9_clamped_cosine(normal, lobe);
-    for (int i = 0; i < 9; i++) lobe[i] /= SH_COSINE_0;
+    sh9_eval(normal, lobe);
+    for (int i = 1; i < 9; i++) lobe[i] *= i < 4 ? lpv.injected_1 : 0.25;
 }
 
 #endif

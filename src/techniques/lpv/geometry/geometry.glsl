@@ -10,8 +10,9 @@
 // corner, half a cell beyond the centre of cell i. Corners on the border of the grid are not
 // stored; their inner neighbours replace them.
 //
-// LPV_GEOMETRY_SCENE: the covered fraction of each cell's low faces (−x, −y, −z), seen along the
-// normal. Light across an edge or a corner moves along two or three axes; all must be free.
+// LPV_GEOMETRY_SCENE: the occluded share of the light that crosses each cell's low faces (−x, −y,
+// −z), upwards in the first slab of dim³ texels, downwards in the second. Light across an edge or a
+// corner moves along two or three axes, one after the other.
 #ifndef AG_LPV_GEOMETRY_GLSL
 #define AG_LPV_GEOMETRY_GLSL
 
@@ -38,6 +39,42 @@ float lpv_transmitted(float occluded)
     return 1.0 - clamp(lpv.occlusion * occluded, 0.0, 1.0);
 }
 
+// Across the face of `cell` towards `side` along an axis.
+float lpv_face_transmittance(ivec3 cell, int axis, int side)
+{
+    if (side > 0)
+        cell[axis]++;
+    else
+        cell.z += lpv.dim; // the second slab
+    return lpv_transmitted(texelFetch(geometry, cell, 0)[axis]);
+}
+
+// Mean over all paths from face to face: one axis after the other, in every order.
+float lpv_path_transmittance(ivec3 cell, ivec3 offset)
+{
+    float sum = 0.0;
+    for (int a = 0; a < 3; a++) {
+        if (offset[a] == 0) continue;
+        ivec3 second = cell, rest = offset;
+        second[a] += offset[a];
+        rest[a] = 0;
+        float first = lpv_face_transmittance(cell, a, offset[a]), further = 0.0;
+        for (int b = 0; b < 3; b++) {
+            if (rest[b] == 0) continue;
+            ivec3 third = second, last = rest;
+            third[b] += rest[b];
+            last[b] = 0;
+            float path = lpv_face_transmittance(second, b, rest[b]);
+            for (int c = 0; c < 3; c++)
+                if (last[c] != 0) path *= lpv_face_transmittance(third, c, last[c]);
+            further += path;
+        }
+        int left = abs(rest.x) + abs(rest.y) + abs(rest.z);
+        sum += first * (left == 0 ? 1.0 : further / float(left));
+    }
+    return sum / float(abs(offset.x) + abs(offset.y) + abs(offset.z));
+}
+
 // Fraction of the light of `cell` that reaches the neighbour at `offset`, 0…1. Both cells must be
 // inside of the grid.
 float lpv_transmittance_of(ivec3 cell, ivec3 offset)
@@ -46,15 +83,7 @@ float lpv_transmittance_of(ivec3 cell, ivec3 offset)
     vec3 at = vec3(cell) + 0.5 + 0.5 * vec3(offset);
     if (LPV_GEOMETRY == LPV_GEOMETRY_MAPS)
         return lpv_transmitted(lpv_corner_occlusion(at, vec3(offset)));
-    float transmittance = 1.0;
-    for (int axis = 0; axis < 3; axis++) {
-        if (offset[axis] == 0) continue;
-        // Faces across this axis have their texels half a cell above them.
-        vec3 texel = at;
-        texel[axis] += 0.5;
-        transmittance *= lpv_transmitted(lpv_geometry_at(texel)[axis]);
-    }
-    return transmittance;
+    return lpv_path_transmittance(cell, offset);
 }
 
 #endif

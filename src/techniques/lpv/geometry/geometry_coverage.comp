@@ -1,5 +1,6 @@
 // Coverage masks: each face between two cells has LPV_LINES² sampling lines, from the centre of one
-// cell to that of the next; a line that a triangle crosses sets its bit. Setting a bit is
+// cell to that of the next; a line that a triangle crosses sets its bit, and one of LPV_PLACES bits
+// for the place of the crossing between the two centres. Setting a bit is
 // idempotent: neither the order of triangles nor their grouping into draws changes the result.
 //
 // One invocation takes one triangle; the whole workgroup shares a large one.
@@ -81,12 +82,15 @@ void cross_line(uvec3 vertices, mat3 corners, int axis, ivec2 line)
     weight /= area;
     vec3 depth = vec3(corners[0][axis], corners[1][axis], corners[2][axis]);
     ivec3 cell;
-    cell[axis] = int(floor(dot(weight, depth) + 0.5)); // its low face is the nearest
+    float at = dot(weight, depth) + 0.5;
+    cell[axis] = int(floor(at)); // its low face is the nearest
     cell[(axis + 1) % 3] = line.x / LPV_LINES;
     cell[(axis + 2) % 3] = line.y / LPV_LINES;
     if (!lpv_inside(cell) || !scene_triangle_solid(vertices, weight)) return;
     ivec2 within = line % LPV_LINES;
-    atomicOr(masks[3 * lpv_index(cell) + axis], 1u << (within.y * LPV_LINES + within.x));
+    uint place = min(uint(fract(at) * LPV_PLACES), LPV_PLACES - 1u);
+    atomicOr(masks[3 * lpv_index(cell) + axis],
+             1u << (within.y * LPV_LINES + within.x) | 1u << (LPV_LINES * LPV_LINES + place));
 }
 
 // Every `stride`th line from index `first`.

@@ -51,6 +51,7 @@ bool lpv_record_geometry_scene(struct lpv *lpv, struct gpu_cmd *cmd, const struc
                        GPU_BIND(lpv_grid_binding(lpv, cmd),
                                 { .name = "lpv_static_coverage", .buffer = v->static_coverage },
                                 { .name = "lpv_moving_coverage", .buffer = v->moving_coverage },
-                                { .name = "geometry", .image = v->geometry }));
+                                { .name = "geometry", .image = v->geometry },
+                                { .name = "lpv_walls", .buffer = v->walls }));
     return true;
 }
