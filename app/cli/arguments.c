@@ -210,6 +210,13 @@ static bool set_indirect_only(struct arguments *a, const char *value, const char
     return true;
 }
 
+static bool set_no_guiding(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->no_guiding = true;
+    return true;
+}
+
 static bool set_antialias(struct arguments *a, const char *value, const char **why)
 {
     (void)value, (void)why;

@@ -34,7 +34,7 @@ struct arguments {
     float sky[3];
     // reference
     int spp, bounces;
-    bool has_spp, direct_only, indirect_only, antialias, resume;
+    bool has_spp, direct_only, indirect_only, no_guiding, antialias, resume;
     float obscurance_radius_m, occlusion_decay_per_m;
     bool obscurance_sphere;
     // compare

@@ -41,6 +41,7 @@ enum status tracing_begin(struct tracing *t, struct session *session,
     desc.bounces = a->bounces;
     desc.direct_only = a->direct_only;
     desc.indirect_only = a->indirect_only;
+    desc.guiding = !a->no_guiding;
     desc.antialias = a->antialias;
     desc.obscurance_radius_m = a->obscurance_radius_m;
     desc.occlusion_decay_per_m = a->occlusion_decay_per_m;

@@ -20,6 +20,7 @@ struct ag_reference_desc {
     int bounces; ///< of indirect light: 0 direct only, 1 one bounce, …; default -1: unlimited
     bool direct_only;   ///< color holds direct light only; default false
     bool indirect_only; ///< color holds indirect light only; default false
+    bool guiding;       ///< learn where light comes from, for less noise; default true
     bool antialias;     ///< sample the whole pixel; default false: its centre, as a renderer does
     float obscurance_radius_m;   ///< of the layers obscurance and ambient_occlusion; default 0.5
     float occlusion_decay_per_m; ///< k: an occluder at distance r counts 1/(1 + k·r) in

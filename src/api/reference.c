@@ -23,9 +23,11 @@ static struct ag_context *context_of(const struct ag_reference *r)
 void ag_reference_desc_default(struct ag_reference_desc *desc)
 {
     if (desc)
-        *desc = (struct ag_reference_desc){
-            .width = 1280, .height = 720, .bounces = -1, .obscurance_radius_m = 0.5f
-        };
+        *desc = (struct ag_reference_desc){ .width = 1280,
+                                            .height = 720,
+                                            .bounces = -1,
+                                            .guiding = true,
+                                            .obscurance_radius_m = 0.5f };
 }
 
 static bool build(struct ag_reference *r, const struct ag_scene *scene,
@@ -39,6 +41,7 @@ static bool build(struct ag_reference *r, const struct ag_scene *scene,
     struct reference_options options = { .bounces = desc->bounces,
                                          .direct_only = desc->direct_only,
                                          .indirect_only = desc->indirect_only,
+                                         .guiding = desc->guiding,
                                          .antialias = desc->antialias,
                                          .obscurance_radius_m = desc->obscurance_radius_m,
                                          .occlusion_decay_per_m = desc->occlusion_decay_per_m,

@@ -82,3 +82,24 @@ struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
     struct reflection r = bsdf_reflect(b, e.to_light);
     return light_arriving(r.f, e.radiance, cosine / e.pdf * power_heuristic(e.pdf, r.pdf));
 }
+
+struct near_light next_event_near(const struct trace_scene *scene, const struct near_query *q,
+                                  uint64_t *rays)
+{
+    struct near_light light = { 0 };
+    struct ray_hit hit;
+    struct surface s;
+    bool reflected = q->reflected && scene->lights.punctual_count > 0;
+    ++*rays;
+    if (!reflected) {
+        light.sky = !embree_occluded(scene->embree, &q->ray);
+    } else if (!embree_closest(scene->embree, &q->ray, NULL, false, &hit)) {
+        light.sky = true;
+    } else {
+        surface_at(scene, &q->ray, &hit, NULL, &s);
+        struct bsdf b = surface_bsdf(&s, glms_vec3_negate(q->ray.direction), q->diffuse_only);
+        light.radiance = next_event_one_punctual(scene, &s, &b, q->choice, rays);
+    }
+    if (light.sky && q->sky) light.radiance = scene->lights.sky;
+    return light;
+}

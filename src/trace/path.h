@@ -1,12 +1,14 @@
 // Camera paths: the radiance samples of a pixel.
 #pragma once
 
+#include "trace/guide.h"
 #include "trace/surface.h"
 
 // Settings of all paths of an image.
 struct path_settings {
     const struct trace_scene *scene;
-    int bounces; // -1: unlimited, ended by Russian roulette
+    const struct guide *guide; // NULL: no guided rays
+    int bounces;               // -1: unlimited, ended by Russian roulette
     bool direct, indirect, diffuse_only;
     uint32_t seed;
 };
@@ -33,11 +35,32 @@ vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32
 struct path_start path_begin(const struct path_settings *settings, const struct ray *ray,
                              const struct pixel_footprint *footprint, uint64_t *rays);
 
+// What a path found at its first vertices, to learn from. Russian roulette does not end such paths.
+enum { PATH_TRAIL = 4 };
+enum path_technique { PATH_BSDF, PATH_GUIDE, PATH_TECHNIQUES };
+struct path_found {
+    vec3s direction;
+    float cosine;
+    vec3s f;             // BSDF, 1/sr
+    float bsdf_pdf, pdf; // of BSDF sampling; of all techniques together; 1/sr. 0: none
+    vec3s light;         // near light, cd/m²
+};
+struct path_vertex {
+    vec3s position, normal;
+    float throughput; // luminance, of the path before
+    struct path_found found[PATH_TECHNIQUES];
+};
+struct path_trail {
+    struct path_vertex vertices[PATH_TRAIL];
+    int count;
+};
+
 // One sample of a pixel and its result, a function of the arguments alone.
 struct path_sample {
     const struct path_start *start;
     uint32_t pixel, sample;
     struct path_light light;
+    struct path_trail *trail; // NULL: not recorded
 };
 enum { PATH_BATCH = 64 };
 // count: at most PATH_BATCH. The paths advance in lockstep, so that memory is prefetched for one

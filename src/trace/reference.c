@@ -4,6 +4,7 @@
 // are bit-identical for any number of threads and any split of the samples over calls.
 #include "trace/path.h"
 
+#include "trace/guide_train.h"
 #include "trace/obscurance.h"
 
 #include "core/hash.h"
@@ -41,12 +42,16 @@ struct reference {
     struct pixel_sums *sums;            // [height][width]
     struct tile *tiles;                 // [tiles_y][tiles_x]
     struct obscurance_sums *obscurance; // [height][width]; NULL before the first read
+    bool trained;
+    struct guide *guide; // NULL: not guided
+    uint64_t training_rays;
     uint64_t key;
 };
 
 struct reference_options reference_options_default(void)
 {
-    return (struct reference_options){ .bounces = -1, .obscurance_radius_m = 0.5f };
+    return (
+        struct reference_options){ .bounces = -1, .guiding = true, .obscurance_radius_m = 0.5f };
 }
 
 static const char *const layer_names[REFERENCE_LAYER_COUNT] = {
@@ -94,7 +99,8 @@ static uint64_t key_of(const struct reference *r)
     const vec3s camera[] = { r->camera_position, r->forward, r->right, r->up,
                              vec3_of(r->near_m, 0, 0) };
     key = hash_bytes(camera, sizeof camera, key);
-    return hash_bytes(&o->seed, sizeof o->seed, key);
+    key = hash_bytes(&o->seed, sizeof o->seed, key);
+    return o->guiding ? key : hash_bytes(&o->guiding, sizeof o->guiding, key);
 }
 
 static bool check(struct host *host, int width, int height, const struct reference_options *options)
@@ -158,6 +164,7 @@ void reference_destroy(struct reference *r)
 {
     if (!r) return;
     trace_scene_destroy(r->scene);
+    guide_destroy(r->host, r->guide);
     host_free(r->host, r->sums);
     host_free(r->host, r->tiles);
     host_free(r->host, r->obscurance);
@@ -296,6 +303,26 @@ static int next_step(int done, int left)
     return min_int(done < 1 ? 1 : min_int(done, MAX_STEP), left);
 }
 
+static struct path_start start_of_training(const void *reference, float x, float y, uint64_t *rays)
+{
+    return start_at(reference, x, y, rays);
+}
+
+static bool train(struct reference *r)
+{
+    if (r->trained || !r->options.guiding) return true;
+    struct guide_training training = { .host = r->host,
+                                       .settings = r->settings,
+                                       .width = r->width,
+                                       .height = r->height,
+                                       .start = start_of_training,
+                                       .user = r };
+    if (!guide_train(&training, &r->guide, &r->training_rays)) return false;
+    r->settings.guide = r->guide;
+    r->trained = true;
+    return true;
+}
+
 bool reference_render(struct reference *r, int samples, bool (*progress)(void *user, double done),
                       void *user)
 {
@@ -304,6 +331,7 @@ bool reference_render(struct reference *r, int samples, bool (*progress)(void *u
         return host_fail(r->host, FAIL_ARGUMENT,
                          "reference with %d samples after %d: must be 1 or more", samples,
                          done_before);
+    if (!train(r)) return false;
     size_t count = tile_count(r);
     for (int done = done_before; done < done_before + samples;) {
         int step = next_step(done, done_before + samples - done);
@@ -473,7 +501,7 @@ bool reference_read(struct reference *r, enum reference_layer layer, struct imag
 struct reference_info reference_info(const struct reference *r)
 {
     static const double weights[3] = { 0.2126, 0.7152, 0.0722 };
-    struct reference_info info = { .samples = min_samples(r) };
+    struct reference_info info = { .samples = min_samples(r), .rays = r->training_rays };
     for (size_t i = 0; i < tile_count(r); i++) info.rays += r->tiles[i].rays;
     double variance = 0.0;
     for (int y = 0; y < r->height; y++) {

@@ -36,6 +36,12 @@ static inline vec3s surface_leave(const struct surface *s, vec3s direction)
     float side = glms_vec3_dot(s->geometric, direction) < 0.0f ? -s->reach : s->reach;
     return glms_vec3_muladds(s->geometric, side, s->position);
 }
+// Black where unlit.
+static inline struct bsdf surface_bsdf(const struct surface *s, vec3s to_viewer, bool diffuse_only)
+{
+    static const struct bsdf_material black = { .roughness = 1.0f };
+    return bsdf_of(s->normal, to_viewer, s->unlit ? &black : &s->material, diffuse_only);
+}
 // Emission at a point of a triangle from level 0, cd/m², regardless of side.
 vec3s surface_emission(const struct trace_mesh *mesh, uint32_t triangle, float u, float v);
 // embree_solid of alpha-masked geometry; view: a pixel_footprint or NULL.

@@ -51,6 +51,7 @@ struct reference_options {
     bool direct_only;   // color: direct light alone
     bool indirect_only; // color: indirect light alone
     bool diffuse_only;  // without the specular lobe
+    bool guiding;       // learn where light comes from (path guiding)
     bool antialias;     // sample the pixel area; false: its centre, as the frame
     float obscurance_radius_m;   // of the layers obscurance and ambient_occlusion: > 0
     float occlusion_decay_per_m; // of ambient_occlusion over distance (obscurance.c); ≥ 0
@@ -58,7 +59,7 @@ struct reference_options {
     uint64_t seed;
 };
 struct reference_options
-reference_options_default(void); // bounces -1, radius 0.5 m, seed 0, all else off
+reference_options_default(void); // bounces -1, guiding, radius 0.5 m, seed 0, all else off
 
 enum reference_layer {
     REFERENCE_COLOR,  // cd/m²: direct + indirect, to the bit
