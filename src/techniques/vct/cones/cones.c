@@ -36,6 +36,8 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
 struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view)
 {
     struct vct_cone_params params = params_of(vct, view, VCT_CONES_6, 1);
+    // Wide samples mix both sides of a wall, and each bounce adds to the leak.
+    params.width_per_m = vct->options.step_size * vct_cone_width(VCT_CONES_25);
     struct vct_cone cones[VCT_MAX_CONES];
     vct_cone_set(VCT_CONES_6, cones);
     for (uint32_t i = 0; i < params.cone_count; i++)
