@@ -27,8 +27,8 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
     } cases[] = { { "lpv", 0.005 },
                   { "holpv", 0.005 },
                   { "vct:bounces=1", 0.05 },
-                  { "vct", 0.25 },
-                  { "vct:resolution=128", 0.2 } };
+                  { "vct", 0.11 },
+                  { "vct:resolution=128", 0.11 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         CHECK(dark_room_share(gpu, cases[i].gi) <= cases[i].most);
 }

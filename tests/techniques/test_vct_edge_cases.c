@@ -164,7 +164,11 @@ static void record_log(void *user, enum log_level level, const char *message)
 // A stack of sheets one voxel apart.
 static void stack(struct vct_fixture *fixture, int sheets)
 {
-    const int matte = fixture_matte(&fixture->frame_fixture, vec3_of(0.5f, 0.5f, 0.5f));
+    struct material m = material_default();
+    m.base_color = vec4_of(vec3_of(0.5f, 0.5f, 0.5f), 1);
+    m.metallic = 0;
+    m.double_sided = true;
+    const int matte = fixture_material(&fixture->frame_fixture, &m);
     for (int i = 0; i < sheets; i++) {
         const float y = 0.5f + (float)i;
         fixture_quad(&fixture->frame_fixture, vec3_of(0, y, 28), vec3_of(28, y, 28),
@@ -176,7 +180,7 @@ static void stack(struct vct_fixture *fixture, int sheets)
 
 TEST_GPU(voxels_beyond_the_capacity_are_dropped_with_one_warning)
 {
-    const int sheets[] = { 26, 28 }; // of 784 voxels: 20 384 and 21 952; the capacity is 20 480
+    const int sheets[] = { 20, 21 }; // of 1568 faces: 31 360 and 32 928; the capacity is 32 768
     for (int i = 0; i < 2; i++) {
         struct vct_fixture fixture;
         struct host host = *test_host();
@@ -186,7 +190,7 @@ TEST_GPU(voxels_beyond_the_capacity_are_dropped_with_one_warning)
         fixture.host = &host;
         stack(&fixture, sheets[i]);
         vct_fixture_open(&fixture, "resolution=32");
-        const uint32_t room = vct_capacity(&fixture.vct->options), all = 784 * (uint32_t)sheets[i];
+        const uint32_t room = vct_capacity(&fixture.vct->options), all = 1568 * (uint32_t)sheets[i];
         const double e = mean_irradiance(&fixture);
         CHECK(e > 0.0);
         CHECK(fixture.vct->clips[0].grid.cell_m == 1.0f);

@@ -99,7 +99,7 @@ bool vct_fixture_occupied(const struct vct_fixture *fixture, const uint32_t *mas
     const int dim = fixture->vct->options.resolution / 2;
     const int texel = ((z / 2) * dim + y / 2) * dim + x / 2;
     const uint32_t index = (uint32_t)(8 * texel + x % 2 + 2 * (y % 2) + 4 * (z % 2));
-    return mask[index / 32] >> (index % 32) & 1u;
+    return (mask[index / 4] >> (8 * (index % 4)) & 0xffu) != 0; // a byte of six faces
 }
 
 float *vct_fixture_light(const struct vct_fixture *fixture, uint32_t level)

@@ -25,7 +25,7 @@ void vct_fixture_hall(struct vct_fixture *fixture, struct gpu *gpu);
 
 // The content of a buffer. To be freed.
 uint32_t *vct_fixture_buffer_words(const struct vct_fixture *fixture, gpu_buffer buffer);
-// A bit per voxel of a set, resolution³ bits. To be freed.
+// A byte per voxel of a set, a bit per face. To be freed.
 uint32_t *vct_fixture_mask(const struct vct_fixture *fixture, const struct vct_voxel_set *set);
 bool vct_fixture_occupied(const struct vct_fixture *fixture, const uint32_t *mask, int x, int y,
                           int z);

@@ -9,6 +9,8 @@ static void march(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *
     gpu_dispatch(cmd, vct->debug,
                  GPU_BIND(vct_grid_binding(vct, clip, cmd), vct_clipmap_binding(vct, cmd),
                           view->constants_binding, VCT_BOTH_SETS(clip),
+                          { .name = "static_surfaces", .image = clip->static_set.surfaces },
+                          { .name = "dynamic_surfaces", .image = clip->dynamic_set.surfaces },
                           { .name = "result_image", .image = out }, vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  &push, sizeof push, gpu_groups(view->width, VCT_LOCAL_2D),

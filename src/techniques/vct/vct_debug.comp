@@ -9,7 +9,8 @@
 #define VCT_GRID_BINDING 0
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/clipmap/clipmap.glsl"
-#include "techniques/vct/volume/lit_voxel.glsl"
+#include "techniques/vct/volume/lit_face.glsl"
+#include "techniques/vct/voxelize/surface.glsl"
 #define VCT_SLOTS(name)   static_##name
 #define VCT_SLOTS_BINDING 1
 #include "techniques/vct/voxelize/slots.glsl"
@@ -25,6 +26,8 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 5) uniform usampler2D static_lit_voxels;
 layout(set = 0, binding = 6) uniform usampler2D dynamic_lit_voxels;
+layout(set = 0, binding = 10) uniform usampler2D static_surfaces;
+layout(set = 0, binding = 11) uniform usampler2D dynamic_surfaces;
 layout(set = 0, binding = 7, rgba16f) uniform image2D result_image; // alpha: the pixel is done
 
 #if VCT_SVO
@@ -38,11 +41,11 @@ layout(set = 0, binding = 8, scalar) readonly buffer vct_svo_nodes
 // Whether a voxel is occupied. stored: it is within the capacity and has light.
 bool occupied(ivec3 voxel, out bool stored)
 {
-    uint index = vct_index(voxel), bit = index & 31u, word = index >> 5;
-    bool is_static = (static_mask_words[word] >> bit & 1u) != 0u,
-         is_dynamic = (dynamic_mask_words[word] >> bit & 1u) != 0u;
-    stored = (!is_static || static_slot(index) != VCT_NO_SLOT) &&
-             (!is_dynamic || dynamic_slot(index) != VCT_NO_SLOT);
+    uint index = vct_index(voxel), of_static = static_faces(index),
+         of_dynamic = dynamic_faces(index);
+    bool is_static = of_static != 0u, is_dynamic = of_dynamic != 0u;
+    stored = (!is_static || static_slot(8u * index + uint(findMSB(of_static))) != VCT_NO_SLOT) &&
+             (!is_dynamic || dynamic_slot(8u * index + uint(findMSB(of_dynamic))) != VCT_NO_SLOT);
 #if VCT_SVO
     ivec3 leaf = min((voxel + 1) >> 2, svo_nodes_in_use(0) - 1);
     stored = stored && svo_find(leaf, svo.depths - 1u) != SVO_NONE;
@@ -50,35 +53,53 @@ bool occupied(ivec3 voxel, out bool stored)
     return is_static || is_dynamic;
 }
 
-vec3 surface_colour(vct_lit_voxel r, vec3 direction)
+struct viewed_face {
+    vct_lit_face lit;
+    vec3 reflectance;
+};
+
+vec3 surface_colour(viewed_face f, vec3 direction)
 {
-    if (push.view == VCT_VIEW_REFLECTANCE) return r.reflectance * push.reflectance_shown;
-    if (push.view == VCT_VIEW_NORMAL) return (r.normal * 0.5 + 0.5) * push.reflectance_shown;
-    return dot(r.normal, direction) < 0.0 ? r.front + vct_emitted(r.emitted_front, true)
-                                          : r.back + vct_emitted(r.emitted_back, true);
+    if (push.view == VCT_VIEW_REFLECTANCE) return f.reflectance * push.reflectance_shown;
+    if (push.view == VCT_VIEW_NORMAL) return (f.lit.normal * 0.5 + 0.5) * push.reflectance_shown;
+    return dot(f.lit.normal, direction) < 0.0 ? f.lit.reflected + vct_emitted(f.lit.emitted, true)
+                                              : vec3(0.0);
 }
 
-bool voxel_at(ivec3 voxel, out vct_lit_voxel r)
+// The face of a voxel that faces the camera most, of moving draws if they have any.
+bool face_at(ivec3 voxel, vec3 direction, out viewed_face found)
 {
-    uint index = vct_index(voxel), slot = dynamic_slot(index);
-    if (slot != VCT_NO_SLOT) {
-        r = vct_lit_voxel_at(dynamic_lit_voxels, slot);
-        return true;
+    float most = -2.0;
+    for (uint face = 0u; face < VCT_FACES; face++) {
+        uint index = vct_face_index(voxel, face), slot = dynamic_slot(index);
+        bool moving = slot != VCT_NO_SLOT;
+        if (!moving) slot = static_slot(index);
+        if (slot == VCT_NO_SLOT) continue;
+        viewed_face f;
+        if (moving)
+            f.lit = vct_lit_face_at(dynamic_lit_voxels, slot);
+        else
+            f.lit = vct_lit_face_at(static_lit_voxels, slot);
+        float towards = -dot(f.lit.normal, direction);
+        if (towards <= most) continue;
+        most = towards;
+        uvec4 surface = moving ? texelFetch(dynamic_surfaces, vct_surface_texel(slot), 0)
+                               : texelFetch(static_surfaces, vct_surface_texel(slot), 0);
+        f.reflectance = vct_unpack_surface(surface).reflectance;
+        found = f;
     }
-    slot = static_slot(index);
-    if (slot == VCT_NO_SLOT) return false;
-    r = vct_lit_voxel_at(static_lit_voxels, slot);
-    return true;
+    return most > -2.0;
 }
 
-vec3 overflow_colour(ivec3 voxel, bool stored)
+vec3 overflow_colour(ivec3 voxel, vec3 direction, bool stored)
 {
-    vct_lit_voxel r;
-    float grey = voxel_at(voxel, r) ? 0.2 * dot(r.reflectance, vec3(0.2126, 0.7152, 0.0722)) : 0.0;
+    viewed_face f;
+    float grey =
+        face_at(voxel, direction, f) ? 0.2 * dot(f.reflectance, vec3(0.2126, 0.7152, 0.0722)) : 0.0;
     return (stored ? vec3(grey) : vec3(0.3, 0.0, 0.0)) * push.reflectance_shown;
 }
 
-vec3 level_colour(vct_lit_voxel r, vec3 direction)
+vec3 level_colour(vct_lit_face r, vec3 direction)
 {
     const vec3 colours[VCT_MAX_CLIPS] =
         vec3[](vec3(0.9, 0.2, 0.15), vec3(0.9, 0.6, 0.1), vec3(0.4, 0.75, 0.2),
@@ -90,16 +111,16 @@ vec3 level_colour(vct_lit_voxel r, vec3 direction)
 // Colour of a voxel in the view. False: empty.
 bool colour_of(ivec3 voxel, vec3 direction, out vec3 colour)
 {
-    vct_lit_voxel r;
+    viewed_face f;
     bool stored;
     if (push.view == VCT_VIEW_OVERFLOW) {
         if (!occupied(voxel, stored)) return false;
-        colour = overflow_colour(voxel, stored);
+        colour = overflow_colour(voxel, direction, stored);
         return true;
     }
-    if (!voxel_at(voxel, r)) return false;
-    colour =
-        push.view == VCT_VIEW_LEVELS ? level_colour(r, direction) : surface_colour(r, direction);
+    if (!face_at(voxel, direction, f)) return false;
+    colour = push.view == VCT_VIEW_LEVELS ? level_colour(f.lit, direction)
+                                          : surface_colour(f, direction);
     return true;
 }
 

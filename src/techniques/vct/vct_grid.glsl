@@ -58,6 +58,20 @@ uint vct_pack_texel(ivec3 texel)
     return uint(texel.x | texel.y << 10 | texel.z << 20);
 }
 
+// A voxel has six faces: the surfaces whose outward normal is nearest to +x −x +y −y +z −z. Faces
+// are the units of occupancy, surfaces and light; a byte of a mask is a voxel.
+const uint VCT_FACES = 6u;
+
+uint vct_face_index(ivec3 voxel, uint face)
+{
+    return 8u * vct_index(voxel) + face;
+}
+
+ivec3 vct_voxel_of_face(uint index)
+{
+    return vct_voxel(index / 8u);
+}
+
 // Position in voxels from the grid's corner.
 vec3 vct_voxels_from_world(vec3 position)
 {

@@ -28,16 +28,16 @@ static uint32_t voxel_count(const struct vct_options *options)
 }
 
 // The surfaces of a scene occupy a multiple of the voxels in a face of the grid: 6 for an empty
-// room. A capacity of 20 also fits densely furnished scenes.
+// room. A capacity of 32 also fits densely furnished scenes, with several faces in many voxels.
 uint32_t vct_capacity(const struct vct_options *options)
 {
-    const uint32_t dim = (uint32_t)options->resolution, most = 20 * dim * dim;
-    return most < voxel_count(options) ? most : voxel_count(options);
+    const uint32_t dim = (uint32_t)options->resolution, most = 32 * dim * dim;
+    return most < 6 * voxel_count(options) ? most : 6 * voxel_count(options);
 }
 
 size_t vct_mask_words(const struct vct_options *options)
 {
-    return voxel_count(options) / 32;
+    return voxel_count(options) / 4; // a byte for each voxel
 }
 
 size_t vct_block_count(const struct vct_options *options)

@@ -12,7 +12,7 @@ bool vct_has_svo(const struct vct_options *options);
 uint32_t vct_step(const struct vct_options *options);
 
 // Voxel sets.
-uint32_t vct_capacity(const struct vct_options *options); // occupied voxels
+uint32_t vct_capacity(const struct vct_options *options); // occupied faces of voxels
 size_t vct_mask_words(const struct vct_options *options);
 size_t vct_block_count(const struct vct_options *options);
 

@@ -89,11 +89,12 @@ static int plan_buffers(const struct vct_options *options, struct vct *vct,
     return count + SVO_BUFFERS;
 }
 
-// Images that store the voxels of a set, with `texels` texels for each voxel.
+// Images that store the faces of a set, with `texels` texels for each.
 struct image_plan {
     const char *name;
     gpu_image *out;
     uint32_t texels;
+    bool bounced; // light from other voxels
 };
 
 enum { CLIP_IMAGES = 6 };
@@ -101,12 +102,12 @@ enum { CLIP_IMAGES = 6 };
 static void plan_images(struct vct_clip *clip, struct image_plan out[CLIP_IMAGES])
 {
     const struct image_plan plan[CLIP_IMAGES] = {
-        { "static_surfaces", &clip->static_set.surfaces, 2 },
-        { "static_lit_voxels", &clip->static_set.lit_voxels, 2 },
-        { "static_bounced", &clip->static_set.bounced, 1 },
-        { "dynamic_surfaces", &clip->dynamic_set.surfaces, 2 },
-        { "dynamic_lit_voxels", &clip->dynamic_set.lit_voxels, 2 },
-        { "dynamic_bounced", &clip->dynamic_set.bounced, 1 },
+        { "static_surfaces", &clip->static_set.surfaces, 2, false },
+        { "static_lit_voxels", &clip->static_set.lit_voxels, 1, false },
+        { "static_bounced", &clip->static_set.bounced, 1, true },
+        { "dynamic_surfaces", &clip->dynamic_set.surfaces, 2, false },
+        { "dynamic_lit_voxels", &clip->dynamic_set.lit_voxels, 1, false },
+        { "dynamic_bounced", &clip->dynamic_set.bounced, 1, true },
     };
     memcpy(out, plan, sizeof plan);
 }
@@ -115,7 +116,7 @@ static struct gpu_image_desc image_desc(const struct vct_options *options,
                                         const struct image_plan *plan)
 {
     // Occlusion has no bounced light.
-    const bool none = options->occlusion && plan->texels == 1;
+    const bool none = options->occlusion && plan->bounced;
     const uint32_t rows = gpu_groups(vct_capacity(options), VCT_VOXEL_ROW);
     return (struct gpu_image_desc){ .name = plan->name,
                                     .format = GPU_RGBA32U,

@@ -9,8 +9,8 @@
 #define VCT_SCAN_LOCAL 256 // workgroup size of a prefix sum
 #define VCT_MAX_CLIPS  6   // levels of the clip map; the first one covers the whole scene
 
-// Occupied voxels in a row of the images that store voxels: two texels each for surfaces and lit
-// voxels, one for bounced irradiance.
+// Occupied faces of voxels in a row of the images that store them: two texels each for surfaces,
+// one for light and for bounced irradiance.
 #define VCT_VOXEL_ROW 1024
 
 // Uniform block "vct_grid".

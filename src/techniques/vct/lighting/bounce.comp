@@ -1,7 +1,7 @@
-// Light from other voxels and the sky on each voxel, by cones: irradiance on both sides of its
-// surface. With one bounce from emission and sky only, with more from all light that the voxels
-// sent in the previous frame. Voxels of one block that lie on one surface share the irradiance at
-// their centre: bounced light varies slowly.
+// Light from other voxels and the sky on the faces of each voxel, by cones: irradiance. With one
+// bounce from emission and sky only, with more from all light that the voxels sent in the previous
+// frame. Faces of one block that lie on one surface share the irradiance at their centre: bounced
+// light varies slowly.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -33,14 +33,9 @@ layout(set = 0, binding = 5, scalar) readonly buffer vct_texel_counts
 };
 layout(set = 0, binding = 6) uniform usampler2D vct_surfaces;
 layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_bounced;
-layout(set = 0, binding = 8, scalar) readonly buffer vct_mask
-{
-    uint mask[];
-};
-layout(set = 0, binding = 9, scalar) readonly buffer vct_word_offsets
-{
-    uint before[];
-};
+#define VCT_SLOTS(name)   vct_##name
+#define VCT_SLOTS_BINDING 8
+#include "techniques/vct/voxelize/slots.glsl"
 
 #include "techniques/vct/lighting/basis.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
@@ -85,59 +80,63 @@ float max_plane_distance()
     return 0.5 * float(VCT_BLOCK);
 }
 
-// The voxels of a block are stored in rows of texels along x, 8 bits per texel. Per row: all
-// occupied bits, those without a part yet, those of the current part, and the slot of the first
-// voxel. Each invocation has its own rows.
+// The voxels of a block that have the invocation's face are stored in rows of texels along x, 8
+// bits per texel. Per row: those without a part yet, and those of the current part. Each invocation
+// has its own rows.
 const uint ROWS = VCT_BLOCK * VCT_BLOCK, MAX_ROWS = 16u;
-shared uint rows_occupied[MAX_ROWS * VCT_BLOCK_LOCAL], rows_left[MAX_ROWS * VCT_BLOCK_LOCAL],
-    rows_part[MAX_ROWS * VCT_BLOCK_LOCAL], rows_first[MAX_ROWS * VCT_BLOCK_LOCAL];
+shared uint rows_left[MAX_ROWS * VCT_BLOCK_LOCAL], rows_part[MAX_ROWS * VCT_BLOCK_LOCAL];
 
 uint own(uint row)
 {
     return row * VCT_BLOCK_LOCAL + gl_LocalInvocationID.x;
 }
 
-void read_rows(ivec3 first_texel)
+ivec3 block_texel; // first texel of the block
+uint block_face;
+
+// Position of a voxel in the block, from its bit in a row.
+uvec3 voxel_of(uint row, uint bit)
+{
+    return uvec3(bit >> 3, row % VCT_BLOCK, row / VCT_BLOCK) * 2u +
+           (uvec3(bit) >> uvec3(0u, 1u, 2u) & 1u);
+}
+
+// VCT_NO_SLOT beyond the capacity.
+uint slot_of(uint row, uint bit)
+{
+    return vct_slot(vct_face_index(2 * block_texel + ivec3(voxel_of(row, bit)), block_face));
+}
+
+// Bit 8 i of the four bytes of a word as bit i.
+uint low_bits(uint word)
+{
+    return (word & 1u) | (word >> 7 & 2u) | (word >> 14 & 4u) | (word >> 21 & 8u);
+}
+
+void read_rows()
 {
     for (uint row = 0u; row < ROWS; row++) {
-        uint index = vct_texel_index(first_texel + ivec3(0, row % VCT_BLOCK, row / VCT_BLOCK));
-        uint shift = 8u * (index & 3u), word = mask[index >> 2];
-        uint bits = word >> shift & (VCT_BLOCK == 4u ? ~0u : 0xffffu);
-        uint first = before[index >> 2] + uint(bitCount(word & ((1u << shift) - 1u)));
-        // Voxels beyond the capacity do not exist.
-        for (uint capacity = vct.capacity - min(first, vct.capacity);
-             uint(bitCount(bits)) > capacity;)
-            bits &= ~(1u << uint(findMSB(bits)));
-        rows_occupied[own(row)] = rows_left[own(row)] = bits;
-        rows_first[own(row)] = first;
+        uint word = 2u * vct_texel_index(block_texel + ivec3(0, row % VCT_BLOCK, row / VCT_BLOCK));
+        uint bits = 0u;
+        for (uint i = 0u; i < 2u * VCT_BLOCK; i++)
+            bits |= low_bits(vct_mask_words[word + i] >> block_face) << (4u * i);
+        rows_left[own(row)] = bits;
     }
 }
 
-// Position of a voxel in the block, from its bit in a row.
-vec3 position_of(uint row, uint bit)
-{
-    return vec3(uvec3(bit >> 3, row % VCT_BLOCK, row / VCT_BLOCK) * 2u +
-                (uvec3(bit) >> uvec3(0u, 1u, 2u) & 1u));
-}
-
-uint slot_of(uint row, uint bit)
-{
-    return rows_first[own(row)] + uint(bitCount(rows_occupied[own(row)] & ((1u << bit) - 1u)));
-}
-
-// Voxels of one block that lie on one surface.
+// Faces of one block that lie on one surface.
 struct vct_part {
     vec3 normal;
     vec3 position; // voxels from the block's corner × weight
     float weight;
-    bvec2 covers; // whether there is a front, a back
+    bool covers; // whether they cover any area
 };
 
-// Takes the first voxel without a part and all others with its normal and plane. False: none is
+// Takes the first face without a part and all others with its normal and plane. False: none is
 // left.
 bool take_part(out vct_part part)
 {
-    part = vct_part(vec3(0.0), vec3(0.0), 0.0, bvec2(false));
+    part = vct_part(vec3(0.0), vec3(0.0), 0.0, false);
     vec3 first_normal = vec3(0.0), first_position = vec3(0.0);
     bool first = true;
     uint row = 0u, rest = rows_left[own(0u)], taken = 0u;
@@ -150,11 +149,15 @@ bool take_part(out vct_part part)
             rest = row < ROWS ? rows_left[own(min(row, ROWS - 1u))] : 0u;
         }
         if (rest == 0u) return !first;
-        uint bit = uint(findLSB(rest));
+        uint bit = uint(findLSB(rest)), slot = slot_of(row, bit);
         rest &= rest - 1u;
+        if (slot == VCT_NO_SLOT) {
+            taken |= 1u << bit;
+            continue;
+        }
         vct_surface surface =
-            vct_unpack_surface(texelFetch(vct_surfaces, vct_voxel_texel(slot_of(row, bit)), 0));
-        vec3 position = position_of(row, bit) + 0.5 + surface.position;
+            vct_unpack_surface(texelFetch(vct_surfaces, vct_surface_texel(slot), 0));
+        vec3 position = vec3(voxel_of(row, bit)) + 0.5 + surface.position;
         if (first) {
             first_normal = surface.normal;
             first_position = position;
@@ -167,52 +170,42 @@ bool take_part(out vct_part part)
         part.normal += surface.weight * surface.normal;
         part.position += surface.weight * position;
         part.weight += surface.weight;
-        part.covers.x = part.covers.x || surface.covers.x;
-        part.covers.y = part.covers.y || surface.covers.y;
+        part.covers = part.covers || surface.covers;
     }
 }
 
-void store_part(vec3 front, vec3 back)
+void store_part(vec3 irradiance)
 {
     uint row = 0u, rest = rows_part[own(0u)];
-    uvec4 texel = uvec4(packHalf2x16(front.rg), packHalf2x16(vec2(front.b, back.r)),
-                        packHalf2x16(back.gb), 0u);
+    uvec4 texel = uvec4(packHalf2x16(irradiance.rg), packHalf2x16(vec2(irradiance.b, 0.0)), 0u, 0u);
     for (;;) {
         while (rest == 0u && ++row < ROWS) rest = rows_part[own(row)];
         if (rest == 0u) return;
-        imageStore(vct_bounced, vct_bounced_texel(slot_of(row, uint(findLSB(rest)))), texel);
+        uint slot = slot_of(row, uint(findLSB(rest)));
+        if (slot != VCT_NO_SLOT) imageStore(vct_bounced, vct_face_texel(slot), texel);
         rest &= rest - 1u;
     }
 }
 
-// Both sides in a loop, which ends early where no invocation of a group has a second side.
-void gather(ivec3 corner, vct_part part, out vec3 front, out vec3 back)
+vec3 irradiance_on(vct_part part)
 {
-    front = back = vec3(0.0);
-    if (part.normal == vec3(0.0)) return;
-    vec3 position = vct_world_from_voxels(vec3(corner) + part.position / part.weight);
-    vec3 normal = normalize(part.normal);
-    for (int side = part.covers.x ? 0 : 1; side < (part.covers.y ? 2 : 1); side++) {
-        vec3 e = irradiance(position, side == 0 ? normal : -normal);
-        if (side == 0)
-            front = e;
-        else
-            back = e;
-    }
+    if (!part.covers) return vec3(0.0);
+    vec3 position =
+        vct_world_from_voxels(vec3(2 * block_texel) + part.position / max(part.weight, 1.0));
+    return irradiance(position, normalize(part.normal));
 }
 
+// A workgroup gathers for one face of its blocks.
 void main()
 {
-    uint i = gl_GlobalInvocationID.x, level = VCT_BLOCK == 4u ? 2u : 1u;
+    uint i = gl_WorkGroupID.x / VCT_FACES * VCT_BLOCK_LOCAL + gl_LocalInvocationID.x;
+    uint level = VCT_BLOCK == 4u ? 2u : 1u;
     if (i >= state.count[level]) return;
     uint dim = uint(vct.volume_dim), half_dim = dim / 2u;
     uint first = dim * dim * dim + (level == 2u ? half_dim * half_dim * half_dim : 0u);
-    ivec3 texel = int(VCT_BLOCK) * vct_unpack_texel(texels[first + i]);
-    read_rows(texel);
+    block_texel = int(VCT_BLOCK) * vct_unpack_texel(texels[first + i]);
+    block_face = gl_WorkGroupID.x % VCT_FACES;
+    read_rows();
     vct_part part;
-    while (take_part(part)) {
-        vec3 front, back;
-        gather(2 * texel, part, front, back);
-        store_part(front, back);
-    }
+    while (take_part(part)) store_part(irradiance_on(part));
 }

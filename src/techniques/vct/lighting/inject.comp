@@ -1,4 +1,4 @@
-// Light of the voxels: direct light reflected by both sides, bounced light, and emission.
+// Light of the voxels' faces: reflected direct and bounced light, and emission.
 //
 // Differs from Hong 2015, sec. 2.5.3.3.9, which scatters texels of reflective shadow maps into
 // voxels and leaves cracks where these maps are coarser than the voxels (figure 47). Here each
@@ -14,7 +14,7 @@
 #define VCT_GRID_BINDING 4
 #include "techniques/vct/vct_constants.h"
 #include "techniques/vct/vct_grid.glsl"
-#include "techniques/vct/volume/lit_voxel.glsl"
+#include "techniques/vct/volume/lit_face.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
 
 layout(local_size_x = VCT_LOCAL) in;
@@ -48,8 +48,8 @@ uint no_recompile(uint number)
     return min(number, list.length());
 }
 
-// Irradiance from one light, scaled lux; `front`: the lit side.
-vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
+// Irradiance from one light, scaled lux.
+vec3 irradiance(frame_light light, vec3 position, vec3 normal)
 {
     vec3 to_light = -light.direction;
     float attenuation = 1.0;
@@ -63,52 +63,36 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal, out bool front)
                       max(distance2, nearest * nearest);
     }
     float cosine = dot(normal, to_light);
-    front = cosine >= 0.0;
-    if (attenuation == 0.0) return vec3(0.0);
-    vec3 plane = front ? normal : -normal;
+    if (attenuation == 0.0 || cosine <= 0.0) return vec3(0.0);
     if (light.shadow_first >= 0)
-        attenuation *=
-            shadow_visibility(light, position + plane * (SHADOW_LIFT * vct.cell_m), plane, to_light,
-                              true, int(no_recompile(uint(vct.shadow_radius))));
-    return light.intensity * (attenuation * abs(cosine));
+        attenuation *= shadow_visibility(light, position + normal * (SHADOW_LIFT * vct.cell_m),
+                                         normal, to_light, true,
+                                         int(no_recompile(uint(vct.shadow_radius))));
+    return light.intensity * (attenuation * cosine);
 }
 
 void main()
 {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= counts.listed) return;
-    ivec2 to = vct_voxel_texel(slot);
-    vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, to, 0));
-    vec3 position = vct_world_from_voxels(vec3(vct_voxel(list[slot])) + 0.5 + surface.position);
-    vct_lit_voxel r;
+    ivec2 from = vct_surface_texel(slot);
+    vct_surface surface = vct_unpack_surface(texelFetch(vct_surfaces, from, 0));
+    vec3 position =
+        vct_world_from_voxels(vec3(vct_voxel_of_face(list[slot])) + 0.5 + surface.position);
+    vct_lit_face r;
     r.opacity = surface.opacity;
     r.normal = surface.normal;
-    r.reflectance = surface.reflectance;
-    vct_unpack_emission(texelFetch(vct_surfaces, to + ivec2(1, 0), 0), r.emitted_front,
-                        r.emitted_back);
-    float emission_scaled = surface.emits ? vct.emission_scaled : 0.0;
-    r.emitted_front = clamp(r.emitted_front * emission_scaled, -HALF_MAX, HALF_MAX);
-    r.emitted_back = clamp(r.emitted_back * emission_scaled, -HALF_MAX, HALF_MAX);
+    vec3 emitted = vct_unpack_emission(texelFetch(vct_surfaces, from + ivec2(1, 0), 0));
+    r.emitted =
+        surface.emits ? clamp(emitted * vct.emission_scaled, -HALF_MAX, HALF_MAX) : vec3(0.0);
 
-    vec3 front = vec3(0.0), back = vec3(0.0);
-    for (uint i = 0; HAS_LIGHTS && i < no_recompile(vct.light_count); i++) {
-        bool at_front;
-        vec3 e = irradiance(frame_light_table[i], position, surface.normal, at_front);
-        if (at_front)
-            front += e;
-        else
-            back += e;
-    }
+    vec3 arriving = vec3(0.0);
+    for (uint i = 0; HAS_LIGHTS && i < no_recompile(vct.light_count); i++)
+        arriving += irradiance(frame_light_table[i], position, surface.normal);
     if (no_recompile(vct.bounced) != 0u) {
-        uvec4 bounced = texelFetch(vct_bounced, vct_bounced_texel(slot), 0);
-        vec2 middle = unpackHalf2x16(bounced.y);
-        front += vec3(unpackHalf2x16(bounced.x), middle.x);
-        back += vec3(middle.y, unpackHalf2x16(bounced.z));
+        uvec4 bounced = texelFetch(vct_bounced, vct_face_texel(slot), 0);
+        arriving += vec3(unpackHalf2x16(bounced.x), unpackHalf2x16(bounced.y).x);
     }
-    r.front = min(front * r.reflectance / PI, vec3(HALF_MAX));
-    r.back = min(back * r.reflectance / PI, vec3(HALF_MAX));
-    uvec4 first, second;
-    vct_pack(r, first, second);
-    imageStore(vct_lit_voxels, to, first);
-    imageStore(vct_lit_voxels, to + ivec2(1, 0), second);
+    r.reflected = min(arriving * surface.reflectance / PI, vec3(HALF_MAX));
+    imageStore(vct_lit_voxels, vct_face_texel(slot), vct_pack(r));
 }

@@ -35,7 +35,7 @@ void main()
 {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= listed) return;
-    ivec3 point = (vct_voxel(list[slot]) + 1) >> 1;
+    ivec3 point = (vct_voxel_of_face(list[slot]) + 1) >> 1;
     int height = int(svo.depths - 1u - push.depth);
     ivec3 low = max((point - 1) >> 1, ivec3(0)) >> height;
     ivec3 high = min(point >> 1, svo_nodes_in_use(0) - 1) >> height;

@@ -1,11 +1,11 @@
 // Radiance and opacity of a block of lit voxels of both sets along the axis directions,
 // premultiplied with opacity. Include after vct_grid.glsl; takes the bindings 1 to 6.
 //
-// A voxel is a sheet: seen from its front it has the radiance of the front and the opacity of the
-// sheet projected along the axis. The culled back of a single-sided surface has no opacity: a floor
+// A face of a voxel has its radiance in the directions against its normal, and the opacity of its
+// surfaces projected along the axis. The culled back of a single-sided surface has none: a floor
 // does not occlude cones that start on it, however coarse its texels are.
 //
-// The isotropic volume averages both sides and all voxels: figure 49, with leaks through thin
+// The isotropic volume averages all faces and voxels: figure 49, with leaks through thin
 // walls.
 #ifndef AG_VCT_PREFILTER_GLSL
 #define AG_VCT_PREFILTER_GLSL
@@ -14,7 +14,7 @@
 #include "frame/frame_shared.h"
 #include "techniques/vct/vct_constants.h"
 #include "techniques/vct/volume/over.glsl"
-#include "techniques/vct/volume/lit_voxel.glsl"
+#include "techniques/vct/volume/lit_face.glsl"
 #include "techniques/vct/volume/directions.glsl"
 #define VCT_SLOTS(name)   static_##name
 #define VCT_SLOTS_BINDING 1
@@ -33,44 +33,51 @@ struct directional {
     vec4 along[6]; // +x −x +y −y +z −z: premultiplied radiance and opacity
 };
 
-void add_voxel(vct_lit_voxel r, inout directional s)
+void add_face(vct_lit_face r, inout directional s)
 {
     vec3 slopes = abs(r.normal);
     float steepest = max(slopes.x, max(slopes.y, slopes.z));
-    bool small_emitters = vct.small_emitters_shown != 0u;
-    vec4 front = vec4(r.front + vct_emitted(r.emitted_front, small_emitters), 1.0) * r.opacity.x;
-    vec4 back = vec4(r.back + vct_emitted(r.emitted_back, small_emitters), 1.0) * r.opacity.y;
+    vec4 face =
+        vec4(r.reflected + vct_emitted(r.emitted, vct.small_emitters_shown != 0u), 1.0) * r.opacity;
     if (!VCT_ANISOTROPIC) {
-        vec4 both = (front + back) * (max(front.a, back.a) / max(front.a + back.a, 1e-6));
-        s.along[0] = both.a > s.along[0].a ? both : s.along[0];
+        s.along[0] += face;
+        s.along[1].a = max(s.along[1].a, face.a);
         return;
     }
-    vec4 middle = 0.5 * (front + back);
     for (int axis = 0; axis < 3; axis++) {
-        float share = steepest > 0.0 ? slopes[axis] / steepest : 1.0;
-        bool faces_front = r.normal[axis] < 0.0;
-        vec4 up = share * (steepest == 0.0 ? middle : faces_front ? front : back);
-        vec4 down = share * (steepest == 0.0 ? middle : faces_front ? back : front);
-        // Of a static and a moving sheet the more opaque one counts.
-        s.along[2 * axis] = up.a > s.along[2 * axis].a ? up : s.along[2 * axis];
-        s.along[2 * axis + 1] = down.a > s.along[2 * axis + 1].a ? down : s.along[2 * axis + 1];
+        vec4 part = slopes[axis] / steepest * face;
+        s.along[2 * axis] += r.normal[axis] < 0.0 ? part : vec4(0.0);
+        s.along[2 * axis + 1] += r.normal[axis] < 0.0 ? vec4(0.0) : part;
     }
 }
 
-void sample_voxels(uint static_at, uint dynamic_at, out directional s)
+// Adjacent surfaces cover disjoint parts of a voxel: their opacities add up, to 1 at most.
+void limit_opacity(inout directional s)
 {
-    for (int i = 0; i < 6; i++) s.along[i] = vec4(0.0);
-    if (static_at != VCT_NO_SLOT) add_voxel(vct_lit_voxel_at(static_lit_voxels, static_at), s);
-    if (VCT_HAS_DYNAMIC && dynamic_at != VCT_NO_SLOT)
-        add_voxel(vct_lit_voxel_at(dynamic_lit_voxels, dynamic_at), s);
+    if (!VCT_ANISOTROPIC) {
+        s.along[0] *= s.along[1].a / max(s.along[0].a, 1e-6);
+        return;
+    }
+    for (int i = 0; i < 6; i++) s.along[i] /= max(s.along[i].a, 1.0);
 }
 
 void gather_in_block(ivec3 from, ivec3 at, ivec3 size, out directional s)
 {
     bool inside = all(lessThan(at, size)) && vct_inside(from + at);
-    uint index = vct_index(inside ? from + at : ivec3(0));
-    sample_voxels(inside ? static_slot(index) : VCT_NO_SLOT,
-                  VCT_HAS_DYNAMIC && inside ? dynamic_slot(index) : VCT_NO_SLOT, s);
+    uint voxel = vct_index(inside ? from + at : ivec3(0)), first = 8u * voxel;
+    for (int i = 0; i < 6; i++) s.along[i] = vec4(0.0);
+    // The faces of a voxel have consecutive slots.
+    uint faces = inside ? static_faces(voxel) : 0u;
+    uint slot = faces != 0u ? static_slot(first + uint(findLSB(faces))) : VCT_NO_SLOT;
+    uint end = slot == VCT_NO_SLOT ? slot : min(slot + uint(bitCount(faces)), vct.capacity);
+    for (; slot < end; slot++) add_face(vct_lit_face_at(static_lit_voxels, slot), s);
+    if (VCT_HAS_DYNAMIC) {
+        faces = inside ? dynamic_faces(voxel) : 0u;
+        slot = faces != 0u ? dynamic_slot(first + uint(findLSB(faces))) : VCT_NO_SLOT;
+        end = slot == VCT_NO_SLOT ? slot : min(slot + uint(bitCount(faces)), vct.capacity);
+        for (; slot < end; slot++) add_face(vct_lit_face_at(dynamic_lit_voxels, slot), s);
+    }
+    limit_opacity(s);
 }
 
 // Composites two voxels along an axis, the lower one first.

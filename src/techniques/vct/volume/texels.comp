@@ -40,7 +40,8 @@ void enter(uint level, uint place, ivec3 texel)
     texels[push.first[level] + place] = vct_pack_texel(texel);
     uint each = level == 0u ? 1u : push.directions; // invocations per texel: see mip.comp
     atomicMax(state.groups[3u * level], ((place + 1u) * each + VCT_LOCAL - 1u) / VCT_LOCAL);
-    if (level == push.block_level) atomicMax(state.block_groups[0], place / VCT_BLOCK_LOCAL + 1u);
+    if (level == push.block_level)
+        atomicMax(state.block_groups[0], VCT_FACES * (place / VCT_BLOCK_LOCAL + 1u));
 }
 
 void enter_parents(ivec3 texel)
@@ -58,18 +59,18 @@ void enter_parents(ivec3 texel)
 
 void main()
 {
-    uint word = gl_GlobalInvocationID.x;
-    if (word >= static_mask_words.length()) return;
-    // A byte is a texel. Its lowest bit becomes the or of its bits.
-    uint any = static_mask_words[word] | dynamic_mask_words[word];
-    any |= any >> 4;
-    any |= any >> 2;
-    any |= any >> 1;
-    any &= 0x01010101u;
+    uint first = VCT_TEXELS_EACH * gl_GlobalInvocationID.x, any = 0u;
+    if (2u * first >= static_mask_words.length()) return;
+    for (uint i = 0u; i < VCT_TEXELS_EACH; i++) {
+        uint word = 2u * (first + i);
+        uint faces = static_mask_words[word] | static_mask_words[word + 1u] |
+                     dynamic_mask_words[word] | dynamic_mask_words[word + 1u];
+        any |= faces != 0u ? 1u << i : 0u;
+    }
     if (any == 0u) return;
     uint place = atomicAdd(state.count[0], uint(bitCount(any)));
     for (; any != 0u; any &= any - 1u, place++) {
-        ivec3 texel = vct_texel(4u * word + uint(findLSB(any)) / 8u);
+        ivec3 texel = vct_texel(first + uint(findLSB(any)));
         enter(0u, place, texel);
         enter_parents(texel);
     }

@@ -15,15 +15,16 @@ void vct_volume_list_texels(struct vct *vct, const struct vct_clip *clip, struct
     gpu_fill_buffer(cmd, clip->texel_counts, 0, counts, 1);
     gpu_fill_buffer(cmd, clip->texel_counts, counts, sizeof(struct vct_texel_levels) - counts, 0);
     gpu_fill_buffer(cmd, clip->texel_mask, 0, gpu_buffer_bytes(vct->gpu, clip->texel_mask), 0);
-    gpu_dispatch(cmd, vct->texel_lists,
-                 GPU_BIND(vct_grid_binding(vct, clip, cmd),
-                          { .name = "static_mask", .buffer = clip->static_set.mask },
-                          { .name = "dynamic_mask", .buffer = clip->dynamic_set.mask },
-                          { .name = "vct_texel_mask", .buffer = clip->texel_mask },
-                          { .name = "vct_texels", .buffer = clip->texels },
-                          { .name = "vct_texel_counts", .buffer = clip->texel_counts }),
-                 &push, sizeof push, gpu_groups((uint32_t)vct_mask_words(&vct->options), VCT_LOCAL),
-                 1, 1);
+    gpu_dispatch(
+        cmd, vct->texel_lists,
+        GPU_BIND(vct_grid_binding(vct, clip, cmd),
+                 { .name = "static_mask", .buffer = clip->static_set.mask },
+                 { .name = "dynamic_mask", .buffer = clip->dynamic_set.mask },
+                 { .name = "vct_texel_mask", .buffer = clip->texel_mask },
+                 { .name = "vct_texels", .buffer = clip->texels },
+                 { .name = "vct_texel_counts", .buffer = clip->texel_counts }),
+        &push, sizeof push,
+        gpu_groups((uint32_t)vct_mask_words(&vct->options), 2 * VCT_TEXELS_EACH * VCT_LOCAL), 1, 1);
     vct->light_outdated = true;
     gpu_scope_end(cmd);
 }

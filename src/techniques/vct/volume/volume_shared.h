@@ -5,12 +5,13 @@
 #include "techniques/vct/vct_shared.h"
 
 #define VCT_MAX_LEVELS  8  // mips of the light volume: enough for resolution=256
-#define VCT_BLOCK_LOCAL 32 // blocks for which a workgroup gathers bounced light
+#define VCT_BLOCK_LOCAL 32 // blocks for which a workgroup gathers bounced light on one face
+#define VCT_TEXELS_EACH 4  // texels whose voxels an invocation of volume/texels.comp reads
 
 // Buffer "vct_texel_counts": occupied texels of each mip, and dispatches over them.
 struct vct_texel_levels {
     uint32_t groups[3 * VCT_MAX_LEVELS]; // beyond mip 0: one invocation per axis direction
-    uint32_t block_groups[3];            // of VCT_BLOCK_LOCAL blocks
+    uint32_t block_groups[3];            // of VCT_BLOCK_LOCAL blocks, for each face
     uint32_t count[VCT_MAX_LEVELS];
 };
 

@@ -1,9 +1,9 @@
-// Second pass: surface attributes of each voxel, weighted with the covered area. The attributes of
-// a voxel with a single large triangle are written at once; others are summed up in fixed point,
-// from which surfaces.comp makes the same attributes.
+// Second pass: surface attributes of each face of a voxel, weighted with the covered area. The
+// attributes of a face with a single large triangle are written at once; others are summed up in
+// fixed point, from which surfaces.comp makes the same attributes.
 //
-// A voxel is a sheet with two sides. Which side of a triangle is the front of the sheet follows
-// from its plane alone, so that the opposite faces of a thin wall share a sheet and do not cancel.
+// A side of a triangle belongs to the face that is nearest to its normal. The sides of a thin wall,
+// and the walls that meet in an edge, thus keep normals, positions and light of their own.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -78,37 +78,30 @@ map_coords map_coords_of(uint map, scene_surface a, scene_surface b, scene_surfa
     return map_coords(scene_map_uv(map, a), scene_map_uv(map, b), scene_map_uv(map, c), 0.0);
 }
 
-// faces: twice the area of the triangle in voxel faces.
-float voxel_lod(sampler2D map, map_coords place, float faces)
+// size_in_faces: twice the area of the triangle in voxel faces.
+float voxel_lod(sampler2D map, map_coords place, float size_in_faces)
 {
     vec2 size = vec2(textureSize(map, 0)), p = (place.b - place.a) * size,
          q = (place.c - place.a) * size;
     float texels = abs(p.x * q.y - p.y * q.x);
-    return 0.5 * log2(max(texels, 1e-6) / max(faces, 1e-6));
+    return 0.5 * log2(max(texels, 1e-6) / max(size_in_faces, 1e-6));
 }
 
 // Constant over a triangle: fetched once, before its voxels.
 vec4 corner_a, corner_b, corner_c; // colours
 map_coords base_color_coords, metallic_coords, emissive_coords;
-vec3 front_normal; // unit, of the front of the sheet
+vec3 front_normal; // unit
 int first_row;     // of the tile
-bvec2 sides;       // whether there is a front face, a back face
-
-// The hemisphere of front normals. The sides of planes parallel to this axis are ambiguous; common
-// walls are not parallel to it.
-const vec3 FRONT = vec3(0.4743, 0.8165, 0.3294);
+vct_triangle_faces faces;
 
 void vct_begin_triangle(vct_triangle t, ivec2 first)
 {
     first_row = first.y;
     vec3 normal = cross(t.b - t.a, t.c - t.b);
-    float faces = length(normal);
-    normal /= faces;
-    bool flipped = dot(normal, FRONT) < 0.0;
-    bool front = flipped == (push.mirrored != 0u); // whether the triangle's front is the sheet's
-    bool both = (scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u;
-    front_normal = flipped ? -normal : normal;
-    sides = bvec2(front || both, !front || both);
+    float size = length(normal); // twice the area of the triangle in voxel faces
+    normal /= size;
+    front_normal = push.mirrored != 0u ? -normal : normal;
+    faces = vct_faces_of(t);
     scene_surface a = scene_surface_of(t.vertices.x), b = scene_surface_of(t.vertices.y),
                   c = scene_surface_of(t.vertices.z);
     corner_a = unpackUnorm4x8(a.color);
@@ -116,10 +109,10 @@ void vct_begin_triangle(vct_triangle t, ivec2 first)
     corner_c = unpackUnorm4x8(c.color);
     if (!HAS_BASE_COLOR_MAP) return;
     base_color_coords = map_coords_of(SCENE_MAP_BASE_COLOR, a, b, c);
-    base_color_coords.lod = voxel_lod(base_color_map, base_color_coords, faces);
+    base_color_coords.lod = voxel_lod(base_color_map, base_color_coords, size);
     metallic_coords = map_coords_of(SCENE_MAP_METALLIC_ROUGHNESS, a, b, c);
     emissive_coords = map_coords_of(SCENE_MAP_EMISSIVE, a, b, c);
-    emissive_coords.lod = voxel_lod(emissive_map, emissive_coords, faces);
+    emissive_coords.lod = voxel_lod(emissive_map, emissive_coords, size);
 }
 
 struct surface_point {
@@ -173,7 +166,7 @@ ivec3 whole(vec3 value, float one)
     return ivec3(roundEven(value * one));
 }
 
-// Contribution of the triangle to the sums of a voxel.
+// Contribution of the triangle's front to the sums of a voxel's face.
 vct_sums part_of(ivec3 voxel, vct_triangle t)
 {
     vec3 centre = vec3(voxel) + 0.5;
@@ -196,11 +189,16 @@ vct_sums part_of(ivec3 voxel, vct_triangle t)
     sums.reflectance = uvec3(whole(clamp(s.reflectance, 0.0, 1.0) * opaque, VCT_COLOUR_ONE));
     sums.normal = whole(front_normal * weight, VCT_NORMAL_ONE);
     sums.position = whole(clamp(position, -1.0, 1.0) * weight, VCT_POSITION_ONE);
-    sums.front = sides.x ? emission : uvec3(0u);
-    sums.back = sides.y ? emission : uvec3(0u);
-    sums.fronts = sides.x ? uint(covered * s.color.a) : 0u;
-    sums.backs = sides.y ? uint(covered * s.color.a) : 0u;
+    sums.emission = emission;
+    sums.covered = uint(covered * s.color.a);
     return sums;
+}
+
+// That of its back.
+vct_sums behind(vct_sums front)
+{
+    front.normal = -front.normal;
+    return front;
 }
 
 void add(uint at, uvec3 value)
@@ -218,11 +216,8 @@ void add_part(uint slot, vct_sums part)
     add(to + VCT_SUM_REFLECTANCE, part.reflectance);
     add(to + VCT_SUM_NORMAL, uvec3(part.normal));
     add(to + VCT_SUM_POSITION, uvec3(part.position));
-    if (part.fronts != 0u) atomicAdd(sums[to + VCT_SUM_FRONTS], part.fronts);
-    if (part.backs != 0u) atomicAdd(sums[to + VCT_SUM_BACKS], part.backs);
-    if (!EMISSIVE || (part.front == uvec3(0u) && part.back == uvec3(0u))) return;
-    add(to + VCT_SUM_FRONT, part.front);
-    add(to + VCT_SUM_BACK, part.back);
+    if (part.covered != 0u) atomicAdd(sums[to + VCT_SUM_COVERED], part.covered);
+    if (EMISSIVE && part.emission != uvec3(0u)) add(to + VCT_SUM_EMISSION, part.emission);
 }
 
 #ifdef VCT_DEFERS
@@ -232,35 +227,51 @@ bool is_accumulated(uint index)
     return (accumulated[index >> 5] >> (index & 31u) & 1u) != 0u;
 }
 
-void vct_visit(ivec3 voxel, vct_triangle t)
+void write(uint index, vct_sums part)
 {
-    uint index = vct_index(voxel);
-    if (is_accumulated(index)) {
-        vct_deferred |= 1u << uint(ivec3(permuted(vec3(voxel), t.turn)).y - first_row);
-        return;
-    }
-    uint slot = vct_slot(index);
+    uint slot = is_accumulated(index) ? VCT_NO_SLOT : vct_slot(index);
     if (slot == VCT_NO_SLOT) return;
     uvec4 first, second;
-    vct_pack_sums(part_of(voxel, t), first, second);
-    ivec2 to = vct_voxel_texel(slot);
+    vct_pack_sums(part, first, second);
+    ivec2 to = vct_surface_texel(slot);
     imageStore(vct_surfaces, to, first);
     if (EMISSIVE) imageStore(vct_surfaces, to + ivec2(1, 0), second);
 }
 
+void vct_visit(ivec3 voxel, vct_triangle t)
+{
+    uint front = vct_face_index(voxel, faces.front), back = vct_face_index(voxel, faces.front ^ 1u);
+    bool front_summed = is_accumulated(front), back_summed = faces.both && is_accumulated(back);
+    if (front_summed || back_summed)
+        vct_deferred |= 1u << uint(ivec3(permuted(vec3(voxel), t.turn)).y - first_row);
+    if (front_summed && (back_summed || !faces.both)) return;
+    vct_sums part = part_of(voxel, t);
+    write(front, part);
+    if (faces.both) write(back, behind(part));
+}
+
+void sum_up(uint index, vct_sums part)
+{
+    uint slot = is_accumulated(index) ? vct_slot(index) : VCT_NO_SLOT;
+    if (slot != VCT_NO_SLOT) add_part(slot, part);
+}
+
 void vct_visit_deferred(ivec3 voxel, vct_triangle t)
 {
-    uint index = vct_index(voxel);
-    uint slot = is_accumulated(index) ? vct_slot(index) : VCT_NO_SLOT;
-    if (slot != VCT_NO_SLOT) add_part(slot, part_of(voxel, t));
+    vct_sums part = part_of(voxel, t);
+    sum_up(vct_face_index(voxel, faces.front), part);
+    if (faces.both) sum_up(vct_face_index(voxel, faces.front ^ 1u), behind(part));
 }
 
 #else
 
 void vct_visit(ivec3 voxel, vct_triangle t)
 {
-    uint slot = vct_slot(vct_index(voxel));
-    if (slot != VCT_NO_SLOT) add_part(slot, part_of(voxel, t));
+    vct_sums part = part_of(voxel, t);
+    uint slot = vct_slot(vct_face_index(voxel, faces.front));
+    if (slot != VCT_NO_SLOT) add_part(slot, part);
+    slot = faces.both ? vct_slot(vct_face_index(voxel, faces.front ^ 1u)) : VCT_NO_SLOT;
+    if (slot != VCT_NO_SLOT) add_part(slot, behind(part));
 }
 
 #endif

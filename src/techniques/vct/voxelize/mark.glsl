@@ -1,5 +1,5 @@
-// First pass: marks each voxel that a triangle touches. A second bit marks the voxels that have
-// more than a single large triangle: their attributes are summed up.
+// First pass: marks the faces of each voxel that a triangle touches. A second bit marks the faces
+// that have more than a single large triangle: their attributes are summed up.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -15,16 +15,20 @@ layout(set = 0, binding = 17, scalar) buffer vct_accumulated
     uint accumulated[];
 };
 
+uint marked_faces; // of the triangle, a bit each
+
 void vct_begin_triangle(vct_triangle t, ivec2 first)
 {
+    vct_triangle_faces faces = vct_faces_of(t);
+    marked_faces = (1u << faces.front) | (faces.both ? 1u << (faces.front ^ 1u) : 0u);
 }
 
 void vct_visit(ivec3 voxel, vct_triangle t)
 {
-    uint index = vct_index(voxel), word = index >> 5, bit = 1u << (index & 31u);
-    bool touched = (atomicOr(mask[word], bit) & bit) != 0u;
+    uint index = vct_face_index(voxel, 0u), word = index >> 5;
+    uint bits = marked_faces << (index & 31u), touched = atomicOr(mask[word], bits) & bits;
 #if defined(VCT_RASTER) || !VCT_LARGE
-    touched = true;
+    touched = bits;
 #endif
-    if (touched) atomicOr(accumulated[word], bit);
+    if (touched != 0u) atomicOr(accumulated[word], touched);
 }

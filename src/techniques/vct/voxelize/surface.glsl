@@ -1,5 +1,5 @@
-// Surface attributes of a voxel, averaged over its triangles and packed into two RGBA32U texels.
-// The second one holds emission, where the voxel emits.
+// Surface attributes of a voxel's face, averaged over its triangles and packed into two RGBA32U
+// texels. The second one holds emission, where the face emits.
 #ifndef AG_VCT_SURFACE_GLSL
 #define AG_VCT_SURFACE_GLSL
 
@@ -10,18 +10,18 @@
 // weighted with the area that they cover.
 struct vct_sums {
     uint weight, opacity;
-    uvec3 reflectance;  // × opacity
-    ivec3 normal;       // of the front
-    ivec3 position;     // from the voxel's centre
-    uvec3 front, back;  // emission of both sides × opacity; negative for small emitters
-    uint fronts, backs; // covered weight of front faces, of back faces
+    uvec3 reflectance; // × opacity
+    ivec3 normal;
+    ivec3 position; // from the voxel's centre
+    uvec3 emission; // × opacity; negative for small emitters
+    uint covered;   // covered weight
 };
 
 struct vct_surface {
     vec3 reflectance;
-    vec2 opacity;  // seen from the front, from the back
-    bvec2 covers;  // whether there is a front, a back
-    vec3 normal;   // unit, of the front; 0 where the sides are ambiguous
+    float opacity;
+    bool covers;   // whether it covers any area
+    vec3 normal;   // unit
     vec3 position; // from the voxel's centre, in voxels
     float weight;  // of the surfaces, in units of 32
     bool emits;
@@ -38,27 +38,25 @@ void vct_pack_sums(vct_sums s, out uvec4 first, out uvec4 second)
                   per_weight = 1.0 / max(float(s.weight), 1.0);
     precise vec3 reflectance = vec3(s.reflectance) * (per_opaque / VCT_COLOUR_ONE);
     precise vec3 position = vec3(s.position) * (per_weight / VCT_POSITION_ONE);
-    precise vec2 opacity = vec2(s.fronts, s.backs) / VCT_WEIGHT_ONE;
-    precise vec3 front = vec3(ivec3(s.front)) * per_opaque, back = vec3(ivec3(s.back)) * per_opaque;
+    precise float opacity = float(s.covered) / VCT_WEIGHT_ONE;
+    precise vec3 emission = vec3(ivec3(s.emission)) * per_opaque;
     uvec3 place =
         uvec3(roundEven((clamp(position, -1.0, 1.0) * 0.5 + 0.5) * 1022.0)); // the centre is exact
     uint weight = min((s.weight + uint(VCT_SURFACE_WEIGHT) - 1u) / uint(VCT_SURFACE_WEIGHT), 127u);
     first.x = packUnorm2x16(reflectance.rg);
-    first.y = packUnorm2x16(vec2(reflectance.b, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, opacity));
-    bool emits = any(notEqual(s.front | s.back, uvec3(0u)));
+    first.y = packUnorm2x16(vec2(reflectance.b, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, opacity, 0.0));
+    bool emits = any(notEqual(s.emission, uvec3(0u)));
     first.z = vct_pack_normal(unit) | weight << 24 | (emits ? 1u << 31 : 0u);
-    first.w = place.x | place.y << 10 | place.z << 20 | (s.fronts > 0u ? 1u << 30 : 0u) |
-              (s.backs > 0u ? 1u << 31 : 0u);
-    second = uvec4(packHalf2x16(front.rg), packHalf2x16(vec2(front.b, back.r)),
-                   packHalf2x16(back.gb), 0u);
+    first.w = place.x | place.y << 10 | place.z << 20 | (s.covered > 0u ? 1u << 30 : 0u);
+    second = uvec4(packHalf2x16(emission.rg), packHalf2x16(vec2(emission.b, 0.0)), 0u, 0u);
 }
 
 vct_surface vct_unpack_surface(uvec4 first)
 {
     vct_surface s;
     s.reflectance = vec3(unpackUnorm2x16(first.x), unpackUnorm2x16(first.y).x);
-    s.opacity = unpackUnorm4x8(first.y).zw;
-    s.covers = bvec2((first.w & 1u << 30) != 0u, (first.w & 1u << 31) != 0u);
+    s.opacity = unpackUnorm4x8(first.y).z;
+    s.covers = (first.w & 1u << 30) != 0u;
     s.normal = vct_unpack_normal(first.z & 0xffffffu);
     s.position = vec3(uvec3(first.w) >> uvec3(0u, 10u, 20u) & 1023u) / 511.0 - 1.0;
     s.weight = float(first.z >> 24 & 127u);
@@ -66,12 +64,10 @@ vct_surface vct_unpack_surface(uvec4 first)
     return s;
 }
 
-// Emission of both sides, in fixed point (VCT_EMISSION_ONE).
-void vct_unpack_emission(uvec4 second, out vec3 front, out vec3 back)
+// Emission, in fixed point (VCT_EMISSION_ONE).
+vec3 vct_unpack_emission(uvec4 second)
 {
-    vec2 middle = unpackHalf2x16(second.y);
-    front = vec3(unpackHalf2x16(second.x), middle.x);
-    back = vec3(middle.y, unpackHalf2x16(second.z));
+    return vec3(unpackHalf2x16(second.x), unpackHalf2x16(second.y).x);
 }
 
 #endif

@@ -38,13 +38,11 @@ void main()
     s.reflectance = three(at + VCT_SUM_REFLECTANCE);
     s.normal = ivec3(three(at + VCT_SUM_NORMAL));
     s.position = ivec3(three(at + VCT_SUM_POSITION));
-    s.front = three(at + VCT_SUM_FRONT);
-    s.back = three(at + VCT_SUM_BACK);
-    s.fronts = sums[at + VCT_SUM_FRONTS];
-    s.backs = sums[at + VCT_SUM_BACKS];
+    s.emission = three(at + VCT_SUM_EMISSION);
+    s.covered = sums[at + VCT_SUM_COVERED];
     uvec4 first, second;
     vct_pack_sums(s, first, second);
-    ivec2 to = vct_voxel_texel(slot);
+    ivec2 to = vct_surface_texel(slot);
     imageStore(vct_surfaces, to, first);
     imageStore(vct_surfaces, to + ivec2(1, 0), second);
 }

@@ -63,6 +63,20 @@ vec3 vertex_at(uint vertex)
     return kept_inside(at);
 }
 
+// Faces of the voxels of a triangle. That of its back is front ^ 1.
+struct vct_triangle_faces {
+    uint front;
+    bool both; // the triangle is double-sided
+};
+
+vct_triangle_faces vct_faces_of(vct_triangle t)
+{
+    uint axis = uint(t.turn + 2) % 3u;
+    bool negative = (t.normal.z < 0.0) != (push.mirrored != 0u);
+    bool both = (scene_material_table[push.draw.material].flags & SCENE_DOUBLE_SIDED) != 0u;
+    return vct_triangle_faces(2u * axis + (negative ? 1u : 0u), both);
+}
+
 vec3 permuted(vec3 v, int turn)
 {
     return turn == 0 ? v : turn == 1 ? v.yzx : v.zxy;

@@ -7,19 +7,17 @@
 #define VCT_TILE          32    // columns along a side of a large triangle's tile; bits of a word
 #define VCT_SMALL_COLUMNS 64    // most columns of a triangle that one invocation traverses
 #define VCT_QUEUE         65535 // tiles of large triangles
-#define VCT_BLOCK_WORDS   8     // words of the mask that one invocation counts and lists
+#define VCT_BLOCK_WORDS   32    // words of the mask that one invocation counts and lists
 
-// Words of vct_sum_words for a voxel: see voxelize/surface.glsl.
+// Words of vct_sum_words for a face of a voxel: see voxelize/surface.glsl.
 #define VCT_SUM_WEIGHT      0
 #define VCT_SUM_OPACITY     1
 #define VCT_SUM_REFLECTANCE 2  // 3 words, × opacity
 #define VCT_SUM_NORMAL      5  // 3 words, signed
 #define VCT_SUM_POSITION    8  // 3 words, signed, from the voxel's centre
-#define VCT_SUM_FRONT       11 // 3 words: emission of the front; negative for small emitters
-#define VCT_SUM_BACK        14 // 3 words: emission of the back
-#define VCT_SUM_FRONTS      17 // weight of front faces
-#define VCT_SUM_BACKS       18 // weight of back faces
-#define VCT_SUM_WORDS       19
+#define VCT_SUM_EMISSION    11 // 3 words, × opacity; negative for small emitters
+#define VCT_SUM_COVERED     14 // covered weight
+#define VCT_SUM_WORDS       15
 
 // Coverage is the number of sample lines through a voxel that a triangle crosses.
 #define VCT_LINES        16
@@ -32,10 +30,10 @@
 
 // Buffer "vct_arguments" of a voxel set.
 struct vct_voxel_counts {
-    uint32_t groups[3]; // of a dispatch over all occupied voxels
+    uint32_t groups[3]; // of a dispatch over all occupied faces
     uint32_t listed;
-    uint32_t overflow;              // occupied voxels beyond the capacity
-    uint32_t accumulated_groups[3]; // of a dispatch over voxels whose triangles are summed up
+    uint32_t overflow;              // occupied faces beyond the capacity
+    uint32_t accumulated_groups[3]; // of a dispatch over faces whose triangles are summed up
     uint32_t accumulated;
 };
 
