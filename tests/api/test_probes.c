@@ -35,11 +35,11 @@ static double mean(const struct ag_image *image)
 
 // Irradiance from probes equals that of a surface at the same point. Without an offset, the
 // lookup of surfaces differs only by rounding of coefficients and results to half floats (11
-// bits, nine terms that partly cancel).
+// bits, nine terms that partly cancel) and weights of filters (8 bits on some drivers).
 TEST(probes_and_surfaces_have_equal_irradiance)
 {
-    const char *gi[] = { "lpv:probes=true,dim=16,offset=0,cascades=1",
-                         "holpv:probes=true,dim=16,offset=0,cascades=1" };
+    const char *gi[] = { "lpv:probes=true,dim=16,offset=0,cascades=1,geometry=off",
+                         "holpv:probes=true,dim=16,offset=0,cascades=1,geometry=off" };
     for (int k = 0; k < 2; k++) {
         struct renderer_fixture s = fixture_open(gi[k], NULL);
         struct ag_probes *probes = render_probes(&s);
@@ -56,7 +56,7 @@ TEST(probes_and_surfaces_have_equal_irradiance)
             ag_probes_irradiance(probes, position->pixels + 3 * i, normal->pixels + 3 * i, lux);
             for (int c = 0; c < 3; c++)
                 CHECK_NEAR((double)lux[c], (double)irradiance->pixels[3 * i + c],
-                           3e-3 * ((double)lux[c] + typical));
+                           8e-3 * ((double)lux[c] + typical));
             seen++;
         }
         CHECK(seen > PIXELS / 3);

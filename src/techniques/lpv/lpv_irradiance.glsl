@@ -4,7 +4,8 @@
 
 // The flux that a step sends across a side of a cell with the normal −n (lpv_crossing_of): a wall
 // gets all light that arrives and none of its own. On a slope, stairs of |x| + |y| + |z| sides per
-// area let the light that leaves have that many times the directional band.
+// area let the light that leaves have that many times the directional band; without geometry there
+// are none.
 vec3 lpv_irradiance(lpv_light light, vec3 n)
 {
     vec3 sum = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);

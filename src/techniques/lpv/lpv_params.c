@@ -61,7 +61,7 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
             options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
         .window_1 = options->window * (float)crossing.band_1,
         .window_2 = options->window * (float)crossing.band_2,
-        .staircase = scheme == LPV_SIX ? 1.0f : 0.0f,
+        .staircase = scheme == LPV_SIX && options->geometry != LPV_GEOMETRY_OFF ? 1.0f : 0.0f,
         .injected_1 =
             options->geometry == LPV_GEOMETRY_OFF ? LAMBERT_1 : (float)crossing.injected_1,
         .occlusion = options->occlusion,

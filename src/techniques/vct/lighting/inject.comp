@@ -65,9 +65,9 @@ vec3 irradiance(frame_light light, vec3 position, vec3 normal)
     float cosine = dot(normal, to_light);
     if (attenuation == 0.0 || cosine <= 0.0) return vec3(0.0);
     if (light.shadow_first >= 0)
-        attenuation *= shadow_visibility(light, position + normal * (SHADOW_LIFT * vct.cell_m),
-                                         normal, to_light, true,
-                                         int(no_recompile(uint(vct.shadow_radius))));
+        attenuation *=
+            shadow_visibility(light, position + normal * (SHADOW_LIFT * vct.cell_m), normal,
+                              to_light, true, int(no_recompile(uint(vct.shadow_radius))));
     return light.intensity * (attenuation * cosine);
 }
 
