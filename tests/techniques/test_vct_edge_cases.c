@@ -175,6 +175,8 @@ static void stack(struct vct_fixture *fixture, int sheets)
                      vec3_of(28, y, 0), vec3_of(0, y, 0), matte);
     }
     fixture_add_sun(&fixture->frame_fixture, vec3_of(-0.2f, -1, -0.4f), vec3_of(1000, 1000, 1000));
+    // The camera sees the uppermost sheet, which gets no light of its own.
+    fixture->frame_fixture.input.sky = vec3_of(1, 1, 1);
     fixture_look(&fixture->frame_fixture, vec3_of(14, 40, 40), vec3_of(14, 20, 14));
 }
 
