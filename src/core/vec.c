@@ -71,3 +71,10 @@ vec3s box3_size(struct box3 box)
     if (box3_is_empty(box)) return vec3_of(0.0f, 0.0f, 0.0f);
     return glms_vec3_sub(box.max, box.min);
 }
+
+int box3_longest_axis(struct box3 box)
+{
+    const vec3s size = box3_size(box);
+    if (size.x >= size.y) return size.x >= size.z ? 0 : 2;
+    return size.y >= size.z ? 1 : 2;
+}

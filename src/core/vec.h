@@ -60,6 +60,7 @@ struct box3 box3_transform(mat4s to_from, struct box3 box);
 bool box3_is_empty(struct box3 box);
 vec3s box3_centre(struct box3 box);
 vec3s box3_size(struct box3 box);
+int box3_longest_axis(struct box3 box); // of equal ones the first
 
 // Completes the unit vector n to a right-handed orthonormal basis (tangent, bitangent, n) (Duff et
 // al. 2017, "Building an Orthonormal Basis, Revisited").

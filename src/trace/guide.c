@@ -43,17 +43,14 @@ static size_t partition(struct guide_record *r, size_t count, int axis, float sp
 // Divides at the mean of the places with light, along their longest extent.
 static size_t divide(struct guide_record *r, size_t count, size_t lit, struct guide_node *node)
 {
-    vec3s low = vec3_of(INFINITY, INFINITY, INFINITY), high = glms_vec3_negate(low);
+    struct box3 bounds = box3_empty();
     double sum[3] = { 0.0 };
     for (size_t i = 0; i < count; i++) {
         if (!(r[i].reflected > 0.0f)) continue;
-        low = glms_vec3_minv(low, r[i].position);
-        high = glms_vec3_maxv(high, r[i].position);
+        bounds = box3_add_point(bounds, r[i].position);
         for (int c = 0; c < 3; c++) sum[c] += (double)r[i].position.raw[c];
     }
-    vec3s extent = glms_vec3_sub(high, low);
-    int axis =
-        extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
+    int axis = box3_longest_axis(bounds);
     node->axis = (uint32_t)axis & 3u;
     node->split = (float)(sum[axis] / (double)lit);
     return partition(r, count, axis, node->split);

@@ -6,38 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A room 11 m wide with a block, a red box and a point light. Returns the box.
-static int make_scene(struct vct_fixture *fixture, struct gpu *gpu)
-{
-    vct_fixture_init(fixture, gpu);
-    struct frame_fixture *s = &fixture->frame_fixture;
-    s->width = s->height = 64;
-    fixture_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
-                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
-    fixture_box(s, vec3_of(8, 0.2f, 3), vec3_of(10, 4, 6), false,
-                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
-    const int first = s->scene->instance_count;
-    fixture_box(s, vec3_of(4, 0.2f, 2), vec3_of(5.5f, 3, 3.5f), false,
-                fixture_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
-    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    fixture_look(s, vec3_of(1, 6, 9), vec3_of(8, 2, 3));
-    return first;
-}
-
-static void move_box(struct vct_fixture *fixture, int first, vec3s by)
-{
-    struct frame_fixture *s = &fixture->frame_fixture;
-    for (int i = first; i < first + 6; i++)
-        for (int k = 0; k < 3; k++)
-            s->pose.world_from_node[s->scene->instances[i].node].raw[3][k] += by.raw[k];
-}
-
-static float *irradiance_after(struct vct_fixture *fixture, int frames)
-{
-    for (int i = 0; i < frames; i++) fixture_render(&fixture->frame_fixture);
-    return fixture_read(&fixture->frame_fixture, READ_IRRADIANCE);
-}
-
 static double error_of(const float *a, const float *b, size_t count)
 {
     double d = 0.0, sum = 0.0;
@@ -58,7 +26,7 @@ static void change_scene(struct vct_fixture *fixture, int box, enum change chang
     for (int i = 0; i < steps; i++) {
         if (i > 0) fixture_render(s);
         if (change == BOX_MOVES)
-            move_box(fixture, box, vec3_of(-0.15f, 0.3f, 0.2f));
+            vct_fixture_move_box(fixture, box, vec3_of(-0.15f, 0.3f, 0.2f));
         else
             s->lights[0].position.x += change == LIGHT_MOVES ? 0.4f : 4.0f;
     }
@@ -70,13 +38,14 @@ static double error_after(struct gpu *gpu, const char *options, enum change chan
     static const char *const names[] = { "a moving light", "a moving box", "a jump of the light" };
     enum { BEFORE = 40, SHOWN = 8, SETTLED = 200 };
     struct vct_fixture fixture;
-    const int box = make_scene(&fixture, gpu);
+    const int box = vct_fixture_room(&fixture, gpu);
+    fixture.frame_fixture.width = fixture.frame_fixture.height = 64;
     vct_fixture_open(&fixture, options);
     const size_t count = (size_t)fixture.frame_fixture.width * fixture.frame_fixture.height * 3;
-    float *e[SHOWN], *before = irradiance_after(&fixture, BEFORE);
+    float *e[SHOWN], *before = vct_fixture_irradiance_after(&fixture, BEFORE);
     change_scene(&fixture, box, change);
-    for (int i = 0; i < SHOWN; i++) e[i] = irradiance_after(&fixture, 1);
-    float *settled = irradiance_after(&fixture, SETTLED);
+    for (int i = 0; i < SHOWN; i++) e[i] = vct_fixture_irradiance_after(&fixture, 1);
+    float *settled = vct_fixture_irradiance_after(&fixture, SETTLED);
     const double changed = error_of(before, settled, count),
                  fourth = error_of(e[3], settled, count);
     print_message("%s: %s by %.1f %%; then", options, names[change], 100.0 * changed);

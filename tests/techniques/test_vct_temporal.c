@@ -8,38 +8,6 @@
 
 static const vec3s CAMERA = { { 1, 6, 9 } }, TARGET = { { 8, 2, 3 } };
 
-// A room 11 m wide with a block, a red box and a point light. Returns the box.
-static int make_scene(struct vct_fixture *fixture, struct gpu *gpu)
-{
-    vct_fixture_init(fixture, gpu);
-    struct frame_fixture *s = &fixture->frame_fixture;
-    fixture_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
-                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
-    fixture_box(s, vec3_of(8, 0.2f, 3), vec3_of(10, 4, 6), false,
-                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
-    const int first = s->scene->instance_count;
-    fixture_box(s, vec3_of(4, 0.2f, 2), vec3_of(5.5f, 3, 3.5f), false,
-                fixture_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
-    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
-    fixture_look(s, CAMERA, TARGET);
-    return first;
-}
-
-// The box's six sides.
-static void move_box(struct vct_fixture *fixture, int first, vec3s by)
-{
-    struct frame_fixture *s = &fixture->frame_fixture;
-    for (int i = first; i < first + 6; i++)
-        for (int k = 0; k < 3; k++)
-            s->pose.world_from_node[s->scene->instances[i].node].raw[3][k] += by.raw[k];
-}
-
-static float *irradiance_after(struct vct_fixture *fixture, int frames)
-{
-    for (int i = 0; i < frames; i++) fixture_render(&fixture->frame_fixture);
-    return fixture_read(&fixture->frame_fixture, READ_IRRADIANCE);
-}
-
 static size_t floats_of(const struct vct_fixture *fixture)
 {
     return (size_t)fixture->frame_fixture.width * fixture->frame_fixture.height * 3;
@@ -89,7 +57,7 @@ static float *alone(const struct vct_fixture *fixture, size_t count)
 TEST_GPU(history_is_the_weighted_mean_of_the_frames)
 {
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=4");
     const size_t pixels = (size_t)fixture.frame_fixture.width * fixture.frame_fixture.height;
     double *mean_of_them = calloc(3 * pixels, sizeof *mean_of_them);
@@ -117,11 +85,13 @@ TEST_GPU(history_is_the_weighted_mean_of_the_frames)
 TEST_GPU(history_converges_with_a_static_camera)
 {
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=4");
     const size_t count = floats_of(&fixture);
-    float *first = irradiance_after(&fixture, 1), *second = irradiance_after(&fixture, 1);
-    float *before = irradiance_after(&fixture, 497), *after = irradiance_after(&fixture, 1);
+    float *first = vct_fixture_irradiance_after(&fixture, 1),
+          *second = vct_fixture_irradiance_after(&fixture, 1);
+    float *before = vct_fixture_irradiance_after(&fixture, 497),
+          *after = vct_fixture_irradiance_after(&fixture, 1);
     const double average = mean(after, count);
     double squares = 0.0, most = 0.0;
     size_t resting = 0;
@@ -215,7 +185,7 @@ static bool irradiance_at(const struct frame_fixture *s, vec3s p, vec3s n,
 static double flicker_in_pan(struct gpu *gpu, const char *options, float light_step)
 {
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     struct frame_fixture *s = &fixture.frame_fixture;
     s->width = s->height = 48;
     pan_camera(s, 0);
@@ -295,10 +265,11 @@ static bool interior(const struct image *image, int width, int height, int x, in
 TEST_GPU(the_clamp_limits_the_history_to_its_neighbours)
 {
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=4,clamp=0.001");
     struct frame_fixture *s = &fixture.frame_fixture;
-    float *light = irradiance_after(&fixture, 8), *now = alone(&fixture, floats_of(&fixture));
+    float *light = vct_fixture_irradiance_after(&fixture, 8),
+          *now = alone(&fixture, floats_of(&fixture));
     struct image image = image_of(s);
     const int width = (int)s->width, height = (int)s->height;
     int tested = 0;
@@ -323,14 +294,14 @@ TEST_GPU(the_clamp_limits_the_history_to_its_neighbours)
 TEST_GPU(history_follows_objects_and_resets_where_uncovered)
 {
     struct vct_fixture fixture;
-    const int box = make_scene(&fixture, gpu);
+    const int box = vct_fixture_room(&fixture, gpu);
     fixture.frame_fixture.width = fixture.frame_fixture.height = 48;
     vct_fixture_open(&fixture, "resolution=32,temporal=true,frames=16");
     struct frame_fixture *s = &fixture.frame_fixture;
     const vec3s step = vec3_of(0.12f, 0, 0.03f);
     for (int i = 0; i < 12; i++) {
         fixture_render(s);
-        move_box(&fixture, box, step);
+        vct_fixture_move_box(&fixture, box, step);
     }
     struct image before = image_of(s);
     fixture_render(s);
@@ -368,14 +339,14 @@ TEST_GPU(history_follows_objects_and_resets_where_uncovered)
 TEST_GPU(history_is_independent_of_the_exposure)
 {
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     vct_fixture_open(&fixture, "resolution=32,bounces=1,temporal=true");
     const size_t count = floats_of(&fixture);
-    float *old = irradiance_after(&fixture, 5);
+    float *old = vct_fixture_irradiance_after(&fixture, 5);
     struct world_light *light = &fixture.frame_fixture.lights[0];
     const float scale = frame_radiance_scale(fixture.frame_fixture.frame);
     light->intensity = glms_vec3_scale(light->intensity, 1.0f / 1024.0f);
-    float *weak = irradiance_after(&fixture, 1);
+    float *weak = vct_fixture_irradiance_after(&fixture, 1);
     CHECK(frame_radiance_scale(fixture.frame_fixture.frame) > scale);
     // Half floats: 11 bits, for the history and for both frames of the difference.
     for (size_t i = 0; i < count; i++) CHECK_NEAR(1024.0f * weak[i], old[i], 3e-3f * old[i]);
@@ -389,11 +360,11 @@ static float *render_first_frame(struct gpu *gpu, const char *options, vec3s cam
                                  uint32_t size)
 {
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     fixture.frame_fixture.width = fixture.frame_fixture.height = size;
     fixture_look(&fixture.frame_fixture, camera, target);
     vct_fixture_open(&fixture, options);
-    float *e = irradiance_after(&fixture, 1);
+    float *e = vct_fixture_irradiance_after(&fixture, 1);
     vct_fixture_finish(&fixture);
     return e;
 }
@@ -405,36 +376,36 @@ TEST_GPU(a_camera_cut_resets_history)
     static const char *const off = "resolution=32", *const on = "resolution=32,temporal=true";
     float *fresh = render_first_frame(gpu, off, OTHER_CAMERA, OTHER_TARGET, 32);
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     vct_fixture_open(&fixture, on);
     const size_t bytes = floats_of(&fixture) * sizeof *fresh;
-    free(irradiance_after(&fixture, 5));
+    free(vct_fixture_irradiance_after(&fixture, 5));
     fixture_look(&fixture.frame_fixture, OTHER_CAMERA, OTHER_TARGET);
     fixture.frame_fixture.input.camera_cut = true;
-    float *cut = irradiance_after(&fixture, 1);
+    float *cut = vct_fixture_irradiance_after(&fixture, 1);
     assert_memory_equal(cut, fresh, bytes);
     free(cut);
     // Reset by options, by an invalidation and by another size.
     fixture.frame_fixture.input.camera_cut = false;
-    free(irradiance_after(&fixture, 3));
+    free(vct_fixture_irradiance_after(&fixture, 3));
     struct vct_options options = fixture.vct->options;
     options.gain = 2.0f;
     technique_vct.set_options(fixture.vct, &options);
-    float *gained = irradiance_after(&fixture, 1);
+    float *gained = vct_fixture_irradiance_after(&fixture, 1);
     for (size_t i = 0; i < floats_of(&fixture); i++)
         CHECK_NEAR(gained[i], 2.0f * fresh[i], 1e-3f * gained[i]);
     free(gained);
     options.gain = 1.0f;
     technique_vct.set_options(fixture.vct, &options);
-    free(irradiance_after(&fixture, 3));
+    free(vct_fixture_irradiance_after(&fixture, 3));
     technique_vct.invalidate(fixture.vct, CHANGED_CAMERA);
-    cut = irradiance_after(&fixture, 1);
+    cut = vct_fixture_irradiance_after(&fixture, 1);
     assert_memory_equal(cut, fresh, bytes);
     free(cut), free(fresh);
     fresh = render_first_frame(gpu, off, OTHER_CAMERA, OTHER_TARGET, 40);
     CHECK(technique_vct.resize(fixture.vct, 40, 40));
     fixture_resize(&fixture.frame_fixture, 40, 40);
-    cut = irradiance_after(&fixture, 1);
+    cut = vct_fixture_irradiance_after(&fixture, 1);
     assert_memory_equal(cut, fresh, floats_of(&fixture) * sizeof *fresh);
     free(cut), free(fresh);
     vct_fixture_finish(&fixture);
@@ -445,16 +416,16 @@ TEST_GPU(a_camera_cut_resets_history)
 TEST_GPU(a_camera_jump_has_no_ghosting)
 {
     struct vct_fixture fixture;
-    make_scene(&fixture, gpu);
+    vct_fixture_room(&fixture, gpu);
     // At this resolution the bilinear history lookup is as exact as the unfiltered frame.
     fixture.frame_fixture.width = fixture.frame_fixture.height = 64;
     // With all bounces the light is so even that the unfiltered frame is as exact.
     vct_fixture_open(&fixture, "resolution=32,bounces=1,temporal=true");
     const size_t count = floats_of(&fixture);
-    float *there = irradiance_after(&fixture, 60);
+    float *there = vct_fixture_irradiance_after(&fixture, 60);
     fixture_look(&fixture.frame_fixture, OTHER_CAMERA, OTHER_TARGET);
-    float *jump = irradiance_after(&fixture, 1), *fresh = alone(&fixture, count);
-    float *settled = irradiance_after(&fixture, 200);
+    float *jump = vct_fixture_irradiance_after(&fixture, 1), *fresh = alone(&fixture, count);
+    float *settled = vct_fixture_irradiance_after(&fixture, 200);
     const double average = mean(settled, count),
                  begun = mean_difference(fresh, settled, count) / average;
     const double ghost = mean_difference(jump, settled, count) / average;

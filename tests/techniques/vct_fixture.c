@@ -62,6 +62,36 @@ void vct_fixture_hall(struct vct_fixture *fixture, struct gpu *gpu)
     fixture_look(s, vec3_of(12, 5, 15), vec3_of(13, 4, 4));
 }
 
+int vct_fixture_room(struct vct_fixture *fixture, struct gpu *gpu)
+{
+    vct_fixture_init(fixture, gpu);
+    struct frame_fixture *s = &fixture->frame_fixture;
+    fixture_box(s, vec3_of(0.3f, 0.2f, 0.4f), vec3_of(11.2f, 9.1f, 10.7f), true,
+                fixture_matte(s, vec3_of(0.7f, 0.5f, 0.3f)));
+    fixture_box(s, vec3_of(8, 0.2f, 3), vec3_of(10, 4, 6), false,
+                fixture_matte(s, vec3_of(0.2f, 0.5f, 0.8f)));
+    const int first = s->scene->instance_count;
+    fixture_box(s, vec3_of(4, 0.2f, 2), vec3_of(5.5f, 3, 3.5f), false,
+                fixture_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
+    fixture_add_point(s, vec3_of(3, 7, 5), vec3_of(300, 500, 200));
+    fixture_look(s, vec3_of(1, 6, 9), vec3_of(8, 2, 3));
+    return first;
+}
+
+void vct_fixture_move_box(struct vct_fixture *fixture, int first, vec3s by)
+{
+    struct frame_fixture *s = &fixture->frame_fixture;
+    for (int i = first; i < first + 6; i++)
+        for (int k = 0; k < 3; k++)
+            s->pose.world_from_node[s->scene->instances[i].node].raw[3][k] += by.raw[k];
+}
+
+float *vct_fixture_irradiance_after(struct vct_fixture *fixture, int frames)
+{
+    for (int i = 0; i < frames; i++) fixture_render(&fixture->frame_fixture);
+    return fixture_read(&fixture->frame_fixture, READ_IRRADIANCE);
+}
+
 int vct_fixture_add_triangle(struct vct_fixture *fixture, const vec3s corners[3], int material)
 {
     vec3s positions[3] = { corners[0], corners[1], corners[2] };

@@ -23,6 +23,14 @@ void vct_fixture_finish(struct vct_fixture *fixture);
 // camera.
 void vct_fixture_hall(struct vct_fixture *fixture, struct gpu *gpu);
 
+// Instead of vct_fixture_init: a closed room 11 m wide with a block, a red box and a point light.
+// Returns the first of the box's six instances.
+int vct_fixture_room(struct vct_fixture *fixture, struct gpu *gpu);
+// Moves the box of six instances from the next frame on.
+void vct_fixture_move_box(struct vct_fixture *fixture, int first, vec3s by);
+// Irradiance after that many more frames. To be freed.
+float *vct_fixture_irradiance_after(struct vct_fixture *fixture, int frames);
+
 // The content of a buffer. To be freed.
 uint32_t *vct_fixture_buffer_words(const struct vct_fixture *fixture, gpu_buffer buffer);
 // A byte per voxel of a set, a bit per face. To be freed.

@@ -9,9 +9,7 @@
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/composite/composite_shared.h"
-#define exposure_histogram exposure_histogram_data
 #include "frame/composite/exposure_shared.h"
-#undef exposure_histogram
 #include "frame/octahedral.glsl"
 #include "image/tonemap.glsl"
 
@@ -43,7 +41,7 @@ layout(set = 0, binding = 13) uniform sampler2D normal_layer;
 layout(set = 0, binding = 14) uniform sampler2D dielectric_layer;
 layout(set = 0, binding = 15, scalar) buffer exposure_histogram
 {
-    exposure_histogram_data histogram;
+    exposure_counts histogram;
 };
 
 layout(push_constant, scalar) uniform push_block

@@ -13,8 +13,8 @@ bool exposure_init(struct exposure *e, struct gpu *gpu)
     *e = (struct exposure){ .gpu = gpu };
     struct gpu_buffer_desc state = { "frame.exposure", sizeof(struct exposure_values),
                                      GPU_BUFFER_STORAGE };
-    struct gpu_buffer_desc histogram = { "frame.exposure_histogram",
-                                         sizeof(struct exposure_histogram), GPU_BUFFER_STORAGE };
+    struct gpu_buffer_desc histogram = { "frame.exposure_histogram", sizeof(struct exposure_counts),
+                                         GPU_BUFFER_STORAGE };
     return gpu_buffer_create(gpu, &state, &e->state) &&
            gpu_buffer_create(gpu, &histogram, &e->histogram) &&
            gpu_compute_pipeline_create(gpu, "frame.exposure_finish",
@@ -39,7 +39,7 @@ void exposure_record_fixed(const struct exposure *e, struct gpu_cmd *cmd, float 
 
 void exposure_record_clear(const struct exposure *e, struct gpu_cmd *cmd)
 {
-    gpu_fill_buffer(cmd, e->histogram, 0, sizeof(struct exposure_histogram), 0);
+    gpu_fill_buffer(cmd, e->histogram, 0, sizeof(struct exposure_counts), 0);
 }
 
 void exposure_record_auto(const struct exposure *e, struct gpu_cmd *cmd,

@@ -9,7 +9,7 @@ struct exposure {
     struct gpu *gpu;
     gpu_pipeline finish;
     gpu_buffer state;     // struct exposure_values
-    gpu_buffer histogram; // struct exposure_histogram
+    gpu_buffer histogram; // struct exposure_counts
 };
 
 bool exposure_init(struct exposure *exposure, struct gpu *gpu);

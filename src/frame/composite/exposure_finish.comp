@@ -5,9 +5,7 @@
 // The exposure value from the histogram of metered luminances: the GPU's version of
 // image/exposure.c. One work group; each thread has a run of neighbouring bins.
 #include "frame/frame.glsl"
-#define exposure_histogram exposure_histogram_data
 #include "frame/composite/exposure_shared.h"
-#undef exposure_histogram
 
 layout(local_size_x = EXPOSURE_THREADS) in;
 
@@ -17,7 +15,7 @@ layout(set = 0, binding = 1, scalar) writeonly buffer exposure_state
 };
 layout(set = 0, binding = 2, scalar) readonly buffer exposure_histogram
 {
-    exposure_histogram_data histogram;
+    exposure_counts histogram;
 };
 
 layout(push_constant, scalar) uniform push_block

@@ -17,7 +17,7 @@ struct exposure_values {
 };
 
 // Content of the storage block "exposure_histogram".
-struct exposure_histogram {
+struct exposure_counts {
     uint32_t black; // surface pixels without light
     uint32_t lit[EXPOSURE_BINS];
 };

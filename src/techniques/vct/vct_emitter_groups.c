@@ -24,11 +24,6 @@ COMPARE_ALONG(y)
 COMPARE_ALONG(z)
 #undef COMPARE_ALONG
 
-static int longest_axis(vec3s size)
-{
-    return size.y > size.x ? (size.z > size.y ? 2 : 1) : size.z > size.x ? 2 : 0;
-}
-
 // The order of the leaves of a balanced k-d tree.
 static void order(struct vct_light *lights, int count)
 {
@@ -37,7 +32,7 @@ static void order(struct vct_light *lights, int count)
     if (count < 2) return;
     struct box3 bounds = box3_empty();
     for (int i = 0; i < count; i++) bounds = box3_add_point(bounds, lights[i].position);
-    qsort(lights, (size_t)count, sizeof *lights, compare[longest_axis(box3_size(bounds))]);
+    qsort(lights, (size_t)count, sizeof *lights, compare[box3_longest_axis(bounds)]);
     order(lights, count / 2);
     order(lights + count / 2, count - count / 2);
 }
@@ -52,7 +47,7 @@ static struct box3 key_bounds(const struct vct_light *lights, int count)
 // Moves the lights before the mean along the longest axis to the front; returns their number.
 static int divide(struct vct_light *lights, int count, struct box3 bounds)
 {
-    const int axis = longest_axis(box3_size(bounds));
+    const int axis = box3_longest_axis(bounds);
     double sum = 0.0, flux = 0.0;
     for (int i = 0; i < count; i++) {
         sum += lights[i].flux * (double)lights[i].key.raw[axis];

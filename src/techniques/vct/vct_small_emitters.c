@@ -65,7 +65,6 @@ static void add_lights(struct vct_small_emitters *s, const struct frame_view *vi
             !(flux > 0.0))
             continue;
         const vec3s at = view->emitters[i].position;
-        s->instances[s->light_count] = draw->instance;
         s->lights[s->light_count++] = (struct vct_light){ at, at, flux, i };
         sum = glms_vec3_add(sum, at);
     }
