@@ -34,6 +34,7 @@ brdf_material brdf_material_of(vec3 albedo, vec2 roughness_metallic, vec4 dielec
 // Both lobes for one outgoing direction.
 struct brdf_lobes {
     vec3 diffuse;         // 1/sr
+    float diffuse_share;  // of albedo/π: what the specular lobe transmits, without metals
     vec3 f0, f90;         // of the specular lobe, with compensation: may exceed 1
     vec3 specular_albedo; // directional, 0…1
     float alpha;
@@ -94,8 +95,8 @@ brdf_lobes brdf_lobes_at(brdf_material m, float n_v)
     vec3 dielectric = (1.0 - m.metallic) * (1.0 + m.dielectric_f0 * loss);
     vec3 metal = m.metallic * (1.0 + m.albedo * loss);
     brdf_lobes lobes;
-    lobes.diffuse = m.albedo * ((1.0 - m.metallic) *
-                                brdf_transmitted(brdf_dielectric_albedo(m, ab)) * BRDF_INV_PI);
+    lobes.diffuse_share = (1.0 - m.metallic) * brdf_transmitted(brdf_dielectric_albedo(m, ab));
+    lobes.diffuse = m.albedo * (lobes.diffuse_share * BRDF_INV_PI);
     lobes.f0 = dielectric * m.dielectric_f0 + metal * m.albedo;
     lobes.f90 = dielectric * m.dielectric_f90 + metal;
     lobes.specular_albedo = lobes.f0 * ab.x + lobes.f90 * ab.y;

@@ -129,8 +129,7 @@ static uint32_t meter_variant_of(uint32_t variant)
 
 static bool prepare_composite(struct frame *f, const struct frame_input *input)
 {
-    f->composite_variant = composite_variant_of(input, f->needs) |
-                           (f->scene.has_dielectrics ? COMPOSITE_DIELECTRIC : 0);
+    f->composite_variant = composite_variant_of(input, f->needs);
     return composite_prepare(&f->composite, f->composite_variant) &&
            (!input->auto_exposure ||
             composite_prepare(&f->composite, meter_variant_of(f->composite_variant)));
@@ -300,12 +299,8 @@ static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct f
 static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
 {
     struct composite_images images = {
-        .depth = f->layers[FRAME_DEPTH],
-        .normal = f->layers[FRAME_NORMAL],
         .direct = f->layers[FRAME_DIRECT],
         .albedo = f->layers[FRAME_ALBEDO],
-        .material = f->layers[FRAME_MATERIAL],
-        .dielectric = f->layers[FRAME_DIELECTRIC],
         .irradiance = f->layers[FRAME_IRRADIANCE],
         .specular = f->layers[FRAME_SPECULAR],
         .visibility = f->layers[FRAME_VISIBILITY],
@@ -313,11 +308,10 @@ static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
         .indirect = f->layers[FRAME_INDIRECT],
         .display = f->layers[FRAME_DISPLAY],
     };
-    const struct gpu_binding bindings[4] = {
+    const struct gpu_binding bindings[3] = {
         f->constants_binding,
         { "exposure_state", .buffer = f->exposure.state },
         { "exposure_histogram", .buffer = f->exposure.histogram },
-        ggx_albedo_binding(f),
     };
     composite_record(&f->composite, cmd, variant, &images, bindings, f->width, f->height);
 }

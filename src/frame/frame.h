@@ -46,7 +46,9 @@ enum frame_layer {
     // RGBA16F. xy: screen position minus previous screen position, in 0…1 units, +y down; z:
     // previous over current distance along the view axis, minus 1; w: 1 where there is a surface.
     FRAME_MOTION,
-    FRAME_DIRECT,     // RGBA16F: scaled radiance of punctual lights and emission
+    // RGBA16F: scaled radiance of punctual lights and emission. Alpha: the diffuse lobe over
+    // albedo/π, 1−E_d for dielectrics, 0 for unlit materials and without a surface.
+    FRAME_DIRECT,
     FRAME_IRRADIANCE, // RGBA16F: scaled irradiance, indirect
     FRAME_SPECULAR,   // RGBA16F: scaled radiance, indirect
     FRAME_VISIBILITY, // R8

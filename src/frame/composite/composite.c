@@ -48,27 +48,22 @@ bool composite_prepare(struct composite *c, uint32_t variant)
 }
 
 void composite_record(const struct composite *c, struct gpu_cmd *cmd, uint32_t variant,
-                      const struct composite_images *images, const struct gpu_binding bindings[4],
+                      const struct composite_images *images, const struct gpu_binding bindings[3],
                       uint32_t width, uint32_t height)
 {
     // Every binding of the shader needs an image: the direct layer fills inputs that are not read.
     gpu_image irradiance = variant & COMPOSITE_IRRADIANCE ? images->irradiance : images->direct;
     gpu_image specular = variant & COMPOSITE_SPECULAR ? images->specular : images->direct;
     gpu_image visibility = variant & COMPOSITE_VISIBILITY ? images->visibility : images->direct;
-    gpu_image dielectric = variant & COMPOSITE_DIELECTRIC ? images->dielectric : images->direct;
     gpu_image indirect = variant & COMPOSITE_INDIRECT ? images->indirect : c->no_radiance;
     gpu_image display = variant & COMPOSITE_DISPLAY ? images->display : c->no_display;
     struct composite_push push = { 1 };
     if (variant & COMPOSITE_METER) push.stride = exposure_stride(width, height);
     width = gpu_groups(width, push.stride), height = gpu_groups(height, push.stride);
     gpu_dispatch(cmd, c->pipelines[variant],
-                 GPU_BIND(bindings[0], bindings[1], bindings[2], bindings[3],
+                 GPU_BIND(bindings[0], bindings[1], bindings[2],
                           { "direct_layer", .image = images->direct, .sampler = c->nearest },
-                          { "depth_layer", .image = images->depth, .sampler = c->nearest },
-                          { "normal_layer", .image = images->normal, .sampler = c->nearest },
                           { "albedo_layer", .image = images->albedo, .sampler = c->nearest },
-                          { "material_layer", .image = images->material, .sampler = c->nearest },
-                          { "dielectric_layer", .image = dielectric, .sampler = c->nearest },
                           { "irradiance_layer", .image = irradiance, .sampler = c->nearest },
                           { "specular_layer", .image = specular, .sampler = c->nearest },
                           { "visibility_layer", .image = visibility, .sampler = c->nearest },

@@ -5,12 +5,9 @@
 // Outgoing radiance L = direct (with emission and sky) + diffuse lobe (brdf.glsl) · E · visibility
 // + specular, and the tone-mapped display image. The METER variant counts luminances of a grid of
 // pixels for automatic exposure instead, before the exposure of the display image is known.
-#define GGX_ALBEDO_BINDING 11
 #include "frame/frame.glsl"
-#include "frame/brdf.glsl"
 #include "frame/composite/composite_shared.h"
 #include "frame/composite/exposure_shared.h"
-#include "frame/octahedral.glsl"
 #include "image/tonemap.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -20,26 +17,21 @@ layout(constant_id = COMPOSITE_CONSTANT_SPECULAR) const bool HAS_SPECULAR = fals
 layout(constant_id = COMPOSITE_CONSTANT_VISIBILITY) const bool HAS_VISIBILITY = false;
 layout(constant_id = COMPOSITE_CONSTANT_INDIRECT) const bool WRITES_INDIRECT = false;
 layout(constant_id = COMPOSITE_CONSTANT_DISPLAY) const bool WRITES_DISPLAY = false;
-layout(constant_id = COMPOSITE_CONSTANT_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 layout(constant_id = COMPOSITE_CONSTANT_METER) const bool METERS = false;
 
 layout(set = 0, binding = 1) uniform sampler2D direct_layer;
 layout(set = 0, binding = 2) uniform sampler2D albedo_layer;
-layout(set = 0, binding = 3) uniform sampler2D material_layer;
-layout(set = 0, binding = 4) uniform sampler2D irradiance_layer;
-layout(set = 0, binding = 5) uniform sampler2D specular_layer;
-layout(set = 0, binding = 6) uniform sampler2D visibility_layer;
-layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D color_layer;
-layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D indirect_layer;
-layout(set = 0, binding = 9, rgba8) uniform writeonly image2D display_layer;
-layout(set = 0, binding = 10, scalar) readonly buffer exposure_state
+layout(set = 0, binding = 3) uniform sampler2D irradiance_layer;
+layout(set = 0, binding = 4) uniform sampler2D specular_layer;
+layout(set = 0, binding = 5) uniform sampler2D visibility_layer;
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D color_layer;
+layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D indirect_layer;
+layout(set = 0, binding = 8, rgba8) uniform writeonly image2D display_layer;
+layout(set = 0, binding = 9, scalar) readonly buffer exposure_state
 {
     exposure_values state;
 };
-layout(set = 0, binding = 12) uniform sampler2D depth_layer;
-layout(set = 0, binding = 13) uniform sampler2D normal_layer;
-layout(set = 0, binding = 14) uniform sampler2D dielectric_layer;
-layout(set = 0, binding = 15, scalar) buffer exposure_histogram
+layout(set = 0, binding = 10, scalar) buffer exposure_histogram
 {
     exposure_counts histogram;
 };
@@ -49,25 +41,16 @@ layout(push_constant, scalar) uniform push_block
     composite_push push;
 };
 
-vec3 diffuse_lobe(ivec2 pixel, vec3 albedo)
-{
-    float depth = texelFetch(depth_layer, pixel, 0).r;
-    if (!(depth > 0.0)) return vec3(0.0);
-    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), depth);
-    vec3 normal = octahedral_decode(texelFetch(normal_layer, pixel, 0).rg);
-    vec2 material = texelFetch(material_layer, pixel, 0).rg;
-    float n_v = brdf_cosine(normal, normalize(frame.camera_position - position));
-    vec4 dielectric =
-        HAS_DIELECTRIC ? texelFetch(dielectric_layer, pixel, 0) : BRDF_DEFAULT_DIELECTRIC;
-    return brdf_lobes_at(brdf_material_of(albedo, material, dielectric), n_v).diffuse;
-}
+const float INV_PI = 0.31830988618;
 
-vec3 indirect_light(ivec2 pixel)
+// direct: of direct/direct.comp.
+vec3 indirect_light(ivec2 pixel, vec4 direct)
 {
     vec3 light = vec3(0.0);
     vec4 albedo = texelFetch(albedo_layer, pixel, 0); // alpha: 0 where no surface is visible
     if (HAS_IRRADIANCE) {
-        light = diffuse_lobe(pixel, albedo.rgb) * texelFetch(irradiance_layer, pixel, 0).rgb;
+        vec3 diffuse_lobe = albedo.rgb * (direct.a * INV_PI);
+        light = diffuse_lobe * texelFetch(irradiance_layer, pixel, 0).rgb;
         if (HAS_VISIBILITY) light *= texelFetch(visibility_layer, pixel, 0).r;
     }
     if (HAS_SPECULAR) light += texelFetch(specular_layer, pixel, 0).rgb;
@@ -108,10 +91,10 @@ void main()
     if (METERS) pixel *= int(push.stride);
     if (any(greaterThanEqual(pixel, size))) return;
     if (METERS) pixel = min(pixel + int(push.stride) / 2, size - 1);
-    vec3 radiance = texelFetch(direct_layer, pixel, 0).rgb;
+    vec4 direct = texelFetch(direct_layer, pixel, 0);
     vec3 indirect = vec3(0.0);
-    if (HAS_IRRADIANCE || HAS_SPECULAR) indirect = indirect_light(pixel);
-    radiance = min(radiance + indirect, vec3(HALF_MAX));
+    if (HAS_IRRADIANCE || HAS_SPECULAR) indirect = indirect_light(pixel, direct);
+    vec3 radiance = min(direct.rgb + indirect, vec3(HALF_MAX));
     if (METERS) {
         meter(pixel, radiance);
         return;

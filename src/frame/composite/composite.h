@@ -12,7 +12,6 @@ enum composite_variant {
     COMPOSITE_VISIBILITY = 1 << COMPOSITE_CONSTANT_VISIBILITY,
     COMPOSITE_INDIRECT = 1 << COMPOSITE_CONSTANT_INDIRECT,
     COMPOSITE_DISPLAY = 1 << COMPOSITE_CONSTANT_DISPLAY,
-    COMPOSITE_DIELECTRIC = 1 << COMPOSITE_CONSTANT_DIELECTRIC,
     COMPOSITE_METER = 1 << COMPOSITE_CONSTANT_METER,
     COMPOSITE_VARIANT_COUNT = 1 << COMPOSITE_CONSTANT_COUNT,
 };
@@ -26,15 +25,15 @@ struct composite {
 
 // An image that the variant does not use may be empty.
 struct composite_images {
-    gpu_image depth, normal, direct, albedo, material, dielectric, irradiance, specular, visibility;
+    gpu_image direct, albedo, irradiance, specular, visibility;
     gpu_image color, indirect, display;
 };
 
 bool composite_init(struct composite *composite, struct gpu *gpu);
 void composite_finish(struct composite *composite); // accepts zero
 bool composite_prepare(struct composite *composite, uint32_t variant);
-// bindings: "frame_constants", "exposure_state", "exposure_histogram", "ggx_albedo". With
-// COMPOSITE_METER no image is written, the histogram is filled.
+// bindings: "frame_constants", "exposure_state", "exposure_histogram". With COMPOSITE_METER no
+// image is written, the histogram is filled.
 void composite_record(const struct composite *composite, struct gpu_cmd *cmd, uint32_t variant,
-                      const struct composite_images *images, const struct gpu_binding bindings[4],
+                      const struct composite_images *images, const struct gpu_binding bindings[3],
                       uint32_t width, uint32_t height);

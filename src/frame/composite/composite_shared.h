@@ -9,9 +9,8 @@
 #define COMPOSITE_CONSTANT_VISIBILITY 2
 #define COMPOSITE_CONSTANT_INDIRECT   3 // outputs
 #define COMPOSITE_CONSTANT_DISPLAY    4
-#define COMPOSITE_CONSTANT_DIELECTRIC 5 // reads FRAME_DIELECTRIC
-#define COMPOSITE_CONSTANT_METER      6 // no image: fills the histogram of automatic exposure
-#define COMPOSITE_CONSTANT_COUNT      7
+#define COMPOSITE_CONSTANT_METER      5 // no image: fills the histogram of automatic exposure
+#define COMPOSITE_CONSTANT_COUNT      6
 
 struct composite_push {
     uint32_t stride; // between pixels; above 1 for METER only

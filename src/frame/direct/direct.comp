@@ -3,7 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 
 // Direct light: emission plus reflected light of all punctual lights with shadows. Pixels without a
-// surface get the sky radiance.
+// surface get the sky radiance. Alpha: the diffuse lobe over albedo/π, for the composite's indirect
+// light; 0 for unlit materials and without a surface.
 #define GGX_ALBEDO_BINDING 10
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
@@ -92,14 +93,13 @@ vec3 geometric_normal(ivec2 pixel, float depth, vec3 position, vec3 to_viewer)
     return dot(n, to_viewer) < 0.0 ? -n : n;
 }
 
-surface read_surface(ivec2 pixel, float depth)
+surface read_surface(ivec2 pixel, float depth, vec3 albedo)
 {
     surface s;
     s.position = frame_world_position(frame_uv(uvec2(pixel)), depth);
     s.normal = octahedral_decode(texelFetch(normal_layer, pixel, 0).rg);
     s.to_viewer = normalize(frame.camera_position - s.position);
     if (FILTERED) s.geometric_normal = geometric_normal(pixel, depth, s.position, s.to_viewer);
-    vec3 albedo = texelFetch(albedo_layer, pixel, 0).rgb;
     vec2 material = texelFetch(material_layer, pixel, 0).rg;
     vec4 dielectric =
         HAS_DIELECTRIC ? texelFetch(dielectric_layer, pixel, 0) : BRDF_DEFAULT_DIELECTRIC;
@@ -174,10 +174,15 @@ void main()
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
     float depth = texelFetch(depth_layer, pixel, 0).r;
     vec3 radiance = frame.sky;
+    float diffuse = 0.0;
     if (depth > 0.0) {
         radiance = texelFetch(emissive_layer, pixel, 0).rgb;
-        if ((HAS_SUNS || HAS_LOCALS) && frame_is_lit(texelFetch(albedo_layer, pixel, 0).a))
-            radiance += reflected_by(read_surface(pixel, depth));
+        vec4 albedo = texelFetch(albedo_layer, pixel, 0);
+        if (frame_is_lit(albedo.a)) {
+            surface s = read_surface(pixel, depth, albedo.rgb);
+            diffuse = s.lobes.diffuse_share;
+            if (HAS_SUNS || HAS_LOCALS) radiance += reflected_by(s);
+        }
     }
-    imageStore(direct_layer, pixel, vec4(min(radiance, vec3(HALF_MAX)), 1.0));
+    imageStore(direct_layer, pixel, vec4(min(radiance, vec3(HALF_MAX)), diffuse));
 }
