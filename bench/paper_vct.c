@@ -23,7 +23,7 @@ enum { MAX_RESOLUTIONS = 8 };
 
 // Figures 53, 54 and 55. The octree uses texel lists for the bounce only.
 static const struct vct_stage construction[] = {
-    { "voxelization", BOTH("vct.mark", "vct.list", "vct.add") },
+    { "voxelization", BOTH("vct.mark", "vct.list", "vct.outermost", "vct.add") },
     { "nodes: marking, allocation", { { NULL }, { "vct.nodes", NULL } } },
     { "light injection", BOTH("vct.inject") },
     { "filling", { { "vct.texels", "vct.fill", NULL }, { "vct.leaves", NULL } } },
@@ -46,7 +46,7 @@ enum { TRACING = sizeof tracing / sizeof tracing[0] };
 static const struct vct_stage pipeline[] = {
     { "G-buffer", BOTH("gbuffer") },
     { "shadow maps", BOTH("shadow.") },
-    { "voxelization", BOTH("vct.mark", "vct.list", "vct.add") },
+    { "voxelization", BOTH("vct.mark", "vct.list", "vct.outermost", "vct.add") },
     { "light injection", BOTH("vct.inject") },
     { "mips", BOTH("vct.texels", "vct.fill", "vct.mips") },
     { "light of sky and emitters", BOTH("vct.bounce") },

@@ -226,7 +226,8 @@ struct build {
 
 static void build_once(struct gpu *gpu, struct build *build)
 {
-    static const char *const voxels[] = { "vct.mark", "vct.list", "vct.add", "vct.inject", NULL };
+    static const char *const voxels[] = { "vct.mark", "vct.list",   "vct.outermost",
+                                          "vct.add",  "vct.inject", NULL };
     static const char *const filters[] = { "vct.texels", "vct.fill",    "vct.mips", "vct.nodes",
                                            "vct.leaves", "vct.borders", NULL };
     struct gpu_timing timings[32];

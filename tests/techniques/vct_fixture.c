@@ -122,14 +122,45 @@ uint32_t *vct_fixture_mask(const struct vct_fixture *fixture, const struct vct_v
     return vct_fixture_buffer_words(fixture, set->mask);
 }
 
+// As vct_index of vct_grid.glsl: texels of eight voxels.
+static uint32_t voxel_index(const struct vct_fixture *fixture, int x, int y, int z)
+{
+    const int dim = fixture->vct->options.resolution / 2;
+    const int texel = ((z / 2) * dim + y / 2) * dim + x / 2;
+    return (uint32_t)(8 * texel + x % 2 + 2 * (y % 2) + 4 * (z % 2));
+}
+
 bool vct_fixture_occupied(const struct vct_fixture *fixture, const uint32_t *mask, int x, int y,
                           int z)
 {
-    // As vct_index of vct_grid.glsl: texels of eight voxels.
-    const int dim = fixture->vct->options.resolution / 2;
-    const int texel = ((z / 2) * dim + y / 2) * dim + x / 2;
-    const uint32_t index = (uint32_t)(8 * texel + x % 2 + 2 * (y % 2) + 4 * (z % 2));
+    const uint32_t index = voxel_index(fixture, x, y, z);
     return (mask[index / 4] >> (8 * (index % 4)) & 0xffu) != 0; // a byte of six faces
+}
+
+bool vct_fixture_reflectance(const struct vct_fixture *fixture, const struct vct_voxel_set *set,
+                             const int voxel[3], uint32_t face, vec3s *out)
+{
+    const uint32_t index = voxel_index(fixture, voxel[0], voxel[1], voxel[2]),
+                   bit = 1u << (8 * (index % 4) + face);
+    struct gpu *gpu = fixture->frame_fixture.gpu;
+    uint32_t *mask = vct_fixture_mask(fixture, set),
+             *before = vct_fixture_buffer_words(fixture, set->word_offsets);
+    const struct gpu_image_desc *desc = gpu_image_info(gpu, set->surfaces);
+    const size_t bytes = (size_t)desc->width * desc->height * 16;
+    uint32_t *surfaces = malloc(bytes);
+    assert_non_null(surfaces);
+    assert_true(gpu_image_download(gpu, set->surfaces, 0, 0, surfaces, bytes));
+    const bool found = (mask[index / 4] & bit) != 0;
+    const uint32_t slot =
+        before[index / 4] + (uint32_t)__builtin_popcount(mask[index / 4] & (bit - 1));
+    const uint32_t *words = surfaces + (size_t)slot * 8; // two texels
+    if (found)
+        *out = vec3_of((float)(words[0] & 0xffffu) / 65535.0f, (float)(words[0] >> 16) / 65535.0f,
+                       (float)(words[1] & 0xffffu) / 65535.0f);
+    free(mask);
+    free(before);
+    free(surfaces);
+    return found;
 }
 
 float *vct_fixture_light(const struct vct_fixture *fixture, uint32_t level)

@@ -37,6 +37,9 @@ uint32_t *vct_fixture_buffer_words(const struct vct_fixture *fixture, gpu_buffer
 uint32_t *vct_fixture_mask(const struct vct_fixture *fixture, const struct vct_voxel_set *set);
 bool vct_fixture_occupied(const struct vct_fixture *fixture, const uint32_t *mask, int x, int y,
                           int z);
+// Reflectance of a face of a voxel (voxelize/surface.glsl); false where nothing is on it.
+bool vct_fixture_reflectance(const struct vct_fixture *fixture, const struct vct_voxel_set *set,
+                             const int voxel[3], uint32_t face, vec3s *out);
 // As vct_visible_alpha of volume/over.glsl.
 double vct_fixture_visible_alpha(double left, double alpha, double sheet);
 // A level of the light volume, 4 floats per texel, all directions. To be freed.

@@ -62,8 +62,8 @@ static int constants_of(const struct vct *vct, uint32_t bits,
     return count;
 }
 
-// Mark and add, by compute shaders or by the rasterizer.
-enum { VOXELIZE_PIPELINES = 14 };
+// Passes over triangles, by compute shaders or by the rasterizer.
+enum { VOXELIZE_PIPELINES = 18 };
 
 static void plan_voxelize(struct vct *vct, struct pipeline_plan out[VOXELIZE_PIPELINES])
 {
@@ -77,11 +77,19 @@ static void plan_voxelize(struct vct *vct, struct pipeline_plan out[VOXELIZE_PIP
                                            : &shader_vct_voxelize_mark_small_comp,
                             *add = raster ? &shader_vct_voxelize_add_raster_frag
                                           : &shader_vct_voxelize_add_small_comp,
+                            *outermost = raster ? &shader_vct_voxelize_outermost_raster_frag
+                                                : &shader_vct_voxelize_outermost_small_comp,
                             *mark_large = raster ? NULL : &shader_vct_voxelize_mark_large_comp,
+                            *outermost_large =
+                                raster ? NULL : &shader_vct_voxelize_outermost_large_comp,
                             *add_large = raster ? NULL : &shader_vct_voxelize_add_large_comp;
     const struct pipeline_plan plan[VOXELIZE_PIPELINES] = {
         { &vct->mark.small, "mark", mark, 0 },
         { &vct->mark.large, "mark_large", mark_large, 0 },
+        { &vct->outermost[0].small, "outermost", outermost, 0 },
+        { &vct->outermost[0].large, "outermost_large", outermost_large, 0 },
+        { &vct->outermost[1].small, "outermost_masked", outermost, MAPPED | MASKED },
+        { &vct->outermost[1].large, "outermost_masked_large", outermost_large, MAPPED | MASKED },
         { &plain->small, "add", add, NOT_EMISSIVE },
         { &plain->large, "add_large", add_large, NOT_EMISSIVE },
         { &emissive->small, "add_emissive", add, 0 },

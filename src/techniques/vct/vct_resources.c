@@ -14,7 +14,7 @@ struct buffer_plan {
 // ---- Plans
 // -----------------------------------------------------------------------------------------
 
-enum { SET_BUFFERS = 8 };
+enum { SET_BUFFERS = 7 };
 
 static void plan_set(const struct vct_options *options, bool dynamic, struct vct_voxel_set *set,
                      struct buffer_plan out[SET_BUFFERS])
@@ -28,7 +28,6 @@ static void plan_set(const struct vct_options *options, bool dynamic, struct vct
         { NAME("list"), &set->list, capacity, 0 },
         { NAME("accumulated"), &set->accumulated, vct_mask_words(options), 0 },
         { NAME("accumulated_list"), &set->accumulated_list, capacity, 0 },
-        { NAME("sums"), &set->sums, capacity * VCT_SUM_WORDS, 0 },
         { NAME("arguments"), &set->arguments, sizeof(struct vct_voxel_counts) / sizeof(uint32_t),
           GPU_BUFFER_INDIRECT },
     };
@@ -39,7 +38,8 @@ static void plan_set(const struct vct_options *options, bool dynamic, struct vct
 enum {
     SVO_BUFFERS = 4,
     CLIP_BUFFERS = 2 * SET_BUFFERS + 3,
-    MOST_BUFFERS = VCT_MAX_CLIPS * CLIP_BUFFERS + 2 + SVO_BUFFERS
+    SHARED_BUFFERS = 3,
+    MOST_BUFFERS = VCT_MAX_CLIPS * CLIP_BUFFERS + SHARED_BUFFERS + SVO_BUFFERS
 };
 
 static void plan_clip(const struct vct_options *options, struct vct_clip *clip,
@@ -78,12 +78,13 @@ static int plan_buffers(const struct vct_options *options, struct vct *vct,
     int count = 0;
     for (int i = 0; i < vct_clip_count(options); i++, count += CLIP_BUFFERS)
         plan_clip(options, &vct->clips[i], out + count);
-    const struct buffer_plan queue[] = {
+    const struct buffer_plan shared[SHARED_BUFFERS] = {
         { "queue", &vct->queue, 2 * (size_t)VCT_QUEUE, 0 },
         { "queue_state", &vct->queue_state, 4, GPU_BUFFER_INDIRECT },
+        { "sums", &vct->sums, (size_t)vct_capacity(options) * VCT_SUM_WORDS, 0 },
     };
-    memcpy(out + count, queue, sizeof queue);
-    count += 2;
+    memcpy(out + count, shared, sizeof shared);
+    count += SHARED_BUFFERS;
     if (!vct_has_svo(options)) return count;
     plan_svo(options, &vct->svo, out + count);
     return count + SVO_BUFFERS;

@@ -37,7 +37,8 @@ struct vct {
     struct vct_options options;
 
     // Pipelines.
-    struct vct_voxelize_pipelines mark, add[VCT_DRAW_KINDS];
+    struct vct_voxelize_pipelines mark, outermost[2]; // opaque, masked
+    struct vct_voxelize_pipelines add[VCT_DRAW_KINDS];
     gpu_pipeline count, scan, list, zero, surfaces;
     gpu_pipeline texel_lists, mip;
     gpu_pipeline fill[2];             // without and with moving voxels
@@ -50,6 +51,7 @@ struct vct {
     struct vct_clip clips[VCT_MAX_CLIPS];
     int clip_count;
     gpu_buffer queue, queue_state; // tiles of large triangles
+    gpu_buffer sums;               // over the triangles of the faces of a set
     gpu_sampler linear;
     struct vct_svo svo; // with storage=svo
     gpu_image light;    // RGBA16F: six volumes side by side with mips, or the pool of bricks.

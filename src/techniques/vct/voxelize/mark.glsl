@@ -17,7 +17,7 @@ layout(set = 0, binding = 17, scalar) buffer vct_accumulated
 
 uint marked_faces; // of the triangle, a bit each
 
-void vct_begin_triangle(vct_triangle t, ivec2 first)
+void vct_begin_triangle(vct_triangle t)
 {
     vct_triangle_faces faces = vct_faces_of(t);
     marked_faces = (1u << faces.front) | (faces.both ? 1u << (faces.front ^ 1u) : 0u);

@@ -8,7 +8,7 @@
 
 layout(location = 0) flat out uint vary_triangle;
 
-void vct_begin_triangle(vct_triangle t, ivec2 first)
+void vct_begin_triangle(vct_triangle t)
 {
 }
 

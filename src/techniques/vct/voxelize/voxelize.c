@@ -1,6 +1,7 @@
-// Static draws are voxelized once, moving draws in every frame. Each set takes two passes over its
-// triangles: the first marks the occupied voxels, the second accumulates their surface attributes.
-// In between the occupied voxels get slots in compact lists.
+// Static draws are voxelized once, moving draws in every frame. Each set takes three passes over
+// its triangles: the first marks the occupied voxels, which then get slots in compact lists; the
+// second finds the outermost surfaces of their faces; the third accumulates the attributes of
+// these.
 #include "techniques/vct/voxelize/voxelize.h"
 
 #include "techniques/vct/vct_bindings.h"
@@ -37,10 +38,20 @@ static bool may_touch(const struct scene_draw *draw, const struct vct_grid *grid
     return true;
 }
 
+enum pass { MARK, FIND_OUTERMOST, ADD };
+
+static const struct vct_voxelize_pipelines *pipelines_of(const struct vct *vct, enum pass pass,
+                                                         enum vct_draw_kind kind)
+{
+    return pass == MARK  ? &vct->mark
+           : pass == ADD ? &vct->add[kind]
+                         : &vct->outermost[kind == VCT_MASKED];
+}
+
 // A pass over the triangles of the moving or of the static draws: small triangles, then the queued
 // tiles of large ones; or all by raster, a pixel for each column.
 static void traverse(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
-                     const struct frame_view *view, bool moving, bool add,
+                     const struct frame_view *view, bool moving, enum pass pass,
                      const struct gpu_binding *bindings, int count)
 {
     const bool raster = vct->options.voxels == VCT_BY_RASTER;
@@ -54,7 +65,7 @@ static void traverse(struct vct *vct, const struct vct_clip *clip, struct gpu_cm
         const struct scene_draw *draw = &view->scene->draws[i];
         if (draw->dynamic != moving || !may_touch(draw, &clip->grid)) continue;
         const enum vct_draw_kind kind = kind_of(vct, view->scene, i);
-        const struct vct_voxelize_pipelines *pipelines = add ? &vct->add[kind] : &vct->mark;
+        const struct vct_voxelize_pipelines *pipelines = pipelines_of(vct, pass, kind);
         scene_gpu_dispatch(view->scene, cmd,
                            &(struct scene_dispatch_call){ .pipeline = pipelines->small,
                                                           .rasterize = raster,
@@ -80,7 +91,7 @@ static void mark(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *c
     gpu_scope_begin(cmd, "mark");
     gpu_fill_buffer(cmd, set->mask, 0, gpu_buffer_bytes(vct->gpu, set->mask), 0);
     gpu_fill_buffer(cmd, set->accumulated, 0, gpu_buffer_bytes(vct->gpu, set->accumulated), 0);
-    traverse(vct, clip, cmd, view, moving, false, bindings, 5);
+    traverse(vct, clip, cmd, view, moving, MARK, bindings, 5);
     gpu_scope_end(cmd);
 }
 
@@ -111,20 +122,20 @@ static void make_list(struct vct *vct, const struct vct_clip *clip, struct gpu_c
 }
 
 // A pass over the voxels whose triangles are summed up.
-static void each_accumulated(struct gpu_cmd *cmd, const struct vct_voxel_set *set,
-                             gpu_pipeline pipeline)
+static void each_accumulated(const struct vct *vct, struct gpu_cmd *cmd,
+                             const struct vct_voxel_set *set, gpu_pipeline pipeline)
 {
     gpu_dispatch_indirect(
         cmd, pipeline,
         GPU_BIND({ .name = "vct_arguments", .buffer = set->arguments },
                  { .name = "vct_accumulated_list", .buffer = set->accumulated_list },
-                 { .name = "vct_sum_words", .buffer = set->sums },
+                 { .name = "vct_sum_words", .buffer = vct->sums },
                  { .name = "vct_surfaces", .image = set->surfaces }),
         NULL, 0, set->arguments, offsetof(struct vct_voxel_counts, accumulated_groups));
 }
 
-static void add(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
-                const struct frame_view *view, const struct vct_voxel_set *set, bool moving)
+static void accumulate(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                       const struct frame_view *view, const struct vct_voxel_set *set, bool moving)
 {
     const struct gpu_binding bindings[] = {
         vct_grid_binding(vct, clip, cmd),
@@ -133,13 +144,16 @@ static void add(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cm
         { .name = "vct_mask", .buffer = set->mask },
         { .name = "vct_word_offsets", .buffer = set->word_offsets },
         { .name = "vct_accumulated", .buffer = set->accumulated },
-        { .name = "vct_sum_words", .buffer = set->sums },
+        { .name = "vct_sum_words", .buffer = vct->sums },
         { .name = "vct_surfaces", .image = set->surfaces }
     };
+    gpu_scope_begin(cmd, "outermost");
+    each_accumulated(vct, cmd, set, vct->zero);
+    traverse(vct, clip, cmd, view, moving, FIND_OUTERMOST, bindings, 7);
+    gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "add");
-    each_accumulated(cmd, set, vct->zero);
-    traverse(vct, clip, cmd, view, moving, true, bindings, 8);
-    each_accumulated(cmd, set, vct->surfaces);
+    traverse(vct, clip, cmd, view, moving, ADD, bindings, 8);
+    each_accumulated(vct, cmd, set, vct->surfaces);
     gpu_scope_end(cmd);
 }
 
@@ -148,7 +162,7 @@ static void voxelize(struct vct *vct, const struct vct_clip *clip, struct gpu_cm
 {
     mark(vct, clip, cmd, view, set, moving);
     make_list(vct, clip, cmd, set);
-    add(vct, clip, cmd, view, set, moving);
+    accumulate(vct, clip, cmd, view, set, moving);
 }
 
 static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cmd *cmd,

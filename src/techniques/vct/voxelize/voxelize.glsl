@@ -5,7 +5,8 @@
 //
 // Permutations: VCT_LARGE is 0 for small triangles and 1 for the queued tiles of large ones;
 // VCT_RASTER takes the columns from the rasterizer (voxelize/raster.glsl), in its fragment stage
-// with VCT_FRAGMENT. The includer defines vct_meet() and vct_visit() after the inclusion.
+// with VCT_FRAGMENT; VCT_DEFERS leaves some voxels of large triangles to a second visit. The
+// includer defines vct_begin_triangle(), vct_visit() and vct_visit_deferred() after the inclusion.
 #include "frame/scene_triangles.glsl"
 #include "techniques/vct/vct_grid.glsl"
 #include "techniques/vct/voxelize/overlap.glsl"
@@ -40,12 +41,12 @@ struct vct_triangle {
     ivec2 depths;    // first and last voxel of a column, also beyond this grid
 };
 
-void vct_begin_triangle(vct_triangle t,
-                        ivec2 first); // before its voxels, from the column `first` on
+void vct_begin_triangle(vct_triangle t); // before its voxels
 void vct_visit(ivec3 voxel, vct_triangle t);
 #ifdef VCT_DEFERS
-// Rows in which vct_visit() has left voxels to vct_visit_put_off(), a bit for each of the tile.
+// Rows of the tile in which vct_visit() has left voxels to vct_visit_deferred(), a bit each.
 uint vct_deferred = 0u;
+int vct_first_row;
 void vct_visit_deferred(ivec3 voxel, vct_triangle t);
 #endif
 
@@ -129,6 +130,13 @@ ivec2 depths_of(vct_triangle t, ivec2 column)
     return ivec2(max(int(floor(low)), t.low.z), min(int(floor(high)), t.high.z));
 }
 
+#ifdef VCT_DEFERS
+void vct_defer(ivec3 voxel, vct_triangle t)
+{
+    vct_deferred |= 1u << uint(ivec3(permuted(vec3(voxel), t.turn)).y - vct_first_row);
+}
+#endif
+
 bool touches(vct_triangle t, ivec3 voxel)
 {
     precise vec3 middle = vec3(voxel) + 0.5;
@@ -170,7 +178,7 @@ void main()
     if (!triangle_at(vary_triangle, t) || any(lessThan(column, t.low.xy)) ||
         any(greaterThan(column, t.high.xy)))
         return;
-    vct_begin_triangle(t, column);
+    vct_begin_triangle(t);
     visit_columns(t, column, column);
 }
 
@@ -245,7 +253,10 @@ void main()
     int x = first.x + int(gl_LocalInvocationID.x);
     ivec2 rows = rows_of(t, x);
     rows = ivec2(max(first.y, rows.x), x > last.x ? first.y - 1 : min(last.y, rows.y));
-    vct_begin_triangle(t, first);
+#ifdef VCT_DEFERS
+    vct_first_row = first.y;
+#endif
+    vct_begin_triangle(t);
     visit_columns(t, ivec2(x, rows.x), ivec2(x, rows.y));
 #ifdef VCT_DEFERS
     visit_deferred_columns(t, first);
@@ -276,7 +287,7 @@ void main()
     ivec2 tile = small ? size : ivec2(VCT_TILE), tiles = (size - 1) / tile + 1;
     uint count = uint(tiles.x * tiles.y), queued = 0u;
     if (!small) queued = queue_tiles(triangle, count);
-    vct_begin_triangle(t, t.low.xy);
+    vct_begin_triangle(t);
     for (uint i = queued; i < count; i++) {
         ivec2 corner = t.low.xy + ivec2(int(i) % tiles.x, int(i) / tiles.x) * tile;
         visit_columns(t, corner, min(corner + tile - 1, t.high.xy));

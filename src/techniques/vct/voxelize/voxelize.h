@@ -6,14 +6,13 @@
 
 // The occupied voxels of the static or of the moving draws in one level of the clip map.
 struct vct_voxel_set {
-    gpu_buffer mask;             // a bit for each voxel
-    gpu_buffer word_offsets;     // occupied voxels before each word of the mask
-    gpu_buffer blocks;           // the same for blocks of words
-    gpu_buffer list;             // indices of the occupied voxels
-    gpu_buffer arguments;        // struct vct_voxel_counts
-    gpu_buffer accumulated;      // a bit for each voxel whose triangles are summed up
-    gpu_buffer accumulated_list; // slots of those voxels
-    gpu_buffer sums;
+    gpu_buffer mask;                         // a bit for each voxel
+    gpu_buffer word_offsets;                 // occupied voxels before each word of the mask
+    gpu_buffer blocks;                       // the same for blocks of words
+    gpu_buffer list;                         // indices of the occupied voxels
+    gpu_buffer arguments;                    // struct vct_voxel_counts
+    gpu_buffer accumulated;                  // a bit for each voxel whose triangles are summed up
+    gpu_buffer accumulated_list;             // slots of those voxels
     gpu_image surfaces, lit_voxels, bounced; // RGBA32U, one entry for each occupied voxel
 };
 

@@ -17,7 +17,8 @@
 #define VCT_SUM_POSITION    8  // 3 words, signed, from the voxel's centre
 #define VCT_SUM_EMISSION    11 // 3 words, × opacity; negative for small emitters
 #define VCT_SUM_COVERED     14 // covered weight
-#define VCT_SUM_WORDS       15
+#define VCT_SUM_OUTERMOST   15 // 4 words, heights: voxelize/lines.glsl
+#define VCT_SUM_WORDS       19
 
 // Coverage is the number of sample lines through a voxel that a triangle crosses.
 #define VCT_LINES        16
