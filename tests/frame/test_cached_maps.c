@@ -15,7 +15,7 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
     *(int *)user = view->maps_drawn;
 }
 
-// A box over a floor with a sun (3 maps), a point light (6) and a spot (1) at the floor's far end.
+// A box over a floor with a sun (2 maps), a point light (6) and a spot (1) at the floor's far end.
 static void open(struct map_counter *w, struct gpu *gpu, bool keep, uint32_t needs)
 {
     struct frame_fixture *s = &w->fixture;
@@ -27,7 +27,7 @@ static void open(struct map_counter *w, struct gpu *gpu, bool keep, uint32_t nee
     fixture_add_sun(s, vec3_of(0.3f, -1, 0.2f), vec3_of(50, 50, 50));
     fixture_add_point(s, vec3_of(2, 3, 2), vec3_of(400, 300, 200));
     fixture_add_spot(s, vec3_of(-5, 2, -5), vec3_of(0, -1, 0), 0.3f, 0.4f, vec3_of(500, 500, 900));
-    fixture_look(s, vec3_of(0, 6, 7), vec3_of(0, 0, 0));
+    fixture_look(s, vec3_of(0, 3, 3), vec3_of(0, 0, 0)); // both cascades have maps
     s->options.keep_maps = keep;
     s->indirect = (struct frame_indirect){ .record = record, .user = &w->drawn, .needs = needs };
     fixture_open(s);
@@ -77,7 +77,7 @@ TEST_GPU(changed_maps_are_rendered_again)
             if (frame == 1) move_box(both[i], 0.7f);
             if (frame == 2) s->lights[1].position.x -= 0.5f;
             if (frame == 3) s->lights[2].direction = glms_vec3_normalize(vec3_of(0.5f, -1, 0.5f));
-            if (frame == 4) fixture_look(s, vec3_of(1, 5, 6), vec3_of(0, 0, 0)); // cascades follow
+            if (frame == 4) fixture_look(s, vec3_of(2, 3, 3), vec3_of(2, 0, 0)); // cascades follow
             fixture_render(s);
         }
         assert_int_equal(rendered.drawn, SHADOWS + RSMS);
@@ -89,6 +89,29 @@ TEST_GPU(changed_maps_are_rendered_again)
         if (frame == 3) assert_int_equal(reused.drawn, 1 + 1);
         if (frame == 4) CHECK(reused.drawn >= 1 && reused.drawn <= 3);
         if (frame == 0 || frame == 5) assert_int_equal(reused.drawn, 0);
+    }
+    fixture_finish(&reused.fixture);
+    fixture_finish(&rendered.fixture);
+}
+
+// From afar both cascades are the whole scene and share a map; close up the finer one has its own.
+TEST_GPU(cascades_of_the_whole_scene_share_a_map)
+{
+    struct map_counter reused, rendered;
+    open(&reused, gpu, true, 0);
+    open(&rendered, gpu, false, 0);
+    const int others = SHADOWS - 2;
+    for (int frame = 0; frame < 4; frame++) {
+        struct map_counter *both[] = { &reused, &rendered };
+        const bool far = frame % 2 == 0;
+        for (int i = 0; i < 2; i++) {
+            struct frame_fixture *s = &both[i]->fixture;
+            fixture_look(s, far ? vec3_of(0, 60, 70) : vec3_of(0, 3, 3), vec3_of(0, 0, 0));
+            fixture_render(s);
+        }
+        assert_int_equal(rendered.drawn, others + (far ? 1 : 2));
+        CHECK(reused.drawn <= (far ? 0 : 1));
+        check_same_image(&reused, &rendered);
     }
     fixture_finish(&reused.fixture);
     fixture_finish(&rendered.fixture);

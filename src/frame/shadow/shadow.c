@@ -8,6 +8,7 @@
 #include "frame_shaders.h"
 
 #include <math.h>
+#include <string.h>
 
 static const float CONSTANT_BIAS = 0.1f; // texels
 
@@ -146,6 +147,17 @@ static void place_perspective(const struct shadow *s, struct shadow_face *face, 
     face->depth_texels = 1.0f / (near_m * face->texel_m);
 }
 
+// Cascades that cover the whole scene use the last cascade's map.
+static void place_layers(struct shadow_face *faces, int count, int first)
+{
+    const struct shadow_face *last = &faces[count - 1];
+    for (int k = 0; k < count; k++) {
+        const bool equal = memcmp(&faces[k].clip_from_world, &last->clip_from_world,
+                                  sizeof last->clip_from_world) == 0;
+        faces[k].layer = first + (equal ? count - 1 : k);
+    }
+}
+
 void shadow_place(struct shadow *s, struct frame_light *lights, int light_count,
                   const struct shadow_view *view)
 {
@@ -164,7 +176,8 @@ void shadow_place(struct shadow *s, struct frame_light *lights, int light_count,
         } else {
             for (int k = 0; k < count; k++) place_perspective(s, &faces[k], k, light, view);
         }
-        for (int k = 0; k < count; k++) faces[k].layer = used[array]++;
+        place_layers(faces, count, used[array]);
+        used[array] += count;
         light->shadow_first = s->face_count;
         light->shadow_count = count;
         s->face_count += count;
@@ -213,6 +226,8 @@ void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu
         for (int k = 0; k < lights[i].shadow_count; k++) {
             const int index = lights[i].shadow_first + k;
             const struct shadow_face *face = &s->faces[index];
+            const struct shadow_face *last = face + (lights[i].shadow_count - 1 - k);
+            if (face != last && face->layer == last->layer) continue;
             const bool valid =
                 cached_map_is_valid(&s->cache[index], scene, &lights[i], face->clip_from_world);
             if (valid && reuse) continue;
