@@ -25,30 +25,38 @@ layout(set = 0, binding = 6) uniform writeonly image2D irradiance;
 const float COMPLETE = 0.9; // fraction of the cone set that needs no blur
 const int RINGS = 4;
 
+// Incomplete pixels are few and scattered. A workgroup lists its own and distributes them over its
+// invocations: subgroups of which one pixel is incomplete would take as long as with all.
+const int TILE = VCT_BLUR_TILE * VCT_LOCAL_2D; // pixels along the side of a workgroup
+shared uint listed_count, listed[TILE * TILE];
+
+// View space: x right, y down, z forward.
 vec3 position_of(ivec2 pixel, float z)
 {
-    return frame_world_position(frame_uv(uvec2(pixel)), z);
+    vec2 from_centre = vec2(pixel) + 0.5 - 0.5 * vec2(frame.width, frame.height);
+    return frame_view_distance(z) * vec3(set.pixel * from_centre, 1.0);
 }
 
 // Weight of a neighbour: its squared fraction of the cone set, times similarity of normal and
 // position.
-float weight_of(ivec2 neighbour, vec3 position, vec3 n, float fraction, float texel_m)
+float weight_of(ivec2 neighbour, vec3 position, vec3 n, float fraction, float per_texel_m)
 {
     float z = texelFetch(depth, neighbour, 0).r;
     if (z <= 0.0) return 0.0;
     vec3 offset = position_of(neighbour, z) - position;
     float cosine = max(dot(n, octahedral_decode(texelFetch(normal, neighbour, 0).rg)), 0.0);
-    float near = clamp(1.0 - length(offset) / texel_m, 0.0, 1.0);
+    float near = clamp(1.0 - length(offset) * per_texel_m, 0.0, 1.0);
     float c4 = cosine * cosine * cosine * cosine;
     return fraction * fraction * c4 * c4 * near;
 }
 
-vec3 blurred(ivec2 pixel, vec4 own)
+vec3 blurred(ivec2 pixel)
 {
-    vec3 position = position_of(pixel, texelFetch(depth, pixel, 0).r);
+    float z = texelFetch(depth, pixel, 0).r;
+    vec3 position = position_of(pixel, z), world = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-    float texel_m = set.texel_m * vct_texel_at((position - clips.origin_m) / set.texel_m);
-    vec4 sum = own.a * own.a * vec4(own.rgb, 1.0);
+    float texel_m = set.texel_m * vct_texel_at((world - clips.origin_m) / set.texel_m);
+    vec4 own = texelFetch(gathered, pixel, 0), sum = own.a * own.a * vec4(own.rgb, 1.0);
     for (int ring = 0; ring < RINGS; ring++) {
         int step = 1 << ring;
         for (int i = 0; i < 4; i++) {
@@ -61,7 +69,8 @@ vec3 blurred(ivec2 pixel, vec4 own)
                 continue;
             vec4 other = texelFetch(gathered, neighbour, 0);
             if (other.a > 0.0)
-                sum += weight_of(neighbour, position, n, other.a, texel_m) * vec4(other.rgb, 1.0);
+                sum += weight_of(neighbour, position, n, other.a, 1.0 / texel_m) *
+                       vec4(other.rgb, 1.0);
         }
     }
     return sum.a > 0.0 ? sum.rgb / sum.a : own.rgb;
@@ -69,10 +78,22 @@ vec3 blurred(ivec2 pixel, vec4 own)
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) return;
-    vec4 own = texelFetch(gathered, pixel, 0);
-    vec3 result = own.rgb;
-    if (own.a > 0.0 && own.a < COMPLETE) result = blurred(pixel, own);
-    imageStore(irradiance, pixel, vec4(result, 1.0));
+    ivec2 first = ivec2(gl_WorkGroupID.xy) * TILE;
+    if (gl_LocalInvocationIndex == 0u) listed_count = 0u;
+    barrier();
+    for (int i = int(gl_LocalInvocationIndex); i < TILE * TILE; i += VCT_LOCAL_2D * VCT_LOCAL_2D) {
+        ivec2 pixel = first + ivec2(i % TILE, i / TILE);
+        if (any(greaterThanEqual(pixel, ivec2(set.width, set.height)))) continue;
+        vec4 own = texelFetch(gathered, pixel, 0);
+        if (own.a > 0.0 && own.a < COMPLETE)
+            listed[atomicAdd(listed_count, 1u)] = uint(i);
+        else
+            imageStore(irradiance, pixel, vec4(own.rgb, 1.0));
+    }
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < listed_count; i += VCT_LOCAL_2D * VCT_LOCAL_2D) {
+        int place = int(listed[i]);
+        ivec2 pixel = first + ivec2(place % TILE, place / TILE);
+        imageStore(irradiance, pixel, vec4(blurred(pixel), 1.0));
+    }
 }

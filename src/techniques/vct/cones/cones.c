@@ -132,7 +132,8 @@ static void blur(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
                  GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
                           { .name = "gathered", .image = vct->gathered_irradiance },
                           { .name = "irradiance", .image = result }),
-                 NULL, 0, p->across, p->down, 1);
+                 NULL, 0, gpu_groups(p->across, VCT_BLUR_TILE), gpu_groups(p->down, VCT_BLUR_TILE),
+                 1);
     gpu_scope_end(cmd);
 }
 

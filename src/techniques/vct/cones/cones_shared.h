@@ -7,6 +7,7 @@
 #define VCT_MAX_CONES      25
 #define VCT_MAX_INTERLEAVE 5
 #define VCT_GATHER_ROW     4 // pixels per invocation of cones/gather.comp
+#define VCT_BLUR_TILE      4 // pixels per invocation of cones/blur.comp, in x and y
 
 // Uniform block "vct_cones".
 struct vct_cone_params {
