@@ -115,9 +115,10 @@ shadow_receiver receiver_of_sun(surface s, frame_light light)
     for (int i = CASCADES - 1; i >= 0; i--) {
         shadow_receiver r;
         if (ONE_SUN)
-            r = shadow_receiver_in(first_face_table[i], s.position, s.normal);
+            r = shadow_receiver_in(first_face_table[i], s.position, s.normal, s.to_viewer);
         else
-            r = shadow_receiver_in(shadow_face_table[light.shadow_first + i], s.position, s.normal);
+            r = shadow_receiver_in(shadow_face_table[light.shadow_first + i], s.position, s.normal,
+                                   s.to_viewer);
         vec2 inside = abs(r.position.xy - 0.5 * r.size) + 3.0; // the stencil's reach
         if (i == CASCADES - 1 || max(inside.x, inside.y) < 0.5 * r.size) chosen = r;
     }
@@ -133,10 +134,10 @@ float visibility(surface s, frame_light light, vec3 to_light, bool facing)
     if (HAS_SUNS && (!HAS_LOCALS || light.type == FRAME_LIGHT_SUN))
         return shadow_resolved(shadow_sun_depths, receiver_of_sun(s, light), facing);
     int face = light.type == FRAME_LIGHT_POINT ? shadow_cube_face(s.position - light.position) : 0;
-    return shadow_resolved(
-        shadow_depths,
-        shadow_receiver_in(shadow_face_table[light.shadow_first + face], s.position, s.normal),
-        facing);
+    return shadow_resolved(shadow_depths,
+                           shadow_receiver_in(shadow_face_table[light.shadow_first + face],
+                                              s.position, s.normal, s.to_viewer),
+                           facing);
 }
 
 // Radiance of one light that the surface reflects to the viewer.

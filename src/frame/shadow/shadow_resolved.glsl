@@ -22,13 +22,13 @@ const float SHADOW_PARALLEL = 0.7; // cosine of normals
 // A receiver in a map. Units of all three axes are texels; z points to the light.
 struct shadow_receiver {
     vec3 position;
-    vec3 normal; // not normalised
-    float depth; // texels per unit of stored depth
-    float size;  // of the map
+    vec3 normal, to_viewer; // not normalised
+    float depth;            // texels per unit of stored depth
+    float size;             // of the map
     int layer;
 };
 
-shadow_receiver shadow_receiver_in(shadow_face face, vec3 world, vec3 normal)
+shadow_receiver shadow_receiver_in(shadow_face face, vec3 world, vec3 normal, vec3 to_viewer)
 {
     vec4 clip = face.clip_from_world * vec4(world, 1.0);
     vec4 along = face.clip_from_world * vec4(normal, 0.0);
@@ -41,6 +41,8 @@ shadow_receiver shadow_receiver_in(shadow_face face, vec3 world, vec3 normal)
     vec3 scale = vec3(vec2(0.5 * face.size), r.depth);
     r.position = vec3((ndc.xy * 0.5 + 0.5) * face.size - 0.5, ndc.z * r.depth);
     r.normal = (along.xyz - ndc * along.w) * scale;
+    along = face.clip_from_world * vec4(to_viewer, 0.0);
+    r.to_viewer = (along.xyz - ndc * along.w) * scale;
     return r;
 }
 
@@ -91,8 +93,15 @@ float shadow_resolved(sampler2DArray maps, shadow_receiver r, bool facing)
     vec4 tolerance = SHADOW_TOLERANCE + loose * (abs(slope_x) + abs(slope_y));
     vec4 least = inner - max(slope_x, 0.0) * x - max(slope_y, 0.0) * y;
     vec4 most = inner - min(slope_x, 0.0) * x - min(slope_y, 0.0) * y;
+    // At a seam, the receiver is within the tolerance of the sheet above it: the viewer sees that
+    // sheet's other side, and nothing of the receiver's own surface is in the map.
+    vec4 across = r.to_viewer.x * slope_x * vec4(-1.0, 1.0, -1.0, 1.0) +
+                  r.to_viewer.y * slope_y * vec4(-1.0, -1.0, 1.0, 1.0);
+    vec4 away = vec4(lessThan(vec4(r.to_viewer.z) - across, vec4(0.0)));
+    vec4 within = weight * vec4(greaterThanEqual(most, -tolerance));
+    if (dot(within, vec4(1.0) - away) <= 0.0) tolerance *= vec4(1.0) - 2.0 * away;
     vec4 occluder = weight * vec4(greaterThan(least, tolerance));
-    vec4 own = weight * vec4(greaterThanEqual(most, -tolerance)) - occluder;
+    vec4 own = within - occluder;
     vec4 one = vec4(1.0);
     // Convex edges: the facet beyond the edge, extrapolated, is above the receiver, but the chord
     // between both facets is below.
