@@ -179,8 +179,7 @@ static enum ag_result measure_scene(void *user, const struct listed_scene *liste
     double *work = malloc(pixels * sizeof *work);
     bool ok = work != NULL;
     for (int i = 0; i < METHODS; i++) ok = method_init(&methods[i], pixels) && ok;
-    enum ag_result result =
-        ok ? ag_scene_load(b->context, listed->path, &scene) : AG_ERROR_MEMORY;
+    enum ag_result result = ok ? ag_scene_load(b->context, listed->path, &scene) : AG_ERROR_MEMORY;
     if (result == AG_OK) result = measure(b, listed, scene, methods);
     if (result == AG_OK) print_row(b, listed->name, methods, work);
     ag_scene_destroy(scene);
