@@ -15,6 +15,9 @@ struct ag_reference {
     char checkpoint[48];
 };
 
+// The number changes with the sampling, so that older checkpoints are refused.
+static const char CHECKPOINT_SAMPLING[] = "reference 3 ";
+
 static struct ag_context *context_of(const struct ag_reference *r)
 {
     return r ? r->context : NULL;
@@ -50,8 +53,7 @@ static bool build(struct ag_reference *r, const struct ag_scene *scene,
     r->reference = reference_create(host, &pose, &camera, desc->width, desc->height, &options);
     pose_finish(&pose);
     if (!r->reference) return false;
-    // The number changes with the sampling, so that older checkpoints are refused.
-    snprintf(r->checkpoint, sizeof r->checkpoint, "reference 2 %016" PRIx64,
+    snprintf(r->checkpoint, sizeof r->checkpoint, "%s%016" PRIx64, CHECKPOINT_SAMPLING,
              reference_key(r->reference));
     return true;
 }
@@ -159,15 +161,23 @@ const char *ag_reference_checkpoint(const struct ag_reference *r)
     return r ? r->checkpoint : "";
 }
 
+// Why a file with this value is not continued. value NULL: none.
+static const char *checkpoint_difference(const char *value)
+{
+    bool known = value && strncmp(value, CHECKPOINT_SAMPLING, strlen(CHECKPOINT_SAMPLING)) == 0;
+    return !value || known ? "its scene, lights, camera, size or options differ"
+                           : "another version of the path tracer took its samples; render it again";
+}
+
 static bool checkpoint_matches(struct ag_reference *r, const char *path)
 {
     struct host *host = &r->context->host;
     char *value = exr_attribute_value(host, path, AG_REFERENCE_CHECKPOINT);
     bool same = value && strcmp(value, r->checkpoint) == 0;
+    const char *why = checkpoint_difference(value);
     host_free(host, value);
     if (same || host->failure != FAIL_NONE) return same;
-    return host_fail(host, FAIL_ARGUMENT,
-                     "cannot resume %s: its scene, lights, camera, size or options differ", path);
+    return host_fail(host, FAIL_ARGUMENT, "cannot resume %s: %s", path, why);
 }
 
 static bool resume(struct ag_reference *r, const char *path)

@@ -44,16 +44,16 @@ vec2s direction_tree_sample(const struct direction_node *nodes, vec2s u)
 
 // ---- fitting
 
-// The quarters of a square with n records share PRIOR / (n + PRIOR) of its moment, so that a few
+// The quarters of a square with n records share PRIOR / (n + PRIOR) of its weight, so that a few
 // records do not rule out a direction.
 static const double PRIOR = 1.0;
-static const double MIN_SHARE = 1.0 / 128.0; // of the density's integral, of a divided square
+static const double MIN_SHARE = 1.0 / 128.0; // of the tree's weight, of a divided square
 enum { MIN_RECORDS = 8 };                    // of a divided square
 
 struct fit {
     struct direction_node *nodes;
     int count;
-    double min_mass;
+    double min_weight;
 };
 
 // Moves records with at[axis] < middle to the front.
@@ -69,61 +69,42 @@ static int partition(struct direction_record *r, int count, int axis, float midd
     return low;
 }
 
-static double moment_of(const struct direction_record *r, int count)
+static double weight_of(const struct direction_record *r, int count)
 {
     double sum = 0.0;
-    for (int i = 0; i < count; i++) sum += (double)r[i].moment;
+    for (int i = 0; i < count; i++) sum += (double)r[i].weight;
     return sum;
 }
 
-// The integral of the density over a square of that area, if constant.
-static double mass_of(double moment, double area)
-{
-    return sqrt(moment * area);
-}
-
-static double fit_node(struct fit *f, int index, struct direction_record *r, int count,
-                       vec2s corner, float size, int depth);
-
-// The mass of a quarter, and its node in *child if it is divided.
-static double fit_quarter(struct fit *f, struct direction_record *r, int count, double moment,
-                          vec2s corner, float size, int depth, uint16_t *child)
-{
-    double mass = mass_of(moment, (double)size * (double)size);
-    *child = 0;
-    if (count < MIN_RECORDS || mass < f->min_mass || depth >= DIRECTION_TREE_DEPTH ||
-        f->count == DIRECTION_TREE_NODES)
-        return mass;
-    *child = (uint16_t)f->count++;
-    return fit_node(f, *child, r, count, corner, size, depth);
-}
-
-static double fit_node(struct fit *f, int index, struct direction_record *r, int count,
-                       vec2s corner, float size, int depth)
+static void fit_node(struct fit *f, int index, struct direction_record *r, int count, vec2s corner,
+                     float size, int depth)
 {
     float half = 0.5f * size;
     int lower = partition(r, count, 1, corner.y + half);
     int from[5] = { 0, partition(r, lower, 0, corner.x + half), lower, 0, count };
     from[3] = lower + partition(r + lower, count - lower, 0, corner.x + half);
-    double all = moment_of(r, count), masses[4], sum = 0.0;
+    double all = weight_of(r, count);
     for (int i = 0; i < 4; i++) {
         struct direction_record *part = r + from[i];
         int n = from[i + 1] - from[i];
-        double moment = (count * moment_of(part, n) + PRIOR * 0.25 * all) / (count + PRIOR);
+        double weight = (count * weight_of(part, n) + PRIOR * 0.25 * all) / (count + PRIOR);
+        f->nodes[index].share[i] = all > 0.0 ? (float)(weight / all) : 0.25f;
+        f->nodes[index].child[i] = 0;
+        if (n < MIN_RECORDS || weight < f->min_weight || depth >= DIRECTION_TREE_DEPTH ||
+            f->count == DIRECTION_TREE_NODES)
+            continue;
         vec2s at = { { corner.x + half * (float)(i & 1), corner.y + half * (float)(i >> 1) } };
-        masses[i] = fit_quarter(f, part, n, moment, at, half, depth + 1, &f->nodes[index].child[i]);
-        sum += masses[i];
+        int child = f->count++;
+        f->nodes[index].child[i] = (uint16_t)child;
+        fit_node(f, child, part, n, at, half, depth + 1);
     }
-    for (int i = 0; i < 4; i++)
-        f->nodes[index].share[i] = sum > 0.0 ? (float)(masses[i] / sum) : 0.25f;
-    return sum;
 }
 
 int direction_tree_fit(struct direction_record *records, int count, struct direction_node *nodes)
 {
-    double mass = mass_of(moment_of(records, count), 1.0);
-    if (!(mass > 0.0) || !isfinite(mass)) return 0;
-    struct fit f = { .nodes = nodes, .count = 1, .min_mass = MIN_SHARE * mass };
-    fit_node(&f, 0, records, count, (vec2s){ { 0.0f, 0.0f } }, 1.0f, 0);
+    double weight = weight_of(records, count);
+    if (!(weight > 0.0) || !isfinite(weight)) return 0;
+    struct fit f = { .nodes = nodes, .count = 1, .min_weight = MIN_SHARE * weight };
+    fit_node(&f, 0, records, count, (vec2s){ { 0.0f, 0.0f } }, 1.0f, 1);
     return f.count;
 }

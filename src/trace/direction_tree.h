@@ -65,14 +65,12 @@ static inline float direction_tree_density(const struct direction_node *nodes, v
 // A point of that density from a point of the unit square.
 vec2s direction_tree_sample(const struct direction_node *nodes, vec2s u);
 
-// A sample of the function to approximate. moment: its square over the density of the sample, both
+// A sample of the function to approximate. weight: its value over the density of the sample, both
 // with respect to area on the square.
 struct direction_record {
     vec2s at;
-    float moment;
+    float weight;
 };
 // Fits a tree to the records, which it reorders, and returns the number of nodes, at most
-// DIRECTION_TREE_NODES; 0 without any moment. The density is proportional to the root of the
-// function's second moment, which minimizes the variance of estimates that are themselves noisy
-// (Rath et al. 2020, "Variance-Aware Path Guiding", sec. 4).
+// DIRECTION_TREE_NODES; 0 without any weight. The density is proportional to the function.
 int direction_tree_fit(struct direction_record *records, int count, struct direction_node *nodes);

@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,117 +98,138 @@ static void build_cells(struct builder *b, size_t count)
 
 // ---- distributions
 
-// Variance of the light reflected at a visit, without guided rays and with them.
-struct variances {
-    double without, with;
+// Weights to choose from; the BSDF's samples keep an eighth.
+static const float WEIGHTS[] = { 0.0f, 0.25f, 0.5f, 0.75f, 0.875f };
+enum { WEIGHT_COUNT = sizeof WEIGHTS / sizeof WEIGHTS[0] };
+
+// How well p = b + w s (g − b) samples the integrand F, for each weight w: the second moment
+// ∫ F²/p, and ∫ F log(p/b), the cross entropy up to a constant. The latter is linear in F, so that
+// a few bright records do not decide.
+struct fitness {
+    double moment[WEIGHT_COUNT], entropy[WEIGHT_COUNT];
 };
 
-// From records that `nodes` was not fitted to: V = E[x²] − E[x]². With both techniques, by the
-// balance heuristic, E[x²] = ∫ F²/(b + g), and their means are the integrals of F b/(b + g) and
-// F g/(b + g).
-static struct variances measure(const struct guide_record *r, size_t count,
-                                const struct direction_node *nodes)
+// From records that `nodes` was not fitted to.
+static void measure(const struct guide_record *r, size_t count, const struct direction_node *nodes,
+                    struct fitness *fitness)
 {
-    double visits = 0.0, without = 0.0, with = 0.0, bsdf = 0.0, guided = 0.0;
     for (size_t i = 0; i < count; i++) {
-        visits += r[i].visit;
-        if (!(r[i].reflected > 0.0f)) continue;
+        if (!(r[i].reflected > 0.0f) || !(r[i].bsdf > 0.0f)) continue;
         double f = (double)r[i].reflected, b = (double)r[i].bsdf, all = (double)r[i].all;
-        double g = (double)direction_tree_density(nodes, r[i].at);
-        without += f * f / b / all;
-        with += f * f / (b + g) / all;
-        bsdf += f * (b / (b + g)) / all;
-        guided += f * (g / (b + g)) / all;
+        double g = (double)direction_tree_density(nodes, r[i].at), s = (double)r[i].share;
+        for (int k = 0; k < WEIGHT_COUNT; k++) {
+            double p = b + (double)WEIGHTS[k] * s * (g - b);
+            fitness->moment[k] += f * f / p / all;
+            fitness->entropy[k] += f / all * log(p / b);
+        }
     }
-    if (!(visits > 0.0)) return (struct variances){ 0 };
-    double mean = (bsdf + guided) / visits;
-    return (struct variances){ without / visits - mean * mean,
-                               (with - (bsdf * bsdf + guided * guided) / visits) / visits };
 }
 
 struct cell_fit {
     struct direction_node nodes[DIRECTION_TREE_NODES];
-    int count; // of nodes
-    double visits;
-    double without, gain; // variance of the image from near light at this cell; its reduction
+    int count;            // of nodes
+    double without, with; // variance of the image from this cell
 };
 
+enum { COPIES = 4 }; // of a record
 struct fit_job {
     const struct builder *builder;
-    struct direction_record *lights; // [records]: scratch
+    struct direction_record *lights; // [records · COPIES]: scratch
     struct cell_fit *fits;           // [cells]
 };
+
+// Records are spread over a square of twice this width: the directions towards the same light
+// differ within a cell.
+static const float SPREAD = 1.0f / 40.0f;
+
+static int spread(const struct guide_record *r, struct direction_record *out)
+{
+    for (int i = 0; i < COPIES; i++) {
+        float x = r->at.x + (i & 1 ? SPREAD : -SPREAD), y = r->at.y + (i & 2 ? SPREAD : -SPREAD);
+        vec2s at = { { fminf(fmaxf(x, 0.0f), 1.0f), fminf(fmaxf(y, 0.0f), 1.0f) } };
+        out[i] = (struct direction_record){ at, r->weight };
+    }
+    return COPIES;
+}
 
 static int fit_records(const struct guide_record *r, size_t count, struct direction_record *lights,
                        struct direction_node *nodes)
 {
     int lit = 0;
     for (size_t i = 0; i < count; i++)
-        if (r[i].reflected > 0.0f)
-            lights[lit++] = (struct direction_record){ r[i].at, r[i].moment };
+        if (r[i].reflected > 0.0f) lit += spread(&r[i], lights + lit);
     return direction_tree_fit(lights, lit, nodes);
 }
 
-// The gain is that of a distribution fitted to half of the records, for the others.
+// Each half of the records measures the distribution fitted to the other. False without light.
+static bool measure_halves(const struct guide_record *r, size_t count,
+                           struct direction_record *lights, struct direction_node *nodes,
+                           struct fitness *fitness)
+{
+    size_t half = count / 2;
+    if (fit_records(r, half, lights, nodes) == 0) return false;
+    measure(r + half, count - half, nodes, fitness);
+    if (fit_records(r + half, count - half, lights, nodes) == 0) return false;
+    measure(r, half, nodes, fitness);
+    return true;
+}
+
+struct cell_sums {
+    double importance, reflected, radiance;
+};
+
+static struct cell_sums sums_of(const struct guide_record *r, size_t count)
+{
+    struct cell_sums sums = { 0 };
+    for (size_t i = 0; i < count; i++) {
+        sums.importance += (double)r[i].importance;
+        sums.radiance += (double)r[i].radiance;
+        if (r[i].reflected > 0.0f) sums.reflected += (double)r[i].reflected / (double)r[i].all;
+    }
+    return sums;
+}
+
 static void fit_cell(void *user, size_t i)
 {
     const struct fit_job *job = user;
     const struct builder *b = job->builder;
     const struct guide_record *r = b->records + b->from[i];
-    size_t count = b->from[i + 1] - b->from[i], half = count / 2;
+    size_t count = b->from[i + 1] - b->from[i];
+    if (count == 0) return;
+    struct guide_cell *cell = &b->guide->cells[i];
     struct cell_fit *fit = &job->fits[i];
-    struct direction_record *lights = job->lights + b->from[i];
-    double importance = 0.0;
-    for (size_t k = 0; k < count; k++) {
-        fit->visits += r[k].visit;
-        importance += (double)r[k].importance;
-    }
-    if (fit_records(r, half, lights, fit->nodes) == 0) return;
-    struct variances v = measure(r + half, count - half, fit->nodes);
-    fit->without = importance * v.without;
-    fit->gain = importance * (v.without - v.with);
-    memset(fit->nodes, 0, sizeof fit->nodes);
+    struct direction_record *lights = job->lights + COPIES * b->from[i];
+    struct cell_sums sums = sums_of(r, count);
+    struct fitness fitness = { 0 };
+    double n = (double)count, mean = sums.reflected / n;
+    cell->radiance = (float)(sums.radiance / n);
+    if (!measure_halves(r, count, lights, fit->nodes, &fitness)) return;
+    int best = 0;
+    for (int k = 1; k < WEIGHT_COUNT; k++)
+        if (fitness.entropy[k] > fitness.entropy[best]) best = k;
+    fit->without = sums.importance * (fitness.moment[0] / n - mean * mean);
+    fit->with = sums.importance * (fitness.moment[best] / n - mean * mean);
+    if (best == 0) return;
     fit->count = fit_records(r, count, lights, fit->nodes);
-    b->guide->cells[i].axis = r[0].axis;
+    cell->axis = r[0].axis;
+    cell->weight = WEIGHTS[best];
 }
 
-// ---- choice of cells
-
-// Of the variance by near light: that of all other light, which guided rays leave.
-static const double OTHER_VARIANCE = 0.15;
-// The least estimated gain; it pays for the training and covers errors of the estimate.
-static const double MIN_GAIN = 1.2;
-
-static int by_gain_per_visit(const void *a, const void *b)
+static float mean_radiance(const struct guide_record *r, size_t count)
 {
-    const struct cell_fit *x = *(struct cell_fit *const *)a, *y = *(struct cell_fit *const *)b;
-    double first = x->gain * y->visits, second = y->gain * x->visits;
-    if (first != second) return first > second ? -1 : 1;
-    return x < y ? -1 : 1;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += (double)r[i].radiance;
+    return count > 0 ? (float)(sum / (double)count) : 0.0f;
 }
 
-// Keeps the distributions that minimize the product of variance and time.
-static void choose_cells(struct cell_fit *fits, struct cell_fit **order, size_t cells,
-                         double ray_cost)
+static double gain_of(const struct cell_fit *fits, size_t cells)
 {
-    double variance = 0.0, time = 0.0, least;
-    size_t kept = 0;
+    double without = 0.0, with = 0.0;
     for (size_t i = 0; i < cells; i++) {
-        order[i] = &fits[i];
-        variance += fits[i].without;
-        time += fits[i].visits;
+        without += fits[i].without;
+        with += fits[i].with;
     }
-    variance *= 1.0 + OTHER_VARIANCE;
-    qsort(order, cells, sizeof *order, by_gain_per_visit);
-    least = variance * time / MIN_GAIN;
-    for (size_t i = 0; i < cells; i++) {
-        variance -= order[i]->gain;
-        time += ray_cost * order[i]->visits;
-        if (!(variance * time < least)) continue;
-        least = variance * time;
-        kept = i + 1;
-    }
-    for (size_t i = kept; i < cells; i++) order[i]->count = 0;
+    return with > 0.0 ? without / with : 1.0;
 }
 
 static bool keep_distributions(struct host *host, const struct builder *b,
@@ -228,20 +250,21 @@ static bool keep_distributions(struct host *host, const struct builder *b,
     return true;
 }
 
-static bool fit_cells(struct host *host, const struct builder *b, size_t records, double ray_cost)
+static bool fit_cells(struct host *host, const struct builder *b, size_t records, double *gain)
 {
     struct fit_job job = { .builder = b };
     b->guide->cells = host_alloc(host, b->cells, sizeof *b->guide->cells);
-    job.lights = host_alloc(host, records, sizeof *job.lights);
+    job.lights = host_alloc(host, COPIES * records, sizeof *job.lights);
     job.fits = host_alloc(host, b->cells, sizeof *job.fits);
-    struct cell_fit **order = host_alloc(host, b->cells, sizeof *order);
-    bool ok = b->guide->cells && job.lights && job.fits && order;
-    if (ok) parallel_for(b->cells, 1, fit_cell, &job);
-    if (ok && ray_cost > 0.0) choose_cells(job.fits, order, b->cells, ray_cost);
-    ok = ok && keep_distributions(host, b, job.fits);
+    bool ok = b->guide->cells && job.lights && job.fits;
+    if (ok) {
+        parallel_for(b->cells, 1, fit_cell, &job);
+        b->guide->radiance = mean_radiance(b->records, records);
+        *gain = gain_of(job.fits, b->cells);
+        ok = keep_distributions(host, b, job.fits);
+    }
     host_free(host, job.lights);
     host_free(host, job.fits);
-    host_free(host, order);
     return ok;
 }
 
@@ -252,19 +275,20 @@ static bool has_distribution(const struct guide *guide, size_t cells)
     return false;
 }
 
-bool guide_fit(struct host *host, struct guide_record *records, size_t count, double ray_cost,
-               struct guide **out)
+bool guide_fit(struct host *host, struct guide_record *records, size_t count, struct guide **out,
+               double *gain)
 {
     struct builder b = { .records = records };
     b.max_nodes = AXES + 8 * (uint32_t)(count / CELL_RECORDS);
     *out = NULL;
+    *gain = 1.0;
     b.guide = host_alloc(host, 1, sizeof *b.guide);
     if (!b.guide) return false;
     b.guide->nodes = host_alloc(host, b.max_nodes, sizeof *b.guide->nodes);
     b.from = host_alloc(host, b.max_nodes + 1, sizeof *b.from);
     bool ok = b.guide->nodes && b.from;
     if (ok) build_cells(&b, count);
-    ok = ok && fit_cells(host, &b, count, ray_cost);
+    ok = ok && fit_cells(host, &b, count, gain);
     if (ok && has_distribution(b.guide, b.cells))
         *out = b.guide;
     else

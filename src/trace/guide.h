@@ -1,10 +1,9 @@
-// Guided rays: learned distributions of near light, that is sky seen from a surface and punctual
-// light reflected once towards it. docs/reference.md describes the method.
+// Path guiding: learned distributions of the light that arrives at surfaces (Müller, Gross & Novák
+// 2017, "Practical Path Guiding for Efficient Light-Transport Simulation"). docs/reference.md
+// describes the method.
 //
-// As in path guiding (Müller, Gross & Novák 2017, "Practical Path Guiding for Efficient
-// Light-Transport Simulation"), a spatial tree of cells holds directional quadtrees. Here they do
-// not guide the path but a second ray from each vertex, combined with BSDF sampling by multiple
-// importance sampling: near light is found without noise in the light itself.
+// A spatial tree of cells holds directional quadtrees over hemispheres. The share of guided samples
+// is chosen for each cell by the records that its distribution was not fitted to.
 #pragma once
 
 #include "trace/direction_tree.h"
@@ -14,7 +13,9 @@
 // The distribution of one cell.
 struct guide_cell {
     int axis;                           // of the surfaces, direction_axis
-    const struct direction_node *nodes; // NULL: no guided rays
+    float weight;                       // of guided samples against those of the diffuse lobe
+    const struct direction_node *nodes; // NULL: not guided
+    float radiance;                     // mean luminance that leaves the surfaces, cd/m²
 };
 
 // An inner node divides by position.raw[axis] at `split`; its second child follows the first. A
@@ -28,9 +29,10 @@ struct guide {
     struct guide_node *nodes; // the first six are the roots, in the order of direction_axis
     struct guide_cell *cells;
     struct direction_node *directions; // of all cells
+    float radiance;                    // mean over the visits, as that of the cells
 };
 
-// The cell of a surface point; NULL where there are no guided rays. guide: may be NULL.
+// The cell of a surface point; NULL without a guide.
 static inline const struct guide_cell *guide_find(const struct guide *guide, vec3s position,
                                                   vec3s normal)
 {
@@ -38,8 +40,7 @@ static inline const struct guide_cell *guide_find(const struct guide *guide, vec
     const struct guide_node *node = &guide->nodes[direction_axis(normal)];
     while (node->axis < 3)
         node = &guide->nodes[node->child + (position.raw[node->axis] < node->split ? 0u : 1u)];
-    const struct guide_cell *cell = &guide->cells[node->child];
-    return cell->nodes ? cell : NULL;
+    return &guide->cells[node->child];
 }
 
 static inline vec3s guide_sample(const struct guide_cell *cell, vec2s u)
@@ -57,23 +58,22 @@ static inline float guide_pdf(const struct guide_cell *cell, vec3s direction)
 
 // ---- fitting
 
-// A visit of a surface by a path, or near light that a guided ray found. The integrand and the
-// densities are with respect to area on the square of the directions.
+// A visit of a surface by a path. The integrand and the densities are with respect to area on the
+// square of the directions.
 struct guide_record {
     vec3s position;
     int axis;
-    bool visit;
-    float importance; // of a visit: squared throughput of the path before
+    float importance; // squared throughput of the path before, relative to the pixel's light
+    float radiance;   // estimate of the luminance that leaves backwards along the path, cd/m²
     vec2s at;         // direction
     float reflected;  // the integrand, luminance; 0: no light was found
-    float moment;     // of the irradiance, as direction_record
-    float bsdf, all;  // densities of BSDF sampling and of both techniques together
+    float weight;     // of the irradiance, as direction_record
+    float bsdf, all;  // densities of BSDF sampling and of the sample
+    float share;      // of guided samples where the cell's weight is 1
 };
 
-// Fits a guide to records, which it reorders. ray_cost: time of a guided ray,
-// relative to that of a path's step; guided rays are kept where they reduce the product of variance
-// and time; 0: wherever near light was found. *guide is NULL where they nowhere do. False
-// on failure.
-bool guide_fit(struct host *host, struct guide_record *records, size_t count, double ray_cost,
-               struct guide **guide);
+// Fits a guide to records, which it reorders. *guide is NULL where no light was found. *gain: the
+// variance of the records without the guide over that with it. False on failure.
+bool guide_fit(struct host *host, struct guide_record *records, size_t count, struct guide **guide,
+               double *gain);
 void guide_destroy(struct host *host, struct guide *guide); // accepts NULL

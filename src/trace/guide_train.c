@@ -11,11 +11,15 @@
 #include <string.h>
 
 enum {
-    BATCH_RECORDS = PATH_BATCH * PATH_TRAIL * PATH_TECHNIQUES,
-    PATHS_PER_PIXEL = 1, // of all passes
-    MAX_PATHS = 114688,  // of all passes: the last one has up to 2¹⁶ and 25 MB of records
-    PASSES = 3,          // each with twice the paths of the one before
+    BATCH_RECORDS = PATH_BATCH * PATH_TRAIL,
+    PATHS_PER_PIXEL = 2, // of all passes
+    MAX_PATHS = 122880,  // of all passes: the last one has up to 2¹⁶ and 45 MB of records
+    PASSES = 4,          // each with twice the paths of the one before
 };
+// Estimated gains of variance: at the end, to pay for the time of guided samples, and before the
+// last passes, to train any further. Estimates are low: they know the noise of later vertices
+// as it is without the guide that is being fitted.
+static const double MIN_GAIN = 1.06, PROMISING_GAIN = 1.005;
 // Sample numbers of the first pass; those of images are smaller.
 static const uint32_t FIRST_SAMPLE = UINT32_C(1) << 31;
 
@@ -30,33 +34,53 @@ struct pass {
 
 // ---- records
 
-static struct guide_record record_of(const struct path_vertex *v, const struct path_found *found)
+// Variance counts relative to the squared light of its pixel, as relmse does, with a lower bound.
+static float importance_scale(const struct guide *guide, const struct path_vertex *first)
+{
+    static const float LEAST = 0.1f; // of the mean
+    if (!guide) return 1.0f;
+    float light = guide_find(guide, first->position, first->normal)->radiance;
+    float least = LEAST * guide->radiance, square = light * light + least * least;
+    return square > 0.0f ? 1.0f / square : 0.0f;
+}
+
+// arriving: radiance from the sampled direction, cd/m².
+static struct guide_record record_of(const struct path_vertex *v, vec3s arriving)
 {
     struct guide_record r = { .position = v->position, .axis = direction_axis(v->normal) };
     struct direction_point p;
-    if (!(found->pdf > 0.0f) || !direction_to_square(r.axis, found->direction, &p)) return r;
-    float scale = found->cosine * p.sr, irradiance = luminance(found->light) * scale;
+    r.importance = v->throughput * v->throughput;
+    r.radiance = luminance(v->direct);
+    if (!(v->cosine > 0.0f) || !direction_to_square(r.axis, v->direction, &p)) return r;
+    float scale = v->cosine * p.sr, irradiance = luminance(arriving) * scale;
     r.at = p.at;
-    r.reflected = luminance(glms_vec3_mul(found->f, found->light)) * scale;
-    r.bsdf = found->bsdf_pdf * p.sr;
-    r.all = found->pdf * p.sr;
-    r.moment = irradiance * irradiance / r.all;
-    if (!(r.reflected > 0.0f) || !isfinite(r.moment)) r.reflected = 0.0f;
+    r.reflected = luminance(glms_vec3_mul(v->f, arriving)) * scale;
+    r.radiance += luminance(glms_vec3_mul(v->f, arriving)) * v->cosine / v->pdf;
+    r.share = v->share;
+    r.bsdf = v->bsdf_pdf * p.sr;
+    r.all = v->pdf * p.sr;
+    r.weight = irradiance / r.all;
+    if (!(r.reflected > 0.0f) || !isfinite(r.weight)) r.reflected = 0.0f;
     return r;
 }
 
-static uint32_t add_records(const struct path_trail *trail, struct guide_record *out)
+// From the end of the path: what leaves a vertex is what arrives at the one before.
+static uint32_t add_records(const struct path_trail *trail, const struct guide *guide,
+                            struct guide_record *out)
 {
-    uint32_t count = 0;
-    for (int i = 0; i < trail->count; i++) {
+    if (trail->count == 0) return 0;
+    vec3s leaving = vec3_of(0, 0, 0);
+    float scale = importance_scale(guide, &trail->vertices[0]);
+    for (int i = trail->count - 1; i >= 0; i--) {
         const struct path_vertex *v = &trail->vertices[i];
-        out[count] = record_of(v, &v->found[PATH_BSDF]);
-        out[count].visit = true;
-        out[count++].importance = v->throughput * v->throughput;
-        out[count] = record_of(v, &v->found[PATH_GUIDE]);
-        if (out[count].reflected > 0.0f) count++;
+        vec3s arriving = glms_vec3_add(v->light, leaving);
+        out[i] = record_of(v, arriving);
+        out[i].importance *= scale;
+        leaving = vec3_of(0, 0, 0);
+        if (v->cosine > 0.0f)
+            leaving = glms_vec3_scale(glms_vec3_mul(v->f, arriving), v->cosine / v->pdf);
     }
-    return count;
+    return (uint32_t)trail->count;
 }
 
 // ---- passes
@@ -91,7 +115,7 @@ static void trace_batch(void *user, size_t batch)
     path_trace(&settings, samples, (int)count, &pass->rays[batch]);
     struct guide_record *out = pass->records + batch * BATCH_RECORDS;
     for (uint32_t i = 0; i < count; i++)
-        pass->counts[batch] += add_records(&trails[i], out + pass->counts[batch]);
+        pass->counts[batch] += add_records(&trails[i], pass->guide, out + pass->counts[batch]);
     embree_restore_denormals(before);
 }
 
@@ -107,15 +131,8 @@ static size_t compact(const struct pass *pass)
     return total;
 }
 
-// Measured (bench/results/reference.md). With punctual lights a guided ray needs the surface that
-// it hits and a shadow ray, else occlusion alone.
-static double ray_cost(const struct light_table *lights)
-{
-    return lights->punctual_count > 0 ? 1.3 : 0.9;
-}
-
 static bool run_pass(const struct guide_training *t, uint32_t number, uint32_t paths,
-                     struct guide **guide, uint64_t *rays)
+                     struct guide **guide, double *gain, uint64_t *rays)
 {
     size_t batches = batches_of(paths);
     struct pass pass = { .training = t, .guide = *guide, .number = number, .paths = paths };
@@ -127,9 +144,7 @@ static bool run_pass(const struct guide_training *t, uint32_t number, uint32_t p
         parallel_for(batches, 1, trace_batch, &pass);
         for (size_t i = 0; i < batches; i++) *rays += pass.rays[i];
         guide_destroy(t->host, *guide);
-        size_t count = compact(&pass);
-        double cost = number + 1 < PASSES ? 0.0 : ray_cost(&t->settings.scene->lights);
-        ok = guide_fit(t->host, pass.records, count, cost, guide);
+        ok = guide_fit(t->host, pass.records, compact(&pass), guide, gain);
     }
     host_free(t->host, pass.records);
     host_free(t->host, pass.counts);
@@ -137,22 +152,27 @@ static bool run_pass(const struct guide_training *t, uint32_t number, uint32_t p
     return ok;
 }
 
-bool guide_train(const struct guide_training *t, struct guide **guide, uint64_t *rays)
+static bool run_passes(const struct guide_training *t, uint32_t paths, struct guide **guide,
+                       double *gain, uint64_t *rays)
 {
-    const struct light_table *lights = &t->settings.scene->lights;
-    *guide = NULL;
-    if (!lights->has_sky && lights->punctual_count == 0) return true;
-    double wanted = (double)PATHS_PER_PIXEL * t->width * t->height;
-    uint32_t paths = (uint32_t)fmin(wanted, MAX_PATHS);
     for (uint32_t i = 0; i < PASSES; i++) {
         uint32_t part = (paths << i) / ((1u << PASSES) - 1u);
         if (part == 0) continue;
-        if (!run_pass(t, i, part, guide, rays)) {
-            guide_destroy(t->host, *guide);
-            *guide = NULL;
-            return false;
-        }
-        if (!*guide) break;
+        if (!run_pass(t, i, part, guide, gain, rays)) return false;
+        if (!*guide || (i > 0 && *gain < PROMISING_GAIN)) break;
     }
     return true;
+}
+
+bool guide_train(const struct guide_training *t, struct guide **guide, uint64_t *rays)
+{
+    const struct light_table *lights = &t->settings.scene->lights;
+    double gain = 1.0, wanted = (double)PATHS_PER_PIXEL * t->width * t->height;
+    *guide = NULL;
+    if (!lights->has_sky && lights->punctual_count == 0) return true;
+    bool ok = run_passes(t, (uint32_t)fmin(wanted, MAX_PATHS), guide, &gain, rays);
+    if (ok && gain > MIN_GAIN) return true;
+    guide_destroy(t->host, *guide);
+    *guide = NULL;
+    return ok;
 }

@@ -66,12 +66,12 @@ vec3s next_event_one_punctual(const struct trace_scene *scene, const struct surf
 }
 
 struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
-                                             const struct surface *s, const struct bsdf *b,
+                                             const struct surface *s, const struct guided_bsdf *b,
                                              float choice, vec2s u, uint64_t *rays)
 {
     struct arriving_light none = { 0 };
     struct emitter_sample e = light_sample_emitter(scene, s->position, choice, u);
-    float cosine = glms_vec3_dot(b->normal, e.to_light);
+    float cosine = glms_vec3_dot(b->bsdf.normal, e.to_light);
     if (is_black(e.radiance) || !(e.pdf > 0.0f) || !(cosine > 0.0f) ||
         !(glms_vec3_dot(s->geometric, e.to_light) > 0.0f))
         return none;
@@ -79,27 +79,7 @@ struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
     struct ray ray = { from, glms_vec3_sub(e.position, from), 0.0f, 1.0f };
     ++*rays;
     if (embree_occluded(scene->embree, &ray)) return none;
-    struct reflection r = bsdf_reflect(b, e.to_light);
-    return light_arriving(r.f, e.radiance, cosine / e.pdf * power_heuristic(e.pdf, r.pdf));
-}
-
-struct near_light next_event_near(const struct trace_scene *scene, const struct near_query *q,
-                                  uint64_t *rays)
-{
-    struct near_light light = { 0 };
-    struct ray_hit hit;
-    struct surface s;
-    bool reflected = q->reflected && scene->lights.punctual_count > 0;
-    ++*rays;
-    if (!reflected) {
-        light.sky = !embree_occluded(scene->embree, &q->ray);
-    } else if (!embree_closest(scene->embree, &q->ray, NULL, false, &hit)) {
-        light.sky = true;
-    } else {
-        surface_at(scene, &q->ray, &hit, NULL, &s);
-        struct bsdf b = surface_bsdf(&s, glms_vec3_negate(q->ray.direction), q->diffuse_only);
-        light.radiance = next_event_one_punctual(scene, &s, &b, q->choice, rays);
-    }
-    if (light.sky && q->sky) light.radiance = scene->lights.sky;
-    return light;
+    struct reflection r = bsdf_reflect(&b->bsdf, e.to_light);
+    float other = guided_pdf(b, e.to_light, r.pdf);
+    return light_arriving(r.f, e.radiance, cosine / e.pdf * power_heuristic(e.pdf, other));
 }

@@ -1,6 +1,7 @@
 // Direct light at a path vertex from punctual lights and emitters. *rays counts traced rays.
 #pragma once
 
+#include "trace/guided_bsdf.h"
 #include "trace/surface.h"
 
 // Irradiance at a surface, lux, and the radiance reflected back along the path, cd/m².
@@ -14,23 +15,11 @@ vec3s next_event_all_punctual(const struct trace_scene *scene, const struct surf
 // Estimate from one light, selected by its unoccluded contribution. choice: from the unit interval.
 vec3s next_event_one_punctual(const struct trace_scene *scene, const struct surface *surface,
                               const struct bsdf *bsdf, float choice, uint64_t *rays);
-// Estimate from a point on an emitter, weighted against BSDF sampling.
+// Estimate from a point on an emitter, weighted against directional sampling.
 struct arriving_light next_event_one_emitter(const struct trace_scene *scene,
-                                             const struct surface *surface, const struct bsdf *bsdf,
-                                             float choice, vec2s u, uint64_t *rays);
-// A ray to near light: the sky, or punctual lights reflected at the hit.
-struct near_query {
-    struct ray ray;
-    bool sky, reflected; // to look for
-    bool diffuse_only;   // reflection without the specular lobe
-    float choice;        // of the punctual light, from the unit interval
-};
-struct near_light {
-    vec3s radiance; // cd/m²
-    bool sky;
-};
-struct near_light next_event_near(const struct trace_scene *scene, const struct near_query *query,
-                                  uint64_t *rays);
+                                             const struct surface *surface,
+                                             const struct guided_bsdf *bsdf, float choice, vec2s u,
+                                             uint64_t *rays);
 // Radiance arriving from a direction with BSDF value f. scale: cosine over pdf, times the weight.
 static inline struct arriving_light light_arriving(vec3s f, vec3s radiance, float scale)
 {

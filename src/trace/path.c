@@ -9,8 +9,12 @@
 
 #include <math.h>
 
-enum { ROULETTE_DEPTH = 3 };                  // bounces before Russian roulette
-static const float MAX_SURVIVAL = 0.95f;      // so that paths end in a furnace, too
+enum { ROULETTE_DEPTH = 3 };             // bounces before Russian roulette
+static const float MAX_SURVIVAL = 0.95f; // so that paths end in a furnace, too
+// Guided paths of less than this share of the pixel's light end at random; each costs more, so
+// that the noise of their ends matters more.
+static const float GUIDED_DEATH = 0.5f;
+static const float MIN_SURVIVAL = 0.1f;       // of them, where the guide expects little light
 static const float DIFFUSE_SHARE = 0.25f;     // least share of diffuse samples at the primary hit
 static const float BACK_FACE_STEP = 0x1p-20f; // relative step past a culled back face
 
@@ -74,16 +78,16 @@ struct path {
     uint64_t *rays;
     uint64_t key; // of the random sequence
     struct surface surface;
-    struct bsdf bsdf;
-    const struct guide_cell *cell; // NULL: no guided rays
-    struct path_vertex *vertex;    // record of the step; NULL: none
+    struct guided_bsdf bsdf;
+    struct path_vertex *vertex; // record of the step; NULL: none
+    vec3s next_event;           // reflected at this vertex, cd/m²
     struct step step;
-    float near_weight;             // of the step's near light, against guided rays
     struct ray_hit hit;            // of the step
     bool has_hit;                  // the step hit a surface
     vec3s first_weight;            // f · cosine / pdf of the first step
     float first_irradiance_weight; // cosine / pdf of the first step, sr
     vec3s throughput;              // of all later steps
+    float first_radiance;          // expected at the primary hit, cd/m²; 0: unknown
     int depth;                     // bounces so far
 };
 
@@ -125,8 +129,6 @@ static void add_arriving(struct path *p, const struct arriving_light *g)
 // Random dimensions per vertex. Samples are independent, so that their variance gives the standard
 // error of the mean; Owen-scrambled Sobol points have a tenth less error but no such estimate.
 enum dimension { DIM_CHOICES, DIM_LIGHT, DIM_STEP, DIM_LATER, DIM_COUNT };
-// Guided rays have random numbers of their own, so that paths are the same without them.
-static const uint64_t GUIDE_KEY = UINT64_C(0x6775696465642072);
 
 // Increment of SplitMix64; the sample's key is its initial state.
 static const uint64_t SPLITMIX_INCREMENT = UINT64_C(0x9e3779b97f4a7c15);
@@ -141,15 +143,22 @@ vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32
     return rng_pair(rng_mix(key_of(settings, pixel, sample)));
 }
 
-static vec2s random_of_key(const struct path *p, uint64_t key, enum dimension dimension)
-{
-    uint64_t number = (uint64_t)(DIM_COUNT * p->depth + (int)dimension) + 1;
-    return rng_pair(rng_mix(key + number * SPLITMIX_INCREMENT));
-}
-
 static vec2s random_pair(const struct path *p, enum dimension dimension)
 {
-    return random_of_key(p, p->key, dimension);
+    uint64_t number = (uint64_t)(DIM_COUNT * p->depth + (int)dimension) + 1;
+    return rng_pair(rng_mix(p->key + number * SPLITMIX_INCREMENT));
+}
+
+// Light found at the end of the recorded step.
+static void record_light(struct path *p, vec3s light)
+{
+    if (p->vertex) add_to(&p->vertex->light, light);
+}
+
+static void record_next_event(struct path *p, vec3s light)
+{
+    add_to(&p->next_event, light);
+    if (p->depth > 0) record_light(p, light);
 }
 
 static void sample_lights(struct path *p, float choice)
@@ -157,14 +166,15 @@ static void sample_lights(struct path *p, float choice)
     const struct trace_scene *scene = p->settings->scene;
     if (p->depth == 0 && !p->settings->direct) return;
     if (p->depth > 0 && scene->lights.punctual_count > 0) {
-        vec3s light = next_event_one_punctual(scene, &p->surface, &p->bsdf,
+        vec3s light = next_event_one_punctual(scene, &p->surface, &p->bsdf.bsdf,
                                               random_pair(p, DIM_LATER).x, p->rays);
-        if (p->vertex) p->vertex->found[PATH_BSDF].light = light;
-        add_reflected(p, glms_vec3_scale(light, p->near_weight));
+        record_next_event(p, light);
+        add_reflected(p, light);
     }
     if (!scene->lights.has_emitters) return;
     struct arriving_light g = next_event_one_emitter(scene, &p->surface, &p->bsdf, choice,
                                                      random_pair(p, DIM_LIGHT), p->rays);
+    record_next_event(p, g.radiance);
     add_arriving(p, &g);
 }
 
@@ -174,94 +184,47 @@ static bool is_last(const struct path *p)
     return p->depth == (p->settings->indirect ? p->settings->bounces : 0);
 }
 
-// ---- guided rays
+// ---- steps
 
-static void record_vertex(struct path *p)
+// False at the end of the trail.
+static bool record_vertex(struct path *p)
 {
     struct path_trail *trail = p->sample->trail;
-    p->vertex = NULL;
-    if (!trail || trail->count == PATH_TRAIL) return;
+    if (!trail) return true;
+    if (trail->count == PATH_TRAIL) return false;
     vec3s throughput = p->throughput;
     if (p->depth > 0) throughput = glms_vec3_mul(throughput, p->first_weight);
     p->vertex = &trail->vertices[trail->count++];
     *p->vertex = (struct path_vertex){ .position = p->surface.position,
-                                       .normal = p->bsdf.normal,
-                                       .throughput = luminance(throughput) };
+                                       .normal = p->bsdf.bsdf.normal,
+                                       .throughput = luminance(throughput),
+                                       .direct = p->next_event,
+                                       .share = guided_share(&p->bsdf.bsdf, 1.0f) };
+    return true;
 }
 
-static void record_sample(struct path *p, enum path_technique technique, vec3s direction,
-                          const struct reflection *r, float guide_pdf)
+static void record_step(struct path *p, float cosine, float bsdf_pdf)
 {
     if (!p->vertex) return;
-    p->vertex->found[technique] = (struct path_found){
-        .direction = direction,
-        .cosine = glms_vec3_dot(p->bsdf.normal, direction),
-        .f = r->f,
-        .bsdf_pdf = r->pdf,
-        .pdf = r->pdf + guide_pdf,
-    };
+    p->vertex->direction = p->step.ray.direction;
+    p->vertex->cosine = cosine;
+    p->vertex->f = p->step.f;
+    p->vertex->bsdf_pdf = bsdf_pdf;
+    p->vertex->pdf = p->step.pdf;
 }
-
-static bool counts_sky(const struct path *p)
-{
-    return p->depth > 0 || p->settings->direct;
-}
-
-static void add_near(struct path *p, const struct near_light *light, vec3s f, float scale)
-{
-    if (light->sky) {
-        struct arriving_light g = light_arriving(f, light->radiance, scale);
-        add_arriving(p, &g);
-    } else if (p->depth > 0) {
-        add_reflected(p, glms_vec3_mul(glms_vec3_scale(f, scale), light->radiance));
-    } else {
-        add_indirect(p, light->radiance, glms_vec3_scale(f, scale), scale);
-    }
-}
-
-// A second ray from the vertex for near light, weighted against BSDF sampling.
-static void sample_guide(struct path *p)
-{
-    if (!p->cell) return;
-    uint64_t key = rng_mix(p->key ^ GUIDE_KEY);
-    vec3s to_light = guide_sample(p->cell, random_of_key(p, key, DIM_STEP));
-    float cosine = glms_vec3_dot(p->bsdf.normal, to_light), pdf = guide_pdf(p->cell, to_light);
-    if (!(cosine > 0.0f) || !(glms_vec3_dot(p->surface.geometric, to_light) > 0.0f) ||
-        !(pdf > 0.0f))
-        return;
-    struct reflection r = bsdf_reflect(&p->bsdf, to_light);
-    const struct near_query query = {
-        .ray = { surface_leave(&p->surface, to_light), to_light, 0.0f, INFINITY },
-        .sky = counts_sky(p),
-        .reflected = !is_last(p),
-        .diffuse_only = p->settings->diffuse_only,
-        .choice = random_of_key(p, key, DIM_LATER).x,
-    };
-    struct near_light light = next_event_near(p->settings->scene, &query, p->rays);
-    record_sample(p, PATH_GUIDE, to_light, &r, pdf);
-    if (p->vertex) p->vertex->found[PATH_GUIDE].light = light.radiance;
-    add_near(p, &light, r.f, cosine / pdf * power_heuristic(pdf, r.pdf));
-}
-
-static void weigh_near(struct path *p, const struct reflection *r)
-{
-    float pdf = p->cell ? guide_pdf(p->cell, p->step.ray.direction) : 0.0f;
-    p->near_weight = power_heuristic(r->pdf, pdf);
-    record_sample(p, PATH_BSDF, p->step.ray.direction, r, pdf);
-}
-
-// ---- steps
 
 static bool sample_direction(struct path *p, float choice)
 {
-    vec3s to_light = bsdf_sample(&p->bsdf, choice, random_pair(p, DIM_STEP));
-    float cosine = glms_vec3_dot(p->bsdf.normal, to_light);
+    const struct bsdf *bsdf = &p->bsdf.bsdf;
+    vec3s to_light = guided_sample(&p->bsdf, choice, random_pair(p, DIM_STEP));
+    float cosine = glms_vec3_dot(bsdf->normal, to_light);
     if (!(cosine > 0.0f) || !(glms_vec3_dot(p->surface.geometric, to_light) > 0.0f)) return false;
-    struct reflection r = bsdf_reflect(&p->bsdf, to_light);
-    if (!(r.pdf > 0.0f)) return false;
+    struct reflection r = bsdf_reflect(bsdf, to_light);
+    float pdf = guided_pdf(&p->bsdf, to_light, r.pdf);
+    if (!(pdf > 0.0f)) return false;
     struct ray ray = { surface_leave(&p->surface, to_light), to_light, 0.0f, INFINITY };
-    p->step = (struct step){ .ray = ray, .f = r.f, .scale = cosine / r.pdf, .pdf = r.pdf };
-    weigh_near(p, &r);
+    p->step = (struct step){ .ray = ray, .f = r.f, .scale = cosine / pdf, .pdf = pdf };
+    record_step(p, cosine, r.pdf);
     return true;
 }
 
@@ -270,11 +233,10 @@ static bool sample_vertex(struct path *p)
 {
     const struct light_table *lights = &p->settings->scene->lights;
     vec2s choices = random_pair(p, DIM_CHOICES);
+    p->next_event = vec3_of(0, 0, 0);
     sample_lights(p, choices.x);
     if (is_last(p) && !lights->has_emitters && !lights->has_sky) return false;
-    record_vertex(p);
-    sample_guide(p);
-    return sample_direction(p, choices.y);
+    return record_vertex(p) && sample_direction(p, choices.y);
 }
 
 static void trace_step(struct path *p)
@@ -288,7 +250,7 @@ static void trace_step(struct path *p)
 static vec3s hit_radiance(const struct path *p)
 {
     const struct surface *end = &p->surface;
-    if (!p->has_hit) return glms_vec3_scale(p->settings->scene->lights.sky, p->near_weight);
+    if (!p->has_hit) return p->settings->scene->lights.sky;
     if (is_black(end->emission)) return end->emission;
     float cosine = -glms_vec3_dot(end->geometric, p->step.ray.direction);
     float other =
@@ -296,13 +258,24 @@ static vec3s hit_radiance(const struct path *p)
     return glms_vec3_scale(end->emission, power_heuristic(p->step.pdf, other));
 }
 
+// The probability to go on: the throughput; with a guide, the share of the pixel's light that the
+// path still carries, by the estimates of what leaves both surfaces, over GUIDED_DEATH.
+static float survival(const struct path *p)
+{
+    float largest = glms_vec3_max(p->throughput);
+    if (!p->bsdf.cell) return fminf(largest, MAX_SURVIVAL);
+    if (!(p->first_radiance > 0.0f)) return fminf(largest / GUIDED_DEATH, MAX_SURVIVAL);
+    float throughput = luminance(glms_vec3_mul(p->first_weight, p->throughput));
+    float share = throughput * p->bsdf.cell->radiance / p->first_radiance;
+    return fminf(fmaxf(share, MIN_SURVIVAL) / GUIDED_DEATH, MAX_SURVIVAL);
+}
+
 // Russian roulette; the survivor's throughput is divided by its probability.
 static bool survives(struct path *p)
 {
     if (p->depth < ROULETTE_DEPTH || p->sample->trail) return true;
     float choice = random_pair(p, DIM_LATER).y;
-    float largest = glms_vec3_max(p->throughput);
-    float probability = fminf(largest, MAX_SURVIVAL);
+    float probability = survival(p);
     if (!(choice < probability)) return false;
     p->throughput = glms_vec3_scale(p->throughput, 1.0f / probability);
     return true;
@@ -318,9 +291,9 @@ static void advance(struct path *p)
         p->throughput = glms_vec3_mul(p->throughput, weight);
     }
     p->depth++;
-    p->bsdf = surface_bsdf(&p->surface, glms_vec3_negate(p->step.ray.direction),
-                           p->settings->diffuse_only);
-    p->cell = guide_find(p->settings->guide, p->surface.position, p->bsdf.normal);
+    struct bsdf bsdf = surface_bsdf(&p->surface, glms_vec3_negate(p->step.ray.direction),
+                                    p->settings->diffuse_only);
+    p->bsdf = guided_bsdf_of(&bsdf, p->settings->guide, p->surface.position);
 }
 
 // Moves to the end of the step; false where the path ends.
@@ -328,9 +301,9 @@ static bool arrive(struct path *p)
 {
     bool last = is_last(p);
     if (p->has_hit) surface_at(p->settings->scene, &p->step.ray, &p->hit, NULL, &p->surface);
-    if (p->vertex && !p->has_hit && counts_sky(p))
-        p->vertex->found[PATH_BSDF].light = p->settings->scene->lights.sky;
-    struct arriving_light g = light_arriving(p->step.f, hit_radiance(p), p->step.scale);
+    vec3s light = hit_radiance(p);
+    if (p->depth > 0 || p->settings->direct) record_light(p, light);
+    struct arriving_light g = light_arriving(p->step.f, light, p->step.scale);
     add_arriving(p, &g);
     if (last || !p->has_hit) return false;
     advance(p);
@@ -364,8 +337,8 @@ static void begin(struct batch *batch, const struct path_settings *settings,
     p->sample = sample;
     p->rays = rays;
     p->surface = start->surface;
-    p->bsdf = start->bsdf;
-    p->cell = guide_find(settings->guide, start->surface.position, start->bsdf.normal);
+    p->bsdf = guided_bsdf_of(&start->bsdf, settings->guide, start->surface.position);
+    p->first_radiance = p->bsdf.cell ? p->bsdf.cell->radiance : 0.0f;
     p->vertex = NULL;
     p->key = key_of(settings, sample->pixel, sample->sample);
     p->throughput = vec3_of(1, 1, 1);

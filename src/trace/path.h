@@ -35,20 +35,19 @@ vec2s path_subpixel(const struct path_settings *settings, uint32_t pixel, uint32
 struct path_start path_begin(const struct path_settings *settings, const struct ray *ray,
                              const struct pixel_footprint *footprint, uint64_t *rays);
 
-// What a path found at its first vertices, to learn from. Russian roulette does not end such paths.
-enum { PATH_TRAIL = 4 };
-enum path_technique { PATH_BSDF, PATH_GUIDE, PATH_TECHNIQUES };
-struct path_found {
-    vec3s direction;
-    float cosine;
-    vec3s f;             // BSDF, 1/sr
-    float bsdf_pdf, pdf; // of BSDF sampling; of all techniques together; 1/sr. 0: none
-    vec3s light;         // near light, cd/m²
-};
+// The first vertices of a path, to learn from. Such paths end with the trail, not by Russian
+// roulette.
+enum { PATH_TRAIL = 8 };
 struct path_vertex {
     vec3s position, normal;
-    float throughput; // luminance, of the path before
-    struct path_found found[PATH_TECHNIQUES];
+    float throughput;    // luminance, of the path before
+    vec3s direction;     // sampled
+    float cosine;        // of the direction; 0: the path ended here
+    vec3s f;             // BSDF, 1/sr
+    float bsdf_pdf, pdf; // of BSDF sampling; of the sample; 1/sr
+    float share;         // of guided samples where the cell's weight is 1
+    vec3s direct;        // next-event estimate reflected here, cd/m²
+    vec3s light;         // emission and direct light at the end of the step, cd/m²
 };
 struct path_trail {
     struct path_vertex vertices[PATH_TRAIL];

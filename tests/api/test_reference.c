@@ -174,7 +174,7 @@ static const char *const kept_layers[KEPT_LAYERS] = {
 };
 
 static void write_layers(struct fixture *f, struct ag_reference *r, const char *path,
-                         const char *const names[KEPT_LAYERS])
+                         const char *const names[KEPT_LAYERS], const char *checkpoint)
 {
     struct ag_image_layer layers[KEPT_LAYERS];
     struct ag_image *images[KEPT_LAYERS];
@@ -182,7 +182,7 @@ static void write_layers(struct fixture *f, struct ag_reference *r, const char *
         images[i] = read_layer(r, names[i]);
         layers[i] = (struct ag_image_layer){ names[i], images[i] };
     }
-    struct ag_attribute attribute = { AG_REFERENCE_CHECKPOINT, ag_reference_checkpoint(r) };
+    struct ag_attribute attribute = { AG_REFERENCE_CHECKPOINT, checkpoint };
     assert_int_equal(ag_image_write_exr(f->context, path, layers, KEPT_LAYERS, &attribute, 1),
                      AG_OK);
     for (int i = 0; i < KEPT_LAYERS; i++) ag_image_destroy(f->context, images[i]);
@@ -190,7 +190,7 @@ static void write_layers(struct fixture *f, struct ag_reference *r, const char *
 
 static void write_checkpoint(struct fixture *f, struct ag_reference *r, const char *path)
 {
-    write_layers(f, r, path, kept_layers);
+    write_layers(f, r, path, kept_layers, ag_reference_checkpoint(r));
 }
 
 TEST(an_attribute_of_a_file_is_read_back)
@@ -223,6 +223,21 @@ TEST(an_attribute_of_a_file_is_read_back)
     assert_int_equal(ag_image_read_attribute(f.context, path, name, text, sizeof text),
                      AG_ERROR_FORMAT);
     CHECK_STRING(text, "");
+    ag_reference_destroy(r);
+    close(&f);
+}
+
+TEST(a_checkpoint_of_another_version_is_refused_for_that_reason)
+{
+    struct fixture f;
+    open(&f, "@cornell");
+    char path[512];
+    snprintf(path, sizeof path, "%s", test_path("older.exr"));
+    struct ag_reference *r = create(&f);
+    assert_int_equal(ag_reference_render(r, 1, NULL, NULL), AG_OK);
+    write_layers(&f, r, path, kept_layers, "reference 2 0123456789abcdef");
+    CHECK_REFUSED(f.context, ag_reference_resume(r, path));
+    CHECK(strstr(ag_context_last_error(f.context), "another version of the path tracer"));
     ag_reference_destroy(r);
     close(&f);
 }
@@ -284,7 +299,7 @@ TEST(former_layer_names_are_accepted_with_one_warning)
     snprintf(path, sizeof path, "%s", test_path("former.exr"));
     struct ag_reference *first = create(&f), *second = create(&f);
     assert_int_equal(ag_reference_render(first, 2, NULL, NULL), AG_OK);
-    write_layers(&f, first, path, former);
+    write_layers(&f, first, path, former, ag_reference_checkpoint(first));
     assert_int_equal(warnings, 1);
     assert_int_equal(ag_reference_resume(second, path), AG_OK);
     struct ag_image *a = NULL, *b = read_layer(first, "indirect_emitters_sky");

@@ -1,4 +1,4 @@
-// Guided rays: distributions of directions, and references with them and without.
+// Path guiding: distributions of directions, and references with it and without.
 #include "trace/direction_tree.h"
 #include "trace/trace_fixture.h"
 
@@ -18,9 +18,9 @@ static int fit_spot(struct direction_node nodes[DIRECTION_TREE_NODES])
     struct rng rng = rng_for(1, 2, 3);
     for (int i = 0; i < RECORDS; i++) {
         vec2s u = rng_vec2(&rng);
-        records[i] = (struct direction_record){ .at = u, .moment = 0.01f };
+        records[i] = (struct direction_record){ .at = u, .weight = 0.01f };
         if (i % 2) records[i].at = (vec2s){ { 0.6f + 0.1f * u.x, 0.2f + 0.1f * u.y } };
-        if (i % 2) records[i].moment = 1.0f;
+        if (i % 2) records[i].weight = 1.0f;
     }
     return direction_tree_fit(records, RECORDS, nodes);
 }
@@ -149,7 +149,7 @@ TEST(guiding_keeps_the_mean_of_a_room_with_a_window)
         int bounces = i / 2 == 2 ? -1 : i / 2;
         struct run plain = run_seeds(sun, bounces, false, 1),
                    guided = run_seeds(sun, bounces, true, 9);
-        CHECK(guided.rays > 1.05 * plain.rays); // it is guided
+        CHECK(guided.variance < 0.9 * plain.variance); // it is guided
         double error = sqrt(plain.error * plain.error + guided.error * guided.error);
         print_message(
             "sun %g, bounces %d: mean %.4f and %.4f guided, error %.4f; variance %.3f and "
@@ -227,7 +227,7 @@ static struct reference_info info_of(struct trace_fixture *s, bool guiding)
     return info;
 }
 
-// Guided rays would cost time and save nothing: the training alone is left.
+// Guiding would cost time and save nothing: the training alone is left.
 TEST(an_open_plane_and_a_closed_box_are_not_guided)
 {
     struct trace_fixture s;
