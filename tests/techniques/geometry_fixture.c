@@ -108,11 +108,11 @@ void geometry_check_light(struct lpv *lpv, const struct geometry_twin *geometry)
 {
     const size_t coefficients = (size_t)SH_COUNT(lpv->options.bands);
     struct twin twin;
-    twin_init(&twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
+    twin_init_as(&twin, lpv);
     twin.geometry = geometry;
     twin.occlusion = (double)lpv->options.occlusion;
     inject(&twin, lpv);
-    for (int i = 0; i < lpv->options.steps; i++) twin_propagate(&twin, &lpv->options);
+    twin_accumulate(&twin, &lpv->options);
     float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
     double most = 0.0;
     for (size_t i = 0; i < twin_cells(&twin); i++) most = fmax(most, fabs(twin.accumulated[i][0]));

@@ -2,6 +2,7 @@
 
 #include "core/sh.h"
 #include "techniques/geometry_twin.h"
+#include "techniques/lpv_twin_closed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,9 +19,18 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
     twin->bands = bands;
     twin->scheme = scheme;
     twin->geometry = NULL;
+    twin->closed = false;
     twin->injected_1 = lpv_crossing_of(scheme).injected_1;
     twin->light = calloc(twin_cells(twin), sizeof *twin->light);
     twin->accumulated = calloc(twin_cells(twin), sizeof *twin->accumulated);
+}
+
+void twin_init_as(struct twin *twin, const struct lpv *lpv)
+{
+    twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
+    twin->closed = lpv_is_closed(&lpv->options);
+    twin->closed_focus = (double)lpv->params.lobe_along;
+    if (twin->closed) twin->injected_1 = lpv_closed_crossing().injected_1;
 }
 
 void twin_finish(struct twin *twin)
@@ -100,13 +110,41 @@ void twin_propagate(struct twin *twin, const struct lpv_options *how)
             const int at = index_of(twin, to);
             if (at < 0) continue;
             const double transmittance = transmittance_of(twin, cell, neighbours[n].offset);
-            send(twin, twin->light[i], transmittance, &neighbours[n], lobe, &weights, next[at]);
+            if (twin->closed)
+                closed_send(twin->light[i], neighbours[n].offset, twin->closed_focus, transmittance,
+                            next[at]);
+            else
+                send(twin, twin->light[i], transmittance, &neighbours[n], lobe, &weights, next[at]);
         }
     }
     for (int i = 0; i < count; i++)
         for (int k = 0; k < 9; k++) twin->accumulated[i][k] += next[i][k];
     free(twin->light);
     twin->light = next;
+}
+
+// A step of the positive closure is not the sum of the steps of two lights: A = S + T(A).
+static void accumulate_closed(struct twin *twin, const struct lpv_options *how)
+{
+    const size_t bytes = twin_cells(twin) * sizeof *twin->light;
+    double(*injected)[9] = malloc(bytes);
+    memcpy(injected, twin->light, bytes);
+    for (int step = 0; step < how->steps; step++) {
+        twin_propagate(twin, how);
+        for (size_t i = 0; i < twin_cells(twin); i++)
+            for (int k = 0; k < 9; k++) twin->light[i][k] += injected[i][k];
+    }
+    memcpy(twin->accumulated, twin->light, bytes);
+    free(injected);
+}
+
+void twin_accumulate(struct twin *twin, const struct lpv_options *how)
+{
+    if (twin->closed) {
+        accumulate_closed(twin, how);
+        return;
+    }
+    for (int step = 0; step < how->steps; step++) twin_propagate(twin, how);
 }
 
 double twin_flux(const struct twin *twin)
@@ -136,12 +174,10 @@ static struct taps taps_of(double at, int cells, enum lpv_reconstruction reconst
     return out;
 }
 
-// ∫ I (−n·ω)₊ dω at a position in cells, clamped at 0; `lobe` is the weighted cosine.
-static double gather(const struct twin *twin, const double at[3],
-                     enum lpv_reconstruction reconstruction, const float lobe[9])
+static void filter(const struct twin *twin, const double at[3],
+                   enum lpv_reconstruction reconstruction, double light[9])
 {
     struct taps taps[3];
-    double sum = 0.0;
     for (int axis = 0; axis < 3; axis++)
         taps[axis] = taps_of(at[axis], twin->grid.cells[axis], reconstruction);
     for (int tap = 0; tap < 64; tap++) {
@@ -153,8 +189,18 @@ static double gather(const struct twin *twin, const double at[3],
             weight *= taps[axis].weight[i];
         }
         for (int i = 0; i < SH_COUNT(twin->bands); i++)
-            sum += weight * twin->accumulated[index_of(twin, cell)][i] * (double)lobe[i];
+            light[i] += weight * twin->accumulated[index_of(twin, cell)][i];
     }
+}
+
+// ∫ I (−n·ω)₊ dω at a position in cells, clamped at 0; `lobe` is the weighted cosine.
+static double gather(const struct twin *twin, const double at[3], vec3s normal,
+                     enum lpv_reconstruction reconstruction, const float lobe[9])
+{
+    double light[9] = { 0 }, sum = 0.0;
+    filter(twin, at, reconstruction, light);
+    if (twin->closed) return closed_irradiance(light, normal);
+    for (int i = 0; i < SH_COUNT(twin->bands); i++) sum += light[i] * (double)lobe[i];
     return fmax(sum, 0.0);
 }
 
@@ -178,8 +224,8 @@ double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,
     for (int i = 1; i < SH_COUNT(twin->bands); i++)
         lobe[i] *= how->window * (float)(i < 4 ? crossing.band_1 / staircase : crossing.band_2);
     const enum lpv_reconstruction reconstruction = (enum lpv_reconstruction)how->reconstruction;
-    const double first = gather(twin, here, reconstruction, lobe);
-    const double loss = fmax(first - gather(twin, further, reconstruction, lobe), 0.0);
+    const double first = gather(twin, here, normal, reconstruction, lobe);
+    const double loss = fmax(first - gather(twin, further, normal, reconstruction, lobe), 0.0);
     const double damped = fmax(first - (double)how->damping * loss, 0.0);
     const double area = (double)twin->grid.cell_m * (double)twin->grid.cell_m;
     return damped * lpv_mean_path(twin->scheme) / area;

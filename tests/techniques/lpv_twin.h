@@ -17,15 +17,21 @@ struct twin {
     double injected_1;                    // band 1 of injected light: that of struct lpv_crossing
     const struct geometry_twin *geometry; // occluders; NULL: none
     double occlusion;                     // the option
+    bool closed;                          // the positive closure (lpv_closure.glsl)
+    double closed_focus;                  // mean cosine after a step of it
 };
 
 void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_scheme scheme);
+// The scheme of the options of a rendered frame; the positive closure takes the frame's focus.
+void twin_init_as(struct twin *twin, const struct lpv *lpv);
 void twin_finish(struct twin *twin);
 size_t twin_cells(const struct twin *twin);
 // A virtual point light of `flux` (lumen); outside the grid it is dropped.
 void twin_inject(struct twin *twin, vec3s position, vec3s normal, double flux);
 // A step, with the options lobe, focus, filter.
 void twin_propagate(struct twin *twin, const struct lpv_options *how);
+// Steps from the injected light to the accumulated light.
+void twin_accumulate(struct twin *twin, const struct lpv_options *how);
 double twin_flux(const struct twin *twin); // of this step, lumen
 // Irradiance (lux) at a surface point, with the options offset, window, damping, reconstruction.
 double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,

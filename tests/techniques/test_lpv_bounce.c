@@ -185,7 +185,8 @@ TEST_GPU(lpv_bounces_are_linear)
     float *e[4];
     double most = 0;
     for (int lights = 1; lights < 4; lights++) {
-        struct lpv *lpv = lpv_fixture_create(gpu, "lpv:dim=16,steps=24,bounces=2,precision=float");
+        struct lpv *lpv =
+            lpv_fixture_create(gpu, "lpv:dim=16,steps=24,bounces=2,precision=float,closure=linear");
         const vec3s one = lights & 1 ? vec3_of(1, 1, 1) : vec3_of(0, 0, 0);
         const vec3s two = lights & 2 ? vec3_of(3, 2, 1) : vec3_of(0, 0, 0);
         s.lights[0].intensity = one;

@@ -264,7 +264,7 @@ static void refinement_equals_the_twin(struct gpu *gpu, const char *gi)
     float *coarser = lpv_fixture_read(lpv->coarser, lpv->coarser->volumes.light, 1);
     float *got = lpv_fixture_read(lpv, lpv->volumes.light, 1);
     struct twin twin;
-    twin_init(&twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
+    twin_init_as(&twin, lpv);
     const int count = (int)twin_cells(&twin), coefficients = SH_COUNT(lpv->options.bands);
     double(*injected)[9] = calloc((size_t)count, sizeof *injected),
     (*begin)[9] = calloc((size_t)count, sizeof *begin);

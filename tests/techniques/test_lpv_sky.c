@@ -83,8 +83,8 @@ TEST_GPU(lpv_sky_adds_to_other_light)
         rsm_fixture_show_wall(&rsm, vec3_of(-2, 0.9f, -3), vec3_of(4, 0, 0), vec3_of(0, 0, 6),
                               vec3_of(0, -1, 0));
         rsm_fixture_upload(&rsm);
-        struct lpv *lpv =
-            lpv_fixture_create(gpu, "lpv:dim=16,sky=true,cell_margin=1,precision=float");
+        struct lpv *lpv = lpv_fixture_create(
+            gpu, "lpv:dim=16,sky=true,cell_margin=1,precision=float,closure=linear");
         lpv_fixture_render(lpv, &rsm);
         rsm_fixture_read_irradiance(&rsm, which == 3 ? both : got);
         for (int k = 0; k < 3 * PIXELS && which < 3; k++) sum[k] += got[k];

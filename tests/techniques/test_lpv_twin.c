@@ -66,7 +66,7 @@ static double rounding(const struct lpv *lpv)
 
 static void twin_of(struct twin *twin, struct lpv *lpv, const struct rsm_fixture *rsm, int colour)
 {
-    twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
+    twin_init_as(twin, lpv);
     lpv_fixture_inject_twin(twin, rsm, colour);
 }
 
@@ -134,11 +134,6 @@ TEST_GPU(lpv_injection_of_emissive_surfaces_equals_the_twin)
     rsm_fixture_finish(&rsm);
 }
 
-static void propagate_twin(struct twin *twin, const struct lpv *lpv)
-{
-    for (int i = 0; i < lpv->options.steps; i++) twin_propagate(twin, &lpv->options);
-}
-
 static void propagation_equals_the_twin(struct gpu *gpu, const char *options)
 {
     struct rsm_fixture rsm;
@@ -148,7 +143,7 @@ static void propagation_equals_the_twin(struct gpu *gpu, const char *options)
     for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
         twin_of(&twin, lpv, &rsm, colour);
-        propagate_twin(&twin, lpv);
+        twin_accumulate(&twin, &lpv->options);
         float *got = lpv_fixture_read(lpv, lpv->volumes.light, colour);
         check_volume(got, &twin, twin.accumulated, 1e-3);
         free(got);
@@ -162,8 +157,12 @@ TEST_GPU(lpv_propagation_is_the_sum_over_faces_and_steps)
 {
     propagation_equals_the_twin(gpu, "lpv:dim=8,steps=1,precision=float");
     propagation_equals_the_twin(gpu, "lpv:dim=8,steps=6");
-    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
     propagation_equals_the_twin(gpu, "lpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
+    propagation_equals_the_twin(gpu, "lpv:dim=8,steps=6,closure=linear");
+    propagation_equals_the_twin(gpu,
+                                "lpv:dim=8,steps=7,closure=linear,lobe=normal,focus=0.6666667");
+    propagation_equals_the_twin(
+        gpu, "lpv:dim=16,steps=20,closure=linear,focus=1,cell_margin=1.5,precision=float");
 }
 
 TEST_GPU(lpv_propagation_of_higher_order_is_the_sum_over_faces_and_steps)
@@ -194,7 +193,7 @@ static void application_equals_the_twin(struct gpu *gpu, const char *options)
     for (int colour = 0; colour < LPV_FIXTURE_COLOURS; colour++) {
         struct twin twin;
         twin_of(&twin, lpv, &rsm, colour);
-        propagate_twin(&twin, lpv);
+        twin_accumulate(&twin, &lpv->options);
         double expected[PIXELS], most = 0.0;
         for (int i = 0; i < PIXELS; i++) {
             const float x = ((float)(i % WIDTH) + 0.5f) * 2.0f / WIDTH - 1.0f;
@@ -216,9 +215,11 @@ static void application_equals_the_twin(struct gpu *gpu, const char *options)
 
 TEST_GPU(lpv_application_equals_the_twin)
 {
-    application_equals_the_twin(gpu, "lpv:dim=8,steps=5,offset=0.75,window=0.8");
+    application_equals_the_twin(gpu, "lpv:dim=8,steps=5,offset=0.75");
+    application_equals_the_twin(gpu, "lpv:dim=8,steps=5,closure=linear,offset=0.75,window=0.8");
     application_equals_the_twin(gpu, "lpv:dim=8,steps=5,damping=0.8");
-    application_equals_the_twin(gpu, "lpv:dim=8,steps=5,damping=2,reconstruction=cubic");
+    application_equals_the_twin(gpu,
+                                "lpv:dim=8,steps=5,closure=linear,damping=2,reconstruction=cubic");
     application_equals_the_twin(gpu, "holpv:dim=8,steps=5,offset=0.75,window=0.9");
     application_equals_the_twin(gpu, "holpv:dim=8,steps=5,damping=1,reconstruction=cubic");
 }

@@ -24,8 +24,8 @@ void lpv_cascades_destroy(struct lpv_cascades *cascades)
         lpv_volumes_destroy_coarser(level);
 }
 
-// Enough steps for light to cross the coarsest grid, at most four times the steps of the others;
-// its cells are few.
+// Enough steps for the light of all bounces, which crosses the coarsest grid several times, at most
+// 16 times the steps of the others; its cells are few.
 static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid *grid)
 {
     int32_t longest = 0;
@@ -33,7 +33,7 @@ static int32_t steps_of_coarsest(const struct lpv *finest, const struct lpv_grid
         longest = grid->cells[axis] > longest ? grid->cells[axis] : longest;
     const int32_t steps = finest->options.steps;
     const int32_t needed = finest->options.neighbours == LPV_SIX ? 4 * longest : 2 * longest;
-    return needed < steps ? steps : needed < 8 * steps ? needed : 8 * steps;
+    return needed < steps ? steps : needed < 16 * steps ? needed : 16 * steps;
 }
 
 bool lpv_cascades_place(struct lpv *finest, const struct frame_view *view)

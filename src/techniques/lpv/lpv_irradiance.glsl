@@ -2,12 +2,27 @@
 #ifndef AG_LPV_IRRADIANCE_GLSL
 #define AG_LPV_IRRADIANCE_GLSL
 
+#include "techniques/lpv/lpv_closure.glsl"
+
+// Of the positive closure: light 1 + 3 J·ω gives φ/4 − J·n/2, a beam the cosine of its angle.
+vec3 lpv_closed_irradiance(lpv_closure light, vec3 n)
+{
+    vec3 along = vec3(0.0), cosine = vec3(0.0);
+    for (int a = 0; a < 3; a++) {
+        along -= n[a] * light.wide_along[a];
+        cosine -= n[a] * light.direction[a];
+    }
+    return 0.25 * light.wide + 0.5 * along +
+           light.beam * max(cosine, vec3(0.0)) / (lpv.mean_path * light.steps);
+}
+
 // The flux that a step sends across a side of a cell with the normal −n (lpv_crossing_of): a wall
 // gets all light that arrives and none of its own. On a slope, stairs of |x| + |y| + |z| sides per
 // area let the light that leaves have that many times the directional band; without geometry there
 // are none.
 vec3 lpv_irradiance(lpv_light light, vec3 n)
 {
+    if (LPV_CLOSED) return lpv_closed_irradiance(lpv_closure_of(light), n);
     vec3 sum = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);
     vec3 products = n.yzx * n.zxy;
     for (int a = 0; a < 3; a++) {

@@ -44,6 +44,7 @@ struct lpv_crossing {
     double injected_1; // band 1 of the light that a lit wall sends across the side; 2/3: Lambert
 };
 struct lpv_crossing lpv_crossing_of(enum lpv_scheme scheme);
+struct lpv_crossing lpv_closed_crossing(void); // of lpv_closure.glsl
 
 // A re-projected lobe of unit flux: coefficient i is weight_i Y_i(axis). `along`: weight of band 1;
 // band 2: `square` for 3z² − 1 and x² − y², `product` for xy, yz and xz. Band 0 has the weight 1,

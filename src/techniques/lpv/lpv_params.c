@@ -1,6 +1,8 @@
 // Placement of the grids and the parameters of a frame.
 #include "techniques/lpv/lpv_stages.h"
 
+#include <math.h>
+
 static const float Y0 = 0.282094792f; // √(1/4π)
 // Band 1 of a clamped cosine: without geometry no wall occludes the light behind its surface.
 static const float LAMBERT_1 = 2.0f / 3.0f;
@@ -27,6 +29,16 @@ static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_vie
     };
 }
 
+// With the positive closure the option is that of light which has crossed 1/16 of the scene, so
+// that the size of cells does not matter.
+static double focus_of_step(const struct lpv *lpv, const struct frame_view *view)
+{
+    if (!lpv_is_closed(&lpv->options)) return (double)lpv->options.focus;
+    const vec3s size = box3_size(view->bounds);
+    const float longest = fmaxf(size.x, fmaxf(size.y, size.z));
+    return pow((double)lpv->options.focus, (double)(16.0f * lpv->grid.cell_m / longest));
+}
+
 static struct lpv_params params_of(const struct lpv *lpv, const struct frame_view *view,
                                    const struct lpv_scale *scale)
 {
@@ -34,8 +46,9 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
     const struct lpv_grid *grid = &lpv->grid;
     const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
     const struct lpv_step step = lpv_step_of(scheme, (enum lpv_lobe)options->lobe,
-                                             (double)options->focus, (double)options->filter);
-    const struct lpv_crossing crossing = lpv_crossing_of(scheme);
+                                             focus_of_step(lpv, view), (double)options->filter);
+    const bool closed = lpv_is_closed(options);
+    const struct lpv_crossing crossing = closed ? lpv_closed_crossing() : lpv_crossing_of(scheme);
     const float mean_path = (float)lpv_mean_path(scheme); // see lpv_apply.comp
     return (struct lpv_params){
         .origin_m = grid->origin_m,
@@ -61,7 +74,8 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
             options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
         .window_1 = options->window * (float)crossing.band_1,
         .window_2 = options->window * (float)crossing.band_2,
-        .staircase = scheme == LPV_SIX && options->geometry != LPV_GEOMETRY_OFF ? 1.0f : 0.0f,
+        .staircase =
+            scheme == LPV_SIX && !closed && options->geometry != LPV_GEOMETRY_OFF ? 1.0f : 0.0f,
         .injected_1 =
             options->geometry == LPV_GEOMETRY_OFF ? LAMBERT_1 : (float)crossing.injected_1,
         .occlusion = options->occlusion,

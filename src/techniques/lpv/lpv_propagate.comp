@@ -19,6 +19,7 @@
 #include "core/sh.glsl"
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
+#include "techniques/lpv/lpv_closure.glsl"
 #define LPV_TRANSMITTANCE_BINDING 4
 #define LPV_TRANSMITTANCE_ACCESS  readonly
 #include "techniques/lpv/geometry/geometry_transmittance.glsl"
@@ -91,6 +92,22 @@ void send_to_face_neighbour(inout sums to, lpv_light light, int a, float side, f
     to.square[c] += q * q * sum_c;
     to.product[c] += p * q * difference_b;
     to.product[b] += p * q * difference_c;
+}
+
+// Two bands: across the side of the cell, from the closed distribution (lpv_closure.glsl). A ray of
+// direction ω crosses the side +x with the share |ω_x| / (|ω_x| + |ω_y| + |ω_z|) of its flux. The
+// moments of isotropic light across a side are 1/6 and 1/9, those of light 1 + 3 J·ω add J/3 and
+// J/4 (across) and J/8 (along). The light of a disk fills a cone; its pressure on the sides along
+// it is up to 3/2 of the hemisphere's.
+void send_closed(inout sums to, lpv_closure light, int a, float side, float transmittance)
+{
+    vec3 beam = light.beam * max(side * light.direction[a], vec3(0.0)) / light.steps;
+    vec3 pressure = 1.0 + light.widening * (1.0 - light.direction[a] * light.direction[a]);
+    to.flux += transmittance * (light.wide / 6.0 + side / 3.0 * light.wide_along[a] + beam);
+    for (int i = 0; i < 3; i++)
+        to.along[i] += transmittance * (0.125 * light.wide_along[i] + beam * light.direction[i]);
+    to.along[a] +=
+        transmittance * (0.125 * light.wide_along[a] + side / 9.0 * pressure * light.wide);
 }
 
 // The neighbour across the edge along axis c: its two outer faces (±p, ±q, 0) and (±q, ±p, 0).
@@ -182,7 +199,11 @@ void from_face(inout sums to, ivec3 cell, int axis, int side)
     ivec3 offset = ivec3(0);
     offset[axis] = side;
     float transmittance = transmittance_of(cell - offset, axis)[side > 0 ? 1 : 0];
-    send_to_face_neighbour(to, light_of(cell - offset), axis, float(side), transmittance);
+    lpv_light light = light_of(cell - offset);
+    if (LPV_CLOSED)
+        send_closed(to, lpv_closure_of(light), axis, float(side), transmittance);
+    else
+        send_to_face_neighbour(to, light, axis, float(side), transmittance);
 }
 
 void gather_six(ivec3 cell)

@@ -29,6 +29,7 @@
 #define LPV_CONSTANT_NEIGHBOURS 3 // 6 or 26
 #define LPV_CONSTANT_CUBIC      4 // cubic reconstruction between cells, or trilinear
 #define LPV_CONSTANT_DAMPED     5 // damping is on
+#define LPV_CONSTANT_CLOSED     6 // lpv_closure.glsl
 
 // Source of the geometry volume: none, surfels of maps and camera, triangles of the scene.
 #define LPV_GEOMETRY_OFF   0

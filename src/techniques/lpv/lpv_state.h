@@ -13,6 +13,7 @@ struct lpv_options {
 };
 
 enum lpv_reconstruction { LPV_LINEAR, LPV_CUBIC };
+enum lpv_closure { LPV_CLOSURE_LINEAR, LPV_CLOSURE_POSITIVE };
 enum lpv_precision { LPV_PRECISION_HALF, LPV_PRECISION_FLOAT };
 
 // Images and buffers over the cells of a grid. A light volume is one image: its slabs of dim³
@@ -84,6 +85,13 @@ static inline gpu_buffer lpv_walls(const struct lpv *lpv)
 struct lpv_cascades {
     struct lpv levels[LPV_MAX_CASCADES]; // from the finest
 };
+
+// Whether light has the distribution of lpv_closure.glsl; other schemes are linear in all bands.
+static inline bool lpv_is_closed(const struct lpv_options *options)
+{
+    return options->closure == LPV_CLOSURE_POSITIVE && options->bands == 2 &&
+           options->neighbours == LPV_SIX;
+}
 
 // Empty cells around the scene. At least a half: every surface lies between the centres of two
 // cells. With a sky at least one: its light enters through cells without surfaces.
