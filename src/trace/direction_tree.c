@@ -22,7 +22,7 @@ static int choose(float first, float second, float *u)
     float share = first / (first + second);
     bool upper = !(*u < share);
     *u = upper ? (*u - share) / (1.0f - share) : *u / share;
-    *u = fminf(*u, 1.0f - 0x1p-24f);
+    if (*u > 1.0f - 0x1p-24f) *u = 1.0f - 0x1p-24f; // fminf compiles to a call
     return upper;
 }
 
