@@ -200,16 +200,16 @@ static void record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct fra
     vct_watch_overflow(vct, cmd);
 }
 
-// Specular cones see small emitters in the light volume; diffuse cones must not, as they are
-// sampled by shadow cones.
-static void record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+// Specular cones see small emitters in the light volume. Diffuse cones and the bounces of the next
+// frame must not, as they sample them with shadow cones.
+static void record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    const bool specular = vct->options.specular, emitters = vct->small_emitters.count > 0;
-    vct->params.small_emitters_shown = specular && emitters;
-    vct_record_light(vct, cmd, view);
-    if (specular) vct_record_specular(vct, cmd, view);
+    const bool emitters = vct->small_emitters.count > 0;
+    vct->params.small_emitters_shown = emitters;
+    if (emitters) vct_refill_volume(vct, cmd);
+    vct_record_specular(vct, cmd, view);
     vct->params.small_emitters_shown = false;
-    if (specular && emitters) vct_refill_volume(vct, cmd);
+    if (emitters) vct_refill_volume(vct, cmd);
 }
 
 static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -231,10 +231,11 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         vct->small_emitters.count = 0;
     record_voxels(vct, cmd, view);
     if (!vct->options.occlusion) vct_record_bounce(vct, cmd, view);
-    record_light(vct, cmd, view);
+    vct_record_light(vct, cmd, view);
     vct_record_cones(vct, cmd, view);
     if (vct->options.temporal)
         vct_temporal_record(&vct->temporal, cmd, view, vct_result(vct, view));
+    if (vct->options.specular) record_specular(vct, cmd, view);
 }
 
 static void vct_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,

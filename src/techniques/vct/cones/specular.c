@@ -30,6 +30,7 @@ void vct_record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct fram
                  { .name = "material", .image = view->layers[FRAME_MATERIAL] },
                  { .name = "dielectric",
                    .image = dielectric.id ? dielectric : view->layers[FRAME_MATERIAL] },
+                 { .name = "irradiance", .image = vct_result(vct, view) },
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
                  { .name = "specular", .image = view->layers[FRAME_SPECULAR] },
                  vct_svo_binding(vct, cmd), { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),

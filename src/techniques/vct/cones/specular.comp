@@ -7,6 +7,10 @@
 //     2 atan α (1)
 // of the mirror direction. A uniform cone of this half-angle, 1/(π (2α)²) per sr, also has the peak
 // of the lobe, D(0)/4 = 1/(4πα²) per sr, for small α.
+//
+// A rough surface needs no cone. From a roughness of 0.8 on, the lobe has the width of a
+// cosine-weighted hemisphere, by the length of its mean direction, and is centred near the normal:
+// its radiance is E/π of the diffuse cones. In between both are blended.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -33,10 +37,14 @@ layout(set = 0, binding = 5) uniform sampler3D light;
 layout(set = 0, binding = 6) uniform sampler2D albedo;
 layout(set = 0, binding = 7) uniform sampler2D material;
 layout(set = 0, binding = 10) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
+layout(set = 0, binding = 11) uniform sampler2D irradiance; // of the diffuse cones, scaled lux
 layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D specular;
 
 // Tangent of the half-angle: a cone wider than 45° is no better resolved by the texels.
 const float WIDEST = 1.0;
+
+const float ROUGH_FROM = 0.6, ROUGH = 0.8; // roughness
+const float PI = 3.14159265;
 
 float tan_half_angle(float alpha)
 {
@@ -59,13 +67,19 @@ vec3 reflected_radiance(ivec2 pixel, float z)
     vec2 roughness_metallic = texelFetch(material, pixel, 0).rg;
     vec3 at = (position - clips.origin_m) / set.texel_m;
     float width = 2.0 * set.step_size * tan_half_angle(brdf_alpha(roughness_metallic.x));
-    vec4 traced = vct_cone(light, at, n, mirror_direction(to_viewer, n), set.offset, width,
-                           set.last_mip, vct_start_at(at));
+    float rough = smoothstep(ROUGH_FROM, ROUGH, roughness_metallic.x);
+    if (set.tan_half > 0.0) rough = 0.0;
+    vec3 radiance = texelFetch(irradiance, pixel, 0).rgb / PI;
+    if (rough < 1.0) {
+        vec4 traced = vct_cone(light, at, n, mirror_direction(to_viewer, n), set.offset, width,
+                               set.last_mip, vct_start_at(at));
+        radiance = mix(set.gain * (traced.rgb + (1.0 - traced.a) * frame.sky), radiance, rough);
+    }
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
     if (set.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);
     brdf_material m = brdf_material_of(texelFetch(albedo, pixel, 0).rgb, roughness_metallic, lobe);
     vec3 reflectance = brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo;
-    return set.gain * reflectance * (traced.rgb + (1.0 - traced.a) * frame.sky);
+    return reflectance * radiance;
 }
 
 void main()
