@@ -43,7 +43,7 @@ static const struct technique_debug_view debug_views[] = {
 static const struct technique_preset presets[] = {
     { "low", "dim=16,steps=5,bounces=2" },
     { "medium", "" },
-    { "high", "dim=48,steps=12" },
+    { "high", "steps=6" },
     { NULL, NULL },
 };
 static const struct technique_preset higher_order_presets[] = {
