@@ -27,8 +27,10 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
     } cases[] = { { "lpv", 0.005 },
                   { "holpv", 0.005 },
                   { "vct:bounces=1", 0.05 },
-                  { "vct", 0.11 },
-                  { "vct:resolution=128", 0.11 } };
+                  { "vct", 0.04 },
+                  { "vct:resolution=128", 0.042 },
+                  { "vct:trace=rays", 0.01 },
+                  { "vct:trace=rays,resolution=128", 0.005 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         CHECK(dark_room_share(gpu, cases[i].gi) <= cases[i].most);
 }
@@ -126,16 +128,20 @@ static void check_share(struct gpu *gpu, trial_scene build, const char *name, in
 
 TEST_GPU(light_crosses_an_empty_room)
 {
-    static const struct share_case cases[] = { { "lpv", 0.8 }, { "holpv", 0.3 }, { "vct", 0.85 } };
+    static const struct share_case cases[] = {
+        { "lpv", 0.8 }, { "holpv", 0.3 }, { "vct", 0.85 }, { "vct:trace=rays", 0.9 }
+    };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         check_share(gpu, trial_empty_room, "across an empty room", 1, &cases[i], 1.3);
 }
 
 TEST_GPU(a_small_sunlit_patch_lights_its_room)
 {
-    static const struct share_case cases[] = {
-        { "lpv", 0.85 }, { "lpv:quality=high", 0.85 }, { "holpv", 0.75 }, { "vct", 0.5 }
-    };
+    static const struct share_case cases[] = { { "lpv", 0.85 },
+                                               { "lpv:quality=high", 0.85 },
+                                               { "holpv", 0.75 },
+                                               { "vct", 0.5 },
+                                               { "vct:trace=rays", 0.5 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         check_share(gpu, trial_small_patch, "small patch", -1, &cases[i], 1.5);
 }

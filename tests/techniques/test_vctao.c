@@ -218,6 +218,13 @@ static void check_crease(struct gpu *gpu, const char *options, double decay, dou
     vct_fixture_finish(&fixture);
 }
 
+// Voxels of 2 m are enough for rays. Most of the error is the noise of 25 of them.
+TEST_GPU(rays_beside_a_wall_match_ray_casting)
+{
+    check_crease(gpu, "trace=rays,decay=0", 0, 0.04);
+    check_crease(gpu, "trace=rays,decay=0.25", 0.25, 0.04);
+}
+
 TEST_GPU(visibility_beside_a_wall_matches_ray_casting)
 {
     // The grid is 120 m long: 256 voxels make texels of 1 m. Without decay in the cones the error

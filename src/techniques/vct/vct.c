@@ -194,6 +194,7 @@ static void record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct fra
     for (int i = 0; i < vct->clip_count; i++) {
         if (!vct->clips[i].revoxelized) continue;
         vct_volume_list_texels(vct, &vct->clips[i], cmd);
+        if (vct_has_rays(&vct->options)) vct_rays_list_blocks(vct, &vct->clips[i], cmd);
         vct->revoxelized = true;
     }
     if (vct->revoxelized && vct_has_svo(&vct->options)) vct_octree_build(vct, cmd);

@@ -12,5 +12,6 @@
 #define VCT_CONSTANT_SMALL_EMITTERS 14 // voxelize/add.glsl, cones/small_emitters.glsl
 #define VCT_CONSTANT_BLOCK          15 // lighting/bounce.comp: texels along a block's side
 #define VCT_CONSTANT_HAS_LIGHTS     16 // lighting/inject.comp
+#define VCT_CONSTANT_RAYS           17 // rays/ray.glsl: rays instead of cones
 
 #endif

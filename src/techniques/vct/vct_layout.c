@@ -14,6 +14,21 @@ bool vct_has_svo(const struct vct_options *options)
     return options->storage == VCT_SVO;
 }
 
+static bool fits_rays(const struct vct_options *options)
+{
+    return options->levels == 1 && !vct_has_svo(options) && options->anisotropic;
+}
+
+bool vct_pixels_have_rays(const struct vct_options *options)
+{
+    return options->trace == VCT_BY_RAYS && fits_rays(options);
+}
+
+bool vct_has_rays(const struct vct_options *options)
+{
+    return options->occlusion ? vct_pixels_have_rays(options) : fits_rays(options);
+}
+
 uint32_t vct_step(const struct vct_options *options)
 {
     return options->half_resolution ? 2 : 1;
@@ -76,6 +91,19 @@ struct gpu_image_desc vct_light_desc(const struct vct_options *options)
                                     .height = dim,
                                     .depth = (uint32_t)vct_clip_count(options) * dim,
                                     .mips = vct_volume_mips(options),
+                                    .usage = GPU_SAMPLED | GPU_STORAGE };
+}
+
+struct gpu_image_desc vct_blocks_desc(const struct vct_options *options, enum gpu_format format)
+{
+    const uint32_t dim = vct_has_rays(options) ? vct_volume_dim(options) : 1;
+    return (struct gpu_image_desc){ .name = "blocks",
+                                    .dimension = GPU_3D,
+                                    .format = format,
+                                    .width = dim,
+                                    .height = dim,
+                                    .depth = dim,
+                                    .mips = 1,
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
 }
 

@@ -7,6 +7,9 @@
 #include "techniques/vct/volume/volume_shared.h"
 
 int vct_clip_count(const struct vct_options *options);
+// Rays need one grid of anisotropic voxels. Voxels use them where they can, pixels by option.
+bool vct_pixels_have_rays(const struct vct_options *options);
+bool vct_has_rays(const struct vct_options *options);
 bool vct_has_svo(const struct vct_options *options);
 // Pixels of the frame per pixel that traces cones, in x and y.
 uint32_t vct_step(const struct vct_options *options);
@@ -20,6 +23,8 @@ size_t vct_block_count(const struct vct_options *options);
 uint32_t vct_volume_dim(const struct vct_options *options);
 uint32_t vct_volume_mips(const struct vct_options *options);
 uint32_t vct_direction_count(const struct vct_options *options); // volumes side by side: 6 or 1
+// Without rays a single texel: images of a shader are always bound.
+struct gpu_image_desc vct_blocks_desc(const struct vct_options *options, enum gpu_format format);
 struct gpu_image_desc vct_light_desc(const struct vct_options *options); // mips or brick pool
 
 // Lists of occupied texels, one for each mip.

@@ -7,7 +7,8 @@
 #include "techniques/vct/vct_shared.h"
 #include "techniques/vct/voxelize/voxelize.h"
 
-enum vct_storage { VCT_MIPS, VCT_SVO }; // choices of the option
+enum vct_storage { VCT_MIPS, VCT_SVO }; // choices of the options
+enum vct_trace_by { VCT_BY_CONES, VCT_BY_RAYS };
 
 // Of both techniques.
 struct vct_options {

@@ -24,6 +24,7 @@ enum {
     SMALL_EMITTERS = 1 << 9,
     LARGE_BLOCKS = 1 << 10,
     HALF_RESOLUTION = 1 << 11,
+    RAYS = 1 << 12,
 };
 enum { SCENE_BASE_COLOR_MAP = 0, SCENE_MASKED = 4 }; // constant_id's of frame/scene.glsl
 static const struct gpu_constant constant_of_bit[] = {
@@ -39,6 +40,7 @@ static const struct gpu_constant constant_of_bit[] = {
     { VCT_CONSTANT_SMALL_EMITTERS, true },
     { VCT_CONSTANT_BLOCK, 4 },
     { VCT_CONSTANT_EACH_PIXEL, false },
+    { VCT_CONSTANT_RAYS, true },
 };
 enum { CONSTANT_BITS = sizeof constant_of_bit / sizeof constant_of_bit[0] };
 
@@ -127,12 +129,13 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 13, MIP_PIPELINES = 9, MOST_STORAGE_PIPELINES = 14 };
+enum { PIPELINES = 15, MIP_PIPELINES = 9, MOST_STORAGE_PIPELINES = 14 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
     const uint32_t kind = vct->options.occlusion ? OCCLUSION : 0,
                    half = vct->options.half_resolution ? HALF_RESOLUTION : 0;
+    const bool rays = vct_has_rays(&vct->options);
     const struct gpu_shader *inject_lit =
         vct->options.occlusion ? NULL : &shader_vct_lighting_inject_comp;
     const struct pipeline_plan plan[PIPELINES] = {
@@ -142,6 +145,8 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->zero, "zero", &shader_vct_voxelize_zero_comp, 0 },
         { &vct->surfaces, "surfaces", &shader_vct_voxelize_surfaces_comp, 0 },
         { &vct->texel_lists, "texels", &shader_vct_volume_texels_comp, 0 },
+        { &vct->planes, "planes", rays ? &shader_vct_rays_planes_comp : NULL, 0 },
+        { &vct->blocks, "blocks", rays ? &shader_vct_rays_blocks_comp : NULL, 0 },
         { &vct->inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT },
         { &vct->inject[1], "inject", inject_lit, 0 },
         { &vct->edges, "edges", &shader_vct_cones_edges_comp, CLIPS },
@@ -161,16 +166,18 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     const bool lit = !vct->options.occlusion;
     const uint32_t directions = vct->options.anisotropic ? 0 : ISOTROPIC,
                    kind = directions | (lit ? 0 : (uint32_t)OCCLUSION),
-                   blocks = vct_block_level(&vct->options) == 2 ? (uint32_t)LARGE_BLOCKS : 0;
+                   blocks = vct_block_level(&vct->options) == 2 ? (uint32_t)LARGE_BLOCKS : 0,
+                   rays = vct_has_rays(&vct->options) ? (uint32_t)RAYS : 0,
+                   pixel_rays = vct_pixels_have_rays(&vct->options) ? (uint32_t)RAYS : 0;
     const struct pipeline_plan mips[MIP_PIPELINES] = {
         { &vct->bounce[0], "bounce", lit ? &shader_vct_lighting_bounce_mips_comp : NULL,
-          directions | blocks | CLIPS },
+          directions | blocks | CLIPS | rays },
         { &vct->bounce[1], "bounce_small_emitters",
           lit ? &shader_vct_lighting_bounce_mips_comp : NULL,
-          directions | blocks | CLIPS | SMALL_EMITTERS },
-        { &vct->cones[0], "cones", &shader_vct_cones_mips_comp, kind | CLIPS },
+          directions | blocks | CLIPS | rays | SMALL_EMITTERS },
+        { &vct->cones[0], "cones", &shader_vct_cones_mips_comp, kind | CLIPS | pixel_rays },
         { &vct->cones[1], "cones_small_emitters", lit ? &shader_vct_cones_mips_comp : NULL,
-          directions | CLIPS | SMALL_EMITTERS },
+          directions | CLIPS | pixel_rays | SMALL_EMITTERS },
         { &vct->specular, "specular", lit ? &shader_vct_cones_specular_mips_comp : NULL,
           directions | CLIPS },
         { &vct->fill[0], "fill_static", &shader_vct_volume_fill_comp, kind | NO_DYNAMIC },

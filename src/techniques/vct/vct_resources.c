@@ -90,25 +90,29 @@ static int plan_buffers(const struct vct_options *options, struct vct *vct,
     return count + SVO_BUFFERS;
 }
 
+enum image_use { USED, USED_BY_LIGHT, USED_BY_RAYS };
+
 // Images that store the faces of a set, with `texels` texels for each.
 struct image_plan {
     const char *name;
     gpu_image *out;
     uint32_t texels;
-    bool bounced; // light from other voxels
+    enum image_use use;
 };
 
-enum { CLIP_IMAGES = 6 };
+enum { CLIP_IMAGES = 8 };
 
 static void plan_images(struct vct_clip *clip, struct image_plan out[CLIP_IMAGES])
 {
     const struct image_plan plan[CLIP_IMAGES] = {
-        { "static_surfaces", &clip->static_set.surfaces, 2, false },
-        { "static_lit_voxels", &clip->static_set.lit_voxels, 1, false },
-        { "static_bounced", &clip->static_set.bounced, 1, true },
-        { "dynamic_surfaces", &clip->dynamic_set.surfaces, 2, false },
-        { "dynamic_lit_voxels", &clip->dynamic_set.lit_voxels, 1, false },
-        { "dynamic_bounced", &clip->dynamic_set.bounced, 1, true },
+        { "static_surfaces", &clip->static_set.surfaces, 2, USED },
+        { "static_lit_voxels", &clip->static_set.lit_voxels, 1, USED },
+        { "static_bounced", &clip->static_set.bounced, 1, USED_BY_LIGHT },
+        { "static_planes", &clip->static_set.planes, 1, USED_BY_RAYS },
+        { "dynamic_surfaces", &clip->dynamic_set.surfaces, 2, USED },
+        { "dynamic_lit_voxels", &clip->dynamic_set.lit_voxels, 1, USED },
+        { "dynamic_bounced", &clip->dynamic_set.bounced, 1, USED_BY_LIGHT },
+        { "dynamic_planes", &clip->dynamic_set.planes, 1, USED_BY_RAYS },
     };
     memcpy(out, plan, sizeof plan);
 }
@@ -116,11 +120,11 @@ static void plan_images(struct vct_clip *clip, struct image_plan out[CLIP_IMAGES
 static struct gpu_image_desc image_desc(const struct vct_options *options,
                                         const struct image_plan *plan)
 {
-    // Occlusion has no bounced light.
-    const bool none = options->occlusion && plan->bounced;
+    const bool none = (options->occlusion && plan->use == USED_BY_LIGHT) ||
+                      (!vct_has_rays(options) && plan->use == USED_BY_RAYS);
     const uint32_t rows = gpu_groups(vct_capacity(options), VCT_VOXEL_ROW);
     return (struct gpu_image_desc){ .name = plan->name,
-                                    .format = GPU_RGBA32U,
+                                    .format = plan->use == USED_BY_RAYS ? GPU_R32U : GPU_RGBA32U,
                                     .width = plan->texels * VCT_VOXEL_ROW,
                                     .height = none ? 1 : rows,
                                     .usage = GPU_SAMPLED | GPU_STORAGE };
@@ -185,6 +189,8 @@ bool vct_create_resources(struct vct *vct)
     }
     vct->svo.params = vct_svo_params(&vct->options);
     const struct gpu_image_desc light = vct_light_desc(&vct->options);
+    const struct gpu_image_desc blocks = vct_blocks_desc(&vct->options, GPU_RGBA32U),
+                                slots = vct_blocks_desc(&vct->options, GPU_R32U);
     const struct gpu_sampler_desc linear = { .name = "vct.linear",
                                              .filter = GPU_LINEAR,
                                              .wrap_u = GPU_CLAMP,
@@ -195,7 +201,10 @@ bool vct_create_resources(struct vct *vct)
     return gpu_readback_create(vct->gpu, "overflow", sizeof(uint32_t) * 2 * VCT_MAX_CLIPS,
                                &vct->overflow.readback) &&
            gpu_sampler_get(vct->gpu, &linear, &vct->linear) &&
-           gpu_image_create(vct->gpu, &light, &vct->light);
+           gpu_image_create(vct->gpu, &light, &vct->light) &&
+           gpu_image_create(vct->gpu, &blocks, &vct->block_image) &&
+           gpu_image_create(vct->gpu, &slots, &vct->first_slots[0]) &&
+           gpu_image_create(vct->gpu, &slots, &vct->first_slots[1]);
 }
 
 // ---- Destruction and sizes ----------------------------------------------------------------------
@@ -207,6 +216,8 @@ void vct_destroy_resources(struct vct *vct)
     for (int i = 0; i < count; i++) gpu_buffer_destroy(vct->gpu, buffers[i].out);
     gpu_readback_destroy(vct->gpu, &vct->overflow.readback);
     gpu_image_destroy(vct->gpu, &vct->light);
+    gpu_image_destroy(vct->gpu, &vct->block_image);
+    for (int i = 0; i < 2; i++) gpu_image_destroy(vct->gpu, &vct->first_slots[i]);
     for (int i = 0; i < vct->clip_count; i++) {
         struct image_plan images[CLIP_IMAGES];
         plan_images(&vct->clips[i], images);
@@ -232,12 +243,15 @@ uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, u
     for (uint32_t mip = 0; mip < light.mips; mip++)
         bytes += (uint64_t)(light.width >> mip) * (light.height >> mip) * (light.depth >> mip) *
                  (uint64_t)gpu_format_bytes(light.format);
+    const struct gpu_image_desc blocks = vct_blocks_desc(options, GPU_RGBA32U);
+    bytes += (uint64_t)blocks.width * blocks.height * blocks.depth *
+             (uint64_t)(gpu_format_bytes(GPU_RGBA32U) + 2 * gpu_format_bytes(GPU_R32U));
     struct image_plan images[CLIP_IMAGES];
     plan_images(&none.clips[0], images);
     for (int i = 0; i < CLIP_IMAGES; i++) {
         const struct gpu_image_desc desc = image_desc(options, &images[i]);
         bytes += (uint64_t)vct_clip_count(options) * desc.width * desc.height *
-                 (uint64_t)gpu_format_bytes(GPU_RGBA32U);
+                 (uint64_t)gpu_format_bytes(desc.format);
     }
     const int pixel =
         gpu_format_bytes(GPU_R8) + gpu_format_bytes(GPU_RG16F) + 7 * gpu_format_bytes(GPU_RGBA16F);

@@ -6,6 +6,7 @@
 #include "techniques/vct/cones/temporal.h"
 #include "techniques/vct/lighting/lighting.h"
 #include "techniques/vct/octree/octree.h"
+#include "techniques/vct/rays/rays.h"
 #include "techniques/vct/vct_layout.h"
 #include "techniques/vct/vct_options.h"
 #include "techniques/vct/vct_shared.h"
@@ -22,6 +23,7 @@ struct vct_clip {
     gpu_buffer texels, texel_mask, texel_counts;  // occupied texels of the light volume
     bool static_valid;                            // static_set is that of the scene
     bool revoxelized;                             // in this frame
+    bool new_statics;                             // static_set is another one in this frame
 };
 
 struct vct_overflow { // of voxel sets, reported some frames later
@@ -40,7 +42,7 @@ struct vct {
     struct vct_voxelize_pipelines mark, outermost[2]; // opaque, masked
     struct vct_voxelize_pipelines add[VCT_DRAW_KINDS];
     gpu_pipeline count, scan, list, zero, surfaces;
-    gpu_pipeline texel_lists, mip;
+    gpu_pipeline texel_lists, planes, blocks, mip;
     gpu_pipeline fill[2];             // without and with moving voxels
     gpu_pipeline inject[2];           // without and with lights
     gpu_pipeline cones[2], bounce[2]; // without and with small emitters
@@ -53,9 +55,11 @@ struct vct {
     gpu_buffer queue, queue_state; // tiles of large triangles
     gpu_buffer sums;               // over the triangles of the faces of a set
     gpu_sampler linear;
-    struct vct_svo svo; // with storage=svo
-    gpu_image light;    // RGBA16F: six volumes side by side with mips, or the pool of bricks.
-                        // vctao, mips: R16F
+    struct vct_svo svo;       // with storage=svo
+    gpu_image light;          // RGBA16F: six volumes side by side with mips, or the pool of bricks.
+                              // vctao, mips: R16F
+    gpu_image block_image;    // RGBA32U, of the first grid: see rays/rays_shared.h
+    gpu_image first_slots[2]; // R32U, of each block and set
 
     // Images of traced pixels, `width` by `height`.
     uint32_t width, height;

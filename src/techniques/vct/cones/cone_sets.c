@@ -43,19 +43,26 @@ float vct_cone_width(int choice)
     return (float)(2.0 * sqrt(1.0 - c * c) / c);
 }
 
-// Initial lines: a golden-angle spiral over a hemisphere. Its axis is oblique to walls, which are
-// mostly axis-aligned: otherwise some lines would lie in the plane of a wall and sample nothing.
-// Of eight axes this one has the least error in the scenes of tests/quality.
+// Axes of sets of lines, the third in the middle of the hemisphere. They are oblique to walls,
+// which are mostly axis-aligned: otherwise some lines would lie in the plane of a wall and sample
+// nothing. Of eight of them these have the least error in the scenes of tests/quality.
+static void oblique_axes(vec3s out[3])
+{
+    out[2] = glms_vec3_normalize(vec3_of(10, 1, 3));
+    out[0] = glms_vec3_normalize(glms_vec3_cross(out[2], vec3_of(0.31f, 0.2f, 0.7f)));
+    out[1] = glms_vec3_cross(out[2], out[0]);
+}
+
+// Initial lines: a golden-angle spiral over a hemisphere.
 static vec3s spiral(int i, int count)
 {
     const double golden = GLM_PI * (3.0 - sqrt(5.0));
     const double z = (i + 0.5) / count, r = sqrt(1.0 - z * z);
-    const vec3s axis = glms_vec3_normalize(vec3_of(10, 1, 3));
-    const vec3s x = glms_vec3_normalize(glms_vec3_cross(axis, vec3_of(0.31f, 0.2f, 0.7f)));
-    const vec3s y = glms_vec3_cross(axis, x);
-    const vec3s across = glms_vec3_add(glms_vec3_scale(x, (float)(r * cos(golden * i))),
-                                       glms_vec3_scale(y, (float)(r * sin(golden * i))));
-    return glms_vec3_add(across, glms_vec3_scale(axis, (float)z));
+    vec3s axes[3];
+    oblique_axes(axes);
+    const vec3s across = glms_vec3_add(glms_vec3_scale(axes[0], (float)(r * cos(golden * i))),
+                                       glms_vec3_scale(axes[1], (float)(r * sin(golden * i))));
+    return glms_vec3_add(across, glms_vec3_scale(axes[2], (float)z));
 }
 
 // Coulomb force on the charge at the end of line `at` from both ends of all other lines.
@@ -113,4 +120,10 @@ void vct_rotate_cone_axes(uint32_t number, int count, vec3s *lines)
         lines[i] = glms_vec3_add(glms_vec3_add(lines[i], glms_vec3_scale(across, rotation.w)),
                                  glms_vec3_cross(axis, across));
     }
+}
+
+void vct_stratum_axes(uint32_t number, vec3s out[3])
+{
+    oblique_axes(out);
+    vct_rotate_cone_axes(number, 3, out);
 }

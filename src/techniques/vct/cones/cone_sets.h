@@ -22,3 +22,5 @@ float vct_cone_width(int choice);
 void vct_cone_axes(int choice, vec3s *out);
 // Rotates all lines by rotation `number` of a low-discrepancy sequence; 0 is the identity.
 void vct_rotate_cone_axes(uint32_t number, int count, vec3s *lines);
+// Axes of a hemisphere of strata for rays, in rotation `number`.
+void vct_stratum_axes(uint32_t number, vec3s out[3]);

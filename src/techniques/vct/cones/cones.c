@@ -14,6 +14,14 @@ static int pixels_tracing(uint32_t cone, uint32_t parts, uint32_t cones)
     return count;
 }
 
+// Columns of the grid of strata: rows · columns = cones.
+static uint32_t columns_of(uint32_t cones)
+{
+    uint32_t columns = (uint32_t)sqrtf((float)cones);
+    while (cones % columns != 0) columns--;
+    return columns;
+}
+
 static struct vct_cone_params params_of(const struct vct *vct, const struct frame_view *view,
                                         int choice, uint32_t side)
 {
@@ -27,6 +35,7 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
         .width_per_m = options->step_size * vct_cone_width(choice),
         .offset = options->offset,
         .gain = options->gain,
+        .columns = columns_of((uint32_t)vct_cone_count(choice)),
         .texel_m = 2.0f * vct->clips[vct->clip_count - 1].grid.cell_m,
         .last_mip = vct_volume_mips(options) - 1,
         .pixel = 2.0f * tanf(0.5f * view->camera.vertical_fov_rad) / (float)view->height,
@@ -35,11 +44,12 @@ static struct vct_cone_params params_of(const struct vct *vct, const struct fram
 
 struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame_view *view)
 {
-    struct vct_cone_params params = params_of(vct, view, VCT_CONES_6, 1);
+    const int choice = vct_has_rays(&vct->options) ? VCT_CONES_9 : VCT_CONES_6;
+    struct vct_cone_params params = params_of(vct, view, choice, 1);
     // Wide samples mix both sides of a wall, and each bounce adds to the leak.
     params.width_per_m = vct->options.step_size * vct_cone_width(VCT_CONES_25);
     struct vct_cone cones[VCT_MAX_CONES];
-    vct_cone_set(VCT_CONES_6, cones);
+    vct_cone_set(choice, cones);
     for (uint32_t i = 0; i < params.cone_count; i++)
         params.cones[i] = vec4_of(cones[i].direction, cones[i].weight);
     return params;
@@ -59,6 +69,7 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
         params.cones[i] =
             vec4_of(vct->cone_axes[i],
                     1.0f / (float)(count * (uint32_t)pixels_tracing(i, side * side, count)));
+    vct_stratum_axes(vct->options.temporal ? vct->temporal.number : 0, params.set_axes);
     return params;
 }
 
@@ -81,6 +92,7 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
                           { .name = "green", .image = vct->traced[1] },
                           { .name = "blue", .image = vct->traced[2] },
                           { .name = "irradiance", .image = result },
+                          VCT_RAY_BINDINGS(vct, &vct->clips[0]),
                           vct_small_emitters_binding(vct, cmd), vct_svo_binding(vct, cmd),
                           { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
                  NULL, 0, side * side * gpu_groups(gpu_groups(vct->width, side), VCT_LOCAL_2D),

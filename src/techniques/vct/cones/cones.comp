@@ -21,6 +21,10 @@
 #include "techniques/vct/cones/cones_shared.h"
 #include "techniques/vct/cones/trace.glsl"
 #include "techniques/vct/cones/cone_sums.glsl"
+#if !VCT_SVO
+#include "techniques/vct/rays/jitter.glsl"
+#include "techniques/vct/rays/ray.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -72,12 +76,30 @@ void main()
         vec3 up = octahedral_decode(texelFetch(cone_normal, pixel, 0).rg);
         vct_start start = vct_start_at(at);
         // Neighbours trace distant parts of the set; 7 is coprime with 4, 9, 16 and 25.
+#if !VCT_SVO
+        uint tile = vct_morton(block), rows = set.cone_count / set.columns;
+        mat3 world_from_set = mat3(set.set_axes[0], set.set_axes[1], set.set_axes[2]);
+#endif
         uint first = part * 7u % parts % set.cone_count;
         for (uint i = first; i < set.cone_count; i += parts) {
             vec3 direction = set.cone_count == 1u ? up : set.cones[i].xyz;
+#if !VCT_SVO
+            if (VCT_RAYS) {
+                vec2 jitter = vct_low_discrepancy(tile, part + i * parts);
+                direction = world_from_set *
+                            vct_uniform_direction(vct_in_stratum(i, set.columns, rows, jitter));
+            }
+#endif
             direction = dot(direction, up) < 0.0 ? -direction : direction;
-            vec4 traced = vct_cone(light, at, up, direction, set.offset, set.width_per_m,
-                                   set.last_mip, start);
+            vec4 traced;
+#if !VCT_SVO
+            if (VCT_RAYS)
+                traced = vct_trace_ray(2.0 * at + VCT_RAY_LIFT * up, up, direction,
+                                       vct.cell_m * vct.decay_per_m);
+            else
+#endif
+                traced = vct_cone(light, at, up, direction, set.offset, set.width_per_m,
+                                  set.last_mip, start);
             vec3 radiance = traced.rgb + (1.0 - traced.a) * frame.sky;
             if (VCT_OCCLUSION) radiance = 1.0 - traced.rgb;
             vct_add_cone(sum, radiance, set.cones[i].w * direction);

@@ -40,9 +40,19 @@ layout(set = 0, binding = 7, rgba32ui) uniform writeonly uimage2D vct_bounced;
 #include "techniques/vct/lighting/basis.glsl"
 #include "techniques/vct/voxelize/surface.glsl"
 #include "techniques/vct/cones/trace.glsl"
+#if !VCT_SVO
+#include "techniques/vct/rays/jitter.glsl"
+#define VCT_RAY_VOXELS_CHANGE
+#include "techniques/vct/rays/ray.glsl"
+#endif
 
 #define VCT_SMALL_EMITTERS_BINDING 10
 #include "techniques/vct/cones/small_emitters.glsl"
+
+ivec3 block_texel; // first texel of the block
+uint block_face;
+
+const float VCT_PI = 3.14159265;
 
 const uint EMITTER_SAMPLES = 4u; // of the points on a small emitter
 
@@ -57,16 +67,35 @@ vec3 small_emitters_at(vec3 at, vec3 normal)
     return sum * (float(VCT_EMITTER_POINTS) / float(EMITTER_SAMPLES));
 }
 
+uint part_number = 0u; // of all parts that the invocation has taken
+
 vec3 irradiance(vec3 position, vec3 normal)
 {
+#if !VCT_SVO
+    uint tile =
+        vct_morton(uvec2(vct_morton(uvec2(block_texel.xy)), block_texel.z)) * 8u + block_face;
+    part_number++;
+#endif
     mat3 world_from_local = vct_axes_about(normal);
     // With one grid both origins are equal, and the subtraction is exact.
     vec3 at = (position - (VCT_CLIPS > 1 ? clips.origin_m : vct.origin_m)) / set.texel_m;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < set.cone_count; i++) {
-        vec4 met = vct_cone(light, at, normal, world_from_local * set.cones[i].xyz, set.offset,
-                            set.width_per_m, set.last_mip, vct_start(vct.level, 0.0));
-        sum += set.cones[i].w * (met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky);
+        vec3 direction = world_from_local * set.cones[i].xyz;
+        float weight = set.cones[i].w;
+        vec4 met;
+#if !VCT_SVO
+        if (VCT_RAYS) {
+            direction = world_from_local * vct_cosine_direction(vct_in_stratum(
+                                               i, set.columns, set.cone_count / set.columns,
+                                               vct_low_discrepancy(tile + 64u * part_number, i)));
+            weight = VCT_PI / float(set.cone_count);
+            met = vct_trace_ray(2.0 * at + VCT_RAY_LIFT * normal, normal, direction, 0.0);
+        } else
+#endif
+            met = vct_cone(light, at, normal, direction, set.offset, set.width_per_m, set.last_mip,
+                           vct_start(vct.level, 0.0));
+        sum += weight * (met.rgb * vct.light_scale + (1.0 - met.a) * frame.sky);
     }
     if (VCT_HAS_SMALL_EMITTERS) sum += small_emitters_at(at, normal);
     return min(sum, vec3(HALF_MAX));
@@ -91,9 +120,6 @@ uint own(uint row)
     return row * VCT_BLOCK_LOCAL + gl_LocalInvocationID.x;
 }
 
-ivec3 block_texel; // first texel of the block
-uint block_face;
-
 // Position of a voxel in the block, from its bit in a row.
 uvec3 voxel_of(uint row, uint bit)
 {
@@ -113,13 +139,47 @@ uint low_bits(uint word)
     return (word & 1u) | (word >> 7 & 2u) | (word >> 14 & 4u) | (word >> 21 & 8u);
 }
 
+// Per axis, the lowest voxel of the block with a face against it, and the highest one with a face
+// along it. Between them is a solid, which parts what lies on either side.
+ivec3 solid_low = ivec3(1000), solid_high = ivec3(-1000);
+
+// Adds four voxels from `low` on, 2 along x and y.
+void find_solids(uint word, ivec3 low)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        uint along = low_bits(word >> (2 * axis)), against = low_bits(word >> (2 * axis + 1));
+        // Voxels at the lower place along the axis, and at the upper one.
+        uint lower = axis == 0 ? 5u : axis == 1 ? 3u : 15u, upper = axis == 2 ? 15u : ~lower;
+        int upper_at = low[axis] + (axis == 2 ? 0 : 1);
+        int first = (against & lower) != 0u ? low[axis] : upper_at,
+            last = (along & upper) != 0u ? upper_at : low[axis];
+        if (against != 0u) solid_low[axis] = min(solid_low[axis], first);
+        if (along != 0u) solid_high[axis] = max(solid_high[axis], last);
+    }
+}
+
+// Side of the block's solids along the face's plane, −1 or 1; 0 without any, or in the only voxel
+// of a thin one. The outermost voxels of a thicker one belong to their sides.
+ivec3 side_of(ivec3 voxel)
+{
+    ivec3 within = ivec3(lessThan(solid_low, solid_high));
+    ivec3 side =
+        ivec3(greaterThan(voxel + within, solid_high)) - ivec3(lessThan(voxel - within, solid_low));
+    side = mix(side, ivec3(0), greaterThan(solid_low, solid_high));
+    side[block_face / 2u] = 0;
+    return side;
+}
+
 void read_rows()
 {
     for (uint row = 0u; row < ROWS; row++) {
         uint word = 2u * vct_texel_index(block_texel + ivec3(0, row % VCT_BLOCK, row / VCT_BLOCK));
         uint bits = 0u;
-        for (uint i = 0u; i < 2u * VCT_BLOCK; i++)
+        for (uint i = 0u; i < 2u * VCT_BLOCK; i++) {
             bits |= low_bits(vct_mask_words[word + i] >> block_face) << (4u * i);
+            find_solids(vct_mask_words[word + i],
+                        2 * ivec3(i >> 1, row % VCT_BLOCK, row / VCT_BLOCK) + ivec3(0, 0, i & 1u));
+        }
         rows_left[own(row)] = bits;
     }
 }
@@ -132,12 +192,13 @@ struct vct_part {
     bool covers; // whether they cover any area
 };
 
-// Takes the first face without a part and all others with its normal and plane. False: none is
-// left.
+// Takes the first face without a part and all others with its normal and plane, on its side of
+// partitions. False: none is left.
 bool take_part(out vct_part part)
 {
     part = vct_part(vec3(0.0), vec3(0.0), 0.0, false);
     vec3 first_normal = vec3(0.0), first_position = vec3(0.0);
+    ivec3 first_side = ivec3(0);
     bool first = true;
     uint row = 0u, rest = rows_left[own(0u)], taken = 0u;
     for (;;) {
@@ -161,8 +222,10 @@ bool take_part(out vct_part part)
         if (first) {
             first_normal = surface.normal;
             first_position = position;
+            first_side = side_of(ivec3(voxel_of(row, bit)));
         } else if (dot(surface.normal, first_normal) < ONE_SURFACE ||
-                   abs(dot(position - first_position, first_normal)) > max_plane_distance()) {
+                   abs(dot(position - first_position, first_normal)) > max_plane_distance() ||
+                   side_of(ivec3(voxel_of(row, bit))) != first_side) {
             continue;
         }
         first = false;

@@ -72,14 +72,18 @@ static void bounce(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
                  { .name = "vct_word_offsets", .buffer = set->word_offsets },
                  { .name = "vct_surfaces", .image = set->surfaces },
                  { .name = "vct_bounced", .image = set->bounced },
-                 vct_small_emitters_binding(vct, cmd), vct_svo_binding(vct, cmd),
-                 { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
+                 VCT_RAY_BINDINGS(vct, &vct->clips[0]), vct_small_emitters_binding(vct, cmd),
+                 vct_svo_binding(vct, cmd), { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
         NULL, 0, clip->texel_counts, offsetof(struct vct_texel_levels, block_groups));
 }
 
+// new_sets: sets of voxels whose records are not of this frame.
 static void bounce_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                       struct gpu_binding cones)
+                       uint32_t new_sets)
 {
+    struct vct_cone_params params = vct_voxel_cones(vct, view);
+    params.new_sets = new_sets;
+    const struct gpu_binding cones = gpu_transient(cmd, "vct_cones", &params, sizeof params);
     gpu_scope_begin(cmd, "bounce");
     for (int i = 0; i < vct->clip_count; i++) {
         const struct vct_clip *clip = &vct->clips[i];
@@ -139,6 +143,12 @@ static void restart_light(struct vct *vct, struct gpu_cmd *cmd, const struct fra
     vct->params.light_count = lights;
 }
 
+// Moving voxels are new in each frame in which they move.
+static uint32_t new_sets(const struct vct *vct)
+{
+    return (vct->clips[0].new_statics ? 1u : 0) | (vct->revoxelized ? 2u : 0);
+}
+
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool many = vct->options.bounces > 1;
@@ -150,15 +160,13 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     vct->params.bounced = many || has_sky(view) || view->scene->max_emissive > 0.0f;
     const int bounces = vct->params.bounced ? bounces_now(vct, view, &inputs, restart) : 0;
     if (bounces == 0) return;
-    const struct vct_cone_params params = vct_voxel_cones(vct, view);
-    const struct gpu_binding cones = gpu_transient(cmd, "vct_cones", &params, sizeof params);
     vct->params.light_scale = restart ? 1.0f : view->constants->previous_scale_ratio;
     if (restart) restart_light(vct, cmd, view, many);
-    bounce_all(vct, cmd, view, cones);
+    bounce_all(vct, cmd, view, restart ? 0 : new_sets(vct));
     vct->params.light_scale = 1.0f;
     for (int i = 1; i < bounces; i++) {
         light_voxels(vct, cmd, view);
-        bounce_all(vct, cmd, view, cones);
+        bounce_all(vct, cmd, view, 0);
     }
     vct->bounce_inputs = inputs;
     vct->bounced_valid = true;

@@ -170,8 +170,8 @@ static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cm
 {
     const bool moved = view->geometry_moved || view->index != vct->voxelized_index + 1;
     const int moving = view->scene->dynamic_count;
-    const bool statics =
-        !clip->static_valid || !vct->options.keep_static || moving != vct->moving_draws;
+    clip->new_statics = !clip->static_valid || moving != vct->moving_draws;
+    const bool statics = clip->new_statics || !vct->options.keep_static;
     if (statics) voxelize(vct, clip, cmd, view, &clip->static_set, false);
     // A set whose last draw is gone is emptied once.
     clip->revoxelized = statics || (moving > 0 && moved) || moving != vct->moving_draws;

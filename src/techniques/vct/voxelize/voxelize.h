@@ -14,6 +14,7 @@ struct vct_voxel_set {
     gpu_buffer accumulated;                  // a bit for each voxel whose triangles are summed up
     gpu_buffer accumulated_list;             // slots of those voxels
     gpu_image surfaces, lit_voxels, bounced; // RGBA32U, one entry for each occupied voxel
+    gpu_image planes;                        // R32U, for rays: see rays/plane.glsl
 };
 
 // Draws by what their materials read; a map that a material lacks is white.

@@ -1,0 +1,268 @@
+// Rays through the faces of the voxels. A face stores the plane of its surfaces: a ray meets that
+// plane within the voxel, at the true distance and on one side, so that nothing behind a thin
+// partition is seen. Within blocks a ray passes from voxel to voxel (Amanatides & Woo 1987); empty
+// space is skipped by the mips of occupancy. Faces that are covered in part accumulate as samples
+// of cones do (volume/over.glsl). Include after vct_grid.glsl.
+#ifndef AG_VCT_RAY_GLSL
+#define AG_VCT_RAY_GLSL
+
+#include "techniques/vct/rays/plane.glsl"
+#include "techniques/vct/rays/rays_shared.h"
+#include "techniques/vct/vct_constants.h"
+#include "techniques/vct/volume/directions.glsl"
+#include "techniques/vct/volume/lit_face.glsl"
+#include "techniques/vct/volume/over.glsl"
+
+layout(set = 0, binding = 24) uniform usampler3D vct_blocks;
+layout(set = 0, binding = 25) uniform usampler3D static_first_slots;
+layout(set = 0, binding = 26) uniform usampler3D dynamic_first_slots;
+layout(set = 0, binding = 27) uniform usampler2D static_planes;
+layout(set = 0, binding = 28) uniform usampler2D dynamic_planes;
+layout(set = 0, binding = 29) uniform usampler2D static_lit_voxels;
+layout(set = 0, binding = 30) uniform usampler2D dynamic_lit_voxels;
+
+layout(constant_id = VCT_CONSTANT_RAYS) const bool VCT_RAYS = false;
+const float VCT_RAY_LIFT = 0.25;   // of the start along the normal, voxels
+const float VCT_RAY_OPAQUE = 0.98; // a ray of this opacity ends
+// A ray meets a plane up to this far beyond the voxel, so that none passes between the planes of
+// neighbours on a curved surface. In voxels along the ray.
+const float VCT_RAY_SEAM = 0.1;
+const float VCT_RAY_STEP = 1e-3; // voxels beyond a border: within the next voxel for certain
+// Rounding of a plane, and the sagitta of a curved surface, in voxels: the back of the surface on
+// which a ray starts is no occluder.
+const float VCT_RAY_LEAST = 0.01, VCT_RAY_OWN = 0.25;
+
+struct vct_ray {
+    vec3 from, direction, inverse; // in voxels of the grid
+    vec3 normal;                   // of the surface at the start
+    uint facing, facing_aligned;   // faces that may face the ray, a byte for each voxel
+    float end;                     // distance at which it leaves the grid
+};
+
+// Faces whose normals can be against the direction. slope: of their normals to the axis.
+uint vct_facing(vec3 d, float slope)
+{
+    vec3 across = slope * vec3(abs(d.y) + abs(d.z), abs(d.x) + abs(d.z), abs(d.x) + abs(d.y));
+    bvec3 front = lessThan(d, across), back = lessThan(-d, across);
+    return (front.x ? 1u : 0u) | (back.x ? 2u : 0u) | (front.y ? 4u : 0u) | (back.y ? 8u : 0u) |
+           (front.z ? 16u : 0u) | (back.z ? 32u : 0u);
+}
+
+// Distance to the exit from a box.
+float vct_ray_exit(vct_ray ray, vec3 low, float size)
+{
+    vec3 ends = low + mix(vec3(0.0), vec3(size), greaterThan(ray.direction, vec3(0.0)));
+    vec3 t = (ends - ray.from) * ray.inverse;
+    return min(t.x, min(t.y, t.z));
+}
+
+float vct_ray_end(vct_ray ray)
+{
+    vec3 cells = vec3(vct_cells());
+    if (any(lessThan(ray.from, vec3(0.0))) || any(greaterThanEqual(ray.from, cells))) return 0.0;
+    vec3 ends = mix(vec3(0.0), cells, greaterThan(ray.direction, vec3(0.0)));
+    vec3 t = (ends - ray.from) * ray.inverse;
+    return min(t.x, min(t.y, t.z)) - VCT_RAY_STEP;
+}
+
+vct_ray vct_ray_of(vec3 from, vec3 normal, vec3 direction)
+{
+    vct_ray ray;
+    ray.from = from;
+    ray.direction = direction;
+    ray.normal = normal;
+    vec3 sign = mix(vec3(1.0), vec3(-1.0), lessThan(direction, vec3(0.0)));
+    ray.inverse = sign / max(abs(direction), vec3(1e-6));
+    ray.facing = VCT_EACH_VOXEL * vct_facing(direction, 1.0);
+    ray.facing_aligned = VCT_EACH_VOXEL * vct_facing(direction, VCT_ALIGNED_SLOPE);
+    ray.end = vct_ray_end(ray);
+    return ray;
+}
+
+// A voxel that a ray passes, and its faces that may meet the ray.
+struct vct_ray_voxel {
+    ivec3 at;
+    float first, last; // distances
+    uvec2 words;       // of the masks of both sets
+    uvec2 below;       // the block's words before them, or 0
+    uint faces;        // 6 bits of the static set, 6 of the other
+};
+
+uint vct_ray_shift(ivec3 voxel)
+{
+    return 8u * uint(voxel.x & 1 | (voxel.y & 1) << 1);
+}
+
+// The next voxel with such a face from v.last on. False: none is left.
+bool vct_ray_next(vct_ray ray, inout vct_ray_voxel v)
+{
+    v.faces = 0u;
+    while (v.faces == 0u && v.last < ray.end) {
+        v.first = v.last;
+        v.at = ivec3(ray.from + ray.direction * (v.first + VCT_RAY_STEP));
+        uvec4 masks = texelFetch(vct_blocks, v.at >> 1, 0);
+        bool empty = (masks.x & VCT_BLOCK_EMPTY) != 0u;
+        uvec4 aligned = masks >> 6u & VCT_EACH_VOXEL;
+        aligned = (aligned << 6u) - aligned; // all faces of aligned voxels
+        uvec4 facing = masks & (ray.facing ^ ((ray.facing ^ ray.facing_aligned) & aligned));
+        bool none = empty || facing == uvec4(0u);
+        v.words = (v.at.z & 1) != 0 ? masks.yw : masks.xz;
+        v.below = (v.at.z & 1) != 0 ? masks.xz : uvec2(0u);
+        uvec2 faces = ((v.at.z & 1) != 0 ? facing.yw : facing.xz) >> vct_ray_shift(v.at) & 63u;
+        v.faces = none ? 0u : faces.x | faces.y << 6;
+        uint level = empty ? (masks.x & 7u) + 1u : none ? 1u : 0u;
+        v.last = max(vct_ray_exit(ray, vec3(v.at >> level << level), float(1u << level)),
+                     v.first + VCT_RAY_STEP);
+    }
+    return v.faces != 0u;
+}
+
+const uint VCT_RAY_DYNAMIC = 0x80000000u; // bit of a face's number
+
+// Slot of a face, and the bit for the dynamic set.
+uint vct_ray_face(vct_ray_voxel v, uint face)
+{
+    bool dynamic = face >= VCT_FACES;
+    uint bit = 1u << (vct_ray_shift(v.at) + (dynamic ? face - VCT_FACES : face));
+    uint word = (dynamic ? v.words.y : v.words.x) & VCT_EACH_VOXEL * 63u;
+    uint before = uint(bitCount(word & (bit - 1u))); // in the block
+    if (dynamic)
+        before += texelFetch(dynamic_first_slots, v.at >> 1, 0).r;
+    else
+        before += texelFetch(static_first_slots, v.at >> 1, 0).r;
+    return (before + uint(bitCount((dynamic ? v.below.y : v.below.x) & VCT_EACH_VOXEL * 63u))) |
+           (dynamic ? VCT_RAY_DYNAMIC : 0u);
+}
+
+vct_plane vct_ray_plane(uint face)
+{
+    uint packed = 0u, slot = face & ~VCT_RAY_DYNAMIC;
+    ivec2 at = vct_face_texel(slot);
+    if (slot < vct.capacity) {
+        if (face >= VCT_RAY_DYNAMIC)
+            packed = texelFetch(dynamic_planes, at, 0).r;
+        else
+            packed = texelFetch(static_planes, at, 0).r;
+    }
+    return vct_unpack_plane(packed);
+}
+
+// Distance to a plane; negative where the ray does not meet it in the voxel.
+float vct_ray_meets(vct_ray ray, vct_ray_voxel v, vct_plane plane)
+{
+    float approach = -dot(plane.normal, ray.direction);
+    vec3 centre = vec3(v.at) + 0.5 - ray.from;
+    float height = -dot(plane.normal, centre) - plane.distance; // of the start
+    float least = dot(plane.normal, ray.normal) < -0.5 ? VCT_RAY_OWN : VCT_RAY_LEAST;
+    float t = height / max(approach, 1e-4);
+    bool meets = approach > 1e-4 && height > least && t >= v.first - VCT_RAY_SEAM &&
+                 t <= v.last + VCT_RAY_SEAM;
+    return meets ? t : -1.0;
+}
+
+#ifdef VCT_RAY_VOXELS_CHANGE
+// Radiance of a face of new voxels, whose records are not written yet: that of the previous frame's
+// light volume. place: see vct_ray_place.
+vec3 vct_ray_previous_light(uint place)
+{
+    ivec3 at = ivec3(place & 255u, place >> 8 & 255u, place >> 16 & 255u);
+    at.x += int(place >> 24 ^ 1u) * vct.volume_dim; // seen along a direction against the normal
+    vec4 found = texelFetch(light, at, 0);
+    return found.rgb / max(found.a, 1e-3);
+}
+#endif
+
+// Texel and face.
+uint vct_ray_place(ivec3 voxel, uint face)
+{
+    ivec3 at = voxel >> 1;
+    return uint(at.x | at.y << 8 | at.z << 16) | face % VCT_FACES << 24;
+}
+
+// Radiance of a face, from its own record.
+vec3 vct_ray_light(uint face, uint place)
+{
+#ifdef VCT_RAY_VOXELS_CHANGE
+    if ((set.new_sets & (face >= VCT_RAY_DYNAMIC ? 2u : 1u)) != 0u)
+        return vct_ray_previous_light(place);
+#endif
+    ivec2 at = vct_face_texel(face & ~VCT_RAY_DYNAMIC);
+    uvec4 packed = uvec4(0u);
+    if (face >= VCT_RAY_DYNAMIC)
+        packed = texelFetch(dynamic_lit_voxels, at, 0);
+    else
+        packed = texelFetch(static_lit_voxels, at, 0);
+    vct_lit_face lit = vct_unpack(packed);
+    return lit.reflected + vct_emitted(lit.emitted, false);
+}
+
+// What a ray has met. The radiance of the last face is looked up when it is the last one, or when
+// there is another behind it: most rays end at the first.
+struct vct_ray_sum {
+    vec3 light; // premultiplied; occlusion: attenuated
+    float opacity;
+    float previous; // opacity of the last face; 0 where that is not next to what follows
+    uint face, place;
+    float shown; // visible part of the last face, not yet in `light`
+};
+
+void vct_ray_add(inout vct_ray_sum s, uvec2 face, float alpha)
+{
+    if (alpha <= 0.0) return;
+    if (s.shown > 0.0) s.light += s.shown * vct_ray_light(s.face, s.place);
+    s.face = face.x;
+    s.place = face.y;
+    s.shown = vct_visible_alpha(1.0 - s.opacity, alpha, min(s.previous + alpha, 1.0));
+    s.opacity += s.shown;
+    s.previous = alpha;
+}
+
+// The two nearest faces of a voxel that a ray meets.
+struct vct_ray_meeting {
+    vec2 distance, alpha;
+    uvec2 faces[2]; // vct_ray_face, vct_ray_place
+};
+
+vct_ray_meeting vct_ray_meet(vct_ray ray, vct_ray_voxel v)
+{
+    vct_ray_meeting m = vct_ray_meeting(vec2(1e6), vec2(0.0), uvec2[2](uvec2(0u), uvec2(0u)));
+    for (; v.faces != 0u; v.faces &= v.faces - 1u) {
+        uint bit = uint(findLSB(v.faces));
+        uvec2 face = uvec2(vct_ray_face(v, bit), vct_ray_place(v.at, bit));
+        vct_plane plane = vct_ray_plane(face.x);
+        float t = vct_ray_meets(ray, v, plane);
+        if (t < 0.0 || plane.opacity == 0.0 || t >= m.distance.y) continue;
+        bool first = t < m.distance.x;
+        m.distance = first ? vec2(t, m.distance.x) : vec2(m.distance.x, t);
+        m.alpha = first ? vec2(plane.opacity, m.alpha.x) : vec2(m.alpha.x, plane.opacity);
+        m.faces[1] = first ? m.faces[0] : face;
+        m.faces[0] = first ? face : m.faces[0];
+    }
+    return m;
+}
+
+// Premultiplied radiance and opacity along a ray from a surface of that normal, in voxels. decay:
+// of occlusion per voxel.
+vec4 vct_trace_ray(vec3 from, vec3 normal, vec3 direction, float decay)
+{
+    vct_ray ray = vct_ray_of(from, normal, direction);
+    vct_ray_voxel v;
+    v.last = 0.0;
+    vct_ray_sum s = vct_ray_sum(vec3(0.0), 0.0, 0.0, 0u, 0u, 0.0);
+    float previous_end = 0.0;
+    while (s.opacity < VCT_RAY_OPAQUE && vct_ray_next(ray, v)) {
+        vct_ray_meeting m = vct_ray_meet(ray, v);
+        s.previous = v.first > previous_end + 1.0 ? 0.0 : s.previous;
+        previous_end = v.last;
+        for (int i = 0; i < 2; i++) {
+            vct_ray_add(s, m.faces[i], m.alpha[i]);
+            if (!VCT_OCCLUSION) continue;
+            s.light += vec3(s.shown / (1.0 + decay * m.distance[i]));
+            s.shown = 0.0;
+        }
+    }
+    if (s.shown > 0.0) s.light += s.shown * vct_ray_light(s.face, s.place);
+    return s.opacity > VCT_RAY_OPAQUE ? vec4(s.light / s.opacity, 1.0) : vec4(s.light, s.opacity);
+}
+
+#endif
