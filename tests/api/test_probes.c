@@ -36,10 +36,13 @@ static double mean(const struct ag_image *image)
 // Irradiance from probes equals that of a surface at the same point. Without an offset, the
 // lookup of surfaces differs only by rounding of coefficients and results to half floats (11
 // bits, nine terms that partly cancel) and weights of filters (8 bits on some drivers).
+// Coefficients hold light that is linear in all bands.
 TEST(probes_and_surfaces_have_equal_irradiance)
 {
-    const char *gi[] = { "lpv:probes=true,dim=16,offset=0,cascades=1,geometry=off",
-                         "holpv:probes=true,dim=16,offset=0,cascades=1,geometry=off" };
+    const char *gi[] = {
+        "lpv:probes=true,dim=16,offset=0,cascades=1,geometry=off,closure=linear",
+        "holpv:probes=true,dim=16,offset=0,cascades=1,geometry=off,closure=linear"
+    };
     for (int k = 0; k < 2; k++) {
         struct renderer_fixture s = fixture_open(gi[k], NULL);
         struct ag_probes *probes = render_probes(&s);

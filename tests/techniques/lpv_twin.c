@@ -19,7 +19,7 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
     twin->bands = bands;
     twin->scheme = scheme;
     twin->geometry = NULL;
-    twin->closed = false;
+    twin->closed = twin->positive = false;
     twin->injected_1 = lpv_crossing_of(scheme).injected_1;
     twin->light = calloc(twin_cells(twin), sizeof *twin->light);
     twin->accumulated = calloc(twin_cells(twin), sizeof *twin->accumulated);
@@ -28,7 +28,8 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
 void twin_init_as(struct twin *twin, const struct lpv *lpv)
 {
     twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
-    twin->closed = lpv_is_closed(&lpv->options);
+    twin->closed = lpv_closure_of(&lpv->options) == LPV_BEAM_CLOSURE;
+    twin->positive = lpv_closure_of(&lpv->options) == LPV_BANDS_CLOSURE;
     twin->closed_focus = (double)lpv->params.lobe_along;
     if (twin->closed) twin->injected_1 = lpv_closed_crossing().injected_1;
 }
@@ -193,7 +194,13 @@ static void filter(const struct twin *twin, const double at[3],
     }
 }
 
-// ∫ I (−n·ω)₊ dω at a position in cells, clamped at 0; `lobe` is the weighted cosine.
+static double without_ringing(double irradiance, double mean)
+{
+    const double least = fmax(0.2 * mean, 1e-20);
+    return irradiance < least ? least * least / (2.0 * least - irradiance) : irradiance;
+}
+
+// ∫ I (−n·ω)₊ dω at a position in cells, not negative; `lobe` is the weighted cosine.
 static double gather(const struct twin *twin, const double at[3], vec3s normal,
                      enum lpv_reconstruction reconstruction, const float lobe[9])
 {
@@ -201,7 +208,7 @@ static double gather(const struct twin *twin, const double at[3], vec3s normal,
     filter(twin, at, reconstruction, light);
     if (twin->closed) return closed_irradiance(light, normal);
     for (int i = 0; i < SH_COUNT(twin->bands); i++) sum += light[i] * (double)lobe[i];
-    return fmax(sum, 0.0);
+    return twin->positive ? without_ringing(sum, light[0] * (double)lobe[0]) : fmax(sum, 0.0);
 }
 
 double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,

@@ -18,6 +18,7 @@ struct twin {
     const struct geometry_twin *geometry; // occluders; NULL: none
     double occlusion;                     // the option
     bool closed;                          // the positive closure (lpv_closure.glsl)
+    bool positive;                        // that of three bands: no ringing
     double closed_focus;                  // mean cosine after a step of it
 };
 

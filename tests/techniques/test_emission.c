@@ -117,10 +117,12 @@ TEST_GPU(half_the_emission_is_half_the_irradiance)
     }
 }
 
-// The positive closure of lpv is homogeneous in light, but lights that cross do not add up.
+// The positive closures of lpv and holpv are homogeneous in light, but lights that cross do not add
+// up.
 static const char *additive(const struct technique *technique)
 {
-    return strcmp(technique->name, "lpv") == 0 ? "lpv:closure=linear" : technique->name;
+    if (strcmp(technique->name, "lpv") == 0) return "lpv:closure=linear";
+    return strcmp(technique->name, "holpv") == 0 ? "holpv:closure=linear" : technique->name;
 }
 
 TEST_GPU(emission_and_punctual_light_are_the_sum_of_each_alone)

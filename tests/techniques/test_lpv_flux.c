@@ -147,8 +147,8 @@ static struct room_error print_room(struct gpu *gpu, const char *options, float 
 }
 
 // A lookup reads the flux across a side of its cell: a wall receives none of its own light, but
-// what focus < 1 scatters back with the positive closure. Light spreads during propagation: the
-// facing wall receives less than its form factor.
+// what focus < 1 scatters back and what replaces ringing, with the positive closures. Light spreads
+// during propagation: the facing wall receives less than its form factor.
 TEST_GPU(lpv_of_a_lit_wall_is_close_to_form_factors)
 {
     const struct {
@@ -159,8 +159,8 @@ TEST_GPU(lpv_of_a_lit_wall_is_close_to_form_factors)
                   { "lpv:dim=16", 0.58, 0.03 },
                   { "lpv:dim=24,closure=linear,focus=0.96", 0.6, 0.01 },
                   { "lpv:dim=16,closure=linear,focus=0.96", 0.89, 0.01 },
-                  { "holpv:dim=24", 0.6, 0.01 },
-                  { "holpv:dim=16", 0.7, 0.01 } };
+                  { "holpv:dim=24", 0.6, 0.03 },
+                  { "holpv:dim=16", 0.7, 0.03 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct room_error r = print_room(gpu, cases[i].gi, 0, 10);
         CHECK(r.facing > cases[i].facing && r.facing < 1.1);
@@ -177,7 +177,7 @@ TEST_GPU(lpv_cascades_are_close_to_form_factors)
         const struct room_error r = print_room(gpu, options[i], 0, 10);
         CHECK(r.relative < 0.25);
         CHECK(r.side > 0.8 && r.side < 1.2);
-        CHECK(r.own < (i == 0 ? 0.02 : 0.01));
+        CHECK(r.own < (i == 0 ? 0.02 : 0.03));
     }
 }
 
@@ -275,9 +275,11 @@ static double diagonal_relmse(struct gpu *gpu, const char *gi)
 
 TEST_GPU(lpv_of_higher_order_has_less_error_along_a_diagonal_at_equal_steps)
 {
-    const char *gis[][2] = { { "lpv:dim=32,steps=10", "holpv:dim=32,steps=10" },
-                             { "lpv:dim=32,steps=20", "holpv:dim=32,steps=20" },
-                             { "lpv:dim=32,steps=40", "holpv:dim=32,steps=40" } };
+    const char *gis[][2] = {
+        { "lpv:dim=32,steps=10,closure=linear", "holpv:dim=32,steps=10,closure=linear" },
+        { "lpv:dim=32,steps=20,closure=linear", "holpv:dim=32,steps=20,closure=linear" },
+        { "lpv:dim=32,steps=40,closure=linear", "holpv:dim=32,steps=40,closure=linear" }
+    };
     for (int i = 0; i < 3; i++)
         CHECK(diagonal_relmse(gpu, gis[i][1]) < diagonal_relmse(gpu, gis[i][0]));
 }

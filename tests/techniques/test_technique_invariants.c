@@ -62,10 +62,12 @@ TEST_GPU(techniques_give_half_for_half_the_light)
     }
 }
 
-// The positive closure of lpv is homogeneous in light, but lights that cross do not add up.
+// The positive closures of lpv and holpv are homogeneous in light, but lights that cross do not add
+// up.
 static const char *additive(const struct technique *technique)
 {
-    return strcmp(technique->name, "lpv") == 0 ? "lpv:closure=linear" : technique->name;
+    if (strcmp(technique->name, "lpv") == 0) return "lpv:closure=linear";
+    return strcmp(technique->name, "holpv") == 0 ? "holpv:closure=linear" : technique->name;
 }
 
 TEST_GPU(techniques_add_two_lights_up)

@@ -10,7 +10,8 @@
 #ifndef AG_LPV_CLOSURE_GLSL
 #define AG_LPV_CLOSURE_GLSL
 
-layout(constant_id = LPV_CONSTANT_CLOSED) const bool LPV_CLOSED = true;
+layout(constant_id = LPV_CONSTANT_CLOSURE) const int LPV_CLOSURE = LPV_BEAM_CLOSURE;
+const bool LPV_CLOSED = LPV_CLOSURE == LPV_BEAM_CLOSURE;
 
 struct lpv_closure {
     vec3 wide;          // flux within a hemisphere or more

@@ -16,6 +16,18 @@ vec3 lpv_closed_irradiance(lpv_closure light, vec3 n)
            light.beam * max(cosine, vec3(0.0)) / (lpv.mean_path * light.steps);
 }
 
+const float LPV_RINGING = 0.2; // times the mean over all normals: below, bands ring
+
+// Three bands ring to negative irradiance beside bright emitters, where light from elsewhere does
+// arrive. Below a share of the mean over all normals a hyperbola continues the irradiance with its
+// value and slope: never negative, and twice the light is twice the result.
+vec3 lpv_without_ringing(vec3 irradiance, vec3 mean)
+{
+    vec3 least = max(LPV_RINGING * mean, vec3(1e-20));
+    return mix(irradiance, least * least / (2.0 * least - min(irradiance, least)),
+               lessThan(irradiance, least));
+}
+
 // The flux that a step sends across a side of a cell with the normal −n (lpv_crossing_of): a wall
 // gets all light that arrives and none of its own. On a slope, stairs of |x| + |y| + |z| sides per
 // area let the light that leaves have that many times the directional band; without geometry there
@@ -23,15 +35,16 @@ vec3 lpv_closed_irradiance(lpv_closure light, vec3 n)
 vec3 lpv_irradiance(lpv_light light, vec3 n)
 {
     if (LPV_CLOSED) return lpv_closed_irradiance(lpv_closure_of(light), n);
-    vec3 sum = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);
+    vec3 mean = SH_COSINE_0 * SH_Y0 * light.mean, band_1 = vec3(0.0), band_2 = vec3(0.0);
     vec3 products = n.yzx * n.zxy;
     for (int a = 0; a < 3; a++) {
         band_1 -= SH_Y1 * n[a] * light.along[a];
         band_2 += n[a] * n[a] * light.square[a] + SH_Y2_XY * products[a] * light.product[a];
     }
     float sides = mix(1.0, abs(n.x) + abs(n.y) + abs(n.z), lpv.staircase);
-    return sum + (lpv.window_1 / sides) * SH_COSINE_1 * band_1 +
-           lpv.window_2 * SH_COSINE_2 * band_2;
+    vec3 sum =
+        mean + (lpv.window_1 / sides) * SH_COSINE_1 * band_1 + lpv.window_2 * SH_COSINE_2 * band_2;
+    return LPV_CLOSURE == LPV_BANDS_CLOSURE ? lpv_without_ringing(sum, mean) : sum;
 }
 
 #endif

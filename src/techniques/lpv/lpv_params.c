@@ -33,7 +33,7 @@ static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_vie
 // that the size of cells does not matter.
 static double focus_of_step(const struct lpv *lpv, const struct frame_view *view)
 {
-    if (!lpv_is_closed(&lpv->options)) return (double)lpv->options.focus;
+    if (lpv_closure_of(&lpv->options) != LPV_BEAM_CLOSURE) return (double)lpv->options.focus;
     const vec3s size = box3_size(view->bounds);
     const float longest = fmaxf(size.x, fmaxf(size.y, size.z));
     return pow((double)lpv->options.focus, (double)(16.0f * lpv->grid.cell_m / longest));
@@ -47,7 +47,7 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
     const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
     const struct lpv_step step = lpv_step_of(scheme, (enum lpv_lobe)options->lobe,
                                              focus_of_step(lpv, view), (double)options->filter);
-    const bool closed = lpv_is_closed(options);
+    const bool closed = lpv_closure_of(options) == LPV_BEAM_CLOSURE;
     const struct lpv_crossing crossing = closed ? lpv_closed_crossing() : lpv_crossing_of(scheme);
     const float mean_path = (float)lpv_mean_path(scheme); // see lpv_apply.comp
     return (struct lpv_params){

@@ -16,7 +16,7 @@ enum {
     NEIGHBOURS = 1 << LPV_CONSTANT_NEIGHBOURS,
     CUBIC = 1 << LPV_CONSTANT_CUBIC,
     DAMPED = 1 << LPV_CONSTANT_DAMPED,
-    CLOSED = 1 << LPV_CONSTANT_CLOSED,
+    CLOSURE = 1 << LPV_CONSTANT_CLOSURE,
     LIGHT = BANDS | HALF, // shaders that include lpv_light.glsl
     MASKED = 1 << 7,      // SCENE_CONSTANT_MASKED
 };
@@ -40,8 +40,8 @@ static struct gpu_constant constant_of(const struct lpv_options *options, uint32
     case NEIGHBOURS:
         return (struct gpu_constant){ LPV_CONSTANT_NEIGHBOURS,
                                       options->neighbours == LPV_SIX ? 6 : 26 };
-    case CLOSED:
-        return (struct gpu_constant){ LPV_CONSTANT_CLOSED, lpv_is_closed(options) };
+    case CLOSURE:
+        return (struct gpu_constant){ LPV_CONSTANT_CLOSURE, lpv_closure_of(options) };
     case CUBIC:
         return (struct gpu_constant){ LPV_CONSTANT_CUBIC, options->reconstruction == LPV_CUBIC };
     case DAMPED:
@@ -73,15 +73,15 @@ static bool create_all(struct lpv *lpv, const struct pipeline *pipelines, size_t
 static bool create_stages(struct lpv *lpv)
 {
     struct lpv_pipelines *p = &lpv->pipelines;
-    const uint32_t step = LIGHT | GEOMETRY | NEIGHBOURS | CLOSED;
+    const uint32_t step = LIGHT | GEOMETRY | NEIGHBOURS | CLOSURE;
     const struct pipeline stages[] = {
         { &p->inject, "inject", &shader_lpv_inject_comp, LIGHT },
         { &p->inject_emitters, "inject_emitters", &shader_lpv_inject_emitters_comp, LIGHT },
         { &p->resolve, "resolve", &shader_lpv_resolve_comp, LIGHT },
         { &p->propagate, "propagate", &shader_lpv_propagate_comp, step },
-        { &p->apply, "apply", &shader_lpv_apply_comp, LIGHT | GEOMETRY | CUBIC | CLOSED },
+        { &p->apply, "apply", &shader_lpv_apply_comp, LIGHT | GEOMETRY | CUBIC | CLOSURE },
         { &p->apply_damped, "apply", &shader_lpv_apply_comp,
-          LIGHT | GEOMETRY | CUBIC | CLOSED | DAMPED },
+          LIGHT | GEOMETRY | CUBIC | CLOSURE | DAMPED },
         { &p->debug, "debug", &shader_lpv_debug_comp, LIGHT | GEOMETRY },
     };
     const struct pipeline refine = { &p->refine, "refine", &shader_lpv_refine_comp,
@@ -99,7 +99,7 @@ static bool create_bounces(struct lpv *lpv)
     const struct pipeline bounces[] = {
         { &p->surfaces, "surfaces", &shader_lpv_surfaces_comp, 0 },
         { &p->masked_surfaces, "masked_surfaces", &shader_lpv_surfaces_comp, MASKED },
-        { &p->bounce, "bounce", &shader_lpv_bounce_comp, LIGHT | GEOMETRY | CLOSED },
+        { &p->bounce, "bounce", &shader_lpv_bounce_comp, LIGHT | GEOMETRY | CLOSURE },
     };
     return lpv->options.bounces == 0 || create_all(lpv, bounces, COUNT(bounces));
 }

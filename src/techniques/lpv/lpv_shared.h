@@ -29,7 +29,13 @@
 #define LPV_CONSTANT_NEIGHBOURS 3 // 6 or 26
 #define LPV_CONSTANT_CUBIC      4 // cubic reconstruction between cells, or trilinear
 #define LPV_CONSTANT_DAMPED     5 // damping is on
-#define LPV_CONSTANT_CLOSED     6 // lpv_closure.glsl
+#define LPV_CONSTANT_CLOSURE    6 // LPV_…_CLOSURE
+
+// Light of a cell: linear in all bands; two bands closed by lpv_closure.glsl; three bands whose
+// irradiance is not negative (lpv_irradiance.glsl).
+#define LPV_NO_CLOSURE    0
+#define LPV_BEAM_CLOSURE  1
+#define LPV_BANDS_CLOSURE 2
 
 // Source of the geometry volume: none, surfels of maps and camera, triangles of the scene.
 #define LPV_GEOMETRY_OFF   0

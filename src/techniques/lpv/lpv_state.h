@@ -86,11 +86,12 @@ struct lpv_cascades {
     struct lpv levels[LPV_MAX_CASCADES]; // from the finest
 };
 
-// Whether light has the distribution of lpv_closure.glsl; other schemes are linear in all bands.
-static inline bool lpv_is_closed(const struct lpv_options *options)
+// LPV_…_CLOSURE. Two bands over 26 neighbours have none.
+static inline uint32_t lpv_closure_of(const struct lpv_options *options)
 {
-    return options->closure == LPV_CLOSURE_POSITIVE && options->bands == 2 &&
-           options->neighbours == LPV_SIX;
+    if (options->closure == LPV_CLOSURE_LINEAR) return LPV_NO_CLOSURE;
+    if (options->bands == 3) return LPV_BANDS_CLOSURE;
+    return options->neighbours == LPV_SIX ? LPV_BEAM_CLOSURE : LPV_NO_CLOSURE;
 }
 
 // Empty cells around the scene. At least a half: every surface lies between the centres of two

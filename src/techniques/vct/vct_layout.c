@@ -43,10 +43,13 @@ static uint32_t voxel_count(const struct vct_options *options)
 }
 
 // The surfaces of a scene occupy a multiple of the voxels in a face of the grid: 6 for an empty
-// room. A capacity of 32 also fits densely furnished scenes, with several faces in many voxels.
+// room. A capacity of 32 also fits densely furnished scenes, with several faces in many voxels. At
+// 256 voxels it is 26: the buffer of sums has at most the storage range that every device binds.
 uint32_t vct_capacity(const struct vct_options *options)
 {
-    const uint32_t dim = (uint32_t)options->resolution, most = 32 * dim * dim;
+    const uint32_t dim = (uint32_t)options->resolution, face = dim * dim;
+    const uint32_t bound = (1u << 27) / (VCT_SUM_WORDS * (uint32_t)sizeof(uint32_t)) / face;
+    const uint32_t most = (bound < 32 ? bound : 32) * face;
     return most < 6 * voxel_count(options) ? most : 6 * voxel_count(options);
 }
 
