@@ -33,12 +33,28 @@ static void place_around_camera(struct vct *vct, const struct frame_view *view)
     }
 }
 
+// Whether a grid contains the bounds with voxels at most 1.14 times as large as a fitted one's. The
+// bounds of moving geometry change in each frame: a new grid would discard all light.
+static bool still_fits(const struct vct_grid *grid, const struct vct_grid *fitted,
+                       struct box3 bounds)
+{
+    if (grid->cell_m > 1.14f * fitted->cell_m) return false;
+    for (int axis = 0; axis < 3; axis++) {
+        const float low = grid->origin_m.raw[axis];
+        if (bounds.min.raw[axis] < low) return false;
+        if (bounds.max.raw[axis] > low + (float)grid->cells[axis] * grid->cell_m) return false;
+    }
+    return true;
+}
+
 bool vct_clipmap_update(struct vct *vct, const struct frame_view *view)
 {
     const struct vct_grid previous = vct->clips[0].grid;
     if (!vct_grid_fit(view->bounds, vct->options.resolution, &vct->clips[0].grid)) return false;
     const bool known = view->index > 0 && view->pose->scene == vct->scene;
     vct->scene = view->pose->scene;
+    if (known && still_fits(&previous, &vct->clips[0].grid, view->bounds))
+        vct->clips[0].grid = previous;
     place_around_camera(vct, view);
     if (!known) vct->small_emitters.chosen = false;
     if (known && same_grid(&vct->clips[0].grid, &previous)) return true;

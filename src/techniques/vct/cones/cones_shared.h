@@ -22,10 +22,11 @@ struct vct_cone_params {
     float gain;
     float texel_m; // of the finest level
     uint32_t last_mip;
-    float pixel;       // width of a pixel at distance 1
-    uint32_t columns;  // of the grid of strata, for rays
-    uint32_t new_sets; // whose records are not of this frame's voxels: 1 static, 2 dynamic
-    vec3s set_axes[3]; // axes of the strata of pixels, world space
+    float pixel;            // width of a pixel at distance 1
+    uint32_t columns;       // of the grid of strata, for rays
+    uint32_t new_sets;      // whose records are not of this frame's voxels: 1 static, 2 dynamic
+    uint32_t rounds, round; // bounces: of so many work groups, the one at this place gathers
+    vec3s set_axes[3];      // axes of the strata of pixels, world space
 };
 
 // Storage block "vct_small_emitters".
@@ -69,7 +70,7 @@ struct vct_history_params {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 22 * 4,
+_Static_assert(sizeof(struct vct_cone_params) == VCT_MAX_CONES * 16 + 24 * 4,
                "layout is shared with GLSL");
 _Static_assert(sizeof(struct vct_small_emitter) == (2 + 9 * VCT_EMITTER_POINTS) * 4,
                "layout is shared with GLSL");

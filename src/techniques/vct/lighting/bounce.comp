@@ -261,6 +261,7 @@ vec3 irradiance_on(vct_part part)
 // A workgroup gathers for one face of its blocks.
 void main()
 {
+    if (gl_WorkGroupID.x / VCT_FACES % set.rounds != set.round) return;
     uint i = gl_WorkGroupID.x / VCT_FACES * VCT_BLOCK_LOCAL + gl_LocalInvocationID.x;
     uint level = VCT_BLOCK == 4u ? 2u : 1u;
     if (i >= state.count[level]) return;

@@ -77,18 +77,36 @@ static void bounce(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
         NULL, 0, clip->texel_counts, offsetof(struct vct_texel_levels, block_groups));
 }
 
-// new_sets: sets of voxels whose records are not of this frame.
+// While light changes in every frame, static voxels gather in turns of this many frames. Moving
+// ones are new in each frame: they trace fewer rays.
+enum { TURNS = 8, RAYS_OF_MOVING = 4 };
+
+struct bounce_how {
+    uint32_t new_sets; // of voxels whose records are not of this frame
+    bool moves;        // light changes as in the previous frame
+};
+
 static void bounce_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
-                       uint32_t new_sets)
+                       struct bounce_how how)
 {
-    struct vct_cone_params params = vct_voxel_cones(vct, view);
-    params.new_sets = new_sets;
-    const struct gpu_binding cones = gpu_transient(cmd, "vct_cones", &params, sizeof params);
+    struct vct_cone_params params = vct_voxel_cones(vct, view), moving;
+    params.new_sets = how.new_sets;
+    moving = params;
+    if (how.moves && vct_has_rays(&vct->options)) {
+        params.rounds = how.new_sets & 1u ? 1 : TURNS;
+        params.round = (uint32_t)(view->index % params.rounds);
+        moving.cone_count = RAYS_OF_MOVING;
+        moving.columns = 2;
+    }
+    const struct gpu_binding cones[] = {
+        gpu_transient(cmd, "vct_cones", &params, sizeof params),
+        gpu_transient(cmd, "vct_cones", &moving, sizeof moving),
+    };
     gpu_scope_begin(cmd, "bounce");
     for (int i = 0; i < vct->clip_count; i++) {
         const struct vct_clip *clip = &vct->clips[i];
-        bounce(vct, clip, cmd, view, &clip->static_set, cones);
-        if (vct->moving_draws > 0) bounce(vct, clip, cmd, view, &clip->dynamic_set, cones);
+        bounce(vct, clip, cmd, view, &clip->static_set, cones[0]);
+        if (vct->moving_draws > 0) bounce(vct, clip, cmd, view, &clip->dynamic_set, cones[1]);
     }
     gpu_scope_end(cmd);
     vct->params.bounced = true;
@@ -114,9 +132,9 @@ enum {
     BOUNCES_AFTER_CHANGE = 16, // until the light from before the change is gone
 };
 
-// Bounces to trace in this frame.
+// Bounces to trace in this frame. moves: whether light changes as in the previous frame.
 static int bounces_now(struct vct *vct, const struct frame_view *view,
-                       const struct vct_bounce_inputs *inputs, bool restart)
+                       const struct vct_bounce_inputs *inputs, bool restart, bool *moves)
 {
     const bool same = same_inputs(vct, inputs);
     if (vct->options.bounces == 1) return same ? 0 : 1;
@@ -124,9 +142,10 @@ static int bounces_now(struct vct *vct, const struct frame_view *view,
         vct->bounces_left = vct->light_valid ? BOUNCES_AFTER_CHANGE : 0;
         return vct->light_valid ? 1 : BOUNCES_AT_ONCE;
     }
-    const bool changed = !same || view->lights_changed, moves = changed && vct->bounces_left > 0;
+    const bool changed = !same || view->lights_changed;
+    *moves = changed && vct->bounces_left > 0;
     if (changed) vct->bounces_left = BOUNCES_AFTER_CHANGE;
-    const int most = moves ? 1 : BOUNCES_OF_FRAME;
+    const int most = *moves ? 1 : BOUNCES_OF_FRAME;
     const int now = vct->bounces_left < most ? vct->bounces_left : most;
     vct->bounces_left -= now;
     return now;
@@ -158,15 +177,16 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     const bool restart =
         !many || !vct->light_valid || (vct->revoxelized && vct_has_svo(&vct->options));
     vct->params.bounced = many || has_sky(view) || view->scene->max_emissive > 0.0f;
-    const int bounces = vct->params.bounced ? bounces_now(vct, view, &inputs, restart) : 0;
+    bool moves = false;
+    const int bounces = vct->params.bounced ? bounces_now(vct, view, &inputs, restart, &moves) : 0;
     if (bounces == 0) return;
     vct->params.light_scale = restart ? 1.0f : view->constants->previous_scale_ratio;
     if (restart) restart_light(vct, cmd, view, many);
-    bounce_all(vct, cmd, view, restart ? 0 : new_sets(vct));
+    bounce_all(vct, cmd, view, (struct bounce_how){ restart ? 0 : new_sets(vct), moves });
     vct->params.light_scale = 1.0f;
     for (int i = 1; i < bounces; i++) {
         light_voxels(vct, cmd, view);
-        bounce_all(vct, cmd, view, 0);
+        bounce_all(vct, cmd, view, (struct bounce_how){ 0 });
     }
     vct->bounce_inputs = inputs;
     vct->bounced_valid = true;
