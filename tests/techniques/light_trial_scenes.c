@@ -140,6 +140,21 @@ void trial_strips(struct frame_fixture *s, struct gpu *gpu)
     fixture_look(s, vec3_of(0, 2.2f, 2.8f), vec3_of(0, 0, 0));
 }
 
+void trial_panel(struct frame_fixture *s, struct gpu *gpu)
+{
+    struct material m = material_default();
+    m.emissive = grey(1000);
+    m.base_color = vec4_of(grey(0.7f), 1);
+    m.metallic = 0;
+    fixture_init(s, gpu);
+    const int white = fixture_matte(s, grey(0.7f));
+    const int materials[6] = { white, white, white, white, white, white };
+    add_walls(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), materials);
+    fixture_quad(s, vec3_of(-0.5f, 2.98f, -0.4f), vec3_of(0.5f, 2.98f, -0.4f),
+                 vec3_of(0.5f, 2.98f, 0.4f), vec3_of(-0.5f, 2.98f, 0.4f), fixture_material(s, &m));
+    fixture_look(s, vec3_of(0, 0.3f, 1.9f), vec3_of(0, 3, -0.5f));
+}
+
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap)
 {
     fixture_init(s, gpu);

@@ -25,6 +25,10 @@ void trial_small_patch(struct frame_fixture *s, struct gpu *gpu);
 // A grey floor of 6 under one mesh of 12 × 12 emissive strips of 0.4 × 0.02 at a height of 2.5.
 void trial_strips(struct frame_fixture *s, struct gpu *gpu);
 
+// A room of 4 × 3 × 4 (albedo 0.7) with an emissive panel of 1 × 0.8 below the ceiling, at which
+// the camera looks.
+void trial_panel(struct frame_fixture *s, struct gpu *gpu);
+
 // A room of 4 × 3 × 4 with a point light; its left wall is white, and green in front of it at a
 // distance of `gap`; 0: green alone. The camera sees the floor next to that wall.
 void trial_wall_before_slab(struct frame_fixture *s, struct gpu *gpu, float gap);

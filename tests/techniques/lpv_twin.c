@@ -196,8 +196,8 @@ static void filter(const struct twin *twin, const double at[3],
 
 static double without_ringing(double irradiance, double mean)
 {
-    const double least = fmax(0.2 * mean, 1e-20);
-    return irradiance < least ? least * least / (2.0 * least - irradiance) : irradiance;
+    const double room = 0.14 * mean, below = 0.18 * mean - irradiance;
+    return below > 0.0 ? 0.04 * mean + room * room / (room + below) : irradiance;
 }
 
 // ∫ I (−n·ω)₊ dω at a position in cells, not negative; `lobe` is the weighted cosine.

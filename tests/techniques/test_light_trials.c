@@ -153,6 +153,26 @@ TEST_GPU(many_small_emitters_give_their_light)
         check_share(gpu, trial_strips, "strips", -1, &cases[i], 1.6);
 }
 
+// Bands that ring leave black spots where light from the walls arrives.
+TEST_GPU(nothing_is_black_beside_a_panel)
+{
+    const struct {
+        const char *gi;
+        double least;
+    } cases[] = {
+        { "holpv:closure=linear", 0 }, { "holpv", 0.005 }, { "lpv", 0.003 }, { "vct", 0.1 }
+    };
+    for (int i = 0; i < 4; i++) {
+        struct frame_fixture s;
+        trial_panel(&s, gpu);
+        const struct trial_irradiance e = trial_technique(&s, cases[i].gi);
+        fixture_finish(&s);
+        print_message("%s: beside a panel at least %.4f of the mean irradiance\n", cases[i].gi,
+                      e.least / e.mean[1]);
+        CHECK(i == 0 ? e.least == 0 : e.least > cases[i].least * e.mean[1]);
+    }
+}
+
 static double red_over_green(struct gpu *gpu, const char *gi, float gap)
 {
     struct frame_fixture s;

@@ -88,10 +88,24 @@ vec3 damped_irradiance(vec3 at, vec3 n)
     return max(here + lpv.damping * min(gain, vec3(0.0)), vec3(0.0));
 }
 
+// Places of walls are known to 1/LPV_PLACES of a cell: beside a seam, a pixel could be behind the
+// other wall, where no light is. The viewer sees it from the lit side.
+const float LPV_TO_VIEWER = 2.0 / float(LPV_PLACES); // cells
+
+// Position of a lookup for a surface, in cells.
+vec3 lookup_of(vec3 surface, vec3 n)
+{
+    vec3 at = lpv_cells_from_world(surface + lpv.offset_m * n);
+    vec3 to_viewer = (frame.camera_position - surface) / lpv.cell_m;
+    vec3 seen = at + to_viewer * min(LPV_TO_VIEWER / length(to_viewer), 1.0);
+    vec3 visible = lpv_visible(seen, lpv_cells());
+    return visible == seen ? at : visible;
+}
+
 vec3 surface_irradiance(vec3 surface, vec3 n)
 {
-    vec3 at = lpv_visible(lpv_cells_from_world(surface + lpv.offset_m * n), lpv_cells());
-    return min(lpv.irradiance_scale * damped_irradiance(at, n), vec3(HALF_MAX));
+    vec3 irradiance = lpv.irradiance_scale * damped_irradiance(lookup_of(surface, n), n);
+    return min(irradiance, vec3(HALF_MAX));
 }
 
 // Dispatched from the coarsest cascade to the finest; each blends over the previous ones. Outside

@@ -16,16 +16,19 @@ vec3 lpv_closed_irradiance(lpv_closure light, vec3 n)
            light.beam * max(cosine, vec3(0.0)) / (lpv.mean_path * light.steps);
 }
 
-const float LPV_RINGING = 0.2; // times the mean over all normals: below, bands ring
+const float LPV_RINGING = 0.18; // times the mean over all normals: below, bands ring
+const float LPV_DARKEST = 0.04; // times the same mean: least irradiance
 
 // Three bands ring to negative irradiance beside bright emitters, where light from elsewhere does
 // arrive. Below a share of the mean over all normals a hyperbola continues the irradiance with its
-// value and slope: never negative, and twice the light is twice the result.
+// value and slope to a lower share: never negative, and twice the light is twice the result.
 vec3 lpv_without_ringing(vec3 irradiance, vec3 mean)
 {
-    vec3 least = max(LPV_RINGING * mean, vec3(1e-20));
-    return mix(irradiance, least * least / (2.0 * least - min(irradiance, least)),
-               lessThan(irradiance, least));
+    mean = max(mean, vec3(0.0));
+    vec3 room = (LPV_RINGING - LPV_DARKEST) * mean;
+    vec3 below = max(LPV_RINGING * mean - irradiance, vec3(0.0));
+    vec3 tail = LPV_DARKEST * mean + room * room / max(room + below, vec3(1e-20));
+    return mix(tail, irradiance, equal(below, vec3(0.0)));
 }
 
 // The flux that a step sends across a side of a cell with the normal −n (lpv_crossing_of): a wall
