@@ -17,8 +17,8 @@ enum {
     PASSES = 4,          // each with twice the paths of the one before
 };
 // Estimated gains of variance: at the end, to pay for the time of guided samples, and before the
-// last passes, to train any further. Estimates are low: they know the noise of later vertices
-// as it is without the guide that is being fitted.
+// last passes, to train any further. Estimates are low: noise of later vertices is that of
+// paths without the guide in training.
 static const double MIN_GAIN = 1.06, PROMISING_GAIN = 1.005;
 // Sample numbers of the first pass; those of images are smaller.
 static const uint32_t FIRST_SAMPLE = UINT32_C(1) << 31;

@@ -11,6 +11,16 @@ static vec3s grey(float value)
     return vec3_of(value, value, value);
 }
 
+// 1000 cd/m².
+static int emitter(struct frame_fixture *s, float albedo)
+{
+    struct material m = material_default();
+    m.emissive = grey(1000);
+    m.base_color = vec4_of(grey(albedo), 1);
+    m.metallic = 0;
+    return fixture_material(s, &m);
+}
+
 void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_dark_room)
 {
     const float t = SLAB;
@@ -130,28 +140,20 @@ static int add_strips(struct frame_fixture *s, int count, vec2s size, float spac
 
 void trial_strips(struct frame_fixture *s, struct gpu *gpu)
 {
-    struct material m = material_default();
-    m.emissive = grey(1000);
-    m.base_color = vec4_of(grey(0), 1);
-    m.metallic = 0;
     fixture_init(s, gpu);
     fixture_floor(s, 3, fixture_matte(s, grey(0.5f)));
-    add_strips(s, 12, (vec2s){ { 0.4f, 0.02f } }, 0.5f, 2.5f, fixture_material(s, &m));
+    add_strips(s, 12, (vec2s){ { 0.4f, 0.02f } }, 0.5f, 2.5f, emitter(s, 0));
     fixture_look(s, vec3_of(0, 2.2f, 2.8f), vec3_of(0, 0, 0));
 }
 
 void trial_panel(struct frame_fixture *s, struct gpu *gpu)
 {
-    struct material m = material_default();
-    m.emissive = grey(1000);
-    m.base_color = vec4_of(grey(0.7f), 1);
-    m.metallic = 0;
     fixture_init(s, gpu);
     const int white = fixture_matte(s, grey(0.7f));
     const int materials[6] = { white, white, white, white, white, white };
     add_walls(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), materials);
     fixture_quad(s, vec3_of(-0.5f, 2.98f, -0.4f), vec3_of(0.5f, 2.98f, -0.4f),
-                 vec3_of(0.5f, 2.98f, 0.4f), vec3_of(-0.5f, 2.98f, 0.4f), fixture_material(s, &m));
+                 vec3_of(0.5f, 2.98f, 0.4f), vec3_of(-0.5f, 2.98f, 0.4f), emitter(s, 0.7f));
     fixture_look(s, vec3_of(0, 0.3f, 1.9f), vec3_of(0, 3, -0.5f));
 }
 

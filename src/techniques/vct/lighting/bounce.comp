@@ -140,7 +140,7 @@ uint low_bits(uint word)
 }
 
 // Per axis, the lowest voxel of the block with a face against it, and the highest one with a face
-// along it. Between them is a solid, which parts what lies on either side.
+// along it. Between them is a solid: surfaces on its two sides are separate.
 ivec3 solid_low = ivec3(1000), solid_high = ivec3(-1000);
 
 // Adds four voxels from `low` on, 2 along x and y.

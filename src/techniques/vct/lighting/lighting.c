@@ -83,7 +83,7 @@ enum { TURNS = 8, RAYS_OF_MOVING = 4 };
 
 struct bounce_how {
     uint32_t new_sets; // of voxels whose records are not of this frame
-    bool moves;        // light changes as in the previous frame
+    bool in_turns;     // light changes as in the previous frame: a part of it now
 };
 
 static void bounce_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -92,7 +92,7 @@ static void bounce_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     struct vct_cone_params params = vct_voxel_cones(vct, view), moving;
     params.new_sets = how.new_sets;
     moving = params;
-    if (how.moves && vct_has_rays(&vct->options)) {
+    if (how.in_turns && vct_has_rays(&vct->options)) {
         params.rounds = how.new_sets & 1u ? 1 : TURNS;
         params.round = (uint32_t)(view->index % params.rounds);
         moving.cone_count = RAYS_OF_MOVING;
@@ -182,7 +182,10 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     if (bounces == 0) return;
     vct->params.light_scale = restart ? 1.0f : view->constants->previous_scale_ratio;
     if (restart) restart_light(vct, cmd, view, many);
-    bounce_all(vct, cmd, view, (struct bounce_how){ restart ? 0 : new_sets(vct), moves });
+    // Bounced light of blocks whose turn is later has the scale of the frame that gathered it.
+    const bool same_scale = view->constants->previous_scale_ratio == 1.0f;
+    bounce_all(vct, cmd, view,
+               (struct bounce_how){ restart ? 0 : new_sets(vct), moves && same_scale });
     vct->params.light_scale = 1.0f;
     for (int i = 1; i < bounces; i++) {
         light_voxels(vct, cmd, view);

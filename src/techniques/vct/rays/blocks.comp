@@ -1,4 +1,4 @@
-// Occupied faces of each block of 2 × 2 × 2 voxels in one texel, for rays: see rays/blocks.glsl.
+// Occupied faces of each block of 2 × 2 × 2 voxels in one texel, for rays: see rays/rays_shared.h.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

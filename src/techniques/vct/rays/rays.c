@@ -19,7 +19,7 @@ void vct_rays_list_blocks(struct vct *vct, const struct vct_clip *clip, struct g
     const struct vct_texels_push push =
         vct_texels_push(&vct->options, vct_volume_mips(&vct->options));
     gpu_scope_begin(cmd, "blocks");
-    pack_planes(vct, clip, cmd, &clip->static_set);
+    if (clip->new_statics) pack_planes(vct, clip, cmd, &clip->static_set);
     pack_planes(vct, clip, cmd, &clip->dynamic_set);
     gpu_dispatch(cmd, vct->blocks,
                  GPU_BIND(vct_grid_binding(vct, clip, cmd), VCT_RAY_BINDINGS(vct, clip),
