@@ -245,6 +245,19 @@ static void add_stage(struct gpu *gpu, struct pipeline *p, const struct gpu_shad
     stage->stamp = stamp_of(gpu, stage);
 }
 
+static bool build_any(struct gpu *gpu, struct pipeline *p)
+{
+    bool on_disk = false;
+    for (int i = 0; i < p->stage_count; i++) on_disk |= p->stages[i].stamp != 0;
+    if (on_disk) {
+        if (build(gpu, p, true)) return true;
+        host_log(gpu->host, LOG_WARNING,
+                 "gpu pipeline %s: invalid shader in %s; the embedded one is used", p->name,
+                 gpu->shader_dir);
+    }
+    return build(gpu, p, false);
+}
+
 // Takes over p.
 static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
 {
@@ -253,14 +266,13 @@ static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
         goto fail;
     }
     deferred_delete_collect(gpu);
-    bool on_disk = false;
-    for (int i = 0; i < p->stage_count; i++) on_disk |= p->stages[i].stamp != 0;
-    bool built = on_disk && build(gpu, p, true);
-    if (on_disk && !built)
-        host_log(gpu->host, LOG_WARNING,
-                 "gpu pipeline %s: invalid shader in %s; the embedded one is used", p->name,
-                 gpu->shader_dir);
-    if (!built && !build(gpu, p, false)) goto fail;
+    struct pipeline *pooled = pipeline_pool_take(&gpu->pipeline_pool, p);
+    if (pooled) {
+        pipeline_free(gpu, p);
+        p = pooled;
+    } else if (!build_any(gpu, p)) {
+        goto fail;
+    }
     out->id = table_add(gpu->host, &gpu->pipelines, p);
     if (out->id) return true;
 fail:
@@ -336,6 +348,7 @@ void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *handle)
 {
     struct pipeline *p = gpu && handle ? table_remove(&gpu->pipelines, handle->id) : NULL;
     if (handle) handle->id = 0;
+    if (p) p = pipeline_pool_give(&gpu->pipeline_pool, p);
     if (p) deferred_delete_add(gpu, pipeline_free, p);
 }
 

@@ -236,6 +236,18 @@ void pipeline_free(struct gpu *gpu, void *pipeline);
 VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *pipeline,
                                   const VkPipelineShaderStageCreateInfo *stages);
 
+// pipeline_pool.c. Destroyed pipelines, which recordings may still use.
+enum { POOLED_PIPELINES = 128 };
+struct pipeline_pool {
+    struct pipeline *pipelines[POOLED_PIPELINES]; // in the order of their destruction
+    int count;
+};
+// A pipeline with the name, shaders, constants and fixed state of `like`; NULL: there is none.
+struct pipeline *pipeline_pool_take(struct pipeline_pool *pool, const struct pipeline *like);
+// Returns the pipeline to free: the oldest, `pipeline` if its shaders are files, or NULL.
+struct pipeline *pipeline_pool_give(struct pipeline_pool *pool, struct pipeline *pipeline);
+struct pipeline *pipeline_pool_remove_oldest(struct pipeline_pool *pool); // NULL: empty
+
 // ---- Commands -----------------------------------------------------------------------------------
 
 struct rendering {
@@ -396,6 +408,7 @@ struct gpu {
     VkPipelineCache pipeline_cache;
     struct memory memory;
     struct table images, buffers, samplers, pipelines;
+    struct pipeline_pool pipeline_pool;
     uint32_t internal_buffers; // rings, not counted as live objects
     gpu_sampler default_sampler;
     struct buffer *staging[2]; // upload, download
