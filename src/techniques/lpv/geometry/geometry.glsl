@@ -86,4 +86,13 @@ float lpv_transmittance_of(ivec3 cell, ivec3 offset)
     return lpv_path_transmittance(cell, offset);
 }
 
+// The same for the neighbour at ±1 along an axis.
+float lpv_transmittance_along(ivec3 cell, int axis, int side)
+{
+    ivec3 offset = ivec3(0);
+    offset[axis] = side;
+    if (LPV_GEOMETRY == LPV_GEOMETRY_SCENE) return lpv_face_transmittance(cell, axis, side);
+    return lpv_transmittance_of(cell, offset);
+}
+
 #endif

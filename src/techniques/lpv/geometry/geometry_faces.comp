@@ -24,6 +24,9 @@ layout(set = 0, binding = 4, scalar) writeonly buffer lpv_walls
     uint walls[]; // [cell]: lpv_lookup.glsl
 };
 
+#if LPV_LINES != 4
+#error "sets of lines have four bits"
+#endif
 const uint LINES = (1u << LPV_LINES * LPV_LINES) - 1u;
 
 uint mask_at(ivec3 cell, int axis)
@@ -33,34 +36,68 @@ uint mask_at(ivec3 cell, int axis)
     return static_masks[at] | moving_masks[at];
 }
 
-// Whether a surface lies between the centre of a cell and its line `along` of axis b, in the row
-// `across` of axis c.
-bool is_cut_off(ivec3 cell, int b, int along, int c, int across)
+// ---- Sets of lines, four bits by a coordinate of the line. Bit 4 y + x of a mask is line (x, y).
+
+// Rows of constant x with at least half of their lines crossed.
+uint crossed_along_y(uint mask)
 {
-    bool above = 2 * along >= LPV_LINES;
-    if (above) cell[b]++;
-    uint mask = mask_at(cell, b), row = 0u;
-    for (int i = 0; i < LPV_LINES; i++)
-        row |= 1u << (c == (b + 1) % 3 ? i * LPV_LINES + across : across * LPV_LINES + i);
-    // Places of the cell's half of the interval up to the line.
-    uint count = uint(above ? 2 * along + 1 - LPV_LINES : LPV_LINES - 2 * along - 1) * LPV_PLACES /
-                 uint(2 * LPV_LINES);
-    uint places = ((1u << count) - 1u) << (above ? 0u : LPV_PLACES - count);
-    return 2 * bitCount(mask & row) >= LPV_LINES &&
-           (mask >> (LPV_LINES * LPV_LINES) & places) != 0u;
+    uint a = mask, b = mask >> 4, c = mask >> 8, d = mask >> 12;
+    return ((a & b) | (c & d) | ((a | b) & (c | d))) & 15u;
 }
 
-// Lines along an axis that a surface separates from the centre of the cell.
+// Rows of constant y.
+uint crossed_along_x(uint mask)
+{
+    uint a = mask, b = mask >> 1, c = mask >> 2, d = mask >> 3;
+    uint rows = ((a & b) | (c & d) | ((a | b) & (c | d))) & 0x1111u;
+    return (rows | rows >> 3 | rows >> 6 | rows >> 9) & 15u;
+}
+
+// All lines of four values of x, of y.
+uint lines_of_x(uint set)
+{
+    return set * 0x1111u;
+}
+
+uint lines_of_y(uint set)
+{
+    uint first = (set & 1u) | (set & 2u) << 3 | (set & 4u) << 6 | (set & 8u) << 9;
+    return first * 15u;
+}
+
+// Coordinates 0 … 3 of the lines along the axis of two faces, of the low and the high side of a
+// cell, that a surface on one of the faces separates from the cell's centre. Lines are 1/8 and 3/8
+// of a cell from the centre, places count from the lower centre.
+uint behind_low(uint mask)
+{
+    uint places = mask >> (LPV_LINES * LPV_LINES);
+    const uint FAR = LPV_PLACES - 3u * LPV_PLACES / 8u, NEAR = LPV_PLACES - LPV_PLACES / 8u;
+    return (places >> FAR != 0u ? 1u : 0u) | (places >> NEAR != 0u ? 2u : 0u);
+}
+
+uint behind_high(uint mask)
+{
+    uint places = mask >> (LPV_LINES * LPV_LINES);
+    const uint FAR = 3u * LPV_PLACES / 8u, NEAR = LPV_PLACES / 8u;
+    return ((places & ((1u << NEAR) - 1u)) != 0u ? 4u : 0u) |
+           ((places & ((1u << FAR) - 1u)) != 0u ? 8u : 0u);
+}
+
+// Lines along an axis that a surface separates from the centre of a cell. Masks of the faces across
+// the next axis, whose x is that of the one after, and across the one after, whose y is the next.
+// A surface separates a line where it crosses half of the row that passes the line.
 uint cut_off(ivec3 cell, int axis)
 {
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    uint lines = 0u;
-    for (int i = 0; i < LPV_LINES * LPV_LINES; i++) {
-        ivec2 line = ivec2(i % LPV_LINES, i / LPV_LINES);
-        if (is_cut_off(cell, b, line.x, c, line.y) || is_cut_off(cell, c, line.y, b, line.x))
-            lines |= 1u << i;
-    }
-    return lines;
+    ivec3 above_b = cell, above_c = cell;
+    above_b[b]++;
+    above_c[c]++;
+    uint low_b = mask_at(cell, b), high_b = mask_at(above_b, b);
+    uint low_c = mask_at(cell, c), high_c = mask_at(above_c, c);
+    return (lines_of_x(behind_low(low_b)) & lines_of_y(crossed_along_y(low_b))) |
+           (lines_of_x(behind_high(high_b)) & lines_of_y(crossed_along_y(high_b))) |
+           (lines_of_y(behind_low(low_c)) & lines_of_x(crossed_along_x(low_c))) |
+           (lines_of_y(behind_high(high_c)) & lines_of_x(crossed_along_x(high_c)));
 }
 
 // Share of the lines of a cell's light that do not continue.

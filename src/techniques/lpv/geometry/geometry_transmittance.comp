@@ -21,9 +21,10 @@ float transmittance(ivec3 cell, ivec3 offset)
 
 uint along_axis(ivec3 cell, int axis)
 {
-    ivec3 one = ivec3(0);
-    one[axis] = 1;
-    return packUnorm4x8(vec4(transmittance(cell, -one), transmittance(cell, one), 0.0, 0.0));
+    float low = cell[axis] > 0 ? lpv_transmittance_along(cell, axis, -1) : 0.0;
+    bool inside = cell[axis] + 1 < lpv_cells()[axis];
+    float high = inside ? lpv_transmittance_along(cell, axis, 1) : 0.0;
+    return packUnorm4x8(vec4(low, high, 0.0, 0.0));
 }
 
 uint in_column(ivec3 cell, ivec2 step)
