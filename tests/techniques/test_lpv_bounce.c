@@ -1,5 +1,6 @@
 // Further bounces: reflecting surfaces by cell, and the light that they reflect.
 #include "frame/frame_fixture.h"
+#include "techniques/lpv/lpv_stages.h"
 #include "techniques/lpv_fixture.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@ static void read_areas(struct lpv *lpv, double out[NUMBERS])
     const size_t count = (size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2];
     const double unit = (double)(lpv->grid.cell_m * lpv->grid.cell_m) / LPV_SURFACE_UNIT;
     uint32_t *words = malloc(count * NUMBERS * sizeof *words);
-    CHECK(gpu_buffer_download(lpv->gpu, lpv->volumes.surfaces, 0, words,
+    CHECK(gpu_buffer_download(lpv->gpu, lpv_surfaces(lpv), 0, words,
                               count * NUMBERS * sizeof *words));
     memset(out, 0, NUMBERS * sizeof *out);
     for (size_t i = 0; i < count * NUMBERS; i++) out[i % NUMBERS] += unit * words[i];

@@ -115,7 +115,7 @@ static void lpv_invalidate(void *state, uint32_t changes)
     if (!(changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL))) return;
     for (struct lpv *level = state; level; level = level->coarser) {
         lpv_geometry_invalidate(level);
-        level->surfaces.valid = false;
+        level->surfaces.motion.valid = false;
     }
 }
 

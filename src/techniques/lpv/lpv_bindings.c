@@ -36,7 +36,7 @@ void lpv_dispatch_triangles(const struct lpv *lpv, struct gpu_cmd *cmd,
                                         { .name = name, .buffer = buffer } };
     for (int i = 0; scene && i < scene->draw_count; i++) {
         const struct scene_draw *draw = &scene->draws[i];
-        if (wanted && !wanted(draw)) continue;
+        if (!wanted(draw)) continue;
         scene_gpu_dispatch(scene, cmd,
                            &(struct scene_dispatch_call){
                                .pipeline = draw->variant & VARIANT_MASKED ? masked : opaque,

@@ -11,9 +11,12 @@ bool lpv_prepare(struct lpv *finest, const struct frame_view *view);
 void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 void lpv_record_resolve(struct lpv *lpv, struct gpu_cmd *cmd); // the second of the two
 
-// lpv_bounce.c: further bounces; nothing where the option `bounces` is 0.
-// Fills `surfaces` where geometry, materials or the grid have changed.
+// lpv_surfaces.c: for further bounces; nothing where the option `bounces` is 0.
+// After the injection, whose sums it may overwrite.
 void lpv_record_surfaces(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
+gpu_buffer lpv_surfaces(const struct lpv *lpv); // of the frame being recorded
+
+// lpv_bounce.c
 // Whether a bounce follows a step; `left` steps remain after it.
 bool lpv_bounces_after(const struct lpv *lpv, int left);
 // Fills `sent` from the injected light and the light `arrived`.

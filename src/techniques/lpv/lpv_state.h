@@ -3,6 +3,7 @@
 
 #include "techniques/lpv/lpv_grid.h"
 #include "techniques/lpv/lpv_math.h"
+#include "techniques/lpv/lpv_motion.h"
 #include "techniques/lpv/lpv_shared.h"
 #include "techniques/technique.h"
 
@@ -46,17 +47,14 @@ struct lpv_pipelines {
     gpu_pipeline geometry_transmittance;
 };
 
-// Inputs of the cached static geometry.
 struct lpv_geometry_cache {
-    bool valid;
-    struct lpv_grid grid;
-    int moving_count; // moving draws of the scene
-    float occlusion;  // the option
+    struct lpv_motion motion; // of the geometry volume
+    float occlusion;          // the option
 };
 
 struct lpv_surface_cache {
-    bool valid;
-    struct lpv_grid grid;
+    struct lpv_motion motion; // of the buffer `surfaces`
+    bool at_rest;             // it holds moving draws, too; else `sums` holds all of this frame
 };
 
 // One grid, or one of several cascades. Coarser cascades share the pipelines and all volumes of the

@@ -1,6 +1,7 @@
 // The geometry volume to the transmittance between neighbours (geometry_transmittance.glsl),
 // precomputed for all steps.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -39,7 +40,6 @@ void main()
     ivec3 cell = ivec3(gl_GlobalInvocationID);
     if (!lpv_inside(cell)) return;
     int first = LPV_TRANSMITTANCE_WORDS * lpv_index(cell);
-    for (int i = 0; i < LPV_TRANSMITTANCE_WORDS; i++)
-        transmittance_words[first + i] =
-            LPV_NEIGHBOURS == 26 ? in_column(cell, ivec2(i % 3, i / 3) - 1) : along_axis(cell, i);
+    [[unroll]] for (int i = 0; i < LPV_TRANSMITTANCE_WORDS; i++) transmittance_words[first + i] =
+        LPV_NEIGHBOURS == 26 ? in_column(cell, ivec2(i % 3, i / 3) - 1) : along_axis(cell, i);
 }
