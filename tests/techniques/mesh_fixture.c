@@ -89,6 +89,7 @@ void mesh_fixture_render(struct mesh_fixture *meshes, struct lpv *lpv)
     struct gpu_cmd *cmd = gpu_frame_begin(rsm->gpu);
     assert_non_null(cmd);
     scene_gpu_update(&meshes->scene_gpu, cmd, &meshes->pose, false);
+    rsm->view.geometry_moved = meshes->scene_gpu.moved;
     technique_lpv.record(lpv, cmd, &rsm->view);
     CHECK(gpu_frame_end(rsm->gpu, cmd));
     CHECK(gpu_wait(rsm->gpu));

@@ -103,30 +103,40 @@ static bool holpv_create(void *state, const struct technique_create *how)
     return create(state, "holpv", how);
 }
 
+static void forget_light(struct lpv *lpv)
+{
+    for (; lpv; lpv = lpv->coarser) lpv->history.valid = false;
+}
+
 static void lpv_set_options(void *state, const void *options)
 {
     struct lpv *lpv = state;
     // Both techniques have the same effects.
     option_copy_live(&technique_lpv.options, options, &lpv->options);
+    forget_light(lpv);
 }
 
 static void lpv_invalidate(void *state, uint32_t changes)
 {
+    forget_light(state);
     if (!(changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL))) return;
     for (struct lpv *level = state; level; level = level->coarser) {
         lpv_geometry_invalidate(level);
-        level->surfaces.motion.valid = false;
+        level->surfaces.statics.valid = false;
     }
 }
 
-// The coarser cascades first.
-static void record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
+// The coarser cascades first. Returns false where the light is that of the frame before.
+static bool record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    if (lpv->coarser) record_light(lpv->coarser, cmd, view);
+    const bool changed = lpv->coarser && record_light(lpv->coarser, cmd, view);
+    lpv_history_update(lpv, view);
+    if (lpv->history.kept && !changed) return false;
     lpv_record_injection(lpv, cmd, view);
     lpv_record_geometry(lpv, cmd, view);
     lpv_record_surfaces(lpv, cmd, view);
     lpv_record_propagation(lpv, cmd);
+    return true;
 }
 
 static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)

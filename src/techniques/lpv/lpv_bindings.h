@@ -14,7 +14,7 @@ void lpv_dispatch_cells(const struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline
 void lpv_dispatch_cells_push(const struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
                              const struct gpu_binding *bindings, int count, const void *push,
                              uint32_t push_bytes);
-// Every triangle of the draws that `wanted` accepts (lpv_motion.h). `buffer` is bound by
+// Every triangle of the draws that `wanted` accepts (lpv_history.h). `buffer` is bound by
 // `name`, the grid beside it.
 struct scene_draw;
 struct scene_gpu;

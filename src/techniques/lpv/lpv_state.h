@@ -2,8 +2,8 @@
 #pragma once
 
 #include "techniques/lpv/lpv_grid.h"
+#include "techniques/lpv/lpv_history.h"
 #include "techniques/lpv/lpv_math.h"
-#include "techniques/lpv/lpv_motion.h"
 #include "techniques/lpv/lpv_shared.h"
 #include "techniques/technique.h"
 
@@ -48,13 +48,13 @@ struct lpv_pipelines {
 };
 
 struct lpv_geometry_cache {
-    struct lpv_motion motion; // of the geometry volume
-    float occlusion;          // the option
+    struct lpv_statics statics; // of the geometry volume
+    float occlusion;            // the option
 };
 
 struct lpv_surface_cache {
-    struct lpv_motion motion; // of the buffer `surfaces`
-    bool at_rest;             // it holds moving draws, too; else `sums` holds all of this frame
+    struct lpv_statics statics; // of the buffer `surfaces`
+    bool at_rest;               // it holds moving draws, too; else `sums` holds all of this frame
 };
 
 // One grid, or one of several cascades. Coarser cascades share the pipelines and all volumes of the
@@ -67,6 +67,7 @@ struct lpv {
     struct lpv_volumes volumes;
     struct lpv_geometry_cache geometry;
     struct lpv_surface_cache surfaces;
+    struct lpv_history history;
     struct lpv_grid grid;
     struct lpv_params params; // of the frame being recorded
     bool lit;                 // the frame being recorded has light and a scene with extent

@@ -42,11 +42,11 @@ static void add_moving(struct lpv *lpv, struct gpu_cmd *cmd, const struct scene_
 void lpv_record_surfaces(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct lpv_surface_cache *cache = &lpv->surfaces;
-    const struct lpv_motion cached = cache->motion, now = lpv_motion_of(&lpv->grid, view);
-    const bool same_static = lpv_motion_same_static(&cached, &now);
-    const bool rest = lpv_motion_at_rest(&cached, &now, view);
+    const struct lpv_statics now = lpv_statics_of(lpv, view);
+    const bool same_static = lpv_statics_equal(&cache->statics, &now);
+    const bool rest = now.moving_count == 0 || !lpv->history.moved;
     if (lpv->options.bounces == 0) return;
-    cache->motion = now;
+    cache->statics = now;
     if (same_static && rest && cache->at_rest) return;
     gpu_scope_begin(cmd, "surfaces");
     if (!same_static || cache->at_rest) add_static(lpv, cmd, view->scene);

@@ -6,7 +6,7 @@
 
 void lpv_geometry_invalidate(struct lpv *lpv)
 {
-    lpv->geometry.motion.valid = false;
+    lpv->geometry.statics.valid = false;
 }
 
 static void record_transmittance(struct lpv *lpv, struct gpu_cmd *cmd)

@@ -20,11 +20,10 @@ static void record_coverage(struct lpv *lpv, struct gpu_cmd *cmd, const struct s
 bool lpv_record_geometry_scene(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct lpv_volumes *v = &lpv->volumes;
-    const struct lpv_motion cached = lpv->geometry.motion;
-    const struct lpv_motion now = lpv_motion_of(&lpv->grid, view);
-    const bool same_static = lpv_motion_same_static(&cached, &now);
-    lpv->geometry.motion = now;
-    if (same_static && lpv_motion_at_rest(&cached, &now, view)) return false;
+    const struct lpv_statics now = lpv_statics_of(lpv, view);
+    const bool same_static = lpv_statics_equal(&lpv->geometry.statics, &now);
+    lpv->geometry.statics = now;
+    if (same_static && (now.moving_count == 0 || !lpv->history.moved)) return false;
     if (!same_static) record_coverage(lpv, cmd, view->scene, lpv_is_static, v->static_coverage);
     record_coverage(lpv, cmd, view->scene, lpv_is_moving, v->moving_coverage);
     lpv_dispatch_cells(lpv, cmd, lpv->pipelines.geometry_faces, 1,

@@ -1,0 +1,56 @@
+#include "techniques/lpv/lpv_history.h"
+
+#include "techniques/lpv/lpv_state.h"
+
+#include "core/hash.h"
+#include "frame/scene_gpu.h"
+
+bool lpv_is_static(const struct scene_draw *draw)
+{
+    return !draw->dynamic;
+}
+
+bool lpv_is_moving(const struct scene_draw *draw)
+{
+    return draw->dynamic;
+}
+
+struct lpv_statics lpv_statics_of(const struct lpv *lpv, const struct frame_view *view)
+{
+    return (struct lpv_statics){ .valid = true,
+                                 .grid = lpv->grid,
+                                 .first_frame = view->index == 0,
+                                 .moving_count = view->scene ? view->scene->dynamic_count : 0 };
+}
+
+// In the first frame of a scene no draw counts as moving yet; a draw that moves later leaves the
+// static ones.
+bool lpv_statics_equal(const struct lpv_statics *cached, const struct lpv_statics *now)
+{
+    return cached->valid && !now->first_frame && cached->moving_count == now->moving_count &&
+           lpv_grid_equal(&cached->grid, &now->grid);
+}
+
+// Lights that did not change and objects that did not move have equal reflective shadow maps. Their
+// surfels of the camera's view (geometry=maps) may still differ.
+static uint64_t light_of(const struct lpv *lpv, const struct frame_view *view)
+{
+    uint64_t hash = hash_bytes(&lpv->params, sizeof lpv->params, (uint64_t)lpv->options.steps);
+    hash =
+        hash_bytes(view->rsm_faces, (size_t)view->rsm_face_count * sizeof *view->rsm_faces, hash);
+    return hash_bytes(view->emitters, (size_t)view->emitter_count * sizeof *view->emitters, hash);
+}
+
+void lpv_history_update(struct lpv *lpv, const struct frame_view *view)
+{
+    const struct lpv_history last = lpv->history;
+    // A frame without light is not recorded, nor what moved in it.
+    const bool follows = last.valid && view->index > 0 && view->index == last.index + 1;
+    struct lpv_history now = { .valid = true,
+                               .moved = !follows || view->geometry_moved,
+                               .index = view->index,
+                               .light = light_of(lpv, view) };
+    now.kept = !now.moved && !view->lights_changed && now.light == last.light &&
+               lpv->options.geometry != LPV_GEOMETRY_MAPS;
+    lpv->history = now;
+}
