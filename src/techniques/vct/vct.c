@@ -195,6 +195,7 @@ static void record_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct fra
         if (!vct->clips[i].revoxelized) continue;
         vct_volume_list_texels(vct, &vct->clips[i], cmd);
         if (vct_has_rays(&vct->options)) vct_rays_list_blocks(vct, &vct->clips[i], cmd);
+        if (!vct->options.occlusion) vct_list_parts(vct, &vct->clips[i], cmd);
         vct->revoxelized = true;
     }
     if (vct->revoxelized && vct_has_svo(&vct->options)) vct_octree_build(vct, cmd);

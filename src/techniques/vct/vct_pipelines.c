@@ -129,7 +129,7 @@ static bool create_raster_pipeline(struct vct *vct, const struct pipeline_plan *
     return gpu_graphics_pipeline_create(vct->gpu, &desc, plan->out);
 }
 
-enum { PIPELINES = 15, MIP_PIPELINES = 9, MOST_STORAGE_PIPELINES = 14 };
+enum { PIPELINES = 16, MIP_PIPELINES = 9, MOST_STORAGE_PIPELINES = 14 };
 
 static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
 {
@@ -147,6 +147,8 @@ static void plan_pipelines(struct vct *vct, struct pipeline_plan out[PIPELINES])
         { &vct->texel_lists, "texels", &shader_vct_volume_texels_comp, 0 },
         { &vct->planes, "planes", rays ? &shader_vct_rays_planes_comp : NULL, 0 },
         { &vct->blocks, "blocks", rays ? &shader_vct_rays_blocks_comp : NULL, 0 },
+        { &vct->parts, "parts", vct->options.occlusion ? NULL : &shader_vct_lighting_parts_comp,
+          vct_block_level(&vct->options) == 2 ? (uint32_t)LARGE_BLOCKS : 0 },
         { &vct->inject[0], "inject_unlit", &shader_vct_lighting_inject_comp, UNLIT },
         { &vct->inject[1], "inject", inject_lit, 0 },
         { &vct->edges, "edges", &shader_vct_cones_edges_comp, CLIPS },
@@ -166,15 +168,14 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     const bool lit = !vct->options.occlusion;
     const uint32_t directions = vct->options.anisotropic ? 0 : ISOTROPIC,
                    kind = directions | (lit ? 0 : (uint32_t)OCCLUSION),
-                   blocks = vct_block_level(&vct->options) == 2 ? (uint32_t)LARGE_BLOCKS : 0,
                    rays = vct_has_rays(&vct->options) ? (uint32_t)RAYS : 0,
                    pixel_rays = vct_pixels_have_rays(&vct->options) ? (uint32_t)RAYS : 0;
     const struct pipeline_plan mips[MIP_PIPELINES] = {
         { &vct->bounce[0], "bounce", lit ? &shader_vct_lighting_bounce_mips_comp : NULL,
-          directions | blocks | CLIPS | rays },
+          directions | CLIPS | rays },
         { &vct->bounce[1], "bounce_small_emitters",
           lit ? &shader_vct_lighting_bounce_mips_comp : NULL,
-          directions | blocks | CLIPS | rays | SMALL_EMITTERS },
+          directions | CLIPS | rays | SMALL_EMITTERS },
         { &vct->cones[0], "cones", &shader_vct_cones_mips_comp, kind | CLIPS | pixel_rays },
         { &vct->cones[1], "cones_small_emitters", lit ? &shader_vct_cones_mips_comp : NULL,
           directions | CLIPS | pixel_rays | SMALL_EMITTERS },
@@ -187,10 +188,9 @@ static int plan_storage_pipelines(struct vct *vct, struct pipeline_plan out[MOST
     };
     const struct pipeline_plan octree[MOST_STORAGE_PIPELINES] = {
         { &vct->bounce[0], "bounce", lit ? &shader_vct_lighting_bounce_svo_comp : NULL,
-          directions | blocks | CLIPS },
+          directions | CLIPS },
         { &vct->bounce[1], "bounce_small_emitters",
-          lit ? &shader_vct_lighting_bounce_svo_comp : NULL,
-          directions | blocks | CLIPS | SMALL_EMITTERS },
+          lit ? &shader_vct_lighting_bounce_svo_comp : NULL, directions | CLIPS | SMALL_EMITTERS },
         { &vct->cones[0], "cones", &shader_vct_cones_svo_comp, kind | CLIPS },
         { &vct->cones[1], "cones_small_emitters", lit ? &shader_vct_cones_svo_comp : NULL,
           directions | CLIPS | SMALL_EMITTERS },

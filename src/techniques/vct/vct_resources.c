@@ -14,7 +14,7 @@ struct buffer_plan {
 // ---- Plans
 // -----------------------------------------------------------------------------------------
 
-enum { SET_BUFFERS = 7 };
+enum { SET_BUFFERS = 8 };
 
 static void plan_set(const struct vct_options *options, bool dynamic, struct vct_voxel_set *set,
                      struct buffer_plan out[SET_BUFFERS])
@@ -29,6 +29,8 @@ static void plan_set(const struct vct_options *options, bool dynamic, struct vct
         { NAME("accumulated"), &set->accumulated, vct_mask_words(options), 0 },
         { NAME("accumulated_list"), &set->accumulated_list, capacity, 0 },
         { NAME("arguments"), &set->arguments, sizeof(struct vct_voxel_counts) / sizeof(uint32_t),
+          GPU_BUFFER_INDIRECT },
+        { NAME("part_counts"), &set->part_counts, sizeof(struct vct_part_count) / sizeof(uint32_t),
           GPU_BUFFER_INDIRECT },
     };
 #undef NAME
@@ -97,22 +99,27 @@ struct image_plan {
     const char *name;
     gpu_image *out;
     uint32_t texels;
+    enum gpu_format format;
     enum image_use use;
 };
 
-enum { CLIP_IMAGES = 8 };
+enum { CLIP_IMAGES = 12 };
 
 static void plan_images(struct vct_clip *clip, struct image_plan out[CLIP_IMAGES])
 {
     const struct image_plan plan[CLIP_IMAGES] = {
-        { "static_surfaces", &clip->static_set.surfaces, 2, USED },
-        { "static_lit_voxels", &clip->static_set.lit_voxels, 1, USED },
-        { "static_bounced", &clip->static_set.bounced, 1, USED_BY_LIGHT },
-        { "static_planes", &clip->static_set.planes, 1, USED_BY_RAYS },
-        { "dynamic_surfaces", &clip->dynamic_set.surfaces, 2, USED },
-        { "dynamic_lit_voxels", &clip->dynamic_set.lit_voxels, 1, USED },
-        { "dynamic_bounced", &clip->dynamic_set.bounced, 1, USED_BY_LIGHT },
-        { "dynamic_planes", &clip->dynamic_set.planes, 1, USED_BY_RAYS },
+        { "static_surfaces", &clip->static_set.surfaces, 2, GPU_RGBA32U, USED },
+        { "static_lit_voxels", &clip->static_set.lit_voxels, 1, GPU_RGBA32U, USED },
+        { "static_parts", &clip->static_set.parts, 1, GPU_RGBA32U, USED_BY_LIGHT },
+        { "static_bounced", &clip->static_set.bounced, 1, GPU_RGBA16F, USED_BY_LIGHT },
+        { "static_part_of_face", &clip->static_set.part_of_face, 1, GPU_R32U, USED_BY_LIGHT },
+        { "static_planes", &clip->static_set.planes, 1, GPU_R32U, USED_BY_RAYS },
+        { "dynamic_surfaces", &clip->dynamic_set.surfaces, 2, GPU_RGBA32U, USED },
+        { "dynamic_lit_voxels", &clip->dynamic_set.lit_voxels, 1, GPU_RGBA32U, USED },
+        { "dynamic_parts", &clip->dynamic_set.parts, 1, GPU_RGBA32U, USED_BY_LIGHT },
+        { "dynamic_bounced", &clip->dynamic_set.bounced, 1, GPU_RGBA16F, USED_BY_LIGHT },
+        { "dynamic_part_of_face", &clip->dynamic_set.part_of_face, 1, GPU_R32U, USED_BY_LIGHT },
+        { "dynamic_planes", &clip->dynamic_set.planes, 1, GPU_R32U, USED_BY_RAYS },
     };
     memcpy(out, plan, sizeof plan);
 }
@@ -124,7 +131,7 @@ static struct gpu_image_desc image_desc(const struct vct_options *options,
                       (!vct_has_rays(options) && plan->use == USED_BY_RAYS);
     const uint32_t rows = gpu_groups(vct_capacity(options), VCT_VOXEL_ROW);
     return (struct gpu_image_desc){ .name = plan->name,
-                                    .format = plan->use == USED_BY_RAYS ? GPU_R32U : GPU_RGBA32U,
+                                    .format = plan->format,
                                     .width = plan->texels * VCT_VOXEL_ROW,
                                     .height = none ? 1 : rows,
                                     .usage = GPU_SAMPLED | GPU_STORAGE };

@@ -42,7 +42,7 @@ struct vct {
     struct vct_voxelize_pipelines mark, outermost[2]; // opaque, masked
     struct vct_voxelize_pipelines add[VCT_DRAW_KINDS];
     gpu_pipeline count, scan, list, zero, surfaces;
-    gpu_pipeline texel_lists, planes, blocks, mip;
+    gpu_pipeline texel_lists, planes, blocks, parts, mip;
     gpu_pipeline fill[2];             // without and with moving voxels
     gpu_pipeline inject[2];           // without and with lights
     gpu_pipeline cones[2], bounce[2]; // without and with small emitters

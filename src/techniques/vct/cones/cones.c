@@ -46,7 +46,6 @@ struct vct_cone_params vct_voxel_cones(const struct vct *vct, const struct frame
 {
     const int choice = vct_has_rays(&vct->options) ? VCT_CONES_9 : VCT_CONES_6;
     struct vct_cone_params params = params_of(vct, view, choice, 1);
-    params.rounds = 1;
     // Wide samples mix both sides of a wall, and each bounce adds to the leak.
     params.width_per_m = vct->options.step_size * vct_cone_width(VCT_CONES_25);
     struct vct_cone cones[VCT_MAX_CONES];

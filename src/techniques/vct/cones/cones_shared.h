@@ -22,11 +22,12 @@ struct vct_cone_params {
     float gain;
     float texel_m; // of the finest level
     uint32_t last_mip;
-    float pixel;            // width of a pixel at distance 1
-    uint32_t columns;       // of the grid of strata, for rays
-    uint32_t new_sets;      // whose records are not of this frame's voxels: 1 static, 2 dynamic
-    uint32_t rounds, round; // bounces: of so many work groups, the one at this place gathers
-    vec3s set_axes[3];      // axes of the strata of pixels, world space
+    float pixel;       // width of a pixel at distance 1
+    uint32_t columns;  // of the grid of strata, for rays
+    uint32_t new_sets; // whose records are not of this frame's voxels: 1 static, 2 dynamic
+    uint32_t in_turns; // bool, bounces: only parts whose turn it is gather
+    uint32_t frame;    // number of the frame
+    vec3s set_axes[3]; // axes of the strata of pixels, world space
 };
 
 // Storage block "vct_small_emitters".

@@ -33,7 +33,8 @@ layout(set = 0, binding = 8, scalar) readonly buffer vct_arguments
 {
     vct_voxel_counts counts;
 };
-layout(set = 0, binding = 9) uniform usampler2D vct_bounced;
+layout(set = 0, binding = 9) uniform sampler2D vct_bounced;
+layout(set = 0, binding = 10) uniform usampler2D vct_part_of_face;
 
 layout(constant_id = VCT_CONSTANT_HAS_LIGHTS) const bool HAS_LIGHTS = true;
 
@@ -90,8 +91,8 @@ void main()
     for (uint i = 0; HAS_LIGHTS && i < no_recompile(vct.light_count); i++)
         arriving += irradiance(frame_light_table[i], position, surface.normal);
     if (no_recompile(vct.bounced) != 0u) {
-        uvec4 bounced = texelFetch(vct_bounced, vct_face_texel(slot), 0);
-        arriving += vec3(unpackHalf2x16(bounced.x), unpackHalf2x16(bounced.y).x);
+        uint part = texelFetch(vct_part_of_face, vct_face_texel(slot), 0).r;
+        if (part < vct.capacity) arriving += texelFetch(vct_bounced, vct_face_texel(part), 0).rgb;
     }
     r.reflected = min(arriving * surface.reflectance / PI, vec3(HALF_MAX));
     imageStore(vct_lit_voxels, vct_face_texel(slot), vct_pack(r));

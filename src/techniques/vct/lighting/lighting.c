@@ -23,6 +23,7 @@ static void inject(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd 
             { .name = "vct_surfaces", .image = set->surfaces },
             { .name = "vct_lit_voxels", .image = set->lit_voxels },
             { .name = "vct_bounced", .image = set->bounced },
+            { .name = "vct_part_of_face", .image = set->part_of_face },
             { .name = "vct_arguments", .buffer = set->arguments }),
         NULL, 0, set->arguments, 0);
 }
@@ -57,29 +58,55 @@ void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
 
 // ---- Bounced light ------------------------------------------------------------------------------
 
+static void list_parts(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
+                       const struct vct_voxel_set *set)
+{
+    const size_t count = offsetof(struct vct_part_count, count);
+    // At least one group each: a dispatch is never empty.
+    gpu_fill_buffer(cmd, set->part_counts, 0, count, 1);
+    gpu_fill_buffer(cmd, set->part_counts, count, sizeof(uint32_t), 0);
+    gpu_dispatch_indirect(
+        cmd, vct->parts,
+        GPU_BIND(vct_grid_binding(vct, clip, cmd), { .name = "vct_texels", .buffer = clip->texels },
+                 { .name = "vct_texel_counts", .buffer = clip->texel_counts },
+                 { .name = "vct_mask", .buffer = set->mask },
+                 { .name = "vct_word_offsets", .buffer = set->word_offsets },
+                 { .name = "vct_surfaces", .image = set->surfaces },
+                 { .name = "vct_parts", .image = set->parts },
+                 { .name = "vct_part_of_face", .image = set->part_of_face },
+                 { .name = "vct_part_counts", .buffer = set->part_counts }),
+        NULL, 0, clip->texel_counts, offsetof(struct vct_texel_levels, block_groups));
+}
+
+void vct_list_parts(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd)
+{
+    gpu_scope_begin(cmd, "parts");
+    if (clip->new_statics) list_parts(vct, clip, cmd, &clip->static_set);
+    list_parts(vct, clip, cmd, &clip->dynamic_set);
+    gpu_scope_end(cmd);
+}
+
 static void bounce(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd,
                    const struct frame_view *view, const struct vct_voxel_set *set,
-                   struct gpu_binding cones)
+                   struct gpu_binding cones, bool in_turns)
 {
     gpu_dispatch_indirect(
         cmd, vct->bounce[vct->small_emitters.count > 0],
         GPU_BIND(vct_grid_binding(vct, clip, cmd), vct_lit_clipmap_binding(vct, cmd),
                  view->constants_binding, cones,
                  { .name = "light", .image = vct->light, .sampler = vct->linear },
-                 { .name = "vct_texels", .buffer = clip->texels },
-                 { .name = "vct_texel_counts", .buffer = clip->texel_counts },
-                 { .name = "vct_mask", .buffer = set->mask },
-                 { .name = "vct_word_offsets", .buffer = set->word_offsets },
-                 { .name = "vct_surfaces", .image = set->surfaces },
+                 { .name = "vct_parts", .image = set->parts },
+                 { .name = "vct_part_counts", .buffer = set->part_counts },
                  { .name = "vct_bounced", .image = set->bounced },
                  VCT_RAY_BINDINGS(vct, &vct->clips[0]), vct_small_emitters_binding(vct, cmd),
                  vct_svo_binding(vct, cmd), { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
-        NULL, 0, clip->texel_counts, offsetof(struct vct_texel_levels, block_groups));
+        NULL, 0, set->part_counts,
+        in_turns ? offsetof(struct vct_part_count, turn_groups)
+                 : offsetof(struct vct_part_count, groups));
 }
 
-// While light changes in every frame, static voxels gather in turns of this many frames. Moving
-// ones are new in each frame: they trace fewer rays.
-enum { TURNS = 8, RAYS_OF_MOVING = 4 };
+// Static voxels gather in turns. Moving ones are new in each frame: they trace fewer rays.
+enum { RAYS_OF_MOVING = 4 };
 
 struct bounce_how {
     uint32_t new_sets; // of voxels whose records are not of this frame
@@ -93,8 +120,8 @@ static void bounce_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     params.new_sets = how.new_sets;
     moving = params;
     if (how.in_turns && vct_has_rays(&vct->options)) {
-        params.rounds = how.new_sets & 1u ? 1 : TURNS;
-        params.round = (uint32_t)(view->index % params.rounds);
+        params.in_turns = (how.new_sets & 1u) == 0;
+        params.frame = (uint32_t)view->index;
         moving.cone_count = RAYS_OF_MOVING;
         moving.columns = 2;
     }
@@ -105,8 +132,9 @@ static void bounce_all(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     gpu_scope_begin(cmd, "bounce");
     for (int i = 0; i < vct->clip_count; i++) {
         const struct vct_clip *clip = &vct->clips[i];
-        bounce(vct, clip, cmd, view, &clip->static_set, cones[0]);
-        if (vct->moving_draws > 0) bounce(vct, clip, cmd, view, &clip->dynamic_set, cones[1]);
+        bounce(vct, clip, cmd, view, &clip->static_set, cones[0], params.in_turns);
+        if (vct->moving_draws > 0)
+            bounce(vct, clip, cmd, view, &clip->dynamic_set, cones[1], false);
     }
     gpu_scope_end(cmd);
     vct->params.bounced = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "frame/frame.h"
+#include "techniques/vct/lighting/lighting_shared.h"
 
 // What else the light that emitters and the sky cast on voxels depends on.
 struct vct_bounce_inputs {
@@ -10,7 +11,10 @@ struct vct_bounce_inputs {
 };
 
 struct vct;
+struct vct_clip;
 
+// Divides voxels into the parts that gather bounced light together.
+void vct_list_parts(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd);
 // Gathers light from other voxels. Before vct_record_light.
 void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
 // Lights the voxels and fills the light volume.

@@ -31,6 +31,7 @@ const float VCT_RAY_STEP = 1e-3; // voxels beyond a border: within the next voxe
 // Rounding of a plane, and the sagitta of a curved surface, in voxels: the back of the surface on
 // which a ray starts is no occluder.
 const float VCT_RAY_LEAST = 0.01, VCT_RAY_OWN = 0.25;
+const float VCT_RAY_COVERED = 0.1; // least opacity of a texel whose radiance is taken
 
 struct vct_ray {
     vec3 from, direction, inverse; // in voxels of the grid
@@ -162,12 +163,16 @@ float vct_ray_meets(vct_ray ray, vct_ray_voxel v, vct_plane plane)
 
 #ifdef VCT_RAY_VOXELS_CHANGE
 // Radiance of a face of new voxels, whose records are not written yet: that of the previous frame's
-// light volume. place: see vct_ray_place.
+// light volume. Where a moving surface has only just come, coarser texels hold its light. place:
+// see vct_ray_place.
 vec3 vct_ray_previous_light(uint place)
 {
-    ivec3 at = ivec3(place & 255u, place >> 8 & 255u, place >> 16 & 255u);
-    at.x += int(place >> 24 ^ 1u) * vct.volume_dim; // seen along a direction against the normal
-    vec4 found = texelFetch(light, at, 0);
+    ivec3 texel = ivec3(place & 255u, place >> 8 & 255u, place >> 16 & 255u);
+    int volume = int(place >> 24 ^ 1u); // seen along a direction against the normal
+    vec4 found = vec4(0.0);
+    for (int mip = 0; mip < 3 && found.a < VCT_RAY_COVERED; mip++)
+        found =
+            texelFetch(light, (texel >> mip) + ivec3(volume * (vct.volume_dim >> mip), 0, 0), mip);
     return found.rgb / max(found.a, 1e-3);
 }
 #endif

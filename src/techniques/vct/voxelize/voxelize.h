@@ -6,15 +6,18 @@
 
 // The occupied voxels of the static or of the moving draws in one level of the clip map.
 struct vct_voxel_set {
-    gpu_buffer mask;                         // a bit for each voxel
-    gpu_buffer word_offsets;                 // occupied voxels before each word of the mask
-    gpu_buffer blocks;                       // the same for blocks of words
-    gpu_buffer list;                         // indices of the occupied voxels
-    gpu_buffer arguments;                    // struct vct_voxel_counts
-    gpu_buffer accumulated;                  // a bit for each voxel whose triangles are summed up
-    gpu_buffer accumulated_list;             // slots of those voxels
-    gpu_image surfaces, lit_voxels, bounced; // RGBA32U, one entry for each occupied voxel
-    gpu_image planes;                        // R32U, for rays: see rays/plane.glsl
+    gpu_buffer mask;                // a bit for each voxel
+    gpu_buffer word_offsets;        // occupied voxels before each word of the mask
+    gpu_buffer blocks;              // the same for blocks of words
+    gpu_buffer list;                // indices of the occupied voxels
+    gpu_buffer arguments;           // struct vct_voxel_counts
+    gpu_buffer accumulated;         // a bit for each voxel whose triangles are summed up
+    gpu_buffer accumulated_list;    // slots of those voxels
+    gpu_image surfaces, lit_voxels; // RGBA32U, one entry for each occupied voxel
+    gpu_image planes;               // R32U, for rays: see rays/plane.glsl
+    gpu_image part_of_face;         // R32U: see lighting/parts.comp
+    gpu_image parts, bounced;       // RGBA32U and RGBA16F: parts, irradiance on them
+    gpu_buffer part_counts;         // struct vct_part_count
 };
 
 // Draws by what their materials read; a map that a material lacks is white.
