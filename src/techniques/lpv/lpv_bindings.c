@@ -9,22 +9,25 @@ struct gpu_binding lpv_grid_binding(const struct lpv *lpv, struct gpu_cmd *cmd)
     return gpu_transient(cmd, "lpv_grid", &lpv->params, sizeof lpv->params);
 }
 
+// Invocations in the order of cells: rows of 8 by 8 would leave half of them idle in small grids.
+static uint32_t groups_of_cells(const struct lpv *lpv, uint32_t run)
+{
+    const int32_t *cells = lpv->grid.cells;
+    const uint32_t columns = (uint32_t)cells[0] * (uint32_t)cells[1];
+    return gpu_groups(columns * gpu_groups((uint32_t)cells[2], run), LPV_CELLS_LOCAL);
+}
+
 void lpv_dispatch_cells(const struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
                         uint32_t run, const struct gpu_binding *bindings, int count)
 {
-    gpu_dispatch(cmd, pipeline, bindings, count, NULL, 0,
-                 gpu_groups((uint32_t)lpv->grid.cells[0], LPV_LOCAL),
-                 gpu_groups((uint32_t)lpv->grid.cells[1], LPV_LOCAL),
-                 gpu_groups((uint32_t)lpv->grid.cells[2], run));
+    gpu_dispatch(cmd, pipeline, bindings, count, NULL, 0, groups_of_cells(lpv, run), 1, 1);
 }
 
 void lpv_dispatch_cells_push(const struct lpv *lpv, struct gpu_cmd *cmd, gpu_pipeline pipeline,
                              const struct gpu_binding *bindings, int count, const void *push,
                              uint32_t push_bytes)
 {
-    gpu_dispatch(cmd, pipeline, bindings, count, push, push_bytes,
-                 gpu_groups((uint32_t)lpv->grid.cells[0], LPV_LOCAL),
-                 gpu_groups((uint32_t)lpv->grid.cells[1], LPV_LOCAL), (uint32_t)lpv->grid.cells[2]);
+    gpu_dispatch(cmd, pipeline, bindings, count, push, push_bytes, groups_of_cells(lpv, 1), 1, 1);
 }
 
 void lpv_dispatch_triangles(const struct lpv *lpv, struct gpu_cmd *cmd,

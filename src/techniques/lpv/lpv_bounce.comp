@@ -12,7 +12,7 @@
 #define LPV_WALLS_BINDING 5
 #include "techniques/lpv/lpv_lookup.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 layout(set = 0, binding = 1, scalar) readonly buffer lpv_surfaces
 {
@@ -30,6 +30,15 @@ vec3 reflecting_area(int at)
     return sums.rgb / max(sums.a, 1.0);
 }
 
+// Bit d: the cell has a surface of direction d.
+uint sides_of(ivec3 cell)
+{
+    uint sides = 0u;
+    for (int side = 0; side < 6; side++)
+        if (any(notEqual(surfaces[6 * lpv_index(cell) + side].rgb, uvec3(0)))) sides |= 1u << side;
+    return sides;
+}
+
 // Irradiance is w / a² times the integral, area a² times `area`.
 vec3 reflected_flux(ivec3 cell, vec3 area, vec3 n)
 {
@@ -40,13 +49,15 @@ vec3 reflected_flux(ivec3 cell, vec3 area, vec3 n)
 
 void main()
 {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    ivec3 cell = lpv_cell_of_invocation(1);
     if (!lpv_inside(cell)) return;
     vec4 before[7], slabs[7] = vec4[7](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0),
                                        vec4(0.0), vec4(0.0));
-    for (int side = 0; side < 6; side++) {
+    uint sides = sides_of(cell);
+    while (sides != 0u) {
+        int side = findLSB(sides);
+        sides &= sides - 1u;
         vec3 area = reflecting_area(6 * lpv_index(cell) + side), n = vec3(0.0);
-        if (area == vec3(0.0)) continue;
         n[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
         vec3 flux = reflected_flux(cell, area, n);
         float lobe[9];

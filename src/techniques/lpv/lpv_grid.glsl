@@ -49,6 +49,14 @@ float lpv_cascade_weight(vec3 at, ivec3 cells, uint open)
     return smoothstep(0.0, LPV_TRANSITION, inside);
 }
 
+// First cell of an invocation that takes `run` cells along z (lpv_dispatch_cells); may be outside
+// of the grid.
+ivec3 lpv_cell_of_invocation(int run)
+{
+    int column = int(gl_GlobalInvocationID.x), row = column / lpv.cells_x;
+    return ivec3(column % lpv.cells_x, row % lpv.cells_y, row / lpv.cells_y * run);
+}
+
 int lpv_index(ivec3 cell)
 {
     return (cell.z * lpv.cells_y + cell.y) * lpv.cells_x + cell.x;

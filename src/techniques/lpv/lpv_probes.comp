@@ -13,7 +13,7 @@
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 layout(set = 0, binding = 1) uniform sampler3D light;
 layout(set = 0, binding = 2) uniform writeonly image3D probes;
@@ -25,7 +25,7 @@ layout(push_constant, scalar) uniform push_block
 
 void main()
 {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    ivec3 cell = lpv_cell_of_invocation(1);
     if (!lpv_inside(cell)) return;
     vec4 slabs[7];
     lpv_fetch_slabs(light, cell, slabs);

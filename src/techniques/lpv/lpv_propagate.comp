@@ -24,7 +24,7 @@
 #define LPV_TRANSMITTANCE_ACCESS  readonly
 #include "techniques/lpv/geometry/geometry_transmittance.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 layout(constant_id = LPV_CONSTANT_GEOMETRY) const int LPV_GEOMETRY = LPV_GEOMETRY_OFF;
 
@@ -261,8 +261,7 @@ void gather_twenty_six(ivec3 first)
 
 void main()
 {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
-    if (LPV_NEIGHBOURS == 26) cell.z *= LPV_RUN;
+    ivec3 cell = lpv_cell_of_invocation(LPV_NEIGHBOURS == 26 ? LPV_RUN : 1);
     if (!lpv_inside(cell)) return;
     if (LPV_NEIGHBOURS == 26)
         gather_twenty_six(cell);

@@ -14,7 +14,7 @@
 #define LPV_WALLS_BINDING 3 // of the coarser cascade
 #include "techniques/lpv/lpv_lookup.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -25,7 +25,7 @@ layout(set = 0, binding = 2) uniform writeonly image3D refined;
 
 void main()
 {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    ivec3 cell = lpv_cell_of_invocation(1);
     if (!lpv_inside(cell)) return;
     vec4 slabs[7];
     ivec3 cells = ivec3(push.cells_x, push.cells_y, push.cells_z);

@@ -7,7 +7,7 @@
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 layout(set = 0, binding = 1, scalar) readonly buffer lpv_sums
 {
@@ -31,7 +31,7 @@ float value_at(int at)
 
 void main()
 {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    ivec3 cell = lpv_cell_of_invocation(1);
     if (!lpv_inside(cell)) return;
     int at = 2 * LPV_VALUES * lpv_index(cell);
     for (int i = 0; i < LPV_SLABS; i++, at += 8)

@@ -4,7 +4,8 @@
 
 #include "core/shared.h"
 
-#define LPV_LOCAL 8 // workgroup size in x and y of shaders over cells or pixels
+#define LPV_LOCAL       8  // workgroup size in x and y of shaders over pixels
+#define LPV_CELLS_LOCAL 64 // workgroup size of shaders over cells
 // Side of the block of reflective shadow map texels that one invocation takes.
 #define LPV_TEXELS         4
 #define LPV_EMITTERS_LOCAL 64 // workgroup size of the injection of emissive surfaces

@@ -8,7 +8,7 @@
 
 #include "techniques/lpv/lpv_grid.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 layout(set = 0, binding = 1, scalar) readonly buffer lpv_static_coverage
 {
@@ -108,7 +108,7 @@ float occluded(uint from, uint free)
 
 void main()
 {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    ivec3 cell = lpv_cell_of_invocation(1);
     if (!lpv_inside(cell)) return;
     vec3 upwards = vec3(0.0), downwards = vec3(0.0);
     uint word = 0u;

@@ -14,7 +14,7 @@
 #define LPV_SURFELS_BINDING 1
 #include "techniques/lpv/geometry/geometry_surfels.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 layout(set = 0, binding = 2, rgba16f) uniform image3D geometry;
 
@@ -27,7 +27,7 @@ bool greater(vec4 a, vec4 b)
 
 void main()
 {
-    ivec3 corner = ivec3(gl_GlobalInvocationID);
+    ivec3 corner = lpv_cell_of_invocation(1);
     if (!lpv_inside(corner)) return;
     int at = 4 * lpv_index(corner);
     vec4 source =

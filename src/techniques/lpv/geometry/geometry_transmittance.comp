@@ -13,7 +13,7 @@
 #define LPV_TRANSMITTANCE_ACCESS  writeonly
 #include "techniques/lpv/geometry/geometry_transmittance.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = LPV_CELLS_LOCAL) in;
 
 float transmittance(ivec3 cell, ivec3 offset)
 {
@@ -37,7 +37,7 @@ uint in_column(ivec3 cell, ivec2 step)
 
 void main()
 {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    ivec3 cell = lpv_cell_of_invocation(1);
     if (!lpv_inside(cell)) return;
     int first = LPV_TRANSMITTANCE_WORDS * lpv_index(cell);
     [[unroll]] for (int i = 0; i < LPV_TRANSMITTANCE_WORDS; i++) transmittance_words[first + i] =
