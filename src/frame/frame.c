@@ -150,7 +150,7 @@ static bool prepare_lights(struct frame *f, const struct frame_input *input)
     f->direct_variant = direct_variant(suns, input->light_count - suns, f->scene.has_dielectrics,
                                        f->options.shadow_filter > 0);
     return shadow_prepare(&f->shadow, sun_faces, shadow_faces) &&
-           direct_prepare(&f->direct, f->direct_variant) &&
+           direct_prepare(&f->direct, f->direct_variant, f->width, f->height) &&
            rsm_prepare(&f->rsm, rsm_faces, f->scene.variants_used);
 }
 
@@ -198,6 +198,17 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
                    f->constants_binding);
 }
 
+// Of the only sun, if the direct pass has a variant for them.
+static void record_blocks(struct frame *f, struct gpu_cmd *cmd)
+{
+    const int count = (int)f->shadow.cascades;
+    f->has_blocks = false;
+    if (!direct_variant_of_blocks(f->direct_variant)) return;
+    f->sun = shadow_view_of_sun(f->shadow.faces, count, f->camera.eye);
+    f->has_blocks = shadow_view_is_precise(&f->sun, f->shadow.faces, count) &&
+                    shadow_record_blocks(&f->shadow, cmd, &f->lights[0]);
+}
+
 static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
 {
     struct frame_view *view = &f->view;
@@ -212,13 +223,16 @@ static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
         gpu_transient(cmd, "shadow_faces", f->shadow.faces, faces * sizeof *f->shadow.faces);
     shadow_record(&f->shadow, cmd, &f->scene, f->lights, f->light_count, f->options.keep_maps);
     view->maps_drawn = f->shadow.drawn;
+    record_blocks(f, cmd);
 }
 
 static void record_direct(struct frame *f, struct gpu_cmd *cmd)
 {
+    const uint32_t blocks = direct_variant_of_blocks(f->direct_variant);
     struct direct_input in = {
         .first_shadow_faces = gpu_transient(cmd, "first_shadow_faces", f->shadow.faces,
                                             FRAME_MAX_CASCADES * sizeof *f->shadow.faces),
+        .shadow_sun = gpu_transient(cmd, "shadow_sun", &f->sun, sizeof f->sun),
         .depth = f->layers[FRAME_DEPTH],
         .normal = f->layers[FRAME_NORMAL],
         .albedo = f->layers[FRAME_ALBEDO],
@@ -227,13 +241,14 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .emissive = f->layers[FRAME_EMISSIVE],
         .shadow_maps = f->shadow.maps,
         .shadow_sun_maps = f->shadow.sun_maps,
+        .shadow_blocks = f->shadow.sun_blocks,
         .shadow_sampler = f->shadow.sampler,
         .shadow_radius = f->options.shadow_filter,
         .constants = f->constants_binding,
         .lights = f->lights_binding,
         .shadow_faces = f->view.shadow_faces_binding,
         .ggx_albedo = ggx_albedo_binding(f),
-        .variant = f->direct_variant,
+        .variant = f->has_blocks ? blocks : f->direct_variant,
         .width = f->width,
         .height = f->height,
     };

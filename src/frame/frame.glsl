@@ -2,7 +2,8 @@
 // struct and a block cannot share a name, so the struct is renamed here.
 //
 // Binding number: FRAME_CONSTANTS_BINDING, 0 unless defined before the inclusion. Needs
-// GL_EXT_scalar_block_layout.
+// GL_EXT_scalar_block_layout. With FRAME_CONSTANTS_COPIED, `frame` is a copy that main begins with:
+// frame = frame_block. Inside of branches, software drivers load a uniform block per invocation.
 #ifndef AG_FRAME_GLSL
 #define AG_FRAME_GLSL
 
@@ -16,10 +17,18 @@
 #define FRAME_CONSTANTS_BINDING 0
 #endif
 
+#ifdef FRAME_CONSTANTS_COPIED
+layout(set = 0, binding = FRAME_CONSTANTS_BINDING, scalar) uniform frame_constants
+{
+    frame_constants_data frame_block;
+};
+frame_constants_data frame;
+#else
 layout(set = 0, binding = FRAME_CONSTANTS_BINDING, scalar) uniform frame_constants
 {
     frame_constants_data frame;
 };
+#endif
 
 // Whether a pixel's surface reflects light, by the alpha of FRAME_ALBEDO: 0 without a surface, ½
 // for unlit materials, 1 else.
@@ -39,6 +48,15 @@ vec3 frame_world_position(vec2 uv, float depth)
 {
     vec4 h = frame.world_from_clip * vec4(uv * 2.0 - 1.0, depth, 1.0);
     return h.xyz / h.w;
+}
+
+// World direction through a screen position, of length 1 along the view axis: the surface is at
+// camera_position + frame_view_distance · ray.
+vec3 frame_view_ray(vec2 uv)
+{
+    vec2 clip = uv * 2.0 - 1.0;
+    return frame.world_from_clip[0].xyz * clip.x + frame.world_from_clip[1].xyz * clip.y +
+           frame.world_from_clip[3].xyz;
 }
 
 // Metres along the view axis of a depth > 0.

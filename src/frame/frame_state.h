@@ -46,6 +46,8 @@ struct frame {
     vec3s emitted_irradiance; // scaled lux
     float fallback_luminance; // scaled, see frame_fallback_luminance
     bool camera_cut, lights_changed;
+    struct shadow_sun_view sun; // of the only light
+    bool has_blocks;            // its maps have blocks
     struct gpu_binding constants_binding, lights_binding;
     struct frame_view view;
 };

@@ -3,6 +3,8 @@
 
 #include "frame_shaders.h"
 
+#include <stddef.h>
+
 bool direct_init(struct direct *d, struct gpu *gpu, uint32_t cascades)
 {
     *d = (struct direct){ .gpu = gpu, .cascades = cascades };
@@ -21,7 +23,14 @@ uint32_t direct_variant(int suns, int locals, bool dielectric, bool filtered)
            (filtered ? 1u << DIRECT_CONSTANT_FILTERED : 0);
 }
 
-bool direct_prepare(struct direct *d, uint32_t variant)
+uint32_t direct_variant_of_blocks(uint32_t variant)
+{
+    const bool sharp_sun =
+        variant >> DIRECT_CONSTANT_ONE_SUN & ~variant >> DIRECT_CONSTANT_FILTERED & 1u;
+    return sharp_sun ? variant | 1u << DIRECT_CONSTANT_BLOCKS : 0;
+}
+
+static bool prepare_pipeline(struct direct *d, uint32_t variant)
 {
     if (d->pipelines[variant].id) return true;
     struct gpu_constant constants[DIRECT_CONSTANT_BITS + 1];
@@ -32,15 +41,63 @@ bool direct_prepare(struct direct *d, uint32_t variant)
                                        DIRECT_CONSTANT_BITS + 1, &d->pipelines[variant]);
 }
 
+static bool prepare_list(struct direct *d, size_t pixels)
+{
+    const size_t bytes = sizeof(struct direct_list_header) + pixels * sizeof(uint32_t);
+    if (d->list.id && gpu_buffer_bytes(d->gpu, d->list) == bytes) return true;
+    const struct direct_list_header empty = { 0, { 0, 1, 1 } };
+    const struct gpu_buffer_desc desc = { "frame.direct_list", bytes,
+                                          GPU_BUFFER_STORAGE | GPU_BUFFER_INDIRECT };
+    gpu_buffer_destroy(d->gpu, &d->list);
+    return gpu_buffer_create(d->gpu, &desc, &d->list) &&
+           gpu_buffer_upload(d->gpu, d->list, 0, &empty, sizeof empty);
+}
+
+static bool prepare_undecided(struct direct *d)
+{
+    const struct gpu_constant cascades = { DIRECT_CONSTANT_CASCADES, d->cascades };
+    return d->undecided.id ||
+           gpu_compute_pipeline_create(d->gpu, "frame.direct_undecided",
+                                       &shader_direct_undecided_comp, &cascades, 1, &d->undecided);
+}
+
+bool direct_prepare(struct direct *d, uint32_t variant, uint32_t width, uint32_t height)
+{
+    const uint32_t blocks = direct_variant_of_blocks(variant);
+    // Every binding of the shader needs a buffer: that of a pixel where there is no list.
+    return prepare_pipeline(d, variant) && prepare_list(d, blocks ? (size_t)width * height : 1) &&
+           (!blocks || (prepare_pipeline(d, blocks) && prepare_undecided(d)));
+}
+
+// The shadow test of the pixels in the list.
+static void record_undecided(const struct direct *d, struct gpu_cmd *cmd,
+                             const struct direct_input *in, gpu_image out)
+{
+    gpu_dispatch_indirect(
+        cmd, d->undecided,
+        GPU_BIND(in->constants, in->first_shadow_faces, in->shadow_sun,
+                 { "shadow_sun_depths", .image = in->shadow_sun_maps, .sampler = d->nearest },
+                 { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
+                 { "depth_layer", .image = in->depth, .sampler = d->nearest },
+                 { "normal_layer", .image = in->normal, .sampler = d->nearest },
+                 { "emissive_layer", .image = in->emissive, .sampler = d->nearest },
+                 { "direct_list", .buffer = d->list }, { "direct_layer", .image = out }),
+        NULL, 0, d->list, offsetof(struct direct_list_header, groups));
+}
+
 void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct direct_input *in,
                    gpu_image out)
 {
     struct direct_push push = { in->shadow_radius };
     const bool has_dielectric = in->dielectric.id != 0;
+    const bool has_list = in->variant >> DIRECT_CONSTANT_BLOCKS & 1u;
     gpu_scope_begin(cmd, "direct");
+    if (has_list)
+        gpu_fill_buffer(cmd, d->list, 0, offsetof(struct direct_list_header, groups[1]), 0);
     gpu_dispatch(
         cmd, d->pipelines[in->variant],
         GPU_BIND(in->constants, in->lights, in->shadow_faces, in->first_shadow_faces,
+                 in->shadow_sun,
                  { "shadow_maps", .image = in->shadow_maps, .sampler = in->shadow_sampler },
                  { "shadow_sun_maps", .image = in->shadow_sun_maps, .sampler = in->shadow_sampler },
                  { "shadow_depths", .image = in->shadow_maps, .sampler = d->nearest },
@@ -53,8 +110,10 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
                  { "dielectric_layer", .image = has_dielectric ? in->dielectric : in->material,
                    .sampler = d->nearest },
                  { "emissive_layer", .image = in->emissive, .sampler = d->nearest }, in->ggx_albedo,
-                 { "direct_layer", .image = out }),
+                 { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
+                 { "direct_list", .buffer = d->list }, { "direct_layer", .image = out }),
         &push, sizeof push, gpu_groups(in->width, 8), gpu_groups(in->height, 8), 1);
+    if (has_list) record_undecided(d, cmd, in, out);
     gpu_scope_end(cmd);
 }
 
@@ -62,5 +121,7 @@ void direct_finish(struct direct *d)
 {
     for (int i = 0; d->gpu && i < DIRECT_VARIANTS; i++)
         gpu_pipeline_destroy(d->gpu, &d->pipelines[i]);
+    if (d->gpu) gpu_pipeline_destroy(d->gpu, &d->undecided);
+    if (d->gpu) gpu_buffer_destroy(d->gpu, &d->list);
     *d = (struct direct){ 0 };
 }

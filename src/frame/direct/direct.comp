@@ -6,6 +6,7 @@
 // surface get the sky radiance. Alpha: the diffuse lobe over albedo/π, for the composite's indirect
 // light; 0 for unlit materials and without a surface.
 #define GGX_ALBEDO_BINDING 10
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/direct/direct_shared.h"
@@ -13,6 +14,7 @@
 #include "frame/octahedral.glsl"
 #include "frame/shadow/shadow.glsl"
 #include "frame/shadow/shadow_resolved.glsl"
+#include "frame/direct/direct_sun.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -22,13 +24,8 @@ layout(set = 0, binding = 1, scalar) uniform frame_lights
 {
     frame_light frame_light_table[FRAME_MAX_LIGHTS];
 };
-layout(set = 0, binding = 13, scalar) uniform first_shadow_faces
-{
-    shadow_face first_face_table[FRAME_MAX_CASCADES];
-};
 // The maps of shadow.glsl without comparison.
 layout(set = 0, binding = 14) uniform sampler2DArray shadow_depths;
-layout(set = 0, binding = 15) uniform sampler2DArray shadow_sun_depths;
 layout(set = 0, binding = 4) uniform sampler2D depth_layer;
 layout(set = 0, binding = 5) uniform sampler2D normal_layer;
 layout(set = 0, binding = 6) uniform sampler2D albedo_layer;
@@ -36,6 +33,12 @@ layout(set = 0, binding = 7) uniform sampler2D material_layer;
 layout(set = 0, binding = 8) uniform sampler2D emissive_layer;
 layout(set = 0, binding = 11) uniform sampler2D dielectric_layer;
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D direct_layer;
+
+layout(set = 0, binding = 17, scalar) buffer direct_list
+{
+    direct_list_header list;
+    uint list_pixels[]; // y << 16 | x
+};
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -49,10 +52,14 @@ layout(constant_id = DIRECT_CONSTANT_LOCALS) const bool HAS_LOCALS = true;
 layout(constant_id = DIRECT_CONSTANT_ONE_SUN) const bool ONE_SUN = false;
 layout(constant_id = DIRECT_CONSTANT_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 layout(constant_id = DIRECT_CONSTANT_FILTERED) const bool FILTERED = false;
-layout(constant_id = DIRECT_CONSTANT_CASCADES) const int CASCADES = FRAME_MAX_CASCADES;
+layout(constant_id = DIRECT_CONSTANT_BLOCKS) const bool BLOCKS = false;
+
+frame_light only_sun; // with ONE_SUN, loaded as FRAME_CONSTANTS_COPIED
 
 struct surface {
     vec3 position, normal, to_viewer;
+    vec3 ray;              // frame_view_ray
+    float view_distance;   // m
     vec3 geometric_normal; // of the triangle, on the viewer's side; with FILTERED
     brdf_lobes lobes;
 };
@@ -96,9 +103,11 @@ vec3 geometric_normal(ivec2 pixel, float depth, vec3 position, vec3 to_viewer)
 surface read_surface(ivec2 pixel, float depth, vec3 albedo)
 {
     surface s;
-    s.position = frame_world_position(frame_uv(uvec2(pixel)), depth);
+    s.ray = frame_view_ray(frame_uv(uvec2(pixel)));
+    s.view_distance = frame_view_distance(depth);
+    s.position = frame.camera_position + s.view_distance * s.ray;
     s.normal = octahedral_decode(texelFetch(normal_layer, pixel, 0).rg);
-    s.to_viewer = normalize(frame.camera_position - s.position);
+    s.to_viewer = -normalize(s.ray);
     if (FILTERED) s.geometric_normal = geometric_normal(pixel, depth, s.position, s.to_viewer);
     vec2 material = texelFetch(material_layer, pixel, 0).rg;
     vec4 dielectric =
@@ -111,19 +120,18 @@ surface read_surface(ivec2 pixel, float depth, vec3 albedo)
 // The receiver in the finest cascade that contains it.
 shadow_receiver receiver_of_sun(surface s, frame_light light)
 {
+    if (ONE_SUN) return sun_receiver(s.position, s.normal, s.to_viewer);
     shadow_receiver chosen;
     for (int i = CASCADES - 1; i >= 0; i--) {
-        shadow_receiver r;
-        if (ONE_SUN)
-            r = shadow_receiver_in(first_face_table[i], s.position, s.normal, s.to_viewer);
-        else
-            r = shadow_receiver_in(shadow_face_table[light.shadow_first + i], s.position, s.normal,
-                                   s.to_viewer);
-        vec2 inside = abs(r.position.xy - 0.5 * r.size) + 3.0; // the stencil's reach
-        if (i == CASCADES - 1 || max(inside.x, inside.y) < 0.5 * r.size) chosen = r;
+        shadow_receiver r = shadow_receiver_in(shadow_face_table[light.shadow_first + i],
+                                               s.position, s.normal, s.to_viewer);
+        if (i == CASCADES - 1 || shadow_contains(r.position, r.size)) chosen = r;
     }
     return chosen;
 }
+
+// With BLOCKS: the pixel is stored as lit until direct_undecided.comp has made the shadow test.
+bool undecided = false;
 
 // The shadow test of a light, 0…1.
 float visibility(surface s, frame_light light, vec3 to_light, bool facing)
@@ -131,6 +139,11 @@ float visibility(surface s, frame_light light, vec3 to_light, bool facing)
     if (FILTERED)
         return shadow_visibility(light, s.position, s.geometric_normal, to_light, facing,
                                  push.shadow_radius);
+    if (BLOCKS) {
+        int known = sun_known(s.ray, s.view_distance, s.normal);
+        undecided = facing && known == SHADOW_UNKNOWN;
+        return known == SHADOW_KNOWN_SHADOW ? 0.0 : 1.0;
+    }
     if (HAS_SUNS && (!HAS_LOCALS || light.type == FRAME_LIGHT_SUN))
         return shadow_resolved(shadow_sun_depths, receiver_of_sun(s, light), facing);
     int face = light.type == FRAME_LIGHT_POINT ? shadow_cube_face(s.position - light.position) : 0;
@@ -163,14 +176,26 @@ vec3 reflected_radiance(surface s, frame_light light)
 // Reflected radiance of all lights.
 vec3 reflected_by(surface s)
 {
-    if (ONE_SUN) return reflected_radiance(s, frame_light_table[0]);
+    if (ONE_SUN) return reflected_radiance(s, only_sun);
     vec3 sum = vec3(0.0);
     for (uint i = 0; i < frame.light_count; i++) sum += reflected_radiance(s, frame_light_table[i]);
     return sum;
 }
 
+void append(ivec2 pixel)
+{
+    uint to = atomicAdd(list.count, 1u);
+    if (to % DIRECT_LIST_GROUP == 0) atomicAdd(list.groups[0], 1u);
+    list_pixels[to] = uint(pixel.y) << 16 | uint(pixel.x);
+}
+
 void main()
 {
+    frame = frame_block;
+    if (ONE_SUN) {
+        sun_load();
+        only_sun = frame_light_table[0];
+    }
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
     float depth = texelFetch(depth_layer, pixel, 0).r;
@@ -186,4 +211,5 @@ void main()
         }
     }
     imageStore(direct_layer, pixel, vec4(min(radiance, vec3(HALF_MAX)), diffuse));
+    if (BLOCKS && undecided) append(pixel);
 }

@@ -10,17 +10,19 @@ struct direct {
     struct gpu *gpu;
     gpu_pipeline pipelines[DIRECT_VARIANTS]; // bit DIRECT_CONSTANT_…
     uint32_t cascades;                       // per sun
+    gpu_pipeline undecided;
+    gpu_buffer list; // struct direct_list_header, pixels
     gpu_sampler nearest;
 };
 
 struct direct_input {
     gpu_image depth, normal, albedo, material, emissive;
     gpu_image dielectric; // may be empty
-    gpu_image shadow_maps, shadow_sun_maps;
+    gpu_image shadow_maps, shadow_sun_maps, shadow_blocks;
     gpu_sampler shadow_sampler;
     int shadow_radius; // filter radius, texels
     // lights: FRAME_MAX_LIGHTS; first_shadow_faces: FRAME_MAX_CASCADES.
-    struct gpu_binding constants, lights, shadow_faces, first_shadow_faces, ggx_albedo;
+    struct gpu_binding constants, lights, shadow_faces, first_shadow_faces, shadow_sun, ggx_albedo;
     uint32_t variant; // of direct_variant
     uint32_t width, height;
 };
@@ -28,8 +30,10 @@ struct direct_input {
 bool direct_init(struct direct *direct, struct gpu *gpu, uint32_t cascades);
 // The pipeline for a number of suns and of other lights.
 uint32_t direct_variant(int suns, int locals, bool dielectric, bool filtered);
-// Creates the pipeline if it is missing.
-bool direct_prepare(struct direct *direct, uint32_t variant);
+// The variant of one sun whose maps have blocks, if there is one; else 0.
+uint32_t direct_variant_of_blocks(uint32_t variant);
+// Creates what is missing for the variant, and for its variant of blocks.
+bool direct_prepare(struct direct *direct, uint32_t variant, uint32_t width, uint32_t height);
 void direct_record(const struct direct *direct, struct gpu_cmd *cmd, const struct direct_input *in,
                    gpu_image out);
 void direct_finish(struct direct *direct); // accepts zero

@@ -38,7 +38,8 @@ static bool make_pipelines(struct shadow *s)
         desc.constant_count = 2;
         if (!gpu_graphics_pipeline_create(s->gpu, &desc, &s->masked[map])) return false;
     }
-    return true;
+    return gpu_compute_pipeline_create(s->gpu, "frame.shadow_blocks", &shader_shadow_blocks_comp,
+                                       NULL, 0, &s->block_pipeline);
 }
 
 bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t sun_size,
@@ -59,7 +60,11 @@ bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t 
         .wrap_w = GPU_CLAMP,
         .compare_greater = true,
     };
-    return gpu_sampler_get(gpu, &sampler, &s->sampler) && make_pipelines(s) &&
+    struct gpu_sampler_desc nearest = {
+        .name = "frame.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
+    };
+    return gpu_sampler_get(gpu, &sampler, &s->sampler) &&
+           gpu_sampler_get(gpu, &nearest, &s->nearest) && make_pipelines(s) &&
            shadow_prepare(s, 0, 0);
 }
 
@@ -67,10 +72,13 @@ static void destroy_maps(struct shadow *s)
 {
     gpu_image_destroy(s->gpu, &s->sun_maps);
     gpu_image_destroy(s->gpu, &s->maps);
+    gpu_image_destroy(s->gpu, &s->sun_blocks);
     host_free(s->host, s->faces);
     host_free(s->host, s->cache);
+    host_free(s->host, s->has_blocks);
     s->faces = NULL;
     s->cache = NULL;
+    s->has_blocks = NULL;
     s->sun_capacity = s->capacity = -1;
 }
 
@@ -78,6 +86,7 @@ void shadow_finish(struct shadow *s)
 {
     if (!s->gpu) return;
     gpu_pipeline_destroy(s->gpu, &s->opaque);
+    gpu_pipeline_destroy(s->gpu, &s->block_pipeline);
     for (int i = 0; i < 2; i++) gpu_pipeline_destroy(s->gpu, &s->masked[i]);
     destroy_maps(s);
     *s = (struct shadow){ 0 };
@@ -90,16 +99,16 @@ int shadow_faces_of(const struct shadow *s, uint32_t light_type)
 }
 
 static bool make_array(struct shadow *s, const char *name, uint32_t size, int layers,
-                       gpu_image *out)
+                       enum gpu_format format, gpu_image *out)
 {
     struct gpu_image_desc desc = {
         .name = name,
         .dimension = GPU_2D_ARRAY,
-        .format = GPU_D32F,
+        .format = format,
         .width = layers ? size : 8,
         .height = layers ? size : 8,
         .depth = layers ? (uint32_t)layers : 1,
-        .usage = GPU_SAMPLED | GPU_ATTACHMENT,
+        .usage = GPU_SAMPLED | (format == GPU_D32F ? GPU_ATTACHMENT : GPU_STORAGE),
     };
     return gpu_image_create(s->gpu, &desc, out);
 }
@@ -116,9 +125,12 @@ bool shadow_prepare(struct shadow *s, int sun_faces, int faces)
     size_t count = (size_t)sun_faces + (size_t)faces;
     s->faces = host_alloc(s->host, count + FRAME_MAX_CASCADES, sizeof *s->faces);
     s->cache = host_alloc(s->host, count + 1, sizeof *s->cache);
-    if (!s->faces || !s->cache ||
-        !make_array(s, "frame.shadow_sun_maps", s->sun_size, sun_faces, &s->sun_maps) ||
-        !make_array(s, "frame.shadow_maps", s->size, faces, &s->maps)) {
+    s->has_blocks = host_alloc(s->host, count + 1, sizeof *s->has_blocks);
+    const uint32_t blocks = gpu_groups(s->sun_size, SHADOW_BLOCK);
+    if (!s->faces || !s->cache || !s->has_blocks ||
+        !make_array(s, "frame.shadow_sun_maps", s->sun_size, sun_faces, GPU_D32F, &s->sun_maps) ||
+        !make_array(s, "frame.shadow_sun_blocks", blocks, sun_faces, GPU_RGBA16F, &s->sun_blocks) ||
+        !make_array(s, "frame.shadow_maps", s->size, faces, GPU_D32F, &s->maps)) {
         return false;
     }
     s->sun_capacity = sun_faces;
@@ -231,9 +243,37 @@ void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu
             const bool valid =
                 cached_map_is_valid(&s->cache[index], scene, &lights[i], face->clip_from_world);
             if (valid && reuse) continue;
+            s->has_blocks[index] = false;
             record_face(s, cmd, scene, face, lights[i].type == FRAME_LIGHT_SUN);
             s->drawn++;
         }
         gpu_scope_end(cmd);
     }
+}
+
+static void record_blocks(const struct shadow *s, struct gpu_cmd *cmd,
+                          const struct shadow_face *face)
+{
+    const struct shadow_blocks_push push = { face->layer, face->depth_texels };
+    const uint32_t groups = gpu_groups(s->sun_size, 8 * SHADOW_BLOCK);
+    gpu_dispatch(cmd, s->block_pipeline,
+                 GPU_BIND({ "shadow_sun_depths", .image = s->sun_maps, .sampler = s->nearest },
+                          { "shadow_blocks", .image = s->sun_blocks }),
+                 &push, sizeof push, groups, groups, 1);
+}
+
+bool shadow_record_blocks(struct shadow *s, struct gpu_cmd *cmd, const struct frame_light *sun)
+{
+    if (s->drawn > 0 || sun->shadow_count == 0) return false;
+    gpu_scope_begin(cmd, "shadow.blocks");
+    for (int k = 0; k < sun->shadow_count; k++) {
+        const int index = sun->shadow_first + k;
+        const int last = sun->shadow_first + sun->shadow_count - 1;
+        const bool shared = index != last && s->faces[index].layer == s->faces[last].layer;
+        if (shared || s->has_blocks[index]) continue;
+        record_blocks(s, cmd, &s->faces[index]);
+        s->has_blocks[index] = true;
+    }
+    gpu_scope_end(cmd);
+    return true;
 }

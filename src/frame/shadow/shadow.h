@@ -6,6 +6,7 @@
 #include "frame/cached_map.h"
 #include "frame/scene_gpu.h"
 #include "frame/shadow/shadow_shared.h"
+#include "frame/shadow/shadow_sun_shared.h"
 
 struct shadow {
     struct host *host;
@@ -18,8 +19,12 @@ struct shadow {
     gpu_sampler sampler;            // comparison sampler
     struct shadow_face *faces;      // [sun_capacity + capacity]
     struct cached_map *cache;       // [sun_capacity + capacity]
-    int face_count;                 // in this frame
-    int drawn;                      // faces rendered in this frame, not reused
+    gpu_pipeline block_pipeline;
+    gpu_image sun_blocks; // bounds of sun_maps, shadow_blocks.comp
+    bool *has_blocks;     // [sun_capacity + capacity]: of the map as it is
+    gpu_sampler nearest;
+    int face_count; // in this frame
+    int drawn;      // faces rendered in this frame, not reused
 };
 
 // Inputs of the layout of sun cascades.
@@ -48,6 +53,17 @@ void shadow_place(struct shadow *shadow, struct frame_light *lights, int light_c
 void shadow_record(struct shadow *shadow, struct gpu_cmd *cmd, const struct scene_gpu *scene,
                    const struct frame_light *lights, int light_count, bool reuse);
 
+// Makes the blocks of a sun's maps if all maps were valid in this frame: those of moving scenes are
+// not worth it. false: a map has no blocks.
+bool shadow_record_blocks(struct shadow *shadow, struct gpu_cmd *cmd,
+                          const struct frame_light *sun);
+
 // shadow_cascades.c: the `count` maps of one sun.
 void shadow_place_sun(const struct shadow *shadow, struct shadow_face *faces, int count,
                       vec3s direction, const struct shadow_view *view);
+
+// shadow_sun_view.c: the `count` maps of one sun, seen from `eye`.
+struct shadow_sun_view shadow_view_of_sun(const struct shadow_face *faces, int count, vec3s eye);
+// Whether positions in the maps are precise enough for their blocks.
+bool shadow_view_is_precise(const struct shadow_sun_view *view, const struct shadow_face *faces,
+                            int count);

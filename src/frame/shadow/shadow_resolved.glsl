@@ -1,4 +1,4 @@
-// Shadow test with sharp edges, without an offset of the receiver. Include after shadow.glsl.
+// Shadow test with sharp edges, without an offset of the receiver. Include after frame.glsl.
 //
 // A shadow map has the exact depths of surfaces at texel centres. Each of the four texels around
 // the receiver is extrapolated to the receiver's position in the map, from the texel beyond it, and
@@ -12,12 +12,8 @@
 #ifndef AG_FRAME_SHADOW_RESOLVED_GLSL
 #define AG_FRAME_SHADOW_RESOLVED_GLSL
 
-// Covers the rounding of vertices to 1/256 of a texel or pixel.
-const float SHADOW_TOLERANCE = 1.0 / 16.0; // texels
-// Covers the curvature of a surface between texels, in texels along the surface. Only where the
-// map shows a surface parallel to the receiver's: a wall below the edge of a roof is in shadow.
-const float SHADOW_SLOPE_TOLERANCE = 1.0 / 4.0;
-const float SHADOW_PARALLEL = 0.7; // cosine of normals
+#include "frame/shadow/shadow_limits.glsl"
+#include "frame/shadow/shadow_shared.h"
 
 // A receiver in a map. Units of all three axes are texels; z points to the light.
 struct shadow_receiver {
@@ -44,6 +40,13 @@ shadow_receiver shadow_receiver_in(shadow_face face, vec3 world, vec3 normal, ve
     along = face.clip_from_world * vec4(to_viewer, 0.0);
     r.to_viewer = (along.xyz - ndc * along.w) * scale;
     return r;
+}
+
+// Whether a map contains the stencil of a receiver.
+bool shadow_contains(vec3 position, float size)
+{
+    vec2 inside = abs(position.xy - 0.5 * size) + 3.0;
+    return max(inside.x, inside.y) < 0.5 * size;
 }
 
 // Heights of the surfaces in 2×2 texels above the receiver, towards the light. corner: between the

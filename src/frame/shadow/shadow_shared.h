@@ -17,6 +17,15 @@ struct shadow_face {
     uint32_t padding[2];
 };
 
+// Edge of a block of a sun's shadow map in texels: shadow_blocks.comp.
+#define SHADOW_BLOCK 8
+
+// Push constants of shadow_blocks.comp.
+struct shadow_blocks_push {
+    int32_t layer;
+    float depth_texels; // of the face
+};
+
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct shadow_face) == 96, "layout is shared with GLSL");
 #endif
