@@ -135,6 +135,13 @@ static bool prepare_composite(struct frame *f, const struct frame_input *input)
             composite_prepare(&f->composite, meter_variant_of(f->composite_variant)));
 }
 
+static uint32_t direct_features(const struct frame *f)
+{
+    const bool emission = f->scene.max_emissive > 0 || f->scene.has_unlit;
+    return (f->scene.has_dielectrics ? DIRECT_DIELECTRIC : 0) |
+           (f->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) | (emission ? DIRECT_EMISSION : 0);
+}
+
 static bool prepare_lights(struct frame *f, const struct frame_input *input)
 {
     static const uint32_t types[] = { FRAME_LIGHT_SUN, FRAME_LIGHT_POINT, FRAME_LIGHT_SPOT };
@@ -147,8 +154,7 @@ static bool prepare_lights(struct frame *f, const struct frame_input *input)
         rsm_faces += rsm_faces_of(types[input->lights[i].type]);
     }
     if (!(f->needs & FRAME_NEEDS_RSM)) rsm_faces = 0;
-    f->direct_variant = direct_variant(suns, input->light_count - suns, f->scene.has_dielectrics,
-                                       f->options.shadow_filter > 0);
+    f->direct_variant = direct_variant(suns, input->light_count - suns, direct_features(f));
     return shadow_prepare(&f->shadow, sun_faces, shadow_faces) &&
            direct_prepare(&f->direct, f->direct_variant, f->width, f->height) &&
            rsm_prepare(&f->rsm, rsm_faces, f->scene.variants_used);

@@ -14,13 +14,11 @@ bool direct_init(struct direct *d, struct gpu *gpu, uint32_t cascades)
     return gpu_sampler_get(gpu, &nearest, &d->nearest);
 }
 
-uint32_t direct_variant(int suns, int locals, bool dielectric, bool filtered)
+uint32_t direct_variant(int suns, int locals, uint32_t features)
 {
     return (suns > 0 ? 1u << DIRECT_CONSTANT_SUNS : 0) |
            (locals > 0 ? 1u << DIRECT_CONSTANT_LOCALS : 0) |
-           (suns == 1 && locals == 0 ? 1u << DIRECT_CONSTANT_ONE_SUN : 0) |
-           (dielectric ? 1u << DIRECT_CONSTANT_DIELECTRIC : 0) |
-           (filtered ? 1u << DIRECT_CONSTANT_FILTERED : 0);
+           (suns == 1 && locals == 0 ? 1u << DIRECT_CONSTANT_ONE_SUN : 0) | features;
 }
 
 uint32_t direct_variant_of_blocks(uint32_t variant)
@@ -53,12 +51,19 @@ static bool prepare_list(struct direct *d, size_t pixels)
            gpu_buffer_upload(d->gpu, d->list, 0, &empty, sizeof empty);
 }
 
-static bool prepare_undecided(struct direct *d)
+static bool has_emission(uint32_t variant)
 {
-    const struct gpu_constant cascades = { DIRECT_CONSTANT_CASCADES, d->cascades };
-    return d->undecided.id ||
+    return variant >> DIRECT_CONSTANT_EMISSION & 1u;
+}
+
+static bool prepare_undecided(struct direct *d, bool emission)
+{
+    const struct gpu_constant constants[] = { { DIRECT_CONSTANT_CASCADES, d->cascades },
+                                              { DIRECT_CONSTANT_EMISSION, emission } };
+    gpu_pipeline *pipeline = &d->undecided[emission];
+    return pipeline->id ||
            gpu_compute_pipeline_create(d->gpu, "frame.direct_undecided",
-                                       &shader_direct_undecided_comp, &cascades, 1, &d->undecided);
+                                       &shader_direct_undecided_comp, constants, 2, pipeline);
 }
 
 bool direct_prepare(struct direct *d, uint32_t variant, uint32_t width, uint32_t height)
@@ -66,7 +71,8 @@ bool direct_prepare(struct direct *d, uint32_t variant, uint32_t width, uint32_t
     const uint32_t blocks = direct_variant_of_blocks(variant);
     // Every binding of the shader needs a buffer: that of a pixel where there is no list.
     return prepare_pipeline(d, variant) && prepare_list(d, blocks ? (size_t)width * height : 1) &&
-           (!blocks || (prepare_pipeline(d, blocks) && prepare_undecided(d)));
+           (!blocks ||
+            (prepare_pipeline(d, blocks) && prepare_undecided(d, has_emission(variant))));
 }
 
 // The shadow test of the pixels in the list.
@@ -74,7 +80,7 @@ static void record_undecided(const struct direct *d, struct gpu_cmd *cmd,
                              const struct direct_input *in, gpu_image out)
 {
     gpu_dispatch_indirect(
-        cmd, d->undecided,
+        cmd, d->undecided[has_emission(in->variant)],
         GPU_BIND(in->constants, in->first_shadow_faces, in->shadow_sun,
                  { "shadow_sun_depths", .image = in->shadow_sun_maps, .sampler = d->nearest },
                  { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
@@ -121,7 +127,7 @@ void direct_finish(struct direct *d)
 {
     for (int i = 0; d->gpu && i < DIRECT_VARIANTS; i++)
         gpu_pipeline_destroy(d->gpu, &d->pipelines[i]);
-    if (d->gpu) gpu_pipeline_destroy(d->gpu, &d->undecided);
+    for (int i = 0; d->gpu && i < 2; i++) gpu_pipeline_destroy(d->gpu, &d->undecided[i]);
     if (d->gpu) gpu_buffer_destroy(d->gpu, &d->list);
     *d = (struct direct){ 0 };
 }

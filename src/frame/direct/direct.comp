@@ -53,6 +53,7 @@ layout(constant_id = DIRECT_CONSTANT_ONE_SUN) const bool ONE_SUN = false;
 layout(constant_id = DIRECT_CONSTANT_DIELECTRIC) const bool HAS_DIELECTRIC = false;
 layout(constant_id = DIRECT_CONSTANT_FILTERED) const bool FILTERED = false;
 layout(constant_id = DIRECT_CONSTANT_BLOCKS) const bool BLOCKS = false;
+layout(constant_id = DIRECT_CONSTANT_EMISSION) const bool HAS_EMISSION = true;
 
 frame_light only_sun; // with ONE_SUN, loaded as FRAME_CONSTANTS_COPIED
 
@@ -202,7 +203,7 @@ void main()
     vec3 radiance = frame.sky;
     float diffuse = 0.0;
     if (depth > 0.0) {
-        radiance = texelFetch(emissive_layer, pixel, 0).rgb;
+        radiance = HAS_EMISSION ? texelFetch(emissive_layer, pixel, 0).rgb : vec3(0.0);
         vec4 albedo = texelFetch(albedo_layer, pixel, 0);
         if (frame_is_lit(albedo.a)) {
             surface s = read_surface(pixel, depth, albedo.rgb);

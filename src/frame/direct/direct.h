@@ -6,12 +6,18 @@
 
 enum { DIRECT_VARIANTS = 1 << DIRECT_CONSTANT_BITS };
 
+enum direct_feature {
+    DIRECT_DIELECTRIC = 1 << DIRECT_CONSTANT_DIELECTRIC,
+    DIRECT_FILTERED = 1 << DIRECT_CONSTANT_FILTERED,
+    DIRECT_EMISSION = 1 << DIRECT_CONSTANT_EMISSION,
+};
+
 struct direct {
     struct gpu *gpu;
     gpu_pipeline pipelines[DIRECT_VARIANTS]; // bit DIRECT_CONSTANT_…
     uint32_t cascades;                       // per sun
-    gpu_pipeline undecided;
-    gpu_buffer list; // struct direct_list_header, pixels
+    gpu_pipeline undecided[2];               // [with emission]
+    gpu_buffer list;                         // struct direct_list_header, pixels
     gpu_sampler nearest;
 };
 
@@ -28,8 +34,8 @@ struct direct_input {
 };
 
 bool direct_init(struct direct *direct, struct gpu *gpu, uint32_t cascades);
-// The pipeline for a number of suns and of other lights.
-uint32_t direct_variant(int suns, int locals, bool dielectric, bool filtered);
+// The pipeline for a number of suns and of other lights. features: of direct_feature.
+uint32_t direct_variant(int suns, int locals, uint32_t features);
 // The variant of one sun whose maps have blocks, if there is one; else 0.
 uint32_t direct_variant_of_blocks(uint32_t variant);
 // Creates what is missing for the variant, and for its variant of blocks.

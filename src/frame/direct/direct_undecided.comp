@@ -21,6 +21,8 @@ layout(set = 0, binding = 5, scalar) readonly buffer direct_list
     uint list_pixels[]; // y << 16 | x
 };
 
+layout(constant_id = DIRECT_CONSTANT_EMISSION) const bool HAS_EMISSION = true;
+
 void main()
 {
     frame = frame_block;
@@ -34,6 +36,7 @@ void main()
     shadow_receiver receiver =
         sun_receiver(frame.camera_position + view_distance * ray, normal, -normalize(ray));
     if (shadow_resolved(shadow_sun_depths, receiver, true) > 0.0) return;
-    vec3 emission = min(texelFetch(emissive_layer, pixel, 0).rgb, vec3(HALF_MAX));
+    vec3 emission = vec3(0.0);
+    if (HAS_EMISSION) emission = min(texelFetch(emissive_layer, pixel, 0).rgb, vec3(HALF_MAX));
     imageStore(direct_layer, pixel, vec4(emission, imageLoad(direct_layer, pixel).a));
 }
