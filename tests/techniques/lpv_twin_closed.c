@@ -63,12 +63,17 @@ static struct moments isotropic(int axis, double side, double pressure)
     return out;
 }
 
-// Light 1 + 3/2 n·ω has the flux and first moment of a hemisphere around n.
+// The flux is that of light 1 + 3/2 n·ω, the moments those of a hemisphere around an axis, with the
+// part that goes along a side that the hemisphere's light crosses reduced.
 static struct moments hemisphere(const double n[3], int axis, double side, double pressure)
 {
     struct moments out = isotropic(axis, side, pressure);
     out.flux += side * n[axis] / 6.0;
-    for (int a = 0; a < 3; a++) out.along[a] += n[a] * (a == axis ? 0.125 : 0.0625);
+    for (int a = 0; a < 3; a++) {
+        const double along = 5.0 / 72.0 * (1.0 - 0.6 * n[axis] * n[axis]);
+        const double left = 5.0 / 72.0 * (1.0 - 0.6 * (1.0 - n[axis] * n[axis]) / 2.0);
+        out.along[a] += n[a] * (a == axis ? 0.25 - 2.0 * left : along);
+    }
     return out;
 }
 

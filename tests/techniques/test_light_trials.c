@@ -61,7 +61,7 @@ TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
         const char *gi;
         double most;
     } cases[] = {
-        { "lpv", 0.03 }, { "holpv", 0.03 }, { "vct", 0.01 }, { "vct:resolution=128", 0.01 }
+        { "lpv", 0.01 }, { "holpv", 0.03 }, { "vct", 0.01 }, { "vct:resolution=128", 0.01 }
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         CHECK(fmax(own_light(gpu, cases[i].gi, false), own_light(gpu, cases[i].gi, true)) <=
@@ -95,7 +95,7 @@ TEST_GPU(an_open_plane_gets_the_whole_sky)
     const struct {
         const char *gi;
         double least, most;
-    } cases[] = { { "lpv", 0.75, 1.01 }, { "holpv", 0.8, 1.03 }, { "vct", 0.98, 1.01 } };
+    } cases[] = { { "lpv", 0.77, 1.02 }, { "holpv", 0.8, 1.03 }, { "vct", 0.98, 1.01 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct range got = sky_share(gpu, cases[i].gi);
         CHECK(got.least >= cases[i].least && got.most <= cases[i].most);
@@ -160,7 +160,7 @@ TEST_GPU(nothing_is_black_beside_a_panel)
         const char *gi;
         double least;
     } cases[] = {
-        { "holpv:closure=linear", 0 }, { "holpv", 0.005 }, { "lpv", 0.003 }, { "vct", 0.1 }
+        { "holpv:closure=linear", 0 }, { "holpv", 0.005 }, { "lpv", 0.004 }, { "vct", 0.1 }
     };
     for (int i = 0; i < 4; i++) {
         struct frame_fixture s;

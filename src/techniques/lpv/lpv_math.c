@@ -113,10 +113,10 @@ struct lpv_crossing lpv_crossing_of(enum lpv_scheme scheme)
 }
 
 // The flux across a side is that of a clamped cosine. A hemisphere of the flux φ above a lit wall
-// loses φ/3 upwards, with the moment φ/9 + φ/8, and receives as much from the wall.
+// loses φ/3 upwards, with the moment 2/9 φ, and receives as much from the wall: a clamped cosine.
 struct lpv_crossing lpv_closed_crossing(void)
 {
-    return (struct lpv_crossing){ 1.0, 1.0, 17.0 / 24.0 };
+    return (struct lpv_crossing){ 1.0, 1.0, 2.0 / 3.0 };
 }
 
 // Quadrature of the squares of x² − y² and xy with the faces as nodes and their solid angles as

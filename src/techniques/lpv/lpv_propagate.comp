@@ -96,18 +96,22 @@ void send_to_face_neighbour(inout sums to, lpv_light light, int a, float side, f
 
 // Two bands: across the side of the cell, from the closed distribution (lpv_closure.glsl). A ray of
 // direction ω crosses the side +x with the share |ω_x| / (|ω_x| + |ω_y| + |ω_z|) of its flux. The
-// moments of isotropic light across a side are 1/6 and 1/9, those of light 1 + 3 J·ω add J/3 and
-// J/4 (across) and J/8 (along). The light of a disk fills a cone; its pressure on the sides along
-// it is up to 3/2 of the hemisphere's.
+// moments of isotropic light across a side are 1/6 and 1/9. A hemisphere around an axis, of the
+// first moment J, adds J/3 and 2/9 J (across) and 5/36 J (along), so that light which fills a
+// hemisphere everywhere stays as it is. Around another direction less moment goes along a side that
+// it crosses: the factor 1 - 3/5 n_a^2 is within 2 % of the flux. The light of a disk fills a cone;
+// its pressure on the sides along it is up to 3/2 of the hemisphere's.
 void send_closed(inout sums to, lpv_closure light, int a, float side, float transmittance)
 {
     vec3 beam = light.beam * max(side * light.direction[a], vec3(0.0)) / light.steps;
-    vec3 pressure = 1.0 + light.widening * (1.0 - light.direction[a] * light.direction[a]);
+    vec3 sine2 = 1.0 - light.direction[a] * light.direction[a];
+    vec3 pressure = 1.0 + light.widening * sine2;
     to.flux += transmittance * (light.wide / 6.0 + side / 3.0 * light.wide_along[a] + beam);
+    vec3 along = (2.0 + 3.0 * sine2) / 36.0, across = (8.0 + 3.0 * sine2) / 36.0 - along;
     for (int i = 0; i < 3; i++)
-        to.along[i] += transmittance * (0.125 * light.wide_along[i] + beam * light.direction[i]);
+        to.along[i] += transmittance * (along * light.wide_along[i] + beam * light.direction[i]);
     to.along[a] +=
-        transmittance * (0.125 * light.wide_along[a] + side / 9.0 * pressure * light.wide);
+        transmittance * (across * light.wide_along[a] + side / 9.0 * pressure * light.wide);
 }
 
 // The neighbour across the edge along axis c: its two outer faces (±p, ±q, 0) and (±q, ±p, 0).
