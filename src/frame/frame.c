@@ -208,10 +208,9 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
 static void record_blocks(struct frame *f, struct gpu_cmd *cmd)
 {
     const int count = (int)f->shadow.cascades;
-    f->has_blocks = false;
-    if (!direct_variant_of_blocks(f->direct_variant)) return;
     f->sun = shadow_view_of_sun(f->shadow.faces, count, f->camera.eye);
-    f->has_blocks = shadow_view_is_precise(&f->sun, f->shadow.faces, count) &&
+    f->has_blocks = direct_variant_of_blocks(f->direct_variant) != 0 &&
+                    shadow_view_is_precise(&f->sun, f->shadow.faces, count) &&
                     shadow_record_blocks(&f->shadow, cmd, &f->lights[0]);
 }
 
@@ -236,8 +235,6 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
 {
     const uint32_t blocks = direct_variant_of_blocks(f->direct_variant);
     struct direct_input in = {
-        .first_shadow_faces = gpu_transient(cmd, "first_shadow_faces", f->shadow.faces,
-                                            FRAME_MAX_CASCADES * sizeof *f->shadow.faces),
         .shadow_sun = gpu_transient(cmd, "shadow_sun", &f->sun, sizeof f->sun),
         .depth = f->layers[FRAME_DEPTH],
         .normal = f->layers[FRAME_NORMAL],

@@ -81,7 +81,7 @@ static void record_undecided(const struct direct *d, struct gpu_cmd *cmd,
 {
     gpu_dispatch_indirect(
         cmd, d->undecided[has_emission(in->variant)],
-        GPU_BIND(in->constants, in->first_shadow_faces, in->shadow_sun,
+        GPU_BIND(in->constants, in->shadow_sun,
                  { "shadow_sun_depths", .image = in->shadow_sun_maps, .sampler = d->nearest },
                  { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
                  { "depth_layer", .image = in->depth, .sampler = d->nearest },
@@ -102,8 +102,7 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
         gpu_fill_buffer(cmd, d->list, 0, offsetof(struct direct_list_header, groups[1]), 0);
     gpu_dispatch(
         cmd, d->pipelines[in->variant],
-        GPU_BIND(in->constants, in->lights, in->shadow_faces, in->first_shadow_faces,
-                 in->shadow_sun,
+        GPU_BIND(in->constants, in->lights, in->shadow_faces, in->shadow_sun,
                  { "shadow_maps", .image = in->shadow_maps, .sampler = in->shadow_sampler },
                  { "shadow_sun_maps", .image = in->shadow_sun_maps, .sampler = in->shadow_sampler },
                  { "shadow_depths", .image = in->shadow_maps, .sampler = d->nearest },

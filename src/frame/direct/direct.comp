@@ -121,7 +121,7 @@ surface read_surface(ivec2 pixel, float depth, vec3 albedo)
 // The receiver in the finest cascade that contains it.
 shadow_receiver receiver_of_sun(surface s, frame_light light)
 {
-    if (ONE_SUN) return sun_receiver(s.position, s.normal, s.to_viewer);
+    if (ONE_SUN) return sun_receiver(s.ray, s.view_distance, s.normal);
     shadow_receiver chosen;
     for (int i = CASCADES - 1; i >= 0; i--) {
         shadow_receiver r = shadow_receiver_in(shadow_face_table[light.shadow_first + i],
@@ -141,7 +141,7 @@ float visibility(surface s, frame_light light, vec3 to_light, bool facing)
         return shadow_visibility(light, s.position, s.geometric_normal, to_light, facing,
                                  push.shadow_radius);
     if (BLOCKS) {
-        int known = sun_known(s.ray, s.view_distance, s.normal);
+        int known = shadow_known(shadow_blocks, receiver_of_sun(s, light));
         undecided = facing && known == SHADOW_UNKNOWN;
         return known == SHADOW_KNOWN_SHADOW ? 0.0 : 1.0;
     }
@@ -194,7 +194,7 @@ void main()
 {
     frame = frame_block;
     if (ONE_SUN) {
-        sun_load();
+        sun = sun_block;
         only_sun = frame_light_table[0];
     }
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

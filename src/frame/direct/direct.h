@@ -27,8 +27,8 @@ struct direct_input {
     gpu_image shadow_maps, shadow_sun_maps, shadow_blocks;
     gpu_sampler shadow_sampler;
     int shadow_radius; // filter radius, texels
-    // lights: FRAME_MAX_LIGHTS; first_shadow_faces: FRAME_MAX_CASCADES.
-    struct gpu_binding constants, lights, shadow_faces, first_shadow_faces, shadow_sun, ggx_albedo;
+    // lights: FRAME_MAX_LIGHTS. shadow_sun: shadow_sun_view of the only sun.
+    struct gpu_binding constants, lights, shadow_faces, shadow_sun, ggx_albedo;
     uint32_t variant; // of direct_variant
     uint32_t width, height;
 };

@@ -26,15 +26,14 @@ layout(constant_id = DIRECT_CONSTANT_EMISSION) const bool HAS_EMISSION = true;
 void main()
 {
     frame = frame_block;
-    sun_load();
+    sun = sun_block;
     if (gl_GlobalInvocationID.x >= list.count) return;
     uint packed = list_pixels[gl_GlobalInvocationID.x];
     ivec2 pixel = ivec2(packed & 0xffffu, packed >> 16);
     vec3 ray = frame_view_ray(frame_uv(uvec2(pixel)));
     float view_distance = frame_view_distance(texelFetch(depth_layer, pixel, 0).r);
     vec3 normal = octahedral_decode(texelFetch(normal_layer, pixel, 0).rg);
-    shadow_receiver receiver =
-        sun_receiver(frame.camera_position + view_distance * ray, normal, -normalize(ray));
+    shadow_receiver receiver = sun_receiver(ray, view_distance, normal);
     if (shadow_resolved(shadow_sun_depths, receiver, true) > 0.0) return;
     vec3 emission = vec3(0.0);
     if (HAS_EMISSION) emission = min(texelFetch(emissive_layer, pixel, 0).rgb, vec3(HALF_MAX));

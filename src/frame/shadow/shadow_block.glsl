@@ -13,12 +13,6 @@
 // Surely above SHADOW_PARALLEL for each stencil of a block, whose slopes deviate from the plane's.
 const float SHADOW_BLOCK_PARALLEL = 0.8;
 
-// A receiver in a map of its sun: texels, z points to the light. No vector is normalised.
-struct shadow_sun_receiver {
-    vec3 position, normal, to_viewer;
-    int layer;
-};
-
 // Whether the receiver's surface is surely parallel to the block's.
 bool shadow_is_parallel(shadow_plane plane, vec3 normal)
 {
@@ -28,9 +22,9 @@ bool shadow_is_parallel(shadow_plane plane, vec3 normal)
                                               dot(n, n) * dot(normal, normal);
 }
 
-int shadow_known(sampler2DArray blocks, shadow_sun_receiver r, float size)
+int shadow_known(sampler2DArray blocks, shadow_receiver r)
 {
-    vec2 at = clamp(r.position.xy, 1.0, size - 3.0) / float(SHADOW_BLOCK), block = floor(at);
+    vec2 at = clamp(r.position.xy, 1.0, r.size - 3.0) / float(SHADOW_BLOCK), block = floor(at);
     shadow_plane plane = shadow_plane_of(texelFetch(blocks, ivec3(ivec2(block), r.layer), 0));
     float above =
         plane.height + dot(plane.slope, (at - block) * float(SHADOW_BLOCK)) - r.position.z;

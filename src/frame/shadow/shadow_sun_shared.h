@@ -14,13 +14,14 @@ struct shadow_sun_view {
     vec3s map_from_world[3]; // rows
     vec3s viewer;
     vec3s scale[FRAME_MAX_CASCADES], offset[FRAME_MAX_CASCADES];
+    float depth[FRAME_MAX_CASCADES]; // texels per unit of stored depth
     int32_t layer[FRAME_MAX_CASCADES];
     float size; // of each map
     float padding[3];
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct shadow_sun_view) == 4 * (12 + 6 * FRAME_MAX_CASCADES + 8),
+_Static_assert(sizeof(struct shadow_sun_view) == 4 * (12 + 6 * FRAME_MAX_CASCADES + 12),
                "layout is shared with GLSL");
 #endif
 

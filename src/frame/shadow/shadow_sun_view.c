@@ -31,6 +31,7 @@ static void relate(const struct shadow_face *face, const struct shadow_face *las
         out->scale[i].raw[k] = scale;
         out->offset[i].raw[k] = own.w - scale * other.w;
     }
+    out->depth[i] = face->depth_texels;
     out->layer[i] = face->layer;
 }
 
