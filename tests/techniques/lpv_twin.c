@@ -3,6 +3,7 @@
 #include "core/sh.h"
 #include "techniques/geometry_twin.h"
 #include "techniques/lpv_twin_closed.h"
+#include "techniques/lpv_twin_product.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +20,7 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
     twin->bands = bands;
     twin->scheme = scheme;
     twin->geometry = NULL;
-    twin->closed = twin->positive = false;
+    twin->closure = LPV_NO_CLOSURE;
     twin->injected_1 = lpv_crossing_of(scheme).injected_1;
     twin->light = calloc(twin_cells(twin), sizeof *twin->light);
     twin->accumulated = calloc(twin_cells(twin), sizeof *twin->accumulated);
@@ -28,10 +29,13 @@ void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_sche
 void twin_init_as(struct twin *twin, const struct lpv *lpv)
 {
     twin_init(twin, lpv->grid, lpv->options.bands, (enum lpv_scheme)lpv->options.neighbours);
-    twin->closed = lpv_closure_of(&lpv->options) == LPV_BEAM_CLOSURE;
-    twin->positive = lpv_closure_of(&lpv->options) == LPV_BANDS_CLOSURE;
-    twin->closed_focus = (double)lpv->params.lobe_along;
-    if (twin->closed) twin->injected_1 = lpv_closed_crossing().injected_1;
+    const struct lpv_params *params = &lpv->params;
+    twin->closure = lpv_closure_of(&lpv->options);
+    twin->closed_lobe =
+        (struct lpv_lobe_weights){ (double)params->lobe_along, (double)params->lobe_square,
+                                   (double)params->lobe_product };
+    if (twin->closure == LPV_BEAM_CLOSURE) twin->injected_1 = lpv_closed_crossing().injected_1;
+    if (twin->closure == LPV_PRODUCT_CLOSURE) twin->injected_1 = lpv_product_crossing().injected_1;
 }
 
 void twin_finish(struct twin *twin)
@@ -105,15 +109,20 @@ void twin_propagate(struct twin *twin, const struct lpv_options *how)
     double(*next)[9] = calloc((size_t)count, sizeof *next);
     for (int i = 0; i < count; i++) {
         const int cell[3] = { i % cells[0], i / cells[0] % cells[1], i / cells[0] / cells[1] };
+        if (twin->closure == LPV_PRODUCT_CLOSURE)
+            product_send(twin->light[i], (const int[3]){ 0 }, &twin->closed_lobe, 1.0, next[i]);
         for (int n = 0; n < neighbour_count; n++) {
             int to[3];
             for (int axis = 0; axis < 3; axis++) to[axis] = cell[axis] + neighbours[n].offset[axis];
             const int at = index_of(twin, to);
             if (at < 0) continue;
             const double transmittance = transmittance_of(twin, cell, neighbours[n].offset);
-            if (twin->closed)
-                closed_send(twin->light[i], neighbours[n].offset, twin->closed_focus, transmittance,
-                            next[at]);
+            if (twin->closure == LPV_BEAM_CLOSURE)
+                closed_send(twin->light[i], neighbours[n].offset, twin->closed_lobe.along,
+                            transmittance, next[at]);
+            else if (twin->closure == LPV_PRODUCT_CLOSURE)
+                product_send(twin->light[i], neighbours[n].offset, &twin->closed_lobe,
+                             transmittance, next[at]);
             else
                 send(twin, twin->light[i], transmittance, &neighbours[n], lobe, &weights, next[at]);
         }
@@ -141,7 +150,7 @@ static void accumulate_closed(struct twin *twin, const struct lpv_options *how)
 
 void twin_accumulate(struct twin *twin, const struct lpv_options *how)
 {
-    if (twin->closed) {
+    if (twin->closure != LPV_NO_CLOSURE) {
         accumulate_closed(twin, how);
         return;
     }
@@ -194,21 +203,16 @@ static void filter(const struct twin *twin, const double at[3],
     }
 }
 
-static double without_ringing(double irradiance, double mean)
-{
-    const double room = 0.14 * mean, below = 0.18 * mean - irradiance;
-    return below > 0.0 ? 0.04 * mean + room * room / (room + below) : irradiance;
-}
-
 // ∫ I (−n·ω)₊ dω at a position in cells, not negative; `lobe` is the weighted cosine.
 static double gather(const struct twin *twin, const double at[3], vec3s normal,
                      enum lpv_reconstruction reconstruction, const float lobe[9])
 {
     double light[9] = { 0 }, sum = 0.0;
     filter(twin, at, reconstruction, light);
-    if (twin->closed) return closed_irradiance(light, normal);
+    if (twin->closure == LPV_BEAM_CLOSURE) return closed_irradiance(light, normal);
+    if (twin->closure == LPV_PRODUCT_CLOSURE) return product_irradiance(light, normal);
     for (int i = 0; i < SH_COUNT(twin->bands); i++) sum += light[i] * (double)lobe[i];
-    return twin->positive ? without_ringing(sum, light[0] * (double)lobe[0]) : fmax(sum, 0.0);
+    return fmax(sum, 0.0);
 }
 
 double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,
@@ -235,5 +239,6 @@ double twin_irradiance(const struct twin *twin, vec3s position, vec3s normal,
     const double loss = fmax(first - gather(twin, further, normal, reconstruction, lobe), 0.0);
     const double damped = fmax(first - (double)how->damping * loss, 0.0);
     const double area = (double)twin->grid.cell_m * (double)twin->grid.cell_m;
-    return damped * lpv_mean_path(twin->scheme) / area;
+    const double path = twin->closure == LPV_PRODUCT_CLOSURE ? 1.0 : lpv_mean_path(twin->scheme);
+    return damped * path / area;
 }

@@ -17,9 +17,8 @@ struct twin {
     double injected_1;                    // band 1 of injected light: that of struct lpv_crossing
     const struct geometry_twin *geometry; // occluders; NULL: none
     double occlusion;                     // the option
-    bool closed;                          // the positive closure (lpv_closure.glsl)
-    bool positive;                        // that of three bands: no ringing
-    double closed_focus;                  // mean cosine after a step of it
+    uint32_t closure;                     // LPV_…_CLOSURE
+    struct lpv_lobe_weights closed_lobe;  // of a step of it
 };
 
 void twin_init(struct twin *twin, struct lpv_grid grid, int bands, enum lpv_scheme scheme);

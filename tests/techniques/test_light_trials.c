@@ -25,7 +25,7 @@ TEST_GPU(a_closed_room_beside_a_sunlit_one_stays_dark)
         const char *gi;
         double most;
     } cases[] = { { "lpv", 0.005 },
-                  { "holpv", 0.005 },
+                  { "holpv", 0.002 },
                   { "vct:bounces=1", 0.05 },
                   { "vct", 0.04 },
                   { "vct:resolution=128", 0.042 },
@@ -61,20 +61,21 @@ TEST_GPU(an_open_plane_in_the_sun_gets_nothing_of_its_own_light)
         const char *gi;
         double most;
     } cases[] = {
-        { "lpv", 0.01 }, { "holpv", 0.03 }, { "vct", 0.01 }, { "vct:resolution=128", 0.01 }
+        { "lpv", 0.01 }, { "holpv", 0.015 }, { "vct", 0.01 }, { "vct:resolution=128", 0.01 }
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         CHECK(fmax(own_light(gpu, cases[i].gi, false), own_light(gpu, cases[i].gi, true)) <=
               cases[i].most);
 }
 
-struct range {
-    double least, most;
+// Least and largest irradiance of a pixel, largest error of the mean of a plane, relative to πL.
+struct sky_range {
+    double least, most, mean_error;
 };
 
-static struct range sky_share(struct gpu *gpu, const char *gi)
+static struct sky_range sky_share(struct gpu *gpu, const char *gi)
 {
-    struct range range = { HUGE_VAL, 0 };
+    struct sky_range range = { HUGE_VAL, 0, 0 };
     for (int i = 0; i < 2 * TILT_COUNT; i++) {
         struct frame_fixture s;
         trial_open_plane(&s, gpu, &(struct trial_plane){ TILTS[i / 2], i % 2, .sun = false });
@@ -85,6 +86,7 @@ static struct range sky_share(struct gpu *gpu, const char *gi)
                       e.mean[1] / GLM_PI, e.least / GLM_PI, e.most / GLM_PI);
         range.least = fmin(range.least, e.least / GLM_PI);
         range.most = fmax(range.most, e.most / GLM_PI);
+        range.mean_error = fmax(range.mean_error, fabs(e.mean[1] / GLM_PI - 1));
         fixture_finish(&s);
     }
     return range;
@@ -94,11 +96,14 @@ TEST_GPU(an_open_plane_gets_the_whole_sky)
 {
     const struct {
         const char *gi;
-        double least, most;
-    } cases[] = { { "lpv", 0.77, 1.02 }, { "holpv", 0.8, 1.03 }, { "vct", 0.98, 1.01 } };
+        struct sky_range bound;
+    } cases[] = { { "lpv", { 0.77, 1.02, 0.1 } },
+                  { "holpv", { 0.83, 1.13, 0.035 } },
+                  { "vct", { 0.98, 1.01, 0.02 } } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const struct range got = sky_share(gpu, cases[i].gi);
-        CHECK(got.least >= cases[i].least && got.most <= cases[i].most);
+        const struct sky_range got = sky_share(gpu, cases[i].gi), bound = cases[i].bound;
+        CHECK(got.least >= bound.least && got.most <= bound.most);
+        CHECK(got.mean_error <= bound.mean_error);
     }
 }
 
@@ -129,7 +134,7 @@ static void check_share(struct gpu *gpu, trial_scene build, const char *name, in
 TEST_GPU(light_crosses_an_empty_room)
 {
     static const struct share_case cases[] = {
-        { "lpv", 0.8 }, { "holpv", 0.3 }, { "vct", 0.85 }, { "vct:trace=rays", 0.9 }
+        { "lpv", 0.8 }, { "holpv", 0.9 }, { "vct", 0.85 }, { "vct:trace=rays", 0.9 }
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         check_share(gpu, trial_empty_room, "across an empty room", 1, &cases[i], 1.3);
@@ -139,7 +144,7 @@ TEST_GPU(a_small_sunlit_patch_lights_its_room)
 {
     static const struct share_case cases[] = { { "lpv", 0.85 },
                                                { "lpv:quality=high", 0.85 },
-                                               { "holpv", 0.75 },
+                                               { "holpv", 0.95 },
                                                { "vct", 0.5 },
                                                { "vct:trace=rays", 0.5 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
@@ -148,7 +153,7 @@ TEST_GPU(a_small_sunlit_patch_lights_its_room)
 
 TEST_GPU(many_small_emitters_give_their_light)
 {
-    static const struct share_case cases[] = { { "lpv", 0.8 }, { "holpv", 0.85 }, { "vct", 0.85 } };
+    static const struct share_case cases[] = { { "lpv", 0.8 }, { "holpv", 0.9 }, { "vct", 0.85 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         check_share(gpu, trial_strips, "strips", -1, &cases[i], 1.6);
 }
@@ -160,7 +165,7 @@ TEST_GPU(nothing_is_black_beside_a_panel)
         const char *gi;
         double least;
     } cases[] = {
-        { "holpv:closure=linear", 0 }, { "holpv", 0.005 }, { "lpv", 0.004 }, { "vct", 0.1 }
+        { "holpv:closure=linear", 0 }, { "holpv", 0.2 }, { "lpv", 0.004 }, { "vct", 0.1 }
     };
     for (int i = 0; i < 4; i++) {
         struct frame_fixture s;
@@ -188,7 +193,7 @@ TEST_GPU(a_hidden_surface_does_not_dilute_the_colour_before_it)
     const struct {
         const char *gi;
         double tolerance;
-    } cases[] = { { "lpv", 0.3 }, { "holpv", 0.3 }, { "vct", 0.03 } };
+    } cases[] = { { "lpv", 0.3 }, { "holpv", 0.15 }, { "vct", 0.03 } };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const double alone = red_over_green(gpu, cases[i].gi, 0),
                      hidden = red_over_green(gpu, cases[i].gi, 0.02f);

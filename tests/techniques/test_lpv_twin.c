@@ -169,9 +169,11 @@ TEST_GPU(lpv_propagation_of_higher_order_is_the_sum_over_faces_and_steps)
 {
     propagation_equals_the_twin(gpu, "holpv:dim=8,steps=1,precision=float");
     propagation_equals_the_twin(gpu, "holpv:dim=8,steps=6");
-    propagation_equals_the_twin(gpu, "holpv:dim=8,steps=7,lobe=normal,focus=0.6666667");
     propagation_equals_the_twin(gpu,
                                 "holpv:dim=16,steps=20,focus=1,cell_margin=1.5,precision=float");
+    propagation_equals_the_twin(gpu, "holpv:dim=8,steps=6,closure=linear,focus=0.99");
+    propagation_equals_the_twin(gpu,
+                                "holpv:dim=8,steps=7,closure=linear,lobe=normal,focus=0.6666667");
 }
 
 TEST_GPU(lpv_bands_and_neighbours_are_independent)
@@ -220,7 +222,8 @@ TEST_GPU(lpv_application_equals_the_twin)
     application_equals_the_twin(gpu, "lpv:dim=8,steps=5,damping=0.8");
     application_equals_the_twin(gpu,
                                 "lpv:dim=8,steps=5,closure=linear,damping=2,reconstruction=cubic");
-    application_equals_the_twin(gpu, "holpv:dim=8,steps=5,offset=0.75,window=0.9");
+    application_equals_the_twin(gpu, "holpv:dim=8,steps=5,offset=0.75");
+    application_equals_the_twin(gpu, "holpv:dim=8,steps=5,closure=linear,offset=0.75,window=0.9");
     application_equals_the_twin(gpu, "holpv:dim=8,steps=5,damping=1,reconstruction=cubic");
 }
 

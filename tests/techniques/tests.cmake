@@ -1,5 +1,5 @@
 add_library(ag_test_techniques STATIC techniques/geometry_fixture.c techniques/geometry_twin.c techniques/lpv_fixture.c
-  techniques/lpv_twin.c techniques/lpv_twin_closed.c techniques/mesh_fixture.c techniques/rsm_fixture.c
+  techniques/lpv_twin.c techniques/lpv_twin_closed.c techniques/lpv_twin_product.c techniques/mesh_fixture.c techniques/rsm_fixture.c
   techniques/svo_tree.c techniques/vct_fixture.c techniques/vct_twin.c techniques/vct_voxel_count.c techniques/vo_fixture.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
 

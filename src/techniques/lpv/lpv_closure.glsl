@@ -10,7 +10,7 @@
 #ifndef AG_LPV_CLOSURE_GLSL
 #define AG_LPV_CLOSURE_GLSL
 
-layout(constant_id = LPV_CONSTANT_CLOSURE) const int LPV_CLOSURE = LPV_BEAM_CLOSURE;
+layout(constant_id = LPV_CONSTANT_CLOSURE) const int LPV_CLOSURE = LPV_NO_CLOSURE;
 const bool LPV_CLOSED = LPV_CLOSURE == LPV_BEAM_CLOSURE;
 
 struct lpv_closure {

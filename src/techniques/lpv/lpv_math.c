@@ -119,6 +119,13 @@ struct lpv_crossing lpv_closed_crossing(void)
     return (struct lpv_crossing){ 1.0, 1.0, 2.0 / 3.0 };
 }
 
+// A hemisphere above a lit wall is uniform over 0…1 along the normal: what crosses the side of a
+// cell has the moments of a clamped cosine.
+struct lpv_crossing lpv_product_crossing(void)
+{
+    return (struct lpv_crossing){ 1.0, 1.0, 2.0 / 3.0 };
+}
+
 // Quadrature of the squares of x² − y² and xy with the faces as nodes and their solid angles as
 // weights: 1 each if it were exact. By the symmetry of the cube these two determine band 2.
 static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double *product)
@@ -140,7 +147,11 @@ static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double 
 // Band 2 of the lobe (cosθ)₊ⁿ of mean cosine g = (n+1)/(n+2), relative to band 0, is the mean of
 // the Legendre polynomial P2: n/(n+3) = (2g − 1)/(2 − g). n = 1 is the clamped cosine with g = 2/3
 // and the paper's 1/4; g = 1 preserves every direction. Lobes wider than a hemisphere have none.
-//
+static double band_2_of(double focus)
+{
+    return fmax(2.0 * focus - 1.0, 0.0) / (2.0 - focus);
+}
+
 // Stability: no wave grows. A step maps the coefficients c of the wave exp(i k·x) to G A E B c: B
 // the fluxes through the faces over √Ω, E the faces' phases (unitary), A the polynomials at the
 // lobes' axes times √Ω, G the weights. B Bᵀ is the quadrature of products of two coefficients:
@@ -153,12 +164,18 @@ static void quadrature_of_band_2(enum lpv_scheme scheme, double *square, double 
 struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
                                             double focus, double filter)
 {
-    const double band_2 = (1.0 - filter) * fmax(2.0 * focus - 1.0, 0.0) / (2.0 - focus);
+    const double band_2 = (1.0 - filter) * band_2_of(focus);
     double square, product;
     quadrature_of_band_2(scheme, &square, &product);
     if (lobe == LPV_LOBE_PROPAGATION)
         return (struct lpv_lobe_weights){ focus, band_2 / square, band_2 / product };
     return (struct lpv_lobe_weights){ focus, fmin(band_2, sqrt(0.4 / square)), 0.0 };
+}
+
+struct lpv_lobe_weights lpv_product_lobe(double focus)
+{
+    const double band_2 = band_2_of(focus);
+    return (struct lpv_lobe_weights){ focus, band_2, band_2 };
 }
 
 double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient)

@@ -44,7 +44,8 @@ struct lpv_crossing {
     double injected_1; // band 1 of the light that a lit wall sends across the side; 2/3: Lambert
 };
 struct lpv_crossing lpv_crossing_of(enum lpv_scheme scheme);
-struct lpv_crossing lpv_closed_crossing(void); // of lpv_closure.glsl
+struct lpv_crossing lpv_closed_crossing(void);  // of lpv_closure.glsl
+struct lpv_crossing lpv_product_crossing(void); // of lpv_product.glsl
 
 // A re-projected lobe of unit flux: coefficient i is weight_i Y_i(axis). `along`: weight of band 1;
 // band 2: `square` for 3z² − 1 and x² − y², `product` for xy, yz and xz. Band 0 has the weight 1,
@@ -56,6 +57,8 @@ struct lpv_lobe_weights {
 // `filter`: share of band 2 that is removed (filtered spherical harmonics, McClarren & Hauck 2010).
 struct lpv_lobe_weights lpv_lobe_weights_of(enum lpv_scheme scheme, enum lpv_lobe lobe,
                                             double focus, double filter);
+// Of the moments after a step of lpv_product.glsl.
+struct lpv_lobe_weights lpv_product_lobe(double focus);
 double lpv_lobe_weight(const struct lpv_lobe_weights *weights, int coefficient);
 
 // Shader parameters of one step: one face of each class, and the lobes' weights.

@@ -7,11 +7,31 @@ static const float Y0 = 0.282094792f; // √(1/4π)
 // Band 1 of a clamped cosine: without geometry no wall occludes the light behind its surface.
 static const float LAMBERT_1 = 2.0f / 3.0f;
 
+// See lpv_apply.comp.
+static float mean_path_of(const struct lpv_options *options)
+{
+    return lpv_closure_of(options) == LPV_PRODUCT_CLOSURE
+               ? 1.0f
+               : (float)lpv_mean_path((enum lpv_scheme)options->neighbours);
+}
+
+static struct lpv_crossing crossing_of(const struct lpv_options *options)
+{
+    switch (lpv_closure_of(options)) {
+    case LPV_BEAM_CLOSURE:
+        return lpv_closed_crossing();
+    case LPV_PRODUCT_CLOSURE:
+        return lpv_product_crossing();
+    default:
+        return lpv_crossing_of((enum lpv_scheme)options->neighbours);
+    }
+}
+
 // Flux of a cell that the sky's radiance L reaches from all directions: 4π I with
 // L = I (w a) / a³ (lpv_apply.comp).
 static vec3s sky_flux(const struct lpv *lpv, const struct frame_view *view)
 {
-    const float mean_path = (float)lpv_mean_path((enum lpv_scheme)lpv->options.neighbours);
+    const float mean_path = mean_path_of(&lpv->options);
     const float cell_m = lpv->grid.cell_m;
     if (!lpv->options.sky) return vec3_of(0, 0, 0);
     return glms_vec3_scale(view->constants->sky, 4.0f * GLM_PIf * cell_m * cell_m / mean_path);
@@ -33,7 +53,7 @@ static struct lpv_lights lights_of(const struct lpv *lpv, const struct frame_vie
 // that the size of cells does not matter.
 static double focus_of_step(const struct lpv *lpv, const struct frame_view *view)
 {
-    if (lpv_closure_of(&lpv->options) != LPV_BEAM_CLOSURE) return (double)lpv->options.focus;
+    if (lpv_closure_of(&lpv->options) == LPV_NO_CLOSURE) return (double)lpv->options.focus;
     const vec3s size = box3_size(view->bounds);
     const float longest = fmaxf(size.x, fmaxf(size.y, size.z));
     return pow((double)lpv->options.focus, (double)(16.0f * lpv->grid.cell_m / longest));
@@ -47,9 +67,11 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
     const enum lpv_scheme scheme = (enum lpv_scheme)options->neighbours;
     const struct lpv_step step = lpv_step_of(scheme, (enum lpv_lobe)options->lobe,
                                              focus_of_step(lpv, view), (double)options->filter);
-    const bool closed = lpv_closure_of(options) == LPV_BEAM_CLOSURE;
-    const struct lpv_crossing crossing = closed ? lpv_closed_crossing() : lpv_crossing_of(scheme);
-    const float mean_path = (float)lpv_mean_path(scheme); // see lpv_apply.comp
+    const struct lpv_crossing crossing = crossing_of(options);
+    const struct lpv_lobe_weights lobe = lpv_closure_of(options) == LPV_PRODUCT_CLOSURE
+                                             ? lpv_product_lobe(focus_of_step(lpv, view))
+                                             : step.lobe;
+    const float mean_path = mean_path_of(options);
     return (struct lpv_params){
         .origin_m = grid->origin_m,
         .cell_m = grid->cell_m,
@@ -60,9 +82,9 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
         .far_face = step.far_face,
         .side_face = step.side_face,
         .corner_face = step.corner_face,
-        .lobe_along = (float)step.lobe.along,
-        .lobe_square = (float)step.lobe.square,
-        .lobe_product = (float)step.lobe.product,
+        .lobe_along = (float)lobe.along,
+        .lobe_square = (float)lobe.square,
+        .lobe_product = (float)lobe.product,
         .sky = glms_vec3_scale(sky_flux(lpv, view), Y0 * scale->grid_from_flux),
         .fixed_from_flux = scale->fixed_from_flux,
         .grid_from_fixed = scale->grid_from_flux / scale->fixed_from_flux,
@@ -74,8 +96,10 @@ static struct lpv_params params_of(const struct lpv *lpv, const struct frame_vie
             options->offset * (lpv->coarser ? lpv->coarser->grid.cell_m / grid->cell_m : 1.0f),
         .window_1 = options->window * (float)crossing.band_1,
         .window_2 = options->window * (float)crossing.band_2,
-        .staircase =
-            scheme == LPV_SIX && !closed && options->geometry != LPV_GEOMETRY_OFF ? 1.0f : 0.0f,
+        .staircase = scheme == LPV_SIX && lpv_closure_of(options) == LPV_NO_CLOSURE &&
+                             options->geometry != LPV_GEOMETRY_OFF
+                         ? 1.0f
+                         : 0.0f,
         .injected_1 =
             options->geometry == LPV_GEOMETRY_OFF ? LAMBERT_1 : (float)crossing.injected_1,
         .occlusion = options->occlusion,

@@ -20,6 +20,7 @@
 #include "techniques/lpv/lpv_grid.glsl"
 #include "techniques/lpv/lpv_light.glsl"
 #include "techniques/lpv/lpv_closure.glsl"
+#include "techniques/lpv/lpv_product.glsl"
 #define LPV_TRANSMITTANCE_BINDING 4
 #define LPV_TRANSMITTANCE_ACCESS  readonly
 #include "techniques/lpv/geometry/geometry_transmittance.glsl"
@@ -227,12 +228,9 @@ struct receivers {
     sums below, level, above;
 };
 
-// From the source at (−step.x, −step.y) relative to the receivers' column.
-void from_column(inout receivers to, ivec3 cell, ivec2 step)
+void from_bands(inout receivers to, lpv_light light, ivec2 step, vec3 transmittance)
 {
-    lpv_light light = light_of(cell);
     float x = float(step.x), y = float(step.y);
-    vec4 transmittance = transmittance_of(cell, 3 * (step.y + 1) + step.x + 1);
     float below = transmittance[0], level = transmittance[1], above = transmittance[2];
     if (step.x != 0 && step.y != 0) {
         send_over_corner(to.below, light, vec3(x, y, -1.0), below);
@@ -250,6 +248,72 @@ void from_column(inout receivers to, ivec3 cell, ivec2 step)
         send_far(to.below, light, 2, -1.0, below);
         send_far(to.above, light, 2, 1.0, above);
     }
+}
+
+// The light of a source that moves by a step along x and y, its moments and what they are where it
+// does not move along z.
+struct column {
+    vec3 flux, along_x, along_y, along_z, square_x, square_y, square_z, product_xy;
+    vec3 half_along_x, half_along_y;
+};
+
+// Light whose ω_a² differs from the mean of its cell differs along the other axes: all squares sum
+// to the flux.
+column column_of(lpv_product light, ivec2 step)
+{
+    lpv_moved x = lpv_moved_by(light.axes[0], step.x), y = lpv_moved_by(light.axes[1], step.y);
+    vec3 flux_x = light.flux * x.flux, flux_y = light.flux * y.flux;
+    vec3 across_x = flux_y * x.across, across_y = flux_x * y.across;
+    column c;
+    c.flux = flux_x * y.flux;
+    c.half_along_x = 0.5 * flux_y * x.mean;
+    c.half_along_y = 0.5 * flux_x * y.mean;
+    c.along_x = 2.0 * c.half_along_x + 0.5 * light.flux * x.mean * y.across;
+    c.along_y = 2.0 * c.half_along_y + 0.5 * light.flux * y.mean * x.across;
+    c.along_z = c.flux + 0.5 * (across_x + across_y);
+    c.square_x = flux_y * x.square + light.axes[0].square * across_y;
+    c.square_y = flux_x * y.square + light.axes[1].square * across_x;
+    c.square_z = light.axes[2].square * (across_x + across_y);
+    c.product_xy = light.flux * x.mean * y.mean + c.flux * light.covariance[2];
+    return c;
+}
+
+void send_column(inout sums to, column c, lpv_product light, int step_z, float transmittance)
+{
+    lpv_moved z = lpv_moved_by(light.axes[2], step_z);
+    vec3 share = transmittance * z.flux, mean = transmittance * z.mean;
+    vec3 across = transmittance * z.across, across_z = c.flux * across;
+    vec3 flux = c.flux * share;
+    to.flux += flux;
+    to.along[0] += c.along_x * share + c.half_along_x * across;
+    to.along[1] += c.along_y * share + c.half_along_y * across;
+    to.along[2] += c.along_z * mean;
+    to.square[0] += c.square_x * share + light.axes[0].square * across_z;
+    to.square[1] += c.square_y * share + light.axes[1].square * across_z;
+    to.square[2] += c.square_z * share + c.flux * (transmittance * z.square);
+    to.product[0] += 2.0 * c.half_along_y * mean + flux * light.covariance[0];
+    to.product[1] += 2.0 * c.half_along_x * mean + flux * light.covariance[1];
+    to.product[2] += c.product_xy * share;
+}
+
+// Of the light that moves by `step` along x and y, a part moves along z.
+void from_product(inout receivers to, lpv_product light, ivec2 step, vec3 transmittance)
+{
+    column c = column_of(light, step);
+    float level = step == ivec2(0) ? 1.0 : transmittance[1];
+    send_column(to.below, c, light, -1, transmittance[0]);
+    send_column(to.level, c, light, 0, level);
+    send_column(to.above, c, light, 1, transmittance[2]);
+}
+
+// From the source at (−step.x, −step.y) relative to the receivers' column.
+void from_column(inout receivers to, ivec3 cell, ivec2 step)
+{
+    vec3 transmittance = transmittance_of(cell, 3 * (step.y + 1) + step.x + 1).xyz;
+    if (LPV_CLOSURE == LPV_PRODUCT_CLOSURE)
+        from_product(to, lpv_product_of(light_of(cell)), step, transmittance);
+    else
+        from_bands(to, light_of(cell), step, transmittance);
 }
 
 void gather_twenty_six(ivec3 first)

@@ -32,11 +32,11 @@
 #define LPV_CONSTANT_DAMPED     5 // damping is on
 #define LPV_CONSTANT_CLOSURE    6 // LPV_…_CLOSURE
 
-// Light of a cell: linear in all bands; two bands closed by lpv_closure.glsl; three bands whose
-// irradiance is not negative (lpv_irradiance.glsl).
-#define LPV_NO_CLOSURE    0
-#define LPV_BEAM_CLOSURE  1
-#define LPV_BANDS_CLOSURE 2
+// Light of a cell: linear in all bands; two bands closed by lpv_closure.glsl, three by
+// lpv_product.glsl.
+#define LPV_NO_CLOSURE      0
+#define LPV_BEAM_CLOSURE    1
+#define LPV_PRODUCT_CLOSURE 2
 
 // Source of the geometry volume: none, surfels of maps and camera, triangles of the scene.
 #define LPV_GEOMETRY_OFF   0

@@ -85,12 +85,13 @@ struct lpv_cascades {
     struct lpv levels[LPV_MAX_CASCADES]; // from the finest
 };
 
-// LPV_…_CLOSURE. Two bands over 26 neighbours have none.
+// LPV_…_CLOSURE: of two bands over six neighbours, and of three over 26.
 static inline uint32_t lpv_closure_of(const struct lpv_options *options)
 {
-    if (options->closure == LPV_CLOSURE_LINEAR) return LPV_NO_CLOSURE;
-    if (options->bands == 3) return LPV_BANDS_CLOSURE;
-    return options->neighbours == LPV_SIX ? LPV_BEAM_CLOSURE : LPV_NO_CLOSURE;
+    const bool six = options->neighbours == LPV_SIX;
+    if (options->closure == LPV_CLOSURE_LINEAR || six != (options->bands == 2))
+        return LPV_NO_CLOSURE;
+    return six ? LPV_BEAM_CLOSURE : LPV_PRODUCT_CLOSURE;
 }
 
 // Empty cells around the scene. At least a half: every surface lies between the centres of two
