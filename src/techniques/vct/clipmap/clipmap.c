@@ -47,14 +47,39 @@ static bool still_fits(const struct vct_grid *grid, const struct vct_grid *fitte
     return true;
 }
 
+// Bounds of a scene that has grown out of its grid: on the sides where it did, with a margin, since
+// it may grow on; on the others, those of the grid.
+static struct box3 grown_bounds(const struct vct_grid *grid, struct box3 bounds)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const float low = grid->origin_m.raw[axis],
+                    high = low + (float)grid->cells[axis] * grid->cell_m,
+                    margin = (bounds.max.raw[axis] - bounds.min.raw[axis]) / 16.0f;
+        const bool below = bounds.min.raw[axis]<low, above = bounds.max.raw[axis]> high;
+        bounds.min.raw[axis] = below ? bounds.min.raw[axis] - margin : low;
+        bounds.max.raw[axis] = above ? bounds.max.raw[axis] + margin : high;
+    }
+    return bounds;
+}
+
+// The grid of the previous frame if that still fits; otherwise one with room to grow, or the fitted
+// one where that would be much coarser.
+static struct vct_grid next_grid(const struct vct *vct, const struct vct_grid *previous,
+                                 const struct vct_grid *fitted, struct box3 bounds)
+{
+    struct vct_grid grown;
+    if (still_fits(previous, fitted, bounds)) return *previous;
+    const bool fits = vct_grid_fit(grown_bounds(previous, bounds), vct->options.resolution, &grown);
+    return fits && still_fits(&grown, fitted, bounds) ? grown : *fitted;
+}
+
 bool vct_clipmap_update(struct vct *vct, const struct frame_view *view)
 {
     const struct vct_grid previous = vct->clips[0].grid;
     if (!vct_grid_fit(view->bounds, vct->options.resolution, &vct->clips[0].grid)) return false;
     const bool known = view->index > 0 && view->pose->scene == vct->scene;
     vct->scene = view->pose->scene;
-    if (known && still_fits(&previous, &vct->clips[0].grid, view->bounds))
-        vct->clips[0].grid = previous;
+    if (known) vct->clips[0].grid = next_grid(vct, &previous, &vct->clips[0].grid, view->bounds);
     place_around_camera(vct, view);
     if (!known) vct->small_emitters.chosen = false;
     if (known && same_grid(&vct->clips[0].grid, &previous)) return true;

@@ -196,9 +196,9 @@ uint enter(vct_part part, uint number)
     vec3 position = vec3(2 * block_texel) + part.position / max(part.weight, 1.0);
     uint tile = vct_morton(uvec2(vct_morton(uvec2(block_texel.xy)), block_texel.z));
     uvec3 block = uvec3(block_texel) / VCT_BLOCK;
-    vct_part_record record =
-        vct_part_record(position, normalize(part.normal), 8u * tile + block_face + 64u * number,
-                        block.x + 3u * block.z + 5u * block.y);
+    vct_part_record record = vct_part_record(position, normalize(part.normal),
+                                             64u * (number + 1u) + 8u * tile + block_face,
+                                             block.x + 3u * block.z + 5u * block.y);
     imageStore(vct_parts, vct_face_texel(place), vct_pack_part(record));
     return place;
 }
