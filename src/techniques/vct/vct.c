@@ -153,6 +153,7 @@ static void vct_invalidate(void *state, uint32_t changes)
 {
     struct vct *vct = state;
     if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) invalidate_voxels(vct);
+    vct->lit_index = VCT_NEVER;
     vct_temporal_invalidate(&vct->temporal);
 }
 
@@ -232,8 +233,8 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     else
         vct->small_emitters.count = 0;
     record_voxels(vct, cmd, view);
-    if (!vct->options.occlusion) vct_record_bounce(vct, cmd, view);
-    vct_record_light(vct, cmd, view);
+    const bool bounced = !vct->options.occlusion && vct_record_bounce(vct, cmd, view);
+    vct_record_light(vct, cmd, view, bounced);
     vct_record_cones(vct, cmd, view);
     if (vct->options.temporal)
         vct_temporal_record(&vct->temporal, cmd, view, vct_result(vct, view));

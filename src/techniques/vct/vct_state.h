@@ -26,6 +26,8 @@ struct vct_clip {
     bool new_statics;                             // static_set is another one in this frame
 };
 
+#define VCT_NEVER (UINT64_MAX - 1) // no frame follows that index
+
 struct vct_overflow { // of voxel sets, reported some frames later
     struct gpu_readback readback;
     bool reported[VCT_MAX_CLIPS];
@@ -76,6 +78,8 @@ struct vct {
     bool ready;               // the grids are placed
     bool revoxelized;         // some voxels of this frame are new
     bool light_valid;         // the light volume is that of the previous frame, of this grid
+    uint64_t lit_index;       // of the last frame whose light it is
+    int lit_shadow_radius;    // texels, of that frame's shadows
     bool light_outdated;      // it has texels whose voxels are gone
     bool bounced_valid;       // bounced irradiance is that of `bounce_inputs`
     struct vct_bounce_inputs bounce_inputs;

@@ -48,12 +48,23 @@ static void light_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct fram
     vct_refill_volume(vct, cmd);
 }
 
-void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+// Whether the voxels have the light of the previous frame. Without lights opacity is all.
+static bool same_light(const struct vct *vct, const struct frame_view *view)
 {
-    // Opacity changes only with the voxels.
-    if (vct->options.occlusion && vct->light_valid && !vct->revoxelized) return;
-    light_voxels(vct, cmd, view);
+    if (!vct->light_valid || vct->revoxelized) return false;
+    if (vct->options.occlusion) return true;
+    return view->index == vct->lit_index + 1 && !view->lights_changed && view->maps_drawn == 0 &&
+           view->shadow_radius == vct->lit_shadow_radius &&
+           view->constants->previous_scale_ratio == 1.0f;
+}
+
+void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                      bool bounced)
+{
+    if (bounced || !same_light(vct, view)) light_voxels(vct, cmd, view);
     vct->light_valid = true;
+    vct->lit_index = view->index;
+    vct->lit_shadow_radius = view->shadow_radius;
 }
 
 // ---- Bounced light ------------------------------------------------------------------------------
@@ -196,7 +207,7 @@ static uint32_t new_sets(const struct vct *vct)
     return (vct->clips[0].new_statics ? 1u : 0) | (vct->revoxelized ? 2u : 0);
 }
 
-void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
+bool vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const bool many = vct->options.bounces > 1;
     const struct vct_bounce_inputs inputs = { view->constants->sky,
@@ -207,7 +218,7 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     vct->params.bounced = many || has_sky(view) || view->scene->max_emissive > 0.0f;
     bool moves = false;
     const int bounces = vct->params.bounced ? bounces_now(vct, view, &inputs, restart, &moves) : 0;
-    if (bounces == 0) return;
+    if (bounces == 0) return false;
     vct->params.light_scale = restart ? 1.0f : view->constants->previous_scale_ratio;
     if (restart) restart_light(vct, cmd, view, many);
     // Bounced light of blocks whose turn is later has the scale of the frame that gathered it.
@@ -221,4 +232,5 @@ void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     }
     vct->bounce_inputs = inputs;
     vct->bounced_valid = true;
+    return true;
 }

@@ -15,9 +15,11 @@ struct vct_clip;
 
 // Divides voxels into the parts that gather bounced light together.
 void vct_list_parts(struct vct *vct, const struct vct_clip *clip, struct gpu_cmd *cmd);
-// Gathers light from other voxels. Before vct_record_light.
-void vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
-// Lights the voxels and fills the light volume.
-void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+// Gathers light from other voxels, if that has changed: see vct_record_light.
+bool vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view);
+// Lights the voxels and fills the light volume, unless all is as in the previous frame. bounced:
+// what vct_record_bounce returned.
+void vct_record_light(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *view,
+                      bool bounced);
 // Fills the light volume again from voxels that are lit already.
 void vct_refill_volume(struct vct *vct, struct gpu_cmd *cmd);
