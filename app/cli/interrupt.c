@@ -1,5 +1,7 @@
-// A thread waits for the signals that end the program; all other threads block them. Unlike a
-// handler it can lock a mutex and thus wait for the end of a write.
+// A thread waits for the signals that end the program. Unlike a handler it can lock a mutex and
+// thus wait for the end of a write. The program's threads block these signals; those that a library
+// started before main do not (OpenBLAS), and their handler passes a signal on to the waiting
+// thread.
 #include "interrupt.h"
 
 #include <pthread.h>
@@ -33,6 +35,14 @@ static void *wait_for_the_end(void *unused)
     return unused;
 }
 
+static pthread_t waiting; // set before the handler is
+
+// Async-signal-safe, as signal-safety(7) lists pthread_kill.
+static void pass_on(int number)
+{
+    pthread_kill(waiting, number);
+}
+
 static void add_unless_ignored(int number)
 {
     struct sigaction action;
@@ -42,16 +52,18 @@ static void add_unless_ignored(int number)
 
 void interrupt_begin(void)
 {
-    pthread_t thread;
     sigemptyset(&ending);
     add_unless_ignored(SIGINT);
     add_unless_ignored(SIGTERM);
     add_unless_ignored(SIGHUP);
     pthread_sigmask(SIG_BLOCK, &ending, NULL);
-    if (pthread_create(&thread, NULL, wait_for_the_end, NULL) == 0)
-        pthread_detach(thread);
-    else
+    if (pthread_create(&waiting, NULL, wait_for_the_end, NULL) != 0) {
         pthread_sigmask(SIG_UNBLOCK, &ending, NULL); // they end it at once, then
+        return;
+    }
+    pthread_detach(waiting);
+    for (int number = 1; number < NSIG; number++)
+        if (sigismember(&ending, number) == 1) signal(number, pass_on);
 }
 
 void interrupt_catch(void)
