@@ -5,6 +5,9 @@ find_package(Vulkan REQUIRED)
 pkg_check_modules(CGLM REQUIRED IMPORTED_TARGET cglm)
 pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+# OpenBLAS before LAPACKE, so that its LAPACK is used, not the reference one.
+pkg_check_modules(OPENBLAS REQUIRED IMPORTED_TARGET openblas)
+pkg_check_modules(LAPACKE REQUIRED IMPORTED_TARGET lapacke)
 pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 # find_package gives the C core alone; OpenEXR's pkg-config file adds the C++ libraries.
 find_package(OpenEXR 3.1 CONFIG REQUIRED)
