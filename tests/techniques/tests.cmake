@@ -12,6 +12,9 @@ foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 endforeach()
 target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMAKE_SOURCE_DIR}/src/techniques")
+add_library(ag_test_mrt STATIC techniques/mrt_fixture.c)
+target_link_libraries(ag_test_mrt PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
+ag_test(techniques/mrt_transfer USES techniques LIBRARIES ag_test_mrt)
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)

@@ -1,0 +1,130 @@
+// Sphere lights of the prior.
+#include "prior.h"
+
+#include "core/rng.h"
+#include "core/sampling.h"
+
+#include <math.h>
+
+enum {
+    LATTICE = 6, // lights along an edge
+    BEYOND = 3,  // layers of the lattice beyond an opening
+    LAYER = LATTICE * LATTICE,
+    SHADOW_RAYS = 64,
+};
+
+static float lattice(int i)
+{
+    return (float)(i + 1) / (float)(LATTICE + 1) - 0.5f;
+}
+
+static bool is_open(const struct mrt_shape *shape, int face)
+{
+    return shape->missing >> face & 1u;
+}
+
+// Two openings that share an edge.
+static bool is_corner(const struct mrt_shape *shape, int a, int b)
+{
+    return a / 2 != b / 2 && is_open(shape, a) && is_open(shape, b);
+}
+
+int mrt_prior_light_count(const struct mrt_shape *shape)
+{
+    int count = LATTICE * LAYER;
+    for (int a = 0; a < CUBE_FACES; a++) {
+        if (is_open(shape, a)) count += BEYOND * LAYER;
+        for (int b = 0; b < a; b++)
+            if (is_corner(shape, a, b)) count += BEYOND * BEYOND * LATTICE;
+    }
+    return count;
+}
+
+// Layer i of the lattice, counted from the face outward.
+static float layer_beyond(int face, int i)
+{
+    float depth = 0.5f + (float)(i + 1) / (float)(LATTICE + 1);
+    return face & 1 ? depth : -depth;
+}
+
+static struct mrt_prior_light *add_inside(struct mrt_prior_light *light)
+{
+    for (int i = 0; i < LATTICE * LAYER; i++)
+        *light++ = (struct mrt_prior_light){
+            vec3_of(lattice(i % LATTICE), lattice(i / LATTICE % LATTICE), lattice(i / LAYER)), true
+        };
+    return light;
+}
+
+static struct mrt_prior_light *add_beyond(int face, struct mrt_prior_light *light)
+{
+    int axis = face / 2;
+    for (int i = 0; i < BEYOND * LAYER; i++, light++) {
+        light->inside = false;
+        light->centre.raw[axis] = layer_beyond(face, i / LAYER);
+        light->centre.raw[(axis + 1) % 3] = lattice(i % LATTICE);
+        light->centre.raw[(axis + 2) % 3] = lattice(i / LATTICE % LATTICE);
+    }
+    return light;
+}
+
+static struct mrt_prior_light *add_corner(int a, int b, struct mrt_prior_light *light)
+{
+    for (int i = 0; i < BEYOND * BEYOND * LATTICE; i++, light++) {
+        light->inside = false;
+        light->centre.raw[a / 2] = layer_beyond(a, i / LATTICE % BEYOND);
+        light->centre.raw[b / 2] = layer_beyond(b, i / LATTICE / BEYOND);
+        light->centre.raw[3 - a / 2 - b / 2] = lattice(i % LATTICE);
+    }
+    return light;
+}
+
+void mrt_prior_lights(const struct mrt_shape *shape, struct mrt_prior_light *lights)
+{
+    lights = add_inside(lights);
+    for (int a = 0; a < CUBE_FACES; a++) {
+        if (is_open(shape, a)) lights = add_beyond(a, lights);
+        for (int b = 0; b < a; b++)
+            if (is_corner(shape, a, b)) lights = add_corner(a, b, lights);
+    }
+}
+
+float mrt_point_light(struct mrt_point at, vec3s light)
+{
+    vec3s to = glms_vec3_sub(light, at.position);
+    float squared = glms_vec3_norm2(to), along = glms_vec3_dot(to, at.frame.col[2]);
+    return along > 0.0f ? along / (squared * sqrtf(squared)) : 0.0f;
+}
+
+// The share of the sphere's irradiance that enters through an opening: directions within the cone
+// that the sphere subtends, by cosine.
+static float visible_share(const struct mrt_shape *shape, struct mrt_point at, vec3s centre)
+{
+    vec3s axis = glms_vec3_sub(centre, at.position), t, b;
+    float distance = glms_vec3_norm(axis), reach = 0.5f / (float)(LATTICE + 1) / distance;
+    float lit = 0.0f, all = 0.0f;
+    axis = glms_vec3_scale(axis, 1.0f / distance);
+    basis_of(axis, &t, &b);
+    for (uint32_t i = 0; i < SHADOW_RAYS; i++) {
+        struct mrt_hit hit;
+        vec2s d = glms_vec2_scale(sample_disk(sobol_2d(i, 1)), reach);
+        vec3s ray = glms_vec3_scale(axis, sqrtf(1.0f - glms_vec2_norm2(d)));
+        ray = glms_vec3_muladds(t, d.x, glms_vec3_muladds(b, d.y, ray));
+        float cosine = fmaxf(glms_vec3_dot(ray, at.frame.col[2]), 0.0f);
+        mrt_shape_trace(shape, at.position, ray, &hit);
+        all += cosine;
+        if (hit.opening >= 0) lit += cosine;
+    }
+    return all > 0.0f ? lit / all : 0.0f;
+}
+
+void mrt_prior_column(const struct mrt_shape *shape, struct mrt_prior_light light, float *column,
+                      size_t stride)
+{
+    int texels = mrt_shape_texels(shape);
+    for (int i = 0; i < texels; i++) {
+        struct mrt_point at = mrt_shape_texel(shape, i);
+        float share = light.inside ? 1.0f : visible_share(shape, at, light.centre);
+        column[(size_t)i * stride] = share * mrt_point_light(at, light.centre);
+    }
+}
