@@ -3,6 +3,8 @@
 // example "lpv" or "mrt+dnrt+vo".
 #pragma once
 
+#include "bake/plan.h"
+#include "bake/report.h"
 #include "core/option.h"
 #include "frame/frame.h"
 #include "gpu/gpu.h"
@@ -56,13 +58,9 @@ struct technique_create {
 };
 
 struct technique_bake {
-    struct host *host;
-    const struct scene_pose *pose;
+    const struct scene_pose *pose; // outlives the bake
     const void *options;
-    uint64_t seed;
-    const char *path;                                                 // the bake file to write
-    bool (*progress)(void *user, double fraction, const char *stage); // false cancels
-    void *user;
+    bool full_report; // add stages whose tensors are BAKE_REPORTED
 };
 
 struct technique {
@@ -85,9 +83,16 @@ struct technique {
     uint32_t (*more_needs)(const void *options);
     // false: it cannot run on this device and scene; host_fail has the reason.
     bool (*check)(const struct technique_create *how);
-    bool (*bake)(const struct technique_bake *how); // CPU only, deterministic for a seed
+    // Adds the stages of a bake for these options; see bake/README.md.
+    bool (*bake)(struct bake_plan *plan, const struct technique_bake *how);
+    // Adds members to the report of a bake. After a run `bake` has the BAKE_REPORTED tensors too,
+    // after reading a file it has not.
+    bool (*bake_report)(struct report *report, const struct tensors *bake,
+                        const struct technique_bake *how);
     bool (*create)(void *state, const struct technique_create *how);
-    bool (*load)(void *state, const char *bake_path); // untrusted
+    // After `create`: takes what it needs of a bake, whose identity has been checked and whose
+    // content is untrusted (tensors_expect). The tensors end with the call.
+    bool (*load)(void *state, const struct tensors *bake);
     bool (*resize)(void *state, uint32_t width, uint32_t height);
     void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
     void (*invalidate)(void *state, uint32_t changes);     // technique_change bits

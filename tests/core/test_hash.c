@@ -37,3 +37,22 @@ TEST(hash_does_not_depend_on_alignment)
         CHECK(hash_bytes(moved + shift, 256, 5) == hash_bytes(buffer, 256, 5));
     }
 }
+
+TEST(hash128_depends_on_each_piece_and_where_it_ends)
+{
+    const struct hash128 none = { 0 };
+    const struct hash128 ab_c = hash128_add_text(hash128_add_text(none, "ab"), "c");
+    const struct hash128 a_bc = hash128_add_text(hash128_add_text(none, "a"), "bc");
+    const struct hash128 ab_d = hash128_add_text(hash128_add_text(none, "ab"), "d");
+    const struct hash128 ab_c_end = hash128_add_text(ab_c, "");
+    CHECK(ab_c.low != a_bc.low && ab_c.high != a_bc.high);
+    CHECK(ab_c.low != ab_d.low && ab_c.high != ab_d.high);
+    CHECK(ab_c.low != ab_c_end.low && ab_c.high != ab_c_end.high);
+}
+
+TEST(hash128_is_printed_as_32_digits)
+{
+    char text[HASH128_TEXT];
+    hash128_print((struct hash128){ 0x1, 0xfedcba9876543210 }, text);
+    CHECK_STRING(text, "0000000000000001fedcba9876543210");
+}

@@ -1,0 +1,88 @@
+// A bake: the plan of a technique for certain options, its identity, and its tensors once it has
+// run or was read from a file.
+#pragma once
+
+#include "bake/plan.h"
+#include "bake/report.h"
+
+struct bake;
+
+// What a bake is. A file of another identity is refused; the seed may differ.
+struct bake_identity {
+    const char *technique;
+    int version;
+    const char *options; // of effect REBAKE, written out: "texels=16,modes=64"
+    uint64_t seed;
+    const char *program; // its version, for the file only
+};
+
+// An empty plan; `bake` owns it. Copies the identity. NULL: out of memory.
+struct bake *bake_create(struct host *host, const struct bake_identity *identity);
+void bake_destroy(struct bake *bake); // accepts NULL
+struct bake_plan *bake_plan_of(struct bake *bake);
+
+// The hash of technique, version, options, scene and seed: the file's name in a cache.
+void bake_key(const struct bake *bake, char out[HASH128_TEXT]);
+
+// ---- before
+
+struct bake_estimate {
+    double texels, rays, seconds;
+    uint64_t file_bytes, peak_memory_bytes; // without the scene
+};
+// probe: measures a few tasks, which takes about a second, and keeps their results; without it
+// `seconds` is NaN. threads as in bake_run.
+bool bake_estimate(struct bake *bake, int threads, bool probe, struct bake_estimate *out);
+
+// ---- the run
+
+struct bake_progress {
+    const char *stage; // being worked on; "" after the last
+    double done;       // share of the whole time, 0…1
+    double seconds_left;
+    bool stopping; // asked to stop; checkpoint written; waiting for running tasks
+};
+
+struct bake_run_options {
+    int threads;               // 0: all cores
+    int shard, shard_count;    // tasks of wave 0 with index % count == shard; count 0 or 1: all
+    const char *checkpoint;    // file to resume from and to keep; NULL: none
+    double checkpoint_every_s; // 0: only when cancelled
+    uint64_t max_memory_bytes; // refuse a larger estimate; 0: no limit
+    // About ten times a second on the calling thread; false cancels. After that the checkpoint is
+    // written, and further calls have `stopping` set: a program may end itself in one of them.
+    bool (*progress)(void *user, const struct bake_progress *progress);
+    void *user;
+};
+// Runs what is missing. FAIL_CANCELLED: `progress` returned false; finished tasks are kept, also in
+// the checkpoint. A checkpoint of another identity, or a damaged one, is ignored with a warning. It
+// is removed by bake_save.
+bool bake_run(struct bake *bake, const struct bake_run_options *options);
+bool bake_is_complete(const struct bake *bake);
+
+// Partial files: a checkpoint of the finished tasks, by --shard. `merge` adds the tasks of a file;
+// bake_run then does the rest.
+bool bake_save_partial(struct bake *bake, const char *path);
+bool bake_merge(struct bake *bake, const char *path);
+
+// ---- the result
+
+// The tensors of a complete bake, in the order of the plan; NULL otherwise.
+const struct tensors *bake_tensors(const struct bake *bake);
+// Writes the file, which has the same bytes for the same identity. record_seconds: add
+// afterglow.seconds to its metadata, which differ from run to run.
+bool bake_save(struct bake *bake, const char *path, bool record_seconds);
+// Reads a file of this identity; otherwise FAIL_FORMAT and one sentence with the difference.
+bool bake_load(struct bake *bake, const char *path);
+
+struct bake_stage_info {
+    const char *name;
+    double seconds; // sum over its tasks, of all runs; 0 after bake_load
+    size_t tasks;
+};
+int bake_stage_count(const struct bake *bake);
+struct bake_stage_info bake_stage_info(const struct bake *bake, int stage);
+// Wall time of all runs; that of the run that made it after bake_load, NaN if the file has none.
+double bake_seconds(const struct bake *bake);
+uint64_t bake_bytes(const struct bake *bake); // of the file's tensors
+const char *bake_options_text(const struct bake *bake);

@@ -1,0 +1,14 @@
+// Hashes of a scene for the key of a bake: XXH3-128 of exactly the parts that the bake depends on.
+// Lights, sky, cameras, names and animations are never part of it.
+#pragma once
+
+#include "core/hash.h"
+#include "scene/pose.h"
+
+enum scene_key_part {
+    SCENE_KEY_GEOMETRY = 1,  // triangles of all instances in world space, with their material index
+    SCENE_KEY_MATERIALS = 2, // reflectance, textures and emission of materials in use
+};
+
+// parts: scene_key_part bits. Continue with hash128_add for block maps and the like.
+struct hash128 scene_key(const struct scene_pose *pose, unsigned parts);
