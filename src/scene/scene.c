@@ -172,6 +172,7 @@ int scene_add_node(struct scene *scene, const struct node *node)
     }
     if (!copy.has_matrix) copy.rotation = glms_quat_normalize(copy.rotation);
     if (!copy_name(scene, &copy.name)) return -1;
+    if (copy.extras && !(copy.extras = arena_strdup(&scene->arena, copy.extras))) return -1;
     return APPEND(scene, nodes, node, copy);
 }
 

@@ -86,6 +86,7 @@ struct node {
     vec3s scale;
     bool has_matrix; // then `matrix` replaces the three above
     mat4s matrix;
+    const char *extras; // JSON text of glTF's application-specific data, an object; NULL: none
 };
 
 // A mesh at a node. Skinned meshes ignore the node's transform, as glTF says.

@@ -6,6 +6,7 @@
 #include "core/rng.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 struct maze_options {
@@ -22,7 +23,7 @@ static const struct option_row rows[] = {
 
 static const float WALL_FRACTION = 0.08f; // of a block's edge length
 
-enum { MAX_BLOCKS = 64, PLAN = 2 * MAX_BLOCKS + 1, MAX_PLANES = 2 * PLAN + 2 };
+enum { MAX_BLOCKS = 128, PLAN = 2 * MAX_BLOCKS + 1, MAX_PLANES = 2 * PLAN + 2 };
 
 struct maze {
     int count;
@@ -189,6 +190,27 @@ static bool build_cameras(struct scene *scene, const struct maze *maze, float si
     return camera.node >= 0 && scene_add_camera(scene, &camera) >= 0;
 }
 
+// One block of the block map for each cube, from floor to ceiling, up to the middle of the walls.
+static bool build_blocks(struct scene *scene, const struct maze *maze, float size)
+{
+    float height = size * (1.0f - WALL_FRACTION);
+    for (int b = 0; b < maze->count; b++) {
+        char name[32], neighbors[64] = "";
+        snprintf(name, sizeof name, "block %d", b);
+        int parent = maze->parent[b];
+        if (parent >= 0) {
+            int dx = maze->x[parent] - maze->x[b], dz = maze->z[parent] - maze->z[b];
+            snprintf(neighbors, sizeof neighbors, "\"%c%c\":\"block %d\"", dx + dz > 0 ? '+' : '-',
+                     dx ? 'x' : 'z', parent);
+        }
+        mat4s at = glms_translate_make(block_middle(maze, b, size, 0.0f));
+        at.m31 = 0.5f * height;
+        mat4s block = glms_mat4_mul(at, glms_scale_make(vec3_of(size, height, size)));
+        if (!builtin_block(scene, name, block, "cube", neighbors)) return false;
+    }
+    return true;
+}
+
 static bool build_maze(struct scene *scene, const void *options)
 {
     const struct maze_options *o = options;
@@ -198,7 +220,7 @@ static bool build_maze(struct scene *scene, const void *options)
     bool ok =
         build_walls(scene, maze, o->size) &&
         builtin_sphere_light(scene, vec3_of(0, 0.62f * o->size, 0), o->light == 1, o->lumens) &&
-        build_cameras(scene, maze, o->size);
+        build_cameras(scene, maze, o->size) && build_blocks(scene, maze, o->size);
     host_free(scene->host, maze);
     return ok;
 }

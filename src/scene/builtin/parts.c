@@ -1,6 +1,8 @@
 // Materials, cameras and lights that several built-in scenes use.
 #include "scene/builtin/parts.h"
 
+#include <stdio.h>
+
 int builtin_diffuse(struct scene *scene, const char *name, vec3s reflectance)
 {
     struct material material = material_default();
@@ -63,4 +65,18 @@ bool builtin_sphere_light(struct scene *scene, vec3s centre, bool as_point, floa
     shape_begin(&builder, scene);
     shape_sphere(&builder, centre, RADIUS, 24);
     return shape_emit(&builder, "light", material) >= 0;
+}
+
+bool builtin_block(struct scene *scene, const char *name, mat4s world_from_block, const char *shape,
+                   const char *neighbors)
+{
+    char extras[256];
+    snprintf(extras, sizeof extras, "{\"afterglow_block\":{\"shape\":\"%s\",\"neighbors\":{%s}}}",
+             shape, neighbors);
+    struct node node = node_default();
+    node.name = name;
+    node.has_matrix = true;
+    node.matrix = world_from_block;
+    node.extras = extras;
+    return scene_add_node(scene, &node) >= 0;
 }

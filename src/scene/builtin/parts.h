@@ -21,3 +21,7 @@ bool builtin_sun(struct scene *scene, const char *name, vec3s position, vec3s di
 // A warm white light: an emissive sphere of 12 cm radius, or a point light of the same luminous
 // flux.
 bool builtin_sphere_light(struct scene *scene, vec3s centre, bool as_point, float lumens);
+// A node with a block of the block map (docs/block-maps.md): the unit cube under this transform.
+// `neighbors`: members of the JSON object.
+bool builtin_block(struct scene *scene, const char *name, mat4s world_from_block, const char *shape,
+                   const char *neighbors);

@@ -25,6 +25,7 @@ enum { MAX_PIECES = 64, STEPS = 8, SEGMENTS = 32, MAX_FRAMES = MAX_PIECES * STEP
 
 struct tunnel {
     int pieces;
+    int bend[MAX_PIECES];     // -1 left, 0 straight, 1 right
     mat4s frames[MAX_FRAMES]; // origin on the axis; x to the left, y up, z along the axis
 };
 
@@ -53,6 +54,7 @@ static void lay_tunnel(struct tunnel *tunnel, int pieces, uint32_t seed)
     tunnel->frames[0] = frame_at(position, 0);
     for (int p = 0; p < pieces; p++) {
         int bend = p == 0 ? 0 : choose_bend(seed, p, quarter);
+        tunnel->bend[p] = bend;
         float heading = GLM_PI_2f * (float)quarter;
         mat4s start = frame_at(position, heading);
         for (int s = 1; s <= STEPS; s++) {
@@ -117,6 +119,25 @@ static bool build_outside(struct scene *scene, struct tunnel *tunnel)
     return shape_emit(&builder, "outside", material) >= 0;
 }
 
+// One block of the block map for each piece. In its cell the axis runs from −z, y is up.
+static bool build_blocks(struct scene *scene, const struct tunnel *tunnel)
+{
+    static const char *const shapes[] = { "left", "straight", "right" };
+    static const char *const exits[] = { "+x", "+z", "-x" };
+    mat4s frame_from_cell = glms_mat4_mul(glms_translate_make(vec3_of(0, 0, 0.5f * PIECE)),
+                                          glms_scale_make(vec3_of(PIECE, PIECE, PIECE)));
+    for (int p = 0; p < tunnel->pieces; p++) {
+        char name[32], neighbors[64] = "";
+        snprintf(name, sizeof name, "block %d", p);
+        int bend = 1 + tunnel->bend[p];
+        if (p + 1 < tunnel->pieces)
+            snprintf(neighbors, sizeof neighbors, "\"%s\":\"block %d\"", exits[bend], p + 1);
+        mat4s block = glms_mat4_mul(tunnel->frames[p * STEPS], frame_from_cell);
+        if (!builtin_block(scene, name, block, shapes[bend], neighbors)) return false;
+    }
+    return true;
+}
+
 static bool build_tunnel(struct scene *scene, const void *options)
 {
     const struct tunnel_options *o = options;
@@ -127,7 +148,8 @@ static bool build_tunnel(struct scene *scene, const void *options)
     vec3s camera = mat4_point(tunnel->frames[0], vec3_of(0.5f, 0.3f, 1.2f));
     vec3s target = mat4_point(tunnel->frames[STEPS], vec3_of(0, 0, 0));
     vec3s light = mat4_point(tunnel->frames[lit], vec3_of(0, 0.5f * RADIUS, 0));
-    bool ok = build_inside(scene, tunnel) && build_outside(scene, tunnel) &&
+    bool ok = build_blocks(scene, tunnel) && build_inside(scene, tunnel) &&
+              build_outside(scene, tunnel) &&
               builtin_sphere_light(scene, light, o->light == 1, o->lumens) &&
               builtin_camera(scene, "main", camera, target, glm_rad(70.0f));
     host_free(scene->host, tunnel);

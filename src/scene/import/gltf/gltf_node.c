@@ -8,6 +8,19 @@
 
 static const float PI = 3.14159265358979f;
 
+// The text of the node's extras. Other types than objects, which glTF allows, are ignored.
+static bool load_extras(struct gltf_object node, struct node *out)
+{
+    json_t *extras = json_object_get(node.json, "extras");
+    if (!json_is_object(extras)) return true;
+    size_t size = json_dumpb(extras, NULL, 0, JSON_COMPACT);
+    char *text = import_alloc(node.gltf->import, size + 1, 1);
+    if (!text) return false;
+    json_dumpb(extras, text, size, JSON_COMPACT);
+    out->extras = text;
+    return true;
+}
+
 static bool load_node(struct gltf *gltf, size_t i)
 {
     struct gltf_object object = gltf_element(gltf, gltf->nodes, "node", i);
@@ -32,7 +45,7 @@ static bool load_node(struct gltf *gltf, size_t i)
         // Affine by definition: removes rounding errors from the last row.
         for (int k = 0; k < 4; k++) node->matrix.raw[k][3] = k == 3 ? 1.0f : 0.0f;
     }
-    return node->name && !gltf->failed;
+    return node->name && load_extras(object, node) && !gltf->failed;
 }
 
 static void set_children(struct gltf *gltf, size_t i)
