@@ -15,6 +15,9 @@ target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMA
 add_library(ag_test_mrt STATIC techniques/mrt_fixture.c)
 target_link_libraries(ag_test_mrt PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
 ag_test(techniques/mrt_transfer USES techniques LIBRARIES ag_test_mrt)
+foreach(name blocks)
+  ag_test(techniques/mrt_${name} USES techniques LIBRARIES ag_test_mrt)
+endforeach()
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)

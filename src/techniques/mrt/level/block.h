@@ -1,0 +1,73 @@
+// A block of a level: a dictionary shape in a unit cell [−½, ½]³ that eight corners warp into the
+// scene (Loos 2015, section 3.5.2), with the blocks beyond its openings.
+#pragma once
+
+#include "techniques/mrt/dictionary/cube.h"
+
+enum { MRT_CORNERS = 8, MRT_MAX_BLOCKS = 1024, MRT_NAME_BYTES = 64 };
+
+// Cylinders run through the middle of their cell: straight from −z to +z, or bent from −z to the
+// side that is left or right along the way, y being up.
+enum mrt_block_kind {
+    MRT_BLOCK_CUBE,
+    MRT_BLOCK_STRAIGHT,
+    MRT_BLOCK_LEFT,  // to +x
+    MRT_BLOCK_RIGHT, // to −x
+    MRT_BLOCK_KINDS
+};
+
+// The block beyond an opening. `rolls` quarter turns (0…3), from u to v, lead from the frame of
+// this block's face to that of the neighbour's face turned by half a turn around v.
+struct mrt_neighbor {
+    int block; // −1: none
+    int face;  // of the neighbour
+    int rolls;
+};
+
+struct mrt_block {
+    char name[MRT_NAME_BYTES];
+    enum mrt_block_kind kind;
+    unsigned open;             // bit f: face f of the cell is an opening
+    vec3s corner[MRT_CORNERS]; // world; x is high in corner c if c & 1, y if c & 2, z if c & 4
+    struct mrt_neighbor neighbor[CUBE_FACES];
+};
+
+static inline bool mrt_block_is_open(const struct mrt_block *block, int face)
+{
+    return block->open >> face & 1u;
+}
+
+// "-x", "+x", "-y", …
+const char *mrt_face_name(int face);
+int mrt_face_of_name(const char *name); // −1: no such face
+
+const char *mrt_kind_name(enum mrt_block_kind kind);
+// Openings of a cylinder; 0 for a cube, which may have any.
+unsigned mrt_kind_openings(enum mrt_block_kind kind);
+
+// A block without neighbours and openings; an axis-aligned box.
+void mrt_block_init(struct mrt_block *block, const char *name, enum mrt_block_kind kind);
+void mrt_block_set_box(struct mrt_block *block, struct box3 box);
+
+// ---- corners of faces
+
+// Corner of the cell at corner i (0…3, counter-clockwise from outside: (s, t) = (0, 0), (1, 0),
+// (1, 1), (0, 1)) of a face, and its inverse, −1 where the face lacks that corner.
+int mrt_face_corner(int face, int i);
+int mrt_face_corner_index(int face, int corner);
+// The other face with the edge from corner i to i + 1 of a face.
+int mrt_face_across_edge(int face, int i);
+// The corner of the neighbour's cell that meets this corner of an opening.
+int mrt_neighbor_corner(const struct mrt_block *block, int face, int corner);
+
+// ---- the warp
+
+vec3s mrt_warp_point(const vec3s corner[MRT_CORNERS], vec3s cell);
+// Columns: derivatives by x, y and z of the cell.
+mat3s mrt_warp_jacobian(const vec3s corner[MRT_CORNERS], vec3s cell);
+// Whether the warp mirrors or folds over: its Jacobian's determinant is not positive throughout.
+bool mrt_warp_folds(const vec3s corner[MRT_CORNERS]);
+// Outward unit normal of a face in the scene, at a point of that face.
+vec3s mrt_warp_face_normal(const vec3s corner[MRT_CORNERS], int face, vec3s cell);
+// Newton's method. False where it does not converge, for points far outside the block.
+bool mrt_warp_inverse(const vec3s corner[MRT_CORNERS], vec3s world, vec3s *cell);

@@ -1,0 +1,109 @@
+// Storage, connections and checks of block maps.
+#include "block_map.h"
+
+#include "scene/scene_check.h"
+
+#include <string.h>
+
+// Of the longest edge of the two faces.
+static const float MEETING_TOLERANCE = 1e-3f;
+
+bool mrt_block_map_init(struct host *host, const char *what, size_t count,
+                        struct mrt_block_map *map)
+{
+    *map = (struct mrt_block_map){ .host = host };
+    if (count > MRT_MAX_BLOCKS)
+        return host_fail(host, FAIL_FORMAT, "%s: there are %zu blocks, more than %d", what, count,
+                         MRT_MAX_BLOCKS);
+    map->blocks = host_alloc(host, count, sizeof *map->blocks);
+    if (!map->blocks) return false;
+    map->count = (int)count;
+    return true;
+}
+
+void mrt_block_map_finish(struct mrt_block_map *map)
+{
+    if (map->host) host_free(map->host, map->blocks);
+    *map = (struct mrt_block_map){ 0 };
+}
+
+static float longest_edge(const struct mrt_block *block, int face)
+{
+    float longest = 0.0f;
+    for (int i = 0; i < 4; i++) {
+        vec3s a = block->corner[mrt_face_corner(face, i)];
+        vec3s b = block->corner[mrt_face_corner(face, (i + 1) % 4)];
+        longest = glm_max(longest, glms_vec3_distance(a, b));
+    }
+    return longest;
+}
+
+// The number of quarter turns with which corner i of one face is corner i − rolls of the other,
+// whose frame is turned by half a turn around v; −1: the faces do not meet.
+static int rolls_between(const struct mrt_block *a, int face, const struct mrt_block *b, int other)
+{
+    float tolerance = MEETING_TOLERANCE * glm_max(longest_edge(a, face), longest_edge(b, other));
+    for (int rolls = 0; rolls < 4; rolls++) {
+        bool meet = true;
+        for (int i = 0; i < 4 && meet; i++) {
+            vec3s p = a->corner[mrt_face_corner(face, i)];
+            vec3s q = b->corner[mrt_face_corner(other, (i - rolls + 4) % 4 ^ 1)];
+            meet = glms_vec3_distance(p, q) <= tolerance;
+        }
+        if (meet) return rolls;
+    }
+    return -1;
+}
+
+int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_block *other)
+{
+    for (int f = 0; f < CUBE_FACES; f++)
+        if (rolls_between(block, face, other, f) >= 0) return f;
+    return -1;
+}
+
+bool mrt_connect(const char *what, struct mrt_block_map *map, int block, int face, int other,
+                 int other_face)
+{
+    struct mrt_block *a = &map->blocks[block], *b = &map->blocks[other];
+    int rolls = block == other ? -1 : rolls_between(a, face, b, other_face);
+    if (rolls < 0)
+        return host_fail(map->host, FAIL_FORMAT,
+                         "%s: block %s: its face %s does not meet face %s of block %s", what,
+                         a->name, mrt_face_name(face), mrt_face_name(other_face), b->name);
+    if (a->neighbor[face].block >= 0 || b->neighbor[other_face].block >= 0)
+        return host_fail(map->host, FAIL_FORMAT,
+                         "%s: block %s: its face %s or face %s of block %s has another neighbor",
+                         what, a->name, mrt_face_name(face), mrt_face_name(other_face), b->name);
+    a->neighbor[face] = (struct mrt_neighbor){ other, other_face, rolls };
+    // Seen from the other side, u is reversed and so is the sense of the turn; so are the roles of
+    // the two frames: the number of turns stays.
+    b->neighbor[other_face] = (struct mrt_neighbor){ block, face, rolls };
+    a->open |= 1u << face;
+    b->open |= 1u << other_face;
+    return true;
+}
+
+static const char *block_fault(const struct mrt_block *block)
+{
+    for (int c = 0; c < MRT_CORNERS; c++)
+        if (!vec3_is_finite(block->corner[c])) return "a corner is not finite";
+    if (mrt_warp_folds(block->corner)) return "its corners are mirrored, flat or fold over";
+    if (block->kind != MRT_BLOCK_CUBE && block->open != mrt_kind_openings(block->kind))
+        return "it has openings that its shape lacks";
+    if (block->open == CUBE_ALL_FACES) return "it has no wall";
+    return NULL;
+}
+
+bool mrt_block_map_check(const char *what, const struct mrt_block_map *map)
+{
+    for (int i = 0; i < map->count; i++) {
+        const struct mrt_block *block = &map->blocks[i];
+        const char *fault = block_fault(block);
+        for (int j = 0; j < i && !fault; j++)
+            if (strcmp(map->blocks[j].name, block->name) == 0) fault = "another has this name";
+        if (fault)
+            return host_fail(map->host, FAIL_FORMAT, "%s: block %s: %s", what, block->name, fault);
+    }
+    return true;
+}

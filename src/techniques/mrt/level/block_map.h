@@ -1,0 +1,36 @@
+// A block map: the connected blocks that stand for a scene (Loos 2015, sections 3.5.2 and 4.3.1).
+// It is read from a JSON file or from the scene's nodes (docs/block-maps.md), or made.
+#pragma once
+
+#include "scene/scene.h"
+
+#include "techniques/mrt/level/block.h"
+
+struct mrt_block_map {
+    struct host *host;
+    struct mrt_block *blocks;
+    int count;
+};
+
+// At most MRT_MAX_BLOCKS blocks, all zero. `what` names the map in messages.
+bool mrt_block_map_init(struct host *host, const char *what, size_t count,
+                        struct mrt_block_map *map);
+void mrt_block_map_finish(struct mrt_block_map *map); // accepts zero
+
+// Opens two faces to each other. FAIL_FORMAT, with the names of the blocks, where one of them is
+// taken or their corners do not coincide.
+bool mrt_connect(const char *what, struct mrt_block_map *map, int block, int face, int other,
+                 int other_face);
+// The face of `other` whose corners coincide with those of this face; −1: none.
+int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_block *other);
+
+// FAIL_FORMAT with the name of the first block that is wrong: two blocks of one name, corners that
+// are not finite or a warp that folds over, openings that its shape lacks or a cube without walls.
+bool mrt_block_map_check(const char *what, const struct mrt_block_map *map);
+
+// ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed.
+
+bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map);
+// From the `extras` of nodes in the default pose. A scene without blocks gives an empty map.
+bool mrt_block_map_of_scene(struct host *host, const struct scene *scene,
+                            struct mrt_block_map *map);

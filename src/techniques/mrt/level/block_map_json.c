@@ -1,0 +1,292 @@
+// Block maps as JSON (docs/block-maps.schema.json): a file of its own, or the extras of nodes.
+// Untrusted input.
+#include "block_map.h"
+
+#include "core/file.h"
+
+#include "scene/pose.h"
+
+#include <jansson.h>
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const EXTRAS_KEY = "afterglow_block";
+static const char *const TOO_MANY = "too many blocks are before it";
+
+// One block of the source. `json` is borrowed.
+struct source_block {
+    const json_t *json;
+    const char *name;
+    mat4s world_from_block;
+};
+
+struct source {
+    struct host *host;
+    const char *what; // file or scene
+    struct source_block *blocks;
+    size_t count;
+};
+
+// Names reach messages and the terminal: control characters are replaced.
+static void copy_name(char out[MRT_NAME_BYTES], const char *name)
+{
+    size_t i = 0;
+    for (; i + 1 < MRT_NAME_BYTES && name[i]; i++)
+        out[i] = (unsigned char)name[i] < ' ' ? '?' : name[i];
+    out[i] = '\0';
+}
+
+static bool wrong(const struct source *source, const char *name, const char *why)
+{
+    char printable[MRT_NAME_BYTES];
+    copy_name(printable, name);
+    return host_fail(source->host, FAIL_FORMAT, "%s: block %s: %s", source->what, printable, why);
+}
+
+// ---- one block
+
+static bool read_vector(const json_t *json, vec3s *out)
+{
+    if (json_array_size(json) != 3) return false;
+    for (size_t a = 0; a < 3; a++) {
+        const json_t *number = json_array_get(json, a);
+        if (!json_is_number(number)) return false;
+        out->raw[a] = (float)json_number_value(number);
+    }
+    return true;
+}
+
+static bool read_box(const json_t *json, struct mrt_block *block)
+{
+    struct box3 box;
+    if (json_array_size(json) != 2 || !read_vector(json_array_get(json, 0), &box.min) ||
+        !read_vector(json_array_get(json, 1), &box.max))
+        return false;
+    mrt_block_set_box(block, box);
+    return true;
+}
+
+static bool read_corners(const json_t *json, struct mrt_block *block)
+{
+    if (json_array_size(json) != MRT_CORNERS) return false;
+    for (size_t c = 0; c < MRT_CORNERS; c++)
+        if (!read_vector(json_array_get(json, c), &block->corner[c])) return false;
+    return true;
+}
+
+static bool read_geometry(const struct source *source, const struct source_block *from,
+                          struct mrt_block *block)
+{
+    const json_t *corners = json_object_get(from->json, "corners");
+    const json_t *box = json_object_get(from->json, "box");
+    mrt_block_set_box(block,
+                      (struct box3){ vec3_of(-0.5f, -0.5f, -0.5f), vec3_of(0.5f, 0.5f, 0.5f) });
+    if (corners && box) return wrong(source, block->name, "it has corners and a box");
+    if (corners && !read_corners(corners, block))
+        return wrong(source, block->name, "its corners are not 8 arrays of 3 numbers");
+    if (box && !read_box(box, block))
+        return wrong(source, block->name, "its box is not 2 arrays of 3 numbers");
+    for (int c = 0; c < MRT_CORNERS; c++)
+        block->corner[c] = mat4_point(from->world_from_block, block->corner[c]);
+    return true;
+}
+
+static bool read_kind(const struct source *source, const struct source_block *from,
+                      struct mrt_block *block)
+{
+    const json_t *shape = json_object_get(from->json, "shape");
+    const char *name = shape ? json_string_value(shape) : mrt_kind_name(MRT_BLOCK_CUBE);
+    for (int k = 0; name && k < MRT_BLOCK_KINDS; k++) {
+        if (strcmp(name, mrt_kind_name(k)) != 0) continue;
+        mrt_block_init(block, "", k);
+        return true;
+    }
+    return wrong(source, from->name, "its shape is not cube, straight, left or right");
+}
+
+static bool read_open(const struct source *source, const struct source_block *from,
+                      struct mrt_block *block)
+{
+    const json_t *open = json_object_get(from->json, "open"), *value;
+    if (open && !json_is_array(open)) return wrong(source, block->name, "open is not an array");
+    for (size_t i = 0; i < json_array_size(open); i++) {
+        value = json_array_get(open, i);
+        int face = json_is_string(value) ? mrt_face_of_name(json_string_value(value)) : -1;
+        if (face < 0) return wrong(source, block->name, "open has a face that does not exist");
+        block->open |= 1u << face;
+    }
+    return true;
+}
+
+static bool check_members(const struct source *source, const struct source_block *from)
+{
+    static const char *const known[] = { "name", "shape", "corners", "box", "open", "neighbors" };
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)from->json, key, value)
+    {
+        bool found = false;
+        for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+            found = found || strcmp(key, known[i]) == 0;
+        if (!found) return wrong(source, from->name, "it has a member that does not exist");
+    }
+    return true;
+}
+
+static bool read_block(const struct source *source, const struct source_block *from,
+                       struct mrt_block *block)
+{
+    if (!check_members(source, from) || !read_kind(source, from, block)) return false;
+    copy_name(block->name, from->name);
+    return read_geometry(source, from, block) && read_open(source, from, block);
+}
+
+// ---- connections
+
+static int find_block(const struct source *source, const char *name)
+{
+    for (size_t i = 0; i < source->count; i++)
+        if (strcmp(source->blocks[i].name, name) == 0) return (int)i;
+    return -1;
+}
+
+static bool connect(const struct source *source, struct mrt_block_map *map, int i, int face,
+                    const char *name)
+{
+    struct mrt_block *block = &map->blocks[i];
+    int other = name ? find_block(source, name) : -1;
+    if (other < 0 || other == i)
+        return wrong(source, block->name, "it has a neighbor that does not exist");
+    if (block->neighbor[face].block == other) return true; // from the other side
+    int other_face = mrt_meeting_face(block, face, &map->blocks[other]);
+    if (other_face >= 0) return mrt_connect(source->what, map, i, face, other, other_face);
+    return host_fail(source->host, FAIL_FORMAT,
+                     "%s: block %s: its face %s does not meet a face of block %s", source->what,
+                     block->name, mrt_face_name(face), map->blocks[other].name);
+}
+
+static bool connect_block(const struct source *source, struct mrt_block_map *map, int i)
+{
+    json_t *neighbors = json_object_get(source->blocks[i].json, "neighbors"), *name;
+    const char *key;
+    if (neighbors && !json_is_object(neighbors))
+        return wrong(source, map->blocks[i].name, "neighbors is not an object");
+    json_object_foreach(neighbors, key, name)
+    {
+        int face = mrt_face_of_name(key);
+        if (face < 0)
+            return wrong(source, map->blocks[i].name, "neighbors has a face that does not exist");
+        if (!connect(source, map, i, face, json_string_value(name))) return false;
+    }
+    return true;
+}
+
+static bool read_source(const struct source *source, struct mrt_block_map *map)
+{
+    if (!mrt_block_map_init(source->host, source->what, source->count, map)) return false;
+    for (size_t i = 0; i < source->count; i++)
+        if (!read_block(source, &source->blocks[i], &map->blocks[i])) return false;
+    // Before connections: corners that are not finite meet no face.
+    if (!mrt_block_map_check(source->what, map)) return false;
+    for (int i = 0; i < map->count; i++)
+        if (!connect_block(source, map, i)) return false;
+    return mrt_block_map_check(source->what, map);
+}
+
+// ---- a file
+
+static bool read_document(struct host *host, const char *path, const json_t *root,
+                          struct mrt_block_map *map)
+{
+    const json_t *array = json_object_get(root, "blocks");
+    struct source source = { host, path, NULL, json_array_size(array) };
+    if (json_integer_value(json_object_get(root, "afterglow_block_map")) != 1 ||
+        !json_is_array(array) || source.count == 0)
+        return host_fail(host, FAIL_FORMAT, "%s: it is not a block map of version 1", path);
+    source.blocks = host_alloc(host, source.count, sizeof *source.blocks);
+    bool ok = source.blocks != NULL;
+    for (size_t i = 0; ok && i < source.count; i++) {
+        const json_t *json = json_array_get(array, i);
+        const char *name = json_string_value(json_object_get(json, "name"));
+        source.blocks[i] = (struct source_block){ json, name, glms_mat4_identity() };
+        if (!name || !name[0] || strlen(name) >= MRT_NAME_BYTES)
+            ok = host_fail(host, FAIL_FORMAT, "%s: block %zu: its name has not 1 to %d bytes", path,
+                           i, MRT_NAME_BYTES - 1);
+        else if (i >= MRT_MAX_BLOCKS)
+            ok = wrong(&source, name, TOO_MANY);
+    }
+    ok = ok && read_source(&source, map);
+    host_free(host, source.blocks);
+    return ok;
+}
+
+bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map)
+{
+    enum { MAX_BYTES = 4 << 20 };
+    struct file_bytes bytes;
+    json_error_t error;
+    *map = (struct mrt_block_map){ 0 };
+    if (!file_read(host, path, MAX_BYTES, &bytes)) return false;
+    json_t *root = json_loadb((const char *)bytes.data, bytes.size, JSON_REJECT_DUPLICATES, &error);
+    file_bytes_finish(host, &bytes);
+    bool ok = root ? read_document(host, path, root, map)
+                   : host_fail(host, FAIL_FORMAT, "%s: line %d: %s", path, error.line, error.text);
+    json_decref(root);
+    if (!ok) mrt_block_map_finish(map);
+    return ok;
+}
+
+// ---- nodes of a scene
+
+struct node_blocks {
+    struct source source;
+    json_t **extras; // owned, one for each block
+};
+
+static bool add_node(struct node_blocks *blocks, const struct scene_pose *pose, int node)
+{
+    const struct node *from = &pose->scene->nodes[node];
+    if (!from->extras || !strstr(from->extras, EXTRAS_KEY)) return true;
+    json_t *extras = json_loads(from->extras, 0, NULL);
+    json_t *json = json_object_get(extras, EXTRAS_KEY);
+    if (!json) {
+        json_decref(extras);
+        return true;
+    }
+    size_t i = blocks->source.count++;
+    blocks->extras[i] = extras;
+    blocks->source.blocks[i] =
+        (struct source_block){ json, from->name, pose->world_from_node[node] };
+    if (!json_is_object(json)) return wrong(&blocks->source, from->name, "it is not an object");
+    if (strlen(from->name) >= MRT_NAME_BYTES)
+        return wrong(&blocks->source, from->name, "its name is too long");
+    if (blocks->source.count > MRT_MAX_BLOCKS) return wrong(&blocks->source, from->name, TOO_MANY);
+    return true;
+}
+
+static bool read_nodes(struct node_blocks *blocks, const struct scene_pose *pose,
+                       struct mrt_block_map *map)
+{
+    for (int i = 0; i < pose->scene->node_count; i++)
+        if (!add_node(blocks, pose, i)) return false;
+    return blocks->source.count == 0 || read_source(&blocks->source, map);
+}
+
+bool mrt_block_map_of_scene(struct host *host, const struct scene *scene, struct mrt_block_map *map)
+{
+    struct node_blocks blocks = { .source = { .host = host, .what = scene->name } };
+    struct scene_pose pose = { 0 };
+    size_t nodes = (size_t)scene->node_count;
+    *map = (struct mrt_block_map){ .host = host };
+    blocks.source.blocks = host_alloc(host, nodes, sizeof *blocks.source.blocks);
+    blocks.extras = host_alloc(host, nodes, sizeof *blocks.extras);
+    bool ok = blocks.source.blocks && blocks.extras && pose_init(&pose, scene, -1, 0.0f) &&
+              read_nodes(&blocks, &pose, map);
+    for (size_t i = 0; i < blocks.source.count; i++) json_decref(blocks.extras[i]);
+    host_free(host, blocks.extras);
+    host_free(host, blocks.source.blocks);
+    pose_finish(&pose);
+    if (!ok) mrt_block_map_finish(map);
+    return ok;
+}
