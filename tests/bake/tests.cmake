@@ -1,0 +1,5 @@
+foreach(name safetensors)
+  ag_test(bake/${name} USES bake)
+endforeach()
+add_test(NAME bake.safetensors_python COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/bake/safetensors_python.sh $<TARGET_FILE:test_bake_safetensors>)
+set_tests_properties(bake.safetensors_python PROPERTIES LABELS bake SKIP_RETURN_CODE 77)
