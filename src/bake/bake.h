@@ -45,7 +45,7 @@ struct bake_progress {
 
 struct bake_run_options {
     int threads;               // 0: all cores
-    int shard, shard_count;    // tasks of wave 0 with index % count == shard; count 0 or 1: all
+    int shard, shard_count;    // run only this part of wave 0; count 0: everything
     const char *checkpoint;    // file to resume from and to keep; NULL: none
     double checkpoint_every_s; // 0: only when cancelled
     uint64_t max_memory_bytes; // refuse a larger estimate; 0: no limit
@@ -69,11 +69,16 @@ bool bake_merge(struct bake *bake, const char *path);
 
 // The tensors of a complete bake, in the order of the plan; NULL otherwise.
 const struct tensors *bake_tensors(const struct bake *bake);
+// With the BAKE_REPORTED ones after a run, for bake_report.
+const struct tensors *bake_reported(const struct bake *bake);
 // Writes the file, which has the same bytes for the same identity. record_seconds: add
 // afterglow.seconds to its metadata, which differ from run to run.
 bool bake_save(struct bake *bake, const char *path, bool record_seconds);
 // Reads a file of this identity; otherwise FAIL_FORMAT and one sentence with the difference.
 bool bake_load(struct bake *bake, const char *path);
+
+// The technique that a bake file names.
+bool bake_file_technique(struct host *host, const char *path, char *out, size_t size);
 
 struct bake_stage_info {
     const char *name;

@@ -8,7 +8,8 @@ struct report;
 
 struct report *report_create(struct host *host);
 void report_destroy(struct report *report);
-// The finished text, owned by the report; NULL: out of memory, or an object was not closed.
+// The finished text, one JSON object, owned by the report; NULL: out of memory, or an object was
+// not closed.
 const char *report_text(struct report *report);
 
 // `name` is NULL for elements of a list. Numbers that are not finite become null.

@@ -2,6 +2,7 @@
 #include "core/parallel.h"
 
 #include <limits.h>
+#include <omp.h>
 
 // GCC's OpenMP library is not instrumented for the thread sanitizer. These annotations declare its
 // fork and join: the caller happens before each call of the body, and each call before the return.
@@ -39,17 +40,31 @@ static void end(struct loop *loop)
     ORDER_AFTER(&loop->done);
 }
 
-NOT_INSTRUMENTED static void call_all(struct loop *loop, size_t count, int grain)
+NOT_INSTRUMENTED static void call_all(struct loop *loop, int threads, size_t count, int grain)
 {
     // A single chunk runs on the calling thread.
-#pragma omp parallel for schedule(dynamic, grain) if (count > (size_t)grain)
+#pragma omp parallel for schedule(dynamic, grain) if (count > (size_t)grain) num_threads(threads)
     for (size_t i = 0; i < count; i++) call(loop, i);
+}
+
+void parallel_for_on(int threads, size_t count, size_t grain, void (*body)(void *user, size_t i),
+                     void *user)
+{
+    struct loop loop = { .body = body, .user = user };
+    begin(&loop);
+    call_all(&loop, threads < 1 ? 1 : threads, count,
+             grain < 1         ? 1
+             : grain > INT_MAX ? INT_MAX
+                               : (int)grain);
+    end(&loop);
 }
 
 void parallel_for(size_t count, size_t grain, void (*body)(void *user, size_t i), void *user)
 {
-    struct loop loop = { .body = body, .user = user };
-    begin(&loop);
-    call_all(&loop, count, grain < 1 ? 1 : grain > INT_MAX ? INT_MAX : (int)grain);
-    end(&loop);
+    parallel_for_on(parallel_threads(), count, grain, body, user);
+}
+
+int parallel_threads(void)
+{
+    return omp_get_max_threads();
 }

@@ -1,0 +1,136 @@
+// A bake: creation, identity, the run as a whole.
+#include "bake/bake_state.h"
+#include "bake/relay_host.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool copy_identity(struct bake *bake, const struct bake_identity *identity)
+{
+    struct arena *arena = &bake->plan.arena;
+    bake->identity = *identity;
+    bake->identity.technique = arena_strdup(arena, identity->technique);
+    bake->identity.options = arena_strdup(arena, identity->options);
+    bake->identity.program = arena_strdup(arena, identity->program);
+    return bake->identity.technique && bake->identity.options && bake->identity.program;
+}
+
+struct bake *bake_create(struct host *host, const struct bake_identity *identity)
+{
+    struct bake *bake = host_alloc(host, 1, sizeof *bake);
+    if (!bake) return NULL;
+    bake->host = bake->plan.host = host;
+    arena_init(&bake->plan.arena, host);
+    pthread_mutex_init(&bake->mutex, NULL);
+    pthread_mutex_init(&bake->memory, NULL);
+    if (copy_identity(bake, identity)) return bake;
+    bake_destroy(bake);
+    return NULL;
+}
+
+void bake_destroy(struct bake *bake)
+{
+    if (!bake) return;
+    results_free(bake);
+    safetensors_finish(bake->host, &bake->file);
+    host_free(bake->host, bake->plan.stages);
+    host_free(bake->host, bake->checkpoint);
+    arena_finish(&bake->plan.arena);
+    pthread_mutex_destroy(&bake->mutex);
+    pthread_mutex_destroy(&bake->memory);
+    host_free(bake->host, bake);
+}
+
+struct bake_plan *bake_plan_of(struct bake *bake)
+{
+    return &bake->plan;
+}
+
+bool bake_is_complete(const struct bake *bake)
+{
+    return bake->file.memory || bake->tensors;
+}
+
+const struct tensors *bake_tensors(const struct bake *bake)
+{
+    if (bake->file.memory) return &bake->file.set;
+    return bake->tensors ? &bake->saved : NULL;
+}
+
+const struct tensors *bake_reported(const struct bake *bake)
+{
+    if (bake->file.memory) return &bake->file.set;
+    return bake->tensors ? &bake->all : NULL;
+}
+
+int bake_stage_count(const struct bake *bake)
+{
+    return bake->plan.stage_count;
+}
+
+struct bake_stage_info bake_stage_info(const struct bake *bake, int stage)
+{
+    const struct planned_stage *planned = &bake->plan.stages[stage];
+    return (struct bake_stage_info){ .name = planned->what.name,
+                                     .seconds = bake->file.memory ? 0.0 : planned->seconds,
+                                     .tasks = planned->what.task_count };
+}
+
+double bake_seconds(const struct bake *bake)
+{
+    return bake->seconds;
+}
+
+uint64_t bake_bytes(const struct bake *bake)
+{
+    const struct tensors *tensors = bake_tensors(bake);
+    uint64_t bytes = 0;
+    for (size_t i = 0; tensors && i < tensors->count; i++) bytes += tensors->at[i].bytes;
+    return bytes;
+}
+
+const char *bake_options_text(const struct bake *bake)
+{
+    return bake->identity.options;
+}
+
+// ---- the run
+
+static bool check_memory(const struct bake *bake, const struct bake_run_options *options)
+{
+    static const double MIB = 1024.0 * 1024.0;
+    const uint64_t needed = estimate_peak_memory(bake, options->threads);
+    if (options->max_memory_bytes == 0 || needed <= options->max_memory_bytes) return true;
+    return host_fail(bake->host, FAIL_MEMORY,
+                     "cannot bake %s: it needs about %.0f MiB, more than the limit of %.0f MiB; "
+                     "choose smaller options or fewer threads",
+                     bake->identity.technique, (double)needed / MIB,
+                     (double)options->max_memory_bytes / MIB);
+}
+
+static bool remember_checkpoint(struct bake *bake, const char *path)
+{
+    host_free(bake->host, bake->checkpoint);
+    bake->checkpoint = path ? host_strdup(bake->host, path) : NULL;
+    return !path || bake->checkpoint;
+}
+
+// A checkpoint that cannot be used costs time, and is no error.
+static void resume(struct bake *bake, const char *path)
+{
+    struct relay_host quiet;
+    if (!path || access(path, F_OK) != 0) return;
+    relay_host_init(&quiet, bake->host, NULL);
+    if (!partial_read(&quiet.host, bake, path))
+        host_log(bake->host, LOG_WARNING, "the bake begins anew: %s", quiet.error);
+}
+
+bool bake_run(struct bake *bake, const struct bake_run_options *options)
+{
+    if (bake_is_complete(bake)) return true;
+    if (!check_memory(bake, options) || !remember_checkpoint(bake, options->checkpoint))
+        return false;
+    resume(bake, options->checkpoint);
+    return bake_is_complete(bake) || run_bake(bake, options, false);
+}

@@ -1,0 +1,207 @@
+// Bake files: identity in the metadata, and a hash of the whole content.
+#include "bake/bake_state.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char KIND[] = "afterglow.kind", TECHNIQUE[] = "afterglow.technique",
+                  VERSION[] = "afterglow.bake_version", OPTIONS[] = "afterglow.options",
+                  SCENE[] = "afterglow.scene", SEED[] = "afterglow.seed",
+                  PROGRAM[] = "afterglow.program", SECONDS[] = "afterglow.seconds",
+                  CONTENT[] = "afterglow.content";
+static const char BAKE[] = "bake", ANY_SCENE[] = "any";
+
+// ---- metadata
+
+static void put(struct identity_text *text, const char *key, const char *value)
+{
+    text->metadata[text->count++] = (struct tensor_metadata){ key, value };
+}
+
+void identity_print(const struct bake *bake, const char *kind, double seconds,
+                    struct identity_text *out)
+{
+    const struct bake_identity *id = &bake->identity;
+    *out = (struct identity_text){ 0 };
+    snprintf(out->version, sizeof out->version, "%d", id->version);
+    snprintf(out->seed, sizeof out->seed, "%" PRIu64, id->seed);
+    snprintf(out->scene, sizeof out->scene, "%s", ANY_SCENE);
+    if (bake->plan.depends_on_scene) hash128_print(bake->plan.scene, out->scene);
+    put(out, KIND, kind);
+    put(out, TECHNIQUE, id->technique);
+    put(out, VERSION, out->version);
+    put(out, OPTIONS, id->options);
+    put(out, SCENE, out->scene);
+    put(out, SEED, out->seed);
+    put(out, PROGRAM, id->program);
+    if (isnan(seconds)) return;
+    snprintf(out->seconds, sizeof out->seconds, "%.3f", seconds);
+    put(out, SECONDS, out->seconds);
+}
+
+void bake_key(const struct bake *bake, char out[HASH128_TEXT])
+{
+    struct identity_text text;
+    struct hash128 key = { 0 };
+    identity_print(bake, BAKE, (double)NAN, &text);
+    for (size_t i = 0; i < text.count; i++)
+        if (strcmp(text.metadata[i].key, PROGRAM) != 0)
+            key = hash128_add_text(hash128_add_text(key, text.metadata[i].key),
+                                   text.metadata[i].value);
+    hash128_print(key, out);
+}
+
+static struct hash128 content_hash(const struct tensor_metadata *metadata, size_t metadata_count,
+                                   const struct tensor *at, size_t count)
+{
+    struct hash128 hash = { 0 };
+    for (size_t i = 0; i < metadata_count; i++) {
+        if (strcmp(metadata[i].key, CONTENT) == 0) continue;
+        hash = hash128_add_text(hash, metadata[i].key);
+        hash = hash128_add_text(hash, metadata[i].value);
+    }
+    // By element size, as in the file.
+    for (size_t size = 4; size > 0; size /= 2)
+        for (size_t i = 0; i < count; i++) {
+            if (tensor_type_bytes(at[i].type) != size) continue;
+            hash = hash128_add_text(hash, at[i].name);
+            hash = hash128_add_text(hash, tensor_type_name(at[i].type));
+            hash = hash128_add(hash, at[i].shape, (size_t)at[i].rank * sizeof at[i].shape[0]);
+            hash = hash128_add(hash, at[i].data, at[i].bytes);
+        }
+    return hash;
+}
+
+bool identity_write(struct host *host, const char *path, struct identity_text *text,
+                    const struct tensor *at, size_t count)
+{
+    hash128_print(content_hash(text->metadata, text->count, at, count), text->content);
+    put(text, CONTENT, text->content);
+    const struct tensors set = { at, count, text->metadata, text->count };
+    return safetensors_write(host, path, &set);
+}
+
+// ---- checks
+
+static bool fail_use(struct host *host, const char *path, const char *why)
+{
+    return host_fail(host, FAIL_FORMAT, "cannot use %s: %s", path, why);
+}
+
+static bool check_content(struct host *host, const char *path, const struct tensors *set)
+{
+    char text[HASH128_TEXT];
+    const char *written = tensors_metadata(set, CONTENT);
+    hash128_print(content_hash(set->metadata, set->metadata_count, set->at, set->count), text);
+    return (written && strcmp(written, text) == 0) ||
+           fail_use(host, path, "it is damaged: its content differs from its checksum");
+}
+
+static bool differs(const struct tensors *set, const char *key, const char *wanted)
+{
+    const char *value = tensors_metadata(set, key);
+    return !value || strcmp(value, wanted) != 0;
+}
+
+static bool fail_value(struct host *host, const char *path, const char *what,
+                       const struct tensors *set, const char *key, const char *wanted)
+{
+    const char *value = tensors_metadata(set, key);
+    return host_fail(host, FAIL_FORMAT, "cannot use %s: its %s is %.200s, not %.200s", path, what,
+                     value ? value : "not stated", wanted);
+}
+
+bool identity_check(struct host *host, const struct bake *bake, const char *kind, const char *path,
+                    const struct tensors *set)
+{
+    struct identity_text text;
+    identity_print(bake, kind, (double)NAN, &text);
+    if (!tensors_metadata(set, KIND)) return fail_use(host, path, "it is no bake of this program");
+    if (differs(set, KIND, kind)) return fail_value(host, path, "kind", set, KIND, kind);
+    if (differs(set, TECHNIQUE, bake->identity.technique))
+        return fail_value(host, path, "technique", set, TECHNIQUE, bake->identity.technique);
+    if (differs(set, VERSION, text.version))
+        return fail_value(host, path, "bake version", set, VERSION, text.version);
+    if (differs(set, OPTIONS, bake->identity.options))
+        return fail_value(host, path, "list of options", set, OPTIONS, bake->identity.options);
+    if (differs(set, SCENE, text.scene)) return fail_use(host, path, "it is of another scene");
+    // Partial results of two seeds are no bake of either.
+    if (strcmp(kind, BAKE) != 0 && differs(set, SEED, text.seed))
+        return fail_value(host, path, "seed", set, SEED, text.seed);
+    return check_content(host, path, set);
+}
+
+double identity_seconds(const struct tensors *set)
+{
+    const char *text = tensors_metadata(set, SECONDS);
+    char *end = NULL;
+    const double seconds = text ? strtod(text, &end) : (double)NAN;
+    return text && *end == 0 && seconds >= 0.0 && isfinite(seconds) ? seconds : (double)NAN;
+}
+
+// ---- bake_save, bake_load
+
+bool bake_save(struct bake *bake, const char *path, bool record_seconds)
+{
+    struct identity_text text;
+    const struct tensors *tensors = bake_tensors(bake);
+    if (!tensors)
+        return host_fail(bake->host, FAIL_ARGUMENT,
+                         "cannot write %s: the bake is incomplete; run it first", path);
+    identity_print(bake, BAKE, record_seconds ? bake->seconds : (double)NAN, &text);
+    const size_t count = bake->file.memory ? tensors->count : bake->saved_count;
+    if (!identity_write(bake->host, path, &text, tensors->at, count)) return false;
+    if (bake->checkpoint) remove(bake->checkpoint);
+    return true;
+}
+
+static bool same_tensor(const struct tensor *a, const struct tensor *b)
+{
+    return a && a->type == b->type && a->rank == b->rank &&
+           memcmp(a->shape, b->shape, sizeof a->shape) == 0;
+}
+
+// The file has exactly the tensors that the plan saves.
+static bool check_tensors(const struct bake *bake, const char *path, const struct tensors *set)
+{
+    size_t count = 0;
+    for (int s = 0; s < bake->plan.stage_count; s++)
+        for (int i = 0; i < bake->plan.stages[s].what.output_count; i++) {
+            const struct planned_output *output = &bake->plan.stages[s].outputs[i];
+            if (output->what.keep != BAKE_SAVED) continue;
+            count++;
+            if (!same_tensor(tensors_find(set, output->what.name), &output->view))
+                return host_fail(bake->host, FAIL_FORMAT,
+                                 "cannot use %s: it lacks the tensor %s, or its shape differs",
+                                 path, output->what.name);
+        }
+    return count == set->count || fail_use(bake->host, path, "it has tensors of no stage");
+}
+
+bool bake_load(struct bake *bake, const char *path)
+{
+    struct safetensors file;
+    if (!safetensors_read(bake->host, path, &file)) return false;
+    if (!identity_check(bake->host, bake, BAKE, path, &file.set) ||
+        !check_tensors(bake, path, &file.set)) {
+        safetensors_finish(bake->host, &file);
+        return false;
+    }
+    safetensors_finish(bake->host, &bake->file);
+    bake->file = file;
+    bake->seconds = identity_seconds(&file.set);
+    return true;
+}
+
+bool bake_file_technique(struct host *host, const char *path, char *out, size_t size)
+{
+    struct safetensors file;
+    if (!safetensors_read(host, path, &file)) return false;
+    const char *name = tensors_metadata(&file.set, TECHNIQUE);
+    if (name) snprintf(out, size, "%s", name);
+    safetensors_finish(host, &file);
+    return name || fail_use(host, path, "it is no bake of this program");
+}

@@ -1,0 +1,121 @@
+// The structs behind bake.h and plan.h, for the files of this folder.
+#pragma once
+
+#include "bake/bake.h"
+#include "bake/safetensors.h"
+#include "core/arena.h"
+
+#include <pthread.h>
+
+struct planned_output {
+    struct bake_output what;
+    size_t bytes;       // of the whole tensor
+    struct tensor view; // of the complete tensor; data NULL: not complete, or no longer kept
+    char *data;         // the tensor; NULL before its wave and after `keep`
+    char *parts;        // BAKE_SUM: the tensor of each task, until they are added up
+};
+
+struct planned_stage {
+    struct bake_stage what; // outputs: NULL, see below
+    struct planned_output *outputs;
+    uint64_t seed;
+    // Under the mutex while tasks run.
+    bool *done; // [task_count]
+    size_t done_count;
+    double seconds; // sum over finished tasks
+};
+
+struct bake_plan {
+    struct host *host;
+    struct arena arena;
+    struct planned_stage *stages;
+    int stage_count, capacity;
+    int waves;      // number of waves
+    int waves_done; // whose results are complete and reduced
+    struct bake_job job;
+    bool depends_on_scene;
+    struct hash128 scene;
+};
+
+struct bake {
+    struct host *host;
+    struct bake_identity identity; // its texts are in the arena
+    struct bake_plan plan;
+    pthread_mutex_t mutex;  // of the state that running tasks change
+    pthread_mutex_t memory; // of the host's allocator while tasks run
+    double seconds;         // wall time of all runs; NaN: unknown
+    char *checkpoint;       // of the last run; NULL: none
+    // The result, once complete: of the plan's outputs, or of a file.
+    struct safetensors file;
+    struct tensor *tensors; // saved ones, then reported ones
+    size_t saved_count, reported_count;
+    struct tensors saved, all;
+};
+
+// ---- results.c: memory of the outputs
+
+uint64_t output_rows(const struct bake_output *output);
+// The memory that a task writes to, and its size.
+char *output_block(const struct planned_stage *stage, const struct planned_output *output,
+                   size_t task, size_t *bytes);
+// Allocates what the tasks of a wave write to. Kept where it exists.
+bool results_begin(struct bake *bake, int wave);
+// Adds up sums and frees what no later wave reads.
+bool results_reduce(struct bake *bake, int wave);
+// Is every task of the wave done?
+bool results_wave_is_done(const struct bake *bake, int wave);
+void results_free(struct bake *bake);
+// Makes bake->saved and bake->all, after the last wave.
+bool results_collect(struct bake *bake);
+// A complete tensor; NULL: none of this name.
+const struct tensor *results_find(const struct bake *bake, const char *name);
+
+// ---- run.c
+
+// probe: only one task of each kind in wave 0.
+bool run_bake(struct bake *bake, const struct bake_run_options *options, bool probe);
+
+// ---- estimate.c
+
+uint64_t estimate_peak_memory(const struct bake *bake, int threads);
+
+// ---- progress.c: times, predicted from those of finished tasks and the costs in the plan
+
+struct prediction {
+    double per_ray_s, per_flop_s;
+};
+// Measures the speed of linear algebra, some milliseconds.
+double prediction_flop_seconds(struct host *host);
+struct prediction prediction_now(const struct bake *bake, double per_flop_s);
+// Wall time of the missing tasks on so many threads.
+double prediction_left(const struct bake *bake, const struct prediction *prediction, int threads);
+
+// ---- partial.c: finished tasks in a file
+
+// done: the flags of each stage, copied under the mutex.
+bool partial_write(struct host *host, const struct bake *bake, const char *path, bool *const *done,
+                   double seconds);
+
+// Takes the finished tasks of a partial file; messages and memory by `host`.
+bool partial_read(struct host *host, struct bake *bake, const char *path);
+
+// ---- bake_file.c: identity in metadata
+
+enum { BAKE_MAX_METADATA = 12, BAKE_TEXT = 64 };
+struct identity_text {
+    char version[BAKE_TEXT], seed[BAKE_TEXT], seconds[BAKE_TEXT];
+    char scene[HASH128_TEXT], content[HASH128_TEXT];
+    struct tensor_metadata metadata[BAKE_MAX_METADATA];
+    size_t count;
+};
+// The metadata of a file of this bake. seconds NaN: not recorded. kind: "bake" or "partial".
+void identity_print(const struct bake *bake, const char *kind, double seconds,
+                    struct identity_text *out);
+// Adds the hash of all metadata and tensors, and writes.
+bool identity_write(struct host *host, const char *path, struct identity_text *text,
+                    const struct tensor *at, size_t count);
+// Refuses a file of another kind or identity, or whose hash differs.
+bool identity_check(struct host *host, const struct bake *bake, const char *kind, const char *path,
+                    const struct tensors *set);
+// afterglow.seconds of a file; NaN: none.
+double identity_seconds(const struct tensors *set);
