@@ -15,7 +15,7 @@ target_compile_definitions(test_techniques_gi_spec PRIVATE TECHNIQUES_DIR="${CMA
 add_library(ag_test_mrt STATIC techniques/mrt_fixture.c)
 target_link_libraries(ag_test_mrt PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
 ag_test(techniques/mrt_transfer USES techniques LIBRARIES ag_test_mrt)
-foreach(name blocks)
+foreach(name blocks maps)
   ag_test(techniques/mrt_${name} USES techniques LIBRARIES ag_test_mrt)
 endforeach()
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)

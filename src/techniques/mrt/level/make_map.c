@@ -1,0 +1,202 @@
+// map=single and map=auto.
+#include "make_map.h"
+
+#include "map_cells.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const float MAX_ASPECT = 3.0f; // of boxes that are made larger: the dictionary has cubes
+
+bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt_block_map *map)
+{
+    if (!mrt_block_map_init(host, pose->scene->name, 1, map)) return false;
+    mrt_block_init(&map->blocks[0], "scene", MRT_BLOCK_CUBE);
+    mrt_block_set_box(&map->blocks[0], pose->bounds);
+    if (mrt_block_map_check(pose->scene->name, map)) return true;
+    mrt_block_map_finish(map);
+    return false;
+}
+
+// A union of cells, from plane low[a] to plane high[a].
+struct map_box {
+    int low[3], high[3];
+    unsigned open; // bit f: face f leads to one box with the same face
+};
+
+struct map_boxes {
+    struct mrt_cells *cells;
+    struct map_box *boxes;
+    int *box_of_cell; // −1: none
+    int count;
+};
+
+static void one_box_per_cell(struct map_boxes *boxes)
+{
+    const struct mrt_cells *cells = boxes->cells;
+    for (int i = 0; i < mrt_cells_count(cells); i++) {
+        boxes->box_of_cell[i] = -1;
+        if (!cells->cell[i].free) continue;
+        struct map_box *box = &boxes->boxes[boxes->count];
+        boxes->box_of_cell[i] = boxes->count++;
+        mrt_cell_place(cells, i, box->low);
+        for (int a = 0; a < 3; a++) box->high[a] = box->low[a] + 1;
+        box->open = cells->cell[i].open; // what is open to a free cell is free
+    }
+}
+
+static float box_edge(const struct map_boxes *boxes, const struct map_box *box, int axis)
+{
+    const float *plane = boxes->cells->plane[axis];
+    return plane[box->high[axis]] - plane[box->low[axis]];
+}
+
+static bool is_cubic(const struct map_boxes *boxes, const struct map_box *box)
+{
+    float shortest = INFINITY, longest = 0.0f;
+    for (int a = 0; a < 3; a++) {
+        shortest = fminf(shortest, box_edge(boxes, box, a));
+        longest = fmaxf(longest, box_edge(boxes, box, a));
+    }
+    return longest <= MAX_ASPECT * shortest;
+}
+
+// The box beyond an open face.
+static int box_beyond(const struct map_boxes *boxes, const struct map_box *box, int face)
+{
+    int at[3] = { box->low[0], box->low[1], box->low[2] }, beyond[3];
+    if (face & 1) at[face / 2] = box->high[face / 2] - 1;
+    if (!(box->open >> face & 1u) || !mrt_cell_beyond(boxes->cells, at, face, beyond)) return -1;
+    return boxes->box_of_cell[mrt_cell_at(boxes->cells, beyond) - boxes->cells->cell];
+}
+
+// Faces beside the common one must be walls of both boxes: an opening of half a face has no shape
+// in the dictionary.
+static bool can_merge(const struct map_boxes *boxes, const struct map_box *a, int face,
+                      const struct map_box *b)
+{
+    unsigned ends = 3u << (face & ~1);
+    if ((a->open | b->open) & ~ends) return false;
+    struct map_box both = *a;
+    if (face & 1)
+        both.high[face / 2] = b->high[face / 2];
+    else
+        both.low[face / 2] = b->low[face / 2];
+    return is_cubic(boxes, &both);
+}
+
+static void merge(struct map_boxes *boxes, int i, int face, int j)
+{
+    struct map_box *a = &boxes->boxes[i];
+    const struct map_box *b = &boxes->boxes[j];
+    int axis = face / 2;
+    if (face & 1)
+        a->high[axis] = b->high[axis];
+    else
+        a->low[axis] = b->low[axis];
+    a->open = (a->open & ~(1u << face)) | (b->open & 1u << face);
+    int last = --boxes->count;
+    boxes->boxes[j] = boxes->boxes[last];
+    for (int c = 0; c < mrt_cells_count(boxes->cells); c++) {
+        int *box = &boxes->box_of_cell[c];
+        if (*box == j) *box = i;
+        if (*box == last) *box = j; // also where i is the last one
+    }
+}
+
+static bool merge_one(struct map_boxes *boxes)
+{
+    for (int i = 0; i < boxes->count; i++) {
+        for (int f = 0; f < CUBE_FACES; f++) {
+            int j = box_beyond(boxes, &boxes->boxes[i], f);
+            if (j < 0 || !can_merge(boxes, &boxes->boxes[i], f, &boxes->boxes[j])) continue;
+            merge(boxes, i, f, j);
+            return true;
+        }
+    }
+    return false;
+}
+
+static void set_block(const struct map_boxes *boxes, int i, struct mrt_block *block)
+{
+    char name[MRT_NAME_BYTES];
+    const struct map_box *from = &boxes->boxes[i];
+    struct box3 box;
+    snprintf(name, sizeof name, "box %d", i);
+    for (int a = 0; a < 3; a++) {
+        box.min.raw[a] = boxes->cells->plane[a][from->low[a]];
+        box.max.raw[a] = boxes->cells->plane[a][from->high[a]];
+    }
+    mrt_block_init(block, name, MRT_BLOCK_CUBE);
+    mrt_block_set_box(block, box);
+}
+
+static bool emit(struct host *host, const char *what, const struct map_boxes *boxes,
+                 struct mrt_block_map *map)
+{
+    if (!mrt_block_map_init(host, what, (size_t)boxes->count, map)) return false;
+    for (int i = 0; i < boxes->count; i++) set_block(boxes, i, &map->blocks[i]);
+    bool ok = true;
+    for (int i = 0; ok && i < boxes->count; i++) {
+        for (int f = CUBE_RIGHT; ok && f < CUBE_FACES; f += 2) {
+            int j = box_beyond(boxes, &boxes->boxes[i], f);
+            if (j >= 0) ok = mrt_connect(what, map, i, f, j, cube_opposite(f));
+        }
+    }
+    ok = ok && mrt_block_map_check(what, map);
+    if (!ok) mrt_block_map_finish(map);
+    return ok;
+}
+
+// A cube needs a wall: where all six faces of a box are open, the last one is closed.
+static void keep_a_wall(struct map_boxes *boxes)
+{
+    for (int i = 0; i < boxes->count; i++) {
+        struct map_box *box = &boxes->boxes[i];
+        int beyond = box_beyond(boxes, box, CUBE_TOP);
+        if (box->open != CUBE_ALL_FACES || beyond < 0) continue;
+        box->open &= ~(1u << CUBE_TOP);
+        boxes->boxes[beyond].open &= ~(1u << CUBE_BOTTOM);
+    }
+}
+
+static bool map_of_cells(struct host *host, const struct scene_pose *pose, struct mrt_cells *cells,
+                         struct mrt_block_map *map)
+{
+    size_t count = (size_t)mrt_cells_count(cells);
+    struct map_boxes boxes = { .cells = cells };
+    boxes.boxes = host_alloc(host, count, sizeof *boxes.boxes);
+    boxes.box_of_cell = host_alloc(host, count, sizeof *boxes.box_of_cell);
+    bool ok = boxes.boxes && boxes.box_of_cell;
+    if (ok) {
+        one_box_per_cell(&boxes);
+        while (merge_one(&boxes)) {}
+        keep_a_wall(&boxes);
+        ok = boxes.count ? emit(host, pose->scene->name, &boxes, map)
+                         : mrt_map_single(host, pose, map);
+    }
+    host_free(host, boxes.box_of_cell);
+    host_free(host, boxes.boxes);
+    return ok;
+}
+
+bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s *seeds,
+                  size_t seed_count, struct mrt_block_map *map)
+{
+    struct raycast raycast = { 0 };
+    struct mrt_cells cells = { .raycast = &raycast, .bounds = pose->bounds };
+    *map = (struct mrt_block_map){ 0 };
+    bool ok = raycast_init(&raycast, host, pose);
+    if (ok) {
+        mrt_cells_find_planes(&cells);
+        ok = mrt_cells_fill(host, &cells, seeds, seed_count);
+    }
+    if (ok) {
+        mrt_cells_snap(&cells);
+        mrt_cells_drop_planes(&cells, MAX_ASPECT);
+        ok = map_of_cells(host, pose, &cells, map);
+    }
+    host_free(host, cells.cell);
+    raycast_finish(&raycast);
+    return ok;
+}

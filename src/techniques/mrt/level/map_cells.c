@@ -1,0 +1,178 @@
+// Free cells, and their walls.
+#include "map_cells.h"
+
+#include "core/host.h"
+
+#include <math.h>
+
+enum { SAMPLES = 8 };              // along each edge of a face
+static const float OPEN = 0.5f;    // least part of a face that is not covered by surfaces
+static const float ALIGNED = 0.9f; // cosine between a wall's normal and the axis
+static const float REACH = 0.25f;  // of a cell: surfaces this near to a face belong to it
+
+void mrt_cell_place(const struct mrt_cells *cells, int i, int at[3])
+{
+    int nx = mrt_cells_along(cells, 0), ny = mrt_cells_along(cells, 1);
+    at[0] = i % nx;
+    at[1] = i / nx % ny;
+    at[2] = i / (nx * ny);
+}
+
+bool mrt_cell_beyond(const struct mrt_cells *cells, const int at[3], int face, int out[3])
+{
+    for (int a = 0; a < 3; a++) out[a] = at[a];
+    out[face / 2] += face & 1 ? 1 : -1;
+    return out[face / 2] >= 0 && out[face / 2] < mrt_cells_along(cells, face / 2);
+}
+
+static float size_along(const struct mrt_cells *cells, const int at[3], int axis)
+{
+    const float *plane = cells->plane[axis] + at[axis];
+    return plane[1] - plane[0];
+}
+
+// Sample i of a face's plane, inside the cell by this distance.
+static vec3s face_sample(const struct mrt_cells *cells, const int at[3], int face, float inside,
+                         int i)
+{
+    int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    vec3s p;
+    p.raw[u] = cells->plane[u][at[u]] +
+               size_along(cells, at, u) * ((float)(i % SAMPLES) + 0.5f) / (float)SAMPLES;
+    p.raw[v] = cells->plane[v][at[v]] +
+               size_along(cells, at, v) * ((float)(i / SAMPLES) + 0.5f) / (float)SAMPLES;
+    p.raw[axis] = cells->plane[axis][at[axis] + (face & 1)] + (face & 1 ? -inside : inside);
+    return p;
+}
+
+static vec3s outward(int face)
+{
+    vec3s d = vec3_of(0, 0, 0);
+    d.raw[face / 2] = face & 1 ? 1.0f : -1.0f;
+    return d;
+}
+
+static bool is_open(const struct mrt_cells *cells, const int at[3], int face, const int beyond[3])
+{
+    float inside = REACH * size_along(cells, at, face / 2);
+    float outside = REACH * size_along(cells, beyond, face / 2);
+    int open = 0;
+    for (int i = 0; i < SAMPLES * SAMPLES; i++)
+        open += !raycast_blocked(cells->raycast, face_sample(cells, at, face, inside, i),
+                                 outward(face), inside + outside);
+    return (float)open >= OPEN * (float)(SAMPLES * SAMPLES);
+}
+
+static void find_openings(struct mrt_cells *cells)
+{
+    for (int i = 0; i < mrt_cells_count(cells); i++) {
+        int at[3], beyond[3];
+        mrt_cell_place(cells, i, at);
+        for (int face = CUBE_RIGHT; face < CUBE_FACES; face += 2) { // each pair of cells once
+            if (!mrt_cell_beyond(cells, at, face, beyond)) continue;
+            if (!is_open(cells, at, face, beyond)) continue;
+            mrt_cell_at(cells, at)->open |= 1u << face;
+            mrt_cell_at(cells, beyond)->open |= 1u << cube_opposite(face);
+        }
+    }
+}
+
+static void free_cell_of(struct mrt_cells *cells, vec3s seed)
+{
+    int at[3];
+    for (int a = 0; a < 3; a++) {
+        const float *plane = cells->plane[a];
+        if (!(seed.raw[a] >= plane[0] && seed.raw[a] <= plane[cells->planes[a] - 1])) return;
+        for (at[a] = 0; at[a] + 1 < mrt_cells_along(cells, a); at[a]++)
+            if (seed.raw[a] < plane[at[a] + 1]) break;
+    }
+    mrt_cell_at(cells, at)->free = true;
+}
+
+static bool has_free_neighbor(const struct mrt_cells *cells, int i)
+{
+    int at[3], beyond[3];
+    mrt_cell_place(cells, i, at);
+    for (int f = 0; f < CUBE_FACES; f++)
+        if (cells->cell[i].open >> f & 1u && mrt_cell_beyond(cells, at, f, beyond) &&
+            mrt_cell_at(cells, beyond)->free)
+            return true;
+    return false;
+}
+
+static void flood(struct mrt_cells *cells)
+{
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int i = 0; i < mrt_cells_count(cells); i++) {
+            if (cells->cell[i].free || !has_free_neighbor(cells, i)) continue;
+            cells->cell[i].free = changed = true;
+        }
+    }
+}
+
+bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *seeds, size_t count)
+{
+    cells->cell = host_alloc(host, (size_t)mrt_cells_count(cells), sizeof *cells->cell);
+    if (!cells->cell) return false;
+    find_openings(cells);
+    for (size_t i = 0; i < count; i++) free_cell_of(cells, seeds[i]);
+    flood(cells);
+    return true;
+}
+
+// ---- snapping
+
+struct wall_seen {
+    float sum;
+    int hits;
+};
+
+// Surfaces near a closed face of a free cell, as seen from inside.
+static void add_wall(const struct mrt_cells *cells, const int at[3], int face,
+                     struct wall_seen *seen)
+{
+    int axis = face / 2;
+    float inside = REACH * size_along(cells, at, axis);
+    for (int i = 0; i < SAMPLES * SAMPLES; i++) {
+        struct raycast_hit hit;
+        vec3s from = face_sample(cells, at, face, inside, i);
+        if (!raycast_closest(cells->raycast, from, outward(face), 2.0f * inside, &hit)) continue;
+        // Backs are seen from inside a wall.
+        if (!hit.front || fabsf(hit.normal.raw[axis]) < ALIGNED) continue;
+        seen->sum += from.raw[axis] + (face & 1 ? hit.distance : -hit.distance);
+        seen->hits++;
+    }
+}
+
+static float snapped(const struct mrt_cells *cells, int axis, int plane)
+{
+    struct wall_seen seen[2] = { 0 }; // from below, from above
+    for (int i = 0; i < mrt_cells_count(cells); i++) {
+        int at[3];
+        mrt_cell_place(cells, i, at);
+        if (!cells->cell[i].free) continue;
+        for (int above = 0; above < 2; above++) {
+            int face = 2 * axis + !above;
+            if (at[axis] + !above != plane || cells->cell[i].open >> face & 1u) continue;
+            add_wall(cells, at, face, &seen[above]);
+        }
+    }
+    float sum = 0.0f;
+    int sides = 0;
+    for (int s = 0; s < 2; s++) {
+        if (seen[s].hits == 0) continue;
+        sum += seen[s].sum / (float)seen[s].hits;
+        sides++;
+    }
+    return sides ? sum / (float)sides : cells->plane[axis][plane];
+}
+
+void mrt_cells_snap(struct mrt_cells *cells)
+{
+    float moved[3][MRT_MAX_PLANES];
+    for (int a = 0; a < 3; a++)
+        for (int p = 0; p < cells->planes[a]; p++) moved[a][p] = snapped(cells, a, p);
+    for (int a = 0; a < 3; a++)
+        for (int p = 0; p < cells->planes[a]; p++) cells->plane[a][p] = moved[a][p];
+}

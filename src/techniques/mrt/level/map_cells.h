@@ -1,0 +1,52 @@
+// Cells between axis-aligned planes: the decomposition of a scene's free space that mrt_map_auto
+// merges into boxes.
+#pragma once
+
+#include "scene/raycast.h"
+
+#include "techniques/mrt/dictionary/cube.h"
+
+enum { MRT_MAX_PLANES = 11 }; // per axis, with the two of the bounds: at most 1000 cells
+
+struct mrt_cell {
+    bool free;     // connected with a seed
+    unsigned open; // bit f: nothing separates it from the cell beyond face f
+};
+
+struct mrt_cells {
+    struct raycast *raycast;
+    struct box3 bounds;
+    float plane[3][MRT_MAX_PLANES]; // ascending
+    int planes[3];
+    struct mrt_cell *cell; // x fastest
+};
+
+// Planes where the scene has large surfaces of one axis, the bounds included.
+void mrt_cells_find_planes(struct mrt_cells *cells);
+// Allocates the cells and finds what is open and free.
+bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *seeds, size_t count);
+// Moves the planes to the walls, as seen from the free cells on either side.
+void mrt_cells_snap(struct mrt_cells *cells);
+
+// Removes planes that separate nothing, while edges of free cells stay below this ratio.
+void mrt_cells_drop_planes(struct mrt_cells *cells, float max_aspect);
+
+static inline int mrt_cells_along(const struct mrt_cells *cells, int axis)
+{
+    return cells->planes[axis] - 1;
+}
+
+static inline int mrt_cells_count(const struct mrt_cells *cells)
+{
+    return mrt_cells_along(cells, 0) * mrt_cells_along(cells, 1) * mrt_cells_along(cells, 2);
+}
+
+static inline struct mrt_cell *mrt_cell_at(const struct mrt_cells *cells, const int at[3])
+{
+    int nx = mrt_cells_along(cells, 0), ny = mrt_cells_along(cells, 1);
+    return &cells->cell[(at[2] * ny + at[1]) * nx + at[0]];
+}
+
+// Coordinates of cell i; the coordinates beyond a face, false outside.
+void mrt_cell_place(const struct mrt_cells *cells, int i, int at[3]);
+bool mrt_cell_beyond(const struct mrt_cells *cells, const int at[3], int face, int out[3]);

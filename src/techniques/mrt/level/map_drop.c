@@ -1,0 +1,64 @@
+// Planes that separate nothing.
+#include "map_cells.h"
+
+#include <math.h>
+
+static bool is_cubic(const struct mrt_cells *cells, const int at[3], int axis, float max_aspect)
+{
+    float shortest = INFINITY, longest = 0.0f;
+    for (int a = 0; a < 3; a++) {
+        const float *plane = cells->plane[a] + at[a];
+        float edge = plane[a == axis ? 2 : 1] - plane[0];
+        shortest = fminf(shortest, edge);
+        longest = fmaxf(longest, edge);
+    }
+    return longest <= max_aspect * shortest;
+}
+
+// Whether the cells on both sides of the plane are one in every respect.
+static bool separates(const struct mrt_cells *cells, int axis, int plane, float max_aspect)
+{
+    for (int i = 0; i < mrt_cells_count(cells); i++) {
+        int at[3], beyond[3];
+        mrt_cell_place(cells, i, at);
+        if (at[axis] != plane - 1) continue;
+        int face = 2 * axis + 1;
+        mrt_cell_beyond(cells, at, face, beyond);
+        const struct mrt_cell *low = &cells->cell[i], *high = mrt_cell_at(cells, beyond);
+        if (low->free != high->free) return true;
+        if (!low->free) continue;
+        unsigned sides = CUBE_ALL_FACES & ~(3u << (face & ~1));
+        if (!(low->open >> face & 1u) || (low->open ^ high->open) & sides) return true;
+        if (!is_cubic(cells, at, axis, max_aspect)) return true;
+    }
+    return false;
+}
+
+// Cells above the plane are dropped; those below get their openings at the far end.
+static void drop(struct mrt_cells *cells, int axis, int plane)
+{
+    struct mrt_cells old = *cells;
+    unsigned end = 1u << (2 * axis + 1);
+    int kept = 0;
+    for (int i = 0; i < mrt_cells_count(&old); i++) {
+        int at[3], beyond[3];
+        mrt_cell_place(&old, i, at);
+        if (at[axis] == plane) continue;
+        struct mrt_cell cell = old.cell[i];
+        if (at[axis] == plane - 1) {
+            mrt_cell_beyond(&old, at, 2 * axis + 1, beyond);
+            cell.open = (cell.open & ~end) | (mrt_cell_at(&old, beyond)->open & end);
+        }
+        cells->cell[kept++] = cell; // never beyond i: cells ahead are unchanged
+    }
+    cells->planes[axis]--;
+    for (int p = plane; p < cells->planes[axis]; p++)
+        cells->plane[axis][p] = cells->plane[axis][p + 1];
+}
+
+void mrt_cells_drop_planes(struct mrt_cells *cells, float max_aspect)
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int p = cells->planes[axis] - 2; p > 0; p--)
+            if (!separates(cells, axis, p, max_aspect)) drop(cells, axis, p);
+}

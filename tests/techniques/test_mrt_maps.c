@@ -1,0 +1,143 @@
+// Block maps that are made from scenes without one.
+#include "framework/test.h"
+
+#include "techniques/mrt/level/make_map.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct made {
+    struct scene *scene;
+    struct scene_pose pose;
+    struct mrt_block_map map;
+};
+
+static struct made make_auto(const char *spec)
+{
+    struct made made = { .scene = scene_load(test_host(), spec) };
+    CHECK(made.scene && pose_init(&made.pose, made.scene, -1, 0.0f));
+    vec3s seeds[8];
+    size_t count = 0;
+    for (int i = 0; i < made.scene->camera_count && count < 8; i++)
+        seeds[count++] = pose_camera(&made.pose, i).eye;
+    CHECK(mrt_map_auto(test_host(), &made.pose, seeds, count, &made.map));
+    return made;
+}
+
+static void finish(struct made *made)
+{
+    mrt_block_map_finish(&made->map);
+    pose_finish(&made->pose);
+    scene_destroy(made->scene);
+}
+
+static int connections(const struct mrt_block_map *map)
+{
+    int count = 0;
+    for (int b = 0; b < map->count; b++)
+        for (int f = 0; f < CUBE_FACES; f++) count += map->blocks[b].neighbor[f].block >= 0;
+    return count / 2;
+}
+
+static void print_map(const char *spec, const struct mrt_block_map *map)
+{
+    print_message("%s: %d blocks, %d connections\n", spec, map->count, connections(map));
+    for (int b = 0; b < map->count; b++) {
+        vec3s low = map->blocks[b].corner[0], high = map->blocks[b].corner[7];
+        print_message("  %6.2f %6.2f %6.2f  to %6.2f %6.2f %6.2f, open %02x\n", (double)low.x,
+                      (double)low.y, (double)low.z, (double)high.x, (double)high.y, (double)high.z,
+                      map->blocks[b].open);
+    }
+}
+
+TEST(a_single_block_is_the_bounding_box)
+{
+    struct made made = { .scene = scene_load(test_host(), "@atrium") };
+    CHECK(made.scene && pose_init(&made.pose, made.scene, -1, 0.0f));
+    CHECK(mrt_map_single(test_host(), &made.pose, &made.map));
+    CHECK(made.map.count == 1 && made.map.blocks[0].open == 0);
+    CHECK(glms_vec3_distance(made.map.blocks[0].corner[0], made.pose.bounds.min) == 0.0f);
+    CHECK(glms_vec3_distance(made.map.blocks[0].corner[7], made.pose.bounds.max) == 0.0f);
+    finish(&made);
+}
+
+TEST(a_room_is_one_block_that_ends_at_its_walls)
+{
+    struct made made = make_auto("@cornell");
+    print_map("@cornell", &made.map);
+    CHECK_NEAR(made.map.blocks[0].corner[0].y, 0, 1e-4);
+    CHECK(made.map.count == 1);
+    finish(&made);
+}
+
+TEST(crossing_corridors_are_blocks_about_their_crossing)
+{
+    struct made made = make_auto("@corridor");
+    print_map("@corridor", &made.map);
+    CHECK(connections(&made.map) == made.map.count - 1);
+    finish(&made);
+}
+
+// Blocks of `map` that contain a point.
+static int containing(const struct mrt_block_map *map, vec3s p)
+{
+    int count = 0;
+    for (int b = 0; b < map->count; b++) {
+        vec3s cell;
+        if (!mrt_warp_inverse(map->blocks[b].corner, p, &cell)) continue;
+        count += glms_vec3_max(glms_vec3_abs(cell)) <= 0.5f;
+    }
+    return count;
+}
+
+static float volume_of(const struct mrt_block_map *map)
+{
+    float volume = 0.0f;
+    for (int b = 0; b < map->count; b++)
+        volume += glms_mat3_det(mrt_warp_jacobian(map->blocks[b].corner, GLMS_VEC3_ZERO));
+    return volume;
+}
+
+// Cubes in a row may become one block.
+TEST(a_maze_is_found_again_from_its_walls)
+{
+    for (int blocks = 2; blocks <= 20; blocks += 3) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "@maze:blocks=%d", blocks);
+        struct made made = make_auto(spec);
+        struct mrt_block_map known;
+        CHECK(mrt_block_map_of_scene(test_host(), made.scene, &known));
+        print_map(spec, &made.map);
+        for (int b = 0; b < known.count; b++)
+            CHECK(containing(&made.map, mrt_warp_point(known.blocks[b].corner, GLMS_VEC3_ZERO)) ==
+                  1);
+        CHECK(connections(&made.map) == made.map.count - 1);
+        // Edges are 3 m with the halves of the walls, 2.76 m without.
+        CHECK(volume_of(&made.map) > 2.76f * 2.76f * 2.76f * (float)blocks);
+        CHECK(volume_of(&made.map) < 3.0f * 2.76f * 3.0f * (float)blocks);
+        mrt_block_map_finish(&known);
+        finish(&made);
+    }
+}
+
+TEST(an_atrium_is_a_few_connected_blocks)
+{
+    struct made made = make_auto("@atrium");
+    print_map("@atrium", &made.map);
+    CHECK(made.map.count >= 1 && made.map.count <= 100);
+    CHECK(connections(&made.map) >= made.map.count - 1);
+    finish(&made);
+}
+
+TEST(a_seed_outside_the_scene_gives_a_single_block)
+{
+    struct made made = { .scene = scene_load(test_host(), "@cornell") };
+    CHECK(made.scene && pose_init(&made.pose, made.scene, -1, 0.0f));
+    vec3s far = vec3_of(1000, 0, 0);
+    CHECK(mrt_map_auto(test_host(), &made.pose, &far, 1, &made.map));
+    CHECK(made.map.count == 1);
+    CHECK(glms_vec3_distance(made.map.blocks[0].corner[7], made.pose.bounds.max) == 0.0f);
+    finish(&made);
+}
