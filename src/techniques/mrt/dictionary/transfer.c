@@ -1,7 +1,10 @@
 // The light prior, M = F P S, and the operators that follow from its decomposition.
 //
-// Differs from the paper: modes whose singular value is below 1e-6 of the largest are left out,
-// because T_d→b divides by it; shapes with few texels have such modes.
+// A plane does not light itself: where a shape has one face alone, M is 0, and its b-coefficients
+// are modes of the prior, which still light the blocks beyond its openings.
+//
+// Differs from the paper: modes of the prior whose singular value is below 1e-6 of the largest are
+// left out, because T_d→b divides by it; shapes with few texels have such modes.
 #include "transfer.h"
 
 #include "core/linalg.h"
@@ -161,7 +164,8 @@ static bool measure_implicit(struct host *host, const struct matrix_f64 *f,
     bool ok = matrix_f64_init(host, &rest, f->rows, out->u_b.columns);
     if (ok) copy_columns(&out->u_b, NULL, -1.0, 0, &rest);
     ok = ok && matrix_f64_multiply(host, 1.0, f, AS_IT_IS, &out->l_imp, AS_IT_IS, 1.0, &rest);
-    if (ok) out->implicit_error = matrix_f64_norm(&rest) / matrix_f64_norm(&out->u_b);
+    double norm = matrix_f64_norm(&out->u_b);
+    if (ok && norm > 0.0) out->implicit_error = matrix_f64_norm(&rest) / norm;
     matrix_f64_finish(host, &rest);
     return ok;
 }
@@ -171,7 +175,7 @@ static bool build(struct host *host, const struct matrix_f64 *f, const struct mr
 {
     struct linalg_svd m = { 0 };
     bool ok = decompose(host, f, basis, &m) &&
-              set_operators(host, &m, basis, useful_modes(m.sigma, m.count, k_b), out) &&
+              set_operators(host, &m, basis, m.count < (size_t)k_b ? m.count : (size_t)k_b, out) &&
               measure_implicit(host, f, out);
     if (ok) {
         out->sigma_m = m.sigma;

@@ -1,0 +1,94 @@
+// The list of dictionary cubes, and how blocks match it.
+#include "cube_shapes.h"
+
+#include "core/vec.h"
+
+enum {
+    L = 1 << CUBE_LEFT,
+    R = 1 << CUBE_RIGHT,
+    B = 1 << CUBE_BOTTOM,
+    T = 1 << CUBE_TOP,
+    BACK = 1 << CUBE_BACK,
+    F = 1 << CUBE_FRONT,
+};
+
+static const unsigned PLANE[] = { 0, F, R | F, BACK | F, L | R | F, L | R | BACK | F };
+static const unsigned SPACE[] = { 0,
+                                  F,
+                                  R | F,
+                                  BACK | F,
+                                  R | T | F,
+                                  L | R | F,
+                                  L | R | BACK | F,
+                                  R | T | BACK | F,
+                                  L | R | T | BACK | F };
+_Static_assert(sizeof SPACE / sizeof *SPACE == MRT_MAX_CUBES,
+               "all cubes of the dictionary in space");
+
+int mrt_cube_count(enum mrt_maze maze)
+{
+    return maze == MRT_MAZE_2D ? (int)(sizeof PLANE / sizeof *PLANE) : MRT_MAX_CUBES;
+}
+
+unsigned mrt_cube_missing(enum mrt_maze maze, int cube)
+{
+    return maze == MRT_MAZE_2D ? PLANE[cube] : SPACE[cube];
+}
+
+int mrt_cube_openings(enum mrt_maze maze)
+{
+    int openings = 0;
+    for (int i = 0; i < mrt_cube_count(maze); i++) {
+        struct mrt_shape cube = mrt_cube(1, mrt_cube_missing(maze, i));
+        openings += mrt_shape_openings(&cube);
+    }
+    return openings;
+}
+
+int mrt_turned_face(mat3s to_from, int face)
+{
+    vec3s normal = glms_mat3_mulv(to_from, cube_from_face(face).col[2]);
+    return cube_trace(vec3_of(0, 0, 0), normal).face;
+}
+
+static unsigned turned_faces(mat3s to_from, unsigned faces)
+{
+    unsigned turned = 0;
+    for (int f = 0; f < CUBE_FACES; f++)
+        if (faces >> f & 1u) turned |= 1u << mrt_turned_face(to_from, f);
+    return turned;
+}
+
+// Rotation i of the 24 of the cube: the face that +z is taken to, and quarter turns around it. The
+// first four of MRT_MAZE_2D keep y.
+static mat3s cube_rotation(enum mrt_maze maze, int i)
+{
+    static const int sides[4] = { CUBE_FRONT, CUBE_RIGHT, CUBE_BACK, CUBE_LEFT };
+    if (maze == MRT_MAZE_2D) return cube_from_face(sides[i]);
+    mat3s roll = { .col = { { { 0, 1, 0 } }, { { -1, 0, 0 } }, { { 0, 0, 1 } } } };
+    mat3s rotation = cube_from_face(i / 4);
+    for (int r = 0; r < i % 4; r++) rotation = glms_mat3_mul(rotation, roll);
+    return rotation;
+}
+
+bool mrt_cube_find(enum mrt_maze maze, unsigned missing, struct mrt_cube_place *place)
+{
+    int rotations = maze == MRT_MAZE_2D ? 4 : 24;
+    for (int cube = 0; cube < mrt_cube_count(maze); cube++)
+        for (int i = 0; i < rotations; i++) {
+            mat3s block_from_cube = cube_rotation(maze, i);
+            if (turned_faces(block_from_cube, mrt_cube_missing(maze, cube)) != missing) continue;
+            *place = (struct mrt_cube_place){ cube, block_from_cube };
+            return true;
+        }
+    return false;
+}
+
+int mrt_turned_texel(const struct mrt_shape *from, mat3s to_from, const struct mrt_shape *to,
+                     int texel)
+{
+    vec3s at = mrt_shape_texel(to, texel).position;
+    struct cube_exit exit =
+        cube_trace(vec3_of(0, 0, 0), glms_mat3_mulv(glms_mat3_transpose(to_from), at));
+    return mrt_shape_texel_at(from, exit.face, exit.s, exit.t);
+}

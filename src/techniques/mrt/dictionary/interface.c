@@ -1,0 +1,172 @@
+// Rays between interfaces and the blocks that they connect.
+#include "interface.h"
+
+#include "techniques/mrt/dictionary/cube_shapes.h"
+#include "techniques/mrt/dictionary/sparse_row.h"
+
+#include <assert.h>
+#include <math.h>
+
+void mrt_seen_from_opening(const struct mrt_shape *shape, int face, const struct matrix_f32 *values,
+                           struct matrix_f32 *out)
+{
+    struct mrt_shape left = mrt_cube_left(shape->resolution);
+    mat3s interface_from_block = glms_mat3_transpose(cube_from_face(face));
+    assert(out->rows == (size_t)mrt_shape_texels(&left));
+    for (size_t r = 0; r < out->rows; r++) {
+        int texel = mrt_turned_texel(shape, interface_from_block, &left, (int)r);
+        for (size_t c = 0; c < out->columns; c++)
+            out->at[r * out->stride + c] =
+                texel < 0 ? 0.0f : values->at[(size_t)texel * values->stride + c];
+    }
+}
+
+// ---- out of a block
+
+static void see_surfaces(struct mrt_lightfield l, const struct mrt_shape *left, size_t sample,
+                         struct sparse_row *row)
+{
+    struct mrt_hit hit;
+    vec3s from = mrt_lightfield_position(l, sample);
+    from.z = 0.5f;
+    for (int sub = 0; sub < mrt_lightfield_subsamples(l); sub++) {
+        vec3s back = glms_vec3_negate(mrt_lightfield_direction(l, sample, sub));
+        mrt_shape_trace(left, from, back, &hit);
+        for (int k = 0; k < hit.texels; k++)
+            sparse_row_add(row, (size_t)hit.texel[k], hit.weight[k]);
+    }
+}
+
+bool mrt_lightfield_of_surfaces(struct host *host, struct mrt_lightfield l,
+                                const struct matrix_f32 *radiosity, int resolution,
+                                size_t first_sample, struct matrix_f32 *out)
+{
+    struct mrt_shape left = mrt_cube_left(resolution);
+    struct sparse_row row;
+    if (!sparse_row_init(host, &row, radiosity->rows)) return false;
+    for (size_t r = 0; r < out->rows; r++) {
+        see_surfaces(l, &left, first_sample + r, &row);
+        sparse_row_apply(&row, 1.0f / (float)mrt_lightfield_subsamples(l), radiosity,
+                         out->at + r * out->stride);
+    }
+    sparse_row_finish(host, &row);
+    return true;
+}
+
+// ---- between interfaces
+
+mat3s mrt_entry_from_exit(enum mrt_turn turn)
+{
+    static const struct {
+        vec3s v, n;
+    } exits[] = {
+        [MRT_STRAIGHT] = { { { 0, 1, 0 } }, { { 0, 0, 1 } } },
+        [MRT_TURN_LEFT] = { { { 0, 1, 0 } }, { { 1, 0, 0 } } },
+        [MRT_TURN_RIGHT] = { { { 0, 1, 0 } }, { { -1, 0, 0 } } },
+        [MRT_TURN_UP] = { { { 0, 0, -1 } }, { { 0, 1, 0 } } },
+        [MRT_TURN_DOWN] = { { { 0, 0, 1 } }, { { 0, -1, 0 } } },
+        [MRT_ROLL] = { { { -1, 0, 0 } }, { { 0, 0, 1 } } },
+    };
+    vec3s v = exits[turn].v, n = exits[turn].n;
+    return (mat3s){ .col = { glms_vec3_cross(v, n), v, n } };
+}
+
+mat3s mrt_block_from_entry(int face)
+{
+    mat3s frame = cube_from_face(face);
+    frame.col[0] = glms_vec3_negate(frame.col[0]);
+    frame.col[2] = glms_vec3_negate(frame.col[2]);
+    return frame;
+}
+
+int mrt_rolls_between(mat3s from, mat3s to)
+{
+    mat3s roll = mrt_entry_from_exit(MRT_ROLL);
+    for (int rolls = 0; rolls < 4; rolls++, from = glms_mat3_mul(from, roll)) {
+        float same = 0.0f;
+        for (int c = 0; c < 3; c++) same += glms_vec3_dot(from.col[c], to.col[c]);
+        if (same > 2.5f) return rolls;
+    }
+    return -1;
+}
+
+struct mrt_passage mrt_passage_between(int entry_face, int exit_face)
+{
+    mat3s exit = glms_mat3_mul(glms_mat3_transpose(mrt_block_from_entry(entry_face)),
+                               cube_from_face(exit_face));
+    for (int turn = MRT_STRAIGHT; turn <= MRT_TURN_DOWN; turn++) {
+        int rolls = mrt_rolls_between(mrt_entry_from_exit((enum mrt_turn)turn), exit);
+        if (rolls >= 0) return (struct mrt_passage){ (enum mrt_turn)turn, rolls };
+    }
+    assert(false);
+    return (struct mrt_passage){ 0 };
+}
+
+static void add_lookup(struct mrt_lightfield l, float x, float y, vec3s direction,
+                       struct sparse_row *row)
+{
+    struct mrt_lightfield_lookup look;
+    mrt_lightfield_look_up(l, x, y, direction, &look);
+    for (int k = 0; k < LIGHTFIELD_LOOKUP; k++) sparse_row_add(row, look.sample[k], look.weight[k]);
+}
+
+// The entry's square is the back of the block; u of that face is −x.
+static void see_entry(struct mrt_lightfield l, enum mrt_turn turn, size_t sample,
+                      struct sparse_row *row)
+{
+    mat3s entry_from_exit = mrt_entry_from_exit(turn);
+    vec3s from = mrt_lightfield_position(l, sample);
+    from.z = 0.5f;
+    from = glms_mat3_mulv(entry_from_exit, from);
+    for (int sub = 0; sub < mrt_lightfield_subsamples(l); sub++) {
+        vec3s along = glms_mat3_mulv(entry_from_exit, mrt_lightfield_direction(l, sample, sub));
+        struct cube_exit hit = cube_trace(from, glms_vec3_negate(along));
+        if (hit.face == CUBE_BACK) add_lookup(l, 0.5f - hit.s, hit.t - 0.5f, along, row);
+    }
+}
+
+// Both squares of samples have the symmetry of the turn: every sample is one of the entry.
+static void see_rolled(struct mrt_lightfield l, size_t sample, struct sparse_row *row)
+{
+    mat3s entry_from_exit = mrt_entry_from_exit(MRT_ROLL);
+    struct mrt_lightfield coarse = { l.positions, l.directions, 1 };
+    vec3s from = glms_mat3_mulv(entry_from_exit, mrt_lightfield_position(l, sample));
+    vec3s along = glms_mat3_mulv(entry_from_exit, mrt_lightfield_direction(coarse, sample, 0));
+    add_lookup(l, from.x, from.y, along, row);
+}
+
+bool mrt_propagate(struct host *host, struct mrt_lightfield l, enum mrt_turn turn,
+                   const struct matrix_f32 *entry, size_t first_sample, struct matrix_f32 *out)
+{
+    struct sparse_row row;
+    if (!sparse_row_init(host, &row, entry->rows)) return false;
+    for (size_t r = 0; r < out->rows; r++) {
+        if (turn == MRT_ROLL)
+            see_rolled(l, first_sample + r, &row);
+        else
+            see_entry(l, turn, first_sample + r, &row);
+        float scale = turn == MRT_ROLL ? 1.0f : 1.0f / (float)mrt_lightfield_subsamples(l);
+        sparse_row_apply(&row, scale, entry, out->at + r * out->stride);
+    }
+    sparse_row_finish(host, &row);
+    return true;
+}
+
+// ---- into a block
+
+void mrt_gather_interface(struct mrt_lightfield l, struct mrt_point point,
+                          const struct mrt_rays *rays, float *rows)
+{
+    struct mrt_lightfield_lookup look;
+    size_t samples = mrt_lightfield_samples(l);
+    for (int i = 0; i < rays->count; i++) {
+        vec3s ray = glms_mat3_mulv(point.frame, rays->direction[i]);
+        struct cube_exit hit = cube_trace(point.position, ray);
+        if (hit.face != CUBE_BACK) continue;
+        mrt_lightfield_look_up(l, 0.5f - hit.s, hit.t - 0.5f, glms_vec3_negate(ray), &look);
+        const float *weight = rays->weight + (size_t)i * (size_t)rays->values;
+        for (size_t q = 0; q < (size_t)rays->values; q++)
+            for (int k = 0; k < LIGHTFIELD_LOOKUP; k++)
+                rows[q * samples + look.sample[k]] += weight[q] * look.weight[k];
+    }
+}

@@ -1,0 +1,63 @@
+// Light through interfaces, the openings by which blocks connect (Loos 2015, sections 3.4.1 and
+// 4.2): from the radiosity in the block that light leaves, to the lightfield of the interface, to
+// the interfaces further on, and to the surfaces and probes of the block that light enters.
+//
+// In the frame of the interface (lightfield.h) light leaves the unit cube centred at (0, 0, −½) and
+// enters the one at (0, 0, ½). Functions fill the rows of a range, so that they can run as tasks.
+#pragma once
+
+#include "core/linalg.h"
+
+#include "techniques/mrt/dictionary/lightfield.h"
+#include "techniques/mrt/dictionary/rays.h"
+#include "techniques/mrt/dictionary/shape.h"
+
+// The cubes that light leaves and enters, in the frame of the interface.
+static inline struct mrt_shape mrt_cube_left(int resolution)
+{
+    return mrt_cube(resolution, 1u << CUBE_FRONT);
+}
+
+static inline struct mrt_shape mrt_cube_entered(int resolution)
+{
+    return mrt_cube(resolution, 1u << CUBE_BACK);
+}
+
+// Values at the texels of `shape` (texels × columns) as seen from its opening `face`: those of
+// mrt_cube_left, 0 where the shape is open. `out` is contiguous in its columns.
+void mrt_seen_from_opening(const struct mrt_shape *shape, int face, const struct matrix_f32 *values,
+                           struct matrix_f32 *out);
+
+// Lightfields at the interface of radiosity at the texels of mrt_cube_left: rows first_sample … of
+// H_lf.
+bool mrt_lightfield_of_surfaces(struct host *host, struct mrt_lightfield l,
+                                const struct matrix_f32 *radiosity, int resolution,
+                                size_t first_sample, struct matrix_f32 *out);
+
+// The exits of a block, seen in the direction of travel. MRT_ROLL is no exit: it turns the frame by
+// a quarter from u to v, for three-dimensional mazes.
+enum mrt_turn { MRT_STRAIGHT, MRT_TURN_LEFT, MRT_TURN_RIGHT, MRT_TURN_UP, MRT_TURN_DOWN, MRT_ROLL };
+enum { MRT_TURNS_2D = 3, MRT_TURNS_3D = 6 };
+
+// Rotation from the frame of the exit to that of the entry.
+mat3s mrt_entry_from_exit(enum mrt_turn turn);
+// The frame of light that enters by a face: that of the face, turned by half a turn around v.
+mat3s mrt_block_from_entry(int face);
+// The number of MRT_ROLLs from one frame to another with the same z; −1: z differs.
+int mrt_rolls_between(mat3s from, mat3s to);
+// The turn from one face of a block to another, and the number of MRT_ROLLs after it that lead to
+// the exit's own frame.
+struct mrt_passage {
+    enum mrt_turn turn;
+    int rolls;
+};
+struct mrt_passage mrt_passage_between(int entry_face, int exit_face);
+
+// Lightfields at the exit of lightfields at the entry (samples × columns).
+bool mrt_propagate(struct host *host, struct mrt_lightfield l, enum mrt_turn turn,
+                   const struct matrix_f32 *entry, size_t first_sample, struct matrix_f32 *out);
+
+// Light at a point of mrt_cube_entered that comes through the interface: adds to
+// rows[q * samples + sample] for the quantities q of `rays`.
+void mrt_gather_interface(struct mrt_lightfield l, struct mrt_point point,
+                          const struct mrt_rays *rays, float *rows);
