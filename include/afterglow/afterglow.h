@@ -3,6 +3,7 @@
 #ifndef AFTERGLOW_H
 #define AFTERGLOW_H
 
+#include <afterglow/bake.h>
 #include <afterglow/catalogue.h>
 #include <afterglow/context.h>
 #include <afterglow/device.h>

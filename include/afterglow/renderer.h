@@ -3,6 +3,7 @@
 #ifndef AFTERGLOW_RENDERER_H
 #define AFTERGLOW_RENDERER_H
 
+#include <afterglow/bake.h>
 #include <afterglow/device.h>
 #include <afterglow/image.h>
 #include <afterglow/scene.h>
@@ -18,6 +19,12 @@ struct ag_renderer_desc {
     bool indirect_layer;       ///< keep the layer "indirect"; default false
     bool display_layer;        ///< keep the layer "display"; default true
     bool motion_layer;         ///< keep the layer "motion"; default false
+    /// Complete bakes for the techniques that need one; needed only during the call. Default none.
+    const struct ag_bake *const *bakes;
+    int bake_count;
+    /// Without one in `bakes`: folder with files KEY.safetensors (ag_bake_info.key with seed 0).
+    /// Default NULL: none.
+    const char *bake_folder;
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 /// Upper bound of the GPU memory of a renderer with these settings, in bytes, without the scene.

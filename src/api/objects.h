@@ -36,7 +36,7 @@ struct ag_scene {
     struct scene_pose pose; // for queries at a moment; zero until the first
     uint64_t version;       // counts changes of the scene
     uint64_t pose_version;  // version of the scene that `pose` belongs to
-    int renderers;          // using the scene
+    int users;              // renderers and bakes
 };
 
 // Updates `pose` to a moment, or rebuilds it if *pose_version is outdated. False: out of memory.

@@ -1,4 +1,5 @@
 // Renderers: one frame at a time, from the frame passes and the GI stack.
+#include "api/renderer_bakes.h"
 #include "api/renderer_state.h"
 
 #include "gpu/gpu.h"
@@ -93,7 +94,11 @@ static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
     if (!(r->frame = frame_create(host, r->device->gpu, &r->options))) return false;
     if (!frame_set_scene(r->frame, r->scene->scene)) return false;
     if (!frame_resize(r->frame, width, height)) return false;
-    r->gi = gi_create(host, r->device->gpu, &r->spec, &r->pose, width, height);
+    struct renderer_bakes bakes = { 0 };
+    if (renderer_bakes_find(&bakes, host, desc, &r->spec, &r->pose))
+        r->gi =
+            gi_create_baked(host, r->device->gpu, &r->spec, &bakes.found, &r->pose, width, height);
+    renderer_bakes_finish(&bakes);
     r->sized = r->gi != NULL;
     if (r->sized) warn_of_darkness(r);
     return r->sized;
@@ -112,6 +117,8 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     if (!desc) desc = &fallback;
     enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
+    AG_REQUIRE(context, desc->bake_count >= 0 && (desc->bakes || desc->bake_count == 0),
+               "bake_count %d does not fit bakes", desc->bake_count);
 
     struct ag_renderer *r = host_alloc(&context->host, 1, sizeof *r);
     if (!r) return api_done(context, false);
@@ -120,7 +127,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->indirect_layer = desc->indirect_layer;
     r->display_layer = desc->display_layer;
     r->motion_layer = desc->motion_layer;
-    scene->renderers++;
+    scene->users++;
     bool ok = build(r, desc);
     enum ag_result result = api_done(context, ok);
     if (!ok)
@@ -139,7 +146,7 @@ void ag_renderer_destroy(struct ag_renderer *r)
     pose_finish(&r->pose);
     gi_spec_finish(&r->spec);
     host_free(host_of(r), r->gi_text);
-    r->scene->renderers--;
+    r->scene->users--;
     host_free(host_of(r), r);
 }
 

@@ -127,8 +127,8 @@ static enum ag_result added(struct ag_scene *scene, int index, int *out)
 }
 
 #define REQUIRE_UNUSED(scene)                                                                      \
-    AG_REQUIRE((scene)->context, (scene)->renderers == 0,                                          \
-               "the scene is in use by a renderer: only its lights and sky may change")
+    AG_REQUIRE((scene)->context, (scene)->users == 0,                                              \
+               "the scene is in use by a renderer or a bake: only its lights and sky may change")
 
 // The argument checks of ag_scene_add_…, which set *index to -1 unless they succeed.
 #define REQUIRE_ADDING(scene, desc, index)                                                         \

@@ -123,7 +123,7 @@ static void resume(struct bake *bake, const char *path)
     if (!path || access(path, F_OK) != 0) return;
     relay_host_init(&quiet, bake->host, NULL);
     if (!partial_read(&quiet.host, bake, path))
-        host_log(bake->host, LOG_WARNING, "the bake begins anew: %s", quiet.error);
+        host_log(bake->host, LOG_WARNING, "the checkpoint is ignored: %s", quiet.error);
 }
 
 bool bake_run(struct bake *bake, const struct bake_run_options *options)

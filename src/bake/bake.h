@@ -24,6 +24,9 @@ struct bake_plan *bake_plan_of(struct bake *bake);
 // The hash of technique, version, options, scene and seed: the file's name in a cache.
 void bake_key(const struct bake *bake, char out[HASH128_TEXT]);
 
+// Are files of b fit for a? All of the identity but the seed and the program.
+bool bake_fits(const struct bake *a, const struct bake *b);
+
 // ---- before
 
 struct bake_estimate {

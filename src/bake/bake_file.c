@@ -54,6 +54,15 @@ void bake_key(const struct bake *bake, char out[HASH128_TEXT])
     hash128_print(key, out);
 }
 
+bool bake_fits(const struct bake *a, const struct bake *b)
+{
+    const struct bake_identity *of_a = &a->identity, *of_b = &b->identity;
+    return strcmp(of_a->technique, of_b->technique) == 0 && of_a->version == of_b->version &&
+           strcmp(of_a->options, of_b->options) == 0 &&
+           a->plan.depends_on_scene == b->plan.depends_on_scene &&
+           a->plan.scene.high == b->plan.scene.high && a->plan.scene.low == b->plan.scene.low;
+}
+
 static struct hash128 content_hash(const struct tensor_metadata *metadata, size_t metadata_count,
                                    const struct tensor *at, size_t count)
 {

@@ -34,9 +34,13 @@ static void leave(const struct gi *gi)
     gpu_owner_pop(gi->gpu);
 }
 
-static bool create_term(struct gi *gi, int i, const struct scene_pose *pose)
+static bool create_term(struct gi *gi, int i, const struct tensors *bake,
+                        const struct scene_pose *pose)
 {
     const struct technique *technique = gi->spec.technique[i];
+    if (technique->bake_version != 0 && !bake)
+        return host_fail(gi->host, FAIL_ARGUMENT, "cannot create %s: it needs a bake",
+                         technique->name);
     const struct technique_create how = { .host = gi->host,
                                           .gpu = gi->gpu,
                                           .pose = pose,
@@ -47,13 +51,22 @@ static bool create_term(struct gi *gi, int i, const struct scene_pose *pose)
     gi->state[i] = host_alloc(gi->host, 1, technique->state_size);
     if (!gi->state[i]) return false;
     enter(gi, i);
-    const bool ok = technique->create(gi->state[i], &how);
+    const bool ok = technique->create(gi->state[i], &how) &&
+                    (technique->bake_version == 0 || technique->load(gi->state[i], bake));
     leave(gi);
     return ok;
 }
 
 struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
                      const struct scene_pose *pose, uint32_t width, uint32_t height)
+{
+    const struct gi_bakes none = { { NULL } };
+    return gi_create_baked(host, gpu, spec, &none, pose, width, height);
+}
+
+struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
+                           const struct gi_bakes *bakes, const struct scene_pose *pose,
+                           uint32_t width, uint32_t height)
 {
     struct gi *gi = host_alloc(host, 1, sizeof *gi);
     if (!gi) return NULL;
@@ -63,7 +76,7 @@ struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *s
     gi->height = height;
     if (!gi_spec_copy(&gi->spec, spec)) goto fail;
     for (int i = 0; i < gi->spec.count; i++)
-        if (!create_term(gi, i, pose)) goto fail;
+        if (!create_term(gi, i, bakes->of_term[i], pose)) goto fail;
     return gi;
 fail:
     gi_destroy(gi);

@@ -25,6 +25,14 @@ struct gi;
 // Checks and creates each technique. The spec is copied.
 struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
                      const struct scene_pose *pose, uint32_t width, uint32_t height);
+// Complete bakes of the spec's terms, needed during the call only; NULL: none.
+struct gi_bakes {
+    const struct tensors *of_term[GI_MAX_TERMS];
+};
+// The same for specs of techniques that bake: each loads its own after its creation.
+struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
+                           const struct gi_bakes *bakes, const struct scene_pose *pose,
+                           uint32_t width, uint32_t height);
 void gi_destroy(struct gi *gi);
 bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
 void gi_invalidate(struct gi *gi, uint32_t changes);

@@ -5,6 +5,7 @@ endforeach()
 add_library(ag_test_renderer_fixture STATIC ${CMAKE_CURRENT_LIST_DIR}/renderer_fixture.c)
 target_link_libraries(ag_test_renderer_fixture PUBLIC ag_test_gpu ag_api PRIVATE afterglow_flags)
 ag_test(api/odd_scenes USES api LIBRARIES ag_test_gpu)
+ag_test(api/bake USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/probes USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/renderer USES api LIBRARIES ag_test_own_device ag_test_renderer_fixture)
 

@@ -235,7 +235,7 @@ TEST(bake_ignores_a_checkpoint_that_is_cut_or_changed_and_says_so)
         write_bytes(checkpoint, bytes.data, size);
         test_forget_messages();
         CHECK(bake_run(bake, &(struct bake_run_options){ .checkpoint = checkpoint }));
-        CHECK(strstr(test_last_message(), "the bake begins anew: cannot"));
+        CHECK(strstr(test_last_message(), "the checkpoint is ignored: cannot"));
         CHECK(sample.runs == 17);
         bake_destroy(bake);
     }

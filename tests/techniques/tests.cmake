@@ -6,7 +6,7 @@ target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniq
 add_library(ag_test_light_trial STATIC techniques/light_trial.c techniques/light_trial_scenes.c)
 target_link_libraries(ag_test_light_trial PUBLIC ag_test_frame_fixture ag_techniques ag_trace PRIVATE afterglow_flags m)
 
-foreach(name emission gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_history lpv_math lpv_occlusion lpv_sky lpv_twin
+foreach(name emission gi_bake gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_history lpv_math lpv_occlusion lpv_sky lpv_twin
     technique_invariants technique_smoke vct_bounces vct_clips vct_clip_light vct_small_emitters vct_light vct_kept_light vct_edge_cases vct_hidden vct_screen vct_specular vct_storage vct_temporal vct_history vct_voxels visibility vo
     vct_octree_nodes vct_octree_bricks vctao)
   ag_test(techniques/${name} USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)

@@ -1,0 +1,96 @@
+/// Bakes: what a technique precomputes for a scene and its options. A bake is created, then run or
+/// loaded from a file, then given to renderers. Techniques that need one: see ag_technique_get.
+///
+/// A bake file is a safetensors file: named arrays that Python's safetensors.numpy.load_file reads.
+/// It belongs to one technique, its bake version, its options of effect "rebake" and, for
+/// techniques that depend on it, the geometry and materials of one scene; others are refused.
+#ifndef AFTERGLOW_BAKE_H
+#define AFTERGLOW_BAKE_H
+
+#include <afterglow/scene.h>
+
+AG_BEGIN
+
+struct ag_bake;
+
+struct ag_bake_desc {
+    const char *technique; ///< which of the GI spec's techniques; default NULL: the only that bakes
+    double time_s;         ///< animation time of the scene; default 0
+    int animation;         ///< see ag_scene_camera; default 0
+    uint64_t seed;         ///< of all random numbers; default 0
+    int threads;           ///< default 0: all cores; the result does not depend on it
+    int shard, shard_count; ///< run only this part, 0…shard_count−1; default count 0: everything
+    const char *checkpoint;    ///< file that keeps finished tasks; default NULL: none
+    double checkpoint_every_s; ///< also while running; default 30; 0: only when cancelled
+    uint64_t max_memory_bytes; ///< refuse to run if more would be needed; default 0: no limit
+    bool full_report;          ///< also compute what only ag_bake_report shows; default false
+};
+AG_API void ag_bake_desc_default(struct ag_bake_desc *desc);
+
+/// The index-th technique of a GI spec that needs a bake; *name is NULL past the last.
+AG_API enum ag_result ag_bake_technique(struct ag_context *context, const char *gi, int index,
+                                        const char **name);
+/// The technique that a bake file names, at most 31 characters.
+AG_API enum ag_result ag_bake_file_technique(struct ag_context *context, const char *path,
+                                             char name[32]);
+
+/// Nothing is computed yet. The scene must outlive the bake; until then only its lights and sky may
+/// change. desc NULL: the defaults. AG_ERROR_ARGUMENT where no technique of the spec bakes.
+AG_API enum ag_result ag_bake_create(struct ag_scene *scene, const char *gi,
+                                     const struct ag_bake_desc *desc, struct ag_bake **out);
+/// Not before the renderers created with it have been created; they keep nothing of it.
+AG_API void ag_bake_destroy(struct ag_bake *bake);
+
+struct ag_bake_estimate {
+    double texels, rays;        ///< 0 where the technique has none
+    double seconds;             ///< NaN without a probe
+    uint64_t file_bytes;        ///< of the finished file
+    uint64_t peak_memory_bytes; ///< beyond the scene
+};
+/// What ag_bake_run will need. probe: run a few tasks, about a second, to estimate the time; their
+/// results are kept.
+AG_API enum ag_result ag_bake_estimate(struct ag_bake *bake, bool probe,
+                                       struct ag_bake_estimate *out);
+
+struct ag_bake_progress {
+    const char *stage;   ///< being worked on
+    double done;         ///< share of the whole time, 0…1
+    double seconds_left; ///< estimated
+    bool stopping;       ///< cancelled, the checkpoint is written; running tasks come to their end
+};
+/// Computes what is missing, on all cores, and returns when it is done. `progress` (may be NULL) is
+/// called about ten times a second on this thread, also while `stopping`; if it returns false, the
+/// call ends with AG_ERROR_CANCELLED, usually within a second. What was finished is kept, in this
+/// object and in the checkpoint, and a later call goes on from there. The same scene, options and
+/// seed give the same bytes whatever the threads, shards and interruptions.
+AG_API enum ag_result
+ag_bake_run(struct ag_bake *bake,
+            bool (*progress)(void *user, const struct ag_bake_progress *progress), void *user);
+
+/// Writes the file of a complete bake and removes its checkpoint. record_seconds: add
+/// ag_bake_info.seconds to the file, which differ from run to run.
+AG_API enum ag_result ag_bake_save(struct ag_bake *bake, const char *path, bool record_seconds);
+/// Reads a file, untrusted, instead of a run. AG_ERROR_FORMAT if it is damaged or of another
+/// technique, version, scene or options; its seed may be any.
+AG_API enum ag_result ag_bake_load(struct ag_bake *bake, const char *path);
+/// Writes the finished tasks of a shard.
+AG_API enum ag_result ag_bake_save_partial(struct ag_bake *bake, const char *path);
+/// Adds the finished tasks of such a file, untrusted; ag_bake_run does the rest.
+AG_API enum ag_result ag_bake_merge(struct ag_bake *bake, const char *path);
+
+struct ag_bake_info {
+    const char *technique, *options; ///< owned by the bake
+    char key[33];   ///< names what it depends on: a file KEY.safetensors in a cache
+    bool complete;  ///< run to its end, or loaded
+    double seconds; ///< wall time of all runs; NaN: loaded from a file that does not state it
+    uint64_t bytes; ///< of its arrays; 0 until complete
+};
+AG_API enum ag_result ag_bake_get_info(const struct ag_bake *bake, struct ag_bake_info *out);
+/// The report as a JSON document: technique, options, stages with their seconds, seconds,
+/// peak_memory_bytes of the process, bytes, and more members of some techniques. Owned by the bake,
+/// valid until the next call with it. Requires a complete bake.
+AG_API enum ag_result ag_bake_report(struct ag_bake *bake, const char **json);
+
+AG_END
+
+#endif

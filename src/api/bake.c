@@ -1,0 +1,324 @@
+// Bakes: checks arguments and forwards to bake/ and the techniques.
+#include "api/bake_state.h"
+
+#include "techniques/gi_bake.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+static const double CHECKPOINT_EVERY_S = 30.0;
+enum { TECHNIQUE_NAME = 32 };
+
+#define TEXT_OF(x) #x
+#define TEXT(x)    TEXT_OF(x)
+
+const char *api_program(void)
+{
+    return TEXT(AG_VERSION_MAJOR) "." TEXT(AG_VERSION_MINOR) "." TEXT(AG_VERSION_PATCH);
+}
+
+static struct ag_context *context_of(const struct ag_bake *b)
+{
+    return b ? b->context : NULL;
+}
+
+void ag_bake_desc_default(struct ag_bake_desc *desc)
+{
+    if (desc) *desc = (struct ag_bake_desc){ .checkpoint_every_s = CHECKPOINT_EVERY_S };
+}
+
+enum ag_result ag_bake_technique(struct ag_context *context, const char *gi, int index,
+                                 const char **name)
+{
+    AG_REQUIRE_OUT(context, name);
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE_POINTER(context, gi);
+    AG_REQUIRE(context, index >= 0, "index %d is negative", index);
+    struct gi_spec spec;
+    int term = -1;
+    const bool ok = gi_spec_parse(&spec, &context->host, gi);
+    if (ok) gi_spec_bakes(&spec, index, &term);
+    if (term >= 0) *name = spec.technique[term]->name;
+    gi_spec_finish(&spec);
+    return api_done(context, ok);
+}
+
+enum ag_result ag_bake_file_technique(struct ag_context *context, const char *path, char name[32])
+{
+    AG_REQUIRE_POINTER(context, name);
+    name[0] = 0;
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    return api_done(context, bake_file_technique(&context->host, path, name, TECHNIQUE_NAME));
+}
+
+// ---- creation
+
+// The term of the spec that is to be baked.
+static bool find_term(struct ag_bake *b, const char *gi, const char *technique)
+{
+    struct host *host = &b->context->host;
+    const int count = gi_spec_bakes(&b->spec, 0, &b->term);
+    if (count == 0) return host_fail(host, FAIL_ARGUMENT, "cannot bake %s: it needs no bake", gi);
+    if (count > 1 && !technique)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot bake %s: several of its techniques bake; name one of them", gi);
+    for (int i = 0; technique && i < count; i++) {
+        gi_spec_bakes(&b->spec, i, &b->term);
+        if (strcmp(b->spec.technique[b->term]->name, technique) == 0) return true;
+    }
+    return !technique ||
+           host_fail(host, FAIL_ARGUMENT, "cannot bake %s: it has no technique %s that bakes", gi,
+                     technique);
+}
+
+static bool copy_run_options(struct ag_bake *b, const struct ag_bake_desc *desc)
+{
+    b->options = (struct bake_run_options){ .threads = desc->threads,
+                                            .shard = desc->shard,
+                                            .shard_count = desc->shard_count,
+                                            .checkpoint_every_s = desc->checkpoint_every_s,
+                                            .max_memory_bytes = desc->max_memory_bytes };
+    if (!desc->checkpoint) return true;
+    b->checkpoint = host_strdup(&b->context->host, desc->checkpoint);
+    b->options.checkpoint = b->checkpoint;
+    return b->checkpoint != NULL;
+}
+
+static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *desc)
+{
+    struct host *host = &b->context->host;
+    uint64_t version = 0;
+    if (!gi_spec_parse(&b->spec, host, gi) || !find_term(b, gi, desc->technique)) return false;
+    if (!copy_run_options(b, desc)) return false;
+    if (!api_pose_at(b->scene, &b->pose, &version, desc->animation, desc->time_s)) return false;
+    b->how = (struct technique_bake){ .pose = &b->pose,
+                                      .options = b->spec.options[b->term],
+                                      .full_report = desc->full_report };
+    b->bake = gi_bake_create(host, b->spec.technique[b->term], &b->how, desc->seed, api_program());
+    return b->bake != NULL;
+}
+
+static enum ag_result desc_check(const char *function, const struct ag_scene *scene,
+                                 const struct ag_bake_desc *desc)
+{
+    struct ag_context *context = scene->context;
+    AG_REQUIRE_FOR(function, context, desc->threads >= 0, "threads %d is negative", desc->threads);
+    AG_REQUIRE_FOR(function, context, desc->shard_count >= 0, "shard_count %d is negative",
+                   desc->shard_count);
+    AG_REQUIRE_FOR(function, context,
+                   desc->shard_count == 0 || (desc->shard >= 0 && desc->shard < desc->shard_count),
+                   "shard %d is not one of %d", desc->shard, desc->shard_count);
+    AG_REQUIRE_FOR(function, context, desc->checkpoint_every_s >= 0.0,
+                   "checkpoint_every_s is negative");
+    AG_REQUIRE_FOR(function, context, api_animation_exists(scene, desc->animation),
+                   "animation %d is not one of %d", desc->animation, scene->scene->animation_count);
+    AG_REQUIRE_FOR(function, context, isfinite(desc->time_s), "time_s is not finite");
+    return AG_OK;
+}
+
+enum ag_result ag_bake_create(struct ag_scene *scene, const char *gi,
+                              const struct ag_bake_desc *desc, struct ag_bake **out)
+{
+    struct ag_context *context = scene ? scene->context : NULL;
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, scene);
+    AG_REQUIRE_POINTER(context, gi);
+    struct ag_bake_desc fallback;
+    ag_bake_desc_default(&fallback);
+    if (!desc) desc = &fallback;
+    enum ag_result checked = desc_check(__func__, scene, desc);
+    if (checked != AG_OK) return checked;
+
+    struct ag_bake *b = host_alloc(&context->host, 1, sizeof *b);
+    if (!b) return api_done(context, false);
+    b->context = context;
+    b->scene = scene;
+    scene->users++;
+    const bool ok = build(b, gi, desc);
+    enum ag_result result = api_done(context, ok);
+    if (ok)
+        *out = b;
+    else
+        ag_bake_destroy(b);
+    return result;
+}
+
+void ag_bake_destroy(struct ag_bake *b)
+{
+    if (!b) return;
+    struct host *host = &b->context->host;
+    report_destroy(b->report);
+    bake_destroy(b->bake);
+    pose_finish(&b->pose);
+    gi_spec_finish(&b->spec);
+    host_free(host, b->checkpoint);
+    b->scene->users--;
+    host_free(host, b);
+}
+
+// ---- work
+
+enum ag_result ag_bake_estimate(struct ag_bake *b, bool probe, struct ag_bake_estimate *out)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE_POINTER(context, out);
+    struct bake_estimate estimate;
+    const bool ok = bake_estimate(b->bake, b->options.threads, probe, &estimate);
+    *out = (struct ag_bake_estimate){ .texels = estimate.texels,
+                                      .rays = estimate.rays,
+                                      .seconds = estimate.seconds,
+                                      .file_bytes = estimate.file_bytes,
+                                      .peak_memory_bytes = estimate.peak_memory_bytes };
+    return api_done(context, ok);
+}
+
+struct listener {
+    bool (*progress)(void *user, const struct ag_bake_progress *progress);
+    void *user;
+};
+
+static bool tell(void *user, const struct bake_progress *p)
+{
+    const struct listener *listener = user;
+    const struct ag_bake_progress progress = { p->stage, p->done, p->seconds_left, p->stopping };
+    return listener->progress(listener->user, &progress);
+}
+
+enum ag_result ag_bake_run(struct ag_bake *b,
+                           bool (*progress)(void *user, const struct ag_bake_progress *progress),
+                           void *user)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    struct listener listener = { progress, user };
+    struct bake_run_options options = b->options;
+    if (progress) {
+        options.progress = tell;
+        options.user = &listener;
+    }
+    return api_done(context, bake_run(b->bake, &options));
+}
+
+// ---- files
+
+enum ag_result ag_bake_save(struct ag_bake *b, const char *path, bool record_seconds)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    return api_done(context, bake_save(b->bake, path, record_seconds));
+}
+
+enum ag_result ag_bake_load(struct ag_bake *b, const char *path)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    return api_done(context, bake_load(b->bake, path));
+}
+
+enum ag_result ag_bake_save_partial(struct ag_bake *b, const char *path)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    return api_done(context, bake_save_partial(b->bake, path));
+}
+
+enum ag_result ag_bake_merge(struct ag_bake *b, const char *path)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    return api_done(context, bake_merge(b->bake, path));
+}
+
+// ---- results
+
+enum ag_result ag_bake_get_info(const struct ag_bake *b, struct ag_bake_info *out)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    AG_REQUIRE_POINTER(context, out);
+    *out = (struct ag_bake_info){ .technique = b->spec.technique[b->term]->name,
+                                  .options = bake_options_text(b->bake),
+                                  .complete = bake_is_complete(b->bake),
+                                  .seconds = bake_seconds(b->bake),
+                                  .bytes = bake_bytes(b->bake) };
+    bake_key(b->bake, out->key);
+    return AG_OK;
+}
+
+static double peak_memory_bytes(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * (double)usage.ru_maxrss : (double)NAN;
+}
+
+static void report_options(struct report *report, const struct technique *technique,
+                           const void *options)
+{
+    char value[64];
+    report_begin_object(report, "options");
+    for (size_t i = 0; i < technique->options.count; i++) {
+        const struct option_row *row = &technique->options.rows[i];
+        option_print(row, options, value, sizeof value);
+        char *end = NULL;
+        const double number = strtod(value, &end);
+        if (row->type == OPTION_TYPE_bool8)
+            report_bool(report, row->name, strcmp(value, "true") == 0);
+        else if (row->type != OPTION_TYPE_choice && *end == 0)
+            report_number(report, row->name, number);
+        else
+            report_text_value(report, row->name, value);
+    }
+    report_end(report);
+}
+
+static void report_stages(struct report *report, const struct bake *bake)
+{
+    report_begin_list(report, "stages");
+    for (int i = 0; i < bake_stage_count(bake); i++) {
+        const struct bake_stage_info info = bake_stage_info(bake, i);
+        report_begin_object(report, NULL);
+        report_text_value(report, "name", info.name);
+        report_number(report, "seconds", info.seconds);
+        report_number(report, "tasks", (double)info.tasks);
+        report_end(report);
+    }
+    report_end(report);
+}
+
+static bool write_report(struct ag_bake *b)
+{
+    const struct technique *technique = b->spec.technique[b->term];
+    const struct tensors *tensors = bake_reported(b->bake);
+    if (!tensors)
+        return host_fail(&b->context->host, FAIL_ARGUMENT,
+                         "cannot report on the bake of %s: it is incomplete", technique->name);
+    report_destroy(b->report);
+    b->report = report_create(&b->context->host);
+    if (!b->report) return false;
+    report_text_value(b->report, "technique", technique->name);
+    report_options(b->report, technique, b->spec.options[b->term]);
+    report_stages(b->report, b->bake);
+    report_number(b->report, "seconds", bake_seconds(b->bake));
+    report_number(b->report, "peak_memory_bytes", peak_memory_bytes());
+    report_number(b->report, "bytes", (double)bake_bytes(b->bake));
+    return !technique->bake_report || technique->bake_report(b->report, tensors, &b->how);
+}
+
+enum ag_result ag_bake_report(struct ag_bake *b, const char **json)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE_OUT(context, json);
+    AG_REQUIRE(context, b, "bake is NULL");
+    bool ok = write_report(b);
+    if (ok) *json = report_text(b->report);
+    if (ok && !*json)
+        ok = host_fail(&context->host, FAIL_MEMORY, "cannot report on a bake: out of memory");
+    return api_done(context, ok);
+}

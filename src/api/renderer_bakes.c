@@ -1,0 +1,80 @@
+// The bakes of a renderer: those of its description, or files of the folder that the host names.
+#include "api/renderer_bakes.h"
+
+#include "api/bake_state.h"
+#include "techniques/gi_bake.h"
+
+#include <string.h>
+#include <unistd.h>
+
+static const struct bake *find_given(const struct ag_renderer_desc *desc, const struct bake *wanted,
+                                     const struct technique *technique, bool *of_technique)
+{
+    for (int i = 0; i < desc->bake_count; i++) {
+        const struct ag_bake *given = desc->bakes[i];
+        if (!given || given->spec.technique[given->term] != technique) continue;
+        *of_technique = true;
+        if (bake_is_complete(given->bake) && bake_fits(given->bake, wanted)) return given->bake;
+    }
+    return NULL;
+}
+
+static bool load_from_folder(struct host *host, const char *folder, struct bake *bake)
+{
+    char key[HASH128_TEXT];
+    if (!folder) return false;
+    bake_key(bake, key);
+    char *path = host_sprintf(host, "%s/%s.safetensors", folder, key);
+    const bool ok = path && access(path, R_OK) == 0 && bake_load(bake, path);
+    host_free(host, path);
+    return ok;
+}
+
+static bool fail_missing(struct host *host, const struct ag_renderer_desc *desc,
+                         const char *technique, bool of_technique)
+{
+    if (of_technique)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot use the bake of %s: it is incomplete, or of other options or "
+                         "another scene",
+                         technique);
+    if (desc->bake_folder)
+        return host_fail(host, FAIL_ARGUMENT,
+                         "cannot use %s: %s has no bake for these options and scene; bake it first",
+                         technique, desc->bake_folder);
+    return host_fail(host, FAIL_ARGUMENT, "cannot use %s: it needs a bake; bake it first",
+                     technique);
+}
+
+static bool find_one(struct renderer_bakes *bakes, struct host *host,
+                     const struct ag_renderer_desc *desc, const struct gi_spec *spec,
+                     const struct scene_pose *pose, int term)
+{
+    const struct technique *technique = spec->technique[term];
+    bakes->how[term] = (struct technique_bake){ .pose = pose, .options = spec->options[term] };
+    struct bake *wanted = gi_bake_create(host, technique, &bakes->how[term], 0, api_program());
+    bakes->own[term] = wanted;
+    if (!wanted) return false;
+    bool of_technique = false;
+    const struct bake *given = find_given(desc, wanted, technique, &of_technique);
+    if (!given && !of_technique && load_from_folder(host, desc->bake_folder, wanted))
+        given = wanted;
+    if (!given) return fail_missing(host, desc, technique->name, of_technique);
+    bakes->found.of_term[term] = bake_tensors(given);
+    return true;
+}
+
+bool renderer_bakes_find(struct renderer_bakes *bakes, struct host *host,
+                         const struct ag_renderer_desc *desc, const struct gi_spec *spec,
+                         const struct scene_pose *pose)
+{
+    for (int i = 0; i < spec->count; i++)
+        if (spec->technique[i]->bake_version != 0 && !find_one(bakes, host, desc, spec, pose, i))
+            return false;
+    return true;
+}
+
+void renderer_bakes_finish(struct renderer_bakes *bakes)
+{
+    for (int i = 0; i < GI_MAX_TERMS; i++) bake_destroy(bakes->own[i]);
+}

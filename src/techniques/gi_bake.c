@@ -1,0 +1,46 @@
+// Bakes of techniques: the identity from their options, the plan from their `bake`.
+#include "techniques/gi_bake.h"
+
+enum { VALUE_SIZE = 64 };
+
+int gi_spec_bakes(const struct gi_spec *spec, int index, int *term)
+{
+    int count = 0;
+    *term = -1;
+    for (int i = 0; i < spec->count; i++) {
+        if (spec->technique[i]->bake_version == 0) continue;
+        if (count++ == index) *term = i;
+    }
+    return count;
+}
+
+char *gi_bake_options(struct host *host, const struct technique *technique, const void *options)
+{
+    char *text = host_strdup(host, "");
+    for (size_t i = 0; text && i < technique->options.count; i++) {
+        const struct option_row *row = &technique->options.rows[i];
+        char value[VALUE_SIZE];
+        if (row->effect != REBAKE) continue;
+        option_print(row, options, value, sizeof value);
+        char *longer = host_sprintf(host, "%s%s%s=%s", text, text[0] ? "," : "", row->name, value);
+        host_free(host, text);
+        text = longer;
+    }
+    return text;
+}
+
+struct bake *gi_bake_create(struct host *host, const struct technique *technique,
+                            const struct technique_bake *how, uint64_t seed, const char *program)
+{
+    char *options = gi_bake_options(host, technique, how->options);
+    const struct bake_identity identity = { .technique = technique->name,
+                                            .version = technique->bake_version,
+                                            .options = options,
+                                            .seed = seed,
+                                            .program = program };
+    struct bake *bake = options ? bake_create(host, &identity) : NULL;
+    host_free(host, options);
+    if (!bake || technique->bake(bake_plan_of(bake), how)) return bake;
+    bake_destroy(bake);
+    return NULL;
+}

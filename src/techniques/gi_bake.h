@@ -1,0 +1,15 @@
+// Bakes of the techniques in a GI spec.
+#pragma once
+
+#include "bake/bake.h"
+#include "techniques/gi.h"
+
+// How many techniques of the spec bake; *term is that of the index-th one, -1 past the last.
+int gi_spec_bakes(const struct gi_spec *spec, int index, int *term);
+// The options that are part of a bake's identity, "a=1,b=2": those of effect REBAKE. Owned by the
+// caller.
+char *gi_bake_options(struct host *host, const struct technique *technique, const void *options);
+// A bake with the stages of the technique; nothing has run. `how` and what it points to outlive the
+// bake. program: its version, for the file.
+struct bake *gi_bake_create(struct host *host, const struct technique *technique,
+                            const struct technique_bake *how, uint64_t seed, const char *program);
