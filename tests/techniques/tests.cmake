@@ -24,7 +24,7 @@ ag_test(techniques/vct_open_plane USES techniques LIBRARIES ag_test_light_trial 
 set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clip_light techniques.light_trials PROPERTIES TIMEOUT 900)
 add_library(ag_test_mrt_map STATIC techniques/mrt_map_fixture.c)
 target_link_libraries(ag_test_mrt_map PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
-foreach(name atlas blocks maps)
+foreach(name atlas blocks geometry maps)
   ag_test(techniques/mrt_${name} USES techniques LIBRARIES ag_test_mrt_map)
 endforeach()
 # It compares times.

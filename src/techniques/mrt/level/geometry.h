@@ -1,0 +1,34 @@
+// Geometry images of a level (Loos 2015, sections 3.5.2 and 3.6.2): the point of the scene that
+// each texel of the level stands for, by rays onto the scene. Direct light is computed there.
+#pragma once
+
+#include "trace/trace.h"
+
+#include "techniques/mrt/level/atlas.h"
+
+struct mrt_geometry_texel {
+    vec3s position; // world
+    vec3s normal;   // unit, towards the middle of the block
+    vec3s albedo;   // of the diffuse lobe; 0 where there is no surface
+    vec3s emission; // towards the middle of the block, cd/m²
+    bool found;     // false: no surface, the wall of the block stands for it
+};
+
+// One for each texel of the level. The caller frees it with host_free.
+struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct mrt_block_map *map,
+                                               const struct mrt_atlas *atlas,
+                                               const struct trace_scene *scene);
+
+// The wall of a block that stands for a surface in it: the one that faces its way most. The point
+// is projected onto the wall along an axis of the cell.
+struct mrt_wall_point {
+    int face;
+    float s, t; // clamped to [0, 1]
+};
+// False: the point is farther from the cell than `beyond`, a part of its edge, or the surface faces
+// away from all walls.
+bool mrt_wall_of_surface(const struct mrt_block *block, vec3s position, vec3s normal, float beyond,
+                         struct mrt_wall_point *out);
+// The same among all blocks: the wall of the block nearest to the point. −1: none.
+int mrt_block_of_surface(const struct mrt_block_map *map, vec3s position, vec3s normal,
+                         float beyond, struct mrt_wall_point *out);
