@@ -61,7 +61,7 @@ struct ag_bake_progress {
 /// Computes what is missing, on all cores, and returns when it is done. `progress` (may be NULL) is
 /// called about ten times a second on this thread, also while `stopping`; if it returns false, the
 /// call ends with AG_ERROR_CANCELLED, usually within a second. What was finished is kept, in this
-/// object and in the checkpoint, and a later call goes on from there. The same scene, options and
+/// object and in the checkpoint; a later call continues with it. The same scene, options and
 /// seed give the same bytes whatever the threads, shards and interruptions.
 AG_API enum ag_result
 ag_bake_run(struct ag_bake *bake,

@@ -1,10 +1,8 @@
-// A bake: creation, identity, the run as a whole.
+// A bake: creation, and what is known of it.
 #include "bake/bake_state.h"
-#include "bake/relay_host.h"
 
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 static bool copy_identity(struct bake *bake, const struct bake_identity *identity)
 {
@@ -93,44 +91,4 @@ uint64_t bake_bytes(const struct bake *bake)
 const char *bake_options_text(const struct bake *bake)
 {
     return bake->identity.options;
-}
-
-// ---- the run
-
-static bool check_memory(const struct bake *bake, const struct bake_run_options *options)
-{
-    static const double MIB = 1024.0 * 1024.0;
-    const uint64_t needed = estimate_peak_memory(bake, options->threads);
-    if (options->max_memory_bytes == 0 || needed <= options->max_memory_bytes) return true;
-    return host_fail(bake->host, FAIL_MEMORY,
-                     "cannot bake %s: it needs about %.0f MiB, more than the limit of %.0f MiB; "
-                     "choose smaller options or fewer threads",
-                     bake->identity.technique, (double)needed / MIB,
-                     (double)options->max_memory_bytes / MIB);
-}
-
-static bool remember_checkpoint(struct bake *bake, const char *path)
-{
-    host_free(bake->host, bake->checkpoint);
-    bake->checkpoint = path ? host_strdup(bake->host, path) : NULL;
-    return !path || bake->checkpoint;
-}
-
-// A checkpoint that cannot be used costs time, and is no error.
-static void resume(struct bake *bake, const char *path)
-{
-    struct relay_host quiet;
-    if (!path || access(path, F_OK) != 0) return;
-    relay_host_init(&quiet, bake->host, NULL);
-    if (!partial_read(&quiet.host, bake, path))
-        host_log(bake->host, LOG_WARNING, "the checkpoint is ignored: %s", quiet.error);
-}
-
-bool bake_run(struct bake *bake, const struct bake_run_options *options)
-{
-    if (bake_is_complete(bake)) return true;
-    if (!check_memory(bake, options) || !remember_checkpoint(bake, options->checkpoint))
-        return false;
-    resume(bake, options->checkpoint);
-    return bake_is_complete(bake) || run_bake(bake, options, false);
 }
