@@ -20,8 +20,7 @@ struct ag_bake_desc {
     uint64_t seed;         ///< of all random numbers; default 0
     int threads;           ///< default 0: all cores; the result does not depend on it
     int shard, shard_count; ///< run only this part, 0…shard_count−1; default count 0: everything
-    const char *checkpoint;    ///< file that keeps finished tasks; default NULL: none
-    double checkpoint_every_s; ///< also while running; default 30; 0: only when cancelled
+    double checkpoint_every_s; ///< with a checkpoint; default 30; 0: only when cancelled
     uint64_t max_memory_bytes; ///< refuse to run if more would be needed; default 0: no limit
     bool full_report;          ///< also compute what only ag_bake_report shows; default false
 };
@@ -52,6 +51,10 @@ struct ag_bake_estimate {
 AG_API enum ag_result ag_bake_estimate(struct ag_bake *bake, bool probe,
                                        struct ag_bake_estimate *out);
 
+/// A file that keeps finished tasks, also while running; ag_bake_run resumes it, ag_bake_save
+/// removes it. NULL: none, as at first.
+AG_API enum ag_result ag_bake_set_checkpoint(struct ag_bake *bake, const char *path);
+
 struct ag_bake_progress {
     const char *stage;   ///< being worked on
     double done;         ///< share of the whole time, 0…1
@@ -77,6 +80,14 @@ AG_API enum ag_result ag_bake_load(struct ag_bake *bake, const char *path);
 AG_API enum ag_result ag_bake_save_partial(struct ag_bake *bake, const char *path);
 /// Adds the finished tasks of such a file, untrusted; ag_bake_run does the rest.
 AG_API enum ag_result ag_bake_merge(struct ag_bake *bake, const char *path);
+struct ag_bake_origin {
+    char gi[4096];         ///< GI spec
+    char scene_name[4096]; ///< as given to ag_scene_load
+    uint64_t seed;
+};
+/// What such a file is a part of, for ag_bake_create.
+AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *path,
+                                             struct ag_bake_origin *out);
 
 struct ag_bake_info {
     const char *technique, *options; ///< owned by the bake

@@ -3,6 +3,7 @@
 
 #include "techniques/gi_bake.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -73,17 +74,13 @@ static bool find_term(struct ag_bake *b, const char *gi, const char *technique)
                      technique);
 }
 
-static bool copy_run_options(struct ag_bake *b, const struct ag_bake_desc *desc)
+static struct bake_run_options run_options(const struct ag_bake_desc *desc)
 {
-    b->options = (struct bake_run_options){ .threads = desc->threads,
-                                            .shard = desc->shard,
-                                            .shard_count = desc->shard_count,
-                                            .checkpoint_every_s = desc->checkpoint_every_s,
-                                            .max_memory_bytes = desc->max_memory_bytes };
-    if (!desc->checkpoint) return true;
-    b->checkpoint = host_strdup(&b->context->host, desc->checkpoint);
-    b->options.checkpoint = b->checkpoint;
-    return b->checkpoint != NULL;
+    return (struct bake_run_options){ .threads = desc->threads,
+                                      .shard = desc->shard,
+                                      .shard_count = desc->shard_count,
+                                      .checkpoint_every_s = desc->checkpoint_every_s,
+                                      .max_memory_bytes = desc->max_memory_bytes };
 }
 
 static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *desc)
@@ -91,12 +88,18 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     struct host *host = &b->context->host;
     uint64_t version = 0;
     if (!gi_spec_parse(&b->spec, host, gi) || !find_term(b, gi, desc->technique)) return false;
-    if (!copy_run_options(b, desc)) return false;
+    b->options = run_options(desc);
     if (!api_pose_at(b->scene, &b->pose, &version, desc->animation, desc->time_s)) return false;
     b->how = (struct technique_bake){ .pose = &b->pose,
                                       .options = b->spec.options[b->term],
                                       .full_report = desc->full_report };
-    b->bake = gi_bake_create(host, b->spec.technique[b->term], &b->how, desc->seed, api_program());
+    char *text = gi_spec_print(&b->spec);
+    const struct bake_identity identity = { .seed = desc->seed,
+                                            .program = api_program(),
+                                            .gi = text,
+                                            .scene_name = b->scene->scene->name };
+    if (text) b->bake = gi_bake_create(host, b->spec.technique[b->term], &b->how, identity);
+    host_free(host, text);
     return b->bake != NULL;
 }
 
@@ -220,6 +223,16 @@ enum ag_result ag_bake_load(struct ag_bake *b, const char *path)
     return api_done(context, bake_load(b->bake, path));
 }
 
+enum ag_result ag_bake_set_checkpoint(struct ag_bake *b, const char *path)
+{
+    struct ag_context *context = context_of(b);
+    AG_REQUIRE(context, b, "bake is NULL");
+    host_free(&context->host, b->checkpoint);
+    b->checkpoint = path ? host_strdup(&context->host, path) : NULL;
+    b->options.checkpoint = b->checkpoint;
+    return api_done(context, !path || b->checkpoint);
+}
+
 enum ag_result ag_bake_save_partial(struct ag_bake *b, const char *path)
 {
     struct ag_context *context = context_of(b);
@@ -234,6 +247,35 @@ enum ag_result ag_bake_merge(struct ag_bake *b, const char *path)
     AG_REQUIRE(context, b, "bake is NULL");
     AG_REQUIRE(context, path && path[0], "path is empty");
     return api_done(context, bake_merge(b->bake, path));
+}
+
+static bool take_origin(struct host *host, const char *path, const struct bake_origin *origin,
+                        struct ag_bake_origin *out)
+{
+    if (strlen(origin->gi) >= sizeof out->gi ||
+        strlen(origin->scene_name) >= sizeof out->scene_name)
+        return host_fail(host, FAIL_FORMAT, "cannot use %s: its GI spec or scene is too long",
+                         path);
+    snprintf(out->gi, sizeof out->gi, "%s", origin->gi);
+    snprintf(out->scene_name, sizeof out->scene_name, "%s", origin->scene_name);
+    out->seed = origin->seed;
+    return true;
+}
+
+enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *path,
+                                      struct ag_bake_origin *out)
+{
+    AG_REQUIRE_POINTER(context, out);
+    *out = (struct ag_bake_origin){ 0 };
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    struct host *host = &context->host;
+    struct bake_origin origin;
+    const bool ok =
+        bake_partial_origin(host, path, &origin) && take_origin(host, path, &origin, out);
+    host_free(host, origin.gi);
+    host_free(host, origin.scene_name);
+    return api_done(context, ok);
 }
 
 // ---- results

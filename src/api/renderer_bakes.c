@@ -52,7 +52,8 @@ static bool find_one(struct renderer_bakes *bakes, struct host *host,
 {
     const struct technique *technique = spec->technique[term];
     bakes->how[term] = (struct technique_bake){ .pose = pose, .options = spec->options[term] };
-    struct bake *wanted = gi_bake_create(host, technique, &bakes->how[term], 0, api_program());
+    const struct bake_identity identity = { .program = api_program() };
+    struct bake *wanted = gi_bake_create(host, technique, &bakes->how[term], identity);
     bakes->own[term] = wanted;
     if (!wanted) return false;
     bool of_technique = false;

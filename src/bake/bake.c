@@ -1,9 +1,6 @@
 // A bake: creation, and what is known of it.
 #include "bake/bake_state.h"
 
-#include <math.h>
-#include <string.h>
-
 static bool copy_identity(struct bake *bake, const struct bake_identity *identity)
 {
     struct arena *arena = &bake->plan.arena;
@@ -11,7 +8,11 @@ static bool copy_identity(struct bake *bake, const struct bake_identity *identit
     bake->identity.technique = arena_strdup(arena, identity->technique);
     bake->identity.options = arena_strdup(arena, identity->options);
     bake->identity.program = arena_strdup(arena, identity->program);
-    return bake->identity.technique && bake->identity.options && bake->identity.program;
+    if (identity->gi) bake->identity.gi = arena_strdup(arena, identity->gi);
+    if (identity->scene_name) bake->identity.scene_name = arena_strdup(arena, identity->scene_name);
+    return bake->identity.technique && bake->identity.options && bake->identity.program &&
+           !bake->identity.gi == !identity->gi &&
+           !bake->identity.scene_name == !identity->scene_name;
 }
 
 struct bake *bake_create(struct host *host, const struct bake_identity *identity)

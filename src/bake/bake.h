@@ -13,7 +13,9 @@ struct bake_identity {
     int version;
     const char *options; // of effect REBAKE, written out: "texels=16,modes=64"
     uint64_t seed;
-    const char *program; // its version, for the file only
+    const char *program; // its version, for files only
+    // GI spec and scene, so that partial files can be merged without them; may be NULL.
+    const char *gi, *scene_name;
 };
 
 // An empty plan; `bake` owns it. Copies the identity. NULL: out of memory.
@@ -67,6 +69,13 @@ bool bake_is_complete(const struct bake *bake);
 // bake_run then does the rest.
 bool bake_save_partial(struct bake *bake, const char *path);
 bool bake_merge(struct bake *bake, const char *path);
+
+// What a partial file is a part of: new texts owned by the caller, and its seed.
+struct bake_origin {
+    char *gi, *scene_name;
+    uint64_t seed;
+};
+bool bake_partial_origin(struct host *host, const char *path, struct bake_origin *out);
 
 // ---- the result
 

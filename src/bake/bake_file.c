@@ -11,8 +11,9 @@ static const char KIND[] = "afterglow.kind", TECHNIQUE[] = "afterglow.technique"
                   VERSION[] = "afterglow.bake_version", OPTIONS[] = "afterglow.options",
                   SCENE[] = "afterglow.scene", SEED[] = "afterglow.seed",
                   PROGRAM[] = "afterglow.program", SECONDS[] = "afterglow.seconds",
-                  CONTENT[] = "afterglow.content";
-static const char BAKE[] = "bake", ANY_SCENE[] = "any";
+                  CONTENT[] = "afterglow.content", GI[] = "afterglow.gi",
+                  SCENE_NAME[] = "afterglow.scene_name";
+static const char BAKE[] = "bake", PARTIAL[] = "partial", ANY_SCENE[] = "any";
 
 // ---- metadata
 
@@ -37,6 +38,8 @@ void identity_print(const struct bake *bake, const char *kind, double seconds,
     put(out, SCENE, out->scene);
     put(out, SEED, out->seed);
     put(out, PROGRAM, id->program);
+    if (strcmp(kind, PARTIAL) == 0 && id->gi) put(out, GI, id->gi);
+    if (strcmp(kind, PARTIAL) == 0 && id->scene_name) put(out, SCENE_NAME, id->scene_name);
     if (isnan(seconds)) return;
     snprintf(out->seconds, sizeof out->seconds, "%.3f", seconds);
     put(out, SECONDS, out->seconds);
@@ -213,4 +216,31 @@ bool bake_file_technique(struct host *host, const char *path, char *out, size_t 
     if (name) snprintf(out, size, "%s", name);
     safetensors_finish(host, &file);
     return name || fail_use(host, path, "it is no bake of this program");
+}
+
+static bool take_origin(struct host *host, const char *path, const struct tensors *set,
+                        struct bake_origin *out)
+{
+    const char *gi = tensors_metadata(set, GI), *name = tensors_metadata(set, SCENE_NAME);
+    const char *seed = tensors_metadata(set, SEED);
+    if (differs(set, KIND, PARTIAL) || !gi || !name || !seed)
+        return fail_use(host, path, "it is no part of a bake, as --shard writes it");
+    out->gi = host_strdup(host, gi);
+    out->scene_name = host_strdup(host, name);
+    out->seed = strtoull(seed, NULL, 10);
+    return out->gi && out->scene_name;
+}
+
+bool bake_partial_origin(struct host *host, const char *path, struct bake_origin *out)
+{
+    struct safetensors file;
+    *out = (struct bake_origin){ 0 };
+    if (!safetensors_read(host, path, &file)) return false;
+    const bool ok = take_origin(host, path, &file.set, out);
+    safetensors_finish(host, &file);
+    if (ok) return true;
+    host_free(host, out->gi);
+    host_free(host, out->scene_name);
+    *out = (struct bake_origin){ 0 };
+    return false;
 }

@@ -30,14 +30,12 @@ char *gi_bake_options(struct host *host, const struct technique *technique, cons
 }
 
 struct bake *gi_bake_create(struct host *host, const struct technique *technique,
-                            const struct technique_bake *how, uint64_t seed, const char *program)
+                            const struct technique_bake *how, struct bake_identity identity)
 {
     char *options = gi_bake_options(host, technique, how->options);
-    const struct bake_identity identity = { .technique = technique->name,
-                                            .version = technique->bake_version,
-                                            .options = options,
-                                            .seed = seed,
-                                            .program = program };
+    identity.technique = technique->name;
+    identity.version = technique->bake_version;
+    identity.options = options;
     struct bake *bake = options ? bake_create(host, &identity) : NULL;
     host_free(host, options);
     if (!bake || technique->bake(bake_plan_of(bake), how)) return bake;

@@ -10,6 +10,6 @@ int gi_spec_bakes(const struct gi_spec *spec, int index, int *term);
 // caller.
 char *gi_bake_options(struct host *host, const struct technique *technique, const void *options);
 // A bake with the stages of the technique; nothing has run. `how` and what it points to outlive the
-// bake. program: its version, for the file.
+// bake. identity: its seed and texts; technique, version and options are set here.
 struct bake *gi_bake_create(struct host *host, const struct technique *technique,
-                            const struct technique_bake *how, uint64_t seed, const char *program);
+                            const struct technique_bake *how, struct bake_identity identity);

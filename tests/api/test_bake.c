@@ -64,6 +64,9 @@ TEST(bake_functions_refuse_missing_arguments)
     assert_int_equal(ag_bake_load(NULL, "a"), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_save_partial(NULL, "a"), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_merge(NULL, "a"), AG_ERROR_ARGUMENT);
+    struct ag_bake_origin origin;
+    assert_int_equal(ag_bake_set_checkpoint(NULL, "a"), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_bake_partial_origin(s.context, "", &origin), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_get_info(NULL, &info), AG_ERROR_ARGUMENT);
     assert_int_equal(ag_bake_report(NULL, &text), AG_ERROR_ARGUMENT);
     ag_bake_destroy(NULL);

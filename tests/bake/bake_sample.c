@@ -168,7 +168,9 @@ struct bake_identity bake_sample_identity(void)
                                    .version = 3,
                                    .options = "rows=23,modes=3",
                                    .seed = 5,
-                                   .program = "1.2.3" };
+                                   .program = "1.2.3",
+                                   .gi = "sample:rows=23",
+                                   .scene_name = "@sample" };
 }
 
 struct bake *bake_sample_create(struct bake_sample *sample, const struct bake_identity *identity)

@@ -118,6 +118,23 @@ TEST(bake_file_of_another_kind_is_refused)
     bake_destroy(bake);
 }
 
+TEST(bake_part_says_what_it_is_a_part_of)
+{
+    struct bake_sample sample = bake_sample_default();
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    struct bake_origin origin;
+    const char *path = test_path("origin");
+    CHECK(bake_run(bake, &(struct bake_run_options){ .shard = 0, .shard_count = 2 }));
+    CHECK(bake_save_partial(bake, path) && bake_partial_origin(test_host(), path, &origin));
+    CHECK_STRING(origin.gi, "sample:rows=23");
+    CHECK_STRING(origin.scene_name, "@sample");
+    CHECK(origin.seed == 5);
+    host_free(test_host(), origin.gi);
+    host_free(test_host(), origin.scene_name);
+    bake_destroy(bake);
+    CHECK(!bake_partial_origin(test_host(), write_sample(false), &origin) && !origin.gi);
+}
+
 TEST(bake_file_names_its_technique)
 {
     char name[32];

@@ -93,7 +93,8 @@ static struct bake *bake_of(const struct gi_spec *spec, const struct scene_pose 
                             struct technique_bake *how)
 {
     *how = (struct technique_bake){ .pose = pose, .options = spec->options[0] };
-    struct bake *bake = gi_bake_create(test_host(), &fake, how, 0, "1.0");
+    struct bake *bake =
+        gi_bake_create(test_host(), &fake, how, (struct bake_identity){ .program = "1.0" });
     assert_non_null(bake);
     return bake;
 }
