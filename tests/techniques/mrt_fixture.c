@@ -5,29 +5,65 @@
 
 #include "core/parallel.h"
 
+#include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/dictionary/prior.h"
 
 enum { RAYS = 16384, PROBES = 4, K_D = 64, MAX_RESOLUTION = 16 };
 
-static struct mrt_cube_operators kept[MAX_RESOLUTION + 1];
+struct closed_cube {
+    struct mrt_shape cube;
+    struct mrt_rays rays[3];
+    struct mrt_cube_operators operators;
+    bool ready;
+};
 
-static void run_task(void *user, size_t i)
+static struct closed_cube kept[MAX_RESOLUTION + 1];
+
+static void gather_point(struct closed_cube *c, enum mrt_measure measure, size_t i)
 {
-    mrt_cube_operators_run(user, i);
+    struct matrix_f32 *to = &c->operators.by_measure[measure];
+    const struct mrt_rays *rays = &c->rays[measure];
+    size_t values = (size_t)rays->values;
+    if (i >= to->rows / values) return;
+    mrt_gather(&c->cube, mrt_gather_point(&c->cube, PROBES, measure, (int)i), rays,
+               to->at + i * values * to->stride, to->stride);
+}
+
+static void gather_all(void *user, size_t i)
+{
+    for (int m = 0; m < 3; m++) gather_point(user, (enum mrt_measure)m, i);
 }
 
 static void finish_kept(void)
 {
-    for (int i = 0; i <= MAX_RESOLUTION; i++) mrt_cube_operators_finish(test_host(), &kept[i]);
+    for (int i = 0; i <= MAX_RESOLUTION; i++)
+        for (int m = 0; m < 3; m++) {
+            mrt_rays_finish(test_host(), &kept[i].rays[m]);
+            matrix_f32_finish(test_host(), &kept[i].operators.by_measure[m]);
+        }
+}
+
+const struct mrt_rays *mrt_fixture_rays(int resolution, enum mrt_measure measure)
+{
+    mrt_fixture_cube(resolution);
+    return &kept[resolution].rays[measure];
 }
 
 const struct mrt_cube_operators *mrt_fixture_cube(int resolution)
 {
-    struct mrt_cube_operators *o = &kept[resolution];
-    if (o->probes) return o;
-    CHECK(mrt_cube_operators_init(test_host(), resolution, PROBES, RAYS, o));
-    parallel_for(mrt_cube_operators_tasks(o), 8, run_task, o);
-    return o;
+    struct closed_cube *c = &kept[resolution];
+    if (c->ready) return &c->operators;
+    c->cube = mrt_cube(resolution, 0);
+    size_t texels = (size_t)mrt_shape_texels(&c->cube);
+    for (int m = 0; m < 3; m++) {
+        size_t points = m == MRT_PROBE ? PROBES * PROBES * PROBES : texels;
+        CHECK(mrt_rays_init(test_host(), (enum mrt_measure)m, RAYS, &c->rays[m]));
+        CHECK(matrix_f32_init(test_host(), &c->operators.by_measure[m],
+                              points * (size_t)c->rays[m].values, texels));
+    }
+    parallel_for(texels, 8, gather_all, c);
+    c->ready = true;
+    return &c->operators;
 }
 
 static bool finish_at_end(void)

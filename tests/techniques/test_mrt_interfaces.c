@@ -1,10 +1,9 @@
 // Light through the interfaces of connected blocks, against rays through the joined geometry.
 #include "framework/test.h"
-#include "techniques/mrt_interfaces.h"
+#include "techniques/mrt_bake_fixture.h"
 
 #include "core/rng.h"
 
-#include "techniques/mrt/dictionary/basis.h"
 #include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/dictionary/prior.h"
 
@@ -89,26 +88,25 @@ static void multiply(const struct matrix_f32 *a, const struct matrix_f32 *b, str
 }
 
 // Lightfield coefficients (k_rlf × lights) at the exit of block 0.
-static struct matrix_f32 leave_block(const struct mrt_interfaces *x, const struct chain *chain,
+static struct matrix_f32 leave_block(const struct mrt_dictionary *x, const struct chain *chain,
                                      const struct matrix_f32 *radiosity)
 {
     struct mrt_cube_place place;
     struct mrt_shape block = mrt_cube(RESOLUTION, missing_of(chain, 0));
-    CHECK(mrt_cube_find(x->options.maze, block.missing, &place));
-    struct mrt_shape cube = mrt_cube(RESOLUTION, mrt_cube_missing(x->options.maze, place.cube));
-    struct matrix_f32 turned, t_db, b, out;
+    CHECK(mrt_cube_find((enum mrt_maze)x->options.maze, block.missing, &place));
+    struct mrt_shape cube =
+        mrt_cube(RESOLUTION, mrt_cube_missing((enum mrt_maze)x->options.maze, place.cube));
+    struct matrix_f32 turned, b, out;
     CHECK(matrix_f32_init(test_host(), &turned, radiosity->columns, LIGHTS));
     for (size_t t = 0; t < radiosity->columns; t++) {
         int texel = mrt_turned_texel(&cube, place.block_from_cube, &block, (int)t);
         for (size_t l = 0; l < LIGHTS; l++)
             turned.at[(size_t)texel * LIGHTS + l] = radiosity->at[l * radiosity->stride + t];
     }
-    CHECK(matrix_f32_from_f64(test_host(), &x->transfer[place.cube].t_db, &t_db));
-    multiply(&t_db, &turned, &b);
+    const struct mrt_element *element = &x->element[place.cube];
+    multiply(&element->t_db, &turned, &b);
     int face = mrt_turned_face(glms_mat3_transpose(place.block_from_cube), chain->exit[0]);
-    struct matrix_f32 r_b = matrix_f32_block(&x->r_b, 0, mrt_interfaces_column(x, place.cube, face),
-                                             x->r_b.rows, (size_t)x->options.k_b);
-    multiply(&r_b, &b, &out);
+    multiply(&element->r_b[face], &b, &out);
     mat3s frame = glms_mat3_mul(place.block_from_cube, cube_from_face(face));
     for (int i = mrt_rolls_between(frame, cube_from_face(chain->exit[0])); i > 0; i--) {
         struct matrix_f32 rolled;
@@ -117,12 +115,11 @@ static struct matrix_f32 leave_block(const struct mrt_interfaces *x, const struc
         out = rolled;
     }
     matrix_f32_finish(test_host(), &turned);
-    matrix_f32_finish(test_host(), &t_db);
     matrix_f32_finish(test_host(), &b);
     return out;
 }
 
-static void pass_block(const struct mrt_interfaces *x, int exit_before, int exit,
+static void pass_block(const struct mrt_dictionary *x, int exit_before, int exit,
                        struct matrix_f32 *light)
 {
     struct mrt_passage passage = mrt_passage_between(cube_opposite(exit_before), exit);
@@ -135,7 +132,7 @@ static void pass_block(const struct mrt_interfaces *x, int exit_before, int exit
 }
 
 // Relative L2 error over the texels of `block`, per light; and the light itself.
-static void block_errors(const struct mrt_interfaces *x, const struct chain *chain, int block,
+static void block_errors(const struct mrt_dictionary *x, const struct chain *chain, int block,
                          const struct matrix_f32 *light, const struct mrt_rays *rays,
                          const struct matrix_f32 *radiosity, double errors[LIGHTS], double *mean)
 {
@@ -144,8 +141,8 @@ static void block_errors(const struct mrt_interfaces *x, const struct chain *cha
     struct matrix_f32 r, irradiance;
     mat3s frame = mrt_block_from_entry(cube_opposite(chain->exit[block - 1]));
     double difference[LIGHTS] = { 0 }, all[LIGHTS] = { 0 }, exact[LIGHTS];
-    multiply(&x->response.t_r, light, &r);
-    multiply(&x->response.u_r, &r, &irradiance);
+    multiply(&x->t_r, light, &r);
+    multiply(&x->u_r, &r, &irradiance);
     *mean = 0.0;
     for (int t = 0; t < mrt_shape_texels(&cube); t += 3) {
         int texel = mrt_turned_texel(&entered, frame, &cube, t);
@@ -168,7 +165,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void compare_chain(const struct mrt_interfaces *x, const struct chain *chain)
+static void compare_chain(const struct mrt_dictionary *x, const struct chain *chain)
 {
     struct mrt_rays rays;
     struct matrix_f32 radiosity = light_block(chain), light = leave_block(x, chain, &radiosity);
@@ -187,22 +184,16 @@ static void compare_chain(const struct mrt_interfaces *x, const struct chain *ch
     matrix_f32_finish(test_host(), &light);
 }
 
-// H_rlf = U Σ: H'H = Σ².
-static void check_basis(const struct mrt_interfaces *x)
+static void compare_chains(enum mrt_maze maze, const struct chain *chains, size_t count)
 {
-    struct mrt_span span = { { x->h_rlf }, 1 };
-    struct matrix_f64 gram;
-    size_t n = x->h_rlf.columns;
-    double worst = 0.0;
-    CHECK(matrix_f64_init(test_host(), &gram, n, n));
-    CHECK(mrt_span_gram(test_host(), &span, 0, x->h_rlf.rows, &gram));
-    for (size_t r = 0; r < n; r++)
-        for (size_t c = 0; c < n; c++)
-            worst = fmax(worst, fabs(gram.at[r * n + c] / (x->sigma[r] * x->sigma[c]) -
-                                     (r == c ? 1.0 : 0.0)));
-    print_message("elements of U'U - I of the lightfield basis: at most %.1e\n", worst);
-    CHECK(worst < 1e-4);
-    matrix_f64_finish(test_host(), &gram);
+    struct mrt_dictionary_options options = mrt_fixture_options();
+    options.maze = (int)maze;
+    struct bake *bake = mrt_fixture_bake(&options, 0, false);
+    struct mrt_dictionary x;
+    CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &x));
+    for (size_t i = 0; i < count; i++) compare_chain(&x, &chains[i]);
+    mrt_dictionary_finish(test_host(), &x);
+    bake_destroy(bake);
 }
 
 TEST(light_through_interfaces_is_near_that_of_the_joined_blocks)
@@ -216,14 +207,7 @@ TEST(light_through_interfaces_is_near_that_of_the_joined_blocks)
         { "corner", 4, { CUBE_RIGHT, CUBE_FRONT, CUBE_FRONT }, { 0.110, 0.165, 0.180 } },
         { "stairs", 4, { CUBE_LEFT, CUBE_BACK, CUBE_LEFT }, { 0.090, 0.150, 0.170 } },
     };
-    struct mrt_interface_options options = {
-        MRT_MAZE_2D, RESOLUTION, 32, 128, 32, 3, { 6, 12, 4 }
-    };
-    struct mrt_interfaces x;
-    mrt_interfaces_build(&options, &x);
-    check_basis(&x);
-    for (size_t i = 0; i < sizeof chains / sizeof *chains; i++) compare_chain(&x, &chains[i]);
-    mrt_interfaces_finish(&x);
+    compare_chains(MRT_MAZE_2D, chains, sizeof chains / sizeof *chains);
 }
 
 TEST(light_turns_in_space_as_in_the_plane)
@@ -234,11 +218,5 @@ TEST(light_turns_in_space_as_in_the_plane)
         { "spiral", 4, { CUBE_TOP, CUBE_RIGHT, CUBE_BACK }, { 0.072, 0.129, 0.311 } },
         { "pit", 4, { CUBE_LEFT, CUBE_BOTTOM, CUBE_FRONT }, { 0.076, 0.129, 0.380 } },
     };
-    struct mrt_interface_options options = {
-        MRT_MAZE_3D, RESOLUTION, 32, 128, 32, 3, { 6, 12, 4 }
-    };
-    struct mrt_interfaces x;
-    mrt_interfaces_build(&options, &x);
-    for (size_t i = 0; i < sizeof chains / sizeof *chains; i++) compare_chain(&x, &chains[i]);
-    mrt_interfaces_finish(&x);
+    compare_chains(MRT_MAZE_3D, chains, sizeof chains / sizeof *chains);
 }

@@ -6,6 +6,7 @@
 #include "core/sampling.h"
 #include "core/sh.h"
 
+#include "techniques/mrt/dictionary/basis.h"
 #include "techniques/mrt/dictionary/cube_shapes.h"
 #include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/dictionary/interface.h"
@@ -60,13 +61,14 @@ TEST(operators_of_a_cube_with_openings_are_those_of_rays_inside_it)
     struct mrt_shape shape = mrt_cube(RESOLUTION, 1u << CUBE_LEFT | 1u << CUBE_FRONT);
     size_t texels = (size_t)mrt_shape_texels(&shape);
     for (int m = MRT_IRRADIANCE; m <= MRT_VECTOR; m++) {
-        size_t values = (size_t)closed->rays[m].values;
+        const struct mrt_rays *rays = mrt_fixture_rays(RESOLUTION, (enum mrt_measure)m);
+        size_t values = (size_t)rays->values;
         struct matrix_f64 part;
         float *rows = host_alloc(test_host(), values * texels, sizeof *rows);
         CHECK(mrt_cube_operator_of(test_host(), closed, (enum mrt_measure)m, &shape, &part));
         for (size_t t = 0; t < texels; t += 13) {
             memset(rows, 0, values * texels * sizeof *rows);
-            mrt_gather(&shape, mrt_shape_texel(&shape, (int)t), &closed->rays[m], rows, texels);
+            mrt_gather(&shape, mrt_shape_texel(&shape, (int)t), rays, rows, texels);
             for (size_t i = 0; i < values * texels; i++)
                 CHECK_NEAR(rows[i], part.at[t * values * part.stride + i], 1e-7);
         }
@@ -197,6 +199,43 @@ TEST(exits_receive_the_form_factor_of_their_squares)
     }
     CHECK_NEAR(all, 1.0, 0.01);
     matrix_f32_finish(test_host(), &from);
+}
+
+// Singular values and vectors from the Gram matrix, against LAPACK's.
+TEST(reduced_basis_is_that_of_the_singular_value_decomposition)
+{
+    enum { ROWS = 700, COLUMNS = 24, MODES = 16 };
+    struct matrix_f32 span_of, coefficients, basis;
+    struct matrix_f64 gram, wide;
+    struct linalg_svd svd;
+    double sigma[MODES], factor[COLUMNS];
+    struct rng rng = rng_for(9, 0, 0);
+    CHECK(matrix_f32_init(test_host(), &span_of, ROWS, COLUMNS));
+    CHECK(matrix_f32_init(test_host(), &coefficients, COLUMNS, MODES));
+    CHECK(matrix_f32_init(test_host(), &basis, ROWS, MODES));
+    CHECK(matrix_f64_init(test_host(), &gram, COLUMNS, COLUMNS));
+    for (size_t i = 0; i < ROWS * COLUMNS; i++)
+        span_of.at[i] = (rng_float(&rng) - 0.3f) / (float)(1 + i % COLUMNS);
+    for (int c = 0; c < COLUMNS; c++) factor[c] = 1.0;
+    struct mrt_span span = { { span_of }, 1 };
+    CHECK(mrt_span_gram(test_host(), &span, 0, ROWS, &gram));
+    CHECK(mrt_span_reduce(test_host(), &gram, factor, &coefficients, sigma));
+    CHECK(mrt_span_apply(test_host(), &span, 0, &coefficients, &basis));
+    CHECK(matrix_f64_from_f32(test_host(), &span_of, &wide));
+    CHECK(linalg_svd(test_host(), "span", &wide, &svd));
+    for (size_t m = 0; m < MODES; m++) {
+        double along = 0.0;
+        CHECK_RELATIVE(sigma[m], svd.sigma[m], 1e-6);
+        for (size_t r = 0; r < ROWS; r++)
+            along += (double)basis.at[r * MODES + m] * svd.u.at[r * svd.u.stride + m];
+        CHECK_RELATIVE(fabs(along), sigma[m], 1e-4);
+    }
+    linalg_svd_finish(test_host(), &svd);
+    matrix_f64_finish(test_host(), &wide);
+    matrix_f64_finish(test_host(), &gram);
+    matrix_f32_finish(test_host(), &basis);
+    matrix_f32_finish(test_host(), &coefficients);
+    matrix_f32_finish(test_host(), &span_of);
 }
 
 TEST(passages_of_a_plane_need_no_roll)

@@ -98,16 +98,17 @@ float mrt_point_light(struct mrt_point at, vec3s light)
 
 // The share of the sphere's irradiance that enters through an opening: directions within the cone
 // that the sphere subtends, by cosine.
-static float visible_share(const struct mrt_shape *shape, struct mrt_point at, vec3s centre)
+static float visible_share(const struct mrt_shape *shape, struct mrt_point at, vec3s centre,
+                           const vec2s disk[SHADOW_RAYS])
 {
     vec3s axis = glms_vec3_sub(centre, at.position), t, b;
     float distance = glms_vec3_norm(axis), reach = 0.5f / (float)(LATTICE + 1) / distance;
     float lit = 0.0f, all = 0.0f;
     axis = glms_vec3_scale(axis, 1.0f / distance);
     basis_of(axis, &t, &b);
-    for (uint32_t i = 0; i < SHADOW_RAYS; i++) {
+    for (int i = 0; i < SHADOW_RAYS; i++) {
         struct mrt_hit hit;
-        vec2s d = glms_vec2_scale(sample_disk(sobol_2d(i, 1)), reach);
+        vec2s d = glms_vec2_scale(disk[i], reach);
         vec3s ray = glms_vec3_scale(axis, sqrtf(1.0f - glms_vec2_norm2(d)));
         ray = glms_vec3_muladds(t, d.x, glms_vec3_muladds(b, d.y, ray));
         float cosine = fmaxf(glms_vec3_dot(ray, at.frame.col[2]), 0.0f);
@@ -121,10 +122,12 @@ static float visible_share(const struct mrt_shape *shape, struct mrt_point at, v
 void mrt_prior_column(const struct mrt_shape *shape, struct mrt_prior_light light, float *column,
                       size_t stride)
 {
+    vec2s disk[SHADOW_RAYS];
     int texels = mrt_shape_texels(shape);
+    for (uint32_t i = 0; i < SHADOW_RAYS; i++) disk[i] = sample_disk(sobol_2d(i, 1));
     for (int i = 0; i < texels; i++) {
         struct mrt_point at = mrt_shape_texel(shape, i);
-        float share = light.inside ? 1.0f : visible_share(shape, at, light.centre);
+        float share = light.inside ? 1.0f : visible_share(shape, at, light.centre, disk);
         column[(size_t)i * stride] = share * mrt_point_light(at, light.centre);
     }
 }

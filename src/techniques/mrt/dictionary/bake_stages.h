@@ -1,0 +1,48 @@
+// What the stages of a dictionary's bake share: sizes, the order of waves, and matrices of tensors.
+#pragma once
+
+#include "techniques/mrt/dictionary/dictionary.h"
+
+// Waves. Each reduction of the lightfield basis takes three: a Gram matrix, its eigenvectors, the
+// new basis; each round of enrichment propagates the basis first.
+enum {
+    WAVE_GATHER,
+    WAVE_MODES,
+    WAVE_ELEMENTS,
+    WAVE_LIGHTFIELDS,
+    WAVE_REDUCE, // + 4 · round
+    WAVES_PER_ROUND = 4,
+};
+
+struct mrt_bake_job {
+    struct mrt_dictionary_options options;
+    struct host *host;       // while the tasks run
+    struct mrt_rays rays[3]; // by enum mrt_measure
+    enum mrt_maze maze;
+    int cubes, turns;
+    uint64_t k_b, k_l, k_r;
+    uint64_t texels, left_texels; // of the closed cube, and of one with an opening
+    uint64_t probes;              // p³
+    uint64_t openings, samples;   // of all cubes; of a lightfield
+    struct mrt_lightfield lightfield;
+    int wave_final; // the basis is complete
+};
+
+static inline int mrt_wave_of_round(int round)
+{
+    return WAVE_REDUCE + WAVES_PER_ROUND * round;
+}
+
+static inline struct mrt_shape mrt_bake_cube(const struct mrt_bake_job *job, int cube)
+{
+    return mrt_cube(job->options.texels, mrt_cube_missing(job->maze, cube));
+}
+
+// Rows are all axes but the last. `at` is not to be written for an input.
+struct matrix_f32 mrt_tensor_matrix(const struct tensor *tensor);
+// NULL (and false): no such tensor.
+bool mrt_bake_input(const struct bake_task *task, const char *name, struct matrix_f32 *out);
+// The rows of an output that this task fills.
+struct matrix_f32 mrt_bake_output(const struct bake_task *task, int output, uint64_t *first_row);
+
+bool mrt_interface_bake(struct bake_plan *plan, const struct mrt_bake_job *job);

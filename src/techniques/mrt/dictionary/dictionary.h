@@ -1,0 +1,65 @@
+// The dictionary of modular radiance transfer: what a bake computes for all scenes, and the run
+// time uses (Loos 2015, table 3.1). dictionary_bake.c computes it, dictionary.c reads it.
+//
+// Tensors of the bake, n texels of the shape, k_b = modes, k_l = lightfield_modes, k_r =
+// response_modes, N openings of the cube in ascending order of their faces; all F32:
+//
+//     cube/I/U_b        [n, k_b]       irradiance (lux) of each b-coefficient
+//     cube/I/T_db       [k_b, n]       b-coefficients of radiosity (lm/m²) at each texel
+//     cube/I/U_vec      [n, 4, k_b]    irradiance by normal: OHLSH in the frame of mrt_point
+//     cube/I/U_bvol     [p³, 9, k_b]   irradiance by normal at probes: SH in the frame of the cube
+//     cube/I/R_b        [N, k_l, k_b]  lightfield coefficients at each opening
+//     interface/R_turn  [3 or 6, k_l, k_l]  propagation to the exits, by enum mrt_turn
+//     interface/T_r     [k_r, k_l]     r-coefficients of lightfield coefficients
+//     interface/U_r     [m, k_r]       irradiance at the m texels of mrt_cube_entered
+//     interface/U_rvec  [m, 4, k_r]    the same by normal
+//     interface/U_rvol  [p³, 9, k_r]   the same at probes, in the frame of the interface
+//
+// A lightfield coefficient is with respect to H_rlf = U Σ, which is not kept.
+#pragma once
+
+#include "bake/plan.h"
+#include "core/linalg.h"
+#include "core/option.h"
+
+#include "techniques/mrt/dictionary/cube_shapes.h"
+#include "techniques/mrt/dictionary/interface.h"
+
+struct mrt_dictionary_options {
+#define OPTION OPTION_FIELD
+#include "techniques/mrt/dictionary/dictionary_options.def"
+#undef OPTION
+};
+
+const struct option_table *mrt_dictionary_option_table(void);
+
+// Adds the stages; `options` is copied. full: with the singular values of F (cube/0/sigma_F).
+bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_options *options,
+                         bool full);
+
+struct mrt_element {
+    struct mrt_shape shape;
+    struct matrix_f32 u_b, t_db, u_vec, u_bvol; // U_vec: n·4 × k_b, U_bvol: p³·9 × k_b
+    struct matrix_f32 r_b[MRT_MAX_OPENINGS];    // by face; empty where it is closed
+};
+
+struct mrt_dictionary {
+    struct mrt_dictionary_options options;
+    int element_count;
+    struct mrt_element element[MRT_MAX_CUBES];
+    int turn_count;
+    struct matrix_f32 r_turn[MRT_TURNS_3D];
+    struct matrix_f32 t_r, u_r, u_rvec, u_rvol;
+};
+
+// Copies a bake made with these options. FAIL_FORMAT where a tensor is missing or of another shape.
+bool mrt_dictionary_init(struct host *host, const struct tensors *bake,
+                         const struct mrt_dictionary_options *options, struct mrt_dictionary *out);
+void mrt_dictionary_finish(struct host *host, struct mrt_dictionary *dictionary);
+
+// Bytes of U_b, T_d→b and U_vec, and of the operators of interfaces, which the paper counts as 4.7
+// and 1.2 MB; volume probes are in neither.
+struct mrt_dictionary_bytes {
+    size_t shapes, interfaces, probes;
+};
+struct mrt_dictionary_bytes mrt_dictionary_bytes(const struct mrt_dictionary *dictionary);

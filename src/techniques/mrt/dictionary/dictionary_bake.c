@@ -1,0 +1,376 @@
+// Stages of a dictionary's bake: the closed cube, the light prior and the transfer of each shape.
+// interface_bake.c adds the interfaces.
+#include "dictionary.h"
+
+#include "techniques/mrt/dictionary/bake_stages.h"
+#include "techniques/mrt/dictionary/cube_operators.h"
+#include "techniques/mrt/dictionary/gather.h"
+#include "techniques/mrt/dictionary/prior.h"
+#include "techniques/mrt/dictionary/transfer.h"
+
+#include <math.h>
+#include <string.h>
+
+// Of a stage: the measure or the cube.
+struct stage_index {
+    int measure, cube;
+    const char *direct, *l_imp; // names of inputs
+};
+
+static const char *const OPERATORS[] = { "closed/F", "closed/vector", "closed/probe" };
+
+// ---- the closed cube
+
+static bool run_gather(const struct bake_task *task)
+{
+    const struct mrt_bake_job *job = task->job;
+    const struct stage_index *index = task->argument;
+    const struct mrt_rays *rays = &job->rays[index->measure];
+    const struct mrt_shape cube = mrt_cube(job->options.texels, 0);
+    uint64_t first, points;
+    const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
+    bake_task_rows(task, 0, &points);
+    for (uint64_t i = 0; i < points; i++) {
+        if (bake_task_cancelled(task)) return false;
+        struct mrt_point at = mrt_gather_point(&cube, job->options.probes,
+                                               (enum mrt_measure)index->measure, (int)(first + i));
+        mrt_gather(&cube, at, rays, out.at + i * (uint64_t)rays->values * out.stride, out.stride);
+    }
+    return true;
+}
+
+static bool add_gather(struct bake_plan *plan, const struct mrt_bake_job *job, int measure)
+{
+    static const char *const names[] = { "gather irradiance", "gather vector irradiance",
+                                         "gather probes" };
+    static const uint64_t values[] = { 1, MRT_VECTOR_COEFFICIENTS, MRT_PROBE_COEFFICIENTS };
+    enum { POINTS_PER_TASK = 16 };
+    uint64_t points = measure == MRT_PROBE ? job->probes : job->texels;
+    size_t tasks = (size_t)((points + POINTS_PER_TASK - 1) / POINTS_PER_TASK);
+    struct stage_index *index = bake_plan_alloc(plan, 1, sizeof *index);
+    if (!index) return false;
+    index->measure = measure;
+    const struct bake_output out = { OPERATORS[measure],
+                                     TENSOR_F32,
+                                     3,
+                                     { points, values[measure], job->texels },
+                                     BAKE_ROWS,
+                                     measure == MRT_IRRADIANCE ? WAVE_MODES : WAVE_ELEMENTS };
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = names[measure],
+                                    .wave = WAVE_GATHER,
+                                    .task_count = tasks,
+                                    .run = run_gather,
+                                    .argument = index,
+                                    .outputs = &out,
+                                    .output_count = 1,
+                                    .rays = (double)points * job->options.rays / (double)tasks });
+}
+
+// ---- the light prior of a shape
+
+static bool run_direct(const struct bake_task *task)
+{
+    const struct mrt_bake_job *job = task->job;
+    const struct stage_index *index = task->argument;
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    uint64_t first;
+    const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
+    struct mrt_prior_light *lights =
+        host_alloc(task->host, (size_t)mrt_prior_light_count(&shape), sizeof *lights);
+    if (!lights) return false;
+    mrt_prior_lights(&shape, lights);
+    for (size_t l = 0; l < out.rows; l++)
+        mrt_prior_column(&shape, lights[first + l], out.at + l * out.stride, 1);
+    host_free(task->host, lights);
+    return true;
+}
+
+static bool add_direct(struct bake_plan *plan, const struct mrt_bake_job *job,
+                       const struct stage_index *index)
+{
+    enum { LIGHTS_PER_TASK = 36 };
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const uint64_t lights = (uint64_t)mrt_prior_light_count(&shape);
+    const struct bake_output out = {
+        index->direct, TENSOR_F32, 2, { lights, (uint64_t)mrt_shape_texels(&shape) },
+        BAKE_ROWS,     WAVE_MODES
+    };
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d lights", index->cube),
+                                    .wave = WAVE_GATHER,
+                                    .task_count = (size_t)lights / LIGHTS_PER_TASK,
+                                    .run = run_direct,
+                                    .argument = index,
+                                    .outputs = &out,
+                                    .output_count = 1 });
+}
+
+// ---- the modes of a shape
+
+static bool operator_of(const struct bake_task *task, int measure, const struct mrt_shape *shape,
+                        struct matrix_f64 *out)
+{
+    struct mrt_cube_operators closed = { 0 };
+    return mrt_bake_input(task, OPERATORS[measure], &closed.by_measure[measure]) &&
+           mrt_cube_operator_of(task->host, &closed, (enum mrt_measure)measure, shape, out);
+}
+
+static bool direct_light(const struct bake_task *task, const char *name, struct matrix_f64 *out)
+{
+    struct matrix_f32 direct;
+    if (!mrt_bake_input(task, name, &direct) ||
+        !matrix_f64_init(task->host, out, direct.columns, direct.rows))
+        return false;
+    for (size_t r = 0; r < out->rows; r++)
+        for (size_t c = 0; c < out->columns; c++)
+            out->at[r * out->stride + c] = (double)direct.at[c * direct.stride + r];
+    return true;
+}
+
+static void store(const double *from, size_t count, float *to)
+{
+    for (size_t i = 0; i < count; i++) to[i] = (float)from[i];
+}
+
+enum { OUT_U_B, OUT_T_DB, OUT_L_IMP, OUT_SIGMA_L, OUT_SIGMA_M, OUT_CHECKS };
+
+static void store_transfer(const struct mrt_transfer *transfer, void *const *out)
+{
+    const struct matrix_f64 *u = &transfer->u_b, *t = &transfer->t_db, *l = &transfer->l_imp;
+    const double checks[] = { transfer->orthonormality, transfer->implicit_error };
+    store(u->at, u->rows * u->columns, out[OUT_U_B]);
+    store(t->at, t->rows * t->columns, out[OUT_T_DB]);
+    store(l->at, l->rows * l->columns, out[OUT_L_IMP]);
+    store(transfer->sigma_l, transfer->sigma_l_count, out[OUT_SIGMA_L]);
+    store(transfer->sigma_m, transfer->sigma_m_count, out[OUT_SIGMA_M]);
+    store(checks, 2, out[OUT_CHECKS]);
+}
+
+static bool run_modes(const struct bake_task *task)
+{
+    const struct mrt_bake_job *job = task->job;
+    const struct stage_index *index = task->argument;
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const struct mrt_transfer_options options = { .k_d = job->options.prior_modes,
+                                                  .k_b = job->options.modes,
+                                                  .enrich = job->options.enrich };
+    struct matrix_f64 f = { 0 }, direct = { 0 };
+    struct mrt_transfer transfer = { 0 };
+    bool ok = operator_of(task, MRT_IRRADIANCE, &shape, &f) &&
+              direct_light(task, index->direct, &direct) &&
+              mrt_transfer_init(task->host, &shape, &f, &direct, &options, &transfer);
+    if (ok) store_transfer(&transfer, task->out);
+    mrt_transfer_finish(task->host, &transfer);
+    matrix_f64_finish(task->host, &direct);
+    matrix_f64_finish(task->host, &f);
+    return ok;
+}
+
+static bool add_modes(struct bake_plan *plan, const struct mrt_bake_job *job,
+                      const struct stage_index *index)
+{
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const uint64_t n = (uint64_t)mrt_shape_texels(&shape), k_b = job->k_b;
+    const uint64_t lights = (uint64_t)mrt_prior_light_count(&shape);
+    const uint64_t k_d = (uint64_t)job->options.prior_modes, small = n < lights ? n : lights;
+    const char *names[] = { "U_b", "T_db", "L_imp", "sigma_L", "sigma_M", "checks" };
+    for (int i = 0; i <= OUT_CHECKS; i++)
+        names[i] = bake_plan_name(plan, "cube/%d/%s", index->cube, names[i]);
+    const struct bake_output outputs[] = {
+        { names[OUT_U_B], TENSOR_F32, 2, { n, k_b }, BAKE_ROWS, BAKE_SAVED },
+        { names[OUT_T_DB], TENSOR_F32, 2, { k_b, n }, BAKE_ROWS, BAKE_SAVED },
+        { names[OUT_L_IMP], TENSOR_F32, 2, { n, k_b }, BAKE_ROWS, BAKE_REPORTED },
+        { names[OUT_SIGMA_L], TENSOR_F32, 1, { small }, BAKE_ROWS, BAKE_REPORTED },
+        { names[OUT_SIGMA_M], TENSOR_F32, 1, { k_d }, BAKE_ROWS, BAKE_REPORTED },
+        { names[OUT_CHECKS], TENSOR_F32, 1, { 2 }, BAKE_ROWS, BAKE_REPORTED },
+    };
+    const double flops = 10.0 * (double)(n * lights * small) + 6.0 * (double)(n * n * k_d);
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d modes", index->cube),
+                                    .wave = WAVE_MODES,
+                                    .task_count = 1,
+                                    .run = run_modes,
+                                    .argument = index,
+                                    .outputs = outputs,
+                                    .output_count = OUT_CHECKS + 1,
+                                    .flops = flops,
+                                    .scratch_bytes = (size_t)(8 * (n * n + 4 * n * lights)) });
+}
+
+// ---- singular values of F, for the report
+
+static bool run_spectrum(const struct bake_task *task)
+{
+    const struct mrt_bake_job *job = task->job;
+    const struct stage_index *index = task->argument;
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    struct matrix_f64 f = { 0 }, gram = { 0 };
+    struct linalg_eigen eigen = { 0 };
+    bool ok = operator_of(task, MRT_IRRADIANCE, &shape, &f) &&
+              matrix_f64_init(task->host, &gram, f.rows, f.rows) &&
+              matrix_f64_multiply(task->host, 1.0, &f, TRANSPOSED, &f, AS_IT_IS, 0.0, &gram) &&
+              linalg_symmetric_eigen(task->host, "the one-bounce operator", &gram, &eigen);
+    for (size_t i = 0; ok && i < f.rows; i++)
+        ((float *)task->out[0])[i] = (float)sqrt(fmax(eigen.values[i], 0.0));
+    linalg_eigen_finish(task->host, &eigen);
+    matrix_f64_finish(task->host, &gram);
+    matrix_f64_finish(task->host, &f);
+    return ok;
+}
+
+static bool add_spectrum(struct bake_plan *plan, const struct mrt_bake_job *job,
+                         const struct stage_index *index)
+{
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const uint64_t n = (uint64_t)mrt_shape_texels(&shape);
+    const struct bake_output out = { bake_plan_name(plan, "cube/%d/sigma_F", index->cube),
+                                     TENSOR_F32,
+                                     1,
+                                     { n },
+                                     BAKE_ROWS,
+                                     BAKE_REPORTED };
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d spectrum", index->cube),
+                                    .wave = WAVE_MODES,
+                                    .task_count = 1,
+                                    .run = run_spectrum,
+                                    .argument = index,
+                                    .outputs = &out,
+                                    .output_count = 1,
+                                    .flops = 12.0 * (double)(n * n * n),
+                                    .scratch_bytes = (size_t)(40 * n * n) });
+}
+
+// ---- directional light of a shape
+
+// U_vec and U_bvol: gathering L_imp.
+static bool gather_implicit(const struct bake_task *task, int measure, int output,
+                            const struct mrt_shape *shape, const struct matrix_f64 *l_imp)
+{
+    struct matrix_f64 gather = { 0 }, out = { 0 };
+    bool ok = operator_of(task, measure, shape, &gather) &&
+              matrix_f64_init(task->host, &out, gather.rows, l_imp->columns) &&
+              matrix_f64_multiply(task->host, 1.0, &gather, AS_IT_IS, l_imp, AS_IT_IS, 0.0, &out);
+    if (ok) store(out.at, out.rows * out.columns, task->out[output]);
+    matrix_f64_finish(task->host, &out);
+    matrix_f64_finish(task->host, &gather);
+    return ok;
+}
+
+static bool run_directional(const struct bake_task *task)
+{
+    const struct mrt_bake_job *job = task->job;
+    const struct stage_index *index = task->argument;
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    struct matrix_f32 narrow;
+    struct matrix_f64 l_imp = { 0 };
+    bool ok = mrt_bake_input(task, index->l_imp, &narrow) &&
+              matrix_f64_from_f32(task->host, &narrow, &l_imp) &&
+              gather_implicit(task, MRT_VECTOR, 0, &shape, &l_imp) &&
+              gather_implicit(task, MRT_PROBE, 1, &shape, &l_imp);
+    matrix_f64_finish(task->host, &l_imp);
+    return ok;
+}
+
+static bool add_directional(struct bake_plan *plan, const struct mrt_bake_job *job,
+                            const struct stage_index *index)
+{
+    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const uint64_t n = (uint64_t)mrt_shape_texels(&shape);
+    const struct bake_output outputs[] = {
+        { bake_plan_name(plan, "cube/%d/U_vec", index->cube),
+          TENSOR_F32,
+          3,
+          { n, MRT_VECTOR_COEFFICIENTS, job->k_b },
+          BAKE_ROWS,
+          BAKE_SAVED },
+        { bake_plan_name(plan, "cube/%d/U_bvol", index->cube),
+          TENSOR_F32,
+          3,
+          { job->probes, MRT_PROBE_COEFFICIENTS, job->k_b },
+          BAKE_ROWS,
+          BAKE_SAVED },
+    };
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d directions", index->cube),
+                                    .wave = WAVE_ELEMENTS,
+                                    .task_count = 1,
+                                    .run = run_directional,
+                                    .argument = index,
+                                    .outputs = outputs,
+                                    .output_count = 2,
+                                    .flops = 8.0 * (double)(n * n * job->k_b),
+                                    .scratch_bytes = (size_t)(8 * 4 * n * n) });
+}
+
+// ---- the plan
+
+static bool prepare_job(void *user, struct host *host)
+{
+    struct mrt_bake_job *job = user;
+    job->host = host;
+    for (int m = 0; m < 3; m++)
+        if (!mrt_rays_init(host, (enum mrt_measure)m, job->options.rays, &job->rays[m]))
+            return false;
+    return true;
+}
+
+static void finish_job(void *user)
+{
+    struct mrt_bake_job *job = user;
+    for (int m = 0; m < 3; m++) mrt_rays_finish(job->host, &job->rays[m]);
+}
+
+static void set_sizes(const struct mrt_dictionary_options *o, struct mrt_bake_job *job)
+{
+    const struct mrt_shape closed = mrt_cube(o->texels, 0), left = mrt_cube_left(o->texels);
+    *job = (struct mrt_bake_job){
+        .options = *o,
+        .maze = (enum mrt_maze)o->maze,
+        .cubes = mrt_cube_count((enum mrt_maze)o->maze),
+        .turns = o->maze == MRT_MAZE_2D ? MRT_TURNS_2D : MRT_TURNS_3D,
+        .k_b = (uint64_t)o->modes,
+        .k_l = (uint64_t)o->lightfield_modes,
+        .k_r = (uint64_t)o->response_modes,
+        .texels = (uint64_t)mrt_shape_texels(&closed),
+        .left_texels = (uint64_t)mrt_shape_texels(&left),
+        .probes = (uint64_t)(o->probes * o->probes * o->probes),
+        .openings = (uint64_t)mrt_cube_openings((enum mrt_maze)o->maze),
+        .lightfield = { o->lightfield_positions, o->lightfield_directions,
+                        o->lightfield_supersampling },
+        .wave_final = mrt_wave_of_round(o->lightfield_rounds) + 3,
+    };
+    job->samples = mrt_lightfield_samples(job->lightfield);
+}
+
+static struct stage_index *index_of_cube(struct bake_plan *plan, int cube)
+{
+    struct stage_index *index = bake_plan_alloc(plan, 1, sizeof *index);
+    if (!index) return NULL;
+    index->cube = cube;
+    index->direct = bake_plan_name(plan, "cube/%d/direct", cube);
+    index->l_imp = bake_plan_name(plan, "cube/%d/L_imp", cube);
+    return index->direct && index->l_imp ? index : NULL;
+}
+
+bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_options *options,
+                         bool full)
+{
+    struct mrt_bake_job *job = bake_plan_alloc(plan, 1, sizeof *job);
+    struct stage_index *cube[MRT_MAX_CUBES];
+    if (!job) return false;
+    set_sizes(options, job);
+    bake_plan_set_job(plan, &(struct bake_job){ .job = job,
+                                                .prepare = prepare_job,
+                                                .finish = finish_job,
+                                                .bytes = (size_t)options->rays * 100 });
+    bool ok = true;
+    for (int i = 0; ok && i < job->cubes; i++) ok = (cube[i] = index_of_cube(plan, i)) != NULL;
+    for (int m = 0; ok && m < 3; m++) ok = add_gather(plan, job, m);
+    for (int i = 0; ok && i < job->cubes; i++) ok = add_direct(plan, job, cube[i]);
+    for (int i = 0; ok && i < job->cubes; i++)
+        ok = add_modes(plan, job, cube[i]) && (!full || add_spectrum(plan, job, cube[i]));
+    for (int i = 0; ok && i < job->cubes; i++) ok = add_directional(plan, job, cube[i]);
+    return ok && mrt_interface_bake(plan, job);
+}

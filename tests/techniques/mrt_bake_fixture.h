@@ -1,0 +1,13 @@
+// A baked dictionary, for tests. Failures end the test.
+#pragma once
+
+#include "bake/bake.h"
+
+#include "techniques/mrt/dictionary/dictionary.h"
+
+// The defaults with a lightfield of a sixteenth of the samples; its errors are about the same.
+struct mrt_dictionary_options mrt_fixture_options(void);
+// A complete bake. threads 0: all cores. Destroy it.
+struct bake *mrt_fixture_bake(const struct mrt_dictionary_options *options, int threads, bool full);
+// Data of the tensor cube/CUBE/WHAT, in the file or in the report.
+const float *mrt_fixture_tensor(const struct bake *bake, const char *what, int cube);

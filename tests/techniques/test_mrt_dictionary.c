@@ -1,0 +1,142 @@
+// The bake of a dictionary: its bytes on several threads, its size, and operators that must agree.
+#include "framework/test.h"
+#include "techniques/mrt_bake_fixture.h"
+
+#include "core/file.h"
+#include "core/sh.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static struct mrt_dictionary_options small_options(void)
+{
+    struct mrt_dictionary_options options = mrt_fixture_options();
+    options.texels = 6;
+    options.rays = 1024;
+    options.modes = 12;
+    options.lightfield_modes = 32;
+    options.response_modes = 12;
+    return options;
+}
+
+static struct file_bytes bake_on(int threads)
+{
+    const struct mrt_dictionary_options options = small_options();
+    struct bake *bake = mrt_fixture_bake(&options, threads, false);
+    const char *path = test_path("dictionary.safetensors");
+    struct file_bytes bytes;
+    CHECK(bake_save(bake, path, false));
+    CHECK(file_read(test_host(), path, 64 << 20, &bytes));
+    bake_destroy(bake);
+    return bytes;
+}
+
+TEST(dictionary_has_the_same_bytes_on_1_2_and_4_threads)
+{
+    struct file_bytes one = bake_on(1);
+    for (int threads = 2; threads <= 4; threads += 2) {
+        struct file_bytes more = bake_on(threads);
+        CHECK(one.size == more.size && memcmp(one.data, more.data, one.size) == 0);
+        file_bytes_finish(test_host(), &more);
+    }
+    file_bytes_finish(test_host(), &one);
+}
+
+static bool stop_at(void *user, const struct bake_progress *progress)
+{
+    (void)progress;
+    return ++*(int *)user < 3;
+}
+
+TEST(dictionary_has_the_same_bytes_after_a_cancel_and_a_resume)
+{
+    const struct mrt_dictionary_options options = small_options();
+    const struct bake_identity identity = {
+        .technique = "mrt", .version = 1, .options = "", .program = "test"
+    };
+    const char *path = test_path("resumed.safetensors");
+    int calls = 0;
+    struct bake *bake = bake_create(test_host(), &identity);
+    CHECK(bake && mrt_dictionary_bake(bake_plan_of(bake), &options, false));
+    bake_run(bake, &(struct bake_run_options){ .progress = stop_at, .user = &calls });
+    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 2 }));
+    struct file_bytes resumed, one = bake_on(1);
+    CHECK(bake_save(bake, path, false) && file_read(test_host(), path, 64 << 20, &resumed));
+    CHECK(one.size == resumed.size && memcmp(one.data, resumed.data, one.size) == 0);
+    file_bytes_finish(test_host(), &resumed);
+    file_bytes_finish(test_host(), &one);
+    bake_destroy(bake);
+}
+
+TEST(dictionary_of_other_options_is_refused)
+{
+    struct mrt_dictionary_options options = small_options();
+    struct bake *bake = mrt_fixture_bake(&options, 0, false);
+    struct mrt_dictionary dictionary;
+    options.modes++;
+    CHECK(!mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &dictionary));
+    CHECK(strstr(test_last_message(), "U_b") || strstr(test_last_message(), "R_"));
+    options = small_options();
+    options.maze = MRT_MAZE_3D;
+    CHECK(!mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &dictionary));
+    bake_destroy(bake);
+}
+
+// Largest difference between irradiance and OHLSH along the normal, of columns with an L2 norm
+// of 1.
+static double along_normal(const struct matrix_f32 *scalar, const struct matrix_f32 *vector)
+{
+    float y[4];
+    double worst = 0.0;
+    sh_eval(2, vec3_of(0, 0, 1), y);
+    for (size_t c = 0; c < scalar->columns; c++) {
+        double difference = 0.0, all = 0.0;
+        for (size_t r = 0; r < scalar->rows; r++) {
+            double value = 0.0, exact = (double)scalar->at[r * scalar->stride + c];
+            for (size_t k = 0; k < 4; k++)
+                value += (double)(vector->at[(4 * r + k) * vector->stride + c] * y[k]);
+            difference += (value - exact) * (value - exact);
+            all += exact * exact;
+        }
+        if (all > 0.0 && c < 4) worst = fmax(worst, sqrt(difference / all));
+    }
+    return worst;
+}
+
+TEST(default_dictionary_is_as_large_as_the_paper_s)
+{
+    struct mrt_dictionary_options options;
+    struct mrt_dictionary d;
+    option_defaults(mrt_dictionary_option_table(), &options);
+    struct bake *bake = mrt_fixture_bake(&options, 0, false);
+    CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &d));
+    const struct mrt_dictionary_bytes bytes = mrt_dictionary_bytes(&d);
+    double task_s = 0.0;
+    for (int i = 0; i < bake_stage_count(bake); i++) {
+        const struct bake_stage_info stage = bake_stage_info(bake, i);
+        task_s += stage.seconds;
+        print_message("  %-24s %6.2f s in %zu tasks\n", stage.name, stage.seconds, stage.tasks);
+    }
+    print_message("shapes %.3f MB (paper: 4.7), interfaces %.3f MB (paper: 1.2), probes %.3f MB; "
+                  "%.1f s of tasks\n",
+                  1e-6 * (double)bytes.shapes, 1e-6 * (double)bytes.interfaces,
+                  1e-6 * (double)bytes.probes, task_s);
+    CHECK_NEAR(1e-6 * (double)bytes.shapes, 4.7, 0.05);
+    CHECK_NEAR(1e-6 * (double)bytes.interfaces, 1.2, 0.05);
+    for (int i = 0; i < d.element_count; i++) {
+        const float *checks = mrt_fixture_tensor(bake, "checks", i),
+                    *sigma = mrt_fixture_tensor(bake, "sigma_M", i);
+        print_message("cube %d: |Um'Um - I| %.1e, |F Limp - Ub| / |Ub| %.1e, sigma %.3f, vector "
+                      "irradiance differs by %.3f\n",
+                      i, (double)checks[0], (double)checks[1], (double)sigma[0],
+                      along_normal(&d.element[i].u_b, &d.element[i].u_vec));
+        CHECK(checks[0] < 1e-10f && checks[1] < 1e-10f);
+        CHECK(along_normal(&d.element[i].u_b, &d.element[i].u_vec) < 0.05);
+    }
+    print_message("interface: vector irradiance differs by %.3f\n",
+                  along_normal(&d.u_r, &d.u_rvec));
+    CHECK(along_normal(&d.u_r, &d.u_rvec) < 0.145);
+    mrt_dictionary_finish(test_host(), &d);
+    bake_destroy(bake);
+}
