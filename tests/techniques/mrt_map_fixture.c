@@ -4,6 +4,8 @@
 
 #include "core/rng.h"
 
+#include "scene/scene.h"
+
 #include <stdio.h>
 
 static void turn_axes(struct mrt_block *block, int from_x, int from_y, int flip)
@@ -39,7 +41,7 @@ static void connect_if(struct mrt_block_map *map, int a, int b, bool open)
     }
 }
 
-struct mrt_block_map mrt_random_grid(int columns, int rows, float open, uint32_t seed)
+struct mrt_block_map mrt_random_grid(int columns, int rows, float open, bool turned, uint32_t seed)
 {
     struct mrt_block_map map;
     struct rng rng = rng_for(seed, 0, 0);
@@ -51,10 +53,22 @@ struct mrt_block_map mrt_random_grid(int columns, int rows, float open, uint32_t
         mrt_block_init(&map.blocks[b], name, MRT_BLOCK_CUBE);
         mrt_block_set_box(&map.blocks[b],
                           (struct box3){ vec3_of(x, 0, z), vec3_of(x + 1, 1, z + 1) });
-        mrt_turn_block(&map.blocks[b], (int)(rng_u32(&rng) % MRT_ORIENTATIONS));
+        int orientation = (int)(rng_u32(&rng) % MRT_ORIENTATIONS);
+        if (turned) mrt_turn_block(&map.blocks[b], orientation);
         if (b % columns > 0) connect_if(&map, b, b - 1, rng_float(&rng) < open);
         if (b >= columns) connect_if(&map, b, b - columns, rng_float(&rng) < open);
     }
     CHECK(mrt_block_map_check("grid", &map));
+    return map;
+}
+
+struct mrt_block_map mrt_maze(int blocks, int seed)
+{
+    char spec[64];
+    struct mrt_block_map map;
+    snprintf(spec, sizeof spec, "@maze:blocks=%d,seed=%d", blocks, seed);
+    struct scene *scene = scene_load(test_host(), spec);
+    CHECK(scene && mrt_block_map_of_scene(test_host(), scene, &map));
+    scene_destroy(scene);
     return map;
 }

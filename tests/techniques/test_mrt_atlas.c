@@ -4,8 +4,6 @@
 
 #include "core/rng.h"
 
-#include "scene/scene.h"
-
 #include "techniques/mrt/level/atlas.h"
 
 #include <math.h>
@@ -86,7 +84,7 @@ TEST(coplanar_walls_of_connected_blocks_agree_along_their_seam)
 {
     static const float chances[] = { 1.0f, 0.8f, 0.5f, 0.3f };
     for (uint32_t i = 0; i < 40; i++) {
-        struct light_map m = make(mrt_random_grid(4, 3, chances[i % 4], i));
+        struct light_map m = make(mrt_random_grid(4, 3, chances[i % 4], true, i));
         int seams;
         fill_random(&m, i);
         CHECK_NEAR(seam_error(&m, &seams), 0, 1e-5);
@@ -101,7 +99,7 @@ TEST(coplanar_walls_of_connected_blocks_agree_along_their_seam)
 // What the border is for: without it, each side repeats its own texels.
 TEST(without_the_border_the_sides_of_a_seam_differ)
 {
-    struct light_map m = make(mrt_random_grid(4, 3, 0.8f, 1));
+    struct light_map m = make(mrt_random_grid(4, 3, 0.8f, true, 1));
     int seams;
     fill_random(&m, 1);
     for (int i = 0; i < m.atlas.border_count; i++) m.filled[m.atlas.borders[i].texel] = 0.0f;
@@ -111,7 +109,7 @@ TEST(without_the_border_the_sides_of_a_seam_differ)
 
 TEST(a_constant_light_map_is_constant_up_to_its_edges)
 {
-    struct light_map m = make(mrt_random_grid(5, 4, 0.6f, 3));
+    struct light_map m = make(mrt_random_grid(5, 4, 0.6f, true, 3));
     for (int i = 0; i < m.atlas.texels; i++) m.values[i] = 1.0f;
     mrt_atlas_fill(&m.atlas, m.values, 1, m.filled);
     for (int t = 0; t < m.atlas.tile_count; t++)
@@ -154,7 +152,7 @@ static bool share_a_vertex(const struct light_map *m, int a, int b)
 // wall continues to, beyond half a texel.
 TEST(nothing_bleeds_across_a_crease_or_a_wall)
 {
-    struct light_map m = make(mrt_random_grid(3, 3, 0.6f, 5));
+    struct light_map m = make(mrt_random_grid(3, 3, 0.6f, true, 5));
     int n = RESOLUTION * RESOLUTION, apart = 0;
     for (int lit = 0; lit < m.atlas.tile_count; lit++) {
         for (int i = 0; i < m.atlas.texels; i++) m.values[i] = (float)(i / n == lit);
@@ -172,7 +170,7 @@ TEST(nothing_bleeds_across_a_crease_or_a_wall)
 
 TEST(lookups_of_light_are_not_negative)
 {
-    struct light_map m = make(mrt_random_grid(4, 4, 0.7f, 6));
+    struct light_map m = make(mrt_random_grid(4, 4, 0.7f, true, 6));
     struct rng rng = rng_for(1, 2, 3);
     for (int i = 0; i < m.atlas.texels; i++) // strong contrast
         m.values[i] = rng_float(&rng) < 0.5f ? 0.0f : 1000.0f;
@@ -188,11 +186,7 @@ TEST(lookups_of_light_are_not_negative)
 
 TEST(mazes_have_seams_that_agree)
 {
-    struct scene *scene = scene_load(test_host(), "@maze:blocks=41");
-    struct mrt_block_map map;
-    CHECK(scene && mrt_block_map_of_scene(test_host(), scene, &map));
-    scene_destroy(scene);
-    struct light_map m = make(map);
+    struct light_map m = make(mrt_maze(41, 1));
     int seams;
     fill_random(&m, 9);
     float error = seam_error(&m, &seams);

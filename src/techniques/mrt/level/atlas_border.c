@@ -26,17 +26,6 @@ static bool is_coplanar(const struct mrt_block *a, int face, const struct mrt_bl
                          mrt_warp_face_normal(b->corner, other, middle[1])) >= COPLANAR;
 }
 
-// The face beside an opening with an edge between two of its corners.
-static int face_beside(int opening, const int corner[2])
-{
-    for (int f = 0; f < CUBE_FACES; f++) {
-        if (f == opening) continue;
-        if (mrt_face_corner_index(f, corner[0]) >= 0 && mrt_face_corner_index(f, corner[1]) >= 0)
-            return f;
-    }
-    return -1;
-}
-
 bool mrt_wall_continues(const struct mrt_block_map *map, struct mrt_wall_corner from, bool forward,
                         struct mrt_wall_corner *to)
 {
@@ -51,7 +40,7 @@ bool mrt_wall_continues(const struct mrt_block_map *map, struct mrt_wall_corner 
     int there[2];
     for (int k = 0; k < 2; k++) there[k] = mrt_neighbor_corner(a, opening, here[k]);
     const struct mrt_block *b = &map->blocks[n->block];
-    int face = face_beside(n->face, there);
+    int face = mrt_neighbor_direction(a, opening, from.face);
     if (mrt_block_is_open(b, face) || !is_coplanar(a, from.face, b, face, here, there))
         return false;
     *to = (struct mrt_wall_corner){ n->block, face, mrt_face_corner_index(face, there[0]) };

@@ -82,3 +82,27 @@ int mrt_neighbor_corner(const struct mrt_block *block, int face, int corner)
     // Half a turn around v exchanges s and 1 − s: corner 0 with 1, 2 with 3.
     return mrt_face_corner(n->face, i ^ 1);
 }
+
+// The face beside `face` with the edge between two of its corners.
+static int face_beside(int face, int a, int b)
+{
+    for (int i = 0; i < 4; i++) {
+        int c = mrt_face_corner(face, i), d = mrt_face_corner(face, (i + 1) % 4);
+        if ((c == a && d == b) || (c == b && d == a)) return mrt_face_across_edge(face, i);
+    }
+    return -1;
+}
+
+int mrt_neighbor_direction(const struct mrt_block *block, int face, int direction)
+{
+    const struct mrt_neighbor *n = &block->neighbor[face];
+    if (direction == face) return cube_opposite(n->face);
+    if (direction == cube_opposite(face)) return n->face;
+    for (int i = 0; i < 4; i++) {
+        if (mrt_face_across_edge(face, i) != direction) continue;
+        int a = mrt_neighbor_corner(block, face, mrt_face_corner(face, i));
+        int b = mrt_neighbor_corner(block, face, mrt_face_corner(face, (i + 1) % 4));
+        return face_beside(n->face, a, b);
+    }
+    return -1;
+}

@@ -59,6 +59,9 @@ int mrt_face_corner_index(int face, int corner);
 int mrt_face_across_edge(int face, int i);
 // The corner of the neighbour's cell that meets this corner of an opening.
 int mrt_neighbor_corner(const struct mrt_block *block, int face, int corner);
+// The face of the neighbour's cell with the direction of a face of this one, if the two cells were
+// cubes: that of `face` itself is opposite to the neighbour's opening.
+int mrt_neighbor_direction(const struct mrt_block *block, int face, int direction);
 
 // ---- the warp
 

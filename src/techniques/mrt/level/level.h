@@ -1,0 +1,63 @@
+// A level: the blocks of a map with their shapes of the dictionary, and the operator T_b→r that
+// carries indirect light from each block through openings into others (Loos 2015, section 3.5.3).
+#pragma once
+
+#include "techniques/mrt/level/atlas.h"
+#include "techniques/mrt/level/kernels.h"
+#include "techniques/mrt/level/operators.h"
+
+struct mrt_level_options {
+    int max_depth; // openings that light passes at most; 0: none
+};
+
+// Light enters `block` by an opening.
+struct mrt_entry {
+    int block, face;
+};
+
+// T_b→r is sparse: for each entry, one matrix for each block whose light reaches it.
+struct mrt_link {
+    int source;    // block
+    size_t matrix; // offset in `matrices`: k_b rows of link_stride, the transposed k_r × k_b
+};
+
+struct mrt_level {
+    struct host *host;
+    const struct mrt_block_map *map;       // borrowed
+    const struct mrt_operators *operators; // borrowed
+    struct mrt_cube_place *place;          // [blocks]
+    int *first_texel;                      // [blocks + 1], of the level
+    struct mrt_entry *entries;             // in the order of blocks, then faces
+    int entry_count;
+    int *entry_of_face;     // [CUBE_FACES · block + face], −1: none
+    int *first_link;        // [entry_count + 1]
+    struct mrt_link *links; // of each entry in the order of sources
+    int link_stride;        // k_r, rounded up to MRT_LANES; the rest is 0
+    float *matrices;
+};
+
+// FAIL_UNSUPPORTED with the name of a block for which the dictionary has no cube: a shape without
+// floor or ceiling, or neighbours that are tilted against each other, in a dictionary for
+// two-dimensional mazes. Cylinders are taken as cubes with their openings.
+bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
+                    const struct mrt_operators *operators, const struct mrt_level_options *options,
+                    struct mrt_level *level);
+void mrt_level_finish(struct mrt_level *level); // accepts zero
+
+static inline struct mrt_shape mrt_level_cell(const struct mrt_level *level, int block)
+{
+    return mrt_cube(level->operators->resolution, level->map->blocks[block].open);
+}
+
+// ---- paths.c
+
+// What one block sends: for each entry that its light reaches a matrix, k_r × k_b.
+struct mrt_sent {
+    struct host *host;
+    int *entry; // ascending
+    float *matrices;
+    int count;
+};
+bool mrt_send_from(struct host *host, const struct mrt_level *level, int block, int max_depth,
+                   struct mrt_sent *out);
+void mrt_sent_finish(struct mrt_sent *sent);

@@ -1,0 +1,254 @@
+// The solver: operators in the order that the kernels read, and the steps of a frame.
+#include "solver.h"
+
+#include "kernels.h"
+
+#include "core/parallel.h"
+
+#include <string.h>
+
+static int walls_of(unsigned missing)
+{
+    struct mrt_shape cube = mrt_cube(1, missing);
+    return mrt_shape_texels(&cube);
+}
+
+// The padded index of a texel: each wall starts at a multiple of the lanes.
+static int padded(const struct mrt_solver *s, int texel)
+{
+    int n = s->level->operators->resolution * s->level->operators->resolution;
+    return texel / n * s->face_texels + texel % n;
+}
+
+static int block_stride(const struct mrt_solver *s)
+{
+    return 3 * CUBE_FACES * s->face_texels;
+}
+
+static int entry_stride(const struct mrt_level *level)
+{
+    return 3 * (level->link_stride + level->operators->k_r);
+}
+
+// ---- operators
+
+static bool copy_cube(struct mrt_solver *s, int cube)
+{
+    const struct mrt_operators *o = s->level->operators;
+    const struct mrt_cube_matrices *from = &o->cube[cube];
+    size_t walls = (size_t)walls_of(mrt_cube_missing(o->maze, cube));
+    size_t stride = walls * (size_t)s->face_texels, rows = (size_t)o->k_b;
+    s->t_db[cube] = host_alloc(s->host, stride * rows, sizeof(float));
+    s->u_b[cube] = host_alloc(s->host, stride * rows, sizeof(float));
+    if (!s->t_db[cube] || !s->u_b[cube]) return false;
+    for (size_t t = 0; t < from->t_db.columns; t++) {
+        size_t at = (size_t)padded(s, (int)t);
+        for (size_t r = 0; r < rows; r++) {
+            s->t_db[cube][r * stride + at] = from->t_db.at[r * from->t_db.stride + t];
+            s->u_b[cube][r * stride + at] = from->u_b.at[t * from->u_b.stride + r];
+        }
+    }
+    return true;
+}
+
+static bool copy_response(struct mrt_solver *s)
+{
+    const struct matrix_f32 *u_r = &s->level->operators->u_r;
+    int n = s->level->operators->resolution * s->level->operators->resolution;
+    size_t face = (size_t)s->face_texels, k_r = (size_t)s->level->operators->k_r;
+    s->u_r = host_alloc(s->host, (CUBE_FACES - 1) * k_r * face, sizeof *s->u_r);
+    if (!s->u_r) return false;
+    for (size_t t = 0; t < u_r->rows; t++) {
+        size_t wall = t / (size_t)n, in_wall = t % (size_t)n;
+        for (size_t r = 0; r < k_r; r++)
+            s->u_r[(wall * k_r + r) * face + in_wall] = u_r->at[t * u_r->stride + r];
+    }
+    return true;
+}
+
+// ---- texels
+
+static void map_block(struct mrt_solver *s, int block)
+{
+    const struct mrt_level *level = s->level;
+    const struct mrt_cube_place *place = &level->place[block];
+    struct mrt_shape cell = mrt_level_cell(level, block);
+    struct mrt_shape cube =
+        mrt_cube(cell.resolution, mrt_cube_missing(level->operators->maze, place->cube));
+    for (int t = 0; t < mrt_shape_texels(&cell); t++)
+        s->cube_texel[level->first_texel[block] + t] =
+            padded(s, mrt_turned_texel(&cube, place->block_from_cube, &cell, t));
+}
+
+// Texels of a wall as seen by light that enters at a face.
+static void map_entry(struct mrt_solver *s, int entry, int wall)
+{
+    int resolution = s->level->operators->resolution, n = resolution * resolution;
+    struct mrt_shape entered = mrt_cube_entered(resolution);
+    struct mrt_shape only = mrt_cube(resolution, CUBE_ALL_FACES & ~(1u << wall));
+    int *out = s->entered_texel + (entry * CUBE_FACES + wall) * n;
+    for (int t = 0; t < n; t++) {
+        int texel = mrt_turned_texel(&entered, mrt_block_from_entry(entry), &only, t);
+        s->entered_face[entry][wall] = texel / n;
+        out[t] = texel % n;
+    }
+}
+
+static void map_texels(struct mrt_solver *s)
+{
+    for (int b = 0; b < s->level->map->count; b++) map_block(s, b);
+    for (int entry = 0; entry < CUBE_FACES; entry++)
+        for (int wall = 0; wall < CUBE_FACES; wall++)
+            if (wall != entry) map_entry(s, entry, wall);
+}
+
+static bool allocate(struct mrt_solver *s)
+{
+    const struct mrt_level *level = s->level;
+    const struct mrt_operators *o = level->operators;
+    size_t blocks = (size_t)level->map->count, n = (size_t)(o->resolution * o->resolution);
+    s->cube_texel =
+        host_alloc(s->host, (size_t)level->first_texel[level->map->count], sizeof *s->cube_texel);
+    s->entered_texel = host_alloc(s->host, CUBE_FACES * CUBE_FACES * n, sizeof *s->entered_texel);
+    s->light = host_alloc(s->host, blocks * (size_t)block_stride(s), sizeof *s->light);
+    s->b = host_alloc(s->host, blocks * 3 * (size_t)o->k_b, sizeof *s->b);
+    s->r =
+        host_alloc(s->host, (size_t)level->entry_count * (size_t)entry_stride(level), sizeof *s->r);
+    return s->cube_texel && s->entered_texel && s->light && s->b && s->r;
+}
+
+bool mrt_solver_init(struct host *host, const struct mrt_level *level, struct mrt_solver *solver)
+{
+    int n = level->operators->resolution * level->operators->resolution;
+    *solver = (struct mrt_solver){ .host = host, .level = level };
+    solver->face_texels = (n + MRT_LANES - 1) / MRT_LANES * MRT_LANES;
+    bool ok = allocate(solver) && copy_response(solver);
+    for (int i = 0; ok && i < mrt_cube_count(level->operators->maze); i++)
+        ok = copy_cube(solver, i);
+    if (ok)
+        map_texels(solver);
+    else
+        mrt_solver_finish(solver);
+    return ok;
+}
+
+void mrt_solver_finish(struct mrt_solver *solver)
+{
+    if (solver->host) {
+        for (int i = 0; i < MRT_MAX_CUBES; i++) {
+            host_free(solver->host, solver->t_db[i]);
+            host_free(solver->host, solver->u_b[i]);
+        }
+        host_free(solver->host, solver->u_r);
+        host_free(solver->host, solver->cube_texel);
+        host_free(solver->host, solver->entered_texel);
+        host_free(solver->host, solver->light);
+        host_free(solver->host, solver->b);
+        host_free(solver->host, solver->r);
+    }
+    *solver = (struct mrt_solver){ 0 };
+}
+
+// ---- a frame
+
+struct frame {
+    struct mrt_solver *solver;
+    const float *radiosity;
+    float *irradiance;
+};
+
+// Three planes of a block's padded texels; their length.
+static int planes_of(const struct mrt_solver *s, int block, float *planes[3])
+{
+    const struct mrt_level *level = s->level;
+    int cube = level->place[block].cube;
+    int length = walls_of(mrt_cube_missing(level->operators->maze, cube)) * s->face_texels;
+    for (int c = 0; c < 3; c++)
+        planes[c] = s->light + (size_t)block * (size_t)block_stride(s) + (size_t)(c * length);
+    return length;
+}
+
+// b = T_d→b l_d. The padding is 0 and stays so.
+static void project_block(void *user, size_t i)
+{
+    const struct frame *frame = user;
+    struct mrt_solver *s = frame->solver;
+    const struct mrt_level *level = s->level;
+    int block = (int)i, cube = level->place[block].cube, k_b = level->operators->k_b;
+    float *planes[3];
+    int length = planes_of(s, block, planes);
+    memset(planes[0], 0, 3 * (size_t)length * sizeof *planes[0]);
+    for (int t = level->first_texel[block]; t < level->first_texel[block + 1]; t++)
+        for (int c = 0; c < 3; c++) planes[c][s->cube_texel[t]] = frame->radiosity[3 * t + c];
+    const float *const light[3] = { planes[0], planes[1], planes[2] };
+    mrt_kernel_project(s->t_db[cube], length, k_b, length, light, s->b + i * 3 * (size_t)k_b);
+}
+
+// r = T_b→r b for one entry, interleaved.
+static const float *receive(struct mrt_solver *s, int entry)
+{
+    const struct mrt_level *level = s->level;
+    int k_b = level->operators->k_b, k_r = level->operators->k_r, stride = level->link_stride;
+    float *planes = s->r + (size_t)entry * (size_t)entry_stride(level), *out = planes + 3 * stride;
+    float *const r[3] = { planes, planes + stride, planes + 2 * stride };
+    memset(planes, 0, 3 * (size_t)stride * sizeof *planes);
+    for (int l = level->first_link[entry]; l < level->first_link[entry + 1]; l++) {
+        const struct mrt_link *link = &level->links[l];
+        mrt_kernel_expand(level->matrices + link->matrix, stride, k_b, stride,
+                          s->b + (size_t)link->source * 3 * (size_t)k_b, r);
+    }
+    for (int k = 0; k < k_r; k++)
+        for (int c = 0; c < 3; c++) out[3 * k + c] = r[c][k];
+    return out;
+}
+
+// U_r r on the walls of one block.
+static void add_response(const struct mrt_solver *s, int block, int entry_face, const float *r,
+                         float *irradiance)
+{
+    const struct mrt_operators *o = s->level->operators;
+    int n = o->resolution * o->resolution, face = s->face_texels;
+    float *planes[3];
+    planes_of(s, block, planes);
+    for (int c = 0; c < 3; c++) planes[c] = planes[0] + c * face; // light is no longer needed
+    for (int wall = 0; wall < CUBE_FACES; wall++) {
+        if (mrt_block_is_open(&s->level->map->blocks[block], wall)) continue;
+        memset(planes[0], 0, 3 * (size_t)face * sizeof *planes[0]);
+        int from = s->entered_face[entry_face][wall];
+        mrt_kernel_expand(s->u_r + (size_t)(from * o->k_r) * (size_t)face, face, o->k_r, face, r,
+                          planes);
+        const int *texel = s->entered_texel + (entry_face * CUBE_FACES + wall) * n;
+        for (int t = 0; t < n; t++)
+            for (int c = 0; c < 3; c++) irradiance[3 * t + c] += planes[c][texel[t]];
+        irradiance += 3 * n;
+    }
+}
+
+static void light_block(void *user, size_t i)
+{
+    const struct frame *frame = user;
+    struct mrt_solver *s = frame->solver;
+    const struct mrt_level *level = s->level;
+    int block = (int)i, first = level->first_texel[block];
+    float *planes[3];
+    int length = planes_of(s, block, planes), k_b = level->operators->k_b;
+    memset(planes[0], 0, 3 * (size_t)length * sizeof *planes[0]);
+    mrt_kernel_expand(s->u_b[level->place[block].cube], length, k_b, length,
+                      s->b + i * 3 * (size_t)k_b, planes);
+    float *out = frame->irradiance + 3 * (size_t)first;
+    for (int t = first; t < level->first_texel[block + 1]; t++)
+        for (int c = 0; c < 3; c++) out[3 * (t - first) + c] = planes[c][s->cube_texel[t]];
+    for (int f = 0; f < CUBE_FACES; f++) {
+        int entry = level->entry_of_face[CUBE_FACES * block + f];
+        if (entry < 0) continue;
+        add_response(s, block, f, receive(s, entry), out);
+    }
+}
+
+void mrt_solve(struct mrt_solver *solver, const float *radiosity, float *irradiance)
+{
+    struct frame frame = { solver, radiosity, irradiance };
+    size_t blocks = (size_t)solver->level->map->count;
+    parallel_for(blocks, 1, project_block, &frame);
+    parallel_for(blocks, 1, light_block, &frame);
+}
