@@ -1,0 +1,93 @@
+// Data of a level that the host uploads for the shaders of modular radiance transfer. Scalar
+// layout.
+#ifndef AG_MRT_SHARED_H
+#define AG_MRT_SHARED_H
+
+#include "core/shared.h"
+
+#define MRT_LOCAL        64  // workgroup size over texels
+#define MRT_LOCAL_2D     8   // workgroup size over pixels, in x and y
+#define MRT_REDUCE_LOCAL 256 // workgroup size of sums over texels and over modes
+
+// Specialization constants.
+#define MRT_CONSTANT_HALF    0 // operators are half floats, else floats
+#define MRT_CONSTANT_QUADS_B 1 // k_b / 4
+#define MRT_CONSTANT_QUADS_R 2 // k_r / 4
+#define MRT_CONSTANT_VALUES  3 // per texel: 1 irradiance, 4 irradiance by normal (OHLSH)
+#define MRT_MAX_QUADS        16
+
+// A texel of the geometry image: the point of the scene where direct light is computed.
+struct mrt_texel {
+    vec3s position; // world
+    float area_m2;  // of the wall
+    vec3s normal;   // unit
+    uint32_t found; // bool: there is a surface; else the sky is behind the texel
+    vec3s albedo;
+    uint32_t padding;
+};
+
+// A wall of a block: `texels` texels from first_texel.
+struct mrt_gpu_tile {
+    uint32_t block;
+    uint32_t first_texel;
+    uint32_t basis_row;    // of its first texel in T_d→b, U_b and U_vec
+    uint32_t response_row; // of its first texel in the response to one opening
+    int32_t x, y;          // of its first texel in the light map, inside the border
+};
+
+struct mrt_gpu_block {
+    vec3s corner[8]; // world; x is high in corner c if c & 1, y if c & 2, z if c & 4
+    int32_t tile[6]; // by face; −1: an opening
+    uint32_t first_texel, texels;
+    uint32_t basis_row; // of first_texel
+    uint32_t first_opening, openings;
+};
+
+// An opening through which light enters a block, and the blocks that send it.
+struct mrt_gpu_opening {
+    uint32_t response; // first row of its response tables
+    uint32_t first_pair, pairs;
+};
+
+// A texel of the border of the light map: see struct mrt_border of level/atlas.h.
+struct mrt_gpu_border {
+    uint32_t texel, count;
+    uint32_t source[8];
+    float weight[8];
+};
+
+// Uniform block "mrt_level".
+struct mrt_level_params {
+    vec3s grid_origin_m; // lookup grid of blocks
+    float cells_per_m;
+    int32_t cells_x, cells_y, cells_z;
+    uint32_t resolution;      // texels along an edge of a wall
+    uint32_t texels_of_tile;  // resolution²
+    uint32_t texels, borders; // of the light map: inside tiles, around them
+    uint32_t map_width;       // texels
+    uint32_t tiles;
+    uint32_t map_height;
+    int32_t shadow_radius; // texels
+    float offset_m;        // of lookups, along the normal
+    float feedback;        // weight of the indirect irradiance that is reflected again
+    float gain;            // artistic factor on the result
+};
+
+struct mrt_view_push {
+    uint32_t view; // MRT_VIEW_…
+};
+
+#define MRT_VIEW_BLOCKS 0
+#define MRT_VIEW_DIRECT 1
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct mrt_texel) == 48, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_block) == 140, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_opening) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 72, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
+#endif
+
+#endif

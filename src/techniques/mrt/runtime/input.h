@@ -1,0 +1,48 @@
+// What the run time needs of a level: its blocks, its light map, its geometry image and the
+// operators of the dictionary, in the frames of the blocks.
+#pragma once
+
+#include "core/linalg.h"
+
+#include "techniques/mrt/level/atlas.h"
+#include "techniques/mrt/level/geometry.h"
+
+// Operators of blocks with the same openings. n texels of mrt_cube(resolution, open).
+struct mrt_basis_input {
+    unsigned open;
+    struct matrix_f32 t_db;  // k_b × n
+    struct matrix_f32 u_b;   // n × k_b
+    struct matrix_f32 u_vec; // 4 n × k_b, in the frame of mrt_point; empty: no irradiance by normal
+};
+
+// Response of a block to the light of the opening in one face, at the 6 n² texels of a closed cube;
+// 0 on that face.
+struct mrt_response_input {
+    struct matrix_f32 u_r;   // 6 n² × k_r
+    struct matrix_f32 u_vec; // 24 n² × k_r
+};
+
+// Light of a block that enters another one through an opening of that one: T_b→r.
+struct mrt_pair_input {
+    int opening, source; // of mrt_runtime_input.openings; a block
+    const float *t_br;   // k_r × k_b
+};
+
+struct mrt_opening_input {
+    int block, face;
+};
+
+struct mrt_runtime_input {
+    const struct mrt_block_map *map;
+    const struct mrt_atlas *atlas;
+    const struct mrt_geometry_texel *geometry;
+    int k_b, k_r;
+    const struct mrt_basis_input *bases;
+    int basis_count;
+    const int *basis_of_block;
+    struct mrt_response_input response[CUBE_FACES];
+    const struct mrt_opening_input *openings; // in the order of their blocks
+    int opening_count;
+    const struct mrt_pair_input *pairs; // in the order of their openings
+    int pair_count;
+};

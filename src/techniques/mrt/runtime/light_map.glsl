@@ -1,0 +1,88 @@
+// Irradiance of a surface from the light map: of the wall that stands for it, or of several.
+// Needs locate.glsl, MRT_TILES_BINDING, core/sh.glsl.
+#ifndef AG_MRT_LIGHT_MAP_GLSL
+#define AG_MRT_LIGHT_MAP_GLSL
+
+layout(set = 0, binding = MRT_LIGHT_MAP_BINDING) uniform sampler2DArray light_map;
+layout(set = 0, binding = MRT_VECTOR_MAP_BINDING) uniform sampler2DArray vector_map;
+
+layout(constant_id = MRT_CONSTANT_VALUES) const uint VALUES = 1; // 4: by normal
+
+// A surface this near to a wall that it faces, in edges of the cell, is that wall.
+const float MRT_WALL_DISTANCE = 0.1;
+const float MRT_WALL_COSINE = 0.5;
+
+vec3 light_map_uv(int tile, vec2 st)
+{
+    vec2 at = vec2(tile_table[tile].x, tile_table[tile].y) + st * float(level.resolution);
+    return vec3(at / vec2(level.map_width, level.map_height), 0.0);
+}
+
+// The change of irradiance from the wall's normal to another (Loos 2015, section 3.5.4), in the
+// frame of struct mrt_point.
+vec3 change_by_normal(vec3 uv, vec3 normal)
+{
+    vec4 change = sh4_eval(normal) - sh4_eval(vec3(0.0, 0.0, 1.0));
+    vec3 sum;
+    for (int c = 0; c < 3; c++)
+        sum[c] = dot(textureLod(vector_map, vec3(uv.xy, float(c)), 0.0), change);
+    return sum;
+}
+
+vec3 wall_irradiance(int tile, int face, vec3 cell, vec3 normal)
+{
+    mat3 frame = cube_from_face(face);
+    vec2 st = clamp(0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)), 0.0, 1.0);
+    vec3 uv = light_map_uv(tile, st);
+    vec3 irradiance = textureLod(light_map, uv, 0.0).rgb;
+    if (VALUES == 4u)
+        irradiance += change_by_normal(
+            uv, vec3(-dot(frame[0], normal), dot(frame[1], normal), -dot(frame[2], normal)));
+    return max(irradiance, vec3(0.0));
+}
+
+// −1: the surface lies on no wall.
+int wall_of(mrt_place place, vec3 normal)
+{
+    int nearest = -1;
+    float least = MRT_WALL_DISTANCE;
+    for (int f = 0; f < 6; f++) {
+        float side = (f & 1) != 0 ? 1.0 : -1.0;
+        float distance = 0.5 - side * place.cell[f / 2];
+        bool faces = -side * normal[f / 2] > MRT_WALL_COSINE;
+        if (!faces || distance > least || block_table[place.block].tile[f] < 0) continue;
+        least = distance;
+        nearest = f;
+    }
+    return nearest;
+}
+
+// Inside a block a surface is projected onto the walls that face its way; squared cosines weigh
+// them, which sum to 1.
+vec3 walls_irradiance(mrt_place place, vec3 normal)
+{
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+        int face = 2 * axis + (normal[axis] < 0.0 ? 1 : 0), tile;
+        tile = block_table[place.block].tile[face];
+        if (tile < 0 || normal[axis] == 0.0) continue;
+        mat3 frame = cube_from_face(face);
+        float weight = normal[axis] * normal[axis];
+        sum += weight * wall_irradiance(tile, face, place.cell, -frame[2]);
+        weights += weight;
+    }
+    return weights > 0.0 ? sum / weights : vec3(0.0);
+}
+
+vec3 level_irradiance(vec3 position, vec3 normal)
+{
+    mrt_place place = locate(position + level.offset_m * normal);
+    if (place.block < 0) return vec3(0.0);
+    vec3 n = normal_in_cell(place, normal);
+    int face = wall_of(place, n);
+    if (face < 0) return walls_irradiance(place, n);
+    return wall_irradiance(block_table[place.block].tile[face], face, place.cell, n);
+}
+
+#endif

@@ -1,0 +1,104 @@
+// The block of a point, and the place in its cell [−½, ½]³: the inverse of the trilinear warp of
+// level/warp.c. Needs MRT_BLOCKS_BINDING; binding numbers MRT_CELLS_BINDING and
+// MRT_CANDIDATES_BINDING are the includer's.
+#ifndef AG_MRT_LOCATE_GLSL
+#define AG_MRT_LOCATE_GLSL
+
+#include "techniques/mrt/runtime/level.glsl"
+
+// Lookup grid: the first candidate of each cell and the number of them.
+layout(set = 0, binding = MRT_CELLS_BINDING, scalar) readonly buffer mrt_cells
+{
+    uvec2 cell_table[];
+};
+layout(set = 0, binding = MRT_CANDIDATES_BINDING) readonly buffer mrt_candidates
+{
+    uint candidate_table[]; // blocks
+};
+
+const float MRT_BEYOND = 0.25; // of the edge: surfaces this far behind a wall belong to the block
+const float MRT_FAR = 8.0;
+const float MRT_CONVERGED = 1e-5;
+const int MRT_NEWTON_STEPS = 8;
+
+struct mrt_place {
+    int block; // −1: none
+    vec3 cell;
+    float outside; // distance from the cell, in edges
+    mat3 world_from_cell;
+};
+
+vec3 warp_point(uint block, vec3 cell, out mat3 jacobian)
+{
+    vec3 low = 0.5 - cell, high = 0.5 + cell, sum = vec3(0.0);
+    jacobian = mat3(0.0);
+    for (int c = 0; c < 8; c++) {
+        vec3 corner = block_table[block].corner[c];
+        bvec3 is_high = bvec3((c & 1) != 0, (c & 2) != 0, (c & 4) != 0);
+        vec3 w = mix(low, high, is_high), sign = mix(vec3(-1.0), vec3(1.0), is_high);
+        sum += w.x * w.y * w.z * corner;
+        jacobian[0] += sign.x * w.y * w.z * corner;
+        jacobian[1] += sign.y * w.z * w.x * corner;
+        jacobian[2] += sign.z * w.x * w.y * corner;
+    }
+    return sum;
+}
+
+float largest_of(vec3 v)
+{
+    return max(max(abs(v.x), abs(v.y)), abs(v.z));
+}
+
+// Newton's method.
+bool warp_inverse(uint block, vec3 world, inout mrt_place place)
+{
+    place.cell = vec3(0.0);
+    for (int i = 0; i < MRT_NEWTON_STEPS; i++) {
+        vec3 residual = world - warp_point(block, place.cell, place.world_from_cell);
+        vec3 advance = inverse(place.world_from_cell) * residual;
+        place.cell += advance;
+        if (!(largest_of(place.cell) < MRT_FAR)) return false;
+        if (largest_of(advance) < MRT_CONVERGED) return true;
+    }
+    return false;
+}
+
+// The block nearest to the point.
+mrt_place locate(vec3 world)
+{
+    mrt_place nearest;
+    nearest.block = -1;
+    nearest.outside = MRT_BEYOND;
+    vec3 at = (world - level.grid_origin_m) * level.cells_per_m;
+    ivec3 cells = ivec3(level.cells_x, level.cells_y, level.cells_z);
+    if (any(lessThan(at, vec3(0.0))) || any(greaterThanEqual(at, vec3(cells)))) return nearest;
+    ivec3 i = ivec3(at);
+    uvec2 list = cell_table[(i.z * cells.y + i.y) * cells.x + i.x];
+    for (uint k = 0u; k < list.y; k++) {
+        uint block = candidate_table[list.x + k];
+        mrt_place place;
+        if (!warp_inverse(block, world, place)) continue;
+        place.outside = max(largest_of(place.cell) - 0.5, 0.0);
+        if (place.outside >= nearest.outside) continue;
+        place.block = int(block);
+        nearest = place;
+    }
+    return nearest;
+}
+
+// The surface's normal in the cell: gradients transform with the transposed Jacobian.
+vec3 normal_in_cell(mrt_place place, vec3 normal)
+{
+    return normalize(transpose(place.world_from_cell) * normal);
+}
+
+// cube_from_face of dictionary/cube.h: columns u, v and n, n outward.
+mat3 cube_from_face(int face)
+{
+    vec3 n = vec3(0.0), v = vec3(0.0);
+    n[face / 2] = (face & 1) != 0 ? 1.0 : -1.0;
+    v[face / 2 == 1 ? 2 : 1] = 1.0;
+    return mat3(cross(v, n), v, n);
+}
+
+#endif

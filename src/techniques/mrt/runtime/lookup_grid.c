@@ -1,0 +1,141 @@
+// A grid over all blocks; each cell lists the blocks whose bounds, with a margin, touch it.
+#include "tables.h"
+
+#include <math.h>
+
+enum { LONGEST = 32 }; // cells along the longest side
+
+// Of the bounds: surfaces behind a wall still belong to the block (MRT_BEYOND in locate.glsl).
+static const float MARGIN = 0.25f;
+static const float OFFSET = 0.01f; // of the shortest edge: lookups along the normal
+
+struct grid {
+    vec3s origin;
+    float cell;
+    int cells[3];
+};
+
+static struct box3 bounds_of(const struct mrt_block *block, float margin)
+{
+    struct box3 box = box3_empty();
+    for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
+    vec3s more = glms_vec3_scale(box3_size(box), margin);
+    return (struct box3){ glms_vec3_sub(box.min, more), glms_vec3_add(box.max, more) };
+}
+
+static struct grid grid_of(const struct mrt_block_map *map)
+{
+    struct box3 all = box3_empty();
+    for (int b = 0; b < map->count; b++) {
+        struct box3 box = bounds_of(&map->blocks[b], MARGIN);
+        all = box3_add_point(box3_add_point(all, box.min), box.max);
+    }
+    vec3s size = box3_size(all);
+    struct grid grid = { .origin = all.min, .cell = glms_vec3_max(size) / (float)LONGEST };
+    for (int a = 0; a < 3; a++) grid.cells[a] = (int)fmaxf(ceilf(size.raw[a] / grid.cell), 1.0f);
+    return grid;
+}
+
+static int clamp_cell(float x, int cells)
+{
+    return (int)fminf(fmaxf(floorf(x), 0.0f), (float)(cells - 1));
+}
+
+// Calls `visit` for each cell that a block touches.
+static void for_cells(const struct grid *grid, const struct mrt_block *block, uint32_t number,
+                      void (*visit)(void *user, int cell, uint32_t block), void *user)
+{
+    struct box3 box = bounds_of(block, MARGIN);
+    int low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        float origin = grid->origin.raw[a];
+        low[a] = clamp_cell((box.min.raw[a] - origin) / grid->cell, grid->cells[a]);
+        high[a] = clamp_cell((box.max.raw[a] - origin) / grid->cell, grid->cells[a]);
+    }
+    for (int z = low[2]; z <= high[2]; z++)
+        for (int y = low[1]; y <= high[1]; y++)
+            for (int x = low[0]; x <= high[0]; x++)
+                visit(user, (z * grid->cells[1] + y) * grid->cells[0] + x, number);
+}
+
+struct lists {
+    uint32_t (*cell)[2]; // first candidate, count
+    uint32_t *candidates;
+};
+
+static void count_block(void *user, int cell, uint32_t block)
+{
+    (void)block;
+    ((struct lists *)user)->cell[cell][1]++;
+}
+
+static void add_block(void *user, int cell, uint32_t block)
+{
+    struct lists *lists = user;
+    lists->candidates[lists->cell[cell][0] + lists->cell[cell][1]++] = block;
+}
+
+static void visit_all(const struct grid *grid, const struct mrt_block_map *map,
+                      void (*visit)(void *user, int cell, uint32_t block), struct lists *lists)
+{
+    for (int b = 0; b < map->count; b++)
+        for_cells(grid, &map->blocks[b], (uint32_t)b, visit, lists);
+}
+
+// First candidates from the counts, which become 0. Returns the number of candidates.
+static size_t place_lists(struct lists *lists, size_t cells)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < cells; i++) {
+        lists->cell[i][0] = (uint32_t)total;
+        total += lists->cell[i][1];
+        lists->cell[i][1] = 0;
+    }
+    return total;
+}
+
+// The shortest distance from the middle of a block to that of a wall, twice.
+static float shortest_edge(const struct mrt_block_map *map)
+{
+    float least = INFINITY;
+    for (int b = 0; b < map->count; b++) {
+        mat3s j = mrt_warp_jacobian(map->blocks[b].corner, vec3_of(0, 0, 0));
+        for (int a = 0; a < 3; a++) least = fminf(least, glms_vec3_norm(j.col[a]));
+    }
+    return least;
+}
+
+static void set_params(struct mrt_level_params *level, const struct grid *grid,
+                       const struct mrt_block_map *map)
+{
+    level->grid_origin_m = grid->origin;
+    level->cells_per_m = 1.0f / grid->cell;
+    level->cells_x = grid->cells[0];
+    level->cells_y = grid->cells[1];
+    level->cells_z = grid->cells[2];
+    level->offset_m = OFFSET * shortest_edge(map);
+}
+
+bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_map *map)
+{
+    struct grid grid = grid_of(map);
+    struct lists lists = { 0 };
+    size_t cells = (size_t)grid.cells[0] * (size_t)grid.cells[1] * (size_t)grid.cells[2];
+    bool ok = false;
+    set_params(&runtime->level, &grid, map);
+    lists.cell = host_alloc(runtime->host, cells, sizeof *lists.cell);
+    if (!lists.cell) return false;
+    visit_all(&grid, map, count_block, &lists);
+    size_t total = place_lists(&lists, cells);
+    lists.candidates = host_alloc(runtime->host, total, sizeof *lists.candidates);
+    if (!lists.candidates) goto done;
+    visit_all(&grid, map, add_block, &lists);
+    ok = mrt_buffer_of(runtime->gpu, "cells", lists.cell, cells * sizeof *lists.cell,
+                       &runtime->buffers.cells) &&
+         mrt_buffer_of(runtime->gpu, "candidates", lists.candidates,
+                       total * sizeof *lists.candidates, &runtime->buffers.candidates);
+done:
+    host_free(runtime->host, lists.cell);
+    host_free(runtime->host, lists.candidates);
+    return ok;
+}

@@ -1,0 +1,195 @@
+// Packing and upload of operators.
+//
+// Half floats lose precision below 6·10⁻⁵. Each b-coefficient is therefore scaled by a power of
+// two, so that its row of T_d→b and its column of U_b have about the same largest element; T_b→r
+// undoes it. Powers of two change no bit of the result beyond that.
+#include "operators.h"
+
+#include "techniques/mrt/runtime/half.h"
+#include "techniques/mrt/runtime/tables.h"
+
+#include <math.h>
+
+// A buffer in the making.
+struct words {
+    struct host *host;
+    uint32_t *at;
+    size_t numbers; // written
+    bool half;
+};
+
+static bool words_init(struct words *w, struct host *host, bool half, size_t rows, size_t quads)
+{
+    *w = (struct words){ .host = host, .half = half };
+    size_t numbers;
+    if (!size_mul(rows, 4 * quads, &numbers))
+        return host_fail(host, FAIL_MEMORY, "mrt: operators of %zu rows are too large", rows);
+    w->at = host_alloc(host, numbers, half ? 2 : 4);
+    return w->at;
+}
+
+static void put(struct words *w, float value)
+{
+    if (w->half)
+        ((uint16_t *)w->at)[w->numbers++] = mrt_half_of(value);
+    else
+        ((float *)w->at)[w->numbers++] = value;
+}
+
+// A row of `count` numbers, `stride` apart, padded with 0.
+static void put_row(struct words *w, const float *from, size_t stride, const float *factor,
+                    int count)
+{
+    for (int m = 0; m < (int)(4 * mrt_quads(count)); m++)
+        put(w, m < count ? from[(size_t)m * stride] * (factor ? factor[m] : 1.0f) : 0.0f);
+}
+
+static bool words_upload(struct words *w, struct gpu *gpu, const char *name, gpu_buffer *out)
+{
+    bool ok = mrt_buffer_of(gpu, name, w->at, w->numbers * (w->half ? 2 : 4), out);
+    host_free(w->host, w->at);
+    return ok;
+}
+
+uint32_t mrt_quads(int modes)
+{
+    return (uint32_t)(modes + 3) / 4;
+}
+
+// ---- scales of b-coefficients
+
+struct scales {
+    float *of_b;    // [basis][k_b]: the stored b over the dictionary's
+    float *inverse; // [basis][k_b]
+    int k_b;
+};
+
+static float largest_in(const float *at, size_t count, size_t stride)
+{
+    float most = 0.0f;
+    for (size_t i = 0; i < count; i++) most = fmaxf(most, fabsf(at[i * stride]));
+    return most;
+}
+
+static float balance(const struct mrt_basis_input *basis, size_t mode)
+{
+    float t = largest_in(basis->t_db.at + mode * basis->t_db.stride, basis->t_db.columns, 1);
+    float u = largest_in(basis->u_b.at + mode, basis->u_b.rows, basis->u_b.stride);
+    if (!(t > 0.0f) || !(u > 0.0f)) return 1.0f;
+    return exp2f(roundf(0.5f * (log2f(u) - log2f(t))));
+}
+
+static bool scales_init(struct scales *s, struct host *host, const struct mrt_runtime_input *input)
+{
+    size_t count = (size_t)input->basis_count * (size_t)input->k_b;
+    *s = (struct scales){ .k_b = input->k_b };
+    s->of_b = host_alloc(host, count, sizeof *s->of_b);
+    s->inverse = host_alloc(host, count, sizeof *s->inverse);
+    if (!s->of_b || !s->inverse) return false;
+    for (size_t i = 0; i < count; i++) {
+        s->of_b[i] = balance(&input->bases[i / (size_t)input->k_b], i % (size_t)input->k_b);
+        s->inverse[i] = 1.0f / s->of_b[i];
+    }
+    return true;
+}
+
+static void scales_finish(struct scales *s, struct host *host)
+{
+    host_free(host, s->of_b);
+    host_free(host, s->inverse);
+}
+
+// ---- operators
+
+static size_t rows_of_bases(const struct mrt_runtime_input *input)
+{
+    size_t rows = 0;
+    for (int i = 0; i < input->basis_count; i++) rows += input->bases[i].u_b.rows;
+    return rows;
+}
+
+static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                        const struct scales *scales)
+{
+    struct words w;
+    if (!words_init(&w, runtime->host, runtime->options.half, rows_of_bases(input),
+                    mrt_quads(input->k_b)))
+        return false;
+    for (int i = 0; i < input->basis_count; i++) {
+        const struct matrix_f32 *t = &input->bases[i].t_db;
+        for (size_t texel = 0; texel < t->columns; texel++)
+            put_row(&w, t->at + texel, t->stride, scales->of_b + i * scales->k_b, input->k_b);
+    }
+    return words_upload(&w, runtime->gpu, "t_db", &runtime->buffers.t_db);
+}
+
+static void put_matrix(struct words *w, const struct matrix_f32 *m, const float *factor, int count)
+{
+    for (size_t row = 0; row < m->rows; row++)
+        put_row(w, m->at + row * m->stride, 1, factor, count);
+}
+
+static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                       const struct scales *scales, bool vector, gpu_buffer *out)
+{
+    struct words w;
+    if (!words_init(&w, runtime->host, runtime->options.half,
+                    rows_of_bases(input) * (vector ? 4 : 1), mrt_quads(input->k_b)))
+        return false;
+    for (int i = 0; i < input->basis_count; i++)
+        put_matrix(&w, vector ? &input->bases[i].u_vec : &input->bases[i].u_b,
+                   scales->inverse + i * scales->k_b, input->k_b);
+    return words_upload(&w, runtime->gpu, vector ? "u_b_vector" : "u_b", out);
+}
+
+static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                       bool vector, gpu_buffer *out)
+{
+    struct words w;
+    size_t rows = 0;
+    for (int f = 0; f < CUBE_FACES; f++)
+        rows += vector ? input->response[f].u_vec.rows : input->response[f].u_r.rows;
+    if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_r)))
+        return false;
+    for (int f = 0; f < CUBE_FACES; f++)
+        put_matrix(&w, vector ? &input->response[f].u_vec : &input->response[f].u_r, NULL,
+                   input->k_r);
+    return words_upload(&w, runtime->gpu, vector ? "u_r_vector" : "u_r", out);
+}
+
+// By column: [pair][k_b][k_r], with k_b padded too.
+static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                        const struct scales *scales)
+{
+    struct words w;
+    const int columns = (int)(4 * mrt_quads(input->k_b));
+    const float zero = 0.0f;
+    if (!words_init(&w, runtime->host, runtime->options.half,
+                    (size_t)input->pair_count * (size_t)columns, mrt_quads(input->k_r)))
+        return false;
+    for (int i = 0; i < input->pair_count; i++) {
+        const struct mrt_pair_input *pair = &input->pairs[i];
+        const float *inverse = scales->inverse + input->basis_of_block[pair->source] * scales->k_b;
+        for (int m = 0; m < columns; m++) {
+            const bool kept = m < input->k_b;
+            for (int k = 0; k < (int)(4 * mrt_quads(input->k_r)); k++)
+                put(&w,
+                    kept && k < input->k_r ? pair->t_br[k * input->k_b + m] * inverse[m] : zero);
+        }
+    }
+    return words_upload(&w, runtime->gpu, "t_br", &runtime->buffers.t_br);
+}
+
+bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct scales scales = { 0 };
+    struct mrt_runtime_buffers *b = &runtime->buffers;
+    bool ok = scales_init(&scales, runtime->host, input) && upload_t_db(runtime, input, &scales) &&
+              upload_u_b(runtime, input, &scales, false, &b->u_b) &&
+              upload_u_r(runtime, input, false, &b->u_r) && upload_t_br(runtime, input, &scales);
+    if (ok && runtime->options.vector)
+        ok = upload_u_b(runtime, input, &scales, true, &b->u_b_vector) &&
+             upload_u_r(runtime, input, true, &b->u_r_vector);
+    scales_finish(&scales, runtime->host);
+    return ok;
+}

@@ -1,0 +1,10 @@
+// Operators as the shaders read them (operators.glsl): rows of four numbers at a time, half floats
+// or floats.
+#pragma once
+
+#include "techniques/mrt/runtime/runtime.h"
+
+// Rounded up to a multiple of four.
+uint32_t mrt_quads(int modes);
+// Uploads all operators into new buffers.
+bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);

@@ -1,0 +1,161 @@
+// Buffers, images and pipelines of a level.
+#include "runtime.h"
+
+#include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/tables.h"
+
+#include "technique_shaders.h"
+
+enum { VEC3_BYTES = 12, MAX_CONSTANTS = 4, VECTOR_VALUES = 4 };
+
+static bool make_empty(struct gpu *gpu, const char *name, size_t bytes, gpu_buffer *out)
+{
+    const struct gpu_buffer_desc desc = { name, bytes ? bytes : 16, GPU_BUFFER_STORAGE };
+    return gpu_buffer_create(gpu, &desc, out);
+}
+
+static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_buffers *b = &runtime->buffers;
+    struct gpu *gpu = runtime->gpu;
+    const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
+    const size_t quad = 3 * 4 * sizeof(float);
+    return make_empty(gpu, "emission", light, &b->emission) &&
+           make_empty(gpu, "direct", light, &b->direct) &&
+           make_empty(gpu, "b", runtime->block_count * mrt_quads(input->k_b) * quad, &b->b) &&
+           make_empty(gpu, "r", runtime->opening_count * mrt_quads(input->k_r) * quad, &b->r) &&
+           make_empty(gpu, "irradiance", light, &b->irradiance) &&
+           (!runtime->options.vector ||
+            make_empty(gpu, "vector", VECTOR_VALUES * light, &b->vector));
+}
+
+static bool make_image(struct gpu *gpu, const char *name, uint32_t width, uint32_t height,
+                       uint32_t layers, gpu_image *out)
+{
+    const struct gpu_image_desc desc = { .name = name,
+                                         .dimension = GPU_2D_ARRAY,
+                                         .format = GPU_RGBA16F,
+                                         .width = width,
+                                         .height = height,
+                                         .depth = layers,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    return gpu_image_create(gpu, &desc, out);
+}
+
+static bool make_images(struct mrt_runtime *runtime)
+{
+    const struct mrt_level_params *level = &runtime->level;
+    const bool vector = runtime->options.vector;
+    const struct gpu_sampler_desc linear = { .name = "linear",
+                                             .filter = GPU_LINEAR,
+                                             .wrap_u = GPU_CLAMP,
+                                             .wrap_v = GPU_CLAMP,
+                                             .wrap_w = GPU_CLAMP };
+    return gpu_sampler_get(runtime->gpu, &linear, &runtime->linear) &&
+           make_image(runtime->gpu, "light_map", level->map_width, level->map_height, 1,
+                      &runtime->buffers.light_map) &&
+           make_image(runtime->gpu, "vector_map", vector ? level->map_width : 1,
+                      vector ? level->map_height : 1, 3, &runtime->buffers.vector_map);
+}
+
+struct pipeline {
+    gpu_pipeline *out;
+    const char *name;
+    const struct gpu_shader *shader;
+    uint32_t constants; // bit i: specialization constant i
+    uint32_t values;    // of MRT_CONSTANT_VALUES
+};
+
+static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                          const struct pipeline *pipeline)
+{
+    const uint32_t values[MAX_CONSTANTS] = {
+        [MRT_CONSTANT_HALF] = runtime->options.half,
+        [MRT_CONSTANT_QUADS_B] = mrt_quads(input->k_b),
+        [MRT_CONSTANT_QUADS_R] = mrt_quads(input->k_r),
+        [MRT_CONSTANT_VALUES] = pipeline->values,
+    };
+    struct gpu_constant constants[MAX_CONSTANTS];
+    int count = 0;
+    for (uint32_t i = 0; i < MAX_CONSTANTS; i++)
+        if (pipeline->constants >> i & 1u)
+            constants[count++] = (struct gpu_constant){ i, values[i] };
+    return gpu_compute_pipeline_create(runtime->gpu, pipeline->name, pipeline->shader, constants,
+                                       count, pipeline->out);
+}
+
+enum {
+    HALF = 1 << MRT_CONSTANT_HALF,
+    QUADS_B = 1 << MRT_CONSTANT_QUADS_B,
+    QUADS_R = 1 << MRT_CONSTANT_QUADS_R,
+    VALUES = 1 << MRT_CONSTANT_VALUES,
+    ALL = HALF | QUADS_B | QUADS_R | VALUES,
+};
+
+static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_pipelines *p = &runtime->pipelines;
+    const uint32_t values = runtime->options.vector ? VECTOR_VALUES : 1;
+    const struct pipeline all[] = {
+        { &p->direct, "direct", &shader_mrt_runtime_direct_comp, 0, 0 },
+        { &p->project, "project", &shader_mrt_runtime_project_comp, HALF | QUADS_B, 0 },
+        { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R, 0 },
+        { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
+        { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
+        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES, values },
+        { &p->debug, "debug", &shader_mrt_runtime_debug_comp, 0, 0 },
+    };
+    const struct pipeline vector[] = {
+        { &p->reconstruct_vector, "reconstruct_vector", &shader_mrt_runtime_reconstruct_comp, ALL,
+          VECTOR_VALUES },
+        { &p->fill_vector, "fill_vector", &shader_mrt_runtime_fill_comp, VALUES, VECTOR_VALUES },
+    };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (!make_pipeline(runtime, input, &all[i])) return false;
+    for (size_t i = 0; runtime->options.vector && i < sizeof vector / sizeof *vector; i++)
+        if (!make_pipeline(runtime, input, &vector[i])) return false;
+    return true;
+}
+
+bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
+                      const struct mrt_runtime_input *input,
+                      const struct mrt_runtime_options *options)
+{
+    *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
+    return mrt_emission_init(&out->emission, host, input->map, input->atlas) &&
+           mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
+           mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
+           make_pipelines(out, input);
+}
+
+static void destroy_buffers(struct mrt_runtime *runtime)
+{
+    struct mrt_runtime_buffers *b = &runtime->buffers;
+    gpu_buffer *const buffers[] = {
+        &b->texels,  &b->tiles, &b->blocks,     &b->openings,   &b->borders,
+        &b->sources, &b->cells, &b->candidates, &b->t_db,       &b->u_b,
+        &b->u_r,     &b->t_br,  &b->u_b_vector, &b->u_r_vector, &b->emission,
+        &b->direct,  &b->b,     &b->r,          &b->irradiance, &b->vector,
+    };
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        gpu_buffer_destroy(runtime->gpu, buffers[i]);
+    gpu_image_destroy(runtime->gpu, &b->light_map);
+    gpu_image_destroy(runtime->gpu, &b->vector_map);
+}
+
+void mrt_runtime_finish(struct mrt_runtime *runtime)
+{
+    struct mrt_runtime_pipelines *p = &runtime->pipelines;
+    gpu_pipeline *const pipelines[] = {
+        &p->direct, &p->project,     &p->couple, &p->reconstruct, &p->reconstruct_vector,
+        &p->fill,   &p->fill_vector, &p->apply,  &p->debug
+    };
+    _Static_assert(sizeof pipelines / sizeof *pipelines == sizeof *p / sizeof p->direct,
+                   "each member is listed");
+    if (!runtime->gpu) return;
+    destroy_buffers(runtime);
+    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
+        gpu_pipeline_destroy(runtime->gpu, pipelines[i]);
+    mrt_emission_finish(&runtime->emission);
+    *runtime = (struct mrt_runtime){ 0 };
+}

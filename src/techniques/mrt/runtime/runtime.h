@@ -1,0 +1,66 @@
+// The run time of modular radiance transfer on the GPU (Loos 2015, section 3.6.3): operators and
+// tables of a level in buffers, and the passes of a frame.
+#pragma once
+
+#include "frame/frame.h"
+
+#include "techniques/mrt/mrt_shared.h"
+#include "techniques/mrt/runtime/emission.h"
+#include "techniques/mrt/runtime/input.h"
+
+struct mrt_runtime_options {
+    bool half;   // operators are half floats, else floats
+    bool vector; // irradiance by normal
+};
+
+struct mrt_runtime_buffers {
+    gpu_buffer texels, tiles, blocks, openings, borders, sources; // tables
+    gpu_buffer cells, candidates;                                 // lookup grid of blocks
+    gpu_buffer t_db, u_b, u_r, t_br;                              // operators
+    gpu_buffer u_b_vector, u_r_vector;
+    gpu_buffer emission, direct;     // vec3 per texel: radiosity
+    gpu_buffer b, r;                 // coefficients
+    gpu_buffer irradiance, vector;   // vec3 per texel and value
+    gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
+};
+
+struct mrt_runtime_pipelines {
+    gpu_pipeline direct, project, couple;
+    gpu_pipeline reconstruct, reconstruct_vector;
+    gpu_pipeline fill, fill_vector;
+    gpu_pipeline apply, debug;
+};
+
+struct mrt_runtime {
+    struct host *host;
+    struct gpu *gpu;
+    struct mrt_runtime_options options;
+    struct mrt_level_params level;
+    uint32_t block_count, opening_count;
+    struct mrt_runtime_buffers buffers;
+    struct mrt_runtime_pipelines pipelines;
+    struct mrt_emission emission;
+    gpu_sampler linear;
+};
+
+// The input may end with the call, but for map and atlas.
+bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
+                      const struct mrt_runtime_input *input,
+                      const struct mrt_runtime_options *options);
+void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-built
+
+// ---- stages of a frame, in this order (stages.c)
+
+// Radiosity of the texels before any bounce.
+void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                       const struct frame_view *view);
+// Indirect irradiance of the texels after one more bounce. feedback: the weight of the irradiance
+// of the last bounce; 0: none.
+void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback);
+// The light map with its borders, and irradiance by normal.
+void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
+// Irradiance of each pixel.
+void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                      const struct frame_view *view, float gain);
+void mrt_record_debug(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                      const struct frame_view *view, uint32_t debug_view, gpu_image out);

@@ -1,0 +1,165 @@
+// The passes of a frame.
+#include "runtime.h"
+
+static struct gpu_binding level_binding(const struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    return gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level);
+}
+
+// Emissive surfaces that moved: their texels are found again on the CPU.
+static void record_emission(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                            const struct frame_view *view)
+{
+    struct mrt_emission *e = &runtime->emission;
+    if (e->valid || !view->emitters) return;
+    mrt_emission_update(e, view);
+    const size_t bytes = (size_t)e->texels * sizeof *e->radiosity;
+    const struct gpu_binding data = gpu_transient(cmd, "emission", e->radiosity, bytes);
+    gpu_copy_buffer(cmd, runtime->buffers.emission, 0, data.buffer, data.offset, bytes);
+}
+
+void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                       const struct frame_view *view)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    runtime->level.shadow_radius = view->shadow_radius;
+    gpu_scope_begin(cmd, "direct");
+    record_emission(runtime, cmd, view);
+    gpu_dispatch(
+        cmd, runtime->pipelines.direct,
+        GPU_BIND(
+            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
+            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
+            { .name = "shadow_sun_maps",
+              .image = view->shadow_sun_maps,
+              .sampler = view->shadow_sampler },
+            level_binding(runtime, cmd), { .name = "mrt_texels", .buffer = b->texels },
+            { .name = "mrt_emission", .buffer = b->emission },
+            { .name = "mrt_direct", .buffer = b->direct }),
+        NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
+static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    gpu_dispatch(
+        cmd, runtime->pipelines.project,
+        GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_texels", .buffer = b->texels },
+                 { .name = "mrt_blocks", .buffer = b->blocks },
+                 { .name = "mrt_direct", .buffer = b->direct },
+                 { .name = "mrt_irradiance", .buffer = b->irradiance },
+                 { .name = "mrt_t_db", .buffer = b->t_db }, { .name = "mrt_b", .buffer = b->b }),
+        NULL, 0, runtime->block_count, 1, 1);
+}
+
+static void record_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    gpu_dispatch(cmd, runtime->pipelines.couple,
+                 GPU_BIND(level_binding(runtime, cmd),
+                          { .name = "mrt_openings", .buffer = b->openings },
+                          { .name = "mrt_sources", .buffer = b->sources },
+                          { .name = "mrt_t_br", .buffer = b->t_br },
+                          { .name = "mrt_b", .buffer = b->b }, { .name = "mrt_r", .buffer = b->r }),
+                 NULL, 0, runtime->opening_count, 1, 1);
+}
+
+static void record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool vector)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    const struct mrt_runtime_pipelines *p = &runtime->pipelines;
+    gpu_dispatch(
+        cmd, vector ? p->reconstruct_vector : p->reconstruct,
+        GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_tiles", .buffer = b->tiles },
+                 { .name = "mrt_blocks", .buffer = b->blocks },
+                 { .name = "mrt_openings", .buffer = b->openings },
+                 { .name = "mrt_b", .buffer = b->b }, { .name = "mrt_r", .buffer = b->r },
+                 { .name = "mrt_u_b", .buffer = vector ? b->u_b_vector : b->u_b },
+                 { .name = "mrt_u_r", .buffer = vector ? b->u_r_vector : b->u_r },
+                 { .name = "mrt_irradiance", .buffer = vector ? b->vector : b->irradiance }),
+        NULL, 0, gpu_groups(runtime->level.texels_of_tile, MRT_LOCAL), runtime->level.tiles, 1);
+}
+
+void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback)
+{
+    runtime->level.feedback = feedback;
+    gpu_scope_begin(cmd, "b");
+    record_project(runtime, cmd);
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "r");
+    record_couple(runtime, cmd);
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "reconstruct");
+    record_reconstruct(runtime, cmd, false);
+    gpu_scope_end(cmd);
+}
+
+static void record_fill(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool vector)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    const struct mrt_runtime_pipelines *p = &runtime->pipelines;
+    const struct mrt_level_params *level = &runtime->level;
+    gpu_dispatch(
+        cmd, vector ? p->fill_vector : p->fill,
+        GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_tiles", .buffer = b->tiles },
+                 { .name = "mrt_borders", .buffer = b->borders },
+                 { .name = "mrt_irradiance", .buffer = vector ? b->vector : b->irradiance },
+                 { .name = "light_map", .image = vector ? b->vector_map : b->light_map }),
+        NULL, 0, gpu_groups(level->texels + level->borders, MRT_LOCAL), 1, 1);
+}
+
+void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    gpu_scope_begin(cmd, "light_map");
+    record_fill(runtime, cmd, false);
+    if (runtime->options.vector) {
+        record_reconstruct(runtime, cmd, true);
+        record_fill(runtime, cmd, true);
+    }
+    gpu_scope_end(cmd);
+}
+
+void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                      const struct frame_view *view, float gain)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    runtime->level.gain = gain;
+    gpu_scope_begin(cmd, "apply");
+    gpu_dispatch(
+        cmd, runtime->pipelines.apply,
+        GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
+                 { .name = "mrt_tiles", .buffer = b->tiles },
+                 { .name = "mrt_blocks", .buffer = b->blocks },
+                 { .name = "mrt_cells", .buffer = b->cells },
+                 { .name = "mrt_candidates", .buffer = b->candidates },
+                 { .name = "light_map", .image = b->light_map, .sampler = runtime->linear },
+                 { .name = "vector_map", .image = b->vector_map, .sampler = runtime->linear },
+                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                 { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+        NULL, 0, gpu_groups(view->width, MRT_LOCAL_2D), gpu_groups(view->height, MRT_LOCAL_2D), 1);
+    gpu_scope_end(cmd);
+}
+
+void mrt_record_debug(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                      const struct frame_view *view, uint32_t debug_view, gpu_image out)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    const struct mrt_view_push push = { debug_view };
+    gpu_scope_begin(cmd, "debug");
+    gpu_dispatch(cmd, runtime->pipelines.debug,
+                 GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
+                          { .name = "mrt_tiles", .buffer = b->tiles },
+                          { .name = "mrt_blocks", .buffer = b->blocks },
+                          { .name = "mrt_cells", .buffer = b->cells },
+                          { .name = "mrt_candidates", .buffer = b->candidates },
+                          { .name = "mrt_direct", .buffer = b->direct },
+                          { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                          { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                          { .name = "scene", .image = view->layers[FRAME_DIRECT] },
+                          { .name = "debug_image", .image = out }),
+                 &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
+                 gpu_groups(view->height, MRT_LOCAL_2D), 1);
+    gpu_scope_end(cmd);
+}

@@ -1,0 +1,177 @@
+// Tables of texels, tiles, blocks, openings and borders.
+#include "tables.h"
+
+#include <string.h>
+
+bool mrt_buffer_of(struct gpu *gpu, const char *name, const void *data, size_t bytes,
+                   gpu_buffer *out)
+{
+    const struct gpu_buffer_desc desc = { name, bytes ? bytes : 16, GPU_BUFFER_STORAGE };
+    return gpu_buffer_create(gpu, &desc, out) &&
+           (bytes == 0 || gpu_buffer_upload(gpu, *out, 0, data, bytes));
+}
+
+// An array of `count` items that `fill` writes, in a new buffer.
+static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                   const char *name, int count, size_t size,
+                   void (*fill)(const struct mrt_runtime *runtime,
+                                const struct mrt_runtime_input *input, void *items),
+                   gpu_buffer *out)
+{
+    void *items = host_alloc(runtime->host, (size_t)count, size);
+    if (!items) return false;
+    fill(runtime, input, items);
+    bool ok = mrt_buffer_of(runtime->gpu, name, items, (size_t)count * size, out);
+    host_free(runtime->host, items);
+    return ok;
+}
+
+static void fill_texels(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                        void *items)
+{
+    struct mrt_texel *texels = items;
+    for (int i = 0; i < input->atlas->texels; i++) {
+        const struct mrt_geometry_texel *from = &input->geometry[i];
+        texels[i] = (struct mrt_texel){ .position = from->position,
+                                        .area_m2 = runtime->emission.area_m2[i],
+                                        .normal = from->normal,
+                                        .found = from->found,
+                                        .albedo = from->albedo };
+    }
+}
+
+// First row of a basis in the operators.
+static uint32_t basis_row(const struct mrt_runtime_input *input, int basis)
+{
+    size_t row = 0;
+    for (int i = 0; i < basis; i++) row += input->bases[i].u_b.rows;
+    return (uint32_t)row;
+}
+
+// First texel of a block, those of its walls in ascending order; −1: no wall.
+static int first_texel(const struct mrt_atlas *atlas, int block)
+{
+    for (int f = 0; f < CUBE_FACES; f++) {
+        int tile = atlas->tile_of_face[CUBE_FACES * block + f];
+        if (tile >= 0) return atlas->tiles[tile].first_texel;
+    }
+    return -1;
+}
+
+static void fill_tiles(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                       void *items)
+{
+    struct mrt_gpu_tile *tiles = items;
+    for (int i = 0; i < input->atlas->tile_count; i++) {
+        const struct mrt_tile *tile = &input->atlas->tiles[i];
+        uint32_t before = (uint32_t)(tile->first_texel - first_texel(input->atlas, tile->block));
+        tiles[i] = (struct mrt_gpu_tile){
+            .block = (uint32_t)tile->block,
+            .first_texel = (uint32_t)tile->first_texel,
+            .basis_row = basis_row(input, input->basis_of_block[tile->block]) + before,
+            .response_row = (uint32_t)tile->face * runtime->level.texels_of_tile,
+            .x = tile->x,
+            .y = tile->y,
+        };
+    }
+}
+
+static uint32_t walls_of(const struct mrt_block *block)
+{
+    uint32_t walls = 0;
+    for (int f = 0; f < CUBE_FACES; f++) walls += !mrt_block_is_open(block, f);
+    return walls;
+}
+
+static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                        void *items)
+{
+    struct mrt_gpu_block *blocks = items;
+    int opening = 0;
+    for (int b = 0; b < input->map->count; b++) {
+        const struct mrt_block *from = &input->map->blocks[b];
+        struct mrt_gpu_block *to = &blocks[b];
+        memcpy(to->corner, from->corner, sizeof to->corner);
+        for (int f = 0; f < CUBE_FACES; f++)
+            to->tile[f] = input->atlas->tile_of_face[CUBE_FACES * b + f];
+        to->first_texel = (uint32_t)first_texel(input->atlas, b);
+        to->texels = walls_of(from) * runtime->level.texels_of_tile;
+        to->basis_row = basis_row(input, input->basis_of_block[b]);
+        to->first_opening = (uint32_t)opening;
+        while (opening < input->opening_count && input->openings[opening].block == b) opening++;
+        to->openings = (uint32_t)opening - to->first_opening;
+    }
+}
+
+static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                          void *items)
+{
+    struct mrt_gpu_opening *openings = items;
+    int pair = 0;
+    (void)runtime;
+    for (int i = 0; i < input->opening_count; i++) {
+        size_t response = 0;
+        for (int f = 0; f < input->openings[i].face; f++) response += input->response[f].u_r.rows;
+        openings[i] = (struct mrt_gpu_opening){ .response = (uint32_t)response,
+                                                .first_pair = (uint32_t)pair };
+        while (pair < input->pair_count && input->pairs[pair].opening == i) pair++;
+        openings[i].pairs = (uint32_t)pair - openings[i].first_pair;
+    }
+}
+
+static void fill_sources(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                         void *items)
+{
+    uint32_t *sources = items;
+    (void)runtime;
+    for (int i = 0; i < input->pair_count; i++) sources[i] = (uint32_t)input->pairs[i].source;
+}
+
+static void fill_borders(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                         void *items)
+{
+    struct mrt_gpu_border *borders = items;
+    (void)runtime;
+    for (int i = 0; i < input->atlas->border_count; i++) {
+        const struct mrt_border *from = &input->atlas->borders[i];
+        borders[i] = (struct mrt_gpu_border){ .texel = from->texel, .count = from->count };
+        memcpy(borders[i].source, from->source, sizeof borders[i].source);
+        memcpy(borders[i].weight, from->weight, sizeof borders[i].weight);
+    }
+}
+_Static_assert(MRT_BORDER_SOURCES == 8, "as in mrt_gpu_border");
+
+static struct mrt_level_params level_of(const struct mrt_runtime_input *input)
+{
+    const uint32_t n = (uint32_t)input->atlas->resolution;
+    return (struct mrt_level_params){
+        .resolution = n,
+        .texels_of_tile = n * n,
+        .texels = (uint32_t)input->atlas->texels,
+        .borders = (uint32_t)input->atlas->border_count,
+        .map_width = (uint32_t)input->atlas->width,
+        .map_height = (uint32_t)input->atlas->height,
+        .tiles = (uint32_t)input->atlas->tile_count,
+    };
+}
+
+bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_buffers *b = &runtime->buffers;
+    const struct mrt_atlas *atlas = input->atlas;
+    runtime->level = level_of(input);
+    runtime->block_count = (uint32_t)input->map->count;
+    runtime->opening_count = (uint32_t)input->opening_count;
+    return upload(runtime, input, "texels", atlas->texels, sizeof(struct mrt_texel), fill_texels,
+                  &b->texels) &&
+           upload(runtime, input, "tiles", atlas->tile_count, sizeof(struct mrt_gpu_tile),
+                  fill_tiles, &b->tiles) &&
+           upload(runtime, input, "blocks", input->map->count, sizeof(struct mrt_gpu_block),
+                  fill_blocks, &b->blocks) &&
+           upload(runtime, input, "openings", input->opening_count, sizeof(struct mrt_gpu_opening),
+                  fill_openings, &b->openings) &&
+           upload(runtime, input, "sources", input->pair_count, sizeof(uint32_t), fill_sources,
+                  &b->sources) &&
+           upload(runtime, input, "borders", atlas->border_count, sizeof(struct mrt_gpu_border),
+                  fill_borders, &b->borders);
+}

@@ -1,0 +1,13 @@
+// Tables of a level as the shaders read them (mrt_shared.h).
+#pragma once
+
+#include "techniques/mrt/runtime/runtime.h"
+
+// Uploads texels, tiles, blocks, openings, pairs and borders into new buffers; fills
+// runtime->level but for the lookup grid.
+bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+// ---- lookup_grid.c: the blocks near each cell of a grid, for locate.glsl.
+bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_map *map);
+// A storage buffer with this content; 16 zero bytes where there is none.
+bool mrt_buffer_of(struct gpu *gpu, const char *name, const void *data, size_t bytes,
+                   gpu_buffer *out);
