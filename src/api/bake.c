@@ -169,7 +169,7 @@ enum ag_result ag_bake_estimate(struct ag_bake *b, bool probe, struct ag_bake_es
     AG_REQUIRE(context, b, "bake is NULL");
     AG_REQUIRE_POINTER(context, out);
     struct bake_estimate estimate;
-    const bool ok = bake_estimate(b->bake, b->options.threads, probe, &estimate);
+    const bool ok = bake_estimate(b->bake, &b->options, probe, &estimate);
     *out = (struct ag_bake_estimate){ .texels = estimate.texels,
                                       .rays = estimate.rays,
                                       .seconds = estimate.seconds,

@@ -36,8 +36,10 @@ struct bake_estimate {
     uint64_t file_bytes, peak_memory_bytes; // without the scene
 };
 // probe: measures a few tasks, which takes about a second, and keeps their results; without it
-// `seconds` is NaN. threads as in bake_run.
-bool bake_estimate(struct bake *bake, int threads, bool probe, struct bake_estimate *out);
+// `seconds` is NaN. options: as for the run that follows.
+struct bake_run_options;
+bool bake_estimate(struct bake *bake, const struct bake_run_options *options, bool probe,
+                   struct bake_estimate *out);
 
 // ---- the run
 
@@ -61,7 +63,7 @@ struct bake_run_options {
 };
 // Runs what is missing. FAIL_CANCELLED: `progress` returned false; finished tasks are kept, also in
 // the checkpoint. A checkpoint of another identity, or a damaged one, is ignored with a warning. It
-// is removed by bake_save.
+// is read once, and removed by bake_save.
 bool bake_run(struct bake *bake, const struct bake_run_options *options);
 bool bake_is_complete(const struct bake *bake);
 

@@ -1,8 +1,5 @@
 // A run from the outside: the memory it may take, the checkpoint it resumes, the tasks.
 #include "bake/bake_state.h"
-#include "bake/relay_host.h"
-
-#include <unistd.h>
 
 static bool check_memory(const struct bake *bake, const struct bake_run_options *options)
 {
@@ -16,28 +13,9 @@ static bool check_memory(const struct bake *bake, const struct bake_run_options 
                      (double)options->max_memory_bytes / MIB);
 }
 
-static bool remember_checkpoint(struct bake *bake, const char *path)
-{
-    host_free(bake->host, bake->checkpoint);
-    bake->checkpoint = path ? host_strdup(bake->host, path) : NULL;
-    return !path || bake->checkpoint;
-}
-
-// A checkpoint that cannot be used costs time, and is no error.
-static void resume(struct bake *bake, const char *path)
-{
-    struct relay_host quiet;
-    if (!path || access(path, F_OK) != 0) return;
-    relay_host_init(&quiet, bake->host, NULL);
-    if (!partial_read(&quiet.host, bake, path))
-        host_log(bake->host, LOG_WARNING, "the checkpoint is ignored: %s", quiet.error);
-}
-
 bool bake_run(struct bake *bake, const struct bake_run_options *options)
 {
     if (bake_is_complete(bake)) return true;
-    if (!check_memory(bake, options) || !remember_checkpoint(bake, options->checkpoint))
-        return false;
-    resume(bake, options->checkpoint);
+    if (!check_memory(bake, options) || !bake_resume(bake, options->checkpoint)) return false;
     return bake_is_complete(bake) || run_bake(bake, options, false);
 }

@@ -44,7 +44,7 @@ struct bake {
     pthread_mutex_t mutex;  // of the state that running tasks change
     pthread_mutex_t memory; // of the host's allocator while tasks run
     double seconds;         // wall time of all runs; NaN: unknown
-    char *checkpoint;       // of the last run; NULL: none
+    char *checkpoint;       // that was read, or would have been; NULL: none
     // The result, once complete: of the plan's outputs, or of a file.
     struct safetensors file;
     struct tensor *tensors; // saved ones, then reported ones
@@ -74,6 +74,11 @@ const struct tensor *results_find(const struct bake *bake, const char *name);
 
 // probe: only one task of each kind in wave 0.
 bool run_bake(struct bake *bake, const struct bake_run_options *options, bool probe);
+
+// ---- resume.c
+
+// Takes the finished tasks of a checkpoint, unless that has been done.
+bool bake_resume(struct bake *bake, const char *path);
 
 // ---- estimate.c
 

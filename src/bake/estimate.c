@@ -54,17 +54,18 @@ static void add_stages(const struct bake *bake, struct bake_estimate *out)
     }
 }
 
-bool bake_estimate(struct bake *bake, int threads, bool probe, struct bake_estimate *out)
+bool bake_estimate(struct bake *bake, const struct bake_run_options *options, bool probe,
+                   struct bake_estimate *out)
 {
-    const struct bake_run_options options = { .threads = threads };
+    const int threads = options->threads > 0 ? options->threads : parallel_threads();
+    const struct bake_run_options few = { .threads = threads };
     *out = (struct bake_estimate){ .seconds = (double)NAN };
     add_stages(bake, out);
     out->peak_memory_bytes = estimate_peak_memory(bake, threads);
     if (!probe) return true;
-    if (!bake_is_complete(bake) && !run_bake(bake, &options, true)) return false;
+    if (!bake_is_complete(bake) && !bake_resume(bake, options->checkpoint)) return false;
+    if (!bake_is_complete(bake) && !run_bake(bake, &few, true)) return false;
     const struct prediction speed = prediction_now(bake, prediction_flop_seconds(bake->host));
-    out->seconds = bake_is_complete(bake)
-                       ? 0.0
-                       : prediction_left(bake, &speed, threads > 0 ? threads : parallel_threads());
+    out->seconds = bake_is_complete(bake) ? 0.0 : prediction_left(bake, &speed, threads);
     return true;
 }

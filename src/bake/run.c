@@ -218,6 +218,14 @@ static void write_checkpoint(struct bake_run *run)
     host_log(bake->host, LOG_DEBUG, "checkpoint %s: %.2f s", path, run->checkpoint_s - begun);
 }
 
+static bool some_task_is_done(const struct bake *bake)
+{
+    for (int s = 0; s < bake->plan.stage_count; s++)
+        if (bake->plan.stages[s].done_count > 0) return true;
+    return false;
+}
+
+// Before the first task ends the time left is a guess, and the share done 0.
 static bool report_progress(struct bake_run *run)
 {
     struct bake *bake = run->bake;
@@ -226,10 +234,11 @@ static bool report_progress(struct bake_run *run)
     const struct prediction speed = prediction_now(bake, run->per_flop_s);
     const double left = prediction_left(bake, &speed, run->threads);
     const char *stage = run->newest ? run->newest->what.name : "";
+    const bool some = some_task_is_done(bake);
     pthread_mutex_unlock(&bake->mutex);
     const double passed = run_seconds(run);
     const struct bake_progress progress = { .stage = stage,
-                                            .done = passed / fmax(passed + left, 1e-9),
+                                            .done = some ? passed / fmax(passed + left, 1e-9) : 0.0,
                                             .seconds_left = left,
                                             .stopping = run->cancelled };
     return run->options->progress(run->options->user, &progress);

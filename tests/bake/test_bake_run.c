@@ -302,12 +302,14 @@ TEST(bake_plan_refuses_wrong_stages_by_name)
 
 // ---- estimate
 
+static const struct bake_run_options two = { .threads = 2 };
+
 TEST(bake_estimate_adds_up_the_plan)
 {
     struct bake_sample sample = bake_sample_default();
     struct bake *bake = bake_sample_create(&sample, NULL);
     struct bake_estimate estimate;
-    CHECK(bake_estimate(bake, 2, false, &estimate) && sample.runs == 0);
+    CHECK(bake_estimate(bake, &two, false, &estimate) && sample.runs == 0);
     CHECK_NEAR(estimate.rays, 7 * 100 + 5 * 50, 0.0);
     CHECK_NEAR(estimate.texels, 70, 0.0);
     CHECK(isnan(estimate.seconds));
@@ -327,10 +329,58 @@ TEST(bake_estimate_of_time_is_near_after_a_probe_whose_results_are_kept)
     sample.task_s = 0.1;
     struct bake *bake = bake_sample_create(&sample, NULL);
     struct bake_estimate estimate;
-    CHECK(bake_estimate(bake, 2, true, &estimate) && sample.runs == 2);
+    CHECK(bake_estimate(bake, &two, true, &estimate) && sample.runs == 2);
     const double begun = now_s();
     CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 2 }) && sample.runs == 17);
     CHECK_RELATIVE(estimate.seconds, now_s() - begun, 0.5);
+    bake_destroy(bake);
+}
+
+TEST(bake_estimate_counts_what_a_checkpoint_has)
+{
+    struct bake_sample sample = bake_sample_default();
+    const char *checkpoint = test_path("most");
+    bake_shard(0, 1, checkpoint);
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    const struct bake_run_options options = { .threads = 2, .checkpoint = checkpoint };
+    struct bake_estimate estimate;
+    CHECK(bake_estimate(bake, &options, true, &estimate) && sample.runs == 0);
+    CHECK(estimate.seconds < 0.1);
+    const double seconds = bake_seconds(bake);
+    CHECK(bake_run(bake, &options) && sample.runs == 5); // the checkpoint is read once
+    CHECK(bake_seconds(bake) < seconds + 10.0);
+    bake_destroy(bake);
+}
+
+struct clock {
+    double begun_s, left_s[1000];
+    double at_s[1000];
+    int count;
+};
+
+static bool note_times(void *user, const struct bake_progress *progress)
+{
+    struct clock *clock = user;
+    if (progress->done < 0.05 || clock->count == 1000) return true;
+    clock->at_s[clock->count] = now_s() - clock->begun_s;
+    clock->left_s[clock->count++] = progress->seconds_left;
+    return true;
+}
+
+// Tasks of a tenth of a second that do nothing but wait, so that load hardly changes them.
+TEST(bake_progress_knows_the_time_left_from_a_twentieth_of_the_work_on)
+{
+    struct bake_sample sample = bake_sample_default();
+    static struct clock clock;
+    sample.task_s = 0.1;
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    clock.begun_s = now_s();
+    CHECK(bake_run(
+        bake, &(struct bake_run_options){ .threads = 1, .progress = note_times, .user = &clock }));
+    const double total = now_s() - clock.begun_s;
+    CHECK(clock.count >= 5);
+    for (int i = 0; i < clock.count; i++)
+        CHECK_NEAR(clock.at_s[i] + clock.left_s[i], total, 0.25 * total);
     bake_destroy(bake);
 }
 
