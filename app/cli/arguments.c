@@ -10,6 +10,7 @@
 #include <string.h>
 
 enum { HELP_COLUMN = 24, MAX_FRAMES = 1000000, MAX_SPP = 1000000, MAX_BOUNCES = 1000000 };
+enum { MAX_THREADS = 1024, MAX_SHARDS = 10000 };
 
 // Stores a value; false with *why, what a valid value is, for a wrong one.
 typedef bool setter(struct arguments *a, const char *value, const char **why);
@@ -18,6 +19,7 @@ static bool set_gi(struct arguments *a, const char *value, const char **why)
 {
     (void)why;
     a->gi = value;
+    a->has_gi = true;
     return true;
 }
 
@@ -287,6 +289,97 @@ static bool set_max_ms(struct arguments *a, const char *value, const char **why)
     return set_bound(value, &a->max_ms, why);
 }
 
+static bool set_bake_output(struct arguments *a, const char *value, const char **why)
+{
+    *why = "the file name must end in .safetensors";
+    a->output = value;
+    return has_extension(value, "safetensors");
+}
+
+static bool add_bake_file(struct arguments *a, const char *value, const char **why)
+{
+    *why = "at most 8 files";
+    if (a->bake_file_count == MAX_BAKE_FILES) return false;
+    a->bake_files[a->bake_file_count++] = value;
+    return true;
+}
+
+static bool set_no_bake(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->no_bake = true;
+    return true;
+}
+
+static bool set_force(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->force = true;
+    return true;
+}
+
+static bool set_merge(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->merge = true;
+    return true;
+}
+
+static bool set_threads(struct arguments *a, const char *value, const char **why)
+{
+    long threads = 0;
+    *why = "it must be 1 to 1024";
+    bool ok = value_int(value, 1, MAX_THREADS, &threads);
+    a->threads = (int)threads;
+    return ok;
+}
+
+// "I/N", 0 ≤ I < N.
+static bool set_shard(struct arguments *a, const char *value, const char **why)
+{
+    char index[16];
+    long shard = 0, count = 0;
+    const char *slash = strchr(value, '/');
+    *why = "it must be I/N with 0 <= I < N, N at most 10000";
+    if (!slash || (size_t)(slash - value) >= sizeof index) return false;
+    snprintf(index, sizeof index, "%.*s", (int)(slash - value), value);
+    if (!value_int(slash + 1, 1, MAX_SHARDS, &count)) return false;
+    if (!value_int(index, 0, count - 1, &shard)) return false;
+    a->shard = (int)shard;
+    a->shard_count = (int)count;
+    return true;
+}
+
+static bool set_max_memory(struct arguments *a, const char *value, const char **why)
+{
+    long mib = 0;
+    *why = "it must be a whole number of MiB, at least 1";
+    bool ok = value_int(value, 1, INT32_MAX, &mib);
+    a->max_memory_mib = mib;
+    return ok;
+}
+
+static bool set_report(struct arguments *a, const char *value, const char **why)
+{
+    (void)why;
+    a->report = value;
+    return true;
+}
+
+static bool set_report_full(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->report_full = true;
+    return true;
+}
+
+static bool set_clear(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->clear = true;
+    return true;
+}
+
 static bool set_layer(struct arguments *a, const char *value, const char **why)
 {
     (void)why;
@@ -478,7 +571,8 @@ enum status arguments_parse(const struct command *command, int count, char **wor
             enum status status = parse_option(command, count, words, &i, out);
             if (status != DONE) return status;
             if (out->help) return DONE;
-        } else if (out->positional_count == command->positional_count) {
+        } else if (out->positional_count ==
+                   (out->merge ? MAX_POSITIONAL : command->positional_count)) {
             return wrong_usage("unexpected argument %s: afterglow %s %s", words[i], command->name,
                                command->usage);
         } else if (!words[i][0]) {

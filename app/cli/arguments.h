@@ -7,15 +7,25 @@
 #include <afterglow/image.h>
 #include <afterglow/scene.h>
 
-enum command_bit { RENDER = 1, INFO = 2, LIST = 4, DIFF = 8, REFERENCE = 16, COMPARE = 32 };
-enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 2, MAX_METHODS = 16 };
+enum command_bit {
+    RENDER = 1,
+    INFO = 2,
+    LIST = 4,
+    DIFF = 8,
+    REFERENCE = 16,
+    COMPARE = 32,
+    BAKE = 64,
+    CACHE = 128
+};
+enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 64, MAX_METHODS = 16, MAX_BAKE_FILES = 8 };
 
 struct arguments {
-    const char *positional[MAX_POSITIONAL]; // SCENE, or A and B
+    const char *positional[MAX_POSITIONAL]; // SCENE, A and B, or parts to merge
     int positional_count;
     bool help, json, quiet, verbose;
     // image
     const char *gi, *frame_options;
+    bool has_gi;
     int width, height, frames;
     const char *output; // NULL: from the scene's name
     const char *aov, *debug_view, *stats, *device;
@@ -37,6 +47,16 @@ struct arguments {
     bool has_spp, direct_only, indirect_only, no_guiding, antialias, resume;
     float obscurance_radius_m, occlusion_decay_per_m;
     bool obscurance_sphere;
+    // bakes
+    const char *bake_files[MAX_BAKE_FILES]; // each a --bake
+    int bake_file_count;
+    bool no_bake, force, merge, report_full;
+    int threads;              // 0: all cores
+    int shard, shard_count;   // count 0: everything
+    long long max_memory_mib; // 0: no limit
+    const char *report;       // NULL: none
+    // cache
+    bool clear;
     // compare
     const char *methods[MAX_METHODS]; // each a --gi
     int method_count;

@@ -1,4 +1,4 @@
-// Cached references: $CACHE/references/KEY.exr.
+// Cached files: $CACHE/references/KEY.exr and $CACHE/bakes/KEY.safetensors.
 #include "cache.h"
 #include "interrupt.h"
 
@@ -6,7 +6,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,22 +13,32 @@
 #include <unistd.h>
 
 static const long long MAX_BYTES = 2LL << 30;
-static const char FOLDER[] = "references";
+
+static const struct {
+    const char *name, *folder, *ending;
+} kinds[CACHE_KINDS] = { [CACHE_REFERENCE] = { "reference", "references", ".exr" },
+                         [CACHE_BAKE] = { "bake", "bakes", ".safetensors" } };
 
 // ---- location
 
 // Per the XDG Base Directory Specification, relative and empty paths are ignored.
-static bool find_folder(char out[PATH_SIZE])
+bool cache_root(char out[PATH_SIZE])
 {
     const char *own = getenv("AFTERGLOW_CACHE"), *xdg = getenv("XDG_CACHE_HOME"),
                *home = getenv("HOME");
     int wrote = 0;
     if (own && own[0])
-        wrote = snprintf(out, PATH_SIZE, "%s/%s", own, FOLDER);
+        wrote = snprintf(out, PATH_SIZE, "%s", own);
     else if (xdg && xdg[0] == '/')
-        wrote = snprintf(out, PATH_SIZE, "%s/afterglow/%s", xdg, FOLDER);
+        wrote = snprintf(out, PATH_SIZE, "%s/afterglow", xdg);
     else if (home && home[0] == '/')
-        wrote = snprintf(out, PATH_SIZE, "%s/.cache/afterglow/%s", home, FOLDER);
+        wrote = snprintf(out, PATH_SIZE, "%s/.cache/afterglow", home);
+    return wrote > 0 && wrote < PATH_SIZE;
+}
+
+static bool join(char out[PATH_SIZE], const char *folder, const char *name)
+{
+    const int wrote = snprintf(out, PATH_SIZE, "%s/%s", folder, name);
     return wrote > 0 && wrote < PATH_SIZE;
 }
 
@@ -45,10 +54,11 @@ static bool make_folder(char *path)
     return (mkdir(path, 0700) == 0 || errno == EEXIST) && access(path, W_OK | X_OK) == 0;
 }
 
-bool cache_file(const char *key, char out[PATH_SIZE])
+bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE])
 {
-    char folder[PATH_SIZE];
-    if (!find_folder(folder)) {
+    char root[PATH_SIZE], folder[PATH_SIZE];
+    const char *ending = kinds[kind].ending;
+    if (!cache_root(root) || !join(folder, root, kinds[kind].folder)) {
         detail("no cache: neither AFTERGLOW_CACHE nor HOME names a folder");
         return false;
     }
@@ -57,9 +67,9 @@ bool cache_file(const char *key, char out[PATH_SIZE])
         return false;
     }
     int used = snprintf(out, PATH_SIZE, "%s/", folder);
-    for (const char *c = key; *c && used < PATH_SIZE - 5; c++)
+    for (const char *c = key; *c && used < PATH_SIZE - 16; c++)
         out[used++] = isalnum((unsigned char)*c) ? *c : '-';
-    return snprintf(out + used, (size_t)(PATH_SIZE - used), ".exr") < PATH_SIZE - used;
+    return snprintf(out + used, (size_t)(PATH_SIZE - used), "%s", ending) < PATH_SIZE - used;
 }
 
 void cache_touch(const char *path)
@@ -68,57 +78,123 @@ void cache_touch(const char *path)
         detail("cannot touch %s: %s", path, strerror(errno));
 }
 
-// ---- size limit
+const char *cache_kind_name(enum cache_kind kind)
+{
+    return kinds[kind].name;
+}
 
-struct entry {
-    char path[PATH_SIZE + NAME_MAX + 2];
-    long long bytes;
-    struct timespec used;
+long long cache_limit(void)
+{
+    return MAX_BYTES;
+}
+
+// ---- files
+
+// A reference is named "reference-1-0123456789abcdef.exr", a bake by 32 digits; an interrupted one
+// has a checkpoint beside it. A temporary file has a longer name.
+static bool is_ours(enum cache_kind kind, const char *name)
+{
+    char hash[33], rest[32] = "";
+    if (kind == CACHE_REFERENCE)
+        return sscanf(name, "reference-%*d-%16[0-9a-f].exr", hash) == 1 && strlen(hash) == 16;
+    return sscanf(name, "%32[0-9a-f]%31s", hash, rest) == 2 && strlen(hash) == 32 &&
+           (strcmp(rest, ".safetensors") == 0 || strcmp(rest, ".safetensors.checkpoint") == 0);
+}
+
+struct list {
+    struct cache_entry *entries;
+    int count, capacity;
 };
 
-// Cached files are named "reference-1-0123456789abcdef.exr"; a temporary file has a longer name.
-static bool is_ours(const char *name)
+static struct cache_entry *append(struct list *list)
 {
-    char hash[17];
-    return sscanf(name, "reference-%*d-%16[0-9a-f].exr", hash) == 1 && strlen(hash) == 16;
-}
-
-static bool is_older(const struct entry *a, const struct entry *b)
-{
-    return a->used.tv_sec != b->used.tv_sec ? a->used.tv_sec < b->used.tv_sec
-                                            : a->used.tv_nsec < b->used.tv_nsec;
-}
-
-// Total size of the cached files, and the least recently used one except `spared` (path "" if
-// none).
-static long long look_around(const char *folder, const char *spared, struct entry *oldest)
-{
-    long long sum = 0;
-    struct entry entry;
-    struct stat info;
-    oldest->path[0] = 0;
-    DIR *dir = opendir(folder);
-    for (struct dirent *file; dir && (file = readdir(dir));) {
-        if (!is_ours(file->d_name)) continue;
-        snprintf(entry.path, sizeof entry.path, "%s/%s", folder, file->d_name);
-        if (lstat(entry.path, &info) != 0 || !S_ISREG(info.st_mode)) continue;
-        entry.bytes = (long long)info.st_size;
-        entry.used = info.st_mtim;
-        sum += entry.bytes;
-        if (strcmp(entry.path, spared) == 0) continue;
-        if (!oldest->path[0] || is_older(&entry, oldest)) *oldest = entry;
+    if (list->count == list->capacity) {
+        const int capacity = list->capacity ? 2 * list->capacity : 16;
+        struct cache_entry *entries =
+            realloc(list->entries, (size_t)capacity * sizeof *list->entries);
+        if (!entries) return NULL;
+        list->entries = entries;
+        list->capacity = capacity;
     }
+    return &list->entries[list->count++];
+}
+
+static bool add_file(struct list *list, enum cache_kind kind, const char *folder, const char *name)
+{
+    struct stat info;
+    char path[PATH_SIZE];
+    if (!is_ours(kind, name) || !join(path, folder, name)) return true;
+    if (lstat(path, &info) != 0 || !S_ISREG(info.st_mode)) return true;
+    struct cache_entry *entry = append(list);
+    if (!entry) return false;
+    *entry = (struct cache_entry){ .kind = kind,
+                                   .bytes = (long long)info.st_size,
+                                   .used_s = (long long)info.st_mtim.tv_sec,
+                                   .used_ns = (long long)info.st_mtim.tv_nsec };
+    memcpy(entry->path, path, sizeof path);
+    return true;
+}
+
+static bool add_folder(struct list *list, enum cache_kind kind, const char *root)
+{
+    char folder[PATH_SIZE];
+    if (!join(folder, root, kinds[kind].folder)) return true;
+    DIR *dir = opendir(folder);
+    bool ok = true;
+    for (struct dirent *file; ok && dir && (file = readdir(dir));)
+        ok = add_file(list, kind, folder, file->d_name);
     if (dir) closedir(dir);
-    return sum;
+    return ok;
+}
+
+static int by_use(const void *a, const void *b)
+{
+    const struct cache_entry *x = a, *y = b;
+    if (x->used_s != y->used_s) return x->used_s < y->used_s ? -1 : 1;
+    if (x->used_ns != y->used_ns) return x->used_ns < y->used_ns ? -1 : 1;
+    return strcmp(x->path, y->path);
+}
+
+int cache_list(const char *root, struct cache_entry **out)
+{
+    struct list list = { 0 };
+    bool ok = true;
+    *out = NULL;
+    for (int kind = 0; kind < CACHE_KINDS && ok; kind++)
+        ok = add_folder(&list, (enum cache_kind)kind, root);
+    if (!ok) {
+        free(list.entries);
+        return -1;
+    }
+    if (list.count > 1) qsort(list.entries, (size_t)list.count, sizeof *list.entries, by_use);
+    *out = list.entries;
+    return list.count;
+}
+
+// ---- size limit
+
+// The parent folder, in place.
+static bool go_up(char *path)
+{
+    char *slash = strrchr(path, '/');
+    if (!slash || slash == path) return false;
+    *slash = 0;
+    return true;
 }
 
 void cache_trim(const char *path)
 {
-    char folder[PATH_SIZE];
-    struct entry oldest;
-    snprintf(folder, sizeof folder, "%.*s", (int)(strrchr(path, '/') - path), path);
-    while (look_around(folder, path, &oldest) > MAX_BYTES && oldest.path[0]) {
-        if (unlink(oldest.path) != 0) return;
-        detail("cache: %s (%.1f MB) made room", oldest.path, (double)oldest.bytes * 1e-6);
+    char root[PATH_SIZE];
+    struct cache_entry *entries = NULL;
+    long long sum = 0;
+    snprintf(root, sizeof root, "%s", path);
+    if (!go_up(root) || !go_up(root)) return;
+    const int count = cache_list(root, &entries);
+    for (int i = 0; i < count; i++) sum += entries[i].bytes;
+    for (int i = 0; i < count && sum > MAX_BYTES; i++) {
+        if (strcmp(entries[i].path, path) == 0 || unlink(entries[i].path) != 0) continue;
+        detail("cache: %s (%.1f MB) made room", entries[i].path, (double)entries[i].bytes * 1e-6);
+        sum -= entries[i].bytes;
     }
+    free(entries);
 }

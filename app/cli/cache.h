@@ -1,14 +1,31 @@
-// Cache of references between runs, in $AFTERGLOW_CACHE, $XDG_CACHE_HOME/afterglow or
-// ~/.cache/afterglow. Without such a folder nothing is cached.
+// Cache of references and bakes between runs, in $AFTERGLOW_CACHE, $XDG_CACHE_HOME/afterglow or
+// ~/.cache/afterglow. Without such a folder nothing is cached. Both kinds share one size limit; the
+// least recently used files go first.
 #pragma once
 
 #include "output.h"
 
+enum cache_kind { CACHE_REFERENCE, CACHE_BAKE };
+enum { CACHE_KINDS = CACHE_BAKE + 1 };
+
 // Path of the cached file for `key` (letters, digits, blanks). Creates the folder. False: no
 // cache; --verbose shows the reason.
-bool cache_file(const char *key, char out[PATH_SIZE]);
+bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE]);
 // Marks a file as recently used.
 void cache_touch(const char *path);
-// Removes the least recently used files in the folder of `path`, except `path`, until the cache
-// is within its size limit.
+// Removes the least recently used files, except `path`, until the cache of which it is a file is
+// within its size limit.
 void cache_trim(const char *path);
+
+struct cache_entry {
+    enum cache_kind kind;
+    char path[PATH_SIZE];
+    long long bytes;
+    long long used_s, used_ns; // since 1970
+};
+const char *cache_kind_name(enum cache_kind kind);
+long long cache_limit(void); // bytes
+// The folder of the cache; false: there is none.
+bool cache_root(char out[PATH_SIZE]);
+// All files of a cache, the least recently used first; the caller frees *out. -1: out of memory.
+int cache_list(const char *root, struct cache_entry **out);

@@ -1,4 +1,5 @@
 // afterglow render: frames of a scene, without a window.
+#include "baking.h"
 #include "commands.h"
 #include "output.h"
 #include "statistics.h"
@@ -13,6 +14,7 @@ struct job {
     struct session session;
     struct ag_device *device;
     struct ag_renderer *renderer;
+    struct bakes bakes;
     struct output output;
     struct statistics statistics;
     char pattern[PATH_SIZE]; // of -o
@@ -116,8 +118,12 @@ static enum status prepare(struct job *job)
         fail_library(context, result);
         return FAILED; // a missing device is no wrong usage
     }
+    status = bakes_prepare(&job->bakes, &job->session, a->gi);
+    if (status != DONE) return status;
     struct ag_renderer_desc desc;
     renderer_desc(job, &desc);
+    desc.bakes = job->bakes.bakes;
+    desc.bake_count = job->bakes.count;
     result = ag_renderer_create(job->device, job->session.scene, &desc, &job->renderer);
     if (result == AG_OK && a->debug_view)
         result = ag_renderer_set_debug_view(job->renderer, a->debug_view);
@@ -169,7 +175,8 @@ static enum status render_frames(struct job *job, char last_path[PATH_SIZE])
 
 static json_t *result_json(struct job *job, const char *path)
 {
-    json_t *document = statistics_json(&job->statistics, &job->session, job->device, job->renderer);
+    json_t *document =
+        statistics_json(&job->statistics, &job->session, job->device, job->renderer, &job->bakes);
     if (!document) return NULL;
     json_object_set_new(document, "scene", json_text(job->arguments->positional[0]));
     json_object_set_new(document, "camera", json_text(job->session.camera_name));
@@ -197,8 +204,8 @@ static enum status report(struct job *job, const char *path)
     enum ag_result result = ag_renderer_exposure(job->renderer, &job->exposure_ev);
     if (result != AG_OK) return fail_library(job->session.context, result);
     if (a->stats) {
-        json_t *document =
-            statistics_json(&job->statistics, &job->session, job->device, job->renderer);
+        json_t *document = statistics_json(&job->statistics, &job->session, job->device,
+                                           job->renderer, &job->bakes);
         status = json_write(document, a->stats);
         json_decref(document);
     }
@@ -225,6 +232,7 @@ static enum status render(const struct arguments *arguments)
 
     statistics_finish(&job->statistics);
     ag_renderer_destroy(job->renderer);
+    bakes_finish(&job->bakes);
     if (job->device && ag_device_validation_messages(job->device) > 0 && status == DONE)
         status = fail("cannot trust %s: Vulkan validation logged messages (see --verbose)", path);
     struct ag_device *device = job->device;

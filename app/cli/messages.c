@@ -7,7 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { LINE_SIZE = 2048, BAR_WIDTH = 30 };
+enum { LINE_SIZE = 2048, BAR_WIDTH = 30, SHARE_TOTAL = -1 };
 static const double BAR_AFTER_S = 0.3;   // shorter work shows none
 static const double LINE_EVERY_S = 10.0; // where there is no terminal
 
@@ -99,33 +99,60 @@ static double now_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static void draw_bar(const char *what, int done, int total, double left_s)
+static void draw_bar(const char *what, double share, const char *count, double left_s)
 {
-    int filled = (int)((long long)BAR_WIDTH * done / total);
+    const int filled = (int)(BAR_WIDTH * share);
     char bar[BAR_WIDTH + 1];
     memset(bar, '.', BAR_WIDTH);
     memset(bar, '#', (size_t)filled);
     bar[BAR_WIDTH] = 0;
-    fprintf(stderr, "\r\033[K%s [%s] %d/%d, %.0f s left", what, bar, done, total, left_s);
+    fprintf(stderr, "\r\033[K%s [%s] %s, %.0f s left", what, bar, count, left_s);
     fflush(stderr);
     state.bar_shown = true;
+}
+
+// When the work began. Another total is other work.
+static double passed_s(int total)
+{
+    const double now = now_s();
+    if (state.total != total) {
+        state.total = total;
+        state.begun_s = state.line_s = now;
+    }
+    return now - state.begun_s;
+}
+
+static bool line_is_due(void)
+{
+    if (now_s() - state.line_s <= LINE_EVERY_S) return false;
+    state.line_s = now_s();
+    return true;
 }
 
 void progress(const char *what, int done, int total)
 {
     if (state.quiet || total <= 0) return;
-    double now = now_s();
-    if (state.total != total) {
-        state.total = total;
-        state.begun_s = state.line_s = now;
-    }
-    double passed = now - state.begun_s;
-    double left = done > 0 ? passed / done * (total - done) : 0.0;
+    const double passed = passed_s(total);
+    const double left = done > 0 ? passed / done * (total - done) : 0.0;
+    char count[32];
+    snprintf(count, sizeof count, "%d/%d", done, total);
     if (isatty(STDERR_FILENO)) {
-        if (passed > BAR_AFTER_S && done < total) draw_bar(what, done, total, left);
-    } else if (now - state.line_s > LINE_EVERY_S && done > 0 && done < total) {
+        if (passed > BAR_AFTER_S && done < total) draw_bar(what, (double)done / total, count, left);
+    } else if (done > 0 && done < total && line_is_due()) {
         note("%s: %d of %d, %.0f s left", what, done, total, left);
-        state.line_s = now;
+    }
+}
+
+void progress_share(const char *what, double share, double left_s)
+{
+    if (state.quiet || !(share >= 0.0) || share > 1.0) return;
+    const double passed = passed_s(SHARE_TOTAL);
+    char count[32];
+    snprintf(count, sizeof count, "%.0f %%", 100.0 * share);
+    if (isatty(STDERR_FILENO)) {
+        if (passed > BAR_AFTER_S) draw_bar(what, share, count, left_s);
+    } else if (line_is_due()) {
+        note("%s: %s, %.0f s left", what, count, left_s);
     }
 }
 

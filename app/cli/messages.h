@@ -24,4 +24,6 @@ void log_message(void *user, enum ag_log_level level, const char *message);
 
 // A progress bar with the remaining time on a terminal, otherwise a line every ten seconds.
 void progress(const char *what, int done, int total);
+// The same for a share of the time, 0…1, and the time left.
+void progress_share(const char *what, double share, double left_s);
 void progress_end(void);

@@ -1,5 +1,6 @@
 // Medians and percentiles of pass times, as JSON.
 #include "statistics.h"
+#include "baking.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -160,16 +161,17 @@ json_t *statistics_frame(struct statistics *statistics)
 }
 
 json_t *statistics_json(struct statistics *statistics, const struct session *session,
-                        struct ag_device *device, struct ag_renderer *renderer)
+                        struct ag_device *device, struct ag_renderer *renderer,
+                        const struct bakes *bakes)
 {
     const struct arguments *a = session->arguments;
     struct ag_device_info info;
     ag_device_get_info(device, &info);
-    // No technique has a bake.
-    return json_pack("{s:s, s:s, s:[ii], s:i, s:s, s:o, s:o, s:o, s:o, s:{s:f, s:i}}", "device",
+    return json_pack("{s:s, s:s, s:[ii], s:i, s:s, s:o, s:o, s:o, s:o, s:{s:o, s:I}}", "device",
                      info.name, "driver", info.driver, "size", a->width, a->height, "frames",
                      a->frames, "gi", ag_renderer_gi(renderer), "options",
                      statistics_options(renderer), "passes", statistics_passes(statistics),
                      "frame_ms", statistics_frame(statistics), "memory_bytes",
-                     statistics_memory(renderer), "bake", "seconds", 0.0, "bytes", 0);
+                     statistics_memory(renderer), "bake", "seconds", json_double(bakes->seconds),
+                     "bytes", (json_int_t)bakes->bytes);
 }

@@ -29,5 +29,7 @@ json_t *statistics_frame(struct statistics *statistics);        // the whole fra
 json_t *statistics_options(const struct ag_renderer *renderer); // of each technique
 json_t *statistics_memory(struct ag_renderer *renderer);        // bytes by owner
 // The document of --stats; NULL: out of memory. Its `frames` counts all rendered frames.
+struct bakes;
 json_t *statistics_json(struct statistics *statistics, const struct session *session,
-                        struct ag_device *device, struct ag_renderer *renderer);
+                        struct ag_device *device, struct ag_renderer *renderer,
+                        const struct bakes *bakes);

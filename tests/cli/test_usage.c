@@ -245,7 +245,7 @@ static void check_lines(const char *text, size_t column)
 TEST(a_line_of_help_has_at_most_15_words)
 {
     static const char *const commands[] = { "",     "render", "reference", "compare",
-                                            "info", "list",   "diff" };
+                                            "info", "list",   "diff",      "cache" };
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
         check_lines(run_expect(0, commands[i], "--help", NULL)->out, 24);
     check_lines(run_expect(0, "list --quiet", NULL)->out, 34);
@@ -274,7 +274,7 @@ TEST(the_help_of_an_option_fits_two_lines)
 
 TEST(help_has_examples)
 {
-    static const char *const commands[] = { "render", "info", "list", "diff" };
+    static const char *const commands[] = { "render", "info", "list", "diff", "cache" };
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         const struct run *r = run_expect(0, commands[i], "--help", NULL);
         CHECK_STRING(r->err, "");

@@ -8,6 +8,17 @@ foreach(name usage info diff reference render compare interrupt)
   add_dependencies(test_cli_${name} afterglow)
 endforeach()
 
+# The program with another registry, which takes the place of the library's: a technique of it bakes.
+add_executable(afterglow_sample ${CMAKE_SOURCE_DIR}/app/cli/main.c ${CMAKE_CURRENT_LIST_DIR}/sample_registry.c)
+target_include_directories(afterglow_sample PRIVATE ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR}/src/.. $<TARGET_PROPERTY:ag_techniques,INTERFACE_INCLUDE_DIRECTORIES>)
+target_link_libraries(afterglow_sample PRIVATE afterglow_commands afterglow_flags PkgConfig::CGLM)
+set_target_properties(afterglow_sample PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+add_library(ag_test_sample_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.c)
+target_compile_definitions(ag_test_sample_program PUBLIC AFTERGLOW_PROGRAM="$<TARGET_FILE:afterglow_sample>")
+target_link_libraries(ag_test_sample_program PUBLIC ag_test_framework PkgConfig::JANSSON PRIVATE afterglow_flags)
+ag_test(cli/bake LIBRARIES ag_test_sample_program)
+add_dependencies(test_cli_bake afterglow_sample)
+
 # The page of compare, written by the program's own code and used in a browser, where there is one.
 add_library(ag_test_report STATIC ${CMAKE_CURRENT_LIST_DIR}/report_sample.c ${CMAKE_CURRENT_LIST_DIR}/browser.c)
 target_link_libraries(ag_test_report PUBLIC ag_test_program ag_image afterglow_commands PRIVATE afterglow_flags)
@@ -28,5 +39,5 @@ set_tests_properties(bench.frame PROPERTIES TIMEOUT 300 LABELS examples PASS_REG
 
 # Drivers leave memory behind when they are unloaded, without a name by which to suppress it. What of ours lives on a device
 # is held to account by the tests of gpu, frame and api.
-set_tests_properties(cli.info cli.interrupt cli.render cli.compare examples.minimal examples.measure examples.side_by_side examples.balls bench.frame
+set_tests_properties(cli.bake cli.info cli.interrupt cli.render cli.compare examples.minimal examples.measure examples.side_by_side examples.balls bench.frame
   PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)

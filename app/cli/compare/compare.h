@@ -23,6 +23,7 @@ struct method {
     struct ag_image *color, *indirect, *irradiance;
     char *spelled;                                // the GI spec with all options
     json_t *options, *passes, *frame_ms, *memory; // as in --stats
+    json_t *bake;                                 // NULL: it needs none
     struct measured image_error;
     struct measured indirect_error, irradiance_error; // where the reference has the layers
 };

@@ -1,5 +1,7 @@
 // Renders and times one method and reads its layers.
 #include "compare.h"
+#include "cli/baking.h"
+#include "cli/json.h"
 #include "cli/statistics.h"
 
 #include <ctype.h>
@@ -63,6 +65,7 @@ struct rendering {
     struct comparison *c;
     struct method *method;
     struct ag_renderer *renderer;
+    struct bakes bakes;
     struct statistics statistics;
 };
 
@@ -126,6 +129,9 @@ static enum status take_costs(struct rendering *r)
     m->passes = statistics_passes(&r->statistics);
     m->frame_ms = statistics_frame(&r->statistics);
     m->memory = statistics_memory(r->renderer);
+    if (r->bakes.count > 0)
+        m->bake = json_pack("{s:o, s:I, s:b}", "seconds", json_double(r->bakes.seconds), "bytes",
+                            (json_int_t)r->bakes.bytes, "cached", r->bakes.loaded);
     bool ok = m->spelled && m->options && m->passes && m->frame_ms && m->memory;
     return ok ? DONE : fail("cannot measure %s: out of memory", m->gi);
 }
@@ -134,7 +140,11 @@ static enum status create(struct rendering *r, int index)
 {
     struct comparison *c = r->c;
     struct ag_renderer_desc desc;
+    enum status status = bakes_prepare(&r->bakes, &c->session, c->methods[index].gi);
+    if (status != DONE) return status;
     renderer_desc(c, index, &desc);
+    desc.bakes = r->bakes.bakes;
+    desc.bake_count = r->bakes.count;
     enum ag_result result = ag_renderer_create(c->device, c->session.scene, &desc, &r->renderer);
     if (result == AG_OK) return DONE;
     fail_library(c->session.context, result);
@@ -153,6 +163,7 @@ enum status method_render(struct comparison *c, int index)
     if (status == DONE) status = take_costs(r);
     statistics_finish(&r->statistics);
     ag_renderer_destroy(r->renderer);
+    bakes_finish(&r->bakes);
     free(r);
     return status;
 }
@@ -170,5 +181,6 @@ void methods_finish(struct comparison *c)
         json_decref(m->passes);
         json_decref(m->frame_ms);
         json_decref(m->memory);
+        json_decref(m->bake);
     }
 }

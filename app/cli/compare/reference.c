@@ -182,7 +182,8 @@ static double cached_number(struct comparison *c, const char *name)
 static void take_cached(struct comparison *c)
 {
     struct reference *reference = &c->reference;
-    if (!cache_file(ag_reference_checkpoint(reference->tracing.reference), reference->cache_path))
+    if (!cache_file(CACHE_REFERENCE, ag_reference_checkpoint(reference->tracing.reference),
+                    reference->cache_path))
         return;
     if (access(reference->cache_path, F_OK) != 0) return;
     if (tracing_resume(&reference->tracing, reference->cache_path) != AG_OK) {

@@ -46,6 +46,7 @@ static json_t *method_json(const struct comparison *c, const struct method *m)
     if (object && c->reference.irradiance)
         json_object_set_new(object, "irradiance",
                             error_json(c->reference.irradiance, &m->irradiance_error));
+    if (object && m->bake) json_object_set(object, "bake", m->bake);
     if (object && c->arguments->ignore_nan)
         json_object_set_new(object, "pixels", json_integer((json_int_t)p->counted));
     return object;

@@ -1,0 +1,271 @@
+// Finding, running and caching bakes.
+#include "baking.h"
+#include "cache.h"
+#include "interrupt.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char CHECKPOINT[] = ".checkpoint";
+static const double STOP_WITHIN_S = 0.8; // after Ctrl-C, whatever the running tasks do
+
+static double now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static enum status fail_bake(const struct baking *b, enum ag_result result)
+{
+    return fail_library(b->session->context, result);
+}
+
+// ---- one bake
+
+// Without a cache the result stays in memory.
+static enum status find_path(struct baking *b, const char *path)
+{
+    struct ag_bake_info info;
+    ag_bake_get_info(b->bake, &info);
+    b->technique = info.technique;
+    b->in_cache = !path;
+    if (path && strlen(path) >= sizeof b->path - sizeof CHECKPOINT)
+        return wrong_usage("wrong value -o: the path is longer than %zu",
+                           sizeof b->path - sizeof CHECKPOINT);
+    if (path)
+        snprintf(b->path, sizeof b->path, "%s", path);
+    else if (!cache_file(CACHE_BAKE, info.key, b->path))
+        b->path[0] = 0;
+    return DONE;
+}
+
+enum status baking_begin(struct baking *b, struct session *session, const char *gi,
+                         const struct ag_bake_desc *desc, const char *path)
+{
+    *b = (struct baking){ .session = session, .estimate_seconds = (double)NAN };
+    enum ag_result result = ag_bake_create(session->scene, gi, desc, &b->bake);
+    if (result != AG_OK) return fail_bake(b, result);
+    enum status status = find_path(b, path);
+    if (status != DONE || !b->path[0]) return status;
+    char checkpoint[PATH_SIZE + sizeof CHECKPOINT];
+    snprintf(checkpoint, sizeof checkpoint, "%s%s", b->path, CHECKPOINT);
+    result = ag_bake_set_checkpoint(b->bake, checkpoint);
+    return result == AG_OK ? DONE : fail_bake(b, result);
+}
+
+void baking_end(struct baking *b)
+{
+    ag_bake_destroy(b->bake);
+    *b = (struct baking){ 0 };
+}
+
+static bool load_from(struct baking *b, const char *path)
+{
+    if (!path[0] || access(path, F_OK) != 0) return false;
+    b->loaded = ag_bake_load(b->bake, path) == AG_OK;
+    if (!b->loaded)
+        note("warning: %s is baked again: %s", b->technique,
+             ag_context_last_error(b->session->context));
+    return b->loaded;
+}
+
+bool baking_load(struct baking *b)
+{
+    struct ag_bake_info info;
+    char cached[PATH_SIZE];
+    ag_bake_get_info(b->bake, &info);
+    if (load_from(b, b->path)) {
+        if (b->in_cache) cache_touch(b->path);
+        return true;
+    }
+    if (b->in_cache || !cache_file(CACHE_BAKE, info.key, cached) || !load_from(b, cached))
+        return false;
+    cache_touch(cached);
+    return true;
+}
+
+// ---- the run
+
+// 1234567 as "1.23 million".
+static void print_count(double count, char out[32])
+{
+    if (count >= 1e9)
+        snprintf(out, 32, "%.3g billion", count * 1e-9);
+    else if (count >= 1e6)
+        snprintf(out, 32, "%.3g million", count * 1e-6);
+    else
+        snprintf(out, 32, "%.0f", count);
+}
+
+static enum status estimate(struct baking *b)
+{
+    const long long mib = b->session->arguments->max_memory_mib;
+    struct ag_bake_estimate needs;
+    char texels[32], rays[32];
+    enum ag_result result = ag_bake_estimate(b->bake, false, &needs);
+    // Refused before the probe, which takes memory too.
+    if (result == AG_OK && mib > 0 && needs.peak_memory_bytes > (uint64_t)mib << 20)
+        return fail("cannot bake %s: it needs about %.0f MiB, more than --max-memory %lld; choose "
+                    "smaller options or fewer threads",
+                    b->technique, (double)needs.peak_memory_bytes / 1048576.0, mib);
+    if (result == AG_OK) result = ag_bake_estimate(b->bake, true, &needs);
+    if (result != AG_OK) return fail_bake(b, result);
+    b->estimate_seconds = needs.seconds;
+    print_count(needs.texels, texels);
+    print_count(needs.rays, rays);
+    note("baking %s: %s texels, %s rays, about %.0f s, %.0f MB of memory, %.1f MB on disk",
+         b->technique, texels, rays, needs.seconds, (double)needs.peak_memory_bytes * 1e-6,
+         (double)needs.file_bytes * 1e-6);
+    return DONE;
+}
+
+struct watch {
+    const struct baking *baking;
+    double stopped_s; // when Ctrl-C was seen; 0: not yet
+};
+
+static enum status interrupted(const struct baking *b)
+{
+    return fail("baking of %s: interrupted; %s", b->technique,
+                b->path[0] ? "the same command continues with what was finished"
+                           : "without a cache its results are lost");
+}
+
+// A running task may be in the middle of a decomposition, which cannot be interrupted. The
+// checkpoint is written by then, so nothing is lost by not waiting for it.
+static void leave_if_late(const struct watch *watch)
+{
+    if (now_s() - watch->stopped_s < STOP_WITHIN_S) return;
+    progress_end();
+    _exit(interrupted(watch->baking));
+}
+
+static bool show(void *user, const struct ag_bake_progress *p)
+{
+    struct watch *watch = user;
+    char what[128];
+    snprintf(what, sizeof what, "baking %.32s, %.64s", watch->baking->technique, p->stage);
+    progress_share(what, p->done, p->seconds_left);
+    if (interrupt_caught() && watch->stopped_s <= 0.0) watch->stopped_s = now_s();
+    if (p->stopping) leave_if_late(watch);
+    return !interrupt_caught();
+}
+
+static enum status run(struct baking *b)
+{
+    struct watch watch = { .baking = b };
+    interrupt_catch();
+    const enum ag_result result = ag_bake_run(b->bake, show, &watch);
+    progress_end();
+    interrupt_let_go();
+    if (result == AG_ERROR_CANCELLED) return interrupted(b);
+    return result == AG_OK ? DONE : fail_bake(b, result);
+}
+
+static enum status write_file(struct baking *b, bool shard)
+{
+    if (!b->path[0]) return DONE;
+    interrupt_hold();
+    enum ag_result result = shard ? ag_bake_save_partial(b->bake, b->path)
+                                  : ag_bake_save(b->bake, b->path, b->in_cache);
+    interrupt_release();
+    if (result == AG_OK && b->in_cache) cache_trim(b->path);
+    if (result == AG_OK) return DONE;
+    if (!b->in_cache) return fail_bake(b, result);
+    note("warning: the bake of %s is not cached: %s", b->technique,
+         ag_context_last_error(b->session->context));
+    return DONE;
+}
+
+enum status baking_run(struct baking *b, bool shard)
+{
+    struct ag_bake_info info;
+    ag_bake_get_info(b->bake, &info);
+    enum status status = info.complete ? DONE : estimate(b);
+    if (status == DONE && !info.complete) status = run(b);
+    return status == DONE ? write_file(b, shard) : status;
+}
+
+// ---- the bakes of a renderer
+
+// The --bake file that names this technique.
+static enum status find_given(const struct session *session, const char *technique,
+                              const char **path)
+{
+    const struct arguments *a = session->arguments;
+    char name[32];
+    *path = NULL;
+    for (int i = 0; i < a->bake_file_count; i++) {
+        enum ag_result result = ag_bake_file_technique(session->context, a->bake_files[i], name);
+        if (result != AG_OK) {
+            fail_library(session->context, result);
+            return FAILED; // a file's content is no wrong usage
+        }
+        if (strcmp(name, technique) == 0) *path = a->bake_files[i];
+    }
+    return DONE;
+}
+
+static enum status prepare_one(struct baking *b, struct session *session, const char *gi,
+                               const char *technique)
+{
+    const struct arguments *a = session->arguments;
+    struct ag_bake_desc desc;
+    const char *given = NULL;
+    ag_bake_desc_default(&desc);
+    desc.technique = technique;
+    desc.seed = a->seed;
+    enum status status = find_given(session, technique, &given);
+    if (status == DONE) status = baking_begin(b, session, gi, &desc, NULL);
+    if (status != DONE) return status;
+    if (given) {
+        enum ag_result result = ag_bake_load(b->bake, given);
+        b->loaded = result == AG_OK;
+        if (result != AG_OK) fail_bake(b, result);
+        return result == AG_OK ? DONE : FAILED;
+    }
+    if (baking_load(b)) return DONE;
+    if (a->no_bake)
+        return fail("cannot use %s: there is no bake for these options and this scene, and "
+                    "--no-bake; see afterglow bake --help",
+                    technique);
+    return baking_run(b, false);
+}
+
+static void add_up(struct bakes *bakes)
+{
+    bakes->loaded = bakes->count > 0;
+    for (int i = 0; i < bakes->count; i++) {
+        struct ag_bake_info info;
+        ag_bake_get_info(bakes->at[i].bake, &info);
+        bakes->bakes[i] = bakes->at[i].bake;
+        bakes->loaded = bakes->loaded && bakes->at[i].loaded;
+        bakes->seconds += info.seconds;
+        bakes->bytes += info.bytes;
+    }
+}
+
+enum status bakes_prepare(struct bakes *bakes, struct session *session, const char *gi)
+{
+    *bakes = (struct bakes){ 0 };
+    for (int i = 0; i < MAX_BAKES; i++) {
+        const char *technique = NULL;
+        enum ag_result result = ag_bake_technique(session->context, gi, i, &technique);
+        if (result != AG_OK) return fail_library(session->context, result);
+        if (!technique) break;
+        enum status status = prepare_one(&bakes->at[bakes->count++], session, gi, technique);
+        if (status != DONE) return status;
+    }
+    add_up(bakes);
+    return DONE;
+}
+
+void bakes_finish(struct bakes *bakes)
+{
+    for (int i = 0; i < bakes->count; i++) baking_end(&bakes->at[i]);
+    *bakes = (struct bakes){ 0 };
+}

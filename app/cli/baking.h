@@ -1,0 +1,40 @@
+// Bakes of a command: a given file, a cached one, or a run with a progress bar.
+#pragma once
+
+#include "output.h"
+
+enum { MAX_BAKES = 3 };
+
+struct baking {
+    struct session *session;
+    struct ag_bake *bake;
+    const char *technique;   // owned by the bake
+    char path[PATH_SIZE];    // of its file; "": kept in memory only
+    bool in_cache;           // the path is in the cache
+    bool loaded;             // from a file, not run
+    double estimate_seconds; // of the whole run, before it; NaN: nothing was estimated
+};
+// Creates the bake of one technique of the spec. path NULL: a file in the cache. desc: see
+// ag_bake_create.
+enum status baking_begin(struct baking *b, struct session *session, const char *gi,
+                         const struct ag_bake_desc *desc, const char *path);
+void baking_end(struct baking *b); // accepts zero
+// Reads the file of `path`, or of the cache. False: there is none, or it does not fit, which a note
+// says.
+bool baking_load(struct baking *b);
+// Says what it needs, runs with a progress bar and writes the file. After Ctrl-C it fails; what was
+// finished is kept in a checkpoint. shard: write a partial file.
+enum status baking_run(struct baking *b, bool shard);
+
+// The bakes that the techniques of a GI spec need, for a renderer.
+struct bakes {
+    struct baking at[MAX_BAKES];
+    const struct ag_bake *bakes[MAX_BAKES]; // for ag_renderer_desc
+    int count;
+    bool loaded;    // all of them
+    double seconds; // NaN: not known
+    uint64_t bytes;
+};
+// From --bake, the cache or a run, unless --no-bake forbids it.
+enum status bakes_prepare(struct bakes *bakes, struct session *session, const char *gi);
+void bakes_finish(struct bakes *bakes); // accepts zero

@@ -1,0 +1,195 @@
+// afterglow bake: what a technique precomputes, to a file or to the cache.
+#include "baking.h"
+#include "commands.h"
+#include "json.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+struct job {
+    const struct arguments *arguments;
+    struct session session;
+    struct baking baking;
+    struct ag_bake_origin origin; // of the parts, with --merge
+};
+
+// ---- checks of the command line
+
+static enum status check_usage(const struct arguments *a)
+{
+    if (a->shard_count > 0 && a->merge)
+        return wrong_usage("cannot use --shard with --merge: choose one");
+    if ((a->shard_count > 0 || a->merge) && !a->output)
+        return wrong_usage("cannot use --%s: it requires -o FILE.safetensors",
+                           a->merge ? "merge" : "shard");
+    if (!a->merge && !a->has_gi)
+        return wrong_usage("cannot bake %s: --gi SPEC is missing (see afterglow list)",
+                           a->positional[0]);
+    if (a->shard_count > 0 && a->report)
+        return wrong_usage("cannot use --report with --shard: the bake is complete after --merge");
+    return DONE;
+}
+
+static enum status check_outputs(const struct arguments *a)
+{
+    enum status status = a->output ? output_check(a->output) : DONE;
+    return status == DONE && a->report ? output_check(a->report) : status;
+}
+
+// ---- the bake
+
+// The scene and the GI spec: of the command line, or of the first part.
+static enum status find_origin(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    if (!a->merge) return DONE;
+    enum ag_result result =
+        ag_bake_partial_origin(job->session.context, a->positional[0], &job->origin);
+    if (result == AG_OK) return DONE;
+    fail_library(job->session.context, result);
+    return FAILED; // the file's content is no wrong usage
+}
+
+static enum status begin(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.seed = a->merge ? job->origin.seed : a->seed;
+    desc.threads = a->threads;
+    desc.shard = a->shard;
+    desc.shard_count = a->shard_count;
+    desc.max_memory_bytes = (uint64_t)a->max_memory_mib << 20;
+    desc.full_report = a->report_full;
+    return baking_begin(&job->baking, &job->session, a->merge ? job->origin.gi : a->gi, &desc,
+                        a->output);
+}
+
+static enum status merge(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    for (int i = 0; a->merge && i < a->positional_count; i++) {
+        enum ag_result result = ag_bake_merge(job->baking.bake, a->positional[i]);
+        if (result == AG_OK) continue;
+        fail_library(job->session.context, result);
+        return FAILED;
+    }
+    return DONE;
+}
+
+// A report measures a run, so it needs one.
+static bool may_load(const struct arguments *a)
+{
+    return !a->force && !a->report && !a->report_full && !a->merge && a->shard_count == 0;
+}
+
+static enum status bake_it(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    if (may_load(a) && baking_load(&job->baking)) {
+        note("%s is already baked: %s (--force bakes again)", job->baking.technique,
+             job->baking.path);
+        return a->output ? baking_run(&job->baking, false) : DONE; // writes the file
+    }
+    enum status status = merge(job);
+    return status == DONE ? baking_run(&job->baking, a->shard_count > 0) : status;
+}
+
+// ---- results
+
+// The library's report with what this command knows: {"…": …, "estimate_seconds": …, "output": …}.
+static json_t *report_json(struct job *job)
+{
+    const char *text = NULL;
+    if (ag_bake_report(job->baking.bake, &text) != AG_OK) return NULL;
+    json_t *report = json_loads(text, 0, NULL);
+    if (!report) return NULL;
+    json_object_set_new(report, "estimate_seconds", json_double(job->baking.estimate_seconds));
+    json_object_set_new(report, "cached", json_boolean(job->baking.loaded));
+    json_object_set_new(report, "output", json_text(job->baking.path));
+    return report;
+}
+
+static void describe(const json_t *report)
+{
+    size_t i;
+    const json_t *stage;
+    json_array_foreach(json_object_get(report, "stages"), i, stage)
+    {
+        detail("%-32s %9.2f s", json_string_value(json_object_get(stage, "name")),
+               json_number_value(json_object_get(stage, "seconds")));
+    }
+    note("baked in %.1f s, at most %.0f MB of memory, %.1f MB of arrays",
+         json_number_value(json_object_get(report, "seconds")),
+         json_number_value(json_object_get(report, "peak_memory_bytes")) * 1e-6,
+         json_number_value(json_object_get(report, "bytes")) * 1e-6);
+}
+
+static enum status publish(struct job *job, json_t *report)
+{
+    const struct arguments *a = job->arguments;
+    if (!job->baking.loaded) describe(report);
+    if (!a->output && job->baking.path[0]) note("written: %s", job->baking.path);
+    enum status status = a->report ? json_write(report, a->report) : DONE;
+    return status == DONE && a->json ? json_print(json_incref(report)) : status;
+}
+
+static enum status report(struct job *job)
+{
+    if (job->arguments->shard_count > 0) return DONE;
+    json_t *document = report_json(job);
+    if (!document) return fail_library(job->session.context, AG_ERROR_MEMORY);
+    enum status status = publish(job, document);
+    json_decref(document);
+    return status;
+}
+
+static enum status bake(const struct arguments *arguments)
+{
+    struct job *job = calloc(1, sizeof *job);
+    if (!job) return fail("cannot bake %s: out of memory", arguments->positional[0]);
+    job->arguments = arguments;
+    enum status status = check_usage(arguments);
+    if (status == DONE) status = check_outputs(arguments);
+    if (status == DONE) status = session_begin(&job->session, arguments);
+    if (status == DONE) status = find_origin(job);
+    if (status == DONE)
+        status = session_load(&job->session,
+                              arguments->merge ? job->origin.scene_name : arguments->positional[0]);
+    if (status == DONE) status = begin(job);
+    if (status == DONE) status = bake_it(job);
+    if (status == DONE) status = report(job);
+    baking_end(&job->baking);
+    session_end(&job->session);
+    free(job);
+    return status;
+}
+
+const struct command command_bake = {
+    .name = "bake",
+    .bit = BAKE,
+    .positional_count = 1,
+    .usage = "SCENE --gi SPEC [options]",
+    .summary = "precompute the data of a technique on the CPU",
+    .text = "Precomputes the data of a technique for SCENE, once. render and compare do it by\n"
+            "themselves when nothing fits; this command does it ahead, elsewhere or in parts.\n"
+            "\n"
+            "Says first what it needs: rays, time, memory, bytes on disk. Runs on all cores.\n"
+            "Ctrl-C keeps what is finished; the same command continues with it.\n"
+            "Neither threads, parts nor interruptions change the file.\n"
+            "\n"
+            "The file is in the safetensors format: in Python,\n"
+            "safetensors.numpy.load_file('maze.safetensors') returns its arrays by name.\n",
+    .examples = "  afterglow bake @maze --gi mrt\n"
+                "      into the cache, where render and compare find it\n"
+                "  afterglow bake @maze --gi mrt -o maze.safetensors\n"
+                "  afterglow render @maze --gi mrt --bake maze.safetensors\n"
+                "      into a file, and use it\n"
+                "  afterglow bake @maze --gi mrt --report report.json --force\n"
+                "      bake again and write seconds, bytes and figures of each stage\n"
+                "  afterglow bake @maze --gi mrt --shard 0/2 -o part0.safetensors\n"
+                "  afterglow bake @maze --gi mrt --shard 1/2 -o part1.safetensors\n"
+                "  afterglow bake --merge part0.safetensors part1.safetensors -o all.safetensors\n"
+                "      two parts, on two machines, joined\n",
+    .run = bake,
+};

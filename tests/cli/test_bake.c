@@ -1,0 +1,307 @@
+// afterglow bake and cache, and bakes of render and compare, with a program whose technique
+// `sample` bakes.
+#include "cli/program.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+#include <utime.h>
+
+// A path that stays valid.
+static const char *path_of(const char *name)
+{
+    static char paths[32][300];
+    static int next;
+    char *path = paths[next++ % 32];
+    snprintf(path, sizeof paths[0], "%s", test_path(name));
+    return path;
+}
+
+// An empty cache of this test's own.
+static const char *use_cache(const char *name)
+{
+    static char bakes[600];
+    setenv("AFTERGLOW_CACHE", make_folder(name), 1);
+    snprintf(bakes, sizeof bakes, "%s/bakes", getenv("AFTERGLOW_CACHE"));
+    return bakes;
+}
+
+static double number(const json_t *document, const char *name)
+{
+    return json_number_value(json_object_get(document, name));
+}
+
+TEST(bake_writes_to_the_cache_and_the_next_run_uses_it)
+{
+    const char *folder = use_cache("bake-cache");
+    const struct run *r = run_expect(0, "bake @cornell --gi sample", NULL);
+    CHECK(strstr(r->err, "baking sample: 128 texels, 8000 rays"));
+    CHECK(strstr(r->err, "baked in") && strstr(r->err, folder));
+    CHECK_STRING(r->out, "");
+    assert_int_equal(count_files(folder), 1);
+    r = run_expect(0, "bake @cornell --gi sample", NULL);
+    CHECK(strstr(r->err, "is already baked") && !strstr(r->err, "texels"));
+    r = run_expect(0, "bake @cornell --gi sample --force --quiet", NULL);
+    CHECK_STRING(r->err, "");
+    assert_int_equal(count_files(folder), 1);
+    run_expect(0, "bake @cornell --gi sample:rows=9 --quiet", NULL);
+    run_expect(0, "bake @cornell --gi sample --seed 2 --quiet", NULL);
+    run_expect(0, "bake @diagonal --gi sample --quiet", NULL);
+    assert_int_equal(count_files(folder), 4);
+    run_expect(0, "bake @cornell:light=point --gi sample --quiet", NULL); // other geometry
+    assert_int_equal(count_files(folder), 5);
+}
+
+TEST(bake_gives_the_same_file_for_threads_shards_and_from_the_cache)
+{
+    use_cache("bake-same");
+    const char *one = path_of("one.safetensors"), *many = path_of("many.safetensors"),
+               *joined = path_of("joined.safetensors"), *copied = path_of("copy.safetensors"),
+               *a = path_of("a.safetensors"), *b = path_of("b.safetensors");
+    run_expect(0, "bake @cornell --gi sample --threads 1 -o", one, NULL);
+    run_expect(0, "bake @cornell --gi sample --threads 4 -o", many, NULL);
+    run_expect(0, "bake @cornell --gi sample --shard 0/2 -o", a, NULL);
+    run_expect(0, "bake @cornell --gi sample --shard 1/2 -o", b, NULL);
+    run_expect(0, "bake --merge", b, a, "-o", joined, NULL);
+    run_expect(0, "bake @cornell --gi sample", NULL);
+    run_expect(0, "bake @cornell --gi sample -o", copied, NULL);
+    CHECK(files_are_equal(one, many) && files_are_equal(one, joined));
+    CHECK(files_are_equal(one, copied));
+}
+
+TEST(bake_report_has_stages_times_and_bytes)
+{
+    use_cache("bake-report");
+    const char *path = path_of("report.json");
+    json_t *printed = run_json(
+        run_expect(0, "bake @cornell --gi sample:wait_ms=20 --json --quiet --report", path, NULL));
+    json_t *report = json_load_file(path, 0, NULL);
+    CHECK(report && json_equal(report, printed));
+    CHECK_STRING(json_string_value(json_object_get(report, "technique")), "sample");
+    CHECK_NEAR(number(json_object_get(report, "options"), "rows"), 8, 0);
+    const json_t *stages = json_object_get(report, "stages");
+    CHECK(json_array_size(stages) == 2);
+    CHECK_STRING(json_string_value(json_object_get(json_array_get(stages, 0), "name")), "gather");
+    CHECK(number(json_array_get(stages, 0), "seconds") >= 8 * 0.02);
+    CHECK(number(report, "seconds") > 0.0 && number(report, "estimate_seconds") > 0.0);
+    CHECK(number(report, "peak_memory_bytes") > 1e6);
+    CHECK_NEAR(number(report, "bytes"), 64, 0);
+    CHECK_NEAR(number(report, "tensors"), 1, 0);
+    CHECK(json_is_false(json_object_get(report, "full")));
+    CHECK(json_is_false(json_object_get(report, "cached")));
+    json_decref(report);
+    json_decref(printed);
+}
+
+TEST(bake_refuses_wrong_usage_and_leaves_nothing)
+{
+    static const struct {
+        int status;
+        const char *words, *names;
+    } cases[] = {
+        { 2, "bake", "SCENE is missing" },
+        { 2, "bake @cornell", "--gi SPEC is missing" },
+        { 2, "bake @cornell --gi none", "cannot bake none: it needs no bake" },
+        { 2, "bake @cornell --gi sampel", "did you mean sample?" },
+        { 2, "bake @cornell --gi sample:rows=0", "rows" },
+        { 2, "bake @cornell --gi sample -o a.exr", ".safetensors" },
+        { 2, "bake @cornell --gi sample --shard 2/2 -o a.safetensors", "0 <= I < N" },
+        { 2, "bake @cornell --gi sample --shard 0/2", "it requires -o" },
+        { 2, "bake --merge a.safetensors", "it requires -o" },
+        { 2, "bake @cornell --gi sample --threads 0", "1 to 1024" },
+        { 1, "bake @cornell --gi sample:rows=100000 --max-memory 1", "more than --max-memory 1" },
+        { 1, "bake no-such-scene.glb --gi sample", "no-such-scene.glb" },
+        { 1, "bake @cornell --gi sample -o /no-such-folder/a.safetensors", "/no-such-folder" },
+        { 1, "bake --merge /no-such-file -o a.safetensors", "/no-such-file" },
+    };
+    const char *folder = use_cache("bake-wrong");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct run *r = run_expect(cases[i].status, cases[i].words, NULL);
+        check_one_error_line(r);
+        if (!strstr(r->err, cases[i].names)) fail_msg("%s: %s", cases[i].words, r->err);
+    }
+    CHECK(!file_exists("a.safetensors") && count_files(folder) <= 0);
+}
+
+TEST(bake_refuses_parts_of_another_bake_and_complete_files)
+{
+    use_cache("bake-parts");
+    const char *a = path_of("part-a.safetensors"), *b = path_of("part-b.safetensors"),
+               *whole = path_of("whole.safetensors"), *out = path_of("parts.safetensors");
+    run_expect(0, "bake @cornell --gi sample --shard 0/2 -o", a, NULL);
+    run_expect(0, "bake @cornell --gi sample:rows=9 --shard 1/2 -o", b, NULL);
+    run_expect(0, "bake @cornell --gi sample -o", whole, NULL);
+    const struct run *r = run_expect(1, "bake --merge", a, b, "-o", out, NULL);
+    CHECK(strstr(r->err, "its list of options is rows=9") && !file_exists(out));
+    r = run_expect(1, "bake --merge", a, whole, "-o", out, NULL);
+    CHECK(strstr(r->err, "its kind is bake, not partial") && !file_exists(out));
+}
+
+// ---- Ctrl-C
+
+static double now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// Starts a bake, interrupts it after a while and returns how long it took to end.
+static double interrupt(const char *gi, double after_s)
+{
+    char program[] = AFTERGLOW_PROGRAM, command[] = "bake", scene[] = "@cornell", option[] = "--gi",
+         quiet[] = "--quiet",
+         *words[] = { program, command, scene, option, (char *)gi, quiet, NULL };
+    const pid_t child = fork();
+    if (child == 0) {
+        signal(SIGINT, SIG_DFL);
+        fclose(stderr);
+        execv(program, words);
+        _exit(127);
+    }
+    int status = 0;
+    usleep((useconds_t)(after_s * 1e6));
+    const double begun = now_s();
+    CHECK(child > 0 && kill(child, SIGINT) == 0 && waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    return now_s() - begun;
+}
+
+TEST(bake_stops_within_a_second_of_ctrl_c_and_continues_with_what_was_finished)
+{
+    const char *folder = use_cache("bake-interrupted");
+    CHECK(interrupt("sample:rows=200,wait_ms=30", 1.5) < 1.0);
+    assert_int_equal(count_files(folder), 1); // the checkpoint
+    json_t *report = run_json(run_expect(
+        0, "bake @cornell --gi sample:rows=200,wait_ms=30 --json --quiet --force", NULL));
+    assert_int_equal(count_files(folder), 1); // the bake
+    CHECK(number(report, "estimate_seconds") < 0.95 * number(report, "seconds"));
+    json_decref(report);
+}
+
+// Tasks of five seconds that do not poll; the probe has run the first one.
+TEST(bake_stops_within_a_second_of_ctrl_c_in_the_middle_of_a_long_task)
+{
+    const char *folder = use_cache("bake-long");
+    CHECK(interrupt("sample:rows=4,wait_ms=3000", 4.5) < 1.1);
+    assert_int_equal(count_files(folder), 1);
+}
+
+// ---- render and compare
+
+TEST(render_bakes_by_itself_once)
+{
+    require_device();
+    const char *folder = use_cache("bake-render"), *image = path_of("baked.png"),
+               *stats = path_of("baked.json");
+    const char *words = "render @cornell:light=point --size 16x16 --gi sample -o";
+    const struct run *r = run_expect(1, words, image, "--no-bake", NULL);
+    CHECK(strstr(r->err, "there is no bake") && !file_exists(image));
+    r = run_expect(0, words, image, "--stats", stats, NULL);
+    CHECK(strstr(r->err, "baking sample"));
+    assert_int_equal(count_files(folder), 1);
+    json_t *document = json_load_file(stats, 0, NULL);
+    CHECK_NEAR(number(json_object_get(document, "bake"), "bytes"), 64, 0);
+    CHECK(number(json_object_get(document, "bake"), "seconds") > 0.0);
+    json_decref(document);
+    r = run_expect(0, words, image, "--no-bake", NULL);
+    CHECK(!strstr(r->err, "baking sample"));
+}
+
+TEST(render_makes_a_damaged_bake_again)
+{
+    require_device();
+    const char *folder = use_cache("bake-damaged"), *image = path_of("again.png");
+    json_t *report =
+        run_json(run_expect(0, "bake @cornell:light=point --gi sample --json --quiet", NULL));
+    const char *path = json_string_value(json_object_get(report, "output"));
+    write_file(path, "damaged", 7);
+    const char *words = "render @cornell:light=point --size 16x16 --gi sample -o";
+    CHECK(strstr(run_expect(0, words, image, NULL)->err, "warning: sample is baked again"));
+    CHECK(!strstr(run_expect(0, words, image, NULL)->err, "baked again"));
+    assert_int_equal(count_files(folder), 1);
+    json_decref(report);
+}
+
+TEST(render_with_a_bake_of_another_scene_fails_and_says_so)
+{
+    require_device();
+    use_cache("bake-other");
+    const char *bake = path_of("other.safetensors"), *image = path_of("other.png");
+    run_expect(0, "bake @diagonal --gi sample --quiet -o", bake, NULL);
+    const struct run *r =
+        run_expect(1, "render @cornell --size 16x16 --gi sample -o", image, "--bake", bake, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "it is of another scene") && !file_exists(image));
+    run_expect(0, "render @diagonal --size 16x16 --gi sample -o", image, "--bake", bake, NULL);
+}
+
+TEST(compare_says_what_the_bake_of_a_method_cost)
+{
+    require_device();
+    use_cache("bake-compare");
+    const char *words = "compare @cornell:light=point --size 16x16 --spp 1 --frames 1 --json "
+                        "--quiet --gi none --gi sample -o";
+    for (int i = 0; i < 2; i++) {
+        json_t *report = run_json(run_expect(0, words, path_of("baked-compare"), NULL));
+        const json_t *methods = json_object_get(report, "methods");
+        const json_t *bake = json_object_get(json_array_get(methods, 1), "bake");
+        CHECK(!json_object_get(json_array_get(methods, 0), "bake"));
+        CHECK_NEAR(number(bake, "bytes"), 64, 0);
+        CHECK(json_is_number(json_object_get(bake, "seconds"))); // of the run that made it
+        CHECK(json_is_true(json_object_get(bake, "cached")) == (i == 1));
+        json_decref(report);
+    }
+}
+
+// ---- the cache
+
+TEST(cache_lists_and_clears_references_and_bakes)
+{
+    require_device();
+    const char *folder = use_cache("cache-list");
+    char other[700];
+    run_expect(0, "compare @cornell:light=point --size 16x16 --spp 1 --frames 1 --gi sample -o",
+               path_of("cached-compare"), NULL);
+    snprintf(other, sizeof other, "%s/notes.txt", folder);
+    write_file(other, "mine", 4);
+    json_t *list = run_json(run_expect(0, "cache --json", NULL));
+    const json_t *files = json_object_get(list, "files");
+    CHECK(json_array_size(files) == 2 && number(list, "bytes") > 100.0);
+    CHECK_NEAR(number(list, "limit_bytes"), 2147483648.0, 0);
+    CHECK_STRING(json_string_value(json_object_get(json_array_get(files, 0), "kind")), "bake");
+    CHECK_STRING(json_string_value(json_object_get(json_array_get(files, 1), "kind")), "reference");
+    json_decref(list);
+    CHECK(strstr(run_expect(0, "cache", NULL)->out, "2 files"));
+    CHECK(strstr(run_expect(0, "cache --clear", NULL)->err, "removed 2 files"));
+    CHECK(strstr(run_expect(0, "cache", NULL)->out, "0 files"));
+    CHECK(file_exists(other)); // not ours
+}
+
+// A sparse file of 3 GiB takes no space.
+static void write_old_bake(const char *folder, const char *name, time_t used, off_t bytes)
+{
+    char path[700];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    write_file(path, "", 0);
+    CHECK(truncate(path, bytes) == 0);
+    CHECK(utime(path, &(struct utimbuf){ used, used }) == 0);
+}
+
+TEST(cache_over_its_limit_loses_the_least_recently_used_files)
+{
+    const char *folder = use_cache("cache-limit");
+    CHECK(mkdir(folder, 0700) == 0);
+    write_old_bake(folder, "00000000000000000000000000000001.safetensors", 1000, 1 << 30);
+    write_old_bake(folder, "00000000000000000000000000000002.safetensors", 3000, 1 << 30);
+    write_old_bake(folder, "00000000000000000000000000000003.safetensors.checkpoint", 2000, 1000);
+    const struct run *r = run_expect(0, "bake @cornell --gi sample --verbose", NULL);
+    CHECK(strstr(r->err, "00000000000000000000000000000001.safetensors"));
+    CHECK(strstr(r->err, "made room"));
+    assert_int_equal(count_files(folder), 3);
+}
