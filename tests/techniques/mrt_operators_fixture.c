@@ -20,37 +20,33 @@ static int texels_of(int resolution, unsigned missing)
     return mrt_shape_texels(&cube);
 }
 
-struct mrt_operators mrt_random_operators(enum mrt_maze maze, int resolution, int k_b, int k_rlf,
-                                          int k_r, uint32_t seed)
+static struct mrt_dictionary empty(enum mrt_maze maze, int resolution, int k_b, int k_rlf, int k_r)
+{
+    struct mrt_dictionary d = { .element_count = mrt_cube_count(maze) };
+    d.options.maze = (int32_t)maze;
+    d.options.texels = resolution;
+    d.options.modes = k_b;
+    d.options.lightfield_modes = k_rlf;
+    d.options.response_modes = k_r;
+    return d;
+}
+
+struct mrt_dictionary mrt_random_operators(enum mrt_maze maze, int resolution, int k_b, int k_rlf,
+                                           int k_r, uint32_t seed)
 {
     struct rng rng = rng_for(seed, 3, 1);
-    struct mrt_operators o = { .maze = maze, .resolution = resolution };
-    o.k_b = k_b;
-    o.k_rlf = k_rlf;
-    o.k_r = k_r;
+    struct mrt_dictionary o = empty(maze, resolution, k_b, k_rlf, k_r);
     for (int i = 0; i < mrt_cube_count(maze); i++) {
         int texels = texels_of(resolution, mrt_cube_missing(maze, i));
-        o.cube[i].t_db = random_matrix(&rng, k_b, texels);
-        o.cube[i].u_b = random_matrix(&rng, texels, k_b);
-        for (int f = 0; f < CUBE_FACES; f++) o.cube[i].r_b[f] = random_matrix(&rng, k_rlf, k_b);
+        o.element[i].t_db = random_matrix(&rng, k_b, texels);
+        o.element[i].u_b = random_matrix(&rng, texels, k_b);
+        for (int f = 0; f < CUBE_FACES; f++) o.element[i].r_b[f] = random_matrix(&rng, k_rlf, k_b);
     }
     for (int t = 0; t < (maze == MRT_MAZE_2D ? MRT_TURNS_2D : MRT_TURNS_3D); t++)
-        o.turn[t] = random_matrix(&rng, k_rlf, k_rlf);
+        o.r_turn[t] = random_matrix(&rng, k_rlf, k_rlf);
     o.t_r = random_matrix(&rng, k_r, k_rlf);
     o.u_r = random_matrix(&rng, texels_of(resolution, 1u << CUBE_BACK), k_r);
     return o;
-}
-
-void mrt_operators_finish(struct mrt_operators *o)
-{
-    for (int i = 0; i < MRT_MAX_CUBES; i++) {
-        matrix_f32_finish(test_host(), &o->cube[i].t_db);
-        matrix_f32_finish(test_host(), &o->cube[i].u_b);
-        for (int f = 0; f < CUBE_FACES; f++) matrix_f32_finish(test_host(), &o->cube[i].r_b[f]);
-    }
-    for (int t = 0; t < MRT_TURNS_3D; t++) matrix_f32_finish(test_host(), &o->turn[t]);
-    matrix_f32_finish(test_host(), &o->t_r);
-    matrix_f32_finish(test_host(), &o->u_r);
 }
 
 // ---- without reduction
@@ -75,17 +71,19 @@ static struct matrix_f32 identity(int rows, int columns)
 }
 
 // Lightfields at the openings of one cube.
-static void fill_cube(const struct mrt_operators *o, int i, struct mrt_cube_matrices *out)
+static void fill_cube(const struct mrt_dictionary *o, int i, struct mrt_element *out)
 {
-    struct mrt_shape cube = mrt_cube(RESOLUTION, mrt_cube_missing(o->maze, i));
+    struct mrt_shape cube =
+        mrt_cube(RESOLUTION, mrt_cube_missing((enum mrt_maze)o->options.maze, i));
     int texels = mrt_shape_texels(&cube);
-    out->t_db = identity(o->k_b, texels);
-    out->u_b = zero_matrix(texels, o->k_b);
+    out->t_db = identity(o->options.modes, texels);
+    out->u_b = zero_matrix(texels, o->options.modes);
     for (int f = 0; f < CUBE_FACES; f++) {
-        out->r_b[f] = zero_matrix(o->k_rlf, o->k_b);
+        out->r_b[f] = zero_matrix(o->options.lightfield_modes, o->options.modes);
         if (!(cube.missing >> f & 1u)) continue;
-        struct matrix_f32 one = identity(texels, o->k_b);
-        struct matrix_f32 seen = zero_matrix(texels_of(RESOLUTION, 1u << CUBE_FRONT), o->k_b);
+        struct matrix_f32 one = identity(texels, o->options.modes);
+        struct matrix_f32 seen =
+            zero_matrix(texels_of(RESOLUTION, 1u << CUBE_FRONT), o->options.modes);
         mrt_seen_from_opening(&cube, f, &one, &seen);
         CHECK(mrt_lightfield_of_surfaces(test_host(), LIGHTFIELD, &seen, RESOLUTION, 0,
                                          &out->r_b[f]));
@@ -107,20 +105,20 @@ static struct matrix_f32 response(int samples)
     return m;
 }
 
-struct mrt_operators mrt_unreduced_operators(void)
+struct mrt_dictionary mrt_unreduced_operators(void)
 {
-    struct mrt_operators o = { .maze = MRT_MAZE_3D, .resolution = RESOLUTION };
-    o.k_rlf = (int)mrt_lightfield_samples(LIGHTFIELD);
-    o.k_b = texels_of(RESOLUTION, 0);
-    o.k_r = texels_of(RESOLUTION, 1u << CUBE_BACK);
-    for (int i = 0; i < mrt_cube_count(o.maze); i++) fill_cube(&o, i, &o.cube[i]);
-    struct matrix_f32 one = identity(o.k_rlf, o.k_rlf);
+    struct mrt_dictionary o =
+        empty(MRT_MAZE_3D, RESOLUTION, texels_of(RESOLUTION, 0),
+              (int)mrt_lightfield_samples(LIGHTFIELD), texels_of(RESOLUTION, 1u << CUBE_BACK));
+    int k_rlf = o.options.lightfield_modes, k_r = o.options.response_modes;
+    for (int i = 0; i < mrt_cube_count(MRT_MAZE_3D); i++) fill_cube(&o, i, &o.element[i]);
+    struct matrix_f32 one = identity(k_rlf, k_rlf);
     for (int t = 0; t < MRT_TURNS_3D; t++) {
-        o.turn[t] = zero_matrix(o.k_rlf, o.k_rlf);
-        CHECK(mrt_propagate(test_host(), LIGHTFIELD, (enum mrt_turn)t, &one, 0, &o.turn[t]));
+        o.r_turn[t] = zero_matrix(k_rlf, k_rlf);
+        CHECK(mrt_propagate(test_host(), LIGHTFIELD, (enum mrt_turn)t, &one, 0, &o.r_turn[t]));
     }
     matrix_f32_finish(test_host(), &one);
-    o.t_r = response(o.k_rlf);
-    o.u_r = identity(o.k_r, o.k_r);
+    o.t_r = response(k_rlf);
+    o.u_r = identity(k_r, k_r);
     return o;
 }

@@ -16,7 +16,7 @@ static double now_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static struct mrt_level make(const struct mrt_block_map *map, const struct mrt_operators *o,
+static struct mrt_level make(const struct mrt_block_map *map, const struct mrt_dictionary *o,
                              int depth)
 {
     struct mrt_level level;
@@ -53,7 +53,7 @@ static void follow(struct brute *brute, int block, int entry_face, unsigned take
     const struct mrt_block *at = &level->map->blocks[block];
     if (level->entry_of_face[CUBE_FACES * block + entry_face] == brute->target) {
         double response[K_R * K_B];
-        product(&level->operators->t_r, light, response);
+        product(&level->dictionary->t_r, light, response);
         for (int i = 0; i < K_R * K_B; i++) brute->sum[i] += response[i];
     }
     for (int f = 0; f < CUBE_FACES && depth < brute->max_depth; f++) {
@@ -62,7 +62,7 @@ static void follow(struct brute *brute, int block, int entry_face, unsigned take
         double next[K_RLF * K_B];
         struct mrt_passage passage = mrt_passage_between(entry_face, f);
         CHECK(passage.rolls == 0);
-        product(&level->operators->turn[passage.turn], light, next);
+        product(&level->dictionary->r_turn[passage.turn], light, next);
         follow(brute, at->neighbor[f].block, at->neighbor[f].face, taken | 1u << f, depth + 1,
                next);
     }
@@ -77,7 +77,7 @@ static void brute_force(struct brute *brute, int source)
         const struct mrt_neighbor *n = &level->map->blocks[source].neighbor[f];
         if (n->block < 0) continue;
         int face = mrt_turned_face(glms_mat3_transpose(place->block_from_cube), f);
-        const struct matrix_f32 *r_b = &level->operators->cube[place->cube].r_b[face];
+        const struct matrix_f32 *r_b = &level->dictionary->element[place->cube].r_b[face];
         double light[K_RLF * K_B];
         for (int i = 0; i < K_RLF * K_B; i++) light[i] = (double)r_b->at[i];
         follow(brute, n->block, n->face, 1u << f, 1, light);
@@ -95,7 +95,7 @@ static const float *link_of(const struct mrt_level *level, int entry, int source
 
 TEST(the_operator_is_the_sum_over_all_paths)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 1);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 1);
     for (uint32_t i = 0; i < 4; i++) {
         struct mrt_block_map map = mrt_random_grid(3, 3, i ? 0.7f : 1.0f, false, i);
         struct mrt_level level = make(&map, &o, 5);
@@ -111,12 +111,12 @@ TEST(the_operator_is_the_sum_over_all_paths)
         mrt_level_finish(&level);
         mrt_block_map_finish(&map);
     }
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 TEST(light_does_not_return_to_its_block)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 2);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 2);
     struct mrt_block_map map = mrt_random_grid(3, 3, 1.0f, false, 0);
     struct mrt_level level = make(&map, &o, 20);
     for (int e = 0; e < level.entry_count; e++)
@@ -126,12 +126,12 @@ TEST(light_does_not_return_to_its_block)
         }
     mrt_level_finish(&level);
     mrt_block_map_finish(&map);
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 TEST(light_goes_no_farther_than_the_depth)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 3);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 3);
     struct mrt_block_map map = mrt_random_grid(6, 1, 1.0f, false, 0);
     for (int depth = 0; depth < 6; depth++) {
         struct mrt_level level = make(&map, &o, depth);
@@ -141,12 +141,12 @@ TEST(light_goes_no_farther_than_the_depth)
         mrt_level_finish(&level);
     }
     mrt_block_map_finish(&map);
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 TEST(blocks_that_the_dictionary_lacks_are_refused_by_name)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 4);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 2, K_B, K_RLF, K_R, 4);
     struct mrt_block_map map = mrt_random_grid(2, 1, 1.0f, false, 0);
     struct mrt_level level;
     struct mrt_level_options options = { .max_depth = 2 };
@@ -160,7 +160,7 @@ TEST(blocks_that_the_dictionary_lacks_are_refused_by_name)
         mrt_block_map_finish(&turned);
     }
     mrt_block_map_finish(&map);
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 // ---- orientations
@@ -183,12 +183,12 @@ static vec3s texel_place(const struct lit *lit, int texel, vec3s *normal)
 }
 
 // Light at the texels of block 0.
-static struct lit light_grid(const struct mrt_operators *o, bool turned, uint32_t seed)
+static struct lit light_grid(const struct mrt_dictionary *o, bool turned, uint32_t seed)
 {
     struct lit lit = { .map = mrt_random_grid(3, 3, 0.8f, turned, seed) };
     struct mrt_level level = make(&lit.map, o, 5);
     struct mrt_solver solver;
-    CHECK(mrt_atlas_init(test_host(), &lit.map, o->resolution, &lit.atlas));
+    CHECK(mrt_atlas_init(test_host(), &lit.map, o->options.texels, &lit.atlas));
     CHECK(mrt_solver_init(test_host(), &level, &solver));
     size_t texels = (size_t)lit.atlas.texels;
     float *light = host_alloc(test_host(), 3 * texels, sizeof *light);
@@ -227,7 +227,7 @@ static int same_place(const struct lit *lit, vec3s p, vec3s normal)
 // Rays are not symmetric: a few percent. A wrong turn of an interface costs far more.
 TEST(blocks_may_be_turned_in_any_way)
 {
-    struct mrt_operators o = mrt_unreduced_operators();
+    struct mrt_dictionary o = mrt_unreduced_operators();
     for (uint32_t seed = 0; seed < 2; seed++) {
         struct lit straight = light_grid(&o, false, seed), turned = light_grid(&o, true, seed);
         double difference = 0.0, all = 0.0;
@@ -248,14 +248,14 @@ TEST(blocks_may_be_turned_in_any_way)
         finish_lit(&straight);
         finish_lit(&turned);
     }
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 // ---- times
 
 TEST(a_level_of_41_blocks_takes_less_than_a_second)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 128, 32, 5);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 128, 32, 5);
     struct mrt_block_map map = mrt_maze(41, 1);
     for (int depth = 2; depth <= 16; depth *= 2) {
         double start = now_s();
@@ -267,5 +267,5 @@ TEST(a_level_of_41_blocks_takes_less_than_a_second)
         mrt_level_finish(&level);
     }
     mrt_block_map_finish(&map);
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }

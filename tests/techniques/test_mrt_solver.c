@@ -26,7 +26,7 @@ struct level_of_maze {
     float *light, *out;
 };
 
-static void make(const struct mrt_operators *o, int blocks, int seed, struct level_of_maze *m)
+static void make(const struct mrt_dictionary *o, int blocks, int seed, struct level_of_maze *m)
 {
     struct mrt_level_options options = { .max_depth = 6 };
     struct rng rng = rng_for((uint32_t)seed, 9, 9);
@@ -57,13 +57,12 @@ static void plain_b(const struct level_of_maze *m, int block, int colour, double
     const struct mrt_level *level = &m->level;
     const struct mrt_cube_place *place = &level->place[block];
     struct mrt_shape cell = mrt_level_cell(level, block);
-    struct mrt_shape cube =
-        mrt_cube(cell.resolution, mrt_cube_missing(level->operators->maze, place->cube));
-    const struct matrix_f32 *t_db = &level->operators->cube[place->cube].t_db;
-    for (int k = 0; k < level->operators->k_b; k++) b[k] = 0.0;
+    struct mrt_shape cube = mrt_cube(cell.resolution, mrt_cube_missing(level->maze, place->cube));
+    const struct matrix_f32 *t_db = &level->dictionary->element[place->cube].t_db;
+    for (int k = 0; k < level->k_b; k++) b[k] = 0.0;
     for (int t = 0; t < mrt_shape_texels(&cell); t++) {
         int texel = mrt_turned_texel(&cube, place->block_from_cube, &cell, t);
-        for (int k = 0; k < level->operators->k_b; k++)
+        for (int k = 0; k < level->k_b; k++)
             b[k] += (double)t_db->at[(size_t)k * t_db->stride + (size_t)texel] *
                     (double)m->light[3 * (level->first_texel[block] + t) + colour];
     }
@@ -74,7 +73,7 @@ enum { MAX_K = 32 };
 static void plain_r(const struct level_of_maze *m, int entry, int colour, double *r)
 {
     const struct mrt_level *level = &m->level;
-    int k_b = level->operators->k_b, k_r = level->operators->k_r;
+    int k_b = level->k_b, k_r = level->k_r;
     double b[MAX_K];
     for (int k = 0; k < k_r; k++) r[k] = 0.0;
     for (int l = level->first_link[entry]; l < level->first_link[entry + 1]; l++) {
@@ -96,22 +95,23 @@ static double row_times(const struct matrix_f32 *m, int row, const double *x)
 static void check_block(const struct level_of_maze *m, int block, int colour)
 {
     const struct mrt_level *level = &m->level;
-    const struct mrt_operators *o = level->operators;
     const struct mrt_cube_place *place = &level->place[block];
-    struct mrt_shape cell = mrt_level_cell(level, block), entered = mrt_cube_entered(o->resolution);
-    struct mrt_shape cube = mrt_cube(o->resolution, mrt_cube_missing(o->maze, place->cube));
+    struct mrt_shape cell = mrt_level_cell(level, block),
+                     entered = mrt_cube_entered(level->resolution);
+    struct mrt_shape cube = mrt_cube(level->resolution, mrt_cube_missing(level->maze, place->cube));
     double b[MAX_K], r[CUBE_FACES][MAX_K];
     plain_b(m, block, colour, b);
     for (int f = 0; f < CUBE_FACES; f++)
         if (mrt_block_is_open(&m->map.blocks[block], f))
             plain_r(m, level->entry_of_face[CUBE_FACES * block + f], colour, r[f]);
     for (int t = 0; t < mrt_shape_texels(&cell); t++) {
-        double sum = row_times(&o->cube[place->cube].u_b,
+        double sum = row_times(&level->dictionary->element[place->cube].u_b,
                                mrt_turned_texel(&cube, place->block_from_cube, &cell, t), b);
         for (int f = 0; f < CUBE_FACES; f++)
             if (mrt_block_is_open(&m->map.blocks[block], f))
-                sum += row_times(
-                    &o->u_r, mrt_turned_texel(&entered, mrt_block_from_entry(f), &cell, t), r[f]);
+                sum +=
+                    row_times(&level->dictionary->u_r,
+                              mrt_turned_texel(&entered, mrt_block_from_entry(f), &cell, t), r[f]);
         CHECK_NEAR(m->out[3 * (level->first_texel[block] + t) + colour], sum,
                    1e-4 * (1.0 + fabs(sum)));
     }
@@ -121,7 +121,7 @@ TEST(the_solver_gives_the_sums_of_the_paper)
 {
     static const int resolutions[] = { 3, 4, 6 };
     for (int i = 0; i < 3; i++) {
-        struct mrt_operators o =
+        struct mrt_dictionary o =
             mrt_random_operators(MRT_MAZE_2D, resolutions[i], 7 + 5 * i, 16, 5 + 8 * i, 1);
         struct level_of_maze m;
         make(&o, 12, 3 + i, &m);
@@ -129,7 +129,7 @@ TEST(the_solver_gives_the_sums_of_the_paper)
         for (int block = 0; block < 12; block++)
             for (int c = 0; c < 3; c++) check_block(&m, block, c);
         finish(&m);
-        mrt_operators_finish(&o);
+        mrt_dictionary_finish(test_host(), &o);
     }
 }
 
@@ -137,7 +137,7 @@ TEST(the_solver_gives_the_sums_of_the_paper)
 
 TEST(twice_the_light_gives_twice_the_result_and_no_light_is_black)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 64, 32, 2);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 64, 32, 2);
     struct level_of_maze m;
     make(&o, 11, 1, &m);
     float *once = host_alloc(test_host(), m.values, sizeof *once);
@@ -151,12 +151,12 @@ TEST(twice_the_light_gives_twice_the_result_and_no_light_is_black)
     for (size_t i = 0; i < m.values; i++) CHECK(m.out[i] == 0.0f);
     host_free(test_host(), once);
     finish(&m);
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 TEST(frames_are_equal_to_the_bit)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 8, 32, 64, 32, 2);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 8, 32, 64, 32, 2);
     struct level_of_maze m;
     make(&o, 30, 1, &m);
     float *first = host_alloc(test_host(), m.values, sizeof *first);
@@ -168,7 +168,7 @@ TEST(frames_are_equal_to_the_bit)
     }
     host_free(test_host(), first);
     finish(&m);
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 // ---- times
@@ -203,7 +203,7 @@ TEST(work_is_linear_in_the_number_of_blocks)
 {
     enum { MAZES = 20 };
     double blocks[MAZES], work[MAZES], time[MAZES];
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 32, 32, 4);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 32, 32, 4);
     for (int i = 0; i < MAZES; i++) {
         struct level_of_maze m;
         make(&o, 5 + 5 * i, 1 + i, &m);
@@ -220,18 +220,18 @@ TEST(work_is_linear_in_the_number_of_blocks)
     print_message("5 to 100 blocks: R2 of the work %.4f, of the time %.4f; 100 blocks: %.2f ms\n",
                   r_squared(blocks, work, MAZES), r_squared(blocks, time, MAZES), time[MAZES - 1]);
     CHECK(r_squared(blocks, work, MAZES) > 0.98);
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 // Table 3.3: 16 × 16 texels, 32 modes. Times are printed alone: other programs run beside tests.
 TEST(mazes_of_11_and_41_blocks_take_this_long)
 {
-    struct mrt_operators o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 128, 32, 4);
+    struct mrt_dictionary o = mrt_random_operators(MRT_MAZE_2D, 16, 32, 128, 32, 4);
     for (int blocks = 11; blocks <= 41; blocks += 30) {
         struct level_of_maze m;
         make(&o, blocks, 1, &m);
         print_message("%d blocks: %.2f ms\n", blocks, best_ms(&m, 50));
         finish(&m);
     }
-    mrt_operators_finish(&o);
+    mrt_dictionary_finish(test_host(), &o);
 }

@@ -23,9 +23,9 @@ static bool choose_cubes(struct mrt_level *level)
     for (int b = 0; b < level->map->count; b++) {
         const struct mrt_block *block = &level->map->blocks[b];
         struct mrt_shape cell = mrt_level_cell(level, b);
-        if (!mrt_cube_find(level->operators->maze, block->open, &level->place[b]))
+        if (!mrt_cube_find(level->maze, block->open, &level->place[b]))
             return unsupported(level, b, "cube with its openings");
-        if (level->operators->maze == MRT_MAZE_2D && is_tilted(block))
+        if (level->maze == MRT_MAZE_2D && is_tilted(block))
             return unsupported(level, b, "neighbor that is tilted");
         level->first_texel[b + 1] = level->first_texel[b] + mrt_shape_texels(&cell);
     }
@@ -63,7 +63,7 @@ static void send_task(void *user, size_t i)
 // From lists by source to lists by entry: entries ascend within a source, sources within an entry.
 static bool gather_links(struct mrt_level *level, const struct mrt_sent *sent)
 {
-    size_t k_b = (size_t)level->operators->k_b, k_r = (size_t)level->operators->k_r, total = 0;
+    size_t k_b = (size_t)level->k_b, k_r = (size_t)level->k_r, total = 0;
     size_t stride = (size_t)level->link_stride;
     for (int b = 0; b < level->map->count; b++) {
         total += (size_t)sent[b].count;
@@ -110,13 +110,24 @@ static bool propagate(struct mrt_level *level, int max_depth)
     return ok;
 }
 
+static void set_sizes(struct mrt_level *level)
+{
+    const struct mrt_dictionary_options *o = &level->dictionary->options;
+    level->maze = (enum mrt_maze)o->maze;
+    level->resolution = o->texels;
+    level->k_b = o->modes;
+    level->k_rlf = o->lightfield_modes;
+    level->k_r = o->response_modes;
+    level->link_stride = (level->k_r + MRT_LANES - 1) / MRT_LANES * MRT_LANES;
+}
+
 bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
-                    const struct mrt_operators *operators, const struct mrt_level_options *options,
-                    struct mrt_level *level)
+                    const struct mrt_dictionary *dictionary,
+                    const struct mrt_level_options *options, struct mrt_level *level)
 {
     size_t blocks = (size_t)map->count, faces = CUBE_FACES * blocks;
-    *level = (struct mrt_level){ .host = host, .map = map, .operators = operators };
-    level->link_stride = (operators->k_r + MRT_LANES - 1) / MRT_LANES * MRT_LANES;
+    *level = (struct mrt_level){ .host = host, .map = map, .dictionary = dictionary };
+    set_sizes(level);
     level->place = host_alloc(host, blocks, sizeof *level->place);
     level->first_texel = host_alloc(host, blocks + 1, sizeof *level->first_texel);
     level->entries = host_alloc(host, faces, sizeof *level->entries);

@@ -2,9 +2,9 @@
 // carries indirect light from each block through openings into others (Loos 2015, section 3.5.3).
 #pragma once
 
+#include "techniques/mrt/dictionary/dictionary.h"
 #include "techniques/mrt/level/atlas.h"
 #include "techniques/mrt/level/kernels.h"
-#include "techniques/mrt/level/operators.h"
 
 struct mrt_level_options {
     int max_depth; // openings that light passes at most; 0: none
@@ -23,11 +23,14 @@ struct mrt_link {
 
 struct mrt_level {
     struct host *host;
-    const struct mrt_block_map *map;       // borrowed
-    const struct mrt_operators *operators; // borrowed
-    struct mrt_cube_place *place;          // [blocks]
-    int *first_texel;                      // [blocks + 1], of the level
-    struct mrt_entry *entries;             // in the order of blocks, then faces
+    const struct mrt_block_map *map;         // borrowed
+    const struct mrt_dictionary *dictionary; // borrowed
+    enum mrt_maze maze;                      // of the dictionary, as are the numbers
+    int resolution;                          // texels along an edge of a face
+    int k_b, k_rlf, k_r;
+    struct mrt_cube_place *place; // [blocks]
+    int *first_texel;             // [blocks + 1], of the level
+    struct mrt_entry *entries;    // in the order of blocks, then faces
     int entry_count;
     int *entry_of_face;     // [CUBE_FACES · block + face], −1: none
     int *first_link;        // [entry_count + 1]
@@ -40,13 +43,13 @@ struct mrt_level {
 // floor or ceiling, or neighbours that are tilted against each other, in a dictionary for
 // two-dimensional mazes. Cylinders are taken as cubes with their openings.
 bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
-                    const struct mrt_operators *operators, const struct mrt_level_options *options,
-                    struct mrt_level *level);
+                    const struct mrt_dictionary *dictionary,
+                    const struct mrt_level_options *options, struct mrt_level *level);
 void mrt_level_finish(struct mrt_level *level); // accepts zero
 
 static inline struct mrt_shape mrt_level_cell(const struct mrt_level *level, int block)
 {
-    return mrt_cube(level->operators->resolution, level->map->blocks[block].open);
+    return mrt_cube(level->resolution, level->map->blocks[block].open);
 }
 
 // ---- paths.c

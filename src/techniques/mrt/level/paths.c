@@ -47,7 +47,7 @@ static bool roll(const struct traversal *t, int rolls, struct matrix_f32 *light)
 {
     for (int i = 0; i < rolls; i++) {
         struct matrix_f32 turned = { 0 };
-        bool ok = multiply(t->host, &t->level->operators->turn[MRT_ROLL], light, &turned);
+        bool ok = multiply(t->host, &t->level->dictionary->r_turn[MRT_ROLL], light, &turned);
         matrix_f32_finish(t->host, light);
         *light = turned;
         if (!ok) return false;
@@ -108,7 +108,7 @@ static bool leave_source(struct traversal *t, int block)
     for (int f = 0; f < CUBE_FACES; f++) {
         if (t->level->map->blocks[block].neighbor[f].block < 0) continue;
         int face = mrt_turned_face(cube_from_block, f);
-        const struct matrix_f32 *r_b = &t->level->operators->cube[place->cube].r_b[face];
+        const struct matrix_f32 *r_b = &t->level->dictionary->element[place->cube].r_b[face];
         mat3s frame = glms_mat3_mul(place->block_from_cube, cube_from_face(face));
         struct matrix_f32 light = { 0 };
         bool ok = matrix_f32_init(t->host, &light, r_b->rows, r_b->columns);
@@ -125,13 +125,12 @@ static bool leave_source(struct traversal *t, int block)
 
 static bool respond(struct traversal *t, const struct wave *wave)
 {
-    const struct mrt_operators *o = t->level->operators;
-    size_t size = (size_t)o->k_r * (size_t)o->k_b, columns = (size_t)o->k_b;
-    struct matrix_f32 sum = { t->response + (size_t)wave->entry * size, (size_t)o->k_r, columns,
-                              columns };
+    size_t rows = (size_t)t->level->k_r, columns = (size_t)t->level->k_b;
+    float *response = t->response + (size_t)wave->entry * rows * columns;
+    struct matrix_f32 sum = { response, rows, columns, columns };
     t->reached[wave->entry] = true;
-    return matrix_f32_multiply(t->host, 1.0f, &o->t_r, AS_IT_IS, &wave->light, AS_IT_IS, 1.0f,
-                               &sum);
+    return matrix_f32_multiply(t->host, 1.0f, &t->level->dictionary->t_r, AS_IT_IS, &wave->light,
+                               AS_IT_IS, 1.0f, &sum);
 }
 
 static bool pass_block(struct traversal *t, const struct wave *wave)
@@ -144,7 +143,7 @@ static bool pass_block(struct traversal *t, const struct wave *wave)
         struct mrt_passage passage = mrt_passage_between(at->face, f);
         struct matrix_f32 light = { 0 };
         bool ok =
-            multiply(t->host, &t->level->operators->turn[passage.turn], &wave->light, &light) &&
+            multiply(t->host, &t->level->dictionary->r_turn[passage.turn], &wave->light, &light) &&
             roll(t, passage.rolls, &light) && enter(t, at->block, f, wave->taken | 1u << f, &light);
         matrix_f32_finish(t->host, &light);
         if (!ok) return false;
@@ -171,8 +170,7 @@ static bool traverse(struct traversal *t, int block, int max_depth)
 // Keeps the matrices of the entries that were reached.
 static bool collect(const struct traversal *t, struct mrt_sent *out)
 {
-    const struct mrt_operators *o = t->level->operators;
-    size_t size = (size_t)o->k_r * (size_t)o->k_b;
+    size_t size = (size_t)t->level->k_r * (size_t)t->level->k_b;
     int count = 0;
     for (int e = 0; e < t->level->entry_count; e++) count += t->reached[e];
     out->entry = host_alloc(t->host, (size_t)count, sizeof *out->entry);
@@ -192,7 +190,7 @@ bool mrt_send_from(struct host *host, const struct mrt_level *level, int block, 
 {
     struct traversal t = { .host = host, .level = level };
     size_t entries = (size_t)level->entry_count;
-    size_t size = (size_t)level->operators->k_r * (size_t)level->operators->k_b;
+    size_t size = (size_t)level->k_r * (size_t)level->k_b;
     *out = (struct mrt_sent){ .host = host };
     t.response = host_alloc(host, entries * size, sizeof *t.response);
     t.reached = host_alloc(host, entries, sizeof *t.reached);

@@ -16,7 +16,7 @@ static int walls_of(unsigned missing)
 // The padded index of a texel: each wall starts at a multiple of the lanes.
 static int padded(const struct mrt_solver *s, int texel)
 {
-    int n = s->level->operators->resolution * s->level->operators->resolution;
+    int n = s->level->resolution * s->level->resolution;
     return texel / n * s->face_texels + texel % n;
 }
 
@@ -27,17 +27,16 @@ static int block_stride(const struct mrt_solver *s)
 
 static int entry_stride(const struct mrt_level *level)
 {
-    return 3 * (level->link_stride + level->operators->k_r);
+    return 3 * (level->link_stride + level->k_r);
 }
 
 // ---- operators
 
 static bool copy_cube(struct mrt_solver *s, int cube)
 {
-    const struct mrt_operators *o = s->level->operators;
-    const struct mrt_cube_matrices *from = &o->cube[cube];
-    size_t walls = (size_t)walls_of(mrt_cube_missing(o->maze, cube));
-    size_t stride = walls * (size_t)s->face_texels, rows = (size_t)o->k_b;
+    const struct mrt_element *from = &s->level->dictionary->element[cube];
+    size_t walls = (size_t)walls_of(mrt_cube_missing(s->level->maze, cube));
+    size_t stride = walls * (size_t)s->face_texels, rows = (size_t)s->level->k_b;
     s->t_db[cube] = host_alloc(s->host, stride * rows, sizeof(float));
     s->u_b[cube] = host_alloc(s->host, stride * rows, sizeof(float));
     if (!s->t_db[cube] || !s->u_b[cube]) return false;
@@ -53,9 +52,9 @@ static bool copy_cube(struct mrt_solver *s, int cube)
 
 static bool copy_response(struct mrt_solver *s)
 {
-    const struct matrix_f32 *u_r = &s->level->operators->u_r;
-    int n = s->level->operators->resolution * s->level->operators->resolution;
-    size_t face = (size_t)s->face_texels, k_r = (size_t)s->level->operators->k_r;
+    const struct matrix_f32 *u_r = &s->level->dictionary->u_r;
+    int n = s->level->resolution * s->level->resolution;
+    size_t face = (size_t)s->face_texels, k_r = (size_t)s->level->k_r;
     s->u_r = host_alloc(s->host, (CUBE_FACES - 1) * k_r * face, sizeof *s->u_r);
     if (!s->u_r) return false;
     for (size_t t = 0; t < u_r->rows; t++) {
@@ -73,8 +72,7 @@ static void map_block(struct mrt_solver *s, int block)
     const struct mrt_level *level = s->level;
     const struct mrt_cube_place *place = &level->place[block];
     struct mrt_shape cell = mrt_level_cell(level, block);
-    struct mrt_shape cube =
-        mrt_cube(cell.resolution, mrt_cube_missing(level->operators->maze, place->cube));
+    struct mrt_shape cube = mrt_cube(cell.resolution, mrt_cube_missing(level->maze, place->cube));
     for (int t = 0; t < mrt_shape_texels(&cell); t++)
         s->cube_texel[level->first_texel[block] + t] =
             padded(s, mrt_turned_texel(&cube, place->block_from_cube, &cell, t));
@@ -83,7 +81,7 @@ static void map_block(struct mrt_solver *s, int block)
 // Texels of a wall as seen by light that enters at a face.
 static void map_entry(struct mrt_solver *s, int entry, int wall)
 {
-    int resolution = s->level->operators->resolution, n = resolution * resolution;
+    int resolution = s->level->resolution, n = resolution * resolution;
     struct mrt_shape entered = mrt_cube_entered(resolution);
     struct mrt_shape only = mrt_cube(resolution, CUBE_ALL_FACES & ~(1u << wall));
     int *out = s->entered_texel + (entry * CUBE_FACES + wall) * n;
@@ -105,13 +103,13 @@ static void map_texels(struct mrt_solver *s)
 static bool allocate(struct mrt_solver *s)
 {
     const struct mrt_level *level = s->level;
-    const struct mrt_operators *o = level->operators;
-    size_t blocks = (size_t)level->map->count, n = (size_t)(o->resolution * o->resolution);
+    size_t blocks = (size_t)level->map->count;
+    size_t n = (size_t)(level->resolution * level->resolution);
     s->cube_texel =
         host_alloc(s->host, (size_t)level->first_texel[level->map->count], sizeof *s->cube_texel);
     s->entered_texel = host_alloc(s->host, CUBE_FACES * CUBE_FACES * n, sizeof *s->entered_texel);
     s->light = host_alloc(s->host, blocks * (size_t)block_stride(s), sizeof *s->light);
-    s->b = host_alloc(s->host, blocks * 3 * (size_t)o->k_b, sizeof *s->b);
+    s->b = host_alloc(s->host, blocks * 3 * (size_t)level->k_b, sizeof *s->b);
     s->r =
         host_alloc(s->host, (size_t)level->entry_count * (size_t)entry_stride(level), sizeof *s->r);
     return s->cube_texel && s->entered_texel && s->light && s->b && s->r;
@@ -119,12 +117,11 @@ static bool allocate(struct mrt_solver *s)
 
 bool mrt_solver_init(struct host *host, const struct mrt_level *level, struct mrt_solver *solver)
 {
-    int n = level->operators->resolution * level->operators->resolution;
+    int n = level->resolution * level->resolution;
     *solver = (struct mrt_solver){ .host = host, .level = level };
     solver->face_texels = (n + MRT_LANES - 1) / MRT_LANES * MRT_LANES;
     bool ok = allocate(solver) && copy_response(solver);
-    for (int i = 0; ok && i < mrt_cube_count(level->operators->maze); i++)
-        ok = copy_cube(solver, i);
+    for (int i = 0; ok && i < mrt_cube_count(level->maze); i++) ok = copy_cube(solver, i);
     if (ok)
         map_texels(solver);
     else
@@ -162,7 +159,7 @@ static int planes_of(const struct mrt_solver *s, int block, float *planes[3])
 {
     const struct mrt_level *level = s->level;
     int cube = level->place[block].cube;
-    int length = walls_of(mrt_cube_missing(level->operators->maze, cube)) * s->face_texels;
+    int length = walls_of(mrt_cube_missing(level->maze, cube)) * s->face_texels;
     for (int c = 0; c < 3; c++)
         planes[c] = s->light + (size_t)block * (size_t)block_stride(s) + (size_t)(c * length);
     return length;
@@ -174,7 +171,7 @@ static void project_block(void *user, size_t i)
     const struct frame *frame = user;
     struct mrt_solver *s = frame->solver;
     const struct mrt_level *level = s->level;
-    int block = (int)i, cube = level->place[block].cube, k_b = level->operators->k_b;
+    int block = (int)i, cube = level->place[block].cube, k_b = level->k_b;
     float *planes[3];
     int length = planes_of(s, block, planes);
     memset(planes[0], 0, 3 * (size_t)length * sizeof *planes[0]);
@@ -188,7 +185,7 @@ static void project_block(void *user, size_t i)
 static const float *receive(struct mrt_solver *s, int entry)
 {
     const struct mrt_level *level = s->level;
-    int k_b = level->operators->k_b, k_r = level->operators->k_r, stride = level->link_stride;
+    int k_b = level->k_b, k_r = level->k_r, stride = level->link_stride;
     float *planes = s->r + (size_t)entry * (size_t)entry_stride(level), *out = planes + 3 * stride;
     float *const r[3] = { planes, planes + stride, planes + 2 * stride };
     memset(planes, 0, 3 * (size_t)stride * sizeof *planes);
@@ -206,8 +203,8 @@ static const float *receive(struct mrt_solver *s, int entry)
 static void add_response(const struct mrt_solver *s, int block, int entry_face, const float *r,
                          float *irradiance)
 {
-    const struct mrt_operators *o = s->level->operators;
-    int n = o->resolution * o->resolution, face = s->face_texels;
+    int n = s->level->resolution * s->level->resolution, face = s->face_texels;
+    int k_r = s->level->k_r;
     float *planes[3];
     planes_of(s, block, planes);
     for (int c = 0; c < 3; c++) planes[c] = planes[0] + c * face; // light is no longer needed
@@ -215,8 +212,7 @@ static void add_response(const struct mrt_solver *s, int block, int entry_face, 
         if (mrt_block_is_open(&s->level->map->blocks[block], wall)) continue;
         memset(planes[0], 0, 3 * (size_t)face * sizeof *planes[0]);
         int from = s->entered_face[entry_face][wall];
-        mrt_kernel_expand(s->u_r + (size_t)(from * o->k_r) * (size_t)face, face, o->k_r, face, r,
-                          planes);
+        mrt_kernel_expand(s->u_r + (size_t)(from * k_r) * (size_t)face, face, k_r, face, r, planes);
         const int *texel = s->entered_texel + (entry_face * CUBE_FACES + wall) * n;
         for (int t = 0; t < n; t++)
             for (int c = 0; c < 3; c++) irradiance[3 * t + c] += planes[c][texel[t]];
@@ -231,7 +227,7 @@ static void light_block(void *user, size_t i)
     const struct mrt_level *level = s->level;
     int block = (int)i, first = level->first_texel[block];
     float *planes[3];
-    int length = planes_of(s, block, planes), k_b = level->operators->k_b;
+    int length = planes_of(s, block, planes), k_b = level->k_b;
     memset(planes[0], 0, 3 * (size_t)length * sizeof *planes[0]);
     mrt_kernel_expand(s->u_b[level->place[block].cube], length, k_b, length,
                       s->b + i * 3 * (size_t)k_b, planes);
