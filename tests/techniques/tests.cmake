@@ -30,5 +30,6 @@ endforeach()
 add_library(ag_test_mrt_runtime STATIC techniques/mrt_runtime_fixture.c)
 target_link_libraries(ag_test_mrt_runtime PUBLIC ag_test_gpu ag_test_mrt ag_test_mrt_map PRIVATE afterglow_flags m)
 ag_test(techniques/mrt_runtime USES techniques LIBRARIES ag_test_mrt_runtime)
+ag_test(techniques/mrt_light USES techniques LIBRARIES ag_test_mrt ag_test_mrt_map)
 # It compares times.
 set_tests_properties(techniques.vct_screen PROPERTIES RUN_SERIAL TRUE)

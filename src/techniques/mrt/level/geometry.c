@@ -8,62 +8,81 @@
 // Rays start in the middle of the block, which scenes fill less than their walls, and end behind
 // the wall by a quarter of the block.
 static const float RAY_END = 1.5f; // of the way from the middle to the wall
-enum { MAX_BACKS = 4 };            // surfaces seen from behind, where the middle is in a solid
+
+enum sight { SIGHT_NONE, SIGHT_BACK, SIGHT_FRONT };
 
 struct geometry_job {
     const struct mrt_block_map *map;
     const struct mrt_atlas *atlas;
     const struct trace_scene *scene;
     struct mrt_geometry_texel *texels;
+    enum sight *sight; // what each texel sees
 };
 
-// The nearest front, else the nearest surface.
-static bool find_surface(const struct trace_scene *scene, vec3s from, vec3s direction,
-                         struct trace_hit *hit)
+// Whether the way from a point to the middle of the block leaves a solid: a thick wall, a pillar.
+static bool is_in_solid(const struct trace_scene *scene, vec3s from, vec3s middle)
 {
-    struct trace_hit next;
-    float left = RAY_END;
-    vec3s at = from;
-    if (!trace_closest(scene, from, direction, left, hit)) return false;
-    next = *hit;
-    for (int i = 0; i < MAX_BACKS && !next.front; i++) {
-        left -= next.distance;
-        at = trace_leave(&next, direction);
-        if (!trace_closest(scene, at, direction, left, &next)) return true;
-    }
-    if (next.front) *hit = next;
-    return true;
+    struct trace_hit hit;
+    vec3s way = glms_vec3_sub(middle, from);
+    return glms_vec3_norm2(way) > 0.0f && trace_closest(scene, from, way, 1.0f, &hit) && !hit.front;
 }
 
-static struct mrt_geometry_texel texel_of(const struct geometry_job *job,
-                                          const struct mrt_tile *tile, float s, float t)
+static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_tile *tile, int k,
+                               struct mrt_geometry_texel *out)
 {
+    int n = job->atlas->resolution;
     const vec3s *corner = job->map->blocks[tile->block].corner;
-    vec3s wall = cube_face_point(tile->face, s, t), middle = wall;
+    vec3s wall = cube_face_point(tile->face, ((float)(k % n) + 0.5f) / (float)n,
+                                 ((float)(k / n) + 0.5f) / (float)n);
+    vec3s middle = wall;
     middle.raw[tile->face / 2] = 0.0f;
     vec3s from = mrt_warp_point(corner, middle), to = mrt_warp_point(corner, wall);
+    bool solid = is_in_solid(job->scene, from, mrt_warp_point(corner, GLMS_VEC3_ZERO));
     struct trace_hit hit;
-    if (find_surface(job->scene, from, glms_vec3_sub(to, from), &hit))
-        return (struct mrt_geometry_texel){ .position = hit.position,
-                                            .normal = hit.normal,
-                                            .albedo =
-                                                glms_vec3_scale(hit.albedo, 1.0f - hit.metallic),
-                                            .emission = hit.emission,
-                                            .found = true };
-    return (struct mrt_geometry_texel){
-        .position = to,
-        .normal = glms_vec3_negate(mrt_warp_face_normal(corner, tile->face, wall)),
-    };
+    bool found = trace_closest(job->scene, from, glms_vec3_sub(to, from), RAY_END, &hit);
+    if (!found)
+        *out = (struct mrt_geometry_texel){
+            .position = to,
+            .normal = glms_vec3_negate(mrt_warp_face_normal(corner, tile->face, wall)),
+        };
+    else
+        *out = (struct mrt_geometry_texel){
+            .position = hit.position,
+            .normal = hit.normal,
+            .albedo = glms_vec3_scale(hit.albedo, 1.0f - hit.metallic),
+            .emission = hit.emission,
+            .found = true,
+        };
+    if (solid) return SIGHT_BACK;
+    return !found ? SIGHT_NONE : hit.front ? SIGHT_FRONT : SIGHT_BACK;
 }
 
+// The texel nearest to texel k that sees a front; −1: none.
+static int nearest_front(const enum sight *sight, int n, int k)
+{
+    int nearest = -1, least = 2 * n * n;
+    for (int i = 0; i < n * n; i++) {
+        int x = i % n - k % n, y = i / n - k / n;
+        if (sight[i] != SIGHT_FRONT || x * x + y * y >= least) continue;
+        least = x * x + y * y;
+        nearest = i;
+    }
+    return nearest;
+}
+
+// Texels whose ray begins in a solid, such as a thick wall at the border of a block, get the
+// nearest surface of their wall.
 static void trace_tile(void *user, size_t i)
 {
     const struct geometry_job *job = user;
     const struct mrt_tile *tile = &job->atlas->tiles[i];
+    struct mrt_geometry_texel *texels = job->texels + tile->first_texel;
+    enum sight *sight = job->sight + tile->first_texel;
     int n = job->atlas->resolution;
+    for (int k = 0; k < n * n; k++) sight[k] = look_at_wall(job, tile, k, &texels[k]);
     for (int k = 0; k < n * n; k++) {
-        float s = ((float)(k % n) + 0.5f) / (float)n, t = ((float)(k / n) + 0.5f) / (float)n;
-        job->texels[tile->first_texel + k] = texel_of(job, tile, s, t);
+        int from = sight[k] == SIGHT_BACK ? nearest_front(sight, n, k) : -1;
+        if (from >= 0) texels[k] = texels[from];
     }
 }
 
@@ -71,9 +90,16 @@ struct mrt_geometry_texel *mrt_geometry_create(struct host *host, const struct m
                                                const struct mrt_atlas *atlas,
                                                const struct trace_scene *scene)
 {
-    struct geometry_job job = { map, atlas, scene, NULL };
+    struct geometry_job job = { .map = map, .atlas = atlas, .scene = scene };
     job.texels = host_alloc(host, (size_t)atlas->texels, sizeof *job.texels);
-    if (job.texels) parallel_for((size_t)atlas->tile_count, 1, trace_tile, &job);
+    job.sight = host_alloc(host, (size_t)atlas->texels, sizeof *job.sight);
+    if (job.texels && job.sight) {
+        parallel_for((size_t)atlas->tile_count, 1, trace_tile, &job);
+    } else {
+        host_free(host, job.texels);
+        job.texels = NULL;
+    }
+    host_free(host, job.sight);
     return job.texels;
 }
 

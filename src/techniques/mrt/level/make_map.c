@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static const float MAX_ASPECT = 3.0f; // of boxes that are made larger: the dictionary has cubes
+static const float MAX_ASPECT = 1.6f; // of boxes that are made larger: the dictionary has cubes
 
 bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt_block_map *map)
 {
@@ -193,7 +193,11 @@ bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s 
     }
     if (ok) {
         mrt_cells_snap(&cells);
-        mrt_cells_drop_planes(&cells, MAX_ASPECT);
+        mrt_cells_drop_planes(&cells, INFINITY);
+        mrt_cells_split(&cells);
+        ok = mrt_cells_fill(host, &cells, seeds, seed_count);
+    }
+    if (ok) {
         ok = map_of_cells(host, pose, &cells, map);
     }
     host_free(host, cells.cell);

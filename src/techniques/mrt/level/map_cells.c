@@ -113,6 +113,7 @@ static void flood(struct mrt_cells *cells)
 
 bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *seeds, size_t count)
 {
+    host_free(host, cells->cell);
     cells->cell = host_alloc(host, (size_t)mrt_cells_count(cells), sizeof *cells->cell);
     if (!cells->cell) return false;
     find_openings(cells);

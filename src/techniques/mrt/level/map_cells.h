@@ -31,6 +31,10 @@ void mrt_cells_snap(struct mrt_cells *cells);
 // Removes planes that separate nothing, while edges of free cells stay below this ratio.
 void mrt_cells_drop_planes(struct mrt_cells *cells, float max_aspect);
 
+// Adds planes across free cells that are long, so that the pieces come near to cubes. The cells
+// must be filled again.
+void mrt_cells_split(struct mrt_cells *cells);
+
 static inline int mrt_cells_along(const struct mrt_cells *cells, int axis)
 {
     return cells->planes[axis] - 1;

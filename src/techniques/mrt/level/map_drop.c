@@ -1,4 +1,4 @@
-// Planes that separate nothing.
+// Planes that separate nothing are dropped, planes that keep blocks near cubes are added.
 #include "map_cells.h"
 
 #include <math.h>
@@ -61,4 +61,46 @@ void mrt_cells_drop_planes(struct mrt_cells *cells, float max_aspect)
     for (int axis = 0; axis < 3; axis++)
         for (int p = cells->planes[axis] - 2; p > 0; p--)
             if (!separates(cells, axis, p, max_aspect)) drop(cells, axis, p);
+}
+
+// ---- long cells
+
+// Pieces of the cells between two planes: their length over the mean width, weighted by volume.
+static int pieces_between(const struct mrt_cells *cells, int axis, int plane)
+{
+    float length = cells->plane[axis][plane + 1] - cells->plane[axis][plane];
+    float volumes = 0.0f, sum = 0.0f;
+    for (int i = 0; i < mrt_cells_count(cells); i++) {
+        int at[3];
+        mrt_cell_place(cells, i, at);
+        if (at[axis] != plane || !cells->cell[i].free) continue;
+        float area = 1.0f;
+        for (int a = 0; a < 3; a++)
+            if (a != axis) area *= cells->plane[a][at[a] + 1] - cells->plane[a][at[a]];
+        volumes += area;
+        sum += area * sqrtf(area);
+    }
+    return volumes > 0.0f ? (int)(length * volumes / sum + 0.5f) : 1;
+}
+
+void mrt_cells_split(struct mrt_cells *cells)
+{
+    int pieces[3][MRT_MAX_PLANES];
+    for (int axis = 0; axis < 3; axis++)
+        for (int p = 0; p + 1 < cells->planes[axis]; p++)
+            pieces[axis][p] = pieces_between(cells, axis, p);
+    for (int axis = 0; axis < 3; axis++) {
+        float old[MRT_MAX_PLANES];
+        int count = cells->planes[axis], left = MRT_MAX_PLANES - count;
+        for (int p = 0; p < count; p++) old[p] = cells->plane[axis][p];
+        cells->planes[axis] = 0;
+        for (int p = 0; p < count; p++) {
+            cells->plane[axis][cells->planes[axis]++] = old[p];
+            int parts = p + 1 < count ? pieces[axis][p] : 1;
+            if (parts - 1 > left) parts = left + 1;
+            for (int k = 1; k < parts; k++, left--)
+                cells->plane[axis][cells->planes[axis]++] =
+                    old[p] + (old[p + 1] - old[p]) * (float)k / (float)parts;
+        }
+    }
 }

@@ -1,0 +1,242 @@
+// Light of a whole level against rays through the scene: block map, geometry images, T_b→r and
+// solver together, with a baked dictionary.
+#include "framework/test.h"
+#include "techniques/mrt_bake_fixture.h"
+#include "techniques/mrt_map_fixture.h"
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "core/sampling.h"
+
+#include "techniques/mrt/level/geometry.h"
+#include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/level/solver.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { RAYS = 256, STRIDE = 3 }; // STRIDE: every third texel is compared
+
+struct lit_scene {
+    struct scene *scene;
+    struct scene_pose pose;
+    struct trace_scene *trace;
+    struct world_light light;
+    struct mrt_block_map map;
+    struct mrt_atlas atlas;
+    struct mrt_geometry_texel *geometry;
+    float *radiosity, *irradiance, *reference; // RGB per texel
+};
+
+static struct mrt_dictionary bake_dictionary(void)
+{
+    struct mrt_dictionary_options options = mrt_fixture_options();
+    struct mrt_dictionary dictionary;
+    options.texels = 8;
+    options.rays = 4096;
+    struct bake *bake = mrt_fixture_bake(&options, 0, false);
+    CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &dictionary));
+    bake_destroy(bake);
+    return dictionary;
+}
+
+static void load(const char *spec, struct lit_scene *s)
+{
+    *s = (struct lit_scene){ .scene = scene_load(test_host(), spec) };
+    CHECK(s->scene && pose_init(&s->pose, s->scene, -1, 0.0f));
+    CHECK((s->trace = trace_scene_create(test_host(), &s->pose)) != NULL);
+    CHECK(s->scene->light_count == 1);
+    s->light = pose_light(&s->pose, 0);
+}
+
+// Irradiance of the point light, with its shadow.
+static vec3s direct_at(const struct lit_scene *s, vec3s position, vec3s normal)
+{
+    vec3s from = glms_vec3_muladds(normal, 1e-3f, position);
+    vec3s to = glms_vec3_sub(s->light.position, from);
+    float d2 = glms_vec3_norm2(to), cosine = glms_vec3_dot(to, normal);
+    if (!(d2 > 0.0f) || cosine <= 0.0f) return vec3_of(0, 0, 0);
+    if (trace_occluded(s->trace, from, to, 0.999f)) return vec3_of(0, 0, 0);
+    return glms_vec3_scale(s->light.intensity, cosine / (d2 * sqrtf(d2)));
+}
+
+// One bounce, by cosine-distributed rays.
+static void reference_texel(void *user, size_t i)
+{
+    struct lit_scene *s = user;
+    const struct mrt_geometry_texel *at = &s->geometry[i];
+    if (i % STRIDE) return;
+    vec3s sum = vec3_of(0, 0, 0), tangent, bitangent;
+    vec3s from = glms_vec3_muladds(at->normal, 1e-3f, at->position);
+    basis_of(at->normal, &tangent, &bitangent);
+    for (uint32_t k = 0; k < RAYS; k++) {
+        struct trace_hit hit;
+        vec3s local = sample_hemisphere_cosine(sobol_2d(k, (uint32_t)i + 1));
+        vec3s ray = glms_vec3_scale(tangent, local.x);
+        ray = glms_vec3_muladds(bitangent, local.y, ray);
+        ray = glms_vec3_muladds(at->normal, local.z, ray);
+        if (!trace_closest(s->trace, from, ray, 1e6f, &hit)) continue;
+        sum = glms_vec3_add(sum, glms_vec3_mul(hit.albedo, direct_at(s, hit.position, hit.normal)));
+    }
+    for (int c = 0; c < 3; c++) s->reference[3 * i + (size_t)c] = sum.raw[c] / RAYS;
+}
+
+static float *floats(size_t count)
+{
+    float *out = host_alloc(test_host(), count, sizeof *out);
+    CHECK(out);
+    return out;
+}
+
+static void solve(struct lit_scene *s, const struct mrt_dictionary *dictionary, int depth)
+{
+    struct mrt_level level;
+    struct mrt_solver solver;
+    struct mrt_level_options options = { .max_depth = depth };
+    if (!mrt_level_init(test_host(), &s->map, dictionary, &options, &level))
+        fail_msg("%s", test_last_message());
+    CHECK(mrt_solver_init(test_host(), &level, &solver));
+    mrt_solve(&solver, s->radiosity, s->irradiance);
+    mrt_solver_finish(&solver);
+    mrt_level_finish(&level);
+}
+
+static void prepare(struct lit_scene *s, int resolution)
+{
+    CHECK(mrt_atlas_init(test_host(), &s->map, resolution, &s->atlas));
+    CHECK((s->geometry = mrt_geometry_create(test_host(), &s->map, &s->atlas, s->trace)) != NULL);
+    size_t texels = (size_t)s->atlas.texels;
+    s->radiosity = floats(3 * texels);
+    s->irradiance = floats(3 * texels);
+    s->reference = floats(3 * texels);
+    for (size_t i = 0; i < texels; i++) {
+        vec3s direct = direct_at(s, s->geometry[i].position, s->geometry[i].normal);
+        for (size_t c = 0; c < 3; c++)
+            s->radiosity[3 * i + c] = s->geometry[i].albedo.raw[c] * direct.raw[c];
+    }
+    parallel_for(texels, 8, reference_texel, s);
+}
+
+static void finish(struct lit_scene *s)
+{
+    host_free(test_host(), s->radiosity);
+    host_free(test_host(), s->irradiance);
+    host_free(test_host(), s->reference);
+    host_free(test_host(), s->geometry);
+    mrt_atlas_finish(&s->atlas);
+    mrt_block_map_finish(&s->map);
+    trace_scene_destroy(s->trace);
+    pose_finish(&s->pose);
+    scene_destroy(s->scene);
+}
+
+// Relative L2 error and mean ratio over the texels of a range of tiles.
+struct comparison {
+    double error, ratio, mean;
+};
+static struct comparison compare(const struct lit_scene *s, int first_tile, int end_tile)
+{
+    int n = s->atlas.resolution * s->atlas.resolution;
+    double difference = 0.0, all = 0.0, sum[2] = { 0.0 };
+    size_t count = 0;
+    for (size_t i = (size_t)(first_tile * n); i < (size_t)(end_tile * n); i++) {
+        if (i % STRIDE || !s->geometry[i].found) continue;
+        count++;
+        for (size_t c = 0; c < 3; c++) {
+            double a = (double)s->irradiance[3 * i + c], b = (double)s->reference[3 * i + c];
+            difference += (a - b) * (a - b);
+            all += b * b;
+            sum[0] += a;
+            sum[1] += b;
+        }
+    }
+    return (struct comparison){ sqrt(difference / all), sum[0] / sum[1],
+                                sum[1] / (3.0 * (double)count) };
+}
+
+static void print_blocks(const struct lit_scene *s)
+{
+    for (int b = 0, tile = 0; b < s->map.count; b++) {
+        int end = tile;
+        while (end < s->atlas.tile_count && s->atlas.tiles[end].block == b) end++;
+        struct comparison c = compare(s, tile, end);
+        print_message("  block %d: %8.2f lx, error %.3f, mean ratio %.3f\n", b, c.mean, c.error,
+                      c.ratio);
+        tile = end;
+    }
+}
+
+// ---- maps
+
+enum map { MAP_SCENE, MAP_SINGLE, MAP_AUTO };
+
+static void make_map(struct lit_scene *s, enum map map)
+{
+    const vec3s seeds[2] = { s->light.position, pose_camera(&s->pose, 0).eye };
+    if (map == MAP_SCENE)
+        CHECK(mrt_block_map_of_scene(test_host(), s->scene, &s->map));
+    else if (map == MAP_SINGLE)
+        CHECK(mrt_map_single(test_host(), &s->pose, &s->map));
+    else
+        CHECK(mrt_map_auto(test_host(), &s->pose, seeds, 2, &s->map));
+}
+
+static struct comparison light_map(const char *spec, enum map map,
+                                   const struct mrt_dictionary *dictionary, int depth)
+{
+    static const char *const names[] = { "its own map", "single", "auto" };
+    struct lit_scene s;
+    load(spec, &s);
+    make_map(&s, map);
+    prepare(&s, dictionary->options.texels);
+    solve(&s, dictionary, depth);
+    struct comparison all = compare(&s, 0, s.atlas.tile_count);
+    print_message("%s, %s: %d blocks, error %.3f, mean ratio %.3f\n", spec, names[map], s.map.count,
+                  all.error, all.ratio);
+    if (map != MAP_SINGLE) print_blocks(&s);
+    finish(&s);
+    return all;
+}
+
+enum { DEPTH = 4 };
+
+// Bounds: what is reached here, plus a tenth. The blocks of a maze are wider than its rooms by the
+// thickness of a wall.
+TEST(indirect_light_of_a_maze_is_near_that_of_rays_through_the_scene)
+{
+    static const double bounds[] = { 0.087, 0.103, 0.094 };
+    struct mrt_dictionary dictionary = bake_dictionary();
+    for (int seed = 1; seed < 4; seed++) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "@maze:blocks=7,light=point,seed=%d", seed);
+        struct comparison c = light_map(spec, MAP_SCENE, &dictionary, DEPTH);
+        CHECK(c.error < bounds[seed - 1]);
+        CHECK(fabs(c.ratio - 1.0) < 0.05);
+    }
+    mrt_dictionary_finish(test_host(), &dictionary);
+}
+
+// The error stops falling at a few openings: DEPTH is enough.
+TEST(light_beyond_a_few_openings_does_not_matter)
+{
+    struct mrt_dictionary dictionary = bake_dictionary();
+    const char *spec = "@maze:blocks=12,light=point,seed=4";
+    double none = light_map(spec, MAP_SCENE, &dictionary, 0).error;
+    double some = light_map(spec, MAP_SCENE, &dictionary, DEPTH).error;
+    double more = light_map(spec, MAP_SCENE, &dictionary, 3 * DEPTH).error;
+    CHECK(some < 0.4 * none);
+    CHECK_NEAR(some, more, 0.002);
+    mrt_dictionary_finish(test_host(), &dictionary);
+}
+
+TEST(an_automatic_map_is_far_better_than_a_single_block)
+{
+    struct mrt_dictionary dictionary = bake_dictionary();
+    double single = light_map("@corridor:light=point", MAP_SINGLE, &dictionary, DEPTH).error;
+    struct comparison made = light_map("@corridor:light=point", MAP_AUTO, &dictionary, DEPTH);
+    CHECK(made.error < 0.27 && made.error < 0.4 * single);
+    CHECK(fabs(made.ratio - 1.0) < 0.06);
+    made = light_map("@maze:blocks=9,light=point,seed=5", MAP_AUTO, &dictionary, DEPTH);
+    CHECK(made.error < 0.085);
+    mrt_dictionary_finish(test_host(), &dictionary);
+}
