@@ -30,11 +30,15 @@ static void wait_ms(int ms)
 static bool gather(const struct bake_task *task)
 {
     uint64_t count, first = bake_task_rows(task, 0, &count);
-    float *out = task->out[0];
+    float *out = task->out[0], *row = host_alloc(task->host, COLUMNS, sizeof *row);
+    if (!row) return false;
     for (uint64_t i = 0; i < count; i++) {
         struct rng rng = rng_for((uint32_t)(first + i), (uint32_t)task->bake_seed, 0);
-        for (int c = 0; c < COLUMNS; c++) out[i * COLUMNS + (uint64_t)c] = rng_float(&rng);
+        for (int c = 0; c < COLUMNS; c++) row[c] = rng_float(&rng);
+        memcpy(out + i * COLUMNS, row, COLUMNS * sizeof *row);
     }
+    host_log(task->host, LOG_DEBUG, "row %u", (unsigned)first);
+    host_free(task->host, row);
     wait_ms(((const struct sample_options *)task->argument)->wait_ms);
     return true;
 }
