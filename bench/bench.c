@@ -1,4 +1,5 @@
 #include "bench.h"
+#include "bakes.h"
 
 #include "csv.h"
 
@@ -100,7 +101,14 @@ enum ag_result bench_create_renderer(const struct bench *bench, struct ag_scene 
     desc.height = bench->height;
     desc.gi = gi;
     if (frame_options) desc.frame_options = frame_options;
-    return ag_renderer_create(bench->device, scene, &desc, out);
+    struct bench_bakes bakes;
+    *out = NULL;
+    enum ag_result result = bench_bakes_prepare(&bakes, bench->context, scene, gi);
+    desc.bakes = bakes.bakes;
+    desc.bake_count = bakes.count;
+    if (result == AG_OK) result = ag_renderer_create(bench->device, scene, &desc, out);
+    bench_bakes_finish(&bakes);
+    return result;
 }
 
 enum ag_result bench_write_png(const struct bench *bench, const char *folder, const char *scene,

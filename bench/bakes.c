@@ -1,0 +1,70 @@
+// Bakes of a renderer, in the cache that `afterglow` uses too.
+#include "bakes.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096 };
+
+// The folder of bakes in the cache, which need not exist; see docs/cli.md.
+static bool find_folder(char out[PATH_SIZE])
+{
+    const char *own = getenv("AFTERGLOW_CACHE"), *xdg = getenv("XDG_CACHE_HOME"),
+               *home = getenv("HOME");
+    int wrote = 0;
+    if (own && own[0])
+        wrote = snprintf(out, PATH_SIZE, "%s/bakes", own);
+    else if (xdg && xdg[0] == '/')
+        wrote = snprintf(out, PATH_SIZE, "%s/afterglow/bakes", xdg);
+    else if (home && home[0] == '/')
+        wrote = snprintf(out, PATH_SIZE, "%s/.cache/afterglow/bakes", home);
+    return wrote > 0 && wrote < PATH_SIZE;
+}
+
+static bool find_path(const struct ag_bake *bake, char out[PATH_SIZE])
+{
+    char folder[PATH_SIZE];
+    struct ag_bake_info info;
+    if (!find_folder(folder) || ag_bake_get_info(bake, &info) != AG_OK) return false;
+    const int wrote = snprintf(out, PATH_SIZE, "%s/%s.safetensors", folder, info.key);
+    return wrote > 0 && wrote < PATH_SIZE;
+}
+
+// A cache that cannot be used costs time, and is no error.
+static enum ag_result complete(struct ag_bake *bake)
+{
+    char path[PATH_SIZE];
+    struct ag_bake_info info;
+    const bool has_path = find_path(bake, path);
+    if (has_path && access(path, R_OK) == 0 && ag_bake_load(bake, path) == AG_OK) return AG_OK;
+    ag_bake_get_info(bake, &info);
+    fprintf(stderr, "baking %s:%s …\n", info.technique, info.options);
+    const enum ag_result result = ag_bake_run(bake, NULL, NULL);
+    if (result == AG_OK && has_path) ag_bake_save(bake, path, true);
+    return result;
+}
+
+enum ag_result bench_bakes_prepare(struct bench_bakes *bakes, struct ag_context *context,
+                                   struct ag_scene *scene, const char *gi)
+{
+    *bakes = (struct bench_bakes){ .count = 0 };
+    for (int i = 0; i < BENCH_MAX_BAKES; i++) {
+        struct ag_bake_desc desc;
+        ag_bake_desc_default(&desc);
+        enum ag_result result = ag_bake_technique(context, gi, i, &desc.technique);
+        if (result != AG_OK || !desc.technique) return result;
+        result = ag_bake_create(scene, gi, &desc, &bakes->owned[i]);
+        if (result != AG_OK) return result;
+        bakes->bakes[bakes->count++] = bakes->owned[i];
+        result = complete(bakes->owned[i]);
+        if (result != AG_OK) return result;
+    }
+    return AG_OK;
+}
+
+void bench_bakes_finish(struct bench_bakes *bakes)
+{
+    for (int i = 0; i < bakes->count; i++) ag_bake_destroy(bakes->owned[i]);
+    *bakes = (struct bench_bakes){ .count = 0 };
+}
