@@ -28,16 +28,31 @@ struct lit_scene {
     float *radiosity, *irradiance, *reference; // RGB per texel
 };
 
-static struct mrt_dictionary bake_dictionary(void)
+static struct mrt_dictionary baked[2]; // by enum mrt_maze
+
+static const struct mrt_dictionary *dictionary_of(enum mrt_maze maze)
 {
+    struct mrt_dictionary *out = &baked[maze];
+    if (out->element_count) return out;
     struct mrt_dictionary_options options = mrt_fixture_options();
-    struct mrt_dictionary dictionary;
+    options.maze = (int32_t)maze;
     options.texels = 8;
     options.rays = 4096;
     struct bake *bake = mrt_fixture_bake(&options, 0, false);
-    CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &dictionary));
+    CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, out));
     bake_destroy(bake);
-    return dictionary;
+    return out;
+}
+
+static bool finish_at_end(void)
+{
+    for (int m = 0; m < 2; m++) mrt_dictionary_finish(test_host(), &baked[m]);
+    return true;
+}
+
+__attribute__((constructor)) static void register_end(void)
+{
+    test_register_end(finish_at_end);
 }
 
 static void load(const char *spec, struct lit_scene *s)
@@ -49,15 +64,16 @@ static void load(const char *spec, struct lit_scene *s)
     s->light = pose_light(&s->pose, 0);
 }
 
-// Irradiance of the point light, with its shadow.
+// Irradiance of the point light or the sun, with its shadow.
 static vec3s direct_at(const struct lit_scene *s, vec3s position, vec3s normal)
 {
     vec3s from = glms_vec3_muladds(normal, 1e-3f, position);
-    vec3s to = glms_vec3_sub(s->light.position, from);
-    float d2 = glms_vec3_norm2(to), cosine = glms_vec3_dot(to, normal);
-    if (!(d2 > 0.0f) || cosine <= 0.0f) return vec3_of(0, 0, 0);
-    if (trace_occluded(s->trace, from, to, 0.999f)) return vec3_of(0, 0, 0);
-    return glms_vec3_scale(s->light.intensity, cosine / (d2 * sqrtf(d2)));
+    bool sun = s->light.type == LIGHT_SUN;
+    vec3s to =
+        sun ? glms_vec3_scale(s->light.direction, -1e3f) : glms_vec3_sub(s->light.position, from);
+    float distance = glms_vec3_norm(to), cosine = glms_vec3_dot(to, normal) / distance;
+    if (!(cosine > 0.0f) || trace_occluded(s->trace, from, to, 0.999f)) return vec3_of(0, 0, 0);
+    return glms_vec3_scale(s->light.intensity, sun ? cosine : cosine / (distance * distance));
 }
 
 // One bounce, by cosine-distributed rays.
@@ -101,6 +117,15 @@ static void solve(struct lit_scene *s, const struct mrt_dictionary *dictionary, 
     mrt_level_finish(&level);
 }
 
+static void light_texels(struct lit_scene *s)
+{
+    for (size_t i = 0; i < (size_t)s->atlas.texels; i++) {
+        vec3s direct = direct_at(s, s->geometry[i].position, s->geometry[i].normal);
+        for (size_t c = 0; c < 3; c++)
+            s->radiosity[3 * i + c] = s->geometry[i].albedo.raw[c] * direct.raw[c];
+    }
+}
+
 static void prepare(struct lit_scene *s, int resolution)
 {
     CHECK(mrt_atlas_init(test_host(), &s->map, resolution, &s->atlas));
@@ -109,11 +134,7 @@ static void prepare(struct lit_scene *s, int resolution)
     s->radiosity = floats(3 * texels);
     s->irradiance = floats(3 * texels);
     s->reference = floats(3 * texels);
-    for (size_t i = 0; i < texels; i++) {
-        vec3s direct = direct_at(s, s->geometry[i].position, s->geometry[i].normal);
-        for (size_t c = 0; c < 3; c++)
-            s->radiosity[3 * i + c] = s->geometry[i].albedo.raw[c] * direct.raw[c];
-    }
+    light_texels(s);
     parallel_for(texels, 8, reference_texel, s);
 }
 
@@ -172,13 +193,14 @@ enum map { MAP_SCENE, MAP_SINGLE, MAP_AUTO };
 
 static void make_map(struct lit_scene *s, enum map map)
 {
-    const vec3s seeds[2] = { s->light.position, pose_camera(&s->pose, 0).eye };
+    const vec3s seeds[2] = { pose_camera(&s->pose, 0).eye, s->light.position };
+    size_t count = s->light.type == LIGHT_SUN ? 1 : 2;
     if (map == MAP_SCENE)
         CHECK(mrt_block_map_of_scene(test_host(), s->scene, &s->map));
     else if (map == MAP_SINGLE)
         CHECK(mrt_map_single(test_host(), &s->pose, &s->map));
     else
-        CHECK(mrt_map_auto(test_host(), &s->pose, seeds, 2, &s->map));
+        CHECK(mrt_map_auto(test_host(), &s->pose, seeds, count, &s->map));
 }
 
 static struct comparison light_map(const char *spec, enum map map,
@@ -205,38 +227,63 @@ enum { DEPTH = 4 };
 TEST(indirect_light_of_a_maze_is_near_that_of_rays_through_the_scene)
 {
     static const double bounds[] = { 0.087, 0.103, 0.094 };
-    struct mrt_dictionary dictionary = bake_dictionary();
+    const struct mrt_dictionary *dictionary = dictionary_of(MRT_MAZE_2D);
     for (int seed = 1; seed < 4; seed++) {
         char spec[64];
         snprintf(spec, sizeof spec, "@maze:blocks=7,light=point,seed=%d", seed);
-        struct comparison c = light_map(spec, MAP_SCENE, &dictionary, DEPTH);
+        struct comparison c = light_map(spec, MAP_SCENE, dictionary, DEPTH);
         CHECK(c.error < bounds[seed - 1]);
         CHECK(fabs(c.ratio - 1.0) < 0.05);
     }
-    mrt_dictionary_finish(test_host(), &dictionary);
 }
 
 // The error stops falling at a few openings: DEPTH is enough.
 TEST(light_beyond_a_few_openings_does_not_matter)
 {
-    struct mrt_dictionary dictionary = bake_dictionary();
+    const struct mrt_dictionary *dictionary = dictionary_of(MRT_MAZE_2D);
     const char *spec = "@maze:blocks=12,light=point,seed=4";
-    double none = light_map(spec, MAP_SCENE, &dictionary, 0).error;
-    double some = light_map(spec, MAP_SCENE, &dictionary, DEPTH).error;
-    double more = light_map(spec, MAP_SCENE, &dictionary, 3 * DEPTH).error;
+    double none = light_map(spec, MAP_SCENE, dictionary, 0).error;
+    double some = light_map(spec, MAP_SCENE, dictionary, DEPTH).error;
+    double more = light_map(spec, MAP_SCENE, dictionary, 3 * DEPTH).error;
     CHECK(some < 0.4 * none);
     CHECK_NEAR(some, more, 0.002);
-    mrt_dictionary_finish(test_host(), &dictionary);
 }
 
 TEST(an_automatic_map_is_far_better_than_a_single_block)
 {
-    struct mrt_dictionary dictionary = bake_dictionary();
-    double single = light_map("@corridor:light=point", MAP_SINGLE, &dictionary, DEPTH).error;
-    struct comparison made = light_map("@corridor:light=point", MAP_AUTO, &dictionary, DEPTH);
+    const struct mrt_dictionary *dictionary = dictionary_of(MRT_MAZE_2D);
+    double single = light_map("@corridor:light=point", MAP_SINGLE, dictionary, DEPTH).error;
+    struct comparison made = light_map("@corridor:light=point", MAP_AUTO, dictionary, DEPTH);
     CHECK(made.error < 0.27 && made.error < 0.4 * single);
     CHECK(fabs(made.ratio - 1.0) < 0.06);
-    made = light_map("@maze:blocks=9,light=point,seed=5", MAP_AUTO, &dictionary, DEPTH);
+    made = light_map("@maze:blocks=9,light=point,seed=5", MAP_AUTO, dictionary, DEPTH);
     CHECK(made.error < 0.085);
-    mrt_dictionary_finish(test_host(), &dictionary);
+}
+
+// A court with galleries, lit by the sun: blocks are open to the sky.
+TEST(an_automatic_map_of_a_court_is_better_than_a_single_block)
+{
+    const struct mrt_dictionary *dictionary = dictionary_of(MRT_MAZE_3D);
+    double single = light_map("@atrium", MAP_SINGLE, dictionary, DEPTH).error;
+    struct comparison made = light_map("@atrium", MAP_AUTO, dictionary, DEPTH);
+    CHECK(made.error < 0.52 && made.error < 0.6 * single);
+    CHECK(fabs(made.ratio - 1.0) < 0.07);
+}
+
+// Direct light is the caller's; nothing else may divide by a distance to it.
+TEST(a_light_outside_all_blocks_or_on_a_wall_gives_finite_light)
+{
+    struct lit_scene s;
+    load("@maze:blocks=3,light=point", &s);
+    make_map(&s, MAP_SCENE);
+    prepare(&s, 8);
+    const vec3s places[] = { vec3_of(100, 50, 3), s.geometry[5].position, s.map.blocks[0].corner[0],
+                             vec3_of(0, 2.76f, 0) };
+    for (int i = 0; i < 4; i++) {
+        s.light.position = places[i];
+        light_texels(&s);
+        solve(&s, dictionary_of(MRT_MAZE_2D), DEPTH);
+        for (int t = 0; t < 3 * s.atlas.texels; t++) CHECK(isfinite(s.irradiance[t]));
+    }
+    finish(&s);
 }

@@ -21,7 +21,7 @@ bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt
 // A union of cells, from plane low[a] to plane high[a].
 struct map_box {
     int low[3], high[3];
-    unsigned open; // bit f: face f leads to one box with the same face
+    unsigned open; // bit f: face f leads to one box with the same face, or outside
 };
 
 struct map_boxes {
@@ -41,7 +41,7 @@ static void one_box_per_cell(struct map_boxes *boxes)
         boxes->box_of_cell[i] = boxes->count++;
         mrt_cell_place(cells, i, box->low);
         for (int a = 0; a < 3; a++) box->high[a] = box->low[a] + 1;
-        box->open = cells->cell[i].open; // what is open to a free cell is free
+        box->open = cells->cell[i].open;
     }
 }
 
@@ -135,7 +135,10 @@ static bool emit(struct host *host, const char *what, const struct map_boxes *bo
                  struct mrt_block_map *map)
 {
     if (!mrt_block_map_init(host, what, (size_t)boxes->count, map)) return false;
-    for (int i = 0; i < boxes->count; i++) set_block(boxes, i, &map->blocks[i]);
+    for (int i = 0; i < boxes->count; i++) {
+        set_block(boxes, i, &map->blocks[i]);
+        map->blocks[i].open = boxes->boxes[i].open;
+    }
     bool ok = true;
     for (int i = 0; ok && i < boxes->count; i++) {
         for (int f = CUBE_RIGHT; ok && f < CUBE_FACES; f += 2) {
@@ -154,9 +157,9 @@ static void keep_a_wall(struct map_boxes *boxes)
     for (int i = 0; i < boxes->count; i++) {
         struct map_box *box = &boxes->boxes[i];
         int beyond = box_beyond(boxes, box, CUBE_TOP);
-        if (box->open != CUBE_ALL_FACES || beyond < 0) continue;
+        if (box->open != CUBE_ALL_FACES) continue;
         box->open &= ~(1u << CUBE_TOP);
-        boxes->boxes[beyond].open &= ~(1u << CUBE_BOTTOM);
+        if (beyond >= 0) boxes->boxes[beyond].open &= ~(1u << CUBE_BOTTOM);
     }
 }
 

@@ -2,13 +2,16 @@
 #include "map_cells.h"
 
 #include "core/host.h"
+#include "core/rng.h"
+#include "core/sampling.h"
 
 #include <math.h>
 
-enum { SAMPLES = 8 };              // along each edge of a face
-static const float OPEN = 0.5f;    // least part of a face that is not covered by surfaces
-static const float ALIGNED = 0.9f; // cosine between a wall's normal and the axis
-static const float REACH = 0.25f;  // of a cell: surfaces this near to a face belong to it
+enum { SAMPLES = 8, DIRECTIONS = 128 }; // along each edge of a face; around a point
+static const float OPEN = 0.5f;         // least part of a face that is not covered by surfaces
+static const float OUTSIDE = 0.4f;      // least part of all directions without a surface
+static const float ALIGNED = 0.9f;      // cosine between a wall's normal and the axis
+static const float REACH = 0.25f;       // of a cell: surfaces this near to a face belong to it
 
 void mrt_cell_place(const struct mrt_cells *cells, int i, int at[3])
 {
@@ -68,13 +71,27 @@ static void find_openings(struct mrt_cells *cells)
     for (int i = 0; i < mrt_cells_count(cells); i++) {
         int at[3], beyond[3];
         mrt_cell_place(cells, i, at);
-        for (int face = CUBE_RIGHT; face < CUBE_FACES; face += 2) { // each pair of cells once
-            if (!mrt_cell_beyond(cells, at, face, beyond)) continue;
-            if (!is_open(cells, at, face, beyond)) continue;
-            mrt_cell_at(cells, at)->open |= 1u << face;
-            mrt_cell_at(cells, beyond)->open |= 1u << cube_opposite(face);
+        for (int face = 0; face < CUBE_FACES; face++) {
+            bool inside = mrt_cell_beyond(cells, at, face, beyond);
+            if (inside && !(face & 1)) continue; // each pair of cells once
+            if (!is_open(cells, at, face, inside ? beyond : at)) continue;
+            cells->cell[i].open |= 1u << face;
+            if (inside) mrt_cell_at(cells, beyond)->open |= 1u << cube_opposite(face);
         }
     }
+}
+
+// The middle of a room sees surfaces in most directions.
+static bool is_outside(const struct mrt_cells *cells, const int at[3])
+{
+    float far = 2.0f * glms_vec3_norm(box3_size(cells->bounds));
+    vec3s middle;
+    int escaped = 0;
+    for (int a = 0; a < 3; a++)
+        middle.raw[a] = cells->plane[a][at[a]] + 0.5f * size_along(cells, at, a);
+    for (uint32_t i = 0; i < DIRECTIONS; i++)
+        escaped += !raycast_blocked(cells->raycast, middle, sample_sphere(sobol_2d(i, 0)), far);
+    return (float)escaped > OUTSIDE * (float)DIRECTIONS;
 }
 
 static void free_cell_of(struct mrt_cells *cells, vec3s seed)
@@ -86,7 +103,7 @@ static void free_cell_of(struct mrt_cells *cells, vec3s seed)
         for (at[a] = 0; at[a] + 1 < mrt_cells_along(cells, a); at[a]++)
             if (seed.raw[a] < plane[at[a] + 1]) break;
     }
-    mrt_cell_at(cells, at)->free = true;
+    mrt_cell_at(cells, at)->free = !mrt_cell_at(cells, at)->outside;
 }
 
 static bool has_free_neighbor(const struct mrt_cells *cells, int i)
@@ -105,7 +122,8 @@ static void flood(struct mrt_cells *cells)
     for (bool changed = true; changed;) {
         changed = false;
         for (int i = 0; i < mrt_cells_count(cells); i++) {
-            if (cells->cell[i].free || !has_free_neighbor(cells, i)) continue;
+            if (cells->cell[i].free || cells->cell[i].outside) continue;
+            if (!has_free_neighbor(cells, i)) continue;
             cells->cell[i].free = changed = true;
         }
     }
@@ -117,6 +135,11 @@ bool mrt_cells_fill(struct host *host, struct mrt_cells *cells, const vec3s *see
     cells->cell = host_alloc(host, (size_t)mrt_cells_count(cells), sizeof *cells->cell);
     if (!cells->cell) return false;
     find_openings(cells);
+    for (int i = 0; i < mrt_cells_count(cells); i++) {
+        int at[3];
+        mrt_cell_place(cells, i, at);
+        cells->cell[i].outside = is_outside(cells, at);
+    }
     for (size_t i = 0; i < count; i++) free_cell_of(cells, seeds[i]);
     flood(cells);
     return true;

@@ -9,8 +9,9 @@
 enum { MRT_MAX_PLANES = 11 }; // per axis, with the two of the bounds: at most 1000 cells
 
 struct mrt_cell {
-    bool free;     // connected with a seed
-    unsigned open; // bit f: nothing separates it from the cell beyond face f
+    bool outside;  // open to the sky rather than enclosed
+    bool free;     // connected with a seed, and not outside
+    unsigned open; // bit f: nothing separates it from what is beyond face f
 };
 
 struct mrt_cells {
