@@ -10,13 +10,15 @@
 static void make_geometry(struct mrt_runtime_fixture *f, vec3s albedo)
 {
     int n = f->atlas.resolution;
-    f->geometry = calloc((size_t)f->atlas.texels, sizeof *f->geometry);
+    f->images.geometry = calloc((size_t)f->atlas.texels, sizeof *f->images.geometry);
+    f->images.emitted = calloc((size_t)f->atlas.texels, sizeof *f->images.emitted);
+    f->images.sky = calloc((size_t)f->atlas.texels, sizeof *f->images.sky);
     for (int i = 0; i < f->atlas.texels; i++) {
         const struct mrt_tile *tile = &f->atlas.tiles[i / (n * n)];
         float s = ((float)(i % n) + 0.5f) / (float)n, t = ((float)(i / n % n) + 0.5f) / (float)n;
         const vec3s *corner = f->map.blocks[tile->block].corner;
         vec3s wall = cube_face_point(tile->face, s, t);
-        f->geometry[i] = (struct mrt_geometry_texel){
+        f->images.geometry[i] = (struct mrt_geometry_texel){
             .position = mrt_warp_point(corner, wall),
             .normal = glms_vec3_negate(mrt_warp_face_normal(corner, tile->face, wall)),
             .albedo = albedo,
@@ -69,7 +71,7 @@ void mrt_runtime_fixture_init(struct mrt_runtime_fixture *f, struct mrt_block_ma
     make_openings(f);
     f->input.map = &f->map;
     f->input.atlas = &f->atlas;
-    f->input.geometry = f->geometry;
+    f->input.images = &f->images;
     f->input.k_b = k_b;
     f->input.k_r = k_r;
     f->input.bases = f->bases;
@@ -95,7 +97,9 @@ void mrt_runtime_fixture_finish(struct mrt_runtime_fixture *f)
     }
     mrt_atlas_finish(&f->atlas);
     mrt_block_map_finish(&f->map);
-    free(f->geometry);
+    free(f->images.geometry);
+    free(f->images.emitted);
+    free(f->images.sky);
     free(f->bases);
     free(f->basis_of_block);
     free(f->openings);
@@ -119,6 +123,7 @@ static void make_pairs(struct mrt_runtime_fixture *f, struct rng *rng)
                                                f->t_br + i * size };
     f->input.pairs = f->pairs;
     f->input.pair_count = count;
+    f->input.t_br_stride = f->input.k_r;
 }
 
 void mrt_runtime_fixture_randomize(struct mrt_runtime_fixture *f, uint32_t seed)
@@ -198,7 +203,7 @@ static double *couple(const struct mrt_runtime_fixture *f, const double *b)
             for (int m = 0; m < k_b; m++)
                 for (int c = 0; c < 3; c++)
                     r[(f->pairs[p].opening * k_r + k) * 3 + c] +=
-                        (double)f->pairs[p].t_br[k * k_b + m] *
+                        (double)f->pairs[p].t_br[m * k_r + k] *
                         b[(f->pairs[p].source * k_b + m) * 3 + c];
     return r;
 }

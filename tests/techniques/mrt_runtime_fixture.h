@@ -8,7 +8,7 @@
 struct mrt_runtime_fixture {
     struct mrt_block_map map;
     struct mrt_atlas atlas;
-    struct mrt_geometry_texel *geometry;
+    struct mrt_scene_images images;
     struct mrt_basis_input *bases;
     int *basis_of_block;
     struct mrt_opening_input *openings;

@@ -21,9 +21,10 @@ struct mrt_texel {
     vec3s position; // world
     float area_m2;  // of the wall
     vec3s normal;   // unit
-    uint32_t found; // bool: there is a surface; else the sky is behind the texel
+    uint32_t found; // bool: there is a surface
     vec3s albedo;
-    uint32_t padding;
+    float sky;     // irradiance of a sky of radiance 1/π
+    vec3s emitted; // irradiance of emissive surfaces, lux
 };
 
 // A wall of a block: `texels` texels from first_texel.
@@ -70,6 +71,7 @@ struct mrt_level_params {
     int32_t shadow_radius; // texels
     float offset_m;        // of lookups, along the normal
     float feedback;        // weight of the indirect irradiance that is reflected again
+    float emitters;        // 1: emissive surfaces are sources, 0: they are not
     float gain;            // artistic factor on the result
 };
 
@@ -81,12 +83,12 @@ struct mrt_view_push {
 #define MRT_VIEW_DIRECT 1
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct mrt_texel) == 48, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_texel) == 60, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 140, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_level_params) == 72, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 76, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
 #endif
 

@@ -1,5 +1,5 @@
-// Radiosity that leaves each texel before any bounce: irradiance of all lights, with shadows, times
-// albedo; emission; and where the ray of the geometry image found no surface, the sky.
+// Light of each texel before any bounce: irradiance of emissive surfaces and the sky, which the
+// frame's direct light lacks; and the radiosity of that and of all lights, with shadows.
 //
 // A texel stands for its area A. A light of intensity I at distance d → 0 lights a wall by I/d²,
 // but sends it 2πI only: with d² + A/2π, a texel never receives more than that flux.
@@ -22,9 +22,9 @@ layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
 {
     frame_light frame_light_table[];
 };
-layout(set = 0, binding = 6, scalar) readonly buffer mrt_emission
+layout(set = 0, binding = 6, scalar) writeonly buffer mrt_unbounced
 {
-    vec3 emission_table[]; // radiosity of emissive surfaces, lm/m², not scaled
+    vec3 unbounced_table[]; // irradiance of emissive surfaces and the sky
 };
 layout(set = 0, binding = 7, scalar) writeonly buffer mrt_direct
 {
@@ -57,10 +57,11 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= level.texels) return;
     mrt_texel texel = texel_table[i];
-    vec3 radiosity = emission_table[i] * frame.radiance_scale;
-    if (texel.found == 0u) radiosity += PI * frame.sky;
-    vec3 irradiance = vec3(0.0);
+    vec3 unbounced = texel.emitted * (frame.radiance_scale * level.emitters);
+    unbounced += PI * texel.sky * frame.sky;
+    vec3 irradiance = unbounced;
     for (uint k = 0; k < frame.light_count; k++)
         irradiance += irradiance_of(texel, frame_light_table[k]);
-    direct_table[i] = radiosity + texel.albedo * irradiance;
+    unbounced_table[i] = unbounced;
+    direct_table[i] = texel.albedo * irradiance;
 }

@@ -20,6 +20,10 @@ layout(set = 0, binding = 4, scalar) readonly buffer mrt_irradiance
 {
     vec3 irradiance_table[]; // [texel][value]
 };
+layout(set = 0, binding = 6, scalar) readonly buffer mrt_unbounced
+{
+    vec3 unbounced_table[]; // [texel]
+};
 // VALUES 1: one layer of RGB. VALUES 4: a layer for each of red, green, blue, with four values.
 layout(set = 0, binding = 5, rgba16f) writeonly uniform image2DArray light_map;
 
@@ -38,6 +42,7 @@ void store(ivec2 at, vec3 values[4])
 void add(uint texel, float weight, inout vec3 sum[4])
 {
     for (uint v = 0u; v < VALUES; v++) sum[v] += weight * irradiance_table[texel * VALUES + v];
+    if (VALUES == 1u) sum[0] += weight * unbounced_table[texel];
 }
 
 void main()

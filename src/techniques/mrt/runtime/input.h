@@ -5,7 +5,7 @@
 #include "core/linalg.h"
 
 #include "techniques/mrt/level/atlas.h"
-#include "techniques/mrt/level/geometry.h"
+#include "techniques/mrt/level/unbounced.h"
 
 // Operators of blocks with the same openings. n texels of mrt_cube(resolution, open).
 struct mrt_basis_input {
@@ -25,7 +25,7 @@ struct mrt_response_input {
 // Light of a block that enters another one through an opening of that one: T_b→r.
 struct mrt_pair_input {
     int opening, source; // of mrt_runtime_input.openings; a block
-    const float *t_br;   // k_r × k_b
+    const float *t_br;   // transposed: k_b rows of k_r, t_br_stride apart
 };
 
 struct mrt_opening_input {
@@ -35,7 +35,7 @@ struct mrt_opening_input {
 struct mrt_runtime_input {
     const struct mrt_block_map *map;
     const struct mrt_atlas *atlas;
-    const struct mrt_geometry_texel *geometry;
+    const struct mrt_scene_images *images;
     int k_b, k_r;
     const struct mrt_basis_input *bases;
     int basis_count;
@@ -44,5 +44,5 @@ struct mrt_runtime_input {
     const struct mrt_opening_input *openings; // in the order of their blocks
     int opening_count;
     const struct mrt_pair_input *pairs; // in the order of their openings
-    int pair_count;
+    int pair_count, t_br_stride;
 };

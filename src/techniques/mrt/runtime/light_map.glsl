@@ -57,19 +57,20 @@ int wall_of(mrt_place place, vec3 normal)
     return nearest;
 }
 
-// Inside a block a surface is projected onto the walls that face its way; squared cosines weigh
-// them, which sum to 1.
+// Inside a block a surface is projected onto the walls that face its way, weighed by squared
+// cosines, which sum to 1. Where these are openings, a little of all walls remains.
+const float MRT_LEAST_WEIGHT = 0.01;
+
 vec3 walls_irradiance(mrt_place place, vec3 normal)
 {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
-    for (int axis = 0; axis < 3; axis++) {
-        int face = 2 * axis + (normal[axis] < 0.0 ? 1 : 0), tile;
-        tile = block_table[place.block].tile[face];
-        if (tile < 0 || normal[axis] == 0.0) continue;
-        mat3 frame = cube_from_face(face);
-        float weight = normal[axis] * normal[axis];
-        sum += weight * wall_irradiance(tile, face, place.cell, -frame[2]);
+    for (int face = 0; face < 6; face++) {
+        int tile = block_table[place.block].tile[face];
+        if (tile < 0) continue;
+        vec3 inner = -cube_from_face(face)[2];
+        float cosine = max(dot(inner, normal), 0.0), weight = cosine * cosine + MRT_LEAST_WEIGHT;
+        sum += weight * wall_irradiance(tile, face, place.cell, inner);
         weights += weight;
     }
     return weights > 0.0 ? sum / weights : vec3(0.0);

@@ -173,8 +173,8 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_in
         for (int m = 0; m < columns; m++) {
             const bool kept = m < input->k_b;
             for (int k = 0; k < (int)(4 * mrt_quads(input->k_r)); k++)
-                put(&w,
-                    kept && k < input->k_r ? pair->t_br[k * input->k_b + m] * inverse[m] : zero);
+                put(&w, kept && k < input->k_r ? pair->t_br[m * input->t_br_stride + k] * inverse[m]
+                                               : zero);
         }
     }
     return words_upload(&w, runtime->gpu, "t_br", &runtime->buffers.t_br);

@@ -20,7 +20,7 @@ static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_i
     struct gpu *gpu = runtime->gpu;
     const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
     const size_t quad = 3 * 4 * sizeof(float);
-    return make_empty(gpu, "emission", light, &b->emission) &&
+    return make_empty(gpu, "unbounced", light, &b->unbounced) &&
            make_empty(gpu, "direct", light, &b->direct) &&
            make_empty(gpu, "b", runtime->block_count * mrt_quads(input->k_b) * quad, &b->b) &&
            make_empty(gpu, "r", runtime->opening_count * mrt_quads(input->k_r) * quad, &b->r) &&
@@ -122,8 +122,7 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
                       const struct mrt_runtime_options *options)
 {
     *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
-    return mrt_emission_init(&out->emission, host, input->map, input->atlas) &&
-           mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
+    return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
            mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
            make_pipelines(out, input);
 }
@@ -134,7 +133,7 @@ static void destroy_buffers(struct mrt_runtime *runtime)
     gpu_buffer *const buffers[] = {
         &b->texels,  &b->tiles, &b->blocks,     &b->openings,   &b->borders,
         &b->sources, &b->cells, &b->candidates, &b->t_db,       &b->u_b,
-        &b->u_r,     &b->t_br,  &b->u_b_vector, &b->u_r_vector, &b->emission,
+        &b->u_r,     &b->t_br,  &b->u_b_vector, &b->u_r_vector, &b->unbounced,
         &b->direct,  &b->b,     &b->r,          &b->irradiance, &b->vector,
     };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
@@ -156,6 +155,6 @@ void mrt_runtime_finish(struct mrt_runtime *runtime)
     destroy_buffers(runtime);
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(runtime->gpu, pipelines[i]);
-    mrt_emission_finish(&runtime->emission);
+
     *runtime = (struct mrt_runtime){ 0 };
 }

@@ -5,7 +5,7 @@
 #include "frame/frame.h"
 
 #include "techniques/mrt/mrt_shared.h"
-#include "techniques/mrt/runtime/emission.h"
+
 #include "techniques/mrt/runtime/input.h"
 
 struct mrt_runtime_options {
@@ -18,7 +18,7 @@ struct mrt_runtime_buffers {
     gpu_buffer cells, candidates;                                 // lookup grid of blocks
     gpu_buffer t_db, u_b, u_r, t_br;                              // operators
     gpu_buffer u_b_vector, u_r_vector;
-    gpu_buffer emission, direct;     // vec3 per texel: radiosity
+    gpu_buffer direct, unbounced;    // vec3 per texel: radiosity, irradiance
     gpu_buffer b, r;                 // coefficients
     gpu_buffer irradiance, vector;   // vec3 per texel and value
     gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
@@ -39,7 +39,7 @@ struct mrt_runtime {
     uint32_t block_count, opening_count;
     struct mrt_runtime_buffers buffers;
     struct mrt_runtime_pipelines pipelines;
-    struct mrt_emission emission;
+
     gpu_sampler linear;
 };
 
@@ -53,7 +53,7 @@ void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-b
 
 // Radiosity of the texels before any bounce.
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                       const struct frame_view *view);
+                       const struct frame_view *view, bool emitters);
 // Indirect irradiance of the texels after one more bounce. feedback: the weight of the irradiance
 // of the last bounce; 0: none.
 void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback);

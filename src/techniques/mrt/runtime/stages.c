@@ -6,25 +6,14 @@ static struct gpu_binding level_binding(const struct mrt_runtime *runtime, struc
     return gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level);
 }
 
-// Emissive surfaces that moved: their texels are found again on the CPU.
-static void record_emission(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                            const struct frame_view *view)
-{
-    struct mrt_emission *e = &runtime->emission;
-    if (e->valid || !view->emitters) return;
-    mrt_emission_update(e, view);
-    const size_t bytes = (size_t)e->texels * sizeof *e->radiosity;
-    const struct gpu_binding data = gpu_transient(cmd, "emission", e->radiosity, bytes);
-    gpu_copy_buffer(cmd, runtime->buffers.emission, 0, data.buffer, data.offset, bytes);
-}
-
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                       const struct frame_view *view)
+                       const struct frame_view *view, bool emitters)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
     runtime->level.shadow_radius = view->shadow_radius;
+    runtime->level.emitters = emitters ? 1.0f : 0.0f;
     gpu_scope_begin(cmd, "direct");
-    record_emission(runtime, cmd, view);
+
     gpu_dispatch(
         cmd, runtime->pipelines.direct,
         GPU_BIND(
@@ -34,7 +23,7 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
               .image = view->shadow_sun_maps,
               .sampler = view->shadow_sampler },
             level_binding(runtime, cmd), { .name = "mrt_texels", .buffer = b->texels },
-            { .name = "mrt_emission", .buffer = b->emission },
+            { .name = "mrt_unbounced", .buffer = b->unbounced },
             { .name = "mrt_direct", .buffer = b->direct }),
         NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
@@ -104,6 +93,7 @@ static void record_fill(struct mrt_runtime *runtime, struct gpu_cmd *cmd, bool v
         cmd, vector ? p->fill_vector : p->fill,
         GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_tiles", .buffer = b->tiles },
                  { .name = "mrt_borders", .buffer = b->borders },
+                 { .name = "mrt_unbounced", .buffer = b->unbounced },
                  { .name = "mrt_irradiance", .buffer = vector ? b->vector : b->irradiance },
                  { .name = "light_map", .image = vector ? b->vector_map : b->light_map }),
         NULL, 0, gpu_groups(level->texels + level->borders, MRT_LOCAL), 1, 1);

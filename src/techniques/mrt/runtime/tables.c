@@ -26,17 +26,34 @@ static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *
     return ok;
 }
 
+// Area of texel `local` of a tile: the wall's derivatives along s and t at its centre.
+static float texel_area(const struct mrt_runtime_input *input, const struct mrt_tile *tile,
+                        int local)
+{
+    int n = input->atlas->resolution;
+    float s = ((float)(local % n) + 0.5f) / (float)n, t = ((float)(local / n) + 0.5f) / (float)n;
+    mat3s frame = cube_from_face(tile->face);
+    mat3s j = mrt_warp_jacobian(input->map->blocks[tile->block].corner,
+                                cube_face_point(tile->face, s, t));
+    vec3s u = glms_mat3_mulv(j, frame.col[0]), v = glms_mat3_mulv(j, frame.col[1]);
+    return glms_vec3_norm(glms_vec3_cross(u, v)) / (float)(n * n);
+}
+
 static void fill_texels(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                         void *items)
 {
     struct mrt_texel *texels = items;
+    const int per_tile = (int)runtime->level.texels_of_tile;
     for (int i = 0; i < input->atlas->texels; i++) {
-        const struct mrt_geometry_texel *from = &input->geometry[i];
+        const struct mrt_geometry_texel *from = &input->images->geometry[i];
+        const struct mrt_tile *tile = &input->atlas->tiles[i / per_tile];
         texels[i] = (struct mrt_texel){ .position = from->position,
-                                        .area_m2 = runtime->emission.area_m2[i],
+                                        .area_m2 = texel_area(input, tile, i % per_tile),
                                         .normal = from->normal,
                                         .found = from->found,
-                                        .albedo = from->albedo };
+                                        .albedo = from->albedo,
+                                        .sky = input->images->sky[i],
+                                        .emitted = input->images->emitted[i] };
     }
 }
 

@@ -1,0 +1,170 @@
+// Modular radiance transfer (Loos 2015, chapters 3 and 4): the scene is a level of blocks, shapes
+// of a precomputed dictionary. Each frame computes direct light at the texels of the blocks' walls,
+// carries it in reduced bases within each block (b) and through openings into others (r),
+// reconstructs indirect light in a light map, and looks that up at each pixel. Diffuse only; lights
+// may move.
+#include "techniques/mrt/mrt.h"
+
+#include "techniques/mrt/mrt_state.h"
+
+#include <string.h>
+
+#define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
+static const struct option_row option_rows[] = {
+#include "techniques/mrt/mrt_options.def"
+};
+#undef OPTION
+
+static const struct technique_debug_view debug_views[] = {
+    { "blocks", "the block map over the scene: a colour for each block, squares for texels", NULL },
+    { "direct", "radiosity of the texels that indirect light comes from", NULL },
+    { NULL, NULL, NULL },
+};
+
+static const struct technique_preset presets[] = {
+    { "low", "bounces=1,feedback=true,vector=false,texels=6,modes=12,response_modes=12" },
+    { "medium", "" },
+    { "high", "bounces=8,precision=float,modes=48,lightfield_modes=192" },
+    { NULL, NULL },
+};
+
+static struct mrt_dictionary_options dictionary_options(const struct mrt_options *options)
+{
+    struct mrt_dictionary_options out;
+#define OPTION(type, name, ...) out.name = options->name;
+#include "techniques/mrt/dictionary/dictionary_options.def"
+#undef OPTION
+    return out;
+}
+
+static bool mrt_check(const struct technique_create *how)
+{
+    const struct mrt_options *options = how->options;
+    if (options->modes > 4 * options->prior_modes)
+        return host_fail(how->host, FAIL_ARGUMENT,
+                         "gi mrt: modes=%d exceeds the modes of the prior", (int)options->modes);
+    return true;
+}
+
+static bool mrt_bake(struct bake_plan *plan, const struct technique_bake *how)
+{
+    const struct mrt_dictionary_options options = dictionary_options(how->options);
+    return mrt_dictionary_bake(plan, &options, how->full_report);
+}
+
+static bool mrt_create(void *state, const struct technique_create *how)
+{
+    struct mrt *mrt = state;
+    mrt->host = how->host;
+    mrt->gpu = how->gpu;
+    mrt->options = *(const struct mrt_options *)how->options;
+    return !how->pose || mrt_make_map(mrt, how->pose);
+}
+
+static bool mrt_load(void *state, const struct tensors *bake)
+{
+    struct mrt *mrt = state;
+    const struct mrt_dictionary_options options = dictionary_options(&mrt->options);
+    return mrt_dictionary_init(mrt->host, bake, &options, &mrt->dictionary) &&
+           (mrt->map.count == 0 || mrt_make_level(mrt));
+}
+
+static void mrt_set_options(void *state, const void *options)
+{
+    struct mrt *mrt = state;
+    option_copy_live(&technique_mrt.options, options, &mrt->options);
+}
+
+static void mrt_invalidate(void *state, uint32_t changes)
+{
+    struct mrt *mrt = state;
+
+    if (changes & (CHANGED_LIGHT | CHANGED_OPTIONS)) mrt->lit = false;
+}
+
+// The weight of the last frame's irradiance in this frame's first bounce.
+static float first_feedback(const struct mrt *mrt, const struct frame_view *view)
+{
+    if (!mrt->options.feedback || !mrt->lit) return 0.0f;
+    return view->constants->previous_scale_ratio;
+}
+
+static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    if (mrt->options.solver == MRT_SOLVER_CPU) {
+        mrt_host_solver_record(&mrt->host_solver, cmd,
+                               &(struct mrt_host_frame){
+                                   .direct = mrt->runtime.buffers.direct,
+                                   .irradiance = mrt->runtime.buffers.irradiance,
+                                   .bounces = mrt->options.bounces,
+                                   .feedback = mrt->options.feedback,
+                                   .radiance_scale = view->constants->radiance_scale,
+                               });
+        return;
+    }
+    for (int i = 0; i < mrt->options.bounces; i++)
+        mrt_record_bounce(&mrt->runtime, cmd, i > 0 ? 1.0f : first_feedback(mrt, view));
+}
+
+static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct mrt *mrt = state;
+    if (mrt->map.count == 0) {
+        gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
+                        (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+        return;
+    }
+
+    mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
+    record_solution(mrt, cmd, view);
+    mrt_record_light_map(&mrt->runtime, cmd);
+    mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
+    mrt->lit = true;
+}
+
+static void mrt_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
+                           const char *name, gpu_image out)
+{
+    struct mrt *mrt = state;
+    if (mrt->map.count == 0)
+        gpu_clear_image(cmd, out, (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+    else
+        mrt_record_debug(&mrt->runtime, cmd, view,
+                         strcmp(name, "blocks") == 0 ? MRT_VIEW_BLOCKS : MRT_VIEW_DIRECT, out);
+}
+
+static void mrt_destroy(void *state)
+{
+    struct mrt *mrt = state;
+    if (!mrt->host) return;
+    mrt_host_solver_finish(&mrt->host_solver);
+    mrt_runtime_finish(&mrt->runtime);
+    mrt_level_finish(&mrt->level);
+    mrt_dictionary_finish(mrt->host, &mrt->dictionary);
+    mrt_scene_images_finish(&mrt->images);
+    mrt_atlas_finish(&mrt->atlas);
+    mrt_block_map_finish(&mrt->map);
+}
+
+const struct technique technique_mrt = {
+    .name = "mrt",
+    .title = "modular radiance transfer",
+    .paper = "Loos 2015, Modular Radiance Transfer, ch. 3 and 4",
+    .role = ROLE_SOURCE,
+    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | GATHERS_EMISSION,
+    .needs = FRAME_WRITES_IRRADIANCE,
+    .bake_version = 1,
+    .options = OPTION_TABLE(struct mrt_options, option_rows, NULL),
+    .presets = presets,
+    .debug_views = debug_views,
+    .state_size = sizeof(struct mrt),
+    .check = mrt_check,
+    .bake = mrt_bake,
+    .create = mrt_create,
+    .load = mrt_load,
+    .set_options = mrt_set_options,
+    .invalidate = mrt_invalidate,
+    .record = mrt_record,
+    .debug_view = mrt_debug_view,
+    .destroy = mrt_destroy,
+};

@@ -1,0 +1,77 @@
+// The solver on the CPU within a frame.
+#include "mrt_host_solver.h"
+
+#include <string.h>
+
+bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct gpu *gpu,
+                          const struct mrt_level *level, const struct mrt_geometry_texel *geometry)
+{
+    const size_t texels = (size_t)level->first_texel[level->map->count];
+    *out = (struct mrt_host_solver){ .host = host, .gpu = gpu, .texels = (int)texels };
+    out->albedo = host_alloc(host, texels, sizeof *out->albedo);
+    out->direct = host_alloc(host, texels, sizeof *out->direct);
+    out->radiosity = host_alloc(host, texels, sizeof *out->radiosity);
+    out->irradiance = host_alloc(host, texels, sizeof *out->irradiance);
+    if (!out->albedo || !out->direct || !out->radiosity || !out->irradiance) return false;
+    for (size_t i = 0; i < texels; i++) out->albedo[i] = geometry[i].albedo;
+    return mrt_solver_init(host, level, &out->solver) &&
+           gpu_readback_create(gpu, "direct_readback", texels * sizeof *out->direct,
+                               &out->readback);
+}
+
+void mrt_host_solver_finish(struct mrt_host_solver *solver)
+{
+    if (!solver->host) return;
+    gpu_readback_destroy(solver->gpu, &solver->readback);
+    mrt_solver_finish(&solver->solver);
+    host_free(solver->host, solver->albedo);
+    host_free(solver->host, solver->direct);
+    host_free(solver->host, solver->radiosity);
+    host_free(solver->host, solver->irradiance);
+    *solver = (struct mrt_host_solver){ 0 };
+}
+
+// weight: of the irradiance that is reflected again.
+static void bounce(struct mrt_host_solver *s, float weight)
+{
+    for (int i = 0; i < s->texels; i++) {
+        vec3s again = glms_vec3_mul(s->albedo[i], s->irradiance[i]);
+        s->radiosity[i] = glms_vec3_muladds(again, weight, s->direct[i]);
+    }
+    mrt_solve(&s->solver, &s->radiosity[0].x, &s->irradiance[0].x);
+}
+
+static void solve(struct mrt_host_solver *s, const struct mrt_host_frame *frame)
+{
+    const bool again = frame->feedback && s->solved;
+    // Last irradiance in the scale of this radiosity.
+    const float rescale = again ? s->newest_scale / s->scale : 0.0f;
+    s->scale = s->newest_scale;
+    for (int i = 0; i < frame->bounces; i++) bounce(s, i > 0 ? 1.0f : rescale);
+    s->solved = true;
+}
+
+static void upload(struct mrt_host_solver *s, struct gpu_cmd *cmd,
+                   const struct mrt_host_frame *frame)
+{
+    const size_t bytes = (size_t)s->texels * sizeof *s->radiosity;
+    const float rescale = frame->radiance_scale / s->scale;
+    for (int i = 0; i < s->texels; i++)
+        s->radiosity[i] = glms_vec3_scale(s->irradiance[i], rescale);
+    const struct gpu_binding data = gpu_transient(cmd, "irradiance", s->radiosity, bytes);
+    gpu_copy_buffer(cmd, frame->irradiance, 0, data.buffer, data.offset, bytes);
+}
+
+void mrt_host_solver_record(struct mrt_host_solver *s, struct gpu_cmd *cmd,
+                            const struct mrt_host_frame *frame)
+{
+    const size_t bytes = (size_t)s->texels * sizeof *s->direct;
+    if (gpu_readback_poll(s->gpu, &s->readback, s->direct, bytes)) {
+        solve(s, frame);
+        s->newest_scale = 0.0f;
+    }
+    if (s->solved) upload(s, cmd, frame);
+    if (s->newest_scale != 0.0f) return; // a copy is under way
+    gpu_readback_copy(cmd, &s->readback, 0, frame->direct, 0, bytes);
+    s->newest_scale = frame->radiance_scale;
+}

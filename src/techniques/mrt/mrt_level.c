@@ -1,0 +1,75 @@
+// From a scene and a dictionary to the level that the run time lights.
+#include "techniques/mrt/mrt_state.h"
+
+#include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/runtime/turned.h"
+
+// ---- the map
+
+// Positions in the free space: cameras and lights.
+static bool make_auto(struct mrt *mrt, const struct scene_pose *pose)
+{
+    const struct scene *scene = pose->scene;
+    size_t count = 0, most = (size_t)scene->camera_count + (size_t)scene->light_count;
+    vec3s *seeds = host_alloc(mrt->host, most, sizeof *seeds);
+    if (!seeds) return false;
+    for (int i = 0; i < scene->camera_count; i++) seeds[count++] = pose_camera(pose, i).eye;
+    for (int i = 0; i < scene->light_count; i++) {
+        const struct world_light light = pose_light(pose, i);
+        if (light.type != LIGHT_SUN) seeds[count++] = light.position;
+    }
+    bool ok = mrt_map_auto(mrt->host, pose, seeds, count, &mrt->map);
+    host_free(mrt->host, seeds);
+    return ok;
+}
+
+static bool choose_map(struct mrt *mrt, const struct scene_pose *pose)
+{
+    if (mrt->options.map == MRT_MAP_SINGLE) return mrt_map_single(mrt->host, pose, &mrt->map);
+    if (mrt->options.map == MRT_MAP_SCENE) {
+        if (!mrt_block_map_of_scene(mrt->host, pose->scene, &mrt->map)) return false;
+        if (mrt->map.count > 0) return true;
+        mrt_block_map_finish(&mrt->map);
+    }
+    return make_auto(mrt, pose);
+}
+
+bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
+{
+    vec3s size = box3_size(pose->bounds);
+    // Without volume there is no room to light.
+    if (!(size.x > 0.0f && size.y > 0.0f && size.z > 0.0f)) return true;
+    if (!choose_map(mrt, pose) ||
+        !mrt_atlas_init(mrt->host, &mrt->map, mrt->options.texels, &mrt->atlas))
+        return false;
+    return mrt_scene_images_init(mrt->host, pose, &mrt->map, &mrt->atlas, &mrt->images);
+}
+
+// ---- operators
+
+static bool start_runtime(struct mrt *mrt)
+{
+    struct mrt_turned turned;
+    const struct mrt_runtime_options options = {
+        .half = mrt->options.precision == MRT_PRECISION_HALF,
+        .vector = mrt->options.vector && mrt->options.solver == MRT_SOLVER_GPU,
+    };
+    bool ok = mrt_turned_init(mrt->host, &mrt->level, &turned);
+    if (ok) {
+        turned.input.atlas = &mrt->atlas;
+        turned.input.images = &mrt->images;
+        ok = mrt_runtime_init(&mrt->runtime, mrt->host, mrt->gpu, &turned.input, &options);
+    }
+    mrt_turned_finish(&turned);
+    return ok;
+}
+
+bool mrt_make_level(struct mrt *mrt)
+{
+    const struct mrt_level_options options = { .max_depth = mrt->options.depth };
+    return mrt_level_init(mrt->host, &mrt->map, &mrt->dictionary, &options, &mrt->level) &&
+           start_runtime(mrt) &&
+           (mrt->options.solver == MRT_SOLVER_GPU ||
+            mrt_host_solver_init(&mrt->host_solver, mrt->host, mrt->gpu, &mrt->level,
+                                 mrt->images.geometry));
+}

@@ -1,0 +1,41 @@
+// The private state of modular radiance transfer.
+#pragma once
+
+#include "techniques/mrt/dictionary/dictionary.h"
+#include "techniques/mrt/level/solver.h"
+#include "techniques/mrt/mrt_host_solver.h"
+#include "techniques/mrt/runtime/runtime.h"
+#include "techniques/technique.h"
+
+enum mrt_map_choice { MRT_MAP_SCENE, MRT_MAP_AUTO, MRT_MAP_SINGLE };
+enum mrt_solver_choice { MRT_SOLVER_GPU, MRT_SOLVER_CPU };
+enum mrt_precision { MRT_PRECISION_HALF, MRT_PRECISION_FLOAT };
+
+struct mrt_options {
+#define OPTION OPTION_FIELD
+#include "techniques/mrt/mrt_options.def"
+#undef OPTION
+};
+
+struct mrt {
+    struct host *host;
+    struct gpu *gpu;
+    struct mrt_options options;
+    // The level.
+    struct mrt_block_map map; // no blocks: an empty scene
+    struct mrt_atlas atlas;
+    struct mrt_scene_images images;
+    // The dictionary and what follows from both.
+    struct mrt_dictionary dictionary;
+    struct mrt_level level;
+    struct mrt_runtime runtime;
+    struct mrt_host_solver host_solver; // MRT_SOLVER_CPU
+    bool lit;                           // the irradiance of the last frame is valid
+};
+
+// ---- mrt_level.c
+
+// Blocks, light map and geometry image of the scene.
+bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose);
+// Operators of the level, from the dictionary, on the GPU.
+bool mrt_make_level(struct mrt *mrt);

@@ -1,0 +1,189 @@
+// Texels and tangent frames of the dictionary's cubes, turned as the blocks of a level are.
+#include "turned.h"
+
+#include <string.h>
+
+// Texels of `from`, turned by to_from, as those of `to`.
+struct turn {
+    struct mrt_shape from, to;
+    mat3s to_from;
+};
+
+static bool empty_matrix(struct host *host, const struct turn *turn, int values, size_t columns,
+                         struct matrix_f32 *out)
+{
+    return matrix_f32_init(host, out, (size_t)(mrt_shape_texels(&turn->to) * values), columns);
+}
+
+// One row per texel. Openings of `from` stay 0.
+static bool turn_rows(struct host *host, const struct turn *turn, const struct matrix_f32 *from,
+                      struct matrix_f32 *out)
+{
+    if (!empty_matrix(host, turn, 1, from->columns, out)) return false;
+    for (int t = 0; t < mrt_shape_texels(&turn->to); t++) {
+        int texel = mrt_turned_texel(&turn->from, turn->to_from, &turn->to, t);
+        if (texel < 0) continue;
+        memcpy(out->at + (size_t)t * out->stride, from->at + (size_t)texel * from->stride,
+               from->columns * sizeof *out->at);
+    }
+    return true;
+}
+
+static bool turn_columns(struct host *host, const struct turn *turn, const struct matrix_f32 *from,
+                         struct matrix_f32 *out)
+{
+    size_t texels = (size_t)mrt_shape_texels(&turn->to);
+    if (!matrix_f32_init(host, out, from->rows, texels)) return false;
+    for (size_t t = 0; t < texels; t++) {
+        int texel = mrt_turned_texel(&turn->from, turn->to_from, &turn->to, (int)t);
+        for (size_t m = 0; m < from->rows; m++)
+            out->at[m * out->stride + t] = from->at[m * from->stride + (size_t)texel];
+    }
+    return true;
+}
+
+// Linear SH coefficients y, z, x turn like a vector, from the tangent frame of one texel to that of
+// the other.
+static void turn_vector(mat3s to_from, const float *from, size_t from_stride, float *to,
+                        size_t to_stride, size_t columns)
+{
+    for (size_t c = 0; c < columns; c++) {
+        vec3s v =
+            vec3_of(from[3 * from_stride + c], from[from_stride + c], from[2 * from_stride + c]);
+        v = glms_mat3_mulv(to_from, v);
+        to[c] = from[c];
+        to[to_stride + c] = v.y;
+        to[2 * to_stride + c] = v.z;
+        to[3 * to_stride + c] = v.x;
+    }
+}
+
+// Four rows per texel.
+static bool turn_vectors(struct host *host, const struct turn *turn, const struct matrix_f32 *from,
+                         struct matrix_f32 *out)
+{
+    if (!empty_matrix(host, turn, MRT_VECTOR_COEFFICIENTS, from->columns, out)) return false;
+    for (int t = 0; t < mrt_shape_texels(&turn->to); t++) {
+        int texel = mrt_turned_texel(&turn->from, turn->to_from, &turn->to, t);
+        if (texel < 0) continue;
+        mat3s from_frame = mrt_shape_texel(&turn->from, texel).frame;
+        mat3s to_frame = mrt_shape_texel(&turn->to, t).frame;
+        mat3s tangent =
+            glms_mat3_mul(glms_mat3_transpose(to_frame), glms_mat3_mul(turn->to_from, from_frame));
+        size_t row = MRT_VECTOR_COEFFICIENTS * (size_t)t;
+        turn_vector(tangent, from->at + MRT_VECTOR_COEFFICIENTS * (size_t)texel * from->stride,
+                    from->stride, out->at + row * out->stride, out->stride, from->columns);
+    }
+    return true;
+}
+
+// ---- bases
+
+static bool make_basis(struct host *host, const struct mrt_level *level,
+                       const struct mrt_dictionary *dictionary, int block,
+                       struct mrt_basis_input *out)
+{
+    const struct mrt_cube_place *place = &level->place[block];
+    const struct mrt_element *element = &dictionary->element[place->cube];
+    const struct turn turn = { element->shape, mrt_level_cell(level, block),
+                               place->block_from_cube };
+    out->open = level->map->blocks[block].open;
+    return turn_columns(host, &turn, &element->t_db, &out->t_db) &&
+           turn_rows(host, &turn, &element->u_b, &out->u_b) &&
+           turn_vectors(host, &turn, &element->u_vec, &out->u_vec);
+}
+
+static bool same_place(const struct mrt_cube_place *a, const struct mrt_cube_place *b)
+{
+    return a->cube == b->cube &&
+           memcmp(&a->block_from_cube, &b->block_from_cube, sizeof a->block_from_cube) == 0;
+}
+
+// Blocks of the same cube and turn share a basis.
+static bool make_bases(struct mrt_turned *out, const struct mrt_level *level,
+                       const struct mrt_dictionary *dictionary)
+{
+    for (int b = 0; b < level->map->count; b++) {
+        int like = 0;
+        while (like < b && !same_place(&level->place[like], &level->place[b])) like++;
+        if (like < b) {
+            out->basis_of_block[b] = out->basis_of_block[like];
+            continue;
+        }
+        int basis = out->input.basis_count++;
+        out->basis_of_block[b] = basis;
+        if (!make_basis(out->host, level, dictionary, b, &out->bases[basis])) return false;
+    }
+    return true;
+}
+
+static bool make_responses(struct mrt_turned *out, const struct mrt_dictionary *dictionary)
+{
+    int resolution = dictionary->options.texels;
+    for (int face = 0; face < CUBE_FACES; face++) {
+        const struct turn turn = { mrt_cube_entered(resolution), mrt_cube(resolution, 0),
+                                   mrt_block_from_entry(face) };
+        struct mrt_response_input *response = &out->input.response[face];
+        if (!turn_rows(out->host, &turn, &dictionary->u_r, &response->u_r) ||
+            !turn_vectors(out->host, &turn, &dictionary->u_rvec, &response->u_vec))
+            return false;
+    }
+    return true;
+}
+
+static void make_pairs(struct mrt_turned *out, const struct mrt_level *level)
+{
+    for (int i = 0; i < level->entry_count; i++) {
+        out->openings[i] =
+            (struct mrt_opening_input){ level->entries[i].block, level->entries[i].face };
+        for (int k = level->first_link[i]; k < level->first_link[i + 1]; k++)
+            out->pairs[k] = (struct mrt_pair_input){ i, level->links[k].source,
+                                                     level->matrices + level->links[k].matrix };
+    }
+}
+
+bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mrt_turned *out)
+{
+    const struct mrt_dictionary *dictionary = level->dictionary;
+    size_t blocks = (size_t)level->map->count, entries = (size_t)level->entry_count;
+    size_t links = (size_t)level->first_link[level->entry_count];
+    *out = (struct mrt_turned){ .host = host };
+    out->bases = host_alloc(host, blocks, sizeof *out->bases);
+    out->basis_of_block = host_alloc(host, blocks, sizeof *out->basis_of_block);
+    out->openings = host_alloc(host, entries, sizeof *out->openings);
+    out->pairs = host_alloc(host, links, sizeof *out->pairs);
+    if (!out->bases || !out->basis_of_block || !out->openings || !out->pairs ||
+        !make_bases(out, level, dictionary) || !make_responses(out, dictionary))
+        return false;
+    make_pairs(out, level);
+    struct mrt_runtime_input *input = &out->input;
+    input->map = level->map;
+    input->k_b = dictionary->options.modes;
+    input->k_r = dictionary->options.response_modes;
+    input->bases = out->bases;
+    input->basis_of_block = out->basis_of_block;
+    input->openings = out->openings;
+    input->opening_count = level->entry_count;
+    input->pairs = out->pairs;
+    input->pair_count = (int)links;
+    input->t_br_stride = level->link_stride;
+    return true;
+}
+
+void mrt_turned_finish(struct mrt_turned *turned)
+{
+    if (!turned->host) return;
+    for (int i = 0; i < turned->input.basis_count; i++) {
+        matrix_f32_finish(turned->host, &turned->bases[i].t_db);
+        matrix_f32_finish(turned->host, &turned->bases[i].u_b);
+        matrix_f32_finish(turned->host, &turned->bases[i].u_vec);
+    }
+    for (int face = 0; face < CUBE_FACES; face++) {
+        matrix_f32_finish(turned->host, &turned->input.response[face].u_r);
+        matrix_f32_finish(turned->host, &turned->input.response[face].u_vec);
+    }
+    host_free(turned->host, turned->bases);
+    host_free(turned->host, turned->basis_of_block);
+    host_free(turned->host, turned->openings);
+    host_free(turned->host, turned->pairs);
+}

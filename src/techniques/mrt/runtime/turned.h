@@ -1,0 +1,17 @@
+// Operators of the dictionary in the frames of the blocks of a level: input of the run time.
+#pragma once
+
+#include "techniques/mrt/level/level.h"
+#include "techniques/mrt/runtime/input.h"
+
+struct mrt_turned {
+    struct host *host;
+    struct mrt_basis_input *bases;
+    int *basis_of_block;
+    struct mrt_opening_input *openings;
+    struct mrt_pair_input *pairs;
+    struct mrt_runtime_input input; // without atlas and geometry; refers to the level
+};
+
+bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mrt_turned *out);
+void mrt_turned_finish(struct mrt_turned *turned);
