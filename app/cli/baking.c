@@ -117,9 +117,9 @@ static enum status estimate(struct baking *b)
     b->estimate_seconds = needs.seconds;
     print_count(needs.texels, texels);
     print_count(needs.rays, rays);
-    note("baking %s: %s texels, %s rays, about %.0f s, %.0f MB of memory, %.1f MB on disk",
-         b->technique, texels, rays, needs.seconds, (double)needs.peak_memory_bytes * 1e-6,
-         (double)needs.file_bytes * 1e-6);
+    note("baking %s: %s texels, %s rays, about %.*f s, %.0f MB of memory, %.1f MB on disk",
+         b->technique, texels, rays, needs.seconds < 10.0 ? 1 : 0, needs.seconds,
+         (double)needs.peak_memory_bytes * 1e-6, (double)needs.file_bytes * 1e-6);
     return DONE;
 }
 

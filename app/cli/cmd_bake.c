@@ -110,15 +110,26 @@ static json_t *report_json(struct job *job)
     return report;
 }
 
-static void describe(const json_t *report)
+// Stages of at least a hundredth of the time; --verbose shows all.
+static void describe_stages(const json_t *stages)
 {
+    double sum = 0.0;
     size_t i;
     const json_t *stage;
-    json_array_foreach(json_object_get(report, "stages"), i, stage)
+    json_array_foreach(stages, i, stage) sum +=
+        json_number_value(json_object_get(stage, "seconds"));
+    json_array_foreach(stages, i, stage)
     {
-        detail("%-32s %9.2f s", json_string_value(json_object_get(stage, "name")),
-               json_number_value(json_object_get(stage, "seconds")));
+        const double seconds = json_number_value(json_object_get(stage, "seconds"));
+        void (*say)(const char *format, ...) = seconds >= 0.01 * sum ? note : detail;
+        say("%-32s %9.2f s on all threads", json_string_value(json_object_get(stage, "name")),
+            seconds);
     }
+}
+
+static void describe(const json_t *report)
+{
+    describe_stages(json_object_get(report, "stages"));
     note("baked in %.1f s, at most %.0f MB of memory, %.1f MB of arrays",
          json_number_value(json_object_get(report, "seconds")),
          json_number_value(json_object_get(report, "peak_memory_bytes")) * 1e-6,

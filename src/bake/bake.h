@@ -32,7 +32,7 @@ bool bake_fits(const struct bake *a, const struct bake *b);
 // ---- before
 
 struct bake_estimate {
-    double texels, rays, seconds;
+    double texels, rays, seconds;           // of the part, with a shard
     uint64_t file_bytes, peak_memory_bytes; // without the scene
 };
 // probe: measures a few tasks, which takes about a second, and keeps their results; without it

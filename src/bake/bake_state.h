@@ -92,8 +92,12 @@ struct prediction {
 // Measures the speed of linear algebra, some milliseconds.
 double prediction_flop_seconds(struct host *host);
 struct prediction prediction_now(const struct bake *bake, double per_flop_s);
-// Wall time of the missing tasks on so many threads.
-double prediction_left(const struct bake *bake, const struct prediction *prediction, int threads);
+// Wall time of the missing tasks of this run, on so many threads.
+double prediction_left(const struct bake *bake, const struct prediction *prediction,
+                       const struct bake_run_options *options, int threads);
+// The tasks of a stage that a run with these options covers: first … first + *count − 1.
+size_t run_tasks(const struct bake_stage *stage, const struct bake_run_options *options,
+                 size_t *count);
 
 // ---- partial.c: finished tasks in a file
 

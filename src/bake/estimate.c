@@ -41,13 +41,16 @@ uint64_t estimate_peak_memory(const struct bake *bake, int threads)
     return peak + bake->plan.job.bytes;
 }
 
-static void add_stages(const struct bake *bake, struct bake_estimate *out)
+static void add_stages(const struct bake *bake, const struct bake_run_options *options,
+                       struct bake_estimate *out)
 {
     out->file_bytes = HEADER_BYTES;
     for (int s = 0; s < bake->plan.stage_count; s++) {
         const struct planned_stage *stage = &bake->plan.stages[s];
-        out->rays += stage->what.rays * (double)stage->what.task_count;
-        out->texels += stage->what.texels * (double)stage->what.task_count;
+        size_t tasks = 0;
+        run_tasks(&stage->what, options, &tasks);
+        out->rays += stage->what.rays * (double)tasks;
+        out->texels += stage->what.texels * (double)tasks;
         for (int i = 0; i < stage->what.output_count; i++)
             if (stage->outputs[i].what.keep == BAKE_SAVED)
                 out->file_bytes += stage->outputs[i].bytes + TENSOR_HEADER_BYTES;
@@ -60,12 +63,12 @@ bool bake_estimate(struct bake *bake, const struct bake_run_options *options, bo
     const int threads = options->threads > 0 ? options->threads : parallel_threads();
     const struct bake_run_options few = { .threads = threads };
     *out = (struct bake_estimate){ .seconds = (double)NAN };
-    add_stages(bake, out);
+    add_stages(bake, options, out);
     out->peak_memory_bytes = estimate_peak_memory(bake, threads);
     if (!probe) return true;
     if (!bake_is_complete(bake) && !bake_resume(bake, options->checkpoint)) return false;
     if (!bake_is_complete(bake) && !run_bake(bake, &few, true)) return false;
     const struct prediction speed = prediction_now(bake, prediction_flop_seconds(bake->host));
-    out->seconds = bake_is_complete(bake) ? 0.0 : prediction_left(bake, &speed, threads);
+    out->seconds = bake_is_complete(bake) ? 0.0 : prediction_left(bake, &speed, options, threads);
     return true;
 }

@@ -35,7 +35,8 @@ struct bake_run {
     size_t queue_count;
     atomic_bool stop; // cancelled, or a task failed
     bool cancelled;   // calling thread only
-    double begun_s, checkpoint_s, per_flop_s;
+    double begun_s, per_flop_s;
+    double checkpoint_s, checkpoint_cost_s; // when the last one ended, how long it took
     // Under bake->mutex.
     pthread_cond_t ended;
     bool has_ended;
@@ -215,7 +216,8 @@ static void write_checkpoint(struct bake_run *run)
     if (!write_now(&quiet.host, bake, path, run_seconds(run)))
         host_log(bake->host, LOG_WARNING, "no checkpoint is kept: %s", quiet.error);
     run->checkpoint_s = now_s();
-    host_log(bake->host, LOG_DEBUG, "checkpoint %s: %.2f s", path, run->checkpoint_s - begun);
+    run->checkpoint_cost_s = run->checkpoint_s - begun;
+    host_log(bake->host, LOG_DEBUG, "checkpoint %s: %.2f s", path, run->checkpoint_cost_s);
 }
 
 static bool some_task_is_done(const struct bake *bake)
@@ -232,7 +234,7 @@ static bool report_progress(struct bake_run *run)
     if (!run->options->progress) return true;
     pthread_mutex_lock(&bake->mutex);
     const struct prediction speed = prediction_now(bake, run->per_flop_s);
-    const double left = prediction_left(bake, &speed, run->threads);
+    const double left = prediction_left(bake, &speed, run->options, run->threads);
     const char *stage = run->newest ? run->newest->what.name : "";
     const bool some = some_task_is_done(bake);
     pthread_mutex_unlock(&bake->mutex);
@@ -244,6 +246,13 @@ static bool report_progress(struct bake_run *run)
     return run->options->progress(run->options->user, &progress);
 }
 
+// Large ones are rarer, so that they take at most a twentieth of the time.
+static bool checkpoint_is_due(const struct bake_run *run)
+{
+    const double every = run->options->checkpoint_every_s;
+    return every > 0.0 && now_s() - run->checkpoint_s > fmax(every, 20.0 * run->checkpoint_cost_s);
+}
+
 static void tick(struct bake_run *run)
 {
     pass_on_messages(run);
@@ -253,9 +262,7 @@ static void tick(struct bake_run *run)
         write_checkpoint(run);
         report_progress(run);
     }
-    const double every = run->options->checkpoint_every_s;
-    if (every > 0.0 && !run->cancelled && now_s() - run->checkpoint_s > every)
-        write_checkpoint(run);
+    if (!run->cancelled && checkpoint_is_due(run)) write_checkpoint(run);
 }
 
 static void *drive(void *user)
@@ -307,15 +314,6 @@ static bool drive_queue(struct bake_run *run)
 
 // ---- waves
 
-static bool in_shard(const struct bake_run_options *options, size_t index, size_t count)
-{
-    if (options->shard_count <= 0) return true;
-    uint64_t rows = 0;
-    const uint64_t first =
-        bake_rows(count, (size_t)options->shard, (size_t)options->shard_count, &rows);
-    return index >= first && index - first < rows;
-}
-
 static bool is_queued(const struct bake_run *run, const struct planned_stage *stage)
 {
     for (size_t i = 0; i < run->queue_count; i++)
@@ -341,9 +339,11 @@ static void fill_queue(struct bake_run *run, int wave)
     run->queue_count = 0;
     for (int s = 0; s < plan->stage_count; s++) {
         struct planned_stage *stage = &plan->stages[s];
-        for (size_t i = 0; stage->what.wave == wave && i < stage->what.task_count; i++)
-            if (!stage->done[i] && in_shard(run->options, i, stage->what.task_count))
-                run->queue[run->queue_count++] = (struct queued_task){ stage, i };
+        size_t count = 0;
+        if (stage->what.wave != wave) continue;
+        const size_t first = run_tasks(&stage->what, run->options, &count);
+        for (size_t i = first; i < first + count; i++)
+            if (!stage->done[i]) run->queue[run->queue_count++] = (struct queued_task){ stage, i };
     }
 }
 

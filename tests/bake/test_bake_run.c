@@ -336,6 +336,22 @@ TEST(bake_estimate_of_time_is_near_after_a_probe_whose_results_are_kept)
     bake_destroy(bake);
 }
 
+TEST(bake_estimate_of_a_shard_is_of_its_tasks_alone)
+{
+    struct bake_sample sample = bake_sample_default();
+    struct bake *bake = bake_sample_create(&sample, NULL);
+    double rays = 0.0;
+    for (int i = 0; i < 3; i++) {
+        const struct bake_run_options part = { .shard = i, .shard_count = 3 };
+        struct bake_estimate estimate;
+        CHECK(bake_estimate(bake, &part, false, &estimate));
+        CHECK(estimate.rays < 0.6 * (7 * 100 + 5 * 50));
+        rays += estimate.rays;
+    }
+    CHECK_NEAR(rays, 7 * 100 + 5 * 50, 0.0);
+    bake_destroy(bake);
+}
+
 TEST(bake_estimate_counts_what_a_checkpoint_has)
 {
     struct bake_sample sample = bake_sample_default();
