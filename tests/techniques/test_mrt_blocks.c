@@ -297,8 +297,29 @@ TEST(tunnels_are_chains_of_cylinders)
         CHECK(map.count == 20);
         CHECK(connections(&map) == 19);
         for (int b = 0; b < map.count; b++) CHECK(map.blocks[b].kind != MRT_BLOCK_CUBE);
+        CHECK(mrt_block_map_as_cubes(spec, &map));
+        CHECK(connections(&map) == 19);
+        for (int b = 0; b < map.count; b++) {
+            CHECK(map.blocks[b].kind == MRT_BLOCK_CUBE);
+            // Ends are walls, the others are open at both ends.
+            bool end = b == 0 || b == 19;
+            CHECK(map.blocks[b].open == (b == 0 ? 1u << CUBE_FRONT
+                                         : end  ? 1u << CUBE_BACK
+                                                : 1u << CUBE_FRONT | 1u << CUBE_BACK));
+        }
         mrt_block_map_finish(&map);
     }
+}
+
+TEST(a_cylinder_beside_a_cube_has_no_cube_that_meets_it)
+{
+    struct mrt_block_map map;
+    CHECK(read_map(MAP("{'name':'pipe','shape':'straight','box':[[0,0,0],[1,1,1]],"
+                       "'neighbors':{'+z':'room'}},{'name':'room','box':[[0,0,1],[1,1,2]]}"),
+                   &map));
+    CHECK(!mrt_block_map_as_cubes("test", &map));
+    CHECK(strstr(test_last_message(), "pipe") && strstr(test_last_message(), "room"));
+    mrt_block_map_finish(&map);
 }
 
 TEST(a_scene_without_blocks_has_an_empty_map)

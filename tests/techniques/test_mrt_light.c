@@ -196,7 +196,8 @@ static void make_map(struct lit_scene *s, enum map map)
     const vec3s seeds[2] = { pose_camera(&s->pose, 0).eye, s->light.position };
     size_t count = s->light.type == LIGHT_SUN ? 1 : 2;
     if (map == MAP_SCENE)
-        CHECK(mrt_block_map_of_scene(test_host(), s->scene, &s->map));
+        CHECK(mrt_block_map_of_scene(test_host(), s->scene, &s->map) &&
+              mrt_block_map_as_cubes("test", &s->map));
     else if (map == MAP_SINGLE)
         CHECK(mrt_map_single(test_host(), &s->pose, &s->map));
     else
@@ -258,6 +259,15 @@ TEST(an_automatic_map_is_far_better_than_a_single_block)
     CHECK(fabs(made.ratio - 1.0) < 0.06);
     made = light_map("@maze:blocks=9,light=point,seed=5", MAP_AUTO, dictionary, DEPTH);
     CHECK(made.error < 0.085);
+}
+
+// Pipes as warped cubes: bends are sharp, and walls have corners.
+TEST(a_tunnel_of_warped_cubes_is_better_than_a_single_block)
+{
+    const struct mrt_dictionary *dictionary = dictionary_of(MRT_MAZE_2D);
+    double single = light_map("@tunnel:light=point", MAP_SINGLE, dictionary, DEPTH).error;
+    double made = light_map("@tunnel:light=point", MAP_SCENE, dictionary, DEPTH).error;
+    CHECK(made < 0.31 && made < 0.4 * single);
 }
 
 // A court with galleries, lit by the sun: blocks are open to the sky.

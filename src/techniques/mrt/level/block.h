@@ -8,6 +8,7 @@ enum { MRT_CORNERS = 8, MRT_MAX_BLOCKS = 1024, MRT_NAME_BYTES = 64 };
 
 // Cylinders run through the middle of their cell: straight from −z to +z, or bent from −z to the
 // side that is left or right along the way, y being up.
+#define MRT_CYLINDER_RADIUS 0.375f // of the cell
 enum mrt_block_kind {
     MRT_BLOCK_CUBE,
     MRT_BLOCK_STRAIGHT,

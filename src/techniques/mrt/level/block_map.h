@@ -28,6 +28,11 @@ int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_b
 // are not finite or a warp that folds over, openings that its shape lacks or a cube without walls.
 bool mrt_block_map_check(const char *what, const struct mrt_block_map *map);
 
+// Replaces cylinders by cubes that are warped along them, for dictionaries of cubes. Ends without a
+// neighbour become walls. FAIL_UNSUPPORTED where a cylinder is connected with a block of another
+// kind.
+bool mrt_block_map_as_cubes(const char *what, struct mrt_block_map *map);
+
 // ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed.
 
 bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map);

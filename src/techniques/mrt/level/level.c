@@ -23,10 +23,11 @@ static bool choose_cubes(struct mrt_level *level)
     for (int b = 0; b < level->map->count; b++) {
         const struct mrt_block *block = &level->map->blocks[b];
         struct mrt_shape cell = mrt_level_cell(level, b);
+        if (block->kind != MRT_BLOCK_CUBE) return unsupported(level, b, "cylinders");
         if (!mrt_cube_find(level->maze, block->open, &level->place[b]))
             return unsupported(level, b, "cube with its openings");
         if (level->maze == MRT_MAZE_2D && is_tilted(block))
-            return unsupported(level, b, "neighbor that is tilted");
+            return unsupported(level, b, "turn for its tilted neighbor");
         level->first_texel[b + 1] = level->first_texel[b] + mrt_shape_texels(&cell);
     }
     return true;
