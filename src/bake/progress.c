@@ -3,6 +3,7 @@
 #include "bake/bake_state.h"
 
 #include "core/linalg.h"
+#include "core/parallel.h"
 
 #include <math.h>
 #include <time.h>
@@ -97,6 +98,7 @@ double prediction_left(const struct bake *bake, const struct prediction *predict
                        const struct bake_run_options *options, int threads)
 {
     double left = 0.0;
+    if (threads > parallel_threads()) threads = parallel_threads(); // more are no faster
     for (int wave = bake->plan.waves_done; wave < bake->plan.waves; wave++)
         left += wave_left(bake, prediction, wave, options, threads);
     return left;

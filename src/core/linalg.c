@@ -184,7 +184,7 @@ bool matrix_f32_multiply(struct host *host, float alpha, const struct matrix_f32
                          enum transposed op_a, const struct matrix_f32 *b, enum transposed op_b,
                          float beta, struct matrix_f32 *out)
 {
-    struct product p;
+    struct product p = { 0 };
     if (!plan_product(host, SHAPE(a), op_a, SHAPE(b), op_b, SHAPE(out), &p)) return false;
     linalg_one_thread_begin();
     cblas_sgemm(CblasRowMajor, p.op_a, p.op_b, p.m, p.n, p.k, alpha, a->at, p.stride_a, b->at,
@@ -197,7 +197,7 @@ bool matrix_f64_multiply(struct host *host, double alpha, const struct matrix_f6
                          enum transposed op_a, const struct matrix_f64 *b, enum transposed op_b,
                          double beta, struct matrix_f64 *out)
 {
-    struct product p;
+    struct product p = { 0 };
     if (!plan_product(host, SHAPE(a), op_a, SHAPE(b), op_b, SHAPE(out), &p)) return false;
     linalg_one_thread_begin();
     cblas_dgemm(CblasRowMajor, p.op_a, p.op_b, p.m, p.n, p.k, alpha, a->at, p.stride_a, b->at,
