@@ -196,8 +196,7 @@ static void make_map(struct lit_scene *s, enum map map)
     const vec3s seeds[2] = { pose_camera(&s->pose, 0).eye, s->light.position };
     size_t count = s->light.type == LIGHT_SUN ? 1 : 2;
     if (map == MAP_SCENE)
-        CHECK(mrt_block_map_of_scene(test_host(), s->scene, &s->map) &&
-              mrt_block_map_as_cubes("test", &s->map));
+        CHECK(mrt_block_map_of_scene(test_host(), s->scene, &s->map));
     else if (map == MAP_SINGLE)
         CHECK(mrt_map_single(test_host(), &s->pose, &s->map));
     else

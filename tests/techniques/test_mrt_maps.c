@@ -131,13 +131,26 @@ TEST(an_atrium_is_a_few_connected_blocks)
     finish(&made);
 }
 
-TEST(a_seed_outside_the_scene_gives_a_single_block)
+static struct made make_from(const char *spec, vec3s seed)
 {
-    struct made made = { .scene = scene_load(test_host(), "@cornell") };
+    struct made made = { .scene = scene_load(test_host(), spec) };
     CHECK(made.scene && pose_init(&made.pose, made.scene, -1, 0.0f));
-    vec3s far = vec3_of(1000, 0, 0);
-    CHECK(mrt_map_auto(test_host(), &made.pose, &far, 1, &made.map));
-    CHECK(made.map.count == 1);
+    CHECK(mrt_map_auto(test_host(), &made.pose, &seed, 1, &made.map));
+    return made;
+}
+
+TEST(without_a_seed_in_a_room_the_default_camera_is_one)
+{
+    struct made made = make_auto("@maze"), far = make_from("@maze", vec3_of(1000, 0, 0));
+    CHECK(far.map.count == made.map.count && far.map.count > 1);
+    finish(&far);
+    finish(&made);
+}
+
+TEST(a_scene_without_a_room_is_a_single_block)
+{
+    struct made made = make_from("@spheres", vec3_of(1000, 0, 0));
+    CHECK(made.map.count == 1 && made.map.blocks[0].open == 0);
     CHECK(glms_vec3_distance(made.map.blocks[0].corner[7], made.pose.bounds.max) == 0.0f);
     finish(&made);
 }

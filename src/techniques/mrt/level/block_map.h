@@ -28,12 +28,14 @@ int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_b
 // are not finite or a warp that folds over, openings that its shape lacks or a cube without walls.
 bool mrt_block_map_check(const char *what, const struct mrt_block_map *map);
 
+// ---- cylinder.c
+
 // Replaces cylinders by cubes that are warped along them, for dictionaries of cubes. Ends without a
 // neighbour become walls. FAIL_UNSUPPORTED where a cylinder is connected with a block of another
 // kind.
 bool mrt_block_map_as_cubes(const char *what, struct mrt_block_map *map);
 
-// ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed.
+// ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed. Cylinders are replaced by cubes.
 
 bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map);
 // From the `extras` of nodes in the default pose. A scene without blocks gives an empty map.

@@ -41,7 +41,7 @@ struct mrt_level {
 
 // FAIL_UNSUPPORTED with the name of a block for which the dictionary has no cube: a shape without
 // floor or ceiling, or neighbours that are tilted against each other, in a dictionary for
-// two-dimensional mazes. Cylinders: first mrt_block_map_as_cubes.
+// two-dimensional mazes. Cylinders: see mrt_block_map_as_cubes.
 bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
                     const struct mrt_dictionary *dictionary,
                     const struct mrt_level_options *options, struct mrt_level *level);

@@ -3,6 +3,8 @@
 
 #include "map_cells.h"
 
+#include "scene/defaults.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -183,6 +185,23 @@ static bool map_of_cells(struct host *host, const struct scene_pose *pose, struc
     return ok;
 }
 
+static bool any_free(const struct mrt_cells *cells)
+{
+    for (int i = 0; i < mrt_cells_count(cells); i++)
+        if (cells->cell[i].free) return true;
+    return false;
+}
+
+// Where no seed is in a room, the default camera is the seed.
+static bool fill(struct host *host, const struct scene_pose *pose, const vec3s *seeds, size_t count,
+                 struct mrt_cells *cells)
+{
+    if (!mrt_cells_fill(host, cells, seeds, count)) return false;
+    if (any_free(cells)) return true;
+    const vec3s eye = default_camera(pose).eye;
+    return mrt_cells_fill(host, cells, &eye, 1);
+}
+
 bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s *seeds,
                   size_t seed_count, struct mrt_block_map *map)
 {
@@ -192,13 +211,13 @@ bool mrt_map_auto(struct host *host, const struct scene_pose *pose, const vec3s 
     bool ok = raycast_init(&raycast, host, pose);
     if (ok) {
         mrt_cells_find_planes(&cells);
-        ok = mrt_cells_fill(host, &cells, seeds, seed_count);
+        ok = fill(host, pose, seeds, seed_count, &cells);
     }
     if (ok) {
         mrt_cells_snap(&cells);
         mrt_cells_drop_planes(&cells, INFINITY);
         mrt_cells_split(&cells);
-        ok = mrt_cells_fill(host, &cells, seeds, seed_count);
+        ok = fill(host, pose, seeds, seed_count, &cells);
     }
     if (ok) {
         ok = map_of_cells(host, pose, &cells, map);
