@@ -22,7 +22,7 @@ static int texels_of(int resolution, unsigned missing)
 
 static struct mrt_dictionary empty(enum mrt_maze maze, int resolution, int k_b, int k_rlf, int k_r)
 {
-    struct mrt_dictionary d = { .element_count = mrt_cube_count(maze) };
+    struct mrt_dictionary d = { .element_count = mrt_dictionary_shapes(maze) };
     d.options.maze = (int32_t)maze;
     d.options.texels = resolution;
     d.options.modes = k_b;
@@ -36,7 +36,7 @@ struct mrt_dictionary mrt_random_operators(enum mrt_maze maze, int resolution, i
 {
     struct rng rng = rng_for(seed, 3, 1);
     struct mrt_dictionary o = empty(maze, resolution, k_b, k_rlf, k_r);
-    for (int i = 0; i < mrt_cube_count(maze); i++) {
+    for (int i = 0; i < mrt_dictionary_shapes(maze); i++) {
         int texels = texels_of(resolution, mrt_cube_missing(maze, i));
         o.element[i].t_db = random_matrix(&rng, k_b, texels);
         o.element[i].u_b = random_matrix(&rng, texels, k_b);
@@ -44,8 +44,8 @@ struct mrt_dictionary mrt_random_operators(enum mrt_maze maze, int resolution, i
     }
     for (int t = 0; t < (maze == MRT_MAZE_2D ? MRT_TURNS_2D : MRT_TURNS_3D); t++)
         o.r_turn[t] = random_matrix(&rng, k_rlf, k_rlf);
-    o.t_r = random_matrix(&rng, k_r, k_rlf);
-    o.u_r = random_matrix(&rng, texels_of(resolution, 1u << CUBE_BACK), k_r);
+    o.entered[0].t_r = random_matrix(&rng, k_r, k_rlf);
+    o.entered[0].u_r = random_matrix(&rng, texels_of(resolution, 1u << CUBE_BACK), k_r);
     return o;
 }
 
@@ -82,24 +82,19 @@ static void fill_cube(const struct mrt_dictionary *o, int i, struct mrt_element 
         out->r_b[f] = zero_matrix(o->options.lightfield_modes, o->options.modes);
         if (!(cube.missing >> f & 1u)) continue;
         struct matrix_f32 one = identity(texels, o->options.modes);
-        struct matrix_f32 seen =
-            zero_matrix(texels_of(RESOLUTION, 1u << CUBE_FRONT), o->options.modes);
-        mrt_seen_from_opening(&cube, f, &one, &seen);
-        CHECK(mrt_lightfield_of_surfaces(test_host(), LIGHTFIELD, &seen, RESOLUTION, 0,
-                                         &out->r_b[f]));
+        CHECK(mrt_lightfield_of_surfaces(test_host(), LIGHTFIELD, &cube, f, &one, 0, &out->r_b[f]));
         matrix_f32_finish(test_host(), &one);
-        matrix_f32_finish(test_host(), &seen);
     }
 }
 
 static struct matrix_f32 response(int samples)
 {
-    struct mrt_shape entered = mrt_cube_entered(RESOLUTION);
+    struct mrt_shape entered = mrt_entered_shape(MRT_MAZE_3D, RESOLUTION, 0);
     struct matrix_f32 m = zero_matrix(mrt_shape_texels(&entered), samples);
     struct mrt_rays rays;
     CHECK(mrt_rays_init(test_host(), MRT_IRRADIANCE, RAYS, &rays));
     for (size_t t = 0; t < m.rows; t++)
-        mrt_gather_interface(LIGHTFIELD, mrt_shape_texel(&entered, (int)t), &rays,
+        mrt_gather_interface(LIGHTFIELD, &entered, mrt_shape_texel(&entered, (int)t), &rays,
                              m.at + t * m.stride);
     mrt_rays_finish(test_host(), &rays);
     return m;
@@ -111,14 +106,14 @@ struct mrt_dictionary mrt_unreduced_operators(void)
         empty(MRT_MAZE_3D, RESOLUTION, texels_of(RESOLUTION, 0),
               (int)mrt_lightfield_samples(LIGHTFIELD), texels_of(RESOLUTION, 1u << CUBE_BACK));
     int k_rlf = o.options.lightfield_modes, k_r = o.options.response_modes;
-    for (int i = 0; i < mrt_cube_count(MRT_MAZE_3D); i++) fill_cube(&o, i, &o.element[i]);
+    for (int i = 0; i < mrt_dictionary_shapes(MRT_MAZE_3D); i++) fill_cube(&o, i, &o.element[i]);
     struct matrix_f32 one = identity(k_rlf, k_rlf);
     for (int t = 0; t < MRT_TURNS_3D; t++) {
         o.r_turn[t] = zero_matrix(k_rlf, k_rlf);
         CHECK(mrt_propagate(test_host(), LIGHTFIELD, (enum mrt_turn)t, &one, 0, &o.r_turn[t]));
     }
     matrix_f32_finish(test_host(), &one);
-    o.t_r = response(k_rlf);
-    o.u_r = identity(k_r, k_r);
+    o.entered[0].t_r = response(k_rlf);
+    o.entered[0].u_r = identity(k_r, k_r);
     return o;
 }

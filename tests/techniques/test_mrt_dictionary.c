@@ -135,8 +135,8 @@ TEST(default_dictionary_is_as_large_as_the_paper_s)
         CHECK(along_normal(&d.element[i].u_b, &d.element[i].u_vec) < 0.05);
     }
     print_message("interface: vector irradiance differs by %.3f\n",
-                  along_normal(&d.u_r, &d.u_rvec));
-    CHECK(along_normal(&d.u_r, &d.u_rvec) < 0.145);
+                  along_normal(&d.entered[0].u_r, &d.entered[0].u_rvec));
+    CHECK(along_normal(&d.entered[0].u_r, &d.entered[0].u_rvec) < 0.145);
     mrt_dictionary_finish(test_host(), &d);
     bake_destroy(bake);
 }

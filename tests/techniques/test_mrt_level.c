@@ -53,7 +53,7 @@ static void follow(struct brute *brute, int block, int entry_face, unsigned take
     const struct mrt_block *at = &level->map->blocks[block];
     if (level->entry_of_face[CUBE_FACES * block + entry_face] == brute->target) {
         double response[K_R * K_B];
-        product(&level->dictionary->t_r, light, response);
+        product(&level->dictionary->entered[0].t_r, light, response);
         for (int i = 0; i < K_R * K_B; i++) brute->sum[i] += response[i];
     }
     for (int f = 0; f < CUBE_FACES && depth < brute->max_depth; f++) {

@@ -20,8 +20,8 @@ TEST(every_block_of_a_maze_is_a_turned_cube_of_the_dictionary)
 {
     unsigned walls = 1u << CUBE_LEFT | 1u << CUBE_RIGHT | 1u << CUBE_BACK | 1u << CUBE_FRONT;
     struct mrt_cube_place place;
-    CHECK(mrt_cube_count(MRT_MAZE_2D) == 6 && mrt_cube_openings(MRT_MAZE_2D) == 12);
-    CHECK(mrt_cube_count(MRT_MAZE_3D) == 9 && mrt_cube_openings(MRT_MAZE_3D) == 24);
+    CHECK(mrt_dictionary_shapes(MRT_MAZE_2D) == 6 && mrt_dictionary_openings(MRT_MAZE_2D) == 12);
+    CHECK(mrt_dictionary_shapes(MRT_MAZE_3D) == 9 && mrt_dictionary_openings(MRT_MAZE_3D) == 24);
     for (unsigned missing = 0; missing < CUBE_ALL_FACES; missing++) {
         CHECK(mrt_cube_find(MRT_MAZE_2D, missing, &place) == !(missing & ~walls));
         CHECK(mrt_cube_find(MRT_MAZE_3D, missing, &place));
@@ -139,11 +139,11 @@ TEST(vector_irradiance_along_the_normal_is_near_the_irradiance)
 
 // ---- lightfields
 
-static const struct mrt_lightfield LIGHTFIELD = { 4, 6, 3 };
+static const struct mrt_lightfield LIGHTFIELD = { 4, 6, 3, false };
 
 TEST(lightfield_lookup_at_a_sample_is_that_sample)
 {
-    struct mrt_lightfield centres = { 4, 6, 1 };
+    struct mrt_lightfield centres = { 4, 6, 1, false };
     struct mrt_lightfield_lookup look;
     for (size_t s = 0; s < mrt_lightfield_samples(centres); s++) {
         vec3s at = mrt_lightfield_position(centres, s);

@@ -97,7 +97,7 @@ static void check_block(const struct level_of_maze *m, int block, int colour)
     const struct mrt_level *level = &m->level;
     const struct mrt_cube_place *place = &level->place[block];
     struct mrt_shape cell = mrt_level_cell(level, block),
-                     entered = mrt_cube_entered(level->resolution);
+                     entered = mrt_entered_shape(level->maze, level->resolution, 0);
     struct mrt_shape cube = mrt_cube(level->resolution, mrt_cube_missing(level->maze, place->cube));
     double b[MAX_K], r[CUBE_FACES][MAX_K];
     plain_b(m, block, colour, b);
@@ -110,7 +110,7 @@ static void check_block(const struct level_of_maze *m, int block, int colour)
         for (int f = 0; f < CUBE_FACES; f++)
             if (mrt_block_is_open(&m->map.blocks[block], f))
                 sum +=
-                    row_times(&level->dictionary->u_r,
+                    row_times(&level->dictionary->entered[0].u_r,
                               mrt_turned_texel(&entered, mrt_block_from_entry(f), &cell, t), r[f]);
         CHECK_NEAR(m->out[3 * (level->first_texel[block] + t) + colour], sum,
                    1e-4 * (1.0 + fabs(sum)));

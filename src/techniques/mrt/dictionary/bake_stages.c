@@ -1,6 +1,8 @@
 // Matrices of the tensors that a task reads and writes.
 #include "bake_stages.h"
 
+#include <stdio.h>
+
 static struct matrix_f32 matrix_over(void *at, int rank, const uint64_t *shape, uint64_t rows)
 {
     size_t columns = (size_t)shape[rank - 1], all = (size_t)rows;
@@ -30,4 +32,13 @@ struct matrix_f32 mrt_bake_output(const struct bake_task *task, int output, uint
     if (what->reduction == BAKE_ROWS && what->rank > 1)
         *first_row = bake_task_rows(task, output, &rows);
     return matrix_over(task->out[output], what->rank, what->shape, rows);
+}
+
+bool mrt_bake_shape_input(const struct bake_task *task, int shape, const char *what,
+                          struct matrix_f32 *out)
+{
+    const struct mrt_bake_job *job = task->job;
+    char name[32];
+    snprintf(name, sizeof name, "%s/%d/%s", job->family, shape, what);
+    return mrt_bake_input(task, name, out);
 }

@@ -19,11 +19,13 @@ struct mrt_bake_job {
     struct host *host;       // while the tasks run
     struct mrt_rays rays[3]; // by enum mrt_measure
     enum mrt_maze maze;
-    int cubes, turns;
+    int shapes, turns, entered; // of the dictionary; of an interface; that light enters
+    const char *family;         // of names: "cube" or "tube"
     uint64_t k_b, k_l, k_r;
-    uint64_t texels, left_texels; // of the closed cube, and of one with an opening
-    uint64_t probes;              // p³
-    uint64_t openings, samples;   // of all cubes; of a lightfield
+    uint64_t texels;            // of the closed cube
+    uint64_t entered_texels;    // of a shape that light enters
+    uint64_t probes;            // p³
+    uint64_t openings, samples; // of all shapes; of a lightfield
     struct mrt_lightfield lightfield;
     int wave_final; // the basis is complete
 };
@@ -33,9 +35,9 @@ static inline int mrt_wave_of_round(int round)
     return WAVE_REDUCE + WAVES_PER_ROUND * round;
 }
 
-static inline struct mrt_shape mrt_bake_cube(const struct mrt_bake_job *job, int cube)
+static inline struct mrt_shape mrt_bake_shape(const struct mrt_bake_job *job, int i)
 {
-    return mrt_cube(job->options.texels, mrt_cube_missing(job->maze, cube));
+    return mrt_dictionary_shape(job->maze, job->options.texels, i);
 }
 
 // Rows are all axes but the last. `at` is not to be written for an input.
@@ -44,5 +46,9 @@ struct matrix_f32 mrt_tensor_matrix(const struct tensor *tensor);
 bool mrt_bake_input(const struct bake_task *task, const char *name, struct matrix_f32 *out);
 // The rows of an output that this task fills.
 struct matrix_f32 mrt_bake_output(const struct bake_task *task, int output, uint64_t *first_row);
+
+// The tensor FAMILY/I/WHAT of an earlier wave.
+bool mrt_bake_shape_input(const struct bake_task *task, int shape, const char *what,
+                          struct matrix_f32 *out);
 
 bool mrt_interface_bake(struct bake_plan *plan, const struct mrt_bake_job *job);

@@ -53,5 +53,5 @@ struct cube_exit cube_trace(vec3s from, vec3s direction)
     float sign = axis == 2 ? 1.0f : -1.0f;
     if (!(face & 1)) sign = -sign;
     float u = sign * p.raw[axis == 0 ? 2 : 0], v = p.raw[axis == 1 ? 2 : 1];
-    return (struct cube_exit){ face, unit_clamp(0.5f + u), unit_clamp(0.5f + v) };
+    return (struct cube_exit){ face, unit_clamp(0.5f + u), unit_clamp(0.5f + v), distance };
 }

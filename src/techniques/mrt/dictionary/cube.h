@@ -26,5 +26,6 @@ vec3s cube_face_point(int face, float s, float t);
 struct cube_exit {
     int face;
     float s, t;
+    float distance; // in lengths of the direction
 };
 struct cube_exit cube_trace(vec3s from, vec3s direction);

@@ -3,14 +3,17 @@
 
 static const size_t VALUES[] = { 1, MRT_VECTOR_COEFFICIENTS, MRT_PROBE_COEFFICIENTS };
 
-struct mrt_point mrt_gather_point(const struct mrt_shape *cube, int probes,
+struct mrt_point mrt_gather_point(const struct mrt_shape *shape, int probes,
                                   enum mrt_measure measure, int i)
 {
-    if (measure != MRT_PROBE) return mrt_shape_texel(cube, i);
+    if (measure != MRT_PROBE) return mrt_shape_texel(shape, i);
     float n = (float)probes;
-    vec3s at = vec3_of(((float)(i % probes) + 0.5f) / n - 0.5f,
-                       ((float)(i / probes % probes) + 0.5f) / n - 0.5f,
-                       ((float)(i / (probes * probes)) + 0.5f) / n - 0.5f);
+    vec3s at = vec3_of(((float)(i % probes) + 0.5f) / n, ((float)(i / probes % probes) + 0.5f) / n,
+                       ((float)(i / (probes * probes)) + 0.5f) / n);
+    if (shape->kind != MRT_CUBE)
+        at = tube_inside((enum tube_bend)((int)shape->kind - MRT_TUBE), at);
+    else
+        at = glms_vec3_subs(at, 0.5f);
     return (struct mrt_point){ at, glms_mat3_identity() };
 }
 

@@ -13,9 +13,9 @@ struct mrt_cube_operators {
     struct matrix_f32 by_measure[3];
 };
 
-// Where row block i of a measure is taken: a texel of the closed cube, or the centre of a probe, in
-// x, then y, then z.
-struct mrt_point mrt_gather_point(const struct mrt_shape *cube, int probes,
+// Where row block i of a measure is taken: a texel, or a probe in x, then y, then z of the cell;
+// those of a tube are in left, up and along (tube_inside).
+struct mrt_point mrt_gather_point(const struct mrt_shape *shape, int probes,
                                   enum mrt_measure measure, int i);
 
 // The operator of a cube with openings: a contiguous copy.

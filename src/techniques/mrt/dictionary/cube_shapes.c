@@ -25,8 +25,9 @@ static const unsigned SPACE[] = { 0,
 _Static_assert(sizeof SPACE / sizeof *SPACE == MRT_MAX_CUBES,
                "all cubes of the dictionary in space");
 
-int mrt_cube_count(enum mrt_maze maze)
+int mrt_dictionary_shapes(enum mrt_maze maze)
 {
+    if (maze == MRT_TUNNEL) return 3;
     return maze == MRT_MAZE_2D ? (int)(sizeof PLANE / sizeof *PLANE) : MRT_MAX_CUBES;
 }
 
@@ -35,12 +36,29 @@ unsigned mrt_cube_missing(enum mrt_maze maze, int cube)
     return maze == MRT_MAZE_2D ? PLANE[cube] : SPACE[cube];
 }
 
-int mrt_cube_openings(enum mrt_maze maze)
+struct mrt_shape mrt_dictionary_shape(enum mrt_maze maze, int texels, int i)
+{
+    if (maze == MRT_TUNNEL) return mrt_tube(TUBE_TEXELS * texels, (enum tube_bend)i);
+    return mrt_cube(texels, mrt_cube_missing(maze, i));
+}
+
+int mrt_entered_shapes(enum mrt_maze maze)
+{
+    return maze == MRT_TUNNEL ? mrt_dictionary_shapes(maze) : 1;
+}
+
+struct mrt_shape mrt_entered_shape(enum mrt_maze maze, int texels, int i)
+{
+    if (maze == MRT_TUNNEL) return mrt_dictionary_shape(maze, texels, i);
+    return mrt_cube(texels, BACK);
+}
+
+int mrt_dictionary_openings(enum mrt_maze maze)
 {
     int openings = 0;
-    for (int i = 0; i < mrt_cube_count(maze); i++) {
-        struct mrt_shape cube = mrt_cube(1, mrt_cube_missing(maze, i));
-        openings += mrt_shape_openings(&cube);
+    for (int i = 0; i < mrt_dictionary_shapes(maze); i++) {
+        struct mrt_shape shape = mrt_dictionary_shape(maze, 1, i);
+        openings += mrt_shape_openings(&shape);
     }
     return openings;
 }
@@ -73,8 +91,9 @@ static mat3s cube_rotation(enum mrt_maze maze, int i)
 
 bool mrt_cube_find(enum mrt_maze maze, unsigned missing, struct mrt_cube_place *place)
 {
+    if (maze == MRT_TUNNEL) return false;
     int rotations = maze == MRT_MAZE_2D ? 4 : 24;
-    for (int cube = 0; cube < mrt_cube_count(maze); cube++)
+    for (int cube = 0; cube < mrt_dictionary_shapes(maze); cube++)
         for (int i = 0; i < rotations; i++) {
             mat3s block_from_cube = cube_rotation(maze, i);
             if (turned_faces(block_from_cube, mrt_cube_missing(maze, cube)) != missing) continue;
@@ -88,7 +107,5 @@ int mrt_turned_texel(const struct mrt_shape *from, mat3s to_from, const struct m
                      int texel)
 {
     vec3s at = mrt_shape_texel(to, texel).position;
-    struct cube_exit exit =
-        cube_trace(vec3_of(0, 0, 0), glms_mat3_mulv(glms_mat3_transpose(to_from), at));
-    return mrt_shape_texel_at(from, exit.face, exit.s, exit.t);
+    return mrt_shape_texel_near(from, glms_mat3_mulv(glms_mat3_transpose(to_from), at));
 }

@@ -1,18 +1,24 @@
 // The cubes of the block dictionary, one for each set of openings up to rotation: six for
 // two-dimensional mazes, with a floor and a ceiling (Loos 2015, section 3.5.1), nine for
-// three-dimensional ones.
+// three-dimensional ones; and the three tubes of tunnels.
 #pragma once
 
 #include "techniques/mrt/dictionary/shape.h"
 
-enum mrt_maze { MRT_MAZE_2D, MRT_MAZE_3D };
-enum { MRT_MAX_CUBES = 9 };
+enum mrt_maze { MRT_MAZE_2D, MRT_MAZE_3D, MRT_TUNNEL };
+// A tube has four faces' worth of texels around and along.
+enum { MRT_MAX_CUBES = 9, TUBE_TEXELS = 4 };
 
-int mrt_cube_count(enum mrt_maze maze);
+int mrt_dictionary_shapes(enum mrt_maze maze);
+// Shape i, with `texels` along an edge of a cube.
+struct mrt_shape mrt_dictionary_shape(enum mrt_maze maze, int texels, int i);
+// Openings of all shapes: 12 in the plane, 24 in space, 6 of tubes.
+int mrt_dictionary_openings(enum mrt_maze maze);
+// The shapes that light enters by the back: one stands for all cubes, tubes are three. Light that
+// enters a bend by its end passes the other bend, turned.
+int mrt_entered_shapes(enum mrt_maze maze);
+struct mrt_shape mrt_entered_shape(enum mrt_maze maze, int texels, int i);
 unsigned mrt_cube_missing(enum mrt_maze maze, int cube); // openings, a bit for each face
-// Openings of all cubes: 12 in the plane, 24 in space.
-int mrt_cube_openings(enum mrt_maze maze);
-
 // The cube of the dictionary that has the openings of a block once it is turned. False: none has,
 // as in the plane for a block without a floor.
 struct mrt_cube_place {

@@ -23,18 +23,10 @@ struct reader {
     const struct tensors *bake;
 };
 
-// Copies part `part` of axis 0 of a tensor of `parts` × rows × columns; parts 0: a tensor of two
-// axes, or of three where `middle` is not 1.
-static bool take(const struct reader *reader, const char *name, size_t rows_, size_t middle,
-                 size_t columns, struct matrix_f32 *out)
-{
-    const uint64_t wide[3] = { rows_, middle, columns }, flat[2] = { rows_, columns };
-    const float *data = tensors_expect(reader->host, reader->bake, name, TENSOR_F32,
-                                       middle > 1 ? 3 : 2, middle > 1 ? wide : flat);
-    if (!data || !matrix_f32_init(reader->host, out, rows_ * middle, columns)) return false;
-    memcpy(out->at, data, rows_ * middle * columns * sizeof *data);
-    return true;
-}
+// A part of a tensor: rows × middle × columns, where middle 1 is no axis of its own.
+struct tensor_part {
+    size_t rows, middle, columns;
+};
 
 // Copies each matrix of a stack.
 static bool take_stack(const struct reader *reader, const char *name, size_t count, size_t rows_,
@@ -50,44 +42,78 @@ static bool take_stack(const struct reader *reader, const char *name, size_t cou
     return true;
 }
 
-static const char *cube_tensor(char out[32], int cube, const char *what)
+static const char *shape_tensor(char out[32], int maze, int i, const char *what)
 {
-    snprintf(out, 32, "cube/%d/%s", cube, what);
+    snprintf(out, 32, "%s/%d/%s", maze == MRT_TUNNEL ? "tube" : "cube", i, what);
     return out;
 }
 
-static bool take_element(const struct reader *reader, const struct mrt_dictionary_options *o,
-                         int cube, struct mrt_element *e)
+// Parts of a tensor whose axis 0 is `parts` times that of a part.
+static bool take_parts(const struct reader *reader, const char *name, struct tensor_part part,
+                       size_t parts, struct matrix_f32 *const *out)
+{
+    const uint64_t flat[2] = { parts * part.rows, part.columns };
+    const uint64_t wide[3] = { parts * part.rows, part.middle, part.columns };
+    const size_t elements = part.rows * part.middle * part.columns;
+    const float *data = tensors_expect(reader->host, reader->bake, name, TENSOR_F32,
+                                       part.middle > 1 ? 3 : 2, part.middle > 1 ? wide : flat);
+    if (!data) return false;
+    for (size_t i = 0; i < parts; i++) {
+        if (!matrix_f32_init(reader->host, out[i], part.rows * part.middle, part.columns))
+            return false;
+        memcpy(out[i]->at, data + i * elements, elements * sizeof *data);
+    }
+    return true;
+}
+
+static bool take(const struct reader *reader, const char *name, size_t rows_, size_t middle,
+                 size_t columns, struct matrix_f32 *out)
+{
+    return take_parts(reader, name, (struct tensor_part){ rows_, middle, columns }, 1, &out);
+}
+
+static bool take_element(const struct reader *reader, const struct mrt_dictionary_options *o, int i,
+                         struct mrt_element *e)
 {
     char name[32];
-    e->shape = mrt_cube(o->texels, mrt_cube_missing((enum mrt_maze)o->maze, cube));
+    e->shape = mrt_dictionary_shape((enum mrt_maze)o->maze, o->texels, i);
     size_t n = (size_t)mrt_shape_texels(&e->shape), k = (size_t)o->modes;
     size_t probes = (size_t)(o->probes * o->probes * o->probes);
     struct matrix_f32 *openings[MRT_MAX_OPENINGS];
     size_t count = 0;
     for (int f = 0; f < CUBE_FACES; f++)
         if (e->shape.missing >> f & 1u) openings[count++] = &e->r_b[f];
-    return take(reader, cube_tensor(name, cube, "U_b"), n, 1, k, &e->u_b) &&
-           take(reader, cube_tensor(name, cube, "T_db"), k, 1, n, &e->t_db) &&
-           take(reader, cube_tensor(name, cube, "U_vec"), n, 4, k, &e->u_vec) &&
-           take(reader, cube_tensor(name, cube, "U_bvol"), probes, 9, k, &e->u_bvol) &&
-           (count == 0 || take_stack(reader, cube_tensor(name, cube, "R_b"), count,
+    return take(reader, shape_tensor(name, o->maze, i, "U_b"), n, 1, k, &e->u_b) &&
+           take(reader, shape_tensor(name, o->maze, i, "T_db"), k, 1, n, &e->t_db) &&
+           take(reader, shape_tensor(name, o->maze, i, "U_vec"), n, 4, k, &e->u_vec) &&
+           take(reader, shape_tensor(name, o->maze, i, "U_bvol"), probes, 9, k, &e->u_bvol) &&
+           (count == 0 || take_stack(reader, shape_tensor(name, o->maze, i, "R_b"), count,
                                      (size_t)o->lightfield_modes, k, openings));
 }
 
 static bool take_interfaces(const struct reader *reader, const struct mrt_dictionary_options *o,
                             struct mrt_dictionary *d)
 {
-    struct mrt_shape entered = mrt_cube_entered(o->texels);
-    size_t m = (size_t)mrt_shape_texels(&entered), k_r = (size_t)o->response_modes;
-    size_t k_l = (size_t)o->lightfield_modes, probes = (size_t)(o->probes * o->probes * o->probes);
-    struct matrix_f32 *turns[MRT_TURNS_3D];
+    const struct mrt_shape entered = mrt_entered_shape((enum mrt_maze)o->maze, o->texels, 0);
+    const size_t m = (size_t)mrt_shape_texels(&entered), k_r = (size_t)o->response_modes;
+    const size_t k_l = (size_t)o->lightfield_modes, parts = (size_t)d->entered_count;
+    const size_t probes = (size_t)(o->probes * o->probes * o->probes);
+    struct matrix_f32 *turns[MRT_TURNS_3D], *part[4][MRT_MAX_ENTERED];
     for (int t = 0; t < MRT_TURNS_3D; t++) turns[t] = &d->r_turn[t];
+    for (int i = 0; i < MRT_MAX_ENTERED; i++) {
+        part[0][i] = &d->entered[i].t_r;
+        part[1][i] = &d->entered[i].u_r;
+        part[2][i] = &d->entered[i].u_rvec;
+        part[3][i] = &d->entered[i].u_rvol;
+    }
     return take_stack(reader, "interface/R_turn", (size_t)d->turn_count, k_l, k_l, turns) &&
-           take(reader, "interface/T_r", k_r, 1, k_l, &d->t_r) &&
-           take(reader, "interface/U_r", m, 1, k_r, &d->u_r) &&
-           take(reader, "interface/U_rvec", m, 4, k_r, &d->u_rvec) &&
-           take(reader, "interface/U_rvol", probes, 9, k_r, &d->u_rvol);
+           take_parts(reader, "interface/T_r", (struct tensor_part){ k_r, 1, k_l }, parts,
+                      part[0]) &&
+           take_parts(reader, "interface/U_r", (struct tensor_part){ m, 1, k_r }, parts, part[1]) &&
+           take_parts(reader, "interface/U_rvec", (struct tensor_part){ m, 4, k_r }, parts,
+                      part[2]) &&
+           take_parts(reader, "interface/U_rvol", (struct tensor_part){ probes, 9, k_r }, parts,
+                      part[3]);
 }
 
 bool mrt_dictionary_init(struct host *host, const struct tensors *bake,
@@ -96,8 +122,9 @@ bool mrt_dictionary_init(struct host *host, const struct tensors *bake,
     const struct reader reader = { host, bake };
     *out = (struct mrt_dictionary){
         .options = *options,
-        .element_count = mrt_cube_count((enum mrt_maze)options->maze),
-        .turn_count = options->maze == MRT_MAZE_2D ? MRT_TURNS_2D : MRT_TURNS_3D,
+        .element_count = mrt_dictionary_shapes((enum mrt_maze)options->maze),
+        .turn_count = options->maze == MRT_MAZE_3D ? MRT_TURNS_3D : MRT_TURNS_2D,
+        .entered_count = mrt_entered_shapes((enum mrt_maze)options->maze),
     };
     bool ok = take_interfaces(&reader, options, out);
     for (int i = 0; ok && i < out->element_count; i++)
@@ -119,10 +146,12 @@ void mrt_dictionary_finish(struct host *host, struct mrt_dictionary *d)
 {
     for (int i = 0; i < MRT_MAX_CUBES; i++) element_finish(host, &d->element[i]);
     for (int t = 0; t < MRT_TURNS_3D; t++) matrix_f32_finish(host, &d->r_turn[t]);
-    matrix_f32_finish(host, &d->t_r);
-    matrix_f32_finish(host, &d->u_r);
-    matrix_f32_finish(host, &d->u_rvec);
-    matrix_f32_finish(host, &d->u_rvol);
+    for (int i = 0; i < MRT_MAX_ENTERED; i++) {
+        matrix_f32_finish(host, &d->entered[i].t_r);
+        matrix_f32_finish(host, &d->entered[i].u_r);
+        matrix_f32_finish(host, &d->entered[i].u_rvec);
+        matrix_f32_finish(host, &d->entered[i].u_rvol);
+    }
     *d = (struct mrt_dictionary){ 0 };
 }
 
@@ -141,7 +170,10 @@ struct mrt_dictionary_bytes mrt_dictionary_bytes(const struct mrt_dictionary *d)
         for (int f = 0; f < MRT_MAX_OPENINGS; f++) out.interfaces += bytes_of(&e->r_b[f]);
     }
     for (int t = 0; t < d->turn_count; t++) out.interfaces += bytes_of(&d->r_turn[t]);
-    out.interfaces += bytes_of(&d->t_r) + bytes_of(&d->u_r) + bytes_of(&d->u_rvec);
-    out.probes += bytes_of(&d->u_rvol);
+    for (int i = 0; i < d->entered_count; i++) {
+        const struct mrt_entered *e = &d->entered[i];
+        out.interfaces += bytes_of(&e->t_r) + bytes_of(&e->u_r) + bytes_of(&e->u_rvec);
+        out.probes += bytes_of(&e->u_rvol);
+    }
     return out;
 }

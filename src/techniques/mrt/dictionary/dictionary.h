@@ -10,10 +10,13 @@
 //     cube/I/U_bvol     [p³, 9, k_b]   irradiance by normal at probes: SH in the frame of the cube
 //     cube/I/R_b        [N, k_l, k_b]  lightfield coefficients at each opening
 //     interface/R_turn  [3 or 6, k_l, k_l]  propagation to the exits, by enum mrt_turn
-//     interface/T_r     [k_r, k_l]     r-coefficients of lightfield coefficients
-//     interface/U_r     [m, k_r]       irradiance at the m texels of mrt_cube_entered
-//     interface/U_rvec  [m, 4, k_r]    the same by normal
-//     interface/U_rvol  [p³, 9, k_r]   the same at probes, in the frame of the interface
+//     interface/T_r     [e·k_r, k_l]   r-coefficients of lightfield coefficients
+//     interface/U_r     [e·m, k_r]     irradiance at the m texels of mrt_entered_shape
+//     interface/U_rvec  [e·m, 4, k_r]  the same by normal
+//     interface/U_rvol  [e·p³, 9, k_r] the same at probes, in the frame of the interface
+//
+// Tubes are named tube/I; e is 1 for cubes and 3 for tubes, one part for each mrt_entered_shape
+// below the other.
 //
 // A lightfield coefficient is with respect to H_rlf = U Σ, which is not kept.
 #pragma once
@@ -37,6 +40,12 @@ const struct option_table *mrt_dictionary_option_table(void);
 bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_options *options,
                          bool full);
 
+enum { MRT_MAX_ENTERED = 3 };
+
+struct mrt_entered {
+    struct matrix_f32 t_r, u_r, u_rvec, u_rvol; // U_rvec: m·4 × k_r, U_rvol: p³·9 × k_r
+};
+
 struct mrt_element {
     struct mrt_shape shape;
     struct matrix_f32 u_b, t_db, u_vec, u_bvol; // U_vec: n·4 × k_b, U_bvol: p³·9 × k_b
@@ -49,7 +58,8 @@ struct mrt_dictionary {
     struct mrt_element element[MRT_MAX_CUBES];
     int turn_count;
     struct matrix_f32 r_turn[MRT_TURNS_3D];
-    struct matrix_f32 t_r, u_r, u_rvec, u_rvol;
+    int entered_count;
+    struct mrt_entered entered[MRT_MAX_ENTERED];
 };
 
 // Copies a bake made with these options. FAIL_FORMAT where a tensor is missing or of another shape.

@@ -11,10 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-// Of a stage: the measure or the cube.
+// Of a stage: the measure or the shape.
 struct stage_index {
-    int measure, cube;
-    const char *direct, *l_imp; // names of inputs
+    int measure, shape;
+    const char *f, *direct, *l_imp; // names of inputs; f NULL: the closed cube's
 };
 
 static const char *const OPERATORS[] = { "closed/F", "closed/vector", "closed/probe" };
@@ -26,15 +26,16 @@ static bool run_gather(const struct bake_task *task)
     const struct mrt_bake_job *job = task->job;
     const struct stage_index *index = task->argument;
     const struct mrt_rays *rays = &job->rays[index->measure];
-    const struct mrt_shape cube = mrt_cube(job->options.texels, 0);
+    const struct mrt_shape shape =
+        index->f ? mrt_bake_shape(job, index->shape) : mrt_cube(job->options.texels, 0);
     uint64_t first, points;
     const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
     bake_task_rows(task, 0, &points);
     for (uint64_t i = 0; i < points; i++) {
         if (bake_task_cancelled(task)) return false;
-        struct mrt_point at = mrt_gather_point(&cube, job->options.probes,
+        struct mrt_point at = mrt_gather_point(&shape, job->options.probes,
                                                (enum mrt_measure)index->measure, (int)(first + i));
-        mrt_gather(&cube, at, rays, out.at + i * (uint64_t)rays->values * out.stride, out.stride);
+        mrt_gather(&shape, at, rays, out.at + i * (uint64_t)rays->values * out.stride, out.stride);
     }
     return true;
 }
@@ -67,13 +68,91 @@ static bool add_gather(struct bake_plan *plan, const struct mrt_bake_job *job, i
                                     .rays = (double)points * job->options.rays / (double)tasks });
 }
 
+// ---- tubes, which have operators of their own
+
+enum { TUBE_POINTS_PER_TASK = 16 };
+
+static bool add_tube_gather(struct bake_plan *plan, const struct mrt_bake_job *job,
+                            const struct stage_index *index)
+{
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
+    const uint64_t n = (uint64_t)mrt_shape_texels(&shape);
+    const struct bake_output out = { index->f, TENSOR_F32, 2, { n, n }, BAKE_ROWS, WAVE_MODES };
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "tube %d gather", index->shape),
+                                    .wave = WAVE_GATHER,
+                                    .task_count = (size_t)n / TUBE_POINTS_PER_TASK,
+                                    .run = run_gather,
+                                    .argument = index,
+                                    .outputs = &out,
+                                    .output_count = 1,
+                                    .rays = (double)TUBE_POINTS_PER_TASK * job->options.rays });
+}
+
+// Rows of U_vec or U_bvol: the operator is too large to keep, so its rows meet L_imp at once.
+static bool run_tube_directional(const struct bake_task *task)
+{
+    const struct mrt_bake_job *job = task->job;
+    const struct stage_index *index = task->argument;
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
+    const struct mrt_rays *rays = &job->rays[index->measure];
+    struct matrix_f32 l_imp, gather = { 0 };
+    uint64_t first, unused, points;
+    struct matrix_f32 out = mrt_bake_output(task, 0, &unused);
+    first = bake_task_rows(task, 0, &points);
+    bool ok = mrt_bake_input(task, index->l_imp, &l_imp) &&
+              matrix_f32_init(task->host, &gather, out.rows, l_imp.rows);
+    for (uint64_t i = 0; ok && i < points; i++) {
+        struct mrt_point at = mrt_gather_point(&shape, job->options.probes,
+                                               (enum mrt_measure)index->measure, (int)(first + i));
+        mrt_gather(&shape, at, rays, gather.at + i * (uint64_t)rays->values * gather.stride,
+                   gather.stride);
+        ok = !bake_task_cancelled(task);
+    }
+    ok = ok &&
+         matrix_f32_multiply(task->host, 1.0f, &gather, AS_IT_IS, &l_imp, AS_IT_IS, 0.0f, &out);
+    matrix_f32_finish(task->host, &gather);
+    return ok;
+}
+
+static bool add_tube_directional(struct bake_plan *plan, const struct mrt_bake_job *job,
+                                 const struct stage_index *of_shape, int measure)
+{
+    const struct mrt_shape shape = mrt_bake_shape(job, of_shape->shape);
+    const bool probes = measure == MRT_PROBE;
+    const uint64_t points = probes ? job->probes : (uint64_t)mrt_shape_texels(&shape);
+    const uint64_t values = probes ? MRT_PROBE_COEFFICIENTS : MRT_VECTOR_COEFFICIENTS;
+    struct stage_index *index = bake_plan_alloc(plan, 1, sizeof *index);
+    if (!index) return false;
+    *index = *of_shape;
+    index->measure = measure;
+    const struct bake_output out = { bake_plan_name(plan, "tube/%d/%s", index->shape,
+                                                    probes ? "U_bvol" : "U_vec"),
+                                     TENSOR_F32,
+                                     3,
+                                     { points, values, job->k_b },
+                                     BAKE_ROWS,
+                                     BAKE_SAVED };
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "tube %d %s", index->shape,
+                                                           probes ? "probes" : "directions"),
+                                    .wave = WAVE_ELEMENTS,
+                                    .task_count = (size_t)((points + TUBE_POINTS_PER_TASK - 1) /
+                                                           TUBE_POINTS_PER_TASK),
+                                    .run = run_tube_directional,
+                                    .argument = index,
+                                    .outputs = &out,
+                                    .output_count = 1,
+                                    .rays = (double)TUBE_POINTS_PER_TASK * job->options.rays });
+}
+
 // ---- the light prior of a shape
 
 static bool run_direct(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
     const struct stage_index *index = task->argument;
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
     uint64_t first;
     const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
     struct mrt_prior_light *lights =
@@ -90,30 +169,35 @@ static bool add_direct(struct bake_plan *plan, const struct mrt_bake_job *job,
                        const struct stage_index *index)
 {
     enum { LIGHTS_PER_TASK = 36 };
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
     const uint64_t lights = (uint64_t)mrt_prior_light_count(&shape);
     const struct bake_output out = {
         index->direct, TENSOR_F32, 2, { lights, (uint64_t)mrt_shape_texels(&shape) },
         BAKE_ROWS,     WAVE_MODES
     };
-    return bake_plan_add(
-        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d lights", index->cube),
-                                    .wave = WAVE_GATHER,
-                                    .task_count = (size_t)lights / LIGHTS_PER_TASK,
-                                    .run = run_direct,
-                                    .argument = index,
-                                    .outputs = &out,
-                                    .output_count = 1 });
+    return bake_plan_add(plan,
+                         &(struct bake_stage){ .name = bake_plan_name(plan, "%s %d lights",
+                                                                      job->family, index->shape),
+                                               .wave = WAVE_GATHER,
+                                               .task_count = (size_t)lights / LIGHTS_PER_TASK,
+                                               .run = run_direct,
+                                               .argument = index,
+                                               .outputs = &out,
+                                               .output_count = 1 });
 }
 
 // ---- the modes of a shape
 
-static bool operator_of(const struct bake_task *task, int measure, const struct mrt_shape *shape,
+static bool operator_of(const struct bake_task *task, int measure, const struct stage_index *index,
                         struct matrix_f64 *out)
 {
+    const struct mrt_shape shape = mrt_bake_shape(task->job, index->shape);
     struct mrt_cube_operators closed = { 0 };
+    struct matrix_f32 own;
+    if (index->f)
+        return mrt_bake_input(task, index->f, &own) && matrix_f64_from_f32(task->host, &own, out);
     return mrt_bake_input(task, OPERATORS[measure], &closed.by_measure[measure]) &&
-           mrt_cube_operator_of(task->host, &closed, (enum mrt_measure)measure, shape, out);
+           mrt_cube_operator_of(task->host, &closed, (enum mrt_measure)measure, &shape, out);
 }
 
 static bool direct_light(const struct bake_task *task, const char *name, struct matrix_f64 *out)
@@ -151,13 +235,13 @@ static bool run_modes(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
     const struct stage_index *index = task->argument;
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
     const struct mrt_transfer_options options = { .k_d = job->options.prior_modes,
                                                   .k_b = job->options.modes,
                                                   .enrich = job->options.enrich };
     struct matrix_f64 f = { 0 }, direct = { 0 };
     struct mrt_transfer transfer = { 0 };
-    bool ok = operator_of(task, MRT_IRRADIANCE, &shape, &f) &&
+    bool ok = operator_of(task, MRT_IRRADIANCE, index, &f) &&
               direct_light(task, index->direct, &direct) &&
               mrt_transfer_init(task->host, &shape, &f, &direct, &options, &transfer);
     if (ok) store_transfer(&transfer, task->out);
@@ -170,13 +254,13 @@ static bool run_modes(const struct bake_task *task)
 static bool add_modes(struct bake_plan *plan, const struct mrt_bake_job *job,
                       const struct stage_index *index)
 {
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
     const uint64_t n = (uint64_t)mrt_shape_texels(&shape), k_b = job->k_b;
     const uint64_t lights = (uint64_t)mrt_prior_light_count(&shape);
     const uint64_t k_d = (uint64_t)job->options.prior_modes, small = n < lights ? n : lights;
     const char *names[] = { "U_b", "T_db", "L_imp", "sigma_L", "sigma_M", "checks" };
     for (int i = 0; i <= OUT_CHECKS; i++)
-        names[i] = bake_plan_name(plan, "cube/%d/%s", index->cube, names[i]);
+        names[i] = bake_plan_name(plan, "%s/%d/%s", job->family, index->shape, names[i]);
     const struct bake_output outputs[] = {
         { names[OUT_U_B], TENSOR_F32, 2, { n, k_b }, BAKE_ROWS, BAKE_SAVED },
         { names[OUT_T_DB], TENSOR_F32, 2, { k_b, n }, BAKE_ROWS, BAKE_SAVED },
@@ -186,28 +270,27 @@ static bool add_modes(struct bake_plan *plan, const struct mrt_bake_job *job,
         { names[OUT_CHECKS], TENSOR_F32, 1, { 2 }, BAKE_ROWS, BAKE_REPORTED },
     };
     const double flops = 10.0 * (double)(n * lights * small) + 6.0 * (double)(n * n * k_d);
-    return bake_plan_add(
-        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d modes", index->cube),
-                                    .wave = WAVE_MODES,
-                                    .task_count = 1,
-                                    .run = run_modes,
-                                    .argument = index,
-                                    .outputs = outputs,
-                                    .output_count = OUT_CHECKS + 1,
-                                    .flops = flops,
-                                    .scratch_bytes = (size_t)(8 * (n * n + 4 * n * lights)) });
+    return bake_plan_add(plan,
+                         &(struct bake_stage){
+                             .name = bake_plan_name(plan, "%s %d modes", job->family, index->shape),
+                             .wave = WAVE_MODES,
+                             .task_count = 1,
+                             .run = run_modes,
+                             .argument = index,
+                             .outputs = outputs,
+                             .output_count = OUT_CHECKS + 1,
+                             .flops = flops,
+                             .scratch_bytes = (size_t)(8 * (n * n + 4 * n * lights)) });
 }
 
 // ---- singular values of F, for the report
 
 static bool run_spectrum(const struct bake_task *task)
 {
-    const struct mrt_bake_job *job = task->job;
     const struct stage_index *index = task->argument;
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
     struct matrix_f64 f = { 0 }, gram = { 0 };
     struct linalg_eigen eigen = { 0 };
-    bool ok = operator_of(task, MRT_IRRADIANCE, &shape, &f) &&
+    bool ok = operator_of(task, MRT_IRRADIANCE, index, &f) &&
               matrix_f64_init(task->host, &gram, f.rows, f.rows) &&
               matrix_f64_multiply(task->host, 1.0, &f, TRANSPOSED, &f, AS_IT_IS, 0.0, &gram) &&
               linalg_symmetric_eigen(task->host, "the one-bounce operator", &gram, &eigen);
@@ -222,34 +305,36 @@ static bool run_spectrum(const struct bake_task *task)
 static bool add_spectrum(struct bake_plan *plan, const struct mrt_bake_job *job,
                          const struct stage_index *index)
 {
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
     const uint64_t n = (uint64_t)mrt_shape_texels(&shape);
-    const struct bake_output out = { bake_plan_name(plan, "cube/%d/sigma_F", index->cube),
+    const struct bake_output out = { bake_plan_name(plan, "%s/%d/sigma_F", job->family,
+                                                    index->shape),
                                      TENSOR_F32,
                                      1,
                                      { n },
                                      BAKE_ROWS,
                                      BAKE_REPORTED };
-    return bake_plan_add(
-        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d spectrum", index->cube),
-                                    .wave = WAVE_MODES,
-                                    .task_count = 1,
-                                    .run = run_spectrum,
-                                    .argument = index,
-                                    .outputs = &out,
-                                    .output_count = 1,
-                                    .flops = 12.0 * (double)(n * n * n),
-                                    .scratch_bytes = (size_t)(40 * n * n) });
+    return bake_plan_add(plan,
+                         &(struct bake_stage){ .name = bake_plan_name(plan, "%s %d spectrum",
+                                                                      job->family, index->shape),
+                                               .wave = WAVE_MODES,
+                                               .task_count = 1,
+                                               .run = run_spectrum,
+                                               .argument = index,
+                                               .outputs = &out,
+                                               .output_count = 1,
+                                               .flops = 12.0 * (double)(n * n * n),
+                                               .scratch_bytes = (size_t)(40 * n * n) });
 }
 
 // ---- directional light of a shape
 
 // U_vec and U_bvol: gathering L_imp.
 static bool gather_implicit(const struct bake_task *task, int measure, int output,
-                            const struct mrt_shape *shape, const struct matrix_f64 *l_imp)
+                            const struct stage_index *index, const struct matrix_f64 *l_imp)
 {
     struct matrix_f64 gather = { 0 }, out = { 0 };
-    bool ok = operator_of(task, measure, shape, &gather) &&
+    bool ok = operator_of(task, measure, index, &gather) &&
               matrix_f64_init(task->host, &out, gather.rows, l_imp->columns) &&
               matrix_f64_multiply(task->host, 1.0, &gather, AS_IT_IS, l_imp, AS_IT_IS, 0.0, &out);
     if (ok) store(out.at, out.rows * out.columns, task->out[output]);
@@ -260,15 +345,13 @@ static bool gather_implicit(const struct bake_task *task, int measure, int outpu
 
 static bool run_directional(const struct bake_task *task)
 {
-    const struct mrt_bake_job *job = task->job;
     const struct stage_index *index = task->argument;
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
     struct matrix_f32 narrow;
     struct matrix_f64 l_imp = { 0 };
     bool ok = mrt_bake_input(task, index->l_imp, &narrow) &&
               matrix_f64_from_f32(task->host, &narrow, &l_imp) &&
-              gather_implicit(task, MRT_VECTOR, 0, &shape, &l_imp) &&
-              gather_implicit(task, MRT_PROBE, 1, &shape, &l_imp);
+              gather_implicit(task, MRT_VECTOR, 0, index, &l_imp) &&
+              gather_implicit(task, MRT_PROBE, 1, index, &l_imp);
     matrix_f64_finish(task->host, &l_imp);
     return ok;
 }
@@ -276,32 +359,33 @@ static bool run_directional(const struct bake_task *task)
 static bool add_directional(struct bake_plan *plan, const struct mrt_bake_job *job,
                             const struct stage_index *index)
 {
-    const struct mrt_shape shape = mrt_bake_cube(job, index->cube);
+    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
     const uint64_t n = (uint64_t)mrt_shape_texels(&shape);
     const struct bake_output outputs[] = {
-        { bake_plan_name(plan, "cube/%d/U_vec", index->cube),
+        { bake_plan_name(plan, "%s/%d/U_vec", job->family, index->shape),
           TENSOR_F32,
           3,
           { n, MRT_VECTOR_COEFFICIENTS, job->k_b },
           BAKE_ROWS,
           BAKE_SAVED },
-        { bake_plan_name(plan, "cube/%d/U_bvol", index->cube),
+        { bake_plan_name(plan, "%s/%d/U_bvol", job->family, index->shape),
           TENSOR_F32,
           3,
           { job->probes, MRT_PROBE_COEFFICIENTS, job->k_b },
           BAKE_ROWS,
           BAKE_SAVED },
     };
-    return bake_plan_add(
-        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "cube %d directions", index->cube),
-                                    .wave = WAVE_ELEMENTS,
-                                    .task_count = 1,
-                                    .run = run_directional,
-                                    .argument = index,
-                                    .outputs = outputs,
-                                    .output_count = 2,
-                                    .flops = 8.0 * (double)(n * n * job->k_b),
-                                    .scratch_bytes = (size_t)(8 * 4 * n * n) });
+    return bake_plan_add(plan,
+                         &(struct bake_stage){ .name = bake_plan_name(plan, "%s %d directions",
+                                                                      job->family, index->shape),
+                                               .wave = WAVE_ELEMENTS,
+                                               .task_count = 1,
+                                               .run = run_directional,
+                                               .argument = index,
+                                               .outputs = outputs,
+                                               .output_count = 2,
+                                               .flops = 8.0 * (double)(n * n * job->k_b),
+                                               .scratch_bytes = (size_t)(8 * 4 * n * n) });
 }
 
 // ---- the plan
@@ -324,41 +408,67 @@ static void finish_job(void *user)
 
 static void set_sizes(const struct mrt_dictionary_options *o, struct mrt_bake_job *job)
 {
-    const struct mrt_shape closed = mrt_cube(o->texels, 0), left = mrt_cube_left(o->texels);
+    const enum mrt_maze maze = (enum mrt_maze)o->maze;
+    const struct mrt_shape closed = mrt_cube(o->texels, 0);
+    const struct mrt_shape entered = mrt_entered_shape(maze, o->texels, 0);
     *job = (struct mrt_bake_job){
         .options = *o,
-        .maze = (enum mrt_maze)o->maze,
-        .cubes = mrt_cube_count((enum mrt_maze)o->maze),
-        .turns = o->maze == MRT_MAZE_2D ? MRT_TURNS_2D : MRT_TURNS_3D,
+        .maze = maze,
+        .shapes = mrt_dictionary_shapes(maze),
+        .entered = mrt_entered_shapes(maze),
+        .family = maze == MRT_TUNNEL ? "tube" : "cube",
+        .turns = maze == MRT_MAZE_3D ? MRT_TURNS_3D : MRT_TURNS_2D,
         .k_b = (uint64_t)o->modes,
         .k_l = (uint64_t)o->lightfield_modes,
         .k_r = (uint64_t)o->response_modes,
         .texels = (uint64_t)mrt_shape_texels(&closed),
-        .left_texels = (uint64_t)mrt_shape_texels(&left),
+        .entered_texels = (uint64_t)mrt_shape_texels(&entered),
         .probes = (uint64_t)(o->probes * o->probes * o->probes),
-        .openings = (uint64_t)mrt_cube_openings((enum mrt_maze)o->maze),
+        .openings = (uint64_t)mrt_dictionary_openings(maze),
         .lightfield = { o->lightfield_positions, o->lightfield_directions,
-                        o->lightfield_supersampling },
+                        o->lightfield_supersampling, maze == MRT_TUNNEL },
         .wave_final = mrt_wave_of_round(o->lightfield_rounds) + 3,
     };
     job->samples = mrt_lightfield_samples(job->lightfield);
 }
 
-static struct stage_index *index_of_cube(struct bake_plan *plan, int cube)
+static struct stage_index *index_of_shape(struct bake_plan *plan, const struct mrt_bake_job *job,
+                                          int shape)
 {
     struct stage_index *index = bake_plan_alloc(plan, 1, sizeof *index);
     if (!index) return NULL;
-    index->cube = cube;
-    index->direct = bake_plan_name(plan, "cube/%d/direct", cube);
-    index->l_imp = bake_plan_name(plan, "cube/%d/L_imp", cube);
+    index->shape = shape;
+    index->f = job->maze == MRT_TUNNEL ? bake_plan_name(plan, "tube/%d/F", shape) : NULL;
+    index->direct = bake_plan_name(plan, "%s/%d/direct", job->family, shape);
+    index->l_imp = bake_plan_name(plan, "%s/%d/L_imp", job->family, shape);
     return index->direct && index->l_imp ? index : NULL;
+}
+
+static bool add_gathers(struct bake_plan *plan, const struct mrt_bake_job *job,
+                        struct stage_index *const *shape)
+{
+    bool ok = true;
+    if (job->maze == MRT_TUNNEL)
+        for (int i = 0; ok && i < job->shapes; i++) ok = add_tube_gather(plan, job, shape[i]);
+    else
+        for (int m = 0; ok && m < 3; m++) ok = add_gather(plan, job, m);
+    for (int i = 0; ok && i < job->shapes; i++) ok = add_direct(plan, job, shape[i]);
+    return ok;
+}
+
+static bool add_directions(struct bake_plan *plan, const struct mrt_bake_job *job,
+                           const struct stage_index *shape)
+{
+    if (job->maze != MRT_TUNNEL) return add_directional(plan, job, shape);
+    return add_tube_directional(plan, job, shape, MRT_VECTOR) &&
+           add_tube_directional(plan, job, shape, MRT_PROBE);
 }
 
 bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_options *options,
                          bool full)
 {
     struct mrt_bake_job *job = bake_plan_alloc(plan, 1, sizeof *job);
-    struct stage_index *cube[MRT_MAX_CUBES];
+    struct stage_index *shape[MRT_MAX_CUBES];
     if (!job) return false;
     set_sizes(options, job);
     bake_plan_set_job(plan, &(struct bake_job){ .job = job,
@@ -366,11 +476,11 @@ bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_opt
                                                 .finish = finish_job,
                                                 .bytes = (size_t)options->rays * 100 });
     bool ok = true;
-    for (int i = 0; ok && i < job->cubes; i++) ok = (cube[i] = index_of_cube(plan, i)) != NULL;
-    for (int m = 0; ok && m < 3; m++) ok = add_gather(plan, job, m);
-    for (int i = 0; ok && i < job->cubes; i++) ok = add_direct(plan, job, cube[i]);
-    for (int i = 0; ok && i < job->cubes; i++)
-        ok = add_modes(plan, job, cube[i]) && (!full || add_spectrum(plan, job, cube[i]));
-    for (int i = 0; ok && i < job->cubes; i++) ok = add_directional(plan, job, cube[i]);
+    for (int i = 0; ok && i < job->shapes; i++)
+        ok = (shape[i] = index_of_shape(plan, job, i)) != NULL;
+    ok = ok && add_gathers(plan, job, shape);
+    for (int i = 0; ok && i < job->shapes; i++)
+        ok = add_modes(plan, job, shape[i]) && (!full || add_spectrum(plan, job, shape[i]));
+    for (int i = 0; ok && i < job->shapes; i++) ok = add_directions(plan, job, shape[i]);
     return ok && mrt_interface_bake(plan, job);
 }

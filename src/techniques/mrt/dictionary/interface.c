@@ -1,51 +1,37 @@
 // Rays between interfaces and the blocks that they connect.
 #include "interface.h"
 
-#include "techniques/mrt/dictionary/cube_shapes.h"
 #include "techniques/mrt/dictionary/sparse_row.h"
 
 #include <assert.h>
 #include <math.h>
 
-void mrt_seen_from_opening(const struct mrt_shape *shape, int face, const struct matrix_f32 *values,
-                           struct matrix_f32 *out)
-{
-    struct mrt_shape left = mrt_cube_left(shape->resolution);
-    mat3s interface_from_block = glms_mat3_transpose(cube_from_face(face));
-    assert(out->rows == (size_t)mrt_shape_texels(&left));
-    for (size_t r = 0; r < out->rows; r++) {
-        int texel = mrt_turned_texel(shape, interface_from_block, &left, (int)r);
-        for (size_t c = 0; c < out->columns; c++)
-            out->at[r * out->stride + c] =
-                texel < 0 ? 0.0f : values->at[(size_t)texel * values->stride + c];
-    }
-}
-
 // ---- out of a block
 
-static void see_surfaces(struct mrt_lightfield l, const struct mrt_shape *left, size_t sample,
-                         struct sparse_row *row)
+static void see_surfaces(struct mrt_lightfield l, const struct mrt_shape *shape, mat3s frame,
+                         size_t sample, struct sparse_row *row)
 {
     struct mrt_hit hit;
     vec3s from = mrt_lightfield_position(l, sample);
     from.z = 0.5f;
+    from = glms_mat3_mulv(frame, from);
     for (int sub = 0; sub < mrt_lightfield_subsamples(l); sub++) {
-        vec3s back = glms_vec3_negate(mrt_lightfield_direction(l, sample, sub));
-        mrt_shape_trace(left, from, back, &hit);
+        vec3s along = glms_mat3_mulv(frame, mrt_lightfield_direction(l, sample, sub));
+        mrt_shape_trace(shape, from, glms_vec3_negate(along), &hit);
         for (int k = 0; k < hit.texels; k++)
             sparse_row_add(row, (size_t)hit.texel[k], hit.weight[k]);
     }
 }
 
 bool mrt_lightfield_of_surfaces(struct host *host, struct mrt_lightfield l,
-                                const struct matrix_f32 *radiosity, int resolution,
-                                size_t first_sample, struct matrix_f32 *out)
+                                const struct mrt_shape *shape, int face,
+                                const struct matrix_f32 *radiosity, size_t first_sample,
+                                struct matrix_f32 *out)
 {
-    struct mrt_shape left = mrt_cube_left(resolution);
     struct sparse_row row;
     if (!sparse_row_init(host, &row, radiosity->rows)) return false;
     for (size_t r = 0; r < out->rows; r++) {
-        see_surfaces(l, &left, first_sample + r, &row);
+        see_surfaces(l, shape, cube_from_face(face), first_sample + r, &row);
         sparse_row_apply(&row, 1.0f / (float)mrt_lightfield_subsamples(l), radiosity,
                          out->at + r * out->stride);
     }
@@ -102,26 +88,42 @@ struct mrt_passage mrt_passage_between(int entry_face, int exit_face)
     return (struct mrt_passage){ 0 };
 }
 
-static void add_lookup(struct mrt_lightfield l, float x, float y, vec3s direction,
-                       struct sparse_row *row)
+static void add_lookup(const struct mrt_lightfield_lookup *look, struct sparse_row *row)
 {
-    struct mrt_lightfield_lookup look;
-    mrt_lightfield_look_up(l, x, y, direction, &look);
-    for (int k = 0; k < LIGHTFIELD_LOOKUP; k++) sparse_row_add(row, look.sample[k], look.weight[k]);
+    for (int k = 0; k < LIGHTFIELD_LOOKUP; k++)
+        sparse_row_add(row, look->sample[k], look->weight[k]);
 }
 
-// The entry's square is the back of the block; u of that face is −x.
+// What light passes between entry and exit.
+static struct mrt_shape shape_of_turn(struct mrt_lightfield l, enum mrt_turn turn)
+{
+    static const enum tube_bend bends[] = { TUBE_STRAIGHT, TUBE_LEFT, TUBE_RIGHT };
+    return l.round ? mrt_tube(4, bends[turn]) : mrt_cube(1, 1u << CUBE_BACK);
+}
+
+// Where a ray leaves by the back, whose u is −x.
+static void look_up_back(struct mrt_lightfield l, const struct mrt_hit *hit, vec3s along,
+                         struct mrt_lightfield_lookup *out)
+{
+    mrt_lightfield_look_up(l, 0.5f - hit->s, hit->t - 0.5f, along, out);
+}
+
 static void see_entry(struct mrt_lightfield l, enum mrt_turn turn, size_t sample,
                       struct sparse_row *row)
 {
+    const struct mrt_shape shape = shape_of_turn(l, turn);
     mat3s entry_from_exit = mrt_entry_from_exit(turn);
     vec3s from = mrt_lightfield_position(l, sample);
+    struct mrt_lightfield_lookup look;
+    struct mrt_hit hit;
     from.z = 0.5f;
     from = glms_mat3_mulv(entry_from_exit, from);
     for (int sub = 0; sub < mrt_lightfield_subsamples(l); sub++) {
         vec3s along = glms_mat3_mulv(entry_from_exit, mrt_lightfield_direction(l, sample, sub));
-        struct cube_exit hit = cube_trace(from, glms_vec3_negate(along));
-        if (hit.face == CUBE_BACK) add_lookup(l, 0.5f - hit.s, hit.t - 0.5f, along, row);
+        mrt_shape_trace(&shape, from, glms_vec3_negate(along), &hit);
+        if (hit.opening != CUBE_BACK) continue;
+        look_up_back(l, &hit, along, &look);
+        add_lookup(&look, row);
     }
 }
 
@@ -129,10 +131,12 @@ static void see_entry(struct mrt_lightfield l, enum mrt_turn turn, size_t sample
 static void see_rolled(struct mrt_lightfield l, size_t sample, struct sparse_row *row)
 {
     mat3s entry_from_exit = mrt_entry_from_exit(MRT_ROLL);
-    struct mrt_lightfield coarse = { l.positions, l.directions, 1 };
+    struct mrt_lightfield coarse = { l.positions, l.directions, 1, l.round };
+    struct mrt_lightfield_lookup look;
     vec3s from = glms_mat3_mulv(entry_from_exit, mrt_lightfield_position(l, sample));
     vec3s along = glms_mat3_mulv(entry_from_exit, mrt_lightfield_direction(coarse, sample, 0));
-    add_lookup(l, from.x, from.y, along, row);
+    mrt_lightfield_look_up(l, from.x, from.y, along, &look);
+    add_lookup(&look, row);
 }
 
 bool mrt_propagate(struct host *host, struct mrt_lightfield l, enum mrt_turn turn,
@@ -154,16 +158,17 @@ bool mrt_propagate(struct host *host, struct mrt_lightfield l, enum mrt_turn tur
 
 // ---- into a block
 
-void mrt_gather_interface(struct mrt_lightfield l, struct mrt_point point,
-                          const struct mrt_rays *rays, float *rows)
+void mrt_gather_interface(struct mrt_lightfield l, const struct mrt_shape *entered,
+                          struct mrt_point point, const struct mrt_rays *rays, float *rows)
 {
     struct mrt_lightfield_lookup look;
+    struct mrt_hit hit;
     size_t samples = mrt_lightfield_samples(l);
     for (int i = 0; i < rays->count; i++) {
         vec3s ray = glms_mat3_mulv(point.frame, rays->direction[i]);
-        struct cube_exit hit = cube_trace(point.position, ray);
-        if (hit.face != CUBE_BACK) continue;
-        mrt_lightfield_look_up(l, 0.5f - hit.s, hit.t - 0.5f, glms_vec3_negate(ray), &look);
+        mrt_shape_trace(entered, point.position, ray, &hit);
+        if (hit.opening != CUBE_BACK) continue;
+        look_up_back(l, &hit, glms_vec3_negate(ray), &look);
         const float *weight = rays->weight + (size_t)i * (size_t)rays->values;
         for (size_t q = 0; q < (size_t)rays->values; q++)
             for (int k = 0; k < LIGHTFIELD_LOOKUP; k++)

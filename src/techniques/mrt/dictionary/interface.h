@@ -3,7 +3,8 @@
 // the interfaces further on, and to the surfaces and probes of the block that light enters.
 //
 // In the frame of the interface (lightfield.h) light leaves the unit cube centred at (0, 0, −½) and
-// enters the one at (0, 0, ½). Functions fill the rows of a range, so that they can run as tasks.
+// enters the one at (0, 0, ½), or the tubes in these cells. Functions fill the rows of a range, so
+// that they can run as tasks.
 #pragma once
 
 #include "core/linalg.h"
@@ -12,27 +13,12 @@
 #include "techniques/mrt/dictionary/rays.h"
 #include "techniques/mrt/dictionary/shape.h"
 
-// The cubes that light leaves and enters, in the frame of the interface.
-static inline struct mrt_shape mrt_cube_left(int resolution)
-{
-    return mrt_cube(resolution, 1u << CUBE_FRONT);
-}
-
-static inline struct mrt_shape mrt_cube_entered(int resolution)
-{
-    return mrt_cube(resolution, 1u << CUBE_BACK);
-}
-
-// Values at the texels of `shape` (texels × columns) as seen from its opening `face`: those of
-// mrt_cube_left, 0 where the shape is open. `out` is contiguous in its columns.
-void mrt_seen_from_opening(const struct mrt_shape *shape, int face, const struct matrix_f32 *values,
-                           struct matrix_f32 *out);
-
-// Lightfields at the interface of radiosity at the texels of mrt_cube_left: rows first_sample … of
-// H_lf.
+// Lightfields at the opening `face` of a shape, in the frame of that face (cube.h), of radiosity at
+// its texels: rows first_sample … of H_lf.
 bool mrt_lightfield_of_surfaces(struct host *host, struct mrt_lightfield l,
-                                const struct matrix_f32 *radiosity, int resolution,
-                                size_t first_sample, struct matrix_f32 *out);
+                                const struct mrt_shape *shape, int face,
+                                const struct matrix_f32 *radiosity, size_t first_sample,
+                                struct matrix_f32 *out);
 
 // The exits of a block, seen in the direction of travel. MRT_ROLL is no exit: it turns the frame by
 // a quarter from u to v, for three-dimensional mazes.
@@ -53,11 +39,12 @@ struct mrt_passage {
 };
 struct mrt_passage mrt_passage_between(int entry_face, int exit_face);
 
-// Lightfields at the exit of lightfields at the entry (samples × columns).
+// Lightfields at the exit of lightfields at the entry (samples × columns). A round lightfield
+// passes the tube of that turn, others a cube.
 bool mrt_propagate(struct host *host, struct mrt_lightfield l, enum mrt_turn turn,
                    const struct matrix_f32 *entry, size_t first_sample, struct matrix_f32 *out);
 
-// Light at a point of mrt_cube_entered that comes through the interface: adds to
+// Light at a point of mrt_entered_shape that comes through the interface: adds to
 // rows[q * samples + sample] for the quantities q of `rays`.
-void mrt_gather_interface(struct mrt_lightfield l, struct mrt_point point,
-                          const struct mrt_rays *rays, float *rows);
+void mrt_gather_interface(struct mrt_lightfield l, const struct mrt_shape *entered,
+                          struct mrt_point point, const struct mrt_rays *rays, float *rows);

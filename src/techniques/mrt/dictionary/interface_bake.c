@@ -8,7 +8,6 @@
 #include "techniques/mrt/dictionary/response.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { GRAM_TASKS = 16 };
@@ -38,85 +37,67 @@ static size_t row_tasks(const struct mrt_bake_job *job)
 
 // ---- lightfields of the implicit lights
 
-// Equation 4.1: cubes weigh the same whatever their indirect light. A cube of one face has none.
-static void set_scale(const struct mrt_bake_job *job, const double *sums, float *scale)
-{
-    double all = 0.0;
-    for (int i = 0; i < job->cubes; i++) all += sums[i];
-    for (int i = 0; i < job->cubes; i++) {
-        const struct mrt_shape cube = mrt_bake_cube(job, i);
-        const double factor = sums[i] > 0.0 ? sqrt(all / (sums[i] * job->cubes)) : 1.0;
-        for (uint64_t k = 0; k < (uint64_t)mrt_shape_openings(&cube) * job->k_b; k++)
-            *scale++ = (float)factor;
-    }
-}
-
-static bool cube_input(const struct bake_task *task, int cube, const char *what,
-                       struct matrix_f32 *out)
-{
-    char name[32];
-    snprintf(name, sizeof name, "cube/%d/%s", cube, what);
-    return mrt_bake_input(task, name, out);
-}
-
-// The implicit lights of all openings, seen from the opening, beside each other.
-static bool run_implicit(const struct bake_task *task)
+// Equation 4.1: shapes weigh the same whatever their indirect light. A cube of one face has none.
+static bool run_scale(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
-    uint64_t first;
-    const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
-    double sums[MRT_MAX_CUBES] = { 0 };
-    size_t column = 0;
-    for (int i = 0; i < job->cubes; i++) {
-        const struct mrt_shape cube = mrt_bake_cube(job, i);
-        struct matrix_f32 l_imp, sigma;
-        if (!cube_input(task, i, "L_imp", &l_imp) || !cube_input(task, i, "sigma_M", &sigma))
-            return false;
+    double sums[MRT_MAX_CUBES] = { 0 }, all = 0.0;
+    float *scale = task->out[0];
+    for (int i = 0; i < job->shapes; i++) {
+        struct matrix_f32 sigma;
+        if (!mrt_bake_shape_input(task, i, "sigma_M", &sigma)) return false;
         sums[i] = pow(matrix_f32_norm(&sigma), 2.0);
-        for (int f = 0; f < CUBE_FACES; f++) {
-            if (!(cube.missing >> f & 1u)) continue;
-            struct matrix_f32 to = matrix_f32_block(&out, 0, column, out.rows, l_imp.columns);
-            mrt_seen_from_opening(&cube, f, &l_imp, &to);
-            column += l_imp.columns;
-        }
+        all += sums[i];
     }
-    set_scale(job, sums, task->out[1]);
+    for (int i = 0; i < job->shapes; i++) {
+        const struct mrt_shape shape = mrt_bake_shape(job, i);
+        const double factor = sums[i] > 0.0 ? sqrt(all / (sums[i] * job->shapes)) : 1.0;
+        for (uint64_t k = 0; k < (uint64_t)mrt_shape_openings(&shape) * job->k_b; k++)
+            *scale++ = (float)factor;
+    }
     return true;
 }
 
+// The implicit lights of each shape at each of its openings, beside each other.
 static bool run_lightfields(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
-    struct matrix_f32 implicit;
     uint64_t first;
-    struct matrix_f32 out = mrt_bake_output(task, 0, &first);
-    return mrt_bake_input(task, "interface/implicit", &implicit) &&
-           mrt_lightfield_of_surfaces(task->host, job->lightfield, &implicit, job->options.texels,
-                                      (size_t)first, &out);
+    size_t column = 0;
+    const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
+    for (int i = 0; i < job->shapes; i++) {
+        const struct mrt_shape shape = mrt_bake_shape(job, i);
+        struct matrix_f32 l_imp;
+        if (!mrt_bake_shape_input(task, i, "L_imp", &l_imp)) return false;
+        for (int f = 0; f < CUBE_FACES; f++) {
+            if (!mrt_shape_is_open(&shape, f)) continue;
+            struct matrix_f32 to = matrix_f32_block(&out, 0, column, out.rows, l_imp.columns);
+            if (bake_task_cancelled(task) ||
+                !mrt_lightfield_of_surfaces(task->host, job->lightfield, &shape, f, &l_imp,
+                                            (size_t)first, &to))
+                return false;
+            column += l_imp.columns;
+        }
+    }
+    return true;
 }
 
 static bool add_lightfields(struct bake_plan *plan, const struct mrt_bake_job *job)
 {
     const uint64_t columns = job->openings * job->k_b;
-    const struct bake_output implicit[] = {
-        { "interface/implicit",
-          TENSOR_F32,
-          2,
-          { job->left_texels, columns },
-          BAKE_ROWS,
-          WAVE_LIGHTFIELDS },
-        { "interface/scale", TENSOR_F32, 1, { columns }, BAKE_ROWS, WAVE_REDUCE + 1 },
-    };
+    const struct bake_output scale = { "interface/scale", TENSOR_F32, 1,
+                                       { columns },       BAKE_ROWS,  WAVE_REDUCE + 1 };
     const struct bake_output lightfields = {
         "interface/H_lf", TENSOR_F32, 2, { job->samples, columns }, BAKE_ROWS, job->wave_final + 1
     };
-    const double rays = (double)job->samples * mrt_lightfield_subsamples(job->lightfield);
-    return bake_plan_add(plan, &(struct bake_stage){ .name = "implicit lights",
+    const double rays =
+        (double)(job->samples * job->openings) * mrt_lightfield_subsamples(job->lightfield);
+    return bake_plan_add(plan, &(struct bake_stage){ .name = "interface weights",
                                                      .wave = WAVE_ELEMENTS,
                                                      .task_count = 1,
-                                                     .run = run_implicit,
-                                                     .outputs = implicit,
-                                                     .output_count = 2 }) &&
+                                                     .run = run_scale,
+                                                     .outputs = &scale,
+                                                     .output_count = 1 }) &&
            bake_plan_add(plan, &(struct bake_stage){ .name = "lightfields",
                                                      .wave = WAVE_LIGHTFIELDS,
                                                      .task_count = row_tasks(job),
@@ -374,9 +355,9 @@ static bool run_operators(const struct bake_task *task)
     store_stack(&turn, sigma, 0, (size_t)job->k_l, (size_t)job->turns, task->out[0]);
     int output = 1;
     size_t first = 0;
-    for (int i = 0; i < job->cubes; i++) {
-        const struct mrt_shape cube = mrt_bake_cube(job, i);
-        const size_t openings = (size_t)mrt_shape_openings(&cube);
+    for (int i = 0; i < job->shapes; i++) {
+        const struct mrt_shape shape = mrt_bake_shape(job, i);
+        const size_t openings = (size_t)mrt_shape_openings(&shape);
         if (openings == 0) continue;
         store_stack(&b, sigma, first, (size_t)job->k_b, openings, task->out[output++]);
         first += openings * (size_t)job->k_b;
@@ -397,14 +378,17 @@ static bool add_operators(struct bake_plan *plan, const struct mrt_bake_job *job
           BAKE_SAVED },
     };
     int count = 1;
-    for (int i = 0; i < job->cubes; i++) {
-        const struct mrt_shape cube = mrt_bake_cube(job, i);
-        const uint64_t openings = (uint64_t)mrt_shape_openings(&cube);
+    for (int i = 0; i < job->shapes; i++) {
+        const struct mrt_shape shape = mrt_bake_shape(job, i);
+        const uint64_t openings = (uint64_t)mrt_shape_openings(&shape);
         if (openings > 0)
-            outputs[count++] = (struct bake_output){
-                bake_plan_name(plan, "cube/%d/R_b", i), TENSOR_F32, 3,
-                { openings, job->k_l, job->k_b },       BAKE_ROWS,  BAKE_SAVED
-            };
+            outputs[count++] =
+                (struct bake_output){ bake_plan_name(plan, "%s/%d/R_b", job->family, i),
+                                      TENSOR_F32,
+                                      3,
+                                      { openings, job->k_l, job->k_b },
+                                      BAKE_ROWS,
+                                      BAKE_SAVED };
     }
     return bake_plan_add(plan, &(struct bake_stage){ .name = "interface operators",
                                                      .wave = job->wave_final + 2,
@@ -417,10 +401,12 @@ static bool add_operators(struct bake_plan *plan, const struct mrt_bake_job *job
 
 // ---- the response of the block that light enters
 
-// Of a gather stage: the measure, the basis that it gathers, and points per task.
+// Of a gather stage: the measure, the basis that it gathers (one for each shape that light enters,
+// below each other, or one for all), and points of a shape.
 struct response_stage {
     enum mrt_measure measure;
     const char *basis;
+    uint64_t points;
 };
 
 enum { ROWS_PER_TASK = 16 };
@@ -429,18 +415,22 @@ static bool run_response(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
     const struct response_stage *stage = task->argument;
-    const struct mrt_shape entered = mrt_cube_entered(job->options.texels);
     const struct mrt_rays *rays = &job->rays[stage->measure];
     struct matrix_f32 basis, gather = { 0 };
     uint64_t first, unused, points;
     struct matrix_f32 out = mrt_bake_output(task, 0, &unused);
     first = bake_task_rows(task, 0, &points);
-    bool ok = mrt_bake_input(task, stage->basis, &basis) &&
-              matrix_f32_init(task->host, &gather, out.rows, basis.rows);
+    const uint64_t index = first / stage->points;
+    const struct mrt_shape entered = mrt_entered_shape(job->maze, job->options.texels, (int)index);
+    if (!mrt_bake_input(task, stage->basis, &basis)) return false;
+    if (basis.rows > job->samples)
+        basis = matrix_f32_block(&basis, (size_t)(index * job->samples), 0, (size_t)job->samples,
+                                 basis.columns);
+    bool ok = matrix_f32_init(task->host, &gather, out.rows, basis.rows);
     for (uint64_t i = 0; ok && i < points; i++) {
-        struct mrt_point at =
-            mrt_gather_point(&entered, job->options.probes, stage->measure, (int)(first + i));
-        mrt_gather_interface(job->lightfield, at, rays,
+        struct mrt_point at = mrt_gather_point(&entered, job->options.probes, stage->measure,
+                                               (int)(first + i - index * stage->points));
+        mrt_gather_interface(job->lightfield, &entered, at, rays,
                              gather.at + i * (uint64_t)rays->values * gather.stride);
         ok = !bake_task_cancelled(task);
     }
@@ -450,34 +440,44 @@ static bool run_response(const struct bake_task *task)
     return ok;
 }
 
+// Tasks of as many points as divide those of a shape, so that each task is in one shape.
+static uint64_t points_per_task(uint64_t points, uint64_t values)
+{
+    uint64_t part = values < ROWS_PER_TASK ? ROWS_PER_TASK / values : 1;
+    while (points % part != 0) part--;
+    return part;
+}
+
 static bool add_response(struct bake_plan *plan, const struct mrt_bake_job *job, const char *name,
                          int wave, const struct response_stage *stage,
                          const struct bake_output *out)
 {
-    const uint64_t points = out->shape[0], values = out->rank == 3 ? out->shape[1] : 1;
-    const uint64_t tasks = (points * values + ROWS_PER_TASK - 1) / ROWS_PER_TASK;
-    const double columns = (double)out->shape[out->rank - 1];
+    const uint64_t values = out->rank == 3 ? out->shape[1] : 1;
+    const uint64_t part = points_per_task(stage->points, values);
+    const double columns = (double)out->shape[out->rank - 1], rows = (double)(part * values);
     return bake_plan_add(
         plan, &(struct bake_stage){ .name = name,
                                     .wave = wave,
-                                    .task_count = (size_t)(tasks < points ? tasks : points),
+                                    .task_count = (size_t)(out->shape[0] / part),
                                     .run = run_response,
                                     .argument = stage,
                                     .outputs = out,
                                     .output_count = 1,
-                                    .rays = (double)points * job->options.rays / (double)tasks,
-                                    .flops = 2.0 * ROWS_PER_TASK * (double)job->samples * columns,
-                                    .scratch_bytes = (size_t)(4 * ROWS_PER_TASK * job->samples) });
+                                    .rays = (double)part * job->options.rays,
+                                    .flops = 2.0 * rows * (double)job->samples * columns,
+                                    .scratch_bytes = (size_t)(4.0 * rows * (double)job->samples) });
 }
 
+// One task for each shape that light enters.
 static bool run_response_modes(const struct bake_task *task)
 {
     const struct mrt_bake_job *job = task->job;
     struct matrix_f32 g;
     struct mrt_response response;
-    if (!mrt_bake_input(task, "interface/G", &g) ||
-        !mrt_response_init(task->host, &g, (int)job->k_r, &response))
-        return false;
+    if (!mrt_bake_input(task, "interface/G", &g)) return false;
+    g = matrix_f32_block(&g, task->index * (size_t)job->entered_texels, 0,
+                         (size_t)job->entered_texels, g.columns);
+    if (!mrt_response_init(task->host, &g, (int)job->k_r, &response)) return false;
     const struct matrix_f32 *parts[] = { &response.u_r, &response.t_r, &response.lift };
     for (int i = 0; i < 3; i++)
         memcpy(task->out[i], parts[i]->at, parts[i]->rows * parts[i]->columns * sizeof(float));
@@ -487,16 +487,17 @@ static bool run_response_modes(const struct bake_task *task)
 
 static bool add_response_modes(struct bake_plan *plan, const struct mrt_bake_job *job)
 {
-    const uint64_t m = job->left_texels, wave = (uint64_t)job->wave_final + 1;
+    const uint64_t count = (uint64_t)job->entered, m = job->entered_texels;
+    const int wave = job->wave_final + 1;
     const struct bake_output outputs[] = {
-        { "interface/U_r", TENSOR_F32, 2, { m, job->k_r }, BAKE_ROWS, BAKE_SAVED },
-        { "interface/T_r", TENSOR_F32, 2, { job->k_r, job->k_l }, BAKE_ROWS, BAKE_SAVED },
-        { "interface/lift", TENSOR_F32, 2, { job->k_l, job->k_r }, BAKE_ROWS, (int)wave + 1 },
+        { "interface/U_r", TENSOR_F32, 2, { count * m, job->k_r }, BAKE_ROWS, BAKE_SAVED },
+        { "interface/T_r", TENSOR_F32, 2, { count * job->k_r, job->k_l }, BAKE_ROWS, BAKE_SAVED },
+        { "interface/lift", TENSOR_F32, 2, { count * job->k_l, job->k_r }, BAKE_ROWS, wave + 1 },
     };
     return bake_plan_add(
         plan, &(struct bake_stage){ .name = "response modes",
-                                    .wave = (int)wave,
-                                    .task_count = 1,
+                                    .wave = wave,
+                                    .task_count = (size_t)count,
                                     .run = run_response_modes,
                                     .outputs = outputs,
                                     .output_count = 3,
@@ -507,25 +508,31 @@ static bool add_response_modes(struct bake_plan *plan, const struct mrt_bake_job
 // The lightfields of single r-coefficients.
 static bool run_lift(const struct bake_task *task)
 {
+    const struct mrt_bake_job *job = task->job;
     const struct round_names *names = task->argument;
     struct mrt_span span = { .parts = 1 };
     struct matrix_f32 lift;
     uint64_t first;
     struct matrix_f32 out = mrt_bake_output(task, 0, &first);
-    return mrt_bake_input(task, names->basis, &span.part[0]) &&
-           mrt_bake_input(task, "interface/lift", &lift) &&
-           mrt_span_apply(task->host, &span, (size_t)first, &lift, &out);
+    if (!mrt_bake_input(task, names->basis, &span.part[0]) ||
+        !mrt_bake_input(task, "interface/lift", &lift))
+        return false;
+    const size_t index = (size_t)(first / job->samples), k_l = (size_t)job->k_l;
+    lift = matrix_f32_block(&lift, index * k_l, 0, k_l, lift.columns);
+    return mrt_span_apply(task->host, &span, (size_t)(first % job->samples), &lift, &out);
 }
 
 static bool add_lift(struct bake_plan *plan, const struct mrt_bake_job *job,
                      const struct round_names *names)
 {
+    const uint64_t count = (uint64_t)job->entered;
     const struct bake_output out = {
-        "interface/H_r", TENSOR_F32, 2, { job->samples, job->k_r }, BAKE_ROWS, job->wave_final + 3
+        "interface/H_r", TENSOR_F32,         2, { count * job->samples, job->k_r },
+        BAKE_ROWS,       job->wave_final + 3
     };
     return bake_plan_add(plan, &(struct bake_stage){ .name = "response lightfields",
                                                      .wave = job->wave_final + 2,
-                                                     .task_count = row_tasks(job),
+                                                     .task_count = (size_t)count * row_tasks(job),
                                                      .run = run_lift,
                                                      .argument = names,
                                                      .outputs = &out,
@@ -539,18 +546,21 @@ static bool add_responses(struct bake_plan *plan, const struct mrt_bake_job *job
     if (!stages) return false;
     for (int m = 0; m < 3; m++)
         stages[m] = (struct response_stage){ (enum mrt_measure)m,
-                                             m == MRT_IRRADIANCE ? last->basis : "interface/H_r" };
-    const uint64_t texels = job->left_texels;
+                                             m == MRT_IRRADIANCE ? last->basis : "interface/H_r",
+                                             m == MRT_PROBE ? job->probes : job->entered_texels };
+    const uint64_t count = (uint64_t)job->entered, texels = count * job->entered_texels;
     const struct bake_output g = { "interface/G",        TENSOR_F32, 2,
                                    { texels, job->k_l }, BAKE_ROWS,  job->wave_final + 1 };
     const struct bake_output vec = {
         "interface/U_rvec", TENSOR_F32, 3, { texels, MRT_VECTOR_COEFFICIENTS, job->k_r },
         BAKE_ROWS,          BAKE_SAVED
     };
-    const struct bake_output vol = {
-        "interface/U_rvol", TENSOR_F32, 3, { job->probes, MRT_PROBE_COEFFICIENTS, job->k_r },
-        BAKE_ROWS,          BAKE_SAVED
-    };
+    const struct bake_output vol = { "interface/U_rvol",
+                                     TENSOR_F32,
+                                     3,
+                                     { count * job->probes, MRT_PROBE_COEFFICIENTS, job->k_r },
+                                     BAKE_ROWS,
+                                     BAKE_SAVED };
     return add_response(plan, job, "response", job->wave_final, &stages[0], &g) &&
            add_project(plan, job, last) && add_response_modes(plan, job) &&
            add_operators(plan, job, last) && add_lift(plan, job, last) &&

@@ -1,6 +1,8 @@
 // Samples of interface lightfields, and lookups.
 #include "lightfield.h"
 
+#include "techniques/mrt/dictionary/tube.h"
+
 #include "core/sampling.h"
 
 #include <math.h>
@@ -13,8 +15,11 @@ static size_t directions_of(struct mrt_lightfield l)
 vec3s mrt_lightfield_position(struct mrt_lightfield l, size_t sample)
 {
     int position = (int)(sample / directions_of(l)), n = l.positions;
-    return vec3_of(((float)(position % n) + 0.5f) / (float)n - 0.5f,
-                   ((float)(position / n) + 0.5f) / (float)n - 0.5f, 0.0f);
+    vec2s at = { { ((float)(position % n) + 0.5f) / (float)n,
+                   ((float)(position / n) + 0.5f) / (float)n } };
+    if (!l.round) return vec3_of(at.x - 0.5f, at.y - 0.5f, 0.0f);
+    vec2s disk = sample_disk(at);
+    return vec3_of(TUBE_RADIUS * disk.x, TUBE_RADIUS * disk.y, 0.0f);
 }
 
 vec3s mrt_lightfield_direction(struct mrt_lightfield l, size_t sample, int sub)
@@ -54,8 +59,9 @@ static struct blend blend_of(float x, int n)
 void mrt_lightfield_look_up(struct mrt_lightfield l, float x, float y, vec3s direction,
                             struct mrt_lightfield_lookup *out)
 {
-    vec2s square = square_of_disk(direction.x, direction.y);
-    struct blend i = blend_of(x + 0.5f, l.positions), j = blend_of(y + 0.5f, l.positions);
+    vec2s square = square_of_disk(direction.x, direction.y), at = { { x + 0.5f, y + 0.5f } };
+    if (l.round) at = square_of_disk(x / TUBE_RADIUS, y / TUBE_RADIUS);
+    struct blend i = blend_of(at.x, l.positions), j = blend_of(at.y, l.positions);
     struct blend a = blend_of(square.x, l.directions), b = blend_of(square.y, l.directions);
     size_t positions = (size_t)l.positions, directions = (size_t)l.directions;
     for (int k = 0; k < LIGHTFIELD_LOOKUP; k++) {

@@ -1,5 +1,6 @@
 // Lightfield of an interface (Loos 2015, sections 3.4.1 and 4.2): radiosity (π · radiance, lm/m²)
-// that passes a unit square, at a grid of positions and of directions.
+// that passes a unit square or the disk at the end of a tube, at a grid of positions and of
+// directions.
 //
 // The frame of the interface has its origin at the centre of the square; z is the direction of
 // travel, y is v and x is u of the face (cube.h). Directions are a square grid on the concentric
@@ -14,6 +15,7 @@
 struct mrt_lightfield {
     int positions, directions; // along an edge of each square
     int supersampling;         // directions per sample, along an edge
+    bool round;                // positions fill the disk of a tube, by the concentric map
 };
 
 enum { LIGHTFIELD_LOOKUP = 16 };

@@ -18,22 +18,18 @@ static float lattice(int i)
     return (float)(i + 1) / (float)(LATTICE + 1) - 0.5f;
 }
 
-static bool is_open(const struct mrt_shape *shape, int face)
-{
-    return shape->missing >> face & 1u;
-}
-
 // Two openings that share an edge.
 static bool is_corner(const struct mrt_shape *shape, int a, int b)
 {
-    return a / 2 != b / 2 && is_open(shape, a) && is_open(shape, b);
+    return shape->kind == MRT_CUBE && a / 2 != b / 2 && mrt_shape_is_open(shape, a) &&
+           mrt_shape_is_open(shape, b);
 }
 
 int mrt_prior_light_count(const struct mrt_shape *shape)
 {
     int count = LATTICE * LAYER;
     for (int a = 0; a < CUBE_FACES; a++) {
-        if (is_open(shape, a)) count += BEYOND * LAYER;
+        if (mrt_shape_is_open(shape, a)) count += BEYOND * LAYER;
         for (int b = 0; b < a; b++)
             if (is_corner(shape, a, b)) count += BEYOND * BEYOND * LATTICE;
     }
@@ -79,11 +75,35 @@ static struct mrt_prior_light *add_corner(int a, int b, struct mrt_prior_light *
     return light;
 }
 
+// The lattice of a tube: on the disk and along it; beyond its ends the tube goes on straight.
+static vec3s tube_light(enum tube_bend bend, int i, float along)
+{
+    float within = fminf(fmaxf(along, 0.0f), 1.0f);
+    vec3s at = vec3_of(0.5f + lattice(i % LATTICE), 0.5f + lattice(i / LATTICE), within);
+    return glms_vec3_muladds(tube_axis(bend, within).forward, along - within,
+                             tube_inside(bend, at));
+}
+
+static void add_tube(enum tube_bend bend, struct mrt_prior_light *light)
+{
+    for (int layer = -BEYOND; layer < LATTICE + BEYOND; layer++) {
+        bool inside = layer >= 0 && layer < LATTICE;
+        float depth = (float)(layer < 0 ? layer : layer + 1) / (float)(LATTICE + 1);
+        if (layer >= LATTICE) depth = 1.0f + (float)(layer + 1 - LATTICE) / (float)(LATTICE + 1);
+        for (int i = 0; i < LAYER; i++)
+            *light++ = (struct mrt_prior_light){ tube_light(bend, i, depth), inside };
+    }
+}
+
 void mrt_prior_lights(const struct mrt_shape *shape, struct mrt_prior_light *lights)
 {
+    if (shape->kind != MRT_CUBE) {
+        add_tube((enum tube_bend)((int)shape->kind - MRT_TUBE), lights);
+        return;
+    }
     lights = add_inside(lights);
     for (int a = 0; a < CUBE_FACES; a++) {
-        if (is_open(shape, a)) lights = add_beyond(a, lights);
+        if (mrt_shape_is_open(shape, a)) lights = add_beyond(a, lights);
         for (int b = 0; b < a; b++)
             if (is_corner(shape, a, b)) lights = add_corner(a, b, lights);
     }
@@ -96,13 +116,20 @@ float mrt_point_light(struct mrt_point at, vec3s light)
     return along > 0.0f ? along / (squared * sqrtf(squared)) : 0.0f;
 }
 
-// The share of the sphere's irradiance that enters through an opening: directions within the cone
-// that the sphere subtends, by cosine.
-static float visible_share(const struct mrt_shape *shape, struct mrt_point at, vec3s centre,
-                           const vec2s disk[SHADOW_RAYS])
+static float light_radius(const struct mrt_shape *shape)
 {
-    vec3s axis = glms_vec3_sub(centre, at.position), t, b;
-    float distance = glms_vec3_norm(axis), reach = 0.5f / (float)(LATTICE + 1) / distance;
+    float width = shape->kind == MRT_CUBE ? 1.0f : 2.0f * TUBE_RADIUS;
+    return 0.5f * width / (float)(LATTICE + 1);
+}
+
+// The share of the sphere's irradiance that arrives: directions within the cone that the sphere
+// subtends, by cosine. Light from beyond enters through an opening; a bend can stand in the way of
+// light from inside.
+static float visible_share(const struct mrt_shape *shape, struct mrt_point at,
+                           struct mrt_prior_light light, const vec2s disk[SHADOW_RAYS])
+{
+    vec3s axis = glms_vec3_sub(light.centre, at.position), t, b;
+    float distance = glms_vec3_norm(axis), reach = light_radius(shape) / distance;
     float lit = 0.0f, all = 0.0f;
     axis = glms_vec3_scale(axis, 1.0f / distance);
     basis_of(axis, &t, &b);
@@ -114,7 +141,8 @@ static float visible_share(const struct mrt_shape *shape, struct mrt_point at, v
         float cosine = fmaxf(glms_vec3_dot(ray, at.frame.col[2]), 0.0f);
         mrt_shape_trace(shape, at.position, ray, &hit);
         all += cosine;
-        if (hit.opening >= 0) lit += cosine;
+        if (light.inside ? hit.distance >= distance - light_radius(shape) : hit.opening >= 0)
+            lit += cosine;
     }
     return all > 0.0f ? lit / all : 0.0f;
 }
@@ -127,7 +155,8 @@ void mrt_prior_column(const struct mrt_shape *shape, struct mrt_prior_light ligh
     for (uint32_t i = 0; i < SHADOW_RAYS; i++) disk[i] = sample_disk(sobol_2d(i, 1));
     for (int i = 0; i < texels; i++) {
         struct mrt_point at = mrt_shape_texel(shape, i);
-        float share = light.inside ? 1.0f : visible_share(shape, at, light.centre, disk);
+        bool seen = light.inside && (shape->kind == MRT_CUBE || shape->kind == MRT_TUBE);
+        float share = seen ? 1.0f : visible_share(shape, at, light, disk);
         column[(size_t)i * stride] = share * mrt_point_light(at, light.centre);
     }
 }

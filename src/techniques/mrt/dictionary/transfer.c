@@ -87,17 +87,17 @@ static bool decompose(struct host *host, const struct matrix_f64 *f, const struc
     return ok;
 }
 
-// Columns that are 1 on one face and 0 elsewhere.
-static void set_face_constants(const struct mrt_shape *shape, double value, size_t first,
-                               struct matrix_f64 *to)
+// Columns that are constant on one patch and 0 elsewhere.
+static void set_patch_constants(const struct mrt_shape *shape, double value, size_t first,
+                                struct matrix_f64 *to)
 {
-    size_t in_face = (size_t)(shape->resolution * shape->resolution);
     for (size_t r = 0; r < to->rows; r++)
-        for (size_t face = 0; face * in_face < to->rows; face++)
-            to->at[r * to->stride + first + face] = r / in_face == face ? value : 0.0;
+        for (int patch = 0; patch < mrt_shape_patches(shape); patch++)
+            to->at[r * to->stride + first + (size_t)patch] =
+                mrt_shape_patch(shape, (int)r) == patch ? value : 0.0;
 }
 
-// Appendix A: the scaled prior, a constant per face and the indirect light U_b, each with a
+// Appendix A: the scaled prior, a constant per face (patch) and the indirect light U_b, each with a
 // Frobenius norm of 1, decomposed together.
 static bool enrich(struct host *host, const struct mrt_shape *shape, const struct matrix_f64 *f,
                    const struct mrt_transfer_options *options, struct mrt_basis *basis)
@@ -106,7 +106,7 @@ static bool enrich(struct host *host, const struct mrt_shape *shape, const struc
     struct matrix_f64 span = { 0 };
     struct mrt_basis better = { 0 };
     if (!decompose(host, f, basis, &m)) return false;
-    size_t faces = f->rows / (size_t)(shape->resolution * shape->resolution);
+    size_t faces = (size_t)mrt_shape_patches(shape);
     size_t indirect = useful_modes(m.sigma, m.count, options->k_b);
     bool ok = matrix_f64_init(host, &span, f->rows, basis->count + faces + indirect);
     if (ok) {
@@ -114,7 +114,7 @@ static bool enrich(struct host *host, const struct mrt_shape *shape, const struc
         struct matrix_f64 sigma = { m.sigma, 1, indirect, indirect };
         struct matrix_f64 u = matrix_f64_block(&m.u, 0, 0, f->rows, indirect);
         copy_columns(&basis->p, basis->s, 1.0 / matrix_f64_norm(&s), 0, &span);
-        set_face_constants(shape, 1.0 / sqrt((double)f->rows), basis->count, &span);
+        set_patch_constants(shape, 1.0 / sqrt((double)f->rows), basis->count, &span);
         copy_columns(&u, m.sigma, 1.0 / matrix_f64_norm(&sigma), basis->count + faces, &span);
         ok = basis_init(host, "the enriched light prior", &span, options->k_d, &better, NULL, NULL);
     }

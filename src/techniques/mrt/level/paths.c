@@ -129,8 +129,8 @@ static bool respond(struct traversal *t, const struct wave *wave)
     float *response = t->response + (size_t)wave->entry * rows * columns;
     struct matrix_f32 sum = { response, rows, columns, columns };
     t->reached[wave->entry] = true;
-    return matrix_f32_multiply(t->host, 1.0f, &t->level->dictionary->t_r, AS_IT_IS, &wave->light,
-                               AS_IT_IS, 1.0f, &sum);
+    return matrix_f32_multiply(t->host, 1.0f, &t->level->dictionary->entered[0].t_r, AS_IT_IS,
+                               &wave->light, AS_IT_IS, 1.0f, &sum);
 }
 
 static bool pass_block(struct traversal *t, const struct wave *wave)

@@ -52,7 +52,7 @@ static bool copy_cube(struct mrt_solver *s, int cube)
 
 static bool copy_response(struct mrt_solver *s)
 {
-    const struct matrix_f32 *u_r = &s->level->dictionary->u_r;
+    const struct matrix_f32 *u_r = &s->level->dictionary->entered[0].u_r;
     int n = s->level->resolution * s->level->resolution;
     size_t face = (size_t)s->face_texels, k_r = (size_t)s->level->k_r;
     s->u_r = host_alloc(s->host, (CUBE_FACES - 1) * k_r * face, sizeof *s->u_r);
@@ -82,7 +82,7 @@ static void map_block(struct mrt_solver *s, int block)
 static void map_entry(struct mrt_solver *s, int entry, int wall)
 {
     int resolution = s->level->resolution, n = resolution * resolution;
-    struct mrt_shape entered = mrt_cube_entered(resolution);
+    struct mrt_shape entered = mrt_entered_shape(s->level->maze, resolution, 0);
     struct mrt_shape only = mrt_cube(resolution, CUBE_ALL_FACES & ~(1u << wall));
     int *out = s->entered_texel + (entry * CUBE_FACES + wall) * n;
     for (int t = 0; t < n; t++) {
@@ -121,7 +121,7 @@ bool mrt_solver_init(struct host *host, const struct mrt_level *level, struct mr
     *solver = (struct mrt_solver){ .host = host, .level = level };
     solver->face_texels = (n + MRT_LANES - 1) / MRT_LANES * MRT_LANES;
     bool ok = allocate(solver) && copy_response(solver);
-    for (int i = 0; ok && i < mrt_cube_count(level->maze); i++) ok = copy_cube(solver, i);
+    for (int i = 0; ok && i < mrt_dictionary_shapes(level->maze); i++) ok = copy_cube(solver, i);
     if (ok)
         map_texels(solver);
     else

@@ -120,12 +120,14 @@ static bool make_bases(struct mrt_turned *out, const struct mrt_level *level,
 static bool make_responses(struct mrt_turned *out, const struct mrt_dictionary *dictionary)
 {
     int resolution = dictionary->options.texels;
+    const struct mrt_entered *entered = &dictionary->entered[0];
+    const struct mrt_shape shape =
+        mrt_entered_shape((enum mrt_maze)dictionary->options.maze, resolution, 0);
     for (int face = 0; face < CUBE_FACES; face++) {
-        const struct turn turn = { mrt_cube_entered(resolution), mrt_cube(resolution, 0),
-                                   mrt_block_from_entry(face) };
+        const struct turn turn = { shape, mrt_cube(resolution, 0), mrt_block_from_entry(face) };
         struct mrt_response_input *response = &out->input.response[face];
-        if (!turn_rows(out->host, &turn, &dictionary->u_r, &response->u_r) ||
-            !turn_vectors(out->host, &turn, &dictionary->u_rvec, &response->u_vec))
+        if (!turn_rows(out->host, &turn, &entered->u_r, &response->u_r) ||
+            !turn_vectors(out->host, &turn, &entered->u_rvec, &response->u_vec))
             return false;
     }
     return true;
