@@ -140,17 +140,16 @@ TEST_GPU(gi_loads_the_bake_after_creation_and_refuses_to_do_without)
     struct gi_spec spec = spec_of("fake");
     CHECK(!gi_create(test_host(), gpu, &spec, &s.pose, 32, 32));
     CHECK_STRING(test_last_message(), "cannot create fake: it needs a bake");
-    struct bake *bake = bake_of(&spec, &s.pose, &how);
-    CHECK(bake_run(bake, &(struct bake_run_options){ 0 }));
-    const struct gi_bakes bakes = { { bake_tensors(bake) } };
-    struct gi *gi = gi_create_baked(test_host(), gpu, &spec, &bakes, &s.pose, 32, 32);
+    struct gi_baked baked;
+    CHECK(gi_bake_all(&baked, test_host(), &spec, &s.pose));
+    struct gi *gi = gi_create_baked(test_host(), gpu, &spec, &baked.bakes, &s.pose, 32, 32);
     assert_non_null(gi);
     CHECK_NEAR(newest.sum, 0 + 1 + 2 + 3, 0.0);
     gi_destroy(gi);
-    bake_destroy(bake);
+    gi_baked_finish(&baked);
     // A bake of other options: the technique checks what it reads.
     struct gi_spec wide = spec_of("fake:modes=5");
-    bake = bake_of(&wide, &s.pose, &how);
+    struct bake *bake = bake_of(&wide, &s.pose, &how);
     CHECK(bake_run(bake, &(struct bake_run_options){ 0 }));
     const struct gi_bakes wrong = { { bake_tensors(bake) } };
     CHECK(!gi_create_baked(test_host(), gpu, &spec, &wrong, &s.pose, 32, 32));
