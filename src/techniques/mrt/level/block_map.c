@@ -107,3 +107,40 @@ bool mrt_block_map_check(const char *what, const struct mrt_block_map *map)
     }
     return true;
 }
+
+// ---- maps for dictionaries of the plane
+
+static bool is_in_plane(const struct mrt_block *block, int face)
+{
+    if (!mrt_block_is_open(block, face)) return true;
+    const struct mrt_neighbor *n = &block->neighbor[face];
+    bool side = face / 2 != 1 && (n->block < 0 || n->face / 2 != 1);
+    return side && (n->block < 0 || n->rolls == 0);
+}
+
+bool mrt_block_map_is_plane(const struct mrt_block_map *map)
+{
+    for (int b = 0; b < map->count; b++)
+        for (int f = 0; f < CUBE_FACES; f++)
+            if (!is_in_plane(&map->blocks[b], f)) return false;
+    return true;
+}
+
+static void close_opening(struct mrt_block *block, int face)
+{
+    block->open &= ~(1u << face);
+    block->neighbor[face] = (struct mrt_neighbor){ .block = -1 };
+}
+
+void mrt_block_map_make_plane(struct mrt_block_map *map)
+{
+    for (int b = 0; b < map->count; b++) {
+        for (int f = 0; f < CUBE_FACES; f++) {
+            struct mrt_block *block = &map->blocks[b];
+            const struct mrt_neighbor beyond = block->neighbor[f];
+            if (is_in_plane(block, f)) continue;
+            close_opening(block, f);
+            if (beyond.block >= 0) close_opening(&map->blocks[beyond.block], beyond.face);
+        }
+    }
+}

@@ -28,6 +28,12 @@ int mrt_meeting_face(const struct mrt_block *block, int face, const struct mrt_b
 // are not finite or a warp that folds over, openings that its shape lacks or a cube without walls.
 bool mrt_block_map_check(const char *what, const struct mrt_block_map *map);
 
+// Whether a dictionary for two-dimensional mazes has all cubes: no opening at the bottom or top of
+// a cell, no neighbours that are tilted against each other.
+bool mrt_block_map_is_plane(const struct mrt_block_map *map);
+// Makes it so: such openings become walls on both sides, the others stay.
+void mrt_block_map_make_plane(struct mrt_block_map *map);
+
 // ---- cylinder.c
 
 // Replaces cylinders by cubes that are warped along them, for dictionaries of cubes. Ends without a
