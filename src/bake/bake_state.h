@@ -101,10 +101,14 @@ size_t run_tasks(const struct bake_stage *stage, const struct bake_run_options *
 
 // ---- partial.c: finished tasks in a file
 
-// done: the flags of each stage, copied under the mutex.
-bool partial_write(struct host *host, const struct bake *bake, const char *path, bool *const *done,
-                   double seconds);
-
+// What of a stage was finished at some moment, copied under the mutex.
+struct finished_tasks {
+    bool *done; // [task_count]
+    double seconds;
+};
+// stages: one for each of the plan.
+bool partial_write(struct host *host, const struct bake *bake, const char *path,
+                   const struct finished_tasks *stages, double seconds);
 // Takes the finished tasks of a partial file; messages and memory by `host`.
 bool partial_read(struct host *host, struct bake *bake, const char *path);
 

@@ -51,8 +51,8 @@ static bool add_named(struct list *list, const char *folder, const char *name,
     return ok;
 }
 
-static bool add_tasks(struct list *list, const struct planned_stage *stage, const bool *done,
-                      double seconds)
+static bool add_tasks(struct list *list, const struct planned_stage *stage,
+                      const struct finished_tasks *finished)
 {
     const size_t count = stage->what.task_count;
     uint32_t *indices = arena_alloc(&list->arena, count, sizeof *indices);
@@ -60,8 +60,8 @@ static bool add_tasks(struct list *list, const struct planned_stage *stage, cons
     size_t used = 0;
     if (!indices || !time) return false;
     for (size_t i = 0; i < count; i++)
-        if (done[i]) indices[used++] = (uint32_t)i;
-    *time = (float)seconds;
+        if (finished->done[i]) indices[used++] = (uint32_t)i;
+    *time = (float)finished->seconds;
     return used == 0 || (add_named(list, "tasks", stage->what.name, TENSOR_U32, indices, used) &&
                          add_named(list, "seconds", stage->what.name, TENSOR_F32, time, 1));
 }
@@ -97,26 +97,27 @@ static bool add_output(struct list *list, const struct planned_stage *stage,
     return true;
 }
 
-static bool add_stages(struct list *list, const struct bake *bake, bool *const *done)
+static bool add_stages(struct list *list, const struct bake *bake,
+                       const struct finished_tasks *stages)
 {
     for (int s = 0; s < bake->plan.stage_count; s++) {
         const struct planned_stage *stage = &bake->plan.stages[s];
-        if (!add_tasks(list, stage, done[s], stage->seconds)) return false;
+        if (!add_tasks(list, stage, &stages[s])) return false;
         for (int i = 0; i < stage->what.output_count; i++)
-            if (!add_output(list, stage, &stage->outputs[i], done[s])) return false;
+            if (!add_output(list, stage, &stage->outputs[i], stages[s].done)) return false;
     }
     return true;
 }
 
-bool partial_write(struct host *host, const struct bake *bake, const char *path, bool *const *done,
-                   double seconds)
+bool partial_write(struct host *host, const struct bake *bake, const char *path,
+                   const struct finished_tasks *stages, double seconds)
 {
     struct list list = { .host = host };
     struct identity_text text;
     arena_init(&list.arena, host);
     identity_print(bake, KIND, seconds, &text);
     const bool ok =
-        add_stages(&list, bake, done) && identity_write(host, path, &text, list.at, list.count);
+        add_stages(&list, bake, stages) && identity_write(host, path, &text, list.at, list.count);
     arena_finish(&list.arena);
     host_free(host, list.at);
     return ok;

@@ -171,31 +171,33 @@ static void pass_on_messages(struct bake_run *run)
     }
 }
 
-// The flags of finished tasks; their blocks are complete and no longer written. NULL: no memory.
-static bool **copy_flags(struct host *host, struct bake *bake)
+// The finished tasks, whose blocks are complete and no longer written. NULL: no memory.
+static struct finished_tasks *copy_finished(struct host *host, struct bake *bake)
 {
     const struct bake_plan *plan = &bake->plan;
     size_t total = 0;
     for (int s = 0; s < plan->stage_count; s++) total += plan->stages[s].what.task_count;
-    const size_t table = (size_t)plan->stage_count * sizeof(bool *);
+    const size_t table = (size_t)plan->stage_count * sizeof(struct finished_tasks);
     char *memory = host_alloc(host, table + total, 1);
     if (!memory) return NULL;
-    bool **flags = (bool **)(void *)memory, *next = (bool *)(memory + table);
+    struct finished_tasks *stages = (struct finished_tasks *)(void *)memory;
+    bool *next = (bool *)(memory + table);
     pthread_mutex_lock(&bake->mutex);
     for (int s = 0; s < plan->stage_count; s++) {
         const size_t count = plan->stages[s].what.task_count;
-        flags[s] = memcpy(next, plan->stages[s].done, count * sizeof *next);
+        stages[s].done = memcpy(next, plan->stages[s].done, count * sizeof *next);
+        stages[s].seconds = plan->stages[s].seconds;
         next += count;
     }
     pthread_mutex_unlock(&bake->mutex);
-    return flags;
+    return stages;
 }
 
 static bool write_now(struct host *host, struct bake *bake, const char *path, double seconds)
 {
-    bool **flags = copy_flags(host, bake);
-    const bool ok = flags && partial_write(host, bake, path, flags, seconds);
-    host_free(host, flags);
+    struct finished_tasks *stages = copy_finished(host, bake);
+    const bool ok = stages && partial_write(host, bake, path, stages, seconds);
+    host_free(host, stages);
     return ok;
 }
 
