@@ -36,7 +36,7 @@ void mrt_block_map_make_plane(struct mrt_block_map *map);
 
 // ---- cylinder.c
 
-// Replaces cylinders by cubes that are warped along them, for dictionaries of cubes. Ends without a
+// Replaces cylinders by cubes that are warped along them: levels use cubes alone. Ends without a
 // neighbour become walls. FAIL_UNSUPPORTED where a cylinder is connected with a block of another
 // kind.
 bool mrt_block_map_as_cubes(const char *what, struct mrt_block_map *map);

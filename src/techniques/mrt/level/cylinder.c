@@ -1,4 +1,4 @@
-// Cylinders as warped cubes, for dictionaries of cubes. A bend is a cube whose ends are at right
+// Cylinders as warped cubes. A bend is a cube whose ends are at right
 // angles; the square of its ends has the area of the pipe, so that the same light passes.
 #include "block_map.h"
 
