@@ -41,7 +41,7 @@ static enum ag_result measure_spec(struct frame_bench *b, struct ag_scene *scene
     struct pass_time times[PASSES_MAX];
     int count = 0;
     enum ag_result result =
-        bench_create_renderer(&b->bench, scene, b->specs[spec], NULL, &renderer);
+        bench_create_renderer(&b->bench, scene, b->specs[spec], "keep_maps=false", &renderer);
     if (result == AG_OK) result = passes_measure(renderer, frame, b->bench.frames, times, &count);
     ag_renderer_destroy(renderer);
     for (int i = 0; i < count; i++) {

@@ -54,6 +54,7 @@ static enum ag_result create_renderer(const struct measure *measure, struct ag_s
     desc.width = width;
     desc.height = height;
     desc.gi = gi;
+    desc.frame_options = "keep_maps=false";
     return ag_renderer_create(measure->bench->device, loaded, &desc, out);
 }
 

@@ -297,6 +297,7 @@ static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct f
     view->width = f->width;
     view->height = f->height;
     view->index = f->index;
+    view->keep = f->options.keep_maps;
     view->constants = &f->constants;
     view->constants_binding = f->constants_binding;
     view->lights_binding = f->lights_binding;

@@ -99,6 +99,7 @@ struct frame_view {
     uint32_t shadow_size;                    // texels, of suns
     int shadow_radius;                       // filter radius, texels
     struct gpu_binding shadow_faces_binding; // named "shadow_faces"
+    bool keep;      // results of earlier frames that did not change (option keep_maps)
     int maps_drawn; // layers of shadow maps and reflective shadow maps rendered in this frame
 };
 

@@ -249,8 +249,8 @@ TEST(statistics_have_the_keys_that_scripts_rely_on)
     char path[300], image[300];
     snprintf(path, sizeof path, "%s", test_path("stats.json"));
     snprintf(image, sizeof image, "%s", test_path("stats.png"));
-    run_expect(0, SMALL, "--gi", "lpv:steps=4", "--frames", "4", "--stats", path, "-o", image,
-               NULL);
+    run_expect(0, SMALL, "--gi", "lpv:steps=4", "--frames", "4", "--frame-options",
+               "keep_maps=false", "--stats", path, "-o", image, NULL);
     json_error_t error;
     json_t *stats = json_load_file(path, 0, &error), *pass, *bytes;
     assert_non_null(stats);

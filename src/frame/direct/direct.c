@@ -43,12 +43,10 @@ static bool prepare_list(struct direct *d, size_t pixels)
 {
     const size_t bytes = sizeof(struct direct_list_header) + pixels * sizeof(uint32_t);
     if (d->list.id && gpu_buffer_bytes(d->gpu, d->list) == bytes) return true;
-    const struct direct_list_header empty = { 0, { 0, 1, 1 } };
     const struct gpu_buffer_desc desc = { "frame.direct_list", bytes,
                                           GPU_BUFFER_STORAGE | GPU_BUFFER_INDIRECT };
     gpu_buffer_destroy(d->gpu, &d->list);
-    return gpu_buffer_create(d->gpu, &desc, &d->list) &&
-           gpu_buffer_upload(d->gpu, d->list, 0, &empty, sizeof empty);
+    return gpu_buffer_create(d->gpu, &desc, &d->list);
 }
 
 static bool has_emission(uint32_t variant)
@@ -75,6 +73,14 @@ bool direct_prepare(struct direct *d, uint32_t variant, uint32_t width, uint32_t
             (prepare_pipeline(d, blocks) && prepare_undecided(d, has_emission(variant))));
 }
 
+// No pixels, and 0 x 1 x 1 groups.
+static void clear_list(const struct direct *d, struct gpu_cmd *cmd)
+{
+    const size_t ones = offsetof(struct direct_list_header, groups[1]);
+    gpu_fill_buffer(cmd, d->list, 0, ones, 0);
+    gpu_fill_buffer(cmd, d->list, ones, sizeof(struct direct_list_header) - ones, 1);
+}
+
 // The shadow test of the pixels in the list.
 static void record_undecided(const struct direct *d, struct gpu_cmd *cmd,
                              const struct direct_input *in, gpu_image out)
@@ -98,8 +104,7 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
     const bool has_dielectric = in->dielectric.id != 0;
     const bool has_list = in->variant >> DIRECT_CONSTANT_BLOCKS & 1u;
     gpu_scope_begin(cmd, "direct");
-    if (has_list)
-        gpu_fill_buffer(cmd, d->list, 0, offsetof(struct direct_list_header, groups[1]), 0);
+    if (has_list) clear_list(d, cmd);
     gpu_dispatch(
         cmd, d->pipelines[in->variant],
         GPU_BIND(in->constants, in->lights, in->shadow_faces, in->shadow_sun,

@@ -106,8 +106,9 @@ static int maze_part(const void *user, int i, int j, int k)
     if (j == 2) return CEILING;
     if (maze->open[i][k]) return 0;
     bool post = i % 2 == 0 && k % 2 == 0;
-    // Every third wall is coloured.
-    uint32_t hash = pcg_hash((uint32_t)(i * 4099 + k));
+    // Every third wall is coloured, by its distance from the first block.
+    int dx = i - 2 * MAX_BLOCKS + 128, dz = k - 2 * MAX_BLOCKS + 128;
+    uint32_t hash = pcg_hash((uint32_t)(dx * 4099 + dz));
     return post || hash % 3u != 0 ? WALLS : FIRST_COLOUR + (int)((hash >> 8) % 4u);
 }
 

@@ -50,7 +50,7 @@ void lpv_history_update(struct lpv *lpv, const struct frame_view *view)
                                .moved = !follows || view->geometry_moved,
                                .index = view->index,
                                .light = light_of(lpv, view) };
-    now.kept = !now.moved && !view->lights_changed && now.light == last.light &&
+    now.kept = view->keep && !now.moved && !view->lights_changed && now.light == last.light &&
                lpv->options.geometry != LPV_GEOMETRY_MAPS;
     lpv->history = now;
 }

@@ -51,7 +51,7 @@ static void light_voxels(struct vct *vct, struct gpu_cmd *cmd, const struct fram
 // Whether the voxels have the light of the previous frame. Without lights opacity is all.
 static bool same_light(const struct vct *vct, const struct frame_view *view)
 {
-    if (!vct->light_valid || vct->revoxelized) return false;
+    if (!view->keep || !vct->light_valid || vct->revoxelized) return false;
     if (vct->options.occlusion) return true;
     return view->index == vct->lit_index + 1 && !view->lights_changed && view->maps_drawn == 0 &&
            view->shadow_radius == vct->lit_shadow_radius &&
