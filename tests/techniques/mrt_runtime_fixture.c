@@ -236,7 +236,7 @@ static float *solve(const struct mrt_runtime_fixture *f, const float *radiosity,
                 sum += row_dot(values == 1 ? &response->u_r : &response->u_vec, row,
                                r + 3 * o * f->input.k_r, c);
             }
-            out[3 * i + c] = (float)(values == 1 && sum < 0.0 ? 0.0 : sum);
+            out[3 * i + c] = (float)sum;
         }
     }
     free(b);

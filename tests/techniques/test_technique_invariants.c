@@ -1,6 +1,6 @@
 // Invariants of every source in the full frame: linearity, black without light, determinism.
 #include "frame/frame_fixture.h"
-#include "techniques/gi.h"
+#include "techniques/gi_fixture.h"
 #include "techniques/registry.h"
 
 #include <math.h>
@@ -26,8 +26,8 @@ static float *layer(struct gpu *gpu, const char *text, int lights, float strengt
     fixture_look(&s, vec3_of(-1.7f, 2, 1.8f), vec3_of(1, 0.5f, -1));
     fixture_open(&s);
     struct gi_spec spec;
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_create(test_host(), gpu, &spec, &s.pose, s.width, s.height);
+    gi_fixture_parse(&spec, text);
+    struct gi *gi = gi_fixture_create(gpu, &spec, &s.pose, s.width, s.height);
     assert_non_null(gi);
     s.indirect = gi_hook(gi);
     for (int i = 0; i < frames; i++) fixture_render(&s);

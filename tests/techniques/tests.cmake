@@ -1,4 +1,4 @@
-add_library(ag_test_techniques STATIC techniques/geometry_fixture.c techniques/geometry_twin.c techniques/lpv_fixture.c
+add_library(ag_test_techniques STATIC techniques/gi_fixture.c techniques/geometry_fixture.c techniques/geometry_twin.c techniques/lpv_fixture.c
   techniques/lpv_twin.c techniques/lpv_twin_closed.c techniques/lpv_twin_product.c techniques/mesh_fixture.c techniques/rsm_fixture.c
   techniques/svo_tree.c techniques/vct_fixture.c techniques/vct_twin.c techniques/vct_voxel_count.c techniques/vo_fixture.c)
 target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
@@ -31,5 +31,6 @@ add_library(ag_test_mrt_runtime STATIC techniques/mrt_runtime_fixture.c)
 target_link_libraries(ag_test_mrt_runtime PUBLIC ag_test_gpu ag_test_mrt ag_test_mrt_map PRIVATE afterglow_flags m)
 ag_test(techniques/mrt_runtime USES techniques LIBRARIES ag_test_mrt_runtime)
 ag_test(techniques/mrt_light USES techniques LIBRARIES ag_test_mrt ag_test_mrt_map)
+ag_test(techniques/mrt_frame USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 # It compares times.
 set_tests_properties(techniques.vct_screen PROPERTIES RUN_SERIAL TRUE)

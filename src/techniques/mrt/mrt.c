@@ -146,6 +146,19 @@ static void mrt_destroy(void *state)
     mrt_block_map_finish(&mrt->map);
 }
 
+static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    const struct mrt_options *o = options;
+    (void)width;
+    (void)height;
+    return mrt_runtime_bytes(&(struct mrt_runtime_size){
+        .resolution = o->texels,
+        .k_b = o->modes,
+        .k_r = o->response_modes,
+        .options = mrt_runtime_options_of(o),
+    });
+}
+
 const struct technique technique_mrt = {
     .name = "mrt",
     .title = "modular radiance transfer",
@@ -167,4 +180,5 @@ const struct technique technique_mrt = {
     .record = mrt_record,
     .debug_view = mrt_debug_view,
     .destroy = mrt_destroy,
+    .memory_estimate = mrt_memory_estimate,
 };

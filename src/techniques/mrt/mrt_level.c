@@ -47,13 +47,18 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
 
 // ---- operators
 
+struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *options)
+{
+    return (struct mrt_runtime_options){
+        .half = options->precision == MRT_PRECISION_HALF,
+        .vector = options->vector && options->solver == MRT_SOLVER_GPU,
+    };
+}
+
 static bool start_runtime(struct mrt *mrt)
 {
     struct mrt_turned turned;
-    const struct mrt_runtime_options options = {
-        .half = mrt->options.precision == MRT_PRECISION_HALF,
-        .vector = mrt->options.vector && mrt->options.solver == MRT_SOLVER_GPU,
-    };
+    const struct mrt_runtime_options options = mrt_runtime_options_of(&mrt->options);
     bool ok = mrt_turned_init(mrt->host, &mrt->level, &turned);
     if (ok) {
         turned.input.atlas = &mrt->atlas;

@@ -37,5 +37,6 @@ struct mrt {
 
 // Blocks, light map and geometry image of the scene.
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose);
+struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *options);
 // Operators of the level, from the dictionary, on the GPU.
 bool mrt_make_level(struct mrt *mrt);

@@ -30,7 +30,7 @@ layout(set = 0, binding = 5, rgba16f) writeonly uniform image2DArray light_map;
 void store(ivec2 at, vec3 values[4])
 {
     if (VALUES == 1u) {
-        imageStore(light_map, ivec3(at, 0), vec4(clamp(values[0], 0.0, HALF_MAX), 1.0));
+        imageStore(light_map, ivec3(at, 0), vec4(clamp(values[0], -HALF_MAX, HALF_MAX), 1.0));
         return;
     }
     for (int c = 0; c < 3; c++) {

@@ -29,6 +29,7 @@ vec3 change_by_normal(vec3 uv, vec3 normal)
     return sum;
 }
 
+// Reduced bases leave small negative values beside bright texels. Up to here light is linear.
 vec3 wall_irradiance(int tile, int face, vec3 cell, vec3 normal)
 {
     mat3 frame = cube_from_face(face);

@@ -87,8 +87,6 @@ void main()
         if (inside) add_response(opening_table[first + k].response + tile.response_row + i, sum);
     }
     if (!inside) return;
-    // Reduced bases leave small negative values beside bright texels.
-    if (VALUES == 1u) sum[0] = max(sum[0], vec3(0.0));
     for (uint v = 0u; v < VALUES; v++)
         irradiance_table[(tile.first_texel + i) * VALUES + v] = sum[v];
 }

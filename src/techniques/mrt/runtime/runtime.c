@@ -158,3 +158,17 @@ void mrt_runtime_finish(struct mrt_runtime *runtime)
 
     *runtime = (struct mrt_runtime){ 0 };
 }
+
+uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
+{
+    const uint64_t n = (uint64_t)size->resolution, face = n * n, texels = CUBE_FACES * face;
+    const uint64_t number = size->options.half ? 2 : 4;
+    const uint64_t values = size->options.vector ? 1 + VECTOR_VALUES : 1;
+    const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
+    // Two by three tiles, RGBA16F; three layers of irradiance by normal.
+    const uint64_t map = 6 * (n + 2) * (n + 2) * 8;
+    return texels * (sizeof(struct mrt_texel) + (2 + values) * VEC3_BYTES) +
+           CUBE_FACES * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
+           texels * k_b * number * (1 + values) + CUBE_FACES * texels * k_r * number * values +
+           map * (size->options.vector ? 4 : 1);
+}

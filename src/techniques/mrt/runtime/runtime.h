@@ -49,6 +49,13 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
                       const struct mrt_runtime_options *options);
 void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-built
 
+struct mrt_runtime_size {
+    int resolution, k_b, k_r;
+    struct mrt_runtime_options options;
+};
+// Bytes on the GPU of a level of one closed block, without its lookup grid.
+uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size);
+
 // ---- stages of a frame, in this order (stages.c)
 
 // Radiosity of the texels before any bounce.

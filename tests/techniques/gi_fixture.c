@@ -1,0 +1,67 @@
+#include "techniques/gi_fixture.h"
+
+#include "framework/test.h"
+#include "techniques/gi_bake.h"
+#include "techniques/gi_spec.h"
+
+#include <string.h>
+
+enum { MAX_KEPT = 4 };
+
+// Freed by the end of the process.
+static struct kept {
+    const struct technique *technique;
+    char *options;
+    struct bake *bake;
+} kept[MAX_KEPT];
+
+static void lower(const struct technique *technique, void *options)
+{
+    for (size_t i = 0; i < technique->options.count; i++) {
+        const struct option_row *row = &technique->options.rows[i];
+        if (row->effect == REBAKE && row->type == OPTION_TYPE_int32)
+            *(int32_t *)((char *)options + row->offset) = (int32_t)row->min;
+    }
+}
+
+void gi_fixture_parse(struct gi_spec *spec, const char *text)
+{
+    if (!gi_spec_parse(spec, test_host(), text)) fail_msg("%s: %s", text, test_last_message());
+    for (int i = 0; i < spec->count; i++)
+        if (spec->technique[i]->bake_version != 0) lower(spec->technique[i], spec->options[i]);
+}
+
+static struct bake *run(const struct technique *technique, const struct technique_bake *how)
+{
+    struct bake *bake =
+        gi_bake_create(test_host(), technique, how, (struct bake_identity){ .program = "test" });
+    CHECK(bake && bake_run(bake, &(struct bake_run_options){ .threads = 0 }));
+    return bake;
+}
+
+static struct bake *bake_of(const struct technique *technique, const void *options,
+                            const struct scene_pose *pose)
+{
+    const struct technique_bake how = { .pose = pose, .options = options };
+    char *text = gi_bake_options(test_host(), technique, options);
+    for (int i = 0; i < MAX_KEPT; i++) {
+        struct kept *k = &kept[i];
+        const bool same = k->technique == technique && strcmp(k->options, text) == 0;
+        if (k->technique && !same) continue;
+        if (!same) *k = (struct kept){ technique, text, run(technique, &how) };
+        if (same) host_free(test_host(), text);
+        return k->bake;
+    }
+    fail_msg("more than %d bakes", MAX_KEPT);
+    return NULL;
+}
+
+struct gi *gi_fixture_create(struct gpu *gpu, const struct gi_spec *spec,
+                             const struct scene_pose *pose, uint32_t width, uint32_t height)
+{
+    struct gi_bakes bakes = { { NULL } };
+    for (int i = 0; i < spec->count; i++)
+        if (spec->technique[i]->bake_version != 0)
+            bakes.of_term[i] = bake_tensors(bake_of(spec->technique[i], spec->options[i], pose));
+    return gi_create_baked(test_host(), gpu, spec, &bakes, pose, width, height);
+}
