@@ -5,6 +5,7 @@
 #include "techniques/gi_preset.h"
 #include "techniques/hbao/hbao.h"
 #include "techniques/lpv/lpv.h"
+#include "techniques/mrt/mrt.h"
 #include "techniques/none/none.h"
 #include "techniques/ssao/ssao.h"
 #include "techniques/vct/vct.h"
@@ -13,10 +14,17 @@
 #include <assert.h>
 #include <string.h>
 
-const struct technique *const techniques[] = {
-    &technique_none, &technique_ambient, &technique_lpv,  &technique_holpv, &technique_vct,
-    &technique_vo,   &technique_ssao,    &technique_hbao, &technique_vctao, NULL
-};
+const struct technique *const techniques[] = { &technique_none,
+                                               &technique_ambient,
+                                               &technique_lpv,
+                                               &technique_holpv,
+                                               &technique_vct,
+                                               &technique_mrt,
+                                               &technique_vo,
+                                               &technique_ssao,
+                                               &technique_hbao,
+                                               &technique_vctao,
+                                               NULL };
 
 static bool aliases_are_sound(const struct option_table *options)
 {

@@ -1,6 +1,6 @@
 // Emissive surfaces as lights, in the full frame, for every source that gathers emission.
 #include "frame/frame_fixture.h"
-#include "techniques/gi.h"
+#include "techniques/gi_fixture.h"
 #include "techniques/registry.h"
 
 #include <math.h>
@@ -30,9 +30,9 @@ static int emissive_material(struct frame_fixture *s, vec3s radiance)
 static void room_open(struct room *r, const char *gi)
 {
     fixture_open(&r->frame_fixture);
-    CHECK(gi_spec_parse(&r->spec, test_host(), gi));
-    r->gi = gi_create(test_host(), r->frame_fixture.gpu, &r->spec, &r->frame_fixture.pose,
-                      r->frame_fixture.width, r->frame_fixture.height);
+    gi_fixture_parse(&r->spec, gi);
+    r->gi = gi_fixture_create(r->frame_fixture.gpu, &r->spec, &r->frame_fixture.pose,
+                              r->frame_fixture.width, r->frame_fixture.height);
     assert_non_null(r->gi);
     r->frame_fixture.indirect = gi_hook(r->gi);
 }

@@ -24,7 +24,7 @@ static const struct technique_debug_view debug_views[] = {
 static const struct technique_preset presets[] = {
     { "low", "bounces=1,feedback=true,vector=false,texels=6,modes=12,response_modes=12" },
     { "medium", "" },
-    { "high", "bounces=8,precision=float,modes=48,lightfield_modes=192" },
+    { "high", "bounces=16,precision=float,modes=48,lightfield_modes=192" },
     { NULL, NULL },
 };
 

@@ -74,7 +74,7 @@ mrt_place locate(vec3 world)
     if (any(lessThan(at, vec3(0.0))) || any(greaterThanEqual(at, vec3(cells)))) return nearest;
     ivec3 i = ivec3(at);
     uvec2 list = cell_table[(i.z * cells.y + i.y) * cells.x + i.x];
-    for (uint k = 0u; k < list.y; k++) {
+    for (uint k = 0u; k < list.y && nearest.outside > 0.0; k++) {
         uint block = candidate_table[list.x + k];
         mrt_place place;
         if (!warp_inverse(block, world, place)) continue;

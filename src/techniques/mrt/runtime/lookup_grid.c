@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-enum { LONGEST = 32 }; // cells along the longest side
-
 // Of the bounds: surfaces behind a wall still belong to the block (MRT_BEYOND in locate.glsl).
 static const float MARGIN = 0.25f;
 static const float OFFSET = 0.01f; // of the shortest edge: lookups along the normal
@@ -31,7 +29,7 @@ static struct grid grid_of(const struct mrt_block_map *map)
         all = box3_add_point(box3_add_point(all, box.min), box.max);
     }
     vec3s size = box3_size(all);
-    struct grid grid = { .origin = all.min, .cell = glms_vec3_max(size) / (float)LONGEST };
+    struct grid grid = { .origin = all.min, .cell = glms_vec3_max(size) / (float)MRT_LOOKUP_CELLS };
     for (int a = 0; a < 3; a++) grid.cells[a] = (int)fmaxf(ceilf(size.raw[a] / grid.cell), 1.0f);
     return grid;
 }

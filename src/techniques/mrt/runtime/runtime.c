@@ -167,7 +167,9 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
     const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
     // Two by three tiles, RGBA16F; three layers of irradiance by normal.
     const uint64_t map = 6 * (n + 2) * (n + 2) * 8;
-    return texels * (sizeof(struct mrt_texel) + (2 + values) * VEC3_BYTES) +
+    const uint64_t cells = MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS;
+    return cells * 3 * sizeof(uint32_t) +
+           texels * (sizeof(struct mrt_texel) + (2 + values) * VEC3_BYTES) +
            CUBE_FACES * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            texels * k_b * number * (1 + values) + CUBE_FACES * texels * k_r * number * values +
            map * (size->options.vector ? 4 : 1);

@@ -53,7 +53,7 @@ struct mrt_runtime_size {
     int resolution, k_b, k_r;
     struct mrt_runtime_options options;
 };
-// Bytes on the GPU of a level of one closed block, without its lookup grid.
+// Bytes on the GPU of a level of one closed cube.
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size);
 
 // ---- stages of a frame, in this order (stages.c)

@@ -6,6 +6,8 @@
 // Uploads texels, tiles, blocks, openings, pairs and borders into new buffers; fills
 // runtime->level but for the lookup grid.
 bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+enum { MRT_LOOKUP_CELLS = 32 }; // along the longest side of the level
+
 // ---- lookup_grid.c: the blocks near each cell of a grid, for locate.glsl.
 bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_map *map);
 // A storage buffer with this content; 16 zero bytes where there is none.
