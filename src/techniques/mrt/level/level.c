@@ -7,7 +7,8 @@
 
 static bool unsupported(const struct mrt_level *level, int block, const char *why)
 {
-    return host_fail(level->host, FAIL_UNSUPPORTED, "block %s: the dictionary has no %s",
+    return host_fail(level->host, FAIL_UNSUPPORTED,
+                     "block %s: the dictionary has no %s; set maze=space or map=single",
                      level->map->blocks[block].name, why);
 }
 

@@ -16,7 +16,7 @@ layout(set = 0, binding = MRT_CANDIDATES_BINDING) readonly buffer mrt_candidates
     uint candidate_table[]; // blocks
 };
 
-const float MRT_BEYOND = 0.25; // of the edge: surfaces this far behind a wall belong to the block
+const float MRT_BEYOND = 1.0; // edges: surfaces this far outside belong to the nearest block
 const float MRT_FAR = 8.0;
 const float MRT_CONVERGED = 1e-5;
 const int MRT_NEWTON_STEPS = 8;

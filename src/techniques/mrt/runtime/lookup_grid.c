@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-// Of the bounds: surfaces behind a wall still belong to the block (MRT_BEYOND in locate.glsl).
-static const float MARGIN = 0.25f;
+// Of the bounds: surfaces outside still belong to the nearest block (MRT_BEYOND in locate.glsl).
+static const float MARGIN = 1.0f;
 static const float OFFSET = 0.01f; // of the shortest edge: lookups along the normal
 
 struct grid {
