@@ -57,6 +57,17 @@ static enum ag_result compare(struct bench *bench, struct ag_renderer *renderer)
     return result;
 }
 
+// Runs the bake of a technique that needs one; NULL for others. A program would save it.
+static enum ag_result bake(struct bench *bench, const char *gi, struct ag_bake **out)
+{
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    enum ag_result result = ag_bake_technique(bench->context, gi, 0, &desc.technique);
+    if (result != AG_OK || !desc.technique) return result;
+    result = ag_bake_create(bench->scene, gi, &desc, out);
+    return result == AG_OK ? ag_bake_run(*out, NULL, NULL) : result;
+}
+
 static enum ag_result measure(struct bench *bench, const char *gi)
 {
     struct ag_renderer_desc desc;
@@ -68,7 +79,11 @@ static enum ag_result measure(struct bench *bench, const char *gi)
     desc.indirect_layer = true;
     uint64_t bytes = 0;
     struct ag_renderer *renderer = NULL;
-    enum ag_result result = ag_scene_get_info(bench->scene, 0, 0.0, &info);
+    struct ag_bake *baked = NULL;
+    enum ag_result result = bake(bench, gi, &baked);
+    desc.bakes = (const struct ag_bake *const *)&baked;
+    desc.bake_count = baked ? 1 : 0;
+    if (result == AG_OK) result = ag_scene_get_info(bench->scene, 0, 0.0, &info);
     if (result == AG_OK)
         result = ag_renderer_estimate_memory(bench->context, &desc, info.lights, &bytes);
     if (result == AG_OK) printf("%s: at most %.1f MB\n", gi, (double)bytes * 1e-6);
@@ -79,6 +94,7 @@ static enum ag_result measure(struct bench *bench, const char *gi)
     if (result == AG_OK) print_costs(renderer);
     if (result == AG_OK) result = compare(bench, renderer);
     ag_renderer_destroy(renderer);
+    ag_bake_destroy(baked);
     return result;
 }
 
