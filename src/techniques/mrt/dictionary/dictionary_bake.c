@@ -58,14 +58,16 @@ static bool add_gather(struct bake_plan *plan, const struct mrt_bake_job *job, i
                                      BAKE_ROWS,
                                      measure == MRT_IRRADIANCE ? WAVE_MODES : WAVE_ELEMENTS };
     return bake_plan_add(
-        plan, &(struct bake_stage){ .name = names[measure],
-                                    .wave = WAVE_GATHER,
-                                    .task_count = tasks,
-                                    .run = run_gather,
-                                    .argument = index,
-                                    .outputs = &out,
-                                    .output_count = 1,
-                                    .rays = (double)points * job->options.rays / (double)tasks });
+        plan, &(struct bake_stage){
+                  .name = names[measure],
+                  .wave = WAVE_GATHER,
+                  .task_count = tasks,
+                  .run = run_gather,
+                  .argument = index,
+                  .outputs = &out,
+                  .output_count = 1,
+                  .rays = (double)points * job->options.rays / (double)tasks,
+                  .texels = measure == MRT_IRRADIANCE ? (double)points / (double)tasks : 0 });
 }
 
 // ---- tubes, which have operators of their own
@@ -86,7 +88,8 @@ static bool add_tube_gather(struct bake_plan *plan, const struct mrt_bake_job *j
                                     .argument = index,
                                     .outputs = &out,
                                     .output_count = 1,
-                                    .rays = (double)TUBE_POINTS_PER_TASK * job->options.rays });
+                                    .rays = (double)TUBE_POINTS_PER_TASK * job->options.rays,
+                                    .texels = TUBE_POINTS_PER_TASK });
 }
 
 // Rows of U_vec or U_bvol: the operator is too large to keep, so its rows meet L_imp at once.
