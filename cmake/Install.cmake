@@ -11,7 +11,10 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/afterglow-config-version.cm
 install(FILES ${CMAKE_BINARY_DIR}/afterglow-config-version.cmake DESTINATION ${package})
 
 # pkg-config names of the third-party libraries that the static library needs.
-set(AFTERGLOW_PC_REQUIRES "jansson libxxhash openblas lapacke libpng OpenEXR assimp spirv-cross-c-shared vulkan")
+set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng OpenEXR assimp spirv-cross-c-shared vulkan")
+# As flags: required by name, OpenBLAS would add the Fortran library of its static version.
+list(JOIN OPENBLAS_LDFLAGS " " AFTERGLOW_PC_OPENBLAS)
+list(JOIN LAPACKE_LDFLAGS " " AFTERGLOW_PC_LAPACKE)
 # Path from <libdir>/pkgconfig to the prefix, so that an installed tree can be moved.
 file(RELATIVE_PATH AFTERGLOW_PC_UP /prefix/${CMAKE_INSTALL_LIBDIR} /prefix)
 configure_file(cmake/afterglow.pc.in ${CMAKE_BINARY_DIR}/afterglow.pc @ONLY)
