@@ -28,7 +28,7 @@ double prediction_flop_seconds(struct host *host)
     if (matrix_f64_init(host, &a, SIZE, SIZE) && matrix_f64_init(host, &b, SIZE, SIZE)) {
         for (size_t i = 0; i < SIZE * SIZE; i++) a.at[i] = (double)(i % 7);
         const double begun = thread_seconds();
-        matrix_f64_multiply(host, 1.0, &a, AS_IT_IS, &a, TRANSPOSED, 0.0, &b);
+        matrix_f64_multiply(host, 1.0, &a, NOT_TRANSPOSED, &a, TRANSPOSED, 0.0, &b);
         seconds = fmax(thread_seconds() - begun, 1e-6) / FLOPS;
     }
     matrix_f64_finish(host, &a);

@@ -211,7 +211,7 @@ double matrix_f64_orthonormality(struct host *host, const struct matrix_f64 *a)
     struct matrix_f64 gram = { 0 };
     double norm = (double)NAN;
     if (matrix_f64_init(host, &gram, a->columns, a->columns) &&
-        matrix_f64_multiply(host, 1.0, a, TRANSPOSED, a, AS_IT_IS, 0.0, &gram)) {
+        matrix_f64_multiply(host, 1.0, a, TRANSPOSED, a, NOT_TRANSPOSED, 0.0, &gram)) {
         for (size_t i = 0; i < a->columns; i++) gram.at[i * gram.stride + i] -= 1.0;
         norm = matrix_f64_norm(&gram);
     }

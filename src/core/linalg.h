@@ -35,7 +35,7 @@ struct matrix_f32 matrix_f32_block(const struct matrix_f32 *m, size_t first_row,
 struct matrix_f64 matrix_f64_block(const struct matrix_f64 *m, size_t first_row,
                                    size_t first_column, size_t rows, size_t columns);
 
-enum transposed { AS_IT_IS, TRANSPOSED };
+enum transposed { NOT_TRANSPOSED, TRANSPOSED };
 
 // out = alpha · op(a) · op(b) + beta · out, where op transposes if asked to. op(a) is m×k, op(b)
 // k×n, out m×n. `out` overlaps neither a nor b. beta 0 overwrites `out`, NaN included.

@@ -85,7 +85,7 @@ TEST(linalg_products_of_blocks_use_the_stride_and_leave_the_rest_alone)
     const struct matrix_f32 b = matrix_f32_block(&m, 2, 3, 2, 2); // [[13, 14], [18, 19]]
     struct matrix_f32 c = matrix_f32_block(&out, 1, 2, 2, 2);
     c.at[0] = NAN; // beta 0 does not read it
-    CHECK(matrix_f32_multiply(test_host(), 1.0f, &a, AS_IT_IS, &b, AS_IT_IS, 0.0f, &c));
+    CHECK(matrix_f32_multiply(test_host(), 1.0f, &a, NOT_TRANSPOSED, &b, NOT_TRANSPOSED, 0.0f, &c));
     const float expected[] = { 0, 0, 0, 0, 0, 0, 204, 217, 0, 0, 359, 382 };
     for (size_t i = 0; i < 12; i++) CHECK_NEAR(out.at[i], expected[i], 0.0);
     matrix_f32_finish(test_host(), &m);
@@ -96,7 +96,8 @@ TEST(linalg_products_of_shapes_that_do_not_fit_are_refused_with_the_shapes)
 {
     struct matrix_f64 a = random_matrix(2, 3, 1), b = random_matrix(2, 3, 2), out;
     CHECK(matrix_f64_init(test_host(), &out, 2, 3));
-    CHECK(!matrix_f64_multiply(test_host(), 1.0, &a, AS_IT_IS, &b, AS_IT_IS, 0.0, &out));
+    CHECK(
+        !matrix_f64_multiply(test_host(), 1.0, &a, NOT_TRANSPOSED, &b, NOT_TRANSPOSED, 0.0, &out));
     CHECK_STRING(test_last_message(),
                  "cannot multiply 2 x 3 by 2 x 3 into 2 x 3: the shapes do not fit");
     matrix_f64_finish(test_host(), &a);
@@ -108,7 +109,7 @@ TEST(linalg_products_over_nothing_are_zero)
 {
     struct matrix_f64 a = random_matrix(2, 0, 1), b = random_matrix(0, 2, 2), out;
     out = random_matrix(2, 2, 3);
-    CHECK(matrix_f64_multiply(test_host(), 1.0, &a, AS_IT_IS, &b, AS_IT_IS, 0.0, &out));
+    CHECK(matrix_f64_multiply(test_host(), 1.0, &a, NOT_TRANSPOSED, &b, NOT_TRANSPOSED, 0.0, &out));
     CHECK_NEAR(matrix_f64_norm(&out), 0.0, 0.0);
     matrix_f64_finish(test_host(), &a);
     matrix_f64_finish(test_host(), &b);
@@ -178,7 +179,7 @@ TEST(linalg_svd_of_a_matrix_of_rank_two_has_two_values)
     struct matrix_f64 u = random_matrix(12, 2, 1), v = random_matrix(2, 9, 2), a;
     struct linalg_svd svd;
     CHECK(matrix_f64_init(test_host(), &a, 12, 9));
-    CHECK(matrix_f64_multiply(test_host(), 1.0, &u, AS_IT_IS, &v, AS_IT_IS, 0.0, &a));
+    CHECK(matrix_f64_multiply(test_host(), 1.0, &u, NOT_TRANSPOSED, &v, NOT_TRANSPOSED, 0.0, &a));
     CHECK(linalg_svd(test_host(), "a", &a, &svd));
     CHECK(svd.sigma[1] > 0.1 && svd.sigma[2] < 1e-14);
     CHECK_NEAR(matrix_f64_orthonormality(test_host(), &svd.u), 0.0, 1e-12);

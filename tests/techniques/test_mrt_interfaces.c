@@ -84,7 +84,7 @@ static struct matrix_f32 light_block(const struct chain *chain)
 static void multiply(const struct matrix_f32 *a, const struct matrix_f32 *b, struct matrix_f32 *out)
 {
     CHECK(matrix_f32_init(test_host(), out, a->rows, b->columns));
-    CHECK(matrix_f32_multiply(test_host(), 1.0f, a, AS_IT_IS, b, AS_IT_IS, 0.0f, out));
+    CHECK(matrix_f32_multiply(test_host(), 1.0f, a, NOT_TRANSPOSED, b, NOT_TRANSPOSED, 0.0f, out));
 }
 
 // Lightfield coefficients (k_rlf × lights) at the exit of block 0.

@@ -21,7 +21,7 @@ struct shadow {
     struct cached_map *cache;       // [sun_capacity + capacity]
     gpu_pipeline block_pipeline;
     gpu_image sun_blocks; // bounds of sun_maps, shadow_blocks.comp
-    bool *has_blocks;     // [sun_capacity + capacity]: of the map as it is
+    bool *has_blocks;     // [sun_capacity + capacity]: of the map last drawn
     gpu_sampler nearest;
     int face_count; // in this frame
     int drawn;      // faces rendered in this frame, not reused

@@ -100,7 +100,7 @@ void bound_row(block_row down, block_row row, block_row up, float y, inout block
                  vec4(up.middle.zw, up.high.xy), vec2(5, y), bounds);
 }
 
-// Through the middle texel, with the slopes of the lines through it, as it is stored.
+// Through the middle texel, with the slopes of the lines through it, rounded as stored.
 vec4 plane_at(ivec2 first)
 {
     ivec2 middle = first + SHADOW_BLOCK / 2;

@@ -99,7 +99,7 @@ void send_to_face_neighbour(inout sums to, lpv_light light, int a, float side, f
 // direction ω crosses the side +x with the share |ω_x| / (|ω_x| + |ω_y| + |ω_z|) of its flux. The
 // moments of isotropic light across a side are 1/6 and 1/9. A hemisphere around an axis, of the
 // first moment J, adds J/3 and 2/9 J (across) and 5/36 J (along), so that light which fills a
-// hemisphere everywhere stays as it is. Around another direction less moment goes along a side that
+// hemisphere everywhere is preserved. Around another direction less moment goes along a side that
 // it crosses: the factor 1 - 3/5 n_a^2 is within 2 % of the flux. The light of a disk fills a cone;
 // its pressure on the sides along it is up to 3/2 of the hemisphere's.
 void send_closed(inout sums to, lpv_closure light, int a, float side, float transmittance)

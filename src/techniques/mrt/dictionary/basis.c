@@ -38,7 +38,7 @@ bool mrt_span_gram(struct host *host, const struct mrt_span *span, size_t first_
     for (size_t done = 0; ok && done < rows; done += chunk.rows) {
         chunk.rows = rows - done < CHUNK ? rows - done : CHUNK;
         fill_chunk(span, first_row + done, &chunk);
-        ok = matrix_f64_multiply(host, 1.0, &chunk, TRANSPOSED, &chunk, AS_IT_IS, 1.0, gram);
+        ok = matrix_f64_multiply(host, 1.0, &chunk, TRANSPOSED, &chunk, NOT_TRANSPOSED, 1.0, gram);
     }
     matrix_f64_finish(host, &chunk);
     return ok;
@@ -94,7 +94,8 @@ bool mrt_span_apply(struct host *host, const struct mrt_span *span, size_t first
             matrix_f32_block(&span->part[p], first_row, 0, out->rows, span->part[p].columns);
         struct matrix_f32 by =
             matrix_f32_block(coefficients, first, 0, from.columns, coefficients->columns);
-        if (!matrix_f32_multiply(host, 1.0f, &from, AS_IT_IS, &by, AS_IT_IS, p > 0, out))
+        if (!matrix_f32_multiply(host, 1.0f, &from, NOT_TRANSPOSED, &by, NOT_TRANSPOSED, p > 0,
+                                 out))
             return false;
         first += from.columns;
     }
@@ -107,7 +108,7 @@ bool mrt_project_add(struct host *host, const struct matrix_f32 *basis,
 {
     struct matrix_f32 a = matrix_f32_block(basis, first_row, 0, rows, basis->columns);
     struct matrix_f32 b = matrix_f32_block(lightfields, first_row, 0, rows, lightfields->columns);
-    return matrix_f32_multiply(host, 1.0f, &a, TRANSPOSED, &b, AS_IT_IS, 1.0f, sum);
+    return matrix_f32_multiply(host, 1.0f, &a, TRANSPOSED, &b, NOT_TRANSPOSED, 1.0f, sum);
 }
 
 void mrt_project_finish(const double *sigma, struct matrix_f32 *sum)

@@ -112,8 +112,8 @@ static bool run_tube_directional(const struct bake_task *task)
                    gather.stride);
         ok = !bake_task_cancelled(task);
     }
-    ok = ok &&
-         matrix_f32_multiply(task->host, 1.0f, &gather, AS_IT_IS, &l_imp, AS_IT_IS, 0.0f, &out);
+    ok = ok && matrix_f32_multiply(task->host, 1.0f, &gather, NOT_TRANSPOSED, &l_imp,
+                                   NOT_TRANSPOSED, 0.0f, &out);
     matrix_f32_finish(task->host, &gather);
     return ok;
 }
@@ -293,10 +293,11 @@ static bool run_spectrum(const struct bake_task *task)
     const struct stage_index *index = task->argument;
     struct matrix_f64 f = { 0 }, gram = { 0 };
     struct linalg_eigen eigen = { 0 };
-    bool ok = operator_of(task, MRT_IRRADIANCE, index, &f) &&
-              matrix_f64_init(task->host, &gram, f.rows, f.rows) &&
-              matrix_f64_multiply(task->host, 1.0, &f, TRANSPOSED, &f, AS_IT_IS, 0.0, &gram) &&
-              linalg_symmetric_eigen(task->host, "the one-bounce operator", &gram, &eigen);
+    bool ok =
+        operator_of(task, MRT_IRRADIANCE, index, &f) &&
+        matrix_f64_init(task->host, &gram, f.rows, f.rows) &&
+        matrix_f64_multiply(task->host, 1.0, &f, TRANSPOSED, &f, NOT_TRANSPOSED, 0.0, &gram) &&
+        linalg_symmetric_eigen(task->host, "the one-bounce operator", &gram, &eigen);
     for (size_t i = 0; ok && i < f.rows; i++)
         ((float *)task->out[0])[i] = (float)sqrt(fmax(eigen.values[i], 0.0));
     linalg_eigen_finish(task->host, &eigen);
@@ -339,7 +340,8 @@ static bool gather_implicit(const struct bake_task *task, int measure, int outpu
     struct matrix_f64 gather = { 0 }, out = { 0 };
     bool ok = operator_of(task, measure, index, &gather) &&
               matrix_f64_init(task->host, &out, gather.rows, l_imp->columns) &&
-              matrix_f64_multiply(task->host, 1.0, &gather, AS_IT_IS, l_imp, AS_IT_IS, 0.0, &out);
+              matrix_f64_multiply(task->host, 1.0, &gather, NOT_TRANSPOSED, l_imp, NOT_TRANSPOSED,
+                                  0.0, &out);
     if (ok) store(out.at, out.rows * out.columns, task->out[output]);
     matrix_f64_finish(task->host, &out);
     matrix_f64_finish(task->host, &gather);

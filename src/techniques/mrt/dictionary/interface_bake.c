@@ -434,8 +434,8 @@ static bool run_response(const struct bake_task *task)
                              gather.at + i * (uint64_t)rays->values * gather.stride);
         ok = !bake_task_cancelled(task);
     }
-    ok = ok &&
-         matrix_f32_multiply(task->host, 1.0f, &gather, AS_IT_IS, &basis, AS_IT_IS, 0.0f, &out);
+    ok = ok && matrix_f32_multiply(task->host, 1.0f, &gather, NOT_TRANSPOSED, &basis,
+                                   NOT_TRANSPOSED, 0.0f, &out);
     matrix_f32_finish(task->host, &gather);
     return ok;
 }

@@ -123,7 +123,7 @@ static float light_radius(const struct mrt_shape *shape)
 }
 
 // The share of the sphere's irradiance that arrives: directions within the cone that the sphere
-// subtends, by cosine. Light from beyond enters through an opening; a bend can stand in the way of
+// subtends, by cosine. Light from beyond enters through an opening; a bend can occlude
 // light from inside.
 static float visible_share(const struct mrt_shape *shape, struct mrt_point at,
                            struct mrt_prior_light light, const vec2s disk[SHADOW_RAYS])

@@ -78,7 +78,7 @@ static bool decompose(struct host *host, const struct matrix_f64 *f, const struc
 {
     struct matrix_f64 m = { 0 };
     bool ok = matrix_f64_init(host, &m, f->rows, basis->count) &&
-              matrix_f64_multiply(host, 1.0, f, AS_IT_IS, &basis->p, AS_IT_IS, 0.0, &m);
+              matrix_f64_multiply(host, 1.0, f, NOT_TRANSPOSED, &basis->p, NOT_TRANSPOSED, 0.0, &m);
     if (ok) {
         copy_columns(&m, basis->s, 1.0, 0, &m);
         ok = linalg_svd(host, "the indirect light of the prior", &m, out);
@@ -150,9 +150,10 @@ static bool set_operators(struct host *host, const struct linalg_svd *m,
     copy_columns(&u, m->sigma, 1.0, 0, &out->u_b);
     out->orthonormality = matrix_f64_orthonormality(host, &u);
     scale_vt(m, basis, true, &v);
-    bool ok = matrix_f64_multiply(host, 1.0, &v, AS_IT_IS, &basis->p, TRANSPOSED, 0.0, &t_db);
+    bool ok = matrix_f64_multiply(host, 1.0, &v, NOT_TRANSPOSED, &basis->p, TRANSPOSED, 0.0, &t_db);
     scale_vt(m, basis, false, &v);
-    ok = ok && matrix_f64_multiply(host, 1.0, &basis->p, AS_IT_IS, &v, TRANSPOSED, 0.0, &l_imp);
+    ok = ok &&
+         matrix_f64_multiply(host, 1.0, &basis->p, NOT_TRANSPOSED, &v, TRANSPOSED, 0.0, &l_imp);
     matrix_f64_finish(host, &v);
     return ok;
 }
@@ -163,7 +164,8 @@ static bool measure_implicit(struct host *host, const struct matrix_f64 *f,
     struct matrix_f64 rest = { 0 };
     bool ok = matrix_f64_init(host, &rest, f->rows, out->u_b.columns);
     if (ok) copy_columns(&out->u_b, NULL, -1.0, 0, &rest);
-    ok = ok && matrix_f64_multiply(host, 1.0, f, AS_IT_IS, &out->l_imp, AS_IT_IS, 1.0, &rest);
+    ok = ok &&
+         matrix_f64_multiply(host, 1.0, f, NOT_TRANSPOSED, &out->l_imp, NOT_TRANSPOSED, 1.0, &rest);
     double norm = matrix_f64_norm(&out->u_b);
     if (ok && norm > 0.0) out->implicit_error = matrix_f64_norm(&rest) / norm;
     matrix_f64_finish(host, &rest);

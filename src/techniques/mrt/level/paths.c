@@ -39,7 +39,7 @@ static bool multiply(struct host *host, const struct matrix_f32 *a, const struct
                      struct matrix_f32 *out)
 {
     return matrix_f32_init(host, out, a->rows, b->columns) &&
-           matrix_f32_multiply(host, 1.0f, a, AS_IT_IS, b, AS_IT_IS, 0.0f, out);
+           matrix_f32_multiply(host, 1.0f, a, NOT_TRANSPOSED, b, NOT_TRANSPOSED, 0.0f, out);
 }
 
 // Turns the frame of an interface: replaces `light`.
@@ -129,8 +129,8 @@ static bool respond(struct traversal *t, const struct wave *wave)
     float *response = t->response + (size_t)wave->entry * rows * columns;
     struct matrix_f32 sum = { response, rows, columns, columns };
     t->reached[wave->entry] = true;
-    return matrix_f32_multiply(t->host, 1.0f, &t->level->dictionary->entered[0].t_r, AS_IT_IS,
-                               &wave->light, AS_IT_IS, 1.0f, &sum);
+    return matrix_f32_multiply(t->host, 1.0f, &t->level->dictionary->entered[0].t_r, NOT_TRANSPOSED,
+                               &wave->light, NOT_TRANSPOSED, 1.0f, &sum);
 }
 
 static bool pass_block(struct traversal *t, const struct wave *wave)
