@@ -77,7 +77,7 @@ static bool create_stages(struct lpv *lpv)
     const struct pipeline stages[] = {
         { &p->inject, "inject", &shader_lpv_inject_comp, LIGHT },
         { &p->inject_emitters, "inject_emitters", &shader_lpv_inject_emitters_comp, LIGHT },
-        { &p->resolve, "resolve", &shader_lpv_resolve_comp, LIGHT },
+        { &p->resolve, "resolve", &shader_lpv_inject_resolve_comp, LIGHT },
         { &p->propagate, "propagate", &shader_lpv_propagate_comp, step },
         { &p->apply, "apply", &shader_lpv_apply_comp, LIGHT | GEOMETRY | CUBIC | CLOSURE },
         { &p->apply_damped, "apply", &shader_lpv_apply_comp,

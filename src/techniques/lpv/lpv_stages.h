@@ -7,7 +7,7 @@
 // light or no extent.
 bool lpv_prepare(struct lpv *finest, const struct frame_view *view);
 
-// lpv_inject.c: virtual lights to integer sums, sums to `injected`.
+// inject/inject.c: virtual lights to integer sums, sums to `injected`.
 void lpv_record_injection(struct lpv *lpv, struct gpu_cmd *cmd, const struct frame_view *view);
 void lpv_record_resolve(struct lpv *lpv, struct gpu_cmd *cmd); // the second of the two
 
