@@ -77,10 +77,10 @@ static enum status merge(struct job *job)
     return DONE;
 }
 
-// A report measures a run, so it needs one.
+// What only the report shows is not in the file.
 static bool may_load(const struct arguments *a)
 {
-    return !a->force && !a->report && !a->report_full && !a->merge && a->shard_count == 0;
+    return !a->force && !a->report_full && !a->merge && a->shard_count == 0;
 }
 
 static enum status bake_it(struct job *job)
@@ -140,7 +140,8 @@ static enum status publish(struct job *job, json_t *report)
 {
     const struct arguments *a = job->arguments;
     if (!job->baking.loaded) describe(report);
-    if (!a->output && job->baking.path[0]) note("written: %s", job->baking.path);
+    if (!a->output && !job->baking.loaded && job->baking.path[0])
+        note("written: %s", job->baking.path);
     enum status status = a->report ? json_write(report, a->report) : DONE;
     return status == DONE && a->json ? json_print(json_incref(report)) : status;
 }

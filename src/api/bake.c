@@ -337,8 +337,7 @@ static void report_stages(struct report *report, const struct bake *bake)
 static bool write_report(struct ag_bake *b)
 {
     const struct technique *technique = b->spec.technique[b->term];
-    const struct tensors *tensors = bake_reported(b->bake);
-    if (!tensors)
+    if (!bake_is_complete(b->bake))
         return host_fail(&b->context->host, FAIL_ARGUMENT,
                          "cannot report on the bake of %s: it is incomplete", technique->name);
     report_destroy(b->report);
@@ -350,7 +349,7 @@ static bool write_report(struct ag_bake *b)
     report_number(b->report, "seconds", bake_seconds(b->bake));
     report_number(b->report, "peak_memory_bytes", peak_memory_bytes());
     report_number(b->report, "bytes", (double)bake_bytes(b->bake));
-    return !technique->bake_report || technique->bake_report(b->report, tensors, &b->how);
+    return !technique->bake_report || technique->bake_report(b->report, b->bake, &b->how);
 }
 
 enum ag_result ag_bake_report(struct ag_bake *b, const char **json)

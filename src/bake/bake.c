@@ -72,7 +72,7 @@ struct bake_stage_info bake_stage_info(const struct bake *bake, int stage)
 {
     const struct planned_stage *planned = &bake->plan.stages[stage];
     return (struct bake_stage_info){ .name = planned->what.name,
-                                     .seconds = bake->file.memory ? 0.0 : planned->seconds,
+                                     .seconds = planned->seconds,
                                      .tasks = planned->what.task_count };
 }
 

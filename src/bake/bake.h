@@ -86,7 +86,7 @@ const struct tensors *bake_tensors(const struct bake *bake);
 // With the BAKE_REPORTED ones after a run, for bake_report.
 const struct tensors *bake_reported(const struct bake *bake);
 // Writes the file, which has the same bytes for the same identity. record_seconds: add
-// afterglow.seconds to its metadata, which differ from run to run.
+// afterglow.seconds and those of the stages to its metadata, which differ from run to run.
 bool bake_save(struct bake *bake, const char *path, bool record_seconds);
 // Reads a file of this identity; otherwise FAIL_FORMAT and one sentence with the difference.
 bool bake_load(struct bake *bake, const char *path);
@@ -96,7 +96,7 @@ bool bake_file_technique(struct host *host, const char *path, char *out, size_t 
 
 struct bake_stage_info {
     const char *name;
-    double seconds; // sum over its tasks, of all runs; 0 after bake_load
+    double seconds; // sum over its tasks, of all runs; NaN after bake_load of a file without them
     size_t tasks;
 };
 int bake_stage_count(const struct bake *bake);

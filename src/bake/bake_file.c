@@ -11,8 +11,8 @@ static const char KIND[] = "afterglow.kind", TECHNIQUE[] = "afterglow.technique"
                   VERSION[] = "afterglow.bake_version", OPTIONS[] = "afterglow.options",
                   SCENE[] = "afterglow.scene", SEED[] = "afterglow.seed",
                   PROGRAM[] = "afterglow.program", SECONDS[] = "afterglow.seconds",
-                  CONTENT[] = "afterglow.content", GI[] = "afterglow.gi",
-                  SCENE_NAME[] = "afterglow.scene_name";
+                  STAGE_SECONDS[] = "afterglow.stage_seconds", CONTENT[] = "afterglow.content",
+                  GI[] = "afterglow.gi", SCENE_NAME[] = "afterglow.scene_name";
 static const char BAKE[] = "bake", PARTIAL[] = "partial", ANY_SCENE[] = "any";
 
 // ---- metadata
@@ -154,7 +154,52 @@ double identity_seconds(const struct tensors *set)
     return text && *end == 0 && seconds >= 0.0 && isfinite(seconds) ? seconds : (double)NAN;
 }
 
+// ---- seconds by stage, as "name=1.25;name=…"
+
+// In the arena of the plan; NULL: out of memory.
+static const char *print_stage_seconds(struct bake *bake)
+{
+    enum { NUMBER = 32 };
+    const struct bake_plan *plan = &bake->plan;
+    size_t size = 1, used = 0;
+    for (int s = 0; s < plan->stage_count; s++) size += strlen(plan->stages[s].what.name) + NUMBER;
+    char *text = arena_alloc(&bake->plan.arena, size, 1);
+    for (int s = 0; text && s < plan->stage_count; s++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s=%.4g", s > 0 ? ";" : "",
+                                 plan->stages[s].what.name, plan->stages[s].seconds);
+    return text;
+}
+
+// NaN: not stated.
+static double parse_stage_seconds(const char *text, const char *name)
+{
+    const size_t length = strlen(name);
+    for (const char *at = text; at; at = strchr(at, ';'), at = at ? at + 1 : NULL) {
+        if (strncmp(at, name, length) != 0 || at[length] != '=') continue;
+        const double seconds = strtod(at + length + 1, NULL);
+        return seconds >= 0.0 && isfinite(seconds) ? seconds : (double)NAN;
+    }
+    return (double)NAN;
+}
+
+static void take_seconds(struct bake *bake, const struct tensors *set)
+{
+    const char *stages = tensors_metadata(set, STAGE_SECONDS);
+    bake->seconds = identity_seconds(set);
+    for (int s = 0; s < bake->plan.stage_count; s++)
+        bake->plan.stages[s].seconds = parse_stage_seconds(stages, bake->plan.stages[s].what.name);
+}
+
 // ---- bake_save, bake_load
+
+// They are known after a run, not after reading a file without them.
+static bool put_seconds(struct bake *bake, struct identity_text *text)
+{
+    if (isnan(bake->seconds)) return true;
+    const char *stages = print_stage_seconds(bake);
+    if (stages) put(text, STAGE_SECONDS, stages);
+    return stages != NULL;
+}
 
 bool bake_save(struct bake *bake, const char *path, bool record_seconds)
 {
@@ -164,6 +209,7 @@ bool bake_save(struct bake *bake, const char *path, bool record_seconds)
         return host_fail(bake->host, FAIL_ARGUMENT,
                          "cannot write %s: the bake is incomplete; run it first", path);
     identity_print(bake, BAKE, record_seconds ? bake->seconds : (double)NAN, &text);
+    if (record_seconds && !put_seconds(bake, &text)) return false;
     const size_t count = bake->file.memory ? tensors->count : bake->saved_count;
     if (!identity_write(bake->host, path, &text, tensors->at, count)) return false;
     if (bake->checkpoint) remove(bake->checkpoint);
@@ -204,7 +250,7 @@ bool bake_load(struct bake *bake, const char *path)
     }
     safetensors_finish(bake->host, &bake->file);
     bake->file = file;
-    bake->seconds = identity_seconds(&file.set);
+    take_seconds(bake, &bake->file.set);
     return true;
 }
 

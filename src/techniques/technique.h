@@ -3,8 +3,7 @@
 // example "lpv" or "mrt+dnrt+vo".
 #pragma once
 
-#include "bake/plan.h"
-#include "bake/report.h"
+#include "bake/bake.h"
 #include "core/option.h"
 #include "frame/frame.h"
 #include "gpu/gpu.h"
@@ -85,10 +84,9 @@ struct technique {
     bool (*check)(const struct technique_create *how);
     // Adds the stages of a bake for these options; see bake/README.md.
     bool (*bake)(struct bake_plan *plan, const struct technique_bake *how);
-    // Adds members to the report of a bake. After a run `bake` has the BAKE_REPORTED tensors too,
-    // after reading a file it has not.
-    bool (*bake_report)(struct report *report, const struct tensors *bake,
-                        const struct technique_bake *how);
+    // Adds members to the report of a complete bake. After a run bake_reported has the
+    // BAKE_REPORTED tensors too, after reading a file it has not.
+    bool (*bake_report)(struct report *report, struct bake *bake, const struct technique_bake *how);
     bool (*create)(void *state, const struct technique_create *how);
     // After `create`: takes what it needs of a bake, whose identity has been checked and whose
     // content is untrusted (tensors_expect). The tensors end with the call.

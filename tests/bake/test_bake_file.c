@@ -53,6 +53,12 @@ TEST(bake_file_keeps_the_seconds_where_asked_to)
     struct bake *bake = bake_sample_create(&sample, NULL);
     CHECK(bake_load(bake, write_sample(true)));
     CHECK(bake_seconds(bake) >= 0.0 && bake_seconds(bake) < 60.0);
+    for (int i = 0; i < bake_stage_count(bake); i++) {
+        const double seconds = bake_stage_info(bake, i).seconds;
+        CHECK(seconds >= 0.0 && seconds < 60.0);
+    }
+    CHECK(bake_load(bake, write_sample(false)));
+    CHECK(isnan(bake_seconds(bake)) && isnan(bake_stage_info(bake, 0).seconds));
     bake_destroy(bake);
 }
 

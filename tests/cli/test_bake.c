@@ -94,6 +94,17 @@ TEST(bake_report_has_stages_times_and_bytes)
     CHECK_NEAR(number(report, "tensors"), 1, 0);
     CHECK(json_is_false(json_object_get(report, "full")));
     CHECK(json_is_false(json_object_get(report, "cached")));
+    json_decref(printed);
+    // Of the cached file: the figures of the run that made it.
+    printed = run_json(
+        run_expect(0, "bake @cornell --gi sample:wait_ms=20 --json --quiet --report", path, NULL));
+    CHECK(json_is_true(json_object_get(printed, "cached")));
+    CHECK(json_is_null(json_object_get(printed, "estimate_seconds")));
+    CHECK_RELATIVE(number(printed, "seconds"), number(report, "seconds"), 0.01);
+    const json_t *again = json_object_get(printed, "stages");
+    for (size_t i = 0; i < json_array_size(stages); i++)
+        CHECK_NEAR(number(json_array_get(again, i), "seconds"),
+                   number(json_array_get(stages, i), "seconds"), 1e-3);
     json_decref(report);
     json_decref(printed);
 }

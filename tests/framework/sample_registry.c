@@ -77,10 +77,10 @@ static bool sample_bake(struct bake_plan *plan, const struct technique_bake *how
                                                      .output_count = 1 });
 }
 
-static bool sample_report(struct report *report, const struct tensors *bake,
+static bool sample_report(struct report *report, struct bake *bake,
                           const struct technique_bake *how)
 {
-    report_number(report, "tensors", (double)bake->count);
+    report_number(report, "tensors", (double)bake_reported(bake)->count);
     report_bool(report, "full", how->full_report);
     return true;
 }

@@ -15,6 +15,16 @@ struct mrt_dictionary_options mrt_fixture_options(void)
     return options;
 }
 
+struct bake *mrt_fixture_plan(const struct mrt_dictionary_options *options, int version)
+{
+    const struct bake_identity identity = {
+        .technique = "mrt", .version = version, .options = "", .program = "test"
+    };
+    struct bake *bake = bake_create(test_host(), &identity);
+    CHECK(bake && mrt_dictionary_bake(bake_plan_of(bake), options, false));
+    return bake;
+}
+
 struct bake *mrt_fixture_bake(const struct mrt_dictionary_options *options, int threads, bool full)
 {
     const struct bake_identity identity = {

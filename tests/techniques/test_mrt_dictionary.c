@@ -52,13 +52,9 @@ static bool stop_at(void *user, const struct bake_progress *progress)
 TEST(dictionary_has_the_same_bytes_after_a_cancel_and_a_resume)
 {
     const struct mrt_dictionary_options options = small_options();
-    const struct bake_identity identity = {
-        .technique = "mrt", .version = 1, .options = "", .program = "test"
-    };
     const char *path = test_path("resumed.safetensors");
     int calls = 0;
-    struct bake *bake = bake_create(test_host(), &identity);
-    CHECK(bake && mrt_dictionary_bake(bake_plan_of(bake), &options, false));
+    struct bake *bake = mrt_fixture_plan(&options, 1);
     bake_run(bake, &(struct bake_run_options){ .progress = stop_at, .user = &calls });
     CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 2 }));
     struct file_bytes resumed, one = bake_on(1);

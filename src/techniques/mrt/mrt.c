@@ -52,6 +52,13 @@ static bool mrt_bake(struct bake_plan *plan, const struct technique_bake *how)
     return mrt_dictionary_bake(plan, &options, how->full_report);
 }
 
+static bool mrt_bake_report(struct report *report, struct bake *bake,
+                            const struct technique_bake *how)
+{
+    const struct mrt_dictionary_options options = dictionary_options(how->options);
+    return mrt_dictionary_report(report, bake, &options);
+}
+
 static bool mrt_create(void *state, const struct technique_create *how)
 {
     struct mrt *mrt = state;
@@ -166,13 +173,14 @@ const struct technique technique_mrt = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE,
-    .bake_version = 1,
+    .bake_version = 2,
     .options = OPTION_TABLE(struct mrt_options, option_rows, NULL),
     .presets = presets,
     .debug_views = debug_views,
     .state_size = sizeof(struct mrt),
     .check = mrt_check,
     .bake = mrt_bake,
+    .bake_report = mrt_bake_report,
     .create = mrt_create,
     .load = mrt_load,
     .set_options = mrt_set_options,

@@ -9,6 +9,9 @@
 //     cube/I/U_vec      [n, 4, k_b]    irradiance by normal: OHLSH in the frame of mrt_point
 //     cube/I/U_bvol     [p³, 9, k_b]   irradiance by normal at probes: SH in the frame of the cube
 //     cube/I/R_b        [N, k_l, k_b]  lightfield coefficients at each opening
+//     cube/I/sigma_L    [min(n, lights)]  singular values of the direct light of the prior
+//     cube/I/sigma_M    [k_d]          those of M = F P S
+//     cube/I/checks     [2]            ‖U_mᵀ U_m − I‖, ‖F L_imp − U_b‖ / ‖U_b‖
 //     interface/R_turn  [3 or 6, k_l, k_l]  propagation to the exits, by enum mrt_turn
 //     interface/T_r     [e·k_r, k_l]   r-coefficients of lightfield coefficients
 //     interface/U_r     [e·m, k_r]     irradiance at the m texels of mrt_entered_shape
@@ -21,7 +24,7 @@
 // A lightfield coefficient is with respect to H_rlf = U Σ, which is not kept.
 #pragma once
 
-#include "bake/plan.h"
+#include "bake/bake.h"
 #include "core/linalg.h"
 #include "core/option.h"
 
@@ -36,9 +39,13 @@ struct mrt_dictionary_options {
 
 const struct option_table *mrt_dictionary_option_table(void);
 
-// Adds the stages; `options` is copied. full: with the singular values of F (cube/0/sigma_F).
+// Adds the stages; `options` is copied. full: with the singular values of F (cube/I/sigma_F).
 bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_options *options,
                          bool full);
+
+// Members of the report of a complete bake of these options: "shapes" and "interface".
+bool mrt_dictionary_report(struct report *report, struct bake *bake,
+                           const struct mrt_dictionary_options *options);
 
 enum { MRT_MAX_ENTERED = 3 };
 

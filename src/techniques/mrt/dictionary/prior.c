@@ -13,6 +13,12 @@ enum {
     SHADOW_RAYS = 64,
 };
 
+// Light inside a cube or a straight tube is visible from everywhere.
+static bool is_occluded(const struct mrt_shape *shape, struct mrt_prior_light light)
+{
+    return !light.inside || (shape->kind != MRT_CUBE && shape->kind != MRT_TUBE);
+}
+
 static float lattice(int i)
 {
     return (float)(i + 1) / (float)(LATTICE + 1) - 0.5f;
@@ -41,6 +47,13 @@ static float layer_beyond(int face, int i)
 {
     float depth = 0.5f + (float)(i + 1) / (float)(LATTICE + 1);
     return face & 1 ? depth : -depth;
+}
+
+double mrt_prior_rays(const struct mrt_shape *shape)
+{
+    const int inside =
+        is_occluded(shape, (struct mrt_prior_light){ .inside = true }) ? 0 : LATTICE * LAYER;
+    return (double)(mrt_prior_light_count(shape) - inside) * mrt_shape_texels(shape) * SHADOW_RAYS;
 }
 
 static struct mrt_prior_light *add_inside(struct mrt_prior_light *light)
@@ -155,8 +168,7 @@ void mrt_prior_column(const struct mrt_shape *shape, struct mrt_prior_light ligh
     for (uint32_t i = 0; i < SHADOW_RAYS; i++) disk[i] = sample_disk(sobol_2d(i, 1));
     for (int i = 0; i < texels; i++) {
         struct mrt_point at = mrt_shape_texel(shape, i);
-        bool seen = light.inside && (shape->kind == MRT_CUBE || shape->kind == MRT_TUBE);
-        float share = seen ? 1.0f : visible_share(shape, at, light, disk);
+        float share = is_occluded(shape, light) ? visible_share(shape, at, light, disk) : 1.0f;
         column[(size_t)i * stride] = share * mrt_point_light(at, light.centre);
     }
 }

@@ -12,6 +12,8 @@ struct mrt_prior_light {
 };
 
 int mrt_prior_light_count(const struct mrt_shape *shape);
+// Shadow rays of all lights, for estimates.
+double mrt_prior_rays(const struct mrt_shape *shape);
 void mrt_prior_lights(const struct mrt_shape *shape, struct mrt_prior_light *lights);
 
 // Irradiance (lux, for an edge of 1 m) at each texel: column[texel * stride].
