@@ -47,6 +47,23 @@ AG_API const char *ag_device_required_features(void);
 /// Number of messages from the validation layers so far; 0 without validation.
 AG_API int ag_device_validation_messages(const struct ag_device *device);
 
+/// What has been created and submitted on a device so far.
+struct ag_device_counters {
+    uint64_t images, buffers, pipelines; ///< created
+    uint64_t compiled;  ///< of the pipelines: compiled, not reused after their destruction
+    uint64_t frames;    ///< recorded
+    uint64_t transfers; ///< blocking uploads and downloads
+};
+AG_API void ag_device_get_counters(const struct ag_device *device, struct ag_device_counters *out);
+
+struct ag_memory {
+    char owner[32]; ///< a technique, "frame", "scene" or "gpu"
+    uint64_t bytes;
+};
+/// GPU memory that the library allocated on a device, by owner. Returns the number of owners and
+/// writes at most `capacity`. See ag_renderer_memory.
+AG_API int ag_device_memory(struct ag_device *device, struct ag_memory *out, int capacity);
+
 AG_END
 
 #endif

@@ -53,14 +53,21 @@ struct ag_frame_desc {
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
 /// return one.
 AG_API void ag_frame_desc_default(struct ag_frame_desc *desc);
-/// Renders one frame and submits it; does not wait for the GPU.
+/// Renders one frame and submits it. Two frames are in flight: the call waits until the frame
+/// before the last is finished.
 AG_API enum ag_result ag_renderer_render(struct ag_renderer *renderer,
                                          const struct ag_frame_desc *desc);
-/// Like ag_renderer_render, but records into the caller's VkCommandBuffer; adopted devices only.
-/// After the GPU has executed it, call ag_renderer_recorded_done before any other call.
+/// Like ag_renderer_render, but records into the caller's VkCommandBuffer (recording, outside of a
+/// rendering); adopted devices only. *frame is the frame's number. Never waits: up to eight
+/// recorded frames of a device may be unfinished. Submit command buffers to the adopted queue in
+/// the order of recording. Calls that wait for the GPU, and ag_renderer_render, are refused while a
+/// recorded frame is unfinished.
 AG_API enum ag_result ag_renderer_record(struct ag_renderer *renderer,
-                                         const struct ag_frame_desc *desc, void *vk_command_buffer);
-AG_API enum ag_result ag_renderer_recorded_done(struct ag_renderer *renderer);
+                                         const struct ag_frame_desc *desc, void *vk_command_buffer,
+                                         uint64_t *frame);
+/// Tells that the GPU has executed a recorded frame, and all that the renderer recorded before: the
+/// memory that they used may be reused.
+AG_API enum ag_result ag_renderer_recorded_done(struct ag_renderer *renderer, uint64_t frame);
 /// Waits until the GPU has finished all frames.
 AG_API enum ag_result ag_renderer_wait(struct ag_renderer *renderer);
 
@@ -92,6 +99,15 @@ AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char 
 /// distance), normals are octahedral, albedo and display are sRGB-encoded. "position" has no image.
 AG_API enum ag_result ag_renderer_layer_handle(struct ag_renderer *renderer, const char *layer,
                                                void **vk_image, uint32_t *vk_layout, float *scale);
+/// Numbers of the newest frame that the GPU has finished.
+struct ag_finished_frame {
+    uint64_t frame;    ///< its number: a renderer counts its frames from 1; 0: none is finished
+    float exposure_ev; ///< EV at ISO 100
+    float scale;       ///< of its radiance and irradiance layers, see ag_renderer_layer_handle
+};
+/// Does not wait. A recorded frame is finished with ag_renderer_recorded_done.
+AG_API enum ag_result ag_renderer_finished(struct ag_renderer *renderer,
+                                           struct ag_finished_frame *out);
 /// EV of the newest frame; waits for the GPU.
 AG_API enum ag_result ag_renderer_exposure(struct ag_renderer *renderer, float *ev);
 /// Draws a debug view of a technique to the layer "debug" in all further frames; NULL: none.
@@ -105,11 +121,13 @@ struct ag_timing {
 /// most `capacity`.
 AG_API int ag_renderer_timings(struct ag_renderer *renderer, struct ag_timing *out, int capacity);
 
-struct ag_memory {
-    char owner[32];
-    uint64_t bytes;
-};
-/// GPU memory of the device by owner. Returns the number of owners and writes at most `capacity`.
+/// The same times of the newest frame that the GPU has finished. Does not wait.
+AG_API int ag_renderer_finished_timings(struct ag_renderer *renderer, struct ag_timing *out,
+                                        int capacity);
+
+/// GPU memory of a renderer by owner, with its copy of the scene; without the transient and staging
+/// buffers, which are the device's (ag_device_memory). Does not wait. Returns the number of owners
+/// and writes at most `capacity`.
 AG_API int ag_renderer_memory(struct ag_renderer *renderer, struct ag_memory *out, int capacity);
 /// The GI spec with all options; owned by the renderer.
 AG_API const char *ag_renderer_gi(const struct ag_renderer *renderer);

@@ -96,3 +96,17 @@ int ag_device_validation_messages(const struct ag_device *device)
 {
     return device ? gpu_validation_messages(device->gpu) : 0;
 }
+
+void ag_device_get_counters(const struct ag_device *device, struct ag_device_counters *out)
+{
+    if (!out) return;
+    *out = (struct ag_device_counters){ 0 };
+    if (!device) return;
+    const struct gpu_counters *counters = gpu_counters(device->gpu);
+    out->images = counters->images;
+    out->buffers = counters->buffers;
+    out->pipelines = counters->pipelines;
+    out->compiled = counters->compiled;
+    out->frames = counters->frames;
+    out->transfers = counters->transfers;
+}

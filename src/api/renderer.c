@@ -1,17 +1,10 @@
-// Renderers: one frame at a time, from the frame passes and the GI stack.
+// Renderers: creation, resizing, destruction.
 #include "api/renderer_bakes.h"
 #include "api/renderer_state.h"
 
 #include "gpu/gpu.h"
 
-#include <string.h>
-
-enum { MAX_SIZE = 16384, MAX_PASSES = 128, MAX_OWNERS = 128 };
-
-static struct host *host_of(const struct ag_renderer *renderer)
-{
-    return &renderer->device->context->host;
-}
+enum { MAX_SIZE = 16384 };
 
 void ag_renderer_desc_default(struct ag_renderer_desc *desc)
 {
@@ -78,7 +71,7 @@ static void warn_of_darkness(const struct ag_renderer *r)
     bool only_emitters =
         scene->light_count == 0 && luminance(scene->sky) <= 0.0f && scene_has_emission(scene);
     if (only_emitters && !gi_spec_gathers_emission(&r->spec))
-        host_log(host_of(r), LOG_WARNING,
+        host_log(renderer_host(r), LOG_WARNING,
                  "%s: only emissive surfaces light the scene and --gi %s ignores their light; try "
                  "--gi lpv",
                  scene->name, r->gi_text);
@@ -86,7 +79,7 @@ static void warn_of_darkness(const struct ag_renderer *r)
 
 static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
 {
-    struct host *host = host_of(r);
+    struct host *host = renderer_host(r);
     uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
     if (!parse_options(host, desc, &r->spec, &r->options)) return false;
     if (!(r->gi_text = gi_spec_print(&r->spec))) return false;
@@ -128,7 +121,10 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->display_layer = desc->display_layer;
     r->motion_layer = desc->motion_layer;
     scene->users++;
-    bool ok = build(r, desc);
+    r->client = gpu_client_add(device->gpu);
+    renderer_enter(r);
+    bool ok = r->client && build(r, desc);
+    renderer_leave(r);
     enum ag_result result = api_done(context, ok);
     if (!ok)
         ag_renderer_destroy(r);
@@ -140,22 +136,15 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
 void ag_renderer_destroy(struct ag_renderer *r)
 {
     if (!r) return;
-    if (r->recorded) gpu_frame_adopted_done(r->device->gpu, r->recorded);
+    renderer_recordings_done(r, UINT64_MAX);
     if (r->gi) gi_destroy(r->gi);
     frame_destroy(r->frame);
     pose_finish(&r->pose);
     gi_spec_finish(&r->spec);
-    host_free(host_of(r), r->gi_text);
+    host_free(renderer_host(r), r->gi_text);
+    gpu_client_remove(r->device->gpu, r->client);
     r->scene->users--;
-    host_free(host_of(r), r);
-}
-
-// A frame recorded into a caller's command buffer must be reported done before any other call.
-static enum ag_result idle_check(const char *function, const struct ag_renderer *r)
-{
-    AG_REQUIRE_FOR(function, renderer_context(r), !r->recorded,
-                   "a recorded frame is unfinished: call ag_renderer_recorded_done first");
-    return AG_OK;
+    host_free(renderer_host(r), r);
 }
 
 enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)
@@ -163,148 +152,13 @@ enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
     enum ag_result checked = size_check(__func__, context, width, height);
-    if (checked == AG_OK) checked = idle_check(__func__, r);
     if (checked != AG_OK) return checked;
     r->rendered = 0;
+    renderer_enter(r);
     r->sized = frame_resize(r->frame, (uint32_t)width, (uint32_t)height) &&
                gi_resize(r->gi, (uint32_t)width, (uint32_t)height);
+    renderer_leave(r);
     return api_done(context, r->sized);
-}
-
-// ---- frames
-
-void ag_frame_desc_default(struct ag_frame_desc *desc)
-{
-    if (desc) *desc = (struct ag_frame_desc){ .auto_exposure = true };
-}
-
-static enum ag_result frame_check(const char *function, const struct ag_renderer *r,
-                                  const struct ag_frame_desc *desc)
-{
-    struct ag_context *context = renderer_context(r);
-    AG_REQUIRE_FOR(function, context, desc, "desc is NULL");
-    AG_REQUIRE_FOR(function, context, r->sized, "the last resize failed");
-    AG_REQUIRE_FOR(function, context, api_animation_exists(r->scene, desc->animation),
-                   "animation %d is not one of %d", desc->animation,
-                   r->scene->scene->animation_count);
-    AG_REQUIRE_FOR(function, context, isfinite(desc->time_s), "time_s is not finite");
-    AG_REQUIRE_FOR(function, context, desc->auto_exposure || isfinite(desc->exposure_ev),
-                   "exposure_ev is not finite");
-    enum ag_result checked = api_camera_check(context, function, &desc->camera);
-    return checked == AG_OK ? idle_check(function, r) : checked;
-}
-
-static int resolve_lights(struct ag_renderer *r)
-{
-    int count = r->scene->scene->light_count;
-    if (count > FRAME_MAX_LIGHTS) {
-        if (!r->said_limit)
-            host_log(host_of(r), LOG_WARNING, "%s has %d lights: the first %d are used",
-                     r->scene->scene->name, count, FRAME_MAX_LIGHTS);
-        r->said_limit = true;
-        count = FRAME_MAX_LIGHTS;
-    }
-    for (int i = 0; i < count; i++) r->lights[i] = pose_light(&r->pose, i);
-    return count;
-}
-
-// All steps that may allocate; recording must not.
-static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
-                    struct frame_input *input, struct frame_indirect *hook)
-{
-    if (!api_pose_at(r->scene, &r->pose, &r->pose_version, desc->animation, desc->time_s))
-        return false;
-    *input = (struct frame_input){ .pose = &r->pose,
-                                   .camera = api_camera(&desc->camera),
-                                   .lights = r->lights,
-                                   .light_count = resolve_lights(r),
-                                   .sky = r->scene->scene->sky,
-                                   .auto_exposure = desc->auto_exposure,
-                                   .exposure_ev = desc->exposure_ev,
-                                   .camera_cut = desc->camera_cut,
-                                   .want_indirect_layer = r->indirect_layer,
-                                   .want_motion_layer = r->motion_layer,
-                                   .want_display = r->display_layer };
-    *hook = gi_hook(r->gi);
-    return frame_prepare(r->frame, input, hook);
-}
-
-static bool fail_lost(struct ag_renderer *r)
-{
-    struct host *host = host_of(r);
-    if (host->failure != FAIL_NONE) return false; // already reported
-    return host_fail(host, FAIL_DEVICE, "cannot render a frame on %s: the device is lost",
-                     gpu_info(r->device->gpu)->name);
-}
-
-enum ag_result ag_renderer_render(struct ag_renderer *r, const struct ag_frame_desc *desc)
-{
-    struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, r, "renderer is NULL");
-    enum ag_result checked = frame_check(__func__, r, desc);
-    if (checked != AG_OK) return checked;
-    struct frame_input input;
-    struct frame_indirect hook;
-    if (!prepare(r, desc, &input, &hook)) return api_done(context, false);
-    struct gpu_cmd *cmd = gpu_frame_begin(r->device->gpu);
-    if (!cmd) return api_done(context, fail_lost(r));
-    frame_record(r->frame, cmd, &input, &hook);
-    if (!gpu_frame_end(r->device->gpu, cmd)) return api_done(context, fail_lost(r));
-    r->rendered++;
-    return api_done(context, true);
-}
-
-enum ag_result ag_renderer_record(struct ag_renderer *r, const struct ag_frame_desc *desc,
-                                  void *vk_command_buffer)
-{
-    struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, r, "renderer is NULL");
-    AG_REQUIRE_POINTER(context, vk_command_buffer);
-    AG_REQUIRE(context, r->device->adopted, "the device is not an adopted one");
-    enum ag_result checked = frame_check(__func__, r, desc);
-    if (checked != AG_OK) return checked;
-    struct frame_input input;
-    struct frame_indirect hook;
-    if (!prepare(r, desc, &input, &hook)) return api_done(context, false);
-    struct gpu_cmd *cmd = gpu_frame_begin_adopted(r->device->gpu, vk_command_buffer);
-    if (!cmd) return api_done(context, fail_lost(r));
-    frame_record(r->frame, cmd, &input, &hook);
-    r->recorded = cmd;
-    r->rendered++;
-    return api_done(context, gpu_frame_end(r->device->gpu, cmd) || fail_lost(r));
-}
-
-enum ag_result ag_renderer_recorded_done(struct ag_renderer *r)
-{
-    struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, r, "renderer is NULL");
-    AG_REQUIRE(context, r->recorded, "no frame was recorded");
-    gpu_frame_adopted_done(r->device->gpu, r->recorded);
-    r->recorded = NULL;
-    return api_done(context, true);
-}
-
-enum ag_result ag_renderer_wait(struct ag_renderer *r)
-{
-    struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, r, "renderer is NULL");
-    enum ag_result checked = idle_check(__func__, r);
-    if (checked != AG_OK) return checked;
-    return api_done(context, gpu_wait(r->device->gpu) || fail_lost(r));
-}
-
-// ---- results of a frame
-
-enum ag_result ag_renderer_exposure(struct ag_renderer *r, float *ev)
-{
-    struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, r, "renderer is NULL");
-    AG_REQUIRE_POINTER(context, ev);
-    *ev = 0.0f;
-    AG_REQUIRE(context, r->rendered, "no frame has been rendered");
-    enum ag_result waited = ag_renderer_wait(r);
-    if (waited != AG_OK) return waited;
-    return api_done(context, frame_exposure(r->frame, ev));
 }
 
 enum ag_result ag_renderer_set_debug_view(struct ag_renderer *r, const char *name)
@@ -314,35 +168,6 @@ enum ag_result ag_renderer_set_debug_view(struct ag_renderer *r, const char *nam
     bool ok = gi_set_debug_view(r->gi, name);
     if (ok) r->debug_view = name != NULL;
     return api_done(context, ok);
-}
-
-int ag_renderer_timings(struct ag_renderer *r, struct ag_timing *out, int capacity)
-{
-    if (!r || capacity < 0 || (!out && capacity > 0)) return 0;
-    if (!r->rendered || ag_renderer_wait(r) != AG_OK) return 0;
-    struct gpu_timing timings[MAX_PASSES];
-    int count = gpu_frame_timings(r->device->gpu, timings, MAX_PASSES);
-    if (count > MAX_PASSES) count = MAX_PASSES;
-    _Static_assert(sizeof out->name == sizeof timings->name, "names are copied whole");
-    for (int i = 0; i < count && i < capacity; i++) {
-        memcpy(out[i].name, timings[i].name, sizeof out[i].name);
-        out[i].ms = timings[i].ms;
-    }
-    return count;
-}
-
-int ag_renderer_memory(struct ag_renderer *r, struct ag_memory *out, int capacity)
-{
-    if (!r || capacity < 0 || (!out && capacity > 0)) return 0;
-    struct gpu_memory owners[MAX_OWNERS];
-    int count = gpu_memory_by_owner(r->device->gpu, owners, MAX_OWNERS);
-    if (count > MAX_OWNERS) count = MAX_OWNERS;
-    _Static_assert(sizeof out->owner == sizeof owners->owner, "names are copied whole");
-    for (int i = 0; i < count && i < capacity; i++) {
-        memcpy(out[i].owner, owners[i].owner, sizeof out[i].owner);
-        out[i].bytes = owners[i].bytes;
-    }
-    return count;
 }
 
 const char *ag_renderer_gi(const struct ag_renderer *r)

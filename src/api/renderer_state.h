@@ -1,10 +1,17 @@
-// State of a renderer, shared by renderer.c (creation, frames), layers.c and probes.c (read-back).
+// State of a renderer, shared by renderer*.c, layers.c and probes.c.
 #pragma once
 
 #include "api/objects.h"
 
 #include "frame/frame.h"
+#include "gpu/gpu.h"
 #include "techniques/gi.h"
+
+// In a caller's command buffer, until ag_renderer_recorded_done.
+struct recorded_frame {
+    struct gpu_cmd *cmd;
+    uint64_t number;
+};
 
 struct ag_renderer {
     struct ag_device *device;
@@ -17,7 +24,9 @@ struct ag_renderer {
     struct frame *frame;
     struct gi *gi;
     struct world_light lights[FRAME_MAX_LIGHTS];
-    struct gpu_cmd *recorded; // in a caller's command buffer, until ag_renderer_recorded_done
+    struct recorded_frame recorded[GPU_ADOPTED_FRAMES]; // oldest first
+    int recorded_count;
+    uint32_t client; // of the device: gpu_client_add
     bool indirect_layer, display_layer, motion_layer, debug_view;
     bool sized;        // the last resize succeeded
     bool said_limit;   // the warning about too many lights was logged
@@ -28,3 +37,22 @@ static inline struct ag_context *renderer_context(const struct ag_renderer *rend
 {
     return renderer ? renderer->device->context : NULL;
 }
+
+static inline struct host *renderer_host(const struct ag_renderer *renderer)
+{
+    return &renderer->device->context->host;
+}
+
+// Around all that creates objects or records: memory and times count for the renderer.
+static inline void renderer_enter(const struct ag_renderer *renderer)
+{
+    gpu_client_set(renderer->device->gpu, renderer->client);
+}
+
+static inline void renderer_leave(const struct ag_renderer *renderer)
+{
+    gpu_client_set(renderer->device->gpu, 0);
+}
+
+// renderer_frames.c. The GPU has completed the recorded frames up to this number.
+void renderer_recordings_done(struct ag_renderer *renderer, uint64_t number);

@@ -39,7 +39,7 @@ struct frame *frame_create(struct host *host, struct gpu *gpu, const struct fram
         rsm_init(&f->rsm, host, gpu, (uint32_t)options->rsm_size) &&
         direct_init(&f->direct, gpu, (uint32_t)options->cascades) &&
         exposure_init(&f->exposure, gpu) && composite_init(&f->composite, gpu) &&
-        create_ggx_albedo(f)) {
+        create_ggx_albedo(f) && reports_init(f)) {
         return f;
     }
     frame_destroy(f);
@@ -50,6 +50,7 @@ void frame_destroy(struct frame *f)
 {
     if (!f) return;
     frame_destroy_layers(f);
+    reports_finish(f);
     gpu_buffer_destroy(f->gpu, &f->ggx_albedo);
     composite_finish(&f->composite);
     exposure_finish(&f->exposure);
@@ -372,6 +373,8 @@ void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input
     record_exposure(f, cmd, input);
     record_composite(f, cmd);
     f->index++;
+    f->number++;
+    reports_record(f, cmd);
 }
 
 float frame_radiance_scale(const struct frame *f)

@@ -152,6 +152,16 @@ gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer);
 float frame_radiance_scale(const struct frame *frame);
 // EV of the newest completed frame (call gpu_wait first).
 bool frame_exposure(struct frame *frame, float *ev);
+// Numbers of a frame, known once the GPU has completed it.
+struct frame_report {
+    uint64_t number; // frames recorded since frame_create, from 1
+    float exposure_ev;
+    float radiance_scale;
+};
+// Of the newest completed frame. Does not wait. false: there is none yet.
+bool frame_newest_report(struct frame *frame, struct frame_report *out);
+// Number of the newest recorded frame; 0: none.
+uint64_t frame_number(const struct frame *frame);
 // Layers as physical values; units and encodings: frame_readback.c.
 enum frame_readback {
     READ_COLOR,

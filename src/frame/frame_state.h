@@ -12,6 +12,14 @@
 #include "frame/scene_gpu.h"
 #include "frame/shadow/shadow.h"
 
+struct frame_reports {
+    struct {
+        struct gpu_readback readback; // of struct exposure_values
+        struct frame_report report;
+    } slots[GPU_PENDING_FRAMES];
+    struct frame_report newest; // completed; number 0: none
+};
+
 struct frame {
     struct host *host;
     struct gpu *gpu;
@@ -50,11 +58,18 @@ struct frame {
     bool has_blocks;            // its maps have blocks
     struct gpu_binding constants_binding, lights_binding;
     struct frame_view view;
+    uint64_t number; // see struct frame_report
+    struct frame_reports reports;
 };
 
 // frame_layers.c
 bool frame_make_layers(struct frame *frame, uint32_t wanted); // bit l: layer l; destroys others
 void frame_destroy_layers(struct frame *frame);
+
+// frame_report.c
+bool reports_init(struct frame *frame);
+void reports_finish(struct frame *frame);
+void reports_record(struct frame *frame, struct gpu_cmd *cmd); // after all passes
 
 // frame_begin.c: constants, lights and change flags of a new frame.
 void frame_begin(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);

@@ -92,6 +92,7 @@ bool gpu_buffer_create(struct gpu *gpu, const struct gpu_buffer_desc *desc, gpu_
     if (!buffer) return false;
     buffer->zero_pending = true;
     out->id = table_add(gpu->host, &gpu->buffers, buffer);
+    gpu->counters.buffers += out->id != 0;
     if (out->id) return true;
     buffer_free(gpu, buffer);
     return false;

@@ -75,6 +75,7 @@ static void start(struct gpu_cmd *cmd)
     struct gpu *gpu = cmd->gpu;
     cmd->state = CMD_RECORDING;
     cmd->serial = ++gpu->serial;
+    cmd->client = gpu->client;
     cmd->broken = false;
     cmd->batch = (struct batch){ 0 };
     cmd->rendering = (struct rendering){ 0 };
@@ -145,7 +146,7 @@ struct gpu_cmd *gpu_frame_begin(struct gpu *gpu)
     if (cmd->state == CMD_PENDING && !timeline_wait(gpu, cmd->timeline)) return NULL;
     deferred_delete_collect(gpu);
     if (!start_own(cmd)) return NULL;
-    gpu->next_frame = (gpu->next_frame + 1) % FRAMES_IN_FLIGHT;
+    gpu->next_frame = (gpu->next_frame + 1) % GPU_FRAMES_IN_FLIGHT;
     ring_start(cmd);
     scopes_start(cmd);
     return cmd;
@@ -166,6 +167,7 @@ bool gpu_frame_end(struct gpu *gpu, struct gpu_cmd *cmd)
 {
     if (!cmd || cmd != gpu->recording) return gpu_misuse(gpu, "frame: it is not being recorded");
     close_recording(cmd);
+    gpu->counters.frames++;
     bool broken = cmd->broken;
     if (cmd->adopted) {
         cmd->state = CMD_PENDING; // until gpu_frame_adopted_done
@@ -190,7 +192,8 @@ struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer
         return cmd;
     }
     host_fail(gpu->host, FAIL_ARGUMENT,
-              "gpu adopted frame: %d are unfinished (gpu_frame_adopted_done)", ADOPTED_IN_FLIGHT);
+              "gpu adopted frame: %d are unfinished (gpu_frame_adopted_done)",
+              (int)GPU_ADOPTED_FRAMES);
     return NULL;
 }
 
@@ -229,6 +232,7 @@ struct gpu_cmd *transfer_begin(struct gpu *gpu)
 bool transfer_end(struct gpu *gpu, struct gpu_cmd *cmd)
 {
     unify_shared(cmd);
+    gpu->counters.transfers++;
     bool done = submit(cmd) && timeline_wait(gpu, cmd->timeline);
     deferred_delete_collect(gpu);
     return done;

@@ -159,6 +159,7 @@ void gpu_destroy(struct gpu *gpu)
     }
     if (gpu->instance && !gpu->adopted) vkDestroyInstance(gpu->instance, NULL);
     host_free(gpu->host, gpu->shader_dir);
+    host_free(gpu->host, gpu->clients);
     host_free(gpu->host, gpu);
 }
 

@@ -242,14 +242,20 @@ int gpu_reload_shaders(struct gpu *gpu);
 
 // ---- Commands -----------------------------------------------------------------------------------
 
-// Frames are recorded one at a time: begin, record, end (submits, does not wait). At most two
-// frames are in flight. NULL: device lost.
+enum {
+    GPU_FRAMES_IN_FLIGHT = 2, // submitted by the layer
+    GPU_ADOPTED_FRAMES = 8,   // recorded into a caller's command buffers
+    GPU_PENDING_FRAMES = GPU_FRAMES_IN_FLIGHT + GPU_ADOPTED_FRAMES,
+};
+// Frames are recorded one at a time: begin, record, end (submits, does not wait). At most
+// GPU_FRAMES_IN_FLIGHT frames are in flight: gpu_frame_begin waits for the oldest. NULL: device
+// lost.
 struct gpu_cmd *gpu_frame_begin(struct gpu *gpu);
 bool gpu_frame_end(struct gpu *gpu, struct gpu_cmd *cmd);
 // Records into a caller's VkCommandBuffer (in the recording state, outside of a rendering).
-// gpu_frame_end then does not submit: the caller submits the buffer before any other call that
-// submits, and calls gpu_frame_adopted_done once the GPU has completed it. At most four adopted
-// frames are pending.
+// gpu_frame_end then does not submit: the caller submits its buffers in the order of recording, and
+// calls gpu_frame_adopted_done once the GPU has completed one. At most GPU_ADOPTED_FRAMES are
+// pending.
 struct gpu_cmd *gpu_frame_begin_adopted(struct gpu *gpu, void *vk_command_buffer);
 void gpu_frame_adopted_done(struct gpu *gpu, struct gpu_cmd *cmd);
 bool gpu_wait(struct gpu *gpu); // until all submissions are complete; false: device lost
@@ -355,3 +361,22 @@ struct gpu_memory {
 };
 // Current bytes by owner, largest first. Returns the count.
 int gpu_memory_by_owner(const struct gpu *gpu, struct gpu_memory *out, int capacity);
+
+// A client shares the device with others, as several renderers do: times and memory are also kept
+// for each. Client 0 is the device itself, to which transient and staging buffers ("gpu") belong.
+uint32_t gpu_client_add(struct gpu *gpu); // 0: no memory
+void gpu_client_remove(struct gpu *gpu, uint32_t client);
+// New objects and recordings belong to `client` until the next call.
+void gpu_client_set(struct gpu *gpu, uint32_t client);
+// As gpu_frame_timings, of the client's newest frame that the GPU has completed. Does not wait.
+int gpu_client_timings(struct gpu *gpu, uint32_t client, struct gpu_timing *out, int capacity);
+int gpu_client_memory(const struct gpu *gpu, uint32_t client, struct gpu_memory *out, int capacity);
+
+// Events since the creation of the device.
+struct gpu_counters {
+    uint64_t images, buffers;   // created
+    uint64_t pipelines;         // created
+    uint64_t compiled;          // of these, not taken from the pool of destroyed ones
+    uint64_t frames, transfers; // submitted; frames in a caller's command buffer too
+};
+const struct gpu_counters *gpu_counters(const struct gpu *gpu);

@@ -187,6 +187,7 @@ bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_im
     if (!create_handle(gpu, image)) goto fail;
     out->id = table_add(gpu->host, &gpu->images, image);
     if (!out->id) goto fail;
+    gpu->counters.images++;
     return true;
 fail:
     image_free(gpu, image);

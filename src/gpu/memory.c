@@ -33,16 +33,23 @@ static uint32_t owner_index(struct gpu *gpu, const char *name)
     char owner[sizeof m->owners->name];
     size_t length = strcspn(name, ".");
     snprintf(owner, sizeof owner, "%.*s", (int)length, name);
+    // Transient and staging buffers serve all clients.
+    const uint32_t client = strcmp(owner, "gpu") == 0 ? 0 : gpu->client;
+    uint32_t index = m->owner_count;
     for (uint32_t i = 0; i < m->owner_count; i++) {
-        if (strcmp(m->owners[i].name, owner) == 0) return i;
+        if (m->owners[i].client == client && strcmp(m->owners[i].name, owner) == 0) return i;
+        if (!m->owners[i].bytes) index = i;
     }
-    struct memory_owner *owners =
-        host_realloc(gpu->host, m->owners, m->owner_count + 1, sizeof *owners);
-    if (!owners) return UINT32_MAX;
-    m->owners = owners;
-    owners[m->owner_count] = (struct memory_owner){ .bytes = 0 };
-    memcpy(owners[m->owner_count].name, owner, sizeof owner);
-    return m->owner_count++;
+    if (index == m->owner_count) {
+        struct memory_owner *owners =
+            host_realloc(gpu->host, m->owners, m->owner_count + 1, sizeof *owners);
+        if (!owners) return UINT32_MAX;
+        m->owners = owners;
+        m->owner_count++;
+    }
+    m->owners[index] = (struct memory_owner){ .client = client };
+    memcpy(m->owners[index].name, owner, sizeof owner);
+    return index;
 }
 
 // Preference for a memory type; negative: unsuitable.
@@ -270,23 +277,53 @@ static int larger_first(const void *a, const void *b)
     return strcmp(x->owner, y->owner);
 }
 
-int gpu_memory_by_owner(const struct gpu *gpu, struct gpu_memory *out, int capacity)
+// Adds an entry to a list of limited length, which keeps the largest ones.
+static void list_add(struct gpu_memory *out, int *count, int capacity,
+                     const struct gpu_memory *entry)
+{
+    if (*count < capacity) {
+        out[(*count)++] = *entry;
+        return;
+    }
+    int least = 0;
+    for (int k = 1; k < *count; k++) {
+        if (larger_first(&out[k], &out[least]) > 0) least = k;
+    }
+    if (*count && larger_first(entry, &out[least]) < 0) out[least] = *entry;
+}
+
+// Bytes of all owners of this name; 0 if an earlier entry has it.
+static uint64_t bytes_of_name(const struct memory *m, uint32_t first)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < m->owner_count; i++) {
+        if (strcmp(m->owners[i].name, m->owners[first].name) != 0) continue;
+        if (i < first) return 0;
+        bytes += m->owners[i].bytes;
+    }
+    return bytes;
+}
+
+static int list_owners(const struct memory *m, const uint32_t *client, struct gpu_memory *out,
+                       int capacity)
 {
     int count = 0;
-    for (uint32_t i = 0; i < gpu->memory.owner_count; i++) {
-        struct gpu_memory entry = { .bytes = gpu->memory.owners[i].bytes };
-        if (!entry.bytes) continue;
-        memcpy(entry.owner, gpu->memory.owners[i].name, sizeof entry.owner);
-        if (count < capacity) {
-            out[count++] = entry;
-            continue;
-        }
-        int least = 0; // full: the largest ones stay
-        for (int k = 1; k < count; k++) {
-            if (larger_first(&out[k], &out[least]) > 0) least = k;
-        }
-        if (count && larger_first(&entry, &out[least]) < 0) out[least] = entry;
+    for (uint32_t i = 0; i < m->owner_count; i++) {
+        struct gpu_memory entry = { .bytes = client ? m->owners[i].bytes : bytes_of_name(m, i) };
+        if (!entry.bytes || (client && m->owners[i].client != *client)) continue;
+        memcpy(entry.owner, m->owners[i].name, sizeof entry.owner);
+        list_add(out, &count, capacity, &entry);
     }
     if (count) qsort(out, (size_t)count, sizeof *out, larger_first);
     return count;
+}
+
+int gpu_memory_by_owner(const struct gpu *gpu, struct gpu_memory *out, int capacity)
+{
+    return list_owners(&gpu->memory, NULL, out, capacity);
+}
+
+int gpu_client_memory(const struct gpu *gpu, uint32_t client, struct gpu_memory *out, int capacity)
+{
+    return list_owners(&gpu->memory, &client, out, capacity);
 }

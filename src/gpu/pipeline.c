@@ -273,6 +273,8 @@ static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
     } else if (!build_any(gpu, p)) {
         goto fail;
     }
+    gpu->counters.compiled += !pooled;
+    gpu->counters.pipelines++;
     out->id = table_add(gpu->host, &gpu->pipelines, p);
     if (out->id) return true;
 fail:

@@ -100,41 +100,44 @@ void gpu_scope_end(struct gpu_cmd *cmd)
     if (cmd->gpu->end_label) cmd->gpu->end_label(cmd->buffer);
 }
 
-static struct gpu_timing *timing_of(struct gpu *gpu, const char *name)
+static struct gpu_timing *timing_of(struct frame_times *times, const char *name)
 {
-    for (int i = 0; i < gpu->timing_count; i++) {
-        if (strcmp(gpu->timings[i].name, name) == 0) return &gpu->timings[i];
+    for (int i = 0; i < times->count; i++) {
+        if (strcmp(times->list[i].name, name) == 0) return &times->list[i];
     }
-    struct gpu_timing *timing = &gpu->timings[gpu->timing_count++];
+    struct gpu_timing *timing = &times->list[times->count++];
     *timing = (struct gpu_timing){ .ms = 0 };
     snprintf(timing->name, sizeof timing->name, "%s", name);
     return timing;
 }
 
-void scopes_collect(struct gpu_cmd *cmd)
+static void collect(const struct gpu_cmd *cmd, const uint64_t *ticks, struct frame_times *times)
 {
-    struct gpu *gpu = cmd->gpu;
-    struct scopes *s = &cmd->scopes;
-    uint64_t ticks[2 * MAX_SCOPES];
-    if (!s->queries || !s->query_count || cmd->serial <= gpu->timings_serial) return;
-    if (vkGetQueryPoolResults(gpu->device, s->queries, 0, s->query_count, sizeof ticks, ticks,
-                              sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS) {
-        return;
-    }
-    gpu->timings_serial = cmd->serial;
-    gpu->timing_count = 0;
+    const struct scopes *s = &cmd->scopes;
+    if (cmd->serial <= times->serial) return; // a newer frame was completed before
+    times->serial = cmd->serial;
+    times->count = 0;
     uint32_t count = s->count < MAX_SCOPES ? s->count : MAX_SCOPES;
     for (uint32_t i = 0; i < count; i++) {
         const struct scope *scope = &s->list[i];
         if ((scope->outer && i > 0) || scope->last_query == NOT_TIMED) continue;
-        uint64_t passed = (ticks[scope->last_query] - ticks[scope->first_query]) & gpu->tick_mask;
-        timing_of(gpu, scope->name)->ms += (double)passed * gpu->ns_per_tick * 1e-6;
+        uint64_t passed =
+            (ticks[scope->last_query] - ticks[scope->first_query]) & cmd->gpu->tick_mask;
+        timing_of(times, scope->name)->ms += (double)passed * cmd->gpu->ns_per_tick * 1e-6;
     }
 }
 
-int gpu_frame_timings(const struct gpu *gpu, struct gpu_timing *out, int capacity)
+void scopes_collect(struct gpu_cmd *cmd)
 {
-    int count = gpu->timing_count < capacity ? gpu->timing_count : capacity;
-    if (count > 0) memcpy(out, gpu->timings, (size_t)count * sizeof *out);
-    return count > 0 ? count : 0;
+    struct gpu *gpu = cmd->gpu;
+    const struct scopes *s = &cmd->scopes;
+    uint64_t ticks[2 * MAX_SCOPES];
+    if (!s->queries || !s->query_count) return;
+    if (vkGetQueryPoolResults(gpu->device, s->queries, 0, s->query_count, sizeof ticks, ticks,
+                              sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS) {
+        return;
+    }
+    collect(cmd, ticks, &gpu->times);
+    struct client *client = client_find(gpu, cmd->client);
+    if (client) collect(cmd, ticks, &client->times);
 }

@@ -6,10 +6,8 @@
 #include <vulkan/vulkan.h>
 
 enum {
-    FRAMES_IN_FLIGHT = 2,
-    ADOPTED_IN_FLIGHT = 4,
-    CMD_COUNT = FRAMES_IN_FLIGHT + 1 + ADOPTED_IN_FLIGHT, // frames, one for transfers, adopted ones
-    CMD_TRANSFER = FRAMES_IN_FLIGHT,
+    CMD_COUNT = GPU_PENDING_FRAMES + 1, // frames, one for transfers, adopted ones
+    CMD_TRANSFER = GPU_FRAMES_IN_FLIGHT,
     MAX_BINDINGS = 32, // the least maxPushDescriptors that VK_KHR_push_descriptor allows
     MAX_COLORS = 8,
     MAX_STAGES = 2,
@@ -65,7 +63,8 @@ struct allocation {
 
 struct memory_owner {
     char name[32];
-    uint64_t bytes;
+    uint32_t client;
+    uint64_t bytes; // 0: the entry may be reused
 };
 
 struct memory {
@@ -291,6 +290,7 @@ struct gpu_cmd {
     enum cmd_state state;
     bool adopted;
     bool broken;       // a command could not be recorded: gpu_frame_end fails
+    uint32_t client;   // see gpu_client_set
     uint64_t serial;   // of frames and transfers, in recording order
     uint64_t timeline; // semaphore value that the submission signals
     VkCommandPool pool;
@@ -356,6 +356,18 @@ void scopes_start(struct gpu_cmd *cmd);
 void scopes_stop(struct gpu_cmd *cmd);
 void scopes_collect(struct gpu_cmd *cmd); // reads timestamps of a completed recording
 void ring_start(struct gpu_cmd *cmd);
+
+// client.c
+struct frame_times {
+    struct gpu_timing list[MAX_SCOPES + 1];
+    int count;
+    uint64_t serial; // of the recording; 0: none
+};
+struct client {
+    uint32_t number;
+    struct frame_times times;
+};
+struct client *client_find(const struct gpu *gpu, uint32_t number); // NULL: none, or removed
 
 // ---- The device ---------------------------------------------------------------------------------
 
@@ -423,9 +435,11 @@ struct gpu {
 
     struct deferred_delete *deferred;
     size_t deferred_count, deferred_capacity;
-    struct gpu_timing timings[MAX_SCOPES + 1];
-    int timing_count;
-    uint64_t timings_serial;
+    struct frame_times times; // of the newest frame of any client
+    struct client *clients;
+    uint32_t client_count, newest_client; // newest_client: the last number given
+    uint32_t client;                      // of new objects and recordings
+    struct gpu_counters counters;
 };
 
 // instance.c

@@ -11,6 +11,18 @@ static void listen(void *user, enum ag_log_level level, const char *message)
         snprintf(fixture_last_warning, sizeof fixture_last_warning, "%s", message);
 }
 
+struct ag_device_adopt fixture_lend(struct own_device *own)
+{
+    return (struct ag_device_adopt){ .instance = own->instance,
+                                     .physical_device = own->physical,
+                                     .device = own->device,
+                                     .queue = own->queue,
+                                     .queue_family = own->family,
+                                     .lock_queue = own_device_lock,
+                                     .unlock_queue = own_device_unlock,
+                                     .user = own };
+}
+
 struct ag_context *fixture_context(void)
 {
     struct ag_context_desc desc;

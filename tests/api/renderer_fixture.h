@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/gpu_test.h"
+#include "framework/own_device.h"
 
 #include <afterglow/afterglow.h>
 
@@ -20,6 +21,7 @@ struct renderer_fixture {
 // The last warning of all contexts from fixture_context; "" at first.
 extern char fixture_last_warning[512];
 
+struct ag_device_adopt fixture_lend(struct own_device *own);
 struct ag_context *fixture_context(void);
 struct ag_renderer_desc fixture_renderer_desc(const char *gi);
 // Before the first frame. Uses the device in `adopt` (validated by its owner), or a new one if

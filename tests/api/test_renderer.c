@@ -105,6 +105,7 @@ TEST(debug_views_fill_the_debug_layer_until_they_are_switched_off)
 
 TEST(wrong_frames_are_refused)
 {
+    uint64_t number = 0;
     struct renderer_fixture s = fixture_open("none", NULL);
     struct ag_frame_desc frame;
     assert_int_equal(ag_renderer_render(s.renderer, NULL), AG_ERROR_ARGUMENT);
@@ -126,8 +127,9 @@ TEST(wrong_frames_are_refused)
     frame = s.frame;
     frame.camera.vertical_fov_rad = 3.2f;
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
-    assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_ERROR_ARGUMENT);
-    assert_int_equal(ag_renderer_record(s.renderer, &s.frame, &s), AG_ERROR_ARGUMENT); // not lent
+    assert_int_equal(ag_renderer_recorded_done(s.renderer, 1), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_record(s.renderer, &s.frame, &s, &number),
+                     AG_ERROR_ARGUMENT); // not lent
     fixture_close(&s);
 }
 
@@ -339,18 +341,6 @@ TEST(two_renderers_share_a_device_and_a_scene)
 
 // ---- adopted device
 
-static struct ag_device_adopt lend(struct own_device *own)
-{
-    return (struct ag_device_adopt){ .instance = own->instance,
-                                     .physical_device = own->physical,
-                                     .device = own->device,
-                                     .queue = own->queue,
-                                     .queue_family = own->family,
-                                     .lock_queue = own_device_lock,
-                                     .unlock_queue = own_device_unlock,
-                                     .user = own };
-}
-
 // The image from the library's own device; static storage.
 static const struct ag_image *expected_color(void)
 {
@@ -370,7 +360,7 @@ TEST(an_adopted_device_renders_the_same_and_its_queue_is_locked)
     const struct ag_image *expected = expected_color();
     struct own_device own;
     own_device_open(&own, 0);
-    struct ag_device_adopt adopt = lend(&own);
+    struct ag_device_adopt adopt = fixture_lend(&own);
     struct renderer_fixture s = fixture_open("lpv", &adopt);
     int before = own.locks;
     assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
@@ -396,20 +386,22 @@ TEST(a_frame_is_recorded_into_the_programs_command_buffer)
     const struct ag_image *expected = expected_color();
     struct own_device own;
     own_device_open(&own, 0);
-    struct ag_device_adopt adopt = lend(&own);
+    struct ag_device_adopt adopt = fixture_lend(&own);
     struct renderer_fixture s = fixture_open("lpv", &adopt);
     int before = own.locks;
     for (int i = 0; i < 2; i++) {
+        uint64_t number = 0;
         VkCommandBuffer commands = own_device_begin(&own);
-        assert_int_equal(ag_renderer_record(s.renderer, &s.frame, NULL), AG_ERROR_ARGUMENT);
-        assert_int_equal(ag_renderer_record(s.renderer, &s.frame, commands), AG_OK);
-        // No other call is allowed until the frame is reported done.
+        assert_int_equal(ag_renderer_record(s.renderer, &s.frame, NULL, &number),
+                         AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_renderer_record(s.renderer, &s.frame, commands, &number), AG_OK);
+        // What would wait is refused until the frame is reported done.
         struct ag_image *image = NULL;
         assert_int_equal(ag_renderer_read(s.renderer, "color", &image), AG_ERROR_ARGUMENT);
         assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_ERROR_ARGUMENT);
-        assert_int_equal(ag_renderer_resize(s.renderer, 10, 10), AG_ERROR_ARGUMENT);
+        assert_int_equal(ag_renderer_recorded_done(s.renderer, 7), AG_ERROR_ARGUMENT);
         own_device_run(&own, commands);
-        assert_int_equal(ag_renderer_recorded_done(s.renderer), AG_OK);
+        assert_int_equal(ag_renderer_recorded_done(s.renderer, number), AG_OK);
     }
     assert_int_equal(own.locks, before); // the program submitted
     struct ag_image *color = fixture_read(&s, "color");

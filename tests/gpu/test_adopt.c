@@ -219,14 +219,14 @@ TEST(a_wrapped_image_is_shared_with_the_host)
     own_device_close(&own);
 }
 
-TEST(a_fifth_pending_adopted_frame_is_refused)
+TEST(more_pending_adopted_frames_than_the_limit_are_refused)
 {
     struct own_device own;
     open_own(&own, 0);
     struct gpu *gpu = adopt(&own);
     CHECK(gpu != NULL);
-    struct gpu_cmd *cmds[4];
-    for (int i = 0; i < 4; i++) {
+    struct gpu_cmd *cmds[GPU_ADOPTED_FRAMES];
+    for (int i = 0; i < GPU_ADOPTED_FRAMES; i++) {
         VkCommandBuffer commands = own_device_begin(&own);
         cmds[i] = gpu_frame_begin_adopted(gpu, commands);
         CHECK(cmds[i] != NULL);
@@ -236,13 +236,13 @@ TEST(a_fifth_pending_adopted_frame_is_refused)
     }
     VkCommandBuffer commands = own_device_begin(&own);
     assert_null(gpu_frame_begin_adopted(gpu, commands));
-    assert_non_null(strstr(test_last_message(), "4 are unfinished"));
+    assert_non_null(strstr(test_last_message(), "8 are unfinished"));
     vkQueueWaitIdle(own.queue);
     gpu_frame_adopted_done(gpu, cmds[1]);
     cmds[1] = gpu_frame_begin_adopted(gpu, commands);
     CHECK(cmds[1] != NULL && gpu_frame_end(gpu, cmds[1]));
     own_device_run(&own, commands);
-    for (int i = 0; i < 4; i++) gpu_frame_adopted_done(gpu, cmds[i]);
+    for (int i = 0; i < GPU_ADOPTED_FRAMES; i++) gpu_frame_adopted_done(gpu, cmds[i]);
     test_gpu_finish(gpu);
     gpu_destroy(gpu);
     own_device_close(&own);
