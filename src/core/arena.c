@@ -5,6 +5,22 @@
 #include <stdint.h>
 #include <string.h>
 
+// Under the address sanitizer each allocation is a block of its own, and the bytes behind it are
+// poisoned: a write beyond it is then reported.
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__ 1
+#endif
+#endif
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/asan_interface.h>
+enum { ARENA_ISOLATES = 1 };
+#else
+#define ASAN_POISON_MEMORY_REGION(at, size)   ((void)(at), (void)(size))
+#define ASAN_UNPOISON_MEMORY_REGION(at, size) ((void)(at), (void)(size))
+enum { ARENA_ISOLATES = 0 };
+#endif
+
 enum { ARENA_ALIGNMENT = 16, ARENA_BLOCK_BYTES = 64 * 1024 };
 
 struct arena_block {
@@ -22,6 +38,7 @@ void arena_finish(struct arena *arena)
 {
     for (struct arena_block *block = arena->blocks, *next; block; block = next) {
         next = block->next;
+        ASAN_UNPOISON_MEMORY_REGION(block->data, block->capacity);
         host_free(arena->host, block);
     }
     *arena = (struct arena){ .host = arena->host };
@@ -50,6 +67,11 @@ static struct arena_block *block_create(struct host *host, size_t capacity)
     return block;
 }
 
+static void isolate(struct arena_block *block)
+{
+    ASAN_POISON_MEMORY_REGION(block->data + block->used, block->capacity - block->used);
+}
+
 void *arena_alloc(struct arena *arena, size_t count, size_t size)
 {
     size_t bytes = 0, padded = 0;
@@ -59,9 +81,9 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
         return NULL;
     }
     if (bytes == 0) bytes = 1;
-    void *memory = block_take(arena->blocks, bytes);
+    void *memory = ARENA_ISOLATES ? NULL : block_take(arena->blocks, bytes);
     if (!memory) {
-        bool large = padded > ARENA_BLOCK_BYTES / 4;
+        bool large = ARENA_ISOLATES || padded > ARENA_BLOCK_BYTES / 4;
         struct arena_block *block =
             block_create(arena->host, large ? padded : (size_t)ARENA_BLOCK_BYTES);
         if (!block) return NULL;
@@ -70,6 +92,7 @@ void *arena_alloc(struct arena *arena, size_t count, size_t size)
         block->next = *link;
         *link = block;
         memory = block_take(block, bytes);
+        if (ARENA_ISOLATES) isolate(block);
     }
     arena->bytes += bytes;
     return memory;

@@ -126,3 +126,21 @@ TEST(zeroed_arena_can_be_finished_and_a_finished_one_again)
     assert_int_equal(arena.bytes, 0);
     arena_finish(&arena);
 }
+
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/asan_interface.h>
+
+TEST(the_address_sanitizer_sees_a_write_beyond_an_allocation)
+{
+    static const size_t sizes[] = { 1, 12, 16, 100, 4096, 100000 };
+    struct arena arena;
+    arena_init(&arena, test_host());
+    for (int i = 0; i < 6; i++) {
+        char *first = arena_alloc(&arena, sizes[i], 1), *second = arena_alloc(&arena, 12, 1);
+        assert_null(__asan_region_is_poisoned(first, sizes[i]));
+        assert_null(__asan_region_is_poisoned(second, 12));
+        CHECK(__asan_address_is_poisoned(first + sizes[i]));
+    }
+    arena_finish(&arena);
+}
+#endif

@@ -111,6 +111,22 @@ TEST(ply_colours_are_read_as_srgb)
     scene_destroy(scene);
 }
 
+TEST(faces_of_a_ply_may_come_in_several_elements)
+{
+    static char text[200000] =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1000\nproperty list uchar int vertex_indices\n"
+        "element face 1000\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n";
+    char *end = text + strlen(text);
+    for (int i = 0; i < 2000; i++) end = stpcpy(end, "3 0 1 2\n");
+    struct scene *scene = load_text("faces.ply", text);
+    if (!scene) fail_msg("%s", test_last_message());
+    CHECK(scene_triangle_count(scene) == 2000);
+    for (uint32_t i = 0; i < 6000; i++) CHECK(scene->meshes[0].indices[i] < 6000);
+    scene_destroy(scene);
+}
+
 static const char x_file[] = "xof 0303txt 0032\n"
                              "Frame Arm {\n"
                              " FrameTransformMatrix {\n"

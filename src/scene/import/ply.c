@@ -37,7 +37,8 @@ struct ply {
     struct ply_element elements[MAX_ELEMENTS];
     int element_count;
     struct mesh mesh;
-    bool broken; // a value was missing or invalid
+    size_t index_capacity; // allocated length of mesh.indices
+    bool broken;           // a value was missing or invalid
 };
 
 // The vertex attribute that a property belongs to.
@@ -327,8 +328,22 @@ static bool read_vertices(struct ply *ply, const struct ply_element *element)
     return !ply->broken || wrong(ply, "vertex data is truncated, or a value is not a number");
 }
 
-// Appends a polygon as a triangle fan to the indices, whose allocated length is *capacity.
-static bool read_fan(struct ply *ply, const struct ply_property *property, size_t *capacity)
+static bool reserve_triangle(struct ply *ply)
+{
+    struct mesh *mesh = &ply->mesh;
+    if (mesh->index_count + (size_t)3 <= ply->index_capacity) return true;
+    size_t grown = ply->index_capacity < 1024 ? 1024 : 2 * ply->index_capacity;
+    if (grown > UINT32_MAX - 3) return wrong(ply, "too many triangles");
+    uint32_t *more = import_alloc(ply->import, grown, sizeof *more);
+    if (!more) return false;
+    if (mesh->indices) memcpy(more, mesh->indices, mesh->index_count * sizeof *more);
+    mesh->indices = more;
+    ply->index_capacity = grown;
+    return true;
+}
+
+// Appends a polygon as a triangle fan to the indices.
+static bool read_fan(struct ply *ply, const struct ply_property *property)
 {
     struct mesh *mesh = &ply->mesh;
     size_t corners = list_length(ply, property);
@@ -338,15 +353,7 @@ static bool read_fan(struct ply *ply, const struct ply_property *property, size_
         if (!(value >= 0.0 && value < (double)UINT32_MAX))
             return wrong(ply, "a face index is not a whole number");
         uint32_t corner = (uint32_t)value;
-        if (k >= 2 && mesh->index_count + 3u > *capacity) {
-            size_t grown = *capacity < 1024 ? 1024 : 2 * *capacity;
-            if (grown > UINT32_MAX - 3) return wrong(ply, "too many triangles");
-            uint32_t *more = import_alloc(ply->import, grown, sizeof *more);
-            if (!more) return false;
-            if (mesh->indices) memcpy(more, mesh->indices, mesh->index_count * sizeof *more);
-            mesh->indices = more;
-            *capacity = grown;
-        }
+        if (k >= 2 && !reserve_triangle(ply)) return false;
         if (k >= 2) {
             uint32_t *triangle = mesh->indices + mesh->index_count;
             triangle[0] = first;
@@ -362,7 +369,6 @@ static bool read_fan(struct ply *ply, const struct ply_property *property, size_
 
 static bool read_faces(struct ply *ply, const struct ply_element *element)
 {
-    size_t capacity = 0;
     for (size_t f = 0; f < element->count && !ply->broken; f++) {
         for (int i = 0; i < element->property_count; i++) {
             const struct ply_property *property = &element->properties[i];
@@ -371,7 +377,7 @@ static bool read_faces(struct ply *ply, const struct ply_element *element)
                             strcmp(property->name, "vertex_index") == 0);
             if (!corners)
                 skip_property(ply, property);
-            else if (!read_fan(ply, property, &capacity))
+            else if (!read_fan(ply, property))
                 return false;
         }
     }
