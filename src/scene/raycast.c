@@ -3,6 +3,8 @@
 // traversal. Built by one thread, deterministically: 0.1 s for a quarter of a million triangles.
 #include "scene/raycast.h"
 
+#include "core/hash.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -221,6 +223,31 @@ static void add_instance(struct raycast *raycast, const struct scene_pose *pose,
     }
 }
 
+// Drops copies of a triangle and keeps the order. Instances at one place have equal triangles,
+// which no tree separates: every ray through them would test all.
+static bool drop_copies(struct raycast *raycast)
+{
+    static const uint32_t FREE = UINT32_MAX;
+    struct raycast_triangle *triangles = raycast->triangles;
+    size_t size = 2;
+    while (size < 2 * (size_t)raycast->triangle_count) size *= 2;
+    uint32_t *table = host_alloc(raycast->host, size, sizeof *table), kept = 0;
+    if (!table) return false;
+    memset(table, 0xff, size * sizeof *table);
+    for (uint32_t i = 0; i < raycast->triangle_count; i++) {
+        struct raycast_triangle triangle = triangles[i];
+        size_t at = (size_t)hash_bytes(&triangle, sizeof triangle, 0) & (size - 1);
+        while (table[at] != FREE && memcmp(&triangles[table[at]], &triangle, sizeof triangle) != 0)
+            at = (at + 1) & (size - 1);
+        if (table[at] != FREE) continue;
+        table[at] = kept;
+        triangles[kept++] = triangle;
+    }
+    raycast->triangle_count = kept;
+    host_free(raycast->host, table);
+    return true;
+}
+
 bool raycast_init(struct raycast *raycast, struct host *host, const struct scene_pose *pose)
 {
     *raycast = (struct raycast){ .host = host };
@@ -232,7 +259,7 @@ bool raycast_init(struct raycast *raycast, struct host *host, const struct scene
     raycast->triangles = host_alloc(host, count, sizeof *raycast->triangles);
     if (!raycast->triangles) return false;
     for (int i = 0; i < pose->scene->instance_count; i++) add_instance(raycast, pose, i);
-    if (raycast->triangle_count > 0 && !build_tree(raycast)) {
+    if (!drop_copies(raycast) || (raycast->triangle_count > 0 && !build_tree(raycast))) {
         raycast_finish(raycast);
         return false;
     }
