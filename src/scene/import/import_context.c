@@ -9,13 +9,19 @@ static const size_t ALLOWANCE_BYTES = (size_t)256 << 20; // budget of an empty f
 // An 8-bit index becomes a flat-shaded vertex with tangent.
 static const size_t BYTES_PER_SOURCE_BYTE = 64;
 
-bool import_charge(struct import *import, size_t count, size_t size)
+size_t import_limit(const struct import *import, size_t allowance)
 {
-    size_t bytes, limit;
+    size_t limit;
     if (!size_mul(import->source_bytes, BYTES_PER_SOURCE_BYTE, &limit) ||
-        !size_add(limit, ALLOWANCE_BYTES, &limit)) {
+        !size_add(limit, allowance, &limit)) {
         limit = SIZE_MAX;
     }
+    return limit;
+}
+
+bool import_charge(struct import *import, size_t count, size_t size)
+{
+    size_t bytes, limit = import_limit(import, ALLOWANCE_BYTES);
     if (!size_mul(count, size, &bytes) || bytes > limit - import->spent) {
         return host_fail(import->host, FAIL_MEMORY,
                          "%s: needs more memory than its %zu bytes justify", import->path,

@@ -13,12 +13,15 @@ struct import {
     const char *path;    // as given by the caller
     size_t source_bytes; // size of the file and of the files it refers to, read so far
     size_t spent;        // bytes charged to the budget
+    bool converted;      // glTF made by the importer program from another format
     char notes[IMPORT_MAX_NOTES][IMPORT_NOTE_SIZE]; // ignored features, each once
     int note_count;
 };
 
-// Charges count × size bytes to the memory budget, an allowance plus a multiple of source_bytes. A
-// small file that describes gigabytes fails (FAIL_MEMORY).
+// The most that a file of source_bytes may need: the allowance plus a multiple of its size.
+size_t import_limit(const struct import *import, size_t allowance);
+// Charges count × size bytes to the memory budget. A small file that describes gigabytes fails
+// (FAIL_MEMORY).
 bool import_charge(struct import *import, size_t count, size_t size);
 // Charges and allocates zeroed memory from the scene's arena. NULL on failure.
 void *import_alloc(struct import *import, size_t count, size_t size);

@@ -12,6 +12,7 @@ struct image_source {
 };
 
 // Appends the images to the scene in their order; scene_image[i] is the index of source i, -1 if it
-// cannot be decoded (noted, no failure). False when out of memory or over budget.
+// cannot be decoded (noted, no failure). Sources of the same bytes (by address) become one image.
+// False when out of memory or over budget.
 bool import_images(struct import *import, const struct image_source *sources, int count,
                    int *scene_image);

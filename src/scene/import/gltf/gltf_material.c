@@ -1,12 +1,12 @@
 // Materials, textures, samplers and images of a glTF file (glTF 2.0, sections 3.8 and 3.9).
 #include "scene/import/gltf/gltf.h"
 
+#include "scene/import/import_files.h"
 #include "scene/import/import_image.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 enum {
     FILTER_NEAREST = 9728,
@@ -140,15 +140,52 @@ static struct texture_use *map_of(struct material *material, int k)
     return maps[k];
 }
 
-// The encoded bytes of an image, from a buffer, a data URI or a file. The caller frees *owned.
-static bool find_image(struct gltf *gltf, size_t i, struct image_source *source, void **owned)
+// The encoded images that materials use.
+struct used_images {
+    struct import_files files;
+    struct image_source *sources;
+    void **owned; // bytes of data URIs
+    int *index;   // source → scene image
+    int count;
+};
+
+static bool has_extension(const char *name, const char *wanted)
+{
+    char extension[16] = "";
+    if (name) file_extension(name, extension);
+    return strcmp(extension, wanted) == 0;
+}
+
+// The image file of a uri. Files of other formats often name images that are not there.
+static bool find_image_file(struct gltf *gltf, const char *uri, struct import_files *files,
+                            struct image_source *source)
 {
     struct import *import = gltf->import;
+    char *path =
+        import->converted ? import_resolve_quietly(import, uri, true) : import_resolve(import, uri);
+    const struct import_text name = import_printable(source->name);
+    if (!path && import->converted)
+        import_note(import, "image %s (not in the file's folder)", name.s);
+    if (!path) return import->converted;
+    const struct import_file *file = import_files_read(files, path);
+    if (!file) return false;
+    if (file->missing) import_note(import, "image %s (no such file)", name.s);
+    source->data = file->bytes.data;
+    source->size = file->bytes.size;
+    return true;
+}
+
+// The encoded bytes of an image, from a buffer, a data URI or a file.
+static bool find_image(struct gltf *gltf, size_t i, struct used_images *used)
+{
+    struct import *import = gltf->import;
+    struct image_source *source = &used->sources[used->count];
     struct gltf_object object = gltf_element(gltf, gltf->images, "image", i);
     const char *uri = gltf_string(object, "uri"), *name = gltf_string(object, "name");
     int view_index = gltf_index(object, "bufferView", gltf->views);
     bool is_data = uri && strncmp(uri, "data:", 5) == 0;
-    source->jpeg_and_png_only = true;
+    source->jpeg_and_png_only = !import->converted;
+    source->is_tga = import->converted && has_extension(name, "tga");
     source->name = import_name(import, !name && !is_data ? uri : name, "image", i);
     if (gltf->failed || !source->name) return false;
     if (view_index >= 0) {
@@ -159,23 +196,18 @@ static bool find_image(struct gltf *gltf, size_t i, struct image_source *source,
         return true;
     }
     if (!uri) return gltf_wrong(object, "has neither uri nor bufferView");
-    if (is_data) {
-        *owned = gltf_data_uri(object, uri, &source->size);
-        source->data = *owned;
-        return source->data != NULL;
-    }
-    char *path = import_resolve(import, uri);
-    if (!path) return false;
-    struct file_bytes bytes = { 0 };
-    bool there = access(path, R_OK) == 0;
-    bool ok = !there || file_read(import->host, path, 0, &bytes);
-    if (!there) import_note(import, "image %s (no such file)", import_printable(source->name).s);
-    host_free(import->host, path);
-    import->source_bytes += bytes.size;
-    *owned = bytes.data;
-    source->data = bytes.data;
-    source->size = bytes.size;
-    return ok;
+    if (!is_data) return find_image_file(gltf, uri, &used->files, source);
+    source->data = used->owned[used->count] = gltf_data_uri(object, uri, &source->size);
+    return source->data != NULL;
+}
+
+static void finish_used_images(struct host *host, struct used_images *used)
+{
+    for (int i = 0; used->owned && i < used->count; i++) host_free(host, used->owned[i]);
+    import_files_finish(&used->files);
+    host_free(host, used->owned);
+    host_free(host, used->sources);
+    host_free(host, used->index);
 }
 
 // Reads and decodes the images that materials use; fills image_of.
@@ -183,25 +215,23 @@ static bool load_used_images(struct gltf *gltf)
 {
     struct import *import = gltf->import;
     size_t count = json_array_size(gltf->images);
-    struct image_source *sources = host_alloc(import->host, count, sizeof *sources);
-    void **owned = host_alloc(import->host, count, sizeof *owned);
-    int *index = host_alloc(import->host, count, sizeof *index); // source → scene image
-    bool ok = sources && owned && index;
-    int used = 0;
+    struct used_images used = { 0 };
+    used.sources = host_alloc(import->host, count, sizeof *used.sources);
+    used.owned = host_alloc(import->host, count, sizeof *used.owned);
+    used.index = host_alloc(import->host, count, sizeof *used.index);
+    bool ok =
+        used.sources && used.owned && used.index && import_files_init(&used.files, import, count);
     for (size_t i = 0; ok && i < count; i++) {
         if (gltf->image_of[i] < 0) continue;
-        gltf->image_of[i] = used;
-        ok = find_image(gltf, i, &sources[used], &owned[used]);
-        used++;
+        gltf->image_of[i] = used.count;
+        ok = find_image(gltf, i, &used);
+        used.count++;
     }
-    ok = ok && import_images(import, sources, used, index);
+    ok = ok && import_images(import, used.sources, used.count, used.index);
     for (size_t i = 0; ok && i < count; i++) {
-        if (gltf->image_of[i] >= 0) gltf->image_of[i] = index[gltf->image_of[i]];
+        if (gltf->image_of[i] >= 0) gltf->image_of[i] = used.index[gltf->image_of[i]];
     }
-    for (int i = 0; owned && i < used; i++) host_free(import->host, owned[i]);
-    host_free(import->host, owned);
-    host_free(import->host, sources);
-    host_free(import->host, index);
+    finish_used_images(import->host, &used);
     return ok;
 }
 

@@ -158,15 +158,49 @@ static bool load_camera(struct gltf *gltf, size_t i)
     return camera->name && !gltf->failed;
 }
 
+// Instances multiply the triangles, vertices and joints of a file. A million instanced triangles
+// are allowed for nothing, then one for each byte of the file.
+static const size_t INSTANCE_ALLOWANCE_BYTES = (size_t)256 << 20;
+static const size_t INSTANCED_TRIANGLE_BYTES = 64; // of ray acceleration, on the CPU or the GPU
+
+static size_t bytes_of_instance(const struct gltf *gltf, int mesh_index, int skin)
+{
+    const struct mesh *mesh = &gltf->import->scene->meshes[mesh_index];
+    size_t bytes = sizeof(struct instance) + mesh->index_count / 3 * INSTANCED_TRIANGLE_BYTES;
+    size_t joints =
+        skin < 0
+            ? 0
+            : json_array_size(json_object_get(json_array_get(gltf->skins, (size_t)skin), "joints"));
+    if (joints > 0 || mesh->morph_count > 0) // a vertex is deformed by each of its morph targets
+        bytes +=
+            mesh->vertex_count * (sizeof(vec3s) * 2 + sizeof(vec4s) + (size_t)mesh->morph_count);
+    return bytes + joints * sizeof(mat4s) + (size_t)mesh->morph_count * sizeof(float);
+}
+
+static bool charge_instances(struct gltf *gltf, int mesh, int skin, size_t *spent)
+{
+    struct import *import = gltf->import;
+    size_t limit = import_limit(import, INSTANCE_ALLOWANCE_BYTES);
+    for (int k = 0; k < gltf->mesh_parts[mesh]; k++)
+        *spent += bytes_of_instance(gltf, gltf->first_mesh[mesh] + k, skin);
+    if (*spent <= limit) return true;
+    return host_fail(import->host, FAIL_MEMORY,
+                     "%s: its instances need more memory than its %zu bytes justify", import->path,
+                     import->source_bytes);
+}
+
 // Allocates nodes, instances, lights and cameras.
 static bool reserve(struct gltf *gltf)
 {
     struct scene *scene = gltf->import->scene;
     size_t nodes = json_array_size(gltf->nodes), instances = 0, lights = 0, cameras = 0;
+    size_t spent = 0;
     for (size_t i = 0; i < nodes; i++) {
         struct gltf_object object = gltf_element(gltf, gltf->nodes, "node", i);
         int mesh = gltf_index(object, "mesh", gltf->meshes);
+        int skin = gltf_index(object, "skin", gltf->skins);
         if (mesh >= 0) instances += (size_t)gltf->mesh_parts[mesh];
+        if (mesh >= 0 && !charge_instances(gltf, mesh, skin, &spent)) return false;
         lights += gltf_has(gltf_extension(object, "KHR_lights_punctual"), "light");
         cameras += gltf_has(object, "camera");
     }
