@@ -1,6 +1,8 @@
 // Checks a caller's camera and converts it for the modules.
 #include "api/objects.h"
 
+#include "scene/limits.h"
+
 static const float PI = 3.14159265f;
 
 struct world_camera api_camera(const struct ag_camera *camera)
@@ -23,10 +25,12 @@ struct world_camera api_camera(const struct ag_camera *camera)
 enum ag_result api_camera_check(struct ag_context *context, const char *function,
                                 const struct ag_camera *camera)
 {
+    AG_REQUIRE_FOR(function, context, api_finite(camera->up, 3), "the camera's up is not finite");
     AG_REQUIRE_FOR(function, context,
-                   api_finite(camera->eye, 3) && api_finite(camera->target, 3) &&
-                       api_finite(camera->up, 3),
-                   "the camera is not finite");
+                   limits_position(api_vec3(camera->eye)) &&
+                       limits_position(api_vec3(camera->target)),
+                   "the camera's eye or target is not within %g m of the origin",
+                   (double)SCENE_MAX_COORDINATE_M);
     vec3s forward = vec3_towards(api_vec3(camera->eye), api_vec3(camera->target));
     AG_REQUIRE_FOR(function, context, glms_vec3_norm(forward) > 0.0f,
                    "the camera's eye and target are the same point");

@@ -36,10 +36,17 @@ struct ag_scene {
     struct scene_pose pose; // for queries at a moment; zero until the first
     uint64_t version;       // counts changes of the scene
     uint64_t pose_version;  // version of the scene that `pose` belongs to
-    int users;              // renderers and bakes
+    struct moment {
+        bool valid;
+        int animation;
+        double time_s;
+    } pose_moment;                        // of `pose`
+    struct named_camera *cameras_by_name; // sorted; NULL until the first lookup
+    int users;                            // renderers and bakes
 };
 
-// Updates `pose` to a moment, or rebuilds it if *pose_version is outdated. False: out of memory.
+// Updates `pose` to a moment, or rebuilds it if *pose_version is outdated. False: out of memory, or
+// beyond the limits of scene/limits.h.
 bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t *pose_version,
                  int animation, double time_s);
 // Valid indices: -1 (rest pose), 0 (first animation, if any) and those of the scene.
@@ -68,6 +75,9 @@ enum ag_result api_refuse(struct ag_context *context, const char *function, cons
         AG_REQUIRE_POINTER(context, out);                                                          \
         *(out) = NULL;                                                                             \
     } while (0)
+
+// The first camera of that name, -1: none. False: out of memory.
+bool api_find_camera(struct ag_scene *scene, const char *name, int *index);
 
 // forward and up become orthonormal; up is arbitrary if the camera's is parallel to forward.
 struct world_camera api_camera(const struct ag_camera *camera);

@@ -2,6 +2,7 @@
 #include "api/objects.h"
 
 #include "scene/defaults.h"
+#include "scene/limits.h"
 
 #include <string.h>
 
@@ -10,6 +11,7 @@ _Static_assert((int)AG_LIGHT_SUN == (int)LIGHT_SUN && (int)AG_LIGHT_POINT == (in
                "types are converted by value");
 
 static const float HALF_PI = 1.57079633f;
+static const double MAX_TIME_S = 1e9;
 
 static struct ag_context *context_of(const struct ag_scene *scene)
 {
@@ -32,9 +34,12 @@ bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t
                  int animation, double time_s)
 {
     if (animation >= scene->scene->animation_count) animation = -1;
+    if (!(fabs(time_s) <= MAX_TIME_S))
+        return host_fail(host_of(scene), FAIL_ARGUMENT, "time %g s is beyond the largest, %g s",
+                         time_s, MAX_TIME_S);
     if (*pose_version == scene->version && pose->scene) {
         pose_update(pose, animation, (float)time_s);
-        return true;
+        return limits_pose(pose);
     }
     pose_finish(pose);
     *pose = (struct scene_pose){ 0 };
@@ -44,14 +49,21 @@ bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t
         return false;
     }
     *pose_version = scene->version;
-    return true;
+    return limits_pose(pose);
 }
 
-// The scene's own pose; NULL if out of memory.
+// The scene's own pose; NULL after a failure. A program asks for every light and camera at the same
+// moment: the pose is then updated once.
 static const struct scene_pose *pose_at(struct ag_scene *scene, int animation, double time_s)
 {
-    return api_pose_at(scene, &scene->pose, &scene->pose_version, animation, time_s) ? &scene->pose
-                                                                                     : NULL;
+    struct moment *last = &scene->pose_moment;
+    if (last->valid && scene->pose_version == scene->version && last->animation == animation &&
+        last->time_s == time_s)
+        return &scene->pose;
+    last->valid = api_pose_at(scene, &scene->pose, &scene->pose_version, animation, time_s);
+    last->animation = animation;
+    last->time_s = time_s;
+    return last->valid ? &scene->pose : NULL;
 }
 
 // The argument checks of functions that fill `out` for a moment, and the scene's pose then.
@@ -112,6 +124,7 @@ void ag_scene_destroy(struct ag_scene *scene)
 {
     if (!scene) return;
     pose_finish(&scene->pose);
+    host_free(host_of(scene), scene->cameras_by_name);
     scene_destroy(scene->scene);
     host_free(host_of(scene), scene);
 }
@@ -165,8 +178,8 @@ enum ag_result ag_scene_add_material(struct ag_scene *scene, const struct ag_mat
     AG_REQUIRE(context, in_unit_range(&desc->metallic, 1) && in_unit_range(&desc->roughness, 1),
                "metallic and roughness must be 0 to 1, not %g and %g", (double)desc->metallic,
                (double)desc->roughness);
-    AG_REQUIRE(context, api_finite_at_least(desc->emissive, 3, 0.0f),
-               "emissive is negative or not finite");
+    AG_REQUIRE(context, limits_light(api_vec3(desc->emissive)),
+               "emissive is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
     AG_REQUIRE(context, desc->ior == 0 || api_finite_at_least(&desc->ior, 1, 1.0f),
                "ior must be 0 or at least 1, not %g", (double)desc->ior);
     AG_REQUIRE(context, in_unit_range(&desc->specular, 1), "specular must be 0 to 1, not %g",
@@ -249,10 +262,11 @@ static enum ag_result light_check(const char *function, struct ag_context *conte
 {
     AG_REQUIRE_FOR(function, context, (unsigned)desc->type <= AG_LIGHT_SPOT, "type %d is unknown",
                    (int)desc->type);
-    AG_REQUIRE_FOR(function, context, api_finite_at_least(desc->intensity, 3, 0.0f),
-                   "intensity is negative or not finite");
-    AG_REQUIRE_FOR(function, context, desc->type == AG_LIGHT_SUN || api_finite(desc->position, 3),
-                   "position is not finite");
+    AG_REQUIRE_FOR(function, context, limits_light(api_vec3(desc->intensity)),
+                   "intensity is not within 0 to %g lux or candela", (double)SCENE_MAX_RADIANCE);
+    AG_REQUIRE_FOR(function, context,
+                   desc->type == AG_LIGHT_SUN || limits_position(api_vec3(desc->position)),
+                   "position is not within %g m of the origin", (double)SCENE_MAX_COORDINATE_M);
     float length = glms_vec3_norm(vec3_unit(api_vec3(desc->direction)));
     AG_REQUIRE_FOR(function, context, desc->type == AG_LIGHT_POINT || length > 0.0f,
                    "direction is zero or not finite");
@@ -331,14 +345,15 @@ enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
     REQUIRE_ADDING(scene, desc, instance);
     struct ag_context *context = scene->context;
     REQUIRE_UNUSED(scene);
-    AG_REQUIRE(context, api_finite(desc->position, 3), "position is not finite");
+    AG_REQUIRE(context, limits_position(api_vec3(desc->position)),
+               "position is not within %g m of the origin", (double)SCENE_MAX_COORDINATE_M);
     AG_REQUIRE(context, glms_vec3_norm(vec3_unit(api_vec3(desc->direction))) > 0.0f,
                "direction is zero or not finite");
     AG_REQUIRE(context,
                desc->width > 0.0f && desc->height > 0.0f && isfinite(desc->width * desc->height),
                "width %g and height %g are not above 0", (double)desc->width, (double)desc->height);
-    AG_REQUIRE(context, api_finite_at_least(desc->radiance, 3, 0.0f),
-               "radiance is negative or not finite");
+    AG_REQUIRE(context, limits_light(api_vec3(desc->radiance)),
+               "radiance is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
     return added(scene, add_emissive_quad(scene->scene, desc), instance);
 }
 
@@ -354,8 +369,8 @@ enum ag_result ag_scene_set_sky(struct ag_scene *scene, const float *radiance)
 {
     AG_REQUIRE(NULL, scene, "scene is NULL");
     AG_REQUIRE(scene->context, radiance, "radiance is NULL");
-    AG_REQUIRE(scene->context, api_finite_at_least(radiance, 3, 0.0f),
-               "radiance is negative or not finite");
+    AG_REQUIRE(scene->context, limits_light(api_vec3(radiance)),
+               "radiance is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
     scene->scene->sky = api_vec3(radiance);
     return AG_OK;
 }
@@ -390,7 +405,8 @@ enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye, const 
     struct ag_context *context = context_of(scene);
     AG_REQUIRE_POINTER(context, scene);
     AG_REQUIRE(context, eye && target && out, "eye, target or out is NULL");
-    AG_REQUIRE(context, api_finite(eye, 3) && api_finite(target, 3), "eye or target is not finite");
+    AG_REQUIRE(context, limits_position(api_vec3(eye)) && limits_position(api_vec3(target)),
+               "eye or target is not within %g m of the origin", (double)SCENE_MAX_COORDINATE_M);
     vec3s forward = vec3_towards(api_vec3(eye), api_vec3(target));
     AG_REQUIRE(context, glms_vec3_norm(forward) > 0.0f, "eye and target are the same point");
     AG_REQUIRE(context, vertical_fov_rad > 0.0f && vertical_fov_rad < 2 * HALF_PI,
@@ -443,8 +459,7 @@ enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int ani
     enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
     if (result != AG_OK) return result;
     int found = -1;
-    for (int i = scene->scene->camera_count - 1; i >= 0; i--)
-        if (strcmp(named(scene->scene->cameras[i].name), name) == 0) found = i;
+    if (!api_find_camera(scene, name, &found)) return api_done(context, false);
     if (found < 0) return api_done(context, fail_camera(scene, name));
     struct world_camera camera = pose_camera(pose, found);
     *out = camera_out(&camera);

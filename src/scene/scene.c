@@ -2,6 +2,7 @@
 // Each function checks its argument before it changes the scene: a failure leaves it unchanged.
 #include "scene/scene.h"
 
+#include "scene/limits.h"
 #include "scene/scene_check.h"
 
 #include <limits.h>
@@ -122,8 +123,8 @@ int scene_add_material(struct scene *scene, const struct material *material)
         why = "its specular weight is not in 0…1, or its specular colour negative or not finite";
     } else if (!isfinite(material->ior) || (material->ior != 0.0f && !(material->ior >= 1.0f))) {
         why = "its index of refraction is neither 0 nor at least 1";
-    } else if (!is_colour(material->emissive)) {
-        why = "its emission is negative or not finite";
+    } else if (!limits_light(material->emissive)) {
+        why = "its emission is not within 0 to 1e15 cd/m²";
     } else if (!isfinite(material->normal_scale) || !isfinite(material->alpha_cutoff)) {
         why = "its normal scale or alpha cutoff is not finite";
     } else if (!texture_use_is_valid(scene, &material->base_color_map) ||
@@ -238,8 +239,8 @@ int scene_add_light(struct scene *scene, const struct light *light)
     } else if (light->type != LIGHT_SUN && light->type != LIGHT_POINT &&
                light->type != LIGHT_SPOT) {
         why = "its type is unknown";
-    } else if (!is_colour(light->intensity)) {
-        why = "its intensity is negative or not finite";
+    } else if (!limits_light(light->intensity)) {
+        why = "its intensity is not within 0 to 1e15 lux or candela";
     } else if (light->type == LIGHT_SPOT && !cone_is_valid(light)) {
         why = "its cone is not 0 ≤ inner < outer ≤ 90 degrees";
     } else if (!isfinite(light->range_m) || light->range_m < 0.0f) {

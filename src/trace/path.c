@@ -35,7 +35,9 @@ static bool first_surface(const struct path_settings *settings, struct ray ray,
         if (!embree_closest(settings->scene->embree, &ray, footprint, true, &hit)) return false;
         surface_at(settings->scene, &ray, &hit, footprint, out);
         if (is_visible_to_camera(settings->scene, out)) return true;
-        ray.near = nextafterf(hit.distance * (1.0f + BACK_FACE_STEP), INFINITY);
+        float near = nextafterf(hit.distance * (1.0f + BACK_FACE_STEP), INFINITY);
+        if (!(near > ray.near && near < ray.far)) return false; // so that the loop ends
+        ray.near = near;
     }
 }
 

@@ -4,6 +4,7 @@
 #include <afterglow/afterglow.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static struct ag_context *context;
@@ -324,7 +325,7 @@ TEST(equal_eye_and_target_are_refused)
 // Far from the origin the image must not rotate or get lost.
 TEST(a_far_scene_gets_the_same_view_as_a_near_one)
 {
-    static const float places[] = { 0.0f, 65536.0f, 16777216.0f, 1e12f };
+    static const float places[] = { 0.0f, 65536.0f, 16777216.0f, 5e8f };
     float first[3] = { 0 };
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         begin();
@@ -395,5 +396,70 @@ TEST(time_moves_animated_instances)
         CHECK_NEAR(wrapped.bounds_max[i], later.bounds_max[i], 1e-4);
         CHECK(isfinite(rest.bounds_max[i]));
     }
+    end();
+}
+
+// Beyond them 32-bit floats cannot be traced; Embree would end the program.
+TEST(cameras_lights_and_times_beyond_the_limits_are_refused)
+{
+    begin();
+    const float far_away[3] = { 1e19f, 0, 0 }, here[3] = { 0, 1, 0 };
+    struct ag_camera camera;
+    assert_int_equal(ag_scene_look_at(scene, far_away, here, 1, &camera), AG_ERROR_ARGUMENT);
+    assert_non_null(strstr(ag_context_last_error(context), "1e+09 m"));
+    struct ag_light_desc light;
+    ag_light_desc_default(&light, AG_LIGHT_POINT);
+    light.intensity[1] = 1e38f;
+    assert_int_equal(ag_scene_add_light(scene, &light, NULL), AG_ERROR_ARGUMENT);
+    assert_non_null(strstr(ag_context_last_error(context), "1e+15"));
+    const float bright[3] = { 1e38f, 0, 0 };
+    assert_int_equal(ag_scene_set_sky(scene, bright), AG_ERROR_ARGUMENT);
+    struct ag_scene_info info;
+    assert_int_equal(ag_scene_get_info(scene, 0, 1e300, &info), AG_ERROR_ARGUMENT);
+    assert_non_null(strstr(ag_context_last_error(context), "time 1e+300 s is beyond"));
+    assert_int_equal(ag_scene_get_info(scene, 0, 0, &info), AG_OK);
+    end();
+}
+
+// Instances far away are found when the scene is posed.
+TEST(a_scene_built_beyond_the_largest_coordinate_has_no_camera)
+{
+    begin();
+    const float transform[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1e15f, 0, 0, 1 };
+    assert_int_equal(ag_scene_add_instance(scene, add_square(), transform, NULL), AG_OK);
+    struct ag_camera camera;
+    assert_int_not_equal(ag_scene_default_camera(scene, 0, 0, &camera, NULL), AG_OK);
+    assert_non_null(strstr(ag_context_last_error(context), "1e+09 m"));
+    end();
+}
+
+// Asked for by name, each once: minutes if a lookup took time in proportion to their number.
+TEST(thousands_of_cameras_are_found_by_name)
+{
+    enum { COUNT = 40000 };
+    FILE *file = fopen(test_path("cameras.gltf"), "w");
+    assert_non_null(file);
+    fprintf(file, "{\"asset\":{\"version\":\"2.0\"},\"cameras\":[");
+    for (int i = 0; i < COUNT; i++)
+        fprintf(file,
+                "%s{\"type\":\"perspective\",\"name\":\"c%d\",\"perspective\":"
+                "{\"yfov\":1,\"znear\":0.1}}",
+                i ? "," : "", i / 2);
+    fprintf(file, "],\"nodes\":[");
+    for (int i = 0; i < COUNT; i++)
+        fprintf(file, "%s{\"camera\":%d,\"translation\":[%d,0,0]}", i ? "," : "", i, i);
+    fprintf(file, "]}");
+    fclose(file);
+    assert_int_equal(ag_context_create(NULL, &context), AG_OK);
+    assert_int_equal(ag_scene_load(context, test_path("cameras.gltf"), &scene), AG_OK);
+    assert_int_equal(ag_scene_camera_count(scene), COUNT);
+    for (int i = 0; i < COUNT; i++) {
+        struct ag_camera camera;
+        const char *name = ag_scene_camera_name(scene, i);
+        assert_int_equal(ag_scene_camera(scene, name, 0, 0, &camera), AG_OK);
+        CHECK((int)camera.eye[0] == i / 2 * 2); // the first of that name
+    }
+    struct ag_camera camera;
+    assert_int_equal(ag_scene_camera(scene, "c", 0, 0, &camera), AG_ERROR_ARGUMENT);
     end();
 }

@@ -15,6 +15,8 @@
 
 #include "scene/import/importers.h"
 
+#include "scene/limits.h"
+
 #include "core/hash.h"
 
 #include <string.h>
@@ -49,7 +51,7 @@ struct scene *import_file(struct host *host, const char *path)
     import.scene = scene_create(host, path);
     if (!import.scene) goto fail;
     import.scene->content_hash = hash_bytes(bytes.data, bytes.size, 0);
-    if (!dispatch(&import, &bytes)) goto fail;
+    if (!dispatch(&import, &bytes) || !limits_scene(import.scene)) goto fail;
     import_log_notes(&import);
     file_bytes_finish(host, &bytes);
     return import.scene;
