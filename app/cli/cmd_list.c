@@ -64,6 +64,11 @@ static json_t *option_json(const struct ag_option_info *option)
         json_object_set_new(object, "choices", choices_json(option->unit));
         return object;
     }
+    if (is(option, "text")) {
+        json_object_set_new(object, "default", json_string(""));
+        json_object_set_new(object, "unit", json_string(option->unit));
+        return object;
+    }
     json_object_set_new(object, "default", number_json(option, option->initial));
     if (is(option, "bool")) return object;
     json_object_set_new(object, "min", number_json(option, option->min));
@@ -160,6 +165,7 @@ static const char *default_of(const struct ag_option_info *o, char out[64])
 {
     if (is(o, "choice")) return choice(o->unit, (int)o->initial, out);
     if (is(o, "bool")) return o->initial != 0.0 ? "true" : "false";
+    if (is(o, "text")) return "";
     snprintf(out, 64, "%g", o->initial);
     return out;
 }
@@ -168,7 +174,7 @@ static const char *default_of(const struct ag_option_info *o, char out[64])
 static void range_of(const struct ag_option_info *o, char out[512])
 {
     out[0] = 0;
-    if (is(o, "choice"))
+    if (is(o, "choice") || is(o, "text"))
         snprintf(out, 512, " (%s)", o->unit);
     else if (!is(o, "bool"))
         snprintf(out, 512, " (%g to %g%s%s)", o->min, o->max, o->unit[0] ? " " : "", o->unit);

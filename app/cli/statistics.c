@@ -83,7 +83,8 @@ static bool option_info(const char *technique, const char *option, struct ag_opt
 static json_t *option_value(const char *technique, const char *option, const char *text)
 {
     struct ag_option_info info;
-    if (!option_info(technique, option, &info) || strcmp(info.type, "choice") == 0)
+    if (!option_info(technique, option, &info) || strcmp(info.type, "choice") == 0 ||
+        strcmp(info.type, "text") == 0)
         return json_string(text);
     if (strcmp(info.type, "bool") == 0) return json_boolean(strcmp(text, "true") == 0);
     if (strcmp(info.type, "int") == 0) return json_integer(strtol(text, NULL, 10));

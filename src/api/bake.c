@@ -303,7 +303,7 @@ static double peak_memory_bytes(void)
 static void report_options(struct report *report, const struct technique *technique,
                            const void *options)
 {
-    char value[64];
+    char value[OPTION_VALUE_SIZE];
     report_begin_object(report, "options");
     for (size_t i = 0; i < technique->options.count; i++) {
         const struct option_row *row = &technique->options.rows[i];
@@ -312,7 +312,7 @@ static void report_options(struct report *report, const struct technique *techni
         const double number = strtod(value, &end);
         if (row->type == OPTION_TYPE_bool8)
             report_bool(report, row->name, strcmp(value, "true") == 0);
-        else if (row->type != OPTION_TYPE_choice && *end == 0)
+        else if (row->type != OPTION_TYPE_choice && row->type != OPTION_TYPE_text && *end == 0)
             report_number(report, row->name, number);
         else
             report_text_value(report, row->name, value);

@@ -16,6 +16,8 @@ static const char *type_name(enum option_type type)
         return "bool";
     case OPTION_TYPE_choice:
         break;
+    case OPTION_TYPE_text:
+        return "text";
     }
     return "choice";
 }

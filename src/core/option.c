@@ -39,7 +39,17 @@ static const void *const_field_of(const struct option_row *row, const void *opti
     return (const char *)options + row->offset;
 }
 
-// The value as a number; exact for all types.
+static char *text_of(const struct option_row *row, void *options)
+{
+    return ((option_text *)field_of(row, options))->at;
+}
+
+static const char *const_text_of(const struct option_row *row, const void *options)
+{
+    return ((const option_text *)const_field_of(row, options))->at;
+}
+
+// The value as a number; exact for all types but texts.
 static double value_of(const struct option_row *row, const void *options)
 {
     const void *field = const_field_of(row, options);
@@ -51,6 +61,8 @@ static double value_of(const struct option_row *row, const void *options)
     case OPTION_TYPE_int32:
     case OPTION_TYPE_choice:
         break;
+    case OPTION_TYPE_text:
+        return 0.0;
     }
     return (double)*(const int32_t *)field;
 }
@@ -68,6 +80,8 @@ static void set_value(const struct option_row *row, void *options, double value)
     case OPTION_TYPE_int32:
     case OPTION_TYPE_choice:
         *(int32_t *)field = (int32_t)value;
+        break;
+    case OPTION_TYPE_text: // empty by default
         break;
     }
 }
@@ -130,6 +144,21 @@ static void print_float(float value, char *out, size_t out_size)
     }
 }
 
+// Bytes that would end a text in a list of options, or begin an escape.
+static bool is_escaped(char c)
+{
+    return c == ',' || c == '+' || c == '%';
+}
+
+static void print_text(const char *text, char *out, size_t out_size)
+{
+    size_t used = 0;
+    out[0] = 0;
+    for (; *text && used + 1 < out_size; text++)
+        used += (size_t)snprintf(out + used, out_size - used, is_escaped(*text) ? "%%%02X" : "%c",
+                                 *text);
+}
+
 static void print_value(const struct option_row *row, double value, char *out, size_t out_size)
 {
     size_t length = 0;
@@ -148,11 +177,17 @@ static void print_value(const struct option_row *row, double value, char *out, s
         snprintf(out, out_size, "%.*s", (int)length, name ? name : "");
         break;
     }
+    case OPTION_TYPE_text:
+        break;
     }
 }
 
 void option_print(const struct option_row *row, const void *options, char *out, size_t out_size)
 {
+    if (row->type == OPTION_TYPE_text) {
+        print_text(const_text_of(row, options), out, out_size);
+        return;
+    }
     struct c_locale scope = c_locale_enter();
     print_value(row, value_of(row, options), out, out_size);
     c_locale_leave(scope);
@@ -252,6 +287,40 @@ static bool fail_choice(const struct parse *parse, const struct option_row *row,
     return fail_value(parse, row, text, why);
 }
 
+static int hex_digit(char c)
+{
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+// −1: not two digits.
+static int unescape(const char *digits)
+{
+    const int high = hex_digit(digits[0]), low = high < 0 ? -1 : hex_digit(digits[1]);
+    return low < 0 ? -1 : 16 * high + low;
+}
+
+static bool parse_text(const struct parse *parse, const struct option_row *row, const char *text)
+{
+    option_text value = { "" };
+    size_t used = 0;
+    for (const char *c = text; *c; c++) {
+        const int byte = *c == '%' ? unescape(c + 1) : (unsigned char)*c;
+        if (byte < 0)
+            return fail_value(parse, row, text,
+                              "a percent sign is written %25, a comma %2C, a plus sign %2B");
+        if (byte < ' ' || byte == 127)
+            return fail_value(parse, row, text, "it has a control character");
+        if (used + 1 == sizeof value.at)
+            return fail_value(parse, row, text, "it is longer than 255 bytes");
+        value.at[used++] = (char)byte;
+        if (*c == '%') c += 2;
+    }
+    memcpy(text_of(row, parse->options), value.at, sizeof value.at);
+    return true;
+}
+
 static bool parse_value(const struct parse *parse, const struct option_row *row, const char *text)
 {
     switch (row->type) {
@@ -261,6 +330,8 @@ static bool parse_value(const struct parse *parse, const struct option_row *row,
         return parse_float(parse, row, text);
     case OPTION_TYPE_bool8:
         return parse_bool(parse, row, text);
+    case OPTION_TYPE_text:
+        return parse_text(parse, row, text);
     case OPTION_TYPE_choice:
         break;
     }
@@ -305,7 +376,8 @@ static bool parse_item(struct parse *parse, char *item)
     const struct option_row *row = option_find(parse->table, item);
     if (!row) return fail_unknown(parse, item);
     warn_of_old_name(parse, item);
-    if (equals && equals[1]) return parse_value(parse, row, equals + 1);
+    if (equals && (equals[1] || row->type == OPTION_TYPE_text))
+        return parse_value(parse, row, equals + 1);
     return host_fail(parse->host, FAIL_ARGUMENT, "cannot set %s:%s: no value is given",
                      parse->owner, item);
 }
@@ -331,13 +403,27 @@ bool option_parse(struct host *host, const struct option_table *table, const cha
     return ok;
 }
 
+static bool is_same(const struct option_row *row, const void *a, const void *b)
+{
+    if (row->type == OPTION_TYPE_text)
+        return strcmp(const_text_of(row, a), const_text_of(row, b)) == 0;
+    return value_of(row, a) == value_of(row, b);
+}
+
+static void copy_value(const struct option_row *row, const void *from, void *into)
+{
+    if (row->type == OPTION_TYPE_text)
+        memcpy(text_of(row, into), const_text_of(row, from), OPTION_TEXT_SIZE);
+    else
+        set_value(row, into, value_of(row, from));
+}
+
 int option_difference(const struct option_table *table, const void *a, const void *b)
 {
     int strongest = -1;
     for (size_t i = 0; i < table->count; i++) {
         const struct option_row *row = &table->rows[i];
-        if (value_of(row, a) != value_of(row, b) && (int)row->effect > strongest)
-            strongest = (int)row->effect;
+        if (!is_same(row, a, b) && (int)row->effect > strongest) strongest = (int)row->effect;
     }
     return strongest;
 }
@@ -346,7 +432,7 @@ void option_copy_live(const struct option_table *table, const void *from, void *
 {
     for (size_t i = 0; i < table->count; i++) {
         const struct option_row *row = &table->rows[i];
-        if (row->effect <= INVALIDATE) set_value(row, into, value_of(row, from));
+        if (row->effect <= INVALIDATE) copy_value(row, from, into);
     }
 }
 

@@ -2,9 +2,9 @@
 //
 //     OPTION(type, name, default, min, max, "unit or choices", EFFECT, "help")
 //
-// type is int32, float32, bool8 or choice (an int32 that indexes the '|'-separated names in the
-// unit column). From the table come the struct, the defaults, parsing, printing, documentation and
-// the range tests:
+// type is int32, float32, bool8, choice (an int32 that indexes the '|'-separated names in the unit
+// column) or text (default, min and max are 0; it is empty by default). From the table come the
+// struct, the defaults, parsing, printing, documentation and the range tests:
 //
 //     struct lpv_options {
 //     #define OPTION OPTION_FIELD
@@ -27,7 +27,20 @@ typedef float option_float32;
 typedef bool option_bool8;
 typedef int32_t option_choice;
 
-enum option_type { OPTION_TYPE_int32, OPTION_TYPE_float32, OPTION_TYPE_bool8, OPTION_TYPE_choice };
+// A text such as a path, without control characters. Where options are written as a list, a comma
+// is %2C, a plus sign %2B and a percent sign %25.
+enum { OPTION_TEXT_SIZE = 256, OPTION_VALUE_SIZE = 3 * OPTION_TEXT_SIZE };
+typedef struct option_text {
+    char at[OPTION_TEXT_SIZE];
+} option_text;
+
+enum option_type {
+    OPTION_TYPE_int32,
+    OPTION_TYPE_float32,
+    OPTION_TYPE_bool8,
+    OPTION_TYPE_choice,
+    OPTION_TYPE_text,
+};
 
 // What a running technique must do when the option changes, in ascending order.
 enum option_effect { LIVE, INVALIDATE, RESIZE, RECREATE, REBAKE };
@@ -82,7 +95,7 @@ const struct option_row *option_find(const struct option_table *table, const cha
 // one warning.
 bool option_parse(struct host *host, const struct option_table *table, const char *owner,
                   const char *text, void *options);
-// The value as text that option_parse reads.
+// The value as text that option_parse reads. OPTION_VALUE_SIZE bytes hold any value.
 void option_print(const struct option_row *row, const void *options, char *out, size_t out_size);
 // The strongest effect of the options that differ; -1: all are equal.
 int option_difference(const struct option_table *table, const void *a, const void *b);

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_KNOWN = 64, LIST_SIZE = 512, VALUE_SIZE = 64 };
+enum { MAX_KNOWN = 64, LIST_SIZE = 512 };
 
 static const char *role_name(enum technique_role role)
 {
@@ -167,7 +167,7 @@ static char *append_option(struct host *host, char *text, char separator,
                            const struct option_row *row, const void *options)
 {
     if (!text) return NULL;
-    char value[VALUE_SIZE];
+    char value[OPTION_VALUE_SIZE];
     option_print(row, options, value, sizeof value);
     char *longer = host_sprintf(host, "%s%c%s=%s", text, separator, row->name, value);
     host_free(host, text);

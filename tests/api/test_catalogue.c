@@ -13,7 +13,8 @@ static void check_option(const struct ag_option_info *option)
     CHECK(option->initial >= option->min && option->initial <= option->max);
     CHECK(option->unit && option->effect && option->effect[0]);
     CHECK(strcmp(option->type, "int") == 0 || strcmp(option->type, "float") == 0 ||
-          strcmp(option->type, "bool") == 0 || strcmp(option->type, "choice") == 0);
+          strcmp(option->type, "bool") == 0 || strcmp(option->type, "choice") == 0 ||
+          strcmp(option->type, "text") == 0);
 }
 
 TEST(the_catalogue_lists_all_techniques_and_options)

@@ -103,7 +103,8 @@ TEST(unknown_option_names_the_nearest)
     check_refused("step=3", "unknown option lpv:step: did you mean steps?");
     check_refused("GIAN=3", "unknown option lpv:GIAN: did you mean gain?");
     check_refused("zebra=3",
-                  "unknown option lpv:zebra: known are steps, gain, blur, quality, dim, bias");
+                  "unknown option lpv:zebra: known are steps, gain, blur, quality, dim, bias, "
+                  "file");
 }
 
 TEST(value_out_of_range_names_the_range)
@@ -130,6 +131,46 @@ TEST(value_of_the_wrong_type_names_the_type)
                   "cannot set lpv:quality to \"hi\": it must be one of low|middle|high");
     check_refused("quality=1",
                   "cannot set lpv:quality to \"1\": it must be one of low|middle|high");
+}
+
+TEST(text_is_any_path)
+{
+    static const struct {
+        const char *written, *meant;
+    } paths[] = {
+        { "file=maps/hall.json", "maps/hall.json" },
+        { "file=a,file=", "" },
+        { "file=C:\\a b=c:d", "C:\\a b=c:d" },
+        { "file=a%2Cb%2bc%25d,steps=9", "a,b+c%d" },
+        { "file=\xc3\xa9\xe2\x82\xac", "\xc3\xa9\xe2\x82\xac" },
+    };
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        struct options options = defaults();
+        CHECK_STRING(options.file.at, "");
+        CHECK(parse(paths[i].written, &options));
+        CHECK_STRING(options.file.at, paths[i].meant);
+    }
+}
+
+TEST(text_that_is_no_path_is_refused)
+{
+    const char *escapes = "a percent sign is written %25, a comma %2C, a plus sign %2B";
+    const char *wrong[] = { "%", "a%2", "%zz", "%2", "%%" };
+    char text[512], message[600];
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        snprintf(text, sizeof text, "file=%s", wrong[i]);
+        snprintf(message, sizeof message, "cannot set lpv:file to \"%s\": %s", wrong[i], escapes);
+        check_refused(text, message);
+    }
+    check_refused("file=a%00b", "cannot set lpv:file to \"a%00b\": it has a control character");
+    check_refused("file=a\nb", "cannot set lpv:file to \"a\nb\": it has a control character");
+    snprintf(text, sizeof text, "file=%0256d", 0);
+    snprintf(message, sizeof message,
+             "cannot set lpv:file to \"%0256d\": it is longer than 255 bytes", 0);
+    check_refused(text, message);
+    struct options options = defaults();
+    snprintf(text, sizeof text, "file=%0255d", 0);
+    CHECK(parse(text, &options) && strlen(options.file.at) == 255);
 }
 
 TEST(incomplete_text_is_refused)
@@ -186,7 +227,8 @@ TEST(old_name_is_refused_like_the_new_one)
     check_refused("factor=much", "cannot set lpv:gain to \"much\": it must be a number");
     check_refused("factor", "cannot set lpv:factor: no value is given");
     check_refused("facto=1",
-                  "unknown option lpv:facto: known are steps, gain, blur, quality, dim, bias");
+                  "unknown option lpv:facto: known are steps, gain, blur, quality, dim, bias, "
+                  "file");
 }
 
 TEST(very_long_text_fails_with_a_message)
@@ -233,6 +275,11 @@ static struct options random_options(struct rng *rng)
     options.blur = rng_u32(rng) & 1;
     options.quality = (int32_t)(rng_u32(rng) % 3);
     options.dim = (int32_t)rng_u32(rng);
+    const int length = (int)(rng_u32(rng) % OPTION_TEXT_SIZE);
+    for (int i = 0; i < length; i++) {
+        const char c = (char)(' ' + rng_u32(rng) % 224);
+        options.file.at[i] = c == 127 ? ',' : c;
+    }
     return options;
 }
 
@@ -240,7 +287,7 @@ static void print_all(const struct options *options, char *out, size_t size)
 {
     size_t used = 0;
     for (size_t i = 0; i < table.count; i++) {
-        char value[64];
+        char value[OPTION_VALUE_SIZE];
         option_print(&rows[i], options, value, sizeof value);
         used +=
             (size_t)snprintf(out + used, size - used, "%s%s=%s", i ? "," : "", rows[i].name, value);
@@ -252,7 +299,7 @@ TEST(printed_options_read_back_the_same)
     struct rng rng = rng_for(1, 0, 0);
     for (int k = 0; k < 1000; k++) {
         struct options options = random_options(&rng), again = defaults();
-        char text[256];
+        char text[1024];
         print_all(&options, text, sizeof text);
         CHECK(parse(text, &again));
         assert_int_equal(option_difference(&table, &options, &again), -1);
@@ -270,6 +317,9 @@ TEST(printed_numbers_are_the_shortest)
     CHECK_STRING(text, "0.33333334");
     option_print(&rows[3], &options, text, 4);
     CHECK_STRING(text, "mid");
+    CHECK(parse("file=a%2Cbc", &options));
+    option_print(&rows[6], &options, text, sizeof text);
+    CHECK_STRING(text, "a%2Cbc");
 }
 
 TEST(numbers_have_a_dot_in_every_locale)
@@ -295,6 +345,9 @@ TEST(difference_is_the_strongest_effect)
 {
     struct options a = defaults(), b = a;
     assert_int_equal(option_difference(&table, &a, &b), -1);
+    b.file.at[0] = 'x';
+    assert_int_equal(option_difference(&table, &a, &b), LIVE);
+    b = a;
     b.gain = 1.0f;
     assert_int_equal(option_difference(&table, &a, &b), LIVE);
     b.steps = 2;
@@ -317,6 +370,7 @@ TEST(copy_of_live_options_leaves_the_others)
         option_copy_live(&table, &from, &into);
         CHECK(into.gain == from.gain && into.bias == from.bias && into.blur == from.blur);
         CHECK(into.steps == from.steps);
+        CHECK_STRING(into.file.at, from.file.at);
         CHECK(into.quality == before.quality && into.dim == before.dim);
         CHECK(option_difference(&table, &into, &before) <= INVALIDATE);
     }
