@@ -3,6 +3,8 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { PATH_SIZE = 4096 };
@@ -20,6 +22,16 @@ static bool find_folder(char out[PATH_SIZE])
     else if (home && home[0] == '/')
         wrote = snprintf(out, PATH_SIZE, "%s/.cache/afterglow/bakes", home);
     return wrote > 0 && wrote < PATH_SIZE;
+}
+
+// Each folder of a path, without its last part.
+static void make_folders(const char *path)
+{
+    char folder[PATH_SIZE];
+    for (const char *at = strchr(path + 1, '/'); at; at = strchr(at + 1, '/')) {
+        snprintf(folder, sizeof folder, "%.*s", (int)(at - path), path);
+        mkdir(folder, 0777); // writing the file reports an error
+    }
 }
 
 static bool find_path(const struct ag_bake *bake, char out[PATH_SIZE])
@@ -41,8 +53,10 @@ static enum ag_result complete(struct ag_bake *bake)
     ag_bake_get_info(bake, &info);
     fprintf(stderr, "baking %s:%s …\n", info.technique, info.options);
     const enum ag_result result = ag_bake_run(bake, NULL, NULL);
-    if (result == AG_OK && has_path) ag_bake_save(bake, path, true);
-    return result;
+    if (result != AG_OK || !has_path) return result;
+    make_folders(path);
+    ag_bake_save(bake, path, true);
+    return AG_OK;
 }
 
 enum ag_result bench_bakes_prepare(struct bench_bakes *bakes, struct ag_context *context,
