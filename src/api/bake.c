@@ -90,6 +90,8 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
     if (!gi_spec_parse(&b->spec, host, gi) || !find_term(b, gi, desc->technique)) return false;
     b->options = run_options(desc);
     if (!api_pose_at(b->scene, &b->pose, &version, desc->animation, desc->time_s)) return false;
+    if (!gi_bake_resolve(host, b->spec.technique[b->term], &b->pose, b->spec.options[b->term]))
+        return false;
     b->how = (struct technique_bake){ .pose = &b->pose,
                                       .options = b->spec.options[b->term],
                                       .full_report = desc->full_report };

@@ -1,7 +1,7 @@
 // Bakes of techniques: the identity from their options, the plan from their `bake`.
 #include "techniques/gi_bake.h"
 
-enum { VALUE_SIZE = 64 };
+#include <string.h>
 
 int gi_spec_bakes(const struct gi_spec *spec, int index, int *term)
 {
@@ -19,7 +19,7 @@ char *gi_bake_options(struct host *host, const struct technique *technique, cons
     char *text = host_strdup(host, "");
     for (size_t i = 0; text && i < technique->options.count; i++) {
         const struct option_row *row = &technique->options.rows[i];
-        char value[VALUE_SIZE];
+        char value[OPTION_VALUE_SIZE];
         if (row->effect != REBAKE) continue;
         option_print(row, options, value, sizeof value);
         char *longer = host_sprintf(host, "%s%s%s=%s", text, text[0] ? "," : "", row->name, value);
@@ -29,8 +29,29 @@ char *gi_bake_options(struct host *host, const struct technique *technique, cons
     return text;
 }
 
-struct bake *gi_bake_create(struct host *host, const struct technique *technique,
-                            const struct technique_bake *how, struct bake_identity identity)
+bool gi_bake_resolve(struct host *host, const struct technique *technique,
+                     const struct scene_pose *pose, void *options)
+{
+    return !technique->resolve || technique->resolve(host, pose, options);
+}
+
+// Stages may refer to `how` and its options: the bake keeps them.
+static bool add_stages(struct bake *bake, const struct technique *technique,
+                       const struct technique_bake *how)
+{
+    const size_t size = technique->options.size;
+    struct bake_plan *plan = bake_plan_of(bake);
+    struct technique_bake *kept = bake_plan_alloc(plan, 1, sizeof *kept);
+    void *options = bake_plan_alloc(plan, 1, size ? size : 1);
+    if (!kept || !options) return false;
+    if (size > 0) memcpy(options, how->options, size);
+    *kept = *how;
+    kept->options = options;
+    return technique->bake(plan, kept);
+}
+
+static struct bake *create_resolved(struct host *host, const struct technique *technique,
+                                    const struct technique_bake *how, struct bake_identity identity)
 {
     char *options = gi_bake_options(host, technique, how->options);
     identity.technique = technique->name;
@@ -38,9 +59,24 @@ struct bake *gi_bake_create(struct host *host, const struct technique *technique
     identity.options = options;
     struct bake *bake = options ? bake_create(host, &identity) : NULL;
     host_free(host, options);
-    if (!bake || technique->bake(bake_plan_of(bake), how)) return bake;
+    if (!bake || add_stages(bake, technique, how)) return bake;
     bake_destroy(bake);
     return NULL;
+}
+
+struct bake *gi_bake_create(struct host *host, const struct technique *technique,
+                            const struct technique_bake *how, struct bake_identity identity)
+{
+    const size_t size = technique->options.size;
+    struct technique_bake resolved = *how;
+    void *options = host_alloc(host, 1, size ? size : 1);
+    if (!options) return NULL;
+    if (size > 0) memcpy(options, how->options, size);
+    resolved.options = options;
+    const bool ok = gi_bake_resolve(host, technique, how->pose, options);
+    struct bake *bake = ok ? create_resolved(host, technique, &resolved, identity) : NULL;
+    host_free(host, options);
+    return bake;
 }
 
 static bool bake_term(struct gi_baked *out, struct host *host, const struct gi_spec *spec,

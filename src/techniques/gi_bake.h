@@ -9,8 +9,11 @@ int gi_spec_bakes(const struct gi_spec *spec, int index, int *term);
 // The options that are part of a bake's identity, "a=1,b=2": those of effect REBAKE. Owned by the
 // caller.
 char *gi_bake_options(struct host *host, const struct technique *technique, const void *options);
-// A bake with the stages of the technique; nothing has run. `how` and what it points to outlive the
-// bake. identity: its seed and texts; technique, version and options are set here.
+// Replaces options that leave a choice to the scene.
+bool gi_bake_resolve(struct host *host, const struct technique *technique,
+                     const struct scene_pose *pose, void *options);
+// A bake with the stages of the technique for its resolved options; nothing has run. how->pose
+// outlives the bake. identity: its seed and texts; technique, version and options are set here.
 struct bake *gi_bake_create(struct host *host, const struct technique *technique,
                             const struct technique_bake *how, struct bake_identity identity);
 

@@ -82,7 +82,11 @@ struct technique {
     uint32_t (*more_needs)(const void *options);
     // false: it cannot run on this device and scene; host_fail has the reason.
     bool (*check)(const struct technique_create *how);
-    // Adds the stages of a bake for these options; see bake/README.md.
+    // Replaces options that leave a choice to the scene by the choice: those of effect REBAKE, of
+    // which a bake is identified. Idempotent.
+    bool (*resolve)(struct host *host, const struct scene_pose *pose, void *options);
+    // Adds the stages of a bake for these options, resolved; see bake/README.md. `how` outlives the
+    // bake.
     bool (*bake)(struct bake_plan *plan, const struct technique_bake *how);
     // Adds members to the report of a complete bake. After a run bake_reported has the
     // BAKE_REPORTED tensors too, after reading a file it has not.

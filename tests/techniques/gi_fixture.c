@@ -9,11 +9,7 @@
 enum { MAX_KEPT = 4 };
 
 // Freed by the end of the process.
-static struct kept {
-    const struct technique *technique;
-    char *options;
-    struct bake *bake;
-} kept[MAX_KEPT];
+static struct bake *kept[MAX_KEPT];
 
 static void lower(const struct technique *technique, void *options)
 {
@@ -31,26 +27,22 @@ void gi_fixture_parse(struct gi_spec *spec, const char *text)
         if (spec->technique[i]->bake_version != 0) lower(spec->technique[i], spec->options[i]);
 }
 
-static struct bake *run(const struct technique *technique, const struct technique_bake *how)
-{
-    struct bake *bake =
-        gi_bake_create(test_host(), technique, how, (struct bake_identity){ .program = "test" });
-    CHECK(bake && bake_run(bake, &(struct bake_run_options){ .threads = 0 }));
-    return bake;
-}
-
 static struct bake *bake_of(const struct technique *technique, const void *options,
                             const struct scene_pose *pose)
 {
     const struct technique_bake how = { .pose = pose, .options = options };
-    char *text = gi_bake_options(test_host(), technique, options);
+    struct bake *bake =
+        gi_bake_create(test_host(), technique, &how, (struct bake_identity){ .program = "test" });
+    assert_non_null(bake);
     for (int i = 0; i < MAX_KEPT; i++) {
-        struct kept *k = &kept[i];
-        const bool same = k->technique == technique && strcmp(k->options, text) == 0;
-        if (k->technique && !same) continue;
-        if (!same) *k = (struct kept){ technique, text, run(technique, &how) };
-        if (same) host_free(test_host(), text);
-        return k->bake;
+        if (kept[i] && bake_fits(kept[i], bake)) {
+            bake_destroy(bake);
+            return kept[i];
+        }
+        if (kept[i]) continue;
+        CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 0 }));
+        kept[i] = bake;
+        return bake;
     }
     fail_msg("more than %d bakes", MAX_KEPT);
     return NULL;

@@ -24,7 +24,7 @@ ag_test(techniques/vct_open_plane USES techniques LIBRARIES ag_test_light_trial 
 set_tests_properties(techniques.technique_smoke techniques.technique_invariants techniques.vct_clip_light techniques.light_trials PROPERTIES TIMEOUT 900)
 add_library(ag_test_mrt_map STATIC techniques/mrt_map_fixture.c techniques/mrt_operators_fixture.c)
 target_link_libraries(ag_test_mrt_map PUBLIC ag_test_framework ag_techniques PRIVATE afterglow_flags m)
-foreach(name atlas blocks geometry level maps solver)
+foreach(name atlas blocks geometry level maps options solver)
   ag_test(techniques/mrt_${name} USES techniques LIBRARIES ag_test_mrt_map)
 endforeach()
 add_library(ag_test_mrt_runtime STATIC techniques/mrt_runtime_fixture.c)

@@ -43,7 +43,16 @@ static bool mrt_check(const struct technique_create *how)
     if (options->modes > 4 * options->prior_modes)
         return host_fail(how->host, FAIL_ARGUMENT,
                          "gi mrt: modes=%d exceeds the modes of the prior", (int)options->modes);
+    if (options->blocks.at[0] && options->map != MRT_MAP_SCENE)
+        return host_fail(how->host, FAIL_ARGUMENT,
+                         "gi mrt: map and blocks=%s are two maps; leave out one of them",
+                         options->blocks.at);
     return true;
+}
+
+static bool mrt_resolve(struct host *host, const struct scene_pose *pose, void *options)
+{
+    return mrt_resolve_maze(host, pose, options);
 }
 
 static bool mrt_bake(struct bake_plan *plan, const struct technique_bake *how)
@@ -179,6 +188,7 @@ const struct technique technique_mrt = {
     .debug_views = debug_views,
     .state_size = sizeof(struct mrt),
     .check = mrt_check,
+    .resolve = mrt_resolve,
     .bake = mrt_bake,
     .bake_report = mrt_bake_report,
     .create = mrt_create,

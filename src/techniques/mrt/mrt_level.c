@@ -7,42 +7,62 @@
 // ---- the map
 
 // Positions in the free space: cameras and lights.
-static bool make_auto(struct mrt *mrt, const struct scene_pose *pose)
+static bool make_auto(struct host *host, const struct scene_pose *pose, struct mrt_block_map *map)
 {
     const struct scene *scene = pose->scene;
     size_t count = 0, most = (size_t)scene->camera_count + (size_t)scene->light_count;
-    vec3s *seeds = host_alloc(mrt->host, most, sizeof *seeds);
+    vec3s *seeds = host_alloc(host, most, sizeof *seeds);
     if (!seeds) return false;
     for (int i = 0; i < scene->camera_count; i++) seeds[count++] = pose_camera(pose, i).eye;
     for (int i = 0; i < scene->light_count; i++) {
         const struct world_light light = pose_light(pose, i);
         if (light.type != LIGHT_SUN) seeds[count++] = light.position;
     }
-    bool ok = mrt_map_auto(mrt->host, pose, seeds, count, &mrt->map);
-    host_free(mrt->host, seeds);
+    bool ok = mrt_map_auto(host, pose, seeds, count, map);
+    host_free(host, seeds);
     return ok;
 }
 
-static bool choose_map(struct mrt *mrt, const struct scene_pose *pose)
+// No blocks where the scene has no volume: there is no room to light.
+static bool choose_map(struct host *host, const struct scene_pose *pose,
+                       const struct mrt_options *options, struct mrt_block_map *map)
 {
-    if (mrt->options.map == MRT_MAP_SINGLE) return mrt_map_single(mrt->host, pose, &mrt->map);
-    if (mrt->options.map == MRT_MAP_SCENE) {
-        if (!mrt_block_map_of_scene(mrt->host, pose->scene, &mrt->map)) return false;
-        if (mrt->map.count > 0) return true;
-        mrt_block_map_finish(&mrt->map);
+    const vec3s size = box3_size(pose->bounds);
+    *map = (struct mrt_block_map){ 0 };
+    if (!(size.x > 0.0f && size.y > 0.0f && size.z > 0.0f)) return true;
+    if (options->blocks.at[0]) return mrt_block_map_read(host, options->blocks.at, map);
+    if (options->map == MRT_MAP_SINGLE) return mrt_map_single(host, pose, map);
+    if (options->map == MRT_MAP_SCENE) {
+        if (!mrt_block_map_of_scene(host, pose->scene, map)) return false;
+        if (map->count > 0) return true;
+        mrt_block_map_finish(map);
     }
-    return make_auto(mrt, pose);
+    return make_auto(host, pose, map);
+}
+
+// The smallest dictionary with all shapes of the map.
+static enum mrt_maze maze_of(const struct mrt_block_map *map)
+{
+    return mrt_block_map_is_plane(map) ? MRT_MAZE_2D : MRT_MAZE_3D;
+}
+
+bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, struct mrt_options *options)
+{
+    struct mrt_block_map map = { 0 };
+    if (options->maze != MRT_MAZE_AUTO) return true;
+    const bool ok = !pose || choose_map(host, pose, options, &map);
+    if (ok) options->maze = (int32_t)maze_of(&map);
+    mrt_block_map_finish(&map);
+    return ok;
 }
 
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
 {
-    vec3s size = box3_size(pose->bounds);
-    // Without volume there is no room to light.
-    if (!(size.x > 0.0f && size.y > 0.0f && size.z > 0.0f)) return true;
-    if (!choose_map(mrt, pose) ||
-        !mrt_atlas_init(mrt->host, &mrt->map, mrt->options.texels, &mrt->atlas))
-        return false;
-    return mrt_scene_images_init(mrt->host, pose, &mrt->map, &mrt->atlas, &mrt->images);
+    if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
+    if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
+    return mrt->map.count == 0 ||
+           (mrt_atlas_init(mrt->host, &mrt->map, mrt->options.texels, &mrt->atlas) &&
+            mrt_scene_images_init(mrt->host, pose, &mrt->map, &mrt->atlas, &mrt->images));
 }
 
 // ---- operators

@@ -35,7 +35,10 @@ struct mrt {
 
 // ---- mrt_level.c
 
-// Blocks, light map and geometry image of the scene.
+// Replaces maze=auto by the dictionary that the blocks of the scene need.
+bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose,
+                      struct mrt_options *options);
+// Blocks, light map and geometry image of the scene; resolves maze=auto.
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose);
 struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *options);
 // Operators of the level, from the dictionary, on the GPU.

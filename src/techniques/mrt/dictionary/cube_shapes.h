@@ -5,7 +5,12 @@
 
 #include "techniques/mrt/dictionary/shape.h"
 
-enum mrt_maze { MRT_MAZE_2D, MRT_MAZE_3D, MRT_TUNNEL };
+enum mrt_maze {
+    MRT_MAZE_2D,
+    MRT_MAZE_3D,
+    MRT_TUNNEL,
+    MRT_MAZE_AUTO // of options alone: what the level needs
+};
 // A tube has four faces' worth of texels around and along.
 enum { MRT_MAX_CUBES = 9, TUBE_TEXELS = 4 };
 

@@ -120,15 +120,17 @@ bool mrt_dictionary_init(struct host *host, const struct tensors *bake,
                          const struct mrt_dictionary_options *options, struct mrt_dictionary *out)
 {
     const struct reader reader = { host, bake };
+    const enum mrt_maze maze = mrt_dictionary_maze(options);
     *out = (struct mrt_dictionary){
         .options = *options,
-        .element_count = mrt_dictionary_shapes((enum mrt_maze)options->maze),
-        .turn_count = options->maze == MRT_MAZE_3D ? MRT_TURNS_3D : MRT_TURNS_2D,
-        .entered_count = mrt_entered_shapes((enum mrt_maze)options->maze),
+        .element_count = mrt_dictionary_shapes(maze),
+        .turn_count = maze == MRT_MAZE_3D ? MRT_TURNS_3D : MRT_TURNS_2D,
+        .entered_count = mrt_entered_shapes(maze),
     };
-    bool ok = take_interfaces(&reader, options, out);
+    out->options.maze = (int32_t)maze;
+    bool ok = take_interfaces(&reader, &out->options, out);
     for (int i = 0; ok && i < out->element_count; i++)
-        ok = take_element(&reader, options, i, &out->element[i]);
+        ok = take_element(&reader, &out->options, i, &out->element[i]);
     if (!ok) mrt_dictionary_finish(host, out);
     return ok;
 }

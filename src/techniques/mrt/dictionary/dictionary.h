@@ -39,6 +39,12 @@ struct mrt_dictionary_options {
 
 const struct option_table *mrt_dictionary_option_table(void);
 
+// Without a level MRT_MAZE_AUTO is the plane.
+static inline enum mrt_maze mrt_dictionary_maze(const struct mrt_dictionary_options *options)
+{
+    return options->maze == MRT_MAZE_AUTO ? MRT_MAZE_2D : (enum mrt_maze)options->maze;
+}
+
 // Adds the stages; `options` is copied. full: with the singular values of F (cube/I/sigma_F).
 bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_options *options,
                          bool full);

@@ -417,7 +417,7 @@ static void finish_job(void *user)
 
 static void set_sizes(const struct mrt_dictionary_options *o, struct mrt_bake_job *job)
 {
-    const enum mrt_maze maze = (enum mrt_maze)o->maze;
+    const enum mrt_maze maze = mrt_dictionary_maze(o);
     const struct mrt_shape closed = mrt_cube(o->texels, 0);
     const struct mrt_shape entered = mrt_entered_shape(maze, o->texels, 0);
     *job = (struct mrt_bake_job){

@@ -7,9 +7,9 @@
 
 static bool unsupported(const struct mrt_level *level, int block, const char *why)
 {
-    return host_fail(level->host, FAIL_UNSUPPORTED,
-                     "block %s: the dictionary has no %s; set maze=space or map=single",
-                     level->map->blocks[block].name, why);
+    static const char *const mazes[] = { "plane", "space", "tunnel" };
+    return host_fail(level->host, FAIL_UNSUPPORTED, "block %s: maze=%s has no %s; set maze=auto",
+                     level->map->blocks[block].name, mazes[level->maze], why);
 }
 
 static bool is_tilted(const struct mrt_block *block)
