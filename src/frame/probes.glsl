@@ -8,28 +8,33 @@
 #ifndef AG_FRAME_PROBES_GLSL
 #define AG_FRAME_PROBES_GLSL
 
-// Irradiance at a world position, trilinear between eight probes; positions are clamped to the
-// grid.
-vec3 probes_irradiance(sampler3D volume, frame_probes grid, vec3 position, vec3 normal)
+// Irradiance between eight probes: `texel` in texels of the first slab, `slab` texels to the next.
+vec3 probes_irradiance_at(sampler3D volume, int slab, vec3 texel, vec3 normal)
 {
-    vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
-    vec3 texel = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), last) + 0.5;
     vec3 size = vec3(textureSize(volume, 0));
     float basis[9];
     sh9_eval(normal, basis);
-    vec4 slab;
+    vec4 values;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 9; i++) {
         for (int channel = 0; channel < 3; channel++) {
             int component = 3 * i + channel;
             if (component % 4 == 0) {
-                float offset = float(component / 4 * grid.slab);
-                slab = textureLod(volume, (texel + vec3(0.0, 0.0, offset)) / size, 0.0);
+                float offset = float(component / 4 * slab);
+                values = textureLod(volume, (texel + vec3(0.0, 0.0, offset)) / size, 0.0);
             }
-            sum[channel] += basis[i] * slab[component % 4];
+            sum[channel] += basis[i] * values[component % 4];
         }
     }
     return max(sum, vec3(0.0));
+}
+
+// Irradiance at a world position; positions are clamped to the grid.
+vec3 probes_irradiance(sampler3D volume, frame_probes grid, vec3 position, vec3 normal)
+{
+    vec3 last = vec3(grid.count_x, grid.count_y, grid.count_z) - 1.0;
+    vec3 texel = clamp((position - grid.first_m) / grid.spacing_m, vec3(0.0), last) + 0.5;
+    return probes_irradiance_at(volume, grid.slab, texel, normal);
 }
 
 // Texel of a probe in slab s of FRAME_PROBE_SLABS, at probe + (0, 0, s × grid.slab).

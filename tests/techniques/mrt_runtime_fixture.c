@@ -80,8 +80,8 @@ void mrt_runtime_fixture_init(struct mrt_runtime_fixture *f, struct mrt_block_ma
     f->input.openings = f->openings;
     for (int face = 0; face < CUBE_FACES; face++)
         f->input.response[face] =
-            (struct mrt_response_input){ zeros(6 * resolution * resolution, k_r),
-                                         zeros(24 * resolution * resolution, k_r) };
+            (struct mrt_response_input){ .u_r = zeros(6 * resolution * resolution, k_r),
+                                         .u_vec = zeros(24 * resolution * resolution, k_r) };
 }
 
 void mrt_runtime_fixture_finish(struct mrt_runtime_fixture *f)

@@ -11,7 +11,8 @@ enum { SIZE = 32, FLOATS = SIZE * SIZE * 3, TEXT = 512 };
 
 #define DICTIONARY                                                                                 \
     "mrt:texels=8,rays=1024,modes=24,lightfield_positions=4,lightfield_directions=6,"              \
-    "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=8,probes=1"
+    "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=8,"         \
+    "block_probes=2"
 
 // A closed room of this albedo, with these options after those of the dictionary.
 struct room {

@@ -134,6 +134,7 @@ static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view
     mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
     record_solution(mrt, cmd, view);
     mrt_record_light_map(&mrt->runtime, cmd);
+    mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
     mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
     mrt->lit = true;
 }
@@ -171,6 +172,7 @@ static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_
         .resolution = o->texels,
         .k_b = o->modes,
         .k_r = o->response_modes,
+        .probes = o->block_probes,
         .options = mrt_runtime_options_of(o),
     });
 }

@@ -60,9 +60,10 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
 {
     if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
     if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
+    const int probes = mrt_runtime_options_of(&mrt->options).probes ? mrt->options.block_probes : 0;
     return mrt->map.count == 0 ||
            (mrt_atlas_init(mrt->host, &mrt->map, mrt->options.texels, &mrt->atlas) &&
-            mrt_scene_images_init(mrt->host, pose, &mrt->map, &mrt->atlas, &mrt->images));
+            mrt_scene_images_init(mrt->host, pose, &mrt->map, &mrt->atlas, probes, &mrt->images));
 }
 
 // ---- operators
@@ -72,6 +73,9 @@ struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *opti
     return (struct mrt_runtime_options){
         .half = options->precision == MRT_PRECISION_HALF,
         .vector = options->vector && options->solver == MRT_SOLVER_GPU,
+        .probes = options->clutter == MRT_CLUTTER_PROBES || options->probes,
+        .clutter = options->clutter == MRT_CLUTTER_PROBES,
+        .publish = options->probes,
     };
 }
 

@@ -14,6 +14,7 @@
 #define MRT_CONSTANT_QUADS_B 1 // k_b / 4
 #define MRT_CONSTANT_QUADS_R 2 // k_r / 4
 #define MRT_CONSTANT_VALUES  3 // per texel: 1 irradiance, 4 irradiance by normal (OHLSH)
+#define MRT_CONSTANT_PROBES  4 // bool: surfaces inside blocks are lit by probes
 #define MRT_MAX_QUADS        16
 
 // A texel of the geometry image: the point of the scene where direct light is computed.
@@ -50,6 +51,13 @@ struct mrt_gpu_opening {
     uint32_t first_pair, pairs;
 };
 
+// Light of emissive surfaces (lux) and the sky (of radiance 1/π) at a probe: nine SH coefficients
+// of irradiance by normal, world frame.
+struct mrt_gpu_probe {
+    vec3s emitted[9];
+    float sky[9];
+};
+
 // A texel of the border of the light map: see struct mrt_border of level/atlas.h.
 struct mrt_gpu_border {
     uint32_t texel, count;
@@ -73,6 +81,8 @@ struct mrt_level_params {
     float feedback;        // weight of the indirect irradiance that is reflected again
     float emitters;        // 1: emissive surfaces are sources, 0: they are not
     float gain;            // artistic factor on the result
+    uint32_t probes;       // along an edge of a block
+    uint32_t brick_columns;
 };
 
 struct mrt_view_push {
@@ -86,9 +96,10 @@ struct mrt_view_push {
 _Static_assert(sizeof(struct mrt_texel) == 60, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 140, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_level_params) == 76, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 84, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
 #endif
 

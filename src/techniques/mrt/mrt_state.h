@@ -11,6 +11,8 @@ enum mrt_map_choice { MRT_MAP_SCENE, MRT_MAP_AUTO, MRT_MAP_SINGLE };
 enum mrt_solver_choice { MRT_SOLVER_GPU, MRT_SOLVER_CPU };
 enum mrt_precision { MRT_PRECISION_HALF, MRT_PRECISION_FLOAT };
 
+enum mrt_clutter { MRT_CLUTTER_WALLS, MRT_CLUTTER_PROBES };
+
 struct mrt_options {
 #define OPTION OPTION_FIELD
 #include "techniques/mrt/mrt_options.def"

@@ -78,7 +78,7 @@ static bool take_element(const struct reader *reader, const struct mrt_dictionar
     char name[32];
     e->shape = mrt_dictionary_shape((enum mrt_maze)o->maze, o->texels, i);
     size_t n = (size_t)mrt_shape_texels(&e->shape), k = (size_t)o->modes;
-    size_t probes = (size_t)(o->probes * o->probes * o->probes);
+    size_t probes = (size_t)(o->block_probes * o->block_probes * o->block_probes);
     struct matrix_f32 *openings[MRT_MAX_OPENINGS];
     size_t count = 0;
     for (int f = 0; f < CUBE_FACES; f++)
@@ -97,7 +97,7 @@ static bool take_interfaces(const struct reader *reader, const struct mrt_dictio
     const struct mrt_shape entered = mrt_entered_shape((enum mrt_maze)o->maze, o->texels, 0);
     const size_t m = (size_t)mrt_shape_texels(&entered), k_r = (size_t)o->response_modes;
     const size_t k_l = (size_t)o->lightfield_modes, parts = (size_t)d->entered_count;
-    const size_t probes = (size_t)(o->probes * o->probes * o->probes);
+    const size_t probes = (size_t)(o->block_probes * o->block_probes * o->block_probes);
     struct matrix_f32 *turns[MRT_TURNS_3D], *part[4][MRT_MAX_ENTERED];
     for (int t = 0; t < MRT_TURNS_3D; t++) turns[t] = &d->r_turn[t];
     for (int i = 0; i < MRT_MAX_ENTERED; i++) {

@@ -33,7 +33,7 @@ static bool run_gather(const struct bake_task *task)
     bake_task_rows(task, 0, &points);
     for (uint64_t i = 0; i < points; i++) {
         if (bake_task_cancelled(task)) return false;
-        struct mrt_point at = mrt_gather_point(&shape, job->options.probes,
+        struct mrt_point at = mrt_gather_point(&shape, job->options.block_probes,
                                                (enum mrt_measure)index->measure, (int)(first + i));
         mrt_gather(&shape, at, rays, out.at + i * (uint64_t)rays->values * out.stride, out.stride);
     }
@@ -106,7 +106,7 @@ static bool run_tube_directional(const struct bake_task *task)
     bool ok = mrt_bake_input(task, index->l_imp, &l_imp) &&
               matrix_f32_init(task->host, &gather, out.rows, l_imp.rows);
     for (uint64_t i = 0; ok && i < points; i++) {
-        struct mrt_point at = mrt_gather_point(&shape, job->options.probes,
+        struct mrt_point at = mrt_gather_point(&shape, job->options.block_probes,
                                                (enum mrt_measure)index->measure, (int)(first + i));
         mrt_gather(&shape, at, rays, gather.at + i * (uint64_t)rays->values * gather.stride,
                    gather.stride);
@@ -432,7 +432,7 @@ static void set_sizes(const struct mrt_dictionary_options *o, struct mrt_bake_jo
         .k_r = (uint64_t)o->response_modes,
         .texels = (uint64_t)mrt_shape_texels(&closed),
         .entered_texels = (uint64_t)mrt_shape_texels(&entered),
-        .probes = (uint64_t)(o->probes * o->probes * o->probes),
+        .probes = (uint64_t)(o->block_probes * o->block_probes * o->block_probes),
         .openings = (uint64_t)mrt_dictionary_openings(maze),
         .lightfield = { o->lightfield_positions, o->lightfield_directions,
                         o->lightfield_supersampling, maze == MRT_TUNNEL },

@@ -428,7 +428,7 @@ static bool run_response(const struct bake_task *task)
                                  basis.columns);
     bool ok = matrix_f32_init(task->host, &gather, out.rows, basis.rows);
     for (uint64_t i = 0; ok && i < points; i++) {
-        struct mrt_point at = mrt_gather_point(&entered, job->options.probes, stage->measure,
+        struct mrt_point at = mrt_gather_point(&entered, job->options.block_probes, stage->measure,
                                                (int)(first + i - index * stage->points));
         mrt_gather_interface(job->lightfield, &entered, at, rays,
                              gather.at + i * (uint64_t)rays->values * gather.stride);

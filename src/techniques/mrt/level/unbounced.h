@@ -1,17 +1,21 @@
-// Light that reaches the texels of a level without a bounce, from sources that the frame has no
-// shadow maps for: emissive surfaces and the sky. Traced once, with the geometry image.
+// Light that reaches the texels and the probes of a level without a bounce, from sources that the
+// frame has no shadow maps for: emissive surfaces and the sky. Traced once, with the geometry
+// image.
 #pragma once
 
 #include "techniques/mrt/level/geometry.h"
+#include "techniques/mrt/level/probes.h"
 
 struct mrt_scene_images {
     struct host *host;
-    struct mrt_geometry_texel *geometry; // [texels]
-    vec3s *emitted;                      // [texels] irradiance of emissive surfaces, lux
-    float *sky;                          // [texels] irradiance of a sky of radiance 1/π
+    struct mrt_geometry_texel *geometry;   // [texels]
+    vec3s *emitted;                        // [texels] irradiance of emissive surfaces, lux
+    float *sky;                            // [texels] irradiance of a sky of radiance 1/π
+    struct mrt_unbounced_probe *unbounced; // [blocks · p³]
 };
 
+// probes: p, along an edge of a block; 0: none.
 bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
                            const struct mrt_block_map *map, const struct mrt_atlas *atlas,
-                           struct mrt_scene_images *out);
+                           int probes, struct mrt_scene_images *out);
 void mrt_scene_images_finish(struct mrt_scene_images *images); // accepts zero

@@ -9,10 +9,13 @@
 #define MRT_CANDIDATES_BINDING 5
 #define MRT_LIGHT_MAP_BINDING  6
 #define MRT_VECTOR_MAP_BINDING 7
+#define MRT_BRICKS_BINDING     11
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
+#include "frame/probes.glsl"
 #include "techniques/mrt/runtime/locate.glsl"
+#include "techniques/mrt/runtime/bricks.glsl"
 #include "techniques/mrt/runtime/light_map.glsl"
 
 layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;

@@ -5,6 +5,7 @@
 #include "core/linalg.h"
 
 #include "techniques/mrt/level/atlas.h"
+#include "techniques/mrt/level/probes.h"
 #include "techniques/mrt/level/unbounced.h"
 
 // Operators of blocks with the same openings. n texels of mrt_cube(resolution, open).
@@ -13,6 +14,7 @@ struct mrt_basis_input {
     struct matrix_f32 t_db;  // k_b × n
     struct matrix_f32 u_b;   // n × k_b
     struct matrix_f32 u_vec; // 4 n × k_b, in the frame of mrt_point; empty: no irradiance by normal
+    struct matrix_f32 u_vol; // 9 p³ × k_b, probes in the frame of the cell; empty: none
 };
 
 // Response of a block to the light of the opening in one face, at the 6 n² texels of a closed cube;
@@ -20,6 +22,7 @@ struct mrt_basis_input {
 struct mrt_response_input {
     struct matrix_f32 u_r;   // 6 n² × k_r
     struct matrix_f32 u_vec; // 24 n² × k_r
+    struct matrix_f32 u_vol; // 9 p³ × k_r
 };
 
 // Light of a block that enters another one through an opening of that one: T_b→r.
@@ -37,6 +40,7 @@ struct mrt_runtime_input {
     const struct mrt_atlas *atlas;
     const struct mrt_scene_images *images;
     int k_b, k_r;
+    int probes; // p, along an edge of a block; 0: none
     const struct mrt_basis_input *bases;
     int basis_count;
     const int *basis_of_block;

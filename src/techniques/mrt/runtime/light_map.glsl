@@ -1,5 +1,5 @@
 // Irradiance of a surface from the light map: of the wall that stands for it, or of several.
-// Needs locate.glsl, MRT_TILES_BINDING, core/sh.glsl.
+// Needs locate.glsl, bricks.glsl, MRT_TILES_BINDING, core/sh.glsl.
 #ifndef AG_MRT_LIGHT_MAP_GLSL
 #define AG_MRT_LIGHT_MAP_GLSL
 
@@ -7,6 +7,7 @@ layout(set = 0, binding = MRT_LIGHT_MAP_BINDING) uniform sampler2DArray light_ma
 layout(set = 0, binding = MRT_VECTOR_MAP_BINDING) uniform sampler2DArray vector_map;
 
 layout(constant_id = MRT_CONSTANT_VALUES) const uint VALUES = 1; // 4: by normal
+layout(constant_id = MRT_CONSTANT_PROBES) const bool PROBES = false;
 
 // A surface this near to a wall that it faces, in edges of the cell, is that wall.
 const float MRT_WALL_DISTANCE = 0.1;
@@ -83,7 +84,7 @@ vec3 level_irradiance(vec3 position, vec3 normal)
     if (place.block < 0) return vec3(0.0);
     vec3 n = normal_in_cell(place, normal);
     int face = wall_of(place, n);
-    if (face < 0) return walls_irradiance(place, n);
+    if (face < 0) return PROBES ? bricks_irradiance(place, normal) : walls_irradiance(place, n);
     return wall_irradiance(block_table[place.block].tile[face], face, place.cell, n);
 }
 

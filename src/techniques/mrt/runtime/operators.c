@@ -129,32 +129,49 @@ static void put_matrix(struct words *w, const struct matrix_f32 *m, const float 
         put_row(w, m->at + row * m->stride, 1, factor, count);
 }
 
-static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       const struct scales *scales, bool vector, gpu_buffer *out)
+// Operators of texels, of texels by normal, of probes.
+enum points { TEXELS, TEXELS_BY_NORMAL, PROBES };
+
+static const struct matrix_f32 *of_basis(const struct mrt_basis_input *basis, enum points points)
 {
+    return points == TEXELS ? &basis->u_b : points == PROBES ? &basis->u_vol : &basis->u_vec;
+}
+
+static const struct matrix_f32 *of_response(const struct mrt_response_input *response,
+                                            enum points points)
+{
+    return points == TEXELS   ? &response->u_r
+           : points == PROBES ? &response->u_vol
+                              : &response->u_vec;
+}
+
+static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                       const struct scales *scales, enum points points, gpu_buffer *out)
+{
+    static const char *const names[] = { "u_b", "u_b_vector", "u_b_probes" };
     struct words w;
-    if (!words_init(&w, runtime->host, runtime->options.half,
-                    rows_of_bases(input) * (vector ? 4 : 1), mrt_quads(input->k_b)))
+    size_t rows = 0;
+    for (int i = 0; i < input->basis_count; i++) rows += of_basis(&input->bases[i], points)->rows;
+    if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_b)))
         return false;
     for (int i = 0; i < input->basis_count; i++)
-        put_matrix(&w, vector ? &input->bases[i].u_vec : &input->bases[i].u_b,
-                   scales->inverse + i * scales->k_b, input->k_b);
-    return words_upload(&w, runtime->gpu, vector ? "u_b_vector" : "u_b", out);
+        put_matrix(&w, of_basis(&input->bases[i], points), scales->inverse + i * scales->k_b,
+                   input->k_b);
+    return words_upload(&w, runtime->gpu, names[points], out);
 }
 
 static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       bool vector, gpu_buffer *out)
+                       enum points points, gpu_buffer *out)
 {
+    static const char *const names[] = { "u_r", "u_r_vector", "u_r_probes" };
     struct words w;
     size_t rows = 0;
-    for (int f = 0; f < CUBE_FACES; f++)
-        rows += vector ? input->response[f].u_vec.rows : input->response[f].u_r.rows;
+    for (int f = 0; f < CUBE_FACES; f++) rows += of_response(&input->response[f], points)->rows;
     if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_r)))
         return false;
     for (int f = 0; f < CUBE_FACES; f++)
-        put_matrix(&w, vector ? &input->response[f].u_vec : &input->response[f].u_r, NULL,
-                   input->k_r);
-    return words_upload(&w, runtime->gpu, vector ? "u_r_vector" : "u_r", out);
+        put_matrix(&w, of_response(&input->response[f], points), NULL, input->k_r);
+    return words_upload(&w, runtime->gpu, names[points], out);
 }
 
 // By column: [pair][k_b][k_r], with k_b padded too.
@@ -185,11 +202,14 @@ bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_
     struct scales scales = { 0 };
     struct mrt_runtime_buffers *b = &runtime->buffers;
     bool ok = scales_init(&scales, runtime->host, input) && upload_t_db(runtime, input, &scales) &&
-              upload_u_b(runtime, input, &scales, false, &b->u_b) &&
-              upload_u_r(runtime, input, false, &b->u_r) && upload_t_br(runtime, input, &scales);
+              upload_u_b(runtime, input, &scales, TEXELS, &b->u_b) &&
+              upload_u_r(runtime, input, TEXELS, &b->u_r) && upload_t_br(runtime, input, &scales);
     if (ok && runtime->options.vector)
-        ok = upload_u_b(runtime, input, &scales, true, &b->u_b_vector) &&
-             upload_u_r(runtime, input, true, &b->u_r_vector);
+        ok = upload_u_b(runtime, input, &scales, TEXELS_BY_NORMAL, &b->u_b_vector) &&
+             upload_u_r(runtime, input, TEXELS_BY_NORMAL, &b->u_r_vector);
+    if (ok && runtime->options.probes)
+        ok = upload_u_b(runtime, input, &scales, PROBES, &runtime->probes.u_b) &&
+             upload_u_r(runtime, input, PROBES, &runtime->probes.u_r);
     scales_finish(&scales, runtime->host);
     return ok;
 }

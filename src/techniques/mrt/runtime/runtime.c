@@ -2,11 +2,12 @@
 #include "runtime.h"
 
 #include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/probes.h"
 #include "techniques/mrt/runtime/tables.h"
 
 #include "technique_shaders.h"
 
-enum { VEC3_BYTES = 12, MAX_CONSTANTS = 4, VECTOR_VALUES = 4 };
+enum { VEC3_BYTES = 12, MAX_CONSTANTS = 5, VECTOR_VALUES = 4 };
 
 static bool make_empty(struct gpu *gpu, const char *name, size_t bytes, gpu_buffer *out)
 {
@@ -74,6 +75,7 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
         [MRT_CONSTANT_QUADS_B] = mrt_quads(input->k_b),
         [MRT_CONSTANT_QUADS_R] = mrt_quads(input->k_r),
         [MRT_CONSTANT_VALUES] = pipeline->values,
+        [MRT_CONSTANT_PROBES] = runtime->options.clutter,
     };
     struct gpu_constant constants[MAX_CONSTANTS];
     int count = 0;
@@ -89,6 +91,7 @@ enum {
     QUADS_B = 1 << MRT_CONSTANT_QUADS_B,
     QUADS_R = 1 << MRT_CONSTANT_QUADS_R,
     VALUES = 1 << MRT_CONSTANT_VALUES,
+    PROBES = 1 << MRT_CONSTANT_PROBES,
     ALL = HALF | QUADS_B | QUADS_R | VALUES,
 };
 
@@ -102,7 +105,7 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R, 0 },
         { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
         { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
-        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES, values },
+        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES | PROBES, values },
         { &p->debug, "debug", &shader_mrt_runtime_debug_comp, 0, 0 },
     };
     const struct pipeline vector[] = {
@@ -123,8 +126,8 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
 {
     *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
     return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
-           mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
-           make_pipelines(out, input);
+           mrt_probes_upload(out, input) && mrt_operators_upload(out, input) &&
+           make_buffers(out, input) && make_images(out) && make_pipelines(out, input);
 }
 
 static void destroy_buffers(struct mrt_runtime *runtime)
@@ -153,10 +156,25 @@ void mrt_runtime_finish(struct mrt_runtime *runtime)
                    "each member is listed");
     if (!runtime->gpu) return;
     destroy_buffers(runtime);
+    mrt_probes_finish(runtime);
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(runtime->gpu, pipelines[i]);
 
     *runtime = (struct mrt_runtime){ 0 };
+}
+
+static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
+{
+    const uint64_t probes = (uint64_t)mrt_probes_of_block(size->probes);
+    const uint64_t rows = MRT_PROBE_VALUES * probes, number = size->options.half ? 2 : 4;
+    const uint64_t texels = (uint64_t)mrt_brick_texels(size->probes);
+    const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
+    // A grid of the block, and its slabs.
+    const uint64_t published = size->options.publish ? 8 * FRAME_PROBE_SLABS * probes : 0;
+    if (!size->options.probes) return 8;
+    return rows * number * (k_b + CUBE_FACES * k_r) + rows * VEC3_BYTES +
+           probes * sizeof(struct mrt_gpu_probe) +
+           texels * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
 }
 
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
@@ -172,5 +190,5 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
            texels * (sizeof(struct mrt_texel) + (2 + values) * VEC3_BYTES) +
            CUBE_FACES * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            texels * k_b * number * (1 + values) + CUBE_FACES * texels * k_r * number * values +
-           map * (size->options.vector ? 4 : 1);
+           map * (size->options.vector ? 4 : 1) + bytes_of_probes(size);
 }

@@ -9,8 +9,11 @@
 #include "techniques/mrt/runtime/input.h"
 
 struct mrt_runtime_options {
-    bool half;   // operators are half floats, else floats
-    bool vector; // irradiance by normal
+    bool half;    // operators are half floats, else floats
+    bool vector;  // irradiance by normal
+    bool probes;  // there are volume probes
+    bool clutter; // they light surfaces inside blocks, else the walls that face these do
+    bool publish; // their volume
 };
 
 struct mrt_runtime_buffers {
@@ -31,6 +34,18 @@ struct mrt_runtime_pipelines {
     gpu_pipeline apply, debug;
 };
 
+// Volume probes; without them `bricks` is 1×1×1.
+struct mrt_runtime_probes {
+    gpu_buffer tiles, openings, u_b, u_r; // as those of texels
+    gpu_buffer sources, turns, unbounced; // tables of bricks.comp
+    gpu_buffer light;                     // vec3 [block][probe][9], in the frame of the cell
+    gpu_image bricks;
+    gpu_pipeline fill;
+    struct frame_probes grid; // published
+    gpu_image volume;
+    gpu_pipeline publish;
+};
+
 struct mrt_runtime {
     struct host *host;
     struct gpu *gpu;
@@ -39,7 +54,7 @@ struct mrt_runtime {
     uint32_t block_count, opening_count;
     struct mrt_runtime_buffers buffers;
     struct mrt_runtime_pipelines pipelines;
-
+    struct mrt_runtime_probes probes;
     gpu_sampler linear;
 };
 
@@ -50,7 +65,7 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
 void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-built
 
 struct mrt_runtime_size {
-    int resolution, k_b, k_r;
+    int resolution, k_b, k_r, probes;
     struct mrt_runtime_options options;
 };
 // Bytes on the GPU of a level of one closed cube.
@@ -66,6 +81,9 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback);
 // The light map with its borders, and irradiance by normal.
 void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
+// Probes of all blocks, and the published volume, from the newest b and r.
+void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                       const struct frame_view *view, float gain);
 // Irradiance of each pixel.
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, float gain);

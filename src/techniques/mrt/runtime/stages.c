@@ -110,6 +110,67 @@ void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
     gpu_scope_end(cmd);
 }
 
+// U_bvol b and U_r r, in the frames of the cells.
+static void record_probe_light(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    const struct mrt_runtime_probes *p = &runtime->probes;
+    struct mrt_level_params level = runtime->level;
+    level.texels_of_tile = MRT_PROBE_VALUES * level.probes * level.probes * level.probes;
+    gpu_dispatch(cmd, runtime->pipelines.reconstruct,
+                 GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
+                          { .name = "mrt_tiles", .buffer = p->tiles },
+                          { .name = "mrt_blocks", .buffer = runtime->buffers.blocks },
+                          { .name = "mrt_openings", .buffer = p->openings },
+                          { .name = "mrt_b", .buffer = runtime->buffers.b },
+                          { .name = "mrt_r", .buffer = runtime->buffers.r },
+                          { .name = "mrt_u_b", .buffer = p->u_b },
+                          { .name = "mrt_u_r", .buffer = p->u_r },
+                          { .name = "mrt_irradiance", .buffer = p->light }),
+                 NULL, 0, gpu_groups(level.texels_of_tile, MRT_LOCAL), runtime->block_count, 1);
+}
+
+static void record_bricks(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                          const struct frame_view *view)
+{
+    const struct mrt_runtime_probes *p = &runtime->probes;
+    const uint32_t texels = (uint32_t)mrt_brick_texels((int)runtime->level.probes);
+    gpu_dispatch(cmd, p->fill,
+                 GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
+                          { .name = "mrt_brick_sources", .buffer = p->sources },
+                          { .name = "mrt_probe_light", .buffer = p->light },
+                          { .name = "mrt_probe_unbounced", .buffer = p->unbounced },
+                          { .name = "mrt_probe_turns", .buffer = p->turns },
+                          { .name = "bricks", .image = p->bricks }),
+                 NULL, 0, gpu_groups(texels, MRT_LOCAL), runtime->block_count, 1);
+}
+
+static void record_volume(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    const struct mrt_runtime_probes *p = &runtime->probes;
+    const uint32_t count = (uint32_t)(p->grid.count_x * p->grid.count_y * p->grid.count_z);
+    gpu_dispatch(cmd, p->publish,
+                 GPU_BIND(level_binding(runtime, cmd),
+                          { .name = "mrt_blocks", .buffer = b->blocks },
+                          { .name = "mrt_cells", .buffer = b->cells },
+                          { .name = "mrt_candidates", .buffer = b->candidates },
+                          { .name = "bricks", .image = p->bricks, .sampler = runtime->linear },
+                          { .name = "volume", .image = p->volume }),
+                 &p->grid, sizeof p->grid, gpu_groups(count, MRT_LOCAL), 1, 1);
+}
+
+void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                       const struct frame_view *view, float gain)
+{
+    if (!runtime->options.probes) return;
+    runtime->level.gain = gain;
+    gpu_scope_begin(cmd, "probes");
+    record_probe_light(runtime, cmd);
+    record_bricks(runtime, cmd, view);
+    if (runtime->options.publish) record_volume(runtime, cmd);
+    gpu_scope_end(cmd);
+}
+
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, float gain)
 {
@@ -125,6 +186,7 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                  { .name = "mrt_candidates", .buffer = b->candidates },
                  { .name = "light_map", .image = b->light_map, .sampler = runtime->linear },
                  { .name = "vector_map", .image = b->vector_map, .sampler = runtime->linear },
+                 { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
                  { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                  { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                  { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),

@@ -1,6 +1,8 @@
 // Texels and tangent frames of the dictionary's cubes, turned as the blocks of a level are.
 #include "turned.h"
 
+#include "techniques/mrt/runtime/turned_probes.h"
+
 #include <string.h>
 
 // Texels of `from`, turned by to_from, as those of `to`.
@@ -90,7 +92,9 @@ static bool make_basis(struct host *host, const struct mrt_level *level,
     out->open = level->map->blocks[block].open;
     return turn_columns(host, &turn, &element->t_db, &out->t_db) &&
            turn_rows(host, &turn, &element->u_b, &out->u_b) &&
-           turn_vectors(host, &turn, &element->u_vec, &out->u_vec);
+           turn_vectors(host, &turn, &element->u_vec, &out->u_vec) &&
+           mrt_turn_probes(host, dictionary->options.block_probes, turn.to_from, &element->u_bvol,
+                           &out->u_vol);
 }
 
 static bool same_place(const struct mrt_cube_place *a, const struct mrt_cube_place *b)
@@ -127,7 +131,9 @@ static bool make_responses(struct mrt_turned *out, const struct mrt_dictionary *
         const struct turn turn = { shape, mrt_cube(resolution, 0), mrt_block_from_entry(face) };
         struct mrt_response_input *response = &out->input.response[face];
         if (!turn_rows(out->host, &turn, &entered->u_r, &response->u_r) ||
-            !turn_vectors(out->host, &turn, &entered->u_rvec, &response->u_vec))
+            !turn_vectors(out->host, &turn, &entered->u_rvec, &response->u_vec) ||
+            !mrt_turn_probes(out->host, dictionary->options.block_probes, turn.to_from,
+                             &entered->u_rvol, &response->u_vol))
             return false;
     }
     return true;
@@ -162,6 +168,7 @@ bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mr
     input->map = level->map;
     input->k_b = dictionary->options.modes;
     input->k_r = dictionary->options.response_modes;
+    input->probes = dictionary->options.block_probes;
     input->bases = out->bases;
     input->basis_of_block = out->basis_of_block;
     input->openings = out->openings;
@@ -179,10 +186,12 @@ void mrt_turned_finish(struct mrt_turned *turned)
         matrix_f32_finish(turned->host, &turned->bases[i].t_db);
         matrix_f32_finish(turned->host, &turned->bases[i].u_b);
         matrix_f32_finish(turned->host, &turned->bases[i].u_vec);
+        matrix_f32_finish(turned->host, &turned->bases[i].u_vol);
     }
     for (int face = 0; face < CUBE_FACES; face++) {
         matrix_f32_finish(turned->host, &turned->input.response[face].u_r);
         matrix_f32_finish(turned->host, &turned->input.response[face].u_vec);
+        matrix_f32_finish(turned->host, &turned->input.response[face].u_vol);
     }
     host_free(turned->host, turned->bases);
     host_free(turned->host, turned->basis_of_block);

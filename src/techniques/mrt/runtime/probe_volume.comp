@@ -1,0 +1,42 @@
+// The published probe volume: the bricks of the blocks, sampled on a grid of the world.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#define MRT_BLOCKS_BINDING     2
+#define MRT_CELLS_BINDING      3
+#define MRT_CANDIDATES_BINDING 4
+#define MRT_BRICKS_BINDING     5
+#include "core/half.glsl"
+#include "core/sh.glsl"
+#include "frame/frame_shared.h"
+#include "frame/probes.glsl"
+#include "techniques/mrt/runtime/locate.glsl"
+#include "techniques/mrt/runtime/bricks.glsl"
+
+layout(local_size_x = MRT_LOCAL) in;
+
+layout(set = 0, binding = 6, rgba16f) writeonly uniform image3D volume;
+
+layout(push_constant, scalar) uniform push_block
+{
+    frame_probes grid;
+};
+
+// Points outside of all blocks are dark.
+void main()
+{
+    ivec3 count = ivec3(grid.count_x, grid.count_y, grid.count_z);
+    int i = int(gl_GlobalInvocationID.x);
+    ivec3 at = ivec3(i % count.x, i / count.x % count.y, i / (count.x * count.y));
+    if (at.z >= count.z) return;
+    mrt_place place = locate(grid.first_m + grid.spacing_m * vec3(at));
+    vec3 texel = vec3(0.0), size = vec3(textureSize(bricks, 0));
+    if (place.block >= 0) texel = brick_texel(place);
+    for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
+        vec3 slab = vec3(0.0, 0.0, float(s * (int(level.probes) + 2)));
+        vec4 values = place.block < 0 ? vec4(0.0) : textureLod(bricks, (texel + slab) / size, 0.0);
+        imageStore(volume, at + ivec3(0, 0, s * grid.slab),
+                   clamp(level.gain * values, -HALF_MAX, HALF_MAX));
+    }
+}

@@ -1,0 +1,198 @@
+// Tables, operators, images and passes of volume probes.
+//
+// U_bvol b and U_r r are computed by the pass for texels: a block's probes are as a tile of 9 p³
+// texels without irradiance by normal.
+#include "probes.h"
+
+#include "core/sh.h"
+
+#include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/tables.h"
+
+#include "technique_shaders.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { VALUES = MRT_PROBE_VALUES, MAX_VOLUME = 32 };
+
+static size_t rows_of_block(const struct mrt_runtime_input *input)
+{
+    return (size_t)(VALUES * mrt_probes_of_block(input->probes));
+}
+
+// ---- tables
+
+static void fill_tiles(const struct mrt_runtime_input *input, void *items)
+{
+    struct mrt_gpu_tile *tiles = items;
+    const uint32_t rows = (uint32_t)rows_of_block(input);
+    for (int b = 0; b < input->map->count; b++)
+        tiles[b] = (struct mrt_gpu_tile){ .block = (uint32_t)b,
+                                          .first_texel = (uint32_t)b * rows,
+                                          .basis_row = (uint32_t)input->basis_of_block[b] * rows };
+}
+
+static void fill_openings(const struct mrt_runtime_input *input, void *items)
+{
+    struct mrt_gpu_opening *openings = items;
+    for (int i = 0; i < input->opening_count; i++)
+        openings[i] = (struct mrt_gpu_opening){
+            .response = (uint32_t)((size_t)input->openings[i].face * rows_of_block(input)),
+        };
+}
+
+static void fill_sources(const struct mrt_runtime_input *input, void *items)
+{
+    uint32_t *sources = items;
+    const int texels = mrt_brick_texels(input->probes);
+    for (int i = 0; i < input->map->count * texels; i++)
+        sources[i] =
+            (uint32_t)mrt_probe_of_brick_texel(input->map, input->probes, i / texels, i % texels);
+}
+
+// Row i of the matrix that turns SH is coefficient i of the turned unit vectors.
+static void fill_turn(mat3s to_from, float *out)
+{
+    for (int k = 0; k < VALUES; k++) {
+        float unit[VALUES] = { 0 }, turned[VALUES];
+        unit[k] = 1.0f;
+        sh_rotate(3, to_from, unit, turned);
+        for (int i = 0; i < VALUES; i++) out[VALUES * i + k] = turned[i];
+    }
+}
+
+static void fill_turns(const struct mrt_runtime_input *input, void *items)
+{
+    float *turns = items;
+    for (int b = 0; b < input->map->count; b++)
+        fill_turn(mrt_block_rotation(&input->map->blocks[b]), turns + VALUES * VALUES * b);
+}
+
+static void fill_unbounced(const struct mrt_runtime_input *input, void *items)
+{
+    struct mrt_gpu_probe *probes = items;
+    for (int i = 0; i < input->map->count * mrt_probes_of_block(input->probes); i++) {
+        memcpy(probes[i].emitted, input->images->unbounced[i].emitted, sizeof probes[i].emitted);
+        memcpy(probes[i].sky, input->images->unbounced[i].sky, sizeof probes[i].sky);
+    }
+}
+
+// `count` items that `fill` writes, in a new buffer.
+static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                   const char *name, size_t count, size_t size,
+                   void (*fill)(const struct mrt_runtime_input *input, void *items),
+                   gpu_buffer *out)
+{
+    void *items = host_alloc(runtime->host, count, size);
+    if (!items) return false;
+    fill(input, items);
+    bool ok = mrt_buffer_of(runtime->gpu, name, items, count * size, out);
+    host_free(runtime->host, items);
+    return ok;
+}
+
+static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_probes *p = &runtime->probes;
+    const size_t blocks = (size_t)input->map->count;
+    const size_t probes = blocks * (size_t)mrt_probes_of_block(input->probes);
+    const size_t texels = blocks * (size_t)mrt_brick_texels(input->probes);
+    return upload(runtime, input, "probe_tiles", blocks, sizeof(struct mrt_gpu_tile), fill_tiles,
+                  &p->tiles) &&
+           upload(runtime, input, "probe_openings", (size_t)input->opening_count,
+                  sizeof(struct mrt_gpu_opening), fill_openings, &p->openings) &&
+           upload(runtime, input, "brick_sources", texels, sizeof(uint32_t), fill_sources,
+                  &p->sources) &&
+           upload(runtime, input, "probe_turns", blocks, VALUES * VALUES * sizeof(float),
+                  fill_turns, &p->turns) &&
+           upload(runtime, input, "probe_unbounced", probes, sizeof(struct mrt_gpu_probe),
+                  fill_unbounced, &p->unbounced);
+}
+
+// ---- images
+
+static bool make_image(struct gpu *gpu, const char *name, uint32_t width, uint32_t height,
+                       uint32_t depth, gpu_image *out)
+{
+    const struct gpu_image_desc desc = { .name = name,
+                                         .dimension = GPU_3D,
+                                         .format = GPU_RGBA16F,
+                                         .width = width,
+                                         .height = height,
+                                         .depth = depth,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    return gpu_image_create(gpu, &desc, out);
+}
+
+static bool make_bricks(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    const uint32_t blocks = (uint32_t)input->map->count, edge = (uint32_t)input->probes + 2;
+    const uint32_t columns = (uint32_t)ceil(sqrt((double)blocks));
+    runtime->level.brick_columns = columns;
+    runtime->level.probes = (uint32_t)input->probes;
+    return make_image(runtime->gpu, "bricks", columns * edge,
+                      (blocks + columns - 1) / columns * edge, FRAME_PROBE_SLABS * edge,
+                      &runtime->probes.bricks);
+}
+
+// Points at most MAX_VOLUME along the longest side, not denser than the probes of a cube.
+static struct frame_probes grid_of(const struct mrt_runtime_input *input)
+{
+    struct box3 box = box3_empty();
+    float volume = 0.0f;
+    for (int b = 0; b < input->map->count; b++) {
+        const struct mrt_block *block = &input->map->blocks[b];
+        for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
+        volume += glms_mat3_det(mrt_warp_jacobian(block->corner, vec3_of(0, 0, 0)));
+    }
+    vec3s size = box3_size(box);
+    float edge = cbrtf(volume / (float)input->map->count);
+    float spacing = fmaxf(edge / (float)input->probes, glms_vec3_max(size) / MAX_VOLUME);
+    struct frame_probes grid = { .first_m = box.min, .spacing_m = spacing };
+    int32_t *const counts[3] = { &grid.count_x, &grid.count_y, &grid.count_z };
+    for (int a = 0; a < 3; a++) {
+        *counts[a] = (int32_t)fmaxf(ceilf(size.raw[a] / spacing - 1e-3f), 1.0f);
+        grid.first_m.raw[a] += 0.5f * (size.raw[a] - spacing * (float)(*counts[a] - 1));
+    }
+    grid.slab = grid.count_z;
+    return grid;
+}
+
+static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_probes *p = &runtime->probes;
+    if (!runtime->options.publish) return true;
+    p->grid = grid_of(input);
+    return make_image(runtime->gpu, "probe_volume", (uint32_t)p->grid.count_x,
+                      (uint32_t)p->grid.count_y, FRAME_PROBE_SLABS * (uint32_t)p->grid.slab,
+                      &p->volume) &&
+           gpu_compute_pipeline_create(runtime->gpu, "probe_volume",
+                                       &shader_mrt_runtime_probe_volume_comp, NULL, 0, &p->publish);
+}
+
+bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_probes *p = &runtime->probes;
+    if (!runtime->options.probes) return make_image(runtime->gpu, "bricks", 1, 1, 1, &p->bricks);
+    const size_t rows = (size_t)input->map->count * rows_of_block(input);
+    const struct gpu_buffer_desc light = { "probe_light", rows * 3 * sizeof(float),
+                                           GPU_BUFFER_STORAGE };
+    return upload_tables(runtime, input) && gpu_buffer_create(runtime->gpu, &light, &p->light) &&
+           make_bricks(runtime, input) && make_volume(runtime, input) &&
+           gpu_compute_pipeline_create(runtime->gpu, "bricks", &shader_mrt_runtime_bricks_comp,
+                                       NULL, 0, &p->fill);
+}
+
+void mrt_probes_finish(struct mrt_runtime *runtime)
+{
+    struct mrt_runtime_probes *p = &runtime->probes;
+    gpu_buffer *const buffers[] = { &p->tiles,     &p->openings, &p->sources, &p->turns,
+                                    &p->unbounced, &p->u_b,      &p->u_r,     &p->light };
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        gpu_buffer_destroy(runtime->gpu, buffers[i]);
+    gpu_image_destroy(runtime->gpu, &p->bricks);
+    gpu_image_destroy(runtime->gpu, &p->volume);
+    gpu_pipeline_destroy(runtime->gpu, &p->fill);
+    gpu_pipeline_destroy(runtime->gpu, &p->publish);
+}

@@ -1,0 +1,7 @@
+// Volume probes of a level on the GPU (Loos 2015, section 3.5.5).
+#pragma once
+
+#include "techniques/mrt/runtime/runtime.h"
+
+bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+void mrt_probes_finish(struct mrt_runtime *runtime); // accepts zero and half-built

@@ -1,0 +1,43 @@
+// Probes in the frames of blocks.
+#include "turned_probes.h"
+
+#include "core/sh.h"
+
+#include "techniques/mrt/level/probes.h"
+
+#include <math.h>
+
+// A turned cube has its probes in the same places.
+static int turned_probe(int p, mat3s from_to, int i)
+{
+    vec3s cell = glms_mat3_mulv(from_to, mrt_probe_cell(p, i));
+    int at[3];
+    for (int a = 0; a < 3; a++) at[a] = (int)floorf((cell.raw[a] + 0.5f) * (float)p);
+    return (at[2] * p + at[1]) * p + at[0];
+}
+
+static void turn_probe(mat3s to_from, const float *from, size_t from_stride, float *to,
+                       size_t to_stride, size_t columns)
+{
+    for (size_t c = 0; c < columns; c++) {
+        float in[MRT_PROBE_VALUES], out[MRT_PROBE_VALUES];
+        for (size_t i = 0; i < MRT_PROBE_VALUES; i++) in[i] = from[i * from_stride + c];
+        sh_rotate(3, to_from, in, out);
+        for (size_t i = 0; i < MRT_PROBE_VALUES; i++) to[i * to_stride + c] = out[i];
+    }
+}
+
+bool mrt_turn_probes(struct host *host, int p, mat3s to_from, const struct matrix_f32 *from,
+                     struct matrix_f32 *out)
+{
+    const int probes = mrt_probes_of_block(p);
+    if (!matrix_f32_init(host, out, (size_t)(MRT_PROBE_VALUES * probes), from->columns))
+        return false;
+    for (int i = 0; i < probes; i++) {
+        size_t row = MRT_PROBE_VALUES * (size_t)i;
+        size_t source = MRT_PROBE_VALUES * (size_t)turned_probe(p, glms_mat3_transpose(to_from), i);
+        turn_probe(to_from, from->at + source * from->stride, from->stride,
+                   out->at + row * out->stride, out->stride, from->columns);
+    }
+    return true;
+}

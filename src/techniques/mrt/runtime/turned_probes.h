@@ -1,0 +1,9 @@
+// Operators of probes of the dictionary, turned as the blocks of a level are.
+#pragma once
+
+#include "core/linalg.h"
+#include "core/vec.h"
+
+// `from` and `out`: 9 rows of SH for each of p³ probes. out(to_from ω) at to_from x = from(ω) at x.
+bool mrt_turn_probes(struct host *host, int p, mat3s to_from, const struct matrix_f32 *from,
+                     struct matrix_f32 *out);
