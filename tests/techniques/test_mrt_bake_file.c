@@ -17,7 +17,7 @@ static struct mrt_dictionary_options tiny_options(void)
     options.texels = options.modes = options.response_modes = 4;
     options.rays = 256;
     options.prior_modes = 8;
-    options.probes = options.lightfield_supersampling = options.lightfield_rounds = 1;
+    options.block_probes = options.lightfield_supersampling = options.lightfield_rounds = 1;
     options.lightfield_positions = 4;
     options.lightfield_directions = 6;
     options.lightfield_modes = 16;

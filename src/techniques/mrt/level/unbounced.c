@@ -1,6 +1,8 @@
 // Irradiance of emissive surfaces and of the sky at texels: points and cosine-distributed rays.
 #include "unbounced.h"
 
+#include "techniques/mrt/level/unbounced_samples.h"
+
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "core/sampling.h"

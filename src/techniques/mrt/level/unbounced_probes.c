@@ -1,6 +1,8 @@
 // Light of emitters and the sky at probes.
 #include "probes.h"
 
+#include "techniques/mrt/level/unbounced_samples.h"
+
 #include "core/parallel.h"
 #include "core/sh.h"
 
