@@ -1,6 +1,8 @@
 // Memory, log messages and the last failure, through the callbacks of the host program.
 #include "core/host.h"
 
+#include "core/text.h"
+
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,10 +22,11 @@ __attribute__((format(printf, 3, 0))) static void log_va(struct host *host, enum
                                                          const char *format, va_list arguments)
 {
     if (!host->log || level > host->log_up_to) return;
-    char message[MESSAGE_SIZE];
+    char message[MESSAGE_SIZE], printable[MESSAGE_SIZE];
     if (vsnprintf(message, sizeof message, format, arguments) < 0)
         snprintf(message, sizeof message, "%s", format);
-    host->log(host->user, level, message);
+    text_escape(message, printable, sizeof printable);
+    host->log(host->user, level, printable);
 }
 
 bool host_fail(struct host *host, enum fail_kind kind, const char *format, ...)

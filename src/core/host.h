@@ -33,7 +33,7 @@ struct host {
 struct host host_default(void);
 
 // Stores `kind`, logs one sentence ("<what> <where>: <why>", no newline) and returns false, for
-// `return host_fail(host, …)`.
+// `return host_fail(host, …)`. Control characters, of names, are escaped (core/text.h).
 bool host_fail(struct host *host, enum fail_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 void host_log(struct host *host, enum log_level level, const char *format, ...)

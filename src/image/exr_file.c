@@ -1,16 +1,9 @@
 // Callbacks of OpenEXR's C core: errors, memory, size limits.
 #include "image/exr_file.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-void exr_copy_printable(char *out, size_t size, const char *text)
-{
-    size_t n = 0;
-    for (; text[n] && n + 1 < size; n++)
-        out[n] = (unsigned char)text[n] < 32 || text[n] == 127 ? '?' : text[n];
-    out[n] = 0;
-}
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
@@ -18,7 +11,7 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
     void *user = NULL;
     if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
     struct exr_file *file = user;
-    if (!file->message[0]) exr_copy_printable(file->message, sizeof file->message, message);
+    if (!file->message[0]) snprintf(file->message, sizeof file->message, "%s", message);
 }
 
 static enum fail_kind kind_of(exr_result_t code, enum fail_kind otherwise)

@@ -30,7 +30,5 @@ void exr_file_finish(struct exr_file *file);
 // Log the library's message, or the meaning of the code where there is none; return false.
 bool exr_fail_reading(struct exr_file *file, exr_result_t code);
 bool exr_fail_writing(struct exr_file *file, exr_result_t code);
-// Copies text for one line of a log: control characters become '?'.
-void exr_copy_printable(char *out, size_t size, const char *text);
 // Whether the layer is stored in the channels without a prefix.
 bool exr_is_plain(const char *layer);

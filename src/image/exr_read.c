@@ -185,16 +185,14 @@ static bool get_channels(struct exr_file *file, const exr_attr_chlist_t **out)
 static bool fail_missing_layer(struct exr_file *file, const exr_attr_chlist_t *list,
                                const char *layer)
 {
-    char wanted[EXR_NAME_MAX + 1], present[800];
     char *names = join_layer_names(file->host, list);
     if (!names) return false;
     for (char *c = names; *c; c++)
         if (*c == '\n') *c = ' ';
-    exr_copy_printable(wanted, sizeof wanted, layer);
-    exr_copy_printable(present, sizeof present, names);
+    host_fail(file->host, FAIL_ARGUMENT, "cannot read %s: no layer '%.*s'; it has: %.800s",
+              file->path, EXR_NAME_MAX, layer, names[0] ? names : "none that can be shown");
     host_free(file->host, names);
-    return host_fail(file->host, FAIL_ARGUMENT, "cannot read %s: no layer '%s'; it has: %s",
-                     file->path, wanted, present[0] ? present : "none that can be shown");
+    return false;
 }
 
 // A scan line holds the channels of all layers.

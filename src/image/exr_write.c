@@ -35,10 +35,8 @@ struct channel_list {
 
 static bool refuse_layer(struct exr_file *file, const char *name, const char *why)
 {
-    char shown[EXR_NAME_MAX + 1];
-    exr_copy_printable(shown, sizeof shown, name ? name : "(no name)");
-    return host_fail(file->host, FAIL_ARGUMENT, "cannot write %s: layer '%s' %s", file->path, shown,
-                     why);
+    return host_fail(file->host, FAIL_ARGUMENT, "cannot write %s: layer '%.*s' %s", file->path,
+                     EXR_NAME_MAX, name ? name : "(no name)", why);
 }
 
 static bool is_name(const char *name)
@@ -100,12 +98,10 @@ static bool check_attribute(struct exr_file *file, const struct exr_attribute *a
     bool good = is_name(name) && attributes[i].value && !is_reserved(name);
     for (int j = 0; good && j < i; j++) good = strcmp(name, attributes[j].name) != 0;
     if (good) return true;
-    char shown[EXR_NAME_MAX + 1];
-    exr_copy_printable(shown, sizeof shown, name ? name : "");
     return host_fail(file->host, FAIL_ARGUMENT,
-                     "cannot write %s: attribute '%s' is unnamed, without value, the format's own, "
-                     "or given twice",
-                     file->path, shown);
+                     "cannot write %s: attribute '%.*s' is unnamed, without value, the format's "
+                     "own, or given twice",
+                     file->path, EXR_NAME_MAX, name ? name : "");
 }
 
 static bool check_layers(struct exr_file *file, const struct exr_layer *layers, int layer_count,

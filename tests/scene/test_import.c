@@ -323,14 +323,14 @@ TEST(perspective_cameras_are_read_and_orthographic_ones_noted)
     scene_destroy(scene);
 }
 
-TEST(control_characters_in_names_are_replaced)
+TEST(control_characters_in_names_are_escaped)
 {
     struct scene *scene =
         load_gltf("{" ASSET ",'cameras':[{'name':'a\\u001b[31m\\u007f','type':'perspective',"
                   "'perspective':{'yfov':0.8,'znear':0.05}}],'nodes':[{'camera':0}]}",
                   NULL, 0);
     CHECK(scene && scene->camera_count == 1);
-    CHECK_STRING(scene->cameras[0].name, "a?[31m?");
+    CHECK_STRING(scene->cameras[0].name, "a\\u001b[31m\\u007f");
     scene_destroy(scene);
 }
 
@@ -462,7 +462,8 @@ static const struct refusal refusals[] = {
     { "{}", "no asset version" },
     { "{'asset':{'version':'3.0'}}", "3.0" },
     { "{'asset':{'version':'2.1','minVersion':'2.1'}}", "2.1" },
-    { "{" ASSET ",'extensionsRequired':['KHR_lights_punctual','EXT_new\\nline']}", "EXT_new?line" },
+    { "{" ASSET ",'extensionsRequired':['KHR_lights_punctual','EXT_new\\nline']}",
+      "EXT_new\\u000aline" },
     { "{" ASSET ",'nodes':{}}", "nodes is not an array" },
     { "{" ASSET ",'nodes':[3]}", "node 0" },
     { "{" ASSET ",'nodes':[{'mesh':0}]}", "mesh 0 does not exist; there are 0" },

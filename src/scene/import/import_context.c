@@ -1,6 +1,8 @@
 // Memory budget, names, notes and paths of an import.
 #include "scene/import/import_context.h"
 
+#include "core/text.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -37,18 +39,10 @@ void *import_alloc(struct import *import, size_t count, size_t size)
     return arena_alloc(&import->scene->arena, count, size);
 }
 
-// Names and paths are printed on terminals, which interpret control characters.
-static void replace_controls(char *text)
-{
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
-}
-
 struct import_text import_printable(const char *text)
 {
     struct import_text out;
-    snprintf(out.s, sizeof out.s, "%s", text);
-    replace_controls(out.s);
+    text_escape(text, out.s, sizeof out.s);
     return out;
 }
 
@@ -57,9 +51,9 @@ const char *import_name(struct import *import, const char *text, const char *fal
     char made[64];
     snprintf(made, sizeof made, "%s %zu", fallback, i);
     if (!text || !text[0]) text = made;
-    if (!import_charge(import, strlen(text) + 1, 1)) return NULL;
-    char *name = arena_strdup(&import->scene->arena, text);
-    if (name) replace_controls(name);
+    const size_t size = text_escape(text, NULL, 0) + 1;
+    char *name = import_alloc(import, size, 1);
+    if (name) text_escape(text, name, size);
     return name;
 }
 

@@ -44,6 +44,6 @@ struct import_text {
 };
 struct import_text import_printable(const char *text);
 
-// Copies the text into the scene's arena, control characters replaced; "fallback i" when it is NULL
-// or empty.
+// Copies the text into the scene's arena, control characters escaped (core/text.h); "fallback i"
+// when it is NULL or empty.
 const char *import_name(struct import *import, const char *text, const char *fallback, size_t i);

@@ -28,20 +28,10 @@ struct source {
     size_t count;
 };
 
-// Names reach messages and the terminal: control characters are replaced.
-static void copy_name(char out[MRT_NAME_BYTES], const char *name)
-{
-    size_t i = 0;
-    for (; i + 1 < MRT_NAME_BYTES && name[i]; i++)
-        out[i] = (unsigned char)name[i] < ' ' ? '?' : name[i];
-    out[i] = '\0';
-}
-
 static bool wrong(const struct source *source, const char *name, const char *why)
 {
-    char printable[MRT_NAME_BYTES];
-    copy_name(printable, name);
-    return host_fail(source->host, FAIL_FORMAT, "%s: block %s: %s", source->what, printable, why);
+    return host_fail(source->host, FAIL_FORMAT, "%s: block %.*s: %s", source->what,
+                     MRT_NAME_BYTES - 1, name, why);
 }
 
 // ---- one block
@@ -138,7 +128,7 @@ static bool read_block(const struct source *source, const struct source_block *f
                        struct mrt_block *block)
 {
     if (!check_members(source, from) || !read_kind(source, from, block)) return false;
-    copy_name(block->name, from->name);
+    snprintf(block->name, MRT_NAME_BYTES, "%s", from->name);
     return read_geometry(source, from, block) && read_open(source, from, block);
 }
 
