@@ -62,20 +62,20 @@ static bool add_tensors(struct host *host, const char *path, const struct tensor
     return true;
 }
 
-// Errors of the stream are seen by file_commit.
-static void write_all(FILE *stream, const char *text, const struct tensors *set)
+// Failed writes are seen by file_commit.
+static void write_all(struct file_writer *writer, const char *text, const struct tensors *set)
 {
     static const char SPACES[DATA_ALIGNMENT] = "        ";
     const size_t length = strlen(text);
     const size_t padding = (DATA_ALIGNMENT - length % DATA_ALIGNMENT) % DATA_ALIGNMENT;
     const uint64_t header = length + padding;
-    fwrite(&header, sizeof header, 1, stream);
-    fwrite(text, 1, length, stream);
-    fwrite(SPACES, 1, padding, stream);
+    file_write(writer, &header, sizeof header);
+    file_write(writer, text, length);
+    file_write(writer, SPACES, padding);
     for (int k = 0; k < SIZE_COUNT; k++)
         for (size_t i = 0; i < set->count; i++)
             if (tensor_type_bytes(set->at[i].type) == SIZES[k] && set->at[i].bytes > 0)
-                fwrite(set->at[i].data, 1, set->at[i].bytes, stream);
+                file_write(writer, set->at[i].data, set->at[i].bytes);
 }
 
 static bool write_file(struct host *host, const char *path, const char *text,
@@ -86,7 +86,7 @@ static bool write_file(struct host *host, const char *path, const char *text,
         return host_fail(host, FAIL_ARGUMENT, "cannot write %s: its header is larger than 16 MiB",
                          path);
     if (!file_begin(&writer, host, path)) return false;
-    write_all(writer.stream, text, set);
+    write_all(&writer, text, set);
     return file_commit(&writer);
 }
 

@@ -3,15 +3,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 static const uint64_t MAX_BYTES_DEFAULT = UINT64_C(4) << 30;
-// TEMPORARY_SUFFIX bounds ".tmp-", a process id, a number and the terminating zero.
-enum { TEMPORARY_TRIES = 1000, TEMPORARY_SUFFIX = 32 };
 
 static bool fail_read(struct host *host, const char *path, const char *why)
 {
@@ -23,11 +20,20 @@ static bool fail_write(struct host *host, const char *path, const char *why)
     return host_fail(host, FAIL_FILE, "cannot write %s: %s", path, why);
 }
 
+static bool links_are_followed(const struct host *host, const char *path)
+{
+    const size_t length = host->no_links_in ? strlen(host->no_links_in) : 0;
+    return length == 0 || strncmp(path, host->no_links_in, length) != 0 ||
+           (host->no_links_in[length - 1] != '/' && path[length] != '/');
+}
+
 // Opens with O_NONBLOCK, so that a pipe without a writer is refused instead of blocking.
 static bool open_regular(struct host *host, const char *path, uint64_t max_bytes, int *out_fd,
                          size_t *out_size)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const bool follow = links_are_followed(host, path);
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | (follow ? 0 : O_NOFOLLOW));
+    if (fd < 0 && errno == ELOOP && !follow) return fail_read(host, path, "it is a symbolic link");
     if (fd < 0) return fail_read(host, path, strerror(errno));
     struct stat info;
     if (fstat(fd, &info) != 0) {
@@ -85,103 +91,89 @@ void file_bytes_finish(struct host *host, struct file_bytes *bytes)
 static bool resolve_target(struct host *host, const char *path, char **out)
 {
     struct stat info;
-    bool exists = stat(path, &info) == 0;
-    if (exists && !S_ISREG(info.st_mode))
+    const bool follow = links_are_followed(host, path);
+    const bool exists = (follow ? stat(path, &info) : lstat(path, &info)) == 0;
+    if (exists && !S_ISREG(info.st_mode) && !S_ISLNK(info.st_mode))
         return fail_write(host, path,
                           S_ISDIR(info.st_mode) ? "it is a folder" : "not a regular file");
-    bool is_link = exists && lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+    bool is_link = follow && exists && lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
     char *real = is_link ? realpath(path, NULL) : NULL;
     *out = host_strdup(host, real ? real : path);
     free(real);
     return *out != NULL;
 }
 
-// Length of the prefix of `target` that temporary names share: all of it, unless the suffix would
-// exceed NAME_MAX or PATH_MAX.
-static int temporary_stem(const char *target)
-{
-    const char *slash = strrchr(target, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - target) : 0, length = strlen(target);
-    size_t longest = folder + NAME_MAX - TEMPORARY_SUFFIX;
-    if (longest > PATH_MAX - TEMPORARY_SUFFIX) longest = PATH_MAX - TEMPORARY_SUFFIX;
-    if (length <= longest) return (int)length;
-    return (int)(longest > folder ? longest : folder);
-}
-
-// As mkstemp, but with the file mode that the umask gives. Reading the umask would change it for
-// all threads.
-static int open_temporary(struct host *host, const char *target, char **out_path)
-{
-    for (int i = 0; i < TEMPORARY_TRIES; i++) {
-        char *path = host_sprintf(host, "%.*s.tmp-%ld-%d", temporary_stem(target), target,
-                                  (long)getpid(), i);
-        if (!path) return -1;
-        int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0) {
-            *out_path = path;
-            return fd;
-        }
-        int why = errno;
-        host_free(host, path);
-        if (why != EEXIST) {
-            fail_write(host, target, why == ENOENT ? "no such folder" : strerror(why));
-            return -1;
-        }
-    }
-    fail_write(host, target, "too many temporary files beside it");
-    return -1;
-}
-
 static void writer_release(struct file_writer *writer)
 {
+    temporary_release(&writer->temporary);
+    host_free(writer->host, writer->shown);
     host_free(writer->host, writer->path);
-    host_free(writer->host, writer->temporary_path);
     *writer = (struct file_writer){ 0 };
+}
+
+static void warn_of_stale(void *user, const char *path)
+{
+    const struct file_writer *writer = user;
+    host_log(writer->host, LOG_WARNING, "%s: removed %s, left by an interrupted write",
+             writer->shown, path);
+}
+
+// The lock outlives the stream: a second descriptor holds it.
+static bool open_stream(struct file_writer *writer)
+{
+    const int fd = fcntl(writer->temporary.lock, F_DUPFD_CLOEXEC, 0);
+    writer->stream = fd >= 0 ? fdopen(fd, "wb") : NULL;
+    if (writer->stream) return true;
+    fail_write(writer->host, writer->shown, strerror(errno));
+    if (fd >= 0) close(fd);
+    return false;
 }
 
 bool file_begin(struct file_writer *writer, struct host *host, const char *path)
 {
     *writer = (struct file_writer){ .host = host };
-    int fd = -1;
     if (!resolve_target(host, path, &writer->path)) goto fail;
-    fd = open_temporary(host, writer->path, &writer->temporary_path);
-    if (fd < 0) goto fail;
-    writer->stream = fdopen(fd, "wb");
-    if (!writer->stream) {
-        fail_write(host, path, strerror(errno));
-        close(fd);
+    writer->shown = host_strdup(host, path);
+    if (!writer->shown) goto fail;
+    temporary_remove_stale(writer->path, warn_of_stale, writer);
+    if (!temporary_file(&writer->temporary, writer->path)) {
+        fail_write(host, path, errno == ENOENT ? "no such folder" : strerror(errno));
         goto fail;
     }
+    if (!open_stream(writer)) goto fail;
     return true;
 fail:
     file_abort(writer);
     return false;
 }
 
-// The stream remembers that an earlier write failed, but not its errno.
-static bool stream_close(FILE *stream, const char **why)
+bool file_write(struct file_writer *writer, const void *data, size_t bytes)
 {
-    bool failed_before = ferror(stream) != 0;
-    bool closed = fclose(stream) == 0;
-    *why = closed ? "a write failed" : strerror(errno);
-    return closed && !failed_before;
+    if (writer->why == 0 && fwrite(data, 1, bytes, writer->stream) != bytes)
+        writer->why = errno ? errno : EIO;
+    return writer->why == 0;
+}
+
+// 0, or errno. After a failed write outside file_write the stream knows that, but not its errno.
+static int stream_close(struct file_writer *writer)
+{
+    int why = writer->why;
+    if (why == 0 && ferror(writer->stream)) why = EIO;
+    if (fclose(writer->stream) != 0 && (why == 0 || why == EIO)) why = errno;
+    writer->stream = NULL;
+    return why;
 }
 
 bool file_commit(struct file_writer *writer)
 {
     if (!writer->path) return false;
-    const char *why = NULL;
-    bool ok = stream_close(writer->stream, &why);
-    writer->stream = NULL;
-    if (ok && rename(writer->temporary_path, writer->path) != 0) {
-        why = strerror(errno);
-        ok = false;
-    }
-    if (ok) {
+    int why = stream_close(writer);
+    if (why == 0 && rename(writer->temporary.path, writer->path) != 0) why = errno;
+    if (why == 0) {
         writer_release(writer);
         return true;
     }
-    fail_write(writer->host, writer->path, why);
+    fail_write(writer->host, writer->shown, strerror(why));
     file_abort(writer);
     return false;
 }
@@ -189,7 +181,7 @@ bool file_commit(struct file_writer *writer)
 void file_abort(struct file_writer *writer)
 {
     if (writer->stream) fclose(writer->stream);
-    if (writer->temporary_path) unlink(writer->temporary_path);
+    if (writer->temporary.path[0]) unlink(writer->temporary.path);
     if (writer->host) writer_release(writer);
 }
 

@@ -1,7 +1,10 @@
 // Files: whole-file reads and atomic writes (temporary file in the same folder, then rename).
+// Symbolic links are followed, except in the folder host->no_links_in: there a link is not read,
+// and a write replaces the link.
 #pragma once
 
 #include "core/host.h"
+#include "core/temporary.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -20,12 +23,17 @@ void file_bytes_finish(struct host *host, struct file_bytes *bytes);
 // each writer with exactly one of them; both accept a zeroed writer.
 struct file_writer {
     struct host *host;
-    char *path;
-    char *temporary_path;
+    char *shown; // as given, for messages
+    char *path;  // symbolic links resolved
+    struct temporary temporary;
     FILE *stream;
+    int why; // errno of the first failed write
 };
 
+// Warns of files that interrupted writers of the same path left, and removes them.
 bool file_begin(struct file_writer *writer, struct host *host, const char *path);
+// Appends to the stream. False: `why` is set, and file_commit will fail.
+bool file_write(struct file_writer *writer, const void *data, size_t bytes);
 bool file_commit(struct file_writer *writer);
 void file_abort(struct file_writer *writer);
 

@@ -2,6 +2,7 @@
 // name. One thread packs the chunks in order, so the same layers give the same bytes.
 #include "image/exr_file.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,10 +15,9 @@ static int64_t write_bytes(exr_const_context_t context, void *user, const void *
                            uint64_t bytes, uint64_t offset, exr_stream_error_func_ptr_t error)
 {
     struct exr_file *file = user;
-    if (fseeko(file->writer.stream, (off_t)offset, SEEK_SET) == 0 &&
-        fwrite(buffer, 1, bytes, file->writer.stream) == bytes)
-        return (int64_t)bytes;
-    if (error) error(context, EXR_ERR_WRITE_IO, "a write failed");
+    if (fseeko(file->writer.stream, (off_t)offset, SEEK_SET) != 0) file->writer.why = errno;
+    if (file_write(&file->writer, buffer, bytes)) return (int64_t)bytes;
+    if (error) error(context, EXR_ERR_WRITE_IO, "%s", strerror(file->writer.why));
     return -1;
 }
 

@@ -76,7 +76,7 @@ static void on_read(png_structp png, png_bytep out, size_t bytes)
 static void on_write(png_structp png, png_bytep data, size_t bytes)
 {
     struct png_job *job = png_get_io_ptr(png);
-    if (fwrite(data, 1, bytes, job->writer.stream) != bytes) png_error(png, "a write failed");
+    if (!file_write(&job->writer, data, bytes)) png_error(png, strerror(job->writer.why));
 }
 
 static void on_flush(png_structp png)

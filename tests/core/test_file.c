@@ -4,6 +4,7 @@
 #include "core/file.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -277,6 +278,75 @@ TEST(failed_write_keeps_the_old_file_and_leaves_no_temporary_file)
         CHECK_STRING(read_text(path), "old");
         assert_int_equal(entries_in(folder), 1);
     }
+}
+
+TEST(a_full_disk_is_reported_with_the_path_as_given)
+{
+    const char *folder = fresh_folder("full_link");
+    char target[1024], link[1024], expected[1100];
+    snprintf(target, sizeof target, "%s", in(folder, "target"));
+    snprintf(link, sizeof link, "%s", in(folder, "link"));
+    write_text(target, "old");
+    assert_int_equal(symlink(target, link), 0);
+    snprintf(expected, sizeof expected, "cannot write %s: %s", link, strerror(EFBIG));
+    CHECK(!commit_on_full_disk(link, false));
+    CHECK_STRING(test_last_message(), expected);
+    CHECK_STRING(read_text(target), "old");
+}
+
+// The reason of the first failed write stays, whatever happens afterwards.
+TEST(file_write_records_why)
+{
+    const char *path = test_path("why");
+    char bytes[20000] = { 0 }, expected[1100];
+    struct rlimit before, small;
+    struct file_writer writer;
+    CHECK(file_begin(&writer, test_host(), path));
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    small = (struct rlimit){ 4096, before.rlim_max };
+    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    CHECK(!file_write(&writer, bytes, sizeof bytes));
+    setrlimit(RLIMIT_FSIZE, &before);
+    signal(SIGXFSZ, handler);
+    CHECK(writer.why == EFBIG && !file_write(&writer, bytes, 1));
+    CHECK(!file_commit(&writer));
+    snprintf(expected, sizeof expected, "cannot write %s: %s", path, strerror(EFBIG));
+    CHECK_STRING(test_last_message(), expected);
+}
+
+// A folder of one's own that others can write to, such as a shared cache.
+TEST(links_in_a_named_folder_are_not_followed)
+{
+    const char *folder = fresh_folder("cache");
+    char target[1024], link[1024], guarded[512];
+    struct host host = *test_host();
+    struct file_writer writer;
+    struct file_bytes bytes;
+    struct stat info;
+    CHECK(snprintf(guarded, sizeof guarded, "%s", folder) < (int)sizeof guarded);
+    snprintf(target, sizeof target, "%s", test_path("outside"));
+    snprintf(link, sizeof link, "%s", in(folder, "link"));
+    write_text(target, "outside");
+    assert_int_equal(symlink(target, link), 0);
+    CHECK(file_read(&host, link, 0, &bytes));
+    file_bytes_finish(&host, &bytes);
+
+    host.no_links_in = guarded;
+    CHECK(!file_read(&host, link, 0, &bytes));
+    CHECK(strstr(test_last_message(), "it is a symbolic link"));
+    CHECK(file_begin(&writer, &host, link));
+    fputs("inside", writer.stream);
+    CHECK(file_commit(&writer));
+    CHECK_STRING(read_text(target), "outside");
+    CHECK_STRING(read_text(link), "inside");
+    CHECK(lstat(link, &info) == 0 && S_ISREG(info.st_mode));
+    CHECK(file_read(&host, link, 0, &bytes)); // a regular file there is read
+    file_bytes_finish(&host, &bytes);
+    snprintf(link, sizeof link, "%s_beside", guarded); // begins with the folder's name only
+    assert_int_equal(symlink(target, link), 0);
+    CHECK(file_read(&host, link, 0, &bytes));
+    file_bytes_finish(&host, &bytes);
 }
 
 TEST(failed_rename_leaves_no_temporary_file)

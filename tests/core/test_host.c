@@ -37,7 +37,10 @@ static void fixture_log(void *user, enum log_level level, const char *message)
 
 static struct host fixture_host(struct host_fixture *fixture)
 {
-    return (struct host){ fixture_log, fixture_reallocate, fixture, LOG_WARNING, FAIL_NONE };
+    return (struct host){ .log = fixture_log,
+                          .reallocate = fixture_reallocate,
+                          .user = fixture,
+                          .log_up_to = LOG_WARNING };
 }
 
 TEST(checked_arithmetic_fails_on_overflow)
