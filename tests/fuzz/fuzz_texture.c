@@ -1,0 +1,19 @@
+// An encoded texture in memory: JPEG, PNG, BMP, TGA.
+#include "fuzz/fuzz.h"
+
+#include "scene/image_decode.h"
+
+enum { MAX_TEXELS = 1 << 22 };
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    int width = 0, height = 0;
+    if (image_decode_size(data, size, &width, &height)) return 0;
+    FUZZ_CHECK(width > 0 && height > 0);
+    if ((int64_t)width * height > MAX_TEXELS) return 0;
+    uint8_t *rgba = malloc((size_t)width * (size_t)height * 4);
+    FUZZ_CHECK(rgba);
+    (void)image_decode(data, size, width, height, rgba);
+    free(rgba);
+    return 0;
+}
