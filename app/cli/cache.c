@@ -21,21 +21,6 @@ static const struct {
 
 // ---- location
 
-// Per the XDG Base Directory Specification, relative and empty paths are ignored.
-bool cache_root(char out[PATH_SIZE])
-{
-    const char *own = getenv("AFTERGLOW_CACHE"), *xdg = getenv("XDG_CACHE_HOME"),
-               *home = getenv("HOME");
-    int wrote = 0;
-    if (own && own[0])
-        wrote = snprintf(out, PATH_SIZE, "%s", own);
-    else if (xdg && xdg[0] == '/')
-        wrote = snprintf(out, PATH_SIZE, "%s/afterglow", xdg);
-    else if (home && home[0] == '/')
-        wrote = snprintf(out, PATH_SIZE, "%s/.cache/afterglow", home);
-    return wrote > 0 && wrote < PATH_SIZE;
-}
-
 static bool join(char out[PATH_SIZE], const char *folder, const char *name)
 {
     const int wrote = snprintf(out, PATH_SIZE, "%s/%s", folder, name);
@@ -58,7 +43,7 @@ bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE])
 {
     char root[PATH_SIZE], folder[PATH_SIZE];
     const char *ending = kinds[kind].ending;
-    if (!cache_root(root) || !join(folder, root, kinds[kind].folder)) {
+    if (!cache_root(root, sizeof root) || !join(folder, root, kinds[kind].folder)) {
         detail("no cache: neither AFTERGLOW_CACHE nor HOME names a folder");
         return false;
     }
@@ -74,7 +59,7 @@ bool cache_file(enum cache_kind kind, const char *key, char out[PATH_SIZE])
 
 void cache_touch(const char *path)
 {
-    if (utimensat(AT_FDCWD, path, NULL, 0) != 0)
+    if (utimensat(AT_FDCWD, path, NULL, AT_SYMLINK_NOFOLLOW) != 0)
         detail("cannot touch %s: %s", path, strerror(errno));
 }
 

@@ -3,6 +3,7 @@
 // least recently used files go first.
 #pragma once
 
+#include "cache_root.h"
 #include "output.h"
 
 enum cache_kind { CACHE_REFERENCE, CACHE_BAKE };
@@ -25,7 +26,5 @@ struct cache_entry {
 };
 const char *cache_kind_name(enum cache_kind kind);
 long long cache_limit(void); // bytes
-// The folder of the cache; false: there is none.
-bool cache_root(char out[PATH_SIZE]);
 // All files of a cache, the least recently used first; the caller frees *out. -1: out of memory.
 int cache_list(const char *root, struct cache_entry **out);

@@ -53,7 +53,7 @@ static void print_listing(const struct listing *l)
                (double)entry->bytes * 1e-6, used, strrchr(entry->path, '/') + 1);
     }
     printf("%d files, %.1f MB of at most %.0f MB in %s\n", l->count, (double)l->bytes * 1e-6,
-           (double)cache_limit() * 1e-6, l->root);
+           (double)cache_limit() * 1e-6, printable(l->root).s);
 }
 
 static enum status clear(struct listing *l)
@@ -73,7 +73,7 @@ static enum status clear(struct listing *l)
 static enum status cache(const struct arguments *a)
 {
     struct listing l = { .count = 0 };
-    if (!cache_root(l.root))
+    if (!cache_root(l.root, sizeof l.root))
         return fail("cannot find the cache: neither AFTERGLOW_CACHE, XDG_CACHE_HOME nor HOME names "
                     "a folder");
     l.count = cache_list(l.root, &l.entries);

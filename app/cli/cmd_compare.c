@@ -60,7 +60,7 @@ static enum status write_folder(struct comparison *c, const json_t *report)
     if (status == DONE && !folder_file(&c->folder, REPORT, path))
         status = fail("cannot write %s: the path is too long", c->folder.shown);
     if (status == DONE) status = json_write(report, path);
-    if (status == DONE) status = report_page_write(c->folder.beside, report);
+    if (status == DONE) status = report_page_write(c->folder.beside.path, report);
     if (status == DONE) status = folder_commit(&c->folder, REPORT);
     return status;
 }

@@ -218,7 +218,7 @@ static void print_defaults(const struct defaults *d)
 
 static void info_text(struct session *session, const struct facts *facts)
 {
-    printf("%s\n", facts->scene);
+    printf("%s\n", printable(facts->scene).s);
     print_counts(&facts->info);
     print_lights(session, facts->info.lights);
     print_cameras(session, facts->info.cameras);

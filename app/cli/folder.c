@@ -117,26 +117,23 @@ static bool remove_folder(const char *path, bool (*is_ours)(const char *name))
 static void clean(void *user)
 {
     struct folder *folder = user;
-    if (folder->beside[0]) remove_folder(folder->beside, NULL);
+    if (folder->beside.path[0]) remove_folder(folder->beside.path, NULL);
 }
 
 enum status folder_begin(struct folder *folder)
 {
-    char *beside = whole_file_beside(folder->path);
-    if (!beside) return fail("cannot write %s: out of memory", folder->shown);
-    int wrote = snprintf(folder->beside, PATH_SIZE, "%s", beside);
-    free(beside);
     interrupt_clean_with(clean, folder);
     interrupt_hold();
-    int why = wrote >= PATH_SIZE ? ENAMETOOLONG : mkdir(folder->beside, 0777) == 0 ? 0 : errno;
-    if (why != 0) folder->beside[0] = 0;
+    temporary_remove_stale(folder->path, whole_file_removed, folder->shown);
+    int why = temporary_folder(&folder->beside, folder->path) ? 0 : errno;
+    if (why == 0) messages_show(folder->beside.path, folder->shown);
     interrupt_release();
     return why == 0 ? DONE : fail("cannot write %s: %s", folder->shown, strerror(why));
 }
 
 bool folder_file(const struct folder *folder, const char *name, char out[PATH_SIZE])
 {
-    return snprintf(out, PATH_SIZE, "%s/%s", folder->beside, name) < PATH_SIZE;
+    return snprintf(out, PATH_SIZE, "%s/%s", folder->beside.path, name) < PATH_SIZE;
 }
 
 // 0, or errno.
@@ -169,13 +166,14 @@ enum status folder_copy(const char *from, const char *path)
 // exchange have a moment without either.
 static int exchange(const struct folder *folder)
 {
-    if (renameat2(AT_FDCWD, folder->beside, AT_FDCWD, folder->path, RENAME_EXCHANGE) == 0) return 0;
+    const char *beside = folder->beside.path;
+    if (renameat2(AT_FDCWD, beside, AT_FDCWD, folder->path, RENAME_EXCHANGE) == 0) return 0;
     if (errno != EINVAL && errno != ENOSYS) return errno;
     char away[PATH_SIZE + 8];
-    snprintf(away, sizeof away, "%s.old", folder->beside);
+    snprintf(away, sizeof away, "%s.old", beside);
     if (rename(folder->path, away) != 0) return errno;
-    int why = rename(folder->beside, folder->path) == 0 ? 0 : errno;
-    if (rename(away, why == 0 ? folder->beside : folder->path) != 0 && why == 0) why = errno;
+    int why = rename(beside, folder->path) == 0 ? 0 : errno;
+    if (rename(away, why == 0 ? beside : folder->path) != 0 && why == 0) why = errno;
     return why;
 }
 
@@ -185,11 +183,13 @@ enum status folder_commit(struct folder *folder, const char *mark)
     if (status != DONE) return status;
     interrupt_hold();
     bool exists = access(folder->path, F_OK) == 0;
-    int why = exists ? exchange(folder) : rename(folder->beside, folder->path) == 0 ? 0 : errno;
-    bool left = why == 0 && exists && !remove_folder(folder->beside, folder->is_ours);
+    const char *beside = folder->beside.path;
+    int why = exists ? exchange(folder) : rename(beside, folder->path) == 0 ? 0 : errno;
+    bool left = why == 0 && exists && !remove_folder(beside, folder->is_ours);
     if (why == 0) {
-        if (left) note("warning: cannot remove %s, the earlier results", folder->beside);
-        folder->beside[0] = 0;
+        messages_show(NULL, NULL);
+        if (left) note("warning: cannot remove %s, the earlier results", beside);
+        temporary_release(&folder->beside);
     }
     interrupt_release();
     return why == 0 ? DONE : fail("cannot write %s: %s", folder->shown, strerror(why));
@@ -200,7 +200,8 @@ void folder_abort(struct folder *folder)
     if (!folder->path[0]) return;
     interrupt_hold();
     clean(folder);
-    folder->beside[0] = 0;
+    messages_show(NULL, NULL);
+    temporary_release(&folder->beside);
     interrupt_release();
     interrupt_clean_with(NULL, NULL);
 }

@@ -3,10 +3,12 @@
 
 #include "output.h"
 
+#include "core/temporary.h"
+
 struct folder {
-    char shown[PATH_SIZE];  // as given
-    char path[PATH_SIZE];   // final path, symbolic links resolved
-    char beside[PATH_SIZE]; // temporary folder; "": none
+    char shown[PATH_SIZE];   // as given
+    char path[PATH_SIZE];    // final path, symbolic links resolved
+    struct temporary beside; // its path "": none
     bool (*is_ours)(const char *name);
 };
 

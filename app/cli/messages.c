@@ -14,8 +14,9 @@ static const double LINE_EVERY_S = 10.0; // where there is no terminal
 static struct {
     bool quiet, verbose;
     bool bar_shown;
-    int total;              // of the running work; 0: none
-    double begun_s, line_s; // when it began and when the last line was written
+    const char *internal, *shown; // messages_show
+    int total;                    // of the running work; 0: none
+    double begun_s, line_s;       // when it began and when the last line was written
 } state;
 
 void messages_init(bool quiet, bool verbose)
@@ -30,14 +31,39 @@ static void clear_bar(void)
     state.bar_shown = false;
 }
 
+void messages_show(const char *internal, const char *shown)
+{
+    state.internal = internal;
+    state.shown = shown;
+}
+
+struct printable printable(const char *text)
+{
+    struct printable out;
+    ag_printable(text, out.s, sizeof out.s);
+    return out;
+}
+
+// Replaces each `internal` in the text.
+static void replace_internal(const char *text, char out[LINE_SIZE])
+{
+    size_t used = 0;
+    for (const char *at; (at = strstr(text, state.internal)); text = at + strlen(state.internal)) {
+        const int wrote =
+            snprintf(out + used, LINE_SIZE - used, "%.*s%s", (int)(at - text), text, state.shown);
+        used += wrote > 0 ? (size_t)wrote : 0;
+        if (used >= LINE_SIZE) return;
+    }
+    snprintf(out + used, LINE_SIZE - used, "%s", text);
+}
+
 __attribute__((format(printf, 1, 0))) static void line(const char *format, va_list arguments)
 {
-    char text[LINE_SIZE];
+    char text[LINE_SIZE], replaced[LINE_SIZE];
     if (vsnprintf(text, sizeof text, format, arguments) < 0) return;
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
+    if (state.internal) replace_internal(text, replaced);
     clear_bar();
-    fprintf(stderr, "afterglow: %s\n", text);
+    fprintf(stderr, "afterglow: %s\n", printable(state.internal ? replaced : text).s);
 }
 
 enum status fail(const char *format, ...)

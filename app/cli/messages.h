@@ -9,7 +9,7 @@ enum status { DONE = 0, FAILED = 1, WRONG_USAGE = 2 }; // exit statuses; scripts
 void messages_init(bool quiet, bool verbose);
 
 // Prints one line "afterglow: <what> <where>: <why>" and returns the status. Control characters
-// (from file names) become question marks.
+// (from file names) are escaped.
 enum status fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 enum status wrong_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // Prints the library's last error. AG_ERROR_ARGUMENT is wrong usage, since arguments are passed
@@ -19,6 +19,14 @@ enum status fail_library(const struct ag_context *context, enum ag_result result
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // A line that only --verbose prints.
 void detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
+// Lines show `shown`, which the user named, instead of `internal`; NULL: as they are. Both stay
+// valid.
+void messages_show(const char *internal, const char *shown);
+// A path or name for standard output, at most 4096 bytes of it: printf("%s", printable(path).s).
+struct printable {
+    char s[4096];
+};
+struct printable printable(const char *text);
 // The callback of ag_context_desc. Errors are not printed here, but by fail_library.
 void log_message(void *user, enum ag_log_level level, const char *message);
 

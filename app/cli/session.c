@@ -1,5 +1,6 @@
 // Context, scene, light and camera of a command.
 #include "session.h"
+#include "cache_root.h"
 #include "values.h"
 
 #include <math.h>
@@ -14,7 +15,9 @@ enum status session_begin(struct session *session, const struct arguments *argum
 {
     *session = (struct session){ .arguments = arguments };
     struct ag_context_desc desc;
+    char cache[4096];
     ag_context_desc_default(&desc);
+    desc.no_links_in = cache_root(cache, sizeof cache) ? cache : NULL;
     desc.log = log_message;
     desc.log_up_to = arguments->verbose ? AG_LOG_DEBUG : AG_LOG_WARNING;
     enum ag_result result = ag_context_create(&desc, &session->context);

@@ -2,29 +2,18 @@
 #include "whole_file.h"
 #include "interrupt.h"
 
+#include "core/temporary.h"
+
 #include <errno.h>
-#include <limits.h>
+#include <fcntl.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-// Shorter than the file name limit of usual file systems.
-char *whole_file_beside(const char *path)
-{
-    enum { SUFFIX_SIZE = 32 };
-    const char *slash = strrchr(path, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - path) : 0, length = strlen(path);
-    if (length - folder > NAME_MAX - SUFFIX_SIZE) length = folder + NAME_MAX - SUFFIX_SIZE;
-    char *beside = malloc(length + SUFFIX_SIZE);
-    if (beside)
-        snprintf(beside, length + SUFFIX_SIZE, "%.*s.tmp-%ld", (int)length, path, (long)getpid());
-    return beside;
-}
-
 struct destination {
     const char *path;   // as given, for messages
     const char *target; // symbolic links resolved, since a rename would replace them
-    const char *beside;
 };
 
 static enum status cannot_write(const struct destination *to, int why)
@@ -32,12 +21,25 @@ static enum status cannot_write(const struct destination *to, int why)
     return fail("cannot write %s: %s", to->path, strerror(why));
 }
 
-// Creates the temporary file; an existing one is left alone.
-static enum status write_beside(const struct destination *to,
+void whole_file_removed(void *user, const char *path)
+{
+    note("warning: %s: removed %s, left by an interrupted run", (const char *)user, path);
+}
+
+// The lock outlives the stream: a second descriptor holds it.
+static FILE *open_stream(const struct temporary *beside)
+{
+    const int fd = fcntl(beside->lock, F_DUPFD_CLOEXEC, 0);
+    FILE *file = fd >= 0 ? fdopen(fd, "w") : NULL;
+    if (!file && fd >= 0) close(fd);
+    return file;
+}
+
+static enum status write_beside(const struct destination *to, const struct temporary *beside,
                                 enum status (*write)(FILE *file, const void *what),
                                 const void *what)
 {
-    FILE *file = fopen(to->beside, "wxe");
+    FILE *file = open_stream(beside);
     if (!file) return cannot_write(to, errno);
     errno = 0;
     enum status status = write(file, what);
@@ -48,21 +50,24 @@ static enum status write_beside(const struct destination *to,
         why = errno;
     }
     if (status == DONE && !written) status = cannot_write(to, why ? why : EIO);
-    if (status == DONE && rename(to->beside, to->target) != 0) status = cannot_write(to, errno);
-    if (status != DONE) unlink(to->beside);
+    if (status == DONE && rename(beside->path, to->target) != 0) status = cannot_write(to, errno);
     return status;
 }
 
 enum status whole_file_write(const char *path, enum status (*write)(FILE *file, const void *what),
                              const void *what)
 {
+    struct temporary beside;
     char *real = realpath(path, NULL);
-    char *beside = whole_file_beside(real ? real : path);
-    const struct destination to = { path, real ? real : path, beside };
+    const struct destination to = { path, real ? real : path };
     interrupt_hold();
-    enum status status = beside ? write_beside(&to, write, what) : cannot_write(&to, ENOMEM);
+    temporary_remove_stale(to.target, whole_file_removed, (void *)(uintptr_t)path);
+    enum status status = temporary_file(&beside, to.target)
+                             ? write_beside(&to, &beside, write, what)
+                             : cannot_write(&to, errno);
+    if (status != DONE && beside.path[0]) unlink(beside.path);
+    temporary_release(&beside);
     interrupt_release();
-    free(beside);
     free(real);
     return status;
 }

@@ -9,5 +9,5 @@
 // existing file keeps its content until the new one is complete.
 enum status whole_file_write(const char *path, enum status (*write)(FILE *file, const void *what),
                              const void *what);
-// Name of the temporary file for `path`; the caller frees it. NULL: out of memory.
-char *whole_file_beside(const char *path);
+// For temporary_remove_stale: a warning. user: the path as the user gave it.
+void whole_file_removed(void *user, const char *path);

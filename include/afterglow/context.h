@@ -18,6 +18,9 @@ struct ag_context_desc {
     void *(*reallocate)(void *user, void *old, size_t bytes);
     void *user;                  ///< passed to both callbacks
     enum ag_log_level log_up_to; ///< least important level to log; default AG_LOG_WARNING
+    /// A folder in which files are opened without following symbolic links, and links are replaced
+    /// by what is written; for a cache that others can write to. NULL: none.
+    const char *no_links_in;
     bool use_environment; ///< default true: read AFTERGLOW_SHADER_DIR and AFTERGLOW_VALIDATION
 };
 

@@ -50,6 +50,10 @@ enum ag_result {
 AG_API const char *ag_result_string(enum ag_result result);
 /// Version of the linked library: major·10000 + minor·100 + patch.
 AG_API int ag_version(void);
+/// Copies `text` to `out` of `size` bytes, truncated between characters, so that it can be shown:
+/// control characters, also C1 and bidirectional ones, become \uXXXX, bytes that are not UTF-8
+/// \xXX. Log messages and names of scenes are escaped already; paths are not. Returns the length.
+AG_API size_t ag_printable(const char *text, char *out, size_t size);
 
 AG_END
 

@@ -101,7 +101,11 @@ enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_c
     if (!context) return AG_ERROR_MEMORY;
     *context = seed;
     context->host.user = context;
-    if (desc->use_environment && !read_environment(context)) {
+    if (desc->no_links_in)
+        context->host.no_links_in = context->no_links_in =
+            host_strdup(&context->host, desc->no_links_in);
+    if ((desc->no_links_in && !context->no_links_in) ||
+        (desc->use_environment && !read_environment(context))) {
         ag_context_destroy(context);
         return AG_ERROR_MEMORY;
     }
@@ -113,6 +117,7 @@ void ag_context_destroy(struct ag_context *context)
 {
     if (!context) return;
     host_free(&context->host, context->shader_dir);
+    host_free(&context->host, context->no_links_in);
     struct ag_context last = *context; // context_reallocate reads it while freeing the context
     last.host.user = &last;
     host_free(&last.host, context);

@@ -18,6 +18,7 @@ struct ag_context {
     void *user;
     enum ag_log_level log_up_to;
     bool validation;        // AFTERGLOW_VALIDATION
+    char *no_links_in;      // of the host
     char *shader_dir;       // AFTERGLOW_SHADER_DIR, NULL: embedded shaders
     bool warned_layer_name; // a former layer name was used
     char last_error[API_MESSAGE_SIZE];

@@ -1,6 +1,8 @@
 // Results and versions.
 #include "api/objects.h"
 
+#include "core/text.h"
+
 const char *ag_result_string(enum ag_result result)
 {
     switch (result) {
@@ -27,4 +29,9 @@ const char *ag_result_string(enum ag_result result)
 int ag_version(void)
 {
     return AG_VERSION_MAJOR * 10000 + AG_VERSION_MINOR * 100 + AG_VERSION_PATCH;
+}
+
+size_t ag_printable(const char *text, char *out, size_t size)
+{
+    return out && size > 0 ? text_escape(text ? text : "", out, size) : 0;
 }

@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 struct ears {
     int errors, others;
@@ -191,4 +192,39 @@ TEST(the_programs_allocator_is_the_only_one)
     struct counting_allocator allocator = { .refuse_at = 1, .refuse_all = true };
     assert_null(allocator_context(&allocator));
     assert_true(allocator.asked > 0);
+}
+
+TEST(text_is_made_printable)
+{
+    char out[32];
+    CHECK(ag_printable("a\x1b\u202e", out, sizeof out) == 13);
+    CHECK_STRING(out, "a\\u001b\\u202e");
+    CHECK(ag_printable("abc", out, 3) == 2 && strcmp(out, "ab") == 0);
+    CHECK(ag_printable(NULL, out, sizeof out) == 0 && out[0] == 0);
+    CHECK(ag_printable("abc", NULL, 8) == 0 && ag_printable("abc", out, 0) == 0);
+}
+
+TEST(links_are_followed_unless_in_the_named_folder)
+{
+    char folder[512], link[600];
+    struct ag_context_desc desc;
+    struct ag_context *context = NULL;
+    struct ag_image *image = NULL;
+    CHECK(snprintf(folder, sizeof folder, "%s", test_path("")) < (int)sizeof folder);
+    snprintf(link, sizeof link, "%s/link.png", folder);
+    ag_context_desc_default(&desc);
+    for (int guarded = 0; guarded < 2; guarded++) {
+        desc.no_links_in = guarded ? folder : NULL;
+        CHECK(ag_context_create(&desc, &context) == AG_OK);
+        if (!guarded) {
+            CHECK(ag_image_create(context, 2, 2, 3, &image) == AG_OK);
+            CHECK(ag_image_write_png(context, test_path("real.png"), image) == AG_OK);
+            ag_image_destroy(context, image);
+            assert_int_equal(symlink(test_path("real.png"), link), 0);
+        }
+        const enum ag_result result = ag_image_read(context, link, NULL, &image);
+        CHECK(result == (guarded ? AG_ERROR_FILE : AG_OK));
+        ag_image_destroy(context, image);
+        ag_context_destroy(context);
+    }
 }

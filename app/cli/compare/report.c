@@ -137,11 +137,11 @@ static void print_head(const struct comparison *c)
     const struct reference *t = &c->reference;
     struct ag_device_info device;
     ag_device_get_info(c->device, &device);
-    printf("%s, camera %s, %dx%d, EV %.3f, %d frames on %s\n", a->positional[0],
+    printf("%s, camera %s, %dx%d, EV %.3f, %d frames on %s\n", printable(a->positional[0]).s,
            c->session.camera_name, a->width, a->height, (double)c->exposure_ev, a->frames,
            device.name);
     printf("reference: ");
-    if (a->reference) printf("%s, ", a->reference);
+    if (a->reference) printf("%s, ", printable(a->reference).s);
     if (t->spp > 0) printf("%d samples", t->spp);
     if (isfinite(t->noise))
         printf(", noise %.2g %% (relmse %.2g)", 100.0 * t->noise, t->noise_relmse);

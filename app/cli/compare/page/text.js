@@ -1,11 +1,14 @@
 // The report, formatting of numbers, and creation of elements.
 
-const dataOf = id => JSON.parse(document.getElementById(`data-${id}`).textContent);
-const report = dataOf('report');
+const byId = id => document.getElementById(id);
+const dataOf = id => JSON.parse(byId(`data-${id}`).textContent);
+// Names may hold controls that reorder a line: shown as the program shows them.
+const printable = text => text.replace(/[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/g,
+  control => `\\u${control.charCodeAt(0).toString(16).padStart(4, '0')}`);
+const report = JSON.parse(byId('data-report').textContent, (key, value) => typeof value === 'string' ? printable(value) : value);
 const images = dataOf('images'); // file name → data: URI
 const scale = dataOf('scale'); // colours of the error maps, least to largest error
 const methods = Array.isArray(report.methods) ? report.methods : [];
-const byId = id => document.getElementById(id);
 
 // An element with properties and children; text is never parsed as HTML.
 function element(tag, properties = {}, ...children) {
