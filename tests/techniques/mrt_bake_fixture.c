@@ -44,3 +44,12 @@ const float *mrt_fixture_tensor(const struct bake *bake, const char *what, int c
     CHECK(tensor != NULL);
     return tensor->data;
 }
+
+char *mrt_fixture_report(struct bake *bake, const struct mrt_dictionary_options *options)
+{
+    struct report *report = report_create(test_host());
+    CHECK(report && mrt_dictionary_report(report, bake, options));
+    char *text = host_strdup(test_host(), report_text(report));
+    report_destroy(report);
+    return text;
+}

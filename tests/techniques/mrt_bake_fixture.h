@@ -13,3 +13,5 @@ struct bake *mrt_fixture_plan(const struct mrt_dictionary_options *options, int 
 struct bake *mrt_fixture_bake(const struct mrt_dictionary_options *options, int threads, bool full);
 // Data of the tensor cube/CUBE/WHAT, in the file or in the report.
 const float *mrt_fixture_tensor(const struct bake *bake, const char *what, int cube);
+// The members of its report as JSON, owned by the caller.
+char *mrt_fixture_report(struct bake *bake, const struct mrt_dictionary_options *options);

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -129,15 +128,6 @@ TEST(dictionary_with_a_value_that_is_not_finite_is_refused)
 
 // ---- reports
 
-static char *report_of(struct bake *bake, const struct mrt_dictionary_options *options)
-{
-    struct report *report = report_create(test_host());
-    CHECK(report && mrt_dictionary_report(report, bake, options));
-    char *text = host_strdup(test_host(), report_text(report));
-    report_destroy(report);
-    return text;
-}
-
 // Replaces the times, which a file without them does not state.
 static void forget_seconds(char *text)
 {
@@ -157,7 +147,8 @@ TEST(dictionary_report_of_a_file_is_that_of_the_run)
         struct bake *file = mrt_fixture_plan(&options, 1);
         const char *path = test_path("reported.safetensors");
         CHECK(bake_save(run, path, false) && bake_load(file, path));
-        char *of_run = report_of(run, &options), *of_file = report_of(file, &options);
+        char *of_run = mrt_fixture_report(run, &options),
+             *of_file = mrt_fixture_report(file, &options);
         CHECK(strstr(of_file, "\"lights\": null"));
         CHECK(strstr(of_run, maze == MRT_TUNNEL ? "\"name\": \"tube/2\"" : "\"name\": \"cube/5\""));
         CHECK(strstr(of_run, "\"orthonormality\"") && !strstr(of_run, "\"F\""));
@@ -169,35 +160,4 @@ TEST(dictionary_report_of_a_file_is_that_of_the_run)
         bake_destroy(run);
         bake_destroy(file);
     }
-}
-
-static int modes_at(const char *report, const char *operator_name, const char *percent)
-{
-    char quoted[16];
-    snprintf(quoted, sizeof quoted, "\"%s\": {", operator_name);
-    const char *at = strstr(report, quoted);
-    snprintf(quoted, sizeof quoted, "\"%s\": ", percent);
-    CHECK(at && (at = strstr(at, quoted)) != NULL);
-    return atoi(at + strlen(quoted));
-}
-
-// Table 3.2 of the paper, by the bake itself.
-TEST(full_report_of_the_closed_cube_has_the_modes_of_the_paper)
-{
-    struct mrt_dictionary_options options = tiny_options();
-    options.texels = 16;
-    options.rays = 16384;
-    options.prior_modes = 64;
-    struct bake *bake = mrt_fixture_bake(&options, 0, true);
-    char *report = report_of(bake, &options);
-    static const char *const percents[] = { "80", "90", "95" };
-    static const int paper[] = { 164, 240, 313 }, within[] = { 2, 2, 3 };
-    for (int i = 0; i < 3; i++) {
-        const int modes = modes_at(report, "F", percents[i]);
-        print_message("F: %s %% of the energy with %d modes (paper: %d)\n", percents[i], modes,
-                      paper[i]);
-        CHECK_NEAR(modes, paper[i], within[i]);
-    }
-    host_free(test_host(), report);
-    bake_destroy(bake);
 }

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static struct mrt_dictionary_options small_options(void)
@@ -134,5 +135,35 @@ TEST(default_dictionary_is_as_large_as_the_paper_s)
                   along_normal(&d.entered[0].u_r, &d.entered[0].u_rvec));
     CHECK(along_normal(&d.entered[0].u_r, &d.entered[0].u_rvec) < 0.145);
     mrt_dictionary_finish(test_host(), &d);
+    bake_destroy(bake);
+}
+
+static int modes_at(const char *report, const char *operator_name, const char *percent)
+{
+    char quoted[16];
+    snprintf(quoted, sizeof quoted, "\"%s\": {", operator_name);
+    const char *at = strstr(report, quoted);
+    snprintf(quoted, sizeof quoted, "\"%s\": ", percent);
+    CHECK(at && (at = strstr(at, quoted)) != NULL);
+    return atoi(at + strlen(quoted));
+}
+
+// Table 3.2 of the paper, by the bake itself.
+TEST(full_report_of_the_closed_cube_has_the_modes_of_the_paper)
+{
+    struct mrt_dictionary_options options = small_options();
+    options.texels = 16;
+    options.rays = 16384;
+    struct bake *bake = mrt_fixture_bake(&options, 0, true);
+    char *report = mrt_fixture_report(bake, &options);
+    static const char *const percents[] = { "80", "90", "95" };
+    static const int paper[] = { 164, 240, 313 }, within[] = { 2, 2, 3 };
+    for (int i = 0; i < 3; i++) {
+        const int modes = modes_at(report, "F", percents[i]);
+        print_message("F: %s %% of the energy with %d modes (paper: %d)\n", percents[i], modes,
+                      paper[i]);
+        CHECK_NEAR(modes, paper[i], within[i]);
+    }
+    host_free(test_host(), report);
     bake_destroy(bake);
 }

@@ -17,6 +17,8 @@ target_link_libraries(ag_test_mrt PUBLIC ag_test_framework ag_techniques PRIVATE
 foreach(name bake_file dictionary interfaces shapes transfer tubes)
   ag_test(techniques/mrt_${name} USES techniques LIBRARIES ag_test_mrt)
 endforeach()
+# Files are untrusted input: `check` runs tests with this label under the sanitizers.
+set_tests_properties(techniques.mrt_bake_file PROPERTIES LABELS "techniques;bake")
 ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 # Every option of every technique, or pipelines of many grids: minutes alone, more beside others.
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)

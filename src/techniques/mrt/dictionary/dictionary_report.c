@@ -138,7 +138,7 @@ static void add_shape(const struct dictionary_report *r, const struct mrt_shape 
 static void add_shapes(const struct dictionary_report *r,
                        const struct mrt_dictionary_options *options)
 {
-    const enum mrt_maze maze = (enum mrt_maze)options->maze;
+    const enum mrt_maze maze = mrt_dictionary_maze(options);
     report_begin_list(r->report, "shapes");
     for (int i = 0; i < mrt_dictionary_shapes(maze); i++) {
         const struct mrt_shape shape = mrt_dictionary_shape(maze, options->texels, i);
@@ -151,7 +151,7 @@ bool mrt_dictionary_report(struct report *report, struct bake *bake,
                            const struct mrt_dictionary_options *options)
 {
     struct host *host = bake_plan_host(bake_plan_of(bake));
-    const enum mrt_maze maze = (enum mrt_maze)options->maze;
+    const enum mrt_maze maze = mrt_dictionary_maze(options);
     const struct mrt_shape largest = mrt_dictionary_shape(maze, options->texels, 0); // no opening
     struct dictionary_report r = { report, bake, maze == MRT_TUNNEL ? "tube" : "cube", NULL };
     r.values = host_alloc(host, (size_t)mrt_shape_texels(&largest), sizeof *r.values);
