@@ -4,6 +4,7 @@ set(package ${CMAKE_INSTALL_LIBDIR}/cmake/afterglow)
 
 install(DIRECTORY include/afterglow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS afterglow afterglow_static)
+install(TARGETS afterglow_import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/afterglow)
 install(TARGETS afterglow_shared EXPORT afterglow)
 install(EXPORT afterglow NAMESPACE afterglow:: FILE afterglow-config.cmake DESTINATION ${package})
 
@@ -11,7 +12,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/afterglow-config-version.cm
 install(FILES ${CMAKE_BINARY_DIR}/afterglow-config-version.cmake DESTINATION ${package})
 
 # pkg-config names of the third-party libraries that the static library needs.
-set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng OpenEXR assimp spirv-cross-c-shared vulkan")
+set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng OpenEXR spirv-cross-c-shared vulkan")
 # As flags: required by name, OpenBLAS would add the Fortran library of its static version.
 list(JOIN OPENBLAS_LDFLAGS " " AFTERGLOW_PC_OPENBLAS)
 list(JOIN LAPACKE_LDFLAGS " " AFTERGLOW_PC_LAPACKE)

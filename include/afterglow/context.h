@@ -21,7 +21,11 @@ struct ag_context_desc {
     /// A folder in which files are opened without following symbolic links, and links are replaced
     /// by what is written; for a cache that others can write to. NULL: none.
     const char *no_links_in;
-    bool use_environment; ///< default true: read AFTERGLOW_SHADER_DIR and AFTERGLOW_VALIDATION
+    /// Default true: read AFTERGLOW_SHADER_DIR, AFTERGLOW_VALIDATION and AFTERGLOW_IMPORTER.
+    bool use_environment;
+    /// Path of the program afterglow-import, which reads OBJ, FBX and X files in a process of its
+    /// own. NULL: AFTERGLOW_IMPORTER, else the one installed with the library. "": none.
+    const char *importer;
 };
 
 AG_API void ag_context_desc_default(struct ag_context_desc *desc);

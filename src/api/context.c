@@ -78,6 +78,17 @@ static bool read_environment(struct ag_context *context)
     return context->shader_dir != NULL;
 }
 
+// secure_getenv: a program that runs with more rights than its caller starts no program of his.
+static bool choose_importer(struct ag_context *context, const struct ag_context_desc *desc)
+{
+    const char *given = desc->importer;
+    if (!given && desc->use_environment) given = secure_getenv("AFTERGLOW_IMPORTER");
+    context->importer =
+        given ? host_strdup(&context->host, given) : api_find_importer(&context->host);
+    if (context->importer && context->importer[0]) context->host.importer = context->importer;
+    return context->host.failure == FAIL_NONE; // else out of memory
+}
+
 enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_context **out)
 {
     if (!out) return AG_ERROR_ARGUMENT;
@@ -105,7 +116,7 @@ enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_c
         context->host.no_links_in = context->no_links_in =
             host_strdup(&context->host, desc->no_links_in);
     if ((desc->no_links_in && !context->no_links_in) ||
-        (desc->use_environment && !read_environment(context))) {
+        (desc->use_environment && !read_environment(context)) || !choose_importer(context, desc)) {
         ag_context_destroy(context);
         return AG_ERROR_MEMORY;
     }
@@ -118,6 +129,7 @@ void ag_context_destroy(struct ag_context *context)
     if (!context) return;
     host_free(&context->host, context->shader_dir);
     host_free(&context->host, context->no_links_in);
+    host_free(&context->host, context->importer);
     struct ag_context last = *context; // context_reallocate reads it while freeing the context
     last.host.user = &last;
     host_free(&last.host, context);

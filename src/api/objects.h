@@ -20,6 +20,7 @@ struct ag_context {
     bool validation;        // AFTERGLOW_VALIDATION
     char *no_links_in;      // of the host
     char *shader_dir;       // AFTERGLOW_SHADER_DIR, NULL: embedded shaders
+    char *importer;         // path of the importer program, NULL: none
     bool warned_layer_name; // a former layer name was used
     char last_error[API_MESSAGE_SIZE];
 };
@@ -45,6 +46,9 @@ struct ag_scene {
     struct named_camera *cameras_by_name; // sorted; NULL until the first lookup
     int users;                            // renderers and bakes
 };
+
+// The path of the importer program, owned by the caller; NULL: not found, or out of memory.
+char *api_find_importer(struct host *host);
 
 // Updates `pose` to a moment, or rebuilds it if *pose_version is outdated. False: out of memory, or
 // beyond the limits of scene/limits.h.

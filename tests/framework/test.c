@@ -60,6 +60,12 @@ static void remember(void *user, enum log_level level, const char *message)
     if (getenv("AFTERGLOW_TEST_VERBOSE")) fprintf(stderr, "[log %d] %s\n", (int)level, message);
 }
 
+const char *test_importer(void)
+{
+    const char *given = getenv("AFTERGLOW_IMPORTER");
+    return given ? given : AFTERGLOW_IMPORTER_DEFAULT;
+}
+
 struct host *test_host(void)
 {
     static struct host host;
@@ -67,6 +73,7 @@ struct host *test_host(void)
         host = host_default();
         host.log = remember;
         host.log_up_to = getenv("AFTERGLOW_TEST_VERBOSE") ? LOG_DEBUG : LOG_WARNING;
+        host.importer = test_importer();
     }
     return &host;
 }

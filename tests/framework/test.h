@@ -49,6 +49,9 @@ struct host *test_host(void);
 const char *test_last_message(void);
 void test_forget_messages(void);
 
+// The importer program that was built.
+const char *test_importer(void);
+
 // A path in a temporary folder that is removed at exit. Static storage, valid for 16 calls.
 const char *test_path(const char *name);
 // The path of a test scene ("sponza.glb", "odd/truncated.glb"). Reports the running test as skipped

@@ -1,5 +1,5 @@
 // Chooses an importer by file extension: glTF 2.0 is read from its JSON and accessors (gltf/), PLY
-// by ply.c, OBJ, FBX and X through Assimp's C API (assimp/).
+// by ply.c, OBJ, FBX and X by the importer program (import_program.c), which uses Assimp.
 //
 // Assimp reads glTF too, but loses data, and its result cannot be matched to the JSON afterwards:
 //
@@ -31,11 +31,9 @@ static bool dispatch(struct import *import, const struct file_bytes *bytes)
         return import_gltf(import, bytes);
     }
     if (strcmp(extension, "ply") == 0) return import_ply(import, bytes);
-    static const char *const through_assimp[] = { "obj", "fbx", "x" };
-    for (size_t i = 0; i < sizeof through_assimp / sizeof *through_assimp; i++) {
-        if (strcmp(extension, through_assimp[i]) == 0) {
-            return import_assimp(import, bytes, extension);
-        }
+    static const char *const by_program[] = { "obj", "fbx", "x" };
+    for (size_t i = 0; i < sizeof by_program / sizeof *by_program; i++) {
+        if (strcmp(extension, by_program[i]) == 0) return import_program(import, bytes);
     }
     return host_fail(import->host, FAIL_UNSUPPORTED,
                      "%s: unknown kind of scene file; use glTF, GLB, OBJ, PLY, FBX or X",

@@ -1,4 +1,5 @@
-// Imports scene files: glTF 2.0 and PLY by readers of this library, OBJ, FBX and X through Assimp.
+// Imports scene files: glTF 2.0 and PLY by readers of this library, OBJ, FBX and X by
+// the importer program.
 // Files are untrusted.
 #pragma once
 

@@ -6,4 +6,4 @@
 // Each fills import->scene from the bytes of the file.
 bool import_gltf(struct import *import, const struct file_bytes *bytes);
 bool import_ply(struct import *import, const struct file_bytes *bytes);
-bool import_assimp(struct import *import, const struct file_bytes *bytes, const char *extension);
+bool import_program(struct import *import, const struct file_bytes *bytes); // OBJ, FBX, X

@@ -1,0 +1,13 @@
+// What the importer program (src/importer) writes to its standard output: the greeting, then lines,
+// the last of which is one of
+//
+//     glb SIZE                  and SIZE bytes of a binary glTF file
+//     fail KIND WHY             KIND is format, unsupported, file or memory
+//
+// Before it any number of "note FEATURE": what is ignored. The glTF is untrusted: it is read and
+// checked like any other file. Images are named as in the original file, or contained.
+#pragma once
+
+// Of the form, so that a program of another version is refused.
+#define IMPORT_STREAM_GREETING "afterglow-import 1\n"
+enum { IMPORT_STREAM_LINE = 512 }; // bytes of a line at most, with its end
