@@ -41,6 +41,7 @@ struct ag_context *fuzz_context(void)
     desc.log = log_of_context;
     desc.log_up_to = AG_LOG_DEBUG;
     desc.use_environment = false;
+    desc.importer = FUZZ_IMPORTER;
     FUZZ_CHECK(ag_context_create(&desc, &context) == AG_OK);
     return context;
 }

@@ -55,7 +55,7 @@ static bool unpack(const char *folder, const char *name, char *out, size_t size)
 {
     size_t n = strlen(name);
     if (n < 4 || strcmp(name + n - 3, ".gz") != 0) return false;
-    char unpacked[256], command[2048];
+    char unpacked[256], command[8192];
     snprintf(unpacked, sizeof unpacked, "%.*s", (int)(n - 3), name);
     snprintf(out, size, "%s", test_path(unpacked));
     snprintf(command, sizeof command, "gzip -dc '%s/%s' > '%s'", folder, name, out);
