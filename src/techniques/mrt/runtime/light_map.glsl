@@ -78,9 +78,36 @@ vec3 walls_irradiance(mrt_place place, vec3 normal)
     return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 
+// The way along the normal to a wall nearby that the surface faces, in metres; 0: there is none.
+float way_to_wall(mrt_place place, vec3 normal)
+{
+    vec3 to = inverse(place.world_from_cell) * normal;
+    float shortest = 0.0;
+    for (int f = 0; f < 6; f++) {
+        float side = (f & 1) != 0 ? 1.0 : -1.0, towards = side * to[f / 2];
+        float distance = 0.5 - side * place.cell[f / 2];
+        if (block_table[place.block].tile[f] < 0 || distance > MRT_WALL_DISTANCE) continue;
+        if (towards < MRT_WALL_COSINE * length(to)) continue;
+        shortest = max(distance / towards, 0.0) + level.offset_m;
+    }
+    return shortest;
+}
+
+// The block of a surface. Light comes to a surface from the side of its normal: where that faces a
+// wall nearby, such as the folds of a curtain between two rooms, from the block beyond.
+mrt_place locate_surface(vec3 position, vec3 normal)
+{
+    vec3 at = position + level.offset_m * normal;
+    mrt_place place = locate(at);
+    float way = place.block < 0 ? 0.0 : way_to_wall(place, normal);
+    if (way == 0.0) return place;
+    mrt_place beyond = locate(at + way * normal);
+    return beyond.block >= 0 && beyond.outside == 0.0 ? beyond : place;
+}
+
 vec3 level_irradiance(vec3 position, vec3 normal)
 {
-    mrt_place place = locate(position + level.offset_m * normal);
+    mrt_place place = locate_surface(position, normal);
     if (place.block < 0) return vec3(0.0);
     vec3 n = normal_in_cell(place, normal);
     int face = wall_of(place, n);
