@@ -95,7 +95,8 @@ static bool start_runtime(struct mrt *mrt)
 
 bool mrt_make_level(struct mrt *mrt)
 {
-    const struct mrt_level_options options = { .max_depth = mrt->options.depth };
+    const struct mrt_level_options options = { .max_depth = mrt->options.depth,
+                                               .retrace = mrt->options.warp == MRT_WARP_RETRACE };
     return mrt_level_init(mrt->host, &mrt->map, &mrt->dictionary, &options, &mrt->level) &&
            start_runtime(mrt) &&
            (mrt->options.solver == MRT_SOLVER_GPU ||

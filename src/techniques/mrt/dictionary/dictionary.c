@@ -85,6 +85,7 @@ static bool take_element(const struct reader *reader, const struct mrt_dictionar
         if (e->shape.missing >> f & 1u) openings[count++] = &e->r_b[f];
     return take(reader, shape_tensor(name, o->maze, i, "U_b"), n, 1, k, &e->u_b) &&
            take(reader, shape_tensor(name, o->maze, i, "T_db"), k, 1, n, &e->t_db) &&
+           take(reader, shape_tensor(name, o->maze, i, "L_imp"), n, 1, k, &e->l_imp) &&
            take(reader, shape_tensor(name, o->maze, i, "U_vec"), n, 4, k, &e->u_vec) &&
            take(reader, shape_tensor(name, o->maze, i, "U_bvol"), probes, 9, k, &e->u_bvol) &&
            (count == 0 || take_stack(reader, shape_tensor(name, o->maze, i, "R_b"), count,
@@ -139,6 +140,7 @@ static void element_finish(struct host *host, struct mrt_element *e)
 {
     matrix_f32_finish(host, &e->u_b);
     matrix_f32_finish(host, &e->t_db);
+    matrix_f32_finish(host, &e->l_imp);
     matrix_f32_finish(host, &e->u_vec);
     matrix_f32_finish(host, &e->u_bvol);
     for (int f = 0; f < MRT_MAX_OPENINGS; f++) matrix_f32_finish(host, &e->r_b[f]);

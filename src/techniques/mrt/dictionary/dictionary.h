@@ -6,6 +6,7 @@
 //
 //     cube/I/U_b        [n, k_b]       irradiance (lux) of each b-coefficient
 //     cube/I/T_db       [k_b, n]       b-coefficients of radiosity (lm/m²) at each texel
+//     cube/I/L_imp      [n, k_b]       radiosity whose indirect light is U_b
 //     cube/I/U_vec      [n, 4, k_b]    irradiance by normal: OHLSH in the frame of mrt_point
 //     cube/I/U_bvol     [p³, 9, k_b]   irradiance by normal at probes: SH in the frame of the cube
 //     cube/I/R_b        [N, k_l, k_b]  lightfield coefficients at each opening
@@ -61,8 +62,8 @@ struct mrt_entered {
 
 struct mrt_element {
     struct mrt_shape shape;
-    struct matrix_f32 u_b, t_db, u_vec, u_bvol; // U_vec: n·4 × k_b, U_bvol: p³·9 × k_b
-    struct matrix_f32 r_b[MRT_MAX_OPENINGS];    // by face; empty where it is closed
+    struct matrix_f32 u_b, t_db, l_imp, u_vec, u_bvol; // U_vec: n·4 × k_b, U_bvol: p³·9 × k_b
+    struct matrix_f32 r_b[MRT_MAX_OPENINGS];           // by face; empty where it is closed
 };
 
 struct mrt_dictionary {

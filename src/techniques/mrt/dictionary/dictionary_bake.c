@@ -271,7 +271,7 @@ static bool add_modes(struct bake_plan *plan, const struct mrt_bake_job *job,
     const struct bake_output outputs[] = {
         { names[OUT_U_B], TENSOR_F32, 2, { n, k_b }, BAKE_ROWS, BAKE_SAVED },
         { names[OUT_T_DB], TENSOR_F32, 2, { k_b, n }, BAKE_ROWS, BAKE_SAVED },
-        { names[OUT_L_IMP], TENSOR_F32, 2, { n, k_b }, BAKE_ROWS, BAKE_REPORTED },
+        { names[OUT_L_IMP], TENSOR_F32, 2, { n, k_b }, BAKE_ROWS, BAKE_SAVED },
         { names[OUT_SIGMA_L], TENSOR_F32, 1, { small }, BAKE_ROWS, BAKE_SAVED },
         { names[OUT_SIGMA_M], TENSOR_F32, 1, { k_d }, BAKE_ROWS, BAKE_SAVED },
         { names[OUT_CHECKS], TENSOR_F32, 1, { 2 }, BAKE_ROWS, BAKE_SAVED },

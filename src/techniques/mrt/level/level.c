@@ -138,6 +138,8 @@ bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
     bool ok = level->place && level->first_texel && level->entries && level->entry_of_face &&
               level->first_link && choose_cubes(level);
     if (ok) list_entries(level);
+    if (ok && options->retrace)
+        ok = mrt_retraces_init(host, map, level->place, dictionary, &level->retraces);
     ok = ok && propagate(level, options->max_depth);
     if (!ok) mrt_level_finish(level);
     return ok;
@@ -146,6 +148,7 @@ bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
 void mrt_level_finish(struct mrt_level *level)
 {
     if (level->host) {
+        mrt_retraces_finish(&level->retraces);
         host_free(level->host, level->place);
         host_free(level->host, level->first_texel);
         host_free(level->host, level->entries);

@@ -5,9 +5,11 @@
 #include "techniques/mrt/dictionary/dictionary.h"
 #include "techniques/mrt/level/atlas.h"
 #include "techniques/mrt/level/kernels.h"
+#include "techniques/mrt/level/retrace.h"
 
 struct mrt_level_options {
     int max_depth; // openings that light passes at most; 0: none
+    bool retrace;  // bases in the proportions of the blocks
 };
 
 // Light enters `block` by an opening.
@@ -29,6 +31,7 @@ struct mrt_level {
     int resolution;                          // texels along an edge of a face
     int k_b, k_rlf, k_r;
     struct mrt_cube_place *place; // [blocks]
+    struct mrt_retraces retraces; // empty without `retrace`
     int *first_texel;             // [blocks + 1], of the level
     struct mrt_entry *entries;    // in the order of blocks, then faces
     int entry_count;
@@ -50,6 +53,14 @@ void mrt_level_finish(struct mrt_level *level); // accepts zero
 static inline struct mrt_shape mrt_level_cell(const struct mrt_level *level, int block)
 {
     return mrt_cube(level->resolution, level->map->blocks[block].open);
+}
+
+// The bases of a block that replace those of its cube; NULL: none do.
+static inline const struct mrt_retraced *mrt_level_retraced(const struct mrt_level *level,
+                                                            int block)
+{
+    const int i = level->retraces.of_block ? level->retraces.of_block[block] : -1;
+    return i < 0 ? NULL : &level->retraces.at[i];
 }
 
 // ---- paths.c

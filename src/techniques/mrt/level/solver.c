@@ -32,22 +32,50 @@ static int entry_stride(const struct mrt_level *level)
 
 // ---- operators
 
+// Padded texels of a cube.
+static size_t cube_stride(const struct mrt_solver *s, int cube)
+{
+    return (size_t)walls_of(mrt_cube_missing(s->level->maze, cube)) * (size_t)s->face_texels;
+}
+
+static float *copy_t_db(const struct mrt_solver *s, int cube)
+{
+    const struct matrix_f32 *from = &s->level->dictionary->element[cube].t_db;
+    size_t stride = cube_stride(s, cube);
+    float *out = host_alloc(s->host, stride * from->rows, sizeof *out);
+    for (size_t t = 0; out && t < from->columns; t++)
+        for (size_t r = 0; r < from->rows; r++)
+            out[r * stride + (size_t)padded(s, (int)t)] = from->at[r * from->stride + t];
+    return out;
+}
+
+static float *copy_u_b(const struct mrt_solver *s, int cube, const struct matrix_f32 *from)
+{
+    size_t stride = cube_stride(s, cube);
+    float *out = host_alloc(s->host, stride * from->columns, sizeof *out);
+    for (size_t t = 0; out && t < from->rows; t++)
+        for (size_t r = 0; r < from->columns; r++)
+            out[r * stride + (size_t)padded(s, (int)t)] = from->at[t * from->stride + r];
+    return out;
+}
+
 static bool copy_cube(struct mrt_solver *s, int cube)
 {
-    const struct mrt_element *from = &s->level->dictionary->element[cube];
-    size_t walls = (size_t)walls_of(mrt_cube_missing(s->level->maze, cube));
-    size_t stride = walls * (size_t)s->face_texels, rows = (size_t)s->level->k_b;
-    s->t_db[cube] = host_alloc(s->host, stride * rows, sizeof(float));
-    s->u_b[cube] = host_alloc(s->host, stride * rows, sizeof(float));
-    if (!s->t_db[cube] || !s->u_b[cube]) return false;
-    for (size_t t = 0; t < from->t_db.columns; t++) {
-        size_t at = (size_t)padded(s, (int)t);
-        for (size_t r = 0; r < rows; r++) {
-            s->t_db[cube][r * stride + at] = from->t_db.at[r * from->t_db.stride + t];
-            s->u_b[cube][r * stride + at] = from->u_b.at[t * from->u_b.stride + r];
-        }
+    s->t_db[cube] = copy_t_db(s, cube);
+    s->u_b[cube] = copy_u_b(s, cube, &s->level->dictionary->element[cube].u_b);
+    return s->t_db[cube] && s->u_b[cube];
+}
+
+static bool copy_retraced(struct mrt_solver *s)
+{
+    const struct mrt_retraces *from = &s->level->retraces;
+    s->u_retraced = host_alloc(s->host, (size_t)from->count, sizeof *s->u_retraced);
+    bool ok = s->u_retraced != NULL;
+    for (int i = 0; ok && i < from->count; i++) {
+        s->u_retraced[i] = copy_u_b(s, from->at[i].cube, &from->at[i].u_b);
+        ok = s->u_retraced[i] != NULL;
     }
-    return true;
+    return ok;
 }
 
 static bool copy_response(struct mrt_solver *s)
@@ -120,7 +148,7 @@ bool mrt_solver_init(struct host *host, const struct mrt_level *level, struct mr
     int n = level->resolution * level->resolution;
     *solver = (struct mrt_solver){ .host = host, .level = level };
     solver->face_texels = (n + MRT_LANES - 1) / MRT_LANES * MRT_LANES;
-    bool ok = allocate(solver) && copy_response(solver);
+    bool ok = allocate(solver) && copy_response(solver) && copy_retraced(solver);
     for (int i = 0; ok && i < mrt_dictionary_shapes(level->maze); i++) ok = copy_cube(solver, i);
     if (ok)
         map_texels(solver);
@@ -136,6 +164,9 @@ void mrt_solver_finish(struct mrt_solver *solver)
             host_free(solver->host, solver->t_db[i]);
             host_free(solver->host, solver->u_b[i]);
         }
+        for (int i = 0; solver->u_retraced && i < solver->level->retraces.count; i++)
+            host_free(solver->host, solver->u_retraced[i]);
+        host_free(solver->host, solver->u_retraced);
         host_free(solver->host, solver->u_r);
         host_free(solver->host, solver->cube_texel);
         host_free(solver->host, solver->entered_texel);
@@ -229,8 +260,9 @@ static void light_block(void *user, size_t i)
     float *planes[3];
     int length = planes_of(s, block, planes), k_b = level->k_b;
     memset(planes[0], 0, 3 * (size_t)length * sizeof *planes[0]);
-    mrt_kernel_expand(s->u_b[level->place[block].cube], length, k_b, length,
-                      s->b + i * 3 * (size_t)k_b, planes);
+    const int retraced = level->retraces.of_block ? level->retraces.of_block[block] : -1;
+    const float *u_b = retraced < 0 ? s->u_b[level->place[block].cube] : s->u_retraced[retraced];
+    mrt_kernel_expand(u_b, length, k_b, length, s->b + i * 3 * (size_t)k_b, planes);
     float *out = frame->irradiance + 3 * (size_t)first;
     for (int t = first; t < level->first_texel[block + 1]; t++)
         for (int c = 0; c < 3; c++) out[3 * (t - first) + c] = planes[c][s->cube_texel[t]];

@@ -10,8 +10,9 @@ struct mrt_solver {
     int face_texels;               // of a face, rounded up to lanes
     // Per cube of the dictionary: k_b rows over the padded texels of its walls.
     float *t_db[MRT_MAX_CUBES], *u_b[MRT_MAX_CUBES];
-    float *u_r;      // [5 faces of mrt_entered_shape] × k_r × face_texels
-    int *cube_texel; // [texels of the level]: padded texel of the cube
+    float **u_retraced; // the same for each of level->retraces
+    float *u_r;         // [5 faces of mrt_entered_shape] × k_r × face_texels
+    int *cube_texel;    // [texels of the level]: padded texel of the cube
     int entered_face[CUBE_FACES][CUBE_FACES]; // by entry and wall
     int *entered_texel;                       // [6 entries] × [6 walls] × texels of a face
     float *light; // [texels of a closed cube, padded] × 3 colours for each block

@@ -89,27 +89,29 @@ static bool make_basis(struct host *host, const struct mrt_level *level,
     const struct mrt_element *element = &dictionary->element[place->cube];
     const struct turn turn = { element->shape, mrt_level_cell(level, block),
                                place->block_from_cube };
+    const struct mrt_retraced *retraced = mrt_level_retraced(level, block);
     out->open = level->map->blocks[block].open;
     return turn_columns(host, &turn, &element->t_db, &out->t_db) &&
-           turn_rows(host, &turn, &element->u_b, &out->u_b) &&
-           turn_vectors(host, &turn, &element->u_vec, &out->u_vec) &&
+           turn_rows(host, &turn, retraced ? &retraced->u_b : &element->u_b, &out->u_b) &&
+           turn_vectors(host, &turn, retraced ? &retraced->u_vec : &element->u_vec, &out->u_vec) &&
            mrt_turn_probes(host, dictionary->options.block_probes, turn.to_from, &element->u_bvol,
                            &out->u_vol);
 }
 
-static bool same_place(const struct mrt_cube_place *a, const struct mrt_cube_place *b)
+static bool same_basis(const struct mrt_level *level, int i, int j)
 {
-    return a->cube == b->cube &&
+    const struct mrt_cube_place *a = &level->place[i], *b = &level->place[j];
+    return mrt_level_retraced(level, i) == mrt_level_retraced(level, j) && a->cube == b->cube &&
            memcmp(&a->block_from_cube, &b->block_from_cube, sizeof a->block_from_cube) == 0;
 }
 
-// Blocks of the same cube and turn share a basis.
+// Blocks of the same cube, turn and proportions share a basis.
 static bool make_bases(struct mrt_turned *out, const struct mrt_level *level,
                        const struct mrt_dictionary *dictionary)
 {
     for (int b = 0; b < level->map->count; b++) {
         int like = 0;
-        while (like < b && !same_place(&level->place[like], &level->place[b])) like++;
+        while (like < b && !same_basis(level, like, b)) like++;
         if (like < b) {
             out->basis_of_block[b] = out->basis_of_block[like];
             continue;

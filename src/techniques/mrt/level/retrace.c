@@ -1,0 +1,143 @@
+// Rays in the proportions of a block.
+//
+// An affine warp maps rays of the block to rays of the cube's cell, so that the cube's own lookups
+// serve; only the directions, distributed by the cosine at the block's wall, differ.
+#include "retrace.h"
+
+#include "core/parallel.h"
+
+#include "techniques/mrt/dictionary/gather.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { RAYS = 2048 }; // per texel; the error of U_b is below 1 %
+static const float SAME_METRIC = 1e-3f;
+
+static mat3s metric_of(mat3s j)
+{
+    const mat3s square = glms_mat3_mul(glms_mat3_transpose(j), j);
+    const float trace = square.m00 + square.m11 + square.m22;
+    return glms_mat3_scale(square, 3.0f / trace);
+}
+
+static bool same_metric(mat3s a, mat3s b)
+{
+    for (int c = 0; c < 3; c++)
+        if (glms_vec3_distance(a.col[c], b.col[c]) > SAME_METRIC) return false;
+    return true;
+}
+
+// ---- gathering
+
+struct gather_job {
+    const struct mrt_element *element;
+    mat3s block_from_cell; // J of the warp
+    struct mrt_rays rays;
+    struct matrix_f32 *out;
+    struct host *hosts; // [texels]: failures of tasks do not race
+    bool *ok;
+};
+
+// Columns: the images in the cell of an orthonormal frame at a wall of the block, whose third axis
+// is the wall's normal.
+static mat3s cell_from_wall(mat3s block_from_cell, mat3s frame)
+{
+    const mat3s cell_from_block = glms_mat3_inv(block_from_cell);
+    mat3s wall;
+    wall.col[2] = vec3_unit(glms_mat3_mulv(glms_mat3_transpose(cell_from_block), frame.col[2]));
+    wall.col[0] = vec3_unit(glms_mat3_mulv(block_from_cell, frame.col[0])); // in the wall
+    wall.col[1] = glms_vec3_cross(wall.col[2], wall.col[0]);
+    return glms_mat3_mul(cell_from_block, wall);
+}
+
+static void gather_texel(void *user, size_t i)
+{
+    struct gather_job *job = user;
+    const struct mrt_element *element = job->element;
+    const size_t values = (size_t)job->rays.values;
+    struct host *host = &job->hosts[i];
+    struct mrt_point point = mrt_shape_texel(&element->shape, (int)i);
+    struct matrix_f32 rows = { 0 };
+    struct matrix_f32 out = matrix_f32_block(job->out, i * values, 0, values, job->out->columns);
+    point.frame = cell_from_wall(job->block_from_cell, point.frame);
+    job->ok[i] = matrix_f32_init(host, &rows, values, element->l_imp.rows);
+    if (job->ok[i]) mrt_gather(&element->shape, point, &job->rays, rows.at, rows.stride);
+    job->ok[i] = job->ok[i] && matrix_f32_multiply(host, 1.0f, &rows, NOT_TRANSPOSED,
+                                                   &element->l_imp, NOT_TRANSPOSED, 0.0f, &out);
+    matrix_f32_finish(host, &rows);
+}
+
+static bool gather(struct host *host, const struct mrt_element *element, mat3s block_from_cell,
+                   enum mrt_measure measure, struct matrix_f32 *out)
+{
+    const size_t texels = element->l_imp.rows;
+    struct gather_job job = { .element = element, .block_from_cell = block_from_cell, .out = out };
+    job.hosts = host_alloc(host, texels, sizeof *job.hosts);
+    job.ok = host_alloc(host, texels, sizeof *job.ok);
+    bool ok = job.hosts && job.ok && mrt_rays_init(host, measure, RAYS, &job.rays) &&
+              matrix_f32_init(host, out, texels * (size_t)job.rays.values, element->l_imp.columns);
+    for (size_t i = 0; ok && i < texels; i++) job.hosts[i] = *host;
+    if (ok) parallel_for(texels, 8, gather_texel, &job);
+    for (size_t i = 0; ok && i < texels; i++) {
+        ok = job.ok[i];
+        if (!ok) host->failure = job.hosts[i].failure;
+    }
+    mrt_rays_finish(host, &job.rays);
+    host_free(host, job.hosts);
+    host_free(host, job.ok);
+    return ok;
+}
+
+// ---- blocks
+
+static int find(const struct mrt_retraces *retraces, int cube, mat3s metric)
+{
+    for (int i = 0; i < retraces->count; i++)
+        if (retraces->at[i].cube == cube && same_metric(retraces->at[i].metric, metric)) return i;
+    return -1;
+}
+
+static bool retrace_block(struct mrt_retraces *out, const struct mrt_block *block, int index,
+                          const struct mrt_cube_place *place, const struct mrt_element *element)
+{
+    const mat3s j =
+        glms_mat3_mul(mrt_warp_jacobian(block->corner, GLMS_VEC3_ZERO), place->block_from_cube);
+    const mat3s metric = metric_of(j);
+    out->of_block[index] = find(out, place->cube, metric);
+    if (out->of_block[index] >= 0 || same_metric(metric, glms_mat3_identity())) return true;
+    out->of_block[index] = out->count;
+    struct mrt_retraced *to = &out->at[out->count++];
+    *to = (struct mrt_retraced){ .cube = place->cube, .metric = metric };
+    return gather(out->host, element, j, MRT_IRRADIANCE, &to->u_b) &&
+           gather(out->host, element, j, MRT_VECTOR, &to->u_vec);
+}
+
+bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
+                       const struct mrt_cube_place *places, const struct mrt_dictionary *dictionary,
+                       struct mrt_retraces *out)
+{
+    const size_t blocks = (size_t)map->count;
+    *out = (struct mrt_retraces){ .host = host };
+    out->at = host_alloc(host, blocks, sizeof *out->at);
+    out->of_block = host_alloc(host, blocks, sizeof *out->of_block);
+    bool ok = out->at && out->of_block;
+    for (int b = 0; ok && b < map->count; b++)
+        ok = retrace_block(out, &map->blocks[b], b, &places[b],
+                           &dictionary->element[places[b].cube]);
+    if (!ok) mrt_retraces_finish(out);
+    return ok;
+}
+
+void mrt_retraces_finish(struct mrt_retraces *retraces)
+{
+    for (int i = 0; i < retraces->count; i++) {
+        matrix_f32_finish(retraces->host, &retraces->at[i].u_b);
+        matrix_f32_finish(retraces->host, &retraces->at[i].u_vec);
+    }
+    if (retraces->host) {
+        host_free(retraces->host, retraces->at);
+        host_free(retraces->host, retraces->of_block);
+    }
+    *retraces = (struct mrt_retraces){ 0 };
+}

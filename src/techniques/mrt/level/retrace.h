@@ -1,0 +1,28 @@
+// Bases of blocks that are far from cubes (Loos 2015, figure 3.4): the light of L_imp gathered
+// again by rays in the block's own proportions. T_d→b and light through openings stay those of the
+// cube.
+#pragma once
+
+#include "techniques/mrt/dictionary/dictionary.h"
+#include "techniques/mrt/level/block_map.h"
+
+// U_b and U_vec of one cube of the dictionary in one shape, in the order of the cube's texels.
+struct mrt_retraced {
+    int cube;
+    mat3s metric; // JᵀJ of the warp from the cube's cell, with a trace of 3
+    struct matrix_f32 u_b, u_vec;
+};
+
+struct mrt_retraces {
+    struct host *host;
+    struct mrt_retraced *at;
+    int count;
+    int *of_block; // index in `at`; −1: the dictionary's own bases
+};
+
+// Blocks of equal cube and proportions share their bases; a block that is a cube keeps the
+// dictionary's. The warp is taken as that of the block's middle, an affine one.
+bool mrt_retraces_init(struct host *host, const struct mrt_block_map *map,
+                       const struct mrt_cube_place *places, const struct mrt_dictionary *dictionary,
+                       struct mrt_retraces *out);
+void mrt_retraces_finish(struct mrt_retraces *retraces); // accepts zero
