@@ -42,6 +42,18 @@ AG_API void ag_renderer_destroy(struct ag_renderer *renderer);
 /// allows further frames.
 AG_API enum ag_result ag_renderer_resize(struct ag_renderer *renderer, int width, int height);
 
+/// Exchanges the GI spec from the next frame on; options that it does not name have their defaults.
+/// Techniques go on if only their options of effect "live" or "invalidate" differ (see
+/// ag_option_info): nothing is created. Others are created anew beside the old ones, which are
+/// destroyed afterwards. The scene, the frame's images and maps stay. `bakes` as in
+/// ag_renderer_desc, for techniques created anew. A debug view ends with its technique. After a
+/// failure nothing has changed.
+AG_API enum ag_result ag_renderer_set_gi(struct ag_renderer *renderer, const char *gi,
+                                         const struct ag_bake *const *bakes, int bake_count);
+/// Exchanges the frame options likewise. NULL: the defaults.
+AG_API enum ag_result ag_renderer_set_frame_options(struct ag_renderer *renderer,
+                                                    const char *options);
+
 struct ag_frame_desc {
     struct ag_camera camera;
     double time_s;      ///< animation time

@@ -73,7 +73,7 @@ static const struct layer *layer_kept(const struct ag_renderer *r, const char *n
         need = "create the renderer with indirect_layer";
     else if (layer->image == FRAME_DISPLAY && !r->display_layer)
         need = "create the renderer with display_layer";
-    else if (layer->read == NO_READBACK && !r->debug_view)
+    else if (layer->read == NO_READBACK && !gi_has_debug_view(r->gi))
         need = "no debug view is set";
     else if (layer->image == FRAME_MOTION && layer_image(r, layer).id == 0)
         need = "create the renderer with motion_layer, or use a technique that needs it";

@@ -23,13 +23,17 @@ static enum ag_result size_check(const char *function, struct ag_context *contex
     return AG_OK;
 }
 
+bool renderer_parse_frame_options(struct host *host, const char *text, struct frame_options *out)
+{
+    option_defaults(&frame_option_table, out);
+    return option_parse(host, &frame_option_table, "frame", text ? text : "", out);
+}
+
 // Parses both texts of a description. Finish *spec in any case.
 static bool parse_options(struct host *host, const struct ag_renderer_desc *desc,
                           struct gi_spec *spec, struct frame_options *options)
 {
-    option_defaults(&frame_option_table, options);
-    const char *text = desc->frame_options ? desc->frame_options : "";
-    return option_parse(host, &frame_option_table, "frame", text, options) &&
+    return renderer_parse_frame_options(host, desc->frame_options, options) &&
            gi_spec_parse(spec, host, desc->gi ? desc->gi : "");
 }
 
@@ -65,7 +69,7 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
 // ---- creation and destruction
 
 // Without a technique that gathers emission, such a scene is black except for its emitters.
-static void warn_of_darkness(const struct ag_renderer *r)
+void renderer_warn_of_darkness(const struct ag_renderer *r)
 {
     const struct scene *scene = r->scene->scene;
     bool only_emitters =
@@ -83,17 +87,18 @@ static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
     uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
     if (!parse_options(host, desc, &r->spec, &r->options)) return false;
     if (!(r->gi_text = gi_spec_print(&r->spec))) return false;
+    if (desc->bake_folder && !(r->bake_folder = host_strdup(host, desc->bake_folder))) return false;
     if (!api_pose_at(r->scene, &r->pose, &r->pose_version, 0, 0.0)) return false;
     if (!(r->frame = frame_create(host, r->device->gpu, &r->options))) return false;
     if (!frame_set_scene(r->frame, r->scene->scene)) return false;
     if (!frame_resize(r->frame, width, height)) return false;
     struct renderer_bakes bakes = { 0 };
-    if (renderer_bakes_find(&bakes, host, desc, &r->spec, &r->pose))
+    if (renderer_bakes_find(&bakes, host, desc, &r->spec, NULL, &r->pose))
         r->gi =
             gi_create_baked(host, r->device->gpu, &r->spec, &bakes.found, &r->pose, width, height);
     renderer_bakes_finish(&bakes);
     r->sized = r->gi != NULL;
-    if (r->sized) warn_of_darkness(r);
+    if (r->sized) renderer_warn_of_darkness(r);
     return r->sized;
 }
 
@@ -110,8 +115,8 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     if (!desc) desc = &fallback;
     enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
-    AG_REQUIRE(context, desc->bake_count >= 0 && (desc->bakes || desc->bake_count == 0),
-               "bake_count %d does not fit bakes", desc->bake_count);
+    checked = renderer_bakes_check(__func__, context, desc->bakes, desc->bake_count);
+    if (checked != AG_OK) return checked;
 
     struct ag_renderer *r = host_alloc(&context->host, 1, sizeof *r);
     if (!r) return api_done(context, false);
@@ -142,6 +147,7 @@ void ag_renderer_destroy(struct ag_renderer *r)
     pose_finish(&r->pose);
     gi_spec_finish(&r->spec);
     host_free(renderer_host(r), r->gi_text);
+    host_free(renderer_host(r), r->bake_folder);
     gpu_client_remove(r->device->gpu, r->client);
     r->scene->users--;
     host_free(renderer_host(r), r);
@@ -159,15 +165,6 @@ enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)
                gi_resize(r->gi, (uint32_t)width, (uint32_t)height);
     renderer_leave(r);
     return api_done(context, r->sized);
-}
-
-enum ag_result ag_renderer_set_debug_view(struct ag_renderer *r, const char *name)
-{
-    struct ag_context *context = renderer_context(r);
-    AG_REQUIRE(context, r, "renderer is NULL");
-    bool ok = gi_set_debug_view(r->gi, name);
-    if (ok) r->debug_view = name != NULL;
-    return api_done(context, ok);
 }
 
 const char *ag_renderer_gi(const struct ag_renderer *r)

@@ -67,12 +67,23 @@ static bool find_one(struct renderer_bakes *bakes, struct host *host,
 
 bool renderer_bakes_find(struct renderer_bakes *bakes, struct host *host,
                          const struct ag_renderer_desc *desc, const struct gi_spec *spec,
-                         const struct scene_pose *pose)
+                         const struct gi *running, const struct scene_pose *pose)
 {
-    for (int i = 0; i < spec->count; i++)
-        if (spec->technique[i]->bake_version != 0 && !find_one(bakes, host, desc, spec, pose, i))
+    for (int i = 0; i < spec->count; i++) {
+        const bool continues = running && gi_continues(running, spec, i) >= 0;
+        if (spec->technique[i]->bake_version != 0 && !continues &&
+            !find_one(bakes, host, desc, spec, pose, i))
             return false;
+    }
     return true;
+}
+
+enum ag_result renderer_bakes_check(const char *function, struct ag_context *context,
+                                    const struct ag_bake *const *bakes, int count)
+{
+    AG_REQUIRE_FOR(function, context, count >= 0 && (bakes || count == 0),
+                   "bake_count %d does not fit bakes", count);
+    return AG_OK;
 }
 
 void renderer_bakes_finish(struct renderer_bakes *bakes)

@@ -18,7 +18,8 @@ struct ag_renderer {
     struct ag_scene *scene;
     struct frame_options options;
     struct gi_spec spec;
-    char *gi_text; // GI spec with all options
+    char *gi_text;     // GI spec with all options
+    char *bake_folder; // NULL: none
     struct scene_pose pose;
     uint64_t pose_version;
     struct frame *frame;
@@ -27,7 +28,7 @@ struct ag_renderer {
     struct recorded_frame recorded[GPU_ADOPTED_FRAMES]; // oldest first
     int recorded_count;
     uint32_t client; // of the device: gpu_client_add
-    bool indirect_layer, display_layer, motion_layer, debug_view;
+    bool indirect_layer, display_layer, motion_layer;
     bool sized;        // the last resize succeeded
     bool said_limit;   // the warning about too many lights was logged
     uint64_t rendered; // frames since the last resize
@@ -53,6 +54,11 @@ static inline void renderer_leave(const struct ag_renderer *renderer)
 {
     gpu_client_set(renderer->device->gpu, 0);
 }
+
+// renderer.c
+void renderer_warn_of_darkness(const struct ag_renderer *renderer);
+// "" and NULL: the defaults.
+bool renderer_parse_frame_options(struct host *host, const char *text, struct frame_options *out);
 
 // renderer_frames.c. The GPU has completed the recorded frames up to this number.
 void renderer_recordings_done(struct ag_renderer *renderer, uint64_t number);

@@ -14,6 +14,13 @@ const struct option_table frame_option_table =
 
 static const uint32_t MAX_SIZE = 16384;
 
+#define SWAP(type, a, b)                                                                           \
+    do {                                                                                           \
+        const type swapped = (a);                                                                  \
+        (a) = (b);                                                                                 \
+        (b) = swapped;                                                                             \
+    } while (0)
+
 static bool create_ggx_albedo(struct frame *f)
 {
     struct gpu_buffer_desc desc = { "frame.ggx_albedo", sizeof ggx_albedo_table,
@@ -61,6 +68,32 @@ void frame_destroy(struct frame *f)
     emitters_finish(&f->emitters);
     scene_gpu_finish(&f->scene);
     host_free(f->host, f);
+}
+
+bool frame_set_options(struct frame *f, const struct frame_options *options)
+{
+    struct shadow shadow = { 0 };
+    struct direct direct = { 0 };
+    struct rsm rsm = { 0 };
+    const bool sized =
+        options->shadow_size != f->options.shadow_size || options->cascades != f->options.cascades;
+    const bool rsm_sized = options->rsm_size != f->options.rsm_size;
+    const uint32_t cascades = (uint32_t)options->cascades;
+    // Finishes those of before, or after a failure the new ones.
+    bool ok = !sized ||
+              (shadow_init(&shadow, f->host, f->gpu, (uint32_t)options->shadow_size, cascades) &&
+               direct_init(&direct, f->gpu, cascades));
+    ok = ok && (!rsm_sized || rsm_init(&rsm, f->host, f->gpu, (uint32_t)options->rsm_size));
+    if (ok && sized) {
+        SWAP(struct shadow, shadow, f->shadow);
+        SWAP(struct direct, direct, f->direct);
+    }
+    if (ok && rsm_sized) SWAP(struct rsm, rsm, f->rsm);
+    direct_finish(&direct);
+    shadow_finish(&shadow);
+    rsm_finish(&rsm);
+    if (ok) f->options = *options;
+    return ok;
 }
 
 bool frame_set_scene(struct frame *f, const struct scene *scene)

@@ -136,6 +136,8 @@ struct frame_input {
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);
 void frame_destroy(struct frame *frame); // accepts NULL
+// From the next frame on; creates only what the changed options size.
+bool frame_set_options(struct frame *frame, const struct frame_options *options);
 // Uploads meshes and textures; the scene must outlive the frame or the next frame_set_scene.
 bool frame_set_scene(struct frame *frame, const struct scene *scene);
 bool frame_resize(struct frame *frame, uint32_t width, uint32_t height); // 1…16384

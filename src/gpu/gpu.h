@@ -234,7 +234,7 @@ struct gpu_graphics_desc {
 };
 bool gpu_graphics_pipeline_create(struct gpu *gpu, const struct gpu_graphics_desc *desc,
                                   gpu_pipeline *out);
-// Kept for the next creation of an equal one, which then compiles nothing.
+// Equal pipelines are compiled once; a destroyed one is kept for the next creation of an equal one.
 void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *pipeline);
 // Rebuilds pipelines whose .spv in shader_dir changed and returns their number. On an invalid
 // shader the old pipeline stays, with a warning.

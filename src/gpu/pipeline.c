@@ -266,17 +266,21 @@ static bool finish(struct gpu *gpu, struct pipeline *p, gpu_pipeline *out)
         goto fail;
     }
     deferred_delete_collect(gpu);
-    struct pipeline *pooled = pipeline_pool_take(&gpu->pipeline_pool, p);
-    if (pooled) {
+    struct pipeline *equal = pipeline_find_equal(&gpu->pipelines, p);
+    if (!equal) equal = pipeline_pool_take(&gpu->pipeline_pool, p);
+    if (equal) {
         pipeline_free(gpu, p);
-        p = pooled;
+        p = equal;
     } else if (!build_any(gpu, p)) {
         goto fail;
     }
-    gpu->counters.compiled += !pooled;
+    p->users++;
+    gpu->counters.compiled += !equal;
     gpu->counters.pipelines++;
     out->id = table_add(gpu->host, &gpu->pipelines, p);
     if (out->id) return true;
+    pipeline_release(gpu, p);
+    return false;
 fail:
     pipeline_free(gpu, p);
     return false;
@@ -350,8 +354,15 @@ void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *handle)
 {
     struct pipeline *p = gpu && handle ? table_remove(&gpu->pipelines, handle->id) : NULL;
     if (handle) handle->id = 0;
+    if (p && --p->users > 0) return;
     if (p) p = pipeline_pool_give(&gpu->pipeline_pool, p);
     if (p) deferred_delete_add(gpu, pipeline_free, p);
+}
+
+void pipeline_release(struct gpu *gpu, void *object)
+{
+    struct pipeline *p = object;
+    if (p && --p->users == 0) pipeline_free(gpu, p);
 }
 
 static bool has_changed(struct gpu *gpu, struct pipeline *p)
@@ -393,7 +404,8 @@ int gpu_reload_shaders(struct gpu *gpu)
         struct pipeline *old = gpu->pipelines.objects[i];
         struct pipeline *p = old && has_changed(gpu, old) ? rebuild(gpu, old) : NULL;
         if (!p) continue;
-        gpu->pipelines.objects[i] = p;
+        for (uint32_t k = i; k < gpu->pipelines.count; k++)
+            if (gpu->pipelines.objects[k] == old) gpu->pipelines.objects[k] = p;
         deferred_delete_add(gpu, pipeline_free, old);
         host_log(gpu->host, LOG_INFO, "gpu pipeline %s: reloaded", p->name);
         count++;

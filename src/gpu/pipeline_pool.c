@@ -36,6 +36,14 @@ static bool same(const struct pipeline *a, const struct pipeline *b)
     return same;
 }
 
+struct pipeline *pipeline_find_equal(const struct table *pipelines, const struct pipeline *like)
+{
+    for (uint32_t i = 0; i < pipelines->count; i++)
+        if (pipelines->objects[i] && same(pipelines->objects[i], like))
+            return pipelines->objects[i];
+    return NULL;
+}
+
 static struct pipeline *remove_at(struct pipeline_pool *pool, int index)
 {
     struct pipeline *p = pool->pipelines[index];

@@ -217,6 +217,7 @@ struct shader_stage {
 
 struct pipeline {
     char name[NAME_SIZE];
+    uint32_t users; // handles of equal pipelines
     bool graphics;
     struct shader_stage stages[MAX_STAGES];
     int stage_count;
@@ -232,6 +233,7 @@ struct pipeline {
 };
 struct pipeline *pipeline_get(const struct gpu *gpu, gpu_pipeline pipeline);
 void pipeline_free(struct gpu *gpu, void *pipeline);
+void pipeline_release(struct gpu *gpu, void *pipeline); // frees with the last user
 VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *pipeline,
                                   const VkPipelineShaderStageCreateInfo *stages);
 
@@ -241,8 +243,11 @@ struct pipeline_pool {
     struct pipeline *pipelines[POOLED_PIPELINES]; // in the order of their destruction
     int count;
 };
-// A pipeline with the name, shaders, constants and fixed state of `like`; NULL: there is none.
+// A pipeline with the name, shaders, constants and fixed state of `like`; NULL: there is none, or
+// its shaders are files.
 struct pipeline *pipeline_pool_take(struct pipeline_pool *pool, const struct pipeline *like);
+// The same among those that were not destroyed.
+struct pipeline *pipeline_find_equal(const struct table *pipelines, const struct pipeline *like);
 // Returns the pipeline to free: the oldest, `pipeline` if its shaders are files, or NULL.
 struct pipeline *pipeline_pool_give(struct pipeline_pool *pool, struct pipeline *pipeline);
 struct pipeline *pipeline_pool_remove_oldest(struct pipeline_pool *pool); // NULL: empty

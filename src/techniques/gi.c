@@ -1,7 +1,6 @@
 // A GI stack: creation, frames, resizing, debug views, destruction.
-#include "techniques/gi.h"
+#include "techniques/gi_state.h"
 
-#include "techniques/common/probe_view.h"
 #include "techniques/gi_spec.h"
 #include "techniques/registry.h"
 
@@ -9,18 +8,6 @@
 #include <string.h>
 
 enum { LIST_SIZE = 512 };
-
-struct gi {
-    struct host *host;
-    struct gpu *gpu;
-    struct gi_spec spec;
-    uint32_t width, height;
-    void *state[GI_MAX_TERMS];
-    int debug_term;         // the technique of the debug view
-    const char *debug_name; // NULL: none
-    gpu_image debug_image;
-    struct probe_view probe_view; // created with its first use
-};
 
 // Around the functions of a technique: what they create and record is named "technique.thing".
 static const struct technique *enter(const struct gi *gi, int term)
@@ -34,27 +21,39 @@ static void leave(const struct gi *gi)
     gpu_owner_pop(gi->gpu);
 }
 
-static bool create_term(struct gi *gi, int i, const struct tensors *bake,
-                        const struct scene_pose *pose)
+static bool check_term(const struct gi *gi, const struct technique *technique,
+                       const struct tensors *bake, const struct technique_create *how)
 {
-    const struct technique *technique = gi->spec.technique[i];
     if (technique->bake_version != 0 && !bake)
         return host_fail(gi->host, FAIL_ARGUMENT, "cannot create %s: it needs a bake",
                          technique->name);
+    return !technique->check || technique->check(how);
+}
+
+bool gi_create_state(const struct gi *gi, const struct technique *technique, const void *options,
+                     const struct tensors *bake, const struct scene_pose *pose, void **state)
+{
     const struct technique_create how = { .host = gi->host,
                                           .gpu = gi->gpu,
                                           .pose = pose,
-                                          .options = gi->spec.options[i],
+                                          .options = options,
                                           .width = gi->width,
                                           .height = gi->height };
-    if (technique->check && !technique->check(&how)) return false;
-    gi->state[i] = host_alloc(gi->host, 1, technique->state_size);
-    if (!gi->state[i]) return false;
-    enter(gi, i);
-    const bool ok = technique->create(gi->state[i], &how) &&
-                    (technique->bake_version == 0 || technique->load(gi->state[i], bake));
-    leave(gi);
+    *state = NULL;
+    if (!check_term(gi, technique, bake, &how)) return false;
+    if (!(*state = host_alloc(gi->host, 1, technique->state_size))) return false;
+    gpu_owner_push(gi->gpu, technique->name);
+    const bool ok = technique->create(*state, &how) &&
+                    (technique->bake_version == 0 || technique->load(*state, bake));
+    gpu_owner_pop(gi->gpu);
     return ok;
+}
+
+void gi_destroy_state(const struct gi *gi, const struct technique *technique, void *state)
+{
+    if (!state) return;
+    technique->destroy(state);
+    host_free(gi->host, state);
 }
 
 struct gi *gi_create(struct host *host, struct gpu *gpu, const struct gi_spec *spec,
@@ -76,7 +75,9 @@ struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_s
     gi->height = height;
     if (!gi_spec_copy(&gi->spec, spec)) goto fail;
     for (int i = 0; i < gi->spec.count; i++)
-        if (!create_term(gi, i, bakes->of_term[i], pose)) goto fail;
+        if (!gi_create_state(gi, gi->spec.technique[i], gi->spec.options[i], bakes->of_term[i],
+                             pose, &gi->state[i]))
+            goto fail;
     return gi;
 fail:
     gi_destroy(gi);
@@ -86,11 +87,8 @@ fail:
 void gi_destroy(struct gi *gi)
 {
     if (!gi) return;
-    for (int i = 0; i < gi->spec.count; i++) {
-        if (!gi->state[i]) continue;
-        gi->spec.technique[i]->destroy(gi->state[i]);
-        host_free(gi->host, gi->state[i]);
-    }
+    for (int i = 0; i < gi->spec.count; i++)
+        gi_destroy_state(gi, gi->spec.technique[i], gi->state[i]);
     gpu_image_destroy(gi->gpu, &gi->debug_image);
     probe_view_destroy(&gi->probe_view, gi->gpu);
     gi_spec_finish(&gi->spec);
@@ -126,29 +124,6 @@ void gi_invalidate(struct gi *gi, uint32_t changes)
     for (int i = 0; i < gi->spec.count; i++)
         if (gi->spec.technique[i]->invalidate)
             gi->spec.technique[i]->invalidate(gi->state[i], changes);
-}
-
-bool gi_set_options(struct gi *gi, const struct gi_spec *spec)
-{
-    if (spec->count != gi->spec.count) return false;
-    for (int i = 0; i < spec->count; i++) {
-        const struct technique *technique = gi->spec.technique[i];
-        if (spec->technique[i] != technique) return false;
-        const int effect =
-            option_difference(&technique->options, gi->spec.options[i], spec->options[i]);
-        if (effect >= 0 && (effect > INVALIDATE || !technique->set_options)) return false;
-    }
-    for (int i = 0; i < spec->count; i++) {
-        const struct technique *technique = gi->spec.technique[i];
-        const int effect =
-            option_difference(&technique->options, gi->spec.options[i], spec->options[i]);
-        if (effect < 0) continue;
-        option_copy_live(&technique->options, spec->options[i], gi->spec.options[i]);
-        technique->set_options(gi->state[i], gi->spec.options[i]);
-        if (effect == INVALIDATE && technique->invalidate)
-            technique->invalidate(gi->state[i], CHANGED_OPTIONS);
-    }
-    return true;
 }
 
 static bool probes_of(const struct gi *gi, int term, struct probe_volume *out)
@@ -285,4 +260,9 @@ bool gi_set_debug_view(struct gi *gi, const char *name)
 gpu_image gi_debug_image(const struct gi *gi)
 {
     return gi->debug_image;
+}
+
+bool gi_has_debug_view(const struct gi *gi)
+{
+    return gi->debug_name != NULL;
 }

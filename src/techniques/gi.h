@@ -39,12 +39,20 @@ void gi_invalidate(struct gi *gi, uint32_t changes);
 // Applies another spec's options to the running stack. false, and nothing changed: it names other
 // techniques, or changes options that need gi_create (their effect is stronger than INVALIDATE).
 bool gi_set_options(struct gi *gi, const struct gi_spec *spec);
+// The running term that continues as this one of another spec, since set_options suffices; -1: the
+// technique is created anew.
+int gi_continues(const struct gi *gi, const struct gi_spec *spec, int term);
+// Exchanges the running stack for that of another spec; `bakes` has those of the terms created
+// anew. A debug view ends unless its technique stays. false: nothing changed.
+bool gi_change(struct gi *gi, const struct gi_spec *spec, const struct gi_bakes *bakes,
+               const struct scene_pose *pose);
 struct frame_indirect gi_hook(struct gi *gi); // refers to gi
 // The debug view shown instead of colour from the next frame on; NULL: none. false: no technique
 // has it; the message names the known ones.
 bool gi_set_debug_view(struct gi *gi, const char *name);
 // The image of the debug view; none if no view is set.
 gpu_image gi_debug_image(const struct gi *gi);
+bool gi_has_debug_view(const struct gi *gi);
 // The stack's probe volume of the newest frame; false: no technique publishes one; the message
 // names the option that does.
 bool gi_probes(const struct gi *gi, struct probe_volume *out);

@@ -10,6 +10,7 @@ ag_test(api/bake_run USES api LIBRARIES ag_test_renderer_fixture)
 target_sources(test_api_bake_run PRIVATE $<TARGET_OBJECTS:ag_test_sample_registry>)
 ag_test(api/probes USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/renderer USES api LIBRARIES ag_test_renderer_fixture)
+ag_test(api/set_gi USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/frames_in_flight USES api LIBRARIES ag_test_renderer_fixture)
 
 # Only ag_… is to be seen from outside. (Sanitizers add names of their own.)

@@ -48,19 +48,24 @@ TEST_GPU(an_equal_pipeline_is_taken_back_while_a_frame_still_uses_it)
     gpu_buffer_destroy(gpu, &values);
 }
 
-TEST_GPU(other_constants_names_and_living_pipelines_are_not_shared)
+TEST_GPU(equal_pipelines_are_compiled_once_others_are_not_shared)
 {
-    gpu_pipeline pipeline = affine(gpu, "test.pool", 1);
+    const uint64_t before = gpu_counters(gpu)->compiled;
+    gpu_pipeline pipeline = affine(gpu, "test.pool", 31);
     const VkPipeline first = handle_of(gpu, pipeline);
-    gpu_pipeline second = affine(gpu, "test.pool", 1);
-    CHECK(handle_of(gpu, second) != first);
+    gpu_pipeline second = affine(gpu, "test.pool", 31);
+    CHECK(handle_of(gpu, second) == first && second.id != pipeline.id);
+    assert_int_equal(gpu_counters(gpu)->compiled - before, 1);
+    const int pooled = gpu->pipeline_pool.count;
     gpu_pipeline_destroy(gpu, &pipeline);
+    assert_int_equal(gpu->pipeline_pool.count, pooled); // the second one is in use
+    CHECK(handle_of(gpu, second) == first);
     gpu_pipeline constant = affine(gpu, "test.pool", 2), name = affine(gpu, "test.other", 1);
     CHECK(handle_of(gpu, constant) != first && handle_of(gpu, name) != first);
-    pipeline = affine(gpu, "test.pool", 1);
+    gpu_pipeline_destroy(gpu, &second);
+    pipeline = affine(gpu, "test.pool", 31);
     CHECK(handle_of(gpu, pipeline) == first);
     gpu_pipeline_destroy(gpu, &pipeline);
-    gpu_pipeline_destroy(gpu, &second);
     gpu_pipeline_destroy(gpu, &constant);
     gpu_pipeline_destroy(gpu, &name);
 }

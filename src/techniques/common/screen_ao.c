@@ -118,10 +118,16 @@ static void use_history(struct screen_ao *ao, const struct frame_view *view)
     struct screen_ao_params *p = &ao->params;
     const bool known = ao->previous_near_m > 0.0f && !view->camera_cut && view->index > 0;
     p->previous_near_m = known ? ao->previous_near_m : 0.0f;
+    ao->number = known ? ao->number + 1 : 0;
     // The golden-ratio sequence of rotations continues from frame to frame.
-    p->rotation = fmodf(0.61803399f * (float)(ROTATIONS * (view->index % ROTATIONS)), 1.0f);
+    p->rotation = fmodf(0.61803399f * (float)(ROTATIONS * (ao->number % ROTATIONS)), 1.0f);
     ao->previous_near_m = view->camera.near_m;
     ao->newest = 1 - ao->newest;
+}
+
+void screen_ao_invalidate(struct screen_ao *ao)
+{
+    ao->previous_near_m = 0.0f;
 }
 
 void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float radius_m,

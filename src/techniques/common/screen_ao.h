@@ -21,6 +21,7 @@ struct screen_ao {
     gpu_image history[2]; // RGBA32F: visibility, depth, frame count; previous and current alternate
     int newest;           // index into history
     float previous_near_m; // of the previous camera; 0: no valid history
+    uint32_t number;       // of the frame, from the beginning of the history
     gpu_pipeline temporal, blur_x, blur_y, upsample;
     struct screen_ao_params params; // of the frame being recorded
 };
@@ -35,6 +36,7 @@ uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t widt
 // The constant SCREEN_AO_CONSTANT_STEP, which every shader of the estimate has.
 struct gpu_constant screen_ao_step(const struct screen_ao *ao);
 
+void screen_ao_invalidate(struct screen_ao *ao); // discards the history
 // Once a frame, before the estimate. radius_m: of the sphere; reach: its largest radius on the
 // screen, in image heights.
 void screen_ao_begin(struct screen_ao *ao, const struct frame_view *view, float radius_m,

@@ -140,10 +140,11 @@ static void vct_set_options(void *state, const void *options)
     const struct vct_options previous = vct->options;
     option_copy_live(vct->options.occlusion ? &technique_vctao.options : &technique_vct.options,
                      options, &vct->options);
-    if (vct->options.small_emitters != previous.small_emitters) invalidate_voxels(vct);
-    // Options of the cones of voxels; those of the pixels' cones alone keep bounced light.
-    if (vct->options.bounces != previous.bounces || vct->options.offset != previous.offset ||
-        vct->options.step_size != previous.step_size)
+    const bool emitters = vct->options.small_emitters != previous.small_emitters;
+    if (emitters) invalidate_voxels(vct);
+    // Options of the light of voxels; those of the pixels' cones alone keep bounced light.
+    if (emitters || vct->options.bounces != previous.bounces ||
+        vct->options.offset != previous.offset || vct->options.step_size != previous.step_size)
         vct->light_valid = vct->bounced_valid = false;
     vct_cone_axes(vct->options.cones, vct->cone_axes);
     vct_temporal_invalidate(&vct->temporal);
@@ -153,6 +154,7 @@ static void vct_invalidate(void *state, uint32_t changes)
 {
     struct vct *vct = state;
     if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) invalidate_voxels(vct);
+    if (changes & CHANGED_OPTIONS) vct->light_valid = vct->bounced_valid = false;
     vct->lit_index = VCT_NEVER;
     vct_temporal_invalidate(&vct->temporal);
 }

@@ -52,7 +52,9 @@ static bool vo_resize(void *state, uint32_t width, uint32_t height)
 
 static void vo_set_options(void *state, const void *options)
 {
-    ((struct vo *)state)->options = *(const struct vo_options *)options;
+    struct vo *vo = state;
+    vo->options = *(const struct vo_options *)options;
+    screen_ao_invalidate(&vo->ao);
 }
 
 static void vo_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
