@@ -44,9 +44,9 @@ AG_API enum ag_result ag_renderer_resize(struct ag_renderer *renderer, int width
 
 /// Exchanges the GI spec from the next frame on; options that it does not name have their defaults.
 /// Techniques go on if only their options of effect "live" or "invalidate" differ (see
-/// ag_option_info): nothing is created. Others are created anew beside the old ones, which are
+/// ag_option_info): nothing is created. Others are created again beside the old ones, which are
 /// destroyed afterwards. The scene, the frame's images and maps stay. `bakes` as in
-/// ag_renderer_desc, for techniques created anew. A debug view ends with its technique. After a
+/// ag_renderer_desc, for techniques created again. A debug view ends with its technique. After a
 /// failure nothing has changed.
 AG_API enum ag_result ag_renderer_set_gi(struct ag_renderer *renderer, const char *gi,
                                          const struct ag_bake *const *bakes, int bake_count);
@@ -106,11 +106,31 @@ AG_API const char *ag_layer_name(int index);
 /// - debug: the debug view; requires ag_renderer_set_debug_view
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
-/// VkImage and VkImageLayout of a layer, for programs that share the device. Radiance and
-/// irradiance are physical values × *scale (1 for other layers). Depth is reversed (near plane /
-/// distance), normals are octahedral, albedo and display are sRGB-encoded. "position" has no image.
+/// A layer as Vulkan objects of the adopted device, owned by the renderer.
+struct ag_layer_handle {
+    void *vk_image, *vk_image_view;          ///< VkImage; VkImageView: 2D, all of the image
+    uint32_t vk_format, vk_usage, vk_layout; ///< VkFormat, VkImageUsageFlags, VkImageLayout
+    int width, height;                       ///< pixels
+    float scale;
+};
+/// For programs that share the device; also before the first frame. "position" has no image.
+///
+/// Lifetime: until the next ag_renderer_resize; "debug": until the debug view is set. The content
+/// is that of the newest frame. Where no technique writes a layer, its frames are neutral:
+/// visibility 1, irradiance and specular 0.
+///
+/// Values: radiance and irradiance are physical values × scale (1 for other layers). The scale is a
+/// power of two; it follows lights, sky and emission and is that of the newest recorded frame: ask
+/// again after each frame. Depth is reversed (near plane / distance, 0: no surface), normals are
+/// octahedral (src/frame/octahedral.glsl), albedo and display are sRGB-encoded.
+///
+/// Synchronization: before and after each frame the image is in vk_layout, for all queue accesses
+/// of the adopted family. The library waits for all that was submitted before its frame. The
+/// program waits for the frame: in the same or a later command buffer of the queue by a barrier
+/// from ALL_COMMANDS, MEMORY_WRITE; on other queues by a semaphore. A layout that it changes it
+/// restores. The first call for a layer submits a command buffer: submit recorded frames before.
 AG_API enum ag_result ag_renderer_layer_handle(struct ag_renderer *renderer, const char *layer,
-                                               void **vk_image, uint32_t *vk_layout, float *scale);
+                                               struct ag_layer_handle *out);
 /// Numbers of the newest frame that the GPU has finished.
 struct ag_finished_frame {
     uint64_t frame;    ///< its number: a renderer counts its frames from 1; 0: none is finished

@@ -75,7 +75,8 @@ static const struct layer *layer_kept(const struct ag_renderer *r, const char *n
         need = "create the renderer with display_layer";
     else if (layer->read == NO_READBACK && !gi_has_debug_view(r->gi))
         need = "no debug view is set";
-    else if (layer->image == FRAME_MOTION && layer_image(r, layer).id == 0)
+    else if (layer->image == FRAME_MOTION && !r->motion_layer &&
+             !(gi_hook(r->gi).needs & FRAME_NEEDS_MOTION))
         need = "create the renderer with motion_layer, or use a technique that needs it";
     if (need) host_fail(host, FAIL_ARGUMENT, "cannot read layer %s: %s", name, need);
     return layer && !need ? layer : NULL;
@@ -124,22 +125,42 @@ enum ag_result ag_renderer_read(struct ag_renderer *r, const char *name, struct 
     return result;
 }
 
-enum ag_result ag_renderer_layer_handle(struct ag_renderer *r, const char *name, void **vk_image,
-                                        uint32_t *vk_layout, float *scale)
+// The image of a layer, pinned so that it lasts and has a value whatever techniques run.
+static bool share(struct ag_renderer *r, const struct layer *layer, struct gpu_image_handles *out)
+{
+    const bool debug = layer->read == NO_READBACK;
+    if (layer->image == NO_IMAGE && !debug)
+        return host_fail(renderer_host(r), FAIL_UNSUPPORTED,
+                         "cannot return layer %s: it has no Vulkan image", layer->name);
+    if (!debug && !frame_pin_layer(r->frame, (enum frame_layer)layer->image)) return false;
+    return gpu_image_share(r->device->gpu, layer_image(r, layer), out);
+}
+
+enum ag_result ag_renderer_layer_handle(struct ag_renderer *r, const char *name,
+                                        struct ag_layer_handle *out)
 {
     struct ag_context *context = renderer_context(r);
+    AG_REQUIRE_POINTER(context, out);
+    *out = (struct ag_layer_handle){ 0 };
     AG_REQUIRE(context, r, "renderer is NULL");
-    AG_REQUIRE(context, name && vk_image && vk_layout && scale,
-               "layer, vk_image, vk_layout or scale is NULL");
-    AG_REQUIRE(context, r->rendered, "no frame has been rendered");
+    AG_REQUIRE(context, name, "layer is NULL");
+    AG_REQUIRE(context, r->sized, "the last resize failed");
     const struct layer *layer = layer_kept(r, name);
     if (!layer) return api_done(context, false);
-    bool computed = layer->image == NO_IMAGE && layer->read != NO_READBACK;
-    gpu_image image = computed ? (gpu_image){ 0 } : layer_image(r, layer);
-    if (image.id == 0)
-        return api_done(context, host_fail(&context->host, FAIL_UNSUPPORTED,
-                                           "cannot return layer %s: it has no Vulkan image", name));
-    *vk_image = gpu_image_handle(r->device->gpu, image, vk_layout);
-    *scale = layer->scaled ? frame_radiance_scale(r->frame) : 1.0f;
+    struct gpu_image_handles handles;
+    renderer_enter(r);
+    const bool ok = share(r, layer, &handles);
+    renderer_leave(r);
+    if (!ok) return api_done(context, false);
+    *out = (struct ag_layer_handle){
+        .vk_image = handles.image,
+        .vk_image_view = handles.view,
+        .vk_format = handles.format,
+        .vk_usage = handles.usage,
+        .vk_layout = handles.layout,
+        .width = r->width,
+        .height = r->height,
+        .scale = layer->scaled ? frame_radiance_scale(r->frame) : 1.0f,
+    };
     return api_done(context, true);
 }

@@ -122,6 +122,8 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     if (!r) return api_done(context, false);
     r->device = device;
     r->scene = scene;
+    r->width = desc->width;
+    r->height = desc->height;
     r->indirect_layer = desc->indirect_layer;
     r->display_layer = desc->display_layer;
     r->motion_layer = desc->motion_layer;
@@ -160,6 +162,8 @@ enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)
     enum ag_result checked = size_check(__func__, context, width, height);
     if (checked != AG_OK) return checked;
     r->rendered = 0;
+    r->width = width;
+    r->height = height;
     renderer_enter(r);
     r->sized = frame_resize(r->frame, (uint32_t)width, (uint32_t)height) &&
                gi_resize(r->gi, (uint32_t)width, (uint32_t)height);

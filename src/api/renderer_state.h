@@ -29,7 +29,8 @@ struct ag_renderer {
     int recorded_count;
     uint32_t client; // of the device: gpu_client_add
     bool indirect_layer, display_layer, motion_layer;
-    bool sized;        // the last resize succeeded
+    int width, height; // of the last resize
+    bool sized;        // it succeeded
     bool said_limit;   // the warning about too many lights was logged
     uint64_t rendered; // frames since the last resize
 };

@@ -209,7 +209,8 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     if (input->pose->scene != f->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
     f->needs =
-        (indirect ? indirect->needs : 0) | (input->want_motion_layer ? FRAME_NEEDS_MOTION : 0);
+        (indirect ? indirect->needs : 0) |
+        (input->want_motion_layer || f->pinned >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0);
     const uint32_t gbuffer_layers = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
                                     (f->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0);
     f->prepared = frame_make_layers(f, wanted_layers(input, f->needs, f->scene.has_dielectrics)) &&
@@ -397,6 +398,7 @@ void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input
     emitters_update(&f->emitters, input->pose);
     frame_begin(f, cmd, input);
     scene_gpu_update(&f->scene, cmd, input->pose, f->camera_cut);
+    frame_clear_pinned(f, cmd);
     record_gbuffer(f, cmd);
     record_shadows(f, cmd);
     record_direct(f, cmd);

@@ -148,6 +148,10 @@ bool frame_prepare(struct frame *frame, const struct frame_input *input,
 // Records the whole frame. Cannot fail, does not allocate.
 void frame_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
                   const struct frame_indirect *indirect);
+// Keeps a layer, and creates it if there is a size, whether or not a technique writes it: without
+// one, frames clear it to a neutral value (visibility 1, else 0). Until the next resize its image
+// stays the same.
+bool frame_pin_layer(struct frame *frame, enum frame_layer layer);
 // Empty handle if the layer was not requested.
 gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer);
 // Scale of the newest recorded frame: scaled = physical × scale.

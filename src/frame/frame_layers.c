@@ -26,29 +26,53 @@ static const struct layer table[FRAME_LAYER_COUNT] = {
     [FRAME_DISPLAY] = { "frame.display", GPU_RGBA8, GPU_SAMPLED | GPU_STORAGE },
 };
 
+static bool make_layer(struct frame *frame, int l)
+{
+    if (frame->layers[l].id) return true;
+    struct gpu_image_desc desc = {
+        .name = table[l].name,
+        .dimension = GPU_2D,
+        .format = table[l].format,
+        .width = frame->width,
+        .height = frame->height,
+        .usage = table[l].usage,
+    };
+    return gpu_image_create(frame->gpu, &desc, &frame->layers[l]);
+}
+
 bool frame_make_layers(struct frame *frame, uint32_t wanted)
 {
+    frame->written = wanted;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
-        if (!(wanted >> l & 1u)) {
+        if (!((wanted | frame->pinned) >> l & 1u))
             gpu_image_destroy(frame->gpu, &frame->layers[l]);
-            continue;
-        }
-        if (frame->layers[l].id) continue;
-        struct gpu_image_desc desc = {
-            .name = table[l].name,
-            .dimension = GPU_2D,
-            .format = table[l].format,
-            .width = frame->width,
-            .height = frame->height,
-            .usage = table[l].usage,
-        };
-        if (!gpu_image_create(frame->gpu, &desc, &frame->layers[l])) return false;
+        else if (!make_layer(frame, l))
+            return false;
     }
     return true;
 }
 
+bool frame_pin_layer(struct frame *frame, enum frame_layer layer)
+{
+    if ((unsigned)layer >= FRAME_LAYER_COUNT) return false;
+    frame->pinned |= 1u << layer;
+    return frame->width == 0 || make_layer(frame, (int)layer);
+}
+
+void frame_clear_pinned(struct frame *frame, struct gpu_cmd *cmd)
+{
+    const uint32_t unwritten = frame->pinned & ~frame->written;
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
+        const float value = l == FRAME_VISIBILITY ? 1.0f : 0.0f;
+        if (unwritten & ~frame->neutral & 1u << l)
+            gpu_clear_image(cmd, frame->layers[l], (const float[4]){ value, value, value, value });
+    }
+    frame->neutral = unwritten;
+}
+
 void frame_destroy_layers(struct frame *frame)
 {
+    frame->neutral = 0;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) gpu_image_destroy(frame->gpu, &frame->layers[l]);
 }
 

@@ -36,6 +36,9 @@ struct frame {
     struct exposure exposure;
     struct composite composite;
     gpu_image layers[FRAME_LAYER_COUNT];
+    uint32_t pinned;       // bit l: layer l, by frame_pin_layer
+    uint32_t written;      // set by frame_prepare: layers that passes or techniques write
+    uint32_t neutral;      // pinned layers that have their neutral value
     gpu_buffer ggx_albedo; // core/ggx_albedo.h
 
     // Set by frame_prepare.
@@ -65,6 +68,7 @@ struct frame {
 // frame_layers.c
 bool frame_make_layers(struct frame *frame, uint32_t wanted); // bit l: layer l; destroys others
 void frame_destroy_layers(struct frame *frame);
+void frame_clear_pinned(struct frame *frame, struct gpu_cmd *cmd); // those that nothing writes
 
 // frame_report.c
 bool reports_init(struct frame *frame);

@@ -54,14 +54,15 @@ static void reset_shared(struct gpu *gpu)
     }
 }
 
-// Transitions shared images to a single layout, which gpu_image_handle returns.
+// Transitions shared images to the layout that gpu_image_handle returns.
 static void unify_shared(struct gpu_cmd *cmd)
 {
     struct gpu *gpu = cmd->gpu;
     hazard_next_op(cmd);
     for (uint32_t i = 0; i < gpu->images.count; i++) {
         struct image *image = gpu->images.objects[i];
-        if (!image || !image->shared || image->whole) continue;
+        if (!image || !image->shared || image->zero_pending) continue;
+        if (image->whole && image->hazards[0].layout == hazard_shader_layout(image)) continue;
         struct range range = image_whole(image);
         hazard_image(cmd, image, &range,
                      &(struct access){ .stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,

@@ -128,10 +128,17 @@ const struct gpu_image_desc *gpu_image_info(const struct gpu *gpu, gpu_image ima
 // gpu_image_handle.
 bool gpu_image_wrap(struct gpu *gpu, const struct gpu_image_desc *desc, void *vk_image,
                     uint32_t layout, gpu_image *out);
-// The VkImage, and its VkImageLayout at the end of the newest frame; it must have this layout again
-// when the next frame begins. From now on each frame waits for all earlier submissions, since the
-// caller may use the image between frames; the caller waits for the frame. NULL: no such image.
+// The VkImage, and its VkImageLayout at the end of each frame; it must have this layout again when
+// the next frame begins. From now on each frame waits for all earlier submissions, since the caller
+// may use the image between frames; the caller waits for the frame. NULL: no such image.
 void *gpu_image_handle(const struct gpu *gpu, gpu_image image, uint32_t *layout);
+struct gpu_image_handles {
+    void *image, *view;             // VkImage, VkImageView of all of it
+    uint32_t format, usage, layout; // VkFormat, VkImageUsageFlags, VkImageLayout
+};
+// The same for a caller that binds the image before the first frame, too: it is brought into that
+// layout now, a new one zeroed. false: no such image, or the device is lost.
+bool gpu_image_share(struct gpu *gpu, gpu_image image, struct gpu_image_handles *out);
 
 enum gpu_buffer_usage {
     GPU_BUFFER_STORAGE = 1,

@@ -84,6 +84,18 @@ static bool check_desc(struct gpu *gpu, const struct gpu_image_desc *d)
     return check_shape(gpu, d);
 }
 
+VkImageUsageFlags image_usage(const struct gpu_image_desc *d)
+{
+    VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if (d->usage & GPU_SAMPLED) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+    if (d->usage & GPU_STORAGE) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+    if (d->usage & GPU_ATTACHMENT) {
+        usage |= d->format == GPU_D32F ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                       : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    }
+    return usage;
+}
+
 static VkImageCreateInfo create_info(const struct gpu_image_desc *d)
 {
     bool volume = d->dimension == GPU_3D;
@@ -96,19 +108,13 @@ static VkImageCreateInfo create_info(const struct gpu_image_desc *d)
         .arrayLayers = volume ? 1 : d->depth,
         .samples = VK_SAMPLE_COUNT_1_BIT,
         .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        .usage = image_usage(d),
         .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
     };
     if (d->dimension == GPU_CUBE || d->dimension == GPU_CUBE_ARRAY) {
         info.flags |= VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
     }
     if (volume && d->usage & GPU_ATTACHMENT) info.flags |= VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
-    if (d->usage & GPU_SAMPLED) info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
-    if (d->usage & GPU_STORAGE) info.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-    if (d->usage & GPU_ATTACHMENT) {
-        info.usage |= d->format == GPU_D32F ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
-                                            : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    }
     return info;
 }
 
@@ -245,7 +251,7 @@ void *gpu_image_handle(const struct gpu *gpu, gpu_image handle, uint32_t *layout
     struct image *image = image_get(gpu, handle);
     if (!image) return NULL;
     image->shared = true;
-    if (layout) *layout = (uint32_t)image->hazards[0].layout;
+    if (layout) *layout = (uint32_t)hazard_shader_layout(image);
     return (void *)image->handle;
 }
 

@@ -153,6 +153,7 @@ struct sampler {
 };
 
 struct image *image_get(const struct gpu *gpu, gpu_image image);
+VkImageUsageFlags image_usage(const struct gpu_image_desc *desc);
 VkImageView image_view(struct gpu *gpu, struct image *image, VkImageViewType type,
                        const struct range *range);
 static inline struct range image_whole(const struct image *image)

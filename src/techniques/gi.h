@@ -40,10 +40,10 @@ void gi_invalidate(struct gi *gi, uint32_t changes);
 // techniques, or changes options that need gi_create (their effect is stronger than INVALIDATE).
 bool gi_set_options(struct gi *gi, const struct gi_spec *spec);
 // The running term that continues as this one of another spec, since set_options suffices; -1: the
-// technique is created anew.
+// technique is created again.
 int gi_continues(const struct gi *gi, const struct gi_spec *spec, int term);
 // Exchanges the running stack for that of another spec; `bakes` has those of the terms created
-// anew. A debug view ends unless its technique stays. false: nothing changed.
+// again. A debug view ends unless its technique stays. false: nothing changed.
 bool gi_change(struct gi *gi, const struct gi_spec *spec, const struct gi_bakes *bakes,
                const struct scene_pose *pose);
 struct frame_indirect gi_hook(struct gi *gi); // refers to gi

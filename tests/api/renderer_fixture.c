@@ -55,7 +55,7 @@ struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adop
            0);
     struct ag_device_desc device;
     ag_device_desc_default(&device);
-    device.validation = !adopt;
+    device.validation = !adopt || ((const struct own_device *)adopt->user)->validation;
     device.adopt = adopt;
     assert_int_equal(ag_device_create(s.context, &device, &s.device), AG_OK);
     assert_int_equal(ag_scene_load(s.context, "@cornell:light=point", &s.scene), AG_OK);

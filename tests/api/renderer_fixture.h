@@ -24,8 +24,8 @@ extern char fixture_last_warning[512];
 struct ag_device_adopt fixture_lend(struct own_device *own);
 struct ag_context *fixture_context(void);
 struct ag_renderer_desc fixture_renderer_desc(const char *gi);
-// Before the first frame. Uses the device in `adopt` (validated by its owner), or a new one if
-// NULL.
+// Before the first frame. Uses the device in `adopt` (validated if the struct own_device of
+// fixture_lend is), or a new one if NULL.
 struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adopt *adopt);
 // Fails the test if validation logged a message.
 void fixture_close(struct renderer_fixture *fixture);

@@ -111,7 +111,7 @@ TEST(a_null_object_is_refused)
     CHECK_REFUSED(NULL, ag_renderer_wait(NULL));
     CHECK_REFUSED(NULL, ag_renderer_read(NULL, "color", &image));
     assert_null(image);
-    CHECK_REFUSED(NULL, ag_renderer_layer_handle(NULL, "color", NULL, NULL, NULL));
+    CHECK_REFUSED(NULL, ag_renderer_layer_handle(NULL, "color", NULL));
     CHECK_REFUSED(NULL, ag_renderer_exposure(NULL, &ev));
     CHECK_REFUSED(NULL, ag_renderer_finished(NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_set_debug_view(NULL, NULL));

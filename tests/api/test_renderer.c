@@ -368,13 +368,10 @@ TEST(an_adopted_device_renders_the_same_and_its_queue_is_locked)
     struct ag_image *color = fixture_read(&s, "color");
     CHECK(equal(color, expected));
     assert_int_equal(own.held, 0);
-    void *image = NULL;
-    uint32_t layout = 0;
-    float scale = 0;
-    assert_int_equal(ag_renderer_layer_handle(s.renderer, "irradiance", &image, &layout, &scale),
-                     AG_OK);
-    CHECK(image != NULL && scale > 0);
-    assert_int_equal(ag_renderer_layer_handle(s.renderer, "position", &image, &layout, &scale),
+    struct ag_layer_handle layer;
+    assert_int_equal(ag_renderer_layer_handle(s.renderer, "irradiance", &layer), AG_OK);
+    CHECK(layer.vk_image != NULL && layer.scale > 0);
+    assert_int_equal(ag_renderer_layer_handle(s.renderer, "position", &layer),
                      AG_ERROR_UNSUPPORTED);
     ag_image_destroy(s.context, color);
     fixture_close(&s);

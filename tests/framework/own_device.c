@@ -72,7 +72,7 @@ static void create_device(struct own_device *own, bool push_descriptors)
 
 void own_device_open(struct own_device *own, uint32_t flags)
 {
-    *own = (struct own_device){ 0 };
+    *own = (struct own_device){ .validation = flags & OWN_DEVICE_VALIDATION };
     create_instance(own, flags & OWN_DEVICE_VALIDATION);
     uint32_t count = 1;
     vkEnumeratePhysicalDevices(own->instance, &count, &own->physical);

@@ -1,6 +1,8 @@
 // A host program's Vulkan device, created with plain vulkan.h, for tests of external devices.
 #pragma once
 
+#include <stdbool.h>
+
 #include <vulkan/vulkan.h>
 
 struct own_device {
@@ -10,6 +12,7 @@ struct own_device {
     VkQueue queue;
     VkCommandPool pool;
     uint32_t family;
+    bool validation;
     int locks, held; // queue lock: times taken, times held now
 };
 
