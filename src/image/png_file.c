@@ -139,6 +139,9 @@ static bool job_read(struct png_job *job)
     png_set_user_limits(job->png, IMAGE_MAX_SIZE, IMAGE_MAX_SIZE);
     png_set_chunk_malloc_max(job->png, PNG_CHUNK_BYTES_MAX);
     png_set_chunk_cache_max(job->png, PNG_CHUNKS_MAX);
+    // Of the ancillary chunks tRNS alone is read: texts and profiles take memory, and time to
+    // unpack.
+    png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(job->png, job->info);
     request_rgb(job->png, job->info);
     if (!job_allocate_rows(job, png_get_rowbytes(job->png, job->info),

@@ -184,3 +184,32 @@ TEST(an_interlaced_file_gives_the_same_image)
     image_finish(&plain, test_host());
     image_finish(&interlaced, test_host());
 }
+
+static size_t largest; // block asked for
+
+static void *record_largest(void *user, void *old, size_t bytes)
+{
+    (void)user;
+    if (bytes > largest) largest = bytes;
+    if (bytes > 0) return realloc(old, bytes);
+    free(old);
+    return NULL;
+}
+
+// A file of 57 bytes claimed a text of 64 MB, which was allocated and cleared.
+TEST(ancillary_chunks_are_not_read)
+{
+    static const uint8_t start[] = { 0x89, 'P', 'N',  'G',  '\r', '\n', 0x1a, '\n', 0,
+                                     0,    0,   13,   'I',  'H',  'D',  'R',  0,    0,
+                                     0,    1,   0,    0,    0,    1,    8,    0,    0,
+                                     0,    0,   0x3a, 0x7e, 0x9b, 0x55, 0x03, 0xff, 0xff,
+                                     0xf0, 'z', 'T',  'X',  't',  'a',  0,    0,    'x' };
+    struct host host = { .reallocate = record_largest };
+    const char *path = test_path("text.png");
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fwrite(start, sizeof start, 1, file) == 1 && fclose(file) == 0);
+    struct image image;
+    largest = 0;
+    CHECK(!png_read(&host, path, &image));
+    CHECK(largest > 0 && largest < 1 << 20);
+}
