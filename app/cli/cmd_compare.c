@@ -2,12 +2,22 @@
 #include "commands.h"
 #include "cli/compare/compare.h"
 #include "json.h"
+#include "memory.h"
 #include "cli/compare/report_page.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 static const char REPORT[] = "report.json";
+
+// The reference with its eight layers; depth, mask, error maps and the planes of ssim and flip; of
+// each method four layers. `more`: besides the images.
+static enum status check_memory(const struct comparison *c, uint64_t more)
+{
+    const struct arguments *a = c->arguments;
+    const uint64_t bytes = tracing_bytes_per_pixel(8) + 96 + 64 * (uint64_t)c->method_count;
+    return memory_check_size("compare", a->positional[0], a->width, a->height, bytes, more);
+}
 
 // Detects wrong usage and unwritable folders before any file or device is opened.
 static enum status plan(struct comparison *c)
@@ -16,9 +26,18 @@ static enum status plan(struct comparison *c)
     char folder[PATH_SIZE];
     output_default(a->positional[0], "-compare", folder);
     enum status status = methods_plan(c);
+    if (status == DONE) status = check_memory(c, 0);
     if (status == DONE)
         status = folder_plan(&c->folder, a->output ? a->output : folder, REPORT, files_are_named);
     return status;
+}
+
+// A software device has its images in main memory.
+static enum status check_memory_with_device(const struct comparison *c)
+{
+    struct ag_device_info device;
+    ag_device_get_info(c->device, &device);
+    return device.software ? check_memory(c, c->gpu_bytes) : DONE;
 }
 
 static enum status open_device(struct comparison *c)
@@ -40,6 +59,7 @@ static enum status prepare(struct comparison *c)
     if (status == DONE) status = session_camera(&c->session, a->time_s, &c->camera);
     if (status == DONE) status = reference_begin(c);
     if (status == DONE) status = open_device(c);
+    if (status == DONE) status = check_memory_with_device(c);
     if (status == DONE) session_say(&c->session);
     return status;
 }

@@ -3,6 +3,7 @@
 #include "images.h"
 #include "interrupt.h"
 #include "json.h"
+#include "memory.h"
 #include "output.h"
 #include "values.h"
 
@@ -89,6 +90,30 @@ static enum status check_sizes(const struct arguments *arguments, const struct p
     return fail("cannot compare %s with %s: %dx%d and %dx%d differ in size",
                 arguments->positional[0], arguments->positional[1], a->width, a->height, b->width,
                 b->height);
+}
+
+// Two images of at most 16 bytes a pixel, tone mapped copies of both, and the planes of ssim and
+// flip, which are freed one after the other.
+enum { BYTES_PER_PIXEL = 96 };
+
+static enum status check_memory(struct session *session)
+{
+    const struct arguments *a = session->arguments;
+    char what[2 * PATH_SIZE + 64];
+    uint64_t pixels = 0;
+    for (int i = 0; i < 2; i++) {
+        int width = 0, height = 0;
+        const enum ag_result result =
+            ag_image_read_size(session->context, a->positional[i], &width, &height);
+        if (result != AG_OK) {
+            fail_library(session->context, result);
+            return FAILED;
+        }
+        if ((uint64_t)width * (uint64_t)height > pixels)
+            pixels = (uint64_t)width * (uint64_t)height;
+    }
+    snprintf(what, sizeof what, "compare %s with %s", a->positional[0], a->positional[1]);
+    return memory_check(pixels * BYTES_PER_PIXEL, what, "compare smaller images, or a part");
 }
 
 static enum status load_pair(struct session *session, struct pair *pair)
@@ -187,6 +212,7 @@ static enum status diff(const struct arguments *arguments)
     enum status status = check_usage(arguments);
     if (status == DONE && arguments->map) status = output_check(arguments->map);
     if (status == DONE) status = session_begin(&session, arguments);
+    if (status == DONE) status = check_memory(&session);
     if (status == DONE) status = load_pair(&session, &pair);
     if (status == DONE) status = compare(&session, &pair);
     ag_image_destroy(session.context, pair.a);

@@ -3,6 +3,7 @@
 #include "images.h"
 #include "interrupt.h"
 #include "json.h"
+#include "memory.h"
 #include "tracing.h"
 #include "values.h"
 
@@ -37,8 +38,11 @@ static enum status plan(struct job *job)
     bool exr = has_extension(job->path, "exr");
     if (a->resume && !exr)
         return wrong_usage("cannot use --resume with %s: only an .exr can be resumed", job->path);
-    return output_plan(a, job->path, ag_reference_layer_name, exr ? tracing_kept_layers : "color",
-                       &job->output);
+    enum status status = output_plan(a, job->path, ag_reference_layer_name,
+                                     exr ? tracing_kept_layers : "color", &job->output);
+    return status == DONE ? memory_check_size("trace", a->positional[0], a->width, a->height,
+                                              tracing_bytes_per_pixel(job->output.layer_count), 0)
+                          : status;
 }
 
 static enum status prepare(struct job *job)

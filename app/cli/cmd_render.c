@@ -1,6 +1,7 @@
 // afterglow render: frames of a scene, without a window.
 #include "baking.h"
 #include "commands.h"
+#include "memory.h"
 #include "output.h"
 #include "statistics.h"
 #include "values.h"
@@ -14,6 +15,7 @@ struct job {
     struct session session;
     struct ag_device *device;
     struct ag_renderer *renderer;
+    uint64_t gpu_bytes; // estimate
     struct bakes bakes;
     struct output output;
     struct statistics statistics;
@@ -85,6 +87,7 @@ static enum status check_usage(struct job *job)
     if (result != AG_OK) return fail_library(job->session.context, result);
     detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi, desc.width,
            desc.height, (double)bytes * 1e-6);
+    job->gpu_bytes = bytes;
     return DONE;
 }
 
@@ -99,6 +102,18 @@ static enum status check_outputs(const struct job *job)
 }
 
 // ---- rendering
+
+// Layers of 4 channels, and the image in the file's encoding. A software device has its images in
+// main memory too.
+static enum status check_memory(const struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    struct ag_device_info device;
+    ag_device_get_info(job->device, &device);
+    return memory_check_size("render", a->positional[0], a->width, a->height,
+                             16 + 16 * (uint64_t)job->output.layer_count,
+                             device.software ? job->gpu_bytes : 0);
+}
 
 static enum status prepare(struct job *job)
 {
@@ -118,7 +133,8 @@ static enum status prepare(struct job *job)
         fail_library(context, result);
         return FAILED; // a missing device is no wrong usage
     }
-    status = bakes_prepare(&job->bakes, &job->session, a->gi);
+    status = check_memory(job);
+    if (status == DONE) status = bakes_prepare(&job->bakes, &job->session, a->gi);
     if (status != DONE) return status;
     struct ag_renderer_desc desc;
     renderer_desc(job, &desc);

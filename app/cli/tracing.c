@@ -26,6 +26,12 @@ static int samples_of(const struct tracing *t)
     return info.samples;
 }
 
+// Eighteen sums of 8 bytes, the tone mapped image, and 4 channels of 4 bytes for each layer.
+uint64_t tracing_bytes_per_pixel(int layer_count)
+{
+    return 18 * 8 + 16 + 16 * (uint64_t)layer_count;
+}
+
 enum status tracing_begin(struct tracing *t, struct session *session,
                           const struct ag_camera *camera, int wanted)
 {

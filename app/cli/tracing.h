@@ -15,6 +15,8 @@ struct tracing {
 // Layers of a resumable EXR, and color.
 extern const char tracing_kept_layers[];
 
+// Main memory of tracing and of writing that many layers.
+uint64_t tracing_bytes_per_pixel(int layer_count);
 // Requires a loaded and lit scene. The reference has no samples yet.
 enum status tracing_begin(struct tracing *tracing, struct session *session,
                           const struct ag_camera *camera, int wanted);

@@ -40,6 +40,10 @@ AG_API enum ag_result ag_image_write_png(struct ag_context *context, const char 
 /// Untrusted input. Former names of reference layers are accepted with a warning.
 AG_API enum ag_result ag_image_read(struct ag_context *context, const char *path, const char *layer,
                                     struct ag_image **out);
+/// Width and height of such a file, without reading its pixels: to estimate the memory that
+/// ag_image_read takes, which is 16 bytes a pixel and twice the file.
+AG_API enum ag_result ag_image_read_size(struct ag_context *context, const char *path, int *width,
+                                         int *height);
 /// Copies the text attribute `name` of an EXR file to `out`, truncated to `size` bytes; "" if
 /// absent.
 AG_API enum ag_result ag_image_read_attribute(struct ag_context *context, const char *path,

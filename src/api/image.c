@@ -142,6 +142,24 @@ enum ag_result ag_image_read(struct ag_context *context, const char *path, const
     return api_give_image(context, ok, &image, out);
 }
 
+enum ag_result ag_image_read_size(struct ag_context *context, const char *path, int *width,
+                                  int *height)
+{
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE(context, path && path[0], "path is empty");
+    AG_REQUIRE(context, width && height, "width or height is NULL");
+    char extension[16];
+    file_extension(path, extension);
+    struct host *host = &context->host;
+    *width = *height = 0;
+    if (strcmp(extension, "exr") == 0)
+        return api_done(context, exr_read_size(host, path, width, height));
+    if (strcmp(extension, "png") == 0)
+        return api_done(context, png_read_size(host, path, width, height));
+    return api_done(context, host_fail(host, FAIL_UNSUPPORTED,
+                                       "cannot read %s: images are .exr or .png", path));
+}
+
 enum ag_result ag_image_read_attribute(struct ag_context *context, const char *path,
                                        const char *name, char *out, size_t size)
 {

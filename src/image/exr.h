@@ -23,6 +23,8 @@ bool exr_write(struct host *host, const char *path, const struct exr_layer *laye
 // those present. Vectors (X.X X.Y X.Z) and depths (X.Z) of other programs are layers too. Untrusted
 // input.
 bool exr_read(struct host *host, const char *path, const char *layer, struct image *out);
+// Size of the data window, from the header.
+bool exr_read_size(struct host *host, const char *path, int *width, int *height);
 // Names of all layers, '\n'-separated, owned by the caller; NULL on failure.
 char *exr_layer_names(struct host *host, const char *path);
 // The text attribute `name`, owned by the caller; NULL when it is absent (not a failure) or the

@@ -341,6 +341,19 @@ fail:
     return false;
 }
 
+bool exr_read_size(struct host *host, const char *path, int *width, int *height)
+{
+    struct exr_file file;
+    exr_attr_box2i_t window;
+    const bool ok = exr_file_open(&file, host, path) && get_window(&file, &window);
+    if (ok) {
+        *width = window.max.x - window.min.x + 1;
+        *height = window.max.y - window.min.y + 1;
+    }
+    exr_file_finish(&file);
+    return ok;
+}
+
 char *exr_layer_names(struct host *host, const char *path)
 {
     struct exr_file file;

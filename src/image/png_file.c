@@ -176,12 +176,37 @@ static bool job_decode(const struct png_job *job, struct image *out)
     return true;
 }
 
+static bool is_png(const struct file_bytes *bytes)
+{
+    return bytes->size >= 8 && png_sig_cmp(bytes->data, 0, 8) == 0;
+}
+
+// The first chunk is IHDR, which begins with width and height.
+bool png_read_size(struct host *host, const char *path, int *width, int *height)
+{
+    enum { WIDTH_AT = 16, HEIGHT_AT = 20, END = 24 };
+    struct file_bytes bytes;
+    if (!file_read(host, path, 0, &bytes)) return false;
+    const bool whole = is_png(&bytes) && bytes.size >= END;
+    const uint32_t w = whole ? png_get_uint_32(bytes.data + WIDTH_AT) : 0;
+    const uint32_t h = whole ? png_get_uint_32(bytes.data + HEIGHT_AT) : 0;
+    file_bytes_finish(host, &bytes);
+    if (w < 1 || h < 1 || w > IMAGE_MAX_SIZE || h > IMAGE_MAX_SIZE)
+        return host_fail(host, FAIL_FORMAT,
+                         whole ? "cannot read %s: it is empty, or larger than 16384x16384"
+                               : "cannot read %s: not a PNG file",
+                         path);
+    *width = (int)w;
+    *height = (int)h;
+    return true;
+}
+
 bool png_read(struct host *host, const char *path, struct image *out)
 {
     *out = (struct image){ 0 };
     struct png_job job = { .host = host, .kind = FAIL_FORMAT };
     if (!file_read(host, path, 0, &job.bytes)) return false;
-    if (job.bytes.size < 8 || png_sig_cmp(job.bytes.data, 0, 8) != 0) {
+    if (!is_png(&job.bytes)) {
         host_fail(host, FAIL_FORMAT, "cannot read %s: not a PNG file", path);
         goto fail;
     }

@@ -9,6 +9,8 @@
 bool png_write(struct host *host, const char *path, const struct image *image);
 // 8 or 16 bits of any colour type, decoded to 3 or 4 linear channels. Untrusted input.
 bool png_read(struct host *host, const char *path, struct image *out);
+// From the header; the rest of the file may be wrong.
+bool png_read_size(struct host *host, const char *path, int *width, int *height);
 
 float srgb_encode(float linear);
 float srgb_decode(float encoded);

@@ -228,3 +228,25 @@ TEST(links_are_followed_unless_in_the_named_folder)
         ag_context_destroy(context);
     }
 }
+
+TEST(the_size_of_an_image_is_known_before_it_is_read)
+{
+    struct ag_context *context = NULL;
+    struct ag_image *image = NULL;
+    int width = 0, height = 0;
+    CHECK(ag_context_create(NULL, &context) == AG_OK);
+    CHECK(ag_image_create(context, 5, 3, 3, &image) == AG_OK);
+    const struct ag_image_layer layer = { "color", image };
+    const char *const paths[] = { test_path("size.png"), test_path("size.exr") };
+    CHECK(ag_image_write_png(context, paths[0], image) == AG_OK);
+    CHECK(ag_image_write_exr(context, paths[1], &layer, 1, NULL, 0) == AG_OK);
+    for (int i = 0; i < 2; i++) {
+        CHECK(ag_image_read_size(context, paths[i], &width, &height) == AG_OK);
+        CHECK(width == 5 && height == 3);
+    }
+    CHECK(ag_image_read_size(context, test_path("none.png"), &width, &height) == AG_ERROR_FILE);
+    CHECK(ag_image_read_size(context, "a.jpg", &width, &height) == AG_ERROR_UNSUPPORTED);
+    CHECK(ag_image_read_size(context, paths[0], NULL, &height) == AG_ERROR_ARGUMENT);
+    ag_image_destroy(context, image);
+    ag_context_destroy(context);
+}

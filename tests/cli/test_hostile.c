@@ -129,3 +129,40 @@ TEST(links_in_the_cache_are_not_followed)
     CHECK(S_ISREG(cached.st_mode));
     unsetenv("AFTERGLOW_CACHE");
 }
+
+// ---- memory
+
+static void check_refused_for_memory(const struct run *result, const char *what)
+{
+    check_one_error_line(result);
+    CHECK(strstr(result->err, what) &&
+          strstr(result->err, " GB of memory, this machine allows 4."));
+    CHECK(strstr(result->err, "; "));
+}
+
+// A limit of the address space stands for a small machine.
+TEST(what_does_not_fit_into_memory_is_refused_beforehand)
+{
+    static const uint8_t png[] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,  0,
+                                   0,    13,  'I', 'H', 'D',  'R',  0,    0,    64, 0,
+                                   0,    0,   64,  0,   8,    2,    0,    0,    0 };
+    require_device();
+    char image[1024];
+    snprintf(image, sizeof image, "%s", test_path("claims.png")); // 16384x16384
+    write_file(image, (const char *)png, sizeof png);
+    struct rlimit before, small;
+    assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+    small = (struct rlimit){ (rlim_t)4 << 30, before.rlim_max };
+    assert_int_equal(setrlimit(RLIMIT_AS, &small), 0);
+    const char *out = test_path("large.exr"), *folder = test_path("large");
+    check_refused_for_memory(
+        run_expect(1, "render @cornell --size 16384x16384 --quiet -o", out, NULL), "16384x16384");
+    check_refused_for_memory(run_expect(1, "reference @cornell --size 16384x16384 -o", out, NULL),
+                             "16384x16384");
+    check_refused_for_memory(run_expect(1, "compare @cornell --size 16384x16384 -o", folder, NULL),
+                             "16384x16384");
+    check_refused_for_memory(run_expect(1, "diff", image, image, NULL), "claims.png");
+    run_expect(0, "render @cornell --size 32x32 -o", out, NULL);
+    assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
+    CHECK(file_exists(out) && !file_exists(folder));
+}

@@ -51,6 +51,7 @@ struct comparison {
     struct ag_device *device;
     float exposure_ev; // of all images: --exposure, or the reference's
     struct method methods[MAX_METHODS];
+    uint64_t gpu_bytes; // the largest estimate of a method
     int method_count;
     struct ag_image *depth; // of the first method
     struct reference reference;

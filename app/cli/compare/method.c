@@ -53,6 +53,7 @@ enum status methods_plan(struct comparison *c)
         enum ag_result result =
             ag_renderer_estimate_memory(c->session.context, &desc, a->light_count, &bytes);
         if (result != AG_OK) return fail_library(c->session.context, result);
+        if (bytes > c->gpu_bytes) c->gpu_bytes = bytes;
         detail("%s at %dx%d takes at most %.1f MB on the GPU, without the scene", desc.gi,
                desc.width, desc.height, (double)bytes * 1e-6);
     }
