@@ -65,6 +65,27 @@ static void gather_chain(const struct chain *chain, int block, int texel,
     }
 }
 
+// SH coefficients of irradiance by normal at a point of `block`, in the frame of the point.
+static void gather_probe(const struct chain *chain, int block, struct mrt_point at,
+                         const struct mrt_rays *rays, const struct matrix_f32 *radiosity,
+                         double out[9][LIGHTS])
+{
+    struct mrt_hit hit;
+    memset(out, 0, 9 * sizeof *out);
+    for (int i = 0; i < rays->count; i++) {
+        vec3s ray = glms_mat3_mulv(at.frame, rays->direction[i]);
+        if (!trace_chain(chain, block, at.position, ray, &hit)) continue;
+        for (int l = 0; l < LIGHTS; l++) {
+            double sum = 0.0;
+            for (int k = 0; k < hit.texels; k++)
+                sum +=
+                    (double)(hit.weight[k] *
+                             radiosity->at[(size_t)l * radiosity->stride + (size_t)hit.texel[k]]);
+            for (int q = 0; q < 9; q++) out[q][l] += (double)rays->weight[9 * i + q] * sum;
+        }
+    }
+}
+
 // Rows: lights; columns: texels of block 0.
 static struct matrix_f32 light_block(const struct chain *chain)
 {
@@ -159,6 +180,36 @@ static void block_errors(const struct mrt_dictionary *x, const struct chain *cha
     matrix_f32_finish(test_host(), &irradiance);
 }
 
+// The same over all coefficients of the probes.
+static void probe_errors(const struct mrt_dictionary *x, const struct chain *chain, int block,
+                         const struct matrix_f32 *light, const struct mrt_rays *rays,
+                         const struct matrix_f32 *radiosity, double errors[LIGHTS])
+{
+    const int p = x->options.block_probes;
+    struct mrt_shape entered = mrt_entered_shape((enum mrt_maze)x->options.maze, RESOLUTION, 0);
+    mat3s frame = mrt_block_from_entry(cube_opposite(chain->exit[block - 1]));
+    double difference[LIGHTS] = { 0 }, all[LIGHTS] = { 0 };
+    struct matrix_f32 r, irradiance;
+    multiply(&x->entered[0].t_r, light, &r);
+    multiply(&x->entered[0].u_rvol, &r, &irradiance);
+    for (int i = 0; i < p * p * p; i += 5) {
+        struct mrt_point at = mrt_gather_point(&entered, p, MRT_PROBE, i);
+        at = (struct mrt_point){ glms_mat3_mulv(frame, at.position), frame };
+        double exact[9][LIGHTS];
+        gather_probe(chain, block, at, rays, radiosity, exact);
+        for (int k = 0; k < 9 * LIGHTS; k++) {
+            double e = exact[k / LIGHTS][k % LIGHTS];
+            size_t row = (size_t)(9 * i + k / LIGHTS);
+            difference[k % LIGHTS] +=
+                pow((double)irradiance.at[row * LIGHTS + (size_t)(k % LIGHTS)] - e, 2.0);
+            all[k % LIGHTS] += e * e;
+        }
+    }
+    for (int l = 0; l < LIGHTS; l++) errors[l] = sqrt(difference[l] / all[l]);
+    matrix_f32_finish(test_host(), &r);
+    matrix_f32_finish(test_host(), &irradiance);
+}
+
 static int ascending(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
@@ -167,9 +218,10 @@ static int ascending(const void *a, const void *b)
 
 static void compare_chain(const struct mrt_dictionary *x, const struct chain *chain)
 {
-    struct mrt_rays rays;
+    struct mrt_rays rays, around;
     struct matrix_f32 radiosity = light_block(chain), light = leave_block(x, chain, &radiosity);
     CHECK(mrt_rays_init(test_host(), MRT_IRRADIANCE, 16384, &rays));
+    CHECK(mrt_rays_init(test_host(), MRT_PROBE, 16384, &around));
     for (int block = 1; block < chain->blocks; block++) {
         double errors[LIGHTS], mean;
         if (block > 1) pass_block(x, chain->exit[block - 2], chain->exit[block - 1], &light);
@@ -178,8 +230,14 @@ static void compare_chain(const struct mrt_dictionary *x, const struct chain *ch
         print_message("%s, distance %d: irradiance %.2e, error median %.3f, worst %.3f\n",
                       chain->name, block, mean, errors[LIGHTS / 2], errors[LIGHTS - 1]);
         CHECK(errors[LIGHTS / 2] < chain->bound[block - 1]);
+        probe_errors(x, chain, block, &light, &around, &radiosity, errors);
+        qsort(errors, LIGHTS, sizeof *errors, ascending);
+        print_message("    probes: error median %.3f, worst %.3f\n", errors[LIGHTS / 2],
+                      errors[LIGHTS - 1]);
+        CHECK(errors[LIGHTS / 2] < chain->bound[block - 1]);
     }
     mrt_rays_finish(test_host(), &rays);
+    mrt_rays_finish(test_host(), &around);
     matrix_f32_finish(test_host(), &radiosity);
     matrix_f32_finish(test_host(), &light);
 }

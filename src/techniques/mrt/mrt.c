@@ -18,6 +18,7 @@ static const struct option_row option_rows[] = {
 static const struct technique_debug_view debug_views[] = {
     { "blocks", "the block map over the scene: a colour for each block, squares for texels", NULL },
     { "direct", "radiosity of the texels that indirect light comes from", NULL },
+    { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
     { NULL, NULL, NULL },
 };
 
@@ -81,8 +82,7 @@ static bool mrt_load(void *state, const struct tensors *bake)
 {
     struct mrt *mrt = state;
     const struct mrt_dictionary_options options = dictionary_options(&mrt->options);
-    return mrt_dictionary_init(mrt->host, bake, &options, &mrt->dictionary) &&
-           (mrt->map.count == 0 || mrt_make_level(mrt));
+    return mrt_dictionary_init(mrt->host, bake, &options, &mrt->dictionary) && mrt_make_level(mrt);
 }
 
 static void mrt_set_options(void *state, const void *options)
@@ -112,10 +112,12 @@ static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct f
                                &(struct mrt_host_frame){
                                    .direct = mrt->runtime.buffers.direct,
                                    .irradiance = mrt->runtime.buffers.irradiance,
+                                   .radiosity = mrt->runtime.probes.radiosity,
                                    .bounces = mrt->options.bounces,
                                    .feedback = mrt->options.feedback,
                                    .radiance_scale = view->constants->radiance_scale,
                                });
+        mrt_record_coefficients(&mrt->runtime, cmd);
         return;
     }
     for (int i = 0; i < mrt->options.bounces; i++)
@@ -150,6 +152,14 @@ static void mrt_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_
                          strcmp(name, "blocks") == 0 ? MRT_VIEW_BLOCKS : MRT_VIEW_DIRECT, out);
 }
 
+static bool mrt_probes(void *state, struct probe_volume *out)
+{
+    const struct mrt *mrt = state;
+    if (!mrt->options.probes) return false;
+    *out = (struct probe_volume){ mrt->runtime.probes.volume, mrt->runtime.probes.grid };
+    return true;
+}
+
 static void mrt_destroy(void *state)
 {
     struct mrt *mrt = state;
@@ -182,7 +192,7 @@ const struct technique technique_mrt = {
     .title = "modular radiance transfer",
     .paper = "Loos 2015, Modular Radiance Transfer, ch. 3 and 4",
     .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | GATHERS_EMISSION,
+    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE,
     .bake_version = 3,
     .options = OPTION_TABLE(struct mrt_options, option_rows, NULL),
@@ -199,6 +209,7 @@ const struct technique technique_mrt = {
     .invalidate = mrt_invalidate,
     .record = mrt_record,
     .debug_view = mrt_debug_view,
+    .probes = mrt_probes,
     .destroy = mrt_destroy,
     .memory_estimate = mrt_memory_estimate,
 };

@@ -51,15 +51,22 @@ static void solve(struct mrt_host_solver *s, const struct mrt_host_frame *frame)
     s->solved = true;
 }
 
-static void upload(struct mrt_host_solver *s, struct gpu_cmd *cmd,
-                   const struct mrt_host_frame *frame)
+// In the scale of this frame. `direct` has been used and serves as memory.
+static void upload(struct mrt_host_solver *s, struct gpu_cmd *cmd, float rescale,
+                   const vec3s *values, gpu_buffer to)
 {
-    const size_t bytes = (size_t)s->texels * sizeof *s->radiosity;
+    const size_t bytes = (size_t)s->texels * sizeof *values;
+    for (int i = 0; i < s->texels; i++) s->direct[i] = glms_vec3_scale(values[i], rescale);
+    const struct gpu_binding data = gpu_transient(cmd, "light", s->direct, bytes);
+    gpu_copy_buffer(cmd, to, 0, data.buffer, data.offset, bytes);
+}
+
+static void upload_solution(struct mrt_host_solver *s, struct gpu_cmd *cmd,
+                            const struct mrt_host_frame *frame)
+{
     const float rescale = frame->radiance_scale / s->scale;
-    for (int i = 0; i < s->texels; i++)
-        s->radiosity[i] = glms_vec3_scale(s->irradiance[i], rescale);
-    const struct gpu_binding data = gpu_transient(cmd, "irradiance", s->radiosity, bytes);
-    gpu_copy_buffer(cmd, frame->irradiance, 0, data.buffer, data.offset, bytes);
+    upload(s, cmd, rescale, s->irradiance, frame->irradiance);
+    if (frame->radiosity.id) upload(s, cmd, rescale, s->radiosity, frame->radiosity);
 }
 
 void mrt_host_solver_record(struct mrt_host_solver *s, struct gpu_cmd *cmd,
@@ -70,7 +77,7 @@ void mrt_host_solver_record(struct mrt_host_solver *s, struct gpu_cmd *cmd,
         solve(s, frame);
         s->newest_scale = 0.0f;
     }
-    if (s->solved) upload(s, cmd, frame);
+    if (s->solved) upload_solution(s, cmd, frame);
     if (s->newest_scale != 0.0f) return; // a copy is under way
     gpu_readback_copy(cmd, &s->readback, 0, frame->direct, 0, bytes);
     s->newest_scale = frame->radiance_scale;

@@ -26,10 +26,11 @@ void mrt_host_solver_finish(struct mrt_host_solver *solver); // accepts zero
 
 struct mrt_host_frame {
     gpu_buffer direct, irradiance; // vec3 per texel
+    gpu_buffer radiosity;          // of the last bounce, for probes; none: id 0
     int bounces;
     bool feedback;
     float radiance_scale;
 };
-// Solves what has arrived, uploads it into `irradiance` and asks for `direct`.
+// Solves what has arrived, uploads it into `irradiance` and `radiosity` and asks for `direct`.
 void mrt_host_solver_record(struct mrt_host_solver *solver, struct gpu_cmd *cmd,
                             const struct mrt_host_frame *frame);

@@ -97,6 +97,9 @@ bool mrt_make_level(struct mrt *mrt)
 {
     const struct mrt_level_options options = { .max_depth = mrt->options.depth,
                                                .retrace = mrt->options.warp == MRT_WARP_RETRACE };
+    const struct mrt_runtime_options runtime = mrt_runtime_options_of(&mrt->options);
+    if (mrt->map.count == 0)
+        return mrt_runtime_init_empty(&mrt->runtime, mrt->host, mrt->gpu, &runtime);
     return mrt_level_init(mrt->host, &mrt->map, &mrt->dictionary, &options, &mrt->level) &&
            start_runtime(mrt) &&
            (mrt->options.solver == MRT_SOLVER_GPU ||

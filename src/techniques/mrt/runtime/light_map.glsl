@@ -9,9 +9,10 @@ layout(set = 0, binding = MRT_VECTOR_MAP_BINDING) uniform sampler2DArray vector_
 layout(constant_id = MRT_CONSTANT_VALUES) const uint VALUES = 1; // 4: by normal
 layout(constant_id = MRT_CONSTANT_PROBES) const bool PROBES = false;
 
-// A surface this near to a wall that it faces, in edges of the cell, is that wall.
-const float MRT_WALL_DISTANCE = 0.1;
-const float MRT_WALL_COSINE = 0.5;
+// A surface near to a wall that it faces is that wall: entirely up to the first distance (edges of
+// the cell) and from the second cosine, not at all beyond the others.
+const vec2 MRT_WALL_DISTANCE = vec2(0.1, 0.15);
+const vec2 MRT_WALL_COSINE = vec2(0.35, 0.65);
 
 vec3 light_map_uv(int tile, vec2 st)
 {
@@ -43,20 +44,23 @@ vec3 wall_irradiance(int tile, int face, vec3 cell, vec3 normal)
     return max(irradiance, vec3(0.0));
 }
 
-// −1: the surface lies on no wall.
-int wall_of(mrt_place place, vec3 normal)
+struct mrt_wall {
+    int face;
+    float share; // 0: the surface lies on no wall
+};
+
+mrt_wall wall_of(mrt_place place, vec3 normal)
 {
-    int nearest = -1;
-    float least = MRT_WALL_DISTANCE;
+    mrt_wall best = mrt_wall(-1, 0.0);
     for (int f = 0; f < 6; f++) {
+        if (block_table[place.block].tile[f] < 0) continue;
         float side = (f & 1) != 0 ? 1.0 : -1.0;
         float distance = 0.5 - side * place.cell[f / 2];
-        bool faces = -side * normal[f / 2] > MRT_WALL_COSINE;
-        if (!faces || distance > least || block_table[place.block].tile[f] < 0) continue;
-        least = distance;
-        nearest = f;
+        float share = smoothstep(MRT_WALL_COSINE[0], MRT_WALL_COSINE[1], -side * normal[f / 2]) *
+                      (1.0 - smoothstep(MRT_WALL_DISTANCE[0], MRT_WALL_DISTANCE[1], distance));
+        if (share > best.share) best = mrt_wall(f, share);
     }
-    return nearest;
+    return best;
 }
 
 // Inside a block a surface is projected onto the walls that face its way, weighed by squared
@@ -110,9 +114,14 @@ vec3 level_irradiance(vec3 position, vec3 normal)
     mrt_place place = locate_surface(position, normal);
     if (place.block < 0) return vec3(0.0);
     vec3 n = normal_in_cell(place, normal);
-    int face = wall_of(place, n);
-    if (face < 0) return PROBES ? bricks_irradiance(place, normal) : walls_irradiance(place, n);
-    return wall_irradiance(block_table[place.block].tile[face], face, place.cell, n);
+    mrt_wall wall = wall_of(place, n);
+    vec3 on_wall = vec3(0.0), inside = vec3(0.0);
+    if (wall.share > 0.0)
+        on_wall =
+            wall_irradiance(block_table[place.block].tile[wall.face], wall.face, place.cell, n);
+    if (wall.share < 1.0)
+        inside = PROBES ? bricks_irradiance(place, normal) : walls_irradiance(place, n);
+    return mix(inside, on_wall, wall.share);
 }
 
 #endif

@@ -176,19 +176,32 @@ bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     struct mrt_runtime_probes *p = &runtime->probes;
     if (!runtime->options.probes) return make_image(runtime->gpu, "bricks", 1, 1, 1, &p->bricks);
     const size_t rows = (size_t)input->map->count * rows_of_block(input);
-    const struct gpu_buffer_desc light = { "probe_light", rows * 3 * sizeof(float),
-                                           GPU_BUFFER_STORAGE };
+    const size_t texels = (size_t)input->atlas->texels, triple = 3 * sizeof(float);
+    const struct gpu_buffer_desc light = { "probe_light", rows * triple, GPU_BUFFER_STORAGE };
+    const struct gpu_buffer_desc radiosity = { "radiosity", texels * triple, GPU_BUFFER_STORAGE };
     return upload_tables(runtime, input) && gpu_buffer_create(runtime->gpu, &light, &p->light) &&
+           gpu_buffer_create(runtime->gpu, &radiosity, &p->radiosity) &&
            make_bricks(runtime, input) && make_volume(runtime, input) &&
            gpu_compute_pipeline_create(runtime->gpu, "bricks", &shader_mrt_runtime_bricks_comp,
                                        NULL, 0, &p->fill);
 }
 
+bool mrt_probes_make_empty(struct mrt_runtime *runtime)
+{
+    struct mrt_runtime_probes *p = &runtime->probes;
+    p->grid = (struct frame_probes){
+        .spacing_m = 1.0f, .count_x = 1, .count_y = 1, .count_z = 1, .slab = 1
+    };
+    return !runtime->options.publish ||
+           make_image(runtime->gpu, "probe_volume", 1, 1, FRAME_PROBE_SLABS, &p->volume);
+}
+
 void mrt_probes_finish(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
-    gpu_buffer *const buffers[] = { &p->tiles,     &p->openings, &p->sources, &p->turns,
-                                    &p->unbounced, &p->u_b,      &p->u_r,     &p->light };
+    gpu_buffer *const buffers[] = { &p->tiles, &p->openings,  &p->sources,
+                                    &p->turns, &p->unbounced, &p->u_b,
+                                    &p->u_r,   &p->light,     &p->radiosity };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_image_destroy(runtime->gpu, &p->bricks);

@@ -130,6 +130,13 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
            make_buffers(out, input) && make_images(out) && make_pipelines(out, input);
 }
 
+bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
+                            const struct mrt_runtime_options *options)
+{
+    *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
+    return mrt_probes_make_empty(out);
+}
+
 static void destroy_buffers(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_buffers *b = &runtime->buffers;
@@ -172,7 +179,8 @@ static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
     // A grid of the block, and its slabs.
     const uint64_t published = size->options.publish ? 8 * FRAME_PROBE_SLABS * probes : 0;
     if (!size->options.probes) return 8;
-    return rows * number * (k_b + CUBE_FACES * k_r) + rows * VEC3_BYTES +
+    const uint64_t wall_texels = CUBE_FACES * (uint64_t)(size->resolution * size->resolution);
+    return rows * number * (k_b + CUBE_FACES * k_r) + (rows + wall_texels) * VEC3_BYTES +
            probes * sizeof(struct mrt_gpu_probe) +
            texels * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
 }

@@ -38,6 +38,7 @@ struct mrt_runtime_pipelines {
 struct mrt_runtime_probes {
     gpu_buffer tiles, openings, u_b, u_r; // as those of texels
     gpu_buffer sources, turns, unbounced; // tables of bricks.comp
+    gpu_buffer radiosity;                 // vec3 per texel, of a solver on the host
     gpu_buffer light;                     // vec3 [block][probe][9], in the frame of the cell
     gpu_image bricks;
     gpu_pipeline fill;
@@ -62,6 +63,9 @@ struct mrt_runtime {
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options);
+// Of a scene without blocks: a dark probe volume, where it is published.
+bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
+                            const struct mrt_runtime_options *options);
 void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-built
 
 struct mrt_runtime_size {
@@ -79,6 +83,8 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 // Indirect irradiance of the texels after one more bounce. feedback: the weight of the irradiance
 // of the last bounce; 0: none.
 void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback);
+// b and r of the radiosity in `probes.radiosity`, where the host computed irradiance.
+void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
 // The light map with its borders, and irradiance by normal.
 void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
 // Probes of all blocks, and the published volume, from the newest b and r.

@@ -29,14 +29,14 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     gpu_scope_end(cmd);
 }
 
-static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_buffer light)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
     gpu_dispatch(
         cmd, runtime->pipelines.project,
         GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_texels", .buffer = b->texels },
                  { .name = "mrt_blocks", .buffer = b->blocks },
-                 { .name = "mrt_direct", .buffer = b->direct },
+                 { .name = "mrt_direct", .buffer = light },
                  { .name = "mrt_irradiance", .buffer = b->irradiance },
                  { .name = "mrt_t_db", .buffer = b->t_db }, { .name = "mrt_b", .buffer = b->b }),
         NULL, 0, runtime->block_count, 1, 1);
@@ -74,13 +74,25 @@ void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float f
 {
     runtime->level.feedback = feedback;
     gpu_scope_begin(cmd, "b");
-    record_project(runtime, cmd);
+    record_project(runtime, cmd, runtime->buffers.direct);
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "r");
     record_couple(runtime, cmd);
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "reconstruct");
     record_reconstruct(runtime, cmd, false);
+    gpu_scope_end(cmd);
+}
+
+void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    if (!runtime->options.probes) return;
+    runtime->level.feedback = 0.0f;
+    gpu_scope_begin(cmd, "b");
+    record_project(runtime, cmd, runtime->probes.radiosity);
+    gpu_scope_end(cmd);
+    gpu_scope_begin(cmd, "r");
+    record_couple(runtime, cmd);
     gpu_scope_end(cmd);
 }
 
