@@ -130,8 +130,8 @@ TEST(mrt_probes_have_the_irradiance_of_rays)
                   "modes %.3f %.3f\n",
                   LIGHTS, sh[LIGHTS / 2], sh[LIGHTS - 1], K_B, reduced[LIGHTS / 2],
                   reduced[LIGHTS - 1]);
-    CHECK(sh[LIGHTS / 2] < 0.05 && sh[LIGHTS - 1] < 0.2);
-    CHECK(reduced[LIGHTS / 2] < 0.1 && reduced[LIGHTS - 1] < 0.4);
+    CHECK(sh[LIGHTS / 2] < 0.02 && sh[LIGHTS - 1] < 0.06);
+    CHECK(reduced[LIGHTS / 2] < 0.11 && reduced[LIGHTS - 1] < 0.42);
     mrt_transfer_finish(test_host(), &transfer);
     matrix_f64_finish(test_host(), &f);
 }

@@ -82,6 +82,8 @@ vec3 walls_irradiance(mrt_place place, vec3 normal)
     return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 
+const float MRT_AWAY_COSINE = 0.5;
+
 // The way along the normal to a wall nearby that the surface faces, in metres; 0: there is none.
 float way_to_wall(mrt_place place, vec3 normal)
 {
@@ -90,8 +92,8 @@ float way_to_wall(mrt_place place, vec3 normal)
     for (int f = 0; f < 6; f++) {
         float side = (f & 1) != 0 ? 1.0 : -1.0, towards = side * to[f / 2];
         float distance = 0.5 - side * place.cell[f / 2];
-        if (block_table[place.block].tile[f] < 0 || distance > MRT_WALL_DISTANCE) continue;
-        if (towards < MRT_WALL_COSINE * length(to)) continue;
+        if (block_table[place.block].tile[f] < 0 || distance > MRT_WALL_DISTANCE[0]) continue;
+        if (towards < MRT_AWAY_COSINE * length(to)) continue;
         shortest = max(distance / towards, 0.0) + level.offset_m;
     }
     return shortest;
