@@ -30,7 +30,7 @@ enum ag_result api_camera_check(struct ag_context *context, const char *function
                    limits_position(api_vec3(camera->eye)) &&
                        limits_position(api_vec3(camera->target)),
                    "the camera's eye or target is not within %g m of the origin",
-                   (double)SCENE_MAX_COORDINATE_M);
+                   (double)SCENE_MAX_DISTANCE_M);
     vec3s forward = vec3_towards(api_vec3(camera->eye), api_vec3(camera->target));
     AG_REQUIRE_FOR(function, context, glms_vec3_norm(forward) > 0.0f,
                    "the camera's eye and target are the same point");

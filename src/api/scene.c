@@ -266,7 +266,7 @@ static enum ag_result light_check(const char *function, struct ag_context *conte
                    "intensity is not within 0 to %g lux or candela", (double)SCENE_MAX_RADIANCE);
     AG_REQUIRE_FOR(function, context,
                    desc->type == AG_LIGHT_SUN || limits_position(api_vec3(desc->position)),
-                   "position is not within %g m of the origin", (double)SCENE_MAX_COORDINATE_M);
+                   "position is not within %g m of the origin", (double)SCENE_MAX_DISTANCE_M);
     float length = glms_vec3_norm(vec3_unit(api_vec3(desc->direction)));
     AG_REQUIRE_FOR(function, context, desc->type == AG_LIGHT_POINT || length > 0.0f,
                    "direction is zero or not finite");
@@ -346,7 +346,7 @@ enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
     struct ag_context *context = scene->context;
     REQUIRE_UNUSED(scene);
     AG_REQUIRE(context, limits_position(api_vec3(desc->position)),
-               "position is not within %g m of the origin", (double)SCENE_MAX_COORDINATE_M);
+               "position is not within %g m of the origin", (double)SCENE_MAX_DISTANCE_M);
     AG_REQUIRE(context, glms_vec3_norm(vec3_unit(api_vec3(desc->direction))) > 0.0f,
                "direction is zero or not finite");
     AG_REQUIRE(context,
@@ -406,7 +406,7 @@ enum ag_result ag_scene_look_at(struct ag_scene *scene, const float *eye, const 
     AG_REQUIRE_POINTER(context, scene);
     AG_REQUIRE(context, eye && target && out, "eye, target or out is NULL");
     AG_REQUIRE(context, limits_position(api_vec3(eye)) && limits_position(api_vec3(target)),
-               "eye or target is not within %g m of the origin", (double)SCENE_MAX_COORDINATE_M);
+               "eye or target is not within %g m of the origin", (double)SCENE_MAX_DISTANCE_M);
     vec3s forward = vec3_towards(api_vec3(eye), api_vec3(target));
     AG_REQUIRE(context, glms_vec3_norm(forward) > 0.0f, "eye and target are the same point");
     AG_REQUIRE(context, vertical_fov_rad > 0.0f && vertical_fov_rad < 2 * HALF_PI,

@@ -5,10 +5,14 @@
 
 #include <math.h>
 
+static bool is_within(vec3s p, float limit)
+{
+    return fabsf(p.x) <= limit && fabsf(p.y) <= limit && fabsf(p.z) <= limit;
+}
+
 bool limits_position(vec3s p)
 {
-    return fabsf(p.x) <= SCENE_MAX_COORDINATE_M && fabsf(p.y) <= SCENE_MAX_COORDINATE_M &&
-           fabsf(p.z) <= SCENE_MAX_COORDINATE_M;
+    return is_within(p, SCENE_MAX_DISTANCE_M);
 }
 
 bool limits_light(vec3s v)
@@ -17,11 +21,11 @@ bool limits_light(vec3s v)
            v.y <= SCENE_MAX_RADIANCE && v.z <= SCENE_MAX_RADIANCE;
 }
 
-static bool too_far(const struct scene *scene, const char *what, const char *name)
+static bool too_far(const struct scene *scene, const char *what, const char *name, float limit)
 {
     return host_fail(scene->host, FAIL_UNSUPPORTED,
                      "%s: %s %s reaches beyond the largest coordinate, %g m; scale the scene down",
-                     scene->name, what, name, (double)SCENE_MAX_COORDINATE_M);
+                     scene->name, what, name, (double)limit);
 }
 
 static bool too_bright(const struct scene *scene, const char *what, const char *name)
@@ -37,7 +41,7 @@ static bool nodes_are_finite(const struct scene_pose *pose)
     const struct scene *scene = pose->scene;
     for (int i = 0; i < scene->node_count; i++) {
         if (floats_are_finite(&pose->world_from_node[i].raw[0][0], 16)) continue;
-        return too_far(scene, "node", name_or_empty(scene->nodes[i].name));
+        return too_far(scene, "node", name_or_empty(scene->nodes[i].name), SCENE_MAX_COORDINATE_M);
     }
     return true;
 }
@@ -54,7 +58,7 @@ static bool lights_are_near(const struct scene_pose *pose)
     for (int i = 0; i < scene->light_count; i++) {
         const struct light *light = &scene->lights[i];
         if (light->type == LIGHT_SUN || node_is_near(pose, light->node)) continue;
-        return too_far(scene, "light", name_or_empty(light->name));
+        return too_far(scene, "light", name_or_empty(light->name), SCENE_MAX_DISTANCE_M);
     }
     return true;
 }
@@ -64,7 +68,8 @@ static bool cameras_are_near(const struct scene_pose *pose)
     const struct scene *scene = pose->scene;
     for (int i = 0; i < scene->camera_count; i++) {
         if (node_is_near(pose, scene->cameras[i].node)) continue;
-        return too_far(scene, "camera", name_or_empty(scene->cameras[i].name));
+        return too_far(scene, "camera", name_or_empty(scene->cameras[i].name),
+                       SCENE_MAX_DISTANCE_M);
     }
     return true;
 }
@@ -83,10 +88,10 @@ static bool geometry_is_near(const struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
     const struct box3 *bounds = &pose->bounds;
-    bool near =
-        box3_is_empty(*bounds) || (limits_position(bounds->min) && limits_position(bounds->max));
+    bool near = box3_is_empty(*bounds) || (is_within(bounds->min, SCENE_MAX_COORDINATE_M) &&
+                                           is_within(bounds->max, SCENE_MAX_COORDINATE_M));
     for (int i = 0; near && i < scene->instance_count; i++) near = vertices_are_finite(pose, i);
-    return near || too_far(scene, "its", "geometry");
+    return near || too_far(scene, "its", "geometry", SCENE_MAX_COORDINATE_M);
 }
 
 bool limits_pose(const struct scene_pose *pose)

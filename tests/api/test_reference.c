@@ -370,3 +370,40 @@ TEST(wrong_descriptions_are_refused)
     }
     close(&f);
 }
+
+// The largest triangle and the brightest sky that are accepted, seen by the default camera.
+TEST(the_reference_of_the_largest_scene_ends_and_is_finite)
+{
+    struct fixture f;
+    const float positions[9] = { -1e8f, -1e8f, 0, 1e8f, -1e8f, 0, 0, 1e8f, -1e8f };
+    const uint32_t indices[3] = { 0, 1, 2 };
+    const float sky[3] = { 1e15f, 1e15f, 1e15f };
+    assert_int_equal(ag_context_create(NULL, &f.context), AG_OK);
+    assert_int_equal(ag_scene_create(f.context, &f.scene), AG_OK);
+    struct ag_material_desc material;
+    ag_material_desc_default(&material);
+    assert_int_equal(ag_scene_add_material(f.scene, &material, NULL), AG_OK);
+    struct ag_mesh_desc mesh = {
+        .positions = positions, .vertex_count = 3, .indices = indices, .index_count = 3
+    };
+    assert_int_equal(ag_scene_add_mesh(f.scene, &mesh, NULL), AG_OK);
+    assert_int_equal(ag_scene_add_instance(f.scene, 0, NULL, NULL), AG_OK);
+    assert_int_equal(ag_scene_set_sky(f.scene, sky), AG_OK);
+    ag_reference_desc_default(&f.desc);
+    f.desc.width = f.desc.height = 24;
+    assert_int_equal(ag_scene_default_camera(f.scene, 0, 0, &f.desc.camera, NULL), AG_OK);
+    for (int turned = 0; turned < 2; turned++) {
+        struct ag_reference *r = create(&f);
+        assert_int_equal(ag_reference_render(r, 2, NULL, NULL), AG_OK);
+        struct ag_image *image = read_layer(r, "color");
+        for (size_t i = 0; i < float_count(image); i++)
+            CHECK(isfinite(image->pixels[i]) && image->pixels[i] >= 0.0f);
+        ag_image_destroy(f.context, image);
+        ag_reference_destroy(r);
+        for (int k = 0; k < 3; k++) { // now behind the triangle: its back faces are culled
+            f.desc.camera.eye[k] *= -1.0f;
+            f.desc.camera.target[k] *= -1.0f;
+        }
+    }
+    close(&f);
+}
