@@ -20,14 +20,17 @@ AG_API enum ag_result ag_device_list(struct ag_context *context, struct ag_devic
                                      int capacity, int *count);
 
 /// A caller's Vulkan handles. The device must have enabled Vulkan 1.3, VK_KHR_push_descriptor and
-/// the features of ag_device_required_features. The handles must stay valid until
-/// ag_device_destroy.
+/// the features of ag_device_required_features; <afterglow/vulkan.h> fills them in. The handles
+/// must stay valid until ag_device_destroy.
 struct ag_device_adopt {
     void *instance, *physical_device, *device, *queue;
     uint32_t queue_family;
     void (*lock_queue)(void *user);   ///< called before each submission; may be NULL
     void (*unlock_queue)(void *user); ///< called after it; may be NULL
     void *user;
+    /// VkPhysicalDeviceFeatures2 that vkCreateDevice was given, with its chain: a required feature
+    /// that it does not enable is an error. NULL: not checked, Vulkan cannot tell.
+    const void *vk_enabled_features;
 };
 
 struct ag_device_desc {

@@ -52,10 +52,11 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
 
     struct gpu_adopt adopt = { 0 };
     if (lent)
-        adopt = (struct gpu_adopt){ lent->instance,     lent->physical_device,
-                                    lent->device,       lent->queue,
-                                    lent->queue_family, lent->lock_queue,
-                                    lent->unlock_queue, lent->user };
+        adopt = (struct gpu_adopt){
+            lent->instance,           lent->physical_device, lent->device,       lent->queue,
+            lent->queue_family,       lent->lock_queue,      lent->unlock_queue, lent->user,
+            lent->vk_enabled_features
+        };
     struct gpu_desc gpu_desc = { .device = desc->device,
                                  .validation = desc->validation || context->validation,
                                  .shader_dir = context->shader_dir,

@@ -80,6 +80,86 @@ static bool has_extension(VkPhysicalDevice physical, const char *name)
     return false;
 }
 
+// Returns the number of extensions.
+static uint32_t list_extensions(VkPhysicalDevice physical, const char *extensions[2])
+{
+    uint32_t count = 0;
+    extensions[count++] = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+    if (has_extension(physical, "VK_KHR_portability_subset"))
+        extensions[count++] = "VK_KHR_portability_subset"; // must be enabled if it is supported
+    return count;
+}
+
+uint32_t gpu_fill_requirements(void *physical_device, void *features2, void *vulkan11,
+                               void *vulkan12, void *vulkan13, const char *extensions[2])
+{
+    struct features use;
+    features_init(&use);
+    for (int i = 0; i < REQUIRED_COUNT; i++) *feature_at(&use, i) = VK_TRUE;
+    use.core.pNext = vulkan11;
+    use.v11.pNext = vulkan12;
+    use.v12.pNext = vulkan13;
+    memcpy(features2, &use.core, sizeof use.core);
+    memcpy(vulkan11, &use.v11, sizeof use.v11);
+    memcpy(vulkan12, &use.v12, sizeof use.v12);
+    memcpy(vulkan13, &use.v13, sizeof use.v13);
+    return list_extensions(physical_device, extensions);
+}
+
+// Copies a struct of a chain without its header, and notes that it is there.
+static void copy_features(const VkBaseInStructure *from, struct features *to, bool present[4])
+{
+    static const struct {
+        VkStructureType type;
+        size_t offset, size;
+    } parts[] = {
+        { VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, offsetof(struct features, core),
+          sizeof(VkPhysicalDeviceFeatures2) },
+        { VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES, offsetof(struct features, v11),
+          sizeof(VkPhysicalDeviceVulkan11Features) },
+        { VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, offsetof(struct features, v12),
+          sizeof(VkPhysicalDeviceVulkan12Features) },
+        { VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, offsetof(struct features, v13),
+          sizeof(VkPhysicalDeviceVulkan13Features) },
+    };
+    for (int i = 0; i < 4; i++) {
+        if (from->sType != parts[i].type) continue;
+        memcpy((char *)to + parts[i].offset, from, parts[i].size);
+        present[i] = true;
+    }
+}
+
+// The struct of `struct features` that a feature belongs to.
+static int part_of(size_t offset)
+{
+    return offset < offsetof(struct features, v11)   ? 0
+           : offset < offsetof(struct features, v12) ? 1
+           : offset < offsetof(struct features, v13) ? 2
+                                                     : 3;
+}
+
+// Features may also be enabled by structs of their own: only structs in the chain are checked.
+const char *device_missing_feature(const void *chain)
+{
+    struct features enabled;
+    bool present[4] = { false };
+    features_init(&enabled);
+    for (const VkBaseInStructure *s = chain; s; s = s->pNext) copy_features(s, &enabled, present);
+    for (int i = 0; i < REQUIRED_COUNT; i++)
+        if (present[part_of(required_features[i].offset)] && !*feature_at(&enabled, i))
+            return required_features[i].name;
+    return NULL;
+}
+
+bool device_family_is_usable(VkPhysicalDevice physical, uint32_t family)
+{
+    VkQueueFamilyProperties families[MAX_FAMILIES];
+    uint32_t count = MAX_FAMILIES;
+    const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
+    return family < count && (families[family].queueFlags & wanted) == wanted;
+}
+
 static uint32_t find_queue_family(VkPhysicalDevice physical, uint32_t *valid_bits)
 {
     VkQueueFamilyProperties families[MAX_FAMILIES];
@@ -261,11 +341,8 @@ bool device_create(struct gpu *gpu)
     for (int i = 0; i < REQUIRED_COUNT; i++) *feature_at(&use, i) = VK_TRUE;
     use.core.features.geometryShader = has.core.features.geometryShader;
 
-    const char *extensions[2] = { VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME };
-    uint32_t count = 1;
-    if (has_extension(gpu->physical, "VK_KHR_portability_subset")) {
-        extensions[count++] = "VK_KHR_portability_subset"; // must be enabled if it is supported
-    }
+    const char *extensions[2] = { NULL };
+    const uint32_t count = list_extensions(gpu->physical, extensions);
     float priority = 1;
     if (!VK_CHECK(gpu,
                   vkCreateDevice(gpu->physical,

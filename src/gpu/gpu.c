@@ -20,6 +20,19 @@ static bool load_functions(struct gpu *gpu)
                      gpu->info.name, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
 }
 
+// As far as Vulkan tells what a device was created with.
+static bool check_adopted(struct gpu *gpu)
+{
+    if (!device_family_is_usable(gpu->physical, gpu->queue_family))
+        return host_fail(gpu->host, FAIL_ARGUMENT,
+                         "gpu device %s: queue family %u has no graphics and compute",
+                         gpu->info.name, gpu->queue_family);
+    const char *missing = device_missing_feature(gpu->adopt.enabled_features);
+    return !missing || host_fail(gpu->host, FAIL_ARGUMENT,
+                                 "gpu device %s: it was created without the feature %s",
+                                 gpu->info.name, missing);
+}
+
 static bool adopt_device(struct gpu *gpu, const struct gpu_adopt *adopt)
 {
     if (!adopt->instance || !adopt->physical_device || !adopt->device || !adopt->queue) {
@@ -40,7 +53,7 @@ static bool adopt_device(struct gpu *gpu, const struct gpu_adopt *adopt)
     gpu->queue = adopt->queue;
     gpu->queue_family = adopt->queue_family;
     device_describe(gpu->physical, &gpu->info);
-    if (gpu->info.usable) return true;
+    if (gpu->info.usable) return check_adopted(gpu);
     return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu device %s: it lacks %s", gpu->info.name,
                      gpu->info.missing);
 }

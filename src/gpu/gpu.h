@@ -52,7 +52,12 @@ struct gpu_adopt {
     uint32_t queue_family;
     void (*lock_queue)(void *user), (*unlock_queue)(void *user); // around submissions; or NULL
     void *user;
+    const void *enabled_features; // VkPhysicalDeviceFeatures2 of vkCreateDevice; NULL: not checked
 };
+// Sets the required features in these four structs (VkPhysicalDeviceFeatures2 and those of Vulkan
+// 1.1 to 1.3), which it zeroes and chains. Returns the number of device extensions, at most 2.
+uint32_t gpu_fill_requirements(void *physical_device, void *features2, void *vulkan11,
+                               void *vulkan12, void *vulkan13, const char *extensions[2]);
 
 struct gpu_desc {
     const char *device; // index from gpu_list_devices, part of a name, or NULL for the best

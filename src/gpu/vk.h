@@ -454,5 +454,8 @@ bool instance_watch(struct gpu *gpu); // counts validation messages from now on
 // device.c
 VkPhysicalDevice device_choose(struct host *host, VkInstance instance, const char *wanted);
 void device_describe(VkPhysicalDevice physical, struct gpu_device_info *out);
+// The first required feature that a chain of vkCreateDevice does not enable; NULL: none is known.
+const char *device_missing_feature(const void *chain);
+bool device_family_is_usable(VkPhysicalDevice physical, uint32_t family);
 bool device_create(struct gpu *gpu);
 void device_read_limits(struct gpu *gpu);

@@ -13,8 +13,9 @@ static void open_own(struct own_device *own, uint32_t flags)
 
 static struct gpu *adopt(struct own_device *own)
 {
-    struct gpu_adopt adopt = { own->instance, own->physical,   own->device,       own->queue,
-                               own->family,   own_device_lock, own_device_unlock, own };
+    struct gpu_adopt adopt = { own->instance,     own->physical, own->device,
+                               own->queue,        own->family,   own_device_lock,
+                               own_device_unlock, own,           NULL };
     return gpu_create(test_host(), &(struct gpu_desc){ .validation = true, .adopt = &adopt });
 }
 
