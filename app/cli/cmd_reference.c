@@ -154,8 +154,8 @@ static enum status report(struct job *job)
     double rate = seconds > 0.0 ? (double)info.rays / seconds : (double)NAN;
     session_say(&job->session);
     if (info.rays > 0)
-        note("%d samples, %.1f million rays in %.1f s: %.2f million per second", info.samples,
-             (double)info.rays * 1e-6, seconds, rate * 1e-6);
+        note("%d sample%s, %.1f million rays in %.1f s: %.2f million per second", info.samples,
+             info.samples == 1 ? "" : "s", (double)info.rays * 1e-6, seconds, rate * 1e-6);
     if (info.mean > 0.0 && isfinite(info.error))
         note("standard error %.3g cd/m2, %.2f %% of the mean", info.error,
              100.0 * info.error / info.mean);

@@ -77,7 +77,7 @@ static enum status run(int count, char **words)
         print_usage();
         return DONE;
     }
-    if (strcmp(words[1], "--version") == 0) {
+    if (strcmp(words[1], "--version") == 0 || strcmp(words[1], "-V") == 0) {
         int version = ag_version();
         printf("afterglow %d.%d.%d\n", version / 10000, version / 100 % 100, version % 100);
         return DONE;

@@ -285,4 +285,5 @@ TEST(help_has_examples)
         CHECK(strstr(run_expect(0, "--help", NULL)->out, commands[i]));
     }
     CHECK(strncmp(run_expect(0, "--version", NULL)->out, "afterglow 0.", 12) == 0);
+    CHECK(strncmp(run_expect(0, "-V", NULL)->out, "afterglow 0.", 12) == 0);
 }
