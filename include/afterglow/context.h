@@ -26,6 +26,7 @@ struct ag_context_desc {
     /// Path of the program afterglow-import, which reads OBJ, FBX and X files in a process of its
     /// own. NULL: AFTERGLOW_IMPORTER, else the one installed with the library. "": none.
     const char *importer;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 
 AG_API void ag_context_desc_default(struct ag_context_desc *desc);

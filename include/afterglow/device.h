@@ -31,12 +31,14 @@ struct ag_device_adopt {
     /// VkPhysicalDeviceFeatures2 that vkCreateDevice was given, with its chain: a required feature
     /// that it does not enable is an error. NULL: not checked, Vulkan cannot tell.
     const void *vk_enabled_features;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 
 struct ag_device_desc {
     const char *device; ///< index in ag_device_list, part of a name, or NULL for the best
     bool validation;    ///< enable Vulkan validation and its synchronization checks; default false
     const struct ag_device_adopt *adopt; ///< NULL: the library opens a device
+    uint64_t reserved[6];                ///< 0; see ABI in types.h
 };
 
 AG_API void ag_device_desc_default(struct ag_device_desc *desc);
@@ -53,9 +55,10 @@ AG_API int ag_device_validation_messages(const struct ag_device *device);
 /// What has been created and submitted on a device so far.
 struct ag_device_counters {
     uint64_t images, buffers, pipelines; ///< created
-    uint64_t compiled;  ///< of the pipelines: compiled, not reused after their destruction
-    uint64_t frames;    ///< recorded
-    uint64_t transfers; ///< blocking uploads and downloads
+    uint64_t compiled;    ///< of the pipelines: compiled, not reused after their destruction
+    uint64_t frames;      ///< recorded
+    uint64_t transfers;   ///< blocking uploads and downloads
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 AG_API void ag_device_get_counters(const struct ag_device *device, struct ag_device_counters *out);
 

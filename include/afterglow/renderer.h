@@ -25,6 +25,7 @@ struct ag_renderer_desc {
     /// Without one in `bakes`: folder with files KEY.safetensors (ag_bake_info.key with seed 0).
     /// Default NULL: none.
     const char *bake_folder;
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 /// Upper bound of the GPU memory of a renderer with these settings, in bytes, without the scene.
@@ -56,11 +57,12 @@ AG_API enum ag_result ag_renderer_set_frame_options(struct ag_renderer *renderer
 
 struct ag_frame_desc {
     struct ag_camera camera;
-    double time_s;      ///< animation time
-    int animation;      ///< see ag_scene_camera; default 0: the first, if any
-    bool auto_exposure; ///< meter the log-average of the frame's radiance; default true
-    float exposure_ev;  ///< EV at ISO 100 if auto_exposure is false
-    bool camera_cut;    ///< discard history of earlier frames; default false
+    double time_s;        ///< animation time
+    int animation;        ///< see ag_scene_camera; default 0: the first, if any
+    bool auto_exposure;   ///< meter the log-average of the frame's radiance; default true
+    float exposure_ev;    ///< EV at ISO 100 if auto_exposure is false
+    bool camera_cut;      ///< discard history of earlier frames; default false
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
 /// return one.
@@ -112,6 +114,7 @@ struct ag_layer_handle {
     uint32_t vk_format, vk_usage, vk_layout; ///< VkFormat, VkImageUsageFlags, VkImageLayout
     int width, height;                       ///< pixels
     float scale;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 /// For programs that share the device; also before the first frame. "position" has no image.
 ///
@@ -133,9 +136,10 @@ AG_API enum ag_result ag_renderer_layer_handle(struct ag_renderer *renderer, con
                                                struct ag_layer_handle *out);
 /// Numbers of the newest frame that the GPU has finished.
 struct ag_finished_frame {
-    uint64_t frame;    ///< its number: a renderer counts its frames from 1; 0: none is finished
-    float exposure_ev; ///< EV at ISO 100
-    float scale;       ///< of its radiance and irradiance layers, see ag_renderer_layer_handle
+    uint64_t frame;       ///< its number: a renderer counts its frames from 1; 0: none is finished
+    float exposure_ev;    ///< EV at ISO 100
+    float scale;          ///< of its radiance and irradiance layers, see ag_renderer_layer_handle
+    uint64_t reserved[6]; ///< 0; see ABI in types.h
 };
 /// Does not wait. A recorded frame is finished with ag_renderer_recorded_done.
 AG_API enum ag_result ag_renderer_finished(struct ag_renderer *renderer,

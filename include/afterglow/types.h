@@ -6,6 +6,9 @@
 /// in it are needed only during the call.
 /// Strings: UTF-8; arguments are copied.
 /// Threads: one thread at a time per context; different contexts are independent.
+/// ABI: structs with `reserved` keep their size; new members take its place, and 0 is what they
+/// were without. A description whose reserved words are not 0 is refused: the program needs a newer
+/// library. ag_X_desc_default sets them.
 /// Errors: on failure *out is NULL, and ag_context_last_error() has one sentence.
 #ifndef AFTERGLOW_TYPES_H
 #define AFTERGLOW_TYPES_H

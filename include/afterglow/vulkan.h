@@ -7,6 +7,8 @@
 
 #include <vulkan/vulkan.h>
 
+#include <string.h>
+
 AG_BEGIN
 
 /// What a device must be created with: `features` is the pNext of VkDeviceCreateInfo (without
@@ -31,14 +33,12 @@ ag_vulkan_adopt(VkInstance instance, VkPhysicalDevice physical_device, VkDevice 
                 const struct ag_vulkan_requirements *requirements)
 {
     struct ag_device_adopt adopt;
+    memset(&adopt, 0, sizeof adopt);
     adopt.instance = (void *)instance;
     adopt.physical_device = (void *)physical_device;
     adopt.device = (void *)device;
     adopt.queue = (void *)queue;
     adopt.queue_family = queue_family;
-    adopt.lock_queue = NULL;
-    adopt.unlock_queue = NULL;
-    adopt.user = NULL;
     adopt.vk_enabled_features = requirements ? &requirements->features : NULL;
     return adopt;
 }

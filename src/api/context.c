@@ -97,6 +97,7 @@ enum ag_result ag_context_create(const struct ag_context_desc *desc, struct ag_c
     ag_context_desc_default(&fallback);
     if (!desc) desc = &fallback;
     if ((unsigned)desc->log_up_to > AG_LOG_DEBUG) return AG_ERROR_ARGUMENT;
+    AG_REQUIRE_KNOWN(__func__, NULL, desc);
 
     // Starts on the stack, so that the program's allocator also provides the context's memory.
     struct ag_context seed = { .log = desc->log,

@@ -46,7 +46,9 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
     struct ag_device_desc fallback;
     ag_device_desc_default(&fallback);
     if (!desc) desc = &fallback;
+    AG_REQUIRE_KNOWN(__func__, context, desc);
     const struct ag_device_adopt *lent = desc->adopt;
+    if (lent) AG_REQUIRE_KNOWN(__func__, context, lent);
     AG_REQUIRE(context, !lent || adopt_is_whole(lent),
                "an adopted device needs instance, physical_device, device and queue");
 

@@ -73,6 +73,12 @@ enum ag_result api_refuse(struct ag_context *context, const char *function, cons
         if (!(condition)) return api_refuse((context), (function), __VA_ARGS__);                   \
     } while (0)
 
+// Members that this version of the library does not know.
+#define AG_REQUIRE_KNOWN(function, context, desc)                                                  \
+    AG_REQUIRE_FOR((function), (context),                                                          \
+                   api_zero((desc)->reserved, sizeof(desc)->reserved / sizeof *(desc)->reserved),  \
+                   "reserved members are not 0: ag_..._desc_default was not called, or the "       \
+                   "program needs a newer library")
 #define AG_REQUIRE_POINTER(context, pointer) AG_REQUIRE(context, pointer, #pointer " is NULL")
 // Of functions that create an object: *out is NULL unless they succeed.
 #define AG_REQUIRE_OUT(context, out)                                                               \
@@ -111,6 +117,13 @@ static inline bool api_finite_at_least(const float *values, int count, float lea
 {
     for (int i = 0; i < count; i++)
         if (!isfinite(values[i]) || values[i] < least) return false;
+    return true;
+}
+
+static inline bool api_zero(const uint64_t *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (words[i]) return false;
     return true;
 }
 

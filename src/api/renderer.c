@@ -47,6 +47,7 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
     struct ag_renderer_desc fallback;
     ag_renderer_desc_default(&fallback);
     if (!desc) desc = &fallback;
+    AG_REQUIRE_KNOWN(__func__, context, desc);
     AG_REQUIRE(context, light_count >= 0, "light_count %d is negative", light_count);
     enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
@@ -113,6 +114,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     struct ag_renderer_desc fallback;
     ag_renderer_desc_default(&fallback);
     if (!desc) desc = &fallback;
+    AG_REQUIRE_KNOWN(__func__, context, desc);
     enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
     checked = renderer_bakes_check(__func__, context, desc->bakes, desc->bake_count);

@@ -23,6 +23,7 @@ static enum ag_result frame_check(const char *function, const struct ag_renderer
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE_FOR(function, context, desc, "desc is NULL");
+    AG_REQUIRE_KNOWN(function, context, desc);
     AG_REQUIRE_FOR(function, context, r->sized, "the last resize failed");
     AG_REQUIRE_FOR(function, context, api_animation_exists(r->scene, desc->animation),
                    "animation %d is not one of %d", desc->animation,
