@@ -71,6 +71,8 @@ vec3s mrt_warp_point(const vec3s corner[MRT_CORNERS], vec3s cell);
 mat3s mrt_warp_jacobian(const vec3s corner[MRT_CORNERS], vec3s cell);
 // Whether the warp mirrors or folds over: its Jacobian's determinant is not positive throughout.
 bool mrt_warp_folds(const vec3s corner[MRT_CORNERS]);
+// Whether the block is a parallelepiped, to the rounding of its corners.
+bool mrt_warp_is_affine(const vec3s corner[MRT_CORNERS]);
 // Outward unit normal of a face in the scene, at a point of that face.
 vec3s mrt_warp_face_normal(const vec3s corner[MRT_CORNERS], int face, vec3s cell);
 // Newton's method. False where it does not converge, for points far outside the block.

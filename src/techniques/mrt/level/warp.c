@@ -50,6 +50,19 @@ bool mrt_warp_folds(const vec3s corner[MRT_CORNERS])
     return false;
 }
 
+bool mrt_warp_is_affine(const vec3s corner[MRT_CORNERS])
+{
+    static const float ROUNDING = 1e-5f; // of the block's diagonal
+    const float most = ROUNDING * glms_vec3_distance(corner[0], corner[MRT_CORNERS - 1]);
+    for (int c = 0; c < MRT_CORNERS; c++) {
+        vec3s sum = corner[0];
+        for (int a = 0; a < 3; a++)
+            if (c >> a & 1) sum = glms_vec3_add(sum, glms_vec3_sub(corner[1 << a], corner[0]));
+        if (!(glms_vec3_distance(sum, corner[c]) <= most)) return false;
+    }
+    return true;
+}
+
 vec3s mrt_warp_face_normal(const vec3s corner[MRT_CORNERS], int face, vec3s cell)
 {
     mat3s frame = cube_from_face(face), j = mrt_warp_jacobian(corner, cell);

@@ -13,6 +13,8 @@ layout(constant_id = MRT_CONSTANT_PROBES) const bool PROBES = false;
 // the cell) and from the second cosine, not at all beyond the others.
 const vec2 MRT_WALL_DISTANCE = vec2(0.1, 0.15);
 const vec2 MRT_WALL_COSINE = vec2(0.35, 0.65);
+// Normals in the half floats of the frame differ this little from the wall's.
+const float MRT_ALONG_WALL = 1.0 - 1e-6;
 
 vec3 light_map_uv(int tile, vec2 st)
 {
@@ -38,9 +40,8 @@ vec3 wall_irradiance(int tile, int face, vec3 cell, vec3 normal)
     vec2 st = clamp(0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)), 0.0, 1.0);
     vec3 uv = light_map_uv(tile, st);
     vec3 irradiance = textureLod(light_map, uv, 0.0).rgb;
-    if (VALUES == 4u)
-        irradiance += change_by_normal(
-            uv, vec3(-dot(frame[0], normal), dot(frame[1], normal), -dot(frame[2], normal)));
+    vec3 local = vec3(-dot(frame[0], normal), dot(frame[1], normal), -dot(frame[2], normal));
+    if (VALUES == 4u && local.z < MRT_ALONG_WALL) irradiance += change_by_normal(uv, local);
     return max(irradiance, vec3(0.0));
 }
 
@@ -87,7 +88,7 @@ const float MRT_AWAY_COSINE = 0.5;
 // The way along the normal to a wall nearby that the surface faces, in metres; 0: there is none.
 float way_to_wall(mrt_place place, vec3 normal)
 {
-    vec3 to = inverse(place.world_from_cell) * normal;
+    vec3 to = inverse(world_from_cell(place)) * normal;
     float shortest = 0.0;
     for (int f = 0; f < 6; f++) {
         float side = (f & 1) != 0 ? 1.0 : -1.0, towards = side * to[f / 2];
@@ -111,12 +112,42 @@ mrt_place locate_surface(vec3 position, vec3 normal)
     return beyond.block >= 0 && beyond.outside == 0.0 ? beyond : place;
 }
 
+// A wall may end a little beyond the border of its block, by half the thickness of another wall.
+// Moves to the neighbour beyond the nearest opening that the surface meets at an angle.
+mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 n)
+{
+    mrt_wall none;
+    none.face = -1;
+    none.share = 0.0;
+    int opening = -1;
+    float least = MRT_WALL_DISTANCE.x;
+    for (int a = 0; a < 3; a++) {
+        int f = 2 * a + (place.cell[a] > 0.0 ? 1 : 0);
+        float distance = 0.5 - abs(place.cell[a]);
+        bool beside = abs(n[a]) < MRT_WALL_COSINE.x && block_table[place.block].neighbor[f] >= 0;
+        if (!beside || distance > least) continue;
+        least = distance;
+        opening = f;
+    }
+    mrt_place next;
+    if (opening < 0 || !place_in(uint(block_table[place.block].neighbor[opening]), world, next) ||
+        next.outside > MRT_WALL_DISTANCE.x)
+        return none;
+    vec3 turned = normal_in_cell(next, normal);
+    mrt_wall wall = wall_of(next, turned);
+    if (wall.share == 0.0) return none;
+    place = next;
+    n = turned;
+    return wall;
+}
+
 vec3 level_irradiance(vec3 position, vec3 normal)
 {
     mrt_place place = locate_surface(position, normal);
     if (place.block < 0) return vec3(0.0);
     vec3 n = normal_in_cell(place, normal);
     mrt_wall wall = wall_of(place, n);
+    if (wall.share == 0.0) wall = wall_beyond(position + level.offset_m * normal, normal, place, n);
     vec3 on_wall = vec3(0.0), inside = vec3(0.0);
     if (wall.share > 0.0)
         on_wall =

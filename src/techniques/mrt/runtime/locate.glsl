@@ -16,6 +16,8 @@ layout(set = 0, binding = MRT_CANDIDATES_BINDING) readonly buffer mrt_candidates
     uint candidate_table[]; // blocks
 };
 
+layout(constant_id = MRT_CONSTANT_AFFINE) const bool AFFINE = false;
+
 const float MRT_BEYOND = 1.0; // edges: surfaces this far outside belong to the nearest block
 const float MRT_FAR = 8.0;
 const float MRT_CONVERGED = 1e-5;
@@ -25,7 +27,6 @@ struct mrt_place {
     int block; // −1: none
     vec3 cell;
     float outside; // distance from the cell, in edges
-    mat3 world_from_cell;
 };
 
 vec3 warp_point(uint block, vec3 cell, out mat3 jacobian)
@@ -49,18 +50,30 @@ float largest_of(vec3 v)
     return max(max(abs(v.x), abs(v.y)), abs(v.z));
 }
 
-// Newton's method.
-bool warp_inverse(uint block, vec3 world, inout mrt_place place)
+// From the affine part, which is exact for boxes; Newton's method otherwise.
+bool warp_inverse(uint block, vec3 world, out vec3 cell)
 {
-    place.cell = vec3(0.0);
+    vec3 way = world - block_table[block].middle;
+    for (int a = 0; a < 3; a++) cell[a] = dot(block_table[block].inverse[a], way);
+    if (AFFINE) return true;
     for (int i = 0; i < MRT_NEWTON_STEPS; i++) {
-        vec3 residual = world - warp_point(block, place.cell, place.world_from_cell);
-        vec3 advance = inverse(place.world_from_cell) * residual;
-        place.cell += advance;
-        if (!(largest_of(place.cell) < MRT_FAR)) return false;
+        mat3 jacobian;
+        if (!(largest_of(cell) < MRT_FAR)) return false;
+        vec3 residual = world - warp_point(block, cell, jacobian);
+        vec3 advance = inverse(jacobian) * residual;
+        cell += advance;
         if (largest_of(advance) < MRT_CONVERGED) return true;
     }
     return false;
+}
+
+// False: the point is too far from the block.
+bool place_in(uint block, vec3 world, out mrt_place place)
+{
+    place.block = int(block);
+    bool found = warp_inverse(block, world, place.cell);
+    place.outside = max(largest_of(place.cell) - 0.5, 0.0);
+    return found && place.outside < MRT_BEYOND;
 }
 
 // The block nearest to the point.
@@ -75,21 +88,29 @@ mrt_place locate(vec3 world)
     ivec3 i = ivec3(at);
     uvec2 list = cell_table[(i.z * cells.y + i.y) * cells.x + i.x];
     for (uint k = 0u; k < list.y && nearest.outside > 0.0; k++) {
-        uint block = candidate_table[list.x + k];
         mrt_place place;
-        if (!warp_inverse(block, world, place)) continue;
-        place.outside = max(largest_of(place.cell) - 0.5, 0.0);
-        if (place.outside >= nearest.outside) continue;
-        place.block = int(block);
-        nearest = place;
+        if (place_in(candidate_table[list.x + k], world, place) && place.outside < nearest.outside)
+            nearest = place;
     }
     return nearest;
+}
+
+mat3 world_from_cell(mrt_place place)
+{
+    mat3 jacobian;
+    if (AFFINE) {
+        vec3 low = block_table[place.block].corner[0];
+        for (int a = 0; a < 3; a++) jacobian[a] = block_table[place.block].corner[1 << a] - low;
+    } else {
+        warp_point(uint(place.block), place.cell, jacobian);
+    }
+    return jacobian;
 }
 
 // The surface's normal in the cell: gradients transform with the transposed Jacobian.
 vec3 normal_in_cell(mrt_place place, vec3 normal)
 {
-    return normalize(transpose(place.world_from_cell) * normal);
+    return normalize(transpose(world_from_cell(place)) * normal);
 }
 
 // cube_from_face of dictionary/cube.h: columns u, v and n, n outward.

@@ -114,6 +114,31 @@ static void set_params(struct mrt_level_params *level, const struct grid *grid,
     level->offset_m = OFFSET * shortest_edge(map);
 }
 
+static float distance_to(const struct mrt_block *block, vec3s point)
+{
+    struct box3 box = bounds_of(block, 0.0f);
+    vec3s below = glms_vec3_sub(box.min, point), above = glms_vec3_sub(point, box.max);
+    return glms_vec3_norm(glms_vec3_maxv(glms_vec3_maxv(below, above), vec3_of(0, 0, 0)));
+}
+
+// The block nearest to the cell's middle first: most searches end with it.
+static void place_nearest_first(const struct grid *grid, const struct mrt_block_map *map,
+                                size_t cell, uint32_t *candidates, uint32_t count)
+{
+    const size_t x = (size_t)grid->cells[0], y = (size_t)grid->cells[1];
+    vec3s middle = vec3_of((float)(cell % x), (float)(cell / x % y), (float)(cell / (x * y)));
+    middle = glms_vec3_muladds(glms_vec3_adds(middle, 0.5f), grid->cell, grid->origin);
+    float least = INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t block = candidates[i];
+        const float distance = distance_to(&map->blocks[block], middle);
+        if (distance >= least) continue;
+        least = distance;
+        candidates[i] = candidates[0];
+        candidates[0] = block;
+    }
+}
+
 bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_map *map)
 {
     struct grid grid = grid_of(map);
@@ -128,6 +153,8 @@ bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_
     lists.candidates = host_alloc(runtime->host, total, sizeof *lists.candidates);
     if (!lists.candidates) goto done;
     visit_all(&grid, map, add_block, &lists);
+    for (size_t i = 0; i < cells; i++)
+        place_nearest_first(&grid, map, i, lists.candidates + lists.cell[i][0], lists.cell[i][1]);
     ok = mrt_buffer_of(runtime->gpu, "cells", lists.cell, cells * sizeof *lists.cell,
                        &runtime->buffers.cells) &&
          mrt_buffer_of(runtime->gpu, "candidates", lists.candidates,

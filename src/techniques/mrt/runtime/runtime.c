@@ -7,7 +7,7 @@
 
 #include "technique_shaders.h"
 
-enum { VEC3_BYTES = 12, MAX_CONSTANTS = 5, VECTOR_VALUES = 4 };
+enum { VEC3_BYTES = 12, MAX_CONSTANTS = 6, VECTOR_VALUES = 4 };
 
 static bool make_empty(struct gpu *gpu, const char *name, size_t bytes, gpu_buffer *out)
 {
@@ -67,6 +67,13 @@ struct pipeline {
     uint32_t values;    // of MRT_CONSTANT_VALUES
 };
 
+static bool is_affine(const struct mrt_block_map *map)
+{
+    for (int b = 0; b < map->count; b++)
+        if (!mrt_warp_is_affine(map->blocks[b].corner)) return false;
+    return true;
+}
+
 static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                           const struct pipeline *pipeline)
 {
@@ -76,6 +83,7 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
         [MRT_CONSTANT_QUADS_R] = mrt_quads(input->k_r),
         [MRT_CONSTANT_VALUES] = pipeline->values,
         [MRT_CONSTANT_PROBES] = runtime->options.clutter,
+        [MRT_CONSTANT_AFFINE] = is_affine(input->map),
     };
     struct gpu_constant constants[MAX_CONSTANTS];
     int count = 0;
@@ -92,6 +100,7 @@ enum {
     QUADS_R = 1 << MRT_CONSTANT_QUADS_R,
     VALUES = 1 << MRT_CONSTANT_VALUES,
     PROBES = 1 << MRT_CONSTANT_PROBES,
+    AFFINE = 1 << MRT_CONSTANT_AFFINE,
     ALL = HALF | QUADS_B | QUADS_R | VALUES,
 };
 
@@ -105,8 +114,8 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R, 0 },
         { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
         { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
-        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES | PROBES, values },
-        { &p->debug, "debug", &shader_mrt_runtime_debug_comp, 0, 0 },
+        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES | PROBES | AFFINE, values },
+        { &p->debug, "debug", &shader_mrt_runtime_debug_comp, AFFINE, 0 },
     };
     const struct pipeline vector[] = {
         { &p->reconstruct_vector, "reconstruct_vector", &shader_mrt_runtime_reconstruct_comp, ALL,

@@ -100,6 +100,17 @@ static uint32_t walls_of(const struct mrt_block *block)
     return walls;
 }
 
+// The affine part of the warp, inverted.
+static void fill_inverse(const struct mrt_block *from, struct mrt_gpu_block *to)
+{
+    const vec3s middle = vec3_of(0, 0, 0);
+    mat3s inverse = glms_mat3_inv(mrt_warp_jacobian(from->corner, middle));
+    to->middle = mrt_warp_point(from->corner, middle);
+    for (int a = 0; a < 3; a++)
+        to->inverse[a] =
+            vec3_of(inverse.col[0].raw[a], inverse.col[1].raw[a], inverse.col[2].raw[a]);
+}
+
 static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                         void *items)
 {
@@ -111,6 +122,8 @@ static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runt
         memcpy(to->corner, from->corner, sizeof to->corner);
         for (int f = 0; f < CUBE_FACES; f++)
             to->tile[f] = input->atlas->tile_of_face[CUBE_FACES * b + f];
+        for (int f = 0; f < CUBE_FACES; f++) to->neighbor[f] = from->neighbor[f].block;
+        fill_inverse(from, to);
         to->first_texel = (uint32_t)first_texel(input->atlas, b);
         to->texels = walls_of(from) * runtime->level.texels_of_tile;
         to->basis_row = basis_row(input, input->basis_of_block[b]);
