@@ -37,8 +37,7 @@ static void solve(struct mrt_runtime *runtime, int bounces, bool feedback)
 {
     struct gpu_cmd *cmd = gpu_frame_begin(runtime->gpu);
     assert_non_null(cmd);
-    for (int i = 0; i < bounces; i++)
-        mrt_record_bounce(runtime, cmd, feedback || i > 0 ? 1.0f : 0.0f);
+    mrt_record_bounces(runtime, cmd, bounces, feedback ? 1.0f : 0.0f);
     mrt_record_light_map(runtime, cmd);
     CHECK(gpu_frame_end(runtime->gpu, cmd));
     CHECK(gpu_wait(runtime->gpu));

@@ -120,8 +120,7 @@ static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct f
         mrt_record_coefficients(&mrt->runtime, cmd);
         return;
     }
-    for (int i = 0; i < mrt->options.bounces; i++)
-        mrt_record_bounce(&mrt->runtime, cmd, i > 0 ? 1.0f : first_feedback(mrt, view));
+    mrt_record_bounces(&mrt->runtime, cmd, mrt->options.bounces, first_feedback(mrt, view));
 }
 
 static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)

@@ -6,6 +6,7 @@
 #include "operators.h"
 
 #include "techniques/mrt/runtime/half.h"
+#include "techniques/mrt/runtime/reflection.h"
 #include "techniques/mrt/runtime/tables.h"
 
 #include <math.h>
@@ -51,18 +52,7 @@ static bool words_upload(struct words *w, struct gpu *gpu, const char *name, gpu
     return ok;
 }
 
-uint32_t mrt_quads(int modes)
-{
-    return (uint32_t)(modes + 3) / 4;
-}
-
 // ---- scales of b-coefficients
-
-struct scales {
-    float *of_b;    // [basis][k_b]: the stored b over the dictionary's
-    float *inverse; // [basis][k_b]
-    int k_b;
-};
 
 static float largest_in(const float *at, size_t count, size_t stride)
 {
@@ -79,10 +69,11 @@ static float balance(const struct mrt_basis_input *basis, size_t mode)
     return exp2f(roundf(0.5f * (log2f(u) - log2f(t))));
 }
 
-static bool scales_init(struct scales *s, struct host *host, const struct mrt_runtime_input *input)
+static bool scales_init(struct mrt_scales *s, struct host *host,
+                        const struct mrt_runtime_input *input)
 {
     size_t count = (size_t)input->basis_count * (size_t)input->k_b;
-    *s = (struct scales){ .k_b = input->k_b };
+    *s = (struct mrt_scales){ .k_b = input->k_b };
     s->of_b = host_alloc(host, count, sizeof *s->of_b);
     s->inverse = host_alloc(host, count, sizeof *s->inverse);
     if (!s->of_b || !s->inverse) return false;
@@ -93,7 +84,7 @@ static bool scales_init(struct scales *s, struct host *host, const struct mrt_ru
     return true;
 }
 
-static void scales_finish(struct scales *s, struct host *host)
+static void scales_finish(struct mrt_scales *s, struct host *host)
 {
     host_free(host, s->of_b);
     host_free(host, s->inverse);
@@ -109,7 +100,7 @@ static size_t rows_of_bases(const struct mrt_runtime_input *input)
 }
 
 static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                        const struct scales *scales)
+                        const struct mrt_scales *scales)
 {
     struct words w;
     if (!words_init(&w, runtime->host, runtime->options.half, rows_of_bases(input),
@@ -146,7 +137,7 @@ static const struct matrix_f32 *of_response(const struct mrt_response_input *res
 }
 
 static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                       const struct scales *scales, enum points points, gpu_buffer *out)
+                       const struct mrt_scales *scales, enum points points, gpu_buffer *out)
 {
     static const char *const names[] = { "u_b", "u_b_vector", "u_b_probes" };
     struct words w;
@@ -176,7 +167,7 @@ static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_inp
 
 // By column: [pair][k_b][k_r], with k_b padded too.
 static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                        const struct scales *scales)
+                        const struct mrt_scales *scales)
 {
     struct words w;
     const int columns = (int)(4 * mrt_quads(input->k_b));
@@ -199,11 +190,12 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_in
 
 bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
-    struct scales scales = { 0 };
+    struct mrt_scales scales = { 0 };
     struct mrt_runtime_buffers *b = &runtime->buffers;
     bool ok = scales_init(&scales, runtime->host, input) && upload_t_db(runtime, input, &scales) &&
               upload_u_b(runtime, input, &scales, TEXELS, &b->u_b) &&
               upload_u_r(runtime, input, TEXELS, &b->u_r) && upload_t_br(runtime, input, &scales);
+    ok = ok && mrt_reflection_upload(runtime, input, &scales);
     if (ok && runtime->options.vector)
         ok = upload_u_b(runtime, input, &scales, TEXELS_BY_NORMAL, &b->u_b_vector) &&
              upload_u_r(runtime, input, TEXELS_BY_NORMAL, &b->u_r_vector);

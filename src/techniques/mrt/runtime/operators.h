@@ -5,6 +5,9 @@
 #include "techniques/mrt/runtime/runtime.h"
 
 // Rounded up to a multiple of four.
-uint32_t mrt_quads(int modes);
+static inline uint32_t mrt_quads(int modes)
+{
+    return (uint32_t)(modes + 3) / 4;
+}
 // Uploads all operators into new buffers.
 bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);

@@ -1,10 +1,9 @@
-// b = T_d→b l_d of each block (Loos 2015, equation 3.3): one workgroup per block. l_d is direct
-// radiosity plus the reflected part of the newest indirect irradiance.
+// b = T_d→b l_d of each block for direct radiosity l_d (Loos 2015, equation 3.3): one workgroup per
+// block.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#define MRT_TEXELS_BINDING 2
 #define MRT_BLOCKS_BINDING 3
 #include "techniques/mrt/runtime/level.glsl"
 #include "techniques/mrt/runtime/operators.glsl"
@@ -16,24 +15,14 @@ layout(set = 0, binding = 4, scalar) readonly buffer mrt_direct
 {
     vec3 direct_table[];
 };
-layout(set = 0, binding = 5, scalar) readonly buffer mrt_irradiance
-{
-    vec3 irradiance_table[];
-};
 layout(set = 0, binding = 6) readonly buffer mrt_t_db
 {
     uint t_db[]; // [row][k_b]
 };
-layout(set = 0, binding = 7, scalar) writeonly buffer mrt_b
+layout(set = 0, binding = 7, scalar) writeonly buffer mrt_b_direct
 {
     vec4 b_table[]; // [block][colour][quad]
 };
-
-vec3 radiosity_of(uint texel)
-{
-    return direct_table[texel] +
-           level.feedback * texel_table[texel].albedo * irradiance_table[texel];
-}
 
 void main()
 {
@@ -44,7 +33,7 @@ void main()
     if (stripe < stripes)
         for (uint i = stripe; i < block_table[block].texels; i += stripes) {
             vec4 weights = MRT_QUAD(t_db, (row + i) * QUADS_B + quad);
-            vec3 radiosity = radiosity_of(first + i);
+            vec3 radiosity = direct_table[first + i];
             for (int c = 0; c < 3; c++) sum[c] += weights * radiosity[c];
         }
     for (int c = 0; c < 3; c++) partial_sums[c][lane] = sum[c];

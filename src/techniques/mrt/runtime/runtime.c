@@ -23,6 +23,8 @@ static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_i
     const size_t quad = 3 * 4 * sizeof(float);
     return make_empty(gpu, "unbounced", light, &b->unbounced) &&
            make_empty(gpu, "direct", light, &b->direct) &&
+           make_empty(gpu, "b_direct", runtime->block_count * mrt_quads(input->k_b) * quad,
+                      &b->b_direct) &&
            make_empty(gpu, "b", runtime->block_count * mrt_quads(input->k_b) * quad, &b->b) &&
            make_empty(gpu, "r", runtime->opening_count * mrt_quads(input->k_r) * quad, &b->r) &&
            make_empty(gpu, "irradiance", light, &b->irradiance) &&
@@ -111,6 +113,7 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
     const struct pipeline all[] = {
         { &p->direct, "direct", &shader_mrt_runtime_direct_comp, 0, 0 },
         { &p->project, "project", &shader_mrt_runtime_project_comp, HALF | QUADS_B, 0 },
+        { &p->bounce, "bounce", &shader_mrt_runtime_bounce_comp, QUADS_B | QUADS_R, 0 },
         { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R, 0 },
         { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
         { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
@@ -150,10 +153,10 @@ static void destroy_buffers(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_buffers *b = &runtime->buffers;
     gpu_buffer *const buffers[] = {
-        &b->texels,  &b->tiles, &b->blocks,     &b->openings,   &b->borders,
-        &b->sources, &b->cells, &b->candidates, &b->t_db,       &b->u_b,
-        &b->u_r,     &b->t_br,  &b->u_b_vector, &b->u_r_vector, &b->unbounced,
-        &b->direct,  &b->b,     &b->r,          &b->irradiance, &b->vector,
+        &b->texels,     &b->tiles,      &b->blocks,     &b->openings, &b->borders,  &b->sources,
+        &b->cells,      &b->candidates, &b->t_db,       &b->u_b,      &b->u_r,      &b->t_br,
+        &b->u_b_vector, &b->u_r_vector, &b->unbounced,  &b->direct,   &b->b_direct, &b->reflection,
+        &b->b,          &b->r,          &b->irradiance, &b->vector,
     };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
@@ -164,10 +167,10 @@ static void destroy_buffers(struct mrt_runtime *runtime)
 void mrt_runtime_finish(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_pipelines *p = &runtime->pipelines;
-    gpu_pipeline *const pipelines[] = {
-        &p->direct, &p->project,     &p->couple, &p->reconstruct, &p->reconstruct_vector,
-        &p->fill,   &p->fill_vector, &p->apply,  &p->debug
-    };
+    gpu_pipeline *const pipelines[] = { &p->direct, &p->project,     &p->bounce,
+                                        &p->couple, &p->reconstruct, &p->reconstruct_vector,
+                                        &p->fill,   &p->fill_vector, &p->apply,
+                                        &p->debug };
     _Static_assert(sizeof pipelines / sizeof *pipelines == sizeof *p / sizeof p->direct,
                    "each member is listed");
     if (!runtime->gpu) return;
@@ -206,6 +209,7 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
     return cells * 3 * sizeof(uint32_t) +
            texels * (sizeof(struct mrt_texel) + (2 + values) * VEC3_BYTES) +
            CUBE_FACES * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
-           texels * k_b * number * (1 + values) + CUBE_FACES * texels * k_r * number * values +
-           map * (size->options.vector ? 4 : 1) + bytes_of_probes(size);
+           texels * k_b * number * (1 + values) + 3 * k_b * k_b * sizeof(float) +
+           CUBE_FACES * texels * k_r * number * values + map * (size->options.vector ? 4 : 1) +
+           bytes_of_probes(size);
 }

@@ -22,13 +22,14 @@ struct mrt_runtime_buffers {
     gpu_buffer t_db, u_b, u_r, t_br;                              // operators
     gpu_buffer u_b_vector, u_r_vector;
     gpu_buffer direct, unbounced;    // vec3 per texel: radiosity, irradiance
-    gpu_buffer b, r;                 // coefficients
+    gpu_buffer b_direct, b, r;       // coefficients
+    gpu_buffer reflection;           // of b and r into b, by the albedo of each block
     gpu_buffer irradiance, vector;   // vec3 per texel and value
     gpu_image light_map, vector_map; // vector_map: 1×1 without `vector`
 };
 
 struct mrt_runtime_pipelines {
-    gpu_pipeline direct, project, couple;
+    gpu_pipeline direct, project, bounce, couple;
     gpu_pipeline reconstruct, reconstruct_vector;
     gpu_pipeline fill, fill_vector;
     gpu_pipeline apply, debug;
@@ -80,9 +81,10 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size);
 // Radiosity of the texels before any bounce.
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters);
-// Indirect irradiance of the texels after one more bounce. feedback: the weight of the irradiance
-// of the last bounce; 0: none.
-void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback);
+// Indirect irradiance of the texels after `count` bounces. feedback: the weight of the last call's
+// indirect light, which the first one reflects too; 0: none.
+void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count,
+                        float feedback);
 // b and r of the radiosity in `probes.radiosity`, where the host computed irradiance.
 void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
 // The light map with its borders, and irradiance by normal.

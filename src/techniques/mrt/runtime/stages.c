@@ -32,14 +32,26 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_buffer light)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
-    gpu_dispatch(
-        cmd, runtime->pipelines.project,
-        GPU_BIND(level_binding(runtime, cmd), { .name = "mrt_texels", .buffer = b->texels },
-                 { .name = "mrt_blocks", .buffer = b->blocks },
-                 { .name = "mrt_direct", .buffer = light },
-                 { .name = "mrt_irradiance", .buffer = b->irradiance },
-                 { .name = "mrt_t_db", .buffer = b->t_db }, { .name = "mrt_b", .buffer = b->b }),
-        NULL, 0, runtime->block_count, 1, 1);
+    gpu_dispatch(cmd, runtime->pipelines.project,
+                 GPU_BIND(level_binding(runtime, cmd),
+                          { .name = "mrt_blocks", .buffer = b->blocks },
+                          { .name = "mrt_direct", .buffer = light },
+                          { .name = "mrt_t_db", .buffer = b->t_db },
+                          { .name = "mrt_b_direct", .buffer = b->b_direct }),
+                 NULL, 0, runtime->block_count, 1, 1);
+}
+
+static void record_reflect(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback)
+{
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
+    runtime->level.feedback = feedback;
+    gpu_dispatch(cmd, runtime->pipelines.bounce,
+                 GPU_BIND(level_binding(runtime, cmd),
+                          { .name = "mrt_blocks", .buffer = b->blocks },
+                          { .name = "mrt_reflection", .buffer = b->reflection },
+                          { .name = "mrt_b_direct", .buffer = b->b_direct },
+                          { .name = "mrt_r", .buffer = b->r }, { .name = "mrt_b", .buffer = b->b }),
+                 NULL, 0, runtime->block_count, 1, 1);
 }
 
 static void record_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
@@ -70,14 +82,16 @@ static void record_reconstruct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
         NULL, 0, gpu_groups(runtime->level.texels_of_tile, MRT_LOCAL), runtime->level.tiles, 1);
 }
 
-void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float feedback)
+void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count, float feedback)
 {
-    runtime->level.feedback = feedback;
     gpu_scope_begin(cmd, "b");
     record_project(runtime, cmd, runtime->buffers.direct);
     gpu_scope_end(cmd);
-    gpu_scope_begin(cmd, "r");
-    record_couple(runtime, cmd);
+    gpu_scope_begin(cmd, "bounces");
+    for (int i = 0; i < count; i++) {
+        record_reflect(runtime, cmd, i > 0 ? 1.0f : feedback);
+        record_couple(runtime, cmd);
+    }
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "reconstruct");
     record_reconstruct(runtime, cmd, false);
@@ -87,9 +101,9 @@ void mrt_record_bounce(struct mrt_runtime *runtime, struct gpu_cmd *cmd, float f
 void mrt_record_coefficients(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     if (!runtime->options.probes) return;
-    runtime->level.feedback = 0.0f;
     gpu_scope_begin(cmd, "b");
     record_project(runtime, cmd, runtime->probes.radiosity);
+    record_reflect(runtime, cmd, 0.0f);
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "r");
     record_couple(runtime, cmd);

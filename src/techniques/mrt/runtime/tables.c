@@ -65,8 +65,7 @@ static uint32_t basis_row(const struct mrt_runtime_input *input, int basis)
     return (uint32_t)row;
 }
 
-// First texel of a block, those of its walls in ascending order; −1: no wall.
-static int first_texel(const struct mrt_atlas *atlas, int block)
+int mrt_first_texel(const struct mrt_atlas *atlas, int block)
 {
     for (int f = 0; f < CUBE_FACES; f++) {
         int tile = atlas->tile_of_face[CUBE_FACES * block + f];
@@ -81,7 +80,8 @@ static void fill_tiles(const struct mrt_runtime *runtime, const struct mrt_runti
     struct mrt_gpu_tile *tiles = items;
     for (int i = 0; i < input->atlas->tile_count; i++) {
         const struct mrt_tile *tile = &input->atlas->tiles[i];
-        uint32_t before = (uint32_t)(tile->first_texel - first_texel(input->atlas, tile->block));
+        uint32_t before =
+            (uint32_t)(tile->first_texel - mrt_first_texel(input->atlas, tile->block));
         tiles[i] = (struct mrt_gpu_tile){
             .block = (uint32_t)tile->block,
             .first_texel = (uint32_t)tile->first_texel,
@@ -124,7 +124,7 @@ static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runt
             to->tile[f] = input->atlas->tile_of_face[CUBE_FACES * b + f];
         for (int f = 0; f < CUBE_FACES; f++) to->neighbor[f] = from->neighbor[f].block;
         fill_inverse(from, to);
-        to->first_texel = (uint32_t)first_texel(input->atlas, b);
+        to->first_texel = (uint32_t)mrt_first_texel(input->atlas, b);
         to->texels = walls_of(from) * runtime->level.texels_of_tile;
         to->basis_row = basis_row(input, input->basis_of_block[b]);
         to->first_opening = (uint32_t)opening;

@@ -1,0 +1,96 @@
+// The operator of one bounce within the reduced spaces, for bounce.comp. Floats: a few kilobytes
+// per block, which all bounces share.
+#include "reflection.h"
+
+#include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/tables.h"
+
+struct builder {
+    struct host *host;
+    const struct mrt_runtime_input *input;
+    const struct mrt_scales *scales;
+    size_t face; // texels of a wall
+    float *out;  // next column
+};
+
+// Light of b and of each opening at the texels of a block, reflected by them.
+static void fill_reflected(const struct builder *s, int block, int first_opening, int colour,
+                           struct matrix_f32 *out)
+{
+    const struct mrt_runtime_input *input = s->input;
+    const struct mrt_basis_input *basis = &input->bases[input->basis_of_block[block]];
+    const int first = mrt_first_texel(input->atlas, block);
+    size_t row = 0;
+    for (int f = 0; f < CUBE_FACES; f++) {
+        if (mrt_block_is_open(&input->map->blocks[block], f)) continue;
+        for (size_t t = 0; t < s->face; t++, row++) {
+            const float albedo = input->images->geometry[first + (int)row].albedo.raw[colour];
+            float *to = out->at + row * out->stride;
+            const float *u_b = basis->u_b.at + row * basis->u_b.stride;
+            for (int k = 0; k < input->k_b; k++) *to++ = albedo * u_b[k];
+            for (int i = first_opening; to < out->at + row * out->stride + out->columns; i++) {
+                const struct matrix_f32 *u_r = &input->response[input->openings[i].face].u_r;
+                const float *from = u_r->at + ((size_t)f * s->face + t) * u_r->stride;
+                for (int k = 0; k < input->k_r; k++) *to++ = albedo * from[k];
+            }
+        }
+    }
+}
+
+// Columns of k_b and of k_r are padded to quads, and so are rows.
+static void place_columns(const struct builder *s, int block, int colour,
+                          const struct matrix_f32 *product)
+{
+    const size_t quads_b = 4 * mrt_quads(s->input->k_b), quads_r = 4 * mrt_quads(s->input->k_r);
+    const size_t k_b = (size_t)s->input->k_b, k_r = (size_t)s->input->k_r;
+    const size_t scale = (size_t)s->input->basis_of_block[block] * k_b;
+    for (size_t m = 0; m < product->columns; m++) {
+        const bool own = m < k_b;
+        const size_t entered = own ? 0 : m - k_b;
+        const size_t column = own ? m : quads_b + entered / k_r * quads_r + entered % k_r;
+        const float factor = own ? s->scales->inverse[scale + m] : 1.0f;
+        float *to = s->out + (3 * column + (size_t)colour) * quads_b;
+        for (size_t k = 0; k < k_b; k++)
+            to[k] = factor * s->scales->of_b[scale + k] * product->at[k * product->stride + m];
+    }
+}
+
+static bool add_block(struct builder *s, int block, int first_opening, int openings)
+{
+    const struct matrix_f32 *t_db = &s->input->bases[s->input->basis_of_block[block]].t_db;
+    const size_t columns = (size_t)(s->input->k_b + openings * s->input->k_r);
+    struct matrix_f32 light = { 0 }, product = { 0 };
+    bool ok = t_db->columns == 0 || (matrix_f32_init(s->host, &light, t_db->columns, columns) &&
+                                     matrix_f32_init(s->host, &product, t_db->rows, columns));
+    for (int c = 0; ok && c < 3 && t_db->columns > 0; c++) {
+        fill_reflected(s, block, first_opening, c, &light);
+        ok = matrix_f32_multiply(s->host, 1.0f, t_db, NOT_TRANSPOSED, &light, NOT_TRANSPOSED, 0.0f,
+                                 &product);
+        if (ok) place_columns(s, block, c, &product);
+    }
+    matrix_f32_finish(s->host, &light);
+    matrix_f32_finish(s->host, &product);
+    s->out += 3 * 4 * mrt_quads(s->input->k_b) *
+              (4 * mrt_quads(s->input->k_b) + (size_t)openings * 4 * mrt_quads(s->input->k_r));
+    return ok;
+}
+
+bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                           const struct mrt_scales *scales)
+{
+    const size_t rows = 4 * mrt_quads(input->k_b);
+    const size_t columns =
+        (size_t)input->map->count * rows + (size_t)input->opening_count * 4 * mrt_quads(input->k_r);
+    float *all = host_alloc(runtime->host, columns, 3 * rows * sizeof *all);
+    struct builder s = { runtime->host, input, scales, runtime->level.texels_of_tile, all };
+    bool ok = all;
+    for (int b = 0, opening = 0; ok && b < input->map->count; b++) {
+        const int first = opening;
+        while (opening < input->opening_count && input->openings[opening].block == b) opening++;
+        ok = add_block(&s, b, first, opening - first);
+    }
+    ok = ok && mrt_buffer_of(runtime->gpu, "reflection", all, columns * 3 * rows * sizeof *all,
+                             &runtime->buffers.reflection);
+    host_free(runtime->host, all);
+    return ok;
+}
