@@ -7,6 +7,8 @@
 
 #include "techniques/mrt/mrt_state.h"
 
+#include "core/hash.h"
+
 #include <string.h>
 
 #define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
@@ -96,6 +98,28 @@ static void mrt_invalidate(void *state, uint32_t changes)
     struct mrt *mrt = state;
 
     if (changes & (CHANGED_LIGHT | CHANGED_OPTIONS)) mrt->lit = false;
+    if (changes & ~(uint32_t)CHANGED_CAMERA) mrt->inputs.valid = false;
+}
+
+// Lights, sky and live options, in the units of the frame.
+static uint64_t hash_of_light(const struct mrt *mrt, const struct frame_view *view)
+{
+    const struct frame_constants *c = view->constants;
+    uint64_t hash = hash_bytes(&mrt->options, sizeof mrt->options, (uint64_t)view->shadow_radius);
+    hash = hash_bytes(&c->radiance_scale, sizeof c->radiance_scale, hash);
+    hash = hash_bytes(&c->sky, sizeof c->sky, hash);
+    return hash_bytes(view->lights, (size_t)view->light_count * sizeof *view->lights, hash);
+}
+
+// Feedback converges over frames, and the CPU's results arrive later than their frame.
+static void find_kept(struct mrt *mrt, const struct frame_view *view)
+{
+    const struct mrt_inputs last = mrt->inputs;
+    const bool follows = last.valid && view->index > 0 && view->index == last.index + 1;
+    const bool complete = !mrt->options.feedback && mrt->options.solver == MRT_SOLVER_GPU;
+    mrt->inputs = (struct mrt_inputs){ true, view->index, hash_of_light(mrt, view) };
+    mrt->kept = view->keep && complete && follows && !view->geometry_moved &&
+                !view->lights_changed && mrt->inputs.light == last.light;
 }
 
 // The weight of the last frame's irradiance in this frame's first bounce.
@@ -132,10 +156,13 @@ static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         return;
     }
 
-    mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
-    record_solution(mrt, cmd, view);
-    mrt_record_light_map(&mrt->runtime, cmd);
-    mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
+    find_kept(mrt, view);
+    if (!mrt->kept) {
+        mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
+        record_solution(mrt, cmd, view);
+        mrt_record_light_map(&mrt->runtime, cmd);
+        mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
+    }
     mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
     mrt->lit = true;
 }

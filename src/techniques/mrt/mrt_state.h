@@ -34,6 +34,12 @@ struct mrt {
     struct mrt_runtime runtime;
     struct mrt_host_solver host_solver; // MRT_SOLVER_CPU
     bool lit;                           // the irradiance of the last frame is valid
+    // What the light of the newest frame was computed from; kept: this frame's is the same.
+    struct mrt_inputs {
+        bool valid;
+        uint64_t index, light;
+    } inputs;
+    bool kept;
 };
 
 // ---- mrt_level.c
