@@ -453,7 +453,7 @@ static bool fail_camera(const struct ag_scene *scene, const char *name)
 enum ag_result ag_scene_camera(struct ag_scene *scene, const char *name, int animation,
                                double time_s, struct ag_camera *out)
 {
-    const struct scene_pose *pose;
+    const struct scene_pose *pose = NULL;
     struct ag_context *context = context_of(scene);
     AG_REQUIRE_POINTER(context, name);
     enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
@@ -516,7 +516,7 @@ enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,
 enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double time_s,
                                  struct ag_scene_info *out)
 {
-    const struct scene_pose *pose;
+    const struct scene_pose *pose = NULL;
     enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
     if (result != AG_OK) return result;
     const struct scene *s = scene->scene;
@@ -543,7 +543,7 @@ enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double t
 enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int animation, double time_s,
                                   struct ag_light_info *out)
 {
-    const struct scene_pose *pose;
+    const struct scene_pose *pose = NULL;
     REQUIRE_ELEMENT(scene, out, "light", index, light_count);
     enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
     if (result != AG_OK) return result;
