@@ -171,6 +171,16 @@ enum {
     BOUNCES_AFTER_CHANGE = 16, // until the light from before the change is gone
 };
 
+// Light changes after frames without a change: bounced light would keep what is gone, such as that
+// of a light that is switched off. Later frames of a continuous change follow it.
+static bool light_jumps(const struct vct *vct, const struct frame_view *view,
+                        const struct vct_bounce_inputs *inputs)
+{
+    const bool other = memcmp(inputs, &vct->bounce_inputs, sizeof *inputs) != 0;
+    return vct->options.bounces > 1 && vct->light_valid && vct->bounces_left == 0 &&
+           (other || view->lights_changed);
+}
+
 // Bounces to trace in this frame. moves: whether light changes as in the previous frame.
 static int bounces_now(struct vct *vct, const struct frame_view *view,
                        const struct vct_bounce_inputs *inputs, bool restart, bool *moves)
@@ -178,8 +188,9 @@ static int bounces_now(struct vct *vct, const struct frame_view *view,
     const bool same = same_inputs(vct, inputs);
     if (vct->options.bounces == 1) return same ? 0 : 1;
     if (restart) {
+        const bool jumps = light_jumps(vct, view, inputs);
         vct->bounces_left = vct->light_valid ? BOUNCES_AFTER_CHANGE : 0;
-        return vct->light_valid ? 1 : BOUNCES_AT_ONCE;
+        return vct->light_valid && !jumps ? 1 : BOUNCES_AT_ONCE;
     }
     const bool changed = !same || view->lights_changed;
     *moves = changed && vct->bounces_left > 0;
@@ -213,8 +224,9 @@ bool vct_record_bounce(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
     const struct vct_bounce_inputs inputs = { view->constants->sky,
                                               view->constants->radiance_scale };
     // The light volume of the previous frame cannot be used. Bricks change with their tree.
-    const bool restart =
-        !many || !vct->light_valid || (vct->revoxelized && vct_has_svo(&vct->options));
+    const bool restart = !many || !vct->light_valid ||
+                         (vct->revoxelized && vct_has_svo(&vct->options)) ||
+                         light_jumps(vct, view, &inputs);
     vct->params.bounced = many || has_sky(view) || view->scene->max_emissive > 0.0f;
     bool moves = false;
     const int bounces = vct->params.bounced ? bounces_now(vct, view, &inputs, restart, &moves) : 0;
