@@ -46,17 +46,21 @@ struct ag_light_desc {
     float direction[3];         ///< of the emitted light, of suns and spots; any length
     float intensity[3];         ///< linear Rec. 709: lux for suns, candela for points and spots
     float inner_rad, outer_rad; ///< half-angles of a spot, inner < outer ≤ π/2
+    bool enabled;               ///< false: emits nothing, but keeps its index; default true
 };
 /// A light at the origin that shines down with intensity 1; a spot with half-angles 0 and π/4.
 AG_API void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type);
 
-/// Each sets *index (may be NULL) to the index of the new object. While a renderer uses the scene,
-/// only punctual lights can be added and removed.
+/// Each sets *index (may be NULL) to the index of the new object, or to -1 on failure. Renderers
+/// that use the scene show it from their next frame on. Adding a material or a mesh uploads all
+/// meshes of the scene again. While a bake uses the scene, only lights and sky may change:
+/// AG_ERROR_ARGUMENT.
 AG_API enum ag_result ag_scene_add_material(struct ag_scene *scene,
                                             const struct ag_material_desc *desc, int *index);
 AG_API enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_desc *desc,
                                         int *index);
-/// Adds an instance of a mesh; world_from_mesh: affine 4×4 matrix, column-major; NULL: identity.
+/// Adds a static instance of a mesh; world_from_mesh: affine 4×4 matrix, column-major; NULL:
+/// identity. An index of a removed instance is used again.
 AG_API enum ag_result ag_scene_add_instance(struct ag_scene *scene, int mesh,
                                             const float *world_from_mesh, int *index);
 AG_API enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_desc *desc,
@@ -78,6 +82,40 @@ AG_API enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
 AG_API enum ag_result ag_scene_remove_lights(struct ag_scene *scene);
 /// Uniform radiance of the sky: 3 values ≥ 0, cd/m².
 AG_API enum ag_result ag_scene_set_sky(struct ag_scene *scene, const float *radiance);
+
+/// The functions below change objects that exist, also while renderers use the scene: each renderer
+/// shows the change from its next frame on. They allocate nothing after their first call for an
+/// object. An index that does not exist, or of a removed instance, is AG_ERROR_ARGUMENT, and so is
+/// every change but that of a light while a bake uses the scene. A failed call changes nothing.
+///
+/// Places an instance: world_from_mesh as in ag_scene_add_instance. It counts as movable from then
+/// on, and no node or animation of a file moves it any more. AG_ERROR_ARGUMENT for an instance with
+/// a skin.
+AG_API enum ag_result ag_scene_set_instance_transform(struct ag_scene *scene, int instance,
+                                                      const float *world_from_mesh);
+/// Techniques compute once what depends on static instances, and in each frame with movement what
+/// depends on movable ones. Both may move; the first movement of a static one makes it movable. In
+/// glTF: {"afterglow_mobility": "movable"} in a node's extras, for it and its descendants.
+enum ag_mobility { AG_MOBILITY_STATIC, AG_MOBILITY_MOVABLE };
+AG_API enum ag_result ag_scene_set_instance_mobility(struct ag_scene *scene, int instance,
+                                                     enum ag_mobility mobility);
+/// Its mesh stays, for other instances.
+AG_API enum ag_result ag_scene_remove_instance(struct ag_scene *scene, int instance);
+/// Replaces the vertices of a mesh: positions (metres) and normals (any length), 3 values for each
+/// of the ag_mesh_info.vertex_count vertices, in the order in which they were given or stand in the
+/// file. normals NULL: flat ones are computed if the mesh was added without, others stay. Tangents
+/// are computed from the texture coordinates. Instances of the mesh count as movable from then on.
+AG_API enum ag_result ag_scene_update_mesh(struct ag_scene *scene, int mesh, const float *positions,
+                                           const float *normals);
+/// Replaces factors and flags; textures, alpha mode and name stay. Materials that start or stop to
+/// emit are allowed.
+AG_API enum ag_result ag_scene_set_material(struct ag_scene *scene, int material,
+                                            const struct ag_material_desc *desc);
+/// Replaces a punctual light, of any type; no node or animation of a file moves it any more. Change
+/// `position`, `direction`, `intensity` or `enabled` of what ag_scene_get_light returned. Shadow
+/// maps stay while only intensity or `enabled` change.
+AG_API enum ag_result ag_scene_set_light(struct ag_scene *scene, int light,
+                                         const struct ag_light_desc *desc);
 
 struct ag_camera {
     float eye[3], target[3]; ///< metres
@@ -117,7 +155,8 @@ AG_API enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,
                                                     struct ag_default_lighting *out);
 
 struct ag_scene_info {
-    int meshes, instances, materials, images, lights, cameras, animations, skins, nodes;
+    int instances; ///< indices that are or were in use
+    int meshes, materials, images, lights, cameras, animations, skins, nodes;
     uint64_t triangles; ///< over instances
     uint64_t vertices;
     uint64_t memory_bytes;              ///< main memory
@@ -127,6 +166,27 @@ struct ag_scene_info {
 };
 AG_API enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double time_s,
                                         struct ag_scene_info *out);
+
+struct ag_instance_info {
+    const char *name; ///< of its node; valid until the scene changes
+    int mesh;         ///< -1: removed; the other members are then zero
+    enum ag_mobility mobility;
+    bool skinned;              ///< its joints place it
+    float world_from_mesh[16]; ///< column-major, at the given moment; identity for a skin
+};
+/// index: 0…ag_scene_info.instances − 1.
+AG_API enum ag_result ag_scene_get_instance(struct ag_scene *scene, int index, int animation,
+                                            double time_s, struct ag_instance_info *out);
+
+struct ag_mesh_info {
+    const char *name;      ///< valid until the scene is destroyed
+    uint32_t vertex_count; ///< as given to ag_scene_add_mesh, or in the file after its import
+    uint32_t index_count;
+    int material;
+    float bounds_min[3], bounds_max[3]; ///< metres, in the space of the mesh
+};
+AG_API enum ag_result ag_scene_get_mesh(struct ag_scene *scene, int index,
+                                        struct ag_mesh_info *out);
 
 struct ag_light_info {
     const char *name;           ///< valid until the scene is destroyed

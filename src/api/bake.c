@@ -86,10 +86,9 @@ static struct bake_run_options run_options(const struct ag_bake_desc *desc)
 static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *desc)
 {
     struct host *host = &b->context->host;
-    uint64_t version = 0;
     if (!gi_spec_parse(&b->spec, host, gi) || !find_term(b, gi, desc->technique)) return false;
     b->options = run_options(desc);
-    if (!api_pose_at(b->scene, &b->pose, &version, desc->animation, desc->time_s)) return false;
+    if (!api_pose_at(b->scene, &b->pose, desc->animation, desc->time_s)) return false;
     if (!gi_bake_resolve(host, b->spec.technique[b->term], &b->pose, b->spec.options[b->term]))
         return false;
     b->how = (struct technique_bake){ .pose = &b->pose,
@@ -140,7 +139,7 @@ enum ag_result ag_bake_create(struct ag_scene *scene, const char *gi,
     if (!b) return api_done(context, false);
     b->context = context;
     b->scene = scene;
-    scene->users++;
+    scene->bakes++;
     const bool ok = build(b, gi, desc);
     enum ag_result result = api_done(context, ok);
     if (ok)
@@ -159,7 +158,7 @@ void ag_bake_destroy(struct ag_bake *b)
     pose_finish(&b->pose);
     gi_spec_finish(&b->spec);
     host_free(host, b->checkpoint);
-    b->scene->users--;
+    b->scene->bakes--;
     host_free(host, b);
 }
 

@@ -36,24 +36,26 @@ struct ag_scene {
     struct ag_context *context;
     struct scene *scene;
     struct scene_pose pose; // for queries at a moment; zero until the first
-    uint64_t version;       // counts changes of the scene
-    uint64_t pose_version;  // version of the scene that `pose` belongs to
     struct moment {
         bool valid;
+        uint64_t revision; // of the scene
         int animation;
         double time_s;
     } pose_moment;                        // of `pose`
     struct named_camera *cameras_by_name; // sorted; NULL until the first lookup
-    int users;                            // renderers and bakes
+    int renderers, bakes;                 // that use it
 };
 
 // The path of the importer program, owned by the caller; NULL: not found, or out of memory.
 char *api_find_importer(struct host *host);
 
-// Updates `pose` to a moment, or rebuilds it if *pose_version is outdated. False: out of memory, or
-// beyond the limits of scene/limits.h.
-bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t *pose_version,
-                 int animation, double time_s);
+// Updates `pose` to a moment and to the scene as it is now; a zeroed one is created. False: out of
+// memory, or beyond the limits of scene/limits.h.
+bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, int animation,
+                 double time_s);
+// Adds a light; `name` is a literal.
+enum ag_result api_add_light(struct ag_scene *scene, const struct ag_light_desc *desc,
+                             const char *name);
 // Valid indices: -1 (rest pose), 0 (first animation, if any) and those of the scene.
 bool api_animation_exists(const struct ag_scene *scene, int animation);
 

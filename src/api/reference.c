@@ -38,8 +38,7 @@ static bool build(struct ag_reference *r, const struct ag_scene *scene,
 {
     struct host *host = &r->context->host;
     struct scene_pose pose = { 0 };
-    uint64_t version = 0;
-    if (!api_pose_at(scene, &pose, &version, desc->animation, desc->time_s)) return false;
+    if (!api_pose_at(scene, &pose, desc->animation, desc->time_s)) return false;
     struct world_camera camera = api_camera(&desc->camera);
     struct reference_options options = { .bounces = desc->bounces,
                                          .direct_only = desc->direct_only,

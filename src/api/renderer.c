@@ -89,7 +89,8 @@ static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
     if (!parse_options(host, desc, &r->spec, &r->options)) return false;
     if (!(r->gi_text = gi_spec_print(&r->spec))) return false;
     if (desc->bake_folder && !(r->bake_folder = host_strdup(host, desc->bake_folder))) return false;
-    if (!api_pose_at(r->scene, &r->pose, &r->pose_version, 0, 0.0)) return false;
+    if (!api_pose_at(r->scene, &r->pose, 0, 0.0)) return false;
+    r->seen = r->scene->scene->revisions;
     if (!(r->frame = frame_create(host, r->device->gpu, &r->options))) return false;
     if (!frame_set_scene(r->frame, r->scene->scene)) return false;
     if (!frame_resize(r->frame, width, height)) return false;
@@ -129,7 +130,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->indirect_layer = desc->indirect_layer;
     r->display_layer = desc->display_layer;
     r->motion_layer = desc->motion_layer;
-    scene->users++;
+    scene->renderers++;
     r->client = gpu_client_add(device->gpu);
     renderer_enter(r);
     bool ok = r->client && build(r, desc);
@@ -153,7 +154,7 @@ void ag_renderer_destroy(struct ag_renderer *r)
     host_free(renderer_host(r), r->gi_text);
     host_free(renderer_host(r), r->bake_folder);
     gpu_client_remove(r->device->gpu, r->client);
-    r->scene->users--;
+    r->scene->renderers--;
     host_free(renderer_host(r), r);
 }
 

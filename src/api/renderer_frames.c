@@ -1,4 +1,5 @@
 // Frames of a renderer: submitted by the library, or recorded into a caller's command buffer.
+#include "api/renderer_scene.h"
 #include "api/renderer_state.h"
 
 #include "gpu/gpu.h"
@@ -34,30 +35,17 @@ static enum ag_result frame_check(const char *function, const struct ag_renderer
     return api_camera_check(context, function, &desc->camera);
 }
 
-static int resolve_lights(struct ag_renderer *r)
-{
-    int count = r->scene->scene->light_count;
-    if (count > FRAME_MAX_LIGHTS) {
-        if (!r->said_limit)
-            host_log(renderer_host(r), LOG_WARNING, "%s has %d lights: the first %d are used",
-                     r->scene->scene->name, count, FRAME_MAX_LIGHTS);
-        r->said_limit = true;
-        count = FRAME_MAX_LIGHTS;
-    }
-    for (int i = 0; i < count; i++) r->lights[i] = pose_light(&r->pose, i);
-    return count;
-}
-
 // All steps that may allocate; recording must not.
 static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
                     struct frame_input *input, struct frame_indirect *hook)
 {
-    if (!api_pose_at(r->scene, &r->pose, &r->pose_version, desc->animation, desc->time_s))
-        return false;
+    if (!api_pose_at(r->scene, &r->pose, desc->animation, desc->time_s)) return false;
+    const uint32_t changes = renderer_scene_changes(r);
+    if (changes) gi_invalidate(r->gi, changes);
     *input = (struct frame_input){ .pose = &r->pose,
                                    .camera = api_camera(&desc->camera),
                                    .lights = r->lights,
-                                   .light_count = resolve_lights(r),
+                                   .light_count = renderer_scene_lights(r),
                                    .sky = r->scene->scene->sky,
                                    .auto_exposure = desc->auto_exposure,
                                    .exposure_ev = desc->exposure_ev,

@@ -21,7 +21,7 @@ struct ag_renderer {
     char *gi_text;     // GI spec with all options
     char *bake_folder; // NULL: none
     struct scene_pose pose;
-    uint64_t pose_version;
+    struct scene_revisions seen; // of the scene, in the newest frame
     struct frame *frame;
     struct gi *gi;
     struct world_light lights[FRAME_MAX_LIGHTS];

@@ -6,10 +6,6 @@
 
 #include <string.h>
 
-_Static_assert((int)AG_LIGHT_SUN == (int)LIGHT_SUN && (int)AG_LIGHT_POINT == (int)LIGHT_POINT &&
-                   (int)AG_LIGHT_SPOT == (int)LIGHT_SPOT,
-               "types are converted by value");
-
 static const float HALF_PI = 1.57079633f;
 static const double MAX_TIME_S = 1e9;
 
@@ -30,25 +26,17 @@ bool api_animation_exists(const struct ag_scene *scene, int animation)
     return animation == 0 || (animation >= -1 && animation < scene->scene->animation_count);
 }
 
-bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t *pose_version,
-                 int animation, double time_s)
+bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, int animation,
+                 double time_s)
 {
     if (animation >= scene->scene->animation_count) animation = -1;
     if (!(fabs(time_s) <= MAX_TIME_S))
         return host_fail(host_of(scene), FAIL_ARGUMENT, "time %g s is beyond the largest, %g s",
                          time_s, MAX_TIME_S);
-    if (*pose_version == scene->version && pose->scene) {
-        pose_update(pose, animation, (float)time_s);
-        return limits_pose(pose);
-    }
-    pose_finish(pose);
-    *pose = (struct scene_pose){ 0 };
-    if (!pose_init(pose, scene->scene, animation, (float)time_s)) {
-        pose_finish(pose);
-        *pose = (struct scene_pose){ 0 };
-        return false;
-    }
-    *pose_version = scene->version;
+    if (!pose->scene)
+        return pose_init(pose, scene->scene, animation, (float)time_s) && limits_pose(pose);
+    if (!pose_follow(pose)) return false;
+    pose_update(pose, animation, (float)time_s);
     return limits_pose(pose);
 }
 
@@ -57,10 +45,12 @@ bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, uint64_t
 static const struct scene_pose *pose_at(struct ag_scene *scene, int animation, double time_s)
 {
     struct moment *last = &scene->pose_moment;
-    if (last->valid && scene->pose_version == scene->version && last->animation == animation &&
+    const uint64_t revision = scene->scene->revisions.newest;
+    if (last->valid && last->revision == revision && last->animation == animation &&
         last->time_s == time_s)
         return &scene->pose;
-    last->valid = api_pose_at(scene, &scene->pose, &scene->pose_version, animation, time_s);
+    last->valid = api_pose_at(scene, &scene->pose, animation, time_s);
+    last->revision = revision;
     last->animation = animation;
     last->time_s = time_s;
     return last->valid ? &scene->pose : NULL;
@@ -127,252 +117,6 @@ void ag_scene_destroy(struct ag_scene *scene)
     host_free(host_of(scene), scene->cameras_by_name);
     scene_destroy(scene->scene);
     host_free(host_of(scene), scene);
-}
-
-// ---- building
-
-// The result of scene_add_…: an index, or negative on failure.
-static enum ag_result added(struct ag_scene *scene, int index, int *out)
-{
-    scene->version++;
-    if (out) *out = index;
-    return api_done(scene->context, index >= 0);
-}
-
-#define REQUIRE_UNUSED(scene)                                                                      \
-    AG_REQUIRE((scene)->context, (scene)->users == 0,                                              \
-               "the scene is in use by a renderer or a bake: only its lights and sky may change")
-
-// The argument checks of ag_scene_add_…, which set *index to -1 unless they succeed.
-#define REQUIRE_ADDING(scene, desc, index)                                                         \
-    do {                                                                                           \
-        if (index) *(index) = -1;                                                                  \
-        AG_REQUIRE_POINTER(context_of(scene), scene);                                              \
-        AG_REQUIRE_POINTER((scene)->context, desc);                                                \
-    } while (0)
-
-void ag_material_desc_default(struct ag_material_desc *desc)
-{
-    if (!desc) return;
-    *desc = (struct ag_material_desc){ .base_color = { 0.8f, 0.8f, 0.8f, 1.0f },
-                                       .roughness = 1,
-                                       .ior = MATERIAL_DEFAULT_IOR,
-                                       .specular = 1,
-                                       .specular_color = { 1, 1, 1 } };
-}
-
-static bool in_unit_range(const float *values, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (!(values[i] >= 0.0f && values[i] <= 1.0f)) return false;
-    return true;
-}
-
-enum ag_result ag_scene_add_material(struct ag_scene *scene, const struct ag_material_desc *desc,
-                                     int *index)
-{
-    REQUIRE_ADDING(scene, desc, index);
-    struct ag_context *context = scene->context;
-    REQUIRE_UNUSED(scene);
-    AG_REQUIRE(context, in_unit_range(desc->base_color, 4), "base_color is not within 0 to 1");
-    AG_REQUIRE(context, in_unit_range(&desc->metallic, 1) && in_unit_range(&desc->roughness, 1),
-               "metallic and roughness must be 0 to 1, not %g and %g", (double)desc->metallic,
-               (double)desc->roughness);
-    AG_REQUIRE(context, limits_light(api_vec3(desc->emissive)),
-               "emissive is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
-    AG_REQUIRE(context, desc->ior == 0 || api_finite_at_least(&desc->ior, 1, 1.0f),
-               "ior must be 0 or at least 1, not %g", (double)desc->ior);
-    AG_REQUIRE(context, in_unit_range(&desc->specular, 1), "specular must be 0 to 1, not %g",
-               (double)desc->specular);
-    AG_REQUIRE(context, api_finite_at_least(desc->specular_color, 3, 0.0f),
-               "specular_color must be 0 or more");
-    struct material material = material_default();
-    memcpy(material.base_color.raw, desc->base_color, sizeof desc->base_color);
-    material.metallic = desc->metallic;
-    material.roughness = desc->roughness;
-    material.emissive = api_vec3(desc->emissive);
-    material.double_sided = desc->double_sided;
-    material.ior = desc->ior;
-    material.specular = desc->specular;
-    material.specular_color = api_vec3(desc->specular_color);
-    material.unlit = desc->unlit;
-    return added(scene, scene_add_material(scene->scene, &material), index);
-}
-
-enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_desc *desc,
-                                 int *index)
-{
-    REQUIRE_ADDING(scene, desc, index);
-    struct ag_context *context = scene->context;
-    REQUIRE_UNUSED(scene);
-    AG_REQUIRE(context, desc->positions && desc->vertex_count > 0, "there are no positions");
-    AG_REQUIRE(context, desc->indices && desc->index_count > 0, "there are no indices");
-    AG_REQUIRE(context, desc->index_count % 3 == 0, "index_count %u is no multiple of 3",
-               desc->index_count);
-    AG_REQUIRE(context, desc->material >= 0 && desc->material < scene->scene->material_count,
-               "material %d is not one of %d", desc->material, scene->scene->material_count);
-    for (uint32_t i = 0; i < desc->index_count; i++)
-        AG_REQUIRE(context, desc->indices[i] < desc->vertex_count,
-                   "index %u at %u is not below vertex_count %u", desc->indices[i], i,
-                   desc->vertex_count);
-    struct mesh mesh = { .name = "mesh",
-                         .vertex_count = desc->vertex_count,
-                         .index_count = desc->index_count,
-                         .positions = (vec3s *)desc->positions, // scene_add_mesh copies all arrays
-                         .normals = (vec3s *)desc->normals,
-                         .indices = (uint32_t *)desc->indices,
-                         .material = desc->material };
-    return added(scene, scene_add_mesh(scene->scene, &mesh), index);
-}
-
-enum ag_result ag_scene_add_instance(struct ag_scene *scene, int mesh, const float *world_from_mesh,
-                                     int *index)
-{
-    struct ag_context *context = context_of(scene);
-    if (index) *index = -1;
-    AG_REQUIRE_POINTER(context, scene);
-    REQUIRE_UNUSED(scene);
-    AG_REQUIRE(context, mesh >= 0 && mesh < scene->scene->mesh_count, "mesh %d is not one of %d",
-               mesh, scene->scene->mesh_count);
-    struct node node = node_default();
-    node.name = "instance";
-    if (world_from_mesh) {
-        const float *m = world_from_mesh;
-        AG_REQUIRE(context, api_finite(m, 16), "world_from_mesh is not finite");
-        AG_REQUIRE(context, m[3] == 0.0f && m[7] == 0.0f && m[11] == 0.0f && m[15] == 1.0f,
-                   "world_from_mesh is not affine: its last row must be 0 0 0 1");
-        node.has_matrix = true;
-        memcpy(node.matrix.raw, m, 16 * sizeof *m);
-    }
-    int at = scene_add_node(scene->scene, &node);
-    struct instance instance = { .node = at, .mesh = mesh, .skin = -1 };
-    return added(scene, at < 0 ? -1 : scene_add_instance(scene->scene, &instance), index);
-}
-
-void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type)
-{
-    if (!desc) return;
-    *desc = (struct ag_light_desc){
-        .type = type, .direction = { 0, -1, 0 }, .intensity = { 1, 1, 1 }, .outer_rad = HALF_PI / 2
-    };
-}
-
-static enum ag_result light_check(const char *function, struct ag_context *context,
-                                  const struct ag_light_desc *desc)
-{
-    AG_REQUIRE_FOR(function, context, (unsigned)desc->type <= AG_LIGHT_SPOT, "type %d is unknown",
-                   (int)desc->type);
-    AG_REQUIRE_FOR(function, context, limits_light(api_vec3(desc->intensity)),
-                   "intensity is not within 0 to %g lux or candela", (double)SCENE_MAX_RADIANCE);
-    AG_REQUIRE_FOR(function, context,
-                   desc->type == AG_LIGHT_SUN || limits_position(api_vec3(desc->position)),
-                   "position is not within %g m of the origin", (double)SCENE_MAX_DISTANCE_M);
-    float length = glms_vec3_norm(vec3_unit(api_vec3(desc->direction)));
-    AG_REQUIRE_FOR(function, context, desc->type == AG_LIGHT_POINT || length > 0.0f,
-                   "direction is zero or not finite");
-    if (desc->type == AG_LIGHT_SPOT)
-        AG_REQUIRE_FOR(function, context,
-                       desc->inner_rad >= 0.0f && desc->inner_rad < desc->outer_rad &&
-                           desc->outer_rad <= HALF_PI * (1 + 1e-6f),
-                       "inner_rad %g and outer_rad %g are not 0 to half pi, inner below outer",
-                       (double)desc->inner_rad, (double)desc->outer_rad);
-    return AG_OK;
-}
-
-// Adds a node and the light on it. -1: out of memory.
-static int add_light(struct scene *scene, const struct ag_light_desc *desc, const char *name)
-{
-    vec3s position = desc->type == AG_LIGHT_SUN ? vec3_of(0, 0, 0) : api_vec3(desc->position);
-    vec3s direction = desc->type == AG_LIGHT_POINT ? vec3_of(0, -1, 0) : api_vec3(desc->direction);
-    int node = scene_add_node_looking(scene, name, position, direction);
-    if (node < 0) return -1;
-    struct light light = { .name = name,
-                           .type = (enum light_type)desc->type,
-                           .node = node,
-                           .intensity = api_vec3(desc->intensity),
-                           .inner_rad = desc->inner_rad,
-                           .outer_rad = fminf(desc->outer_rad, HALF_PI) };
-    return scene_add_light(scene, &light);
-}
-
-enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_desc *desc,
-                                  int *index)
-{
-    REQUIRE_ADDING(scene, desc, index);
-    struct ag_context *context = scene->context;
-    enum ag_result checked = light_check(__func__, context, desc);
-    if (checked != AG_OK) return checked;
-    return added(scene, add_light(scene->scene, desc, "light"), index);
-}
-
-void ag_area_light_desc_default(struct ag_area_light_desc *desc)
-{
-    if (!desc) return;
-    *desc = (struct ag_area_light_desc){
-        .direction = { 0, -1, 0 }, .width = 1, .height = 1, .radiance = { 1, 1, 1 }
-    };
-}
-
-// Index of the instance; -1 if out of memory. The quad is in the xy plane of its node and faces -z,
-// the viewing direction of nodes.
-static int add_emissive_quad(struct scene *scene, const struct ag_area_light_desc *desc)
-{
-    static const char *const NAME = "area light";
-    float x = 0.5f * desc->width, y = 0.5f * desc->height;
-    vec3s corners[4] = { { { -x, -y, 0 } }, { { -x, y, 0 } }, { { x, y, 0 } }, { { x, -y, 0 } } };
-    uint32_t indices[6] = { 0, 1, 2, 0, 2, 3 };
-    struct material material = material_default();
-    material.name = NAME;
-    material.base_color = vec4_of(vec3_of(0, 0, 0), 1);
-    material.emissive = api_vec3(desc->radiance);
-    struct mesh mesh = { .name = NAME,
-                         .vertex_count = 4,
-                         .index_count = 6,
-                         .positions = corners,
-                         .indices = indices,
-                         .material = scene_add_material(scene, &material) };
-    if (mesh.material < 0) return -1;
-    struct instance instance = { .skin = -1, .mesh = scene_add_mesh(scene, &mesh) };
-    if (instance.mesh < 0) return -1;
-    instance.node =
-        scene_add_node_looking(scene, NAME, api_vec3(desc->position), api_vec3(desc->direction));
-    return instance.node < 0 ? -1 : scene_add_instance(scene, &instance);
-}
-
-enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
-                                       const struct ag_area_light_desc *desc, int *instance)
-{
-    REQUIRE_ADDING(scene, desc, instance);
-    struct ag_context *context = scene->context;
-    REQUIRE_UNUSED(scene);
-    AG_REQUIRE(context, limits_position(api_vec3(desc->position)),
-               "position is not within %g m of the origin", (double)SCENE_MAX_DISTANCE_M);
-    AG_REQUIRE(context, glms_vec3_norm(vec3_unit(api_vec3(desc->direction))) > 0.0f,
-               "direction is zero or not finite");
-    AG_REQUIRE(context,
-               desc->width > 0.0f && desc->height > 0.0f && isfinite(desc->width * desc->height),
-               "width %g and height %g are not above 0", (double)desc->width, (double)desc->height);
-    AG_REQUIRE(context, limits_light(api_vec3(desc->radiance)),
-               "radiance is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
-    return added(scene, add_emissive_quad(scene->scene, desc), instance);
-}
-
-enum ag_result ag_scene_remove_lights(struct ag_scene *scene)
-{
-    AG_REQUIRE(NULL, scene, "scene is NULL");
-    scene_remove_lights(scene->scene);
-    scene->version++;
-    return AG_OK;
-}
-
-enum ag_result ag_scene_set_sky(struct ag_scene *scene, const float *radiance)
-{
-    AG_REQUIRE(NULL, scene, "scene is NULL");
-    AG_REQUIRE(scene->context, radiance, "radiance is NULL");
-    AG_REQUIRE(scene->context, limits_light(api_vec3(radiance)),
-               "radiance is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
-    scene->scene->sky = api_vec3(radiance);
-    return AG_OK;
 }
 
 // ---- cameras
@@ -504,7 +248,7 @@ enum ag_result ag_scene_add_default_lighting(struct ag_scene *scene,
         ag_light_desc_default(&sun, AG_LIGHT_SUN);
         memcpy(sun.direction, lighting.sun_direction, sizeof sun.direction);
         memcpy(sun.intensity, lighting.sun_lux, sizeof sun.intensity);
-        result = added(scene, add_light(scene->scene, &sun, "default sun"), NULL);
+        result = api_add_light(scene, &sun, "default sun");
         if (result == AG_OK) result = ag_scene_set_sky(scene, lighting.sky);
     }
     if (result == AG_OK && out) *out = lighting;
@@ -540,6 +284,40 @@ enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double t
     return AG_OK;
 }
 
+enum ag_result ag_scene_get_instance(struct ag_scene *scene, int index, int animation,
+                                     double time_s, struct ag_instance_info *out)
+{
+    const struct scene_pose *pose = NULL;
+    REQUIRE_ELEMENT(scene, out, "instance", index, instance_count);
+    enum ag_result result = pose_for(__func__, scene, out, animation, time_s, &pose);
+    if (result != AG_OK) return result;
+    const struct instance *it = &scene->scene->instances[index];
+    *out = (struct ag_instance_info){ .mesh = it->mesh, .name = "" };
+    if (it->mesh < 0) return AG_OK;
+    const mat4s world_from_mesh =
+        it->skin >= 0 ? glms_mat4_identity() : pose->world_from_node[it->node];
+    out->name = named(scene->scene->nodes[it->node].name);
+    out->mobility = it->movable ? AG_MOBILITY_MOVABLE : AG_MOBILITY_STATIC;
+    out->skinned = it->skin >= 0;
+    memcpy(out->world_from_mesh, world_from_mesh.raw, sizeof out->world_from_mesh);
+    return AG_OK;
+}
+
+enum ag_result ag_scene_get_mesh(struct ag_scene *scene, int index, struct ag_mesh_info *out)
+{
+    REQUIRE_ELEMENT(scene, out, "mesh", index, mesh_count);
+    const struct mesh *mesh = &scene->scene->meshes[index];
+    *out = (struct ag_mesh_info){
+        .name = named(mesh->name),
+        .vertex_count = mesh->source ? mesh->source_count : mesh->vertex_count,
+        .index_count = mesh->index_count,
+        .material = mesh->material,
+    };
+    api_store(out->bounds_min, mesh->bounds.min);
+    api_store(out->bounds_max, mesh->bounds.max);
+    return AG_OK;
+}
+
 enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int animation, double time_s,
                                   struct ag_light_info *out)
 {
@@ -551,11 +329,12 @@ enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int animati
     struct world_light world = pose_light(pose, index);
     *out = (struct ag_light_info){ .name = named(light->name),
                                    .light = { .type = (enum ag_light_type)world.type,
+                                              .enabled = !light->off,
                                               .inner_rad = light->inner_rad,
                                               .outer_rad = light->outer_rad } };
     api_store(out->light.position, world.position);
     api_store(out->light.direction, world.direction);
-    api_store(out->light.intensity, world.intensity);
+    api_store(out->light.intensity, light->intensity);
     return AG_OK;
 }
 

@@ -9,7 +9,7 @@ static struct hash128 add_array(struct hash128 key, const void *data, size_t cou
 // Deformed vertices are in world space, rigid ones are placed by a matrix.
 static struct hash128 add_geometry(struct hash128 key, const struct scene_pose *pose, int instance)
 {
-    const struct mesh *mesh = &pose->scene->meshes[pose->scene->instances[instance].mesh];
+    const struct mesh *mesh = scene_mesh_of(pose->scene, instance);
     const struct deformed_mesh *deformed = &pose->deformed[instance];
     const size_t count = mesh->vertex_count;
     const mat4s world_from_mesh = pose_world_from_instance(pose, instance);
@@ -54,7 +54,7 @@ static struct hash128 add_material(struct hash128 key, const struct scene *scene
 
 static struct hash128 add_surface(struct hash128 key, const struct scene *scene, int instance)
 {
-    const struct mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
+    const struct mesh *mesh = scene_mesh_of(scene, instance);
     const size_t count = mesh->vertex_count;
     for (int i = 0; i < 2; i++) key = add_array(key, mesh->uv[i], count, sizeof *mesh->uv[i]);
     key = add_array(key, mesh->colors, count, sizeof *mesh->colors);
@@ -67,6 +67,7 @@ struct hash128 scene_key(const struct scene_pose *pose, unsigned parts)
     struct hash128 key =
         hash128_add(hash128_add_text((struct hash128){ 0 }, "scene"), &parts, sizeof parts);
     for (int i = 0; i < pose->scene->instance_count; i++) {
+        if (pose->scene->instances[i].mesh < 0) continue; // removed
         if (parts & SCENE_KEY_GEOMETRY) key = add_geometry(key, pose, i);
         if (parts & SCENE_KEY_MATERIALS) key = add_surface(key, pose->scene, i);
     }

@@ -12,14 +12,14 @@ static struct frame_light map_inputs(const struct frame_light *light)
 }
 
 bool cached_map_is_valid(struct cached_map *map, const struct scene_gpu *scene,
-                         const struct frame_light *light, mat4s clip_from_world)
+                         const struct frame_light *light, mat4s clip_from_world, bool materials)
 {
     const struct cached_map now = { map_inputs(light), clip_from_world, scene->updates };
     // A map that was not checked in the previous frame may have missed a movement.
     const bool valid =
         map->updates + 1 == now.updates && memcmp(&map->light, &now.light, sizeof now.light) == 0 &&
         memcmp(&map->clip_from_world, &clip_from_world, sizeof clip_from_world) == 0 &&
-        scene_gpu_unchanged_in(scene, clip_from_world);
+        scene_gpu_unchanged_in(scene, clip_from_world, materials);
     *map = now;
     return valid;
 }

@@ -20,6 +20,7 @@ enum { MAX_STRATA = 32 };
 // Maps of an emissive material; unused ones have no levels.
 struct emission_maps {
     struct emission_map color, mask;
+    float cutoff; // of the mask
 };
 
 struct emitter_triangle {
@@ -33,8 +34,9 @@ struct emitter_instance {
     const struct mesh *mesh;
     const struct material *material;
     const struct emission_maps *maps;
-    size_t first;     // index of its first triangle
-    bool areas_valid; // for world_from_mesh
+    uint64_t revision; // of instance, mesh or material, the newest
+    size_t first;      // index of its first triangle
+    bool areas_valid;  // for world_from_mesh
     mat4s world_from_mesh;
     float scale; // largest one of world_from_mesh along an axis
 };
@@ -63,12 +65,29 @@ static float texel_cutoff(const struct material *m)
 static bool make_maps(struct emitters *e, const struct material *m, struct emission_maps *maps)
 {
     float cutoff = texel_cutoff(m);
+    maps->cutoff = cutoff;
     if (m->emissive_map.image >= 0 && maps->color.level_count == 0 &&
         !emission_map_init_color(&maps->color, e->host, e->scene, &m->emissive_map)) {
         return false;
     }
     return m->base_color_map.image < 0 || cutoff < 0.0f || maps->mask.level_count > 0 ||
            emission_map_init_mask(&maps->mask, e->host, e->scene, &m->base_color_map, cutoff);
+}
+
+// Colour maps depend on images alone, masks also on the cutoff.
+static void keep_maps(const struct scene *scene, struct emission_maps *from, int count,
+                      struct emission_maps *to)
+{
+    for (int m = 0; m < count; m++) {
+        const struct material *material = &scene->materials[m];
+        to[m].color = from[m].color;
+        to[m].color.use = &material->emissive_map;
+        from[m].color = (struct emission_map){ 0 };
+        if (from[m].cutoff != texel_cutoff(material)) continue;
+        to[m].mask = from[m].mask;
+        to[m].mask.use = &material->base_color_map;
+        from[m].mask = (struct emission_map){ 0 };
+    }
 }
 
 // A triangle in texture space; area 1 is the whole image.
@@ -203,20 +222,40 @@ static bool fill_triangles(struct emitters *e, const struct emitter_instance *it
     return fill_part_extents(e, it->mesh, out);
 }
 
+// From instance `from` on: the index of the first one with emission, or their number.
+static int next_emissive(const struct scene *scene, int from)
+{
+    for (; from < scene->instance_count; from++) {
+        const struct mesh *mesh = scene_mesh_of(scene, from);
+        if (mesh->index_count > 0 && is_emissive(&scene->materials[mesh->material])) break;
+    }
+    return from;
+}
+
+static uint64_t newest_of(const struct scene *scene, int instance)
+{
+    const struct mesh *mesh = scene_mesh_of(scene, instance);
+    uint64_t newest = scene->instances[instance].added;
+    if (mesh->revision > newest) newest = mesh->revision;
+    const uint64_t material = scene->materials[mesh->material].revision;
+    return material > newest ? material : newest;
+}
+
 static bool list_instances(struct emitters *e)
 {
     const struct scene *scene = e->scene;
     size_t triangles = 0;
-    for (int i = 0; i < scene->instance_count; i++) {
-        const struct mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+    for (int i = next_emissive(scene, 0); i < scene->instance_count;
+         i = next_emissive(scene, i + 1)) {
+        const struct mesh *mesh = scene_mesh_of(scene, i);
         const struct material *material = &scene->materials[mesh->material];
-        if (!is_emissive(material) || mesh->index_count == 0) continue;
         if (!make_maps(e, material, &e->maps[mesh->material])) return false;
         e->instances[e->instance_count++] = (struct emitter_instance){
             .instance = i,
             .mesh = mesh,
             .material = material,
             .maps = &e->maps[mesh->material],
+            .revision = newest_of(scene, i),
             .first = triangles,
         };
         if (!size_add(triangles, triangle_count(mesh), &triangles))
@@ -230,10 +269,16 @@ static bool list_instances(struct emitters *e)
     return true;
 }
 
-bool emitters_init(struct emitters *out, struct host *host, const struct scene *scene)
+// maps: [map_count] of an earlier state of the scene, moved where they are still valid.
+static bool init(struct emitters *out, struct host *host, const struct scene *scene,
+                 struct emission_maps *maps, int map_count)
 {
-    *out = (struct emitters){ .host = host, .scene = scene };
+    *out = (struct emitters){ .host = host,
+                              .scene = scene,
+                              .map_count = scene->material_count,
+                              .revision = scene->revisions.newest };
     out->maps = host_alloc(host, (size_t)scene->material_count, sizeof *out->maps);
+    if (out->maps) keep_maps(scene, maps, map_count, out->maps);
     out->instances = host_alloc(host, (size_t)scene->instance_count, sizeof *out->instances);
     if (!out->maps || !out->instances || !list_instances(out)) return false;
     size_t capacity = out->instance_count ? EMITTERS_MAX : 1; // a storage block is never empty
@@ -243,10 +288,57 @@ bool emitters_init(struct emitters *out, struct host *host, const struct scene *
     return out->points && out->scaled && out->origins;
 }
 
+bool emitters_init(struct emitters *out, struct host *host, const struct scene *scene)
+{
+    return init(out, host, scene, NULL, 0);
+}
+
+// Whether the list has exactly the emissive instances of the scene, unchanged.
+static bool is_current(const struct emitters *e)
+{
+    const struct scene *scene = e->scene;
+    int at = next_emissive(scene, 0);
+    for (int i = 0; i < e->instance_count; i++, at = next_emissive(scene, at + 1)) {
+        if (at >= scene->instance_count || e->instances[i].instance != at ||
+            e->instances[i].revision != newest_of(scene, at))
+            return false;
+    }
+    return at >= scene->instance_count;
+}
+
+// The arrays of the scene may be elsewhere.
+static void refer(struct emitters *e)
+{
+    for (int i = 0; i < e->instance_count; i++) {
+        struct emitter_instance *it = &e->instances[i];
+        it->mesh = scene_mesh_of(e->scene, it->instance);
+        it->material = &e->scene->materials[it->mesh->material];
+    }
+}
+
+bool emitters_follow(struct emitters *e)
+{
+    struct emitters made;
+    if (e->revision == e->scene->revisions.newest) return true;
+    if (is_current(e)) {
+        refer(e);
+        e->revision = e->scene->revisions.newest;
+        return true;
+    }
+    const bool ok = init(&made, e->host, e->scene, e->maps, e->map_count);
+    if (ok) {
+        emitters_finish(e);
+        *e = made;
+    } else {
+        emitters_finish(&made);
+    }
+    return ok;
+}
+
 void emitters_finish(struct emitters *e)
 {
     if (!e->host) return;
-    for (int m = 0; e->maps && m < e->scene->material_count; m++) {
+    for (int m = 0; e->maps && m < e->map_count; m++) {
         emission_map_finish(&e->maps[m].color, e->host);
         emission_map_finish(&e->maps[m].mask, e->host);
     }

@@ -19,7 +19,8 @@
 struct emitters {
     struct host *host;
     const struct scene *scene;
-    struct emission_maps *maps;         // [material_count], private to emitters.c
+    struct emission_maps *maps; // [map_count], by material, private to emitters.c
+    int map_count;
     struct emitter_instance *instances; // [instance_count], emissive instances
     int instance_count;
     struct emitter_triangle *triangles;   // of all emissive instances in order
@@ -27,12 +28,16 @@ struct emitters {
     struct frame_emitter *scaled;         // [EMITTERS_MAX], scaled lumen, see emitters_scale
     struct frame_emitter_origin *origins; // [EMITTERS_MAX]
     int count;
-    vec3s flux; // of all points, lumen
+    vec3s flux;        // of all points, lumen
+    uint64_t revision; // of the scene
 };
 
 // The scene must outlive this. On failure (false) call emitters_finish.
 bool emitters_init(struct emitters *out, struct host *host, const struct scene *scene);
 void emitters_finish(struct emitters *emitters); // accepts zero
+// Adapts to changes of the scene, before emitters_update; allocates where they concern emissive
+// surfaces. false: out of memory; call it again before the next frame.
+bool emitters_follow(struct emitters *emitters);
 
 // Updates the points for a pose. Allocates nothing; does nothing while no emissive instance moves.
 void emitters_update(struct emitters *emitters, const struct scene_pose *pose);

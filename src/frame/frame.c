@@ -208,6 +208,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     }
     if (input->pose->scene != f->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
+    if (!scene_gpu_follow(&f->scene) || !emitters_follow(&f->emitters)) return false;
     f->needs =
         (indirect ? indirect->needs : 0) |
         (input->want_motion_layer || f->pinned >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0);

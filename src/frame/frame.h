@@ -141,8 +141,8 @@ bool frame_set_options(struct frame *frame, const struct frame_options *options)
 // Uploads meshes and textures; the scene must outlive the frame or the next frame_set_scene.
 bool frame_set_scene(struct frame *frame, const struct scene *scene);
 bool frame_resize(struct frame *frame, uint32_t width, uint32_t height); // 1…16384
-// Creates images and pipelines for the next frames. May allocate; call before recording when lights
-// or needs changed.
+// Adapts to changes of the scene; creates images and pipelines for the next frames. May allocate;
+// call before recording when scene, lights or needs changed.
 bool frame_prepare(struct frame *frame, const struct frame_input *input,
                    const struct frame_indirect *indirect);
 // Records the whole frame. Cannot fail, does not allocate.

@@ -1,5 +1,5 @@
-// Vertex streams, materials and draws of a scene, created once per scene.
-#include "frame/scene_gpu.h"
+// Vertex streams, materials and draws of a scene, as it is when they are created.
+#include "frame/scene_gpu_build.h"
 
 #include "frame/octahedral.h"
 
@@ -10,8 +10,7 @@ static const float BLEND_CUTOFF = 0.5f; // blended materials are rendered as mas
 
 static bool is_deformed(const struct scene *scene, int instance)
 {
-    const struct instance *i = &scene->instances[instance];
-    return i->skin >= 0 || scene->meshes[i->mesh].morph_count > 0;
+    return scene->instances[instance].skin >= 0 || scene_mesh_of(scene, instance)->morph_count > 0;
 }
 
 // ---- Vertex streams -----------------------------------------------------------------------------
@@ -56,7 +55,7 @@ static struct scene_surface surface_of(const struct mesh *mesh, uint32_t v)
 }
 
 // Normal and tangent; the sign of the bitangent replaces the tangent's lowest bit, worth 3·10⁻⁵.
-static void pack_frame(vec3s normal, const vec4s *tangent, uint32_t out[2])
+void scene_gpu_pack_frame(vec3s normal, const vec4s *tangent, uint32_t out[2])
 {
     out[0] = octahedral_pack(normal);
     out[1] = 0;
@@ -80,8 +79,8 @@ static void fill_streams(const struct scene_gpu *s, struct streams *out)
         s->index_offset[m] = index * sizeof(uint32_t);
         for (uint32_t v = 0; v < mesh->vertex_count; v++, vertex++) {
             out->positions[vertex] = mesh->positions[v];
-            pack_frame(mesh->normals[v], mesh->tangents ? &mesh->tangents[v] : NULL,
-                       out->frames[vertex]);
+            scene_gpu_pack_frame(mesh->normals[v], mesh->tangents ? &mesh->tangents[v] : NULL,
+                                 out->frames[vertex]);
             out->surfaces[vertex] = surface_of(mesh, v);
         }
         for (uint32_t i = 0; i < mesh->index_count; i++) out->indices[index++] = mesh->indices[i];
@@ -99,7 +98,7 @@ static bool upload(struct scene_gpu *s, const char *name, uint32_t usage, const 
     return !bytes || gpu_buffer_upload(s->gpu, *out, 0, data, bytes);
 }
 
-static bool make_streams(struct scene_gpu *s)
+bool scene_gpu_make_streams(struct scene_gpu *s)
 {
     struct stream_sizes n;
     if (!measure(s, &n)) return false;
@@ -144,7 +143,7 @@ static const struct texture_use *map_of(const struct material *m, int map)
     return maps[map];
 }
 
-static struct scene_material pack_material(const struct material *m)
+struct scene_material scene_gpu_pack_material(const struct material *m)
 {
     struct scene_material out = {
         .base_color = m->base_color,
@@ -168,12 +167,12 @@ static struct scene_material pack_material(const struct material *m)
     return out;
 }
 
-static bool make_materials(struct scene_gpu *s)
+bool scene_gpu_make_materials(struct scene_gpu *s)
 {
     size_t count = (size_t)s->scene->material_count;
     struct scene_material *packed = host_alloc(s->host, count, sizeof *packed);
     if (!packed) return false;
-    for (size_t i = 0; i < count; i++) packed[i] = pack_material(&s->scene->materials[i]);
+    for (size_t i = 0; i < count; i++) packed[i] = scene_gpu_pack_material(&s->scene->materials[i]);
     bool ok = upload(s, "scene.materials", GPU_BUFFER_STORAGE, packed, count, sizeof *packed,
                      &s->materials);
     host_free(s->host, packed);
@@ -204,19 +203,23 @@ static int compare_draws(const void *left, const void *right)
 static struct scene_draw draw_of(const struct scene_gpu *s, int instance,
                                  const uint32_t *vertex_base, uint32_t deformed_base)
 {
-    int m = s->scene->instances[instance].mesh;
-    const struct mesh *mesh = &s->scene->meshes[m];
+    const struct instance *from = &s->scene->instances[instance];
+    const struct mesh *mesh = &s->scene->meshes[from->mesh];
     bool deformed = is_deformed(s->scene, instance);
     return (struct scene_draw){
         .instance = instance,
-        .mesh = m,
+        .mesh = from->mesh,
         .material = mesh->material,
         .variant = variant_of(mesh, &s->scene->materials[mesh->material]),
         .deformed = deformed,
+        .dynamic = from->movable,
+        .movable = from->movable,
+        .added = from->added,
+        .bounds = box3_empty(),
         .push = { .instance = (uint32_t)instance,
                   .material = (uint32_t)mesh->material,
-                  .vertex_base = deformed ? deformed_base : vertex_base[m],
-                  .surface_base = vertex_base[m] },
+                  .vertex_base = deformed ? deformed_base : vertex_base[from->mesh],
+                  .surface_base = vertex_base[from->mesh] },
     };
 }
 
@@ -225,33 +228,29 @@ static float strongest(vec3s v)
     return fmaxf(v.x, fmaxf(v.y, v.z));
 }
 
-static bool make_draws(struct scene_gpu *s)
+void scene_gpu_summarize_materials(struct scene_gpu *s)
 {
-    size_t meshes = (size_t)s->scene->mesh_count, count = (size_t)s->scene->instance_count;
-    uint32_t *vertex_base = host_alloc(s->host, meshes, sizeof *vertex_base);
-    s->draws = host_alloc(s->host, count, sizeof *s->draws);
-    if (!vertex_base || !s->draws) {
-        host_free(s->host, vertex_base);
-        return false;
+    s->max_emissive = 0.0f;
+    s->has_unlit = s->has_dielectrics = false;
+    for (int i = 0; i < s->draw_count; i++) {
+        const struct material *m = &s->scene->materials[s->draws[i].material];
+        s->max_emissive = fmaxf(s->max_emissive, strongest(m->emissive));
+        if (m->unlit) s->has_unlit = true;
+        if (!material_has_default_specular(m)) s->has_dielectrics = true;
     }
-    for (size_t m = 1; m < meshes; m++)
-        vertex_base[m] = vertex_base[m - 1] + s->scene->meshes[m - 1].vertex_count;
+}
+
+static void list_draws(struct scene_gpu *s, const uint32_t *vertex_base)
+{
     for (int i = 0; i < s->scene->instance_count; i++) {
-        const struct mesh *mesh = &s->scene->meshes[s->scene->instances[i].mesh];
+        if (scene_mesh_of(s->scene, i)->index_count == 0) continue;
         struct scene_draw draw = draw_of(s, i, vertex_base, s->deformed_vertex_count);
-        if (draw.deformed) s->deformed_vertex_count += mesh->vertex_count;
-        s->max_emissive =
-            fmaxf(s->max_emissive, strongest(s->scene->materials[draw.material].emissive));
-        if (mesh->index_count == 0) continue;
+        if (draw.deformed) s->deformed_vertex_count += s->scene->meshes[draw.mesh].vertex_count;
         s->variants_used |= 1u << draw.variant;
-        if (s->scene->materials[draw.material].unlit) s->has_unlit = true;
-        if (!material_has_default_specular(&s->scene->materials[draw.material]))
-            s->has_dielectrics = true;
+        s->dynamic_count += draw.dynamic;
         s->draws[s->draw_count++] = draw;
     }
-    host_free(s->host, vertex_base);
     qsort(s->draws, (size_t)s->draw_count, sizeof *s->draws, compare_draws);
-    return true;
 }
 
 // Arrays that scene_gpu_update fills, so that frames allocate nothing.
@@ -265,26 +264,57 @@ static bool make_frame_arrays(struct scene_gpu *s)
     return s->instances && s->deformed_positions && s->deformed_previous && s->deformed_frames;
 }
 
+bool scene_gpu_make_draws(struct scene_gpu *s)
+{
+    size_t meshes = (size_t)s->scene->mesh_count, count = (size_t)s->scene->instance_count;
+    uint32_t *vertex_base = host_alloc(s->host, meshes, sizeof *vertex_base);
+    s->draws = host_alloc(s->host, count, sizeof *s->draws);
+    const bool ok = vertex_base && s->draws;
+    for (size_t m = 1; ok && m < meshes; m++)
+        vertex_base[m] = vertex_base[m - 1] + s->scene->meshes[m - 1].vertex_count;
+    if (ok) list_draws(s, vertex_base);
+    host_free(s->host, vertex_base);
+    scene_gpu_summarize_materials(s);
+    return ok && make_frame_arrays(s);
+}
+
 bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu,
                     const struct scene *scene)
 {
-    *out = (struct scene_gpu){ .host = host, .gpu = gpu, .scene = scene };
-    return make_streams(out) && make_materials(out) && make_draws(out) && make_frame_arrays(out) &&
-           scene_gpu_make_textures(out);
+    *out = (struct scene_gpu){ .host = host,
+                               .gpu = gpu,
+                               .scene = scene,
+                               .followed = scene->revisions,
+                               .uploaded = scene->revisions.newest };
+    return scene_gpu_make_streams(out) && scene_gpu_make_materials(out) &&
+           scene_gpu_make_draws(out) && scene_gpu_make_textures(out);
+}
+
+void scene_gpu_finish_streams(struct scene_gpu *s)
+{
+    gpu_buffer *buffers[] = { &s->positions, &s->frames,    &s->surfaces,
+                              &s->indices,   &s->materials, &s->previous_positions };
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        gpu_buffer_destroy(s->gpu, buffers[i]);
+    host_free(s->host, s->index_offset);
+}
+
+void scene_gpu_finish_draws(struct scene_gpu *s)
+{
+    host_free(s->host, s->draws);
+    host_free(s->host, s->removed);
+    host_free(s->host, s->instances);
+    host_free(s->host, s->deformed_positions);
+    host_free(s->host, s->deformed_previous);
+    host_free(s->host, s->deformed_frames);
 }
 
 void scene_gpu_finish(struct scene_gpu *s)
 {
     if (!s->gpu) return;
-    gpu_buffer *buffers[] = { &s->positions, &s->frames, &s->surfaces, &s->indices, &s->materials };
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
-        gpu_buffer_destroy(s->gpu, buffers[i]);
+    scene_gpu_finish_streams(s);
     scene_gpu_destroy_textures(s);
-    host_free(s->host, s->index_offset);
-    host_free(s->host, s->draws);
-    host_free(s->host, s->instances);
-    host_free(s->host, s->deformed_positions);
-    host_free(s->host, s->deformed_previous);
-    host_free(s->host, s->deformed_frames);
+    scene_gpu_finish_draws(s);
+    host_free(s->host, s->packed);
     *s = (struct scene_gpu){ 0 };
 }

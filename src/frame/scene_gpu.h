@@ -23,8 +23,13 @@ struct scene_draw {
     struct scene_push push;
     bool deformed;      // vertices are uploaded each frame, in world space
     bool mirrored;      // the transform reverses the winding order in this frame
-    bool dynamic;       // has moved since the scene was set
-    bool moved;         // since the previous frame
+    bool dynamic;       // movable, or has moved since the scene was set
+    bool moved;         // since the previous frame: its vertices, or its alpha test
+    bool recolored;     // its material changed since the previous frame
+    bool reshaped;      // its mesh has other vertices than in the previous frame
+    bool movable;       // of the instance
+    bool seen;          // in an earlier frame
+    uint64_t added;     // of the instance
     struct box3 bounds; // world space
     struct box3 swept;  // union of this frame's and the previous frame's bounds
 };
@@ -37,8 +42,8 @@ struct scene_gpu {
     bool has_unlit;
     bool has_dielectrics; // a drawn material has another specular lobe than the default
 
-    // Static: positions (vec3), tangent frames (two words, see scene.glsl), surfaces, indices,
-    // materials.
+    // What is uploaded: positions (vec3), tangent frames (two words, see scene.glsl), surfaces,
+    // indices, materials.
     gpu_buffer positions, frames, surfaces, indices, materials;
     size_t *index_offset; // [mesh_count] bytes
     // Textures: [image_count] as colours (sRGB) and as data; empty if no material uses them so.
@@ -47,6 +52,7 @@ struct scene_gpu {
     struct gpu_binding (*maps)[SCENE_MAP_COUNT]; // [material_count]
     struct gpu_binding *reads;                   // all textures, see gpu_render_desc.reads
     int read_count;
+    int image_count; // of the arrays of textures
 
     struct scene_draw *draws; // sorted: opaque before masked, then by variant and material
     int draw_count;
@@ -57,9 +63,21 @@ struct scene_gpu {
     uint32_t deformed_vertex_count;
     vec3s *deformed_positions, *deformed_previous; // [deformed_vertex_count]
     uint32_t (*deformed_frames)[2];
-    bool has_previous, moved;
+    bool has_previous, moved, recolored;
     uint64_t updates;  // number of uploaded poses
     int dynamic_count; // number of dynamic draws
+    // Counts changes of the list of draws, and of what static draws look like: what is computed of
+    // them is valid while it stays.
+    uint64_t draw_list, static_set;
+
+    // Changes of the scene since it was set (scene_gpu_follow).
+    struct scene_revisions followed; // the lists and arrays above are of these
+    uint64_t uploaded;               // newest revision in the buffers
+    gpu_buffer previous_positions;   // of meshes whose vertices changed; none before the first
+    struct packed_vertices *packed;  // room for the largest of these meshes
+    struct box3 *removed;            // bounds of draws of the last frame that are gone
+    int removed_count;
+    uint64_t removed_at; // the value of `updates` in the frame without them
     struct gpu_binding instances_binding, deformed_positions_binding, deformed_previous_binding,
         deformed_frames_binding;
 };
@@ -69,13 +87,18 @@ bool scene_gpu_init(struct scene_gpu *out, struct host *host, struct gpu *gpu,
                     const struct scene *scene);
 void scene_gpu_finish(struct scene_gpu *scene); // accepts zero
 
-// Uploads a pose. reset_motion: previous positions become the current ones. Updates `moved` and
-// `dynamic` of the scene and its draws.
+// Adapts buffers, textures and draws to changes of the scene, before scene_gpu_update; allocates.
+// false: out of memory or too large for the device; call it again before the next frame.
+bool scene_gpu_follow(struct scene_gpu *scene);
+
+// Uploads a pose and the vertices and materials that changed. reset_motion: previous positions
+// become the current ones. Updates `moved` and `dynamic` of the scene and its draws.
 void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct scene_pose *pose,
                       bool reset_motion);
 
-// Whether no draw that moved in the last update is or was inside this clip volume.
-bool scene_gpu_unchanged_in(const struct scene_gpu *scene, mat4s clip_from_world);
+// Whether nothing that moved or was removed in the last update is or was inside this clip volume;
+// with `materials`, nor anything whose material changed.
+bool scene_gpu_unchanged_in(const struct scene_gpu *scene, mat4s clip_from_world, bool materials);
 
 // Records one draw. push: starts with a scene_push, which this fills. bindings: of the pass.
 struct scene_draw_call {
@@ -106,7 +129,3 @@ struct scene_dispatch_call {
 };
 void scene_gpu_dispatch(const struct scene_gpu *scene, struct gpu_cmd *cmd,
                         const struct scene_dispatch_call *call);
-
-// scene_gpu_textures.c
-bool scene_gpu_make_textures(struct scene_gpu *scene);
-void scene_gpu_destroy_textures(struct scene_gpu *scene);

@@ -4,7 +4,7 @@
 //
 // Normals have 16-bit floats: filters of 8-bit textures may round every product down, as lavapipe's
 // do, which turns normals by half a degree to one side.
-#include "frame/scene_gpu.h"
+#include "frame/scene_gpu_build.h"
 
 #include <math.h>
 
@@ -146,7 +146,9 @@ static bool make_map(struct scene_gpu *s, const struct material *material, int m
 
 static bool list_reads(struct scene_gpu *s)
 {
-    size_t images = (size_t)s->scene->image_count;
+    const size_t images = (size_t)s->image_count;
+    host_free(s->host, s->reads);
+    s->read_count = 0;
     s->reads = host_alloc(s->host, 3 * images + 2, sizeof *s->reads);
     if (!s->reads) return false;
     s->reads[s->read_count++] = (struct gpu_binding){ .name = "white", .image = s->white };
@@ -162,33 +164,47 @@ static bool list_reads(struct scene_gpu *s)
     return true;
 }
 
+static bool grow(struct scene_gpu *s, gpu_image **textures)
+{
+    gpu_image *grown = host_alloc(s->host, (size_t)s->scene->image_count, sizeof *grown);
+    if (!grown) return false;
+    for (int i = 0; *textures && i < s->image_count; i++) grown[i] = (*textures)[i];
+    host_free(s->host, *textures);
+    *textures = grown;
+    return true;
+}
+
+static bool make_maps(struct scene_gpu *s)
+{
+    const size_t materials = (size_t)s->scene->material_count;
+    host_free(s->host, s->maps);
+    s->maps = host_alloc(s->host, materials, sizeof *s->maps);
+    for (size_t m = 0; s->maps && m < materials; m++)
+        for (int map = 0; map < SCENE_MAP_COUNT; map++)
+            if (!make_map(s, &s->scene->materials[m], map, &s->maps[m][map])) return false;
+    return s->maps != NULL;
+}
+
+// Textures that exist stay.
 bool scene_gpu_make_textures(struct scene_gpu *s)
 {
     static const uint8_t white[4] = { 255, 255, 255, 255 }, flat[4] = { 128, 128, 255, 255 };
-    size_t images = (size_t)s->scene->image_count, materials = (size_t)s->scene->material_count;
-    s->color_textures = host_alloc(s->host, images, sizeof *s->color_textures);
-    s->data_textures = host_alloc(s->host, images, sizeof *s->data_textures);
-    s->normal_textures = host_alloc(s->host, images, sizeof *s->normal_textures);
-    s->maps = host_alloc(s->host, materials, sizeof *s->maps);
-    if (!s->color_textures || !s->data_textures || !s->normal_textures || !s->maps) return false;
-    if (!make_texture(s, "scene.white", GPU_RGBA8, 1, 1, white, &s->white) ||
-        !make_texture(s, "scene.flat_normal", GPU_RGBA8, 1, 1, flat, &s->flat_normal)) {
+    if (!grow(s, &s->color_textures) || !grow(s, &s->data_textures) ||
+        !grow(s, &s->normal_textures))
         return false;
-    }
-    for (size_t m = 0; m < materials; m++) {
-        for (int map = 0; map < SCENE_MAP_COUNT; map++) {
-            if (!make_map(s, &s->scene->materials[m], map, &s->maps[m][map])) return false;
-        }
-    }
-    return list_reads(s);
+    s->image_count = s->scene->image_count;
+    return (s->white.id || make_texture(s, "scene.white", GPU_RGBA8, 1, 1, white, &s->white)) &&
+           (s->flat_normal.id ||
+            make_texture(s, "scene.flat_normal", GPU_RGBA8, 1, 1, flat, &s->flat_normal)) &&
+           make_maps(s) && list_reads(s);
 }
 
 void scene_gpu_destroy_textures(struct scene_gpu *s)
 {
-    for (int i = 0; i < s->scene->image_count; i++) {
-        if (s->color_textures) gpu_image_destroy(s->gpu, &s->color_textures[i]);
-        if (s->data_textures) gpu_image_destroy(s->gpu, &s->data_textures[i]);
-        if (s->normal_textures) gpu_image_destroy(s->gpu, &s->normal_textures[i]);
+    for (int i = 0; i < s->image_count; i++) {
+        gpu_image_destroy(s->gpu, &s->color_textures[i]);
+        gpu_image_destroy(s->gpu, &s->data_textures[i]);
+        gpu_image_destroy(s->gpu, &s->normal_textures[i]);
     }
     gpu_image_destroy(s->gpu, &s->white);
     gpu_image_destroy(s->gpu, &s->flat_normal);

@@ -1,5 +1,5 @@
 // Per-frame update of the scene on the GPU, and recording of its draws and dispatches.
-#include "frame/scene_gpu.h"
+#include "frame/scene_gpu_build.h"
 
 #include "frame/octahedral.h"
 #include "frame/projection.h"
@@ -10,10 +10,72 @@
 static void mark_moved(struct scene_gpu *s, struct scene_draw *draw)
 {
     s->moved = draw->moved = true;
-    if (draw->dynamic || !s->has_previous) return; // the first frame is no movement
+    if (draw->dynamic || !draw->seen) return; // the first frame is no movement
     draw->dynamic = true;
     s->dynamic_count++;
+    s->static_set++;
 }
+
+// ---- Vertices and materials that changed --------------------------------------------------------
+
+static void copy_in(struct gpu_cmd *cmd, gpu_buffer to, size_t first, size_t count, size_t size,
+                    const void *data)
+{
+    const struct gpu_binding from = gpu_transient(cmd, "scene.changes", data, count * size);
+    gpu_copy_buffer(cmd, to, first * size, from.buffer, from.offset, count * size);
+}
+
+static void upload_mesh(struct scene_gpu *s, struct gpu_cmd *cmd, const struct mesh *mesh,
+                        size_t first)
+{
+    const size_t count = mesh->vertex_count, size = sizeof *mesh->positions;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        scene_gpu_pack_frame(mesh->normals[v], mesh->tangents ? &mesh->tangents[v] : NULL,
+                             s->packed->frames[v]);
+    gpu_copy_buffer(cmd, s->previous_positions, first * size, s->positions, first * size,
+                    count * size);
+    copy_in(cmd, s->positions, first, count, size, mesh->positions);
+    copy_in(cmd, s->frames, first, count, sizeof *s->packed->frames, s->packed->frames);
+}
+
+static void upload_meshes(struct scene_gpu *s, struct gpu_cmd *cmd)
+{
+    size_t first = 0;
+    if (s->scene->revisions.vertices <= s->uploaded) return;
+    for (int m = 0; m < s->scene->mesh_count; m++) {
+        const struct mesh *mesh = &s->scene->meshes[m];
+        if (mesh->revision > s->uploaded && mesh->vertex_count > 0)
+            upload_mesh(s, cmd, mesh, first);
+        first += mesh->vertex_count;
+    }
+}
+
+static void upload_materials(struct scene_gpu *s, struct gpu_cmd *cmd)
+{
+    if (s->scene->revisions.materials <= s->uploaded) return;
+    for (int m = 0; m < s->scene->material_count; m++) {
+        if (s->scene->materials[m].revision <= s->uploaded) continue;
+        const struct scene_material packed = scene_gpu_pack_material(&s->scene->materials[m]);
+        copy_in(cmd, s->materials, (size_t)m, 1, sizeof packed, &packed);
+    }
+}
+
+static void mark_changes(struct scene_gpu *s)
+{
+    s->recolored = false;
+    for (int i = 0; i < s->draw_count; i++) {
+        struct scene_draw *draw = &s->draws[i];
+        draw->moved = false;
+        draw->reshaped = s->scene->meshes[draw->mesh].revision > s->uploaded;
+        draw->recolored = s->scene->materials[draw->material].revision > s->uploaded;
+        if (draw->reshaped) mark_moved(s, draw);
+        if (!draw->recolored) continue;
+        s->recolored = true;
+        s->static_set += !draw->dynamic;
+    }
+}
+
+// ---- The pose -----------------------------------------------------------------------------------
 
 // Copies a deformed instance's vertices and computes the draw's bounds.
 static void copy_deformed(struct scene_gpu *s, const struct deformed_mesh *from,
@@ -38,7 +100,6 @@ static void update_draw(struct scene_gpu *s, const struct scene_pose *pose, stru
 {
     const struct mesh *mesh = &s->scene->meshes[draw->mesh];
     const struct deformed_mesh *deformed = &pose->deformed[draw->instance];
-    draw->moved = false;
     draw->mirrored = pose_is_mirrored(pose, draw->instance);
     if (draw->deformed) {
         copy_deformed(s, deformed, mesh, draw);
@@ -64,6 +125,17 @@ static void upload_deformed(struct scene_gpu *s, struct gpu_cmd *cmd)
         gpu_transient(cmd, "scene_frames", s->deformed_frames, n * sizeof *s->deformed_frames);
 }
 
+// Without a previous position: it does not move on the screen.
+static void rest(struct scene_gpu *s, struct scene_draw *draw)
+{
+    struct scene_instance *instance = &s->instances[draw->instance];
+    const uint32_t base = draw->push.vertex_base;
+    instance->previous_world_from_instance = instance->world_from_instance;
+    draw->reshaped = false;
+    for (uint32_t v = 0; draw->deformed && v < s->scene->meshes[draw->mesh].vertex_count; v++)
+        s->deformed_previous[base + v] = s->deformed_positions[base + v];
+}
+
 void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct scene_pose *pose,
                       bool reset_motion)
 {
@@ -71,19 +143,23 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
     memcpy(s->deformed_previous, s->deformed_positions, v * sizeof *s->deformed_previous);
     for (size_t i = 0; i < n; i++)
         s->instances[i].previous_world_from_instance = s->instances[i].world_from_instance;
-    s->moved = false;
+    s->moved = s->removed_count > 0 && s->removed_at == s->updates + 1;
+    mark_changes(s);
+    upload_meshes(s, cmd);
+    upload_materials(s, cmd);
     for (int i = 0; i < s->draw_count; i++) {
         struct scene_draw *draw = &s->draws[i];
-        const struct box3 before = s->has_previous ? draw->bounds : box3_empty();
+        const struct box3 before = draw->seen ? draw->bounds : box3_empty();
         update_draw(s, pose, draw);
         draw->swept = box3_union(before, draw->bounds);
+        if (!draw->seen) rest(s, draw);
+        draw->seen = true;
     }
     s->updates++;
+    s->uploaded = s->scene->revisions.newest;
     if (reset_motion || !s->has_previous) {
         s->moved = s->moved || !s->has_previous;
-        memcpy(s->deformed_previous, s->deformed_positions, v * sizeof *s->deformed_previous);
-        for (size_t i = 0; i < n; i++)
-            s->instances[i].previous_world_from_instance = s->instances[i].world_from_instance;
+        for (int i = 0; i < s->draw_count; i++) rest(s, &s->draws[i]);
     }
     s->has_previous = true;
     if (n)
@@ -92,10 +168,19 @@ void scene_gpu_update(struct scene_gpu *s, struct gpu_cmd *cmd, const struct sce
     upload_deformed(s, cmd);
 }
 
-bool scene_gpu_unchanged_in(const struct scene_gpu *s, mat4s clip_from_world)
+static bool has_changed(const struct scene_draw *draw, bool materials)
 {
-    for (int i = 0; i < s->draw_count && s->moved; i++)
-        if (s->draws[i].moved && projection_may_see(clip_from_world, s->draws[i].swept))
+    if (draw->moved) return true;
+    return draw->recolored && (materials || draw->variant & VARIANT_MASKED);
+}
+
+bool scene_gpu_unchanged_in(const struct scene_gpu *s, mat4s clip_from_world, bool materials)
+{
+    for (int i = 0; i < s->removed_count && s->removed_at == s->updates; i++)
+        if (projection_may_see(clip_from_world, s->removed[i])) return false;
+    for (int i = 0; i < s->draw_count && (s->moved || s->recolored); i++)
+        if (has_changed(&s->draws[i], materials) &&
+            projection_may_see(clip_from_world, s->draws[i].swept))
             return false;
     return true;
 }
@@ -113,9 +198,10 @@ static int scene_bindings(const struct scene_gpu *s, const struct scene_draw *dr
                        : (struct gpu_binding){ .name = "scene_frames", .buffer = s->frames },
         { .name = "scene_surfaces", .buffer = s->surfaces },
         s->instances_binding,
-        draw->deformed
-            ? s->deformed_previous_binding
-            : (struct gpu_binding){ .name = "scene_previous_positions", .buffer = s->positions },
+        draw->deformed ? s->deformed_previous_binding
+                       : (struct gpu_binding){ .name = "scene_previous_positions",
+                                               .buffer = draw->reshaped ? s->previous_positions
+                                                                        : s->positions },
         { .name = "scene_materials", .buffer = s->materials },
         maps[0],
         maps[1],

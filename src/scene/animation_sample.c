@@ -14,7 +14,7 @@ void rest_pose(const struct scene *scene, struct node_local *local, float *morph
     }
     for (int i = 0; i < scene->instance_count; i++) {
         const struct instance *instance = &scene->instances[i];
-        size_t count = (size_t)scene->meshes[instance->mesh].morph_count;
+        size_t count = (size_t)scene_mesh_of(scene, i)->morph_count;
         if (count > 0 && instance->morph_weights) {
             memcpy(morph_weights + morph_offset[i], instance->morph_weights, count * sizeof(float));
         }
@@ -118,7 +118,7 @@ static void animate_weights(const struct scene *scene, const struct animation_ch
 {
     for (int i = 0; i < scene->instance_count; i++) {
         if (scene->instances[i].node != channel->node) continue;
-        int morph_count = scene->meshes[scene->instances[i].mesh].morph_count;
+        int morph_count = scene_mesh_of(scene, i)->morph_count;
         int count = morph_count < channel->width ? morph_count : channel->width;
         if (count > 0) channel_sample(channel, time_s, count, morph_weights + morph_offset[i]);
     }

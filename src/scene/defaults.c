@@ -49,9 +49,16 @@ float default_near(const struct scene_pose *pose)
     return 5e-4f * bounds_diagonal(pose);
 }
 
+static bool has_lights(const struct scene *scene)
+{
+    for (int i = 0; i < scene->light_count; i++)
+        if (!scene->lights[i].off) return true;
+    return false;
+}
+
 bool scene_is_dark(const struct scene *scene)
 {
-    return scene->light_count == 0 && luminance(scene->sky) <= 0.0f && !scene_has_emission(scene);
+    return !has_lights(scene) && luminance(scene->sky) <= 0.0f && !scene_has_emission(scene);
 }
 
 // A point of the bounds from coordinates in 0…1.

@@ -122,7 +122,7 @@ static void deform_instance(void *user, size_t i)
                 glms_mat4_mul(pose->world_from_node[skin->joints[j]], skin->joint_from_mesh[j]);
         }
     }
-    deform_vertices(&scene->meshes[instance->mesh], pose->morph_weights + pose->morph_offset[i],
+    deform_vertices(scene_mesh_of(scene, (int)i), pose->morph_weights + pose->morph_offset[i],
                     joints, pose->world_from_node[instance->node], &pose->deformed[i]);
 }
 

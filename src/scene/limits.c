@@ -77,7 +77,7 @@ static bool cameras_are_near(const struct scene_pose *pose)
 // Whether no vertex of an instance overflows. The bounds alone would not tell: minima drop NaN.
 static bool vertices_are_finite(const struct scene_pose *pose, int instance)
 {
-    const struct mesh *mesh = &pose->scene->meshes[pose->scene->instances[instance].mesh];
+    const struct mesh *mesh = scene_mesh_of(pose->scene, instance);
     const vec3s *deformed = pose->deformed[instance].positions;
     if (deformed) return floats_are_finite(deformed->raw, 3 * (size_t)mesh->vertex_count);
     struct box3 box = box3_transform(pose_world_from_instance(pose, instance), mesh->bounds);

@@ -33,11 +33,23 @@ static void gather_morphs(struct arena *arena, struct mesh *mesh, const uint32_t
     }
 }
 
+// `made` has the source of the old mesh.
+static bool compose_source(struct arena *arena, struct mesh *made, const uint32_t *source,
+                           uint32_t count)
+{
+    const uint32_t *before = made->source;
+    made->source = arena_alloc(arena, count, sizeof *made->source);
+    if (!made->source) return false;
+    for (uint32_t i = 0; i < count; i++) made->source[i] = before ? before[source[i]] : source[i];
+    return true;
+}
+
 bool mesh_gather(struct arena *arena, struct mesh *mesh, const uint32_t *source, uint32_t count)
 {
     bool ok = true;
     struct mesh made = *mesh;
     made.vertex_count = count;
+    if (!mesh->source) made.source_count = mesh->vertex_count;
 #define GATHER(array)                                                                              \
     made.array = gather(arena, mesh->array, sizeof *mesh->array, source, count, &ok)
     GATHER(positions);
@@ -50,6 +62,7 @@ bool mesh_gather(struct arena *arena, struct mesh *mesh, const uint32_t *source,
     GATHER(weights);
 #undef GATHER
     gather_morphs(arena, &made, source, count, &ok);
+    ok = ok && compose_source(arena, &made, source, count);
     if (ok) *mesh = made;
     return ok;
 }

@@ -16,9 +16,14 @@ struct box3 mesh_bounds(const struct mesh *mesh);
 // of its own with the normal of its plane (+y for a degenerate triangle). False when out of memory;
 // the mesh is then unchanged.
 bool mesh_make_normals(struct arena *arena, struct mesh *mesh);
+// The flat normals of such a mesh after its positions changed.
+void mesh_update_normals(struct mesh *mesh);
 
 // Tangents along the u axis of `map` (after its transform), averaged over the triangles at a
 // vertex, weighted by angle. Vertices shared by mirrored and unmirrored triangles are duplicated.
 // Needs normals. A mesh without the map's texture coordinates keeps tangents NULL. False when out
 // of memory; the mesh is then unchanged.
 bool mesh_make_tangents(struct arena *arena, struct mesh *mesh, const struct texture_use *map);
+// The tangents of a mesh after its positions or normals changed; their signs stay. False when out
+// of memory; the tangents are then unchanged.
+bool mesh_update_tangents(struct host *host, struct mesh *mesh, const struct texture_use *map);

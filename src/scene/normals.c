@@ -21,6 +21,7 @@ bool mesh_make_normals(struct arena *arena, struct mesh *mesh)
     struct mesh made = *mesh;
     made.normals = NULL;
     made.tangents = NULL;
+    made.flat_normals = true;
     if (!mesh_gather(arena, &made, mesh->indices, mesh->index_count)) return false;
     made.normals = arena_alloc(arena, made.vertex_count, sizeof *made.normals);
     made.indices = arena_alloc(arena, made.index_count, sizeof *made.indices);
@@ -31,4 +32,15 @@ bool mesh_make_normals(struct arena *arena, struct mesh *mesh)
     }
     *mesh = made;
     return true;
+}
+
+void mesh_update_normals(struct mesh *mesh)
+{
+    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
+        const uint32_t *t = &mesh->indices[i];
+        const vec3s corner[3] = { mesh->positions[t[0]], mesh->positions[t[1]],
+                                  mesh->positions[t[2]] };
+        const vec3s normal = plane_normal(corner);
+        for (int k = 0; k < 3; k++) mesh->normals[t[k]] = normal;
+    }
 }

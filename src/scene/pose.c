@@ -8,9 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-// Cached bounds of one rigid instance, valid while its transform stays the same.
+// Cached bounds of one rigid instance, valid while its mesh and its transform stay the same.
 struct rigid_bounds {
     bool valid;
+    int mesh;
+    uint64_t revision; // of the mesh
     mat4s world_from_mesh;
     struct box3 box;
 };
@@ -20,12 +22,13 @@ struct pose_workspace {
     struct node_local *local; // [node_count]
     struct deformer deformer;
     struct rigid_bounds *bounds; // [instance_count]
+    int bounds_count;            // never falls: indices of removed instances stay
 };
 
 static bool instance_deforms(const struct scene *scene, int instance)
 {
     const struct instance *it = &scene->instances[instance];
-    return it->skin >= 0 || scene->meshes[it->mesh].morph_count > 0;
+    return it->skin >= 0 || scene_mesh_of(scene, instance)->morph_count > 0;
 }
 
 // Concatenated morph weights of all instances.
@@ -35,7 +38,7 @@ static bool create_morph_weights(struct scene_pose *pose, struct arena *arena)
     size_t total = 0;
     for (int i = 0; i < scene->instance_count; i++) {
         pose->morph_offset[i] = total;
-        size_t morph_count = (size_t)scene->meshes[scene->instances[i].mesh].morph_count;
+        size_t morph_count = (size_t)scene_mesh_of(scene, i)->morph_count;
         if (!size_add(total, morph_count, &total)) {
             return host_fail(scene->host, FAIL_MEMORY, "pose of %s: too many morph weights",
                              scene->name);
@@ -50,7 +53,7 @@ static bool create_deformed(struct scene_pose *pose, struct arena *arena)
     const struct scene *scene = pose->scene;
     for (int i = 0; i < scene->instance_count; i++) {
         if (!instance_deforms(scene, i)) continue;
-        const struct mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        const struct mesh *mesh = scene_mesh_of(scene, i);
         struct deformed_mesh *deformed = &pose->deformed[i];
         deformed->positions = arena_alloc(arena, mesh->vertex_count, sizeof(vec3s));
         deformed->normals = arena_alloc(arena, mesh->vertex_count, sizeof(vec3s));
@@ -81,6 +84,19 @@ static bool create_arrays(struct scene_pose *pose)
            deformer_init(&work->deformer, arena, scene);
 }
 
+static bool create_workspace(struct scene_pose *pose)
+{
+    const struct scene *scene = pose->scene;
+    pose->layout = scene->revisions.layout;
+    pose->workspace = host_alloc(scene->host, 1, sizeof *pose->workspace);
+    if (!pose->workspace) return false;
+    arena_init(&pose->workspace->arena, scene->host);
+    pose->workspace->bounds_count = scene->instance_count;
+    if (create_arrays(pose)) return true;
+    pose_finish(pose);
+    return false;
+}
+
 bool pose_init(struct scene_pose *pose, const struct scene *scene, int animation, float time_s)
 {
     *pose = (struct scene_pose){ .scene = scene, .bounds = box3_empty() };
@@ -89,14 +105,21 @@ bool pose_init(struct scene_pose *pose, const struct scene *scene, int animation
                          "pose of %s: animation %d at %g s, but it has %d animations", scene->name,
                          animation, (double)time_s, scene->animation_count);
     }
-    pose->workspace = host_alloc(scene->host, 1, sizeof *pose->workspace);
-    if (!pose->workspace) return false;
-    arena_init(&pose->workspace->arena, scene->host);
-    if (!create_arrays(pose)) {
-        pose_finish(pose);
-        return false;
-    }
+    if (!create_workspace(pose)) return false;
     pose_update(pose, animation, time_s);
+    return true;
+}
+
+bool pose_follow(struct scene_pose *pose)
+{
+    const struct scene *scene = pose->scene;
+    struct scene_pose made = { .scene = scene, .bounds = box3_empty() };
+    if (pose->layout == scene->revisions.layout) return true;
+    if (!create_workspace(&made)) return false;
+    const struct pose_workspace *old = pose->workspace;
+    memcpy(made.workspace->bounds, old->bounds, (size_t)old->bounds_count * sizeof *old->bounds);
+    pose_finish(pose);
+    *pose = made;
     return true;
 }
 
@@ -162,18 +185,23 @@ static struct box3 bounds_of_transformed_points(mat4s to_from, const vec3s *poin
 
 static struct box3 instance_bounds(struct scene_pose *pose, int instance)
 {
-    const struct mesh *mesh = &pose->scene->meshes[pose->scene->instances[instance].mesh];
+    const struct mesh *mesh = scene_mesh_of(pose->scene, instance);
     if (pose->deformed[instance].positions) {
         return bounds_of_points(pose->deformed[instance].positions, mesh->vertex_count);
     }
     if (box3_is_empty(mesh->bounds)) return box3_empty();
     mat4s world_from_mesh = pose_world_from_instance(pose, instance);
-    if (maps_axes_to_axes(world_from_mesh)) return box3_transform(world_from_mesh, mesh->bounds);
+    // Exact bounds of a moving mesh would take time in proportion to its vertices in each frame.
+    if (maps_axes_to_axes(world_from_mesh) || pose->scene->instances[instance].movable)
+        return box3_transform(world_from_mesh, mesh->bounds);
     struct rigid_bounds *cached = &pose->workspace->bounds[instance];
-    if (!cached->valid ||
+    if (!cached->valid || cached->revision != mesh->revision ||
+        cached->mesh != pose->scene->instances[instance].mesh ||
         memcmp(&cached->world_from_mesh, &world_from_mesh, sizeof world_from_mesh) != 0) {
-        cached->valid = true;
-        cached->world_from_mesh = world_from_mesh;
+        *cached = (struct rigid_bounds){ .valid = true,
+                                         .mesh = pose->scene->instances[instance].mesh,
+                                         .revision = mesh->revision,
+                                         .world_from_mesh = world_from_mesh };
         cached->box =
             bounds_of_transformed_points(world_from_mesh, mesh->positions, mesh->vertex_count);
     }
@@ -238,7 +266,7 @@ struct world_light pose_light(const struct scene_pose *pose, int light)
         .type = source->type,
         .position = vec3_xyz(pose->world_from_node[source->node].col[3]),
         .direction = node_direction(pose, source->node, back, back),
-        .intensity = source->intensity,
+        .intensity = source->off ? vec3_of(0, 0, 0) : source->intensity,
         .cos_inner = cosf(source->inner_rad),
         .cos_outer = cosf(source->outer_rad),
         .range_m = source->range_m,

@@ -13,6 +13,7 @@ struct deformed_mesh {
 struct scene_pose {
     const struct scene *scene;
     float time_s;
+    uint64_t layout;                  // scene->revisions.layout that the arrays belong to
     mat4s *world_from_node;           // [node_count]
     float *morph_weights;             // of all instances, see morph_offset
     size_t *morph_offset;             // [instance_count]
@@ -24,6 +25,9 @@ struct scene_pose {
 // `animation`: index, or -1 for the rest pose. Time wraps around the animation's duration.
 // pose_finish accepts zero.
 bool pose_init(struct scene_pose *pose, const struct scene *scene, int animation, float time_s);
+// Adapts the arrays to nodes and instances that were added or removed, before pose_update. False
+// when out of memory; the pose is then unchanged.
+bool pose_follow(struct scene_pose *pose);
 // Evaluates an existing pose at another time; allocates nothing.
 void pose_update(struct scene_pose *pose, int animation, float time_s);
 void pose_finish(struct scene_pose *pose);

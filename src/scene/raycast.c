@@ -198,7 +198,7 @@ end:
 // Appends an instance's triangles in world space, except those that are not finite.
 static void add_instance(struct raycast *raycast, const struct scene_pose *pose, int instance)
 {
-    const struct mesh *mesh = &pose->scene->meshes[pose->scene->instances[instance].mesh];
+    const struct mesh *mesh = scene_mesh_of(pose->scene, instance);
     const vec3s *deformed = pose->deformed[instance].positions;
     mat4s world_from_mesh = pose_world_from_instance(pose, instance);
     // A mirroring transform reverses the winding (glTF 2.0, 3.7.4).

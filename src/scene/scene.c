@@ -15,6 +15,7 @@ struct scene *scene_create(struct host *host, const char *name)
     if (!scene) return NULL;
     scene->host = host;
     arena_init(&scene->arena, host);
+    scene->free_node = -1;
     scene->name = arena_strdup(&scene->arena, name_or_empty(name));
     if (!scene->name) goto fail;
     return scene;
@@ -56,6 +57,11 @@ bool scene_reserve(struct scene *scene, void **array, int count, int *capacity, 
     return true;
 }
 
+uint64_t scene_changed(struct scene *scene, uint64_t *part)
+{
+    return *part = ++scene->revisions.newest;
+}
+
 // Appends *element to scene->plural; -1 when out of memory.
 #define APPEND(scene, plural, singular, element)                                                   \
     (scene_reserve((scene), (void **)&(scene)->plural, (scene)->singular##_count,                  \
@@ -69,7 +75,7 @@ static bool copy_name(struct scene *scene, const char **name)
     return *name != NULL;
 }
 
-static bool refuse(struct scene *scene, const char *kind, const char *name, const char *why)
+bool scene_refuse(struct scene *scene, const char *kind, const char *name, const char *why)
 {
     return host_fail(scene->host, FAIL_ARGUMENT, "%s \"%s\" in %s: %s", kind, name_or_empty(name),
                      scene->name, why);
@@ -79,8 +85,8 @@ int scene_add_image(struct scene *scene, const struct scene_image *image)
 {
     if (image->width < 1 || image->height < 1 || image->width > SCENE_MAX_IMAGE_SIZE ||
         image->height > SCENE_MAX_IMAGE_SIZE || !image->rgba) {
-        refuse(scene, "image", image->name,
-               "its size is not 1 to 8192 pixels, or it has no pixels");
+        scene_refuse(scene, "image", image->name,
+                     "its size is not 1 to 8192 pixels, or it has no pixels");
         return -1;
     }
     struct scene_image copy = *image;
@@ -91,6 +97,7 @@ int scene_add_image(struct scene *scene, const struct scene_image *image)
     for (size_t i = 0; i < texels && !copy.has_alpha; i++) {
         copy.has_alpha = copy.rgba[4 * i + 3] != 255;
     }
+    scene_changed(scene, &scene->revisions.resources);
     return APPEND(scene, images, image, copy);
 }
 
@@ -112,36 +119,40 @@ static bool is_colour(vec3s value)
     return vec3_is_finite(value) && value.x >= 0.0f && value.y >= 0.0f && value.z >= 0.0f;
 }
 
+const char *scene_material_fault(const struct scene *scene, const struct material *material)
+{
+    if (!is_colour(vec3_xyz(material->base_color)) || !is_fraction(material->base_color.w))
+        return "its base colour is negative or not finite";
+    if (!is_fraction(material->metallic) || !is_fraction(material->roughness))
+        return "its metallic or roughness factor is not in 0…1";
+    if (!is_fraction(material->specular) || !is_colour(material->specular_color))
+        return "its specular weight is not in 0…1, or its specular colour negative or not finite";
+    if (!isfinite(material->ior) || (material->ior != 0.0f && !(material->ior >= 1.0f)))
+        return "its index of refraction is neither 0 nor at least 1";
+    if (!limits_light(material->emissive)) return "its emission is not within 0 to 1e15 cd/m²";
+    if (!isfinite(material->normal_scale) || !isfinite(material->alpha_cutoff))
+        return "its normal scale or alpha cutoff is not finite";
+    const struct texture_use *maps[] = {
+        &material->base_color_map, &material->metallic_roughness_map, &material->normal_map,
+        &material->emissive_map,   &material->specular_map,           &material->specular_color_map,
+    };
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+        if (!texture_use_is_valid(scene, maps[i]))
+            return "a texture refers to an image or coordinate set that does not exist";
+    return NULL;
+}
+
 int scene_add_material(struct scene *scene, const struct material *material)
 {
-    const char *why = NULL;
-    if (!is_colour(vec3_xyz(material->base_color)) || !is_fraction(material->base_color.w)) {
-        why = "its base colour is negative or not finite";
-    } else if (!is_fraction(material->metallic) || !is_fraction(material->roughness)) {
-        why = "its metallic or roughness factor is not in 0…1";
-    } else if (!is_fraction(material->specular) || !is_colour(material->specular_color)) {
-        why = "its specular weight is not in 0…1, or its specular colour negative or not finite";
-    } else if (!isfinite(material->ior) || (material->ior != 0.0f && !(material->ior >= 1.0f))) {
-        why = "its index of refraction is neither 0 nor at least 1";
-    } else if (!limits_light(material->emissive)) {
-        why = "its emission is not within 0 to 1e15 cd/m²";
-    } else if (!isfinite(material->normal_scale) || !isfinite(material->alpha_cutoff)) {
-        why = "its normal scale or alpha cutoff is not finite";
-    } else if (!texture_use_is_valid(scene, &material->base_color_map) ||
-               !texture_use_is_valid(scene, &material->metallic_roughness_map) ||
-               !texture_use_is_valid(scene, &material->normal_map) ||
-               !texture_use_is_valid(scene, &material->emissive_map) ||
-               !texture_use_is_valid(scene, &material->specular_map) ||
-               !texture_use_is_valid(scene, &material->specular_color_map)) {
-        why = "a texture refers to an image or coordinate set that does not exist";
-    }
+    const char *why = scene_material_fault(scene, material);
     if (why) {
-        refuse(scene, "material", material->name, why);
+        scene_refuse(scene, "material", material->name, why);
         return -1;
     }
     struct material copy = *material;
     if (copy.unlit) material_clear_emission(&copy);
     if (!copy_name(scene, &copy.name)) return -1;
+    copy.revision = scene_changed(scene, &scene->revisions.resources);
     return APPEND(scene, materials, material, copy);
 }
 
@@ -168,12 +179,14 @@ int scene_add_node(struct scene *scene, const struct node *node)
         why = "its translation, rotation or scale is not finite";
     }
     if (why) {
-        refuse(scene, "node", node->name, why);
+        scene_refuse(scene, "node", node->name, why);
         return -1;
     }
     if (!copy.has_matrix) copy.rotation = glms_quat_normalize(copy.rotation);
     if (!copy_name(scene, &copy.name)) return -1;
     if (copy.extras && !(copy.extras = arena_strdup(&scene->arena, copy.extras))) return -1;
+    copy.next_free = -1;
+    scene_changed(scene, &scene->revisions.layout);
     return APPEND(scene, nodes, node, copy);
 }
 
@@ -189,39 +202,59 @@ static bool skin_fits_mesh(const struct skin *skin, const struct mesh *mesh)
     return true;
 }
 
+static const char *instance_fault(const struct scene *scene, const struct instance *instance)
+{
+    if (!index_is_valid(instance->node, scene->node_count)) return "its node does not exist";
+    if (!index_is_valid(instance->mesh, scene->mesh_count)) return "its mesh does not exist";
+    const struct mesh *mesh = &scene->meshes[instance->mesh];
+    if (instance->skin != -1 && !index_is_valid(instance->skin, scene->skin_count))
+        return "its skin does not exist";
+    if (instance->skin != -1 && !skin_fits_mesh(&scene->skins[instance->skin], mesh))
+        return "its mesh uses joints that the skin does not have";
+    if (instance->morph_weights &&
+        !floats_are_finite(instance->morph_weights, (size_t)mesh->morph_count))
+        return "a morph weight is not finite";
+    return NULL;
+}
+
+static bool copy_weights(struct scene *scene, const struct instance *from, struct instance *to)
+{
+    const size_t count = (size_t)scene->meshes[from->mesh].morph_count;
+    to->morph_weights = NULL;
+    if (count == 0) return true;
+    to->morph_weights =
+        from->morph_weights
+            ? scene_copy(scene, from->morph_weights, count, sizeof *to->morph_weights)
+            : arena_alloc(&scene->arena, count, sizeof *to->morph_weights);
+    return to->morph_weights != NULL;
+}
+
+static int free_instance(struct scene *scene)
+{
+    if (scene->free_instance_count == 0) return -1;
+    int i = scene->first_free_instance;
+    while (scene->instances[i].mesh >= 0) i++;
+    scene->first_free_instance = i + 1;
+    scene->free_instance_count--;
+    return i;
+}
+
 int scene_add_instance(struct scene *scene, const struct instance *instance)
 {
-    const char *why = NULL;
-    if (!index_is_valid(instance->node, scene->node_count)) {
-        why = "its node does not exist";
-    } else if (!index_is_valid(instance->mesh, scene->mesh_count)) {
-        why = "its mesh does not exist";
-    } else if (instance->skin != -1 && !index_is_valid(instance->skin, scene->skin_count)) {
-        why = "its skin does not exist";
-    } else if (instance->skin != -1 &&
-               !skin_fits_mesh(&scene->skins[instance->skin], &scene->meshes[instance->mesh])) {
-        why = "its mesh uses joints that the skin does not have";
-    }
+    const char *why = instance_fault(scene, instance);
     if (why) {
-        refuse(scene, "instance", "", why);
+        scene_refuse(scene, "instance", "", why);
         return -1;
     }
     struct instance copy = *instance;
-    size_t morph_count = (size_t)scene->meshes[copy.mesh].morph_count;
-    copy.morph_weights = NULL;
-    if (morph_count > 0) {
-        if (instance->morph_weights && !floats_are_finite(instance->morph_weights, morph_count)) {
-            refuse(scene, "instance", "", "a morph weight is not finite");
-            return -1;
-        }
-        copy.morph_weights =
-            instance->morph_weights
-                ? scene_copy(scene, instance->morph_weights, morph_count,
-                             sizeof *copy.morph_weights)
-                : arena_alloc(&scene->arena, morph_count, sizeof *copy.morph_weights);
-        if (!copy.morph_weights) return -1;
-    }
-    return APPEND(scene, instances, instance, copy);
+    if (!copy_weights(scene, instance, &copy)) return -1;
+    const int index = free_instance(scene);
+    scene_changed(scene, &scene->revisions.layout);
+    if (!copy.movable) scene_changed(scene, &scene->revisions.statics);
+    copy.added = scene_changed(scene, &scene->revisions.instances);
+    if (index < 0) return APPEND(scene, instances, instance, copy);
+    scene->instances[index] = copy;
+    return index;
 }
 
 // The cone of a spot: 0 ≤ inner < outer ≤ π/2.
@@ -231,28 +264,35 @@ static bool cone_is_valid(const struct light *light)
            light->outer_rad <= GLM_PI_2f + 1e-6f;
 }
 
+const char *scene_light_fault(const struct scene *scene, const struct light *light)
+{
+    if (!index_is_valid(light->node, scene->node_count)) return "its node does not exist";
+    if (light->type != LIGHT_SUN && light->type != LIGHT_POINT && light->type != LIGHT_SPOT)
+        return "its type is unknown";
+    if (!limits_light(light->intensity))
+        return "its intensity is not within 0 to 1e15 lux or candela";
+    if (light->type == LIGHT_SPOT && !cone_is_valid(light))
+        return "its cone is not 0 ≤ inner < outer ≤ 90 degrees";
+    if (!isfinite(light->range_m) || light->range_m < 0.0f)
+        return "its range is negative or not finite";
+    return NULL;
+}
+
+int scene_append_light(struct scene *scene, const struct light *light)
+{
+    scene_changed(scene, &scene->revisions.lights);
+    return APPEND(scene, lights, light, *light);
+}
+
 int scene_add_light(struct scene *scene, const struct light *light)
 {
-    const char *why = NULL;
-    if (!index_is_valid(light->node, scene->node_count)) {
-        why = "its node does not exist";
-    } else if (light->type != LIGHT_SUN && light->type != LIGHT_POINT &&
-               light->type != LIGHT_SPOT) {
-        why = "its type is unknown";
-    } else if (!limits_light(light->intensity)) {
-        why = "its intensity is not within 0 to 1e15 lux or candela";
-    } else if (light->type == LIGHT_SPOT && !cone_is_valid(light)) {
-        why = "its cone is not 0 ≤ inner < outer ≤ 90 degrees";
-    } else if (!isfinite(light->range_m) || light->range_m < 0.0f) {
-        why = "its range is negative or not finite";
-    }
+    const char *why = scene_light_fault(scene, light);
     if (why) {
-        refuse(scene, "light", light->name, why);
+        scene_refuse(scene, "light", light->name, why);
         return -1;
     }
     struct light copy = *light;
-    if (!copy_name(scene, &copy.name)) return -1;
-    return APPEND(scene, lights, light, copy);
+    return copy_name(scene, &copy.name) ? scene_append_light(scene, &copy) : -1;
 }
 
 int scene_add_camera(struct scene *scene, const struct camera *camera)
@@ -266,7 +306,7 @@ int scene_add_camera(struct scene *scene, const struct camera *camera)
         why = "the distance of its near plane is not positive and finite";
     }
     if (why) {
-        refuse(scene, "camera", camera->name, why);
+        scene_refuse(scene, "camera", camera->name, why);
         return -1;
     }
     struct camera copy = *camera;
@@ -274,31 +314,29 @@ int scene_add_camera(struct scene *scene, const struct camera *camera)
     return APPEND(scene, cameras, camera, copy);
 }
 
-int scene_add_node_looking(struct scene *scene, const char *name, vec3s position, vec3s direction)
+bool scene_looking(vec3s position, vec3s direction, mat4s *world_from_node)
 {
     direction = vec3_unit(direction);
-    if (!vec3_is_finite(position) || glms_vec3_norm(direction) == 0.0f) {
-        refuse(scene, "node", name, "its position is not finite or its direction has length zero");
-        return -1;
-    }
+    if (!vec3_is_finite(position) || glms_vec3_norm(direction) == 0.0f) return false;
     vec3s back = glms_vec3_negate(direction);
     // Up is nearest to +y; for a vertical direction it is -z or +z.
     vec3s reference = fabsf(back.y) < 0.9999f ? vec3_of(0, 1, 0) : vec3_of(0, 0, -back.y);
     vec3s right = glms_vec3_normalize(glms_vec3_cross(reference, back));
     vec3s up = glms_vec3_cross(back, right);
+    *world_from_node = (mat4s){ .col = { vec4_of(right, 0), vec4_of(up, 0), vec4_of(back, 0),
+                                         vec4_of(position, 1) } };
+    return true;
+}
+
+int scene_add_node_looking(struct scene *scene, const char *name, vec3s position, vec3s direction)
+{
     struct node node = node_default();
     node.name = name;
     node.has_matrix = true;
-    node.matrix.col[0] = vec4_of(right, 0);
-    node.matrix.col[1] = vec4_of(up, 0);
-    node.matrix.col[2] = vec4_of(back, 0);
-    node.matrix.col[3] = vec4_of(position, 1);
-    return scene_add_node(scene, &node);
-}
-
-void scene_remove_lights(struct scene *scene)
-{
-    scene->light_count = 0;
+    if (scene_looking(position, direction, &node.matrix)) return scene_add_node(scene, &node);
+    scene_refuse(scene, "node", name,
+                 "its position is not finite or its direction has length zero");
+    return -1;
 }
 
 struct material material_default(void)
@@ -356,25 +394,6 @@ struct node node_default(void)
 struct texture_use texture_use_none(void)
 {
     return (struct texture_use){ .image = -1, .uv_scale = { 1, 1 } };
-}
-
-size_t scene_triangle_count(const struct scene *scene)
-{
-    size_t count = 0;
-    for (int i = 0; i < scene->instance_count; i++) {
-        count += scene->meshes[scene->instances[i].mesh].index_count / 3;
-    }
-    return count;
-}
-
-bool scene_has_emission(const struct scene *scene)
-{
-    for (int i = 0; i < scene->instance_count; i++) {
-        const struct mesh *mesh = &scene->meshes[scene->instances[i].mesh];
-        vec3s emissive = scene->materials[mesh->material].emissive;
-        if (mesh->index_count > 0 && luminance(emissive) > 0.0f) return true;
-    }
-    return false;
 }
 
 size_t scene_memory_bytes(const struct scene *scene)

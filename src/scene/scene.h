@@ -1,7 +1,7 @@
 // A scene: meshes, materials, textures, nodes, instances, lights, cameras, skins, animations.
-// Plain arrays in the scene's arena; objects refer to each other by index, -1 is none. Immutable
-// after loading except through scene_add_*. World space is right-handed, +Y up, metres. Colours are
-// linear Rec. 709.
+// Plain arrays in the scene's arena; objects refer to each other by index, -1 is none. Changed only
+// by scene_add_* and the functions of scene_edit.h, which count the changes (scene_revisions).
+// World space is right-handed, +Y up, metres. Colours are linear Rec. 709.
 #pragma once
 
 #include "core/arena.h"
@@ -53,6 +53,7 @@ struct material {
     struct texture_use base_color_map, metallic_roughness_map, normal_map, emissive_map;
     struct texture_use specular_map;       // A: weight
     struct texture_use specular_color_map; // RGB
+    uint64_t revision;                     // of its last change
 };
 
 struct morph_target {
@@ -76,23 +77,38 @@ struct mesh {
     int morph_count;
     int material; // always valid: a default material is added where the file has none
     struct box3 bounds;
+    // Vertices as they were given, before some were duplicated: vertex v is a copy of source[v].
+    uint32_t *source; // NULL: v
+    uint32_t source_count;
+    bool flat_normals; // made from the triangles
+    bool own_arrays;   // no other mesh shares positions, normals and tangents
+    uint64_t revision; // of the last change of its vertices
 };
+
+enum node_mobility { MOBILITY_INHERITED, MOBILITY_STATIC, MOBILITY_MOVABLE };
 
 struct node {
     const char *name;
-    int parent; // -1, or less than the node's own index: parents come first
+    enum node_mobility mobility; // of a file, for the instances at the node and its descendants
+    int parent;                  // -1, or less than the node's own index: parents come first
     vec3s translation;
     versors rotation;
     vec3s scale;
     bool has_matrix; // then `matrix` replaces the three above
     mat4s matrix;
     const char *extras; // JSON text of glTF's application-specific data, an object; NULL: none
+    int next_free;      // of a node that is not in use: the next one, -1 for the last
 };
 
 // A mesh at a node. Skinned meshes ignore the node's transform, as glTF says.
 struct instance {
-    int node, mesh, skin; // skin -1: rigid
+    // skin -1: rigid; mesh -1: removed, and its index free for another instance. Read meshes
+    // through scene_mesh_of.
+    int node, mesh, skin;
     float *morph_weights; // rest weights, morph_count of the mesh; NULL when it has none
+    bool movable;         // is expected to move: techniques keep it apart from static geometry
+    bool own_node;        // nothing else is at the node
+    uint64_t added;       // revision at which it took its index
 };
 
 enum light_type { LIGHT_SUN, LIGHT_POINT, LIGHT_SPOT };
@@ -105,6 +121,8 @@ struct light {
     vec3s intensity;            // colour × intensity: lux for suns, candela for points and spots
     float inner_rad, outer_rad; // half-angles of a spot, inner < outer ≤ π/2
     float range_m;              // 0: unlimited
+    bool off;                   // emits nothing
+    bool own_node;              // nothing else is at the node
 };
 
 struct camera {
@@ -145,11 +163,29 @@ struct scene_capacity {
     int images, materials, meshes, nodes, instances, lights, cameras;
 };
 
+// `newest` counts all changes since creation or loading; the others have its value at the last
+// change of their part. Users of the scene compare them with those that they know.
+struct scene_revisions {
+    uint64_t newest;
+    uint64_t layout;     // nodes or instances added, the mesh of an instance replaced
+    uint64_t instances;  // added, removed, their mobility
+    uint64_t statics;    // static instances added or removed
+    uint64_t resources;  // meshes, materials or images added
+    uint64_t transforms; // instances placed elsewhere
+    uint64_t vertices;   // mesh.revision has which
+    uint64_t materials;  // material.revision has which
+    uint64_t lights;     // punctual lights and sky
+};
+
 struct scene {
     struct host *host;
     struct arena arena;
     struct scene_capacity capacity;
-    const char *name; // file name or "@builtin:…"
+    struct scene_revisions revisions;
+    int free_node;           // first node that is not in use, -1: none
+    int free_instance_count; // removed ones
+    int first_free_instance; // at most the lowest index of a removed one
+    const char *name;        // file name or "@builtin:…"
     struct scene_image *images;
     int image_count;
     struct material *materials;
@@ -191,7 +227,6 @@ int scene_add_light(struct scene *scene, const struct light *light);
 int scene_add_camera(struct scene *scene, const struct camera *camera);
 // A node at `position` whose -z points along `direction`.
 int scene_add_node_looking(struct scene *scene, const char *name, vec3s position, vec3s direction);
-void scene_remove_lights(struct scene *scene); // all punctual lights
 
 struct material material_default(void);
 #define MATERIAL_DEFAULT_IOR 1.5f // F0 = 0.04
@@ -203,6 +238,8 @@ bool material_has_default_specular(const struct material *material); // factors 
 struct node node_default(void);
 struct texture_use texture_use_none(void);
 
+// The mesh of an instance; without vertices for a removed one.
+const struct mesh *scene_mesh_of(const struct scene *scene, int instance);
 size_t scene_triangle_count(const struct scene *scene); // sum over instances
 bool scene_has_emission(const struct scene *scene); // some instanced mesh has an emissive material
 size_t scene_memory_bytes(const struct scene *scene);

@@ -18,7 +18,7 @@ static const char *check_indices(const struct scene *scene, const struct mesh *m
     return NULL;
 }
 
-static const char *check_vertices(const struct mesh *mesh)
+const char *scene_vertices_fault(const struct mesh *mesh)
 {
     size_t count = mesh->vertex_count;
     if (count > 0 && !mesh->positions) return "it has no positions";
@@ -131,7 +131,7 @@ static bool generate_missing(struct scene *scene, struct mesh *mesh)
 int scene_add_mesh(struct scene *scene, const struct mesh *mesh)
 {
     const char *why = check_indices(scene, mesh);
-    if (!why) why = check_vertices(mesh);
+    if (!why) why = scene_vertices_fault(mesh);
     if (!why) why = check_morphs(mesh);
     if (why) {
         host_fail(scene->host, FAIL_ARGUMENT, "mesh \"%s\" in %s: %s", name_or_empty(mesh->name),
@@ -145,6 +145,8 @@ int scene_add_mesh(struct scene *scene, const struct mesh *mesh)
                        sizeof copy)) {
         return -1;
     }
+    copy.own_arrays = true;
+    copy.revision = scene_changed(scene, &scene->revisions.resources);
     scene->meshes[scene->mesh_count] = copy;
     return scene->mesh_count++;
 }

@@ -210,3 +210,36 @@ bool mesh_make_tangents(struct arena *arena, struct mesh *mesh, const struct tex
     arena_finish(&scratch);
     return ok;
 }
+
+static bool update_tangents(struct arena *scratch, struct mesh *mesh, const struct texture_use *map)
+{
+    const uint32_t count = mesh->vertex_count;
+    struct tangent_work work = { .mesh = mesh, .count = count };
+    size_t slots = 16;
+    while (slots < (size_t)count * 2) slots *= 2;
+    work.uv = arena_alloc(scratch, count, sizeof *work.uv);
+    work.flags = arena_alloc(scratch, count, sizeof *work.flags);
+    work.source = arena_alloc(scratch, count, sizeof *work.source);
+    uint32_t *shared = arena_alloc(scratch, count, sizeof *shared);
+    uint32_t *table = arena_alloc(scratch, slots, sizeof *table);
+    vec3s *sums = arena_alloc(scratch, count, sizeof *sums);
+    if (!work.uv || !work.flags || !work.source || !shared || !table || !sums) return false;
+    for (uint32_t v = 0; v < count; v++) {
+        work.uv[v] = transform_uv(map, mesh->uv[map->uv_set][v]);
+        work.flags[v] = mesh->tangents[v].w < 0.0f ? FLAG_MIRRORED : FLAG_STRAIGHT;
+        work.source[v] = v;
+    }
+    find_shared(&work, shared, table, slots);
+    fill_tangents(&work, mesh, shared, sums);
+    return true;
+}
+
+bool mesh_update_tangents(struct host *host, struct mesh *mesh, const struct texture_use *map)
+{
+    if (!mesh->tangents || map->image < 0 || !mesh->uv[map->uv_set]) return true;
+    struct arena scratch;
+    arena_init(&scratch, host);
+    const bool ok = update_tangents(&scratch, mesh, map);
+    arena_finish(&scratch);
+    return ok;
+}

@@ -119,11 +119,26 @@ bool gi_resize(struct gi *gi, uint32_t width, uint32_t height)
     return !gi->debug_name || make_debug_image(gi);
 }
 
+// Once for each technique that cannot follow changed surfaces.
+static void warn_of_change(struct gi *gi, int term)
+{
+    if (!gi->said_fixed[term])
+        host_log(gi->host, LOG_WARNING,
+                 "%s: the scene's geometry or materials changed, but indirect light keeps those at "
+                 "the renderer's creation; lpv and vct follow them",
+                 gi->spec.technique[term]->name);
+    gi->said_fixed[term] = true;
+}
+
 void gi_invalidate(struct gi *gi, uint32_t changes)
 {
-    for (int i = 0; i < gi->spec.count; i++)
-        if (gi->spec.technique[i]->invalidate)
-            gi->spec.technique[i]->invalidate(gi->state[i], changes);
+    const uint32_t surfaces = CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_MOVABLE;
+    for (int i = 0; i < gi->spec.count; i++) {
+        const struct technique *technique = gi->spec.technique[i];
+        if (changes & surfaces && !(technique->capabilities & CAN_MOVE_GEOMETRY))
+            warn_of_change(gi, i);
+        if (technique->invalidate) technique->invalidate(gi->state[i], changes);
+    }
 }
 
 static bool probes_of(const struct gi *gi, int term, struct probe_volume *out)

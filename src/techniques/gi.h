@@ -35,6 +35,7 @@ struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_s
                            uint32_t width, uint32_t height);
 void gi_destroy(struct gi *gi);
 bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
+// technique_change bits. A technique that cannot follow them warns once and goes on.
 void gi_invalidate(struct gi *gi, uint32_t changes);
 // Applies another spec's options to the running stack. false, and nothing changed: it names other
 // techniques, or changes options that need gi_create (their effect is stronger than INVALIDATE).

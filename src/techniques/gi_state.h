@@ -11,8 +11,9 @@ struct gi {
     struct gi_spec spec;
     uint32_t width, height;
     void *state[GI_MAX_TERMS];
-    int debug_term;         // the technique of the debug view
-    const char *debug_name; // NULL: none
+    bool said_fixed[GI_MAX_TERMS]; // the warning of gi_invalidate
+    int debug_term;                // the technique of the debug view
+    const char *debug_name;        // NULL: none
     gpu_image debug_image;
     struct probe_view probe_view; // created with its first use
 };

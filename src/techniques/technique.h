@@ -20,13 +20,15 @@ enum technique_capability {
     GATHERS_EMISSION = 32, // emissive surfaces light others
 };
 
-// What changed, for `invalidate`.
+// What changed, for `invalidate`. frame_view has the changes of lights and of movable geometry,
+// too, for a history that follows them.
 enum technique_change {
-    CHANGED_GEOMETRY = 1,
+    CHANGED_GEOMETRY = 1, // static instances added or removed
     CHANGED_MATERIAL = 2,
-    CHANGED_LIGHT = 4,
+    CHANGED_LIGHT = 4,  // punctual lights or sky
     CHANGED_CAMERA = 8, // a cut
     CHANGED_OPTIONS = 16,
+    CHANGED_MOVABLE = 32, // instances moved, or movable ones were added, removed or deformed
 };
 
 struct technique_debug_view {

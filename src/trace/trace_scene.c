@@ -133,7 +133,7 @@ static void compute_facets(struct trace_mesh *out)
 static bool create_mesh(struct trace_scene *s, const struct scene_pose *pose, int instance,
                         struct trace_mesh *out)
 {
-    const struct mesh *mesh = &s->scene->meshes[s->scene->instances[instance].mesh];
+    const struct mesh *mesh = scene_mesh_of(s->scene, instance);
     const struct deformed_mesh *deformed = &pose->deformed[instance];
     *out = (struct trace_mesh){ .mesh = mesh,
                                 .material = &s->materials[mesh->material],
@@ -169,7 +169,7 @@ static bool create_meshes(struct trace_scene *s, const struct scene_pose *pose)
     s->embree = embree_create(s->host);
     if (!s->meshes || !s->embree) return false;
     for (int i = 0; i < s->scene->instance_count; i++) {
-        if (s->scene->meshes[s->scene->instances[i].mesh].index_count == 0) continue;
+        if (scene_mesh_of(s->scene, i)->index_count == 0) continue;
         struct trace_mesh *mesh = &s->meshes[s->mesh_count++];
         if (!create_mesh(s, pose, i, mesh) || !embree_add(s->embree, &mesh->geometry)) return false;
     }

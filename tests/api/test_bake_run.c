@@ -89,7 +89,7 @@ TEST(bake_holds_the_scene_but_not_its_lights)
     ag_material_desc_default(&material);
     assert_int_equal(ag_scene_remove_lights(s.scene), AG_OK);
     assert_int_equal(ag_scene_add_material(s.scene, &material, &index), AG_ERROR_ARGUMENT);
-    CHECK(strstr(ag_context_last_error(s.context), "in use by a renderer or a bake"));
+    CHECK(strstr(ag_context_last_error(s.context), "in use by a bake"));
     ag_bake_destroy(bake);
     assert_int_equal(ag_scene_add_material(s.scene, &material, &index), AG_OK);
     close_scene(&s);

@@ -13,6 +13,7 @@ ag_test(api/renderer USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/set_gi USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/layer_handles USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/vulkan USES api LIBRARIES ag_test_renderer_fixture)
+ag_test(api/changes USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/frames_in_flight USES api LIBRARIES ag_test_renderer_fixture)
 
 # Only ag_… is to be seen from outside. (Sanitizers add names of their own.)

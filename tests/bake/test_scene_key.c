@@ -1,5 +1,6 @@
 // Hashes of scenes: each part changes them, and nothing else does.
 #include "bake/scene_key.h"
+#include "scene/scene_edit.h"
 
 #include "framework/test.h"
 

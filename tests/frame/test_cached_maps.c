@@ -1,5 +1,6 @@
 // Reused shadow maps and reflective shadow maps are identical to rendered ones.
 #include "frame/frame_fixture.h"
+#include "scene/scene_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -147,4 +148,71 @@ TEST_GPU(a_skipped_map_is_rendered_again)
     fixture_render(&w.fixture);
     assert_int_equal(w.drawn, RSMS);
     fixture_finish(&w.fixture);
+}
+
+static void follow(struct frame_fixture *s)
+{
+    assert_true(pose_follow(&s->pose));
+    pose_update(&s->pose, -1, 0.0f);
+}
+
+static void place_box(struct frame_fixture *s, int box)
+{
+    const mat4s matrix = glms_translate(glms_mat4_identity(), vec3_of(0.5f, 0, 0));
+    assert_true(scene_set_instance_transform(s->scene, box, matrix));
+}
+
+static void recolor_box(struct frame_fixture *s, int box)
+{
+    struct material material = s->scene->materials[scene_mesh_of(s->scene, box)->material];
+    material.base_color.x = 0.2f;
+    assert_true(scene_set_material(s->scene, scene_mesh_of(s->scene, box)->material, &material));
+}
+
+static void reshape_box(struct frame_fixture *s, int box)
+{
+    const struct mesh *mesh = scene_mesh_of(s->scene, box);
+    vec3s positions[64];
+    assert_true(!mesh->source && mesh->vertex_count <= 64);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        positions[v] = glms_vec3_scale(mesh->positions[v], 0.8f);
+    assert_true(scene_update_mesh(s->scene, s->scene->instances[box].mesh, positions, NULL));
+}
+
+static void remove_box(struct frame_fixture *s, int box)
+{
+    scene_remove_instance(s->scene, box);
+}
+
+// The box is outside the spot's maps, inside the sun's and at least some of the point's.
+static const struct scene_change {
+    void (*apply)(struct frame_fixture *s, int box);
+    int least, most; // maps that are rendered again
+} scene_changes[] = {
+    { place_box, 2 + 1 + 2, SHADOWS + RSMS - 2 },
+    { recolor_box, RSMS - 2, RSMS }, // the floor has the same material
+    { reshape_box, 2 + 1 + 2, SHADOWS + RSMS - 2 },
+    { remove_box, 2 + 1 + 2, SHADOWS + RSMS - 2 },
+};
+
+TEST_GPU(changes_of_the_scene_render_the_maps_that_show_them)
+{
+    struct map_counter reused, rendered;
+    open(&reused, gpu, true, FRAME_NEEDS_RSM);
+    open(&rendered, gpu, false, FRAME_NEEDS_RSM);
+    for (size_t i = 0; i < sizeof scene_changes / sizeof *scene_changes; i++) {
+        struct map_counter *both[] = { &reused, &rendered };
+        for (int k = 0; k < 2; k++) {
+            scene_changes[i].apply(&both[k]->fixture, both[k]->box);
+            follow(&both[k]->fixture);
+            fixture_render(&both[k]->fixture);
+        }
+        CHECK(reused.drawn >= scene_changes[i].least && reused.drawn <= scene_changes[i].most);
+        check_same_image(&reused, &rendered);
+        fixture_render(&reused.fixture);
+        assert_int_equal(reused.drawn, 0);
+        fixture_render(&rendered.fixture);
+    }
+    fixture_finish(&reused.fixture);
+    fixture_finish(&rendered.fixture);
 }

@@ -4,6 +4,7 @@
 #include "scene/builtin/shapes.h"
 #include "scene/builtin/builtin.h"
 #include "scene/defaults.h"
+#include "scene/scene_edit.h"
 #include "scene/raycast.h"
 
 #include <math.h>

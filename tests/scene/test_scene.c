@@ -2,6 +2,7 @@
 #include "framework/test.h"
 
 #include "scene/scene.h"
+#include "scene/scene_edit.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -202,8 +202,8 @@ void rsm_record(struct rsm *r, struct gpu_cmd *cmd, const struct scene_gpu *scen
     r->drawn = 0;
     for (int i = 0; i < r->face_count; i++) {
         const struct rsm_face *face = &r->faces[i];
-        const bool valid =
-            cached_map_is_valid(&r->cache[i], scene, &lights[face->light], face->clip_from_world);
+        const bool valid = cached_map_is_valid(&r->cache[i], scene, &lights[face->light],
+                                               face->clip_from_world, true);
         gpu_scope_begin(cmd, scopes[face->type]);
         if (!valid || !reuse) {
             record_face(r, cmd, scene, i, bindings);

@@ -240,8 +240,8 @@ void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu
             const struct shadow_face *face = &s->faces[index];
             const struct shadow_face *last = face + (lights[i].shadow_count - 1 - k);
             if (face != last && face->layer == last->layer) continue;
-            const bool valid =
-                cached_map_is_valid(&s->cache[index], scene, &lights[i], face->clip_from_world);
+            const bool valid = cached_map_is_valid(&s->cache[index], scene, &lights[i],
+                                                   face->clip_from_world, false);
             if (valid && reuse) continue;
             s->has_blocks[index] = false;
             record_face(s, cmd, scene, face, lights[i].type == FRAME_LIGHT_SUN);

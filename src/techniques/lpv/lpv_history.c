@@ -20,7 +20,8 @@ struct lpv_statics lpv_statics_of(const struct lpv *lpv, const struct frame_view
     return (struct lpv_statics){ .valid = true,
                                  .grid = lpv->grid,
                                  .first_frame = view->index == 0,
-                                 .moving_count = view->scene ? view->scene->dynamic_count : 0 };
+                                 .moving_count = view->scene ? view->scene->dynamic_count : 0,
+                                 .set = view->scene ? view->scene->static_set : 0 };
 }
 
 // In the first frame of a scene no draw counts as moving yet; a draw that moves later leaves the
@@ -28,7 +29,7 @@ struct lpv_statics lpv_statics_of(const struct lpv *lpv, const struct frame_view
 bool lpv_statics_equal(const struct lpv_statics *cached, const struct lpv_statics *now)
 {
     return cached->valid && !now->first_frame && cached->moving_count == now->moving_count &&
-           lpv_grid_equal(&cached->grid, &now->grid);
+           cached->set == now->set && lpv_grid_equal(&cached->grid, &now->grid);
 }
 
 // Lights that did not change and objects that did not move have equal reflective shadow maps. Their

@@ -30,6 +30,7 @@ struct lpv_statics {
     struct lpv_grid grid;
     bool first_frame; // of the scene
     int moving_count; // moving draws of the scene
+    uint64_t set;     // scene_gpu.static_set
 };
 
 struct lpv_statics lpv_statics_of(const struct lpv *lpv, const struct frame_view *view);

@@ -96,8 +96,7 @@ static void mrt_set_options(void *state, const void *options)
 static void mrt_invalidate(void *state, uint32_t changes)
 {
     struct mrt *mrt = state;
-
-    if (changes & (CHANGED_LIGHT | CHANGED_OPTIONS)) mrt->lit = false;
+    if (changes & CHANGED_OPTIONS) mrt->lit = false;
     if (changes & ~(uint32_t)CHANGED_CAMERA) mrt->inputs.valid = false;
 }
 

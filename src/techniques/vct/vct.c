@@ -156,7 +156,9 @@ static void vct_invalidate(void *state, uint32_t changes)
     if (changes & (CHANGED_GEOMETRY | CHANGED_MATERIAL)) invalidate_voxels(vct);
     if (changes & CHANGED_OPTIONS) vct->light_valid = vct->bounced_valid = false;
     vct->lit_index = VCT_NEVER;
-    vct_temporal_invalidate(&vct->temporal);
+    // The history follows lights and movable geometry.
+    if (changes & ~(uint32_t)(CHANGED_LIGHT | CHANGED_MOVABLE))
+        vct_temporal_invalidate(&vct->temporal);
 }
 
 // ---- Frames -------------------------------------------------------------------------------------

@@ -151,7 +151,7 @@ static void place_point(struct vct_small_emitter *emitter, int point, const stru
     const struct frame_emitter *from = &view->emitters[light->index];
     const int instance = view->emitter_origins[light->index].instance;
     const struct scene *scene = view->pose->scene;
-    const int material = scene->meshes[scene->instances[instance].mesh].material;
+    const int material = scene_mesh_of(scene, instance)->material;
     emitter->positions[point] = from->position;
     emitter->normals[point] = from->normal;
     emitter->intensities[point] =

@@ -85,6 +85,8 @@ struct vct {
     struct vct_bounce_inputs bounce_inputs;
     int bounces_left;          // that still propagate a change of light
     const struct scene *scene; // of the voxels
+    uint64_t draw_list;        // of scene_gpu, as is static_set
+    uint64_t static_set;       // of the static voxels
     int moving_draws;          // in the previous frame
     uint64_t voxelized_index;  // of the previous frame
     struct vct_overflow overflow;

@@ -8,6 +8,19 @@
 
 static const float PI = 3.14159265358979f;
 
+// {"afterglow_mobility": "static" or "movable"} in the extras of a node.
+static void load_mobility(struct import *import, json_t *extras, struct node *out)
+{
+    json_t *mobility = json_object_get(extras, "afterglow_mobility");
+    const char *text = json_string_value(mobility);
+    if (text && strcmp(text, "static") == 0)
+        out->mobility = MOBILITY_STATIC;
+    else if (text && strcmp(text, "movable") == 0)
+        out->mobility = MOBILITY_MOVABLE;
+    else if (mobility)
+        import_note(import, "values of afterglow_mobility other than static and movable");
+}
+
 // The text of the node's extras. Other types than objects, which glTF allows, are ignored.
 static bool load_extras(struct gltf_object node, struct node *out)
 {
@@ -18,6 +31,7 @@ static bool load_extras(struct gltf_object node, struct node *out)
     if (!text) return false;
     json_dumpb(extras, text, size, JSON_COMPACT);
     out->extras = text;
+    load_mobility(node.gltf->import, extras, out);
     return true;
 }
 
@@ -213,6 +227,20 @@ static bool reserve(struct gltf *gltf)
     return scene->nodes && scene->instances && scene->lights && scene->cameras;
 }
 
+// Parents come before their children.
+static void inherit_mobility(struct scene *scene)
+{
+    for (int i = 0; i < scene->node_count; i++) {
+        struct node *node = &scene->nodes[i];
+        if (node->mobility == MOBILITY_INHERITED && node->parent >= 0)
+            node->mobility = scene->nodes[node->parent].mobility;
+    }
+    for (int i = 0; i < scene->instance_count; i++) {
+        struct instance *instance = &scene->instances[i];
+        instance->movable = scene->nodes[instance->node].mobility == MOBILITY_MOVABLE;
+    }
+}
+
 bool gltf_load_nodes(struct gltf *gltf)
 {
     struct scene *scene = gltf->import->scene;
@@ -226,6 +254,7 @@ bool gltf_load_nodes(struct gltf *gltf)
         if (!gltf->in_scene[i]) continue;
         if (!load_instances(gltf, i) || !load_light(gltf, i) || !load_camera(gltf, i)) return false;
     }
+    inherit_mobility(scene);
     return true;
 }
 

@@ -2,6 +2,8 @@
 
 #include "techniques/vct/vct_state.h"
 
+#include "frame/scene_gpu.h"
+
 #include <math.h>
 
 static bool same_grid(const struct vct_grid *a, const struct vct_grid *b)
@@ -81,7 +83,8 @@ bool vct_clipmap_update(struct vct *vct, const struct frame_view *view)
     vct->scene = view->pose->scene;
     if (known) vct->clips[0].grid = next_grid(vct, &previous, &vct->clips[0].grid, view->bounds);
     place_around_camera(vct, view);
-    if (!known) vct->small_emitters.chosen = false;
+    if (!known || vct->draw_list != view->scene->draw_list) vct->small_emitters.chosen = false;
+    vct->draw_list = view->scene->draw_list;
     if (known && same_grid(&vct->clips[0].grid, &previous)) return true;
     for (int i = 0; i < vct->clip_count; i++) vct->clips[i].static_valid = false;
     vct->light_valid = vct->bounced_valid = false;

@@ -170,7 +170,7 @@ static void voxelize_level(struct vct *vct, struct vct_clip *clip, struct gpu_cm
 {
     const bool moved = view->geometry_moved || view->index != vct->voxelized_index + 1;
     const int moving = view->scene->dynamic_count;
-    clip->new_statics = !clip->static_valid || moving != vct->moving_draws;
+    clip->new_statics = !clip->static_valid || view->scene->static_set != vct->static_set;
     const bool statics = clip->new_statics || !vct->options.keep_static;
     if (statics) voxelize(vct, clip, cmd, view, &clip->static_set, false);
     // A set whose last draw is gone is emptied once.
@@ -183,5 +183,6 @@ void vct_voxelize(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view 
 {
     for (int i = 0; i < vct->clip_count; i++) voxelize_level(vct, &vct->clips[i], cmd, view);
     vct->moving_draws = view->scene->dynamic_count;
+    vct->static_set = view->scene->static_set;
     vct->voxelized_index = view->index;
 }

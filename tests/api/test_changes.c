@@ -1,0 +1,344 @@
+// Scenes that change while renderers use them: the next frame is that of a new renderer.
+#include "api/renderer_fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PIXELS = FIXTURE_WIDTH * FIXTURE_HEIGHT };
+
+// Column-major: turned about y, then moved.
+static void placed(float out[16], float angle_rad, float x, float y, float z)
+{
+    const float c = cosf(angle_rad), s = sinf(angle_rad);
+    const float matrix[16] = { c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, x, y, z, 1 };
+    memcpy(out, matrix, sizeof matrix);
+}
+
+// A cube in the box.
+struct cube {
+    int material, mesh, instance;
+};
+
+static const float CORNERS[24] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0,
+                                   0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1 };
+static const uint32_t FACES[36] = { 0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                    3, 6, 2, 3, 7, 6, 0, 4, 7, 0, 7, 3, 1, 2, 6, 1, 6, 5 };
+
+static void scaled(float out[24], float size)
+{
+    for (int i = 0; i < 24; i++) out[i] = size * (CORNERS[i] - 0.5f);
+}
+
+static struct cube add_cube(struct ag_scene *scene, float size)
+{
+    struct cube cube;
+    struct ag_material_desc material;
+    float positions[24], matrix[16];
+    ag_material_desc_default(&material);
+    material.base_color[1] = 0.3f;
+    assert_int_equal(ag_scene_add_material(scene, &material, &cube.material), AG_OK);
+    scaled(positions, size);
+    const struct ag_mesh_desc mesh = { .positions = positions,
+                                       .vertex_count = 8,
+                                       .indices = FACES,
+                                       .index_count = 36,
+                                       .material = cube.material };
+    assert_int_equal(ag_scene_add_mesh(scene, &mesh, &cube.mesh), AG_OK);
+    placed(matrix, 0.3f, 0.0f, 1.0f, 1.5f);
+    assert_int_equal(ag_scene_add_instance(scene, cube.mesh, matrix, &cube.instance), AG_OK);
+    return cube;
+}
+
+// ---- The changes
+
+static void move_instance(struct ag_scene *scene, struct cube *cube)
+{
+    float matrix[16];
+    placed(matrix, 1.1f, 1.0f, 1.5f, 1.1f);
+    assert_int_equal(ag_scene_set_instance_transform(scene, cube->instance, matrix), AG_OK);
+}
+
+static void move_light(struct ag_scene *scene, struct cube *cube)
+{
+    (void)cube;
+    struct ag_light_info light;
+    assert_int_equal(ag_scene_get_light(scene, 0, 0, 0, &light), AG_OK);
+    light.light.position[0] += 1.0f;
+    light.light.intensity[2] *= 0.5f;
+    assert_int_equal(ag_scene_set_light(scene, 0, &light.light), AG_OK);
+}
+
+static void switch_off(struct ag_scene *scene, struct cube *cube)
+{
+    (void)cube;
+    struct ag_light_info light;
+    const float sky[3] = { 1, 2, 3 };
+    assert_int_equal(ag_scene_get_light(scene, 0, 0, 0, &light), AG_OK);
+    light.light.enabled = false;
+    assert_int_equal(ag_scene_set_light(scene, 0, &light.light), AG_OK);
+    assert_int_equal(ag_scene_set_sky(scene, sky), AG_OK);
+}
+
+static void deform(struct ag_scene *scene, struct cube *cube)
+{
+    float positions[24];
+    scaled(positions, 2.0f);
+    for (int i = 0; i < 8; i++) positions[3 * i] *= 1.0f + 0.5f * positions[3 * i + 1];
+    assert_int_equal(ag_scene_update_mesh(scene, cube->mesh, positions, NULL), AG_OK);
+}
+
+static void add(struct ag_scene *scene, struct cube *cube)
+{
+    float matrix[16];
+    placed(matrix, 0.0f, -1.2f, 2.5f, 0.5f);
+    assert_int_equal(ag_scene_add_instance(scene, cube->mesh, matrix, NULL), AG_OK);
+    add_cube(scene, 0.8f);
+}
+
+static void take_away(struct ag_scene *scene, struct cube *cube)
+{
+    assert_int_equal(ag_scene_remove_instance(scene, cube->instance), AG_OK);
+}
+
+static void recolor(struct ag_scene *scene, struct cube *cube)
+{
+    struct ag_material_info info;
+    assert_int_equal(ag_scene_get_material(scene, cube->material, &info), AG_OK);
+    info.material.base_color[0] = 0.1f;
+    info.material.emissive[1] = 20.0f;
+    assert_int_equal(ag_scene_set_material(scene, cube->material, &info.material), AG_OK);
+}
+
+struct change {
+    const char *name;
+    void (*apply)(struct ag_scene *scene, struct cube *cube);
+};
+static const struct change changes[] = {
+    { "move an instance", move_instance }, { "move a light", move_light },
+    { "deform a mesh", deform },           { "add instances, a mesh and a material", add },
+    { "remove an instance", take_away },   { "change a material", recolor },
+    { "switch a light off", switch_off },
+};
+
+// ---- Equal frames
+
+static struct ag_renderer *new_renderer(struct renderer_fixture *s, const char *gi)
+{
+    struct ag_renderer *renderer = NULL;
+    const struct ag_renderer_desc desc = fixture_renderer_desc(gi);
+    if (ag_renderer_create(s->device, s->scene, &desc, &renderer) != AG_OK)
+        fail_msg("%s: %s", gi, ag_context_last_error(s->context));
+    return renderer;
+}
+
+static struct ag_image *color_of(struct renderer_fixture *s, struct ag_renderer *renderer)
+{
+    struct ag_image *image = NULL;
+    assert_int_equal(ag_renderer_render(renderer, &s->frame), AG_OK);
+    assert_int_equal(ag_renderer_read(renderer, "color", &image), AG_OK);
+    return image;
+}
+
+// Mean absolute difference over the mean of the brighter one.
+static double difference(const struct ag_image *a, const struct ag_image *b)
+{
+    double sum_a = 0, sum_b = 0, differences = 0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        sum_a += (double)a->pixels[i];
+        sum_b += (double)b->pixels[i];
+        differences += fabs((double)a->pixels[i] - (double)b->pixels[i]);
+    }
+    return differences / fmax(sum_a, sum_b);
+}
+
+struct differences {
+    double change;  // between the frames before and after
+    double error;   // between the frame after and that of a new renderer
+    double settled; // the same SETTLING frames later
+};
+
+// Frames in which cone tracing traces the bounces of a change.
+enum { SETTLING = 16 };
+
+static struct differences differences_of(struct renderer_fixture *s, const char *gi,
+                                         struct cube *cube, const struct change *change)
+{
+    struct ag_image *before = NULL;
+    for (int i = 0; i < 3; i++) {
+        ag_image_destroy(s->context, before);
+        before = color_of(s, s->renderer);
+    }
+    change->apply(s->scene, cube);
+    struct ag_image *now = color_of(s, s->renderer);
+    struct ag_renderer *fresh = new_renderer(s, gi);
+    struct ag_image *expected = color_of(s, fresh);
+    struct differences result = { difference(before, expected), difference(now, expected), 0 };
+    for (int i = 0; i < SETTLING && result.error > 0.0; i++) {
+        ag_image_destroy(s->context, now);
+        now = color_of(s, s->renderer);
+        result.settled = difference(now, expected);
+    }
+    ag_image_destroy(s->context, before);
+    ag_image_destroy(s->context, now);
+    ag_image_destroy(s->context, expected);
+    ag_renderer_destroy(fresh);
+    return result;
+}
+
+// Bounced light of cone tracing follows over frames (docs/techniques/vct.md); of all others, a
+// frame depends on nothing but the scene.
+static void check_differences(const char *technique, const struct differences *d)
+{
+    CHECK(d->change > 0.01);
+    if (strcmp(technique, "vct") != 0) assert_true(d->error == 0.0);
+    CHECK(d->error <= 0.25 * d->change);
+    CHECK(d->settled <= 0.0025);
+}
+
+TEST(the_next_frame_is_that_of_a_new_renderer)
+{
+    struct ag_technique_info info;
+    for (int t = 0; ag_technique_get(t, &info); t++) {
+        if (!info.moving_geometry) continue;
+        struct renderer_fixture s = fixture_open(info.name, NULL);
+        struct cube cube = add_cube(s.scene, 1.8f);
+        for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+            const struct differences d = differences_of(&s, info.name, &cube, &changes[i]);
+            printf("%-8s %-40s %.4f %.5f %.5f\n", info.name, changes[i].name, d.change, d.error,
+                   d.settled);
+            check_differences(info.name, &d);
+        }
+        fixture_close(&s);
+    }
+}
+
+TEST(two_renderers_of_one_scene_follow_it)
+{
+    struct renderer_fixture s = fixture_open("lpv", NULL);
+    struct ag_renderer *other = new_renderer(&s, "lpv");
+    struct cube cube = add_cube(s.scene, 1.8f);
+    for (int i = 0; i < 2; i++) ag_image_destroy(s.context, color_of(&s, s.renderer));
+    ag_image_destroy(s.context, color_of(&s, other));
+    move_instance(s.scene, &cube);
+    ag_image_destroy(s.context, color_of(&s, s.renderer));
+    recolor(s.scene, &cube);
+    struct ag_image *a = color_of(&s, s.renderer), *b = color_of(&s, other);
+    CHECK(difference(a, b) == 0.0);
+    ag_image_destroy(s.context, a);
+    ag_image_destroy(s.context, b);
+    ag_renderer_destroy(other);
+    fixture_close(&s);
+}
+
+// ---- Memory
+
+static uint64_t device_bytes(struct ag_renderer *renderer)
+{
+    struct ag_memory owners[64];
+    uint64_t sum = 0;
+    const int count = ag_renderer_memory(renderer, owners, 64);
+    for (int i = 0; i < count; i++) sum += owners[i].bytes;
+    return sum;
+}
+
+// Each kind of change, back and forth.
+static void change_all(struct ag_scene *scene, struct cube *cube, int frame)
+{
+    float matrix[16], positions[24];
+    const float t = (float)frame;
+    placed(matrix, 0.1f * t, 0.3f * sinf(t), 0.4f, 0.2f);
+    assert_int_equal(ag_scene_set_instance_transform(scene, cube->instance, matrix), AG_OK);
+    scaled(positions, 0.4f + 0.1f * sinf(t));
+    assert_int_equal(ag_scene_update_mesh(scene, cube->mesh, positions, NULL), AG_OK);
+    struct ag_material_info material;
+    assert_int_equal(ag_scene_get_material(scene, cube->material, &material), AG_OK);
+    material.material.emissive[0] = (float)(frame % 2);
+    assert_int_equal(ag_scene_set_material(scene, cube->material, &material.material), AG_OK);
+    struct ag_light_info light;
+    assert_int_equal(ag_scene_get_light(scene, 0, 0, 0, &light), AG_OK);
+    light.light.position[0] = 0.1f * sinf(t);
+    assert_int_equal(ag_scene_set_light(scene, 0, &light.light), AG_OK);
+    assert_int_equal(ag_scene_remove_lights(scene), AG_OK);
+    assert_int_equal(ag_scene_add_light(scene, &light.light, NULL), AG_OK);
+    const int removed = cube->instance;
+    assert_int_equal(ag_scene_remove_instance(scene, removed), AG_OK);
+    assert_int_equal(ag_scene_add_instance(scene, cube->mesh, matrix, &cube->instance), AG_OK);
+    assert_int_equal(cube->instance, removed);
+}
+
+TEST(a_thousand_changed_frames_take_no_memory)
+{
+    enum { FRAMES = 1000, SETTLED = 20 };
+    struct renderer_fixture s = fixture_open("lpv:dim=8,cascades=1,steps=2", NULL);
+    struct cube cube = add_cube(s.scene, 1.8f);
+    struct ag_scene_info info;
+    uint64_t host_bytes = 0, gpu_bytes = 0;
+    for (int i = 0; i < FRAMES; i++) {
+        change_all(s.scene, &cube, i);
+        assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+        if (i == SETTLED || i == FRAMES - 1) {
+            assert_int_equal(ag_renderer_wait(s.renderer), AG_OK);
+            assert_int_equal(ag_scene_get_info(s.scene, 0, 0, &info), AG_OK);
+            if (i == SETTLED) {
+                host_bytes = info.memory_bytes;
+                gpu_bytes = device_bytes(s.renderer);
+            }
+        }
+    }
+    assert_int_equal(info.memory_bytes, host_bytes);
+    assert_int_equal(device_bytes(s.renderer), gpu_bytes);
+    fixture_close(&s);
+}
+
+// ---- What is refused
+
+#define CHECK_REFUSED(s, call, why)                                                                \
+    do {                                                                                           \
+        assert_int_equal((call), AG_ERROR_ARGUMENT);                                               \
+        CHECK(strstr(ag_context_last_error((s).context), (why)));                                  \
+    } while (0)
+
+TEST(wrong_changes_are_refused_and_change_nothing)
+{
+    struct renderer_fixture s = fixture_open("none", NULL);
+    struct cube cube = add_cube(s.scene, 1.8f);
+    float matrix[16], positions[24];
+    struct ag_material_info material;
+    struct ag_light_info light;
+    struct ag_instance_info instance;
+    struct ag_image *before = color_of(&s, s.renderer);
+    placed(matrix, 0, 0, 0, 0);
+    CHECK_REFUSED(s, ag_scene_set_instance_transform(s.scene, 99, matrix), "instance 99");
+    matrix[3] = 1;
+    CHECK_REFUSED(s, ag_scene_set_instance_transform(s.scene, cube.instance, matrix), "affine");
+    placed(matrix, 0, INFINITY, 0, 0);
+    CHECK_REFUSED(s, ag_scene_set_instance_transform(s.scene, cube.instance, matrix), "finite");
+    CHECK_REFUSED(s, ag_scene_set_instance_mobility(s.scene, cube.instance, (enum ag_mobility)7),
+                  "mobility 7");
+    scaled(positions, 1);
+    positions[5] = NAN;
+    CHECK_REFUSED(s, ag_scene_update_mesh(s.scene, cube.mesh, positions, NULL), "not finite");
+    CHECK_REFUSED(s, ag_scene_update_mesh(s.scene, cube.mesh, NULL, NULL), "NULL");
+    CHECK_REFUSED(s, ag_scene_update_mesh(s.scene, -1, positions, NULL), "mesh -1");
+    assert_int_equal(ag_scene_get_material(s.scene, cube.material, &material), AG_OK);
+    material.material.roughness = 2;
+    CHECK_REFUSED(s, ag_scene_set_material(s.scene, cube.material, &material.material), "rough");
+    assert_int_equal(ag_scene_get_light(s.scene, 0, 0, 0, &light), AG_OK);
+    light.light.intensity[0] = -1;
+    CHECK_REFUSED(s, ag_scene_set_light(s.scene, 0, &light.light), "intensity");
+    CHECK_REFUSED(s, ag_scene_set_light(s.scene, 1, &light.light), "light 1");
+    struct ag_image *after = color_of(&s, s.renderer);
+    CHECK(difference(before, after) == 0.0);
+    struct ag_mesh_info mesh;
+    assert_int_equal(ag_scene_get_mesh(s.scene, cube.mesh, &mesh), AG_OK);
+    CHECK(mesh.vertex_count == 8 && mesh.index_count == 36 && mesh.material == cube.material);
+    CHECK_REFUSED(s, ag_scene_get_mesh(s.scene, 99, &mesh), "mesh 99");
+    assert_int_equal(ag_scene_remove_instance(s.scene, cube.instance), AG_OK);
+    CHECK_REFUSED(s, ag_scene_remove_instance(s.scene, cube.instance), "was removed");
+    assert_int_equal(ag_scene_get_instance(s.scene, cube.instance, 0, 0, &instance), AG_OK);
+    assert_int_equal(instance.mesh, -1);
+    ag_image_destroy(s.context, before);
+    ag_image_destroy(s.context, after);
+    fixture_close(&s);
+}
