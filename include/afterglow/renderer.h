@@ -14,7 +14,9 @@ struct ag_renderer;
 
 struct ag_renderer_desc {
     int width, height; ///< pixels, 1…16384; default 1280×720
-    const char *gi;    ///< GI spec: "source+delta+visibility"; default "none"; see ag_technique_get
+    /// GI spec: "source+delta+visibility"; default "none"; see ag_technique_get. A visibility
+    /// technique alone gets the source "ambient", with a warning.
+    const char *gi;
     const char *frame_options; ///< "shadow_size=2048,…" or NULL; see ag_frame_option_get
     bool indirect_layer;       ///< keep the layer "indirect"; default false
     bool display_layer;        ///< keep the layer "display"; default true

@@ -82,6 +82,16 @@ void renderer_warn_of_darkness(const struct ag_renderer *r)
                  scene->name, r->gi_text);
 }
 
+void renderer_warn_of_source(const struct ag_renderer *r)
+{
+    const struct gi_spec *spec = &r->spec;
+    if (spec->added_source)
+        host_log(renderer_host(r), LOG_WARNING,
+                 "--gi %s has no source of indirect light: using %s+%s",
+                 spec->technique[spec->count - 1]->name, spec->technique[0]->name,
+                 spec->technique[spec->count - 1]->name);
+}
+
 static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
 {
     struct host *host = renderer_host(r);
@@ -100,6 +110,7 @@ static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
             gi_create_baked(host, r->device->gpu, &r->spec, &bakes.found, &r->pose, width, height);
     renderer_bakes_finish(&bakes);
     r->sized = r->gi != NULL;
+    if (r->sized) renderer_warn_of_source(r);
     if (r->sized) renderer_warn_of_darkness(r);
     return r->sized;
 }

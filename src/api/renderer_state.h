@@ -57,6 +57,7 @@ static inline void renderer_leave(const struct ag_renderer *renderer)
 }
 
 // renderer.c
+void renderer_warn_of_source(const struct ag_renderer *renderer); // that was added to the spec
 void renderer_warn_of_darkness(const struct ag_renderer *renderer);
 // "" and NULL: the defaults.
 bool renderer_parse_frame_options(struct host *host, const char *text, struct frame_options *out);

@@ -7,12 +7,13 @@
 #define GI_MAX_TERMS 3
 
 // A parsed spec: at most one technique of each role, sorted as source, delta, visibility. There is
-// always a source: "vo" is "none+vo".
+// always a source: "vo" is "ambient+vo".
 struct gi_spec {
     struct host *host;
     int count;
     const struct technique *technique[GI_MAX_TERMS];
     void *options[GI_MAX_TERMS];
+    bool added_source; // the text names a visibility technique without a source
 };
 // "" is "none". Errors name the unknown technique or option and the nearest known one.
 bool gi_spec_parse(struct gi_spec *spec, struct host *host, const char *text);

@@ -53,6 +53,19 @@ static bool fail_unknown(struct host *host, const char *name, const struct techn
     return host_fail(host, FAIL_ARGUMENT, "unknown technique %s: known are %s", name, list);
 }
 
+// "lpv,steps=8": the first option follows a colon.
+static bool fail_comma(struct host *host, char *term, const struct technique *const *known)
+{
+    char *comma = strchr(term, ',');
+    *comma = 0;
+    for (size_t i = 0; known[i]; i++)
+        if (strcmp(known[i]->name, term) == 0)
+            return host_fail(host, FAIL_ARGUMENT, "unknown technique %s,%s: did you mean %s:%s?",
+                             term, comma + 1, term, comma + 1);
+    *comma = ',';
+    return fail_unknown(host, term, known);
+}
+
 // Inserts the technique in the order of roles. The spec takes ownership of `options`.
 static void insert_term(struct gi_spec *spec, const struct technique *technique, void *options)
 {
@@ -96,7 +109,8 @@ static bool parse_term(struct gi_spec *spec, char *term, const struct technique 
     for (size_t i = 0; known[i]; i++)
         if (strcmp(known[i]->name, term) == 0)
             return add_technique(spec, known[i], colon ? colon + 1 : "");
-    return fail_unknown(spec->host, term, known);
+    return strchr(term, ',') ? fail_comma(spec->host, term, known)
+                             : fail_unknown(spec->host, term, known);
 }
 
 static bool parse_terms(struct gi_spec *spec, const char *text,
@@ -114,6 +128,16 @@ static bool parse_terms(struct gi_spec *spec, const char *text,
     }
 }
 
+// Occlusion shows on indirect light only, so that a visibility technique alone stands on `ambient`.
+static bool add_default_source(struct gi_spec *spec, const struct technique *const *known)
+{
+    const struct technique *source = known[0];
+    for (size_t i = 0; spec->count > 0 && known[i]; i++)
+        if (strcmp(known[i]->name, "ambient") == 0) source = known[i];
+    spec->added_source = spec->count > 0;
+    return add_technique(spec, source, "");
+}
+
 bool gi_spec_parse_among(struct gi_spec *spec, struct host *host, const char *text,
                          const struct technique *const *known)
 {
@@ -129,7 +153,7 @@ bool gi_spec_parse_among(struct gi_spec *spec, struct host *host, const char *te
                   spec->technique[0]->name);
         goto fail;
     }
-    if (add_technique(spec, known[0], "")) return true;
+    if (add_default_source(spec, known)) return true;
 fail:
     gi_spec_finish(spec);
     return false;
@@ -148,7 +172,7 @@ void gi_spec_finish(struct gi_spec *spec)
 
 bool gi_spec_copy(struct gi_spec *spec, const struct gi_spec *from)
 {
-    *spec = (struct gi_spec){ .host = from->host };
+    *spec = (struct gi_spec){ .host = from->host, .added_source = from->added_source };
     for (int i = 0; i < from->count; i++) {
         const size_t size = from->technique[i]->options.size;
         void *options = host_alloc(from->host, 1, size);

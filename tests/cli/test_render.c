@@ -52,6 +52,20 @@ TEST(equal_commands_write_equal_files)
     }
 }
 
+TEST(visibility_alone_stands_on_ambient_and_says_so)
+{
+    require_device();
+    char alone[300], both[300];
+    const char *words = "render @cornell:light=point --size 48x32 -o";
+    snprintf(alone, sizeof alone, "%s", test_path("alone.exr"));
+    snprintf(both, sizeof both, "%s/alone.exr", make_folder("ambient-vo"));
+    CHECK(strstr(run_expect(0, words, alone, "--gi", "vo", NULL)->err, "using ambient+vo"));
+    CHECK_STRING(run_expect(0, words, both, "--gi", "ambient+vo", NULL)->err, "");
+    CHECK(files_are_equal(alone, both));
+    CHECK_STRING(run_expect(0, words, both, "--gi", "none+vo", NULL)->err, "");
+    CHECK(!files_are_equal(alone, both));
+}
+
 TEST(direct_and_indirect_light_add_up_to_colour)
 {
     require_device();

@@ -88,6 +88,24 @@ TEST(gi_spec_without_a_source_has_the_first_one)
     parses_as("shade:bias=3", "still:bias=1+shade:bias=3");
 }
 
+TEST(gi_spec_of_visibility_alone_stands_on_ambient)
+{
+    static const char *const names[] = { "vo", "ssao", "hbao", "vctao" };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        struct gi_spec spec;
+        CHECK(gi_spec_parse(&spec, test_host(), names[i]));
+        assert_int_equal(spec.count, 2);
+        CHECK_STRING(spec.technique[0]->name, "ambient");
+        CHECK_STRING(spec.technique[1]->name, names[i]);
+        CHECK(spec.added_source);
+        gi_spec_finish(&spec);
+    }
+    struct gi_spec none;
+    CHECK(gi_spec_parse(&none, test_host(), "none+vo"));
+    CHECK(!none.added_source && strcmp(none.technique[0]->name, "none") == 0);
+    gi_spec_finish(&none);
+}
+
 TEST(gi_spec_reads_exponents_with_a_plus)
 {
     parses_as("light:bias=1e+3+shade:bias=2.5E+2", "light:bias=1e+03+shade:bias=2.5e+02");
@@ -110,6 +128,8 @@ TEST(gi_spec_printed_parses_to_the_same)
 
 TEST(gi_spec_errors_name_the_mistake_and_the_nearest_name)
 {
+    fails_with("light,bias=2", "did you mean light:bias=2?");
+    fails_with("lihgt,bias=2", "unknown technique lihgt,bias=2");
     fails_with("lighr", "unknown technique lighr: did you mean light?");
     fails_with("xyzzyxyzzy", "known are still, light, delta, shade, graded");
     fails_with("light:bais=1", "bias");
