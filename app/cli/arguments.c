@@ -469,9 +469,20 @@ enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
 // ---- parsing
 
+static const char *long_name(const char *word)
+{
+    static const char *const names[][2] = { { "-q", "--quiet" },
+                                            { "-v", "--verbose" },
+                                            { "-h", "--help" } };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (strcmp(word, names[i][0]) == 0) return names[i][1];
+    return word;
+}
+
 // The option named by `word` up to its '='; NULL: none.
 static const struct option *option_find(const struct command *command, const char *word)
 {
+    word = long_name(word);
     size_t length = strcspn(word, "=");
     for (int i = 0; i < OPTION_COUNT; i++)
         if ((options[i].commands & command->bit) && strlen(options[i].name) == length &&
@@ -572,7 +583,8 @@ enum status arguments_parse(const struct command *command, int count, char **wor
             if (status != DONE) return status;
             if (out->help) return DONE;
         } else if (out->positional_count ==
-                   (out->merge ? MAX_POSITIONAL : command->positional_count)) {
+                   (out->merge ? MAX_POSITIONAL
+                               : command->positional_count + command->optional_count)) {
             return wrong_usage("unexpected argument %s: afterglow %s %s", words[i], command->name,
                                command->usage);
         } else if (!words[i][0]) {

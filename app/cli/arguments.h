@@ -74,10 +74,11 @@ struct arguments {
 struct command {
     const char *name;
     enum command_bit bit;
-    int positional_count;
-    const char *usage;   // "SCENE [options]"
-    const char *summary; // one line
-    const char *text;    // description in --help
+    int positional_count; // required ones
+    int optional_count;   // and as many more
+    const char *usage;    // "SCENE [options]"
+    const char *summary;  // one line
+    const char *text;     // description in --help
     const char *examples;
     enum status (*run)(const struct arguments *arguments);
 };

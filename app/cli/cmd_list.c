@@ -104,19 +104,29 @@ static json_t *debug_views_json(int technique)
     return array;
 }
 
+static json_t *technique_json(int i, const struct ag_technique_info *t)
+{
+    return json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:b, s:b, s:b, s:o, s:o, s:o}", "name",
+                     t->name, "title", t->title, "paper", t->paper, "role", t->role,
+                     "moving_geometry", t->moving_geometry, "moving_lights", t->moving_lights,
+                     "needs_bake", t->needs_bake, "makes_specular", t->makes_specular,
+                     "publishes_probes", t->publishes_probes, "options",
+                     options_json(ag_technique_option_get, i), "presets", presets_json(i),
+                     "debug_views", debug_views_json(i));
+}
+
+static json_t *scene_json(int i, const struct ag_builtin_scene_info *scene)
+{
+    return json_pack("{s:s+, s:s, s:o}", "name", "@", scene->name, "title", scene->title, "options",
+                     options_json(ag_builtin_scene_option_get, i));
+}
+
 static json_t *techniques_json(void)
 {
     json_t *array = json_array();
     struct ag_technique_info t;
     for (int i = 0; array && ag_technique_get(i, &t); i++)
-        json_array_append_new(
-            array,
-            json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:b, s:b, s:b, s:o, s:o, s:o}", "name",
-                      t.name, "title", t.title, "paper", t.paper, "role", t.role, "moving_geometry",
-                      t.moving_geometry, "moving_lights", t.moving_lights, "needs_bake",
-                      t.needs_bake, "makes_specular", t.makes_specular, "publishes_probes",
-                      t.publishes_probes, "options", options_json(ag_technique_option_get, i),
-                      "presets", presets_json(i), "debug_views", debug_views_json(i)));
+        json_array_append_new(array, technique_json(i, &t));
     return array;
 }
 
@@ -125,9 +135,7 @@ static json_t *scenes_json(void)
     json_t *array = json_array();
     struct ag_builtin_scene_info scene;
     for (int i = 0; array && ag_builtin_scene_get(i, &scene); i++)
-        json_array_append_new(array, json_pack("{s:s+, s:s, s:o}", "name", "@", scene.name, "title",
-                                               scene.title, "options",
-                                               options_json(ag_builtin_scene_option_get, i)));
+        json_array_append_new(array, scene_json(i, &scene));
     return array;
 }
 
@@ -263,7 +271,8 @@ static void print_debug_views(int technique)
     }
 }
 
-static void print_technique(int technique, const struct ag_technique_info *t)
+// whole: with the options that an earlier technique has too.
+static void print_technique(int technique, const struct ag_technique_info *t, bool whole)
 {
     printf("\n%s: %s (%s)\n", t->name, t->title, t->role);
     if (t->paper && t->paper[0] && strcmp(t->paper, "none") != 0) {
@@ -273,7 +282,7 @@ static void print_technique(int technique, const struct ag_technique_info *t)
     if (!t->moving_geometry) printf("    static geometry only\n");
     if (!t->moving_lights) printf("    static lights only\n");
     if (t->needs_bake) printf("    needs a bake\n");
-    int before = same_options_before(technique);
+    int before = whole ? -1 : same_options_before(technique);
     if (before >= 0)
         print_other_defaults(technique, before);
     else
@@ -287,17 +296,20 @@ static void print_techniques(void)
     struct ag_technique_info t;
     printf("Techniques: --gi SOURCE[+VISIBILITY], options as NAME:OPTION=VALUE,OPTION=VALUE\n"
            "Options are listed with their default: OPTION=DEFAULT\n");
-    for (int i = 0; ag_technique_get(i, &t); i++) print_technique(i, &t);
+    for (int i = 0; ag_technique_get(i, &t); i++) print_technique(i, &t, false);
+}
+
+static void print_scene(int i, const struct ag_builtin_scene_info *scene)
+{
+    printf("\n@%s: %s\n", scene->name, scene->title);
+    print_options(ag_builtin_scene_option_get, i);
 }
 
 static void print_scenes(void)
 {
     struct ag_builtin_scene_info scene;
     printf("\nBuilt-in scenes: @NAME or @NAME:OPTION=VALUE,OPTION=VALUE\n");
-    for (int i = 0; ag_builtin_scene_get(i, &scene); i++) {
-        printf("\n@%s: %s\n", scene.name, scene.title);
-        print_options(ag_builtin_scene_option_get, i);
-    }
+    for (int i = 0; ag_builtin_scene_get(i, &scene); i++) print_scene(i, &scene);
 }
 
 static void print_devices(const struct ag_device_info *devices, int count)
@@ -310,8 +322,48 @@ static void print_devices(const struct ag_device_info *devices, int count)
     if (count == 0) printf("  none\n");
 }
 
+// ---- one technique or scene
+
+enum { MAX_NAMES = 128 };
+
+static enum status unknown_name(const char *wanted)
+{
+    const char *known[MAX_NAMES];
+    int count = 0;
+    struct ag_technique_info t;
+    struct ag_builtin_scene_info scene;
+    for (int i = 0; count < MAX_NAMES && ag_technique_get(i, &t); i++) known[count++] = t.name;
+    for (int i = 0; count < MAX_NAMES && ag_builtin_scene_get(i, &scene); i++)
+        known[count++] = scene.name;
+    const char *nearest = ag_nearest_name(wanted, known, count);
+    if (nearest) return wrong_usage("unknown name %s: did you mean %s?", wanted, nearest);
+    return wrong_usage("unknown name %s: it is no technique and no built-in scene (afterglow list)",
+                       wanted);
+}
+
+static enum status list_one(const char *wanted, bool json)
+{
+    struct ag_technique_info t;
+    struct ag_builtin_scene_info scene;
+    const char *name = wanted[0] == '@' ? wanted + 1 : wanted;
+    for (int i = 0; name == wanted && ag_technique_get(i, &t); i++) {
+        if (strcmp(t.name, name) != 0) continue;
+        if (json) return json_print(technique_json(i, &t));
+        print_technique(i, &t, true);
+        return DONE;
+    }
+    for (int i = 0; ag_builtin_scene_get(i, &scene); i++) {
+        if (strcmp(scene.name, name) != 0) continue;
+        if (json) return json_print(scene_json(i, &scene));
+        print_scene(i, &scene);
+        return DONE;
+    }
+    return unknown_name(wanted);
+}
+
 static enum status list(const struct arguments *arguments)
 {
+    if (arguments->positional_count > 0) return list_one(arguments->positional[0], arguments->json);
     struct session session;
     struct ag_device_info devices[MAX_DEVICES];
     int count = 0;
@@ -339,12 +391,15 @@ static enum status list(const struct arguments *arguments)
 const struct command command_list = {
     .name = "list",
     .bit = LIST,
-    .positional_count = 0,
-    .usage = "[options]",
+    .optional_count = 1,
+    .usage = "[NAME] [options]",
     .summary = "list techniques with their options, built-in scenes and devices",
     .text = "Lists techniques for --gi with options, presets and debug views,\n"
-            "built-in scenes with options, frame options, and the devices of this machine.\n",
+            "built-in scenes with options, frame options, and the devices of this machine.\n"
+            "With NAME, of a technique or built-in scene, only that one.\n",
     .examples = "  afterglow list\n"
+                "  afterglow list lpv\n"
+                "  afterglow list @maze\n"
                 "  afterglow list --json | jq '.techniques[].name'\n",
     .run = list,
 };

@@ -39,7 +39,8 @@ static void print_usage(void)
            "  afterglow render @cornell --gi lpv -o cornell.png\n"
            "  afterglow compare @cornell --size 320x180\n"
            "  afterglow list\n"
-           "  afterglow render --help\n"
+           "  afterglow list lpv\n"
+           "  afterglow help render\n"
            "\nExit status: 0 success, 1 failure, 2 wrong usage.\n");
 }
 
@@ -69,14 +70,22 @@ static enum status flush_output(enum status status)
                                     : status;
 }
 
+static enum status help(int count, char **words)
+{
+    const struct command *command = count > 0 ? command_find(words[0]) : NULL;
+    if (count > 0 && !command) return unknown_command(words[0]);
+    if (command)
+        arguments_help(command);
+    else
+        print_usage();
+    return DONE;
+}
+
 static enum status run(int count, char **words)
 {
     if (count < 2) return wrong_usage("no command given: see afterglow --help");
-    if (strcmp(words[1], "--help") == 0 || strcmp(words[1], "-h") == 0 ||
-        strcmp(words[1], "help") == 0) {
-        print_usage();
-        return DONE;
-    }
+    if (strcmp(words[1], "help") == 0) return help(count - 2, words + 2);
+    if (strcmp(words[1], "--help") == 0 || strcmp(words[1], "-h") == 0) return help(0, NULL);
     if (strcmp(words[1], "--version") == 0 || strcmp(words[1], "-V") == 0) {
         int version = ag_version();
         printf("afterglow %d.%d.%d\n", version / 10000, version / 100 % 100, version % 100);

@@ -3,7 +3,9 @@
 
 #include "gpu/gpu.h"
 
+#include <dirent.h>
 #include <stdio.h>
+#include <string.h>
 
 static void info_out(struct ag_device_info *out, const struct gpu_device_info *info)
 {
@@ -38,6 +40,27 @@ static bool adopt_is_whole(const struct ag_device_adopt *adopt)
     return adopt->instance && adopt->physical_device && adopt->device && adopt->queue;
 }
 
+static bool has_shaders(const char *folder)
+{
+    DIR *entries = opendir(folder);
+    bool found = false;
+    for (const struct dirent *entry; entries && !found && (entry = readdir(entries));) {
+        const size_t length = strlen(entry->d_name);
+        found = length > 4 && strcmp(entry->d_name + length - 4, ".spv") == 0;
+    }
+    if (entries) closedir(entries);
+    return found;
+}
+
+static void warn_of_shader_dir(struct ag_context *context)
+{
+    if (context->shader_dir && !has_shaders(context->shader_dir))
+        host_log(&context->host, LOG_WARNING,
+                 "AFTERGLOW_SHADER_DIR %s: no .spv file can be found in it; the embedded shaders "
+                 "are used",
+                 context->shader_dir);
+}
+
 enum ag_result ag_device_create(struct ag_context *context, const struct ag_device_desc *desc,
                                 struct ag_device **out)
 {
@@ -63,6 +86,7 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
                                  .validation = desc->validation || context->validation,
                                  .shader_dir = context->shader_dir,
                                  .adopt = lent ? &adopt : NULL };
+    warn_of_shader_dir(context);
     struct ag_device *device = host_alloc(&context->host, 1, sizeof *device);
     if (!device) return api_done(context, false);
     device->context = context;

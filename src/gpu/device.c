@@ -316,7 +316,8 @@ VkPhysicalDevice device_choose(struct host *host, VkInstance instance, const cha
     if (wanted && !wanted[0]) wanted = NULL;
     int chosen = match(infos, count, wanted);
     if (!count) {
-        host_fail(host, FAIL_UNSUPPORTED, "gpu device: there is no Vulkan device");
+        host_fail(host, FAIL_UNSUPPORTED, "gpu device: there is no Vulkan device; %s",
+                  GPU_DRIVER_HINT);
     } else if (chosen < 0 && wanted) {
         host_fail(host, FAIL_ARGUMENT, "gpu device \"%s\": there are %s", wanted, list);
     } else if (chosen < 0) {

@@ -97,8 +97,8 @@ bool instance_create(struct host *host, bool validation, VkInstance *out)
         NULL, out);
     if (result == VK_SUCCESS) return true;
     *out = VK_NULL_HANDLE;
-    return host_fail(host, FAIL_UNSUPPORTED, "gpu instance: no Vulkan driver can be used (%s)",
-                     vk_result_name(result));
+    return host_fail(host, FAIL_UNSUPPORTED, "gpu instance: no Vulkan driver can be used (%s); %s",
+                     vk_result_name(result), GPU_DRIVER_HINT);
 }
 
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,

@@ -22,6 +22,9 @@ enum {
 // True on VK_SUCCESS; else logs the call's text and the result, and notes a lost device.
 #define VK_CHECK(gpu, call) vk_check((gpu), (call), #call)
 bool vk_check(struct gpu *gpu, VkResult result, const char *call);
+#define GPU_DRIVER_HINT                                                                            \
+    "install a driver: the package mesa-vulkan-drivers (vulkan-swrast on Arch) has one for the "   \
+    "CPU"
 const char *vk_result_name(VkResult result);
 // API misuse: logged, and asserted in debug builds. Returns false.
 bool gpu_misuse(struct gpu *gpu, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -227,6 +227,16 @@ static void warn_of_old_name(const struct gi *gi, int term, const struct techniq
              gi->spec.technique[term]->name, view->old_name, view->name);
 }
 
+static bool fail_no_debug_views(const struct gi *gi, const char *name)
+{
+    const char *owner = NULL;
+    for (size_t i = 0; !owner && techniques[i]; i++)
+        if (technique_find_view(techniques[i], name)) owner = techniques[i]->name;
+    return host_fail(gi->host, FAIL_ARGUMENT,
+                     "cannot show debug view %s: no technique of --gi has debug views%s%s", name,
+                     owner ? "; try --gi " : "", owner ? owner : "");
+}
+
 static bool fail_debug_view(const struct gi *gi, const char *name)
 {
     char list[LIST_SIZE] = "";
@@ -239,8 +249,10 @@ static bool fail_debug_view(const struct gi *gi, const char *name)
             if (written > 0) used += (size_t)written;
         }
     }
-    return host_fail(gi->host, FAIL_ARGUMENT, "unknown debug view %s: %s%s", name,
-                     used ? "there are " : "there is none", list);
+    if (used)
+        return host_fail(gi->host, FAIL_ARGUMENT, "unknown debug view %s: there are %s", name,
+                         list);
+    return fail_no_debug_views(gi, name);
 }
 
 // Creates the images and pipelines of the view.

@@ -45,6 +45,10 @@ TEST(wrong_commands_and_arguments_are_wrong_usage)
         { "render @cornell @cornell", "@cornell" },
         { "info", "SCENE" },
         { "list extra", "extra" },
+        { "list lvp", "did you mean lpv?" },
+        { "list lpv vct", "vct" },
+        { "help rendr", "did you mean render?" },
+        { "render @cornell --gi lpv,steps=8", "did you mean lpv:steps=8?" },
         { "diff a.png", "B" },
         { "diff a.png b.exr", "b.exr" },
         { "diff a.jpg b.png", "a.jpg" },
@@ -52,6 +56,61 @@ TEST(wrong_commands_and_arguments_are_wrong_usage)
         { "diff a.exr b.exr --map map.exr", "--map" },
     };
     CHECK_WRONG(cases, 2);
+}
+
+TEST(help_and_list_show_one_command_or_technique)
+{
+    char long_help[sizeof(((struct run *)0)->out)];
+    snprintf(long_help, sizeof long_help, "%s", run_expect(0, "compare --help", NULL)->out);
+    CHECK_STRING(run_expect(0, "help compare", NULL)->out, long_help);
+    CHECK_STRING(run_expect(0, "compare -h", NULL)->out, long_help);
+    const struct run *r = run_expect(0, "list ssao", NULL);
+    CHECK(strstr(r->out, "\nssao: ") == r->out && !strstr(r->out, "\nvo: "));
+    CHECK(strstr(r->out, "    radius=") && !strstr(r->out, "Devices"));
+    CHECK(strstr(run_expect(0, "list @maze", NULL)->out, "    blocks="));
+    json_t *scene = run_json(run_expect(0, "list maze --json", NULL));
+    CHECK_STRING(json_string_value(json_object_get(scene, "name")), "@maze");
+    json_decref(scene);
+}
+
+TEST(short_options_are_the_long_ones)
+{
+    require_device();
+    const char *words = "render @cornell:light=point --size 16x16 --gi vo -o";
+    const char *path = test_path("short.png");
+    CHECK(run_expect(0, words, path, NULL)->err[0] != 0);
+    CHECK_STRING(run_expect(0, words, path, "-q", NULL)->err, "");
+    CHECK(strstr(run_expect(0, words, path, "-v", NULL)->err, "gbuffer"));
+}
+
+TEST(a_shader_folder_without_shaders_is_said)
+{
+    require_device();
+    const char *words = "render @cornell:light=point --size 16x16 -o";
+    setenv("AFTERGLOW_SHADER_DIR", "/nowhere", 1);
+    const struct run *r = run_expect(0, words, test_path("shaders.png"), NULL);
+    unsetenv("AFTERGLOW_SHADER_DIR");
+    CHECK(strstr(r->err, "AFTERGLOW_SHADER_DIR /nowhere") && strstr(r->err, "embedded"));
+}
+
+TEST(a_missing_driver_names_the_package_that_brings_one)
+{
+    setenv("VK_DRIVER_FILES", "/nowhere.json", 1);
+    setenv("VK_ICD_FILENAMES", "/nowhere.json", 1);
+    const struct run *r = run_expect(1, "render @cornell -o", test_path("driver.png"), NULL);
+    unsetenv("VK_DRIVER_FILES");
+    unsetenv("VK_ICD_FILENAMES");
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "mesa-vulkan-drivers"));
+}
+
+TEST(a_debug_view_of_another_technique_is_named)
+{
+    require_device();
+    const char *words = "render @cornell:light=point --size 16x16 --debug-view lpv.cells -o";
+    const struct run *r = run_expect(2, words, test_path("view.png"), NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "try --gi lpv"));
 }
 
 TEST(unknown_options_name_the_nearest)
