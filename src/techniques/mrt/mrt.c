@@ -91,6 +91,7 @@ static void mrt_set_options(void *state, const void *options)
 {
     struct mrt *mrt = state;
     option_copy_live(&technique_mrt.options, options, &mrt->options);
+    mrt->inputs.valid = false;
 }
 
 static void mrt_invalidate(void *state, uint32_t changes)
@@ -110,15 +111,28 @@ static uint64_t hash_of_light(const struct mrt *mrt, const struct frame_view *vi
     return hash_bytes(view->lights, (size_t)view->light_count * sizeof *view->lights, hash);
 }
 
-// Feedback converges over frames, and the CPU's results arrive later than their frame.
+// The light map shows the light of a frame since which nothing has changed. Feedback converges over
+// frames.
+static bool is_complete(const struct mrt *mrt)
+{
+    const struct mrt_host_solver *cpu = &mrt->host_solver;
+    if (mrt->options.feedback) return false;
+    return mrt->options.solver == MRT_SOLVER_GPU ||
+           (cpu->solved && cpu->newest >= mrt->inputs.since);
+}
+
 static void find_kept(struct mrt *mrt, const struct frame_view *view)
 {
     const struct mrt_inputs last = mrt->inputs;
     const bool follows = last.valid && view->index > 0 && view->index == last.index + 1;
-    const bool complete = !mrt->options.feedback && mrt->options.solver == MRT_SOLVER_GPU;
-    mrt->inputs = (struct mrt_inputs){ true, view->index, hash_of_light(mrt, view) };
-    mrt->kept = view->keep && complete && follows && !view->geometry_moved &&
-                !view->lights_changed && mrt->inputs.light == last.light;
+    const uint64_t light = hash_of_light(mrt, view);
+    const bool same =
+        follows && !view->geometry_moved && !view->lights_changed && light == last.light;
+    mrt->inputs = (struct mrt_inputs){ true, view->index, same ? last.since : view->index, light };
+    mrt->kept = view->keep && same && is_complete(mrt);
+    if (follows || mrt->options.solver == MRT_SOLVER_GPU) return;
+    mrt_host_solver_forget(&mrt->host_solver);
+    mrt->lit = false;
 }
 
 // The weight of the last frame's irradiance in this frame's first bounce.
@@ -128,22 +142,28 @@ static float first_feedback(const struct mrt *mrt, const struct frame_view *view
     return view->constants->previous_scale_ratio;
 }
 
+static bool record_host_solution(struct mrt *mrt, struct gpu_cmd *cmd,
+                                 const struct frame_view *view)
+{
+    return mrt_host_solver_record(&mrt->host_solver, cmd,
+                                  &(struct mrt_host_frame){
+                                      .index = view->index,
+                                      .direct = mrt->runtime.buffers.direct,
+                                      .irradiance = mrt->runtime.buffers.irradiance,
+                                      .radiosity = mrt->runtime.probes.radiosity,
+                                      .bounces = mrt->options.bounces,
+                                      .feedback = mrt->options.feedback,
+                                      .radiance_scale = view->constants->radiance_scale,
+                                  });
+}
+
+// Until the CPU's first result arrives the GPU solves.
 static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct frame_view *view)
 {
-    if (mrt->options.solver == MRT_SOLVER_CPU) {
-        mrt_host_solver_record(&mrt->host_solver, cmd,
-                               &(struct mrt_host_frame){
-                                   .direct = mrt->runtime.buffers.direct,
-                                   .irradiance = mrt->runtime.buffers.irradiance,
-                                   .radiosity = mrt->runtime.probes.radiosity,
-                                   .bounces = mrt->options.bounces,
-                                   .feedback = mrt->options.feedback,
-                                   .radiance_scale = view->constants->radiance_scale,
-                               });
+    if (mrt->options.solver == MRT_SOLVER_CPU && record_host_solution(mrt, cmd, view))
         mrt_record_coefficients(&mrt->runtime, cmd);
-        return;
-    }
-    mrt_record_bounces(&mrt->runtime, cmd, mrt->options.bounces, first_feedback(mrt, view));
+    else
+        mrt_record_bounces(&mrt->runtime, cmd, mrt->options.bounces, first_feedback(mrt, view));
 }
 
 static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)

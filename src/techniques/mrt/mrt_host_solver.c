@@ -14,21 +14,29 @@ bool mrt_host_solver_init(struct mrt_host_solver *out, struct host *host, struct
     out->irradiance = host_alloc(host, texels, sizeof *out->irradiance);
     if (!out->albedo || !out->direct || !out->radiosity || !out->irradiance) return false;
     for (size_t i = 0; i < texels; i++) out->albedo[i] = geometry[i].albedo;
-    return mrt_solver_init(host, level, &out->solver) &&
-           gpu_readback_create(gpu, "direct_readback", texels * sizeof *out->direct,
-                               &out->readback);
+    for (int i = 0; i < 2; i++)
+        if (!gpu_readback_create(gpu, "direct_readback", texels * sizeof *out->direct,
+                                 &out->slots[i].readback))
+            return false;
+    return mrt_solver_init(host, level, &out->solver);
 }
 
 void mrt_host_solver_finish(struct mrt_host_solver *solver)
 {
     if (!solver->host) return;
-    gpu_readback_destroy(solver->gpu, &solver->readback);
+    for (int i = 0; i < 2; i++) gpu_readback_destroy(solver->gpu, &solver->slots[i].readback);
     mrt_solver_finish(&solver->solver);
     host_free(solver->host, solver->albedo);
     host_free(solver->host, solver->direct);
     host_free(solver->host, solver->radiosity);
     host_free(solver->host, solver->irradiance);
     *solver = (struct mrt_host_solver){ 0 };
+}
+
+void mrt_host_solver_forget(struct mrt_host_solver *solver)
+{
+    solver->solved = false;
+    for (int i = 0; i < 2; i++) solver->slots[i].readback.serial = 0;
 }
 
 // weight: of the irradiance that is reflected again.
@@ -41,13 +49,14 @@ static void bounce(struct mrt_host_solver *s, float weight)
     mrt_solve(&s->solver, &s->radiosity[0].x, &s->irradiance[0].x);
 }
 
-static void solve(struct mrt_host_solver *s, const struct mrt_host_frame *frame)
+static void solve(struct mrt_host_solver *s, const struct mrt_host_slot *slot,
+                  const struct mrt_host_frame *frame)
 {
-    const bool again = frame->feedback && s->solved;
     // Last irradiance in the scale of this radiosity.
-    const float rescale = again ? s->newest_scale / s->scale : 0.0f;
-    s->scale = s->newest_scale;
+    const float rescale = frame->feedback && s->solved ? slot->scale / s->scale : 0.0f;
     for (int i = 0; i < frame->bounces; i++) bounce(s, i > 0 ? 1.0f : rescale);
+    s->newest = slot->frame;
+    s->scale = slot->scale;
     s->solved = true;
 }
 
@@ -69,16 +78,38 @@ static void upload_solution(struct mrt_host_solver *s, struct gpu_cmd *cmd,
     if (frame->radiosity.id) upload(s, cmd, rescale, s->radiosity, frame->radiosity);
 }
 
-void mrt_host_solver_record(struct mrt_host_solver *s, struct gpu_cmd *cmd,
-                            const struct mrt_host_frame *frame)
+// Into `direct`: the newest that is due and complete; NULL: none.
+static const struct mrt_host_slot *read_newest(struct mrt_host_solver *s, uint64_t index)
 {
     const size_t bytes = (size_t)s->texels * sizeof *s->direct;
-    if (gpu_readback_poll(s->gpu, &s->readback, s->direct, bytes)) {
-        solve(s, frame);
-        s->newest_scale = 0.0f;
+    const struct mrt_host_slot *newest = NULL;
+    const int older = s->slots[1].frame < s->slots[0].frame;
+    for (int i = 0; i < 2; i++) {
+        struct mrt_host_slot *slot = &s->slots[older ^ i];
+        const bool due = slot->frame + MRT_HOST_DELAY <= index;
+        if (due && gpu_readback_poll(s->gpu, &slot->readback, s->direct, bytes)) newest = slot;
     }
+    return newest;
+}
+
+// A slot that the GPU has not completed yet is left alone.
+static void start_copy(struct mrt_host_solver *s, struct gpu_cmd *cmd,
+                       const struct mrt_host_frame *frame)
+{
+    struct mrt_host_slot *slot = &s->slots[frame->index % 2];
+    if (slot->readback.serial != 0) return;
+    gpu_readback_copy(cmd, &slot->readback, 0, frame->direct, 0,
+                      (size_t)s->texels * sizeof *s->direct);
+    slot->frame = frame->index;
+    slot->scale = frame->radiance_scale;
+}
+
+bool mrt_host_solver_record(struct mrt_host_solver *s, struct gpu_cmd *cmd,
+                            const struct mrt_host_frame *frame)
+{
+    const struct mrt_host_slot *slot = read_newest(s, frame->index);
+    if (slot) solve(s, slot, frame);
+    start_copy(s, cmd, frame);
     if (s->solved) upload_solution(s, cmd, frame);
-    if (s->newest_scale != 0.0f) return; // a copy is under way
-    gpu_readback_copy(cmd, &s->readback, 0, frame->direct, 0, bytes);
-    s->newest_scale = frame->radiance_scale;
+    return s->solved;
 }

@@ -37,7 +37,8 @@ struct mrt {
     // What the light of the newest frame was computed from; kept: this frame's is the same.
     struct mrt_inputs {
         bool valid;
-        uint64_t index, light;
+        uint64_t index, since; // since: the first frame with this light
+        uint64_t light;        // hash
     } inputs;
     bool kept;
 };
