@@ -21,27 +21,54 @@ static struct mrt_dictionary_options small_options(void)
     return options;
 }
 
-static struct file_bytes bake_on(int threads)
+// Baked once for all tests.
+static struct bake *baked_small, *baked_default;
+
+static struct bake *small_bake(void) // by one thread
 {
     const struct mrt_dictionary_options options = small_options();
-    struct bake *bake = mrt_fixture_bake(&options, threads, false);
+    if (!baked_small) baked_small = mrt_fixture_bake(&options, 1, false);
+    return baked_small;
+}
+
+static struct bake *default_bake(struct mrt_dictionary_options *options) // with a full report
+{
+    option_defaults(mrt_dictionary_option_table(), options);
+    if (!baked_default) baked_default = mrt_fixture_bake(options, 0, true);
+    return baked_default;
+}
+
+static bool finish_at_end(void)
+{
+    bake_destroy(baked_small);
+    bake_destroy(baked_default);
+    return true;
+}
+
+__attribute__((constructor)) static void register_end(void)
+{
+    test_register_end(finish_at_end);
+}
+
+static void check_same_bytes(struct bake *a, struct bake *b)
+{
+    struct file_bytes bytes[2];
     const char *path = test_path("dictionary.safetensors");
-    struct file_bytes bytes;
-    CHECK(bake_save(bake, path, false));
-    CHECK(file_read(test_host(), path, 64 << 20, &bytes));
-    bake_destroy(bake);
-    return bytes;
+    CHECK(bake_save(a, path, false) && file_read(test_host(), path, 64 << 20, &bytes[0]));
+    CHECK(bake_save(b, path, false) && file_read(test_host(), path, 64 << 20, &bytes[1]));
+    CHECK(bytes[0].size == bytes[1].size);
+    CHECK(memcmp(bytes[0].data, bytes[1].data, bytes[0].size) == 0);
+    for (int i = 0; i < 2; i++) file_bytes_finish(test_host(), &bytes[i]);
 }
 
 TEST(dictionary_has_the_same_bytes_on_1_2_and_4_threads)
 {
-    struct file_bytes one = bake_on(1);
+    const struct mrt_dictionary_options options = small_options();
     for (int threads = 2; threads <= 4; threads += 2) {
-        struct file_bytes more = bake_on(threads);
-        CHECK(one.size == more.size && memcmp(one.data, more.data, one.size) == 0);
-        file_bytes_finish(test_host(), &more);
+        struct bake *more = mrt_fixture_bake(&options, threads, false);
+        check_same_bytes(small_bake(), more);
+        bake_destroy(more);
     }
-    file_bytes_finish(test_host(), &one);
 }
 
 static bool stop_at(void *user, const struct bake_progress *progress)
@@ -53,31 +80,24 @@ static bool stop_at(void *user, const struct bake_progress *progress)
 TEST(dictionary_has_the_same_bytes_after_a_cancel_and_a_resume)
 {
     const struct mrt_dictionary_options options = small_options();
-    const char *path = test_path("resumed.safetensors");
     int calls = 0;
     struct bake *bake = mrt_fixture_plan(&options, 1);
     bake_run(bake, &(struct bake_run_options){ .progress = stop_at, .user = &calls });
     CHECK(bake_run(bake, &(struct bake_run_options){ .threads = 2 }));
-    struct file_bytes resumed, one = bake_on(1);
-    CHECK(bake_save(bake, path, false) && file_read(test_host(), path, 64 << 20, &resumed));
-    CHECK(one.size == resumed.size && memcmp(one.data, resumed.data, one.size) == 0);
-    file_bytes_finish(test_host(), &resumed);
-    file_bytes_finish(test_host(), &one);
+    check_same_bytes(small_bake(), bake);
     bake_destroy(bake);
 }
 
 TEST(dictionary_of_other_options_is_refused)
 {
     struct mrt_dictionary_options options = small_options();
-    struct bake *bake = mrt_fixture_bake(&options, 0, false);
     struct mrt_dictionary dictionary;
     options.modes++;
-    CHECK(!mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &dictionary));
+    CHECK(!mrt_dictionary_init(test_host(), bake_tensors(small_bake()), &options, &dictionary));
     CHECK(strstr(test_last_message(), "U_b") || strstr(test_last_message(), "R_"));
     options = small_options();
     options.maze = MRT_MAZE_3D;
-    CHECK(!mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &dictionary));
-    bake_destroy(bake);
+    CHECK(!mrt_dictionary_init(test_host(), bake_tensors(small_bake()), &options, &dictionary));
 }
 
 // Largest difference between irradiance and OHLSH along the normal, of columns with an L2 norm
@@ -105,8 +125,7 @@ TEST(default_dictionary_is_as_large_as_the_paper_s)
 {
     struct mrt_dictionary_options options;
     struct mrt_dictionary d;
-    option_defaults(mrt_dictionary_option_table(), &options);
-    struct bake *bake = mrt_fixture_bake(&options, 0, false);
+    struct bake *bake = default_bake(&options);
     CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &d));
     const struct mrt_dictionary_bytes bytes = mrt_dictionary_bytes(&d);
     double task_s = 0.0;
@@ -135,7 +154,6 @@ TEST(default_dictionary_is_as_large_as_the_paper_s)
                   along_normal(&d.entered[0].u_r, &d.entered[0].u_rvec));
     CHECK(along_normal(&d.entered[0].u_r, &d.entered[0].u_rvec) < 0.145);
     mrt_dictionary_finish(test_host(), &d);
-    bake_destroy(bake);
 }
 
 static int modes_at(const char *report, const char *operator_name, const char *percent)
@@ -151,10 +169,8 @@ static int modes_at(const char *report, const char *operator_name, const char *p
 // Table 3.2 of the paper, by the bake itself.
 TEST(full_report_of_the_closed_cube_has_the_modes_of_the_paper)
 {
-    struct mrt_dictionary_options options = small_options();
-    options.texels = 16;
-    options.rays = 16384;
-    struct bake *bake = mrt_fixture_bake(&options, 0, true);
+    struct mrt_dictionary_options options;
+    struct bake *bake = default_bake(&options);
     char *report = mrt_fixture_report(bake, &options);
     static const char *const percents[] = { "80", "90", "95" };
     static const int paper[] = { 164, 240, 313 }, within[] = { 2, 2, 3 };
@@ -165,5 +181,4 @@ TEST(full_report_of_the_closed_cube_has_the_modes_of_the_paper)
         CHECK_NEAR(modes, paper[i], within[i]);
     }
     host_free(test_host(), report);
-    bake_destroy(bake);
 }
