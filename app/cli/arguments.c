@@ -111,6 +111,7 @@ static bool add_light(struct arguments *a, const char *value, const char **why)
 {
     *why = "at most 64 lights";
     if (a->light_count == MAX_LIGHTS) return false;
+    a->light_texts[a->light_count] = value;
     return value_light(value, &a->lights[a->light_count++], why);
 }
 
@@ -574,6 +575,8 @@ enum status arguments_parse(const struct command *command, int count, char **wor
                             struct arguments *out)
 {
     *out = defaults_of(command);
+    out->words = words;
+    out->word_count = count;
     bool only_files = false; // after "--"
     for (int i = 0; i < count; i++) {
         if (!only_files && strcmp(words[i], "--") == 0) {
@@ -594,6 +597,38 @@ enum status arguments_parse(const struct command *command, int count, char **wor
         }
     }
     return check_together(command, out);
+}
+
+// ---- the command line again
+
+static size_t append(char *out, size_t size, size_t used, const char *text, size_t length)
+{
+    for (size_t i = 0; i < length && used + 1 < size; i++) out[used++] = text[i];
+    out[used] = 0;
+    return used;
+}
+
+static size_t append_quoted(char *out, size_t size, size_t used, const char *word)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "@%+=:,./_-";
+    if (word[0] && word[strspn(word, plain)] == 0)
+        return append(out, size, used, word, strlen(word));
+    used = append(out, size, used, "'", 1);
+    for (const char *c = word; *c; c++)
+        used = append(out, size, used, *c == '\'' ? "'\\''" : c, *c == '\'' ? 4 : 1);
+    return append(out, size, used, "'", 1);
+}
+
+void arguments_command(const char *command, const struct arguments *arguments, char *out,
+                       size_t size)
+{
+    size_t used = append(out, size, 0, "afterglow ", 10);
+    used = append(out, size, used, command, strlen(command));
+    for (int i = 0; i < arguments->word_count; i++) {
+        used = append(out, size, used, " ", 1);
+        used = append_quoted(out, size, used, arguments->words[i]);
+    }
 }
 
 // ---- help

@@ -17,12 +17,15 @@ enum command_bit {
     BAKE = 64,
     CACHE = 128
 };
+enum { COMMAND_SIZE = 16384 };
 enum { MAX_LIGHTS = 64, MAX_POSITIONAL = 64, MAX_METHODS = 16, MAX_BAKE_FILES = 8 };
 
 struct arguments {
     const char *positional[MAX_POSITIONAL]; // SCENE, A and B, or parts to merge
     int positional_count;
     bool help, json, quiet, verbose;
+    char *const *words; // after the command
+    int word_count;
     // image
     const char *gi, *frame_options;
     bool has_gi;
@@ -39,6 +42,7 @@ struct arguments {
     double fov_deg, time_s, time_step_s;
     // light
     struct light_value lights[MAX_LIGHTS];
+    const char *light_texts[MAX_LIGHTS]; // as given
     int light_count;
     bool no_scene_lights, has_sky;
     float sky[3];
@@ -86,5 +90,8 @@ struct command {
 // Parses the words after the command name; reports wrong usage on standard error.
 enum status arguments_parse(const struct command *command, int count, char **words,
                             struct arguments *out);
+// The command line, quoted for a POSIX shell and cut where it is longer.
+void arguments_command(const char *command, const struct arguments *arguments, char *out,
+                       size_t size);
 // Prints --help of one command.
 void arguments_help(const struct command *command);

@@ -167,8 +167,11 @@ static enum status add_default_light(struct session *session)
         ag_scene_add_light(session->scene, &defaults.light_value.punctual, NULL);
     if (result == AG_OK) result = ag_scene_set_sky(session->scene, defaults.sky_radiance);
     if (result != AG_OK) return fail_library(session->context, result);
-    remember(session, "no light in %s: using --light %s --sky %s",
-             session->arguments->positional[0], defaults.light, defaults.sky);
+    session->made_up_light = true;
+    snprintf(session->light, sizeof session->light, "--light %s --sky %s", defaults.light,
+             defaults.sky);
+    remember(session, "no light in %s: using %s", session->arguments->positional[0],
+             session->light);
     return DONE;
 }
 
@@ -178,12 +181,33 @@ static enum ag_result add_light(struct ag_scene *scene, const struct light_value
                           : ag_scene_add_light(scene, &light->punctual, NULL);
 }
 
+// The options of light and sky.
+static void describe_light(struct session *session)
+{
+    const struct arguments *a = session->arguments;
+    size_t used = 0;
+    char sky[SPEC_SIZE];
+    print_floats(sky, a->sky);
+    for (int i = 0; i < a->light_count && used < LIGHT_SIZE; i++) {
+        int wrote = snprintf(session->light + used, LIGHT_SIZE - used, "%s--light %s",
+                             used ? " " : "", a->light_texts[i]);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+    if (used >= LIGHT_SIZE) return;
+    snprintf(session->light + used, LIGHT_SIZE - used, "%s%s%s%s", used ? " " : "",
+             a->no_scene_lights ? "--no-scene-lights " : "", a->has_sky ? "--sky " : "",
+             a->has_sky ? sky : "");
+    for (used = strlen(session->light); used > 0 && session->light[used - 1] == ' '; used--)
+        session->light[used - 1] = 0;
+}
+
 enum status session_light(struct session *session)
 {
     const struct arguments *a = session->arguments;
     if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky)
         return add_default_light(session);
     enum ag_result result = AG_OK;
+    describe_light(session);
     if (a->no_scene_lights) result = ag_scene_remove_lights(session->scene);
     for (int i = 0; i < a->light_count && result == AG_OK; i++)
         result = add_light(session->scene, &a->lights[i]);
@@ -203,8 +227,8 @@ static enum status camera_from_options(struct session *session, struct ag_camera
     char eye[SPEC_SIZE], target[SPEC_SIZE];
     print_floats(eye, a->eye);
     print_floats(target, a->target);
-    snprintf(session->camera_name, sizeof session->camera_name, "--eye %.80s --target %.80s", eye,
-             target);
+    snprintf(session->camera_name, sizeof session->camera_name,
+             "--eye %.70s --target %.70s --fov %.6g", eye, target, fov_deg);
     return DONE;
 }
 
@@ -235,8 +259,8 @@ static enum status camera_default(struct session *session, double time_s, struct
     session->made_up_camera = defaults.camera;
     remember(session, "no camera in %s: using --eye %s --target %s --fov %s",
              session->arguments->positional[0], defaults.eye, defaults.target, defaults.fov);
-    snprintf(session->camera_name, sizeof session->camera_name, "--eye %.80s --target %.80s",
-             defaults.eye, defaults.target);
+    snprintf(session->camera_name, sizeof session->camera_name,
+             "--eye %.70s --target %.70s --fov %.20s", defaults.eye, defaults.target, defaults.fov);
     return DONE;
 }
 

@@ -5,7 +5,7 @@
 
 #include <afterglow/afterglow.h>
 
-enum { SPEC_SIZE = 256, MAX_NOTES = 4, NOTE_SIZE = 1024 };
+enum { SPEC_SIZE = 256, MAX_NOTES = 4, NOTE_SIZE = 1024, LIGHT_SIZE = 4096 };
 
 struct session {
     const struct arguments *arguments;
@@ -13,6 +13,8 @@ struct session {
     struct ag_scene *scene;
     int animation;               // index for API calls
     char camera_name[SPEC_SIZE]; // in results: a name, or the options for it
+    char light[LIGHT_SIZE];      // in results: the options for it; "": that of the scene
+    bool made_up_light;          // the scene has none
     bool made_up;                // the scene has no camera; the generated one stays fixed
     struct ag_camera made_up_camera;
     char notes[MAX_NOTES][NOTE_SIZE]; // about default light and camera, see session_say

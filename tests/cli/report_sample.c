@@ -79,5 +79,10 @@ json_t *sample_report(const char *folder, const char *scene, const char *gi)
                   (json_int_t)38316784, "cached", 0, "images", "picture", "reference.png",
                   "indirect", "reference-indirect.png", "methods", methods);
     assert_non_null(report);
+    json_object_set_new(report, "command", json_string("afterglow compare @cornell"));
+    json_object_set_new(report, "light", json_string("--light sun:0,-1,0:1,1,1"));
+    json_object_set_new(report, "light_is_default", json_true());
+    json_object_set_new(json_array_get(methods, 3), "changed",
+                        json_pack("{s:{s:i}}", "lpv", "steps", 64));
     return report;
 }

@@ -102,6 +102,26 @@ static void check_images(const char *folder, json_t *images, int width, int heig
     }
 }
 
+// Without emission, the frame's direct light is that of the path tracer up to shadow edges; a
+// shadow map of few texels is not.
+TEST(the_error_of_direct_light_is_that_of_its_shadows)
+{
+    require_device();
+    own_cache("direct-cache");
+    double relmse[2];
+    for (int i = 0; i < 2; i++) {
+        const char *folder = path_of(i ? "direct-coarse" : "direct-fine");
+        run_expect(0, "compare @cornell:light=point --size 48x36 --quiet --frames 2 --spp 4",
+                   "--gi", "none", "--frame-options", i ? "shadow_size=128" : "shadow_size=2048",
+                   "-o", folder, NULL);
+        json_t *report = report_of(folder);
+        relmse[i] = number(json_object_get(report, "direct"), "relmse");
+        CHECK(relmse[i] < number(method_of(report, 0), "relmse"));
+        json_decref(report);
+    }
+    CHECK(relmse[0] < 0.01 && relmse[1] > 4 * relmse[0]);
+}
+
 TEST(the_report_has_the_documented_fields_and_files)
 {
     require_device();
@@ -113,7 +133,13 @@ TEST(the_report_has_the_documented_fields_and_files)
     CHECK(file_exists(in(folder, "report.html")));
     CHECK(file_exists(in(folder, "sheet.png")));
     json_t *report = report_of(folder);
-    check_keys(report, "scene camera size exposure_ev reference methods device driver frames");
+    check_keys(report, "scene camera size exposure_ev reference methods device driver frames "
+                       "direct command version date light light_is_default camera_is_default");
+    check_keys(json_object_get(report, "direct"), "relmse flip mae images");
+    check_images(folder, json_object_get(json_object_get(report, "direct"), "images"), 24, 18);
+    const char *command = json_string_value(json_object_get(report, "command"));
+    CHECK(strstr(command, "afterglow compare @cornell --size 24x18 --quiet") == command);
+    CHECK(strstr(command, "--gi ambient:strength=0.5 -o "));
     json_t *reference = json_object_get(report, "reference");
     check_keys(reference, "spp bounces seconds noise noise_relmse rays cached images");
     check_images(folder, json_object_get(reference, "images"), 24, 18);
@@ -122,7 +148,7 @@ TEST(the_report_has_the_documented_fields_and_files)
         json_t *method = method_of(report, i);
         check_keys(method,
                    "gi options relmse flip mae ssim energy indirect frame_ms passes memory_bytes "
-                   "flip_hdr images irradiance");
+                   "flip_hdr images irradiance changed");
         check_keys(json_object_get(method, "indirect"), "relmse mae energy");
         check_keys(json_object_get(method, "irradiance"), "relmse mae energy");
         check_keys(json_object_get(method, "frame_ms"), "median p95");
@@ -137,6 +163,12 @@ TEST(the_report_has_the_documented_fields_and_files)
                  "ambient:strength=0.5");
     json_t *options = json_object_get(json_object_get(method_of(report, 1), "options"), "ambient");
     CHECK_NEAR(number(options, "strength"), 0.5, 0);
+    CHECK(strstr(r->out, "direct light alone"));
+    json_t *changed = json_object_get(method_of(report, 0), "changed");
+    assert_int_equal(json_object_size(json_object_get(changed, "ambient")), 0);
+    changed = json_object_get(json_object_get(method_of(report, 1), "changed"), "ambient");
+    assert_int_equal(json_object_size(changed), 1);
+    CHECK_NEAR(number(changed, "strength"), 0.5, 0);
     // Half the strength, half the light: the energy of indirect light shows it.
     double whole = number(json_object_get(method_of(report, 0), "indirect"), "energy"),
            half = number(json_object_get(method_of(report, 1), "indirect"), "energy");

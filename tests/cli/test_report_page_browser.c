@@ -252,7 +252,10 @@ TEST(a_click_on_a_heading_sorts_and_the_best_are_marked)
     CHECK(browser_true(f.browser,
                        "[...document.querySelectorAll('#table tr[data-method=\"3\"] td')]"
                        ".map(cell => cell.className === 'best').join() === "
-                       "'true,true,true,true,true,true,false,false,false'"));
+                       "'true,true,true,true,true,true,true,false,false,false'"));
+    CHECK(browser_true(f.browser,
+                       "/Bold: best.*Marked row/.test(document.querySelector('#table-legend')"
+                       ".textContent)"));
     click(&f, "th[data-metric=FLIP] .sort");
     CHECK(browser_true(f.browser, "%s === '3210'", order));
     CHECK(browser_true(f.browser,
@@ -277,6 +280,25 @@ static bool stage_shows(struct fixture *f, const char *left, const char *right)
                         left, right);
 }
 
+TEST(a_method_has_one_colour_and_names_its_changed_options)
+{
+    struct fixture f = { 0 };
+    begin(&f, "colours");
+    CHECK(browser_true(f.browser,
+                       "(c => [0, 1, 2, 3].every(i => c('#table tr[data-method=\"' + i + '\"]') "
+                       "=== c('#points li:nth-child(' + (i + 1) + ')')) && "
+                       "new Set([0, 1, 2, 3].map(i => c('#table tr[data-method=\"' + i + '\"]')))"
+                       ".size === 4)(s => getComputedStyle(document.querySelector(s + ' .chip'))"
+                       ".backgroundColor)"));
+    CHECK(browser_true(f.browser, "/lpv:steps=64/.test(document.querySelector("
+                                  "'#table tr[data-method=\"3\"] .method').ariaLabel)"));
+    CHECK(browser_true(f.browser, "document.querySelector('#command').textContent === "
+                                  "'afterglow compare @cornell'"));
+    CHECK(browser_true(f.browser, "document.body.textContent.includes('sun:0,-1,0:1,1,1')"));
+    CHECK(!browser_true(f.browser, "document.body.textContent.includes('mean ratio')"));
+    end(&f);
+}
+
 TEST(any_two_images_can_be_compared)
 {
     struct fixture f = { 0 };
@@ -295,10 +317,10 @@ TEST(any_two_images_can_be_compared)
     browser_true(f.browser, "document.querySelector('#sheet').scrollIntoView()");
     click(&f, ".row:nth-child(1) .tile:nth-child(3) .view");
     CHECK(stage_shows(&f, "0-indirect_error.png", "2-indirect.png"));
-    // Labels of methods with equal techniques show the option that differs.
+    // Methods keep the name that was given.
     CHECK(browser_true(
         f.browser, "[...document.querySelectorAll('.method')].map(m => m.textContent).join() === "
-                   "'none,ambient,lpv steps=8,lpv steps=64'"));
+                   "'none,ambient:strength=1,lpv:dim=16,steps=8,lpv:dim=16,steps=64'"));
     end(&f);
 }
 

@@ -53,7 +53,11 @@ struct comparison {
     struct method methods[MAX_METHODS];
     uint64_t gpu_bytes; // the largest estimate of a method
     int method_count;
-    struct ag_image *depth; // of the first method
+    struct ag_image *depth;  // of the first method
+    struct ag_image *direct; // its layer direct, which all methods share
+    // The reference with the error of that layer: what is wrong where indirect light is exact.
+    struct ag_image *direct_error_image;
+    struct measured direct_error;
     struct reference reference;
     struct folder folder;
     float full_indirect; // cd/m²: error shown white in maps of indirect light
@@ -78,6 +82,7 @@ enum status reference_write_exr(struct comparison *c, const char *path);
 void reference_finish(struct comparison *c);
 
 // measure.c
+// Measures the layer direct, then each method.
 enum status methods_measure(struct comparison *c);
 
 // files.c

@@ -12,8 +12,8 @@
 enum { GAP_PX = 4, MAX_WIDTH_PX = 16384 }; // of sheet.png
 
 static const char *const fixed_names[] = {
-    "report.json", "report.html", "reference.png", "reference.exr", "reference-indirect.png",
-    "sheet.png"
+    "report.json", "report.html",    "reference.png", "reference.exr", "reference-indirect.png",
+    "sheet.png",   "direct-flip.png"
 };
 
 bool files_are_named(const char *name)
@@ -188,6 +188,9 @@ enum status files_write(struct comparison *c)
         progress("writing", i, c->method_count);
         status = write_method(c, &c->methods[i]);
     }
+    if (status == DONE && c->direct_error_image)
+        status = write_map(c, c->direct_error_image, c->reference.color, AG_DIFFERENCE_FLIP, 0.0f,
+                           "direct", "-flip.png");
     if (status == DONE) status = write_sheet(c);
     progress_end();
     return status;

@@ -51,12 +51,47 @@ static enum status measure_method(struct comparison *c, struct method *m)
     return measure(c, m->irradiance, c->reference.irradiance, &desc, &m->irradiance_error);
 }
 
+static size_t pixel_count(const struct ag_image *image)
+{
+    return (size_t)image->width * (size_t)image->height;
+}
+
+// The frame's direct light plus the reference's indirect light with that of emissive surfaces and
+// sky, which techniques add: an image that differs from the reference in direct light alone.
+static void complete_direct(const struct comparison *c, struct ag_image *out)
+{
+    const struct ag_image *color = c->reference.color, *indirect = c->reference.indirect;
+    for (size_t i = 0; i < pixel_count(color); i++)
+        for (size_t k = 0; k < 3; k++)
+            out->pixels[3 * i + k] = c->direct->pixels[i * (size_t)c->direct->channels + k] +
+                                     indirect->pixels[i * (size_t)indirect->channels + k];
+}
+
+static enum status measure_direct(struct comparison *c)
+{
+    const struct ag_image *color = c->reference.color;
+    struct ag_compare_desc desc;
+    if (!c->reference.indirect || !c->direct) return DONE;
+    enum ag_result result =
+        ag_image_create(c->session.context, color->width, color->height, 3, &c->direct_error_image);
+    if (result != AG_OK) return fail_library(c->session.context, result);
+    complete_direct(c, c->direct_error_image);
+    ag_compare_desc_default(&desc);
+    desc.radiance = true;
+    desc.ev = c->exposure_ev;
+    desc.ignore_not_finite = c->arguments->ignore_nan;
+    enum status status = image_check(&c->session, c->direct, NULL, "the direct light");
+    return status == DONE ? measure(c, c->direct_error_image, color, &desc, &c->direct_error)
+                          : status;
+}
+
 enum status methods_measure(struct comparison *c)
 {
     enum status status = image_check(&c->session, c->reference.color, NULL, "the reference");
     if (status == DONE && c->reference.indirect)
         status =
             image_check(&c->session, c->reference.indirect, NULL, "the reference's indirect light");
+    if (status == DONE) status = measure_direct(c);
     for (int i = 0; i < c->method_count && status == DONE; i++) {
         progress("measuring", i, c->method_count);
         status = measure_method(c, &c->methods[i]);

@@ -119,6 +119,8 @@ static enum status take_layers(struct rendering *r)
     if (result == AG_OK) result = ag_renderer_read(r->renderer, "irradiance", &m->irradiance);
     if (result == AG_OK && !r->c->depth)
         result = ag_renderer_read(r->renderer, "depth", &r->c->depth);
+    if (result == AG_OK && !r->c->direct)
+        result = ag_renderer_read(r->renderer, "direct", &r->c->direct);
     return result == AG_OK ? DONE : fail_library(r->c->session.context, result);
 }
 
@@ -172,6 +174,8 @@ enum status method_render(struct comparison *c, int index)
 void methods_finish(struct comparison *c)
 {
     ag_image_destroy(c->session.context, c->depth);
+    ag_image_destroy(c->session.context, c->direct);
+    ag_image_destroy(c->session.context, c->direct_error_image);
     for (int i = 0; i < c->method_count; i++) {
         struct method *m = &c->methods[i];
         ag_image_destroy(c->session.context, m->color);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 // ---- report.json
 
@@ -31,6 +32,53 @@ static json_t *error_json(const struct ag_image *layer, const struct measured *e
                      json_double(error->metrics.mae), "energy", json_double(error->energy));
 }
 
+// The value of an option as --gi takes it. out: at least 64 bytes.
+static const char *default_text(const struct ag_option_info *o, char out[64])
+{
+    const char *choice = o->unit;
+    snprintf(out, 64, "%g", o->initial);
+    if (strcmp(o->type, "bool") == 0) return o->initial != 0.0 ? "true" : "false";
+    if (strcmp(o->type, "text") == 0) return "";
+    if (strcmp(o->type, "choice") != 0) return out;
+    for (int i = 0; i < (int)o->initial; i++) choice += strcspn(choice, "|") + 1;
+    snprintf(out, 64, "%.*s", (int)strcspn(choice, "|"), choice);
+    return out;
+}
+
+static bool is_default(const json_t *value, const struct ag_option_info *o)
+{
+    char text[64];
+    if (json_is_string(value)) return strcmp(json_string_value(value), default_text(o, text)) == 0;
+    if (json_is_boolean(value)) return json_is_true(value) == (o->initial != 0.0);
+    return fabs(json_number_value(value) - o->initial) <= 1e-6 * fabs(o->initial);
+}
+
+// The options of one technique that differ from their defaults.
+static json_t *changes_of(const char *technique, const json_t *options)
+{
+    struct ag_technique_info t;
+    struct ag_option_info o;
+    json_t *changes = json_object();
+    for (int i = 0; changes && ag_technique_get(i, &t); i++) {
+        if (strcmp(t.name, technique) != 0) continue;
+        for (int k = 0; ag_technique_option_get(i, k, &o); k++) {
+            json_t *value = json_object_get(options, o.name);
+            if (value && !is_default(value, &o)) json_object_set(changes, o.name, value);
+        }
+    }
+    return changes;
+}
+
+static json_t *changed_options(const json_t *options)
+{
+    const char *technique;
+    json_t *values;
+    json_t *changed = json_object();
+    json_object_foreach((json_t *)options, technique, values)
+        json_object_set_new(changed, technique, changes_of(technique, values));
+    return changed;
+}
+
 static json_t *method_json(const struct comparison *c, const struct method *m)
 {
     const struct ag_metrics *p = &m->image_error.metrics;
@@ -46,6 +94,7 @@ static json_t *method_json(const struct comparison *c, const struct method *m)
     if (object && c->reference.irradiance)
         json_object_set_new(object, "irradiance",
                             error_json(c->reference.irradiance, &m->irradiance_error));
+    if (object) json_object_set_new(object, "changed", changed_options(m->options));
     if (object && m->bake) json_object_set(object, "bake", m->bake);
     if (object && c->arguments->ignore_nan)
         json_object_set_new(object, "pixels", json_integer((json_int_t)p->counted));
@@ -84,17 +133,57 @@ static json_t *reference_json(const struct reference *t)
     return object;
 }
 
+static json_t *version_json(void)
+{
+    const int v = ag_version();
+    return json_sprintf("%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
+}
+
+static json_t *date_json(void)
+{
+    char text[32] = "";
+    struct tm utc;
+    const time_t now = time(NULL);
+    if (gmtime_r(&now, &utc)) strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return json_string(text);
+}
+
+// What is needed to make the report again.
+static void add_origin(json_t *report, const struct comparison *c)
+{
+    char command[COMMAND_SIZE];
+    arguments_command("compare", c->arguments, command, sizeof command);
+    json_object_set_new(report, "command", json_text(command));
+    json_object_set_new(report, "version", version_json());
+    json_object_set_new(report, "date", date_json());
+    json_object_set_new(report, "light", json_text(c->session.light));
+    json_object_set_new(report, "light_is_default", json_boolean(c->session.made_up_light));
+    json_object_set_new(report, "camera_is_default", json_boolean(c->session.made_up));
+}
+
+static json_t *direct_json(const struct comparison *c)
+{
+    const struct ag_metrics *m = &c->direct_error.metrics;
+    return json_pack("{s:o, s:o, s:o, s:{s:s}}", "relmse", json_double(m->relmse), "flip",
+                     json_double(m->flip), "mae", json_double(m->mae), "images", "error",
+                     "direct-flip.png");
+}
+
 json_t *report_json(const struct comparison *c)
 {
     const struct arguments *a = c->arguments;
     struct ag_device_info device;
     ag_device_get_info(c->device, &device);
-    return json_pack("{s:o, s:o, s:[ii], s:o, s:o, s:o, s:o, s:o, s:i}", "scene",
-                     json_text(a->positional[0]), "camera", json_text(c->session.camera_name),
-                     "size", a->width, a->height, "exposure_ev", json_float(c->exposure_ev),
-                     "reference", reference_json(&c->reference), "methods", methods_json(c),
-                     "device", json_text(device.name), "driver", json_text(device.driver), "frames",
-                     a->frames);
+    json_t *report =
+        json_pack("{s:o, s:o, s:[ii], s:o, s:o, s:o, s:o, s:o, s:i}", "scene",
+                  json_text(a->positional[0]), "camera", json_text(c->session.camera_name), "size",
+                  a->width, a->height, "exposure_ev", json_float(c->exposure_ev), "reference",
+                  reference_json(&c->reference), "methods", methods_json(c), "device",
+                  json_text(device.name), "driver", json_text(device.driver), "frames", a->frames);
+    if (!report) return NULL;
+    if (c->direct_error_image) json_object_set_new(report, "direct", direct_json(c));
+    add_origin(report, c);
+    return report;
 }
 
 // ---- the table
@@ -163,12 +252,13 @@ static void print_row(const struct comparison *c, const struct method *m, int wi
 {
     double nothing = c->reference.indirect ? 0.0 : (double)NAN;
     printf("%-*s", width, m->gi);
+    print_any(8, m->indirect_error.metrics.relmse + nothing);
+    print_any(8, m->indirect_error.metrics.mae + nothing);
+    print_cell(6, 3, m->indirect_error.energy + nothing);
     print_any(8, m->image_error.metrics.relmse);
     print_cell(6, 4, m->image_error.metrics.flip);
     print_cell(7, 4, m->image_error.metrics.ssim);
     print_cell(6, 3, m->image_error.energy);
-    print_any(8, m->indirect_error.metrics.mae + nothing);
-    print_cell(6, 3, m->indirect_error.energy + nothing);
     print_cell(9, 3, number_in(m->frame_ms, "median"));
     print_cell(9, 3, number_in(m->frame_ms, "p95"));
     print_cell(8, 1, sum_of(m->memory) / (1 << 20));
@@ -179,11 +269,14 @@ void report_print(const struct comparison *c)
 {
     int width = widest_name(c);
     print_head(c);
-    printf("%-*s  %8s  %6s  %7s  %6s  %16s  %20s  %8s\n", width, "", "", "", "", "",
-           "indirect light", "frame, ms", "memory");
-    printf("%-*s  %8s  %6s  %7s  %6s  %8s  %6s  %9s  %9s  %8s\n", width, "method", "relmse", "flip",
-           "ssim", "energy", "mae", "energy", "median", "p95", "MiB");
+    printf("%-*s  %26s  %33s  %20s  %8s\n", width, "", "indirect light", "image", "frame, ms",
+           "memory");
+    printf("%-*s  %8s  %8s  %6s  %8s  %6s  %7s  %6s  %9s  %9s  %8s\n", width, "method", "relmse",
+           "mae", "energy", "relmse", "flip", "ssim", "energy", "median", "p95", "MiB");
     for (int i = 0; i < c->method_count; i++) print_row(c, &c->methods[i], width);
+    if (c->direct_error_image)
+        printf("\ndirect light alone, the same for all: relmse %.4g, flip %.4f of the image\n",
+               c->direct_error.metrics.relmse, c->direct_error.metrics.flip);
 }
 
 // ---- bounds

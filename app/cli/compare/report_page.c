@@ -93,6 +93,7 @@ static enum status find_images(struct page *page)
     page->images = json_object();
     if (!page->images) return fail("cannot write report.html: out of memory");
     enum status status = collect_images(page, json_object_get(page->report, "reference"));
+    if (status == DONE) status = collect_images(page, json_object_get(page->report, "direct"));
     json_array_foreach(json_object_get(page->report, "methods"), i, method)
     {
         if (status == DONE) status = collect_images(page, method);

@@ -61,35 +61,47 @@ function scatterAxis(title, values, log) {
     ticks: { color: css('--soft'), callback: logTicks, autoSkip: false, maxRotation: 0 } });
 }
 
-// Labels of points: right of the point, else left; moved vertically if they would overlap.
+const LABEL_STEPS = [0, 15, -15, 30, -30, 45, -45, 60, -60];
+
+// A free place for a label beside its point; undefined where there is none. The list below the chart has every name.
+function placeOf(point, width, area, taken) {
+  const places = LABEL_STEPS.flatMap(step => [point.x + 11, point.x - 11 - width].map(x => ({ x, y: point.y + step, width })));
+  const overlaps = (a, b) => Math.abs(a.y - b.y) < 15 && a.x < b.x + b.width && b.x < a.x + a.width;
+  return places.find(place => place.x >= area.left && place.x + width <= area.right && place.y >= area.top + 7 &&
+    place.y <= area.bottom - 7 && !taken.some(box => overlaps(box, place)));
+}
+
 const pointNames = {
   id: 'pointNames',
   afterDatasetsDraw(chart) {
     const { ctx, chartArea } = chart;
-    const taken = [];
+    const points = chart.getDatasetMeta(0).data;
+    const taken = points.map(point => ({ x: point.x - 8, y: point.y, width: 16 }));
     ctx.save();
     ctx.font = `500 12.5px ${Chart.defaults.font.family}`;
     ctx.fillStyle = css('--ink');
     ctx.textBaseline = 'middle';
-    chart.getDatasetMeta(0).data.forEach((point, k) => {
+    points.forEach((point, k) => {
       const text = labels[chart.data.datasets[0].data[k].i];
-      const width = ctx.measureText(text).width;
-      const x = point.x + 11 + width < chartArea.right ? point.x + 11 : Math.max(point.x - 11 - width, chartArea.left);
-      const clear = y => taken.every(box => Math.abs(box.y - y) >= 15 || box.x > x + width || box.x + box.width < x);
-      const y = [0, 15, -15, 30, -30].map(step => point.y + step).find(clear) ?? point.y;
-      taken.push({ x, y, width });
-      ctx.fillText(text, x, y);
+      const place = placeOf(point, ctx.measureText(text).width, chartArea, taken);
+      if (!place) return;
+      taken.push(place);
+      ctx.fillText(text, place.x, place.y);
     });
     ctx.restore();
   },
 };
 
+function listPoints(points) {
+  byId('points').replaceChildren(...points.map(({ i }) => element('li', { title: changesText(methods[i]) }, colourChip(i), labels[i])));
+}
+
 function scatterData(points) {
   return {
     datasets: [
-      { data: points, pointRadius: 6, pointHoverRadius: 8, backgroundColor: css('--accent'), borderColor: css('--paper'),
+      { data: points, pointRadius: 6, pointHoverRadius: 8, backgroundColor: points.map(({ i }) => methodColour(i)), borderColor: css('--paper'),
         borderWidth: 1.5 },
-      { data: frontOf(points), type: 'line', pointRadius: 0, pointHitRadius: 0, borderColor: css('--accent'),
+      { data: frontOf(points), type: 'line', pointRadius: 0, pointHitRadius: 0, borderColor: css('--soft'),
         borderWidth: 1.25, borderDash: [3, 4], order: 1 },
     ],
   };
@@ -111,6 +123,7 @@ function drawScatter(show) {
     x: scatterAxis('milliseconds a frame (GPU, median)', points.map(point => point.x), log),
     y: scatterAxis(metric.plot, points.map(point => point.y), log),
   };
+  listPoints(points);
   byId('log').disabled = !canBeLog(points);
   byId('scatter-chart').setAttribute('aria-label', `${metric.plot} against milliseconds: ` + points.map(({ i, x, y }) =>
     `${labels[i]} ${numberText(y)} in ${numberText(x)} ms`).join('; '));
@@ -159,9 +172,19 @@ function groupColours(groups) {
     : common[nextCommon++ % common.length]]));
 }
 
+// A name as lines, broken after + : , where it is long.
+const NAME_WIDTH = 22;
+function linesOf(name) {
+  const lines = [''];
+  for (const part of name.match(new RegExp(`[^+:,]{1,${NAME_WIDTH}}[+:,]?`, 'g')) ?? [name])
+    if (lines.at(-1) && lines.at(-1).length + part.length > NAME_WIDTH) lines.push(part);
+    else lines[lines.length - 1] += part;
+  return lines;
+}
+
 function passesData(names, colours) {
   return {
-    labels,
+    labels: labels.map(linesOf),
     datasets: names.map(name => ({
       label: name, backgroundColor: colours.get(groupOf({ name })), borderColor: css('--paper'),
       borderWidth: { right: 1 }, borderSkipped: false, barThickness: 22,
@@ -200,7 +223,8 @@ function drawPasses() {
   };
   options.scales = {
     x: axis('milliseconds (GPU, median of each pass)', { stacked: true, min: 0 }),
-    y: axis('', { stacked: true, grid: { display: false, borderColor: css('--line') }, ticks: { color: css('--ink') } }),
+    y: axis('', { stacked: true, grid: { display: false, borderColor: css('--line') },
+      ticks: { color: css('--ink'), autoSkip: false } }),
   };
   byId('groups').replaceChildren(...[...colours].map(([group, colour]) => {
     const chip = element('span', { className: 'chip' });
@@ -216,7 +240,8 @@ function drawPasses() {
 function buildPasses() {
   const timed = methods.some(method => (method.passes ?? []).some(pass => isNumber(passMs(pass))));
   if (!timed) return false;
-  byId('passes-chart').parentElement.style.height = `${Math.max(74 + 42 * methods.length, 160)}px`;
+  const rows = labels.map(label => Math.max(42, 18 * linesOf(label).length + 8));
+  byId('passes-chart').parentElement.style.height = `${Math.max(74 + methods.length * Math.max(...rows), 160)}px`;
   byId('passes').hidden = false;
   return true;
 }

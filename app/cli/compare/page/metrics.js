@@ -11,7 +11,17 @@ const frames = framesTimed ? ` over ${framesTimed} ${framesTimed === 1 ? 'frame'
 
 // better: 'low', 'high' or 'one'. plot: name in the scatter plot, for error metrics (asError converts a metric to one).
 const METRICS = [
-  {
+  {    group: 'Indirect light', name: 'relMSE', better: 'low', unit: 'no unit', plot: 'relMSE of indirect light',
+    value: m => m.indirect?.relmse,
+    meaning: 'Relative mean squared error of indirect light only.',
+  }, {
+    group: 'Indirect light', name: 'MAE', better: 'low', unit: 'cd/m²', plot: 'MAE of indirect light (cd/m²)',
+    value: m => m.indirect?.mae,
+    meaning: 'Mean absolute error of indirect light only, without direct light to hide it.',
+  }, {
+    group: 'Indirect light', name: 'energy', better: 'one', unit: 'ratio', value: m => m.indirect?.energy,
+    meaning: 'Mean luminance of indirect light divided by the reference’s. Below 1 light is missing, above 1 there is too much.',
+  }, {
     group: 'Image', name: 'FLIP', better: 'low', unit: 'no unit', plot: 'FLIP', value: m => m.flip,
     meaning: 'Visible difference when flipping between the image and the reference on a screen: 0 is none, 1 the largest.',
   }, {
@@ -26,19 +36,8 @@ const METRICS = [
     asError: value => 1 - value,
     meaning: 'Structural similarity: 1 is equal. Tolerates changes of brightness, penalizes lost detail and noise.',
   }, {
-    group: 'Image', name: 'mean ratio', better: 'one', unit: 'ratio', value: m => m.energy,
+    group: 'Image', name: 'energy', better: 'one', unit: 'ratio', value: m => m.energy,
     meaning: 'Mean luminance divided by the reference’s. Below 1 light is missing, above 1 there is too much.',
-  }, {
-    group: 'Indirect light', name: 'relMSE', better: 'low', unit: 'no unit', plot: 'relMSE of indirect light',
-    value: m => m.indirect?.relmse, hidden: true,
-    meaning: 'Relative mean squared error of indirect light only.',
-  }, {
-    group: 'Indirect light', name: 'MAE', better: 'low', unit: 'cd/m²', plot: 'MAE of indirect light (cd/m²)',
-    value: m => m.indirect?.mae,
-    meaning: 'Mean absolute error of indirect light only, without direct light to hide it.',
-  }, {
-    group: 'Indirect light', name: 'mean ratio', better: 'one', unit: 'ratio', value: m => m.indirect?.energy,
-    meaning: 'Mean luminance of indirect light divided by the reference’s. Below 1 light is missing, above 1 there is too much.',
   }, {
     group: 'Cost', name: 'frame ms', better: 'low', unit: 'milliseconds', value: m => m.frame_ms?.median,
     meaning: `Median GPU time of a frame${frames}.`,

@@ -29,11 +29,19 @@ function buildHead() {
   document.title = `${scene} – Afterglow comparison`;
   const size = Array.isArray(report.size) ? `${report.size[0]} × ${report.size[1]} px` : null;
   const facts = [
-    ['Size', size], ['Camera', report.camera], ['Exposure', isNumber(report.exposure_ev) ? `EV ${numberText(report.exposure_ev, 2)}` : null],
-    ['Frames timed', framesTimed], ['Device', report.device, report.driver],
+    ['Size', size], [report.camera_is_default ? 'Camera (default)' : 'Camera', report.camera],
+    [report.light_is_default ? 'Light (default)' : 'Light', report.light === '' ? 'of the scene' : report.light], ['Exposure', isNumber(report.exposure_ev) ? `EV ${numberText(report.exposure_ev, 2)}` : null],
+    ['Frames timed', framesTimed], ['Device', report.device, report.driver], ['Afterglow', report.version],
+    ['Date', report.date ? `${String(report.date).slice(0, 16).replace('T', ' ')} UTC` : null],
   ];
   byId('facts').append(...facts.filter(([, value]) => value !== null && value !== undefined).map(([name, value, more]) =>
     element('div', { title: more ? `Driver: ${more}` : undefined }, element('dt', {}, name), element('dd', {}, String(value)))));
+}
+
+function buildCommand() {
+  if (!report.command) return;
+  byId('command').hidden = false;
+  byId('command').firstChild.textContent = report.command;
 }
 
 function buildReference() {
@@ -86,6 +94,7 @@ function buildDetails() {
 
 document.body.append(tip);
 buildHead();
+buildCommand();
 buildReference();
 buildTable(showMethod);
 buildViewer();

@@ -47,7 +47,8 @@ function groupHeadings(columns) {
 
 // The name (a click shows the method in the viewer) and the GI spec with all options.
 function nameCell(i, show) {
-  const button = element('button', { type: 'button', className: 'method', title: 'Compare with the reference' }, labels[i]);
+  const button = element('button', { type: 'button', className: 'method' }, colourChip(i), labels[i]);
+  explain(button, `${changesText(methods[i])}. Click: compare with the reference.`);
   button.addEventListener('click', () => show(i));
   const count = Object.keys(optionsOf(methods[i])).length;
   const options = count ? element('details', { className: 'options' },
@@ -81,6 +82,18 @@ function buildTable(show) {
   }
   fill();
   byId('methods').hidden = methods.length === 0;
+  byId('table-legend').replaceChildren(
+    ...(methods.length > 1 ? [element('span', { className: 'best' }, 'Bold'), ': best of the column. '] : []),
+    element('span', { className: 'shown' }, 'Marked row'), ': left image of the viewer.');
+  byId('table-legend').append(...directText());
+}
+
+// How far the image is wrong where indirect light is exact.
+function directText() {
+  const direct = report.direct;
+  if (!isNumber(direct?.relmse)) return [];
+  return [element('br'), `Direct light alone, the same for all methods: relMSE ${numberText(direct.relmse)}, ` +
+    `FLIP ${numberText(direct.flip)} of the image.`];
 }
 
 // Highlights the row of the method in the viewer.

@@ -57,7 +57,6 @@ function secondsText(seconds) {
 // "lpv:dim=32+vo" → ["lpv", "vo"]; a plus before a digit belongs to a number (1e+05).
 const terms = gi => String(gi ?? '').split(/\+(?!\d)/);
 const techniquesOf = method => terms(method.gi).map(term => term.split(':')[0]);
-const baseName = method => techniquesOf(method).join(' + ') || 'unnamed';
 
 // {"lpv.dim": "32", …}
 function optionsOf(method) {
@@ -77,20 +76,29 @@ function specOf(method) {
   }).join('+');
 }
 
-// Labels of methods with the same techniques show the options in which they differ.
+// Methods keep the name that was given; equal names are numbered.
 function labelsOf(all) {
-  const labels = all.map(method => {
-    const alike = all.filter(other => baseName(other) === baseName(method)).map(optionsOf);
-    const own = optionsOf(method);
-    const differing = Object.keys(own).filter(key => alike.some(other => other[key] !== own[key]));
-    const several = techniquesOf(method).length > 1;
-    const text = differing.map(key => `${several ? key : key.split('.').pop()}=${own[key]}`);
-    return [baseName(method), ...text].join(' ');
-  });
-  return labels.map((label, i) => {
-    const before = labels.slice(0, i).filter(other => other === label).length;
-    return before ? `${label} #${before + 1}` : label;
+  const names = all.map(method => String(method.gi || 'unnamed'));
+  return names.map((name, i) => {
+    const before = names.slice(0, i).filter(other => other === name).length;
+    return before ? `${name} #${before + 1}` : name;
   });
 }
 
 const labels = labelsOf(methods);
+
+// The options that differ from the defaults, for a tooltip.
+function changesText(method) {
+  const changed = Object.entries(method.changed ?? {}).flatMap(([technique, options]) =>
+    Object.entries(options ?? {}).map(([option, value]) => `${technique}:${option}=${value}`));
+  return changed.length ? `Differs from the defaults: ${changed.join(', ')}` : 'All options have their defaults';
+}
+
+// One colour for each method, everywhere on the page.
+const methodColour = i => getComputedStyle(document.documentElement).getPropertyValue(`--method-${i % 16}`).trim();
+
+function colourChip(i) {
+  const chip = element('span', { className: 'chip', 'aria-hidden': 'true' });
+  chip.style.backgroundColor = `var(--method-${i % 16})`;
+  return chip;
+}

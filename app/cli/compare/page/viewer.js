@@ -11,6 +11,8 @@ const hasLayer = layer => [report.reference, ...methods].some(owner => uriOf(own
 
 // Image of such a name in the current layer.
 function sourceOf(name, layer = shows.layer) {
+  if (name === 'direct') return { uri: layer === LAYERS[0] ? uriOf(report.direct, 'error') : null,
+    label: 'error of direct light', text: 'Direct light alone: error map' };
   if (name === 'reference') return { uri: uriOf(report.reference, layer.key), label: 'reference', text: 'Reference' };
   const [i, kind] = name.split(' ');
   const label = labels[i];
@@ -25,7 +27,7 @@ function fillPick(select) {
     const source = sourceOf(name);
     return source.uri ? element('option', { value: name }, source.text) : null;
   };
-  const errors = methods.map((_, i) => option(`${i} error`)).filter(Boolean);
+  const errors = [...methods.map((_, i) => option(`${i} error`)), option('direct')].filter(Boolean);
   const plain = [option('reference'), ...methods.map((_, i) => option(`${i} picture`))].filter(Boolean);
   select.replaceChildren(...plain, ...(errors.length ? [element('optgroup', { label: 'Error maps' }, ...errors)] : []));
 }
@@ -154,7 +156,7 @@ function sheetRow(i) {
   const tiles = [tile('left', `${i} picture`, layer, layer.tile), tile('right', 'reference', layer, 'Reference'),
     tile('left', `${i} error`, layer, 'Error map'), tile('left', `${i} picture`, other, other.tile)].filter(Boolean);
   if (!tiles.length) return null;
-  return element('div', { className: 'row' }, element('h3', {}, labels[i], figure), element('div', { className: 'tiles' }, ...tiles));
+  return element('div', { className: 'row' }, element('h3', { title: changesText(methods[i]) }, colourChip(i), labels[i], figure), element('div', { className: 'tiles' }, ...tiles));
 }
 
 function buildSheet() {
