@@ -60,6 +60,9 @@ static enum status resume(struct job *job)
     if (!job->arguments->resume || access(job->path, F_OK) != 0) return DONE;
     enum ag_result result = tracing_resume(&job->tracing, job->path);
     if (result == AG_OK) return DONE;
+    char names[SPEC_SIZE];
+    if (result == AG_ERROR_ARGUMENT && tracing_differences(&job->tracing, job->path, names))
+        return fail("cannot resume %s: it was traced with %s", job->path, names);
     fail_library(job->session.context, result);
     return FAILED; // the file's content is no wrong usage
 }
@@ -152,7 +155,6 @@ static enum status report(struct job *job)
     ag_reference_get_info(job->tracing.reference, &info);
     double seconds = job->tracing.seconds;
     double rate = seconds > 0.0 ? (double)info.rays / seconds : (double)NAN;
-    session_say(&job->session);
     if (info.rays > 0)
         note("%d sample%s, %.1f million rays in %.1f s: %.2f million per second", info.samples,
              info.samples == 1 ? "" : "s", (double)info.rays * 1e-6, seconds, rate * 1e-6);
@@ -173,6 +175,7 @@ static enum status reference(const struct arguments *arguments)
     if (status == DONE) status = output_check(job->path);
     if (status == DONE) status = prepare(job);
     if (status == DONE) status = resume(job);
+    if (status == DONE) session_say(&job->session);
     if (status == DONE) status = converge(job);
     if (status == DONE) status = report(job);
     tracing_end(&job->tracing);

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 static const double LONGEST_STEP_S = 2.0; // between checks of the clock
@@ -36,7 +37,9 @@ enum status tracing_begin(struct tracing *t, struct session *session,
                           const struct ag_camera *camera, int wanted)
 {
     const struct arguments *a = session->arguments;
-    *t = (struct tracing){ .session = session, .wanted = wanted };
+    *t = (struct tracing){ .session = session,
+                           .wanted = wanted,
+                           .fov_rad = camera->vertical_fov_rad };
     struct ag_reference_desc desc;
     ag_reference_desc_default(&desc);
     desc.width = a->width;
@@ -128,27 +131,79 @@ enum status tracing_converge(struct tracing *t, const struct tracing_keeper *kee
     return status == DONE ? keep(keeper) : status;
 }
 
+// ---- what an image depends on
+
+enum { ORIGIN_COUNT = 9 };
+
+static const char *const origin_names[ORIGIN_COUNT] = {
+    "afterglow.scene", "afterglow.camera", "afterglow.bounces",
+    "afterglow.seed",  "afterglow.size",   "afterglow.fov",
+    "afterglow.time",  "afterglow.light",  "afterglow.options",
+};
+static const char *const origin_labels[ORIGIN_COUNT] = { "scene",  "camera", "--bounces",
+                                                         "--seed", "--size", "--fov",
+                                                         "--time", "light",  "options" };
+
+struct origin {
+    char text[ORIGIN_COUNT][LIGHT_SIZE];
+};
+
+static void find_origin(const struct tracing *t, struct origin *out)
+{
+    const struct arguments *a = t->session->arguments;
+    const char *only = a->direct_only ? "--direct-only" : a->indirect_only ? "--indirect-only" : "";
+    int i = 0;
+    snprintf(out->text[i++], LIGHT_SIZE, "%s", a->positional[0]);
+    snprintf(out->text[i++], LIGHT_SIZE, "%s", t->session->camera_name);
+    snprintf(out->text[i++], LIGHT_SIZE, a->bounces < 0 ? "unlimited" : "%d", a->bounces);
+    snprintf(out->text[i++], LIGHT_SIZE, "%llu", (unsigned long long)a->seed);
+    snprintf(out->text[i++], LIGHT_SIZE, "%dx%d", a->width, a->height);
+    snprintf(out->text[i++], LIGHT_SIZE, "%.6g", degrees(t->fov_rad));
+    snprintf(out->text[i++], LIGHT_SIZE, "%.9g %d", a->time_s, t->session->animation);
+    snprintf(out->text[i++], LIGHT_SIZE, "%s",
+             t->session->light[0] ? t->session->light : "that of the scene");
+    snprintf(out->text[i++], LIGHT_SIZE, "%s guiding=%d antialias=%d radius=%.6g decay=%.6g%s",
+             only, !a->no_guiding, a->antialias, (double)a->obscurance_radius_m,
+             (double)a->occlusion_decay_per_m, a->obscurance_sphere ? " sphere" : "");
+}
+
+bool tracing_differences(const struct tracing *t, const char *path, char out[SPEC_SIZE])
+{
+    struct origin origin;
+    char theirs[LIGHT_SIZE];
+    size_t used = 0;
+    find_origin(t, &origin);
+    out[0] = 0;
+    for (int i = 0; i < ORIGIN_COUNT && used < SPEC_SIZE; i++) {
+        if (ag_image_read_attribute(t->session->context, path, origin_names[i], theirs,
+                                    sizeof theirs) != AG_OK)
+            return false;
+        if (!theirs[0] || strcmp(theirs, origin.text[i]) == 0) continue;
+        int wrote = snprintf(out + used, SPEC_SIZE - used, "%s%s %s", used ? ", " : "",
+                             origin_labels[i], theirs);
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+    return used > 0;
+}
+
 // ---- files
 
 static enum ag_result write_layers(const struct tracing *t, const char *path,
                                    const struct ag_image_layer *layers, int count,
                                    const struct ag_attribute *more, int more_count)
 {
-    const struct arguments *a = t->session->arguments;
-    char seed[32], version[32], bounces[32];
+    char version[32];
+    struct origin origin;
     int v = ag_version();
-    snprintf(seed, sizeof seed, "%llu", (unsigned long long)a->seed);
     snprintf(version, sizeof version, "%d.%d.%d", v / 10000, v / 100 % 100, v % 100);
-    snprintf(bounces, sizeof bounces, a->bounces < 0 ? "unlimited" : "%d", a->bounces);
+    find_origin(t, &origin);
     struct ag_attribute attributes[MAX_ATTRIBUTES] = {
-        { "afterglow.scene", a->positional[0] },
-        { "afterglow.camera", t->session->camera_name },
-        { "afterglow.bounces", bounces },
-        { "afterglow.seed", seed },
         { "afterglow.version", version },
         { AG_REFERENCE_CHECKPOINT, ag_reference_checkpoint(t->reference) },
     };
-    int used = 6;
+    int used = 2;
+    for (int i = 0; i < ORIGIN_COUNT; i++)
+        attributes[used++] = (struct ag_attribute){ origin_names[i], origin.text[i] };
     for (int i = 0; i < more_count && used < MAX_ATTRIBUTES; i++) attributes[used++] = more[i];
     return ag_image_write_exr(t->session->context, path, layers, count, attributes, used);
 }

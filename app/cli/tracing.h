@@ -10,6 +10,7 @@ struct tracing {
     int wanted;      // samples per pixel, including resumed ones
     int begun, done; // resumed samples; current samples
     double seconds;  // rendering time of this run
+    float fov_rad;   // vertical, of the camera
 };
 
 // Layers of a resumable EXR, and color.
@@ -23,6 +24,9 @@ enum status tracing_begin(struct tracing *tracing, struct session *session,
 void tracing_end(struct tracing *tracing); // accepts zero
 // Loads the samples of a checkpoint.
 enum ag_result tracing_resume(struct tracing *tracing, const char *path);
+// The options that differ between a file and this run, as text with the file's values:
+// "--seed 5, --size 32x24"; false where the file's attributes tell none.
+bool tracing_differences(const struct tracing *t, const char *path, char out[SPEC_SIZE]);
 
 // Writes the samples so far.
 struct tracing_keeper {

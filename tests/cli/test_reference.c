@@ -201,8 +201,12 @@ TEST(a_resumed_run_equals_a_longer_one)
     CHECK_RELATIVE(mean_of(parts, NULL), mean_of(whole, NULL), 1e-6);
     CHECK_RELATIVE(mean_of(parts, "error"), mean_of(whole, "error"), 1e-4);
     run_expect(0, SMALL " --spp 9 --resume -o", parts, NULL); // nothing is left to do
-    check_one_error_line(run_expect(1, SMALL " --spp 12 --resume --seed 5 -o", parts, NULL));
-    check_one_error_line(run_expect(1, SMALL " --spp 12 --resume --fov 50 -o", parts, NULL));
+    const struct run *r = run_expect(1, SMALL " --spp 12 --resume --seed 5 -o", parts, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "traced with --seed 0\n"));
+    r = run_expect(1, SMALL " --spp 12 --resume --fov 50 --sky 1,1,1 -o", parts, NULL);
+    check_one_error_line(r);
+    CHECK(strstr(r->err, "--fov ") && strstr(r->err, "light that of the scene"));
     CHECK_NEAR(mean_of(parts, "samples"), 9, 0);
     const char *bare = path_of("bare.exr");
     run_expect(0, SMALL " --spp 2 --aov color -o", bare, NULL);
