@@ -5,6 +5,7 @@
 #include "output.h"
 #include "statistics.h"
 #include "values.h"
+#include "waiting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -179,9 +180,11 @@ static enum status render_frames(struct job *job, char last_path[PATH_SIZE])
     enum status status = DONE;
     for (int i = 0; i < frames && status == DONE; i++) {
         progress("rendering", i, frames);
+        waiting_begin(i, frames);
         status = render_frame(job, i);
         if (status == DONE && (job->sequence || i + 1 == frames))
             status = write_frame(job, i, last_path);
+        waiting_end();
     }
     progress_end();
     return status;

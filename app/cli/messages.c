@@ -1,4 +1,5 @@
-// Standard error. The only file with static state, since there is one terminal.
+// Standard error. Its state is static, since there is one terminal; the lock of stderr guards it
+// against the thread of waiting.c.
 #include "messages.h"
 
 #include <stdio.h>
@@ -62,8 +63,10 @@ __attribute__((format(printf, 1, 0))) static void line(const char *format, va_li
     char text[LINE_SIZE], replaced[LINE_SIZE];
     if (vsnprintf(text, sizeof text, format, arguments) < 0) return;
     if (state.internal) replace_internal(text, replaced);
+    flockfile(stderr);
     clear_bar();
     fprintf(stderr, "afterglow: %s\n", printable(state.internal ? replaced : text).s);
+    funlockfile(stderr);
 }
 
 enum status fail(const char *format, ...)

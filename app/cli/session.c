@@ -201,9 +201,19 @@ static void describe_light(struct session *session)
         session->light[used - 1] = 0;
 }
 
+static void warn_of_empty_scene(struct session *session)
+{
+    struct ag_scene_info info = { 0 };
+    ag_scene_get_info(session->scene, -1, 0.0, &info);
+    if (info.triangles == 0)
+        remember(session, "nothing to see in %s: it has no triangles",
+                 session->arguments->positional[0]);
+}
+
 enum status session_light(struct session *session)
 {
     const struct arguments *a = session->arguments;
+    warn_of_empty_scene(session);
     if (a->light_count == 0 && !a->no_scene_lights && !a->has_sky)
         return add_default_light(session);
     enum ag_result result = AG_OK;

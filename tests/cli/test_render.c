@@ -52,6 +52,18 @@ TEST(equal_commands_write_equal_files)
     }
 }
 
+TEST(an_empty_scene_has_nothing_to_see)
+{
+    require_device();
+    static const char empty[] = "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{}],\"scene\":0}";
+    char scene[300];
+    snprintf(scene, sizeof scene, "%s", test_path("empty.gltf"));
+    write_file(scene, empty, sizeof empty - 1);
+    const struct run *r =
+        run_expect(0, "render", scene, "--size", "16x16", "-o", test_path("empty.png"), NULL);
+    CHECK(strstr(r->err, "nothing to see in ") && strstr(r->err, "it has no triangles"));
+}
+
 TEST(visibility_alone_stands_on_ambient_and_says_so)
 {
     require_device();
