@@ -106,7 +106,8 @@ AG_API const char *ag_layer_name(int index);
 ///   right, +y down), z = ratio of the distances along the view axis, then over now, minus 1. 0
 ///   where there is no surface, in the first frame and after a cut. Requires motion_layer or a
 ///   technique that needs it.
-/// - display: exposed and tone mapped, linear, 0…1; requires display_layer
+/// - display: exposed and tone mapped, linear, 0…1; requires display_layer; see
+///   ag_renderer_set_display
 /// - debug: the debug view; requires ag_renderer_set_debug_view
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
@@ -150,6 +151,18 @@ AG_API enum ag_result ag_renderer_finished(struct ag_renderer *renderer,
 AG_API enum ag_result ag_renderer_exposure(struct ag_renderer *renderer, float *ev);
 /// Draws a debug view of a technique to the layer "debug" in all further frames; NULL: none.
 AG_API enum ag_result ag_renderer_set_debug_view(struct ag_renderer *renderer, const char *name);
+
+/// Shows another layer in the layer "display" of all further frames; NULL: color. Requires
+/// display_layer, and for indirect indirect_layer; other layers are kept while they are shown.
+///
+/// - color, direct, indirect, specular, emissive, debug: exposed with the EV of the frame, tone
+///   mapped. debug without a debug view: color
+/// - irradiance: likewise E/π, the radiance of a white diffuse surface
+/// - albedo, visibility: as they are
+/// - normal: (n + 1)/2; depth: 1/(1 + metres); motion: x, y in pixels and z, each as
+///   (1 + v/(1 + |v|))/2. Black where there is no surface
+/// - position and display cannot be shown
+AG_API enum ag_result ag_renderer_set_display(struct ag_renderer *renderer, const char *layer);
 
 struct ag_timing {
     char name[48]; ///< "technique.stage" or a frame pass; "frame" is the whole frame

@@ -125,6 +125,31 @@ enum ag_result ag_renderer_read(struct ag_renderer *r, const char *name, struct 
     return result;
 }
 
+static const char *shown_need(const struct ag_renderer *r, const struct layer *layer)
+{
+    if (!r->display_layer) return "create the renderer with display_layer";
+    if (layer->image == FRAME_INDIRECT && !r->indirect_layer)
+        return "create the renderer with indirect_layer";
+    if (layer->image == FRAME_DISPLAY || (layer->image == NO_IMAGE && layer->read != NO_READBACK))
+        return "it has no values to show";
+    return NULL;
+}
+
+enum ag_result ag_renderer_set_display(struct ag_renderer *r, const char *name)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE(context, r, "renderer is NULL");
+    const struct layer *layer = layer_find(name ? name : "color");
+    if (!layer) return api_done(context, fail_unknown(&context->host, name));
+    const char *need = shown_need(r, layer);
+    if (need)
+        return api_done(context, host_fail(&context->host, FAIL_ARGUMENT,
+                                           "cannot display layer %s: %s", layer->name, need));
+    r->shows_debug = layer->read == NO_READBACK;
+    r->shown.layer = r->shows_debug ? FRAME_COLOR : (enum frame_layer)layer->image;
+    return api_done(context, true);
+}
+
 // The image of a layer, pinned so that it lasts and has a value whatever techniques run.
 static bool share(struct ag_renderer *r, const struct layer *layer, struct gpu_image_handles *out)
 {

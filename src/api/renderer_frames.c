@@ -52,7 +52,9 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
                                    .camera_cut = desc->camera_cut,
                                    .want_indirect_layer = r->indirect_layer,
                                    .want_motion_layer = r->motion_layer,
-                                   .want_display = r->display_layer };
+                                   .want_display = r->display_layer,
+                                   .shown = &r->shown };
+    r->shown.image = r->shows_debug ? gi_debug_image(r->gi) : (gpu_image){ 0 };
     *hook = gi_hook(r->gi);
     return frame_prepare(r->frame, input, hook);
 }

@@ -29,10 +29,12 @@ struct ag_renderer {
     int recorded_count;
     uint32_t client; // of the device: gpu_client_add
     bool indirect_layer, display_layer, motion_layer;
-    int width, height; // of the last resize
-    bool sized;        // it succeeded
-    bool said_limit;   // the warning about too many lights was logged
-    uint64_t rendered; // frames since the last resize
+    struct frame_shown shown; // by the layer "display"; its image is set for each frame
+    bool shows_debug;         // the debug view, if one is set
+    int width, height;        // of the last resize
+    bool sized;               // it succeeded
+    bool said_limit;          // the warning about too many lights was logged
+    uint64_t rendered;        // frames since the last resize
 };
 
 static inline struct ag_context *renderer_context(const struct ag_renderer *renderer)

@@ -59,6 +59,7 @@ void frame_destroy(struct frame *f)
     frame_destroy_layers(f);
     reports_finish(f);
     gpu_buffer_destroy(f->gpu, &f->ggx_albedo);
+    display_finish(&f->display);
     composite_finish(&f->composite);
     exposure_finish(&f->exposure);
     direct_finish(&f->direct);
@@ -145,13 +146,27 @@ static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs, b
     return wanted;
 }
 
+// Whether the display image is of another layer than the colour.
+static bool shows_layer(const struct frame_input *input)
+{
+    const struct frame_shown *shown = input->shown;
+    return input->want_display && shown && (shown->image.id || shown->layer != FRAME_COLOR);
+}
+
+// Layers that exist even if no technique writes them.
+static uint32_t kept_layers(const struct frame *f, const struct frame_input *input)
+{
+    const bool by_layer = shows_layer(input) && !input->shown->image.id;
+    return f->pinned | (by_layer ? 1u << input->shown->layer : 0);
+}
+
 static uint32_t composite_variant_of(const struct frame_input *input, uint32_t needs)
 {
     return (needs & FRAME_WRITES_IRRADIANCE ? COMPOSITE_IRRADIANCE : 0) |
            (needs & FRAME_WRITES_SPECULAR ? COMPOSITE_SPECULAR : 0) |
            (needs & FRAME_WRITES_VISIBILITY ? COMPOSITE_VISIBILITY : 0) |
            (input->want_indirect_layer ? COMPOSITE_INDIRECT : 0) |
-           (input->want_display ? COMPOSITE_DISPLAY : 0);
+           (input->want_display && !shows_layer(input) ? COMPOSITE_DISPLAY : 0);
 }
 
 // The same radiance, without images.
@@ -165,6 +180,7 @@ static bool prepare_composite(struct frame *f, const struct frame_input *input)
 {
     f->composite_variant = composite_variant_of(input, f->needs);
     return composite_prepare(&f->composite, f->composite_variant) &&
+           (!shows_layer(input) || display_prepare(&f->display, f->gpu)) &&
            (!input->auto_exposure ||
             composite_prepare(&f->composite, meter_variant_of(f->composite_variant)));
 }
@@ -209,13 +225,13 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     if (input->pose->scene != f->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
     if (!scene_gpu_follow(&f->scene) || !emitters_follow(&f->emitters)) return false;
-    f->needs =
-        (indirect ? indirect->needs : 0) |
-        (input->want_motion_layer || f->pinned >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0);
+    const uint32_t kept = kept_layers(f, input);
+    f->needs = (indirect ? indirect->needs : 0) |
+               (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0);
     const uint32_t gbuffer_layers = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
                                     (f->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0);
-    f->prepared = frame_make_layers(f, wanted_layers(input, f->needs, f->scene.has_dielectrics)) &&
-                  prepare_lights(f, input) &&
+    const uint32_t written = wanted_layers(input, f->needs, f->scene.has_dielectrics);
+    f->prepared = frame_make_layers(f, written, kept) && prepare_lights(f, input) &&
                   gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used, gbuffer_layers) &&
                   prepare_composite(f, input);
     return f->prepared;
@@ -391,6 +407,47 @@ static void record_composite(struct frame *f, struct gpu_cmd *cmd)
     gpu_scope_end(cmd);
 }
 
+static uint32_t display_kind(const struct frame_shown *shown)
+{
+    if (shown->image.id) return DISPLAY_RADIANCE;
+    switch (shown->layer) {
+    case FRAME_IRRADIANCE:
+        return DISPLAY_IRRADIANCE;
+    case FRAME_ALBEDO:
+    case FRAME_MATERIAL:
+    case FRAME_DIELECTRIC:
+        return DISPLAY_COLOR;
+    case FRAME_VISIBILITY:
+        return DISPLAY_GREY;
+    case FRAME_NORMAL:
+        return DISPLAY_NORMAL;
+    case FRAME_DEPTH:
+        return DISPLAY_DEPTH;
+    case FRAME_MOTION:
+        return DISPLAY_MOTION;
+    default:
+        return DISPLAY_RADIANCE;
+    }
+}
+
+static void record_display(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
+{
+    const struct frame_shown *shown = input->shown;
+    if (!shows_layer(input)) return;
+    const struct display_images images = {
+        .shown = shown->image.id ? shown->image : f->layers[shown->layer],
+        .albedo = f->layers[FRAME_ALBEDO],
+        .display = f->layers[FRAME_DISPLAY],
+    };
+    const struct gpu_binding bindings[2] = {
+        f->constants_binding,
+        { "exposure_state", .buffer = f->exposure.state },
+    };
+    gpu_scope_begin(cmd, "display");
+    display_record(&f->display, cmd, display_kind(shown), &images, bindings, f->width, f->height);
+    gpu_scope_end(cmd);
+}
+
 void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
                   const struct frame_indirect *indirect)
 {
@@ -399,7 +456,7 @@ void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input
     emitters_update(&f->emitters, input->pose);
     frame_begin(f, cmd, input);
     scene_gpu_update(&f->scene, cmd, input->pose, f->camera_cut);
-    frame_clear_pinned(f, cmd);
+    frame_clear_unwritten(f, cmd);
     record_gbuffer(f, cmd);
     record_shadows(f, cmd);
     record_direct(f, cmd);
@@ -408,6 +465,7 @@ void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input
     record_indirect(f, cmd, input, indirect);
     record_exposure(f, cmd, input);
     record_composite(f, cmd);
+    record_display(f, cmd, input);
     f->index++;
     f->number++;
     reports_record(f, cmd);

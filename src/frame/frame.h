@@ -120,6 +120,12 @@ struct frame_indirect {
     uint32_t needs; // frame_need bits
 };
 
+// What the display image shows, needed until the frame is recorded.
+struct frame_shown {
+    enum frame_layer layer;
+    gpu_image image; // not empty: shown instead; RGBA16F of the frame's size, scaled radiance
+};
+
 struct frame_input {
     const struct scene_pose *pose;
     struct world_camera camera;
@@ -132,6 +138,7 @@ struct frame_input {
     bool want_indirect_layer;         // fill FRAME_INDIRECT
     bool want_motion_layer;           // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
     bool want_display;                // fill FRAME_DISPLAY
+    const struct frame_shown *shown;  // by FRAME_DISPLAY; NULL: FRAME_COLOR
 };
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);

@@ -40,11 +40,11 @@ static bool make_layer(struct frame *frame, int l)
     return gpu_image_create(frame->gpu, &desc, &frame->layers[l]);
 }
 
-bool frame_make_layers(struct frame *frame, uint32_t wanted)
+bool frame_make_layers(struct frame *frame, uint32_t written, uint32_t kept)
 {
-    frame->written = wanted;
+    frame->unwritten = kept & ~written;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
-        if (!((wanted | frame->pinned) >> l & 1u))
+        if (!((written | kept) >> l & 1u))
             gpu_image_destroy(frame->gpu, &frame->layers[l]);
         else if (!make_layer(frame, l))
             return false;
@@ -59,15 +59,14 @@ bool frame_pin_layer(struct frame *frame, enum frame_layer layer)
     return frame->width == 0 || make_layer(frame, (int)layer);
 }
 
-void frame_clear_pinned(struct frame *frame, struct gpu_cmd *cmd)
+void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd)
 {
-    const uint32_t unwritten = frame->pinned & ~frame->written;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
         const float value = l == FRAME_VISIBILITY ? 1.0f : 0.0f;
-        if (unwritten & ~frame->neutral & 1u << l)
+        if (frame->unwritten & ~frame->neutral & 1u << l)
             gpu_clear_image(cmd, frame->layers[l], (const float[4]){ value, value, value, value });
     }
-    frame->neutral = unwritten;
+    frame->neutral = frame->unwritten;
 }
 
 void frame_destroy_layers(struct frame *frame)

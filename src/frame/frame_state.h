@@ -4,6 +4,7 @@
 #include "frame/frame.h"
 
 #include "frame/composite/composite.h"
+#include "frame/composite/display.h"
 #include "frame/composite/exposure.h"
 #include "frame/direct/direct.h"
 #include "frame/emitters.h"
@@ -35,10 +36,11 @@ struct frame {
     struct direct direct;
     struct exposure exposure;
     struct composite composite;
+    struct display display;
     gpu_image layers[FRAME_LAYER_COUNT];
     uint32_t pinned;       // bit l: layer l, by frame_pin_layer
-    uint32_t written;      // set by frame_prepare: layers that passes or techniques write
-    uint32_t neutral;      // pinned layers that have their neutral value
+    uint32_t unwritten;    // set by frame_prepare: kept layers that no pass or technique writes
+    uint32_t neutral;      // those of them that have their neutral value
     gpu_buffer ggx_albedo; // core/ggx_albedo.h
 
     // Set by frame_prepare.
@@ -66,9 +68,10 @@ struct frame {
 };
 
 // frame_layers.c
-bool frame_make_layers(struct frame *frame, uint32_t wanted); // bit l: layer l; destroys others
+// Bit l: layer l. `written` by passes or techniques; `kept` in any case. Destroys others.
+bool frame_make_layers(struct frame *frame, uint32_t written, uint32_t kept);
 void frame_destroy_layers(struct frame *frame);
-void frame_clear_pinned(struct frame *frame, struct gpu_cmd *cmd); // those that nothing writes
+void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd);
 
 // frame_report.c
 bool reports_init(struct frame *frame);

@@ -115,6 +115,7 @@ TEST(a_null_object_is_refused)
     CHECK_REFUSED(NULL, ag_renderer_exposure(NULL, &ev));
     CHECK_REFUSED(NULL, ag_renderer_finished(NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_set_debug_view(NULL, NULL));
+    CHECK_REFUSED(NULL, ag_renderer_set_display(NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_set_gi(NULL, "none", NULL, 0));
     CHECK_REFUSED(NULL, ag_renderer_set_frame_options(NULL, NULL));
     assert_int_equal(ag_renderer_timings(NULL, NULL, 0), 0);

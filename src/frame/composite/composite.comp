@@ -7,8 +7,8 @@
 // pixels for automatic exposure instead, before the exposure of the display image is known.
 #include "frame/frame.glsl"
 #include "frame/composite/composite_shared.h"
+#include "frame/composite/display.glsl"
 #include "frame/composite/exposure_shared.h"
-#include "image/tonemap.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -57,13 +57,6 @@ vec3 indirect_light(ivec2 pixel, vec4 direct)
     return frame_is_lit(albedo.a) ? min(light, vec3(HALF_MAX)) : vec3(0.0);
 }
 
-// IEC 61966-2-1.
-vec3 srgb_encoded(vec3 linear)
-{
-    return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear,
-               lessThanEqual(linear, vec3(0.0031308)));
-}
-
 // Unlit materials and pixels without a surface are not metered.
 void meter(ivec2 pixel, vec3 radiance)
 {
@@ -75,13 +68,6 @@ void meter(ivec2 pixel, vec3 radiance)
     } else {
         atomicAdd(histogram.black, 1);
     }
-}
-
-void show(ivec2 pixel, vec3 radiance)
-{
-    vec3 display =
-        tonemap_pbr_neutral(radiance * (exposure_scale(state.ev) / frame.radiance_scale));
-    imageStore(display_layer, pixel, vec4(srgb_encoded(clamp(display, 0.0, 1.0)), 1.0));
 }
 
 void main()
@@ -101,5 +87,6 @@ void main()
     }
     imageStore(color_layer, pixel, vec4(radiance, 1.0));
     if (WRITES_INDIRECT) imageStore(indirect_layer, pixel, vec4(indirect, 1.0));
-    if (WRITES_DISPLAY) show(pixel, radiance);
+    if (WRITES_DISPLAY)
+        imageStore(display_layer, pixel, display_encoded(display_tone_mapped(radiance, state.ev)));
 }

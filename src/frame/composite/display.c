@@ -1,0 +1,31 @@
+// Host code of the display pass.
+#include "frame/composite/display.h"
+
+#include "frame_shaders.h"
+
+bool display_prepare(struct display *d, struct gpu *gpu)
+{
+    d->gpu = gpu;
+    return d->pipeline.id ||
+           gpu_compute_pipeline_create(gpu, "frame.display", &shader_composite_display_comp, NULL,
+                                       0, &d->pipeline);
+}
+
+void display_finish(struct display *d)
+{
+    if (!d->gpu) return;
+    gpu_pipeline_destroy(d->gpu, &d->pipeline);
+    *d = (struct display){ 0 };
+}
+
+void display_record(const struct display *d, struct gpu_cmd *cmd, uint32_t kind,
+                    const struct display_images *images, const struct gpu_binding bindings[2],
+                    uint32_t width, uint32_t height)
+{
+    const struct display_push push = { kind };
+    gpu_dispatch(cmd, d->pipeline,
+                 GPU_BIND(bindings[0], bindings[1], { "shown_layer", .image = images->shown },
+                          { "albedo_layer", .image = images->albedo },
+                          { "display_layer", .image = images->display }),
+                 &push, sizeof push, gpu_groups(width, 8), gpu_groups(height, 8), 1);
+}

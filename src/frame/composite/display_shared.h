@@ -1,0 +1,20 @@
+// Parameters of display.comp.
+#ifndef AG_FRAME_DISPLAY_SHARED_H
+#define AG_FRAME_DISPLAY_SHARED_H
+
+#include "core/shared.h"
+
+// How a layer becomes linear display values.
+#define DISPLAY_RADIANCE   0 // exposed and tone mapped
+#define DISPLAY_IRRADIANCE 1 // likewise, E/π: of a white diffuse surface
+#define DISPLAY_COLOR      2 // as it is
+#define DISPLAY_GREY       3 // the first channel
+#define DISPLAY_NORMAL     4 // (n + 1)/2
+#define DISPLAY_DEPTH      5 // 1/(1 + metres)
+#define DISPLAY_MOTION     6 // x, y in pixels and z, each as (1 + v/(1 + |v|))/2
+
+struct display_push {
+    uint32_t kind;
+};
+
+#endif
