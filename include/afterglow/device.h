@@ -10,9 +10,10 @@ struct ag_device;
 
 struct ag_device_info {
     char name[256], driver[256];
-    bool software;     ///< runs on the CPU
-    bool usable;       ///< supports everything that the library needs
-    char missing[256]; ///< unsupported features, if not usable
+    bool software;        ///< runs on the CPU
+    bool usable;          ///< supports everything that the library needs
+    char missing[256];    ///< unsupported features, if not usable
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 
 /// Writes at most `capacity` entries; *count is the number of devices.
@@ -38,7 +39,12 @@ struct ag_device_desc {
     const char *device; ///< index in ag_device_list, part of a name, or NULL for the best
     bool validation;    ///< enable Vulkan validation and its synchronization checks; default false
     const struct ag_device_adopt *adopt; ///< NULL: the library opens a device
-    uint64_t reserved[6];                ///< 0; see ABI in types.h
+    /// Bytes of ag_device_pipeline_cache from an earlier run, needed only during the call. Damaged
+    /// ones and those of another device or driver are ignored (AG_LOG_INFO says so); do not pass
+    /// what an attacker could have written. NULL: none.
+    const void *pipeline_cache;
+    size_t pipeline_cache_bytes;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 
 AG_API void ag_device_desc_default(struct ag_device_desc *desc);
@@ -51,6 +57,11 @@ AG_API void ag_device_get_info(const struct ag_device *device, struct ag_device_
 AG_API const char *ag_device_required_features(void);
 /// Number of messages from the validation layers so far; 0 without validation.
 AG_API int ag_device_validation_messages(const struct ag_device *device);
+/// Copies what the driver has compiled so far to `out`, for ag_device_desc.pipeline_cache of later
+/// runs: call it when all renderers are created. *bytes is the size; out NULL: the size alone. Too
+/// little `capacity` is AG_ERROR_ARGUMENT.
+AG_API enum ag_result ag_device_pipeline_cache(struct ag_device *device, void *out, size_t capacity,
+                                               size_t *bytes);
 
 /// What has been created and submitted on a device so far.
 struct ag_device_counters {

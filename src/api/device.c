@@ -75,6 +75,8 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
     AG_REQUIRE(context, !lent || adopt_is_whole(lent),
                "an adopted device needs instance, physical_device, device and queue");
 
+    AG_REQUIRE(context, desc->pipeline_cache || desc->pipeline_cache_bytes == 0,
+               "pipeline_cache is NULL");
     struct gpu_adopt adopt = { 0 };
     if (lent)
         adopt = (struct gpu_adopt){
@@ -85,7 +87,9 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
     struct gpu_desc gpu_desc = { .device = desc->device,
                                  .validation = desc->validation || context->validation,
                                  .shader_dir = context->shader_dir,
-                                 .adopt = lent ? &adopt : NULL };
+                                 .adopt = lent ? &adopt : NULL,
+                                 .pipeline_cache = desc->pipeline_cache,
+                                 .pipeline_cache_bytes = desc->pipeline_cache_bytes };
     warn_of_shader_dir(context);
     struct ag_device *device = host_alloc(&context->host, 1, sizeof *device);
     if (!device) return api_done(context, false);
@@ -117,6 +121,16 @@ void ag_device_get_info(const struct ag_device *device, struct ag_device_info *o
 const char *ag_device_required_features(void)
 {
     return gpu_required_features();
+}
+
+enum ag_result ag_device_pipeline_cache(struct ag_device *device, void *out, size_t capacity,
+                                        size_t *bytes)
+{
+    struct ag_context *context = device ? device->context : NULL;
+    AG_REQUIRE_POINTER(context, bytes);
+    *bytes = 0;
+    AG_REQUIRE_POINTER(context, device);
+    return api_done(context, gpu_pipeline_cache_read(device->gpu, out, capacity, bytes));
 }
 
 int ag_device_validation_messages(const struct ag_device *device)

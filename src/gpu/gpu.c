@@ -72,7 +72,7 @@ static bool open_device(struct gpu *gpu, const struct gpu_desc *desc)
     return device_create(gpu);
 }
 
-static bool create_shared(struct gpu *gpu)
+static bool create_shared(struct gpu *gpu, const struct gpu_desc *desc)
 {
     VkSemaphoreTypeCreateInfo timeline = {
         .sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
@@ -86,13 +86,7 @@ static bool create_shared(struct gpu *gpu)
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_SEMAPHORE, gpu->timeline, "gpu.timeline");
-    if (!VK_CHECK(gpu,
-                  vkCreatePipelineCache(gpu->device,
-                                        &(VkPipelineCacheCreateInfo){
-                                            .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO },
-                                        NULL, &gpu->pipeline_cache))) {
-        return false;
-    }
+    if (!pipeline_cache_create(gpu, desc->pipeline_cache, desc->pipeline_cache_bytes)) return false;
     for (int i = 0; i < CMD_COUNT; i++) {
         if (!cmd_init(gpu, &gpu->cmds[i], i > CMD_TRANSFER)) return false;
     }
@@ -118,7 +112,7 @@ struct gpu *gpu_create(struct host *host, const struct gpu_desc *desc)
             host_log(host, LOG_WARNING, "gpu shaders %s: %s; the embedded ones are used",
                      gpu->shader_dir, strerror(errno));
     }
-    if (!create_shared(gpu)) goto fail;
+    if (!create_shared(gpu, desc)) goto fail;
     host_log(host, LOG_INFO, "gpu device %s (%s)%s", gpu->info.name, gpu->info.driver,
              desc->validation ? ", with validation" : "");
     return gpu;

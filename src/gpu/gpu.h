@@ -64,6 +64,9 @@ struct gpu_desc {
     bool validation; // validation and synchronization validation; fails when the layer is missing
     const char *shader_dir; // X.spv in this folder overrides the embedded shader X; NULL: no folder
     const struct gpu_adopt *adopt; // NULL: the layer creates the device
+    // From gpu_pipeline_cache_read, of any device; untrusted. What does not fit is ignored.
+    const void *pipeline_cache;
+    size_t pipeline_cache_bytes;
 };
 
 struct gpu *gpu_create(struct host *host, const struct gpu_desc *desc);
@@ -251,6 +254,9 @@ void gpu_pipeline_destroy(struct gpu *gpu, gpu_pipeline *pipeline);
 // Rebuilds pipelines whose .spv in shader_dir changed and returns their number. On an invalid
 // shader the old pipeline stays, with a warning.
 int gpu_reload_shaders(struct gpu *gpu);
+// What the driver compiled so far, for gpu_desc.pipeline_cache. Sets *bytes to the size and writes
+// it all. out NULL: the size alone. false: more than `capacity`, or out of memory.
+bool gpu_pipeline_cache_read(struct gpu *gpu, void *out, size_t capacity, size_t *bytes);
 
 // ---- Commands -----------------------------------------------------------------------------------
 

@@ -451,6 +451,8 @@ struct gpu {
     struct gpu_counters counters;
 };
 
+// pipeline_cache.c. NULL: an empty one.
+bool pipeline_cache_create(struct gpu *gpu, const void *bytes, size_t size);
 // instance.c
 bool instance_create(struct host *host, bool validation, VkInstance *out);
 bool instance_watch(struct gpu *gpu); // counts validation messages from now on

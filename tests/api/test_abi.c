@@ -1,5 +1,5 @@
 // The binary interface: structs that a program allocates keep their size and the place of their
-// members. A new member takes reserved words and gets a row; no row changes.
+// members. A new member takes the first reserved words and gets a row; no other row changes.
 #include "framework/test.h"
 
 #include <afterglow/afterglow.h>
@@ -44,7 +44,9 @@ static const struct {
     AT(ag_device_desc, device, 0),
     AT(ag_device_desc, validation, 8),
     AT(ag_device_desc, adopt, 16),
-    AT(ag_device_desc, reserved, 24),
+    AT(ag_device_desc, pipeline_cache, 24),
+    AT(ag_device_desc, pipeline_cache_bytes, 32),
+    AT(ag_device_desc, reserved, 40),
     SIZE(ag_device_counters, 112),
     AT(ag_device_counters, images, 0),
     AT(ag_device_counters, buffers, 8),

@@ -123,6 +123,7 @@ TEST(a_null_object_is_refused)
     assert_int_equal(ag_renderer_memory(NULL, NULL, 0), 0);
     assert_int_equal(ag_device_memory(NULL, NULL, 0), 0);
     ag_device_get_counters(NULL, NULL);
+    CHECK_REFUSED(NULL, ag_device_pipeline_cache(NULL, NULL, 0, NULL));
     assert_int_equal(ag_renderer_reload_shaders(NULL), 0);
     CHECK_STRING(ag_renderer_gi(NULL), "");
     assert_int_equal(ag_device_validation_messages(NULL), 0);
