@@ -23,6 +23,7 @@ struct ag_bake_desc {
     double checkpoint_every_s; ///< with a checkpoint; default 30; 0: only when cancelled
     uint64_t max_memory_bytes; ///< refuse to run if more would be needed; default 0: no limit
     bool full_report;          ///< also compute what only ag_bake_report shows; default false
+    uint64_t reserved[8];      ///< 0; see ABI in types.h
 };
 AG_API void ag_bake_desc_default(struct ag_bake_desc *desc);
 
@@ -45,6 +46,7 @@ struct ag_bake_estimate {
     double seconds;             ///< NaN without a probe
     uint64_t file_bytes;        ///< of the finished file
     uint64_t peak_memory_bytes; ///< beyond the scene
+    uint64_t reserved[4];       ///< 0; see ABI in types.h
 };
 /// What ag_bake_run will need. probe: run a few tasks, about a second, to estimate the time; their
 /// results are kept.
@@ -56,10 +58,11 @@ AG_API enum ag_result ag_bake_estimate(struct ag_bake *bake, bool probe,
 AG_API enum ag_result ag_bake_set_checkpoint(struct ag_bake *bake, const char *path);
 
 struct ag_bake_progress {
-    const char *stage;   ///< being worked on
-    double done;         ///< share of the whole time, 0…1
-    double seconds_left; ///< estimated
-    bool stopping;       ///< cancelled, the checkpoint is written; running tasks come to their end
+    const char *stage;    ///< being worked on
+    double done;          ///< share of the whole time, 0…1
+    double seconds_left;  ///< estimated
+    bool stopping;        ///< cancelled, the checkpoint is written; running tasks come to their end
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 /// Computes what is missing, on all cores, and returns when it is done. `progress` (may be NULL) is
 /// called about ten times a second on this thread, also while `stopping`; if it returns false, the
@@ -84,6 +87,7 @@ struct ag_bake_origin {
     char gi[4096];         ///< GI spec
     char scene_name[4096]; ///< as given to ag_scene_load
     uint64_t seed;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 /// What such a file is a part of, for ag_bake_create.
 AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *path,
@@ -91,10 +95,11 @@ AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const c
 
 struct ag_bake_info {
     const char *technique, *options; ///< owned by the bake
-    char key[33];   ///< names what it depends on: a file KEY.safetensors in a cache
-    bool complete;  ///< run to its end, or loaded
-    double seconds; ///< wall time of all runs; NaN: loaded from a file that does not state it
-    uint64_t bytes; ///< of its arrays; 0 until complete
+    char key[33];         ///< names what it depends on: a file KEY.safetensors in a cache
+    bool complete;        ///< run to its end, or loaded
+    double seconds;       ///< wall time of all runs; NaN: loaded from a file that does not state it
+    uint64_t bytes;       ///< of its arrays; 0 until complete
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_bake_get_info(const struct ag_bake *bake, struct ag_bake_info *out);
 /// The report as a JSON document: technique, options, stages with their seconds, seconds,

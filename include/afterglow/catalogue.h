@@ -16,6 +16,7 @@ struct ag_option_info {
     const char *unit;
     const char *effect; ///< of a change: "live", "invalidate", "resize", "recreate" or "rebake"
     const char *help;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 
 struct ag_technique_info {
@@ -23,6 +24,7 @@ struct ag_technique_info {
     const char *role; ///< "source", "delta" or "visibility"
     bool moving_geometry, moving_lights, needs_bake, makes_specular, publishes_probes;
     int option_count, preset_count, debug_view_count;
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 
 /// Each function returns false if an index is out of range. Strings are static.
@@ -41,6 +43,7 @@ AG_API bool ag_frame_option_get(int index, struct ag_option_info *out);
 struct ag_builtin_scene_info {
     const char *name, *title; ///< name without @
     int option_count;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 AG_API bool ag_builtin_scene_get(int index, struct ag_builtin_scene_info *out);
 AG_API bool ag_builtin_scene_option_get(int scene, int index, struct ag_option_info *out);

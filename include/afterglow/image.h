@@ -68,6 +68,7 @@ struct ag_compare_desc {
     const struct ag_image *mask; ///< NULL, or of equal size; pixels with a channel above 0 count
     bool ignore_not_finite;      ///< ignore NaN and infinite pixels; else they are an error
     float pixels_per_degree;     ///< of the viewing condition of flip, 1…1000
+    uint64_t reserved[4];        ///< 0; see ABI in types.h
 };
 /// Display values, all pixels, 67 pixels per degree.
 AG_API void ag_compare_desc_default(struct ag_compare_desc *desc);
@@ -80,8 +81,9 @@ struct ag_metrics {
     double flip;     ///< LDR-FLIP (Andersson et al. 2020), 0 for equal images … 1
     double flip_hdr; ///< HDR-FLIP (Andersson et al. 2021), likewise; NaN unless desc->radiance
     double mean_a[3], mean_b[3];
-    uint64_t counted; ///< number of pixels measured
-    uint64_t ignored; ///< pixels in the mask that are NaN or infinite in either image
+    uint64_t counted;     ///< number of pixels measured
+    uint64_t ignored;     ///< pixels in the mask that are NaN or infinite in either image
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 /// Error of `a` relative to the reference `b`: equal sizes, at least 3 channels. desc NULL: the
 /// defaults.

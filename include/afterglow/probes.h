@@ -38,6 +38,7 @@ struct ag_probes_handle {
     float scale;
     float first[3], spacing;
     int counts[3], slab;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_renderer_probes_handle(struct ag_renderer *renderer,
                                                 struct ag_probes_handle *out);

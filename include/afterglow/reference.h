@@ -28,6 +28,7 @@ struct ag_reference_desc {
     bool obscurance_sphere; ///< obscurance of the whole sphere instead of the hemisphere above the
                             ///< surface; default false
     uint64_t seed;          ///< of all random numbers; default 0
+    uint64_t reserved[8];   ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`.
 AG_API void ag_reference_desc_default(struct ag_reference_desc *desc);
@@ -78,6 +79,7 @@ struct ag_reference_info {
     double mean;   ///< mean luminance of color, cd/m²
     double error; ///< standard error of color's luminance, root mean square over the pixels, cd/m²;
                   ///< infinite for fewer than 2 samples
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_reference_get_info(const struct ag_reference *reference,
                                             struct ag_reference_info *out);

@@ -25,11 +25,13 @@ struct ag_material_desc {
     float specular; ///< weight of the dielectric's specular lobe, 0…1; 0: purely diffuse; default 1
     float specular_color[3]; ///< F0 = min(((ior − 1)/(ior + 1))² · colour, 1) · specular; ≥ 0,
                              ///< default 1
-    bool unlit; ///< shown by its base colour; neither reflects nor emits (docs/units.md)
+    bool unlit;           ///< shown by its base colour; neither reflects nor emits (docs/units.md)
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 AG_API void ag_material_desc_default(struct ag_material_desc *desc);
 
-/// A triangle mesh. Arrays are copied.
+/// A triangle mesh. Arrays are copied. Zero is the default of all members: there is no
+/// ag_mesh_desc_default.
 struct ag_mesh_desc {
     const float *positions; ///< vertex_count × 3, metres
     const float *normals;   ///< vertex_count × 3, unit; NULL: flat shading
@@ -37,6 +39,7 @@ struct ag_mesh_desc {
     const uint32_t *indices; ///< counter-clockwise seen from the front
     uint32_t index_count;    ///< a multiple of 3
     int material;            ///< from ag_scene_add_material
+    uint64_t reserved[12];   ///< 0; see ABI in types.h
 };
 
 enum ag_light_type { AG_LIGHT_SUN, AG_LIGHT_POINT, AG_LIGHT_SPOT };
@@ -47,6 +50,7 @@ struct ag_light_desc {
     float intensity[3];         ///< linear Rec. 709: lux for suns, candela for points and spots
     float inner_rad, outer_rad; ///< half-angles of a spot, inner < outer ≤ π/2
     bool enabled;               ///< false: emits nothing, but keeps its index; default true
+    uint64_t reserved[6];       ///< 0; see ABI in types.h
 };
 /// A light at the origin that shines down with intensity 1; a spot with half-angles 0 and π/4.
 AG_API void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type);
@@ -72,6 +76,7 @@ struct ag_area_light_desc {
     float direction[3];  ///< normal of the front; any length
     float width, height; ///< metres, > 0; the width is horizontal (along x if it faces up or down)
     float radiance[3]; ///< linear Rec. 709, cd/m²; flux is π · radiance · width · height lumens
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 /// One square metre at the origin, facing down, radiance 1.
 AG_API void ag_area_light_desc_default(struct ag_area_light_desc *desc);
@@ -145,7 +150,8 @@ struct ag_default_lighting {
     bool needed;            ///< the scene has no light, no emission and no sky
     float sun_direction[3]; ///< of the emitted light
     float sun_lux[3];
-    float sky[3]; ///< cd/m²
+    float sky[3];         ///< cd/m²
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 /// The sun and sky that suit the scene, if it has no light.
 AG_API enum ag_result ag_scene_default_lighting(struct ag_scene *scene,
@@ -163,6 +169,7 @@ struct ag_scene_info {
     float bounds_min[3], bounds_max[3]; ///< at the given moment; min > max for an empty scene
     float sky[3];                       ///< cd/m²
     bool emissive;                      ///< has emissive surfaces
+    uint64_t reserved[8];               ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_scene_get_info(struct ag_scene *scene, int animation, double time_s,
                                         struct ag_scene_info *out);
@@ -173,6 +180,7 @@ struct ag_instance_info {
     enum ag_mobility mobility;
     bool skinned;              ///< its joints place it
     float world_from_mesh[16]; ///< column-major, at the given moment; identity for a skin
+    uint64_t reserved[4];      ///< 0; see ABI in types.h
 };
 /// index: 0…ag_scene_info.instances − 1.
 AG_API enum ag_result ag_scene_get_instance(struct ag_scene *scene, int index, int animation,
@@ -184,6 +192,7 @@ struct ag_mesh_info {
     uint32_t index_count;
     int material;
     float bounds_min[3], bounds_max[3]; ///< metres, in the space of the mesh
+    uint64_t reserved[4];               ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_scene_get_mesh(struct ag_scene *scene, int index,
                                         struct ag_mesh_info *out);
@@ -191,6 +200,7 @@ AG_API enum ag_result ag_scene_get_mesh(struct ag_scene *scene, int index,
 struct ag_light_info {
     const char *name;           ///< valid until the scene is destroyed
     struct ag_light_desc light; ///< in world space
+    uint64_t reserved[2];       ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int animation,
                                          double time_s, struct ag_light_info *out);
@@ -198,6 +208,7 @@ AG_API enum ag_result ag_scene_get_light(struct ag_scene *scene, int index, int 
 struct ag_animation_info {
     const char *name; ///< valid until the scene is destroyed
     double duration_s;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_scene_get_animation(struct ag_scene *scene, int index,
                                              struct ag_animation_info *out);
@@ -208,6 +219,7 @@ struct ag_material_info {
     bool base_color_map, metallic_roughness_map, normal_map, emissive_map;
     bool specular_map, specular_color_map;
     const char *alpha_mode; ///< "opaque", "mask" or "blend"
+    uint64_t reserved[4];   ///< 0; see ABI in types.h
 };
 AG_API enum ag_result ag_scene_get_material(struct ag_scene *scene, int index,
                                             struct ag_material_info *out);

@@ -108,6 +108,7 @@ static enum ag_result desc_check(const char *function, const struct ag_scene *sc
                                  const struct ag_bake_desc *desc)
 {
     struct ag_context *context = scene->context;
+    AG_REQUIRE_KNOWN(function, context, desc);
     AG_REQUIRE_FOR(function, context, desc->threads >= 0, "threads %d is negative", desc->threads);
     AG_REQUIRE_FOR(function, context, desc->shard_count >= 0, "shard_count %d is negative",
                    desc->shard_count);
@@ -187,7 +188,9 @@ struct listener {
 static bool tell(void *user, const struct bake_progress *p)
 {
     const struct listener *listener = user;
-    const struct ag_bake_progress progress = { p->stage, p->done, p->seconds_left, p->stopping };
+    const struct ag_bake_progress progress = {
+        .stage = p->stage, .done = p->done, .seconds_left = p->seconds_left, .stopping = p->stopping
+    };
     return listener->progress(listener->user, &progress);
 }
 

@@ -146,7 +146,9 @@ bool ag_builtin_scene_get(int index, struct ag_builtin_scene_info *out)
 {
     const struct builtin_scene *scene = builtin_at(index);
     if (!scene || !out) return false;
-    *out = (struct ag_builtin_scene_info){ scene->name, scene->title, (int)scene->options.count };
+    *out = (struct ag_builtin_scene_info){ .name = scene->name,
+                                           .title = scene->title,
+                                           .option_count = (int)scene->options.count };
     return true;
 }
 

@@ -227,6 +227,9 @@ static bool options_of(struct ag_context *context, const struct ag_compare_desc 
     struct ag_compare_desc defaults;
     ag_compare_desc_default(&defaults);
     if (!desc) desc = &defaults;
+    if (!api_zero(desc->reserved, sizeof desc->reserved / sizeof *desc->reserved))
+        return host_fail(&context->host, FAIL_ARGUMENT,
+                         "cannot compare images: " API_UNKNOWN_MEMBERS);
     if (desc->mask && !is_whole(desc->mask))
         return host_fail(&context->host, FAIL_ARGUMENT,
                          "cannot compare images: the mask is not valid");

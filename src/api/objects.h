@@ -76,11 +76,13 @@ enum ag_result api_refuse(struct ag_context *context, const char *function, cons
     } while (0)
 
 // Members that this version of the library does not know.
+#define API_UNKNOWN_MEMBERS                                                                        \
+    "reserved members are not 0: ag_..._desc_default was not called, or the program needs a "      \
+    "newer library"
 #define AG_REQUIRE_KNOWN(function, context, desc)                                                  \
     AG_REQUIRE_FOR((function), (context),                                                          \
                    api_zero((desc)->reserved, sizeof(desc)->reserved / sizeof *(desc)->reserved),  \
-                   "reserved members are not 0: ag_..._desc_default was not called, or the "       \
-                   "program needs a newer library")
+                   API_UNKNOWN_MEMBERS)
 #define AG_REQUIRE_POINTER(context, pointer) AG_REQUIRE(context, pointer, #pointer " is NULL")
 // Of functions that create an object: *out is NULL unless they succeed.
 #define AG_REQUIRE_OUT(context, out)                                                               \

@@ -64,6 +64,7 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
     AG_REQUIRE_OUT(context, out);
     AG_REQUIRE_POINTER(context, scene);
     AG_REQUIRE_POINTER(context, desc);
+    AG_REQUIRE_KNOWN(__func__, context, desc);
     AG_REQUIRE(context,
                desc->width >= 1 && desc->width <= IMAGE_MAX_SIZE && desc->height >= 1 &&
                    desc->height <= IMAGE_MAX_SIZE,
@@ -149,7 +150,9 @@ enum ag_result ag_reference_get_info(const struct ag_reference *r, struct ag_ref
     AG_REQUIRE(context, r, "reference is NULL");
     AG_REQUIRE_POINTER(context, out);
     struct reference_info info = reference_info(r->reference);
-    *out = (struct ag_reference_info){ info.samples, info.rays, info.mean, info.error };
+    *out = (struct ag_reference_info){
+        .samples = info.samples, .rays = info.rays, .mean = info.mean, .error = info.error
+    };
     return AG_OK;
 }
 

@@ -231,6 +231,7 @@ enum ag_result ag_scene_default_lighting(struct ag_scene *scene, struct ag_defau
     enum ag_result result = pose_for(__func__, scene, out, 0, 0.0, &pose);
     if (result != AG_OK) return result;
     struct default_lighting lighting = default_lighting(pose);
+    *out = (struct ag_default_lighting){ 0 };
     out->needed = scene_is_dark(scene->scene);
     api_store(out->sun_direction, lighting.sun_direction);
     api_store(out->sun_lux, lighting.sun_lux);
@@ -343,7 +344,8 @@ enum ag_result ag_scene_get_animation(struct ag_scene *scene, int index,
 {
     REQUIRE_ELEMENT(scene, out, "animation", index, animation_count);
     const struct animation *animation = &scene->scene->animations[index];
-    *out = (struct ag_animation_info){ named(animation->name), (double)animation->duration_s };
+    *out = (struct ag_animation_info){ .name = named(animation->name),
+                                       .duration_s = (double)animation->duration_s };
     return AG_OK;
 }
 

@@ -50,6 +50,7 @@ enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_de
     REQUIRE_ADDING(scene, desc, index);
     struct ag_context *context = scene->context;
     REQUIRE_NO_BAKE(scene);
+    AG_REQUIRE_KNOWN(__func__, context, desc);
     AG_REQUIRE(context, desc->positions && desc->vertex_count > 0, "there are no positions");
     AG_REQUIRE(context, desc->indices && desc->index_count > 0, "there are no indices");
     AG_REQUIRE(context, desc->index_count % 3 == 0, "index_count %u is no multiple of 3",
@@ -151,6 +152,7 @@ enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
     REQUIRE_ADDING(scene, desc, instance);
     struct ag_context *context = scene->context;
     REQUIRE_NO_BAKE(scene);
+    AG_REQUIRE_KNOWN(__func__, context, desc);
     AG_REQUIRE(context, limits_position(api_vec3(desc->position)),
                "position is not within %g m of the origin", (double)SCENE_MAX_DISTANCE_M);
     AG_REQUIRE(context, glms_vec3_norm(vec3_unit(api_vec3(desc->direction))) > 0.0f,

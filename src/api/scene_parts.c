@@ -16,6 +16,7 @@ static bool in_unit_range(const float *values, int count)
 static enum ag_result material_check(const char *function, struct ag_context *context,
                                      const struct ag_material_desc *desc)
 {
+    AG_REQUIRE_KNOWN(function, context, desc);
     AG_REQUIRE_FOR(function, context, in_unit_range(desc->base_color, 4),
                    "base_color is not within 0 to 1");
     AG_REQUIRE_FOR(function, context,
@@ -53,6 +54,7 @@ enum ag_result parts_material(const char *function, const struct ag_scene *scene
 static enum ag_result light_check(const char *function, struct ag_context *context,
                                   const struct ag_light_desc *desc)
 {
+    AG_REQUIRE_KNOWN(function, context, desc);
     AG_REQUIRE_FOR(function, context, (unsigned)desc->type <= AG_LIGHT_SPOT, "type %d is unknown",
                    (int)desc->type);
     AG_REQUIRE_FOR(function, context, limits_light(api_vec3(desc->intensity)),
