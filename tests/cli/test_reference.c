@@ -213,6 +213,29 @@ TEST(a_resumed_run_equals_a_longer_one)
     check_one_error_line(run_expect(1, SMALL " --spp 4 --resume -o", bare, NULL));
 }
 
+TEST(default_light_and_camera_are_said_before_the_samples)
+{
+    static const char triangle[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                   "property float y\nproperty float z\nelement face 1\n"
+                                   "property list uchar int vertex_indices\nend_header\n"
+                                   "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const char *scene = path_of("triangle.ply");
+    write_file(scene, triangle, sizeof triangle - 1);
+    char command[2048], said[2048] = "";
+    const char *errors = path_of("triangle.txt");
+    // Interrupted, so that only what was said before counts.
+    snprintf(command, sizeof command,
+             "timeout -s INT 2 '%s' reference '%s' --size 64x64 --spp 1000000 -o '%s' 2> '%s'",
+             AFTERGLOW_PROGRAM, scene, path_of("triangle.exr"), errors);
+    CHECK(system(command) != 0);
+    FILE *file = fopen(errors, "re");
+    assert_non_null(file);
+    CHECK(fread(said, 1, sizeof said - 1, file) > 0);
+    fclose(file);
+    CHECK(strstr(said, "no light in ") && strstr(said, "no camera in "));
+    CHECK(strstr(said, "interrupted after") && !strstr(said, "million rays"));
+}
+
 TEST(json_describes_the_traced_image)
 {
     const char *path = path_of("json.png");
