@@ -1,15 +1,31 @@
-# cmake --install: headers, both libraries, the program, afterglow.pc for pkg-config and a package for find_package.
+# cmake --install: headers, both libraries, the programs, examples, shader functions for hosts, the licence, and packages for
+# find_package and pkg-config. The tree can be moved: nothing in it names the prefix.
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/afterglow)
 
 install(DIRECTORY include/afterglow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS afterglow afterglow_static)
 install(TARGETS afterglow_import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/afterglow)
-install(TARGETS afterglow_shared EXPORT afterglow)
-install(EXPORT afterglow NAMESPACE afterglow:: FILE afterglow-config.cmake DESTINATION ${package})
+install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.c)
+# What a host's own shaders include: `glslc -DAG_GLSL=1 -I <prefix>/share/afterglow/glsl`. Paths are those of src/.
+foreach(file core/shared.h core/sh.glsl frame/frame_shared.h frame/octahedral.glsl frame/probes.glsl)
+  get_filename_component(folder ${file} DIRECTORY)
+  install(FILES src/${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/afterglow/glsl/${folder})
+endforeach()
+if(TARGET afterglow)
+  install(TARGETS afterglow)
+endif()
 
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/afterglow-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/afterglow-config-version.cmake DESTINATION ${package})
+# Two exports, since only users of the static library need the third-party libraries.
+foreach(kind shared static)
+  install(TARGETS afterglow_${kind} EXPORT afterglow_${kind})
+  install(EXPORT afterglow_${kind} NAMESPACE afterglow:: FILE afterglow-${kind}.cmake DESTINATION ${package})
+endforeach()
+configure_package_config_file(cmake/afterglow-config.cmake.in ${PROJECT_BINARY_DIR}/afterglow-config.cmake
+  INSTALL_DESTINATION ${package} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/afterglow-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/afterglow-config.cmake ${PROJECT_BINARY_DIR}/afterglow-config-version.cmake
+  DESTINATION ${package})
 
 # pkg-config names of the third-party libraries that the static library needs.
 set(AFTERGLOW_PC_REQUIRES "jansson libxxhash libpng OpenEXR spirv-cross-c-shared vulkan")
@@ -18,5 +34,7 @@ list(JOIN OPENBLAS_LDFLAGS " " AFTERGLOW_PC_OPENBLAS)
 list(JOIN LAPACKE_LDFLAGS " " AFTERGLOW_PC_LAPACKE)
 # Path from <libdir>/pkgconfig to the prefix, so that an installed tree can be moved.
 file(RELATIVE_PATH AFTERGLOW_PC_UP /prefix/${CMAKE_INSTALL_LIBDIR} /prefix)
-configure_file(cmake/afterglow.pc.in ${CMAKE_BINARY_DIR}/afterglow.pc @ONLY)
-install(FILES ${CMAKE_BINARY_DIR}/afterglow.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+foreach(name afterglow afterglow-static)
+  configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()

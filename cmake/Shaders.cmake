@@ -82,12 +82,12 @@ function(ag_shaders_for target header folder)
     string(REPLACE "," ";" defines "${CMAKE_MATCH_5}")
     list(TRANSFORM defines PREPEND -D)
     set(inc ${generated}/${name}.inc)
-    set(spv ${CMAKE_BINARY_DIR}/shaders/${name}.spv)
+    set(spv ${PROJECT_BINARY_DIR}/shaders/${name}.spv)
     add_custom_command(OUTPUT ${inc} ${spv}
       COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -Werror -DAG_GLSL=1 ${defines}
-              -I${CMAKE_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc} -mfmt=c -o ${inc} ${shader}
+              -I${PROJECT_SOURCE_DIR}/src -MD -MF ${inc}.d -MT ${inc} -mfmt=c -o ${inc} ${shader}
       COMMAND ${GLSLC} -fshader-stage=${stage} --target-env=vulkan1.3 -DAG_GLSL=1 ${defines}
-              -I${CMAKE_SOURCE_DIR}/src -o ${spv} ${shader}
+              -I${PROJECT_SOURCE_DIR}/src -o ${spv} ${shader}
       DEPENDS ${shader} DEPFILE ${inc}.d COMMENT "GLSL ${name}" VERBATIM)
     list(APPEND words ${inc})
     list(APPEND spirv ${spv})
@@ -96,7 +96,7 @@ function(ag_shaders_for target header folder)
       "static const uint32_t ${symbol}_words[] =\n#include \"${name}.inc\"\n;\n"
       "const struct gpu_shader shader_${symbol} = { \"${name}\", ${symbol}_words, sizeof ${symbol}_words / 4 };\n")
   endforeach()
-  file(MAKE_DIRECTORY ${generated} ${CMAKE_BINARY_DIR}/shaders)
+  file(MAKE_DIRECTORY ${generated} ${PROJECT_BINARY_DIR}/shaders)
   file(CONFIGURE OUTPUT ${generated}/${header} CONTENT "${declarations}" @ONLY)
   file(CONFIGURE OUTPUT ${generated}/${target}_shaders.c CONTENT "${definitions}" @ONLY)
   set_property(TARGET ${target} PROPERTY AFTERGLOW_SPIRV ${spirv})

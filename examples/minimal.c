@@ -53,6 +53,8 @@ static enum ag_result add_material(struct ag_scene *scene, float r, float g, flo
 // A white room of 4 m with a red block and a spot that lights one wall.
 static enum ag_result build(struct ag_scene *scene)
 {
+    const float room[2][3] = { { -2, -2, -2 }, { 2, 2, 2 } };
+    const float block[2][3] = { { -1.2f, -2, -1 }, { 0, -0.6f, 0.2f } };
     int white = -1, red = -1;
     struct ag_light_desc spot;
     ag_light_desc_default(&spot, AG_LIGHT_SPOT);
@@ -62,11 +64,8 @@ static enum ag_result build(struct ag_scene *scene)
     for (int i = 0; i < 3; i++) spot.intensity[i] = 1000.0f; // candela
     enum ag_result result = add_material(scene, 0.8f, 0.8f, 0.8f, &white);
     if (result == AG_OK) result = add_material(scene, 0.7f, 0.1f, 0.1f, &red);
-    if (result == AG_OK)
-        result = add_box(scene, (float[3]){ -2, -2, -2 }, (float[3]){ 2, 2, 2 }, true, white);
-    if (result == AG_OK)
-        result =
-            add_box(scene, (float[3]){ -1.2f, -2, -1 }, (float[3]){ 0, -0.6f, 0.2f }, false, red);
+    if (result == AG_OK) result = add_box(scene, room[0], room[1], true, white);
+    if (result == AG_OK) result = add_box(scene, block[0], block[1], false, red);
     return result == AG_OK ? ag_scene_add_light(scene, &spot, NULL) : result;
 }
 

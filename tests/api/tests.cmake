@@ -23,7 +23,8 @@ if(NOT AFTERGLOW_SANITIZE)
   add_test(NAME api.exports
     COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/exports.sh $<TARGET_FILE:afterglow_shared> ${CMAKE_SOURCE_DIR}/include)
   add_test(NAME api.install
-    COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/install.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR} ${CMAKE_C_COMPILER})
+    COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/install.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR} ${CMAKE_C_COMPILER}
+      ${CMAKE_CXX_COMPILER} ${GLSLC})
   set_tests_properties(api.exports api.install PROPERTIES TIMEOUT 300 LABELS api)
 endif()
 add_test(NAME api.documented COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/documented.sh ${CMAKE_SOURCE_DIR})
