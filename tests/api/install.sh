@@ -25,7 +25,10 @@ unset LD_LIBRARY_PATH AFTERGLOW_IMPORTER
     for name in minimal balls measure side_by_side; do
         "$cc" -Wall -Werror "$doc/examples/$name.c" $flags "$rpath" -o "$work/$name"
     done
-    "$cxx" -x c++ -std=c++20 -Wall -Werror "$doc/examples/minimal.c" -x none $flags "$rpath" -o "$work/minimal-cxx"
+    "$cc" -Wall -Werror "$doc/examples/host.c" $flags -lvulkan "$rpath" -o "$work/host"
+    for name in minimal host; do
+        "$cxx" -x c++ -std=c++20 -Wall -Werror "$doc/examples/$name.c" -x none $flags -lvulkan "$rpath" -o "$work/$name-cxx"
+    done
     "$cc" "$doc/examples/minimal.c" $static_flags -o "$work/minimal-static"
     "$cxx" -x c++ -std=c++20 "$doc/examples/minimal.c" -x none $static_flags -o "$work/minimal-static-cxx"
 }
@@ -33,6 +36,8 @@ for name in minimal minimal-cxx minimal-static minimal-static-cxx; do
     "$work/$name" "$work/$name.png"
     cmp "$work/minimal.png" "$work/$name.png"
 done
+for name in host host-cxx; do "$work/$name" "$work/$name.png"; done
+cmp "$work/host.png" "$work/host-cxx.png"
 for name in minimal minimal-cxx; do readelf -d "$work/$name" | grep -q 'NEEDED.*libafterglow\.so'; done
 for name in minimal-static minimal-static-cxx; do ! readelf -d "$work/$name" | grep -q 'NEEDED.*libafterglow'; done
 

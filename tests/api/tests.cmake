@@ -25,7 +25,10 @@ if(NOT AFTERGLOW_SANITIZE)
   add_test(NAME api.install
     COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/install.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR} ${CMAKE_C_COMPILER}
       ${CMAKE_CXX_COMPILER} ${GLSLC})
-  set_tests_properties(api.exports api.install PROPERTIES TIMEOUT 300 LABELS api)
+  add_test(NAME api.subproject
+    COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/subproject.sh ${CMAKE_SOURCE_DIR} ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER}
+      "${CMAKE_C_COMPILER_LAUNCHER}")
+  set_tests_properties(api.exports api.install api.subproject PROPERTIES TIMEOUT 300 LABELS api)
 endif()
 add_test(NAME api.documented COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/documented.sh ${CMAKE_SOURCE_DIR})
 set_tests_properties(api.documented PROPERTIES LABELS api)

@@ -68,6 +68,7 @@ include_case src/techniques/lpv/bad.comp 'may not include techniques/vct' '#incl
 include_case src/techniques/lpv/bad.c 'may not include image/image.h' '#include "image/image.h"'
 include_case src/techniques/lpv/bad.c 'may not include frame/rsm' '#include "frame/rsm/rsm.h"'
 include_case src/frame/bad.c 'Vulkan function outside' 'void f(void) { int a; /* x */ vkCmdDraw(a); }'
+include_case examples/bad.c 'Vulkan function outside' 'void f(void) { vkCmdDraw(a); }'
 include_case src/trace/bad.c 'Vulkan function outside' 'void f(void) { g("\\"", vkCmdDraw); }'
 include_case src/gpu/bad.c 'Embree function outside' 'void f(void) { rtcNewDevice(0); }'
 include_case src/new/bad.c 'no row' 'int x;'
