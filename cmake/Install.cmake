@@ -14,6 +14,10 @@ foreach(file core/shared.h core/sh.glsl frame/frame_shared.h frame/octahedral.gl
 endforeach()
 if(TARGET afterglow)
   install(TARGETS afterglow)
+  install(FILES ${PROJECT_BINARY_DIR}/manual/afterglow.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${PROJECT_BINARY_DIR}/manual/afterglow
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${PROJECT_BINARY_DIR}/manual/_afterglow DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
 
 # Two exports, since only users of the static library need the third-party libraries.

@@ -633,7 +633,20 @@ void arguments_command(const char *command, const struct arguments *arguments, c
 
 // ---- help
 
-static void print_option(const struct option *option)
+bool arguments_option(const struct command *command, int index, struct command_option *out)
+{
+    const char *heading = NULL;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        const struct option *o = &options[i];
+        if (!o->name) heading = o->help;
+        if (!(o->commands & command->bit) || index-- > 0) continue;
+        *out = (struct command_option){ o->name, o->value, heading, o->help };
+        return true;
+    }
+    return false;
+}
+
+static void print_option(const struct command_option *option)
 {
     int wrote = printf("  %s%s%s", option->name, option->value ? " " : "",
                        option->value ? option->value : "");
@@ -642,16 +655,14 @@ static void print_option(const struct option *option)
     print_wrapped(HELP_COLUMN, option->help);
 }
 
-// Groups without an option of the command have no heading.
 static void print_options(const struct command *command)
 {
     const char *heading = NULL;
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        if (!options[i].name) heading = options[i].help;
-        if (!(options[i].commands & command->bit)) continue;
-        if (heading) printf("\n%s:\n", heading);
-        heading = NULL;
-        print_option(&options[i]);
+    struct command_option option;
+    for (int i = 0; arguments_option(command, i, &option); i++) {
+        if (option.heading != heading) printf("\n%s:\n", option.heading);
+        heading = option.heading;
+        print_option(&option);
     }
 }
 

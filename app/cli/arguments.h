@@ -87,6 +87,12 @@ struct command {
     enum status (*run)(const struct arguments *arguments);
 };
 
+struct command_option {
+    const char *name, *value; // value NULL: a switch
+    const char *heading;      // of its group
+    const char *help;         // '\n' begins a line
+};
+
 // Parses the words after the command name; reports wrong usage on standard error.
 enum status arguments_parse(const struct command *command, int count, char **words,
                             struct arguments *out);
@@ -95,3 +101,5 @@ void arguments_command(const char *command, const struct arguments *arguments, c
                        size_t size);
 // Prints --help of one command.
 void arguments_help(const struct command *command);
+// Option `index` of a command, in the order of --help; false past the end.
+bool arguments_option(const struct command *command, int index, struct command_option *out);

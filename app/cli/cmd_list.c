@@ -1,6 +1,7 @@
 // afterglow list: techniques with their options and debug views, built-in scenes, devices.
 #include "commands.h"
 #include "json.h"
+#include "option_text.h"
 #include "session.h"
 #include "wrapped.h"
 
@@ -18,28 +19,12 @@ static bool frame_option(int owner, int index, struct ag_option_info *out)
     return ag_frame_option_get(index, out);
 }
 
-// Item `index` of "first|second|…".
-static const char *choice(const char *choices, int index, char out[64])
-{
-    for (; index > 0 && *choices; index--) {
-        choices += strcspn(choices, "|");
-        choices += *choices == '|';
-    }
-    snprintf(out, 64, "%.*s", (int)strcspn(choices, "|"), choices);
-    return out;
-}
-
-static bool is(const struct ag_option_info *option, const char *type)
-{
-    return strcmp(option->type, type) == 0;
-}
-
 // ---- JSON
 
 static json_t *number_json(const struct ag_option_info *option, double value)
 {
-    if (is(option, "bool")) return json_boolean(value != 0.0);
-    if (is(option, "int")) return json_integer((json_int_t)value);
+    if (option_is(option, "bool")) return json_boolean(value != 0.0);
+    if (option_is(option, "int")) return json_integer((json_int_t)value);
     return json_double(value);
 }
 
@@ -47,7 +32,7 @@ static json_t *choices_json(const char *choices)
 {
     json_t *array = json_array();
     char name[64];
-    for (int i = 0; array && choice(choices, i, name)[0]; i++)
+    for (int i = 0; array && option_choice(choices, i, name)[0]; i++)
         json_array_append_new(array, json_string(name));
     return array;
 }
@@ -58,19 +43,19 @@ static json_t *option_json(const struct ag_option_info *option)
                                "effect", option->effect, "help", option->help);
     if (!object) return NULL;
     char name[64];
-    if (is(option, "choice")) {
-        const char *initial = choice(option->unit, (int)option->initial, name);
+    if (option_is(option, "choice")) {
+        const char *initial = option_choice(option->unit, (int)option->initial, name);
         json_object_set_new(object, "default", json_string(initial));
         json_object_set_new(object, "choices", choices_json(option->unit));
         return object;
     }
-    if (is(option, "text")) {
+    if (option_is(option, "text")) {
         json_object_set_new(object, "default", json_string(""));
         json_object_set_new(object, "unit", json_string(option->unit));
         return object;
     }
     json_object_set_new(object, "default", number_json(option, option->initial));
-    if (is(option, "bool")) return object;
+    if (option_is(option, "bool")) return object;
     json_object_set_new(object, "min", number_json(option, option->min));
     json_object_set_new(object, "max", number_json(option, option->max));
     json_object_set_new(object, "unit", json_string(option->unit));
@@ -169,34 +154,15 @@ static enum status list_json(const struct ag_device_info *devices, int count)
 
 // ---- text
 
-static const char *default_of(const struct ag_option_info *o, char out[64])
-{
-    if (is(o, "choice")) return choice(o->unit, (int)o->initial, out);
-    if (is(o, "bool")) return o->initial != 0.0 ? "true" : "false";
-    if (is(o, "text")) return "";
-    snprintf(out, 64, "%g", o->initial);
-    return out;
-}
-
-// " (range)" on one line; "" for switches.
-static void range_of(const struct ag_option_info *o, char out[512])
-{
-    out[0] = 0;
-    if (is(o, "choice") || is(o, "text"))
-        snprintf(out, 512, " (%s)", o->unit);
-    else if (!is(o, "bool"))
-        snprintf(out, 512, " (%g to %g%s%s)", o->min, o->max, o->unit[0] ? " " : "", o->unit);
-    for (char *c = out; *c; c++)
-        if (*c == ' ' && c > out) *c = HELP_NO_BREAK;
-}
-
 // "name=default  help (range)"
 static void print_option(const struct ag_option_info *o)
 {
     char text[1024], range[512], value[64];
-    range_of(o, range);
+    option_range(o, range);
+    for (char *c = range; *c; c++)
+        if (*c == ' ' && c > range) *c = HELP_NO_BREAK;
     snprintf(text, sizeof text, "%s%s", o->help, range);
-    int used = printf("    %s=%s", o->name, default_of(o, value));
+    int used = printf("    %s=%s", o->name, option_default(o, value));
     printf("%*s", used < HELP_COLUMN ? HELP_COLUMN - used : 1, "");
     print_wrapped(used < HELP_COLUMN ? HELP_COLUMN : used + 1, text);
 }
@@ -247,7 +213,7 @@ static void print_other_defaults(int technique, int before)
     printf("    options and debug views as in %s, but", other.name);
     for (int i = 0; ag_technique_option_get(technique, i, &own); i++) {
         ag_technique_option_get(before, i, &theirs);
-        if (own.initial != theirs.initial) printf(" %s=%s", own.name, default_of(&own, value));
+        if (own.initial != theirs.initial) printf(" %s=%s", own.name, option_default(&own, value));
     }
     printf("\n");
 }

@@ -11,29 +11,14 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct command *const commands[] = { &command_render,  &command_reference,
-                                                  &command_compare, &command_bake,
-                                                  &command_info,    &command_list,
-                                                  &command_diff,    &command_cache };
-enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
-
-// There is nothing to bake where no technique needs it.
-static bool is_offered(const struct command *command)
-{
-    struct ag_technique_info info;
-    if (command->bit != BAKE) return true;
-    for (int i = 0; ag_technique_get(i, &info); i++)
-        if (info.needs_bake) return true;
-    return false;
-}
-
 static void print_usage(void)
 {
     printf("Afterglow: real-time global illumination, measured against a path-traced reference\n\n"
            "Usage: afterglow COMMAND ARGUMENTS [options]\n\n"
            "Commands:\n");
-    for (int i = 0; i < COMMAND_COUNT; i++)
-        if (is_offered(commands[i])) printf("  %-11s%s\n", commands[i]->name, commands[i]->summary);
+    const struct command *command;
+    for (int i = 0; (command = command_get(i)); i++)
+        printf("  %-11s%s\n", command->name, command->summary);
     printf("\nSCENE is a file (.gltf, .glb, .obj, .ply, .fbx, .x) or a built-in scene (@cornell).\n"
            "\nFirst steps:\n"
            "  afterglow render @cornell --gi lpv -o cornell.png\n"
@@ -46,17 +31,18 @@ static void print_usage(void)
 
 static const struct command *command_find(const char *name)
 {
-    for (int i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(commands[i]->name, name) == 0 && is_offered(commands[i])) return commands[i];
+    const struct command *command;
+    for (int i = 0; (command = command_get(i)); i++)
+        if (strcmp(command->name, name) == 0) return command;
     return NULL;
 }
 
 static enum status unknown_command(const char *name)
 {
-    const char *known[COMMAND_COUNT];
+    const char *known[MAX_COMMANDS];
     int count = 0;
-    for (int i = 0; i < COMMAND_COUNT; i++)
-        if (is_offered(commands[i])) known[count++] = commands[i]->name;
+    for (; count < MAX_COMMANDS && command_get(count); count++)
+        known[count] = command_get(count)->name;
     const char *nearest = ag_nearest_name(name, known, count);
     if (nearest) return wrong_usage("unknown command %s: did you mean %s?", name, nearest);
     return wrong_usage("unknown command %s: see afterglow --help", name);

@@ -26,6 +26,10 @@ ag_test(cli/waiting LIBRARIES ag_test_report)
 ag_test(cli/report_page_browser LIBRARIES ag_test_report)
 set_tests_properties(cli.report_page_browser PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: there is no Chromium")
 
+# The manual page and the completions, against what the program prints.
+add_test(NAME cli.manual COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/manual.sh ${CMAKE_BINARY_DIR}/manual $<TARGET_FILE:afterglow>)
+set_tests_properties(cli.manual PROPERTIES TIMEOUT 60 LABELS cli)
+
 # The examples, as their readers would run them.
 set(images ${CMAKE_BINARY_DIR}/tests)
 add_test(NAME examples.minimal COMMAND minimal ${images}/minimal.png)
