@@ -36,5 +36,6 @@ foreach(name light probes retrace)
   ag_test(techniques/mrt_${name} USES techniques LIBRARIES ag_test_mrt ag_test_mrt_map)
 endforeach()
 ag_test(techniques/mrt_frame USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
+ag_test(techniques/mrt_places USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 # It compares times.
 set_tests_properties(techniques.vct_screen PROPERTIES RUN_SERIAL TRUE)

@@ -181,6 +181,7 @@ static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         record_solution(mrt, cmd, view);
         mrt_record_light_map(&mrt->runtime, cmd);
         mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
+        mrt_record_outdoors(&mrt->runtime, cmd, view);
     }
     mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
     mrt->lit = true;

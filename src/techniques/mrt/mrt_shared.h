@@ -62,6 +62,12 @@ struct mrt_gpu_probe {
     float sky[9];
 };
 
+// The same at a point of the outdoor grid, premultiplied by `open` (level/outdoors.h).
+struct mrt_gpu_outdoor_probe {
+    AG_STRUCT(mrt_gpu_probe) light;
+    float open;
+};
+
 // A texel of the border of the light map: see struct mrt_border of level/atlas.h.
 struct mrt_gpu_border {
     uint32_t texel, count;
@@ -87,6 +93,9 @@ struct mrt_level_params {
     float gain;            // artistic factor on the result
     uint32_t probes;       // along an edge of a block
     uint32_t brick_columns;
+    vec3s outdoors_m; // first point of the outdoor grid, world
+    float outdoors_spacing_m;
+    int32_t outdoors_x, outdoors_y, outdoors_z; // points; 0: all places are enclosed
 };
 
 struct mrt_view_push {
@@ -101,9 +110,10 @@ _Static_assert(sizeof(struct mrt_texel) == 60, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 212, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_level_params) == 84, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");
 #endif
 

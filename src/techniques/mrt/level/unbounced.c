@@ -121,7 +121,9 @@ static bool trace_light(struct mrt_scene_images *images, const struct scene_pose
                                         pose->scene->instance_count);
     if (ok) {
         gather_all(&job, (size_t)level->atlas->texels);
-        ok = level->probes == 0 || gather_probes(&job, level);
+        ok = (level->probes == 0 || gather_probes(&job, level)) &&
+             mrt_outdoors_init(images->host, level->map, pose->bounds, &job.samples,
+                               &images->outdoors);
     }
     mrt_emitter_samples_finish(&job.samples);
     emitters_finish(&emitters);
@@ -151,5 +153,6 @@ void mrt_scene_images_finish(struct mrt_scene_images *images)
     host_free(images->host, images->emitted);
     host_free(images->host, images->sky);
     host_free(images->host, images->unbounced);
+    mrt_outdoors_finish(&images->outdoors);
     *images = (struct mrt_scene_images){ 0 };
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "techniques/mrt/level/geometry.h"
+#include "techniques/mrt/level/outdoors.h"
 #include "techniques/mrt/level/probes.h"
 
 struct mrt_scene_images {
@@ -12,6 +13,7 @@ struct mrt_scene_images {
     vec3s *emitted;                        // [texels] irradiance of emissive surfaces, lux
     float *sky;                            // [texels] irradiance of a sky of radiance 1/π
     struct mrt_unbounced_probe *unbounced; // [blocks · p³]
+    struct mrt_outdoors outdoors;
 };
 
 // probes: p, along an edge of a block; 0: none.

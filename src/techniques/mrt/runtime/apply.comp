@@ -10,12 +10,14 @@
 #define MRT_LIGHT_MAP_BINDING  6
 #define MRT_VECTOR_MAP_BINDING 7
 #define MRT_BRICKS_BINDING     11
+#define MRT_OUTDOORS_BINDING   12
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "frame/probes.glsl"
 #include "techniques/mrt/runtime/locate.glsl"
 #include "techniques/mrt/runtime/bricks.glsl"
+#include "techniques/mrt/runtime/outdoors.glsl"
 #include "techniques/mrt/runtime/light_map.glsl"
 
 layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;

@@ -1,5 +1,5 @@
 // Irradiance of a surface from the light map: of the wall that stands for it, or of several.
-// Needs locate.glsl, bricks.glsl, MRT_TILES_BINDING, core/sh.glsl.
+// Needs locate.glsl, bricks.glsl, outdoors.glsl, MRT_TILES_BINDING, core/sh.glsl.
 #ifndef AG_MRT_LIGHT_MAP_GLSL
 #define AG_MRT_LIGHT_MAP_GLSL
 
@@ -141,10 +141,8 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
     return wall;
 }
 
-vec3 level_irradiance(vec3 position, vec3 normal)
+vec3 room_irradiance(vec3 position, vec3 normal, mrt_place place)
 {
-    mrt_place place = locate_surface(position, normal);
-    if (place.block < 0) return vec3(0.0);
     vec3 n = normal_in_cell(place, normal);
     mrt_wall wall = wall_of(place, n);
     if (wall.share == 0.0) wall = wall_beyond(position + level.offset_m * normal, normal, place, n);
@@ -155,6 +153,21 @@ vec3 level_irradiance(vec3 position, vec3 normal)
     if (wall.share < 1.0)
         inside = PROBES ? bricks_irradiance(place, normal) : walls_irradiance(place, n);
     return mix(inside, on_wall, wall.share);
+}
+
+// Edges beyond its block over which a surface outdoors goes over from the light of the room.
+const float MRT_LEAVING = 0.25;
+
+// Beyond its block an enclosed surface, such as that of a niche, has the light of the room.
+vec3 level_irradiance(vec3 position, vec3 normal)
+{
+    mrt_place place = locate_surface(position, normal);
+    vec4 outdoors = vec4(0.0);
+    if (place.block < 0 || place.outside > 0.0) outdoors = outdoor_irradiance(position, normal);
+    if (place.block < 0) return outdoors.a * outdoors.rgb;
+    float share = outdoors.a * smoothstep(0.0, MRT_LEAVING, place.outside);
+    if (share == 1.0) return outdoors.rgb;
+    return mix(room_irradiance(position, normal, place), outdoors.rgb, share);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "runtime.h"
 
 #include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/outdoors.h"
 #include "techniques/mrt/runtime/probes.h"
 #include "techniques/mrt/runtime/tables.h"
 
@@ -138,8 +139,9 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
 {
     *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
     return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
-           mrt_probes_upload(out, input) && mrt_operators_upload(out, input) &&
-           make_buffers(out, input) && make_images(out) && make_pipelines(out, input);
+           mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
+           mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
+           make_pipelines(out, input);
 }
 
 bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
@@ -176,6 +178,7 @@ void mrt_runtime_finish(struct mrt_runtime *runtime)
     if (!runtime->gpu) return;
     destroy_buffers(runtime);
     mrt_probes_finish(runtime);
+    mrt_outdoors_end(runtime);
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(runtime->gpu, pipelines[i]);
 

@@ -48,6 +48,13 @@ struct mrt_runtime_probes {
     gpu_pipeline publish;
 };
 
+// Without outdoor places `image` is 1×1×FRAME_PROBE_SLABS, and the others are empty.
+struct mrt_runtime_outdoors {
+    gpu_buffer probes;
+    gpu_image image;
+    gpu_pipeline fill;
+};
+
 struct mrt_runtime {
     struct host *host;
     struct gpu *gpu;
@@ -57,6 +64,7 @@ struct mrt_runtime {
     struct mrt_runtime_buffers buffers;
     struct mrt_runtime_pipelines pipelines;
     struct mrt_runtime_probes probes;
+    struct mrt_runtime_outdoors outdoors;
     gpu_sampler linear;
 };
 
@@ -92,6 +100,9 @@ void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
 // Probes of all blocks, and the published volume, from the newest b and r.
 void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, float gain);
+// Outdoor probes, of this frame's sky.
+void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                         const struct frame_view *view);
 // Irradiance of each pixel.
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, float gain);

@@ -197,6 +197,21 @@ void mrt_record_probes(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     gpu_scope_end(cmd);
 }
 
+void mrt_record_outdoors(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                         const struct frame_view *view)
+{
+    const struct mrt_level_params *level = &runtime->level;
+    const uint32_t count = (uint32_t)(level->outdoors_x * level->outdoors_y * level->outdoors_z);
+    if (count == 0) return;
+    gpu_scope_begin(cmd, "outdoors");
+    gpu_dispatch(cmd, runtime->outdoors.fill,
+                 GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
+                          { .name = "mrt_outdoor_probes", .buffer = runtime->outdoors.probes },
+                          { .name = "outdoors", .image = runtime->outdoors.image }),
+                 NULL, 0, gpu_groups(count, MRT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
 void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                       const struct frame_view *view, float gain)
 {
@@ -205,17 +220,19 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     gpu_scope_begin(cmd, "apply");
     gpu_dispatch(
         cmd, runtime->pipelines.apply,
-        GPU_BIND(level_binding(runtime, cmd), view->constants_binding,
-                 { .name = "mrt_tiles", .buffer = b->tiles },
-                 { .name = "mrt_blocks", .buffer = b->blocks },
-                 { .name = "mrt_cells", .buffer = b->cells },
-                 { .name = "mrt_candidates", .buffer = b->candidates },
-                 { .name = "light_map", .image = b->light_map, .sampler = runtime->linear },
-                 { .name = "vector_map", .image = b->vector_map, .sampler = runtime->linear },
-                 { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
-                 { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+        GPU_BIND(
+            level_binding(runtime, cmd), view->constants_binding,
+            { .name = "mrt_tiles", .buffer = b->tiles },
+            { .name = "mrt_blocks", .buffer = b->blocks },
+            { .name = "mrt_cells", .buffer = b->cells },
+            { .name = "mrt_candidates", .buffer = b->candidates },
+            { .name = "light_map", .image = b->light_map, .sampler = runtime->linear },
+            { .name = "vector_map", .image = b->vector_map, .sampler = runtime->linear },
+            { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
+            { .name = "outdoors", .image = runtime->outdoors.image, .sampler = runtime->linear },
+            { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+            { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+            { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
         NULL, 0, gpu_groups(view->width, MRT_LOCAL_2D), gpu_groups(view->height, MRT_LOCAL_2D), 1);
     gpu_scope_end(cmd);
 }

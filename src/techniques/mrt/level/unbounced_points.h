@@ -1,0 +1,16 @@
+// Light of emitters and the sky at points, by uniform rays and points on the emitters.
+#pragma once
+
+#include "techniques/mrt/level/probes.h"
+#include "techniques/mrt/level/unbounced_samples.h"
+
+struct mrt_unbounced_points {
+    size_t count;
+    const vec3s *position;             // world
+    struct mrt_unbounced_probe *light; // result, 0 before
+    bool *solid;                       // result: inside a solid
+};
+
+// rays: a power of two. false: out of memory.
+bool mrt_unbounced_points(struct host *host, struct mrt_emitter_samples *samples, int rays,
+                          const struct mrt_unbounced_points *points);

@@ -1,0 +1,25 @@
+// Light of surfaces outside of all rooms. Needs level.glsl, core/sh.glsl, frame/probes.glsl and
+// MRT_OUTDOORS_BINDING.
+#ifndef AG_MRT_OUTDOORS_GLSL
+#define AG_MRT_OUTDOORS_GLSL
+
+layout(set = 0, binding = MRT_OUTDOORS_BINDING) uniform sampler3D outdoors;
+
+const float MRT_OUTDOORS_OPEN = 0.5; // share of open probes around a place that is outdoors
+
+// rgb: irradiance, a: 1 outdoors, 0 enclosed. One step along the normal, the probes on the
+// surface's side of a wall weigh most; those behind it, in a room or a solid, are not open.
+vec4 outdoor_irradiance(vec3 position, vec3 normal)
+{
+    if (level.outdoors_z == 0) return vec4(0.0);
+    vec3 last = vec3(level.outdoors_x, level.outdoors_y, level.outdoors_z) - 1.0;
+    vec3 at = (position - level.outdoors_m) / level.outdoors_spacing_m + normal;
+    vec3 texel = clamp(at, vec3(0.0), last) + 0.5, size = vec3(textureSize(outdoors, 0));
+    float slab = float((FRAME_PROBE_SLABS - 1) * level.outdoors_z);
+    float open = textureLod(outdoors, (texel + vec3(0.0, 0.0, slab)) / size, 0.0).a;
+    if (open <= 0.0) return vec4(0.0);
+    vec3 light = probes_irradiance_at(outdoors, level.outdoors_z, texel, normal) / open;
+    return vec4(light, smoothstep(0.0, MRT_OUTDOORS_OPEN, open));
+}
+
+#endif

@@ -1,0 +1,7 @@
+// The grid of outdoor probes on the GPU (level/outdoors.h).
+#pragma once
+
+#include "techniques/mrt/runtime/runtime.h"
+
+bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+void mrt_outdoors_end(struct mrt_runtime *runtime); // accepts zero and half-built
