@@ -1,5 +1,6 @@
 // Debug views. blocks: the block map over the scene, a colour for each block, squares for texels,
-// lines at the edges of its cell. direct: radiosity of the texels, without interpolation.
+// lines at the edges of its cell; as bright as a grey surface there, which suits any exposure.
+// direct: radiosity of the texels, without interpolation.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -26,6 +27,7 @@ layout(set = 0, binding = 8) uniform sampler2D depth;
 layout(set = 0, binding = 9) uniform sampler2D normal;
 layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D debug_image;
 layout(set = 0, binding = 11) uniform sampler2D scene; // radiance of direct light
+layout(set = 0, binding = 12) uniform sampler2D irradiance;
 
 const float EDGE = 0.01; // width of lines, edges of the cell
 
@@ -50,15 +52,23 @@ int facing_wall(mrt_place place, vec3 n)
     return best;
 }
 
+// Radiance of the surface, with the indirect light that a grey one reflects.
+float brightness(ivec2 pixel)
+{
+    vec3 light =
+        texelFetch(scene, pixel, 0).rgb + texelFetch(irradiance, pixel, 0).rgb * (0.5 / 3.14159265);
+    return dot(light, vec3(0.2126, 0.7152, 0.0722));
+}
+
 vec3 shade(ivec2 pixel, float z)
 {
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     vec3 world = frame_world_position(frame_uv(uvec2(pixel)), z);
     mrt_place place = locate(world + level.offset_m * n);
-    vec3 lit = texelFetch(scene, pixel, 0).rgb;
-    if (place.block < 0) return 0.25 * lit;
+    vec3 unmapped = vec3(0.25 * brightness(pixel));
+    if (place.block < 0) return unmapped;
     int face = facing_wall(place, normal_in_cell(place, n));
-    if (face < 0) return 0.25 * lit;
+    if (face < 0) return unmapped;
     mat3 frame_of_face = cube_from_face(face);
     vec2 st =
         clamp(0.5 + vec2(dot(frame_of_face[0], place.cell), dot(frame_of_face[1], place.cell)), 0.0,
@@ -72,7 +82,7 @@ vec3 shade(ivec2 pixel, float z)
     float bright = min(to_edge.x, to_edge.y) < EDGE ? 2.0
                    : ((texel.x ^ texel.y) & 1) != 0 ? 0.8
                                                     : 1.0;
-    return 0.5 * lit + 0.5 * bright * colour_of(place.block);
+    return bright * brightness(pixel) * (0.2 + colour_of(place.block));
 }
 
 void main()

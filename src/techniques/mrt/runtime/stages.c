@@ -253,6 +253,7 @@ void mrt_record_debug(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "scene", .image = view->layers[FRAME_DIRECT] },
+                          { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] },
                           { .name = "debug_image", .image = out }),
                  &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
                  gpu_groups(view->height, MRT_LOCAL_2D), 1);
