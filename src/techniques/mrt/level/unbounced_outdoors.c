@@ -10,6 +10,8 @@ enum { MAX_POINTS = 12, RAYS = 128 }; // points along the longest side of the sc
 // Least part of all directions with the sky where nothing else than it is above: as map_cells.c.
 static const float OUTSIDE = 0.4f;
 
+static const float IN_CELL = 0.5f + 1e-3f; // points on a wall are the room's
+
 static struct mrt_outdoor_grid grid_of(struct box3 bounds)
 {
     const vec3s size = box3_size(bounds);
@@ -34,7 +36,7 @@ static bool is_in_block(const struct mrt_block_map *map, vec3s point)
     for (int b = 0; b < map->count; b++) {
         vec3s cell;
         if (mrt_warp_inverse(map->blocks[b].corner, point, &cell) &&
-            glms_vec3_max(glms_vec3_abs(cell)) <= 0.5f)
+            glms_vec3_max(glms_vec3_abs(cell)) <= IN_CELL)
             return true;
     }
     return false;
