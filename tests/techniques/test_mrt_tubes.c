@@ -6,8 +6,10 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 
+#include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/dictionary/prior.h"
+#include "techniques/mrt/dictionary/tube_symmetry.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -94,6 +96,76 @@ TEST(bends_are_mirror_images)
         CHECK_NEAR(a.distance, b.distance, 1e-4);
         CHECK((a.opening < 0) == (b.opening < 0));
     }
+}
+
+// ---- symmetry
+
+// Motions leave distances and visibility as they are.
+TEST(motions_of_a_tube_take_rays_to_rays)
+{
+    for (int bend = TUBE_STRAIGHT; bend <= TUBE_LEFT; bend++) {
+        const struct mrt_shape tube = mrt_tube(RESOLUTION, (enum tube_bend)bend);
+        const int n = mrt_shape_texels(&tube);
+        for (int t = 0; t < n; t++) {
+            struct tube_motion motion;
+            const int from = tube_representative(&tube, tube_orbit_of(&tube, t, &motion));
+            CHECK(tube_moved_texel(&tube, motion, from) == t);
+            for (int k = 0; k < n; k += 7) {
+                const int moved = tube_moved_texel(&tube, motion, k);
+                const struct mrt_point a = mrt_shape_texel(&tube, from),
+                                       b = mrt_shape_texel(&tube, k), c = mrt_shape_texel(&tube, t),
+                                       d = mrt_shape_texel(&tube, moved);
+                CHECK_NEAR(glms_vec3_distance(a.position, b.position),
+                           glms_vec3_distance(c.position, d.position), 1e-5);
+                CHECK_NEAR(glms_vec3_dot(a.frame.col[2], b.frame.col[2]),
+                           glms_vec3_dot(c.frame.col[2], d.frame.col[2]), 1e-5);
+            }
+        }
+    }
+}
+
+// The light that a lit tube gathers from lights inside by its operators, against its own rays.
+static double error_of_gather(const struct mrt_dictionary *d, int shape, enum mrt_measure measure)
+{
+    const struct mrt_element *e = &d->element[shape];
+    const struct matrix_f32 *u = measure == MRT_VECTOR  ? &e->u_vec
+                                 : measure == MRT_PROBE ? &e->u_bvol
+                                                        : &e->u_b;
+    const size_t texels = e->l_imp.rows;
+    struct mrt_rays rays;
+    CHECK(mrt_rays_init(test_host(), measure, 4096, &rays));
+    const size_t values = (size_t)rays.values, points = u->rows / values;
+    float *rows = host_alloc(test_host(), values * texels, sizeof *rows);
+    double difference = 0.0, all = 0.0;
+    for (size_t i = 0; i < points; i += 5) {
+        memset(rows, 0, values * texels * sizeof *rows);
+        mrt_gather(&e->shape, mrt_gather_point(&e->shape, d->options.block_probes, measure, (int)i),
+                   &rays, rows, texels);
+        for (size_t v = 0; v < values; v++)
+            for (size_t k = 0; k < 8; k++) {
+                double sum = 0.0;
+                for (size_t t = 0; t < texels; t++)
+                    sum +=
+                        (double)rows[v * texels + t] * (double)e->l_imp.at[t * e->l_imp.stride + k];
+                const double got = (double)u->at[(i * values + v) * u->stride + k];
+                difference += (got - sum) * (got - sum);
+                all += sum * sum;
+            }
+    }
+    host_free(test_host(), rows);
+    mrt_rays_finish(test_host(), &rays);
+    return sqrt(difference / all);
+}
+
+// Rows by symmetry and the mirrored bend are those that rays of their own would give.
+static void check_gathers(const struct mrt_dictionary *d)
+{
+    for (int shape = 0; shape < d->element_count; shape++)
+        for (int m = MRT_IRRADIANCE; m <= MRT_PROBE; m++) {
+            const double error = error_of_gather(d, shape, (enum mrt_measure)m);
+            print_message("tube %d, measure %d: error %.4f\n", shape, m, error);
+            CHECK(error < 0.01);
+        }
 }
 
 // ---- a chain of tubes
@@ -255,6 +327,7 @@ TEST(light_through_tubes_is_near_that_of_the_joined_tubes)
     struct bake *bake = mrt_fixture_bake(&options, 0, false);
     struct mrt_dictionary d;
     CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, &d));
+    check_gathers(&d);
     for (size_t i = 0; i < sizeof chains / sizeof *chains; i++)
         compare_tubes(&d, chains[i], bounds[i]);
     mrt_dictionary_finish(test_host(), &d);

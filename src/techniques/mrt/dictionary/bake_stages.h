@@ -20,6 +20,7 @@ struct mrt_bake_job {
     struct mrt_rays rays[3]; // by enum mrt_measure
     enum mrt_maze maze;
     int shapes, turns, entered; // of the dictionary; of an interface; that light enters
+    int baked;                  // shapes but for the right bend, which is the left one in a mirror
     const char *family;         // of names: "cube" or "tube"
     uint64_t k_b, k_l, k_r;
     uint64_t texels;            // of the closed cube

@@ -17,6 +17,11 @@ enum { MRT_MAX_CUBES = 9, TUBE_TEXELS = 4 };
 int mrt_dictionary_shapes(enum mrt_maze maze);
 // Shape i, with `texels` along an edge of a cube.
 struct mrt_shape mrt_dictionary_shape(enum mrt_maze maze, int texels, int i);
+// Texels along an edge of a face of these shapes: the whole wall of a tube is one face.
+static inline int mrt_face_texels(enum mrt_maze maze, int texels)
+{
+    return maze == MRT_TUNNEL ? TUBE_TEXELS * texels : texels;
+}
 // Openings of all shapes: 12 in the plane, 24 in space, 6 of tubes.
 int mrt_dictionary_openings(enum mrt_maze maze);
 // The shapes that light enters by the back: one stands for all cubes, tubes are three. Light that

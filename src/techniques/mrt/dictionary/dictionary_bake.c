@@ -7,6 +7,8 @@
 #include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/dictionary/prior.h"
 #include "techniques/mrt/dictionary/transfer.h"
+#include "techniques/mrt/dictionary/tube_bake.h"
+#include "techniques/mrt/dictionary/tube_symmetry.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,7 +16,7 @@
 // Of a stage: the measure or the shape.
 struct stage_index {
     int measure, shape;
-    const char *f, *direct, *l_imp; // names of inputs; f NULL: the closed cube's
+    const char *direct, *l_imp; // names of inputs
 };
 
 static const char *const OPERATORS[] = { "closed/F", "closed/vector", "closed/probe" };
@@ -26,8 +28,7 @@ static bool run_gather(const struct bake_task *task)
     const struct mrt_bake_job *job = task->job;
     const struct stage_index *index = task->argument;
     const struct mrt_rays *rays = &job->rays[index->measure];
-    const struct mrt_shape shape =
-        index->f ? mrt_bake_shape(job, index->shape) : mrt_cube(job->options.texels, 0);
+    const struct mrt_shape shape = mrt_cube(job->options.texels, 0);
     uint64_t first, points;
     const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
     bake_task_rows(task, 0, &points);
@@ -70,86 +71,14 @@ static bool add_gather(struct bake_plan *plan, const struct mrt_bake_job *job, i
                   .texels = measure == MRT_IRRADIANCE ? (double)points / (double)tasks : 0 });
 }
 
-// ---- tubes, which have operators of their own
-
-enum { TUBE_POINTS_PER_TASK = 16 };
-
-static bool add_tube_gather(struct bake_plan *plan, const struct mrt_bake_job *job,
-                            const struct stage_index *index)
-{
-    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
-    const uint64_t n = (uint64_t)mrt_shape_texels(&shape);
-    const struct bake_output out = { index->f, TENSOR_F32, 2, { n, n }, BAKE_ROWS, WAVE_MODES };
-    return bake_plan_add(
-        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "tube %d gather", index->shape),
-                                    .wave = WAVE_GATHER,
-                                    .task_count = (size_t)n / TUBE_POINTS_PER_TASK,
-                                    .run = run_gather,
-                                    .argument = index,
-                                    .outputs = &out,
-                                    .output_count = 1,
-                                    .rays = (double)TUBE_POINTS_PER_TASK * job->options.rays,
-                                    .texels = TUBE_POINTS_PER_TASK });
-}
-
-// Rows of U_vec or U_bvol: the operator is too large to keep, so its rows meet L_imp at once.
-static bool run_tube_directional(const struct bake_task *task)
-{
-    const struct mrt_bake_job *job = task->job;
-    const struct stage_index *index = task->argument;
-    const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
-    const struct mrt_rays *rays = &job->rays[index->measure];
-    struct matrix_f32 l_imp, gather = { 0 };
-    uint64_t first, unused, points;
-    struct matrix_f32 out = mrt_bake_output(task, 0, &unused);
-    first = bake_task_rows(task, 0, &points);
-    bool ok = mrt_bake_input(task, index->l_imp, &l_imp) &&
-              matrix_f32_init(task->host, &gather, out.rows, l_imp.rows);
-    for (uint64_t i = 0; ok && i < points; i++) {
-        struct mrt_point at = mrt_gather_point(&shape, job->options.block_probes,
-                                               (enum mrt_measure)index->measure, (int)(first + i));
-        mrt_gather(&shape, at, rays, gather.at + i * (uint64_t)rays->values * gather.stride,
-                   gather.stride);
-        ok = !bake_task_cancelled(task);
-    }
-    ok = ok && matrix_f32_multiply(task->host, 1.0f, &gather, NOT_TRANSPOSED, &l_imp,
-                                   NOT_TRANSPOSED, 0.0f, &out);
-    matrix_f32_finish(task->host, &gather);
-    return ok;
-}
-
-static bool add_tube_directional(struct bake_plan *plan, const struct mrt_bake_job *job,
-                                 const struct stage_index *of_shape, int measure)
-{
-    const struct mrt_shape shape = mrt_bake_shape(job, of_shape->shape);
-    const bool probes = measure == MRT_PROBE;
-    const uint64_t points = probes ? job->probes : (uint64_t)mrt_shape_texels(&shape);
-    const uint64_t values = probes ? MRT_PROBE_COEFFICIENTS : MRT_VECTOR_COEFFICIENTS;
-    struct stage_index *index = bake_plan_alloc(plan, 1, sizeof *index);
-    if (!index) return false;
-    *index = *of_shape;
-    index->measure = measure;
-    const struct bake_output out = { bake_plan_name(plan, "tube/%d/%s", index->shape,
-                                                    probes ? "U_bvol" : "U_vec"),
-                                     TENSOR_F32,
-                                     3,
-                                     { points, values, job->k_b },
-                                     BAKE_ROWS,
-                                     BAKE_SAVED };
-    return bake_plan_add(
-        plan, &(struct bake_stage){ .name = bake_plan_name(plan, "tube %d %s", index->shape,
-                                                           probes ? "probes" : "directions"),
-                                    .wave = WAVE_ELEMENTS,
-                                    .task_count = (size_t)((points + TUBE_POINTS_PER_TASK - 1) /
-                                                           TUBE_POINTS_PER_TASK),
-                                    .run = run_tube_directional,
-                                    .argument = index,
-                                    .outputs = &out,
-                                    .output_count = 1,
-                                    .rays = (double)TUBE_POINTS_PER_TASK * job->options.rays });
-}
-
 // ---- the light prior of a shape
+
+// Lights that are traced; a bend's stand for four each.
+static int traced_lights(const struct mrt_shape *shape)
+{
+    const bool bend = shape->kind == MRT_TUBE_LEFT || shape->kind == MRT_TUBE_RIGHT;
+    return bend ? tube_light_orbits() : mrt_prior_light_count(shape);
+}
 
 static bool run_direct(const struct bake_task *task)
 {
@@ -159,14 +88,18 @@ static bool run_direct(const struct bake_task *task)
     // Lights inside take no rays: in steps of a prime that does not divide their number, all tasks
     // get a share of them, so that times can be predicted.
     enum { STEP = 89 };
-    const size_t count = (size_t)mrt_prior_light_count(&shape);
+    const size_t count = (size_t)traced_lights(&shape);
+    const size_t all = (size_t)mrt_prior_light_count(&shape);
     uint64_t first;
     const struct matrix_f32 out = mrt_bake_output(task, 0, &first);
-    struct mrt_prior_light *lights = host_alloc(task->host, count, sizeof *lights);
+    struct mrt_prior_light *lights = host_alloc(task->host, all, sizeof *lights);
     if (!lights) return false;
     mrt_prior_lights(&shape, lights);
-    for (size_t l = 0; l < out.rows; l++)
-        mrt_prior_column(&shape, lights[(first + l) * STEP % count], out.at + l * out.stride, 1);
+    for (size_t l = 0; l < out.rows; l++) {
+        const int i = (int)((first + l) * STEP % count);
+        mrt_prior_column(&shape, lights[count < all ? tube_light_representative(i) : i],
+                         out.at + l * out.stride, 1);
+    }
     host_free(task->host, lights);
     return true;
 }
@@ -174,23 +107,25 @@ static bool run_direct(const struct bake_task *task)
 static bool add_direct(struct bake_plan *plan, const struct mrt_bake_job *job,
                        const struct stage_index *index)
 {
-    enum { LIGHTS_PER_TASK = 36 };
+    enum { LIGHTS_PER_TASK = 36, TUBE_LIGHTS_PER_TASK = 12 };
     const struct mrt_shape shape = mrt_bake_shape(job, index->shape);
-    const uint64_t lights = (uint64_t)mrt_prior_light_count(&shape);
+    const uint64_t lights = (uint64_t)traced_lights(&shape);
+    const uint64_t per_task = shape.kind == MRT_CUBE ? LIGHTS_PER_TASK : TUBE_LIGHTS_PER_TASK;
     const struct bake_output out = {
         index->direct, TENSOR_F32, 2, { lights, (uint64_t)mrt_shape_texels(&shape) },
         BAKE_ROWS,     WAVE_MODES
     };
     return bake_plan_add(
-        plan, &(struct bake_stage){
-                  .name = bake_plan_name(plan, "%s %d lights", job->family, index->shape),
-                  .wave = WAVE_GATHER,
-                  .task_count = (size_t)lights / LIGHTS_PER_TASK,
-                  .run = run_direct,
-                  .argument = index,
-                  .outputs = &out,
-                  .output_count = 1,
-                  .rays = mrt_prior_rays(&shape) * LIGHTS_PER_TASK / (double)lights });
+        plan,
+        &(struct bake_stage){
+            .name = bake_plan_name(plan, "%s %d lights", job->family, index->shape),
+            .wave = WAVE_GATHER,
+            .task_count = (size_t)(lights / per_task),
+            .run = run_direct,
+            .argument = index,
+            .outputs = &out,
+            .output_count = 1,
+            .rays = mrt_prior_rays(&shape) * (double)per_task / mrt_prior_light_count(&shape) });
 }
 
 // ---- the modes of a shape
@@ -200,22 +135,28 @@ static bool operator_of(const struct bake_task *task, int measure, const struct 
 {
     const struct mrt_shape shape = mrt_bake_shape(task->job, index->shape);
     struct mrt_cube_operators closed = { 0 };
-    struct matrix_f32 own;
-    if (index->f)
-        return mrt_bake_input(task, index->f, &own) && matrix_f64_from_f32(task->host, &own, out);
+    if (shape.kind != MRT_CUBE) return mrt_tube_operator(task, index->shape, out);
     return mrt_bake_input(task, OPERATORS[measure], &closed.by_measure[measure]) &&
            mrt_cube_operator_of(task->host, &closed, (enum mrt_measure)measure, &shape, out);
 }
 
-static bool direct_light(const struct bake_task *task, const char *name, struct matrix_f64 *out)
+static bool direct_light(const struct bake_task *task, const char *name,
+                         const struct mrt_shape *shape, struct matrix_f64 *out)
 {
     struct matrix_f32 direct;
+    const size_t lights = (size_t)mrt_prior_light_count(shape);
     if (!mrt_bake_input(task, name, &direct) ||
-        !matrix_f64_init(task->host, out, direct.columns, direct.rows))
+        !matrix_f64_init(task->host, out, direct.columns, lights))
         return false;
-    for (size_t r = 0; r < out->rows; r++)
-        for (size_t c = 0; c < out->columns; c++)
-            out->at[r * out->stride + c] = (double)direct.at[c * direct.stride + r];
+    for (size_t c = 0; c < lights; c++) {
+        const struct tube_motion motion = tube_bend_motion((int)(c / direct.rows));
+        const float *column = direct.at + c % direct.rows * direct.stride;
+        for (size_t r = 0; r < out->rows; r++) {
+            const size_t to =
+                lights == direct.rows ? r : (size_t)tube_moved_texel(shape, motion, (int)r);
+            out->at[to * out->stride + c] = (double)column[r];
+        }
+    }
     return true;
 }
 
@@ -249,7 +190,7 @@ static bool run_modes(const struct bake_task *task)
     struct matrix_f64 f = { 0 }, direct = { 0 };
     struct mrt_transfer transfer = { 0 };
     bool ok = operator_of(task, MRT_IRRADIANCE, index, &f) &&
-              direct_light(task, index->direct, &direct) &&
+              direct_light(task, index->direct, &shape, &direct) &&
               mrt_transfer_init(task->host, &shape, &f, &direct, &options, &transfer);
     if (ok) store_transfer(&transfer, task->out);
     mrt_transfer_finish(task->host, &transfer);
@@ -424,6 +365,7 @@ static void set_sizes(const struct mrt_dictionary_options *o, struct mrt_bake_jo
         .options = *o,
         .maze = maze,
         .shapes = mrt_dictionary_shapes(maze),
+        .baked = maze == MRT_TUNNEL ? MRT_TUBE_RIGHT - MRT_TUBE : mrt_dictionary_shapes(maze),
         .entered = mrt_entered_shapes(maze),
         .family = maze == MRT_TUNNEL ? "tube" : "cube",
         .turns = maze == MRT_MAZE_3D ? MRT_TURNS_3D : MRT_TURNS_2D,
@@ -447,7 +389,6 @@ static struct stage_index *index_of_shape(struct bake_plan *plan, const struct m
     struct stage_index *index = bake_plan_alloc(plan, 1, sizeof *index);
     if (!index) return NULL;
     index->shape = shape;
-    index->f = job->maze == MRT_TUNNEL ? bake_plan_name(plan, "tube/%d/F", shape) : NULL;
     index->direct = bake_plan_name(plan, "%s/%d/direct", job->family, shape);
     index->l_imp = bake_plan_name(plan, "%s/%d/L_imp", job->family, shape);
     return index->direct && index->l_imp ? index : NULL;
@@ -458,19 +399,21 @@ static bool add_gathers(struct bake_plan *plan, const struct mrt_bake_job *job,
 {
     bool ok = true;
     if (job->maze == MRT_TUNNEL)
-        for (int i = 0; ok && i < job->shapes; i++) ok = add_tube_gather(plan, job, shape[i]);
+        for (int i = 0; ok && i < job->baked; i++) ok = mrt_tube_gather(plan, job, i);
     else
         for (int m = 0; ok && m < 3; m++) ok = add_gather(plan, job, m);
-    for (int i = 0; ok && i < job->shapes; i++) ok = add_direct(plan, job, shape[i]);
+    for (int i = 0; ok && i < job->baked; i++) ok = add_direct(plan, job, shape[i]);
     return ok;
 }
 
 static bool add_directions(struct bake_plan *plan, const struct mrt_bake_job *job,
-                           const struct stage_index *shape)
+                           struct stage_index *const *shape)
 {
-    if (job->maze != MRT_TUNNEL) return add_directional(plan, job, shape);
-    return add_tube_directional(plan, job, shape, MRT_VECTOR) &&
-           add_tube_directional(plan, job, shape, MRT_PROBE);
+    const bool tubes = job->maze == MRT_TUNNEL;
+    bool ok = true;
+    for (int i = 0; ok && i < job->baked; i++)
+        ok = tubes ? mrt_tube_directions(plan, job, i) : add_directional(plan, job, shape[i]);
+    return ok && (!tubes || mrt_tube_mirror_modes(plan, job));
 }
 
 bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_options *options,
@@ -488,8 +431,11 @@ bool mrt_dictionary_bake(struct bake_plan *plan, const struct mrt_dictionary_opt
     for (int i = 0; ok && i < job->shapes; i++)
         ok = (shape[i] = index_of_shape(plan, job, i)) != NULL;
     ok = ok && add_gathers(plan, job, shape);
-    for (int i = 0; ok && i < job->shapes; i++)
+    for (int i = 0; ok && i < job->baked; i++)
         ok = add_modes(plan, job, shape[i]) && (!full || add_spectrum(plan, job, shape[i]));
-    for (int i = 0; ok && i < job->shapes; i++) ok = add_directions(plan, job, shape[i]);
-    return ok && mrt_interface_bake(plan, job);
+    for (int i = 0; ok && job->maze == MRT_TUNNEL && i < job->baked; i++)
+        ok = mrt_tube_vector_gather(plan, job, i);
+    return ok && add_directions(plan, job, shape) &&
+           (job->maze != MRT_TUNNEL || mrt_tube_mirror_directions(plan, job)) &&
+           mrt_interface_bake(plan, job);
 }

@@ -88,6 +88,17 @@ struct mrt_passage mrt_passage_between(int entry_face, int exit_face)
     return (struct mrt_passage){ 0 };
 }
 
+int mrt_entered_by(const struct mrt_shape *shape, int face)
+{
+    if (shape->kind == MRT_CUBE) return 0;
+    for (int f = 0; f < CUBE_FACES; f++)
+        if (f != face && mrt_shape_is_open(shape, f)) return (int)mrt_passage_between(face, f).turn;
+    return 0;
+}
+_Static_assert((int)MRT_STRAIGHT == (int)TUBE_STRAIGHT && (int)MRT_TURN_LEFT == (int)TUBE_LEFT &&
+                   (int)MRT_TURN_RIGHT == (int)TUBE_RIGHT,
+               "light that turns left passes the left bend");
+
 static void add_lookup(const struct mrt_lightfield_lookup *look, struct sparse_row *row)
 {
     for (int k = 0; k < LIGHTFIELD_LOOKUP; k++)
@@ -120,7 +131,9 @@ static void see_entry(struct mrt_lightfield l, enum mrt_turn turn, size_t sample
     from = glms_mat3_mulv(entry_from_exit, from);
     for (int sub = 0; sub < mrt_lightfield_subsamples(l); sub++) {
         vec3s along = glms_mat3_mulv(entry_from_exit, mrt_lightfield_direction(l, sample, sub));
-        mrt_shape_trace(&shape, from, glms_vec3_negate(along), &hit);
+        const vec3s back = glms_vec3_negate(along);
+        if (!mrt_shape_points_at(&shape, CUBE_BACK, from, back)) continue;
+        mrt_shape_trace(&shape, from, back, &hit);
         if (hit.opening != CUBE_BACK) continue;
         look_up_back(l, &hit, along, &look);
         add_lookup(&look, row);
@@ -166,6 +179,7 @@ void mrt_gather_interface(struct mrt_lightfield l, const struct mrt_shape *enter
     size_t samples = mrt_lightfield_samples(l);
     for (int i = 0; i < rays->count; i++) {
         vec3s ray = glms_mat3_mulv(point.frame, rays->direction[i]);
+        if (!mrt_shape_points_at(entered, CUBE_BACK, point.position, ray)) continue;
         mrt_shape_trace(entered, point.position, ray, &hit);
         if (hit.opening != CUBE_BACK) continue;
         look_up_back(l, &hit, glms_vec3_negate(ray), &look);

@@ -39,6 +39,9 @@ struct mrt_passage {
 };
 struct mrt_passage mrt_passage_between(int entry_face, int exit_face);
 
+// The mrt_entered_shape of light that enters a shape by a face.
+int mrt_entered_by(const struct mrt_shape *shape, int face);
+
 // Lightfields at the exit of lightfields at the entry (samples × columns). A round lightfield
 // passes the tube of that turn, others a cube.
 bool mrt_propagate(struct host *host, struct mrt_lightfield l, enum mrt_turn turn,

@@ -93,7 +93,7 @@ static bool add_lightfields(struct bake_plan *plan, const struct mrt_bake_job *j
     const double rays =
         (double)(job->samples * job->openings) * mrt_lightfield_subsamples(job->lightfield);
     return bake_plan_add(plan, &(struct bake_stage){ .name = "interface weights",
-                                                     .wave = WAVE_ELEMENTS,
+                                                     .wave = WAVE_LIGHTFIELDS,
                                                      .task_count = 1,
                                                      .run = run_scale,
                                                      .outputs = &scale,

@@ -7,8 +7,8 @@
 #include <math.h>
 
 enum {
-    LATTICE = 6, // lights along an edge
-    BEYOND = 3,  // layers of the lattice beyond an opening
+    LATTICE = PRIOR_LATTICE,
+    BEYOND = PRIOR_BEYOND,
     LAYER = LATTICE * LATTICE,
     SHADOW_RAYS = 64,
 };
@@ -135,6 +135,13 @@ static float light_radius(const struct mrt_shape *shape)
     return 0.5f * width / (float)(LATTICE + 1);
 }
 
+static bool points_at_opening(const struct mrt_shape *shape, vec3s from, vec3s ray)
+{
+    for (int f = 0; f < CUBE_FACES; f++)
+        if (mrt_shape_is_open(shape, f) && mrt_shape_points_at(shape, f, from, ray)) return true;
+    return false;
+}
+
 // The share of the sphere's irradiance that arrives: directions within the cone that the sphere
 // subtends, by cosine. Light from beyond enters through an opening; a bend can occlude
 // light from inside.
@@ -152,8 +159,9 @@ static float visible_share(const struct mrt_shape *shape, struct mrt_point at,
         vec3s ray = glms_vec3_scale(axis, sqrtf(1.0f - glms_vec2_norm2(d)));
         ray = glms_vec3_muladds(t, d.x, glms_vec3_muladds(b, d.y, ray));
         float cosine = fmaxf(glms_vec3_dot(ray, at.frame.col[2]), 0.0f);
-        mrt_shape_trace(shape, at.position, ray, &hit);
         all += cosine;
+        if (!light.inside && !points_at_opening(shape, at.position, ray)) continue;
+        mrt_shape_trace(shape, at.position, ray, &hit);
         if (light.inside ? hit.distance >= distance - light_radius(shape) : hit.opening >= 0)
             lit += cosine;
     }
@@ -168,7 +176,9 @@ void mrt_prior_column(const struct mrt_shape *shape, struct mrt_prior_light ligh
     for (uint32_t i = 0; i < SHADOW_RAYS; i++) disk[i] = sample_disk(sobol_2d(i, 1));
     for (int i = 0; i < texels; i++) {
         struct mrt_point at = mrt_shape_texel(shape, i);
-        float share = is_occluded(shape, light) ? visible_share(shape, at, light, disk) : 1.0f;
-        column[(size_t)i * stride] = share * mrt_point_light(at, light.centre);
+        const float direct = mrt_point_light(at, light.centre);
+        const bool traced = direct > 0.0f && is_occluded(shape, light);
+        column[(size_t)i * stride] =
+            traced ? direct * visible_share(shape, at, light, disk) : direct;
     }
 }

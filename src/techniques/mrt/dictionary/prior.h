@@ -11,6 +11,11 @@ struct mrt_prior_light {
     bool inside;
 };
 
+enum {
+    PRIOR_LATTICE = 6, // lights along an edge
+    PRIOR_BEYOND = 3,  // layers of the lattice beyond an opening
+};
+
 int mrt_prior_light_count(const struct mrt_shape *shape);
 // Shadow rays of all lights, for estimates.
 double mrt_prior_rays(const struct mrt_shape *shape);

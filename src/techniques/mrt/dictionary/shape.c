@@ -59,7 +59,7 @@ static struct mrt_point tube_point(const struct mrt_shape *shape, float around, 
     float angle = 2.0f * GLM_PIf * around;
     vec3s inward = glms_vec3_scale(axis.left, -cosf(angle));
     inward.y -= sinf(angle);
-    return (struct mrt_point){ glms_vec3_muladds(inward, -TUBE_RADIUS, axis.origin),
+    return (struct mrt_point){ tube_wall(bend_of(shape), around, along),
                                { .col = { axis.forward, glms_vec3_cross(inward, axis.forward),
                                           inward } } };
 }
@@ -179,4 +179,16 @@ void mrt_shape_trace(const struct mrt_shape *shape, vec3s from, vec3s direction,
         trace_cube(shape, from, direction, hit);
     else
         trace_tube(shape, from, direction, hit);
+}
+
+bool mrt_shape_points_at(const struct mrt_shape *shape, int face, vec3s from, vec3s direction)
+{
+    static const float ROUNDING = 1e-3f;
+    const int axis = face / 2;
+    const float plane = face & 1 ? 0.5f : -0.5f, speed = direction.raw[axis];
+    if (shape->kind == MRT_CUBE) return true;
+    if (!(speed * plane > 0.0f)) return false;
+    vec3s at = glms_vec3_muladds(direction, (plane - from.raw[axis]) / speed, from);
+    at.raw[axis] = 0.0f;
+    return glms_vec3_norm(at) < TUBE_RADIUS + ROUNDING;
 }

@@ -53,6 +53,8 @@ int mrt_shape_texel_near(const struct mrt_shape *shape, vec3s point);
 // upper, right and lower quarter of a tube.
 int mrt_shape_patches(const struct mrt_shape *shape);
 int mrt_shape_patch(const struct mrt_shape *shape, int texel);
+// Whether a ray can leave by an opening: false where its straight line misses that.
+bool mrt_shape_points_at(const struct mrt_shape *shape, int face, vec3s from, vec3s direction);
 // `direction` is a unit vector.
 void mrt_shape_trace(const struct mrt_shape *shape, vec3s from, vec3s direction,
                      struct mrt_hit *hit);

@@ -39,6 +39,15 @@ struct tube_place tube_locate(enum tube_bend bend, vec3s point)
                                 sqrtf(left * left + point.y * point.y), along };
 }
 
+vec3s tube_wall(enum tube_bend bend, float around, float along)
+{
+    struct tube_frame axis = tube_axis(bend, along);
+    float angle = 2.0f * GLM_PIf * around;
+    vec3s at = glms_vec3_muladds(axis.left, TUBE_RADIUS * cosf(angle), axis.origin);
+    at.y += TUBE_RADIUS * sinf(angle);
+    return at;
+}
+
 vec3s tube_inside(enum tube_bend bend, vec3s unit)
 {
     vec2s disk = sample_disk((vec2s){ { unit.x, unit.y } });

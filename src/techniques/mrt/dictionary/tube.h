@@ -15,6 +15,9 @@ struct tube_frame {
 };
 struct tube_frame tube_axis(enum tube_bend bend, float along);
 
+// The point of the wall at coordinates of struct tube_place.
+vec3s tube_wall(enum tube_bend bend, float around, float along);
+
 // A point of the cell in the coordinates of the tube: `around` in [0, 1) from left through up, the
 // distance from the axis, and `along`.
 struct tube_place {
