@@ -62,13 +62,45 @@ struct mrt_block_map mrt_random_grid(int columns, int rows, float open, bool tur
     return map;
 }
 
-struct mrt_block_map mrt_maze(int blocks, int seed)
+static struct mrt_block_map map_of(const char *spec)
 {
-    char spec[64];
     struct mrt_block_map map;
-    snprintf(spec, sizeof spec, "@maze:blocks=%d,seed=%d", blocks, seed);
     struct scene *scene = scene_load(test_host(), spec);
     CHECK(scene && mrt_block_map_of_scene(test_host(), scene, &map));
     scene_destroy(scene);
+    return map;
+}
+
+struct mrt_block_map mrt_maze(int blocks, int seed)
+{
+    char spec[64];
+    snprintf(spec, sizeof spec, "@maze:blocks=%d,seed=%d", blocks, seed);
+    return map_of(spec);
+}
+
+struct mrt_block_map mrt_tunnel(int pieces, int seed)
+{
+    char spec[64];
+    snprintf(spec, sizeof spec, "@tunnel:pieces=%d,seed=%d", pieces, seed);
+    return map_of(spec);
+}
+
+struct mrt_block_map mrt_pipes(int count)
+{
+    struct mrt_block_map map;
+    CHECK(mrt_block_map_init(test_host(), "pipes", (size_t)count, &map));
+    for (int b = 0; b < count; b++) {
+        struct mrt_block *block = &map.blocks[b];
+        char name[16];
+        snprintf(name, sizeof name, "pipe %d", b);
+        mrt_block_init(block, name, MRT_BLOCK_STRAIGHT);
+        mrt_block_set_box(block,
+                          (struct box3){ vec3_of(0, 0, (float)b), vec3_of(1, 1, (float)b + 1.0f) });
+        const struct mrt_block whole = *block;
+        for (int c = 0; b % 2 && c < MRT_CORNERS; c++) block->corner[c] = whole.corner[c ^ 5];
+        const int face = b % 2 ? CUBE_FRONT : CUBE_BACK;
+        if (b > 0) CHECK(mrt_connect("pipes", &map, b, face, b - 1, face));
+    }
+    CHECK(mrt_block_map_check("pipes", &map));
     return map;
 }

@@ -12,3 +12,8 @@ void mrt_turn_block(struct mrt_block *block, int orientation);
 struct mrt_block_map mrt_random_grid(int columns, int rows, float open, bool turned, uint32_t seed);
 // The blocks of @maze.
 struct mrt_block_map mrt_maze(int blocks, int seed);
+// The cylinders of @tunnel.
+struct mrt_block_map mrt_tunnel(int pieces, int seed);
+// Straight cylinders of the same kind along z, of which every second one is turned around, so that
+// begins meet begins and ends meet ends.
+struct mrt_block_map mrt_pipes(int count);

@@ -22,7 +22,8 @@ static int texels_of(int resolution, unsigned missing)
 
 static struct mrt_dictionary empty(enum mrt_maze maze, int resolution, int k_b, int k_rlf, int k_r)
 {
-    struct mrt_dictionary d = { .element_count = mrt_dictionary_shapes(maze) };
+    struct mrt_dictionary d = { .element_count = mrt_dictionary_shapes(maze),
+                                .entered_count = mrt_entered_shapes(maze) };
     d.options.maze = (int32_t)maze;
     d.options.texels = resolution;
     d.options.modes = k_b;
@@ -37,15 +38,19 @@ struct mrt_dictionary mrt_random_operators(enum mrt_maze maze, int resolution, i
     struct rng rng = rng_for(seed, 3, 1);
     struct mrt_dictionary o = empty(maze, resolution, k_b, k_rlf, k_r);
     for (int i = 0; i < mrt_dictionary_shapes(maze); i++) {
-        int texels = texels_of(resolution, mrt_cube_missing(maze, i));
+        const struct mrt_shape shape = mrt_dictionary_shape(maze, resolution, i);
+        const int texels = mrt_shape_texels(&shape);
         o.element[i].t_db = random_matrix(&rng, k_b, texels);
         o.element[i].u_b = random_matrix(&rng, texels, k_b);
         for (int f = 0; f < CUBE_FACES; f++) o.element[i].r_b[f] = random_matrix(&rng, k_rlf, k_b);
     }
-    for (int t = 0; t < (maze == MRT_MAZE_2D ? MRT_TURNS_2D : MRT_TURNS_3D); t++)
+    for (int t = 0; t < (maze == MRT_MAZE_3D ? MRT_TURNS_3D : MRT_TURNS_2D); t++)
         o.r_turn[t] = random_matrix(&rng, k_rlf, k_rlf);
-    o.entered[0].t_r = random_matrix(&rng, k_r, k_rlf);
-    o.entered[0].u_r = random_matrix(&rng, texels_of(resolution, 1u << CUBE_BACK), k_r);
+    for (int i = 0; i < o.entered_count; i++) {
+        const struct mrt_shape entered = mrt_entered_shape(maze, resolution, i);
+        o.entered[i].t_r = random_matrix(&rng, k_r, k_rlf);
+        o.entered[i].u_r = random_matrix(&rng, mrt_shape_texels(&entered), k_r);
+    }
     return o;
 }
 

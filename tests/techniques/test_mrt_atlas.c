@@ -5,6 +5,7 @@
 #include "core/rng.h"
 
 #include "techniques/mrt/level/atlas.h"
+#include "techniques/mrt/level/wall.h"
 
 #include <math.h>
 #include <string.h>
@@ -92,6 +93,70 @@ TEST(coplanar_walls_of_connected_blocks_agree_along_their_seam)
         if (i == 0) print_message("a grid of 4 x 3 open blocks has %d half seams\n", seams);
         // 17 openings with a floor and a ceiling, 10 beside the outer wall, from both sides.
         if (i == 0) CHECK(seams == 2 * (2 * 17 + 10));
+        finish(&m);
+    }
+}
+
+// ---- tubes
+
+static float look_up(const struct light_map *m, int block, float around, float along)
+{
+    return mrt_atlas_look_up(&m->atlas, m->filled, 1, 0,
+                             mrt_atlas_place(&m->atlas, tile_of(m, block, 0), around, along));
+}
+
+// The same point of the wall from the tubes on both sides of an end; *seams counts the ends.
+static float tube_seam_error(const struct light_map *m, int *seams)
+{
+    float most = 0.0f;
+    *seams = 0;
+    for (int i = 0; i < CUBE_FACES * m->map.count; i++) {
+        const int block = i / CUBE_FACES, face = i % CUBE_FACES;
+        const struct mrt_block *from = &m->map.blocks[block];
+        const struct mrt_neighbor *n = &from->neighbor[face];
+        if (n->block < 0) continue;
+        const struct mrt_block *to = &m->map.blocks[n->block];
+        const float along = face == CUBE_BACK ? 0.0f : 1.0f;
+        const float there = n->face == CUBE_BACK ? 0.0f : 1.0f;
+        ++*seams;
+        for (int k = 0; k < ALONG; k++) {
+            vec3s cell;
+            const float around = (float)k / (float)ALONG;
+            vec3s edge = mrt_wall_place(from, 0, around, along).position;
+            CHECK(mrt_warp_inverse(to->corner, mrt_warp_point(from->corner, edge), &cell));
+            const struct tube_place at = tube_locate(mrt_block_bend(to), cell);
+            CHECK_NEAR(at.along, there, 1e-4);
+            most = fmaxf(most, fabsf(look_up(m, block, around, along) -
+                                     look_up(m, n->block, at.around, there)));
+        }
+    }
+    return most;
+}
+
+// Around the tube, where the tile begins again.
+static float around_error(const struct light_map *m)
+{
+    float most = 0.0f;
+    for (int b = 0; b < m->map.count; b++)
+        for (int k = 0; k < ALONG; k++) {
+            const float along = (float)k / (float)(ALONG - 1);
+            most = fmaxf(most, fabsf(look_up(m, b, 0.0f, along) - look_up(m, b, 1.0f, along)));
+        }
+    return most;
+}
+
+TEST(tubes_have_no_seam_around_them_nor_where_they_meet)
+{
+    for (int i = 0; i < 6; i++) {
+        struct light_map m = make(i == 0 ? mrt_pipes(5) : mrt_tunnel(9, i));
+        int seams;
+        fill_random(&m, (uint32_t)i);
+        // Positions of both sides differ by the rounding of bends.
+        CHECK_NEAR(tube_seam_error(&m, &seams), 0, 1e-5);
+        CHECK_NEAR(around_error(&m), 0, 1e-5);
+        CHECK(seams == 2 * (m.map.count - 1));
+        for (int k = 0; k < m.atlas.border_count; k++) m.filled[m.atlas.borders[k].texel] = 0.0f;
+        CHECK(tube_seam_error(&m, &seams) > 0.1f && around_error(&m) > 0.1f);
         finish(&m);
     }
 }

@@ -288,14 +288,16 @@ TEST(mazes_of_any_size_are_trees_of_cubes)
     }
 }
 
-TEST(tunnels_are_chains_of_warped_cubes)
+TEST(tunnels_are_chains_of_cylinders_that_can_be_warped_cubes)
 {
     for (int seed = 1; seed < 5; seed++) {
         char spec[64];
         snprintf(spec, sizeof spec, "@tunnel:pieces=20,seed=%d", seed);
         struct mrt_block_map map = map_of(spec);
         CHECK(map.count == 20);
-        CHECK(connections(&map) == 19);
+        CHECK(connections(&map) == 19 && mrt_block_map_is_tunnel(&map));
+        CHECK(mrt_block_map_as_cubes(spec, &map));
+        CHECK(connections(&map) == 19 && !mrt_block_map_is_tunnel(&map));
         for (int b = 0; b < map.count; b++) {
             CHECK(map.blocks[b].kind == MRT_BLOCK_CUBE);
             // Ends are walls, the others are open at both ends.
@@ -311,9 +313,11 @@ TEST(tunnels_are_chains_of_warped_cubes)
 TEST(a_cylinder_beside_a_cube_has_no_cube_that_meets_it)
 {
     struct mrt_block_map map;
-    CHECK(!read_map(MAP("{'name':'pipe','shape':'straight','box':[[0,0,0],[1,1,1]],"
-                        "'neighbors':{'+z':'room'}},{'name':'room','box':[[0,0,1],[1,1,2]]}"),
-                    &map));
+    CHECK(read_map(MAP("{'name':'pipe','shape':'straight','box':[[0,0,0],[1,1,1]],"
+                       "'neighbors':{'+z':'room'}},{'name':'room','box':[[0,0,1],[1,1,2]]}"),
+                   &map));
+    CHECK(!mrt_block_map_is_tunnel(&map) && !mrt_block_map_as_cubes("the map", &map));
+    mrt_block_map_finish(&map);
     CHECK(strstr(test_last_message(), "pipe") && strstr(test_last_message(), "room"));
 }
 

@@ -28,7 +28,7 @@ struct lit_scene {
     float *radiosity, *irradiance, *reference; // RGB per texel
 };
 
-static struct mrt_dictionary baked[2]; // by enum mrt_maze
+static struct mrt_dictionary baked[3]; // by enum mrt_maze
 
 static const struct mrt_dictionary *dictionary_of(enum mrt_maze maze)
 {
@@ -36,7 +36,7 @@ static const struct mrt_dictionary *dictionary_of(enum mrt_maze maze)
     if (out->element_count) return out;
     struct mrt_dictionary_options options = mrt_fixture_options();
     options.maze = (int32_t)maze;
-    options.texels = 8;
+    options.texels = maze == MRT_TUNNEL ? 4 : 8;
     options.rays = 4096;
     struct bake *bake = mrt_fixture_bake(&options, 0, false);
     CHECK(mrt_dictionary_init(test_host(), bake_tensors(bake), &options, out));
@@ -46,7 +46,7 @@ static const struct mrt_dictionary *dictionary_of(enum mrt_maze maze)
 
 static bool finish_at_end(void)
 {
-    for (int m = 0; m < 2; m++) mrt_dictionary_finish(test_host(), &baked[m]);
+    for (int m = 0; m < 3; m++) mrt_dictionary_finish(test_host(), &baked[m]);
     return true;
 }
 
@@ -189,28 +189,30 @@ static void print_blocks(const struct lit_scene *s)
 
 // ---- maps
 
-enum map { MAP_SCENE, MAP_SINGLE, MAP_AUTO };
+enum map { MAP_SCENE, MAP_CUBES, MAP_SINGLE, MAP_AUTO };
 
 static void make_map(struct lit_scene *s, enum map map)
 {
     const vec3s seeds[2] = { pose_camera(&s->pose, 0).eye, s->light.position };
     size_t count = s->light.type == LIGHT_SUN ? 1 : 2;
-    if (map == MAP_SCENE)
+    if (map == MAP_SCENE || map == MAP_CUBES)
         CHECK(mrt_block_map_of_scene(test_host(), s->scene, &s->map));
     else if (map == MAP_SINGLE)
         CHECK(mrt_map_single(test_host(), &s->pose, &s->map));
     else
         CHECK(mrt_map_auto(test_host(), &s->pose, seeds, count, &s->map));
+    if (map == MAP_CUBES) CHECK(mrt_block_map_as_cubes(s->scene->name, &s->map));
 }
 
 static struct comparison light_map(const char *spec, enum map map,
                                    const struct mrt_dictionary *dictionary, int depth)
 {
-    static const char *const names[] = { "its own map", "single", "auto" };
+    static const char *const names[] = { "its own map", "cubes", "single", "auto" };
     struct lit_scene s;
     load(spec, &s);
     make_map(&s, map);
-    prepare(&s, dictionary->options.texels);
+    prepare(&s,
+            mrt_face_texels((enum mrt_maze)dictionary->options.maze, dictionary->options.texels));
     solve(&s, dictionary, depth);
     struct comparison all = compare(&s, 0, s.atlas.tile_count);
     print_message("%s, %s: %d blocks, error %.3f, mean ratio %.3f\n", spec, names[map], s.map.count,
@@ -261,12 +263,16 @@ TEST(an_automatic_map_is_far_better_than_a_single_block)
 }
 
 // Pipes as warped cubes: bends are sharp, and walls have corners.
-TEST(a_tunnel_of_warped_cubes_is_better_than_a_single_block)
+TEST(a_tunnel_of_tubes_is_better_than_of_cubes_and_these_than_a_single_block)
 {
     const struct mrt_dictionary *dictionary = dictionary_of(MRT_MAZE_2D);
     double single = light_map("@tunnel:light=point", MAP_SINGLE, dictionary, DEPTH).error;
-    double made = light_map("@tunnel:light=point", MAP_SCENE, dictionary, DEPTH).error;
-    CHECK(made < 0.31 && made < 0.4 * single);
+    double cubes = light_map("@tunnel:light=point", MAP_CUBES, dictionary, DEPTH).error;
+    struct comparison tubes =
+        light_map("@tunnel:light=point", MAP_SCENE, dictionary_of(MRT_TUNNEL), DEPTH);
+    CHECK(cubes < 0.31 && cubes < 0.4 * single);
+    CHECK(tubes.error < 0.049 && tubes.error < 0.2 * cubes);
+    CHECK(fabs(tubes.ratio - 1.0) < 0.03);
 }
 
 // A court with galleries, lit by the sun: blocks are open to the sky.

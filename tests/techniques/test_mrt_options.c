@@ -62,6 +62,9 @@ TEST(the_bake_has_the_dictionary_that_the_blocks_need)
     check_maze("mrt:map=single", "@atrium", "plane");
     check_maze("mrt:maze=space", "@maze:blocks=5", "space");
     check_maze("mrt:map=single,maze=tunnel", "@cornell", "tunnel");
+    check_maze("mrt", "@tunnel", "tunnel");
+    check_maze("mrt:maze=plane", "@tunnel", "plane");
+    check_maze("mrt:map=single", "@tunnel", "plane");
 }
 
 static void write_map(const char *path, const char *blocks)

@@ -146,7 +146,9 @@ TEST(mrt_turned_probes_are_the_turned_function)
     for (size_t i = 0; i < from.rows; i++) from.at[i] = rng_float(&rng) - 0.5f;
     for (int face = 0; face < CUBE_FACES; face++) {
         mat3s turn = mrt_block_from_entry(face);
-        CHECK(mrt_turn_probes(test_host(), P, turn, &from, &to));
+        const struct mrt_shape closed = mrt_cube(4, 0);
+        const struct mrt_probe_turn how = { &closed, &closed, turn };
+        CHECK(mrt_turn_probes(test_host(), P, &how, &from, &to));
         for (int i = 0; i < PROBES; i++) {
             vec3s cell = glms_mat3_mulv(turn, mrt_probe_cell(P, i)),
                   direction = vec3_of(.6f, 0, .8f);

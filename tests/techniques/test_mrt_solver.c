@@ -28,9 +28,10 @@ struct level_of_maze {
 
 static void make(const struct mrt_dictionary *o, int blocks, int seed, struct level_of_maze *m)
 {
+    const bool tunnel = o->options.maze == MRT_TUNNEL;
     struct mrt_level_options options = { .max_depth = 6 };
     struct rng rng = rng_for((uint32_t)seed, 9, 9);
-    m->map = mrt_maze(blocks, seed);
+    m->map = tunnel ? mrt_tunnel(blocks, seed) : mrt_maze(blocks, seed);
     CHECK(mrt_level_init(test_host(), &m->map, o, &options, &m->level));
     CHECK(mrt_solver_init(test_host(), &m->level, &m->solver));
     m->values = 3 * (size_t)m->level.first_texel[blocks];
@@ -57,7 +58,8 @@ static void plain_b(const struct level_of_maze *m, int block, int colour, double
     const struct mrt_level *level = &m->level;
     const struct mrt_cube_place *place = &level->place[block];
     struct mrt_shape cell = mrt_level_cell(level, block);
-    struct mrt_shape cube = mrt_cube(cell.resolution, mrt_cube_missing(level->maze, place->cube));
+    struct mrt_shape cube =
+        mrt_dictionary_shape(level->maze, level->dictionary->options.texels, place->cube);
     const struct matrix_f32 *t_db = &level->dictionary->element[place->cube].t_db;
     for (int k = 0; k < level->k_b; k++) b[k] = 0.0;
     for (int t = 0; t < mrt_shape_texels(&cell); t++) {
@@ -96,22 +98,24 @@ static void check_block(const struct level_of_maze *m, int block, int colour)
 {
     const struct mrt_level *level = &m->level;
     const struct mrt_cube_place *place = &level->place[block];
-    struct mrt_shape cell = mrt_level_cell(level, block),
-                     entered = mrt_entered_shape(level->maze, level->resolution, 0);
-    struct mrt_shape cube = mrt_cube(level->resolution, mrt_cube_missing(level->maze, place->cube));
+    const int texels = level->dictionary->options.texels;
+    struct mrt_shape cell = mrt_level_cell(level, block);
+    struct mrt_shape cube = mrt_dictionary_shape(level->maze, texels, place->cube);
     double b[MAX_K], r[CUBE_FACES][MAX_K];
     plain_b(m, block, colour, b);
     for (int f = 0; f < CUBE_FACES; f++)
-        if (mrt_block_is_open(&m->map.blocks[block], f))
+        if (m->map.blocks[block].neighbor[f].block >= 0)
             plain_r(m, level->entry_of_face[CUBE_FACES * block + f], colour, r[f]);
     for (int t = 0; t < mrt_shape_texels(&cell); t++) {
         double sum = row_times(&level->dictionary->element[place->cube].u_b,
                                mrt_turned_texel(&cube, place->block_from_cube, &cell, t), b);
-        for (int f = 0; f < CUBE_FACES; f++)
-            if (mrt_block_is_open(&m->map.blocks[block], f))
-                sum +=
-                    row_times(&level->dictionary->entered[0].u_r,
-                              mrt_turned_texel(&entered, mrt_block_from_entry(f), &cell, t), r[f]);
+        for (int f = 0; f < CUBE_FACES; f++) {
+            if (m->map.blocks[block].neighbor[f].block < 0) continue;
+            const int by = mrt_entered_by(&cell, f);
+            const struct mrt_shape entered = mrt_entered_shape(level->maze, texels, by);
+            sum += row_times(&level->dictionary->entered[by].u_r,
+                             mrt_turned_texel(&entered, mrt_block_from_entry(f), &cell, t), r[f]);
+        }
         CHECK_NEAR(m->out[3 * (level->first_texel[block] + t) + colour], sum,
                    1e-4 * (1.0 + fabs(sum)));
     }
@@ -131,6 +135,20 @@ TEST(the_solver_gives_the_sums_of_the_paper)
         finish(&m);
         mrt_dictionary_finish(test_host(), &o);
     }
+}
+
+TEST(the_solver_gives_the_sums_of_the_paper_in_tubes)
+{
+    struct mrt_dictionary o = mrt_random_operators(MRT_TUNNEL, 2, 7, 16, 5, 1);
+    for (int seed = 1; seed < 4; seed++) {
+        struct level_of_maze m;
+        make(&o, 12, seed, &m);
+        mrt_solve(&m.solver, m.light, m.out);
+        for (int block = 0; block < 12; block++)
+            for (int c = 0; c < 3; c++) check_block(&m, block, c);
+        finish(&m);
+    }
+    mrt_dictionary_finish(test_host(), &o);
 }
 
 // ---- laws

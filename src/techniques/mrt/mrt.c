@@ -225,7 +225,8 @@ static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_
     (void)width;
     (void)height;
     return mrt_runtime_bytes(&(struct mrt_runtime_size){
-        .resolution = o->texels,
+        .resolution = mrt_face_texels((enum mrt_maze)o->maze, o->texels),
+        .tube = o->maze == MRT_TUNNEL,
         .k_b = o->modes,
         .k_r = o->response_modes,
         .probes = o->block_probes,

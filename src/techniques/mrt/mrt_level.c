@@ -23,6 +23,19 @@ static bool make_auto(struct host *host, const struct scene_pose *pose, struct m
     return ok;
 }
 
+static bool read_map(struct host *host, const struct scene_pose *pose,
+                     const struct mrt_options *options, struct mrt_block_map *map)
+{
+    const char *what = options->blocks.at[0] ? options->blocks.at : pose->scene->name;
+    const bool cubes = options->maze != MRT_MAZE_AUTO && options->maze != MRT_TUNNEL;
+    const bool ok = options->blocks.at[0] ? mrt_block_map_read(host, options->blocks.at, map)
+                                          : mrt_block_map_of_scene(host, pose->scene, map);
+    if (!ok || (!cubes && mrt_block_map_is_tunnel(map))) return ok;
+    if (mrt_block_map_as_cubes(what, map)) return true;
+    mrt_block_map_finish(map);
+    return false;
+}
+
 // No blocks where the scene has no volume: there is no room to light.
 static bool choose_map(struct host *host, const struct scene_pose *pose,
                        const struct mrt_options *options, struct mrt_block_map *map)
@@ -30,10 +43,10 @@ static bool choose_map(struct host *host, const struct scene_pose *pose,
     const vec3s size = box3_size(pose->bounds);
     *map = (struct mrt_block_map){ 0 };
     if (!(size.x > 0.0f && size.y > 0.0f && size.z > 0.0f)) return true;
-    if (options->blocks.at[0]) return mrt_block_map_read(host, options->blocks.at, map);
+    if (options->blocks.at[0]) return read_map(host, pose, options, map);
     if (options->map == MRT_MAP_SINGLE) return mrt_map_single(host, pose, map);
     if (options->map == MRT_MAP_SCENE) {
-        if (!mrt_block_map_of_scene(host, pose->scene, map)) return false;
+        if (!read_map(host, pose, options, map)) return false;
         if (map->count > 0) return true;
         mrt_block_map_finish(map);
     }
@@ -43,6 +56,7 @@ static bool choose_map(struct host *host, const struct scene_pose *pose,
 // The smallest dictionary with all shapes of the map.
 static enum mrt_maze maze_of(const struct mrt_block_map *map)
 {
+    if (mrt_block_map_is_tunnel(map)) return MRT_TUNNEL;
     return mrt_block_map_is_plane(map) ? MRT_MAZE_2D : MRT_MAZE_3D;
 }
 
@@ -61,8 +75,9 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
     if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
     if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
     const int probes = mrt_runtime_options_of(&mrt->options).probes ? mrt->options.block_probes : 0;
+    const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
     return mrt->map.count == 0 ||
-           (mrt_atlas_init(mrt->host, &mrt->map, mrt->options.texels, &mrt->atlas) &&
+           (mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
             mrt_scene_images_init(mrt->host, pose, &mrt->map, &mrt->atlas, probes, &mrt->images));
 }
 

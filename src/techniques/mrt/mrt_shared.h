@@ -16,6 +16,7 @@
 #define MRT_CONSTANT_VALUES  3 // per texel: 1 irradiance, 4 irradiance by normal (OHLSH)
 #define MRT_CONSTANT_PROBES  4 // bool: surfaces inside blocks are lit by probes
 #define MRT_CONSTANT_AFFINE  5 // bool: all warps of the level are affine
+#define MRT_CONSTANT_TUBES   6 // bool: blocks are tubes, else cubes
 #define MRT_MAX_QUADS        16
 
 // A texel of the geometry image: the point of the scene where direct light is computed.
@@ -40,13 +41,14 @@ struct mrt_gpu_tile {
 
 struct mrt_gpu_block {
     vec3s corner[8]; // world; x is high in corner c if c & 1, y if c & 2, z if c & 4
-    int32_t tile[6]; // by face; −1: an opening
+    int32_t tile[6]; // by face; −1: an opening; of a tube tile[0] alone
     uint32_t first_texel, texels;
     uint32_t basis_row; // of first_texel
     uint32_t first_opening, openings;
     int32_t neighbor[6]; // block beyond each face; −1: none
     vec3s middle;        // world, of the cell
     vec3s inverse[3];    // rows of the warp's inverse Jacobian there
+    int32_t bend;        // of a tube: enum tube_bend; −1: a cube
 };
 
 // An opening through which light enters a block, and the blocks that send it.
@@ -108,7 +110,7 @@ struct mrt_view_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct mrt_texel) == 60, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_block) == 212, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_block) == 216, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 12, "layout is shared with GLSL");

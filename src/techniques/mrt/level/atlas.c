@@ -1,6 +1,8 @@
 // Tiles of the light map, and lookups.
 #include "atlas.h"
 
+#include "techniques/mrt/level/wall.h"
+
 #include <math.h>
 
 static int borders_of_tile(int resolution)
@@ -12,7 +14,7 @@ static void count_walls(const struct mrt_block_map *map, struct mrt_atlas *atlas
 {
     for (int b = 0; b < map->count; b++)
         for (int f = 0; f < CUBE_FACES; f++)
-            atlas->tile_count += !mrt_block_is_open(&map->blocks[b], f);
+            atlas->tile_count += mrt_block_has_wall(&map->blocks[b], f);
 }
 
 // Tiles in rows, in about a square.
@@ -23,7 +25,7 @@ static void place_tiles(const struct mrt_block_map *map, struct mrt_atlas *atlas
     for (int i = 0; i < CUBE_FACES * map->count; i++) {
         int block = i / CUBE_FACES, face = i % CUBE_FACES;
         atlas->tile_of_face[i] = -1;
-        if (mrt_block_is_open(&map->blocks[block], face)) continue;
+        if (!mrt_block_has_wall(&map->blocks[block], face)) continue;
         atlas->tile_of_face[i] = tile;
         atlas->tiles[tile] =
             (struct mrt_tile){ block, face, tile * n * n, tile % columns * edge + 1,

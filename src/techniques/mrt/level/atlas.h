@@ -1,9 +1,9 @@
 // The light map of a level (Loos 2015, sections 3.5.2 and 4.6): one tile for each wall of each
 // block, with a border of one texel. Bilinear lookup along the edge of a tile gives the same value
 // as along the edge of the wall that continues it in a connected block. At creases and beside
-// openings without such a wall the border repeats the tile.
+// openings without such a wall the border repeats the tile. A tube's tile goes on around it.
 //
-// Light is known at the level's texels: those of mrt_cube(resolution, open) of each block, block
+// Light is known at the level's texels: those of mrt_block_shape(resolution) of each block, block
 // after block.
 #pragma once
 
@@ -32,7 +32,7 @@ struct mrt_atlas {
     int texels;                    // of the level
     struct mrt_tile *tiles;
     int tile_count;
-    int *tile_of_face; // [CUBE_FACES · block + face], −1: an opening
+    int *tile_of_face; // [CUBE_FACES · block + face], −1: an opening; of a tube face 0 alone
     struct mrt_border *borders;
     int border_count;
 };

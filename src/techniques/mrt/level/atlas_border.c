@@ -9,6 +9,8 @@
 // have the opposite texel as their corner.
 #include "atlas.h"
 
+#include "techniques/mrt/level/wall.h"
+
 enum { MAX_WALLS = MRT_BORDER_SOURCES };
 static const float COPLANAR = 0.866f; // cosine of 30 degrees
 
@@ -175,10 +177,65 @@ static void make_corner(const struct mrt_block_map *map, const struct mrt_atlas 
     }
 }
 
+// ---- tubes
+
+// The texel of a tube beside its end at a point of the end's edge: another tube's, or its own.
+static uint32_t end_texel(const struct mrt_atlas *atlas, const struct mrt_block_map *map, int block,
+                          int face, vec3s edge)
+{
+    const int n = atlas->resolution;
+    const enum tube_bend bend = mrt_block_bend(&map->blocks[block]);
+    const int x = (int)(tube_locate(bend, edge).around * (float)n) % n;
+    return level_texel(atlas, block, 0, x, face == CUBE_BACK ? 0 : n - 1);
+}
+
+static uint32_t texel_beyond(const struct mrt_atlas *atlas, const struct mrt_block_map *map,
+                             int block, int face, int x)
+{
+    const struct mrt_block *own = &map->blocks[block];
+    const struct mrt_neighbor *n = &own->neighbor[face];
+    vec3s edge = tube_wall(mrt_block_bend(own), ((float)x + 0.5f) / (float)atlas->resolution,
+                           face == CUBE_BACK ? 0.0f : 1.0f);
+    vec3s there;
+    if (n->block < 0 || !mrt_block_is_tube(&map->blocks[n->block]) ||
+        !mrt_warp_inverse(map->blocks[n->block].corner, mrt_warp_point(own->corner, edge), &there))
+        return end_texel(atlas, map, block, face, edge);
+    return end_texel(atlas, map, n->block, n->face, there);
+}
+
+static int exit_of(const struct mrt_block *tube)
+{
+    for (int f = 0; f < CUBE_FACES; f++)
+        if (f != CUBE_BACK && mrt_block_is_open(tube, f)) return f;
+    return -1;
+}
+
+// The border continues around the tube, and along it into its neighbours.
+static void make_tube(const struct mrt_block_map *map, const struct mrt_atlas *atlas,
+                      const struct mrt_tile *tile, struct mrt_border *out)
+{
+    const int n = atlas->resolution, exit = exit_of(&map->blocks[tile->block]);
+    for (int y = -1; y <= n; y++)
+        for (int x = -1; x <= n; x++) {
+            const int around = (x + n) % n;
+            if (x >= 0 && x < n && y >= 0 && y < n) continue;
+            *out = (struct mrt_border){ .texel = atlas_texel(atlas, tile, x, y), .count = 1 };
+            out->weight[0] = 1.0f;
+            out->source[0] = y >= 0 && y < n ? level_texel(atlas, tile->block, 0, around, y)
+                                             : texel_beyond(atlas, map, tile->block,
+                                                            y < 0 ? CUBE_BACK : exit, around);
+            out++;
+        }
+}
+
 void mrt_atlas_make_borders(const struct mrt_block_map *map, const struct mrt_atlas *atlas,
                             int tile, struct mrt_border *out)
 {
     int n = atlas->resolution;
+    if (mrt_block_is_tube(&map->blocks[atlas->tiles[tile].block])) {
+        make_tube(map, atlas, &atlas->tiles[tile], out);
+        return;
+    }
     for (int k = 0; k < 4; k++) {
         make_edge(map, atlas, &atlas->tiles[tile], k, out + k * n);
         make_corner(map, atlas, &atlas->tiles[tile], k, out + 4 * n + k);

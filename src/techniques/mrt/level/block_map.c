@@ -126,6 +126,17 @@ bool mrt_block_map_is_plane(const struct mrt_block_map *map)
     return true;
 }
 
+bool mrt_block_map_is_tunnel(const struct mrt_block_map *map)
+{
+    for (int b = 0; b < map->count; b++) {
+        const struct mrt_block *block = &map->blocks[b];
+        if (block->kind == MRT_BLOCK_CUBE) return false;
+        for (int f = 0; f < CUBE_FACES; f++)
+            if (block->neighbor[f].block >= 0 && block->neighbor[f].rolls != 0) return false;
+    }
+    return map->count > 0;
+}
+
 static void close_opening(struct mrt_block *block, int face)
 {
     block->open &= ~(1u << face);

@@ -34,14 +34,17 @@ bool mrt_block_map_is_plane(const struct mrt_block_map *map);
 // Makes it so: such openings become walls on both sides, the others stay.
 void mrt_block_map_make_plane(struct mrt_block_map *map);
 
+// Whether a dictionary of tubes has all blocks: cylinders that are not tilted against each other.
+bool mrt_block_map_is_tunnel(const struct mrt_block_map *map);
+
 // ---- cylinder.c
 
-// Replaces cylinders by cubes that are warped along them: levels use cubes alone. Ends without a
-// neighbour become walls. FAIL_UNSUPPORTED where a cylinder is connected with a block of another
-// kind.
+// Replaces cylinders by cubes that are warped along them. A level is all tubes or all cubes. Ends
+// without a neighbour become walls. FAIL_UNSUPPORTED where a cylinder is connected with a block of
+// another kind.
 bool mrt_block_map_as_cubes(const char *what, struct mrt_block_map *map);
 
-// ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed. Cylinders are replaced by cubes.
+// ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed.
 
 bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map);
 // From the `extras` of nodes in the default pose. A scene without blocks gives an empty map.

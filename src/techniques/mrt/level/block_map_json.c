@@ -181,7 +181,7 @@ static bool read_source(const struct source *source, struct mrt_block_map *map)
     if (!mrt_block_map_check(source->what, map)) return false;
     for (int i = 0; i < map->count; i++)
         if (!connect_block(source, map, i)) return false;
-    return mrt_block_map_check(source->what, map) && mrt_block_map_as_cubes(source->what, map);
+    return mrt_block_map_check(source->what, map);
 }
 
 // ---- a file

@@ -1,6 +1,8 @@
 // Geometry images, and the walls that stand for surfaces.
 #include "geometry.h"
 
+#include "techniques/mrt/level/wall.h"
+
 #include "core/parallel.h"
 
 #include <math.h>
@@ -31,19 +33,18 @@ static enum sight look_at_wall(const struct geometry_job *job, const struct mrt_
                                struct mrt_geometry_texel *out)
 {
     int n = job->atlas->resolution;
-    const vec3s *corner = job->map->blocks[tile->block].corner;
-    vec3s wall = cube_face_point(tile->face, ((float)(k % n) + 0.5f) / (float)n,
-                                 ((float)(k / n) + 0.5f) / (float)n);
-    vec3s middle = wall;
-    middle.raw[tile->face / 2] = 0.0f;
-    vec3s from = mrt_warp_point(corner, middle), to = mrt_warp_point(corner, wall);
-    bool solid = is_in_solid(job->scene, from, mrt_warp_point(corner, GLMS_VEC3_ZERO));
+    const struct mrt_block *block = &job->map->blocks[tile->block];
+    const float s = ((float)(k % n) + 0.5f) / (float)n, t = ((float)(k / n) + 0.5f) / (float)n;
+    vec3s wall = mrt_wall_place(block, tile->face, s, t).position;
+    vec3s from = mrt_warp_point(block->corner, mrt_wall_middle(block, tile->face, s, t));
+    vec3s to = mrt_warp_point(block->corner, wall);
+    bool solid = is_in_solid(job->scene, from, mrt_block_middle(block));
     struct trace_hit hit;
     bool found = trace_closest(job->scene, from, glms_vec3_sub(to, from), RAY_END, &hit);
     if (!found)
         *out = (struct mrt_geometry_texel){
             .position = to,
-            .normal = glms_vec3_negate(mrt_warp_face_normal(corner, tile->face, wall)),
+            .normal = mrt_wall_normal(block, tile->face, s, t),
         };
     else
         *out = (struct mrt_geometry_texel){

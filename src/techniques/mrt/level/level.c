@@ -19,16 +19,25 @@ static bool is_tilted(const struct mrt_block *block)
     return false;
 }
 
-static bool choose_cubes(struct mrt_level *level)
+static bool choose_shape(struct mrt_level *level, int b)
+{
+    const struct mrt_block *block = &level->map->blocks[b];
+    const bool tube = mrt_block_is_tube(block);
+    if (tube != (level->maze == MRT_TUNNEL))
+        return unsupported(level, b, tube ? "cylinders" : "cubes");
+    if (tube)
+        level->place[b] = (struct mrt_cube_place){ (int)mrt_block_bend(block), GLMS_MAT3_IDENTITY };
+    else if (!mrt_cube_find(level->maze, block->open, &level->place[b]))
+        return unsupported(level, b, "cube with its openings");
+    return (level->maze == MRT_MAZE_3D || !is_tilted(block)) ||
+           unsupported(level, b, "turn for its tilted neighbor");
+}
+
+static bool choose_shapes(struct mrt_level *level)
 {
     for (int b = 0; b < level->map->count; b++) {
-        const struct mrt_block *block = &level->map->blocks[b];
+        if (!choose_shape(level, b)) return false;
         struct mrt_shape cell = mrt_level_cell(level, b);
-        if (block->kind != MRT_BLOCK_CUBE) return unsupported(level, b, "cylinders");
-        if (!mrt_cube_find(level->maze, block->open, &level->place[b]))
-            return unsupported(level, b, "cube with its openings");
-        if (level->maze == MRT_MAZE_2D && is_tilted(block))
-            return unsupported(level, b, "turn for its tilted neighbor");
         level->first_texel[b + 1] = level->first_texel[b] + mrt_shape_texels(&cell);
     }
     return true;
@@ -116,7 +125,7 @@ static void set_sizes(struct mrt_level *level)
 {
     const struct mrt_dictionary_options *o = &level->dictionary->options;
     level->maze = (enum mrt_maze)o->maze;
-    level->resolution = o->texels;
+    level->resolution = mrt_face_texels(level->maze, o->texels);
     level->k_b = o->modes;
     level->k_rlf = o->lightfield_modes;
     level->k_r = o->response_modes;
@@ -136,9 +145,9 @@ bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
     level->entry_of_face = host_alloc(host, faces, sizeof *level->entry_of_face);
     level->first_link = host_alloc(host, faces + 1, sizeof *level->first_link);
     bool ok = level->place && level->first_texel && level->entries && level->entry_of_face &&
-              level->first_link && choose_cubes(level);
+              level->first_link && choose_shapes(level);
     if (ok) list_entries(level);
-    if (ok && options->retrace)
+    if (ok && options->retrace && level->maze != MRT_TUNNEL)
         ok = mrt_retraces_init(host, map, level->place, dictionary, &level->retraces);
     ok = ok && propagate(level, options->max_depth);
     if (!ok) mrt_level_finish(level);

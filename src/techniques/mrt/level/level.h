@@ -6,10 +6,11 @@
 #include "techniques/mrt/level/atlas.h"
 #include "techniques/mrt/level/kernels.h"
 #include "techniques/mrt/level/retrace.h"
+#include "techniques/mrt/level/wall.h"
 
 struct mrt_level_options {
     int max_depth; // openings that light passes at most; 0: none
-    bool retrace;  // bases in the proportions of the blocks
+    bool retrace;  // bases in the proportions of the blocks, where they are cubes
 };
 
 // Light enters `block` by an opening.
@@ -28,7 +29,7 @@ struct mrt_level {
     const struct mrt_block_map *map;         // borrowed
     const struct mrt_dictionary *dictionary; // borrowed
     enum mrt_maze maze;                      // of the dictionary, as are the numbers
-    int resolution;                          // texels along an edge of a face
+    int resolution;                          // texels along an edge of a wall
     int k_b, k_rlf, k_r;
     struct mrt_cube_place *place; // [blocks]
     struct mrt_retraces retraces; // empty without `retrace`
@@ -44,7 +45,8 @@ struct mrt_level {
 
 // FAIL_UNSUPPORTED with the name of a block for which the dictionary has no cube: a shape without
 // floor or ceiling, or neighbours that are tilted against each other, in a dictionary for
-// two-dimensional mazes. Cylinders: see mrt_block_map_as_cubes.
+// two-dimensional mazes; cylinders in a dictionary of cubes (see mrt_block_map_as_cubes), cubes in
+// one of tubes.
 bool mrt_level_init(struct host *host, const struct mrt_block_map *map,
                     const struct mrt_dictionary *dictionary,
                     const struct mrt_level_options *options, struct mrt_level *level);
@@ -52,7 +54,7 @@ void mrt_level_finish(struct mrt_level *level); // accepts zero
 
 static inline struct mrt_shape mrt_level_cell(const struct mrt_level *level, int block)
 {
-    return mrt_cube(level->resolution, level->map->blocks[block].open);
+    return mrt_block_shape(&level->map->blocks[block], level->resolution);
 }
 
 // The bases of a block that replace those of its cube; NULL: none do.

@@ -128,9 +128,12 @@ static bool respond(struct traversal *t, const struct wave *wave)
     size_t rows = (size_t)t->level->k_r, columns = (size_t)t->level->k_b;
     float *response = t->response + (size_t)wave->entry * rows * columns;
     struct matrix_f32 sum = { response, rows, columns, columns };
+    const struct mrt_entry *at = &t->level->entries[wave->entry];
+    const struct mrt_shape shape = mrt_level_cell(t->level, at->block);
+    const int entered = mrt_entered_by(&shape, at->face);
     t->reached[wave->entry] = true;
-    return matrix_f32_multiply(t->host, 1.0f, &t->level->dictionary->entered[0].t_r, NOT_TRANSPOSED,
-                               &wave->light, NOT_TRANSPOSED, 1.0f, &sum);
+    return matrix_f32_multiply(t->host, 1.0f, &t->level->dictionary->entered[entered].t_r,
+                               NOT_TRANSPOSED, &wave->light, NOT_TRANSPOSED, 1.0f, &sum);
 }
 
 static bool pass_block(struct traversal *t, const struct wave *wave)

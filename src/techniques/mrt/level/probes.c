@@ -1,6 +1,8 @@
 // Where the probes of a level are.
 #include "probes.h"
 
+#include "techniques/mrt/level/wall.h"
+
 #include <math.h>
 
 static vec3s cell_of(int per_edge, int count, int i, int border)
@@ -18,7 +20,10 @@ vec3s mrt_probe_cell(int p, int i)
 
 vec3s mrt_probe_position(const struct mrt_block *block, int p, int i)
 {
-    return mrt_warp_point(block->corner, mrt_probe_cell(p, i));
+    vec3s cell = mrt_probe_cell(p, i);
+    if (mrt_block_is_tube(block))
+        cell = tube_inside(mrt_block_bend(block), glms_vec3_adds(cell, 0.5f));
+    return mrt_warp_point(block->corner, cell);
 }
 
 // Newton's iteration of the polar decomposition: Q ← (Q + Q⁻ᵀ) / 2 (Higham 1986).
@@ -60,9 +65,42 @@ static int nearest_probe(int p, vec3s cell)
     return (at[2] * p + at[1]) * p + at[0];
 }
 
+static int nearest_position(const struct mrt_block *block, int p, vec3s world)
+{
+    int nearest = 0;
+    float least = INFINITY;
+    for (int i = 0; i < mrt_probes_of_block(p); i++) {
+        float distance = glms_vec3_distance2(mrt_probe_position(block, p, i), world);
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = i;
+    }
+    return nearest;
+}
+
+// Beyond an end of a tube: the probe of the neighbour that is nearest to the same place of the end.
+static int probe_of_tube(const struct mrt_block_map *map, int p, int b, vec3s unit)
+{
+    const struct mrt_block *block = &map->blocks[b];
+    const bool before = unit.z<0.0f, after = unit.z> 1.0f;
+    int beyond = -1;
+    for (int f = 0; f < CUBE_FACES && (before || after); f++)
+        if (mrt_block_is_open(block, f) && (f == CUBE_BACK) == before)
+            beyond = block->neighbor[f].block;
+    if (beyond < 0)
+        return b * mrt_probes_of_block(p) + nearest_probe(p, glms_vec3_subs(unit, 0.5f));
+    const float half = 0.5f / (float)p;
+    for (int a = 0; a < 2; a++) unit.raw[a] = fminf(fmaxf(unit.raw[a], half), 1.0f - half);
+    unit.z = after ? 1.0f : 0.0f;
+    const vec3s end = mrt_warp_point(block->corner, tube_inside(mrt_block_bend(block), unit));
+    return beyond * mrt_probes_of_block(p) + nearest_position(&map->blocks[beyond], p, end);
+}
+
 // Walks through at most one opening for each axis.
 int mrt_probe_of_brick_texel(const struct mrt_block_map *map, int p, int block, int i)
 {
+    if (mrt_block_is_tube(&map->blocks[block]))
+        return probe_of_tube(map, p, block, glms_vec3_adds(cell_of(p, p + 2, i, 1), 0.5f));
     vec3s cell = cell_of(p, p + 2, i, 1);
     vec3s world = mrt_warp_point(map->blocks[block].corner, cell);
     for (int step = 0; step < 3; step++) {

@@ -7,9 +7,11 @@
 
 #include <string.h>
 
-static int walls_of(unsigned missing)
+// Walls of a shape of the dictionary.
+static int walls_of(enum mrt_maze maze, int shape)
 {
-    struct mrt_shape cube = mrt_cube(1, missing);
+    if (maze == MRT_TUNNEL) return 1;
+    struct mrt_shape cube = mrt_cube(1, mrt_cube_missing(maze, shape));
     return mrt_shape_texels(&cube);
 }
 
@@ -22,7 +24,7 @@ static int padded(const struct mrt_solver *s, int texel)
 
 static int block_stride(const struct mrt_solver *s)
 {
-    return 3 * CUBE_FACES * s->face_texels;
+    return 3 * (s->level->maze == MRT_TUNNEL ? 1 : CUBE_FACES) * s->face_texels;
 }
 
 static int entry_stride(const struct mrt_level *level)
@@ -35,7 +37,7 @@ static int entry_stride(const struct mrt_level *level)
 // Padded texels of a cube.
 static size_t cube_stride(const struct mrt_solver *s, int cube)
 {
-    return (size_t)walls_of(mrt_cube_missing(s->level->maze, cube)) * (size_t)s->face_texels;
+    return (size_t)walls_of(s->level->maze, cube) * (size_t)s->face_texels;
 }
 
 static float *copy_t_db(const struct mrt_solver *s, int cube)
@@ -78,15 +80,22 @@ static bool copy_retraced(struct mrt_solver *s)
     return ok;
 }
 
+// Walls of a shape that light enters.
+static size_t entered_walls(const struct mrt_solver *s)
+{
+    return s->level->maze == MRT_TUNNEL ? 1 : CUBE_FACES - 1;
+}
+
 static bool copy_response(struct mrt_solver *s)
 {
-    const struct matrix_f32 *u_r = &s->level->dictionary->entered[0].u_r;
-    int n = s->level->resolution * s->level->resolution;
+    size_t n = (size_t)(s->level->resolution * s->level->resolution), walls = entered_walls(s);
     size_t face = (size_t)s->face_texels, k_r = (size_t)s->level->k_r;
-    s->u_r = host_alloc(s->host, (CUBE_FACES - 1) * k_r * face, sizeof *s->u_r);
+    size_t count = (size_t)s->level->dictionary->entered_count;
+    s->u_r = host_alloc(s->host, count * walls * k_r * face, sizeof *s->u_r);
     if (!s->u_r) return false;
-    for (size_t t = 0; t < u_r->rows; t++) {
-        size_t wall = t / (size_t)n, in_wall = t % (size_t)n;
+    for (size_t i = 0; i < count * walls * n; i++) {
+        const struct matrix_f32 *u_r = &s->level->dictionary->entered[i / (walls * n)].u_r;
+        size_t t = i % (walls * n), wall = i / n, in_wall = i % n;
         for (size_t r = 0; r < k_r; r++)
             s->u_r[(wall * k_r + r) * face + in_wall] = u_r->at[t * u_r->stride + r];
     }
@@ -100,32 +109,57 @@ static void map_block(struct mrt_solver *s, int block)
     const struct mrt_level *level = s->level;
     const struct mrt_cube_place *place = &level->place[block];
     struct mrt_shape cell = mrt_level_cell(level, block);
-    struct mrt_shape cube = mrt_cube(cell.resolution, mrt_cube_missing(level->maze, place->cube));
+    struct mrt_shape cube =
+        mrt_dictionary_shape(level->maze, level->dictionary->options.texels, place->cube);
     for (int t = 0; t < mrt_shape_texels(&cell); t++)
         s->cube_texel[level->first_texel[block] + t] =
             padded(s, mrt_turned_texel(&cube, place->block_from_cube, &cell, t));
 }
 
-// Texels of a wall as seen by light that enters at a face.
-static void map_entry(struct mrt_solver *s, int entry, int wall)
+// Texels of a wall, the only one of `only`, as seen by light that enters at a face.
+static void map_entry(struct mrt_solver *s, const struct mrt_shape *only, int wall, int face,
+                      int response)
 {
-    int resolution = s->level->resolution, n = resolution * resolution;
-    struct mrt_shape entered = mrt_entered_shape(s->level->maze, resolution, 0);
-    struct mrt_shape only = mrt_cube(resolution, CUBE_ALL_FACES & ~(1u << wall));
-    int *out = s->entered_texel + (entry * CUBE_FACES + wall) * n;
+    const struct mrt_level *level = s->level;
+    const int n = level->resolution * level->resolution, index = mrt_entered_by(only, face);
+    const struct mrt_shape entered =
+        mrt_entered_shape(level->maze, level->dictionary->options.texels, index);
+    int *out = s->entered_texel + (response * CUBE_FACES + wall) * n;
     for (int t = 0; t < n; t++) {
-        int texel = mrt_turned_texel(&entered, mrt_block_from_entry(entry), &only, t);
-        s->entered_face[entry][wall] = texel / n;
+        int texel = mrt_turned_texel(&entered, mrt_block_from_entry(face), only, t);
+        s->entered_face[response][wall] = index * (int)entered_walls(s) + texel / n;
         out[t] = texel % n;
+    }
+}
+
+static void map_tube_entries(struct mrt_solver *s)
+{
+    for (int kind = MRT_BLOCK_STRAIGHT; kind < MRT_BLOCK_KINDS; kind++) {
+        struct mrt_block block;
+        mrt_block_init(&block, "", (enum mrt_block_kind)kind);
+        const struct mrt_shape tube = mrt_block_shape(&block, s->level->resolution);
+        for (int f = 0; f < CUBE_FACES; f++)
+            if (mrt_shape_is_open(&tube, f)) map_entry(s, &tube, 0, f, mrt_response_of(&block, f));
+    }
+}
+
+static void map_cube_entries(struct mrt_solver *s)
+{
+    for (int wall = 0; wall < CUBE_FACES; wall++) {
+        const struct mrt_shape only =
+            mrt_cube(s->level->resolution, CUBE_ALL_FACES & ~(1u << wall));
+        for (int entry = 0; entry < CUBE_FACES; entry++)
+            if (wall != entry) map_entry(s, &only, wall, entry, entry);
     }
 }
 
 static void map_texels(struct mrt_solver *s)
 {
     for (int b = 0; b < s->level->map->count; b++) map_block(s, b);
-    for (int entry = 0; entry < CUBE_FACES; entry++)
-        for (int wall = 0; wall < CUBE_FACES; wall++)
-            if (wall != entry) map_entry(s, entry, wall);
+    if (s->level->maze == MRT_TUNNEL)
+        map_tube_entries(s);
+    else
+        map_cube_entries(s);
 }
 
 static bool allocate(struct mrt_solver *s)
@@ -135,7 +169,8 @@ static bool allocate(struct mrt_solver *s)
     size_t n = (size_t)(level->resolution * level->resolution);
     s->cube_texel =
         host_alloc(s->host, (size_t)level->first_texel[level->map->count], sizeof *s->cube_texel);
-    s->entered_texel = host_alloc(s->host, CUBE_FACES * CUBE_FACES * n, sizeof *s->entered_texel);
+    s->entered_texel =
+        host_alloc(s->host, MRT_RESPONSES * CUBE_FACES * n, sizeof *s->entered_texel);
     s->light = host_alloc(s->host, blocks * (size_t)block_stride(s), sizeof *s->light);
     s->b = host_alloc(s->host, blocks * 3 * (size_t)level->k_b, sizeof *s->b);
     s->r =
@@ -190,7 +225,7 @@ static int planes_of(const struct mrt_solver *s, int block, float *planes[3])
 {
     const struct mrt_level *level = s->level;
     int cube = level->place[block].cube;
-    int length = walls_of(mrt_cube_missing(level->maze, cube)) * s->face_texels;
+    int length = walls_of(level->maze, cube) * s->face_texels;
     for (int c = 0; c < 3; c++)
         planes[c] = s->light + (size_t)block * (size_t)block_stride(s) + (size_t)(c * length);
     return length;
@@ -234,17 +269,19 @@ static const float *receive(struct mrt_solver *s, int entry)
 static void add_response(const struct mrt_solver *s, int block, int entry_face, const float *r,
                          float *irradiance)
 {
+    const struct mrt_block *of = &s->level->map->blocks[block];
+    const int response = mrt_response_of(of, entry_face);
     int n = s->level->resolution * s->level->resolution, face = s->face_texels;
     int k_r = s->level->k_r;
     float *planes[3];
     planes_of(s, block, planes);
     for (int c = 0; c < 3; c++) planes[c] = planes[0] + c * face; // light is no longer needed
     for (int wall = 0; wall < CUBE_FACES; wall++) {
-        if (mrt_block_is_open(&s->level->map->blocks[block], wall)) continue;
+        if (!mrt_block_has_wall(of, wall)) continue;
         memset(planes[0], 0, 3 * (size_t)face * sizeof *planes[0]);
-        int from = s->entered_face[entry_face][wall];
+        int from = s->entered_face[response][wall];
         mrt_kernel_expand(s->u_r + (size_t)(from * k_r) * (size_t)face, face, k_r, face, r, planes);
-        const int *texel = s->entered_texel + (entry_face * CUBE_FACES + wall) * n;
+        const int *texel = s->entered_texel + (response * CUBE_FACES + wall) * n;
         for (int t = 0; t < n; t++)
             for (int c = 0; c < 3; c++) irradiance[3 * t + c] += planes[c][texel[t]];
         irradiance += 3 * n;

@@ -7,15 +7,15 @@
 struct mrt_solver {
     struct host *host;
     const struct mrt_level *level; // borrowed
-    int face_texels;               // of a face, rounded up to lanes
-    // Per cube of the dictionary: k_b rows over the padded texels of its walls.
+    int face_texels;               // of a wall, rounded up to lanes
+    // Per shape of the dictionary: k_b rows over the padded texels of its walls.
     float *t_db[MRT_MAX_CUBES], *u_b[MRT_MAX_CUBES];
     float **u_retraced; // the same for each of level->retraces
-    float *u_r;         // [5 faces of mrt_entered_shape] × k_r × face_texels
-    int *cube_texel;    // [texels of the level]: padded texel of the cube
-    int entered_face[CUBE_FACES][CUBE_FACES]; // by entry and wall
-    int *entered_texel;                       // [6 entries] × [6 walls] × texels of a face
-    float *light; // [texels of a closed cube, padded] × 3 colours for each block
+    float *u_r;         // [walls of all mrt_entered_shape] × k_r × face_texels
+    int *cube_texel;    // [texels of the level]: padded texel of the shape
+    int entered_face[MRT_RESPONSES][CUBE_FACES]; // by mrt_response_of and wall
+    int *entered_texel;                          // [MRT_RESPONSES] × [6 walls] × texels of a wall
+    float *light; // [texels of a closed cube or a tube, padded] × 3 colours for each block
     float *b, *r; // [blocks] × k_b × 3, [entries] × k_r × 3
 };
 

@@ -3,13 +3,16 @@
 #ifndef AG_MRT_BRICKS_GLSL
 #define AG_MRT_BRICKS_GLSL
 
+#include "techniques/mrt/runtime/tube.glsl"
+
 layout(set = 0, binding = MRT_BRICKS_BINDING) uniform sampler3D bricks;
 
 // In texels of the first slab. Places outside the cell are clamped to the brick's border.
 vec3 brick_texel(mrt_place place)
 {
     int edge = int(level.probes) + 2, block = place.block;
-    vec3 at = (place.cell + 0.5) * float(level.probes) + 1.0;
+    vec3 unit = TUBES ? tube_unit(block, place.cell) : place.cell + 0.5;
+    vec3 at = unit * float(level.probes) + 1.0;
     ivec3 brick = ivec3(block % int(level.brick_columns), block / int(level.brick_columns), 0);
     return vec3(brick * edge) + clamp(at, vec3(0.5), vec3(float(edge) - 0.5));
 }

@@ -12,6 +12,7 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/mrt/runtime/locate.glsl"
+#include "techniques/mrt/runtime/tube.glsl"
 
 layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;
 
@@ -60,6 +61,16 @@ float brightness(ivec2 pixel)
     return dot(light, vec3(0.2126, 0.7152, 0.0722));
 }
 
+vec2 place_on_wall(mrt_place place, int face)
+{
+    if (TUBES) {
+        mrt_tube_place at = tube_place(place.block, place.cell);
+        return vec2(at.around, at.along);
+    }
+    mat3 frame_of_face = cube_from_face(face);
+    return 0.5 + vec2(dot(frame_of_face[0], place.cell), dot(frame_of_face[1], place.cell));
+}
+
 vec3 shade(ivec2 pixel, float z)
 {
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
@@ -67,12 +78,9 @@ vec3 shade(ivec2 pixel, float z)
     mrt_place place = locate(world + level.offset_m * n);
     vec3 unmapped = vec3(0.25 * brightness(pixel));
     if (place.block < 0) return unmapped;
-    int face = facing_wall(place, normal_in_cell(place, n));
+    int face = TUBES ? 0 : facing_wall(place, normal_in_cell(place, n));
     if (face < 0) return unmapped;
-    mat3 frame_of_face = cube_from_face(face);
-    vec2 st =
-        clamp(0.5 + vec2(dot(frame_of_face[0], place.cell), dot(frame_of_face[1], place.cell)), 0.0,
-              0.9999);
+    vec2 st = clamp(place_on_wall(place, face), 0.0, 0.9999);
     ivec2 texel = ivec2(st * float(level.resolution));
     if (push.view == MRT_VIEW_DIRECT)
         return direct_table[tile_table[block_table[place.block].tile[face]].first_texel +

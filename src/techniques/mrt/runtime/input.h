@@ -7,8 +7,9 @@
 #include "techniques/mrt/level/atlas.h"
 #include "techniques/mrt/level/probes.h"
 #include "techniques/mrt/level/unbounced.h"
+#include "techniques/mrt/level/wall.h"
 
-// Operators of blocks with the same openings. n texels of mrt_cube(resolution, open).
+// Operators of blocks with the same openings. n texels of mrt_block_shape(resolution).
 struct mrt_basis_input {
     unsigned open;
     struct matrix_f32 t_db;  // k_b × n
@@ -17,8 +18,8 @@ struct mrt_basis_input {
     struct matrix_f32 u_vol; // 9 p³ × k_b, probes in the frame of the cell; empty: none
 };
 
-// Response of a block to the light of the opening in one face, at the 6 n² texels of a closed cube;
-// 0 on that face.
+// Response of a block to the light of the opening in one face, at the 6 n² texels of a closed cube,
+// 0 on that face; of a tube, at its n² texels.
 struct mrt_response_input {
     struct matrix_f32 u_r;   // 6 n² × k_r
     struct matrix_f32 u_vec; // 24 n² × k_r
@@ -44,8 +45,8 @@ struct mrt_runtime_input {
     const struct mrt_basis_input *bases;
     int basis_count;
     const int *basis_of_block;
-    struct mrt_response_input response[CUBE_FACES];
-    const struct mrt_opening_input *openings; // in the order of their blocks
+    struct mrt_response_input response[MRT_RESPONSES]; // by mrt_response_of
+    const struct mrt_opening_input *openings;          // in the order of their blocks
     int opening_count;
     const struct mrt_pair_input *pairs; // in the order of their openings
     int pair_count, t_br_stride;

@@ -34,21 +34,34 @@ vec3 change_by_normal(vec3 uv, vec3 normal)
 }
 
 // Reduced bases leave small negative values beside bright texels. Up to here light is linear.
+// `normal` is in the frame of struct mrt_point.
+vec3 tile_irradiance(int tile, vec2 st, vec3 normal)
+{
+    vec3 uv = light_map_uv(tile, clamp(st, 0.0, 1.0));
+    vec3 irradiance = textureLod(light_map, uv, 0.0).rgb;
+    if (VALUES == 4u && normal.z < MRT_ALONG_WALL) irradiance += change_by_normal(uv, normal);
+    return max(irradiance, vec3(0.0));
+}
+
 vec3 wall_irradiance(int tile, int face, vec3 cell, vec3 normal)
 {
     mat3 frame = cube_from_face(face);
-    vec2 st = clamp(0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)), 0.0, 1.0);
-    vec3 uv = light_map_uv(tile, st);
-    vec3 irradiance = textureLod(light_map, uv, 0.0).rgb;
-    vec3 local = vec3(-dot(frame[0], normal), dot(frame[1], normal), -dot(frame[2], normal));
-    if (VALUES == 4u && local.z < MRT_ALONG_WALL) irradiance += change_by_normal(uv, local);
-    return max(irradiance, vec3(0.0));
+    return tile_irradiance(
+        tile, 0.5 + vec2(dot(frame[0], cell), dot(frame[1], cell)),
+        vec3(-dot(frame[0], normal), dot(frame[1], normal), -dot(frame[2], normal)));
 }
 
 struct mrt_wall {
     int face;
     float share; // 0: the surface lies on no wall
 };
+
+// How much a surface is the wall at this distance that it faces by this cosine.
+float share_of_wall(float distance, float cosine)
+{
+    return smoothstep(MRT_WALL_COSINE[0], MRT_WALL_COSINE[1], cosine) *
+           (1.0 - smoothstep(MRT_WALL_DISTANCE[0], MRT_WALL_DISTANCE[1], distance));
+}
 
 mrt_wall wall_of(mrt_place place, vec3 normal)
 {
@@ -57,8 +70,7 @@ mrt_wall wall_of(mrt_place place, vec3 normal)
         if (block_table[place.block].tile[f] < 0) continue;
         float side = (f & 1) != 0 ? 1.0 : -1.0;
         float distance = 0.5 - side * place.cell[f / 2];
-        float share = smoothstep(MRT_WALL_COSINE[0], MRT_WALL_COSINE[1], -side * normal[f / 2]) *
-                      (1.0 - smoothstep(MRT_WALL_DISTANCE[0], MRT_WALL_DISTANCE[1], distance));
+        float share = share_of_wall(distance, -side * normal[f / 2]);
         if (share > best.share) best = mrt_wall(f, share);
     }
     return best;
@@ -141,8 +153,25 @@ mrt_wall wall_beyond(vec3 world, vec3 normal, inout mrt_place place, inout vec3 
     return wall;
 }
 
+// In a tube a surface inside is projected onto the wall away from the axis.
+vec3 tube_irradiance(mrt_place place, vec3 normal)
+{
+    mrt_tube_place at = tube_place(place.block, place.cell);
+    int tile = block_table[place.block].tile[0];
+    vec2 st = vec2(at.around, at.along);
+    vec3 n = normal_in_cell(place, normal) * at.frame;
+    float share = share_of_wall(MRT_TUBE_RADIUS - length(at.off), n.z);
+    vec3 on_wall = vec3(0.0), inside = vec3(0.0);
+    if (share > 0.0) on_wall = tile_irradiance(tile, st, n);
+    if (share < 1.0)
+        inside = PROBES ? bricks_irradiance(place, normal)
+                        : tile_irradiance(tile, st, vec3(0.0, 0.0, 1.0));
+    return mix(inside, on_wall, share);
+}
+
 vec3 room_irradiance(vec3 position, vec3 normal, mrt_place place)
 {
+    if (TUBES) return tube_irradiance(place, normal);
     vec3 n = normal_in_cell(place, normal);
     mrt_wall wall = wall_of(place, n);
     if (wall.share == 0.0) wall = wall_beyond(position + level.offset_m * normal, normal, place, n);
@@ -161,7 +190,8 @@ const float MRT_LEAVING = 0.25;
 // Beyond its block an enclosed surface, such as that of a niche, has the light of the room.
 vec3 level_irradiance(vec3 position, vec3 normal)
 {
-    mrt_place place = locate_surface(position, normal);
+    mrt_place place =
+        TUBES ? locate(position + level.offset_m * normal) : locate_surface(position, normal);
     vec4 outdoors = vec4(0.0);
     if (place.block < 0 || place.outside > 0.0) outdoors = outdoor_irradiance(position, normal);
     if (place.block < 0) return outdoors.a * outdoors.rgb;

@@ -38,7 +38,9 @@ static void fill_openings(const struct mrt_runtime_input *input, void *items)
     struct mrt_gpu_opening *openings = items;
     for (int i = 0; i < input->opening_count; i++)
         openings[i] = (struct mrt_gpu_opening){
-            .response = (uint32_t)((size_t)input->openings[i].face * rows_of_block(input)),
+            .response = (uint32_t)mrt_response_of(&input->map->blocks[input->openings[i].block],
+                                                  input->openings[i].face) *
+                        (uint32_t)rows_of_block(input),
         };
 }
 
@@ -162,13 +164,16 @@ static struct frame_probes grid_of(const struct mrt_runtime_input *input)
 static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
+    const struct gpu_constant tubes = { MRT_CONSTANT_TUBES,
+                                        mrt_block_is_tube(&input->map->blocks[0]) };
     if (!runtime->options.publish) return true;
     p->grid = grid_of(input);
     return make_image(runtime->gpu, "probe_volume", (uint32_t)p->grid.count_x,
                       (uint32_t)p->grid.count_y, FRAME_PROBE_SLABS * (uint32_t)p->grid.slab,
                       &p->volume) &&
            gpu_compute_pipeline_create(runtime->gpu, "probe_volume",
-                                       &shader_mrt_runtime_probe_volume_comp, NULL, 0, &p->publish);
+                                       &shader_mrt_runtime_probe_volume_comp, &tubes, 1,
+                                       &p->publish);
 }
 
 bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)

@@ -20,16 +20,18 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
     const struct mrt_runtime_input *input = s->input;
     const struct mrt_basis_input *basis = &input->bases[input->basis_of_block[block]];
     const int first = mrt_first_texel(input->atlas, block);
+    const struct mrt_block *of = &input->map->blocks[block];
     size_t row = 0;
     for (int f = 0; f < CUBE_FACES; f++) {
-        if (mrt_block_is_open(&input->map->blocks[block], f)) continue;
+        if (!mrt_block_has_wall(of, f)) continue;
         for (size_t t = 0; t < s->face; t++, row++) {
             const float albedo = input->images->geometry[first + (int)row].albedo.raw[colour];
             float *to = out->at + row * out->stride;
             const float *u_b = basis->u_b.at + row * basis->u_b.stride;
             for (int k = 0; k < input->k_b; k++) *to++ = albedo * u_b[k];
             for (int i = first_opening; to < out->at + row * out->stride + out->columns; i++) {
-                const struct matrix_f32 *u_r = &input->response[input->openings[i].face].u_r;
+                const struct matrix_f32 *u_r =
+                    &input->response[mrt_response_of(of, input->openings[i].face)].u_r;
                 const float *from = u_r->at + ((size_t)f * s->face + t) * u_r->stride;
                 for (int k = 0; k < input->k_r; k++) *to++ = albedo * from[k];
             }

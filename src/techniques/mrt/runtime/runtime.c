@@ -8,7 +8,7 @@
 
 #include "technique_shaders.h"
 
-enum { VEC3_BYTES = 12, MAX_CONSTANTS = 6, VECTOR_VALUES = 4 };
+enum { VEC3_BYTES = 12, MAX_CONSTANTS = 7, VECTOR_VALUES = 4 };
 
 static bool make_empty(struct gpu *gpu, const char *name, size_t bytes, gpu_buffer *out)
 {
@@ -87,6 +87,7 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
         [MRT_CONSTANT_VALUES] = pipeline->values,
         [MRT_CONSTANT_PROBES] = runtime->options.clutter,
         [MRT_CONSTANT_AFFINE] = is_affine(input->map),
+        [MRT_CONSTANT_TUBES] = mrt_block_is_tube(&input->map->blocks[0]),
     };
     struct gpu_constant constants[MAX_CONSTANTS];
     int count = 0;
@@ -104,6 +105,7 @@ enum {
     VALUES = 1 << MRT_CONSTANT_VALUES,
     PROBES = 1 << MRT_CONSTANT_PROBES,
     AFFINE = 1 << MRT_CONSTANT_AFFINE,
+    TUBES = 1 << MRT_CONSTANT_TUBES,
     ALL = HALF | QUADS_B | QUADS_R | VALUES,
 };
 
@@ -118,8 +120,9 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R, 0 },
         { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
         { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
-        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES | PROBES | AFFINE, values },
-        { &p->debug, "debug", &shader_mrt_runtime_debug_comp, AFFINE, 0 },
+        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES | PROBES | AFFINE | TUBES,
+          values },
+        { &p->debug, "debug", &shader_mrt_runtime_debug_comp, AFFINE | TUBES, 0 },
     };
     const struct pipeline vector[] = {
         { &p->reconstruct_vector, "reconstruct_vector", &shader_mrt_runtime_reconstruct_comp, ALL,
@@ -185,6 +188,11 @@ void mrt_runtime_finish(struct mrt_runtime *runtime)
     *runtime = (struct mrt_runtime){ 0 };
 }
 
+static uint64_t walls_of(const struct mrt_runtime_size *size)
+{
+    return size->tube ? 1 : CUBE_FACES;
+}
+
 static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
 {
     const uint64_t probes = (uint64_t)mrt_probes_of_block(size->probes);
@@ -194,7 +202,7 @@ static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
     // A grid of the block, and its slabs.
     const uint64_t published = size->options.publish ? 8 * FRAME_PROBE_SLABS * probes : 0;
     if (!size->options.probes) return 8;
-    const uint64_t wall_texels = CUBE_FACES * (uint64_t)(size->resolution * size->resolution);
+    const uint64_t wall_texels = walls_of(size) * (uint64_t)(size->resolution * size->resolution);
     return rows * number * (k_b + CUBE_FACES * k_r) + (rows + wall_texels) * VEC3_BYTES +
            probes * sizeof(struct mrt_gpu_probe) +
            texels * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
@@ -202,17 +210,17 @@ static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
 
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
 {
-    const uint64_t n = (uint64_t)size->resolution, face = n * n, texels = CUBE_FACES * face;
+    const uint64_t n = (uint64_t)size->resolution, walls = walls_of(size), texels = walls * n * n;
     const uint64_t number = size->options.half ? 2 : 4;
     const uint64_t values = size->options.vector ? 1 + VECTOR_VALUES : 1;
     const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
-    // Two by three tiles, RGBA16F; three layers of irradiance by normal.
-    const uint64_t map = 6 * (n + 2) * (n + 2) * 8;
+    // A tile for each wall, RGBA16F; three layers of irradiance by normal.
+    const uint64_t map = walls * (n + 2) * (n + 2) * 8;
     const uint64_t cells = MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS * MRT_LOOKUP_CELLS;
     return cells * 3 * sizeof(uint32_t) +
            texels * (sizeof(struct mrt_texel) + (2 + values) * VEC3_BYTES) +
-           CUBE_FACES * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
+           walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            texels * k_b * number * (1 + values) + 3 * k_b * k_b * sizeof(float) +
-           CUBE_FACES * texels * k_r * number * values + map * (size->options.vector ? 4 : 1) +
+           MRT_RESPONSES * texels * k_r * number * values + map * (size->options.vector ? 4 : 1) +
            bytes_of_probes(size);
 }

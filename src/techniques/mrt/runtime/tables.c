@@ -32,10 +32,10 @@ static float texel_area(const struct mrt_runtime_input *input, const struct mrt_
 {
     int n = input->atlas->resolution;
     float s = ((float)(local % n) + 0.5f) / (float)n, t = ((float)(local / n) + 0.5f) / (float)n;
-    mat3s frame = cube_from_face(tile->face);
-    mat3s j = mrt_warp_jacobian(input->map->blocks[tile->block].corner,
-                                cube_face_point(tile->face, s, t));
-    vec3s u = glms_mat3_mulv(j, frame.col[0]), v = glms_mat3_mulv(j, frame.col[1]);
+    const struct mrt_block *block = &input->map->blocks[tile->block];
+    const struct mrt_wall_place at = mrt_wall_place(block, tile->face, s, t);
+    mat3s j = mrt_warp_jacobian(block->corner, at.position);
+    vec3s u = glms_mat3_mulv(j, at.by_s), v = glms_mat3_mulv(j, at.by_t);
     return glms_vec3_norm(glms_vec3_cross(u, v)) / (float)(n * n);
 }
 
@@ -93,13 +93,6 @@ static void fill_tiles(const struct mrt_runtime *runtime, const struct mrt_runti
     }
 }
 
-static uint32_t walls_of(const struct mrt_block *block)
-{
-    uint32_t walls = 0;
-    for (int f = 0; f < CUBE_FACES; f++) walls += !mrt_block_is_open(block, f);
-    return walls;
-}
-
 // The affine part of the warp, inverted.
 static void fill_inverse(const struct mrt_block *from, struct mrt_gpu_block *to)
 {
@@ -124,8 +117,9 @@ static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runt
             to->tile[f] = input->atlas->tile_of_face[CUBE_FACES * b + f];
         for (int f = 0; f < CUBE_FACES; f++) to->neighbor[f] = from->neighbor[f].block;
         fill_inverse(from, to);
+        to->bend = mrt_block_is_tube(from) ? (int32_t)mrt_block_bend(from) : -1;
         to->first_texel = (uint32_t)mrt_first_texel(input->atlas, b);
-        to->texels = walls_of(from) * runtime->level.texels_of_tile;
+        to->texels = (uint32_t)mrt_block_walls(from) * runtime->level.texels_of_tile;
         to->basis_row = basis_row(input, input->basis_of_block[b]);
         to->first_opening = (uint32_t)opening;
         while (opening < input->opening_count && input->openings[opening].block == b) opening++;
@@ -141,7 +135,9 @@ static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_ru
     (void)runtime;
     for (int i = 0; i < input->opening_count; i++) {
         size_t response = 0;
-        for (int f = 0; f < input->openings[i].face; f++) response += input->response[f].u_r.rows;
+        const struct mrt_opening_input *at = &input->openings[i];
+        const int of = mrt_response_of(&input->map->blocks[at->block], at->face);
+        for (int k = 0; k < of; k++) response += input->response[k].u_r.rows;
         openings[i] = (struct mrt_gpu_opening){ .response = (uint32_t)response,
                                                 .first_pair = (uint32_t)pair };
         while (pair < input->pair_count && input->pairs[pair].opening == i) pair++;

@@ -79,6 +79,13 @@ static bool turn_vectors(struct host *host, const struct turn *turn, const struc
     return true;
 }
 
+static bool turn_probes(struct host *host, const struct turn *turn, int p,
+                        const struct matrix_f32 *from, struct matrix_f32 *out)
+{
+    const struct mrt_probe_turn probes = { &turn->from, &turn->to, turn->to_from };
+    return mrt_turn_probes(host, p, &probes, from, out);
+}
+
 // ---- bases
 
 static bool make_basis(struct host *host, const struct mrt_level *level,
@@ -94,8 +101,8 @@ static bool make_basis(struct host *host, const struct mrt_level *level,
     return turn_columns(host, &turn, &element->t_db, &out->t_db) &&
            turn_rows(host, &turn, retraced ? &retraced->u_b : &element->u_b, &out->u_b) &&
            turn_vectors(host, &turn, retraced ? &retraced->u_vec : &element->u_vec, &out->u_vec) &&
-           mrt_turn_probes(host, dictionary->options.block_probes, turn.to_from, &element->u_bvol,
-                           &out->u_vol);
+           turn_probes(host, &turn, dictionary->options.block_probes, &element->u_bvol,
+                       &out->u_vol);
 }
 
 static bool same_basis(const struct mrt_level *level, int i, int j)
@@ -123,22 +130,44 @@ static bool make_bases(struct mrt_turned *out, const struct mrt_level *level,
     return true;
 }
 
+static bool make_response(struct mrt_turned *out, const struct mrt_dictionary *dictionary,
+                          const struct mrt_shape *to, int face, struct mrt_response_input *response)
+{
+    const int index = mrt_entered_by(to, face);
+    const struct mrt_entered *entered = &dictionary->entered[index];
+    const struct turn turn = { mrt_entered_shape((enum mrt_maze)dictionary->options.maze,
+                                                 dictionary->options.texels, index),
+                               *to, mrt_block_from_entry(face) };
+    return turn_rows(out->host, &turn, &entered->u_r, &response->u_r) &&
+           turn_vectors(out->host, &turn, &entered->u_rvec, &response->u_vec) &&
+           turn_probes(out->host, &turn, dictionary->options.block_probes, &entered->u_rvol,
+                       &response->u_vol);
+}
+
+static bool make_tube_responses(struct mrt_turned *out, const struct mrt_dictionary *dictionary)
+{
+    bool ok = true;
+    for (int kind = MRT_BLOCK_STRAIGHT; kind < MRT_BLOCK_KINDS; kind++) {
+        struct mrt_block block;
+        mrt_block_init(&block, "", (enum mrt_block_kind)kind);
+        const struct mrt_shape tube =
+            mrt_block_shape(&block, mrt_face_texels(MRT_TUNNEL, dictionary->options.texels));
+        for (int f = 0; ok && f < CUBE_FACES; f++)
+            if (mrt_shape_is_open(&tube, f))
+                ok = make_response(out, dictionary, &tube, f,
+                                   &out->input.response[mrt_response_of(&block, f)]);
+    }
+    return ok;
+}
+
 static bool make_responses(struct mrt_turned *out, const struct mrt_dictionary *dictionary)
 {
-    int resolution = dictionary->options.texels;
-    const struct mrt_entered *entered = &dictionary->entered[0];
-    const struct mrt_shape shape =
-        mrt_entered_shape((enum mrt_maze)dictionary->options.maze, resolution, 0);
-    for (int face = 0; face < CUBE_FACES; face++) {
-        const struct turn turn = { shape, mrt_cube(resolution, 0), mrt_block_from_entry(face) };
-        struct mrt_response_input *response = &out->input.response[face];
-        if (!turn_rows(out->host, &turn, &entered->u_r, &response->u_r) ||
-            !turn_vectors(out->host, &turn, &entered->u_rvec, &response->u_vec) ||
-            !mrt_turn_probes(out->host, dictionary->options.block_probes, turn.to_from,
-                             &entered->u_rvol, &response->u_vol))
-            return false;
-    }
-    return true;
+    if (dictionary->options.maze == MRT_TUNNEL) return make_tube_responses(out, dictionary);
+    const struct mrt_shape closed = mrt_cube(dictionary->options.texels, 0);
+    bool ok = true;
+    for (int f = 0; ok && f < CUBE_FACES; f++)
+        ok = make_response(out, dictionary, &closed, f, &out->input.response[f]);
+    return ok;
 }
 
 static void make_pairs(struct mrt_turned *out, const struct mrt_level *level)

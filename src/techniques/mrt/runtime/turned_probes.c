@@ -3,17 +3,26 @@
 
 #include "core/sh.h"
 
+#include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/level/probes.h"
 
 #include <math.h>
 
-// A turned cube has its probes in the same places.
-static int turned_probe(int p, mat3s from_to, int i)
+// A turned shape has its probes in the same places.
+static int turned_probe(int p, const struct mrt_probe_turn *turn, int i)
 {
-    vec3s cell = glms_mat3_mulv(from_to, mrt_probe_cell(p, i));
-    int at[3];
-    for (int a = 0; a < 3; a++) at[a] = (int)floorf((cell.raw[a] + 0.5f) * (float)p);
-    return (at[2] * p + at[1]) * p + at[0];
+    vec3s at = mrt_gather_point(turn->to, p, MRT_PROBE, i).position;
+    int nearest = 0;
+    float least = INFINITY;
+    at = glms_mat3_mulv(glms_mat3_transpose(turn->to_from), at);
+    for (int k = 0; k < mrt_probes_of_block(p); k++) {
+        float distance =
+            glms_vec3_distance2(mrt_gather_point(turn->from, p, MRT_PROBE, k).position, at);
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = k;
+    }
+    return nearest;
 }
 
 static void turn_probe(mat3s to_from, const float *from, size_t from_stride, float *to,
@@ -27,16 +36,16 @@ static void turn_probe(mat3s to_from, const float *from, size_t from_stride, flo
     }
 }
 
-bool mrt_turn_probes(struct host *host, int p, mat3s to_from, const struct matrix_f32 *from,
-                     struct matrix_f32 *out)
+bool mrt_turn_probes(struct host *host, int p, const struct mrt_probe_turn *turn,
+                     const struct matrix_f32 *from, struct matrix_f32 *out)
 {
     const int probes = mrt_probes_of_block(p);
     if (!matrix_f32_init(host, out, (size_t)(MRT_PROBE_VALUES * probes), from->columns))
         return false;
     for (int i = 0; i < probes; i++) {
         size_t row = MRT_PROBE_VALUES * (size_t)i;
-        size_t source = MRT_PROBE_VALUES * (size_t)turned_probe(p, glms_mat3_transpose(to_from), i);
-        turn_probe(to_from, from->at + source * from->stride, from->stride,
+        size_t source = MRT_PROBE_VALUES * (size_t)turned_probe(p, turn, i);
+        turn_probe(turn->to_from, from->at + source * from->stride, from->stride,
                    out->at + row * out->stride, out->stride, from->columns);
     }
     return true;
