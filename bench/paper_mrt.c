@@ -28,7 +28,8 @@ static const char LIGHT[] =
 
 // Parts of a frame, which are passes of the renderer.
 enum { PARTS = 5 };
-static const char *const PART_NAMES[PARTS] = { "direct", "b", "r", "reconstruct", "light_map" };
+static const char *const PART_NAMES[PARTS] = { "direct", "b", "bounces", "reconstruct",
+                                               "light_map" };
 
 struct mrt_bench {
     struct bench bench;
@@ -84,7 +85,8 @@ static enum ag_result measure_parts(const struct mrt_bench *b, const char *gi, c
     int count = 0;
     enum ag_result result = bench_open_scene(&b->bench, maze, &scene, &frame);
     const double begun = now_ms();
-    if (result == AG_OK) result = bench_create_renderer(&b->bench, scene, gi, NULL, &renderer);
+    if (result == AG_OK)
+        result = bench_create_renderer(&b->bench, scene, gi, "keep_maps=false", &renderer);
     out->create_ms = now_ms() - begun;
     if (result == AG_OK) result = passes_measure(renderer, &frame, b->bench.frames, passes, &count);
     for (int i = 0; i < count; i++)
@@ -351,10 +353,11 @@ static enum ag_result write_mazes(const struct mrt_bench *b, const char *gi,
     char total_path[PATH_SIZE], parts_path[PATH_SIZE];
     FILE *total =
         open_table(b, "figure-3.13.csv", "blocks,seed,links,level_ms,cpu_ms,gpu_ms", total_path);
-    FILE *parts = total ? open_table(b, "figure-4.13.csv",
-                                     "blocks,seed,direct_ms,b_ms,r_ms,reconstruct_ms,light_map_ms",
-                                     parts_path)
-                        : NULL;
+    FILE *parts =
+        total ? open_table(b, "figure-4.13.csv",
+                           "blocks,seed,direct_ms,b_ms,bounces_ms,reconstruct_ms,light_map_ms",
+                           parts_path)
+              : NULL;
     enum ag_result result = AG_ERROR_FILE;
     if (parts) result = measure_mazes(b, gi, dictionary, total, parts, &curves);
     if (parts && close_table(parts, parts_path) != AG_OK) result = AG_ERROR_FILE;

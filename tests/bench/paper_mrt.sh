@@ -7,7 +7,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "$1"; exit 1; }
 export AFTERGLOW_CACHE="$folder/new/cache"
-small=texels=4,rays=256,prior_modes=8,modes=4,probes=1,response_modes=4,lightfield_positions=4,lightfield_directions=6
+small=texels=4,rays=256,prior_modes=8,modes=4,block_probes=1,response_modes=4,lightfield_positions=4,lightfield_directions=6
 small=$small,lightfield_supersampling=1,lightfield_modes=16
 
 "$1" --only mazes --options "$small" --most 10 --seeds 1 --runs 1 --frames 1 --out "$folder/out" > "$folder/output" 2> "$folder/errors"
