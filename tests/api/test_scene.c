@@ -381,8 +381,9 @@ TEST(a_scene_without_a_camera_gets_a_generated_one)
 
 TEST(time_moves_animated_instances)
 {
+    const char *path = test_scene_path("box-animated.gltf");
     assert_int_equal(ag_context_create(NULL, &context), AG_OK);
-    assert_int_equal(ag_scene_load(context, test_scene_path("box-animated.gltf"), &scene), AG_OK);
+    assert_int_equal(ag_scene_load(context, path, &scene), AG_OK);
     struct ag_animation_info animation;
     struct ag_scene_info rest, start, later, wrapped;
     assert_int_equal(ag_scene_get_animation(scene, 0, &animation), AG_OK);

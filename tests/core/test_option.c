@@ -163,7 +163,7 @@ TEST(text_that_is_no_path_is_refused)
         check_refused(text, message);
     }
     check_refused("file=a%00b", "cannot set lpv:file to \"a%00b\": it has a control character");
-    check_refused("file=a\nb", "cannot set lpv:file to \"a\nb\": it has a control character");
+    check_refused("file=a\nb", "cannot set lpv:file to \"a\\u000ab\": it has a control character");
     snprintf(text, sizeof text, "file=%0256d", 0);
     snprintf(message, sizeof message,
              "cannot set lpv:file to \"%0256d\": it is longer than 255 bytes", 0);
