@@ -4,6 +4,7 @@
 # it, and shader functions that compile. The importer program is found beside either library, and refused in words where it
 # is missing.
 set -eu
+export CMAKE_GENERATOR=Ninja
 build=$1 source=$2 cc=$3 cxx=$4 glslc=$5
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

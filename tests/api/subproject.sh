@@ -3,6 +3,7 @@
 # install rule of the library's own, and builds a module
 # with shaders.
 set -eu
+export CMAKE_GENERATOR=Ninja
 source=$1 cc=$2 cxx=$3 launcher=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
