@@ -11,7 +11,7 @@ fail() { echo "$1"; exit 1; }
 head -n 1 "$folder/out.csv" | grep -q '^figures,scene,resolution,method,stage,' || fail "out.csv has no header"
 # Columns are counted from the right, since figure numbers and stages contain commas: ms is the last but one.
 row() { grep "^\"$1\",.*,16,$2,\"$3" "$folder/out.csv"; }
-row 53-55 octree nodes | awk -F, '{ exit !($(NF - 1) > 0 && $NF > 100000) }' || fail "the octree has no nodes"
+row 53-55 octree nodes | awk -F, '{ exit !($(NF - 1) > 0 && $NF > 50000) }' || fail "the octree has no nodes"
 row 53-55 mips nodes | awk -F, '{ exit !($(NF - 1) == 0) }' || fail "mips have nodes"
 for method in mips octree; do
     row 53-55 "$method" together | awk -F, '{ exit !($(NF - 1) > 0) }' || fail "$method takes no time"
