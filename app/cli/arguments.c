@@ -1,7 +1,7 @@
 // Parses the options of all commands, which options.def lists.
 #include "arguments.h"
 #include "values.h"
-#include "wrapped.h"
+#include "cli/terminal/wrapped.h"
 
 #include <afterglow/catalogue.h>
 

@@ -1,7 +1,7 @@
 // The parsed command line. One table (options.def) holds names, setters and help.
 #pragma once
 
-#include "messages.h"
+#include "cli/terminal/messages.h"
 #include "values.h"
 
 #include <afterglow/image.h>

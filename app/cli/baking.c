@@ -1,7 +1,7 @@
 // Finding, running and caching bakes.
 #include "baking.h"
-#include "cache.h"
-#include "interrupt.h"
+#include "cli/cache/cache.h"
+#include "cli/files/interrupt.h"
 
 #include <math.h>
 #include <stdio.h>

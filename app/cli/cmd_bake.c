@@ -1,7 +1,7 @@
 // afterglow bake: what a technique precomputes, to a file or to the cache.
 #include "baking.h"
 #include "commands.h"
-#include "json.h"
+#include "cli/files/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,8 +32,8 @@ static enum status check_usage(const struct arguments *a)
 
 static enum status check_outputs(const struct arguments *a)
 {
-    enum status status = a->output ? output_check(a->output) : DONE;
-    return status == DONE && a->report ? output_check(a->report) : status;
+    enum status status = a->output ? whole_file_check(a->output) : DONE;
+    return status == DONE && a->report ? whole_file_check(a->report) : status;
 }
 
 // ---- the bake

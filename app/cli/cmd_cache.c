@@ -1,7 +1,7 @@
 // afterglow cache: lists and removes cached references and bakes.
-#include "cache.h"
+#include "cli/cache/cache.h"
 #include "commands.h"
-#include "json.h"
+#include "cli/files/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // afterglow compare: measures methods against the reference.
 #include "commands.h"
 #include "cli/compare/compare.h"
-#include "json.h"
+#include "cli/files/json.h"
 #include "memory.h"
 #include "cli/compare/report_page.h"
 

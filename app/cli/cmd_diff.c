@@ -1,8 +1,8 @@
 // afterglow diff: error of an image relative to a reference.
 #include "commands.h"
 #include "images.h"
-#include "interrupt.h"
-#include "json.h"
+#include "cli/files/interrupt.h"
+#include "cli/files/json.h"
 #include "memory.h"
 #include "output.h"
 #include "values.h"
@@ -210,7 +210,7 @@ static enum status diff(const struct arguments *arguments)
     struct session session = { 0 };
     struct pair pair = { 0 };
     enum status status = check_usage(arguments);
-    if (status == DONE && arguments->map) status = output_check(arguments->map);
+    if (status == DONE && arguments->map) status = whole_file_check(arguments->map);
     if (status == DONE) status = session_begin(&session, arguments);
     if (status == DONE) status = check_memory(&session);
     if (status == DONE) status = load_pair(&session, &pair);

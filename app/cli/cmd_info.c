@@ -1,6 +1,6 @@
 // afterglow info: contents of a scene, and its default light and camera.
 #include "commands.h"
-#include "json.h"
+#include "cli/files/json.h"
 #include "session.h"
 #include "values.h"
 

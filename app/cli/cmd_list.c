@@ -1,9 +1,9 @@
 // afterglow list: techniques with their options and debug views, built-in scenes, devices.
 #include "commands.h"
-#include "json.h"
+#include "cli/files/json.h"
 #include "option_text.h"
 #include "session.h"
-#include "wrapped.h"
+#include "cli/terminal/wrapped.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 // afterglow reference: progressive path tracing.
 #include "commands.h"
 #include "images.h"
-#include "interrupt.h"
-#include "json.h"
+#include "cli/files/interrupt.h"
+#include "cli/files/json.h"
 #include "memory.h"
 #include "tracing.h"
 #include "values.h"
@@ -172,7 +172,7 @@ static enum status reference(const struct arguments *arguments)
     job->arguments = arguments;
     enum status status = session_begin(&job->session, arguments);
     if (status == DONE) status = plan(job);
-    if (status == DONE) status = output_check(job->path);
+    if (status == DONE) status = whole_file_check(job->path);
     if (status == DONE) status = prepare(job);
     if (status == DONE) status = resume(job);
     if (status == DONE) session_say(&job->session);

@@ -5,7 +5,7 @@
 #include "output.h"
 #include "statistics.h"
 #include "values.h"
-#include "waiting.h"
+#include "cli/terminal/waiting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -98,8 +98,8 @@ static enum status check_outputs(const struct job *job)
     char path[PATH_SIZE];
     bool sequence;
     value_frame_path(job->pattern, a->frames - 1, path, sizeof path, &sequence);
-    enum status status = output_check(path);
-    return status == DONE && a->stats ? output_check(a->stats) : status;
+    enum status status = whole_file_check(path);
+    return status == DONE && a->stats ? whole_file_check(a->stats) : status;
 }
 
 // ---- rendering

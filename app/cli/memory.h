@@ -1,7 +1,7 @@
 // Work that would not fit into the memory of the machine is refused before it begins.
 #pragma once
 
-#include "messages.h"
+#include "cli/terminal/messages.h"
 
 #include <stdint.h>
 

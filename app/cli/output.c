@@ -1,37 +1,13 @@
 // Output images: layers, their display in a PNG, EXR attributes.
 #include "output.h"
-#include "interrupt.h"
+#include "cli/files/interrupt.h"
 #include "values.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-// ---- checks
-
-enum status output_check(const char *path)
-{
-    char folder[PATH_SIZE];
-    if (strlen(path) >= sizeof folder) return fail("cannot write %s: the path is too long", path);
-    const char *slash = strrchr(path, '/');
-    size_t length = slash == path ? 1 : slash ? (size_t)(slash - path) : 0;
-    memcpy(folder, path, length);
-    folder[length] = 0;
-    struct stat info;
-    if (stat(length ? folder : ".", &info) != 0)
-        return fail("cannot write %s: no folder %s", path, folder);
-    if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is not a folder", path, folder);
-    if (access(length ? folder : ".", W_OK | X_OK) != 0)
-        return fail("cannot write %s: %s", path, strerror(errno));
-    if (stat(path, &info) != 0)
-        return errno == ENOENT ? DONE : fail("cannot write %s: %s", path, strerror(errno));
-    if (S_ISDIR(info.st_mode)) return fail("cannot write %s: it is a folder", path);
-    if (!S_ISREG(info.st_mode)) return fail("cannot write %s: it is not a regular file", path);
-    return access(path, W_OK) == 0 ? DONE : fail("cannot write %s: %s", path, strerror(errno));
-}
+// ---- names
 
 void output_default(const char *scene, const char *ending, char out[PATH_SIZE])
 {

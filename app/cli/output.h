@@ -1,12 +1,10 @@
-// Output files: checked before the work, complete or absent.
+// Output images: their layers, what a PNG shows of them.
 #pragma once
 
+#include "cli/files/whole_file.h"
 #include "session.h"
 
-enum { MAX_LAYERS = 32, PATH_SIZE = 4096 };
-
-// Checks that a file can be written; reports the reason if not.
-enum status output_check(const char *path);
+enum { MAX_LAYERS = 32 };
 
 // Layers of an output image, from --aov and --debug-view.
 struct output {

@@ -1,6 +1,6 @@
 // Context, scene, light and camera of a command.
 #include "session.h"
-#include "cache_root.h"
+#include "cli/cache/cache_root.h"
 #include "values.h"
 
 #include <math.h>

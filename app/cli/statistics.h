@@ -1,7 +1,7 @@
 // Pass times of frames, and the JSON of --stats.
 #pragma once
 
-#include "json.h"
+#include "cli/files/json.h"
 #include "session.h"
 
 enum { MAX_PASSES = 128 };

@@ -1,6 +1,6 @@
 // Adds samples until there are enough and writes a file at intervals.
 #include "tracing.h"
-#include "interrupt.h"
+#include "cli/files/interrupt.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // A long frame is said within ten seconds, a short one is not.
-#include "cli/waiting.h"
+#include "cli/terminal/waiting.h"
 
 #include "framework/test.h"
 

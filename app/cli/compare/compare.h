@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/arguments.h"
-#include "cli/folder.h"
+#include "cli/files/folder.h"
 #include "cli/session.h"
 #include "cli/tracing.h"
 

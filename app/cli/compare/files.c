@@ -1,6 +1,6 @@
 // Image files of a comparison: rendered, reference and error maps, which share a scale.
 #include "compare.h"
-#include "cli/interrupt.h"
+#include "cli/files/interrupt.h"
 #include "cli/values.h"
 
 #include <ctype.h>

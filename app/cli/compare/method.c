@@ -1,7 +1,7 @@
 // Renders and times one method and reads its layers.
 #include "compare.h"
 #include "cli/baking.h"
-#include "cli/json.h"
+#include "cli/files/json.h"
 #include "cli/statistics.h"
 
 #include <ctype.h>

@@ -1,8 +1,8 @@
 // The reference of a comparison: a given file, or cached samples plus missing ones.
-#include "cli/cache.h"
+#include "cli/cache/cache.h"
 #include "compare.h"
 #include "cli/images.h"
-#include "cli/interrupt.h"
+#include "cli/files/interrupt.h"
 #include "cli/values.h"
 
 #include <math.h>

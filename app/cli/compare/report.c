@@ -1,6 +1,6 @@
 // Output of compare: report.json, a table, exceeded bounds.
 #include "compare.h"
-#include "cli/json.h"
+#include "cli/files/json.h"
 
 #include <math.h>
 #include <stdio.h>

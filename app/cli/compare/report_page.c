@@ -3,7 +3,7 @@
 // that no name can end a block or begin another.
 #include "report_page.h"
 #include "report_files.h"
-#include "cli/whole_file.h"
+#include "cli/files/whole_file.h"
 
 #include <afterglow/image.h>
 
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 4096, SCALE_COLOURS = 33 };
+enum { SCALE_COLOURS = 33 };
 
 struct page {
     const char *folder;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "cache_root.h"
-#include "output.h"
+#include "cli/files/whole_file.h"
 
 enum cache_kind { CACHE_REFERENCE, CACHE_BAKE };
 enum { CACHE_KINDS = CACHE_BAKE + 1 };

@@ -1,6 +1,6 @@
 // Cached files: $CACHE/references/KEY.exr and $CACHE/bakes/KEY.safetensors.
 #include "cache.h"
-#include "interrupt.h"
+#include "cli/files/interrupt.h"
 
 #include <ctype.h>
 #include <dirent.h>

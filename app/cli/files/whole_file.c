@@ -9,7 +9,29 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+enum status whole_file_check(const char *path)
+{
+    char folder[PATH_SIZE];
+    if (strlen(path) >= sizeof folder) return fail("cannot write %s: the path is too long", path);
+    const char *slash = strrchr(path, '/');
+    size_t length = slash == path ? 1 : slash ? (size_t)(slash - path) : 0;
+    memcpy(folder, path, length);
+    folder[length] = 0;
+    struct stat info;
+    if (stat(length ? folder : ".", &info) != 0)
+        return fail("cannot write %s: no folder %s", path, folder);
+    if (!S_ISDIR(info.st_mode)) return fail("cannot write %s: %s is not a folder", path, folder);
+    if (access(length ? folder : ".", W_OK | X_OK) != 0)
+        return fail("cannot write %s: %s", path, strerror(errno));
+    if (stat(path, &info) != 0)
+        return errno == ENOENT ? DONE : fail("cannot write %s: %s", path, strerror(errno));
+    if (S_ISDIR(info.st_mode)) return fail("cannot write %s: it is a folder", path);
+    if (!S_ISREG(info.st_mode)) return fail("cannot write %s: it is not a regular file", path);
+    return access(path, W_OK) == 0 ? DONE : fail("cannot write %s: %s", path, strerror(errno));
+}
 
 struct destination {
     const char *path;   // as given, for messages

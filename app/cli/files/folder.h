@@ -1,7 +1,7 @@
 // A folder of results that appears complete or not at all and replaces an earlier one.
 #pragma once
 
-#include "output.h"
+#include "whole_file.h"
 
 #include "core/temporary.h"
 

@@ -1,7 +1,7 @@
 // Helpers for jansson: exact numbers, names of any bytes, output.
 #pragma once
 
-#include "messages.h"
+#include "cli/terminal/messages.h"
 
 #include <jansson.h>
 

@@ -1,9 +1,14 @@
 // Atomic writes: a temporary file beside the target, then renamed.
 #pragma once
 
-#include "messages.h"
+#include "cli/terminal/messages.h"
 
 #include <stdio.h>
+
+enum { PATH_SIZE = 4096 };
+
+// Checks that a file can be written; reports the reason if not.
+enum status whole_file_check(const char *path);
 
 // `write` fills the file and reports its own failures; errors of the disk are reported here. An
 // existing file keeps its content until the new one is complete.
