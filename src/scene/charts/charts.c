@@ -1,0 +1,130 @@
+// From a pose to charts: triangles, growth at a density, packing; again at a lower density where
+// the atlas has too many texels.
+#include "scene/charts/grow.h"
+#include "scene/charts/pack.h"
+#include "scene/charts/texels.h"
+
+#include <math.h>
+#include <string.h>
+
+// A density at which charts may fit: their surfaces, and their edges as far as triangles share
+// texels at them, bound the texels that are rasterised.
+static double first_density(const struct surface *surface, const struct charts_options *options)
+{
+    const double most = (double)options->max_texels;
+    double density = (double)options->texels_per_m;
+    density = fmin(density, sqrt(most / surface->area_m2));
+    density = fmin(density, 0.25 * (double)CHART_MAX_SIDE / (double)surface->longest_m);
+    return fmin(density, 16.0 * most / surface->edges_m);
+}
+
+static void take_triangle(struct charts *out, const struct surface *surface,
+                          const struct grown *grown, uint32_t at)
+{
+    const uint32_t source = grown->order[at];
+    const struct surface_triangle *from = &surface->triangles[source];
+    struct chart_triangle *to = &out->triangles[at];
+    *to = (struct chart_triangle){ .instance = from->instance,
+                                   .triangle = from->triangle,
+                                   .chart = grown->chart_of[source],
+                                   .normal = from->normal,
+                                   .area_m2 = from->area_m2 };
+    struct chart *chart = &out->charts[to->chart];
+    chart->instance = from->instance;
+    chart->area_m2 += from->area_m2;
+    memcpy(to->corner, from->corner, sizeof to->corner);
+    for (int k = 0; k < 3; k++) {
+        to->place[k].x = (float)(grown->place[source][k][0] + CHART_GUTTER + chart->x);
+        to->place[k].y = (float)(grown->place[source][k][1] + CHART_GUTTER + chart->y);
+    }
+}
+
+static bool start_charts(struct charts *out, const struct grown *grown)
+{
+    out->count = grown->count;
+    out->charts = host_alloc(out->host, grown->count, sizeof *out->charts);
+    if (!out->charts) return false;
+    for (uint32_t i = 0; i < grown->count; i++) {
+        const struct grown_chart *from = &grown->charts[i];
+        // One texel more: places become floats after they were packed.
+        out->charts[i] = (struct chart){ .unwrapped = from->unwrapped,
+                                         .first_triangle = from->first_triangle,
+                                         .triangle_count = from->triangle_count,
+                                         .width = (uint32_t)from->width + 1 + 2 * CHART_GUTTER,
+                                         .height = (uint32_t)from->height + 1 + 2 * CHART_GUTTER,
+                                         .normal = from->normal };
+    }
+    return true;
+}
+
+static bool finish_charts(struct charts *out, const struct surface *surface,
+                          const struct grown *grown)
+{
+    out->triangle_count = surface->count;
+    out->triangles = host_alloc(out->host, surface->count, sizeof *out->triangles);
+    if (!out->triangles) return false;
+    for (uint32_t i = 0; i < surface->count; i++) take_triangle(out, surface, grown, i);
+    return make_chart_texels(out);
+}
+
+// *packed: false where the density is too high.
+static bool try_density(struct charts *out, const struct surface *surface, double density,
+                        uint32_t max_texels, bool *packed)
+{
+    struct grown grown = { 0 };
+    *packed = false;
+    out->texels_per_m = (float)density;
+    bool ok = grow_charts(&grown, out->host, surface, density) && start_charts(out, &grown) &&
+              pack_charts(out, max_texels, packed);
+    if (ok && *packed) ok = finish_charts(out, surface, &grown);
+    grown_finish(&grown);
+    return ok;
+}
+
+static void clear(struct charts *charts)
+{
+    host_free(charts->host, charts->charts);
+    host_free(charts->host, charts->triangles);
+    host_free(charts->host, charts->texels);
+    host_free(charts->host, charts->owner);
+    *charts = (struct charts){ .host = charts->host, .without_area = charts->without_area };
+}
+
+// Gutters do not shrink with the density: beyond some tries no density helps.
+enum { DENSITY_TRIES = 12 };
+
+static bool find_density(struct charts *out, const struct scene_pose *pose,
+                         const struct surface *surface, const struct charts_options *options)
+{
+    double density = first_density(surface, options);
+    for (int i = 0; i < DENSITY_TRIES && density > 0.0; i++) {
+        bool packed;
+        if (!try_density(out, surface, density, options->max_texels, &packed)) return false;
+        if (packed) return true;
+        const double texels = (double)out->width * (double)out->height;
+        const double ratio = sqrt((double)options->max_texels / fmax(texels, 1.0));
+        density *= fmin(fmax(0.97 * ratio, 0.25), 0.9);
+        if (i + 1 < DENSITY_TRIES) clear(out);
+    }
+    return host_fail(out->host, FAIL_MEMORY, "charts of %s: %u charts do not fit in %u texels",
+                     pose->scene->name, out->count, options->max_texels);
+}
+
+bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
+                 const struct charts_options *options)
+{
+    struct surface surface = { 0 };
+    *out = (struct charts){ .host = host };
+    bool ok = surface_init(&surface, host, pose, options->chosen);
+    out->without_area = surface.without_area;
+    if (ok && surface.count > 0) ok = find_density(out, pose, &surface, options);
+    surface_finish(&surface);
+    if (!ok) charts_finish(out);
+    return ok;
+}
+
+void charts_finish(struct charts *charts)
+{
+    if (charts->host) clear(charts);
+    *charts = (struct charts){ 0 };
+}

@@ -1,0 +1,81 @@
+// Charts: a parameterisation of a pose's triangles without overlaps, in one atlas, for light maps.
+// Each instance has charts of its own. A mesh whose TEXCOORD_1 is a valid unwrap (unwrap.h) keeps
+// its islands, each scaled to the density; triangles of other meshes are clustered by normal,
+// connected, and projected onto planes. Charts are packed with stb_rect_pack.
+//
+// A chart's rectangle has a gutter of CHART_GUTTER texels around the texels that its surface
+// touches; rectangles do not overlap. Coordinates in the atlas are in texels, centres at ½.
+#pragma once
+
+#include "scene/pose.h"
+
+enum { CHART_GUTTER = 2, CHART_MAX_SIDE = 16384 };
+#define CHART_NONE UINT32_MAX
+
+// Normals within a chart of clusters differ from its plane's by at most acos of this. Lengths are
+// therefore shortened, and areas, by at most this factor.
+#define CHART_MIN_COSINE 0.75f
+
+struct charts_options {
+    float texels_per_m;  // wanted; the density is lowered until the atlas fits
+    uint32_t max_texels; // width × height of the atlas
+    // [scene_triangle_count], instance after instance: triangles to have charts. NULL: all.
+    const bool *chosen;
+};
+
+struct chart {
+    int instance;
+    bool unwrapped; // an island of TEXCOORD_1
+    uint32_t first_triangle, triangle_count;
+    uint32_t first_texel, texel_count;
+    uint32_t x, y, width, height; // gutters included
+    float area_m2;
+    vec3s normal; // unit; the plane's for clusters, the mean for islands
+};
+
+struct chart_triangle {
+    int instance;
+    uint32_t triangle; // of the instance's mesh
+    uint32_t chart;
+    vec3s corner[3]; // world, in the order of the mesh's indices
+    vec3s normal;    // unit, of the front
+    float area_m2;
+    vec2s place[3]; // of the corners, in the atlas
+};
+
+// A texel that the surface touches. Areas of all texels sum to the area of all triangles.
+struct chart_texel {
+    uint32_t x, y;
+    uint32_t triangle; // in charts.triangles: the one with the largest part of the texel
+    float u, v;        // barycentric weights of its second and third corner
+    vec3s position;    // world, on that triangle and inside the texel: of that part's middle
+    float area_m2;     // of the surface inside the texel, all triangles
+};
+
+struct charts {
+    struct host *host;
+    float texels_per_m; // reached
+    uint32_t width, height;
+    struct chart *charts;
+    uint32_t count;
+    struct chart_triangle *triangles; // chart after chart
+    uint32_t triangle_count;
+    struct chart_texel *texels; // chart after chart, row by row
+    uint32_t texel_count;
+    // [width × height] the texel whose value an atlas texel has: its own, in gutters the nearest of
+    // the same chart, CHART_NONE elsewhere.
+    uint32_t *owner;
+    uint32_t without_area; // chosen triangles that are in no chart
+};
+
+// Deterministic. A warning names the meshes whose TEXCOORD_1 cannot be used. FAIL_MEMORY where no
+// density fits. charts_finish accepts zero.
+bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
+                 const struct charts_options *options);
+void charts_finish(struct charts *charts);
+
+// The normal of a texel's triangle.
+static inline vec3s chart_texel_normal(const struct charts *charts, uint32_t texel)
+{
+    return charts->triangles[charts->texels[texel].triangle].normal;
+}

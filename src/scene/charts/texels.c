@@ -1,0 +1,180 @@
+// Conservative rasterisation: each triangle is clipped to the squares of the texels that it meets.
+#include "scene/charts/texels.h"
+
+#include "scene/charts/raster.h"
+
+#include <math.h>
+#include <string.h>
+
+// What a chart's triangles leave in a texel.
+struct cell {
+    double area_m2, largest; // of all parts; of the largest one, in texels
+    double middle[2];        // of the largest part, in the atlas
+    uint32_t triangle;
+};
+
+struct cells {
+    const struct chart *chart;
+    struct cell *at; // [chart->width × chart->height]
+};
+
+static struct raster_polygon polygon_of(const struct chart_triangle *t)
+{
+    struct raster_polygon polygon = { .count = 3 };
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 2; a++) polygon.at[k][a] = (double)t->place[k].raw[a];
+    return polygon;
+}
+
+static void range_of(const struct raster_polygon *polygon, int axis, double *low, double *high)
+{
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int i = 0; i < polygon->count; i++) {
+        *low = fmin(*low, polygon->at[i][axis]);
+        *high = fmax(*high, polygon->at[i][axis]);
+    }
+    *low = floor(*low);
+}
+
+static void add_part(struct cell *cell, const struct raster_polygon *part, uint32_t triangle,
+                     double m2_per_texel)
+{
+    const double area = raster_polygon_area(part);
+    if (!(area > 0.0)) return;
+    cell->area_m2 += area * m2_per_texel;
+    if (!(area > cell->largest)) return;
+    cell->largest = area;
+    cell->triangle = triangle;
+    for (int a = 0; a < 2; a++) {
+        cell->middle[a] = 0.0;
+        for (int i = 0; i < part->count; i++) cell->middle[a] += part->at[i][a] / part->count;
+    }
+}
+
+static void add_triangle(const struct charts *charts, uint32_t triangle, struct cells *cells)
+{
+    const struct chart_triangle *t = &charts->triangles[triangle];
+    const struct raster_polygon whole = polygon_of(t);
+    const double m2_per_texel = (double)t->area_m2 / raster_polygon_area(&whole);
+    if (!isfinite(m2_per_texel)) return;
+    double top, bottom, left, right;
+    range_of(&whole, 1, &bottom, &top);
+    for (double y = bottom; y < top; y += 1.0) {
+        const struct raster_polygon row = raster_clip(&whole, 1, y);
+        if (row.count < 3) continue;
+        range_of(&row, 0, &left, &right);
+        for (double x = left; x < right; x += 1.0) {
+            const struct raster_polygon part = raster_clip(&row, 0, x);
+            const size_t column = (size_t)x - cells->chart->x, line = (size_t)y - cells->chart->y;
+            add_part(&cells->at[line * cells->chart->width + column], &part, triangle,
+                     m2_per_texel);
+        }
+    }
+}
+
+// Barycentric weights of a place in the triangle; rounding may leave it by a little.
+static void weigh(const struct chart_triangle *t, const double at[2], double weight[3])
+{
+    const struct raster_triangle whole = { { { (double)t->place[0].x, (double)t->place[0].y },
+                                             { (double)t->place[1].x, (double)t->place[1].y },
+                                             { (double)t->place[2].x, (double)t->place[2].y } } };
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        struct raster_triangle part = whole;
+        memcpy(part.at[k], at, sizeof part.at[k]);
+        weight[k] = fmax(raster_area2(&part) / raster_area2(&whole), 0.0);
+        sum += weight[k];
+    }
+    for (int k = 0; k < 3; k++) weight[k] /= sum;
+}
+
+static struct chart_texel texel_of(const struct charts *charts, const struct cell *cell, uint32_t x,
+                                   uint32_t y)
+{
+    const struct chart_triangle *t = &charts->triangles[cell->triangle];
+    double weight[3];
+    struct chart_texel texel = { .x = x, .y = y, .triangle = cell->triangle };
+    weigh(t, cell->middle, weight);
+    texel.u = (float)weight[1];
+    texel.v = (float)weight[2];
+    texel.area_m2 = (float)cell->area_m2;
+    for (int c = 0; c < 3; c++) {
+        double sum = 0.0;
+        for (int k = 0; k < 3; k++) sum += weight[k] * (double)t->corner[k].raw[c];
+        texel.position.raw[c] = (float)sum;
+    }
+    return texel;
+}
+
+// The offset in the gutter's square that is nearest to a touched texel of the chart. Of equally
+// near ones the first.
+static uint32_t nearest_texel(const struct chart *chart, const uint32_t *own, uint32_t x,
+                              uint32_t y)
+{
+    uint32_t nearest = CHART_NONE;
+    int least = 2 * CHART_GUTTER * CHART_GUTTER + 1;
+    for (int dy = -CHART_GUTTER; dy <= CHART_GUTTER; dy++)
+        for (int dx = -CHART_GUTTER; dx <= CHART_GUTTER; dx++) {
+            const int64_t column = (int64_t)x + dx - chart->x, row = (int64_t)y + dy - chart->y;
+            if (column < 0 || row < 0 || column >= chart->width || row >= chart->height) continue;
+            const uint32_t texel = own[(size_t)row * chart->width + (size_t)column];
+            const int distance = dx * dx + dy * dy;
+            if (texel == CHART_NONE || distance >= least) continue;
+            least = distance;
+            nearest = texel;
+        }
+    return nearest;
+}
+
+static void emit(struct charts *charts, struct chart *chart, const struct cell *cells,
+                 uint32_t *own)
+{
+    chart->first_texel = charts->texel_count;
+    for (uint32_t i = 0; i < chart->width * chart->height; i++) {
+        own[i] = CHART_NONE;
+        if (!(cells[i].largest > 0.0)) continue;
+        own[i] = charts->texel_count;
+        charts->texels[charts->texel_count++] =
+            texel_of(charts, &cells[i], chart->x + i % chart->width, chart->y + i / chart->width);
+    }
+    chart->texel_count = charts->texel_count - chart->first_texel;
+    for (uint32_t y = chart->y; y < chart->y + chart->height; y++)
+        for (uint32_t x = chart->x; x < chart->x + chart->width; x++)
+            charts->owner[(size_t)y * charts->width + x] = nearest_texel(chart, own, x, y);
+}
+
+static size_t largest_chart(const struct charts *charts)
+{
+    size_t most = 0;
+    for (uint32_t i = 0; i < charts->count; i++) {
+        const size_t texels = (size_t)charts->charts[i].width * charts->charts[i].height;
+        if (texels > most) most = texels;
+    }
+    return most;
+}
+
+bool make_chart_texels(struct charts *charts)
+{
+    const size_t all = (size_t)charts->width * charts->height, most = largest_chart(charts);
+    struct host *host = charts->host;
+    struct cell *cells = host_alloc(host, most, sizeof *cells);
+    uint32_t *own = host_alloc(host, most, sizeof *own);
+    charts->owner = host_alloc(host, all, sizeof *charts->owner);
+    charts->texels = host_alloc(host, all, sizeof *charts->texels);
+    const bool ok = cells && own && charts->owner && charts->texels;
+    if (ok) {
+        memset(charts->owner, 0xff, all * sizeof *charts->owner);
+        for (uint32_t i = 0; i < charts->count; i++) {
+            struct chart *chart = &charts->charts[i];
+            memset(cells, 0, (size_t)chart->width * chart->height * sizeof *cells);
+            struct cells grid = { chart, cells };
+            for (uint32_t t = 0; t < chart->triangle_count; t++)
+                add_triangle(charts, chart->first_triangle + t, &grid);
+            emit(charts, chart, cells, own);
+        }
+    }
+    host_free(host, cells);
+    host_free(host, own);
+    return ok;
+}
