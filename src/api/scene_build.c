@@ -53,7 +53,7 @@ enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_de
     AG_REQUIRE_KNOWN(__func__, context, desc);
     AG_REQUIRE(context, desc->positions && desc->vertex_count > 0, "there are no positions");
     AG_REQUIRE(context, desc->indices && desc->index_count > 0, "there are no indices");
-    AG_REQUIRE(context, desc->index_count % 3 == 0, "index_count %u is no multiple of 3",
+    AG_REQUIRE(context, desc->index_count % 3 == 0, "index_count %u is not a multiple of 3",
                desc->index_count);
     REQUIRE_INDEX(scene, "material", desc->material, material_count);
     for (uint32_t i = 0; i < desc->index_count; i++)

@@ -1,4 +1,4 @@
-// Vertex streams, materials and draws of a scene, as it is when they are created.
+// Vertex streams, materials and draws of a new scene.
 #include "frame/scene_gpu_build.h"
 
 #include "frame/octahedral.h"

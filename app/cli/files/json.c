@@ -2,6 +2,8 @@
 #include "json.h"
 #include "whole_file.h"
 
+#include "core/text.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -33,18 +35,6 @@ json_t *json_floats(const float *values, int count)
     return array;
 }
 
-// Length of the UTF-8 character at `s`, 0 if invalid (Unicode 15, table 3-7).
-static size_t utf8_length(const unsigned char *s)
-{
-    if (s[0] < 0x80) return 1;
-    size_t length = s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : s[0] < 0xf5 ? 4 : 0;
-    for (size_t i = 1; i < length; i++)
-        if ((s[i] & 0xc0) != 0x80) return 0;
-    bool wrong = (s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) ||
-                 (s[0] == 0xf0 && s[1] < 0x90) || (s[0] == 0xf4 && s[1] > 0x8f);
-    return wrong ? 0 : length;
-}
-
 json_t *json_text(const char *text)
 {
     static const char REPLACEMENT[] = "\xef\xbf\xbd";
@@ -52,7 +42,7 @@ json_t *json_text(const char *text)
     if (!clean) return NULL;
     size_t used = 0;
     while (*text) {
-        size_t length = utf8_length((const unsigned char *)text);
+        size_t length = text_utf8_length(text);
         memcpy(clean + used, length ? text : REPLACEMENT, length ? length : 3);
         used += length ? length : 3;
         text += length ? length : 1;
@@ -69,7 +59,7 @@ static int write_escaped(const char *text, size_t size, void *user)
     FILE *file = user;
     for (size_t i = 0, length; i < size; i += length) {
         char character[5] = { 0 }, shown[16];
-        length = utf8_length((const unsigned char *)text + i);
+        length = text_utf8_length(text + i);
         if (length == 0 || length > size - i) length = 1;
         memcpy(character, text + i, length);
         const bool plain = (unsigned char)text[i] < 0x7f;

@@ -7,7 +7,7 @@
 // How a layer becomes linear display values.
 #define DISPLAY_RADIANCE   0 // exposed and tone mapped
 #define DISPLAY_IRRADIANCE 1 // likewise, E/π: of a white diffuse surface
-#define DISPLAY_COLOR      2 // as it is
+#define DISPLAY_COLOR      2 // unchanged
 #define DISPLAY_GREY       3 // the first channel
 #define DISPLAY_NORMAL     4 // (n + 1)/2
 #define DISPLAY_DEPTH      5 // 1/(1 + metres)
