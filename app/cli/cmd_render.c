@@ -71,6 +71,7 @@ static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
     desc->indirect_layer = output_has_layer(&job->output, "indirect");
     desc->display_layer = output_has_layer(&job->output, "display");
     desc->motion_layer = output_has_layer(&job->output, "motion");
+    desc->id_layer = output_has_layer(&job->output, "id");
 }
 
 // Detects wrong usage before any file or device is opened.

@@ -168,6 +168,36 @@ static void irradiance_to_radiance(struct ag_image *image)
     for (size_t i = 0; i < count; i++) image->pixels[i] *= 0.318309886f;
 }
 
+// A number of 32 bits whose bits all depend on those of n (Wellons' lowbias32).
+static uint32_t scrambled(uint32_t n)
+{
+    n = (n ^ n >> 16) * 0x7feb352du;
+    n = (n ^ n >> 15) * 0x846ca68bu;
+    return n ^ n >> 16;
+}
+
+// False colours: a hue for each instance, a brightness for each triangle; black: no surface.
+static enum ag_result show_ids(struct session *session, struct ag_image **image)
+{
+    struct ag_image *ids = *image, *shown = NULL;
+    const enum ag_result result =
+        ag_image_create(session->context, ids->width, ids->height, 3, &shown);
+    if (result != AG_OK) return result;
+    for (size_t i = 0; i < (size_t)ids->width * (size_t)ids->height; i++) {
+        const float *id = &ids->pixels[2 * i];
+        if (id[0] < 0.0f) continue;
+        const uint32_t color = scrambled((uint32_t)id[0] + 1);
+        const float brightness =
+            0.6f + 0.4f * (float)(scrambled((uint32_t)id[1] + 1) & 0xff) / 255.0f;
+        for (int c = 0; c < 3; c++)
+            shown->pixels[3 * i + (size_t)c] =
+                brightness * (0.1f + 0.9f * (float)(color >> (8 * c) & 0xff) / 255.0f);
+    }
+    ag_image_destroy(session->context, ids);
+    *image = shown;
+    return AG_OK;
+}
+
 static enum ag_result tonemap(struct session *session, float ev, struct ag_image **image)
 {
     struct ag_image *display = NULL;
@@ -179,7 +209,7 @@ static enum ag_result tonemap(struct session *session, float ev, struct ag_image
 }
 
 // Conversion of a layer; RADIANCE if not listed.
-enum conversion { RADIANCE, UNCHANGED, DIRECTION, MOTION, DEPTH, RANGE, IRRADIANCE };
+enum conversion { RADIANCE, UNCHANGED, DIRECTION, MOTION, DEPTH, RANGE, IRRADIANCE, IDS };
 
 static enum conversion conversion_of(const char *layer)
 {
@@ -187,12 +217,19 @@ static enum conversion conversion_of(const char *layer)
         const char *layer;
         enum conversion conversion;
     } conversions[] = {
-        { "albedo", UNCHANGED },      { "visibility", UNCHANGED },
-        { "display", UNCHANGED },     { "normal", DIRECTION },
-        { "motion", MOTION },         { "depth", DEPTH },
-        { "obscurance", UNCHANGED },  { "ambient_occlusion", UNCHANGED },
-        { "position", RANGE },        { "samples", RANGE },
-        { "irradiance", IRRADIANCE }, { "irradiance_emitters_sky", IRRADIANCE },
+        { "albedo", UNCHANGED },
+        { "visibility", UNCHANGED },
+        { "display", UNCHANGED },
+        { "normal", DIRECTION },
+        { "motion", MOTION },
+        { "depth", DEPTH },
+        { "obscurance", UNCHANGED },
+        { "ambient_occlusion", UNCHANGED },
+        { "position", RANGE },
+        { "samples", RANGE },
+        { "irradiance", IRRADIANCE },
+        { "irradiance_emitters_sky", IRRADIANCE },
+        { "id", IDS },
     };
     for (size_t i = 0; i < sizeof conversions / sizeof conversions[0]; i++)
         if (strcmp(conversions[i].layer, layer) == 0) return conversions[i].conversion;
@@ -217,6 +254,8 @@ enum ag_result layer_to_display(struct session *session, const char *layer, floa
     case RANGE:
         show_range(*image);
         return AG_OK;
+    case IDS:
+        return show_ids(session, image);
     case IRRADIANCE:
         irradiance_to_radiance(*image);
         break;

@@ -27,7 +27,8 @@ struct ag_renderer_desc {
     /// Without one in `bakes`: folder with files KEY.safetensors (ag_bake_info.key with seed 0).
     /// Default NULL: none.
     const char *bake_folder;
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    bool id_layer;        ///< keep the layer "id"; default false
+    uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
 /// Upper bound of the GPU memory of a renderer with these settings, in bytes, without the scene.
@@ -59,12 +60,16 @@ AG_API enum ag_result ag_renderer_set_frame_options(struct ag_renderer *renderer
 
 struct ag_frame_desc {
     struct ag_camera camera;
-    double time_s;        ///< animation time
-    int animation;        ///< see ag_scene_camera; default 0: the first, if any
-    bool auto_exposure;   ///< meter the log-average of the frame's radiance; default true
-    float exposure_ev;    ///< EV at ISO 100 if auto_exposure is false
-    bool camera_cut;      ///< discard history of earlier frames; default false
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    double time_s;      ///< animation time
+    int animation;      ///< see ag_scene_camera; default 0: the first, if any
+    bool auto_exposure; ///< meter the log-average of the frame's radiance; default true
+    float exposure_ev;  ///< EV at ISO 100 if auto_exposure is false
+    bool camera_cut;    ///< discard history of earlier frames; default false
+    /// x and y, from the left and the top, of the pixel that ag_renderer_picked is to tell about;
+    /// default NULL: none. Without id_layer, the first such frame of a renderer creates an image
+    /// and pipelines; it keeps them.
+    const int *pick;
+    uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
 /// return one.
@@ -106,6 +111,9 @@ AG_API const char *ag_layer_name(int index);
 ///   right, +y down), z = ratio of the distances along the view axis, then over now, minus 1. 0
 ///   where there is no surface, in the first frame and after a cut. Requires motion_layer or a
 ///   technique that needs it.
+/// - id: index of the instance (ag_scene_set_instance_transform) and of the triangle in its mesh
+///   (three indices each, counted from 0), of the surface that the pixel's centre sees; −1 and −1
+///   where there is no surface; 2 channels, exact up to 2^24; requires id_layer
 /// - display: exposed and tone mapped, linear, 0…1; requires display_layer; see
 ///   ag_renderer_set_display
 /// - debug: the debug view; requires ag_renderer_set_debug_view
@@ -128,7 +136,8 @@ struct ag_layer_handle {
 /// Values: radiance and irradiance are physical values × scale (1 for other layers). The scale is a
 /// power of two; it follows lights, sky and emission and is that of the newest recorded frame: ask
 /// again after each frame. Depth is reversed (near plane / distance, 0: no surface), normals are
-/// octahedral (src/frame/octahedral.glsl), albedo and display are sRGB-encoded.
+/// octahedral (src/frame/octahedral.glsl), albedo and display are sRGB-encoded; id has integers,
+/// each plus 1, 0: no surface.
 ///
 /// Synchronization: before and after each frame the image is in vk_layout, for all queue accesses
 /// of the adopted family. The library waits for all that was submitted before its frame. The
@@ -147,6 +156,17 @@ struct ag_finished_frame {
 /// Does not wait. A recorded frame is finished with ag_renderer_recorded_done.
 AG_API enum ag_result ag_renderer_finished(struct ag_renderer *renderer,
                                            struct ag_finished_frame *out);
+/// What a pixel of a frame shows.
+struct ag_pick {
+    uint64_t frame;         ///< its number; 0: none with `pick` is finished
+    int x, y;               ///< the pixel
+    int instance, triangle; ///< as in the layer id; -1: no surface
+    uint64_t reserved[4];   ///< 0; see ABI in types.h
+};
+/// Of the newest frame with `pick` (ag_frame_desc) that the GPU has finished. Neither waits nor
+/// submits. Instances are numbered as at the time of that frame: the index of one that was removed
+/// since may belong to another one.
+AG_API enum ag_result ag_renderer_picked(struct ag_renderer *renderer, struct ag_pick *out);
 /// EV of the newest frame; waits for the GPU.
 AG_API enum ag_result ag_renderer_exposure(struct ag_renderer *renderer, float *ev);
 /// Draws a debug view of a technique to the layer "debug" in all further frames; NULL: none.
@@ -161,7 +181,7 @@ AG_API enum ag_result ag_renderer_set_debug_view(struct ag_renderer *renderer, c
 /// - albedo, visibility: as they are
 /// - normal: (n + 1)/2; depth: 1/(1 + metres); motion: x, y in pixels and z, each as
 ///   (1 + v/(1 + |v|))/2. Black where there is no surface
-/// - position and display cannot be shown
+/// - id, position and display cannot be shown
 AG_API enum ag_result ag_renderer_set_display(struct ag_renderer *renderer, const char *layer);
 
 struct ag_timing {

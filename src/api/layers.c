@@ -28,6 +28,7 @@ static const struct layer layers[] = {
     { "position", READ_POSITION, NO_IMAGE, 3, false },
     { "emissive", READ_EMISSIVE, FRAME_EMISSIVE, 3, true },
     { "motion", READ_MOTION, FRAME_MOTION, 3, false },
+    { "id", READ_ID, FRAME_ID, 2, false },
     { "display", READ_DISPLAY, FRAME_DISPLAY, 3, false },
     { "debug", NO_READBACK, NO_IMAGE, 3, true },
 };
@@ -73,6 +74,8 @@ static const struct layer *layer_kept(const struct ag_renderer *r, const char *n
         need = "create the renderer with indirect_layer";
     else if (layer->image == FRAME_DISPLAY && !r->display_layer)
         need = "create the renderer with display_layer";
+    else if (layer->image == FRAME_ID && !r->id_layer)
+        need = "create the renderer with id_layer";
     else if (layer->read == NO_READBACK && !gi_has_debug_view(r->gi))
         need = "no debug view is set";
     else if (layer->image == FRAME_MOTION && !r->motion_layer &&
@@ -130,7 +133,8 @@ static const char *shown_need(const struct ag_renderer *r, const struct layer *l
     if (!r->display_layer) return "create the renderer with display_layer";
     if (layer->image == FRAME_INDIRECT && !r->indirect_layer)
         return "create the renderer with indirect_layer";
-    if (layer->image == FRAME_DISPLAY || (layer->image == NO_IMAGE && layer->read != NO_READBACK))
+    if (layer->image == FRAME_DISPLAY || layer->image == FRAME_ID ||
+        (layer->image == NO_IMAGE && layer->read != NO_READBACK))
         return "it has no values to show";
     return NULL;
 }

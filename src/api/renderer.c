@@ -141,6 +141,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->indirect_layer = desc->indirect_layer;
     r->display_layer = desc->display_layer;
     r->motion_layer = desc->motion_layer;
+    r->id_layer = desc->id_layer;
     r->shown.layer = FRAME_COLOR;
     scene->renderers++;
     r->client = gpu_client_add(device->gpu);

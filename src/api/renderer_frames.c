@@ -32,6 +32,11 @@ static enum ag_result frame_check(const char *function, const struct ag_renderer
     AG_REQUIRE_FOR(function, context, isfinite(desc->time_s), "time_s is not finite");
     AG_REQUIRE_FOR(function, context, desc->auto_exposure || isfinite(desc->exposure_ev),
                    "exposure_ev is not finite");
+    AG_REQUIRE_FOR(function, context,
+                   !desc->pick || (desc->pick[0] >= 0 && desc->pick[0] < r->width &&
+                                   desc->pick[1] >= 0 && desc->pick[1] < r->height),
+                   "pick %d, %d is not in an image of %d×%d", desc->pick[0], desc->pick[1],
+                   r->width, r->height);
     return api_camera_check(context, function, &desc->camera);
 }
 
@@ -52,6 +57,10 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
                                    .camera_cut = desc->camera_cut,
                                    .want_indirect_layer = r->indirect_layer,
                                    .want_motion_layer = r->motion_layer,
+                                   .want_id_layer = r->id_layer,
+                                   .pick = desc->pick != NULL,
+                                   .pick_x = desc->pick ? (uint32_t)desc->pick[0] : 0,
+                                   .pick_y = desc->pick ? (uint32_t)desc->pick[1] : 0,
                                    .want_display = r->display_layer,
                                    .shown = &r->shown };
     r->shown.image = r->shows_debug ? gi_debug_image(r->gi) : (gpu_image){ 0 };

@@ -71,6 +71,22 @@ int ag_device_memory(struct ag_device *device, struct ag_memory *out, int capaci
     return copy_owners(owners, count, out, capacity);
 }
 
+enum ag_result ag_renderer_picked(struct ag_renderer *r, struct ag_pick *out)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE_POINTER(context, out);
+    *out = (struct ag_pick){ .instance = -1, .triangle = -1 };
+    AG_REQUIRE(context, r, "renderer is NULL");
+    struct frame_pick pick;
+    if (!frame_newest_pick(r->frame, &pick)) return api_done(context, true);
+    out->frame = pick.number;
+    out->x = (int)pick.x;
+    out->y = (int)pick.y;
+    out->instance = (int)pick.instance - 1;
+    out->triangle = (int)pick.triangle - 1;
+    return api_done(context, true);
+}
+
 enum ag_result ag_renderer_finished(struct ag_renderer *r, struct ag_finished_frame *out)
 {
     struct ag_context *context = renderer_context(r);

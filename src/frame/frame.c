@@ -137,6 +137,7 @@ static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs, b
                       1u << FRAME_MATERIAL | 1u << FRAME_EMISSIVE | 1u << FRAME_DIRECT |
                       1u << FRAME_COLOR;
     if (needs & FRAME_NEEDS_MOTION) wanted |= 1u << FRAME_MOTION;
+    if (needs & FRAME_NEEDS_ID) wanted |= 1u << FRAME_ID;
     if (has_dielectrics) wanted |= 1u << FRAME_DIELECTRIC;
     if (needs & FRAME_WRITES_IRRADIANCE) wanted |= 1u << FRAME_IRRADIANCE;
     if (needs & FRAME_WRITES_SPECULAR) wanted |= 1u << FRAME_SPECULAR;
@@ -225,10 +226,13 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     if (input->pose->scene != f->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
     if (!scene_gpu_follow(&f->scene) || !emitters_follow(&f->emitters)) return false;
+    if (input->pick) f->pinned |= 1u << FRAME_ID; // only the first pick creates the image
     const uint32_t kept = kept_layers(f, input);
     f->needs = (indirect ? indirect->needs : 0) |
-               (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0);
+               (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0) |
+               (input->want_id_layer || input->pick ? FRAME_NEEDS_ID : 0);
     const uint32_t gbuffer_layers = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
+                                    (f->needs & FRAME_NEEDS_ID ? GBUFFER_ID : 0) |
                                     (f->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0);
     const uint32_t written = wanted_layers(input, f->needs, f->scene.has_dielectrics);
     f->prepared = frame_make_layers(f, written, kept) && prepare_lights(f, input) &&
@@ -249,6 +253,7 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
         .emissive = f->layers[FRAME_EMISSIVE],
         .motion = f->layers[FRAME_MOTION],
         .dielectric = f->layers[FRAME_DIELECTRIC],
+        .id = f->needs & FRAME_NEEDS_ID ? f->layers[FRAME_ID] : (gpu_image){ 0 },
         .width = f->width,
         .height = f->height,
     };
@@ -468,7 +473,7 @@ void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input
     record_display(f, cmd, input);
     f->index++;
     f->number++;
-    reports_record(f, cmd);
+    reports_record(f, cmd, input);
 }
 
 float frame_radiance_scale(const struct frame *f)

@@ -46,6 +46,8 @@ enum frame_layer {
     // RGBA16F. xy: screen position minus previous screen position, in 0…1 units, +y down; z:
     // previous over current distance along the view axis, minus 1; w: 1 where there is a surface.
     FRAME_MOTION,
+    // RG32U: instance of the scene and triangle of its mesh, each plus 1; 0: no surface. Optional.
+    FRAME_ID,
     // RGBA16F: scaled radiance of punctual lights and emission. Alpha: the diffuse lobe over
     // albedo/π, 1−E_d for dielectrics, 0 for unlit materials and without a surface.
     FRAME_DIRECT,
@@ -111,6 +113,7 @@ enum frame_need {
     FRAME_WRITES_SPECULAR = 8,
     FRAME_WRITES_VISIBILITY = 16,
     FRAME_NEEDS_EMITTERS = 32,
+    FRAME_NEEDS_ID = 64, // of the frame itself
 };
 
 struct frame_indirect {
@@ -137,8 +140,11 @@ struct frame_input {
     bool camera_cut;                  // invalidate history
     bool want_indirect_layer;         // fill FRAME_INDIRECT
     bool want_motion_layer;           // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
-    bool want_display;                // fill FRAME_DISPLAY
-    const struct frame_shown *shown;  // by FRAME_DISPLAY; NULL: FRAME_COLOR
+    bool want_id_layer;               // fill FRAME_ID
+    bool pick;                        // report the FRAME_ID of a pixel, below the size
+    uint32_t pick_x, pick_y;
+    bool want_display;               // fill FRAME_DISPLAY
+    const struct frame_shown *shown; // by FRAME_DISPLAY; NULL: FRAME_COLOR
 };
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);
@@ -171,6 +177,14 @@ struct frame_report {
     float exposure_ev;
     float radiance_scale;
 };
+// The FRAME_ID of a pixel that a frame was asked for.
+struct frame_pick {
+    uint64_t number; // of the frame; 0: none
+    uint32_t x, y;
+    uint32_t instance, triangle; // each plus 1; 0: no surface
+};
+// Of the newest completed frame that was asked for one. Does not wait. false: there is none yet.
+bool frame_newest_pick(struct frame *frame, struct frame_pick *out);
 // Of the newest completed frame. Does not wait. false: there is none yet.
 bool frame_newest_report(struct frame *frame, struct frame_report *out);
 // Number of the newest recorded frame; 0: none.
@@ -190,9 +204,10 @@ enum frame_readback {
     READ_EMISSIVE,
     READ_ROUGHNESS_METALLIC,
     READ_MOTION,
+    READ_ID,
     READ_DISPLAY,
 };
-// pixels: width × height × channels floats. Channels: 3, but 1 for depth and visibility.
+// pixels: width × height × channels floats. Channels: 3, but 1 for depth and visibility, 2 for ids.
 bool frame_read(struct frame *frame, enum frame_readback what, float *pixels, int channels);
 // Upper bound of the bytes for these options at this size.
 uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t width, uint32_t height,

@@ -17,6 +17,7 @@ static const struct layer table[FRAME_LAYER_COUNT] = {
     [FRAME_DIELECTRIC] = { "frame.dielectric", GPU_RGBA8, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_EMISSIVE] = { "frame.emissive", GPU_RGBA16F, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_MOTION] = { "frame.motion", GPU_RGBA16F, GPU_SAMPLED | GPU_ATTACHMENT },
+    [FRAME_ID] = { "frame.id", GPU_RG32U, GPU_SAMPLED | GPU_ATTACHMENT },
     [FRAME_DIRECT] = { "frame.direct", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_IRRADIANCE] = { "frame.irradiance", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },
     [FRAME_SPECULAR] = { "frame.specular", GPU_RGBA16F, GPU_SAMPLED | GPU_STORAGE },

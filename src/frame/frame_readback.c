@@ -3,8 +3,9 @@
 // Radiance in cd/m², irradiance in lux; albedo linear; normals as unit vectors in world space;
 // depth in metres along the view axis; positions in world space (normals, depth and positions are 0
 // without a surface); roughness and metallic in channels 0 and 1; motion as in FRAME_MOTION;
-// display values linear 0…1 (sRGB decoded), as png_write expects. Layers that no technique writes
-// have neutral values: indirect light 0, visibility 1.
+// ids as instance and triangle, −1 without a surface; display values linear 0…1 (sRGB decoded), as
+// png_write expects. Layers that no technique writes have neutral values: indirect light 0,
+// visibility 1.
 #include "frame/frame_state.h"
 
 #include "frame/octahedral.h"
@@ -35,6 +36,7 @@ static const struct source sources[] = {
     [READ_EMISSIVE] = { "emissive", FRAME_EMISSIVE, .scaled = true },
     [READ_ROUGHNESS_METALLIC] = { "roughness and metallic", FRAME_MATERIAL, .scaled = false },
     [READ_MOTION] = { "motion", FRAME_MOTION, .scaled = false },
+    [READ_ID] = { "id", FRAME_ID, .scaled = false },
     [READ_DISPLAY] = { "display", FRAME_DISPLAY, .scaled = false },
 };
 
@@ -123,7 +125,7 @@ bool frame_read(struct frame *f, enum frame_readback what, float *pixels, int ch
     if ((unsigned)what >= sizeof sources / sizeof *sources)
         return host_fail(f->host, FAIL_ARGUMENT, "frame layer %d: unknown layer", (int)what);
     const struct source *source = &sources[what];
-    int expected = what == READ_DEPTH || what == READ_VISIBILITY ? 1 : 3;
+    int expected = what == READ_DEPTH || what == READ_VISIBILITY ? 1 : what == READ_ID ? 2 : 3;
     if (channels != expected) {
         return host_fail(f->host, FAIL_ARGUMENT, "frame layer %s: it has %d channels, not %d",
                          source->name, expected, channels);
@@ -142,6 +144,7 @@ bool frame_read(struct frame *f, enum frame_readback what, float *pixels, int ch
     if (what == READ_NORMAL) return read_normal(f, pixels);
     if (what == READ_DISPLAY) return read_display(f, pixels, channels);
     if (!download(f, source->layer, pixels, channels)) return false;
+    for (size_t i = 0; what == READ_ID && i < count; i++) pixels[i] -= 1.0f;
     if (source->scaled) divide_by_scale(f, pixels, count);
     return true;
 }

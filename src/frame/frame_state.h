@@ -15,10 +15,12 @@
 
 struct frame_reports {
     struct {
-        struct gpu_readback readback; // of struct exposure_values
+        struct gpu_readback readback; // of struct report_values (frame_report.c)
         struct frame_report report;
+        struct frame_pick pick; // number 0: the frame was not asked for one
     } slots[GPU_PENDING_FRAMES];
     struct frame_report newest; // completed; number 0: none
+    struct frame_pick newest_pick;
 };
 
 struct frame {
@@ -76,7 +78,8 @@ void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd);
 // frame_report.c
 bool reports_init(struct frame *frame);
 void reports_finish(struct frame *frame);
-void reports_record(struct frame *frame, struct gpu_cmd *cmd); // after all passes
+// After all passes.
+void reports_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);
 
 // frame_begin.c: constants, lights and change flags of a new frame.
 void frame_begin(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);

@@ -100,10 +100,22 @@ void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct
 // with `materials`, nor anything whose material changed.
 bool scene_gpu_unchanged_in(const struct scene_gpu *scene, mat4s clip_from_world, bool materials);
 
+// Part of a draw's triangles, whose indices fit into one binding of every device.
+struct scene_triangle_range {
+    uint32_t first_triangle, triangle_count;
+    uint32_t first_index;       // of the first triangle, in the binding
+    struct gpu_binding indices; // "scene_indices"
+};
+// The first part if *range is 0, else the next one. false: there is none.
+bool scene_gpu_next_range(const struct scene_gpu *scene, const struct scene_draw *draw,
+                          struct scene_triangle_range *range);
+
 // Records one draw. push: starts with a scene_push, which this fills. bindings: of the pass.
 struct scene_draw_call {
     gpu_pipeline pipeline;
     const struct scene_draw *draw;
+    // NULL: an indexed draw of all triangles; else the vertex shader reads these indices.
+    const struct scene_triangle_range *range;
     void *push;
     size_t push_bytes;
     enum gpu_cull cull;

@@ -185,6 +185,35 @@ bool scene_gpu_unchanged_in(const struct scene_gpu *s, mat4s clip_from_world, bo
     return true;
 }
 
+// Maximum of a single dispatch: work group counts and index bytes stay within every device's
+// limits.
+static const uint32_t RANGE_TRIANGLES = 1u << 21;
+// Upper bound of minStorageBufferOffsetAlignment in the specification.
+static const size_t MAX_OFFSET_ALIGNMENT = 256;
+
+bool scene_gpu_next_range(const struct scene_gpu *s, const struct scene_draw *draw,
+                          struct scene_triangle_range *range)
+{
+    const uint32_t triangles = s->scene->meshes[draw->mesh].index_count / 3;
+    const uint32_t first = range->first_triangle + range->triangle_count;
+    if (first >= triangles) return false;
+    const uint32_t count =
+        triangles - first < RANGE_TRIANGLES ? triangles - first : RANGE_TRIANGLES;
+    const size_t begin = s->index_offset[draw->mesh] + (size_t)first * 3 * sizeof(uint32_t);
+    const size_t end = begin + (size_t)count * 3 * sizeof(uint32_t);
+    const size_t aligned = begin / MAX_OFFSET_ALIGNMENT * MAX_OFFSET_ALIGNMENT;
+    *range = (struct scene_triangle_range){
+        .first_triangle = first,
+        .triangle_count = count,
+        .first_index = (uint32_t)((begin - aligned) / sizeof(uint32_t)),
+        .indices = { .name = "scene_indices",
+                     .buffer = s->indices,
+                     .offset = aligned,
+                     .bytes = end - aligned },
+    };
+    return true;
+}
+
 // Bindings that every draw and dispatch of the scene may read; returns the count.
 enum { SCENE_BINDINGS = 12 };
 static int scene_bindings(const struct scene_gpu *s, const struct scene_draw *draw,
@@ -221,6 +250,7 @@ void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
     struct gpu_binding bindings[SCENE_BINDINGS + 8];
     int count = scene_bindings(s, draw, bindings);
     for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
+    if (call->range) bindings[count++] = call->range->indices;
     memcpy(call->push, &draw->push, sizeof draw->push);
     gpu_draw(cmd, &(struct gpu_draw_desc){
                       .pipeline = call->pipeline,
@@ -228,51 +258,37 @@ void scene_gpu_draw(const struct scene_gpu *s, struct gpu_cmd *cmd,
                       .binding_count = count,
                       .push = call->push,
                       .push_bytes = call->push_bytes,
-                      .indices = s->indices,
+                      .indices = call->range ? (gpu_buffer){ 0 } : s->indices,
                       .index_offset = s->index_offset[draw->mesh],
-                      .count = s->scene->meshes[draw->mesh].index_count,
+                      .count = call->range ? 3 * call->range->triangle_count
+                                           : s->scene->meshes[draw->mesh].index_count,
                       .cull = call->cull,
                       .flip_front = draw->mirrored,
                   });
 }
 
-// Maximum of a single dispatch: work group counts and index bytes stay within every device's
-// limits.
-static const uint32_t DISPATCH_TRIANGLES = 1u << 21;
-// Upper bound of minStorageBufferOffsetAlignment in the specification.
-static const size_t MAX_OFFSET_ALIGNMENT = 256;
-
 void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
                         const struct scene_dispatch_call *call)
 {
     const struct scene_draw *draw = call->draw;
-    const uint32_t triangles = s->scene->meshes[draw->mesh].index_count / 3;
     struct gpu_binding bindings[SCENE_BINDINGS + 8 + 1];
     assert(call->binding_count <= 8);
     int count = scene_bindings(s, draw, bindings);
     for (int i = 0; i < call->binding_count; i++) bindings[count++] = call->bindings[i];
     struct gpu_binding *indices = &bindings[count++];
-    for (uint32_t first = 0; first < triangles; first += DISPATCH_TRIANGLES) {
-        const uint32_t count_here =
-            triangles - first < DISPATCH_TRIANGLES ? triangles - first : DISPATCH_TRIANGLES;
-        const size_t begin = s->index_offset[draw->mesh] + (size_t)first * 3 * sizeof(uint32_t);
-        const size_t end = begin + (size_t)count_here * 3 * sizeof(uint32_t);
-        const size_t aligned = begin / MAX_OFFSET_ALIGNMENT * MAX_OFFSET_ALIGNMENT;
+    for (struct scene_triangle_range range = { 0 }; scene_gpu_next_range(s, draw, &range);) {
         const struct {
             struct scene_push draw;
             uint32_t first_index, triangle_count, mirrored;
-        } push = { draw->push, (uint32_t)((begin - aligned) / sizeof(uint32_t)), count_here,
-                   draw->mirrored };
-        *indices = (struct gpu_binding){
-            .name = "scene_indices", .buffer = s->indices, .offset = aligned, .bytes = end - aligned
-        };
+        } push = { draw->push, range.first_index, range.triangle_count, draw->mirrored };
+        *indices = range.indices;
         if (call->rasterize) {
             gpu_draw(cmd, &(struct gpu_draw_desc){ .pipeline = call->pipeline,
                                                    .bindings = bindings,
                                                    .binding_count = count,
                                                    .push = &push,
                                                    .push_bytes = sizeof push,
-                                                   .count = 3 * count_here });
+                                                   .count = 3 * range.triangle_count });
             continue;
         }
         if (call->deferred.id) {
@@ -280,7 +296,7 @@ void scene_gpu_dispatch(const struct scene_gpu *s, struct gpu_cmd *cmd,
             gpu_fill_buffer(cmd, call->deferred_groups, sizeof(uint32_t), 2 * sizeof(uint32_t), 1);
         }
         gpu_dispatch(cmd, call->pipeline, bindings, count, &push, sizeof push,
-                     gpu_groups(count_here, SCENE_TRIANGLES_LOCAL), 1, 1);
+                     gpu_groups(range.triangle_count, SCENE_TRIANGLES_LOCAL), 1, 1);
         if (call->deferred.id)
             gpu_dispatch_indirect(cmd, call->deferred, bindings, count, &push, sizeof push,
                                   call->deferred_groups, 0);

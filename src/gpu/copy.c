@@ -109,3 +109,27 @@ void gpu_copy_buffer(struct gpu_cmd *cmd, gpu_buffer to_handle, size_t to_offset
     vkCmdCopyBuffer(cmd->buffer, from->handle, to->handle, 1,
                     &(VkBufferCopy){ from_offset, to_offset, bytes });
 }
+
+void gpu_copy_texel(struct gpu_cmd *cmd, gpu_buffer to_handle, size_t to_offset,
+                    gpu_image from_handle, uint32_t x, uint32_t y)
+{
+    struct buffer *to = buffer_get(cmd->gpu, to_handle);
+    struct image *from = image_get(cmd->gpu, from_handle);
+    if (!ready(cmd, to && from, "copy of a texel")) return;
+    const size_t bytes = (size_t)gpu_format_bytes(from->desc.format);
+    if (to_offset > to->bytes || bytes > to->bytes - to_offset || to_offset % bytes ||
+        x >= from->desc.width || y >= from->desc.height) {
+        gpu_misuse(cmd->gpu, "copy of texel %u, %u of image %s: it does not fit", x, y, from->name);
+        return;
+    }
+    const struct access write = transfer(NULL, true), read = transfer(from, false);
+    const struct range range = image_whole(from);
+    hazard_buffer(cmd, to, &write);
+    hazard_image(cmd, from, &range, &read);
+    hazard_flush(cmd);
+    const VkBufferImageCopy region = { .bufferOffset = to_offset,
+                                       .imageSubresource = { from->aspect, 0, 0, 1 },
+                                       .imageOffset = { (int32_t)x, (int32_t)y, 0 },
+                                       .imageExtent = { 1, 1, 1 } };
+    vkCmdCopyImageToBuffer(cmd->buffer, from->handle, read.layout, to->handle, 1, &region);
+}

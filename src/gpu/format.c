@@ -19,6 +19,7 @@ static const struct format formats[GPU_FORMAT_COUNT] = {
     [GPU_RG32F] = { VK_FORMAT_R32G32_SFLOAT, 8, 2, "rg32f" },
     [GPU_RGBA32F] = { VK_FORMAT_R32G32B32A32_SFLOAT, 16, 4, "rgba32f" },
     [GPU_R32U] = { VK_FORMAT_R32_UINT, 4, 1, "r32u" },
+    [GPU_RG32U] = { VK_FORMAT_R32G32_UINT, 8, 2, "rg32u" },
     [GPU_RGBA32U] = { VK_FORMAT_R32G32B32A32_UINT, 16, 4, "rgba32u" },
     [GPU_B10G11R11F] = { VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4, 3, "b10g11r11f" },
     [GPU_D32F] = { VK_FORMAT_D32_SFLOAT, 4, 1, "d32f" },
@@ -82,6 +83,7 @@ static float channel_to_float(enum gpu_format format, const uint8_t *texel, int 
         memcpy(&half, texel + 2 * c, sizeof half);
         return half_to_float(half);
     case GPU_R32U:
+    case GPU_RG32U:
     case GPU_RGBA32U:
         memcpy(&word, texel + 4 * c, sizeof word);
         return (float)word;
@@ -106,7 +108,7 @@ void format_to_float(enum gpu_format format, const void *texel, float out[4])
 VkClearColorValue format_clear(enum gpu_format format, const float value[4])
 {
     VkClearColorValue clear;
-    bool integer = format == GPU_R32U || format == GPU_RGBA32U;
+    bool integer = format == GPU_R32U || format == GPU_RG32U || format == GPU_RGBA32U;
     for (int c = 0; c < 4; c++) {
         if (integer) {
             bool fits = value[c] > 0 && value[c] < 4294967296.0f;

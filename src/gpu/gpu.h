@@ -101,6 +101,7 @@ enum gpu_format {
     GPU_RG32F,
     GPU_RGBA32F,
     GPU_R32U,
+    GPU_RG32U,
     GPU_RGBA32U,
     GPU_B10G11R11F,
     GPU_D32F,
@@ -203,6 +204,9 @@ bool gpu_readback_create(struct gpu *gpu, const char *name, size_t bytes, struct
 void gpu_readback_destroy(struct gpu *gpu, struct gpu_readback *readback);
 void gpu_readback_copy(struct gpu_cmd *cmd, struct gpu_readback *to, size_t to_offset,
                        gpu_buffer from, size_t from_offset, size_t bytes);
+// One texel of a colour image of one mip and layer.
+void gpu_readback_copy_texel(struct gpu_cmd *cmd, struct gpu_readback *to, size_t to_offset,
+                             gpu_image from, uint32_t x, uint32_t y);
 // Each copy is returned once.
 bool gpu_readback_poll(struct gpu *gpu, struct gpu_readback *readback, void *out, size_t bytes);
 
@@ -346,6 +350,9 @@ void gpu_fill_buffer(struct gpu_cmd *cmd, gpu_buffer buffer, size_t offset, size
                      uint32_t word);
 // Same format and size; all mips and layers.
 void gpu_copy_image(struct gpu_cmd *cmd, gpu_image to, gpu_image from);
+// One texel of a colour image of one mip and layer to a buffer.
+void gpu_copy_texel(struct gpu_cmd *cmd, gpu_buffer to, size_t to_offset, gpu_image from,
+                    uint32_t x, uint32_t y);
 void gpu_copy_buffer(struct gpu_cmd *cmd, gpu_buffer to, size_t to_offset, gpu_buffer from,
                      size_t from_offset, size_t bytes);
 

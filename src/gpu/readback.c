@@ -20,15 +20,31 @@ void gpu_readback_destroy(struct gpu *gpu, struct gpu_readback *readback)
     readback->serial = 0;
 }
 
+// The host reads what was copied, once the frame is completed.
+static void show_host(struct gpu_cmd *cmd, struct buffer *buffer)
+{
+    hazard_next_op(cmd);
+    hazard_buffer(cmd, buffer, &(struct access){ .stages = VK_PIPELINE_STAGE_2_HOST_BIT });
+    hazard_flush(cmd);
+}
+
 void gpu_readback_copy(struct gpu_cmd *cmd, struct gpu_readback *to, size_t to_offset,
                        gpu_buffer from, size_t from_offset, size_t bytes)
 {
     struct buffer *buffer = buffer_get(cmd->gpu, to->buffer);
     if (!buffer) return;
     gpu_copy_buffer(cmd, to->buffer, to_offset, from, from_offset, bytes);
-    hazard_next_op(cmd);
-    hazard_buffer(cmd, buffer, &(struct access){ .stages = VK_PIPELINE_STAGE_2_HOST_BIT });
-    hazard_flush(cmd);
+    show_host(cmd, buffer);
+    to->serial = cmd->serial;
+}
+
+void gpu_readback_copy_texel(struct gpu_cmd *cmd, struct gpu_readback *to, size_t to_offset,
+                             gpu_image from, uint32_t x, uint32_t y)
+{
+    struct buffer *buffer = buffer_get(cmd->gpu, to->buffer);
+    if (!buffer) return;
+    gpu_copy_texel(cmd, to->buffer, to_offset, from, x, y);
+    show_host(cmd, buffer);
     to->serial = cmd->serial;
 }
 

@@ -66,7 +66,8 @@ static const struct {
     AT(ag_renderer_desc, bakes, 32),
     AT(ag_renderer_desc, bake_count, 40),
     AT(ag_renderer_desc, bake_folder, 48),
-    AT(ag_renderer_desc, reserved, 56),
+    AT(ag_renderer_desc, id_layer, 56),
+    AT(ag_renderer_desc, reserved, 64),
     SIZE(ag_frame_desc, 136),
     AT(ag_frame_desc, camera, 0),
     AT(ag_frame_desc, time_s, 48),
@@ -74,7 +75,15 @@ static const struct {
     AT(ag_frame_desc, auto_exposure, 60),
     AT(ag_frame_desc, exposure_ev, 64),
     AT(ag_frame_desc, camera_cut, 68),
-    AT(ag_frame_desc, reserved, 72),
+    AT(ag_frame_desc, pick, 72),
+    AT(ag_frame_desc, reserved, 80),
+    SIZE(ag_pick, 56),
+    AT(ag_pick, frame, 0),
+    AT(ag_pick, x, 8),
+    AT(ag_pick, y, 12),
+    AT(ag_pick, instance, 16),
+    AT(ag_pick, triangle, 20),
+    AT(ag_pick, reserved, 24),
     SIZE(ag_finished_frame, 64),
     AT(ag_finished_frame, frame, 0),
     AT(ag_finished_frame, exposure_ev, 8),
@@ -354,7 +363,7 @@ TEST(reserved_members_are_zero_by_default_and_refused_otherwise)
     memset(&renderer, 0xff, sizeof renderer);
     ag_renderer_desc_default(&renderer);
     assert_int_equal(ag_renderer_estimate_memory(context, &renderer, 0, &bytes), AG_OK);
-    renderer.reserved[7] = 1;
+    renderer.reserved[6] = 1;
     assert_int_equal(ag_renderer_estimate_memory(context, &renderer, 0, &bytes), AG_ERROR_ARGUMENT);
 
     struct ag_compare_desc compare;

@@ -114,6 +114,7 @@ TEST(a_null_object_is_refused)
     CHECK_REFUSED(NULL, ag_renderer_layer_handle(NULL, "color", NULL));
     CHECK_REFUSED(NULL, ag_renderer_exposure(NULL, &ev));
     CHECK_REFUSED(NULL, ag_renderer_finished(NULL, NULL));
+    CHECK_REFUSED(NULL, ag_renderer_picked(NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_set_debug_view(NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_set_display(NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_set_gi(NULL, "none", NULL, 0));

@@ -115,7 +115,7 @@ TEST(layer_names_are_those_of_the_header)
     static const char *const names[] = { "color",      "direct",   "indirect", "irradiance",
                                          "visibility", "specular", "albedo",   "normal",
                                          "depth",      "position", "emissive", "motion",
-                                         "display",    "debug" };
+                                         "id",         "display",  "debug" };
     int count = sizeof names / sizeof names[0];
     for (int i = 0; i < count; i++) CHECK_STRING(ag_layer_name(i), names[i]);
     assert_null(ag_layer_name(count));

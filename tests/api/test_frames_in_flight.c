@@ -138,6 +138,45 @@ TEST(a_second_frame_is_rendered_before_the_gpu_begins_the_first)
     own_device_close(&own);
 }
 
+// The result of a pick is that of the newest frame that the GPU has finished, however many are
+// submitted.
+TEST(a_pick_is_read_while_newer_frames_are_in_flight)
+{
+    static const int first[2] = { 24, 16 }, second[2] = { 20, 20 };
+    struct own_device own;
+    struct gate gate;
+    struct ag_pick pick;
+    struct ag_device_counters before, after;
+    test_gpu_require();
+    own_device_open(&own, 0);
+    gate_init(&gate, &own);
+    struct ag_device_adopt adopt = fixture_lend(&own);
+    struct renderer_fixture s = fixture_open("none", &adopt);
+    s.frame.pick = first;
+    for (int i = 0; i < 2; i++) assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_renderer_wait(s.renderer), AG_OK);
+    ag_device_get_counters(s.device, &before);
+    gate_close(&gate);
+    s.frame.pick = second;
+    const int locks = own.locks;
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+        assert_int_equal(ag_renderer_picked(s.renderer, &pick), AG_OK);
+        assert_true(pick.frame == 2 && pick.x == first[0] && pick.y == first[1]);
+        assert_true(pick.instance >= 0 && pick.triangle >= 0);
+        assert_int_equal(own.locks, locks + i + 1); // one submission: that of the frame
+    }
+    ag_device_get_counters(s.device, &after);
+    assert_true(after.transfers == before.transfers && after.frames == before.frames + 2);
+    gate_open(&gate);
+    assert_int_equal(ag_renderer_wait(s.renderer), AG_OK);
+    assert_int_equal(ag_renderer_picked(s.renderer, &pick), AG_OK);
+    assert_true(pick.frame == 4 && pick.x == second[0] && pick.y == second[1]);
+    gate_finish(&gate);
+    fixture_close(&s);
+    own_device_close(&own);
+}
+
 TEST(recorded_frames_are_in_flight_until_each_is_reported_done)
 {
     enum { MOST = 8 };

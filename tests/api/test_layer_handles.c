@@ -201,6 +201,36 @@ TEST(a_host_reads_the_newest_frame_in_its_own_commands)
     own_device_close(&own);
 }
 
+TEST(ids_are_integers_one_above_those_that_are_read)
+{
+    struct own_device own;
+    test_gpu_require();
+    own_device_open(&own, OWN_DEVICE_VALIDATION);
+    struct ag_device_adopt adopt = fixture_lend(&own);
+    struct renderer_fixture s = fixture_open("none", &adopt);
+    ag_renderer_destroy(s.renderer);
+    struct ag_renderer_desc desc = fixture_renderer_desc("none");
+    desc.id_layer = true;
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
+    struct host_buffer buffer = make_buffer(&own, PIXELS * 8);
+    const struct ag_layer_handle layer = handle_of(&s, "id");
+    assert_int_equal(layer.vk_format, VK_FORMAT_R32G32_UINT);
+    CHECK(layer.scale == 1.0f);
+    record(&s, &own, &layer, &buffer);
+    struct ag_image *image = fixture_read(&s, "id");
+    const uint32_t *texels = buffer.mapped;
+    int most = 0;
+    for (int i = 0; i < 2 * PIXELS; i++) {
+        CHECK((float)texels[i] == image->pixels[i] + 1.0f);
+        if ((int)texels[i] > most) most = (int)texels[i];
+    }
+    CHECK(most > 4);
+    ag_image_destroy(s.context, image);
+    fixture_close(&s);
+    free_buffer(&own, &buffer);
+    own_device_close(&own);
+}
+
 TEST(layers_that_no_technique_writes_are_neutral)
 {
     struct own_device own;

@@ -269,6 +269,36 @@ TEST(motion_is_that_of_moving_objects_from_the_second_frame_on)
     }
 }
 
+// The box has one colour for each instance and triangle: pixels of equal ids have equal colours.
+TEST(ids_are_exact_in_an_exr_and_colours_in_a_png)
+{
+    require_device();
+    char exr[300], png[300];
+    struct image shown = { 0 };
+    snprintf(exr, sizeof exr, "%s", test_path("id.exr"));
+    snprintf(png, sizeof png, "%s", test_path("id.png"));
+    run_expect(0, SMALL, "--aov", "id,depth", "-o", exr, NULL);
+    run_expect(0, SMALL, "--aov", "id", "-o", png, NULL);
+    struct image ids = read_layer(exr, "id"), depth = read_layer(exr, "depth");
+    assert_true(png_read(test_host(), png, &shown));
+    assert_true(ids.channels == 2 && shown.channels >= 3);
+    int colours = 0;
+    for (int i = 1; i < 48 * 32; i++) {
+        const float *id = &ids.pixels[2 * i], *color = &shown.pixels[shown.channels * i];
+        const bool same_id = id[0] == id[-2] && id[1] == id[-1];
+        const bool same_color = memcmp(color, color - shown.channels, 3 * sizeof *color) == 0;
+        CHECK(id[0] == floorf(id[0]) && id[1] == floorf(id[1]));
+        CHECK((id[0] >= 0.0f) == (depth.pixels[i] > 0.0f) && (id[0] >= 0.0f) == (id[1] >= 0.0f));
+        CHECK((id[0] < 0.0f) == (color[0] == 0.0f && color[1] == 0.0f && color[2] == 0.0f));
+        assert_true(same_id == same_color);
+        colours += !same_color;
+    }
+    CHECK(colours > 20);
+    image_finish(&ids, test_host());
+    image_finish(&depth, test_host());
+    image_finish(&shown, test_host());
+}
+
 TEST(statistics_have_the_keys_that_scripts_rely_on)
 {
     require_device();
@@ -333,7 +363,8 @@ TEST(every_layer_can_be_a_png)
     require_device();
     static const char *const layers[] = { "color",      "direct",   "indirect", "irradiance",
                                           "visibility", "specular", "albedo",   "normal",
-                                          "depth",      "position", "display",  "motion" };
+                                          "depth",      "position", "display",  "motion",
+                                          "id" };
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
         char path[300];
         struct image image = { 0 };

@@ -159,9 +159,14 @@ void fixture_look(struct frame_fixture *s, vec3s position, vec3s target)
     s->input.camera = camera_look_at(position, target, 1.0f, 0.05f);
 }
 
+static int channels_of(enum frame_readback what)
+{
+    return what == READ_DEPTH || what == READ_VISIBILITY ? 1 : what == READ_ID ? 2 : 3;
+}
+
 float *fixture_read(struct frame_fixture *s, enum frame_readback what)
 {
-    int channels = what == READ_DEPTH || what == READ_VISIBILITY ? 1 : 3;
+    int channels = channels_of(what);
     float *pixels = calloc((size_t)s->width * s->height, (size_t)channels * sizeof *pixels);
     assert_non_null(pixels);
     assert_true(frame_read(s->frame, what, pixels, channels));
@@ -171,23 +176,28 @@ float *fixture_read(struct frame_fixture *s, enum frame_readback what)
 vec3s fixture_pixel(struct frame_fixture *s, enum frame_readback what, uint32_t x, uint32_t y)
 {
     float *pixels = fixture_read(s, what);
-    size_t channels = what == READ_DEPTH || what == READ_VISIBILITY ? 1 : 3;
+    size_t channels = (size_t)channels_of(what);
     const float *p = &pixels[((size_t)y * s->width + x) * channels];
-    vec3s value = channels == 3 ? vec3_of(p[0], p[1], p[2]) : vec3_of(p[0], p[0], p[0]);
+    vec3s value = vec3_of(p[0], p[channels > 1 ? 1 : 0], p[channels > 2 ? 2 : 0]);
     free(pixels);
     return value;
+}
+
+vec3s fixture_ray(const struct frame_fixture *s, float x, float y)
+{
+    const struct world_camera *c = &s->input.camera;
+    float tan_y = tanf(0.5f * c->vertical_fov_rad);
+    float tan_x = tan_y * (float)s->width / (float)s->height;
+    vec3s right = glms_vec3_cross(c->forward, c->up);
+    vec3s d = glms_vec3_muladds(right, tan_x * (2 * x / (float)s->width - 1), c->forward);
+    return glms_vec3_muladds(c->up, tan_y * (1 - 2 * y / (float)s->height), d);
 }
 
 vec3s fixture_ray_on_plane(const struct frame_fixture *s, uint32_t x, uint32_t y, vec3s normal,
                            float offset)
 {
     const struct world_camera *c = &s->input.camera;
-    float tan_y = tanf(0.5f * c->vertical_fov_rad);
-    float tan_x = tan_y * (float)s->width / (float)s->height;
-    vec3s right = glms_vec3_cross(c->forward, c->up);
-    vec3s d = c->forward;
-    d = glms_vec3_muladds(right, tan_x * (2 * ((float)x + 0.5f) / (float)s->width - 1), d);
-    d = glms_vec3_muladds(c->up, tan_y * (1 - 2 * ((float)y + 0.5f) / (float)s->height), d);
+    vec3s d = fixture_ray(s, (float)x + 0.5f, (float)y + 0.5f);
     float t = (offset - glms_vec3_dot(normal, c->eye)) / glms_vec3_dot(normal, d);
     return glms_vec3_muladds(d, t, c->eye);
 }

@@ -48,9 +48,11 @@ struct world_light *fixture_add_spot(struct frame_fixture *s, vec3s position, ve
                                      float inner_rad, float outer_rad, vec3s candela);
 void fixture_look(struct frame_fixture *s, vec3s position, vec3s target);
 
-// Owned by the caller (free); 3 channels, depth and visibility 1.
+// Owned by the caller (free); 3 channels, depth and visibility 1, ids 2.
 float *fixture_read(struct frame_fixture *s, enum frame_readback what);
 vec3s fixture_pixel(struct frame_fixture *s, enum frame_readback what, uint32_t x, uint32_t y);
+// Direction of the camera ray through a point of the image, in pixels; 1 m along the view axis.
+vec3s fixture_ray(const struct frame_fixture *s, float x, float y);
 // Intersection of a pixel's camera ray with the plane dot(p, normal) = offset.
 vec3s fixture_ray_on_plane(const struct frame_fixture *s, uint32_t x, uint32_t y, vec3s normal,
                            float offset);

@@ -14,12 +14,20 @@ static bool make_pipeline(struct gbuffer *g, uint32_t variant, uint32_t layers)
         &shader_gbuffer_motion_vert,
         &shader_gbuffer_dielectric_vert,
         &shader_gbuffer_dielectric_motion_vert,
+        &shader_gbuffer_id_vert,
+        &shader_gbuffer_motion_id_vert,
+        &shader_gbuffer_dielectric_id_vert,
+        &shader_gbuffer_dielectric_motion_id_vert,
     };
     static const struct gpu_shader *const fragment[GBUFFER_LAYER_SETS] = {
         &shader_gbuffer_still_frag,
         &shader_gbuffer_motion_frag,
         &shader_gbuffer_dielectric_frag,
         &shader_gbuffer_dielectric_motion_frag,
+        &shader_gbuffer_id_frag,
+        &shader_gbuffer_motion_id_frag,
+        &shader_gbuffer_dielectric_id_frag,
+        &shader_gbuffer_dielectric_motion_id_frag,
     };
     struct gpu_constant constants[SCENE_CONSTANT_COUNT];
     gpu_constants_of_bits(variant, constants, SCENE_CONSTANT_COUNT);
@@ -37,6 +45,7 @@ static bool make_pipeline(struct gbuffer *g, uint32_t variant, uint32_t layers)
     int count = BASE_COLORS;
     if (layers & GBUFFER_DIELECTRIC) desc.color_formats[count++] = GPU_RGBA8;
     if (layers & GBUFFER_MOTION) desc.color_formats[count++] = GPU_RGBA16F;
+    if (layers & GBUFFER_ID) desc.color_formats[count++] = GPU_RG32U;
     return gpu_graphics_pipeline_create(g->gpu, &desc, &g->pipelines[layers][variant]);
 }
 
@@ -67,32 +76,65 @@ static void begin(struct gpu_cmd *cmd, const struct scene_gpu *scene,
     };
     if (t->dielectric.id) desc.color[desc.color_count++].image = t->dielectric;
     if (t->motion.id) desc.color[desc.color_count++].image = t->motion;
+    if (t->id.id) desc.color[desc.color_count++].image = t->id;
     gpu_render_begin(cmd, &desc);
+}
+
+struct id_push {
+    struct scene_push draw;
+    uint32_t first_index, first_triangle;
+};
+
+// Not indexed, so that the vertex shader knows the triangle.
+static void draw_with_ids(struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                          struct scene_draw_call *call)
+{
+    struct id_push push;
+    call->push = &push;
+    call->push_bytes = sizeof push;
+    for (struct scene_triangle_range range = { 0 };
+         scene_gpu_next_range(scene, call->draw, &range);) {
+        push.first_index = range.first_index;
+        push.first_triangle = range.first_triangle;
+        call->range = &range;
+        scene_gpu_draw(scene, cmd, call);
+    }
+}
+
+static void record_draw(const struct gbuffer *g, struct gpu_cmd *cmd, const struct scene_gpu *scene,
+                        const struct scene_draw *draw, uint32_t layers,
+                        const struct gpu_binding *constants)
+{
+    const bool double_sided = scene->scene->materials[draw->material].double_sided;
+    struct scene_push push;
+    struct scene_draw_call call = {
+        .pipeline = g->pipelines[layers][draw->variant],
+        .draw = draw,
+        .push = &push,
+        .push_bytes = sizeof push,
+        .cull = double_sided ? GPU_CULL_NONE : GPU_CULL_BACK,
+        .bindings = constants,
+        .binding_count = 1,
+    };
+    if (layers & GBUFFER_ID)
+        draw_with_ids(cmd, scene, &call);
+    else
+        scene_gpu_draw(scene, cmd, &call);
 }
 
 void gbuffer_record(const struct gbuffer *g, struct gpu_cmd *cmd, const struct scene_gpu *scene,
                     const struct gbuffer_targets *targets, mat4s clip_from_world,
                     struct gpu_binding constants)
 {
-    uint32_t layers = (targets->motion.id ? GBUFFER_MOTION : 0) |
-                      (targets->dielectric.id ? GBUFFER_DIELECTRIC : 0);
+    const uint32_t layers = (targets->motion.id ? GBUFFER_MOTION : 0) |
+                            (targets->dielectric.id ? GBUFFER_DIELECTRIC : 0) |
+                            (targets->id.id ? GBUFFER_ID : 0);
     gpu_scope_begin(cmd, "gbuffer");
     begin(cmd, scene, targets);
     for (int i = 0; i < scene->draw_count; i++) {
         const struct scene_draw *draw = &scene->draws[i];
-        if (!projection_may_see(clip_from_world, draw->bounds)) continue;
-        struct scene_push push;
-        bool double_sided = scene->scene->materials[draw->material].double_sided;
-        scene_gpu_draw(scene, cmd,
-                       &(struct scene_draw_call){
-                           .pipeline = g->pipelines[layers][draw->variant],
-                           .draw = draw,
-                           .push = &push,
-                           .push_bytes = sizeof push,
-                           .cull = double_sided ? GPU_CULL_NONE : GPU_CULL_BACK,
-                           .bindings = &constants,
-                           .binding_count = 1,
-                       });
+        if (projection_may_see(clip_from_world, draw->bounds))
+            record_draw(g, cmd, scene, draw, layers, &constants);
     }
     gpu_render_end(cmd);
     gpu_scope_end(cmd);

@@ -7,7 +7,8 @@
 enum gbuffer_layers {
     GBUFFER_MOTION = 1,
     GBUFFER_DIELECTRIC = 2,
-    GBUFFER_LAYER_SETS = 4,
+    GBUFFER_ID = 4,
+    GBUFFER_LAYER_SETS = 8,
 };
 
 struct gbuffer {
@@ -17,7 +18,7 @@ struct gbuffer {
 
 struct gbuffer_targets {
     gpu_image depth, normal, albedo, material, emissive;
-    gpu_image motion, dielectric; // may be empty
+    gpu_image motion, dielectric, id; // may be empty
     uint32_t width, height;
 };
 

@@ -26,6 +26,12 @@ layout(location = 4) out vec4 out_dielectric; // see FRAME_DIELECTRIC
 #endif
 #ifdef GBUFFER_MOTION
 layout(location = MOTION_LOCATION) out vec4 out_motion; // see FRAME_MOTION
+#define ID_LOCATION (MOTION_LOCATION + 1)
+#else
+#define ID_LOCATION MOTION_LOCATION
+#endif
+#ifdef GBUFFER_ID
+layout(location = ID_LOCATION) out uvec2 out_id; // see FRAME_ID
 #endif
 
 // glTF 2.0, sec. 3.9.3: the bitangent is cross(normal, tangent) · w. Back faces of double-sided
@@ -74,6 +80,9 @@ void main()
     out_emissive = vec4(emitted, 0.0);
 #ifdef GBUFFER_DIELECTRIC
     out_dielectric = dielectric();
+#endif
+#ifdef GBUFFER_ID
+    out_id = uvec2(push.draw.instance, vary_triangle) + 1u;
 #endif
 #ifdef GBUFFER_MOTION
     vec2 current = vary_current.xy / vary_current.z;

@@ -25,8 +25,15 @@ layout(location = 9) VARY vec2 vary_specular_uv;
 layout(location = 10) VARY vec2 vary_specular_color_uv;
 #endif
 
+#ifdef GBUFFER_ID
+layout(location = 11) flat VARY uint vary_triangle; // of the mesh
+#endif
+
 layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
+#ifdef GBUFFER_ID
+    uint first_index, first_triangle;
+#endif
 }
 push;

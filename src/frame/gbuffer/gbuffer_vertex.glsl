@@ -1,4 +1,6 @@
-// Vertex shader of the G-buffer; GBUFFER_MOTION adds positions of the previous frame.
+// Vertex shader of the G-buffer; GBUFFER_MOTION adds positions of the previous frame. With
+// GBUFFER_ID the draw is not indexed, so that the triangle is known: gl_PrimitiveID needs the
+// optional feature geometryShader.
 #define SCENE_VERTEX
 #define SCENE_VERTEX_SURFACE
 #define SCENE_VERTEX_FRAME
@@ -6,9 +8,27 @@
 #include "frame/gbuffer/gbuffer_varyings.glsl"
 #include "frame/scene.glsl"
 
+#ifdef GBUFFER_ID
+layout(set = 0, binding = 7, scalar) readonly buffer scene_indices
+{
+    uint scene_index_table[];
+};
+
+uint pulled_vertex()
+{
+    vary_triangle = push.first_triangle + uint(gl_VertexIndex) / 3u;
+    return scene_index_table[push.first_index + uint(gl_VertexIndex)];
+}
+#else
+uint pulled_vertex()
+{
+    return uint(gl_VertexIndex);
+}
+#endif
+
 void main()
 {
-    uint vertex = uint(gl_VertexIndex);
+    uint vertex = pulled_vertex();
     mat4 world_from_instance = scene_world_from_instance();
     vec3 world = (world_from_instance * vec4(scene_position(vertex), 1.0)).xyz;
     vec4 clip = frame.clip_from_world * vec4(world, 1.0);
