@@ -27,7 +27,9 @@ struct ag_renderer_desc {
     /// Without one in `bakes`: folder with files KEY.safetensors (ag_bake_info.key with seed 0).
     /// Default NULL: none.
     const char *bake_folder;
-    bool id_layer;        ///< keep the layer "id"; default false
+    bool id_layer; ///< keep the layer "id"; default false
+    /// Each frame is given a G-buffer (ag_frame_desc.gbuffer); not with id_layer; default false.
+    bool host_gbuffer;
     uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);
@@ -58,6 +60,44 @@ AG_API enum ag_result ag_renderer_set_gi(struct ag_renderer *renderer, const cha
 AG_API enum ag_result ag_renderer_set_frame_options(struct ag_renderer *renderer,
                                                     const char *options);
 
+/// A layer as Vulkan objects of the adopted device, owned by the renderer; or a program's own
+/// image for struct ag_gbuffer.
+struct ag_layer_handle {
+    void *vk_image, *vk_image_view;          ///< VkImage; VkImageView: 2D, all of the image
+    uint32_t vk_format, vk_usage, vk_layout; ///< VkFormat, VkImageUsageFlags, VkImageLayout
+    int width, height;                       ///< pixels
+    float scale;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
+};
+/// A program's own G-buffer, in place of the renderer's: the surfaces that `camera` sees, at the
+/// renderer's size. The members are those of ag_layer_handle without the view; an image that is
+/// absent is zeroed. Formats, usage (at least SAMPLED) and layout (SHADER_READ_ONLY_OPTIMAL) are
+/// those of layer handles, so that handles of another renderer fit.
+///
+/// The images must live until the GPU has finished the frame. Before the frame's commands the
+/// program has written them: in the same or an earlier command buffer of the queue, without a
+/// barrier except for the layout; on another queue, with a semaphore. It may write them again after
+/// the frame: behind a barrier from ALL_COMMANDS. The library only reads, and keeps the layout.
+struct ag_gbuffer {
+    /// Required. D32_SFLOAT: near_m of the camera / distance along the view axis, 0: no surface.
+    struct ag_layer_handle depth;
+    /// Required. R16G16_SFLOAT: unit shading normal in world space, octahedral
+    /// (src/frame/octahedral.glsl).
+    struct ag_layer_handle normal;
+    /// Required. R8G8B8A8_SRGB: base colour; alpha 1: surface, 0.5: unlit, 0: none.
+    struct ag_layer_handle albedo;
+    struct ag_layer_handle material; ///< R8G8_UNORM: roughness, metallic; absent: 1, 0
+    /// R8G8B8A8_UNORM: √F0 of the dielectric specular lobe, F90 in alpha; absent: √0.04, 1.
+    struct ag_layer_handle dielectric;
+    /// R16G16B16A16_SFLOAT: cd/m² × its scale, also the radiance of unlit surfaces; absent: 0. The
+    /// light of emissive surfaces comes from the scene's materials.
+    struct ag_layer_handle emissive;
+    /// R16G16B16A16_SFLOAT: the layer motion, alpha 1 at surfaces. Required by techniques with a
+    /// history (vct:temporal=true …) and by motion_layer.
+    struct ag_layer_handle motion;
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
+};
+
 struct ag_frame_desc {
     struct ag_camera camera;
     double time_s;      ///< animation time
@@ -69,7 +109,8 @@ struct ag_frame_desc {
     /// default NULL: none. Without id_layer, the first such frame of a renderer creates an image
     /// and pipelines; it keeps them.
     const int *pick;
-    uint64_t reserved[7]; ///< 0; see ABI in types.h
+    const struct ag_gbuffer *gbuffer; ///< with host_gbuffer: required; else NULL, the default
+    uint64_t reserved[6];             ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
 /// return one.
@@ -117,16 +158,11 @@ AG_API const char *ag_layer_name(int index);
 /// - display: exposed and tone mapped, linear, 0…1; requires display_layer; see
 ///   ag_renderer_set_display
 /// - debug: the debug view; requires ag_renderer_set_debug_view
+///
+/// With host_gbuffer, albedo, normal, position, depth, emissive and motion are the program's own
+/// and cannot be read here; there is no id, and a frame cannot pick.
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
-/// A layer as Vulkan objects of the adopted device, owned by the renderer.
-struct ag_layer_handle {
-    void *vk_image, *vk_image_view;          ///< VkImage; VkImageView: 2D, all of the image
-    uint32_t vk_format, vk_usage, vk_layout; ///< VkFormat, VkImageUsageFlags, VkImageLayout
-    int width, height;                       ///< pixels
-    float scale;
-    uint64_t reserved[4]; ///< 0; see ABI in types.h
-};
 /// For programs that share the device; also before the first frame. "position" has no image.
 ///
 /// Lifetime: until the next ag_renderer_resize; "debug": until the debug view is set. The content
@@ -181,7 +217,7 @@ AG_API enum ag_result ag_renderer_set_debug_view(struct ag_renderer *renderer, c
 /// - albedo, visibility: as they are
 /// - normal: (n + 1)/2; depth: 1/(1 + metres); motion: x, y in pixels and z, each as
 ///   (1 + v/(1 + |v|))/2. Black where there is no surface
-/// - id, position and display cannot be shown
+/// - id, position and display cannot be shown; with host_gbuffer, nor can emissive
 AG_API enum ag_result ag_renderer_set_display(struct ag_renderer *renderer, const char *layer);
 
 struct ag_timing {

@@ -56,6 +56,14 @@ static bool fail_unknown(struct host *host, const char *name)
     return host_fail(host, FAIL_ARGUMENT, "unknown layer %s: see ag_layer_name", name);
 }
 
+// With host_gbuffer the program has the image.
+static bool is_hosts(const struct ag_renderer *r, const struct layer *layer)
+{
+    return r->host_gbuffer &&
+           (layer->read == READ_POSITION ||
+            (layer->image != NO_IMAGE && frame_layer_is_gbuffer((enum frame_layer)layer->image)));
+}
+
 static gpu_image layer_image(const struct ag_renderer *r, const struct layer *layer)
 {
     if (layer->read == NO_READBACK) return gi_debug_image(r->gi);
@@ -70,6 +78,8 @@ static const struct layer *layer_kept(const struct ag_renderer *r, const char *n
     const char *need = NULL;
     if (!layer)
         fail_unknown(host, name);
+    else if (is_hosts(r, layer))
+        need = "it is of the program's own G-buffer";
     else if (layer->image == FRAME_INDIRECT && !r->indirect_layer)
         need = "create the renderer with indirect_layer";
     else if (layer->image == FRAME_DISPLAY && !r->display_layer)
@@ -130,6 +140,8 @@ enum ag_result ag_renderer_read(struct ag_renderer *r, const char *name, struct 
 
 static const char *shown_need(const struct ag_renderer *r, const struct layer *layer)
 {
+    if (r->host_gbuffer && layer->image == FRAME_EMISSIVE)
+        return "it is of the program's own G-buffer";
     if (!r->display_layer) return "create the renderer with display_layer";
     if (layer->image == FRAME_INDIRECT && !r->indirect_layer)
         return "create the renderer with indirect_layer";

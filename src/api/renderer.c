@@ -127,6 +127,8 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     ag_renderer_desc_default(&fallback);
     if (!desc) desc = &fallback;
     AG_REQUIRE_KNOWN(__func__, context, desc);
+    AG_REQUIRE(context, !desc->host_gbuffer || !desc->id_layer,
+               "id_layer and host_gbuffer exclude each other: a program's own G-buffer has no ids");
     enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
     checked = renderer_bakes_check(__func__, context, desc->bakes, desc->bake_count);
@@ -142,6 +144,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->display_layer = desc->display_layer;
     r->motion_layer = desc->motion_layer;
     r->id_layer = desc->id_layer;
+    r->host_gbuffer = desc->host_gbuffer;
     r->shown.layer = FRAME_COLOR;
     scene->renderers++;
     r->client = gpu_client_add(device->gpu);

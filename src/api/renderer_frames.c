@@ -1,4 +1,5 @@
 // Frames of a renderer: submitted by the library, or recorded into a caller's command buffer.
+#include "api/renderer_gbuffer.h"
 #include "api/renderer_scene.h"
 #include "api/renderer_state.h"
 
@@ -37,12 +38,14 @@ static enum ag_result frame_check(const char *function, const struct ag_renderer
                                    desc->pick[1] >= 0 && desc->pick[1] < r->height),
                    "pick %d, %d is not in an image of %d×%d", desc->pick[0], desc->pick[1],
                    r->width, r->height);
-    return api_camera_check(context, function, &desc->camera);
+    enum ag_result checked = renderer_gbuffer_check(function, r, desc);
+    return checked != AG_OK ? checked : api_camera_check(context, function, &desc->camera);
 }
 
 // All steps that may allocate; recording must not.
 static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
-                    struct frame_input *input, struct frame_indirect *hook)
+                    const struct frame_gbuffer *gbuffer, struct frame_input *input,
+                    struct frame_indirect *hook)
 {
     if (!api_pose_at(r->scene, &r->pose, desc->animation, desc->time_s)) return false;
     const uint32_t changes = renderer_scene_changes(r);
@@ -62,7 +65,8 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
                                    .pick_x = desc->pick ? (uint32_t)desc->pick[0] : 0,
                                    .pick_y = desc->pick ? (uint32_t)desc->pick[1] : 0,
                                    .want_display = r->display_layer,
-                                   .shown = &r->shown };
+                                   .shown = &r->shown,
+                                   .gbuffer = desc->gbuffer ? gbuffer : NULL };
     r->shown.image = r->shows_debug ? gi_debug_image(r->gi) : (gpu_image){ 0 };
     *hook = gi_hook(r->gi);
     return frame_prepare(r->frame, input, hook);
@@ -84,14 +88,17 @@ static bool record(struct ag_renderer *r, const struct ag_frame_desc *desc, void
     struct gpu *gpu = r->device->gpu;
     struct frame_input input;
     struct frame_indirect hook;
+    struct frame_gbuffer gbuffer;
     *cmd = NULL;
     renderer_enter(r);
-    bool ok = prepare(r, desc, &input, &hook);
+    bool ok = renderer_gbuffer_open(r, desc->gbuffer, &gbuffer) &&
+              prepare(r, desc, &gbuffer, &input, &hook);
     if (ok) {
         *cmd = commands ? gpu_frame_begin_adopted(gpu, commands) : gpu_frame_begin(gpu);
         if (*cmd) frame_record(r->frame, *cmd, &input, &hook);
         ok = (*cmd && gpu_frame_end(gpu, *cmd)) || fail_lost(r);
     }
+    renderer_gbuffer_finish(r, &gbuffer);
     renderer_leave(r);
     return ok;
 }

@@ -28,7 +28,7 @@ struct ag_renderer {
     struct recorded_frame recorded[GPU_ADOPTED_FRAMES]; // oldest first
     int recorded_count;
     uint32_t client; // of the device: gpu_client_add
-    bool indirect_layer, display_layer, motion_layer, id_layer;
+    bool indirect_layer, display_layer, motion_layer, id_layer, host_gbuffer;
     struct frame_shown shown; // by the layer "display"; its image is set for each frame
     bool shows_debug;         // the debug view, if one is set
     int width, height;        // of the last resize

@@ -131,14 +131,35 @@ bool frame_resize(struct frame *f, uint32_t width, uint32_t height)
 
 // ---- Preparation --------------------------------------------------------------------------------
 
-static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs, bool has_dielectrics)
+static const uint32_t LEAST_GBUFFER = 1u << FRAME_DEPTH | 1u << FRAME_NORMAL | 1u << FRAME_ALBEDO;
+
+// Of the frame's own G-buffer.
+static uint32_t gbuffer_layers(uint32_t needs, bool has_dielectrics)
 {
-    uint32_t wanted = 1u << FRAME_DEPTH | 1u << FRAME_NORMAL | 1u << FRAME_ALBEDO |
-                      1u << FRAME_MATERIAL | 1u << FRAME_EMISSIVE | 1u << FRAME_DIRECT |
-                      1u << FRAME_COLOR;
-    if (needs & FRAME_NEEDS_MOTION) wanted |= 1u << FRAME_MOTION;
-    if (needs & FRAME_NEEDS_ID) wanted |= 1u << FRAME_ID;
-    if (has_dielectrics) wanted |= 1u << FRAME_DIELECTRIC;
+    return LEAST_GBUFFER | 1u << FRAME_MATERIAL | 1u << FRAME_EMISSIVE |
+           (needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0) |
+           (needs & FRAME_NEEDS_ID ? 1u << FRAME_ID : 0) |
+           (has_dielectrics ? 1u << FRAME_DIELECTRIC : 0);
+}
+
+static bool check_gbuffer(struct frame *f)
+{
+    const uint32_t needed =
+        LEAST_GBUFFER | (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0);
+    const uint32_t missing = needed & ~f->imported;
+    if (!missing) return true;
+    return host_fail(f->host, FAIL_ARGUMENT, "gbuffer has no image of the layer %s%s",
+                     missing >> FRAME_DEPTH & 1u    ? "depth"
+                     : missing >> FRAME_NORMAL & 1u ? "normal"
+                     : missing >> FRAME_ALBEDO & 1u ? "albedo"
+                                                    : "motion",
+                     missing & LEAST_GBUFFER ? "" : ", which a technique or motion_layer needs");
+}
+
+// Of all passes after the G-buffer.
+static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs)
+{
+    uint32_t wanted = 1u << FRAME_DIRECT | 1u << FRAME_COLOR;
     if (needs & FRAME_WRITES_IRRADIANCE) wanted |= 1u << FRAME_IRRADIANCE;
     if (needs & FRAME_WRITES_SPECULAR) wanted |= 1u << FRAME_SPECULAR;
     if (needs & FRAME_WRITES_VISIBILITY) wanted |= 1u << FRAME_VISIBILITY;
@@ -188,8 +209,9 @@ static bool prepare_composite(struct frame *f, const struct frame_input *input)
 
 static uint32_t direct_features(const struct frame *f)
 {
-    const bool emission = f->scene.max_emissive > 0 || f->scene.has_unlit;
-    return (f->scene.has_dielectrics ? DIRECT_DIELECTRIC : 0) |
+    const bool emission = f->imported ? f->imported >> FRAME_EMISSIVE & 1u
+                                      : f->scene.max_emissive > 0 || f->scene.has_unlit;
+    return (f->layers[FRAME_DIELECTRIC].id ? DIRECT_DIELECTRIC : 0) |
            (f->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) | (emission ? DIRECT_EMISSION : 0);
 }
 
@@ -209,6 +231,22 @@ static bool prepare_lights(struct frame *f, const struct frame_input *input)
     return shadow_prepare(&f->shadow, sun_faces, shadow_faces) &&
            direct_prepare(&f->direct, f->direct_variant, f->width, f->height) &&
            rsm_prepare(&f->rsm, rsm_faces, f->scene.variants_used);
+}
+
+// The images of the frame, and the pipelines of its own G-buffer.
+static bool prepare_layers(struct frame *f, const struct frame_input *input, uint32_t kept)
+{
+    const bool dielectrics = f->scene.has_dielectrics;
+    const uint32_t optional = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
+                              (f->needs & FRAME_NEEDS_ID ? GBUFFER_ID : 0) |
+                              (dielectrics ? GBUFFER_DIELECTRIC : 0);
+    const uint32_t written = wanted_layers(input, f->needs);
+    frame_import_gbuffer(f, input->gbuffer);
+    if (input->gbuffer)
+        return check_gbuffer(f) &&
+               frame_make_layers(f, written | f->imported, kept | 1u << FRAME_MATERIAL);
+    return frame_make_layers(f, written | gbuffer_layers(f->needs, dielectrics), kept) &&
+           gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used, optional);
 }
 
 bool frame_prepare(struct frame *f, const struct frame_input *input,
@@ -231,13 +269,8 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     f->needs = (indirect ? indirect->needs : 0) |
                (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0) |
                (input->want_id_layer || input->pick ? FRAME_NEEDS_ID : 0);
-    const uint32_t gbuffer_layers = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
-                                    (f->needs & FRAME_NEEDS_ID ? GBUFFER_ID : 0) |
-                                    (f->scene.has_dielectrics ? GBUFFER_DIELECTRIC : 0);
-    const uint32_t written = wanted_layers(input, f->needs, f->scene.has_dielectrics);
-    f->prepared = frame_make_layers(f, written, kept) && prepare_lights(f, input) &&
-                  gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used, gbuffer_layers) &&
-                  prepare_composite(f, input);
+    f->prepared =
+        prepare_layers(f, input, kept) && prepare_lights(f, input) && prepare_composite(f, input);
     return f->prepared;
 }
 
@@ -245,6 +278,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
 
 static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
 {
+    if (f->imported) return;
     struct gbuffer_targets targets = {
         .depth = f->layers[FRAME_DEPTH],
         .normal = f->layers[FRAME_NORMAL],
@@ -471,6 +505,7 @@ void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input
     record_exposure(f, cmd, input);
     record_composite(f, cmd);
     record_display(f, cmd, input);
+    frame_forget_gbuffer(f);
     f->index++;
     f->number++;
     reports_record(f, cmd, input);

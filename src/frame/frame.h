@@ -129,6 +129,15 @@ struct frame_shown {
     gpu_image image; // not empty: shown instead; RGBA16F of the frame's size, scaled radiance
 };
 
+// A G-buffer in place of the frame's own, in the formats of enum frame_layer: images that live
+// until the frame is recorded. Depth, normal and albedo are required, motion if a technique or the
+// caller needs it. Without the others: roughness 1, metallic 0, the default dielectric, no
+// emission.
+struct frame_gbuffer {
+    gpu_image layers[FRAME_LAYER_COUNT]; // others than those of the G-buffer are ignored
+    float emissive_scale;                // values = cd/m² × emissive_scale
+};
+
 struct frame_input {
     const struct scene_pose *pose;
     struct world_camera camera;
@@ -143,8 +152,9 @@ struct frame_input {
     bool want_id_layer;               // fill FRAME_ID
     bool pick;                        // report the FRAME_ID of a pixel, below the size
     uint32_t pick_x, pick_y;
-    bool want_display;               // fill FRAME_DISPLAY
-    const struct frame_shown *shown; // by FRAME_DISPLAY; NULL: FRAME_COLOR
+    bool want_display;                   // fill FRAME_DISPLAY
+    const struct frame_shown *shown;     // by FRAME_DISPLAY; NULL: FRAME_COLOR
+    const struct frame_gbuffer *gbuffer; // NULL: the frame renders its own
 };
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);
@@ -165,6 +175,9 @@ void frame_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_i
 // one, frames clear it to a neutral value (visibility 1, else 0). Until the next resize its image
 // stays the same.
 bool frame_pin_layer(struct frame *frame, enum frame_layer layer);
+// Its format, and whether the G-buffer pass writes it.
+enum gpu_format frame_layer_format(enum frame_layer layer);
+bool frame_layer_is_gbuffer(enum frame_layer layer);
 // Empty handle if the layer was not requested.
 gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer);
 // Scale of the newest recorded frame: scaled = physical × scale.

@@ -83,6 +83,9 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
     f->fallback_luminance = frame_fallback_luminance(&light) * c->radiance_scale;
     // Where all that is seen is unlit, its white exposes to 1.
     if (f->scene.has_unlit) f->fallback_luminance = 0.18f * c->unlit_white;
+    c->emissive_scale = input->gbuffer && input->gbuffer->emissive_scale > 0.0f
+                            ? c->radiance_scale / input->gbuffer->emissive_scale
+                            : 1.0f;
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
     f->emitted_irradiance =

@@ -41,6 +41,34 @@ static bool make_layer(struct frame *frame, int l)
     return gpu_image_create(frame->gpu, &desc, &frame->layers[l]);
 }
 
+enum gpu_format frame_layer_format(enum frame_layer layer)
+{
+    return table[layer].format;
+}
+
+bool frame_layer_is_gbuffer(enum frame_layer layer)
+{
+    return layer >= FRAME_DEPTH && layer <= FRAME_ID;
+}
+
+void frame_import_gbuffer(struct frame *frame, const struct frame_gbuffer *gbuffer)
+{
+    frame_forget_gbuffer(frame);
+    for (int l = 0; gbuffer && l < FRAME_LAYER_COUNT; l++) {
+        if (!gbuffer->layers[l].id || !frame_layer_is_gbuffer((enum frame_layer)l)) continue;
+        gpu_image_destroy(frame->gpu, &frame->layers[l]);
+        frame->layers[l] = gbuffer->layers[l];
+        frame->imported |= 1u << l;
+    }
+}
+
+void frame_forget_gbuffer(struct frame *frame)
+{
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++)
+        if (frame->imported >> l & 1u) frame->layers[l] = (gpu_image){ 0 };
+    frame->imported = 0;
+}
+
 bool frame_make_layers(struct frame *frame, uint32_t written, uint32_t kept)
 {
     frame->unwritten = kept & ~written;
@@ -63,9 +91,10 @@ bool frame_pin_layer(struct frame *frame, enum frame_layer layer)
 void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd)
 {
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
-        const float value = l == FRAME_VISIBILITY ? 1.0f : 0.0f;
+        const float value = l == FRAME_VISIBILITY || l == FRAME_MATERIAL ? 1.0f : 0.0f;
+        const float other = l == FRAME_MATERIAL ? 0.0f : value; // roughness 1, metallic 0
         if (frame->unwritten & ~frame->neutral & 1u << l)
-            gpu_clear_image(cmd, frame->layers[l], (const float[4]){ value, value, value, value });
+            gpu_clear_image(cmd, frame->layers[l], (const float[4]){ value, other, other, other });
     }
     frame->neutral = frame->unwritten;
 }
@@ -73,6 +102,7 @@ void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd)
 void frame_destroy_layers(struct frame *frame)
 {
     frame->neutral = 0;
+    frame_forget_gbuffer(frame);
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) gpu_image_destroy(frame->gpu, &frame->layers[l]);
 }
 

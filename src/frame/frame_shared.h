@@ -29,8 +29,9 @@ struct frame_constants {
     uint32_t width, height;
     uint32_t light_count;
     uint32_t frame_index;
-    float unlit_white;   // scaled radiance of a white unlit material (scene/unlit.h)
-    uint32_t padding[2]; // mat4s is aligned to 16 bytes in C
+    float unlit_white;    // scaled radiance of a white unlit material (scene/unlit.h)
+    float emissive_scale; // of the emissive layer to scaled radiance; 1 unless it is a caller's
+    uint32_t padding[1];  // mat4s is aligned to 16 bytes in C
 };
 
 // Storage block "frame_lights".

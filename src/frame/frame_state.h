@@ -40,6 +40,7 @@ struct frame {
     struct composite composite;
     struct display display;
     gpu_image layers[FRAME_LAYER_COUNT];
+    uint32_t imported;     // bit l: layer l is the caller's, until the frame is recorded
     uint32_t pinned;       // bit l: layer l, by frame_pin_layer
     uint32_t unwritten;    // set by frame_prepare: kept layers that no pass or technique writes
     uint32_t neutral;      // those of them that have their neutral value
@@ -72,6 +73,9 @@ struct frame {
 // frame_layers.c
 // Bit l: layer l. `written` by passes or techniques; `kept` in any case. Destroys others.
 bool frame_make_layers(struct frame *frame, uint32_t written, uint32_t kept);
+// Makes a caller's G-buffer the frame's until frame_forget_gbuffer. NULL: none.
+void frame_import_gbuffer(struct frame *frame, const struct frame_gbuffer *gbuffer);
+void frame_forget_gbuffer(struct frame *frame);
 void frame_destroy_layers(struct frame *frame);
 void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd);
 

@@ -148,6 +148,11 @@ struct gpu_image_handles {
 // The same for a caller that binds the image before the first frame, too: it is brought into that
 // layout now, a new one zeroed. false: no such image, or the device is lost.
 bool gpu_image_share(struct gpu *gpu, gpu_image image, struct gpu_image_handles *out);
+// The reverse: wraps a caller's image that is to be sampled, once format, usage and layout are what
+// desc says and gpu_image_share would return. `view` is not needed. false: the message has desc's
+// name.
+bool gpu_image_import(struct gpu *gpu, const struct gpu_image_desc *desc,
+                      const struct gpu_image_handles *handles, gpu_image *out);
 
 enum gpu_buffer_usage {
     GPU_BUFFER_STORAGE = 1,

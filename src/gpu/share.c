@@ -1,4 +1,4 @@
-// Images that a caller's commands use, too.
+// Images that a caller's commands use, too: the library's, and the caller's own.
 #include "gpu/vk.h"
 
 // Zeroes a new image; transfer_end brings all shared images into their layout.
@@ -35,4 +35,23 @@ bool gpu_image_share(struct gpu *gpu, gpu_image handle, struct gpu_image_handles
         .layout = (uint32_t)hazard_shader_layout(image),
     };
     return true;
+}
+
+bool gpu_image_import(struct gpu *gpu, const struct gpu_image_desc *desc,
+                      const struct gpu_image_handles *handles, gpu_image *out)
+{
+    const struct format *format = format_of(desc->format);
+    const uint32_t layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    out->id = 0;
+    if (handles->format != (uint32_t)format->vk)
+        return host_fail(gpu->host, FAIL_ARGUMENT, "%s: its VkFormat is %u, not %u (%s)",
+                         desc->name, handles->format, (unsigned)format->vk, format->name);
+    if (!(handles->usage & VK_IMAGE_USAGE_SAMPLED_BIT))
+        return host_fail(gpu->host, FAIL_ARGUMENT, "%s: its usage lacks VK_IMAGE_USAGE_SAMPLED_BIT",
+                         desc->name);
+    if (handles->layout != layout)
+        return host_fail(gpu->host, FAIL_ARGUMENT,
+                         "%s: its VkImageLayout is %u, not SHADER_READ_ONLY_OPTIMAL (%u)",
+                         desc->name, handles->layout, layout);
+    return gpu_image_wrap(gpu, desc, handles->image, layout, out);
 }

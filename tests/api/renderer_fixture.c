@@ -1,6 +1,8 @@
 #include "api/renderer_fixture.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 char fixture_last_warning[512];
 
@@ -83,4 +85,53 @@ struct ag_image *fixture_read(struct renderer_fixture *s, const char *layer)
     if (ag_renderer_read(s->renderer, layer, &image) != AG_OK)
         fail_msg("%s: %s", layer, ag_context_last_error(s->context));
     return image;
+}
+
+struct renderer_fixture fixture_open_lit(const char *gi)
+{
+    struct renderer_fixture s = fixture_open("none", NULL);
+    ag_renderer_destroy(s.renderer);
+    s.renderer = NULL;
+    const float sky[3] = { 300, 400, 500 };
+    assert_int_equal(ag_scene_set_sky(s.scene, sky), AG_OK);
+    struct ag_area_light_desc emitter;
+    ag_area_light_desc_default(&emitter);
+    assert_int_equal(ag_scene_add_area_light(s.scene, &emitter, NULL), AG_OK);
+    struct ag_renderer_desc desc = fixture_renderer_desc(gi);
+    if (gi) assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
+    return s;
+}
+
+double fixture_difference(const struct ag_image *a, const struct ag_image *b)
+{
+    double sum = 0, mean = 0;
+    for (int i = 0; i < b->width * b->height * b->channels; i++) {
+        sum += fabs((double)a->pixels[i] - (double)b->pixels[i]);
+        mean += fabs((double)b->pixels[i]);
+    }
+    return sum > 0 ? sum / mean : 0.0;
+}
+
+struct ag_image *fixture_read_from(struct renderer_fixture *s, struct ag_renderer *renderer,
+                                   const char *layer)
+{
+    struct ag_image *image = NULL;
+    if (ag_renderer_read(renderer, layer, &image) != AG_OK)
+        fail_msg("%s: %s", layer, ag_context_last_error(s->context));
+    return image;
+}
+
+void fixture_print_base(int technique, const struct ag_technique_info *info, char *out)
+{
+    struct ag_option_info o;
+    const bool visibility = strcmp(info->role, "visibility") == 0;
+    size_t used =
+        (size_t)snprintf(out, FIXTURE_SPEC, "%s%s", visibility ? "ambient+" : "", info->name);
+    char separator = ':';
+    for (int k = 0; ag_technique_option_get(technique, k, &o); k++) {
+        if (strcmp(o.effect, "rebake") != 0 || strcmp(o.type, "int") != 0) continue;
+        used += (size_t)snprintf(out + used, FIXTURE_SPEC - used, "%c%s=%d", separator, o.name,
+                                 (int)o.min);
+        separator = ',';
+    }
 }

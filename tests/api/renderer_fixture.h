@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-enum { FIXTURE_WIDTH = 48, FIXTURE_HEIGHT = 32 };
+enum { FIXTURE_WIDTH = 48, FIXTURE_HEIGHT = 32, FIXTURE_SPEC = 512 };
 
 struct renderer_fixture {
     struct ag_context *context;
@@ -31,3 +31,12 @@ struct renderer_fixture fixture_open(const char *gi, const struct ag_device_adop
 void fixture_close(struct renderer_fixture *fixture);
 // The caller destroys it.
 struct ag_image *fixture_read(struct renderer_fixture *fixture, const char *layer);
+struct ag_image *fixture_read_from(struct renderer_fixture *fixture, struct ag_renderer *renderer,
+                                   const char *layer);
+// The Cornell box, whose ceiling emits, with a sky. gi NULL: without a renderer.
+struct renderer_fixture fixture_open_lit(const char *gi);
+// Mean difference of two images over the mean of b.
+double fixture_difference(const struct ag_image *a, const struct ag_image *b);
+// "name", or a small bake's "name:option=least,…"; visibility needs light to show. `out` has
+// FIXTURE_SPEC bytes.
+void fixture_print_base(int technique, const struct ag_technique_info *info, char *out);

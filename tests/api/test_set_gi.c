@@ -6,8 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TEXT = 512 };
-
 // Small volumes, and options under which more live options have an effect.
 static const struct {
     const char *technique, *options;
@@ -70,42 +68,6 @@ static void print_other(const struct ag_option_info *o, char *out, size_t size)
     }
 }
 
-// The Cornell box, whose ceiling emits, with a sky.
-static struct renderer_fixture open_lit(const char *gi)
-{
-    struct renderer_fixture s = fixture_open("none", NULL);
-    ag_renderer_destroy(s.renderer);
-    s.renderer = NULL;
-    const float sky[3] = { 300, 400, 500 };
-    assert_int_equal(ag_scene_set_sky(s.scene, sky), AG_OK);
-    struct ag_area_light_desc emitter;
-    ag_area_light_desc_default(&emitter);
-    assert_int_equal(ag_scene_add_area_light(s.scene, &emitter, NULL), AG_OK);
-    struct ag_renderer_desc desc = fixture_renderer_desc(gi);
-    if (gi) assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
-    return s;
-}
-
-// Mean difference of two images over the mean of b.
-static double difference(const struct ag_image *a, const struct ag_image *b)
-{
-    double sum = 0, mean = 0;
-    for (int i = 0; i < b->width * b->height * b->channels; i++) {
-        sum += fabs((double)a->pixels[i] - (double)b->pixels[i]);
-        mean += fabs((double)b->pixels[i]);
-    }
-    return sum > 0 ? sum / mean : 0.0;
-}
-
-static struct ag_image *read_from(struct renderer_fixture *s, struct ag_renderer *renderer,
-                                  const char *layer)
-{
-    struct ag_image *image = NULL;
-    if (ag_renderer_read(renderer, layer, &image) != AG_OK)
-        fail_msg("%s: %s", layer, ag_context_last_error(s->context));
-    return image;
-}
-
 struct bakes {
     const struct ag_bake *list[1];
     int count;
@@ -121,8 +83,9 @@ static void check_fresh(struct renderer_fixture *s, const struct ag_renderer_des
         fail_msg("%s: %s", desc->gi, ag_context_last_error(s->context));
     assert_int_equal(ag_renderer_render(fresh, &s->frame), AG_OK);
     for (int i = 0; i < 2; i++) {
-        struct ag_image *a = fixture_read(s, layers[i]), *b = read_from(s, fresh, layers[i]);
-        const double got = difference(a, b);
+        struct ag_image *a = fixture_read(s, layers[i]),
+                        *b = fixture_read_from(s, fresh, layers[i]);
+        const double got = fixture_difference(a, b);
         if (!(got <= tolerance))
             fail_msg("%s, frame options %s: %s differs by %g", desc->gi, desc->frame_options,
                      layers[i], got);
@@ -174,7 +137,7 @@ static void check_technique(struct renderer_fixture *s, int technique,
     render(s, 2);
     struct ag_option_info option;
     for (int k = 0; ag_technique_option_get(technique, k, &option); k++) {
-        char text[3 * TEXT], value[64];
+        char text[3 * FIXTURE_SPEC], value[64];
         const bool live =
             strcmp(option.effect, "live") == 0 || strcmp(option.effect, "invalidate") == 0;
         if (!live) continue;
@@ -188,28 +151,14 @@ static void check_technique(struct renderer_fixture *s, int technique,
     s->renderer = NULL;
 }
 
-// "name", or a small bake's "name:option=least,…"; visibility needs light to show.
-static void print_base(int technique, const struct ag_technique_info *info, char *out)
-{
-    struct ag_option_info o;
-    const bool visibility = strcmp(info->role, "visibility") == 0;
-    size_t used = (size_t)snprintf(out, TEXT, "%s%s", visibility ? "ambient+" : "", info->name);
-    char separator = ':';
-    for (int k = 0; ag_technique_option_get(technique, k, &o); k++) {
-        if (strcmp(o.effect, "rebake") != 0 || strcmp(o.type, "int") != 0) continue;
-        used += (size_t)snprintf(out + used, TEXT - used, "%c%s=%d", separator, o.name, (int)o.min);
-        separator = ',';
-    }
-}
-
 TEST(a_live_option_creates_nothing_and_the_next_frame_equals_a_new_renderers)
 {
-    struct renderer_fixture s = open_lit(NULL);
+    struct renderer_fixture s = fixture_open_lit(NULL);
     struct ag_technique_info info;
     for (int i = 0; ag_technique_get(i, &info); i++) {
-        char base[TEXT];
+        char base[FIXTURE_SPEC];
         struct ag_bake *bake = NULL;
-        print_base(i, &info, base);
+        fixture_print_base(i, &info, base);
         if (info.needs_bake) {
             assert_int_equal(ag_bake_create(s.scene, base, NULL, &bake), AG_OK);
             assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
@@ -217,7 +166,7 @@ TEST(a_live_option_creates_nothing_and_the_next_frame_equals_a_new_renderers)
         const struct bakes bakes = { { bake }, bake != NULL };
         int checked = 0;
         for (size_t b = 0; b < sizeof bases / sizeof *bases; b++) {
-            char longer[2 * TEXT];
+            char longer[2 * FIXTURE_SPEC];
             if (strcmp(bases[b].technique, info.name) != 0) continue;
             snprintf(longer, sizeof longer, "%s%s", base, bases[b].options);
             check_technique(&s, i, &info, longer, bases[b].frames, &bakes);
@@ -240,7 +189,7 @@ TEST(after_other_changes_the_next_frame_equals_a_new_renderers)
                                          "ambient+vo",
                                          "none+vctao",
                                          "lpv" };
-    struct renderer_fixture s = open_lit("lpv");
+    struct renderer_fixture s = fixture_open_lit("lpv");
     const struct bakes no_bakes = { .count = 0 };
     render(&s, 2);
     struct ag_memory before[64], after[64];
@@ -263,7 +212,7 @@ TEST(after_other_changes_the_next_frame_equals_a_new_renderers)
 
 TEST(a_technique_beside_another_keeps_its_light)
 {
-    struct renderer_fixture s = open_lit("vct");
+    struct renderer_fixture s = fixture_open_lit("vct");
     const struct bakes no_bakes = { .count = 0 };
     render(&s, 6);
     struct ag_device_counters before, after;
@@ -273,7 +222,8 @@ TEST(a_technique_beside_another_keeps_its_light)
     render(&s, 1);
     ag_device_get_counters(s.device, &after);
     struct ag_image *got = fixture_read(&s, "irradiance");
-    CHECK(difference(got, expected) < 1e-3);  // vct alone is not converged in its first frame
+    CHECK(fixture_difference(got, expected) <
+          1e-3);                              // vct alone is not converged in its first frame
     CHECK(after.images - before.images <= 4); // visibility, and what hbao has
     ag_image_destroy(s.context, got);
     ag_image_destroy(s.context, expected);
@@ -292,7 +242,7 @@ TEST(frame_options_change_and_the_next_frame_equals_a_new_renderers)
     };
     static const char *const techniques[] = { "lpv:dim=16", "vct:resolution=32", "ambient" };
     for (size_t t = 0; t < sizeof techniques / sizeof *techniques; t++) {
-        struct renderer_fixture s = open_lit(techniques[t]);
+        struct renderer_fixture s = fixture_open_lit(techniques[t]);
         render(&s, 2);
         struct ag_device_counters before, after;
         for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
@@ -315,9 +265,9 @@ TEST(frame_options_change_and_the_next_frame_equals_a_new_renderers)
 
 TEST(a_refused_spec_changes_nothing)
 {
-    struct renderer_fixture s = open_lit("lpv");
+    struct renderer_fixture s = fixture_open_lit("lpv");
     render(&s, 1);
-    char text[TEXT];
+    char text[FIXTURE_SPEC];
     snprintf(text, sizeof text, "%.500s", ag_renderer_gi(s.renderer));
     static const char *const refused[] = { "lpv:stepz=2", "no-such", "lpv:dim=9", "mrt",
                                            "lpv+vo:samples=99999" };
@@ -335,7 +285,7 @@ TEST(a_refused_spec_changes_nothing)
 
 TEST(a_debug_view_stays_with_its_technique)
 {
-    struct renderer_fixture s = open_lit("lpv");
+    struct renderer_fixture s = fixture_open_lit("lpv");
     const struct bakes no_bakes = { .count = 0 };
     struct ag_image *image = NULL;
     assert_int_equal(ag_renderer_set_debug_view(s.renderer, "lpv.injected"), AG_OK);

@@ -81,6 +81,12 @@ static void clear_list(const struct direct *d, struct gpu_cmd *cmd)
     gpu_fill_buffer(cmd, d->list, ones, sizeof(struct direct_list_header) - ones, 1);
 }
 
+// Every binding needs an image.
+static gpu_image emissive_or_other(const struct direct_input *in)
+{
+    return in->emissive.id ? in->emissive : in->normal;
+}
+
 // The shadow test of the pixels in the list.
 static void record_undecided(const struct direct *d, struct gpu_cmd *cmd,
                              const struct direct_input *in, gpu_image out)
@@ -92,7 +98,7 @@ static void record_undecided(const struct direct *d, struct gpu_cmd *cmd,
                  { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
                  { "depth_layer", .image = in->depth, .sampler = d->nearest },
                  { "normal_layer", .image = in->normal, .sampler = d->nearest },
-                 { "emissive_layer", .image = in->emissive, .sampler = d->nearest },
+                 { "emissive_layer", .image = emissive_or_other(in), .sampler = d->nearest },
                  { "direct_list", .buffer = d->list }, { "direct_layer", .image = out }),
         NULL, 0, d->list, offsetof(struct direct_list_header, groups));
 }
@@ -119,7 +125,8 @@ void direct_record(const struct direct *d, struct gpu_cmd *cmd, const struct dir
                  // Every binding needs an image.
                  { "dielectric_layer", .image = has_dielectric ? in->dielectric : in->material,
                    .sampler = d->nearest },
-                 { "emissive_layer", .image = in->emissive, .sampler = d->nearest }, in->ggx_albedo,
+                 { "emissive_layer", .image = emissive_or_other(in), .sampler = d->nearest },
+                 in->ggx_albedo,
                  { "shadow_blocks", .image = in->shadow_blocks, .sampler = d->nearest },
                  { "direct_list", .buffer = d->list }, { "direct_layer", .image = out }),
         &push, sizeof push, gpu_groups(in->width, 8), gpu_groups(in->height, 8), 1);

@@ -203,7 +203,8 @@ void main()
     vec3 radiance = frame.sky;
     float diffuse = 0.0;
     if (depth > 0.0) {
-        radiance = HAS_EMISSION ? texelFetch(emissive_layer, pixel, 0).rgb : vec3(0.0);
+        radiance = HAS_EMISSION ? texelFetch(emissive_layer, pixel, 0).rgb * frame.emissive_scale
+                                : vec3(0.0);
         vec4 albedo = texelFetch(albedo_layer, pixel, 0);
         if (frame_is_lit(albedo.a)) {
             surface s = read_surface(pixel, depth, albedo.rgb);

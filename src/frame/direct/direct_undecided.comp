@@ -36,6 +36,8 @@ void main()
     shadow_receiver receiver = sun_receiver(ray, view_distance, normal);
     if (shadow_resolved(shadow_sun_depths, receiver, true) > 0.0) return;
     vec3 emission = vec3(0.0);
-    if (HAS_EMISSION) emission = min(texelFetch(emissive_layer, pixel, 0).rgb, vec3(HALF_MAX));
+    if (HAS_EMISSION)
+        emission =
+            min(texelFetch(emissive_layer, pixel, 0).rgb * frame.emissive_scale, vec3(HALF_MAX));
     imageStore(direct_layer, pixel, vec4(emission, imageLoad(direct_layer, pixel).a));
 }
