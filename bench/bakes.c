@@ -43,7 +43,7 @@ static bool find_path(const struct ag_bake *bake, char out[PATH_SIZE])
     return wrote > 0 && wrote < PATH_SIZE;
 }
 
-// A cache that cannot be used costs time, and is no error.
+// A cache that cannot be used costs time; it is not an error.
 static enum ag_result complete(struct ag_bake *bake)
 {
     char path[PATH_SIZE];

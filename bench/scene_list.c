@@ -78,7 +78,7 @@ enum ag_result scene_list_each(const char *path, const char *text,
     enum ag_result result = AG_OK;
     FILE *file = fopen(path, "r");
     if (!file || regcomp(&regex, text, REG_EXTENDED) != 0) {
-        fprintf(stderr, "%s: cannot be read, or %s is no regular expression\n", path, text);
+        fprintf(stderr, "%s: cannot be read, or %s is not a regular expression\n", path, text);
         if (file) fclose(file);
         return AG_ERROR_ARGUMENT;
     }

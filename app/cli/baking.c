@@ -203,7 +203,7 @@ static enum status find_given(const struct session *session, const char *techniq
         enum ag_result result = ag_bake_file_technique(session->context, a->bake_files[i], name);
         if (result != AG_OK) {
             fail_library(session->context, result);
-            return FAILED; // a file's content is no wrong usage
+            return FAILED; // a file's content is not wrong usage
         }
         if (strcmp(name, technique) == 0) *path = a->bake_files[i];
     }

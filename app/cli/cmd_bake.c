@@ -47,7 +47,7 @@ static enum status find_origin(struct job *job)
         ag_bake_partial_origin(job->session.context, a->positional[0], &job->origin);
     if (result == AG_OK) return DONE;
     fail_library(job->session.context, result);
-    return FAILED; // the file's content is no wrong usage
+    return FAILED; // the file's content is not wrong usage
 }
 
 static enum status begin(struct job *job)

@@ -48,7 +48,7 @@ static enum status open_device(struct comparison *c)
     enum ag_result result = ag_device_create(c->session.context, &desc, &c->device);
     if (result == AG_OK) return DONE;
     fail_library(c->session.context, result);
-    return FAILED; // a missing device is no wrong usage
+    return FAILED; // a missing device is not wrong usage
 }
 
 static enum status prepare(struct comparison *c)

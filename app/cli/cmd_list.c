@@ -303,8 +303,8 @@ static enum status unknown_name(const char *wanted)
         known[count++] = scene.name;
     const char *nearest = ag_nearest_name(wanted, known, count);
     if (nearest) return wrong_usage("unknown name %s: did you mean %s?", wanted, nearest);
-    return wrong_usage("unknown name %s: it is no technique and no built-in scene (afterglow list)",
-                       wanted);
+    return wrong_usage(
+        "unknown name %s: it is neither a technique nor a built-in scene (afterglow list)", wanted);
 }
 
 static enum status list_one(const char *wanted, bool json)

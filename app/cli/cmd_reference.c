@@ -64,7 +64,7 @@ static enum status resume(struct job *job)
     if (result == AG_ERROR_ARGUMENT && tracing_differences(&job->tracing, job->path, names))
         return fail("cannot resume %s: it was traced with %s", job->path, names);
     fail_library(job->session.context, result);
-    return FAILED; // the file's content is no wrong usage
+    return FAILED; // the file's content is not wrong usage
 }
 
 // ---- the image

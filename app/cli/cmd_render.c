@@ -133,7 +133,7 @@ static enum status prepare(struct job *job)
     enum ag_result result = ag_device_create(context, &device_desc, &job->device);
     if (result != AG_OK) {
         fail_library(context, result);
-        return FAILED; // a missing device is no wrong usage
+        return FAILED; // a missing device is not wrong usage
     }
     status = check_memory(job);
     if (status == DONE) status = bakes_prepare(&job->bakes, &job->session, a->gi);

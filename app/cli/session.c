@@ -135,7 +135,7 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
     result = ag_scene_look_at(session->scene, eye, target, radians(fov_deg), &out->camera);
     if (result == AG_OK) return DONE;
     fail_library(session->context, result);
-    return FAILED; // an unsuitable scene is no wrong usage
+    return FAILED; // an unsuitable scene is not wrong usage
 }
 
 // ---- notes about defaults
@@ -249,7 +249,7 @@ static enum status camera_from_scene(struct session *session, double time_s, str
     snprintf(session->camera_name, sizeof session->camera_name, "%s", name);
     if (result == AG_OK) return DONE;
     fail_library(session->context, result);
-    return FAILED; // a missing camera is no wrong usage
+    return FAILED; // a missing camera is not wrong usage
 }
 
 static enum status camera_default(struct session *session, double time_s, struct ag_camera *out)

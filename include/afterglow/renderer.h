@@ -214,7 +214,7 @@ AG_API enum ag_result ag_renderer_set_debug_view(struct ag_renderer *renderer, c
 /// - color, direct, indirect, specular, emissive, debug: exposed with the EV of the frame, tone
 ///   mapped. debug without a debug view: color
 /// - irradiance: likewise E/π, the radiance of a white diffuse surface
-/// - albedo, visibility: as they are
+/// - albedo, visibility: unchanged
 /// - normal: (n + 1)/2; depth: 1/(1 + metres); motion: x, y in pixels and z, each as
 ///   (1 + v/(1 + |v|))/2. Black where there is no surface
 /// - id, position and display cannot be shown; with host_gbuffer, nor can emissive

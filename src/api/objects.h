@@ -49,8 +49,8 @@ struct ag_scene {
 // The path of the importer program, owned by the caller; NULL: not found, or out of memory.
 char *api_find_importer(struct host *host);
 
-// Updates `pose` to a moment and to the changes of the scene; a zeroed one is created. False: out of
-// memory, or beyond the limits of scene/limits.h.
+// Updates `pose` to a moment and to the changes of the scene; a zeroed one is created. False: out
+// of memory, or beyond the limits of scene/limits.h.
 bool api_pose_at(const struct ag_scene *scene, struct scene_pose *pose, int animation,
                  double time_s);
 // Adds a light; `name` is a literal.

@@ -131,7 +131,8 @@ bool identity_check(struct host *host, const struct bake *bake, const char *kind
 {
     struct identity_text text;
     identity_print(bake, kind, (double)NAN, &text);
-    if (!tensors_metadata(set, KIND)) return fail_use(host, path, "it is no bake of this program");
+    if (!tensors_metadata(set, KIND))
+        return fail_use(host, path, "it is not a bake of this program");
     if (differs(set, KIND, kind)) return fail_value(host, path, "kind", set, KIND, kind);
     if (differs(set, TECHNIQUE, bake->identity.technique))
         return fail_value(host, path, "technique", set, TECHNIQUE, bake->identity.technique);
@@ -261,7 +262,7 @@ bool bake_file_technique(struct host *host, const char *path, char *out, size_t 
     const char *name = tensors_metadata(&file.set, TECHNIQUE);
     if (name) snprintf(out, size, "%s", name);
     safetensors_finish(host, &file);
-    return name || fail_use(host, path, "it is no bake of this program");
+    return name || fail_use(host, path, "it is not a bake of this program");
 }
 
 static bool take_origin(struct host *host, const char *path, const struct tensors *set,
@@ -270,7 +271,7 @@ static bool take_origin(struct host *host, const char *path, const struct tensor
     const char *gi = tensors_metadata(set, GI), *name = tensors_metadata(set, SCENE_NAME);
     const char *seed = tensors_metadata(set, SEED);
     if (differs(set, KIND, PARTIAL) || !gi || !name || !seed)
-        return fail_use(host, path, "it is no part of a bake, as --shard writes it");
+        return fail_use(host, path, "it is not part of a bake, as --shard writes it");
     out->gi = host_strdup(host, gi);
     out->scene_name = host_strdup(host, name);
     out->seed = strtoull(seed, NULL, 10);

@@ -1,5 +1,5 @@
 // A host whose messages do not reach the program's log at once: for tasks on other threads, and for
-// attempts whose failure is no error. Memory comes from the program's host.
+// attempts whose failure is not an error. Memory comes from the program's host.
 #pragma once
 
 #include "core/host.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-// A checkpoint that cannot be used costs time, and is no error.
+// A checkpoint that cannot be used costs time; it is not an error.
 static void read_checkpoint(struct bake *bake)
 {
     struct relay_host quiet;

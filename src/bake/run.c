@@ -206,7 +206,7 @@ static double run_seconds(const struct bake_run *run)
     return run->bake->seconds + now_s() - run->begun_s;
 }
 
-// A checkpoint that cannot be written is no reason to stop.
+// A checkpoint that cannot be written is not a reason to stop.
 static void write_checkpoint(struct bake_run *run)
 {
     struct bake *bake = run->bake;

@@ -101,13 +101,14 @@ static bool read_metadata(struct reader *r, json_t *object, struct tensors *out)
 {
     const char *key;
     json_t *value;
-    if (!json_is_object(object)) return fail_file(r, "__metadata__ is no object");
+    if (!json_is_object(object)) return fail_file(r, "__metadata__ is not an object");
     struct tensor_metadata *all = arena_alloc(r->arena, json_object_size(object), sizeof *all);
     if (!all) return false;
     out->metadata = all;
     json_object_foreach(object, key, value)
     {
-        if (!json_is_string(value)) return fail_file(r, "__metadata__ has a value that is no text");
+        if (!json_is_string(value))
+            return fail_file(r, "__metadata__ has a value that is not text");
         struct tensor_metadata *m = &all[out->metadata_count++];
         m->key = arena_strdup(r->arena, key);
         m->value = arena_strdup(r->arena, json_string_value(value));
@@ -152,9 +153,9 @@ static bool parse_file(struct reader *r, const struct file_bytes *file, json_t *
     *header = json_loadb((const char *)file->data + LENGTH_BYTES, (size_t)length,
                          JSON_REJECT_DUPLICATES, &error);
     if (!*header)
-        return host_fail(r->host, FAIL_FORMAT, "cannot read %s: its header is no valid JSON: %s",
+        return host_fail(r->host, FAIL_FORMAT, "cannot read %s: its header is not valid JSON: %s",
                          r->path, error.text);
-    return json_is_object(*header) || fail_file(r, "its header is no JSON object");
+    return json_is_object(*header) || fail_file(r, "its header is not a JSON object");
 }
 
 bool safetensors_read(struct host *host, const char *path, struct safetensors *out)

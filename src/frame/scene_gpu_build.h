@@ -3,7 +3,7 @@
 
 #include "frame/scene_gpu.h"
 
-// Positions and tangent frames of one mesh, as they are uploaded.
+// Positions and tangent frames of one mesh in the format of the GPU.
 struct packed_vertices {
     uint32_t capacity;
     uint32_t frames[][2];

@@ -10,7 +10,7 @@
 static void mark_moved(struct scene_gpu *s, struct scene_draw *draw)
 {
     s->moved = draw->moved = true;
-    if (draw->dynamic || !draw->seen) return; // the first frame is no movement
+    if (draw->dynamic || !draw->seen) return; // the first frame has no movement
     draw->dynamic = true;
     s->dynamic_count++;
     s->static_set++;

@@ -41,7 +41,7 @@ static const char *accepted(const struct gpu *gpu, const void *bytes, size_t siz
                             size_t *data_bytes)
 {
     struct header header;
-    const char *data = (const char *)bytes + sizeof header, *why = "it is no pipeline cache";
+    const char *data = (const char *)bytes + sizeof header, *why = "it is not a pipeline cache";
     *data_bytes = 0;
     if (!bytes || size == 0) return NULL;
     if (size >= sizeof header) {

@@ -9,7 +9,7 @@ static bool check_target(struct gpu *gpu, const struct gpu_target *target,
                          const struct gpu_render_desc *desc, bool depth)
 {
     struct image *image = image_get(gpu, target->image);
-    if (!image) return gpu_misuse(gpu, "rendering: a target is no image");
+    if (!image) return gpu_misuse(gpu, "rendering: a target is not an image");
     bool volume = image->desc.dimension == GPU_3D;
     if (!(image->desc.usage & GPU_ATTACHMENT) || (image->desc.format == GPU_D32F) != depth) {
         return gpu_misuse(gpu, "rendering: image %s is no %s target", image->name,

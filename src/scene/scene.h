@@ -230,7 +230,7 @@ int scene_add_node_looking(struct scene *scene, const char *name, vec3s position
 
 struct material material_default(void);
 #define MATERIAL_DEFAULT_IOR 1.5f // F0 = 0.04
-// Unlit materials do not emit: their colour is no light (KHR_materials_unlit).
+// Unlit materials do not emit: their colour is not light (KHR_materials_unlit).
 void material_clear_emission(struct material *material);
 // ((ior − 1)/(ior + 1))² · specular colour, before the clamp to 1 and the weight.
 vec3s material_specular_f0(const struct material *material);

@@ -121,10 +121,10 @@ TEST(damaged_bytes_are_ignored)
     unsigned char *cache = read_cache(device, &bytes);
     close_device(device);
     check_ignored(&s, cache, bytes, bytes, "it is used");
-    check_ignored(&s, cache, bytes, 0, "no pipeline cache");
+    check_ignored(&s, cache, bytes, 0, "not a pipeline cache");
     for (size_t at = 8; at < OWN_HEADER + VULKAN_HEADER; at += 8)
-        check_ignored(&s, cache, bytes, at, at == 24 ? "no pipeline cache" : "damaged");
-    check_ignored(&s, cache, 1, 1, "no pipeline cache");
+        check_ignored(&s, cache, bytes, at, at == 24 ? "not a pipeline cache" : "damaged");
+    check_ignored(&s, cache, 1, 1, "not a pipeline cache");
     check_ignored(&s, cache, OWN_HEADER, bytes, "damaged");
     check_ignored(&s, cache, bytes - 1, bytes, "damaged");
     free(cache);

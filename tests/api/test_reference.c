@@ -210,7 +210,7 @@ TEST(an_attribute_of_a_file_is_read_back)
     assert_int_equal(ag_image_read_attribute(f.context, path, "other", text, sizeof text), AG_OK);
     CHECK_STRING(text, "");
     assert_int_equal(ag_image_read_attribute(f.context, path, "compression", text, sizeof text),
-                     AG_OK); // it has one, which is no text
+                     AG_OK); // it has one, which is not text
     CHECK_STRING(text, "");
     CHECK_REFUSED(f.context, ag_image_read_attribute(f.context, path, "", text, sizeof text));
     CHECK_REFUSED(f.context, ag_image_read_attribute(f.context, "", name, text, sizeof text));

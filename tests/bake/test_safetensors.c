@@ -183,11 +183,11 @@ TEST(safetensors_refuses_hostile_headers_with_the_tensor_and_the_reason)
           "\"b\":{\"dtype\":\"U8\",\"shape\":[1],\"data_offsets\":[12,13]},"
           "\"c\":{\"dtype\":\"U16\",\"shape\":[1],\"data_offsets\":[13,15]}}",
           "tensor c is not aligned" },
-        { "{\"__metadata__\":{\"a\":1}}", "value that is no text" },
-        { "{\"__metadata__\":[]}", "__metadata__ is no object" },
-        { "[]", "no JSON object" },
-        { "{} {}", "no valid JSON" },
-        { "{\"a\\u0000\":{}}", "no valid JSON" },
+        { "{\"__metadata__\":{\"a\":1}}", "value that is not text" },
+        { "{\"__metadata__\":[]}", "__metadata__ is not an object" },
+        { "[]", "not a JSON object" },
+        { "{} {}", "not valid JSON" },
+        { "{\"a\\u0000\":{}}", "not valid JSON" },
     };
     CHECK(read_header("{\"a\":{\"dtype\":\"F32\",\"shape\":[4],\"data_offsets\":[0,16]}}", 16));
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

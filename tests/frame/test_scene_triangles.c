@@ -154,7 +154,7 @@ TEST_GPU(draws_are_dynamic_from_their_first_movement)
     fixture_floor(&s, 1, matte);
     fixture_open(&s);
     render(&s, &r);
-    CHECK(r.dynamic_count == 0); // the first frame is no movement
+    CHECK(r.dynamic_count == 0); // the first frame has no movement
     render(&s, &r);
     CHECK(r.dynamic_count == 0);
     s.pose.world_from_node[s.scene->instances[1].node].raw[3][1] += 0.1f;

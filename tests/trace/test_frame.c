@@ -7,7 +7,7 @@
 
 enum { WIDTH = 128, HEIGHT = 72, PIXELS = WIDTH * HEIGHT };
 
-// Changes a scene's materials after loading; NULL: as they are.
+// Changes a scene's materials after loading; NULL: unchanged.
 typedef void change_scene(struct scene *scene);
 
 static float *frame_layer_of(struct gpu *gpu, const char *name, change_scene *change,

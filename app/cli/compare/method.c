@@ -151,7 +151,7 @@ static enum status create(struct rendering *r, int index)
     enum ag_result result = ag_renderer_create(c->device, c->session.scene, &desc, &r->renderer);
     if (result == AG_OK) return DONE;
     fail_library(c->session.context, result);
-    return FAILED; // an unsupported scene or device is no wrong usage
+    return FAILED; // an unsupported scene or device is not wrong usage
 }
 
 enum status method_render(struct comparison *c, int index)

@@ -19,7 +19,7 @@ enum status fail_library(const struct ag_context *context, enum ag_result result
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // A line that only --verbose prints.
 void detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// Lines show `shown`, which the user named, instead of `internal`; NULL: as they are. Both stay
+// Lines show `shown`, which the user named, instead of `internal`; NULL: unchanged. Both stay
 // valid.
 void messages_show(const char *internal, const char *shown);
 // A path or name for standard output, at most 4096 bytes of it: printf("%s", printable(path).s).

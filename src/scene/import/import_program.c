@@ -84,7 +84,7 @@ static bool read_stream(struct import *import, struct stream *stream, const stru
     if ((size_t)(stream->end - stream->at) < greeting ||
         memcmp(stream->at, IMPORT_STREAM_GREETING, greeting) != 0) {
         return host_fail(import->host, FAIL_UNSUPPORTED,
-                         "%s: cannot be read: %s is no importer of this version", import->path,
+                         "%s: cannot be read: %s is not an importer of this version", import->path,
                          import->host->importer);
     }
     stream->at += greeting;

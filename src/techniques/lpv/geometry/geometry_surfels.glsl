@@ -18,7 +18,7 @@ const int LPV_NO_CORNER = -1;
 // within a cell: with LPV_LEAST_COSINE their areas sum to less than 120 faces, and 2^31/2^23 = 256.
 const float LPV_SURFEL_FIXED = 8388608.0; // 2^23
 // Least cosine between a surfel's normal and the direction to the viewer: at grazing angles the
-// shading normal is no measure of the slope.
+// shading normal is not a measure of the slope.
 const float LPV_LEAST_COSINE = 0.1;
 
 // Texel of the corner next to a position; LPV_NO_CORNER on the grid's border and outside.

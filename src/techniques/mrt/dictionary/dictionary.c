@@ -23,7 +23,7 @@ struct reader {
     const struct tensors *bake;
 };
 
-// A part of a tensor: rows × middle × columns, where middle 1 is no axis of its own.
+// A part of a tensor: rows × middle × columns, where middle 1 is not an axis of its own.
 struct tensor_part {
     size_t rows, middle, columns;
 };

@@ -20,8 +20,8 @@ bool mrt_lightfield_of_surfaces(struct host *host, struct mrt_lightfield l,
                                 const struct matrix_f32 *radiosity, size_t first_sample,
                                 struct matrix_f32 *out);
 
-// The exits of a block, seen in the direction of travel. MRT_ROLL is no exit: it turns the frame by
-// a quarter from u to v, for three-dimensional mazes.
+// The exits of a block, seen in the direction of travel. MRT_ROLL is not an exit: it turns the
+// frame by a quarter from u to v, for three-dimensional mazes.
 enum mrt_turn { MRT_STRAIGHT, MRT_TURN_LEFT, MRT_TURN_RIGHT, MRT_TURN_UP, MRT_TURN_DOWN, MRT_ROLL };
 enum { MRT_TURNS_2D = 3, MRT_TURNS_3D = 6 };
 

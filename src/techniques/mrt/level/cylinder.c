@@ -79,7 +79,7 @@ bool mrt_block_map_as_cubes(const char *what, struct mrt_block_map *map)
         int other = mrt_meeting_face(&map->blocks[c->block], face, &map->blocks[c->other]);
         if (other < 0)
             ok = host_fail(map->host, FAIL_UNSUPPORTED,
-                           "%s: block %s: its end does not meet block %s, which is no cylinder",
+                           "%s: block %s: its end does not meet block %s, which is not a cylinder",
                            what, map->blocks[c->block].name, map->blocks[c->other].name);
         else
             ok = mrt_connect(what, map, c->block, face, c->other, other);

@@ -29,7 +29,7 @@ const float VCT_RAY_OPAQUE = 0.98; // a ray of this opacity ends
 const float VCT_RAY_SEAM = 0.1;
 const float VCT_RAY_STEP = 1e-3; // voxels beyond a border: within the next voxel for certain
 // Rounding of a plane, and the sagitta of a curved surface, in voxels: the back of the surface on
-// which a ray starts is no occluder.
+// which a ray starts is not an occluder.
 const float VCT_RAY_LEAST = 0.01, VCT_RAY_OWN = 0.25;
 const float VCT_RAY_COVERED = 0.1; // least opacity of a texel whose radiance is taken
 
