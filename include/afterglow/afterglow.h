@@ -12,6 +12,7 @@
 #include <afterglow/reference.h>
 #include <afterglow/renderer.h>
 #include <afterglow/scene.h>
+#include <afterglow/texture.h>
 #include <afterglow/types.h>
 
 #endif

@@ -3,6 +3,7 @@
 #define AFTERGLOW_SCENE_H
 
 #include <afterglow/context.h>
+#include <afterglow/texture.h>
 
 AG_BEGIN
 
@@ -16,6 +17,14 @@ AG_API enum ag_result ag_scene_load(struct ag_context *context, const char *name
 AG_API enum ag_result ag_scene_create(struct ag_context *context, struct ag_scene **out);
 AG_API void ag_scene_destroy(struct ag_scene *scene);
 
+/// How alpha (base_color times its map and the vertex colour) is used, as in glTF.
+enum ag_alpha_mode {
+    AG_ALPHA_DEFAULT, ///< opaque for a new material; ag_scene_set_material keeps the mode
+    AG_ALPHA_OPAQUE,  ///< alpha is ignored
+    AG_ALPHA_MASK,    ///< alpha below alpha_cutoff: no surface
+    AG_ALPHA_BLEND,   ///< drawn as a mask with cutoff 0.5: there is no transparency
+};
+
 struct ag_material_desc {
     float base_color[4];       ///< linear, 0…1; default 0.8 0.8 0.8 1
     float metallic, roughness; ///< default 0, 1
@@ -25,8 +34,12 @@ struct ag_material_desc {
     float specular; ///< weight of the dielectric's specular lobe, 0…1; 0: purely diffuse; default 1
     float specular_color[3]; ///< F0 = min(((ior − 1)/(ior + 1))² · colour, 1) · specular; ≥ 0,
                              ///< default 1
-    bool unlit;           ///< shown by its base colour; neither reflects nor emits (docs/units.md)
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    bool unlit; ///< shown by its base colour; neither reflects nor emits (docs/units.md)
+    enum ag_alpha_mode alpha_mode; ///< default opaque
+    float alpha_cutoff;            ///< of AG_ALPHA_MASK, ≥ 0; default 0.5
+    /// Needed only during the call. NULL: none for a new material.
+    const struct ag_material_maps *maps;
+    uint64_t reserved[6]; ///< 0; see ABI in types.h
 };
 AG_API void ag_material_desc_default(struct ag_material_desc *desc);
 
@@ -39,7 +52,12 @@ struct ag_mesh_desc {
     const uint32_t *indices; ///< counter-clockwise seen from the front
     uint32_t index_count;    ///< a multiple of 3
     int material;            ///< from ag_scene_add_material
-    uint64_t reserved[12];   ///< 0; see ABI in types.h
+    const float *uv[2];      ///< vertex_count × 2: texture coordinates of both sets; NULL: 0 0
+    /// vertex_count × 4: a unit vector, and the sign w of bitangent = w · cross(normal, tangent).
+    /// Used with normals, by a normal map. NULL: computed where the material has a normal map.
+    const float *tangents;
+    const float *colors;  ///< vertex_count × 4, linear RGBA, 0…1, multiplies base_color; NULL: 1
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 
 enum ag_light_type { AG_LIGHT_SUN, AG_LIGHT_POINT, AG_LIGHT_SPOT };
@@ -112,8 +130,8 @@ AG_API enum ag_result ag_scene_remove_instance(struct ag_scene *scene, int insta
 /// are computed from the texture coordinates. Instances of the mesh count as movable from then on.
 AG_API enum ag_result ag_scene_update_mesh(struct ag_scene *scene, int mesh, const float *positions,
                                            const float *normals);
-/// Replaces factors and flags; textures, alpha mode and name stay. Materials that start or stop to
-/// emit are allowed.
+/// Replaces factors and flags; textures, alpha mode and name stay: `maps` must be NULL, alpha_mode
+/// the material's or AG_ALPHA_DEFAULT. Materials that start or stop to emit are allowed.
 AG_API enum ag_result ag_scene_set_material(struct ag_scene *scene, int material,
                                             const struct ag_material_desc *desc);
 /// Replaces a punctual light, of any type; no node or animation of a file moves it any more. Change
@@ -215,7 +233,7 @@ AG_API enum ag_result ag_scene_get_animation(struct ag_scene *scene, int index,
 
 struct ag_material_info {
     const char *name;                 ///< valid until the scene is destroyed
-    struct ag_material_desc material; ///< factors, without textures
+    struct ag_material_desc material; ///< `maps` is NULL: see ag_scene_get_material_maps
     bool base_color_map, metallic_roughness_map, normal_map, emissive_map;
     bool specular_map, specular_color_map;
     const char *alpha_mode; ///< "opaque", "mask" or "blend"

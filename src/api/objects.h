@@ -124,6 +124,13 @@ static inline bool api_finite_at_least(const float *values, int count, float lea
     return true;
 }
 
+static inline bool api_in_unit_range(const float *values, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!(values[i] >= 0.0f && values[i] <= 1.0f)) return false;
+    return true;
+}
+
 static inline bool api_zero(const uint64_t *words, size_t count)
 {
     for (size_t i = 0; i < count; i++)

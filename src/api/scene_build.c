@@ -9,20 +9,6 @@ _Static_assert((int)AG_LIGHT_SUN == (int)LIGHT_SUN && (int)AG_LIGHT_POINT == (in
 
 static const float HALF_PI = 1.57079633f;
 
-// The result of scene_add_…: an index, or negative on failure.
-static enum ag_result added(const struct ag_scene *scene, int index, int *out)
-{
-    if (out) *out = index;
-    return api_done(scene->context, index >= 0);
-}
-
-// The argument checks of ag_scene_add_…, which set *index to -1 unless they succeed.
-#define REQUIRE_ADDING(scene, desc, index)                                                         \
-    do {                                                                                           \
-        if (index) *(index) = -1;                                                                  \
-        REQUIRE_CHANGE(scene, desc);                                                               \
-    } while (0)
-
 void ag_material_desc_default(struct ag_material_desc *desc)
 {
     if (!desc) return;
@@ -30,7 +16,8 @@ void ag_material_desc_default(struct ag_material_desc *desc)
                                        .roughness = 1,
                                        .ior = MATERIAL_DEFAULT_IOR,
                                        .specular = 1,
-                                       .specular_color = { 1, 1, 1 } };
+                                       .specular_color = { 1, 1, 1 },
+                                       .alpha_cutoff = 0.5f };
 }
 
 enum ag_result ag_scene_add_material(struct ag_scene *scene, const struct ag_material_desc *desc,
@@ -41,33 +28,54 @@ enum ag_result ag_scene_add_material(struct ag_scene *scene, const struct ag_mat
     struct material material = material_default();
     const enum ag_result checked = parts_material(__func__, scene, desc, &material);
     if (checked != AG_OK) return checked;
-    return added(scene, scene_add_material(scene->scene, &material), index);
+    if (desc->maps) {
+        const enum ag_result mapped = parts_maps(__func__, scene, desc->maps, &material);
+        if (mapped != AG_OK) return mapped;
+    }
+    return parts_added(scene, scene_add_material(scene->scene, &material), index);
+}
+
+static enum ag_result mesh_check(const char *function, const struct ag_scene *scene,
+                                 const struct ag_mesh_desc *desc)
+{
+    struct ag_context *context = scene->context;
+    AG_REQUIRE_KNOWN(function, context, desc);
+    AG_REQUIRE_FOR(function, context, desc->positions && desc->vertex_count > 0,
+                   "there are no positions");
+    AG_REQUIRE_FOR(function, context, desc->indices && desc->index_count > 0,
+                   "there are no indices");
+    AG_REQUIRE_FOR(function, context, desc->index_count % 3 == 0,
+                   "index_count %u is not a multiple of 3", desc->index_count);
+    for (uint32_t i = 0; i < desc->index_count; i++)
+        AG_REQUIRE_FOR(function, context, desc->indices[i] < desc->vertex_count,
+                       "index %u at %u is not below vertex_count %u", desc->indices[i], i,
+                       desc->vertex_count);
+    for (uint32_t v = 0; desc->colors && v < desc->vertex_count; v++)
+        AG_REQUIRE_FOR(function, context, api_in_unit_range(&desc->colors[4 * (size_t)v], 4),
+                       "the colour of vertex %u is not within 0 to 1", v);
+    return AG_OK;
 }
 
 enum ag_result ag_scene_add_mesh(struct ag_scene *scene, const struct ag_mesh_desc *desc,
                                  int *index)
 {
     REQUIRE_ADDING(scene, desc, index);
-    struct ag_context *context = scene->context;
     REQUIRE_NO_BAKE(scene);
-    AG_REQUIRE_KNOWN(__func__, context, desc);
-    AG_REQUIRE(context, desc->positions && desc->vertex_count > 0, "there are no positions");
-    AG_REQUIRE(context, desc->indices && desc->index_count > 0, "there are no indices");
-    AG_REQUIRE(context, desc->index_count % 3 == 0, "index_count %u is not a multiple of 3",
-               desc->index_count);
+    const enum ag_result checked = mesh_check(__func__, scene, desc);
+    if (checked != AG_OK) return checked;
     REQUIRE_INDEX(scene, "material", desc->material, material_count);
-    for (uint32_t i = 0; i < desc->index_count; i++)
-        AG_REQUIRE(context, desc->indices[i] < desc->vertex_count,
-                   "index %u at %u is not below vertex_count %u", desc->indices[i], i,
-                   desc->vertex_count);
+    const bool mapped = scene->scene->materials[desc->material].normal_map.image >= 0;
     struct mesh mesh = { .name = "mesh",
                          .vertex_count = desc->vertex_count,
                          .index_count = desc->index_count,
                          .positions = (vec3s *)desc->positions, // scene_add_mesh copies all arrays
                          .normals = (vec3s *)desc->normals,
+                         .tangents = desc->normals && mapped ? (vec4s *)desc->tangents : NULL,
+                         .uv = { (vec2s *)desc->uv[0], (vec2s *)desc->uv[1] },
+                         .colors = (vec4s *)desc->colors,
                          .indices = (uint32_t *)desc->indices,
                          .material = desc->material };
-    return added(scene, scene_add_mesh(scene->scene, &mesh), index);
+    return parts_added(scene, scene_add_mesh(scene->scene, &mesh), index);
 }
 
 enum ag_result ag_scene_add_instance(struct ag_scene *scene, int mesh, const float *world_from_mesh,
@@ -80,7 +88,7 @@ enum ag_result ag_scene_add_instance(struct ag_scene *scene, int mesh, const flo
     REQUIRE_INDEX(scene, "mesh", mesh, mesh_count);
     const enum ag_result checked = parts_matrix(__func__, scene, world_from_mesh, &matrix);
     if (checked != AG_OK) return checked;
-    return added(scene, scene_add_placed_instance(scene->scene, mesh, matrix, false), index);
+    return parts_added(scene, scene_add_placed_instance(scene->scene, mesh, matrix, false), index);
 }
 
 void ag_light_desc_default(struct ag_light_desc *desc, enum ag_light_type type)
@@ -99,7 +107,7 @@ enum ag_result api_add_light(struct ag_scene *scene, const struct ag_light_desc 
     struct placed_light light = { .light.name = name };
     const enum ag_result checked = parts_light(__func__, scene, desc, &light);
     if (checked != AG_OK) return checked;
-    return added(scene, scene_add_placed_light(scene->scene, &light), NULL);
+    return parts_added(scene, scene_add_placed_light(scene->scene, &light), NULL);
 }
 
 enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_desc *desc,
@@ -109,7 +117,7 @@ enum ag_result ag_scene_add_light(struct ag_scene *scene, const struct ag_light_
     REQUIRE_ADDING(scene, desc, index);
     const enum ag_result checked = parts_light(__func__, scene, desc, &light);
     if (checked != AG_OK) return checked;
-    return added(scene, scene_add_placed_light(scene->scene, &light), index);
+    return parts_added(scene, scene_add_placed_light(scene->scene, &light), index);
 }
 
 void ag_area_light_desc_default(struct ag_area_light_desc *desc)
@@ -162,5 +170,5 @@ enum ag_result ag_scene_add_area_light(struct ag_scene *scene,
                "width %g and height %g are not above 0", (double)desc->width, (double)desc->height);
     AG_REQUIRE(context, limits_light(api_vec3(desc->radiance)),
                "radiance is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
-    return added(scene, add_emissive_quad(scene->scene, desc), instance);
+    return parts_added(scene, add_emissive_quad(scene->scene, desc), instance);
 }

@@ -68,6 +68,9 @@ enum ag_result ag_scene_set_material(struct ag_scene *scene, int material,
     struct material values = scene->scene->materials[material];
     const enum ag_result checked = parts_material(__func__, scene, desc, &values);
     if (checked != AG_OK) return checked;
+    AG_REQUIRE(scene->context,
+               !desc->maps && values.alpha_mode == scene->scene->materials[material].alpha_mode,
+               "the textures and the alpha mode of a material stay: add another material");
     return api_done(scene->context, scene_set_material(scene->scene, material, &values));
 }
 

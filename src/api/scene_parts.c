@@ -4,33 +4,34 @@
 
 #include <string.h>
 
-static const float HALF_PI = 1.57079633f;
+_Static_assert((int)ALPHA_OPAQUE == 0 && (int)ALPHA_MASK == AG_ALPHA_MASK - AG_ALPHA_OPAQUE &&
+                   (int)ALPHA_BLEND == AG_ALPHA_BLEND - AG_ALPHA_OPAQUE,
+               "modes are converted by value");
 
-static bool in_unit_range(const float *values, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (!(values[i] >= 0.0f && values[i] <= 1.0f)) return false;
-    return true;
-}
+static const float HALF_PI = 1.57079633f;
 
 static enum ag_result material_check(const char *function, struct ag_context *context,
                                      const struct ag_material_desc *desc)
 {
     AG_REQUIRE_KNOWN(function, context, desc);
-    AG_REQUIRE_FOR(function, context, in_unit_range(desc->base_color, 4),
+    AG_REQUIRE_FOR(function, context, api_in_unit_range(desc->base_color, 4),
                    "base_color is not within 0 to 1");
     AG_REQUIRE_FOR(function, context,
-                   in_unit_range(&desc->metallic, 1) && in_unit_range(&desc->roughness, 1),
+                   api_in_unit_range(&desc->metallic, 1) && api_in_unit_range(&desc->roughness, 1),
                    "metallic and roughness must be 0 to 1, not %g and %g", (double)desc->metallic,
                    (double)desc->roughness);
     AG_REQUIRE_FOR(function, context, limits_light(api_vec3(desc->emissive)),
                    "emissive is not within 0 to %g cd/m²", (double)SCENE_MAX_RADIANCE);
     AG_REQUIRE_FOR(function, context, desc->ior == 0 || api_finite_at_least(&desc->ior, 1, 1.0f),
                    "ior must be 0 or at least 1, not %g", (double)desc->ior);
-    AG_REQUIRE_FOR(function, context, in_unit_range(&desc->specular, 1),
+    AG_REQUIRE_FOR(function, context, api_in_unit_range(&desc->specular, 1),
                    "specular must be 0 to 1, not %g", (double)desc->specular);
     AG_REQUIRE_FOR(function, context, api_finite_at_least(desc->specular_color, 3, 0.0f),
                    "specular_color must be 0 or more");
+    AG_REQUIRE_FOR(function, context, (unsigned)desc->alpha_mode <= AG_ALPHA_BLEND,
+                   "alpha_mode %d is unknown", (int)desc->alpha_mode);
+    AG_REQUIRE_FOR(function, context, api_finite_at_least(&desc->alpha_cutoff, 1, 0.0f),
+                   "alpha_cutoff must be 0 or more, not %g", (double)desc->alpha_cutoff);
     return AG_OK;
 }
 
@@ -48,6 +49,10 @@ enum ag_result parts_material(const char *function, const struct ag_scene *scene
     out->specular = desc->specular;
     out->specular_color = api_vec3(desc->specular_color);
     out->unlit = desc->unlit;
+    if (desc->alpha_mode != AG_ALPHA_DEFAULT) {
+        out->alpha_mode = (enum alpha_mode)(desc->alpha_mode - AG_ALPHA_OPAQUE);
+        out->alpha_cutoff = desc->alpha_cutoff;
+    }
     return AG_OK;
 }
 

@@ -11,6 +11,12 @@
         AG_REQUIRE_POINTER(parts_context(scene), scene);                                           \
         AG_REQUIRE_POINTER((scene)->context, desc);                                                \
     } while (0)
+// The argument checks of ag_scene_add_…, which set *index to -1 unless they succeed.
+#define REQUIRE_ADDING(scene, desc, index)                                                         \
+    do {                                                                                           \
+        if (index) *(index) = -1;                                                                  \
+        REQUIRE_CHANGE(scene, desc);                                                               \
+    } while (0)
 // Element `index` of `member`, as "mesh 3 is not one of 2".
 #define REQUIRE_INDEX(scene, what, index, member)                                                  \
     AG_REQUIRE((scene)->context, (index) >= 0 && (index) < (scene)->scene->member,                 \
@@ -25,12 +31,21 @@ static inline struct ag_context *parts_context(const struct ag_scene *scene)
     return scene ? scene->context : NULL;
 }
 
+// The result of scene_add_…: an index, or negative on failure.
+static inline enum ag_result parts_added(const struct ag_scene *scene, int index, int *out)
+{
+    if (out) *out = index;
+    return api_done(scene->context, index >= 0);
+}
+
 // Each checks a description and replaces the members of *out that it has. The function is named in
 // messages.
 enum ag_result parts_material(const char *function, const struct ag_scene *scene,
                               const struct ag_material_desc *desc, struct material *out);
 enum ag_result parts_light(const char *function, const struct ag_scene *scene,
                            const struct ag_light_desc *desc, struct placed_light *out);
+enum ag_result parts_maps(const char *function, const struct ag_scene *scene,
+                          const struct ag_material_maps *maps, struct material *out);
 // NULL: the identity.
 enum ag_result parts_matrix(const char *function, const struct ag_scene *scene, const float *matrix,
                             mat4s *out);

@@ -33,6 +33,7 @@ static struct hash128 add_map(struct hash128 key, const struct scene *scene,
     const struct scene_image *image = &scene->images[use->image];
     key = hash128_add(hash128_add(key, words, sizeof words), floats, sizeof floats);
     key = hash128_add(key, &image->width, sizeof image->width);
+    if (image->linear) key = hash128_add_text(key, "linear");
     return add_array(key, image->rgba, (size_t)image->width * (size_t)image->height, 4);
 }
 

@@ -108,8 +108,12 @@ static bool init(struct emission_map *out, struct host *host, const struct scene
 bool emission_map_init_color(struct emission_map *out, struct host *host, const struct scene *scene,
                              const struct texture_use *use)
 {
+    const bool linear = scene->images[use->image].linear;
     struct decoder decoder = { 0 };
-    for (int i = 0; i < 256; i++) decoder.linear[i] = srgb_decode((float)i / 255.0f);
+    for (int i = 0; i < 256; i++) {
+        const float value = (float)i / 255.0f;
+        decoder.linear[i] = linear ? value : srgb_decode(value);
+    }
     return init(out, host, scene, use, &decoder);
 }
 

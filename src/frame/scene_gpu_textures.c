@@ -79,10 +79,15 @@ static bool make_normals(struct scene_gpu *s, const char *name, const struct sce
     return ok;
 }
 
+static bool is_srgb(const struct scene_gpu *s, int map, int index)
+{
+    return is_color(map) && !s->scene->images[index].linear;
+}
+
 static gpu_image *texture_of(const struct scene_gpu *s, int map, int index)
 {
     if (map == SCENE_MAP_NORMAL) return &s->normal_textures[index];
-    return is_color(map) ? &s->color_textures[index] : &s->data_textures[index];
+    return is_srgb(s, map, index) ? &s->color_textures[index] : &s->data_textures[index];
 }
 
 static bool make_image(struct scene_gpu *s, int index, int map)
@@ -94,8 +99,8 @@ static bool make_image(struct scene_gpu *s, int index, int map)
     if (!name) return false;
     bool ok = map == SCENE_MAP_NORMAL
                   ? make_normals(s, name, image, out)
-                  : make_texture(s, name, is_color(map) ? GPU_RGBA8_SRGB : GPU_RGBA8, image->width,
-                                 image->height, image->rgba, out);
+                  : make_texture(s, name, is_srgb(s, map, index) ? GPU_RGBA8_SRGB : GPU_RGBA8,
+                                 image->width, image->height, image->rgba, out);
     host_free(s->host, name);
     return ok;
 }

@@ -1,6 +1,7 @@
 // Rearranged vertex arrays of a mesh, and its bounds.
 #include "scene/mesh_geometry.h"
 
+#include <math.h>
 #include <string.h>
 
 // NULL for a NULL array; *ok becomes false when out of memory.
@@ -65,6 +66,18 @@ bool mesh_gather(struct arena *arena, struct mesh *mesh, const uint32_t *source,
     ok = ok && compose_source(arena, &made, source, count);
     if (ok) *mesh = made;
     return ok;
+}
+
+vec4s mesh_unit_tangent(vec3s normal, vec4s tangent)
+{
+    vec3s t = vec3_xyz(tangent), bitangent;
+    t = glms_vec3_sub(t, glms_vec3_scale(normal, glms_vec3_dot(normal, t)));
+    const float length = glms_vec3_norm(t);
+    if (length > 1e-6f && isfinite(length))
+        t = glms_vec3_divs(t, length);
+    else
+        basis_of(normal, &t, &bitangent);
+    return vec4_of(t, tangent.w < 0.0f ? -1.0f : 1.0f);
 }
 
 struct box3 mesh_bounds(const struct mesh *mesh)

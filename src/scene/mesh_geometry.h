@@ -10,6 +10,9 @@
 bool mesh_gather(struct arena *arena, struct mesh *mesh, const uint32_t *source, uint32_t count);
 
 // Bounds of the rest positions; empty for a mesh without vertices.
+// A unit tangent orthogonal to a unit normal, w = ±1. Arbitrary where the tangent has length zero,
+// is parallel to the normal, or is not finite.
+vec4s mesh_unit_tangent(vec3s normal, vec4s tangent);
 struct box3 mesh_bounds(const struct mesh *mesh);
 
 // Flat normals, which glTF 2.0 requires where normals are absent: each triangle gets three vertices

@@ -11,13 +11,13 @@
 
 enum texture_wrap { WRAP_REPEAT, WRAP_MIRROR, WRAP_CLAMP };
 
-// Decoded pixels, 8 bits, 4 channels, top row first, encoded as in the file (base colour and
-// emissive: sRGB).
+// Decoded pixels, 8 bits, 4 channels, top row first, encoded as in the file (colours: sRGB).
 struct scene_image {
     const char *name;
     int width, height; // both ≤ SCENE_MAX_IMAGE_SIZE
     uint8_t *rgba;
     bool has_alpha; // some texel is not opaque
+    bool linear;    // colours are linear instead
 };
 #define SCENE_MAX_IMAGE_SIZE 8192
 

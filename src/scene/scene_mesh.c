@@ -100,17 +100,34 @@ static bool copy_arrays(struct scene *scene, struct mesh *mesh)
     return true;
 }
 
+// Rounding of the squared length of a unit vector. What is unit but for it stays, to the bit.
+static const float ROUNDING = 1e-6f;
+
+static bool is_unit(vec3s v)
+{
+    return fabsf(glms_vec3_norm2(v) - 1.0f) <= ROUNDING;
+}
+
 static vec3s unit_or_up(vec3s v)
 {
+    if (is_unit(v)) return v;
     float length = glms_vec3_norm(v);
     return length > 0.0f ? glms_vec3_scale(v, 1.0f / length) : vec3_of(0, 1, 0);
 }
 
-// Normals of length 1, joint weights that sum to 1.
+static vec4s unit_tangent(vec3s normal, vec4s tangent)
+{
+    const vec3s t = vec3_xyz(tangent);
+    const bool whole = is_unit(t) && fabsf(glms_vec3_dot(t, normal)) <= ROUNDING;
+    return whole && fabsf(tangent.w) == 1.0f ? tangent : mesh_unit_tangent(normal, tangent);
+}
+
+// Normals of length 1, tangents orthogonal to them, joint weights that sum to 1.
 static void normalise(struct mesh *mesh)
 {
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         mesh->normals[v] = unit_or_up(mesh->normals[v]);
+        if (mesh->tangents) mesh->tangents[v] = unit_tangent(mesh->normals[v], mesh->tangents[v]);
         if (!mesh->weights) continue;
         vec4s w = mesh->weights[v];
         float sum = w.x + w.y + w.z + w.w;

@@ -17,6 +17,7 @@ static bool texture_of(struct trace_scene *s, const struct texture_use *use, boo
 {
     struct texture *texture = NULL;
     if (use->image >= 0) {
+        srgb = srgb && !s->scene->images[use->image].linear;
         texture = srgb ? &s->color_textures[use->image] : &s->data_textures[use->image];
         if (texture->levels == 0 &&
             !texture_init(texture, s->host, &s->scene->images[use->image], srgb))

@@ -176,7 +176,10 @@ static const struct {
     AT(ag_material_desc, specular, 44),
     AT(ag_material_desc, specular_color, 48),
     AT(ag_material_desc, unlit, 60),
-    AT(ag_material_desc, reserved, 64),
+    AT(ag_material_desc, alpha_mode, 64),
+    AT(ag_material_desc, alpha_cutoff, 68),
+    AT(ag_material_desc, maps, 72),
+    AT(ag_material_desc, reserved, 80),
     SIZE(ag_mesh_desc, 136),
     AT(ag_mesh_desc, positions, 0),
     AT(ag_mesh_desc, normals, 8),
@@ -184,7 +187,40 @@ static const struct {
     AT(ag_mesh_desc, indices, 24),
     AT(ag_mesh_desc, index_count, 32),
     AT(ag_mesh_desc, material, 36),
-    AT(ag_mesh_desc, reserved, 40),
+    AT(ag_mesh_desc, uv, 40),
+    AT(ag_mesh_desc, tangents, 56),
+    AT(ag_mesh_desc, colors, 64),
+    AT(ag_mesh_desc, reserved, 72),
+    SIZE(ag_scene_image_desc, 128),
+    AT(ag_scene_image_desc, name, 0),
+    AT(ag_scene_image_desc, pixels, 8),
+    AT(ag_scene_image_desc, width, 16),
+    AT(ag_scene_image_desc, height, 20),
+    AT(ag_scene_image_desc, channels, 24),
+    AT(ag_scene_image_desc, row_bytes, 32),
+    AT(ag_scene_image_desc, encoded, 40),
+    AT(ag_scene_image_desc, encoded_bytes, 48),
+    AT(ag_scene_image_desc, linear, 56),
+    AT(ag_scene_image_desc, reserved, 64),
+    SIZE(ag_texture_map, 56),
+    AT(ag_texture_map, image, 0),
+    AT(ag_texture_map, uv_set, 4),
+    AT(ag_texture_map, wrap_u, 8),
+    AT(ag_texture_map, wrap_v, 12),
+    AT(ag_texture_map, nearest, 16),
+    AT(ag_texture_map, uv_offset, 20),
+    AT(ag_texture_map, uv_scale, 28),
+    AT(ag_texture_map, uv_rotation_rad, 36),
+    AT(ag_texture_map, reserved, 40),
+    SIZE(ag_material_maps, 408),
+    AT(ag_material_maps, base_color, 0),
+    AT(ag_material_maps, metallic_roughness, 56),
+    AT(ag_material_maps, normal, 112),
+    AT(ag_material_maps, emissive, 168),
+    AT(ag_material_maps, specular, 224),
+    AT(ag_material_maps, specular_color, 280),
+    AT(ag_material_maps, normal_scale, 336),
+    AT(ag_material_maps, reserved, 344),
     SIZE(ag_light_desc, 104),
     AT(ag_light_desc, type, 0),
     AT(ag_light_desc, position, 4),
@@ -417,6 +453,19 @@ TEST(reserved_members_of_scenes_bakes_and_references_are_refused)
         .positions = positions, .vertex_count = 3, .indices = indices, .index_count = 3
     };
     CHECK_KNOWN(mesh, ag_scene_add_mesh(scene, &mesh, NULL));
+    static const uint8_t texel[4] = { 255, 255, 255, 255 };
+    struct ag_scene_image_desc texture = {
+        .pixels = texel, .width = 1, .height = 1, .channels = 4
+    };
+    CHECK_KNOWN(texture, ag_scene_add_image(scene, &texture, NULL));
+    struct ag_material_maps maps;
+    memset(&maps, 0xff, sizeof maps);
+    ag_material_maps_default(&maps);
+    ag_material_desc_default(&material);
+    material.maps = &maps;
+    CHECK_KNOWN(maps, ag_scene_add_material(scene, &material, NULL));
+    ag_material_maps_default(&maps);
+    CHECK_KNOWN(maps.specular, ag_scene_add_material(scene, &material, NULL));
     struct ag_light_desc light;
     memset(&light, 0xff, sizeof light);
     ag_light_desc_default(&light, AG_LIGHT_SPOT);

@@ -39,6 +39,7 @@ TEST(default_functions_accept_nothing)
     ag_renderer_desc_default(NULL);
     ag_frame_desc_default(NULL);
     ag_material_desc_default(NULL);
+    ag_material_maps_default(NULL);
     ag_light_desc_default(NULL, AG_LIGHT_SUN);
     ag_compare_desc_default(NULL);
 }
@@ -87,6 +88,8 @@ TEST(a_null_object_is_refused)
     float ev;
     CHECK_REFUSED(NULL, ag_scene_add_material(NULL, NULL, NULL));
     CHECK_REFUSED(NULL, ag_scene_add_mesh(NULL, NULL, NULL));
+    CHECK_REFUSED(NULL, ag_scene_add_image(NULL, NULL, NULL));
+    CHECK_REFUSED(NULL, ag_scene_get_material_maps(NULL, 0, NULL));
     CHECK_REFUSED(NULL, ag_scene_add_instance(NULL, 0, NULL, NULL));
     CHECK_REFUSED(NULL, ag_scene_add_light(NULL, NULL, NULL));
     CHECK_REFUSED(NULL, ag_scene_remove_lights(NULL));

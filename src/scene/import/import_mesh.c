@@ -125,22 +125,13 @@ static bool unit_normals(struct import *import, struct mesh *mesh)
     return true;
 }
 
-// Makes the file's tangents orthogonal to the normal, w = ±1. Exporters write NaN or zero where
-// texture coordinates are degenerate; an arbitrary tangent replaces those.
+// Exporters write NaN or zero where texture coordinates are degenerate.
 static bool unit_tangents(struct import *import, struct mesh *mesh)
 {
     vec4s *tangents = import_alloc(import, mesh->vertex_count, sizeof *tangents);
     if (!tangents) return false;
-    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-        vec3s n = mesh->normals[i], t = vec3_xyz(mesh->tangents[i]), bitangent;
-        t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
-        float length = glms_vec3_norm(t);
-        if (length > 1e-6f && isfinite(length))
-            t = glms_vec3_divs(t, length);
-        else
-            basis_of(n, &t, &bitangent);
-        tangents[i] = vec4_of(t, mesh->tangents[i].w < 0.0f ? -1.0f : 1.0f);
-    }
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        tangents[i] = mesh_unit_tangent(mesh->normals[i], mesh->tangents[i]);
     mesh->tangents = tangents;
     return true;
 }

@@ -1,0 +1,20 @@
+// Images of a scene from other texel layouts and from encoded files.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <stddef.h>
+
+// Texels of 1 to 4 bytes: grey, grey and alpha, RGB, RGBA; top row first.
+struct texels {
+    const uint8_t *bytes;
+    int width, height, channels;
+    size_t row_bytes; // at least width · channels
+};
+
+// Each returns the index of the new image, -1 on failure.
+int scene_add_texels(struct scene *scene, const char *name, const struct texels *texels,
+                     bool linear);
+// A PNG or JPEG file; untrusted.
+int scene_add_encoded_image(struct scene *scene, const char *name, const void *data, size_t size,
+                            bool linear);
