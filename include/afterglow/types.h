@@ -5,7 +5,8 @@
 /// Descriptions: ag_X_desc_default fills a struct ag_X_desc with the defaults. It and all pointers
 /// in it are needed only during the call.
 /// Strings: UTF-8; arguments are copied.
-/// Threads: one thread at a time per context; different contexts are independent.
+/// Threads: one thread at a time per context; different contexts are independent. A scene can be
+/// transferred from the context of a loading thread to that of a renderer (ag_scene_transfer).
 /// ABI: structs with `reserved` keep their size; new members take its place, and 0 is what they
 /// were without. A description whose reserved words are not 0 is refused: the program needs a newer
 /// library. ag_X_desc_default sets them.

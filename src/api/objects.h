@@ -43,7 +43,7 @@ struct ag_scene {
         double time_s;
     } pose_moment;                        // of `pose`
     struct named_camera *cameras_by_name; // sorted; NULL until the first lookup
-    int renderers, bakes;                 // that use it
+    int renderers, references, bakes;     // that use it
 };
 
 // The path of the importer program, owned by the caller; NULL: not found, or out of memory.

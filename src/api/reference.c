@@ -11,6 +11,7 @@
 
 struct ag_reference {
     struct ag_context *context;
+    struct ag_scene *scene;
     struct reference *reference;
     char checkpoint[48];
 };
@@ -87,6 +88,8 @@ enum ag_result ag_reference_create(struct ag_scene *scene, const struct ag_refer
     struct ag_reference *r = host_alloc(&context->host, 1, sizeof *r);
     if (!r) return api_done(context, false);
     r->context = context;
+    r->scene = scene;
+    scene->references++;
     bool ok = build(r, scene, desc);
     enum ag_result result = api_done(context, ok);
     if (ok)
@@ -100,6 +103,7 @@ void ag_reference_destroy(struct ag_reference *r)
 {
     if (!r) return;
     reference_destroy(r->reference);
+    r->scene->references--;
     host_free(&r->context->host, r);
 }
 

@@ -119,6 +119,29 @@ void ag_scene_destroy(struct ag_scene *scene)
     host_free(host_of(scene), scene);
 }
 
+// Blocks of the one are freed through the other.
+static bool same_memory(const struct ag_context *a, const struct ag_context *b)
+{
+    return a->reallocate == b->reallocate && (!a->reallocate || a->user == b->user);
+}
+
+enum ag_result ag_scene_transfer(struct ag_scene *scene, struct ag_context *to)
+{
+    struct ag_context *from = context_of(scene);
+    AG_REQUIRE_POINTER(from, scene);
+    AG_REQUIRE_POINTER(from, to);
+    AG_REQUIRE(from, scene->renderers + scene->references + scene->bakes == 0,
+               "the scene is in use by %d renderers, %d references and %d bakes", scene->renderers,
+               scene->references, scene->bakes);
+    AG_REQUIRE(from, same_memory(from, to), "the contexts have different allocators");
+    pose_finish(&scene->pose); // made again by the next query
+    scene->pose = (struct scene_pose){ 0 };
+    scene->pose_moment = (struct moment){ 0 };
+    scene->context = to;
+    scene_set_host(scene->scene, &to->host);
+    return AG_OK;
+}
+
 // ---- cameras
 
 // Distance between a camera and its target: a metre, more when far from the origin, so that

@@ -32,6 +32,12 @@ void scene_destroy(struct scene *scene)
     host_free(host, scene);
 }
 
+void scene_set_host(struct scene *scene, struct host *host)
+{
+    scene->host = host;
+    scene->arena.host = host;
+}
+
 void *scene_copy(struct scene *scene, const void *source, size_t count, size_t size)
 {
     void *copy = arena_alloc(&scene->arena, count, size);

@@ -214,6 +214,8 @@ struct scene *scene_load(struct host *host, const char *name);
 // An empty scene, for scene_add_*.
 struct scene *scene_create(struct host *host, const char *name);
 void scene_destroy(struct scene *scene);
+// Another host of the same memory. The scene has no poses.
+void scene_set_host(struct scene *scene, struct host *host);
 
 // Appends a deep copy. Returns the new index; -1 on failure (invalid index, value out of range or
 // not finite, out of memory).

@@ -20,6 +20,8 @@ ag_test(api/vulkan USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/changes USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/textures USES api LIBRARIES ag_test_renderer_fixture)
 target_sources(test_api_textures PRIVATE ${CMAKE_CURRENT_LIST_DIR}/scene_copy.c)
+ag_test(api/threads USES api LIBRARIES ag_test_renderer_fixture)
+target_sources(test_api_threads PRIVATE ${CMAKE_CURRENT_LIST_DIR}/scene_copy.c)
 ag_test(api/frames_in_flight USES api LIBRARIES ag_test_renderer_fixture)
 
 # Only ag_… is to be seen from outside. (Sanitizers add names of their own.)
