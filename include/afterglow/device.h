@@ -20,6 +20,36 @@ struct ag_device_info {
 AG_API enum ag_result ag_device_list(struct ag_context *context, struct ag_device_info *out,
                                      int capacity, int *count);
 
+/// Device memory that the library asks its program for.
+struct ag_memory_request {
+    uint64_t bytes, alignment;
+    uint32_t vk_memory_type; ///< index of the memory type
+    bool mapped;             ///< must be mapped, and stay so until it is freed
+    uint64_t reserved[4];    ///< 0; see ABI in types.h
+};
+/// What it gets: a VkDeviceMemory or a part of one.
+struct ag_memory_block {
+    void *vk_memory;      ///< VkDeviceMemory
+    uint64_t offset;      ///< in it, a multiple of the alignment
+    void *mapped;         ///< address of the offset; NULL unless it was to be mapped
+    void *handle;         ///< of the program, for `free`
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
+};
+/// All device memory of the library comes from these two callbacks, in blocks of mostly 64 MiB, in
+/// which it places its resources; 16 MiB and more are blocks of their own. Callbacks run within the
+/// library's functions, on the calling thread, and must not call the library.
+struct ag_memory_callbacks {
+    /// false: there is none; the library tries fewer bytes or another memory type, then the
+    /// function that needs it returns AG_ERROR_MEMORY. *out is zeroed before.
+    bool (*allocate)(void *user, const struct ag_memory_request *request,
+                     struct ag_memory_block *out);
+    /// With what `allocate` got and returned. The GPU does not use the block any more.
+    void (*free)(void *user, const struct ag_memory_request *request,
+                 const struct ag_memory_block *block);
+    void *user;
+    uint64_t reserved[4]; ///< 0; see ABI in types.h
+};
+
 /// A caller's Vulkan handles. The device must have enabled Vulkan 1.3, VK_KHR_push_descriptor and
 /// the features of ag_device_required_features; <afterglow/vulkan.h> fills them in. The handles
 /// must stay valid until ag_device_destroy.
@@ -32,7 +62,11 @@ struct ag_device_adopt {
     /// VkPhysicalDeviceFeatures2 that vkCreateDevice was given, with its chain: a required feature
     /// that it does not enable is an error. NULL: not checked, Vulkan cannot tell.
     const void *vk_enabled_features;
-    uint64_t reserved[4]; ///< 0; see ABI in types.h
+    const struct ag_memory_callbacks *memory; ///< NULL: the library allocates device memory
+    /// VkAllocationCallbacks for the host memory of all Vulkan objects of the library; its
+    /// pUserData must stay valid until ag_device_destroy. NULL: the driver's.
+    const void *vk_allocation_callbacks;
+    uint64_t reserved[2]; ///< 0; see ABI in types.h
 };
 
 struct ag_device_desc {

@@ -40,6 +40,76 @@ static bool adopt_is_whole(const struct ag_device_adopt *adopt)
     return adopt->instance && adopt->physical_device && adopt->device && adopt->queue;
 }
 
+// ---- Memory of the program
+
+static struct ag_memory_request request_out(const struct gpu_memory_request *request)
+{
+    return (struct ag_memory_request){ .bytes = request->bytes,
+                                       .alignment = request->alignment,
+                                       .vk_memory_type = request->memory_type,
+                                       .mapped = request->mapped };
+}
+
+static bool allocate_memory(void *user, const struct gpu_memory_request *wanted,
+                            struct gpu_memory_block *out)
+{
+    const struct ag_device *device = user;
+    const struct ag_memory_request request = request_out(wanted);
+    struct ag_memory_block block = { 0 };
+    if (!device->memory.allocate(device->memory.user, &request, &block)) return false;
+    *out = (struct gpu_memory_block){ .memory = block.vk_memory,
+                                      .offset = block.offset,
+                                      .mapped = block.mapped,
+                                      .handle = block.handle };
+    return true;
+}
+
+static void free_memory(void *user, const struct gpu_memory_request *wanted,
+                        const struct gpu_memory_block *given)
+{
+    const struct ag_device *device = user;
+    const struct ag_memory_request request = request_out(wanted);
+    const struct ag_memory_block block = { .vk_memory = given->memory,
+                                           .offset = given->offset,
+                                           .mapped = given->mapped,
+                                           .handle = given->handle };
+    device->memory.free(device->memory.user, &request, &block);
+}
+
+static struct gpu_adopt lent_device(struct ag_device *device, const struct ag_device_adopt *lent)
+{
+    struct gpu_adopt out = { .instance = lent->instance,
+                             .physical_device = lent->physical_device,
+                             .device = lent->device,
+                             .queue = lent->queue,
+                             .queue_family = lent->queue_family,
+                             .lock_queue = lent->lock_queue,
+                             .unlock_queue = lent->unlock_queue,
+                             .user = lent->user,
+                             .enabled_features = lent->vk_enabled_features,
+                             .vk_allocation_callbacks = lent->vk_allocation_callbacks };
+    if (!lent->memory) return out;
+    device->memory = *lent->memory;
+    out.memory = (struct gpu_memory_callbacks){ allocate_memory, free_memory, device };
+    return out;
+}
+
+// ---- Creation
+
+static enum ag_result adopt_check(const char *function, struct ag_context *context,
+                                  const struct ag_device_adopt *lent)
+{
+    if (!lent) return AG_OK;
+    AG_REQUIRE_KNOWN(function, context, lent);
+    AG_REQUIRE_FOR(function, context, adopt_is_whole(lent),
+                   "an adopted device needs instance, physical_device, device and queue");
+    if (!lent->memory) return AG_OK;
+    AG_REQUIRE_KNOWN(function, context, lent->memory);
+    AG_REQUIRE_FOR(function, context, lent->memory->allocate && lent->memory->free,
+                   "memory needs allocate and free");
+    return AG_OK;
+}
+
 static bool has_shaders(const char *folder)
 {
     DIR *entries = opendir(folder);
@@ -70,31 +140,23 @@ enum ag_result ag_device_create(struct ag_context *context, const struct ag_devi
     ag_device_desc_default(&fallback);
     if (!desc) desc = &fallback;
     AG_REQUIRE_KNOWN(__func__, context, desc);
-    const struct ag_device_adopt *lent = desc->adopt;
-    if (lent) AG_REQUIRE_KNOWN(__func__, context, lent);
-    AG_REQUIRE(context, !lent || adopt_is_whole(lent),
-               "an adopted device needs instance, physical_device, device and queue");
-
+    const enum ag_result checked = adopt_check(__func__, context, desc->adopt);
+    if (checked != AG_OK) return checked;
     AG_REQUIRE(context, desc->pipeline_cache || desc->pipeline_cache_bytes == 0,
                "pipeline_cache is NULL");
-    struct gpu_adopt adopt = { 0 };
-    if (lent)
-        adopt = (struct gpu_adopt){
-            lent->instance,           lent->physical_device, lent->device,       lent->queue,
-            lent->queue_family,       lent->lock_queue,      lent->unlock_queue, lent->user,
-            lent->vk_enabled_features
-        };
-    struct gpu_desc gpu_desc = { .device = desc->device,
-                                 .validation = desc->validation || context->validation,
-                                 .shader_dir = context->shader_dir,
-                                 .adopt = lent ? &adopt : NULL,
-                                 .pipeline_cache = desc->pipeline_cache,
-                                 .pipeline_cache_bytes = desc->pipeline_cache_bytes };
     warn_of_shader_dir(context);
     struct ag_device *device = host_alloc(&context->host, 1, sizeof *device);
     if (!device) return api_done(context, false);
+    struct gpu_adopt adopt = { 0 };
+    if (desc->adopt) adopt = lent_device(device, desc->adopt);
+    struct gpu_desc gpu_desc = { .device = desc->device,
+                                 .validation = desc->validation || context->validation,
+                                 .shader_dir = context->shader_dir,
+                                 .adopt = desc->adopt ? &adopt : NULL,
+                                 .pipeline_cache = desc->pipeline_cache,
+                                 .pipeline_cache_bytes = desc->pipeline_cache_bytes };
     device->context = context;
-    device->adopted = lent != NULL;
+    device->adopted = desc->adopt != NULL;
     device->gpu = gpu_create(&context->host, &gpu_desc);
     if (!device->gpu) {
         ag_device_destroy(device);

@@ -30,6 +30,7 @@ struct ag_device {
     struct ag_context *context;
     struct gpu *gpu;
     bool adopted;
+    struct ag_memory_callbacks memory; // zero: none
 };
 
 struct ag_scene {

@@ -22,7 +22,7 @@ static bool create_handle(struct gpu *gpu, struct buffer *buffer, uint32_t usage
                                           .size = buffer->capacity,
                                           .usage = usage_flags(usage),
                                       },
-                                      NULL, &buffer->handle))) {
+                                      gpu->allocator, &buffer->handle))) {
         buffer->handle = VK_NULL_HANDLE;
         return false;
     }
@@ -52,7 +52,7 @@ void buffer_free(struct gpu *gpu, void *object)
 {
     struct buffer *buffer = object;
     if (!buffer) return;
-    vkDestroyBuffer(gpu->device, buffer->handle, NULL);
+    vkDestroyBuffer(gpu->device, buffer->handle, gpu->allocator);
     memory_free(gpu, &buffer->memory);
     host_free(gpu->host, buffer);
 }

@@ -18,7 +18,7 @@ bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted)
                                                .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                                .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                                .queueFamilyIndex = gpu->queue_family },
-                                           NULL, &cmd->pool))) {
+                                           gpu->allocator, &cmd->pool))) {
         cmd->pool = VK_NULL_HANDLE;
         return false;
     }
@@ -38,8 +38,8 @@ bool cmd_init(struct gpu *gpu, struct gpu_cmd *cmd, bool adopted)
 
 void cmd_finish(struct gpu *gpu, struct gpu_cmd *cmd)
 {
-    vkDestroyQueryPool(gpu->device, cmd->scopes.queries, NULL);
-    vkDestroyCommandPool(gpu->device, cmd->pool, NULL);
+    vkDestroyQueryPool(gpu->device, cmd->scopes.queries, gpu->allocator);
+    vkDestroyCommandPool(gpu->device, cmd->pool, gpu->allocator);
     ring_finish(cmd);
     *cmd = (struct gpu_cmd){ 0 };
 }

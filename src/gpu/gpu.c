@@ -52,6 +52,10 @@ static bool adopt_device(struct gpu *gpu, const struct gpu_adopt *adopt)
     gpu->device = adopt->device;
     gpu->queue = adopt->queue;
     gpu->queue_family = adopt->queue_family;
+    if (adopt->vk_allocation_callbacks) {
+        gpu->allocator_copy = *(const VkAllocationCallbacks *)adopt->vk_allocation_callbacks;
+        gpu->allocator = &gpu->allocator_copy;
+    }
     device_describe(gpu->physical, &gpu->info);
     if (gpu->info.usable) return check_adopted(gpu);
     return host_fail(gpu->host, FAIL_UNSUPPORTED, "gpu device %s: it lacks %s", gpu->info.name,
@@ -82,7 +86,7 @@ static bool create_shared(struct gpu *gpu, const struct gpu_desc *desc)
                                          &(VkSemaphoreCreateInfo){
                                              .sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
                                              .pNext = &timeline },
-                                         NULL, &gpu->timeline))) {
+                                         gpu->allocator, &gpu->timeline))) {
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_SEMAPHORE, gpu->timeline, "gpu.timeline");
@@ -145,8 +149,8 @@ static void free_objects(struct gpu *gpu)
     free_table(gpu, &gpu->buffers, "buffer", offsetof(struct buffer, name), buffer_free);
     samplers_finish(gpu);
     for (int i = 0; i < 2; i++) buffer_free(gpu, gpu->staging[i]);
-    vkDestroySemaphore(gpu->device, gpu->timeline, NULL);
-    vkDestroyPipelineCache(gpu->device, gpu->pipeline_cache, NULL);
+    vkDestroySemaphore(gpu->device, gpu->timeline, gpu->allocator);
+    vkDestroyPipelineCache(gpu->device, gpu->pipeline_cache, gpu->allocator);
 }
 
 void gpu_destroy(struct gpu *gpu)

@@ -45,6 +45,26 @@ struct gpu_device_info {
 // instance.
 bool gpu_list_devices(struct host *host, struct gpu_device_info *out, int capacity, int *count);
 
+// Device memory that the caller allocates; see ag_memory_callbacks.
+struct gpu_memory_request {
+    uint64_t bytes, alignment;
+    uint32_t memory_type; // index
+    bool mapped;
+};
+struct gpu_memory_block {
+    void *memory; // VkDeviceMemory
+    uint64_t offset;
+    void *mapped; // at the offset
+    void *handle; // the caller's own
+};
+struct gpu_memory_callbacks {
+    bool (*allocate)(void *user, const struct gpu_memory_request *request,
+                     struct gpu_memory_block *out);
+    void (*free)(void *user, const struct gpu_memory_request *request,
+                 const struct gpu_memory_block *block);
+    void *user;
+};
+
 // A caller's own device (Vulkan handles as void *). It must have been created with the features
 // that gpu_required_features lists. The caller keeps it alive and idles it before gpu_destroy.
 struct gpu_adopt {
@@ -53,6 +73,8 @@ struct gpu_adopt {
     void (*lock_queue)(void *user), (*unlock_queue)(void *user); // around submissions; or NULL
     void *user;
     const void *enabled_features; // VkPhysicalDeviceFeatures2 of vkCreateDevice; NULL: not checked
+    struct gpu_memory_callbacks memory;  // zero: the layer allocates
+    const void *vk_allocation_callbacks; // VkAllocationCallbacks, copied; NULL: the driver's
 };
 // Sets the required features in these four structs (VkPhysicalDeviceFeatures2 and those of Vulkan
 // 1.1 to 1.3), which it zeroes and chains. Returns the number of device extensions, at most 2.

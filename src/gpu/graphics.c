@@ -92,5 +92,5 @@ VkResult pipeline_create_graphics(struct gpu *gpu, struct pipeline *p,
                     .pDynamicStates = dynamic },
             .layout = p->layout,
         },
-        NULL, &p->handle);
+        gpu->allocator, &p->handle);
 }

@@ -169,7 +169,7 @@ static bool create_handle(struct gpu *gpu, struct image *image)
 {
     VkImageCreateInfo info = create_info(&image->desc);
     if (!check_supported(gpu, &image->desc, &info)) return false;
-    if (!VK_CHECK(gpu, vkCreateImage(gpu->device, &info, NULL, &image->handle))) {
+    if (!VK_CHECK(gpu, vkCreateImage(gpu->device, &info, gpu->allocator, &image->handle))) {
         image->handle = VK_NULL_HANDLE;
         return false;
     }
@@ -224,9 +224,9 @@ void image_free(struct gpu *gpu, void *object)
     struct image *image = object;
     if (!image) return;
     for (uint32_t i = 0; i < image->view_count; i++) {
-        vkDestroyImageView(gpu->device, image->views[i].handle, NULL);
+        vkDestroyImageView(gpu->device, image->views[i].handle, gpu->allocator);
     }
-    if (!image->wrapped) vkDestroyImage(gpu->device, image->handle, NULL);
+    if (!image->wrapped) vkDestroyImage(gpu->device, image->handle, gpu->allocator);
     memory_free(gpu, &image->memory);
     host_free(gpu->host, image->views);
     host_free(gpu->host, image->hazards);
@@ -286,7 +286,7 @@ VkImageView image_view(struct gpu *gpu, struct image *image, VkImageViewType typ
                                .subresourceRange = { image->aspect, range->mip, range->mip_count,
                                                      range->layer, range->layer_count },
                            },
-                           NULL, &view.handle))) {
+                           gpu->allocator, &view.handle))) {
         return VK_NULL_HANDLE;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, view.handle, image->name);

@@ -17,12 +17,11 @@ struct free_range {
 
 struct memory_block {
     struct memory_block *next;
-    VkDeviceMemory memory;
+    struct device_memory device;
     VkDeviceSize bytes;
     uint32_t type;
     bool linear, single; // single: a dedicated block
     bool recycled;       // part of it was in use before
-    void *mapped;
     struct free_range *free;
     uint32_t free_count, free_capacity;
 };
@@ -98,32 +97,23 @@ static void remove_free_range(struct memory_block *block, uint32_t at)
 
 static void block_free(struct gpu *gpu, struct memory_block *block)
 {
-    vkFreeMemory(gpu->device, block->memory, NULL); // unmaps
+    device_memory_free(gpu, &block->device);
     host_free(gpu->host, block->free);
     host_free(gpu->host, block);
 }
 
 // NULL without a message if this memory type is exhausted: another one may do.
-static struct memory_block *block_new(struct gpu *gpu, uint32_t type, VkDeviceSize bytes,
-                                      bool linear, bool mapped)
+static struct memory_block *block_new(struct gpu *gpu, const struct gpu_memory_request *request,
+                                      bool linear)
 {
     struct memory_block *block = host_alloc(gpu->host, 1, sizeof *block);
     if (!block) return NULL;
-    *block = (struct memory_block){ .bytes = bytes, .type = type, .linear = linear };
-    VkMemoryAllocateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = bytes,
-        .memoryTypeIndex = type,
-    };
-    if (vkAllocateMemory(gpu->device, &info, NULL, &block->memory) != VK_SUCCESS) {
-        host_free(gpu->host, block);
-        return NULL;
-    }
-    VK_NAME(gpu, VK_OBJECT_TYPE_DEVICE_MEMORY, block->memory,
-            linear ? "gpu.buffers" : "gpu.images");
-    if ((mapped && vkMapMemory(gpu->device, block->memory, 0, VK_WHOLE_SIZE, 0, &block->mapped) !=
-                       VK_SUCCESS) ||
-        !add_free_range(gpu, block, 0, (struct free_range){ 0, bytes })) {
+    *block = (struct memory_block){ .bytes = request->bytes,
+                                    .type = request->memory_type,
+                                    .linear = linear };
+    const char *name = linear ? "gpu.buffers" : "gpu.images";
+    if (!device_memory_allocate(gpu, request, name, &block->device) ||
+        !add_free_range(gpu, block, 0, (struct free_range){ 0, request->bytes })) {
         block_free(gpu, block);
         return NULL;
     }
@@ -132,14 +122,15 @@ static struct memory_block *block_new(struct gpu *gpu, uint32_t type, VkDeviceSi
     return block;
 }
 
-// First fit.
+// First fit. Offsets are in the block, which may begin anywhere in its VkDeviceMemory.
 static bool block_take(struct gpu *gpu, struct memory_block *block,
                        const VkMemoryRequirements *needs, VkDeviceSize *offset)
 {
     for (uint32_t i = 0; i < block->free_count; i++) {
         struct free_range range = block->free[i];
-        VkDeviceSize start = (range.offset + needs->alignment - 1) & ~(needs->alignment - 1);
-        VkDeviceSize before = start - range.offset;
+        VkDeviceSize begin = block->device.block.offset + range.offset;
+        VkDeviceSize before = (needs->alignment - begin % needs->alignment) % needs->alignment;
+        VkDeviceSize start = range.offset + before;
         if (before > range.bytes || range.bytes - before < needs->size) continue;
         VkDeviceSize after = range.bytes - before - needs->size;
         if (before && after &&
@@ -167,7 +158,7 @@ static struct memory_block *find_block(struct gpu *gpu, const VkMemoryRequiremen
     struct memory_block *block;
     for (block = gpu->memory.blocks; block && !single; block = block->next) {
         if (block->type != type || block->linear != linear || block->single) continue;
-        if ((mapped && !block->mapped) || (!mapped && block->mapped)) continue;
+        if (block->device.request.mapped != mapped) continue;
         if (block_take(gpu, block, needs, offset)) return block;
     }
     // A block takes at most an eighth of its heap, unless the allocation needs more.
@@ -175,8 +166,12 @@ static struct memory_block *find_block(struct gpu *gpu, const VkMemoryRequiremen
     VkDeviceSize heap = p->memoryHeaps[p->memoryTypes[type].heapIndex].size;
     VkDeviceSize bytes = single ? needs->size : BLOCK_BYTES;
     if (!single && bytes > heap / 8) bytes = heap / 8 > needs->size ? heap / 8 : needs->size;
-    block = block_new(gpu, type, bytes, linear, mapped);
-    if (!block && bytes > needs->size) block = block_new(gpu, type, needs->size, linear, mapped);
+    struct gpu_memory_request request = { bytes, needs->alignment, type, mapped };
+    block = block_new(gpu, &request, linear);
+    if (!block && bytes > needs->size) {
+        request.bytes = needs->size;
+        block = block_new(gpu, &request, linear);
+    }
     if (!block) return NULL;
     block->single = single;
     return block_take(gpu, block, needs, offset) ? block : NULL;
@@ -205,12 +200,15 @@ bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum me
         }
         if (best == UINT32_MAX) break;
         left &= ~(1u << best);
+        VkDeviceSize offset;
         struct memory_block *block =
-            find_block(gpu, needs, best, linear, kind != MEMORY_DEVICE, &out->offset);
+            find_block(gpu, needs, best, linear, kind != MEMORY_DEVICE, &offset);
         if (!block) continue;
+        const struct gpu_memory_block *memory = &block->device.block;
         out->block = block;
-        out->memory = block->memory;
-        out->mapped = block->mapped ? (char *)block->mapped + out->offset : NULL;
+        out->memory = (VkDeviceMemory)memory->memory;
+        out->offset = memory->offset + offset;
+        out->mapped = memory->mapped ? (char *)memory->mapped + offset : NULL;
         out->owner = owner;
         out->recycled = block->recycled;
         gpu->memory.owners[owner].bytes += needs->size;
@@ -246,7 +244,8 @@ void memory_free(struct gpu *gpu, struct allocation *allocation)
     if (!block) return;
     gpu->memory.owners[allocation->owner].bytes -= allocation->bytes;
     block->recycled = true;
-    block_give(gpu, block, (struct free_range){ allocation->offset, allocation->bytes });
+    const VkDeviceSize offset = allocation->offset - block->device.block.offset;
+    block_give(gpu, block, (struct free_range){ offset, allocation->bytes });
     *allocation = (struct allocation){ 0 };
     bool empty = block->free_count == 1 && block->free[0].bytes == block->bytes;
     if (!block->single || !empty) return;

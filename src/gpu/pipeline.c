@@ -81,7 +81,8 @@ static bool create_layouts(struct gpu *gpu, struct pipeline *p)
         .bindingCount = (uint32_t)r->binding_count,
         .pBindings = bindings,
     };
-    if (!VK_CHECK(gpu, vkCreateDescriptorSetLayout(gpu->device, &set, NULL, &p->set_layout)))
+    if (!VK_CHECK(gpu,
+                  vkCreateDescriptorSetLayout(gpu->device, &set, gpu->allocator, &p->set_layout)))
         return false;
     VK_NAME(gpu, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, p->set_layout, p->name);
     VkPipelineLayoutCreateInfo layout = {
@@ -91,7 +92,7 @@ static bool create_layouts(struct gpu *gpu, struct pipeline *p)
         .pushConstantRangeCount = r->push_bytes ? 1 : 0,
         .pPushConstantRanges = &(VkPushConstantRange){ r->push_stages, 0, r->push_bytes },
     };
-    if (!VK_CHECK(gpu, vkCreatePipelineLayout(gpu->device, &layout, NULL, &p->layout)))
+    if (!VK_CHECK(gpu, vkCreatePipelineLayout(gpu->device, &layout, gpu->allocator, &p->layout)))
         return false;
     VK_NAME(gpu, VK_OBJECT_TYPE_PIPELINE_LAYOUT, p->layout, p->name);
     return true;
@@ -106,7 +107,7 @@ static VkResult create_compute(struct gpu *gpu, struct pipeline *p,
                                         .stage = stages[0],
                                         .layout = p->layout,
                                     },
-                                    NULL, &p->handle);
+                                    gpu->allocator, &p->handle);
 }
 
 static bool create_module(struct gpu *gpu, const struct code *code, const char *name,
@@ -118,7 +119,7 @@ static bool create_module(struct gpu *gpu, const struct code *code, const char *
                                            .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                            .codeSize = code->count * 4,
                                            .pCode = code->words },
-                                       NULL, out))) {
+                                       gpu->allocator, out))) {
         *out = VK_NULL_HANDLE;
         return false;
     }
@@ -161,7 +162,8 @@ static bool create_handle(struct gpu *gpu, struct pipeline *p, const struct code
                       p->graphics ? "vkCreateGraphicsPipelines" : "vkCreateComputePipelines");
         if (!ok) p->handle = VK_NULL_HANDLE;
     }
-    for (int i = 0; i < p->stage_count; i++) vkDestroyShaderModule(gpu->device, modules[i], NULL);
+    for (int i = 0; i < p->stage_count; i++)
+        vkDestroyShaderModule(gpu->device, modules[i], gpu->allocator);
     if (ok) VK_NAME(gpu, VK_OBJECT_TYPE_PIPELINE, p->handle, p->name);
     return ok;
 }
@@ -184,9 +186,9 @@ static bool check_constants(struct gpu *gpu, const struct pipeline *p)
 
 static void free_handles(struct gpu *gpu, struct pipeline *p)
 {
-    vkDestroyPipeline(gpu->device, p->handle, NULL);
-    vkDestroyPipelineLayout(gpu->device, p->layout, NULL);
-    vkDestroyDescriptorSetLayout(gpu->device, p->set_layout, NULL);
+    vkDestroyPipeline(gpu->device, p->handle, gpu->allocator);
+    vkDestroyPipelineLayout(gpu->device, p->layout, gpu->allocator);
+    vkDestroyDescriptorSetLayout(gpu->device, p->set_layout, gpu->allocator);
     p->handle = VK_NULL_HANDLE;
     p->layout = VK_NULL_HANDLE;
     p->set_layout = VK_NULL_HANDLE;

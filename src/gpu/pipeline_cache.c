@@ -66,8 +66,8 @@ bool pipeline_cache_create(struct gpu *gpu, const void *bytes, size_t size)
     const VkPipelineCacheCreateInfo info = { .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                              .initialDataSize = data_bytes,
                                              .pInitialData = aligned };
-    const bool ok =
-        VK_CHECK(gpu, vkCreatePipelineCache(gpu->device, &info, NULL, &gpu->pipeline_cache));
+    const bool ok = VK_CHECK(
+        gpu, vkCreatePipelineCache(gpu->device, &info, gpu->allocator, &gpu->pipeline_cache));
     host_free(gpu->host, aligned);
     return ok;
 }

@@ -15,7 +15,7 @@ bool scopes_init(struct gpu *gpu, struct scopes *scopes, const char *name)
                                              .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                              .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                              .queryCount = 2 * MAX_SCOPES },
-                                         NULL, &scopes->queries))) {
+                                         gpu->allocator, &scopes->queries))) {
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_QUERY_POOL, scopes->queries, name);

@@ -54,6 +54,16 @@ enum memory_kind {
     MEMORY_RING,     // mapped, coherent, device-local if available
 };
 
+// A piece of device memory: a whole VkDeviceMemory, or what the caller's callback returned.
+struct device_memory {
+    struct gpu_memory_request request;
+    struct gpu_memory_block block; // memory NULL: none
+};
+// device_memory.c. false without a message: this memory type is exhausted, or cannot be mapped.
+bool device_memory_allocate(struct gpu *gpu, const struct gpu_memory_request *request,
+                            const char *name, struct device_memory *out);
+void device_memory_free(struct gpu *gpu, const struct device_memory *memory);
+
 struct memory_block;
 struct allocation {
     struct memory_block *block; // NULL: none
@@ -418,6 +428,9 @@ struct gpu {
     uint32_t owner_depth;
     VkPhysicalDevice physical;
     VkDevice device;
+    // Of all objects of the device: NULL, or a copy of the caller's.
+    const VkAllocationCallbacks *allocator;
+    VkAllocationCallbacks allocator_copy;
     VkQueue queue;
     uint32_t queue_family;
     bool lost;

@@ -11,6 +11,7 @@ target_sources(test_api_bake_run PRIVATE $<TARGET_OBJECTS:ag_test_sample_registr
 ag_test(api/probes USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/renderer USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/picking USES api LIBRARIES ag_test_renderer_fixture)
+ag_test(api/device_memory USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/display USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/pipeline_cache USES api LIBRARIES ag_test_renderer_fixture)
 ag_test(api/set_gi USES api LIBRARIES ag_test_renderer_fixture)

@@ -13,9 +13,14 @@ static void open_own(struct own_device *own, uint32_t flags)
 
 static struct gpu *adopt(struct own_device *own)
 {
-    struct gpu_adopt adopt = { own->instance,     own->physical, own->device,
-                               own->queue,        own->family,   own_device_lock,
-                               own_device_unlock, own,           NULL };
+    struct gpu_adopt adopt = { .instance = own->instance,
+                               .physical_device = own->physical,
+                               .device = own->device,
+                               .queue = own->queue,
+                               .queue_family = own->family,
+                               .lock_queue = own_device_lock,
+                               .unlock_queue = own_device_unlock,
+                               .user = own };
     return gpu_create(test_host(), &(struct gpu_desc){ .validation = true, .adopt = &adopt });
 }
 
