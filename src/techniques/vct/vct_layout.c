@@ -124,7 +124,7 @@ struct vct_texels_push vct_texels_push(const struct vct_options *options, uint32
                                     .directions = vct_direction_count(options),
                                     .block_level = vct_block_level(options) };
     size_t first = 0;
-    for (uint32_t level = 0; level < push.levels; level++) {
+    for (uint32_t level = 0; level < push.levels && level < VCT_MAX_LEVELS; level++) {
         push.first[level] = (uint32_t)first;
         first += level_texels(options, level);
         // A bit for each texel beyond mip 0, in the order of the lists.
