@@ -111,6 +111,25 @@ TEST(ply_colours_are_read_as_srgb)
     scene_destroy(scene);
 }
 
+// A triangle's vertices, and one face with this list of corners.
+static struct scene *load_face(const char *corners)
+{
+    char text[1024];
+    int header = (int)(strstr(ply, "3 0 1 2") - ply);
+    snprintf(text, sizeof text, "%.*s%s\n", header, ply, corners);
+    write_bytes("face.ply", text, strlen(text));
+    return scene_load(test_host(), test_path("face.ply"));
+}
+
+TEST(a_face_of_a_ply_has_at_most_two_corners_per_vertex)
+{
+    struct scene *six = load_face("6 0 1 2 0 1 2");
+    CHECK(six);
+    scene_destroy(six);
+    CHECK(!load_face("7 0 1 2 0 1 2 0"));
+    CHECK(strstr(test_last_message(), "corners"));
+}
+
 TEST(faces_of_a_ply_may_come_in_several_elements)
 {
     static char text[200000] =

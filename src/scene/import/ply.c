@@ -342,12 +342,24 @@ static bool reserve_triangle(struct ply *ply)
     return true;
 }
 
+// A polygon visits a vertex once, twice where it bridges to a hole. Longer lists would draw the
+// same triangles again and again.
+static size_t most_corners(const struct ply *ply)
+{
+    size_t vertices = 0;
+    for (int e = 0; e < ply->element_count; e++)
+        if (strcmp(ply->elements[e].name, "vertex") == 0) vertices += ply->elements[e].count;
+    return 2 * vertices;
+}
+
 // Appends a polygon as a triangle fan to the indices.
 static bool read_fan(struct ply *ply, const struct ply_property *property)
 {
     struct mesh *mesh = &ply->mesh;
     size_t corners = list_length(ply, property);
     uint32_t first = 0, last = 0;
+    if (corners > most_corners(ply))
+        return wrong(ply, "a face has more than two corners per vertex");
     for (size_t k = 0; k < corners && !ply->broken; k++) {
         double value = next_value(ply, property->type);
         if (!(value >= 0.0 && value < (double)UINT32_MAX))
