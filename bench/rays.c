@@ -5,6 +5,7 @@
 //     rays [--size WxH] [--spp N] [--rounds N] [SCENE]…
 #include "command_line.h"
 #include "core/parallel.h"
+#include "scene/dark.h"
 #include "scene/defaults.h"
 #include "trace/trace_scene.h"
 
@@ -162,10 +163,12 @@ static bool measure(struct bench *bench, const char *name, struct reference *ref
 static bool add_default_lighting(struct scene *scene)
 {
     struct scene_pose pose = { 0 };
-    if (!scene_is_dark(scene)) return true;
     if (!pose_init(&pose, scene, -1, 0.0f)) return false;
-    struct default_lighting lighting = default_lighting(&pose);
+    const bool dark = pose_is_dark(&pose);
+    struct default_lighting lighting =
+        dark ? default_lighting(&pose) : (struct default_lighting){ 0 };
     pose_finish(&pose);
+    if (!dark) return true;
     int node = scene_add_node_looking(scene, "sun", vec3_of(0, 0, 0), lighting.sun_direction);
     struct light sun = {
         .name = "sun", .type = LIGHT_SUN, .node = node, .intensity = lighting.sun_lux

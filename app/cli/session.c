@@ -170,8 +170,10 @@ static enum status add_default_light(struct session *session)
     session->made_up_light = true;
     snprintf(session->light, sizeof session->light, "--light %s --sky %s", defaults.light,
              defaults.sky);
-    remember(session, "no light in %s: using %s", session->arguments->positional[0],
-             session->light);
+    struct ag_scene_info info = { 0 };
+    ag_scene_get_info(session->scene, -1, 0.0, &info);
+    remember(session, "%s in %s: using %s", info.emissive ? "only negligible emission" : "no light",
+             session->arguments->positional[0], session->light);
     return DONE;
 }
 

@@ -1,6 +1,7 @@
 // Scenes: checks arguments, forwards to scene/, and keeps a pose for queries at a moment.
 #include "api/objects.h"
 
+#include "scene/dark.h"
 #include "scene/defaults.h"
 #include "scene/limits.h"
 
@@ -255,7 +256,7 @@ enum ag_result ag_scene_default_lighting(struct ag_scene *scene, struct ag_defau
     if (result != AG_OK) return result;
     struct default_lighting lighting = default_lighting(pose);
     *out = (struct ag_default_lighting){ 0 };
-    out->needed = scene_is_dark(scene->scene);
+    out->needed = pose_is_dark(pose);
     api_store(out->sun_direction, lighting.sun_direction);
     api_store(out->sun_lux, lighting.sun_lux);
     api_store(out->sky, lighting.sky);

@@ -6,7 +6,7 @@
 // counts as an object.
 #include "scene/defaults.h"
 
-#include "scene/raycast.h"
+#include "scene/direct_light.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -29,6 +29,7 @@ struct survey {
     const struct scene_pose *pose;
     struct raycast raycast;
     bool has_rays;
+    struct direct_light direct;
     float diagonal;
     vec3s interior[MIDDLE_POINTS]; // enclosed points around the centre
     int interior_count;
@@ -47,18 +48,6 @@ static float bounds_diagonal(const struct scene_pose *pose)
 float default_near(const struct scene_pose *pose)
 {
     return 5e-4f * bounds_diagonal(pose);
-}
-
-static bool has_lights(const struct scene *scene)
-{
-    for (int i = 0; i < scene->light_count; i++)
-        if (!scene->lights[i].off) return true;
-    return false;
-}
-
-bool scene_is_dark(const struct scene *scene)
-{
-    return !has_lights(scene) && luminance(scene->sky) <= 0.0f && !scene_has_emission(scene);
 }
 
 // A point of the bounds from coordinates in 0…1.
@@ -139,17 +128,22 @@ static float interior_visibility(const struct survey *survey, vec3s position)
     return (float)visible / (float)survey->interior_count;
 }
 
-// Direction to the outside camera: in front of the scene (+z, as in glTF), to the right and above.
-static const vec3s THREE_QUARTER = { { 0.55f, 0.42f, 1.0f } };
+// Directions to the outside camera, the first preferred: in front of the scene (+z, as in glTF), to
+// the right and above; then from the left, and from behind.
+enum { SIDES = 4 };
+static const vec3s THREE_QUARTER[SIDES] = { { { 0.55f, 0.42f, 1.0f } },
+                                            { { -0.55f, 0.42f, 1.0f } },
+                                            { { 0.55f, 0.42f, -1.0f } },
+                                            { { -0.55f, 0.42f, -1.0f } } };
 
 // All corners of the bounds are in a square image.
-static struct world_camera outside_camera(const struct scene_pose *pose)
+static struct world_camera outside_camera(const struct scene_pose *pose, vec3s towards_camera)
 {
     float near_m = default_near(pose);
     if (box3_is_empty(pose->bounds)) {
         return camera_look_at(vec3_of(0, 0, 3), vec3_of(0, 0, 0), OUTSIDE_FOV, near_m);
     }
-    vec3s centre = box3_centre(pose->bounds), back = glms_vec3_normalize(THREE_QUARTER);
+    vec3s centre = box3_centre(pose->bounds), back = glms_vec3_normalize(towards_camera);
     struct world_camera camera = camera_look_at(back, vec3_of(0, 0, 0), OUTSIDE_FOV, near_m);
     vec3s right = glms_vec3_cross(camera.forward, camera.up);
     float tangent = tanf(0.5f * OUTSIDE_FOV), distance = 0.0f;
@@ -166,6 +160,42 @@ static struct world_camera outside_camera(const struct scene_pose *pose)
     distance = fmaxf(margin * distance, 10.0f * near_m); // a single point has no size
     camera.eye = glms_vec3_muladds(back, distance, centre);
     return camera;
+}
+
+enum { VIEW_ACROSS = 16 };
+
+// The share of what a square image shows that is lit directly.
+static float lit_share_of_view(const struct survey *survey, const struct world_camera *camera)
+{
+    struct lit_count count = { 0 };
+    vec3s right = glms_vec3_cross(camera->forward, camera->up);
+    float half = tanf(0.5f * camera->vertical_fov_rad);
+    for (int i = 0; i < VIEW_ACROSS * VIEW_ACROSS; i++) {
+        float x = ((float)(i % VIEW_ACROSS) + 0.5f) / (0.5f * VIEW_ACROSS) - 1.0f;
+        float y = ((float)(i / VIEW_ACROSS) + 0.5f) / (0.5f * VIEW_ACROSS) - 1.0f;
+        vec3s direction = glms_vec3_muladds(right, half * x, camera->forward);
+        direction = glms_vec3_muladds(camera->up, half * y, direction);
+        direct_light_count(&survey->direct, camera->eye, glms_vec3_normalize(direction), &count);
+    }
+    return lit_share(&count);
+}
+
+// Directly lit share of a view above which more does not make it better.
+static const float LIT_ENOUGH = 0.1f;
+
+// The first side of which enough is lit, or the one with the largest lit share.
+static struct world_camera lit_outside_camera(const struct survey *survey)
+{
+    struct world_camera best = survey->camera;
+    float most = lit_share_of_view(survey, &best);
+    for (int i = 1; i < SIDES && most < LIT_ENOUGH; i++) {
+        struct world_camera camera = outside_camera(survey->pose, THREE_QUARTER[i]);
+        float share = lit_share_of_view(survey, &camera);
+        if (share <= most) continue;
+        most = share;
+        best = camera;
+    }
+    return best;
 }
 
 // Camera height above a floor with this clear height: a person's eye level where the scene's units
@@ -205,18 +235,49 @@ static bool horizontal_distances(const struct survey *survey, vec3s position, fl
     return 4 * back < DIRECTIONS;
 }
 
+enum { LIT_RAYS = 512 };
+
+// For each direction a factor by the directly lit share of what is visible around it: 1 where
+// enough is lit, 0.1 where nothing is. 1 in scenes without punctual lights.
+static void lit_factors(const struct survey *survey, vec3s position, float factors[DIRECTIONS])
+{
+    struct lit_count counts[DIRECTIONS] = { 0 };
+    vec3s directions[DIRECTIONS];
+    const float cos_view = 0.82f; // cone of 35°, about that of the camera
+    for (int i = 0; i < DIRECTIONS; i++) {
+        float angle = 2.0f * GLM_PIf * (float)i / DIRECTIONS;
+        directions[i] = vec3_of(cosf(angle), 0, sinf(angle));
+        factors[i] = 1.0f;
+    }
+    if (survey->direct.count == 0) return;
+    for (uint32_t r = 0; r < LIT_RAYS; r++) {
+        vec3s ray = sample_sphere(r2_sequence(r));
+        struct lit_count one = { 0 };
+        direct_light_count(&survey->direct, position, ray, &one);
+        for (int i = 0; i < DIRECTIONS; i++) {
+            if (glms_vec3_dot(ray, directions[i]) < cos_view) continue;
+            counts[i].hits += one.hits;
+            counts[i].lit += one.lit;
+        }
+    }
+    for (int i = 0; i < DIRECTIONS; i++)
+        factors[i] = 0.1f + 0.9f * fminf(lit_share(&counts[i]) / LIT_ENOUGH, 1.0f);
+}
+
 // The direction of the highest score: half the free distance along it, half the mean over a fan of
 // 45 degrees around it, times the square root of the mean distance in all directions, which prefers
-// wide halls to narrow aisles.
-static void choose_direction(const float *clear, const struct surroundings *around,
-                             struct viewpoint *viewpoint)
+// wide halls to narrow aisles, times a factor by its direct light.
+static void choose_direction(const struct survey *survey, const float *clear,
+                             const struct surroundings *around, struct viewpoint *viewpoint)
 {
     const int fan = DIRECTIONS / 16;
+    float factors[DIRECTIONS];
+    lit_factors(survey, viewpoint->position, factors);
     for (int i = 0; i < DIRECTIONS; i++) {
         float sum = 0.0f;
         for (int k = -fan; k <= fan; k++) sum += clear[(i + k + DIRECTIONS) % DIRECTIONS];
         float score = 0.5f * clear[i] + 0.5f * sum / (float)(2 * fan + 1);
-        score *= sqrtf(around->mean);
+        score *= factors[i] * sqrtf(around->mean);
         if (score <= viewpoint->score) continue;
         float angle = 2.0f * GLM_PIf * (float)i / DIRECTIONS;
         viewpoint->score = score;
@@ -249,7 +310,7 @@ static struct viewpoint viewpoint_at(const struct survey *survey, float x, float
     struct surroundings around = surroundings_of(survey, viewpoint.position);
     viewpoint.usable = is_enclosed(&around) && around.least > 0.01f * survey->diagonal &&
                        horizontal_distances(survey, viewpoint.position, clear);
-    if (viewpoint.usable) choose_direction(clear, &around, &viewpoint);
+    if (viewpoint.usable) choose_direction(survey, clear, &around, &viewpoint);
     // A quarter of the interior points suffices: the end of a long room sees no more.
     viewpoint.score *= fminf(4.0f * interior_visibility(survey, viewpoint.position), 1.0f);
     return viewpoint;
@@ -291,11 +352,13 @@ static bool inside_camera(struct survey *survey)
 static void survey_scene(struct survey *survey, const struct scene_pose *pose)
 {
     *survey = (struct survey){ .pose = pose, .diagonal = bounds_diagonal(pose) };
-    survey->camera = outside_camera(pose);
+    survey->camera = outside_camera(pose, THREE_QUARTER[0]);
     if (box3_is_empty(pose->bounds)) return;
     survey->has_rays = raycast_init(&survey->raycast, pose->scene->host, pose);
     if (!survey->has_rays) return;
+    direct_light_init(&survey->direct, pose, &survey->raycast, 1e-4f * survey->diagonal);
     survey->inside = is_interior(survey) && inside_camera(survey);
+    if (!survey->inside && survey->direct.count > 0) survey->camera = lit_outside_camera(survey);
 }
 
 struct world_camera default_camera(const struct scene_pose *pose)

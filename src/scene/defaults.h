@@ -6,9 +6,6 @@
 // The default camera: outside an object; inside an interior, along its longest free view.
 struct world_camera default_camera(const struct scene_pose *pose);
 
-// Whether the scene has no punctual light, no emission and no sky.
-bool scene_is_dark(const struct scene *scene);
-
 struct default_lighting {
     vec3s sun_direction; // unit, from the sun
     vec3s sun_lux;

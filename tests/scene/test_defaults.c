@@ -3,6 +3,7 @@
 
 #include "scene/builtin/shapes.h"
 #include "scene/builtin/builtin.h"
+#include "scene/dark.h"
 #include "scene/defaults.h"
 #include "scene/scene_edit.h"
 #include "scene/raycast.h"
@@ -189,6 +190,41 @@ TEST(the_sun_lights_surfaces_visible_to_the_outside_camera)
     finish(&fixture);
 }
 
+static void add_sun(struct shape_fixture *fixture, vec3s direction)
+{
+    int node = scene_add_node_looking(fixture->scene, "sun", vec3_of(0, 0, 0), direction);
+    struct light sun = { .name = "sun", .type = LIGHT_SUN, .node = node };
+    sun.intensity = vec3_of(1000, 1000, 1000);
+    CHECK(node >= 0 && scene_add_light(fixture->scene, &sun) >= 0);
+    pose_finish(&fixture->pose);
+    CHECK(pose_init(&fixture->pose, fixture->scene, -1, 0));
+}
+
+TEST(the_camera_of_an_object_is_on_its_lit_side)
+{
+    for (int side = -1; side <= 1; side += 2) {
+        struct shape_fixture fixture;
+        make_sphere(&fixture, 1);
+        add_sun(&fixture, vec3_of(0, -0.1f, -(float)side)); // the side lit is ±z
+        CHECK((float)side * -default_camera(&fixture.pose).forward.z > 0.3f);
+        finish(&fixture);
+    }
+}
+
+TEST(the_camera_of_a_room_sees_its_direct_light)
+{
+    // The sun is low and reaches the wall at ±x through the hole in the roof, or the floor below
+    // it.
+    for (int side = -1; side <= 1; side += 2) {
+        struct shape_fixture fixture;
+        make_room(&fixture, 1, true);
+        add_sun(&fixture, vec3_of((float)side * 0.9f, -0.7f, 0));
+        struct world_camera camera = default_camera(&fixture.pose);
+        CHECK(camera.forward.x * (float)side > 0.5f);
+        finish(&fixture);
+    }
+}
+
 TEST(defaults_are_deterministic)
 {
     struct scene *scene = builtin_load(test_host(), "@atrium:texels=16");
@@ -204,17 +240,57 @@ TEST(defaults_are_deterministic)
     scene_destroy(scene);
 }
 
+// Whether a scene is dark in its rest pose.
+static bool is_dark(const struct scene *scene)
+{
+    struct scene_pose pose;
+    CHECK(pose_init(&pose, scene, -1, 0));
+    bool dark = pose_is_dark(&pose);
+    pose_finish(&pose);
+    return dark;
+}
+
 TEST(a_scene_is_dark_without_lights_emission_and_sky)
 {
     struct scene *lit = builtin_load(test_host(), "@cornell:light=point");
     struct scene *emissive = builtin_load(test_host(), "@cornell");
-    CHECK(lit && emissive && !scene_is_dark(lit) && !scene_is_dark(emissive));
+    CHECK(lit && emissive && !is_dark(lit) && !is_dark(emissive));
     scene_remove_lights(lit);
-    CHECK(scene_is_dark(lit));
+    CHECK(is_dark(lit));
     lit->sky = vec3_of(1, 1, 1);
-    CHECK(!scene_is_dark(lit));
+    CHECK(!is_dark(lit));
     scene_destroy(lit);
     scene_destroy(emissive);
+}
+
+// Two spheres, of which the second emits and has `share` of the area.
+static bool emission_leaves_dark(float cd_per_m2, float share)
+{
+    struct scene *scene = scene_create(test_host(), "test");
+    struct shape_builder builder;
+    CHECK(scene);
+    shape_begin(&builder, scene);
+    shape_sphere(&builder, vec3_of(0, 0, 0), sqrtf(1 - share), 24);
+    CHECK(shape_emit(&builder, "dark", -1) >= 0);
+    struct material emitter = material_default();
+    emitter.emissive = vec3_of(cd_per_m2, cd_per_m2, cd_per_m2);
+    int material = scene_add_material(scene, &emitter);
+    CHECK(material >= 0);
+    shape_begin(&builder, scene);
+    shape_sphere(&builder, vec3_of(4, 0, 0), sqrtf(share), 24);
+    CHECK(shape_emit(&builder, "emitter", material) >= 0);
+    bool dark = is_dark(scene);
+    scene_destroy(scene);
+    return dark;
+}
+
+TEST(emission_below_moonlight_leaves_a_scene_dark)
+{
+    // π · 1 cd/m² · 0.25 lx/π of the area is 0.25 lx.
+    CHECK(emission_leaves_dark(1, 0.07f));
+    CHECK(!emission_leaves_dark(1, 0.09f));
+    CHECK(emission_leaves_dark(0.07f, 1 - 1e-6f) && !emission_leaves_dark(0.09f, 1 - 1e-6f));
+    CHECK(!emission_leaves_dark(100, 1e-4f)); // a lamp, however small
 }
 
 static double volume(vec3s a, vec3s b, vec3s c)
