@@ -101,6 +101,7 @@ static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
     if (desc->bake_folder && !(r->bake_folder = host_strdup(host, desc->bake_folder))) return false;
     if (!api_pose_at(r->scene, &r->pose, 0, 0.0)) return false;
     r->seen = r->scene->scene->revisions;
+    renderer_keep_surfaces(r);
     if (!(r->frame = frame_create(host, r->device->gpu, &r->options))) return false;
     if (!frame_set_scene(r->frame, r->scene->scene)) return false;
     if (!frame_resize(r->frame, width, height)) return false;

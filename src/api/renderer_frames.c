@@ -42,6 +42,13 @@ static enum ag_result frame_check(const char *function, const struct ag_renderer
     return checked != AG_OK ? checked : api_camera_check(context, function, &desc->camera);
 }
 
+static void warn_of_animation(const struct ag_renderer *r)
+{
+    if (r->scene->scene->animation_count > 0 && gi_would_warn_of_movement(r->gi) &&
+        pose_surfaces_hash(&r->pose) != r->created_surfaces)
+        gi_warn_of_movement(r->gi);
+}
+
 // All steps that may allocate; recording must not.
 static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
                     const struct frame_gbuffer *gbuffer, struct frame_input *input,
@@ -50,6 +57,7 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
     if (!api_pose_at(r->scene, &r->pose, desc->animation, desc->time_s)) return false;
     const uint32_t changes = renderer_scene_changes(r);
     if (changes) gi_invalidate(r->gi, changes);
+    warn_of_animation(r);
     *input = (struct frame_input){ .pose = &r->pose,
                                    .camera = api_camera(&desc->camera),
                                    .lights = r->lights,

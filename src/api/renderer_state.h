@@ -29,12 +29,13 @@ struct ag_renderer {
     int recorded_count;
     uint32_t client; // of the device: gpu_client_add
     bool indirect_layer, display_layer, motion_layer, id_layer, host_gbuffer;
-    struct frame_shown shown; // by the layer "display"; its image is set for each frame
-    bool shows_debug;         // the debug view, if one is set
-    int width, height;        // of the last resize
-    bool sized;               // it succeeded
-    bool said_limit;          // the warning about too many lights was logged
-    uint64_t rendered;        // frames since the last resize
+    struct frame_shown shown;  // by the layer "display"; its image is set for each frame
+    bool shows_debug;          // the debug view, if one is set
+    int width, height;         // of the last resize
+    bool sized;                // it succeeded
+    uint64_t created_surfaces; // hash of the surfaces that techniques were created with
+    bool said_limit;           // the warning about too many lights was logged
+    uint64_t rendered;         // frames since the last resize
 };
 
 static inline struct ag_context *renderer_context(const struct ag_renderer *renderer)
@@ -45,6 +46,13 @@ static inline struct ag_context *renderer_context(const struct ag_renderer *rend
 static inline struct host *renderer_host(const struct ag_renderer *renderer)
 {
     return &renderer->device->context->host;
+}
+
+// Techniques are created with the surfaces of the current pose.
+static inline void renderer_keep_surfaces(struct ag_renderer *renderer)
+{
+    if (renderer->scene->scene->animation_count > 0)
+        renderer->created_surfaces = pose_surfaces_hash(&renderer->pose);
 }
 
 // Around all that creates objects or records: memory and times count for the renderer.

@@ -5,6 +5,8 @@
 #include "scene/animation_sample.h"
 #include "scene/deform.h"
 
+#include "core/hash.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -231,6 +233,19 @@ mat4s pose_world_from_instance(const struct scene_pose *pose, int instance)
 {
     if (pose->deformed[instance].positions) return glms_mat4_identity();
     return pose->world_from_node[pose->scene->instances[instance].node];
+}
+
+uint64_t pose_surfaces_hash(const struct scene_pose *pose)
+{
+    uint64_t hash = 0;
+    for (int i = 0; i < pose->scene->instance_count; i++) {
+        const vec3s *deformed = pose->deformed[i].positions;
+        const mat4s world_from_mesh = pose_world_from_instance(pose, i);
+        const size_t vertices = scene_mesh_of(pose->scene, i)->vertex_count;
+        hash = deformed ? hash_bytes(deformed, vertices * sizeof *deformed, hash)
+                        : hash_bytes(&world_from_mesh, sizeof world_from_mesh, hash);
+    }
+    return hash;
 }
 
 static bool is_mirroring(mat4s m)

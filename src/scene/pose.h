@@ -38,6 +38,9 @@ mat4s pose_world_from_instance(const struct scene_pose *pose, int instance);
 // joint.
 bool pose_is_mirrored(const struct scene_pose *pose, int instance);
 
+// Hash of all surfaces in world space: equal for poses that show the same.
+uint64_t pose_surfaces_hash(const struct scene_pose *pose);
+
 // A light in world space.
 struct world_light {
     enum light_type type;

@@ -130,13 +130,36 @@ static void warn_of_change(struct gi *gi, int term)
     gi->said_fixed[term] = true;
 }
 
+static bool is_fixed(const struct gi *gi, int term)
+{
+    return !(gi->spec.technique[term]->capabilities & CAN_MOVE_GEOMETRY);
+}
+
+bool gi_would_warn_of_movement(const struct gi *gi)
+{
+    for (int i = 0; i < gi->spec.count; i++)
+        if (is_fixed(gi, i) && !gi->said_fixed[i]) return true;
+    return false;
+}
+
+void gi_warn_of_movement(struct gi *gi)
+{
+    for (int i = 0; i < gi->spec.count; i++) {
+        if (!is_fixed(gi, i) || gi->said_fixed[i]) continue;
+        gi->said_fixed[i] = true;
+        host_log(gi->host, LOG_WARNING,
+                 "%s: the animation moves surfaces, but indirect light keeps those of the first "
+                 "pose; lpv and vct follow them",
+                 gi->spec.technique[i]->name);
+    }
+}
+
 void gi_invalidate(struct gi *gi, uint32_t changes)
 {
     const uint32_t surfaces = CHANGED_GEOMETRY | CHANGED_MATERIAL | CHANGED_MOVABLE;
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = gi->spec.technique[i];
-        if (changes & surfaces && !(technique->capabilities & CAN_MOVE_GEOMETRY))
-            warn_of_change(gi, i);
+        if (changes & surfaces && is_fixed(gi, i)) warn_of_change(gi, i);
         if (technique->invalidate) technique->invalidate(gi->state[i], changes);
     }
 }

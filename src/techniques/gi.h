@@ -38,6 +38,10 @@ void gi_destroy(struct gi *gi);
 bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
 // technique_change bits. A technique that cannot follow them warns once and goes on.
 void gi_invalidate(struct gi *gi, uint32_t changes);
+// Whether a technique cannot follow moving geometry, and has not yet warned.
+bool gi_would_warn_of_movement(const struct gi *gi);
+// The animation has moved surfaces since the creation: such techniques warn once.
+void gi_warn_of_movement(struct gi *gi);
 // Applies another spec's options to the running stack. false, and nothing changed: it names other
 // techniques, or changes options that need gi_create (their effect is stronger than INVALIDATE).
 bool gi_set_options(struct gi *gi, const struct gi_spec *spec);

@@ -76,6 +76,23 @@ TEST(a_child_follows_its_parent)
     scene_destroy(scene);
 }
 
+TEST(the_hash_of_surfaces_changes_with_instances_alone)
+{
+    struct scene *scene = parent_and_child();
+    struct scene_pose pose;
+    add_triangle(scene, 0); // node 1 has none
+    CHECK(pose_init(&pose, scene, -1, 0));
+    const uint64_t before = pose_surfaces_hash(&pose);
+    scene->nodes[1].translation.x += 1;
+    pose_update(&pose, -1, 0);
+    CHECK(pose_surfaces_hash(&pose) == before);
+    scene->nodes[0].translation.x += 1;
+    pose_update(&pose, -1, 0);
+    CHECK(pose_surfaces_hash(&pose) != before);
+    pose_finish(&pose);
+    scene_destroy(scene);
+}
+
 TEST(a_matrix_replaces_translation_rotation_and_scale)
 {
     struct scene *scene = parent_and_child();
