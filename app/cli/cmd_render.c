@@ -217,6 +217,30 @@ static void describe_passes(struct job *job)
     }
 }
 
+static bool is_black(const struct ag_image *image)
+{
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < pixels; i++)
+        for (int c = 0; c < image->channels && c < 3; c++)
+            if (image->pixels[i * (size_t)image->channels + (size_t)c] != 0.0f) return false;
+    return true;
+}
+
+// A view without any light; that of a scene without triangles was noted before.
+static void note_black_image(struct job *job)
+{
+    struct ag_scene_info info = { 0 };
+    struct ag_image *color = NULL;
+    ag_scene_get_info(job->session.scene, -1, 0.0, &info);
+    if (info.triangles > 0 && ag_renderer_read(job->renderer, "color", &color) == AG_OK &&
+        is_black(color))
+        note("the image is black: no light reaches this view of %s; try %s--sky 600,750,1000 or "
+             "another --eye and --target",
+             job->arguments->positional[0],
+             strcmp(job->arguments->gi, "none") == 0 ? "--gi vct, " : "");
+    ag_image_destroy(job->session.context, color);
+}
+
 static enum status report(struct job *job, const char *path)
 {
     const struct arguments *a = job->arguments;
@@ -230,6 +254,7 @@ static enum status report(struct job *job, const char *path)
         json_decref(document);
     }
     if (a->verbose) describe_passes(job);
+    if (!a->quiet) note_black_image(job);
     if (status == DONE && a->json) status = json_print(result_json(job, path));
     return status;
 }

@@ -31,6 +31,24 @@ void session_end(struct session *session)
     *session = (struct session){ 0 };
 }
 
+// ---- notes
+
+__attribute__((format(printf, 2, 3))) static void remember(struct session *session,
+                                                           const char *format, ...)
+{
+    if (session->note_count == MAX_NOTES) return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(session->notes[session->note_count++], sizeof session->notes[0], format, arguments);
+    va_end(arguments);
+}
+
+void session_say(struct session *session)
+{
+    for (int i = 0; i < session->note_count; i++) note("%s", session->notes[i]);
+    session->note_count = 0;
+}
+
 // ---- scene and animation
 
 static int animation_count(const struct session *session)
@@ -75,10 +93,19 @@ static enum status find_animation(struct session *session)
     return session->animation >= 0 ? DONE : unknown_animation(session, count);
 }
 
+static void remember_still_scene(struct session *session)
+{
+    const struct arguments *a = session->arguments;
+    if ((a->time_s != 0.0 || a->time_step_s != 0.0) && animation_count(session) == 0)
+        remember(session, "%s has no effect: %s has no animation",
+                 a->time_s != 0.0 ? "--time" : "--time-step", a->positional[0]);
+}
+
 enum status session_load(struct session *session, const char *name)
 {
     enum ag_result result = ag_scene_load(session->context, name, &session->scene);
     if (result != AG_OK) return fail_library(session->context, result);
+    remember_still_scene(session);
     return find_animation(session);
 }
 
@@ -136,24 +163,6 @@ enum status defaults_camera(struct session *session, double time_s, struct defau
     if (result == AG_OK) return DONE;
     fail_library(session->context, result);
     return FAILED; // an unsuitable scene is not wrong usage
-}
-
-// ---- notes about defaults
-
-__attribute__((format(printf, 2, 3))) static void remember(struct session *session,
-                                                           const char *format, ...)
-{
-    if (session->note_count == MAX_NOTES) return;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(session->notes[session->note_count++], sizeof session->notes[0], format, arguments);
-    va_end(arguments);
-}
-
-void session_say(struct session *session)
-{
-    for (int i = 0; i < session->note_count; i++) note("%s", session->notes[i]);
-    session->note_count = 0;
 }
 
 // ---- light

@@ -5,7 +5,7 @@
 
 #include <afterglow/afterglow.h>
 
-enum { SPEC_SIZE = 256, MAX_NOTES = 4, NOTE_SIZE = 1024, LIGHT_SIZE = 4096 };
+enum { SPEC_SIZE = 256, MAX_NOTES = 5, NOTE_SIZE = 1024, LIGHT_SIZE = 4096 };
 
 struct session {
     const struct arguments *arguments;

@@ -64,6 +64,26 @@ TEST(an_empty_scene_has_nothing_to_see)
     CHECK(strstr(r->err, "nothing to see in ") && strstr(r->err, "it has no triangles"));
 }
 
+TEST(a_view_without_light_is_said_to_be_black)
+{
+    require_device();
+    const struct run *r =
+        run_expect(0, "render", "@cornell:light=point", "--no-scene-lights", "--size", "16x16",
+                   "--gi", "lpv", "-o", test_path("black.png"), NULL);
+    CHECK(strstr(r->err, "the image is black") && strstr(r->err, "try --sky"));
+    r = run_expect(0, "render", "@cornell:light=point", "--size", "16x16", "-o",
+                   test_path("lit.png"), NULL);
+    CHECK(!strstr(r->err, "black"));
+}
+
+TEST(a_time_of_a_scene_without_animation_is_said_to_have_no_effect)
+{
+    require_device();
+    const struct run *r = run_expect(0, "render", "@cornell:light=point", "--time", "1", "--size",
+                                     "16x16", "-o", test_path("time.png"), NULL);
+    CHECK(strstr(r->err, "--time has no effect: @cornell:light=point has no animation"));
+}
+
 TEST(visibility_alone_stands_on_ambient_and_says_so)
 {
     require_device();
