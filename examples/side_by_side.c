@@ -1,4 +1,5 @@
-// Renders one scene with two GI specs at the same exposure and writes both into one PNG.
+// Renders one scene with two GI specs at the exposure of the right one and writes both into one
+// PNG.
 //
 //     side_by_side SCENE GI_LEFT GI_RIGHT WIDTH HEIGHT OUT.png
 #include <afterglow/afterglow.h>
@@ -6,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { GAP_PX = 4, FRAMES = 4 };
+enum { GAP_PX = 4, FRAMES = 16 }; // frames: until temporal accumulation has converged
 
 struct shot {
     const char *gi;
@@ -20,9 +21,9 @@ static void log_to_stderr(void *user, enum ag_log_level level, const char *messa
     fprintf(stderr, "side_by_side: %s%s\n", level == AG_LOG_ERROR ? "" : "note: ", message);
 }
 
-// Renders radiance with shot->gi. The first shot measures the exposure for all.
-static enum ag_result take(struct ag_device *device, struct ag_scene *scene, struct shot *shot,
-                           struct ag_image **out)
+// Renders radiance with shot->gi.
+static enum ag_result take(struct ag_device *device, struct ag_scene *scene,
+                           const struct shot *shot, struct ag_image **out)
 {
     struct ag_renderer_desc desc;
     ag_renderer_desc_default(&desc);
@@ -34,18 +35,15 @@ static enum ag_result take(struct ag_device *device, struct ag_scene *scene, str
     for (int i = 0; i < FRAMES && result == AG_OK; i++)
         result = ag_renderer_render(renderer, &shot->frame);
     if (result == AG_OK) result = ag_renderer_read(renderer, "color", out);
-    if (result == AG_OK && shot->frame.auto_exposure) {
-        result = ag_renderer_exposure(renderer, &shot->frame.exposure_ev);
-        shot->frame.auto_exposure = false;
-    }
     ag_renderer_destroy(renderer);
     return result;
 }
 
 // Tone maps both with one exposure and places them side by side.
 static enum ag_result write_pair(struct ag_context *context, struct ag_image *const radiance[2],
-                                 float ev, const char *path)
+                                 const char *path)
 {
+    const float ev = ag_image_auto_exposure(radiance[1]);
     struct ag_image *display[2] = { NULL, NULL }, *pair = NULL;
     enum ag_result result = AG_OK;
     for (int i = 0; i < 2 && result == AG_OK; i++)
@@ -84,7 +82,7 @@ int main(int argc, char **argv)
         shot.gi = argv[2 + i];
         result = take(device, scene, &shot, &radiance[i]);
     }
-    if (result == AG_OK) result = write_pair(context, radiance, shot.frame.exposure_ev, argv[6]);
+    if (result == AG_OK) result = write_pair(context, radiance, argv[6]);
 
     ag_image_destroy(context, radiance[0]);
     ag_image_destroy(context, radiance[1]);
