@@ -13,6 +13,28 @@ struct ag_scene;
 /// Untrusted input. Skips unsupported features with one warning each.
 AG_API enum ag_result ag_scene_load(struct ag_context *context, const char *name,
                                     struct ag_scene **out);
+/// A scene file in memory. Zero is the default of all members but `bytes` and `size`: there is no
+/// ag_scene_memory_desc_default.
+struct ag_scene_memory_desc {
+    const void *bytes; ///< needed only during the call
+    size_t size;
+    /// Shown in messages; its extension states the format. Without one glTF, GLB, PLY, FBX and X
+    /// are recognised by their content, OBJ is not. NULL: "memory"
+    const char *name;
+    /// The folder of the files that it refers to: buffers, images, OBJ materials. NULL: none
+    const char *folder;
+    /// Instead of `folder`: finds the file at a relative path without "..", its percent escapes
+    /// decoded; false: there is none. *bytes must stay valid until ag_scene_load_memory returns.
+    /// Called on the calling thread, once for each file; not for OBJ materials.
+    bool (*read)(void *user, const char *path, const void **bytes, size_t *size);
+    void *user;           ///< passed to `read`
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
+};
+/// ag_scene_load of a file in memory, with the same limits. Untrusted input. A buffer that cannot
+/// be found is AG_ERROR_FILE, an image that cannot be found is a warning.
+AG_API enum ag_result ag_scene_load_memory(struct ag_context *context,
+                                           const struct ag_scene_memory_desc *desc,
+                                           struct ag_scene **out);
 /// An empty scene; fill it with ag_scene_add_….
 AG_API enum ag_result ag_scene_create(struct ag_context *context, struct ag_scene **out);
 AG_API void ag_scene_destroy(struct ag_scene *scene);

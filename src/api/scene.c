@@ -3,6 +3,7 @@
 
 #include "scene/dark.h"
 #include "scene/defaults.h"
+#include "scene/import/import.h"
 #include "scene/limits.h"
 
 #include <string.h>
@@ -102,6 +103,25 @@ enum ag_result ag_scene_load(struct ag_context *context, const char *name, struc
     AG_REQUIRE_POINTER(context, context);
     AG_REQUIRE(context, name && name[0], "name is empty");
     return give(context, scene_load(&context->host, name), out);
+}
+
+enum ag_result ag_scene_load_memory(struct ag_context *context,
+                                    const struct ag_scene_memory_desc *desc, struct ag_scene **out)
+{
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE_POINTER(context, context);
+    AG_REQUIRE_POINTER(context, desc);
+    AG_REQUIRE_KNOWN(__func__, context, desc);
+    AG_REQUIRE(context, desc->bytes && desc->size > 0, "there are no bytes");
+    AG_REQUIRE(context, !desc->folder || !desc->read, "both folder and read are given");
+    AG_REQUIRE(context, !desc->folder || desc->folder[0], "folder is empty");
+    const struct import_bytes from = { .data = desc->bytes,
+                                       .size = desc->size,
+                                       .name = desc->name ? desc->name : "memory",
+                                       .folder = desc->folder,
+                                       .read = desc->read,
+                                       .user = desc->user };
+    return give(context, import_memory(&context->host, &from), out);
 }
 
 enum ag_result ag_scene_create(struct ag_context *context, struct ag_scene **out)

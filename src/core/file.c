@@ -80,6 +80,19 @@ fail:
     return false;
 }
 
+bool file_bytes_copy(struct host *host, const void *data, size_t size, struct file_bytes *out)
+{
+    *out = (struct file_bytes){ 0 };
+    if (size > MAX_BYTES_DEFAULT)
+        return host_fail(host, FAIL_MEMORY, "%zu bytes in memory: the largest file has %zu", size,
+                         MAX_BYTES_DEFAULT);
+    out->data = host_alloc(host, size + 1, 1);
+    if (!out->data) return false;
+    if (size > 0) memcpy(out->data, data, size);
+    out->size = size;
+    return true;
+}
+
 void file_bytes_finish(struct host *host, struct file_bytes *bytes)
 {
     host_free(host, bytes->data);

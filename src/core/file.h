@@ -17,6 +17,8 @@ struct file_bytes {
 // Reads a regular file of at most max_bytes (0: 4 GiB). Failure names the path. Free with
 // file_bytes_finish.
 bool file_read(struct host *host, const char *path, size_t max_bytes, struct file_bytes *out);
+// A copy of bytes in memory, of at most 4 GiB.
+bool file_bytes_copy(struct host *host, const void *data, size_t size, struct file_bytes *out);
 void file_bytes_finish(struct host *host, struct file_bytes *bytes);
 
 // A file being written: file_commit replaces `path`, file_abort removes the temporary file. End

@@ -26,13 +26,15 @@ static void plan_finish(struct spawn_plan *plan)
 }
 
 // The pipe is moved first: it may have the number of a standard stream that the host has closed.
-static bool plan_files(struct spawn_plan *plan, int output)
+static bool plan_files(struct spawn_plan *plan, int input, int output)
 {
     if (posix_spawn_file_actions_init(&plan->files) != 0) return false;
     plan->has_files = true;
     posix_spawn_file_actions_t *files = &plan->files;
     return posix_spawn_file_actions_adddup2(files, output, STDOUT_FILENO) == 0 &&
-           posix_spawn_file_actions_addopen(files, STDIN_FILENO, "/dev/null", O_RDONLY, 0) == 0 &&
+           (input < 0
+                ? posix_spawn_file_actions_addopen(files, STDIN_FILENO, "/dev/null", O_RDONLY, 0)
+                : posix_spawn_file_actions_adddup2(files, input, STDIN_FILENO)) == 0 &&
            posix_spawn_file_actions_addopen(files, STDERR_FILENO, "/dev/null", O_WRONLY, 0) == 0 &&
            posix_spawn_file_actions_addclosefrom_np(files, STDERR_FILENO + 1) == 0;
 }
@@ -51,11 +53,11 @@ static bool plan_signals(struct spawn_plan *plan)
                                     POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF) == 0;
 }
 
-static bool start(struct host *host, const char *program, char *const arguments[], int output,
-                  pid_t *pid)
+static bool start(struct host *host, const char *program, char *const arguments[], int input,
+                  int output, pid_t *pid)
 {
     struct spawn_plan plan = { .has_files = false };
-    int error = plan_files(&plan, output) && plan_signals(&plan)
+    int error = plan_files(&plan, input, output) && plan_signals(&plan)
                     ? posix_spawn(pid, program, &plan.files, &plan.attributes, arguments, environ)
                     : ENOMEM;
     plan_finish(&plan);
@@ -131,7 +133,7 @@ static void reap(pid_t pid, bool stop, struct process_end *end)
     if (WIFSIGNALED(status)) end->signal = WTERMSIG(status);
 }
 
-bool process_output(struct host *host, const char *program, char *const arguments[],
+bool process_output(struct host *host, const char *program, char *const arguments[], int input,
                     size_t max_bytes, double timeout_s, struct file_bytes *out,
                     struct process_end *end)
 {
@@ -141,7 +143,7 @@ bool process_output(struct host *host, const char *program, char *const argument
     *end = (struct process_end){ 0 };
     if (pipe2(ends, O_CLOEXEC) != 0)
         return host_fail(host, FAIL_UNSUPPORTED, "cannot start %s: %s", program, strerror(errno));
-    bool started = start(host, program, arguments, ends[1], &pid);
+    bool started = start(host, program, arguments, input, ends[1], &pid);
     close(ends[1]);
     bool ok =
         started && collect(host, program, ends[0], max_bytes, timeout_s, out, &end->timed_out);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 static const char *main_path;
+static bool main_from_input;
 
 struct open_file {
     struct aiFile file; // first: Assimp's handle
@@ -85,6 +86,7 @@ static char *path_of(const char *name)
 {
     size_t folder = folder_length();
     if (strcmp(name, main_path) == 0) return strdup(name);
+    if (main_from_input && folder == 0) return NULL; // a file in memory, without a folder
     if (strncmp(name, main_path, folder) != 0) return NULL;
     char *path = strdup(name);
     for (char *c = path ? path + folder : NULL; c && *c; c++)
@@ -95,16 +97,23 @@ static char *path_of(const char *name)
 }
 
 // O_NONBLOCK: a pipe is refused instead of waiting for a writer.
+static int open_path(const char *path)
+{
+    if (main_from_input && strcmp(path, main_path) == 0) return dup(STDIN_FILENO);
+    return open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+}
+
 static bool read_file(const char *path, struct open_file *open_file)
 {
     struct stat info;
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    int fd = open_path(path);
     if (fd < 0) return false;
     bool ok = fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_size >= 0;
     size_t size = ok ? (size_t)info.st_size : 0;
     open_file->data = ok ? malloc(size + 1) : NULL;
     while (open_file->data && open_file->size < size) {
-        ssize_t got = read(fd, open_file->data + open_file->size, size - open_file->size);
+        ssize_t got = pread(fd, open_file->data + open_file->size, size - open_file->size,
+                            (off_t)open_file->size);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) break;
         open_file->size += (size_t)got;
@@ -140,9 +149,10 @@ static void close_proc(struct aiFileIO *io, struct aiFile *file)
     free(file);
 }
 
-struct aiFileIO files_of(const char *path)
+struct aiFileIO files_of(const char *path, bool from_input)
 {
     main_path = path;
+    main_from_input = from_input;
     return (struct aiFileIO){ .OpenProc = open_proc, .CloseProc = close_proc };
 }
 

@@ -23,7 +23,8 @@ _Noreturn void output_glb(const char *json, const uint8_t *binary, size_t size);
 void *allocate(size_t count, size_t size);
 
 // --- files.c: the imported file and others of its folder
-struct aiFileIO files_of(const char *path);
+// `from_input`: the imported file's bytes are the standard input, a file in memory.
+struct aiFileIO files_of(const char *path, bool from_input);
 const char *files_extension(const char *path); // "obj", lower case, static storage
 
 // --- glb.c: the parts of a glTF file

@@ -1,5 +1,6 @@
-// afterglow-import FILE CPU_SECONDS MEMORY_BYTES. The library starts it; src/importer/importer.h
-// says why. A signal ends it where a limit is reached, or where Assimp fails.
+// afterglow-import FILE CPU_SECONDS MEMORY_BYTES [stdin]. The library starts it;
+// src/importer/importer.h says why. A signal ends it where a limit is reached, or where Assimp
+// fails.
 #include "importer/importer.h"
 
 #include <assimp/postprocess.h>
@@ -36,9 +37,9 @@ static void set_limits(const char *cpu_seconds, const char *memory_bytes)
 #endif
 }
 
-static const struct aiScene *read_scene(const char *path)
+static const struct aiScene *read_scene(const char *path, bool from_input)
 {
-    struct aiFileIO io = files_of(path);
+    struct aiFileIO io = files_of(path, from_input);
     // v grows downwards in glTF. FBX files state their unit; GlobalScale converts it to metres.
     unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType |
                      aiProcess_JoinIdenticalVertices | aiProcess_LimitBoneWeights |
@@ -51,14 +52,14 @@ static const struct aiScene *read_scene(const char *path)
 
 int main(int argc, char **argv)
 {
-    if (argc != 4) {
+    if (argc != 4 && !(argc == 5 && strcmp(argv[4], "stdin") == 0)) {
         fprintf(stderr,
                 "afterglow-import is started by libafterglow to read OBJ, FBX and X files\n");
         return 2;
     }
     output_open();
     set_limits(argv[2], argv[3]);
-    struct importer importer = { .glb = glb_begin(), .from = read_scene(argv[1]) };
+    struct importer importer = { .glb = glb_begin(), .from = read_scene(argv[1], argc == 5) };
     if (importer.from->mNumLights > 0) output_note("lights of this format (no units)");
     if (importer.from->mNumCameras > 0) output_note("cameras of this format");
     import_materials(&importer);

@@ -59,6 +59,7 @@ TEST(a_null_context_is_refused)
     CHECK_REFUSED(NULL, ag_device_list(NULL, &info, 1, &count));
     CHECK_REFUSED(NULL, ag_device_create(NULL, NULL, &device));
     CHECK_REFUSED(NULL, ag_scene_load(NULL, "@cornell", &scene));
+    CHECK_REFUSED(NULL, ag_scene_load_memory(NULL, NULL, &scene));
     CHECK_REFUSED(NULL, ag_scene_create(NULL, &scene));
     CHECK_REFUSED(NULL, ag_image_create(NULL, 1, 1, 1, &image));
     CHECK_REFUSED(NULL, ag_image_read(NULL, "a.png", NULL, &image));

@@ -17,7 +17,7 @@ static bool run_shell(const char *script, size_t max_bytes, double timeout_s)
 {
     char *arguments[] = { (char *)"sh", (char *)"-c", (char *)(uintptr_t)script, NULL };
     test_host()->failure = FAIL_NONE;
-    return process_output(test_host(), "/bin/sh", arguments, max_bytes, timeout_s, &out, &end);
+    return process_output(test_host(), "/bin/sh", arguments, -1, max_bytes, timeout_s, &out, &end);
 }
 
 static void check_output(const char *expected)
@@ -59,7 +59,7 @@ TEST(a_program_that_does_not_end_is_ended)
 TEST(a_missing_program_is_a_failure)
 {
     char *arguments[] = { (char *)"nothing", NULL };
-    CHECK(!process_output(test_host(), test_path("nothing"), arguments, 100, 60, &out, &end));
+    CHECK(!process_output(test_host(), test_path("nothing"), arguments, -1, 100, 60, &out, &end));
     CHECK(test_host()->failure == FAIL_UNSUPPORTED);
     CHECK(strstr(test_last_message(), "cannot start"));
 }

@@ -23,38 +23,109 @@
 
 static const size_t MAX_FILE_BYTES = (size_t)4 << 30;
 
-static bool dispatch(struct import *import, const struct file_bytes *bytes)
+static bool is_one_of(const char *extension, const char *const *list, size_t count)
 {
-    char extension[16];
-    file_extension(import->path, extension);
-    if (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0) {
-        return import_gltf(import, bytes);
-    }
-    if (strcmp(extension, "ply") == 0) return import_ply(import, bytes);
-    static const char *const by_program[] = { "obj", "fbx", "x" };
-    for (size_t i = 0; i < sizeof by_program / sizeof *by_program; i++) {
-        if (strcmp(extension, by_program[i]) == 0) return import_program(import, bytes);
-    }
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(extension, list[i]) == 0) return true;
+    return false;
+}
+
+#define IS_ONE_OF(extension, list) is_one_of((extension), (list), sizeof(list) / sizeof *(list))
+
+static const char *const gltf_formats[] = { "gltf", "glb" };
+static const char *const program_formats[] = { "obj", "fbx", "x" };
+
+static bool dispatch(struct import *import, const char *format, const struct file_bytes *bytes)
+{
+    if (IS_ONE_OF(format, gltf_formats)) return import_gltf(import, bytes);
+    if (strcmp(format, "ply") == 0) return import_ply(import, bytes);
+    if (IS_ONE_OF(format, program_formats)) return import_program(import, bytes);
     return host_fail(import->host, FAIL_UNSUPPORTED,
                      "%s: unknown kind of scene file; use glTF, GLB, OBJ, PLY, FBX or X",
                      import->path);
+}
+
+// Fills a new scene. `import` has host, path, and where other files come from.
+static struct scene *import_scene(struct import *import, const char *format,
+                                  const struct file_bytes *bytes)
+{
+    import->source_bytes = bytes->size;
+    import->scene = scene_create(import->host, import->path);
+    if (!import->scene) return NULL;
+    import->scene->content_hash = hash_bytes(bytes->data, bytes->size, 0);
+    if (dispatch(import, format, bytes) && limits_scene(import->scene)) {
+        import_log_notes(import);
+        return import->scene;
+    }
+    scene_destroy(import->scene);
+    return NULL;
 }
 
 struct scene *import_file(struct host *host, const char *path)
 {
     struct import import = { .host = host, .path = path };
     struct file_bytes bytes = { 0 };
+    char format[16];
     if (!file_read(host, path, MAX_FILE_BYTES, &bytes)) return NULL;
-    import.source_bytes = bytes.size;
-    import.scene = scene_create(host, path);
-    if (!import.scene) goto fail;
-    import.scene->content_hash = hash_bytes(bytes.data, bytes.size, 0);
-    if (!dispatch(&import, &bytes) || !limits_scene(import.scene)) goto fail;
-    import_log_notes(&import);
+    file_extension(path, format);
+    struct scene *scene = import_scene(&import, format, &bytes);
     file_bytes_finish(host, &bytes);
-    return import.scene;
-fail:
+    return scene;
+}
+
+// ---- Files in memory
+
+static bool begins_with(const struct file_bytes *bytes, const char *text)
+{
+    const size_t n = strlen(text);
+    return bytes->size >= n && memcmp(bytes->data, text, n) == 0;
+}
+
+// JSON text; a byte order mark is allowed before it.
+static bool is_json(const struct file_bytes *bytes)
+{
+    size_t at = begins_with(bytes, "\xef\xbb\xbf") ? 3 : 0;
+    while (at < bytes->size && memchr(" \t\r\n", bytes->data[at], 4)) at++;
+    return at < bytes->size && bytes->data[at] == '{';
+}
+
+// Wavefront OBJ has no signature.
+static const char *format_of(const struct file_bytes *bytes)
+{
+    if (begins_with(bytes, "glTF")) return "glb";
+    if (begins_with(bytes, "ply\n") || begins_with(bytes, "ply\r")) return "ply";
+    if (begins_with(bytes, "Kaydara FBX")) return "fbx";
+    if (begins_with(bytes, "xof ")) return "x";
+    return is_json(bytes) ? "gltf" : "";
+}
+
+// The path, with an extension that states the format: from the bytes where the name has none.
+static char *path_in_memory(struct host *host, const struct import_bytes *from,
+                            const struct file_bytes *bytes, char format[16])
+{
+    const char *slash = strrchr(from->name, '/'), *name = slash ? slash + 1 : from->name;
+    const char *folder = from->read || !from->folder ? "" : from->folder;
+    file_extension(name, format);
+    const bool known = IS_ONE_OF(format, gltf_formats) || IS_ONE_OF(format, program_formats) ||
+                       strcmp(format, "ply") == 0;
+    if (!known) strcpy(format, format_of(bytes));
+    return host_sprintf(host, "%s%s%s%s%s", folder, folder[0] ? "/" : "", name,
+                        known || !format[0] ? "" : ".", known ? "" : format);
+}
+
+struct scene *import_memory(struct host *host, const struct import_bytes *from)
+{
+    struct file_bytes bytes = { 0 };
+    struct scene *scene = NULL;
+    char format[16];
+    // A zero byte follows the last, as in a file that was read.
+    if (!file_bytes_copy(host, from->data, from->size, &bytes)) return NULL;
+    char *path = path_in_memory(host, from, &bytes, format);
+    if (path) {
+        struct import import = { .host = host, .path = path, .memory = from };
+        scene = import_scene(&import, format, &bytes);
+    }
     file_bytes_finish(host, &bytes);
-    scene_destroy(import.scene);
-    return NULL;
+    host_free(host, path);
+    return scene;
 }

@@ -3,14 +3,15 @@
 #pragma once
 
 #include "core/file.h"
-#include "scene/scene.h"
+#include "scene/import/import.h"
 
 enum { IMPORT_MAX_NOTES = 24, IMPORT_NOTE_SIZE = 96 };
 
 struct import {
     struct host *host;
-    struct scene *scene; // being filled
-    const char *path;    // as given by the caller
+    struct scene *scene;               // being filled
+    const char *path;                  // as given by the caller
+    const struct import_bytes *memory; // where a file in memory has its other files; else NULL
     size_t source_bytes; // size of the file and of the files it refers to, read so far
     size_t spent;        // bytes charged to the budget
     bool converted;      // glTF made by the importer program from another format
@@ -25,6 +26,10 @@ size_t import_limit(const struct import *import, size_t allowance);
 bool import_charge(struct import *import, size_t count, size_t size);
 // Charges and allocates zeroed memory from the scene's arena. NULL on failure.
 void *import_alloc(struct import *import, size_t count, size_t size);
+
+// Reads a file that import_resolve named; its size counts as source bytes. `missing` NULL: there
+// must be one; else *missing tells, without a failure.
+bool import_read(struct import *import, const char *path, struct file_bytes *out, bool *missing);
 
 // Notes a feature that is ignored ("line primitives"); import_log_notes lists all in one warning.
 void import_note(struct import *import, const char *format, ...)

@@ -5,6 +5,40 @@
 #include <string.h>
 #include <unistd.h>
 
+// From the callback of a scene in memory.
+static bool read_memory(struct import *import, const char *path, struct file_bytes *out,
+                        bool *missing)
+{
+    const struct import_bytes *memory = import->memory;
+    const void *data = NULL;
+    size_t size = 0;
+    *missing = !memory->read || !memory->read(memory->user, path, &data, &size) || !data;
+    return *missing || file_bytes_copy(import->host, data, size, out);
+}
+
+static bool is_from_memory(const struct import *import)
+{
+    return import->memory && (import->memory->read || !import->memory->folder);
+}
+
+bool import_read(struct import *import, const char *path, struct file_bytes *out, bool *missing)
+{
+    bool absent = false;
+    *out = (struct file_bytes){ 0 };
+    if (is_from_memory(import)) {
+        if (!read_memory(import, path, out, &absent)) return false;
+    } else {
+        absent = missing && access(path, R_OK) != 0;
+        if (!absent && !file_read(import->host, path, 0, out)) return false;
+    }
+    import->source_bytes += out->size;
+    if (missing) *missing = absent;
+    if (!absent || missing) return true;
+    return host_fail(
+        import->host, FAIL_FILE, "%s: refers to %s: %s", import->path, import_printable(path).s,
+        import->memory->read ? "there is no such file" : "it has neither a folder nor a callback");
+}
+
 bool import_files_init(struct import_files *files, struct import *import, size_t count)
 {
     *files = (struct import_files){ .import = import, .size = 2 };
@@ -37,8 +71,5 @@ const struct import_file *import_files_read(struct import_files *files, char *pa
         return file;
     }
     file->path = path;
-    file->missing = access(path, R_OK) != 0;
-    if (!file->missing && !file_read(host, path, 0, &file->bytes)) return NULL;
-    files->import->source_bytes += file->bytes.size;
-    return file;
+    return import_read(files->import, path, &file->bytes, &file->missing) ? file : NULL;
 }

@@ -7,10 +7,14 @@
 
 #include "core/process.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 // What a file of a size may cost: processor time, addresses, and bytes of glTF.
 static const double CPU_S = 5.0, CPU_S_PER_MEGABYTE = 4.0;
@@ -114,16 +118,44 @@ static void mask_by_alpha(struct scene *scene)
     }
 }
 
-static bool run(struct import *import, size_t size, struct file_bytes *out, struct process_end *end)
+// The descriptor of a file in memory with the bytes, not one of a standard stream; -1 on failure.
+static int input_of(struct import *import, const struct file_bytes *bytes)
 {
+    int made = memfd_create("afterglow-import", MFD_CLOEXEC);
+    int fd = made >= 0 ? fcntl(made, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : -1;
+    if (made >= 0) close(made);
+    for (size_t at = 0; fd >= 0 && at < bytes->size;) {
+        const ssize_t put = write(fd, bytes->data + at, bytes->size - at);
+        if (put < 0 && errno == EINTR) continue;
+        if (put > 0) at += (size_t)put;
+        if (put > 0) continue;
+        close(fd);
+        fd = -1;
+    }
+    if (fd < 0)
+        host_fail(import->host, FAIL_MEMORY, "%s: cannot be passed to the importer: %s",
+                  import->path, strerror(errno));
+    return fd;
+}
+
+static bool run(struct import *import, const struct file_bytes *bytes, struct file_bytes *out,
+                struct process_end *end)
+{
+    const size_t size = bytes->size;
+    const int input = import->memory ? input_of(import, bytes) : -1;
+    if (import->memory && input < 0) return false;
     char cpu[32], memory[32], *path = (char *)import->path;
     double cpu_s = CPU_S + CPU_S_PER_MEGABYTE * 1e-6 * (double)size;
     snprintf(cpu, sizeof cpu, "%.0f", cpu_s);
     snprintf(memory, sizeof memory, "%zu", import_limit(import, MEMORY_ALLOWANCE_BYTES));
-    char *arguments[] = { (char *)"afterglow-import", path, cpu, memory, NULL };
-    return process_output(import->host, import->host->importer, arguments,
-                          import_limit(import, GLTF_ALLOWANCE_BYTES), WALL_FACTOR * cpu_s, out,
-                          end);
+    char *arguments[] = {
+        (char *)"afterglow-import", path, cpu, memory, import->memory ? (char *)"stdin" : NULL, NULL
+    };
+    const bool ok =
+        process_output(import->host, import->host->importer, arguments, input,
+                       import_limit(import, GLTF_ALLOWANCE_BYTES), WALL_FACTOR * cpu_s, out, end);
+    if (input >= 0) close(input);
+    return ok;
 }
 
 bool import_program(struct import *import, const struct file_bytes *bytes)
@@ -136,7 +168,7 @@ bool import_program(struct import *import, const struct file_bytes *bytes)
                          "installed beside the library; AFTERGLOW_IMPORTER can name it",
                          import->path);
     }
-    if (!run(import, bytes->size, &out, &end)) return false;
+    if (!run(import, bytes, &out, &end)) return false;
     struct stream stream = { import, out.data, out.data + out.size };
     import->converted = true;
     bool ok = read_stream(import, &stream, &end, &gltf) && import_charge(import, out.size, 1) &&

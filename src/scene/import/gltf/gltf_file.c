@@ -188,8 +188,7 @@ static bool read_external(struct gltf *gltf, size_t index, const char *uri)
         return true;
     }
     struct file_bytes bytes = { 0 };
-    if (!file_read(import->host, buffer->path, 0, &bytes)) return false;
-    import->source_bytes += bytes.size;
+    if (!import_read(import, buffer->path, &bytes, NULL)) return false;
     buffer->owned = bytes.data;
     buffer->data = bytes.data;
     buffer->size = bytes.size;
