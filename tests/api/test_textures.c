@@ -277,6 +277,39 @@ TEST(textured_objects_that_come_later_look_as_in_a_new_renderer)
     fixture_close(&f);
 }
 
+// Alpha moves from one side of the cutoff to the other: shadows and volumes follow.
+TEST(a_mask_that_closes_or_opens_looks_as_in_a_new_renderer)
+{
+    static const char *const gi[] = { "none", "lpv" };
+    for (int i = 0; i < 2; i++) {
+        struct renderer_fixture f = fixture_open(gi[i], NULL);
+        struct session s = { f.context, f.device, f.scene };
+        const float up[16] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 2, 0, 1 };
+        struct ag_material_info info;
+        struct ag_scene_info counts;
+        struct ag_material_desc material;
+        ag_material_desc_default(&material);
+        material.alpha_mode = AG_ALPHA_MASK;
+        material.double_sided = true;
+        material.base_color[3] = 0.9f;
+        add_square(&s, &material);
+        ok(&s, ag_scene_get_info(s.scene, 0, 0, &counts));
+        ok(&s, ag_scene_set_instance_transform(s.scene, counts.instances - 1, up));
+        ok(&s, ag_scene_set_instance_mobility(s.scene, counts.instances - 1, AG_MOBILITY_STATIC));
+        for (int k = 0; k < 3; k++) ok(&s, ag_renderer_render(f.renderer, &f.frame));
+        struct ag_image *closed = fixture_read(&f, "color");
+        ok(&s, ag_scene_get_material(s.scene, counts.materials - 1, &info));
+        info.material.base_color[3] = 0.1f;
+        ok(&s, ag_scene_set_material(s.scene, counts.materials - 1, &info.material));
+        ok(&s, ag_renderer_render(f.renderer, &f.frame));
+        struct ag_image *open = fixture_read(&f, "color");
+        CHECK(memcmp(closed->pixels, open->pixels, 3 * PIXELS * sizeof(float)) != 0);
+        check_equal(&s, gi[i], open, rendered(&s, s.scene, gi[i], &f.frame.camera, "color"));
+        ag_image_destroy(s.context, closed);
+        fixture_close(&f);
+    }
+}
+
 // ---- Images of scenes
 
 TEST(missing_channels_are_grey_and_opaque)
