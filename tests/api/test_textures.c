@@ -214,6 +214,46 @@ TEST(colours_are_sRGB_unless_the_image_says_linear)
     }
 }
 
+// An emissive square beside a floor, by a texture of 128/255 or by that factor.
+static void add_lamp(struct session *s, bool textured)
+{
+    static const uint8_t half[1] = { 128 };
+    const float down[16] = { 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, -1, 1, 1 };
+    struct ag_material_desc material;
+    struct ag_material_maps maps;
+    ag_material_desc_default(&material);
+    ag_material_maps_default(&maps);
+    struct ag_scene_image_desc desc = texels(half, 1, 1, 1);
+    desc.linear = true;
+    if (textured) maps.emissive.image = add_image(s, desc);
+    for (int c = 0; c < 3; c++) material.emissive[c] = textured ? 100 : 100 * (128.0f / 255.0f);
+    material.maps = &maps;
+    add_square(s, &material);
+    ag_material_desc_default(&material);
+    add_square(s, &material);
+    ok(s, ag_scene_set_instance_transform(s->scene, 1, down));
+}
+
+TEST(linear_emissive_maps_light_the_scene_as_their_values_do)
+{
+    struct session a = open_session(true, NULL), b = open_session(true, NULL);
+    add_lamp(&a, true);
+    add_lamp(&b, false);
+    struct ag_image *first = rendered(&a, a.scene, "lpv", &IN_FRONT, "irradiance"),
+                    *second = rendered(&b, b.scene, "lpv", &IN_FRONT, "irradiance");
+    CHECK(mean_of(second) > 0);
+    CHECK_RELATIVE(mean_of(first), mean_of(second), 0.005);
+    ag_image_destroy(a.context, first);
+    ag_image_destroy(b.context, second);
+    first = traced(&a, a.scene, &IN_FRONT);
+    second = traced(&b, b.scene, &IN_FRONT);
+    CHECK_RELATIVE(mean_of(first), mean_of(second), 0.005);
+    ag_image_destroy(a.context, first);
+    ag_image_destroy(b.context, second);
+    close_session(&a);
+    close_session(&b);
+}
+
 // Rows from the top; the left texel of the upper row is a hole.
 TEST(masks_cut_holes_and_rows_start_at_the_top)
 {
