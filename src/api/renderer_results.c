@@ -19,16 +19,27 @@ enum ag_result ag_renderer_exposure(struct ag_renderer *r, float *ev)
     return api_done(context, frame_exposure(r->frame, ev));
 }
 
+// The first entries of a list of the layer below, whose structs have the layout of the public ones.
+#define SAME_LAYOUT(ours, theirs, name, value)                                                     \
+    _Static_assert(sizeof(struct ours) == sizeof(struct theirs) &&                                 \
+                       offsetof(struct ours, name) == offsetof(struct theirs, name) &&             \
+                       offsetof(struct ours, value) == offsetof(struct theirs, value),             \
+                   "entries are copied whole")
+SAME_LAYOUT(ag_timing, gpu_timing, name, ms);
+SAME_LAYOUT(ag_memory, gpu_memory, owner, bytes);
+
+static int copy_entries(void *out, int capacity, const void *entries, int count, size_t entry_bytes)
+{
+    const int copied = count < capacity ? count : capacity;
+    if (copied > 0) memcpy(out, entries, (size_t)copied * entry_bytes);
+    return count;
+}
+
 static int finished_timings(const struct ag_renderer *r, struct ag_timing *out, int capacity)
 {
     struct gpu_timing timings[MAX_PASSES];
-    int count = gpu_client_timings(r->device->gpu, r->client, timings, MAX_PASSES);
-    _Static_assert(sizeof out->name == sizeof timings->name, "names are copied whole");
-    for (int i = 0; i < count && i < capacity; i++) {
-        memcpy(out[i].name, timings[i].name, sizeof out[i].name);
-        out[i].ms = timings[i].ms;
-    }
-    return count;
+    const int count = gpu_client_timings(r->device->gpu, r->client, timings, MAX_PASSES);
+    return copy_entries(out, capacity, timings, count, sizeof *out);
 }
 
 int ag_renderer_timings(struct ag_renderer *r, struct ag_timing *out, int capacity)
@@ -44,23 +55,12 @@ int ag_renderer_finished_timings(struct ag_renderer *r, struct ag_timing *out, i
     return finished_timings(r, out, capacity);
 }
 
-static int copy_owners(const struct gpu_memory *owners, int count, struct ag_memory *out,
-                       int capacity)
-{
-    _Static_assert(sizeof out->owner == sizeof owners->owner, "names are copied whole");
-    for (int i = 0; i < count && i < capacity; i++) {
-        memcpy(out[i].owner, owners[i].owner, sizeof out[i].owner);
-        out[i].bytes = owners[i].bytes;
-    }
-    return count;
-}
-
 int ag_renderer_memory(struct ag_renderer *r, struct ag_memory *out, int capacity)
 {
     if (!r || capacity < 0 || (!out && capacity > 0)) return 0;
     struct gpu_memory owners[MAX_OWNERS];
     const int count = gpu_client_memory(r->device->gpu, r->client, owners, MAX_OWNERS);
-    return copy_owners(owners, count, out, capacity);
+    return copy_entries(out, capacity, owners, count, sizeof *out);
 }
 
 int ag_device_memory(struct ag_device *device, struct ag_memory *out, int capacity)
@@ -68,7 +68,7 @@ int ag_device_memory(struct ag_device *device, struct ag_memory *out, int capaci
     if (!device || capacity < 0 || (!out && capacity > 0)) return 0;
     struct gpu_memory owners[MAX_OWNERS];
     const int count = gpu_memory_by_owner(device->gpu, owners, MAX_OWNERS);
-    return copy_owners(owners, count, out, capacity);
+    return copy_entries(out, capacity, owners, count, sizeof *out);
 }
 
 enum ag_result ag_renderer_picked(struct ag_renderer *r, struct ag_pick *out)
