@@ -193,7 +193,7 @@ AG_API enum ag_result ag_scene_default_camera(struct ag_scene *scene, int animat
                                               struct ag_camera *out, bool *made_up);
 
 struct ag_default_lighting {
-    bool needed;            ///< the scene has no light, no emission and no sky
+    bool needed;            ///< the scene has no light, no sky and at most negligible emission
     float sun_direction[3]; ///< of the emitted light
     float sun_lux[3];
     float sky[3];         ///< cd/m²
