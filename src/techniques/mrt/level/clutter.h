@@ -1,0 +1,65 @@
+// Clutter: parts of a scene inside blocks that no wall of a block stands for (Loos 2015, section
+// 5.1). A connected part of a mesh is clutter where more than half of its area is in blocks, away
+// from the walls that it faces away from or does not face: by the rule that tells pixels of walls
+// from surfaces inside (light_map.glsl).
+//
+// Its triangles have charts (scene/charts). Their parts in each block are merged into at most
+// `max_faces` faces of that block. A face has one radiosity, the constant basis of section 5.3.2.
+#pragma once
+
+#include "scene/charts/charts.h"
+#include "trace/trace.h"
+
+#include "techniques/mrt/level/block_map.h"
+
+// A scene with some of the triangles of another. Vertices, materials and nodes are shared.
+struct mrt_part {
+    struct scene scene;
+    struct scene_pose pose;
+};
+
+struct mrt_clutter_face {
+    int block;
+    uint32_t first_texel, texel_count; // in mrt_clutter.texels
+};
+
+struct mrt_clutter {
+    struct host *host;
+    size_t triangles; // of the clutter; 0: there is none, and the rest is empty
+    struct mrt_part walls, objects;
+    uint32_t *indices;              // of both
+    struct charts charts;           // of `objects`
+    struct mrt_clutter_face *faces; // in the order of their blocks
+    int face_count;
+    uint32_t *texels;         // of the charts, face after face
+    int *face_of_texel;       // [charts.texel_count]
+    size_t *first_triangle;   // [instances], of chart_triangle
+    uint32_t *chart_triangle; // [triangles of `objects`, instance after instance], of
+                              // charts.triangles; CHART_NONE: without area
+};
+
+struct mrt_clutter_options {
+    float texels_per_edge; // of a mean block
+    int max_faces;         // in a block
+};
+
+// The pose outlives the clutter. mrt_clutter_finish accepts zero.
+bool mrt_clutter_init(struct mrt_clutter *out, struct host *host, const struct scene_pose *pose,
+                      const struct mrt_block_map *map, const struct mrt_clutter_options *options);
+void mrt_clutter_finish(struct mrt_clutter *clutter);
+
+// ---- clutter_find.c
+
+// Writes whether each triangle of the scene, instance after instance, is clutter. Returns their
+// number. False without memory.
+bool mrt_find_clutter(struct host *host, const struct scene_pose *pose,
+                      const struct mrt_block_map *map, bool *is_clutter, size_t *count);
+// The block that contains the point, −1: none.
+int mrt_block_of_point(const struct mrt_block_map *map, vec3s world, vec3s *cell);
+
+// ---- clutter_faces.c
+
+// The face at a hit of `objects`; −1: of a triangle without area.
+int mrt_face_of_hit(const struct mrt_clutter *clutter, const struct trace_hit *hit);
+bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
+                            int max_faces);

@@ -1,0 +1,222 @@
+// Parts of charts in blocks, merged into faces. The largest parts of a block begin a face; each
+// other one joins the face whose place and normal are nearest to its own.
+#include "techniques/mrt/level/clutter.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct texel_place {
+    int block;
+    uint32_t chart, texel;
+};
+
+// Texels of a chart in a block.
+struct piece {
+    int block, face;
+    uint32_t chart, first, count; // of the sorted texels
+    float area_m2;
+    vec3s centre, normal;
+};
+
+struct builder {
+    struct mrt_clutter *clutter;
+    const struct mrt_block_map *map;
+    struct texel_place *places;
+    struct piece *pieces;
+    uint32_t piece_count;
+};
+
+// ---- blocks of texels
+
+// Of a texel outside of all blocks, the one whose middle is nearest.
+static int block_of(const struct mrt_block_map *map, vec3s position)
+{
+    vec3s cell;
+    int nearest = mrt_block_of_point(map, position, &cell);
+    float least = INFINITY;
+    if (nearest >= 0) return nearest;
+    for (int b = 0; b < map->count; b++) {
+        const vec3s middle = mrt_warp_point(map->blocks[b].corner, glms_vec3_zero());
+        const float distance2 = glms_vec3_distance2(position, middle);
+        if (!(distance2 < least)) continue;
+        least = distance2;
+        nearest = b;
+    }
+    return nearest < 0 ? 0 : nearest;
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct texel_place *p = a, *q = b;
+    if (p->block != q->block) return p->block < q->block ? -1 : 1;
+    if (p->chart != q->chart) return p->chart < q->chart ? -1 : 1;
+    return p->texel < q->texel ? -1 : p->texel > q->texel;
+}
+
+static void place_texels(const struct builder *s)
+{
+    const struct charts *charts = &s->clutter->charts;
+    for (uint32_t c = 0; c < charts->count; c++)
+        for (uint32_t i = 0; i < charts->charts[c].texel_count; i++) {
+            const uint32_t texel = charts->charts[c].first_texel + i;
+            s->places[texel] =
+                (struct texel_place){ block_of(s->map, charts->texels[texel].position), c, texel };
+        }
+    qsort(s->places, charts->texel_count, sizeof *s->places, compare_places);
+}
+
+// ---- pieces
+
+static void add_to_piece(struct piece *piece, const struct chart_texel *texel)
+{
+    piece->count++;
+    piece->area_m2 += texel->area_m2;
+    piece->centre = glms_vec3_muladds(texel->position, texel->area_m2, piece->centre);
+}
+
+static void make_pieces(struct builder *s)
+{
+    const struct charts *charts = &s->clutter->charts;
+    struct piece *last = NULL;
+    for (uint32_t i = 0; i < charts->texel_count; i++) {
+        const struct texel_place *place = &s->places[i];
+        if (!last || last->block != place->block || last->chart != place->chart) {
+            last = &s->pieces[s->piece_count++];
+            *last = (struct piece){ .block = place->block,
+                                    .chart = place->chart,
+                                    .first = i,
+                                    .normal = charts->charts[place->chart].normal };
+        }
+        add_to_piece(last, &charts->texels[place->texel]);
+    }
+    for (uint32_t i = 0; i < s->piece_count; i++)
+        s->pieces[i].centre = glms_vec3_divs(s->pieces[i].centre, s->pieces[i].area_m2);
+}
+
+// By block, then descending area.
+static int compare_pieces(const void *a, const void *b)
+{
+    const struct piece *p = a, *q = b;
+    if (p->block != q->block) return p->block < q->block ? -1 : 1;
+    if (p->area_m2 != q->area_m2) return p->area_m2 > q->area_m2 ? -1 : 1;
+    return p->chart < q->chart ? -1 : p->chart > q->chart;
+}
+
+static float edge2_of(const struct mrt_block *block)
+{
+    const mat3s j = mrt_warp_jacobian(block->corner, glms_vec3_zero());
+    return powf(fabsf(glms_mat3_det(j)), 2.0f / 3.0f);
+}
+
+// Relative to the edge of a block, and to a right angle.
+static float difference(const struct piece *a, const struct piece *b, float edge2)
+{
+    return glms_vec3_distance2(a->centre, b->centre) / edge2 + 1.0f -
+           glms_vec3_dot(a->normal, b->normal);
+}
+
+static int nearest_face(const struct piece *begun, int count, const struct piece *piece,
+                        float edge2)
+{
+    int nearest = 0;
+    for (int k = 1; k < count; k++)
+        if (difference(&begun[k], piece, edge2) < difference(&begun[nearest], piece, edge2))
+            nearest = k;
+    return begun[nearest].face;
+}
+
+static int number_faces(const struct builder *s, int max_faces)
+{
+    int faces = 0;
+    for (uint32_t first = 0, i = 0; i < s->piece_count; i++) {
+        struct piece *piece = &s->pieces[i];
+        if (piece->block != s->pieces[first].block) first = i;
+        if (i - first < (uint32_t)max_faces)
+            piece->face = faces++;
+        else
+            piece->face = nearest_face(&s->pieces[first], max_faces, piece,
+                                       edge2_of(&s->map->blocks[piece->block]));
+    }
+    return faces;
+}
+
+// ---- faces
+
+static void fill_faces(const struct builder *s)
+{
+    struct mrt_clutter *clutter = s->clutter;
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < s->piece_count; i++) {
+        const struct piece *piece = &s->pieces[i];
+        clutter->faces[piece->face].block = piece->block;
+        clutter->faces[piece->face].texel_count += piece->count;
+        for (uint32_t t = 0; t < piece->count; t++)
+            clutter->face_of_texel[s->places[piece->first + t].texel] = piece->face;
+    }
+    for (int f = 0; f < clutter->face_count; f++) {
+        clutter->faces[f].first_texel = first;
+        first += clutter->faces[f].texel_count;
+        clutter->faces[f].texel_count = 0;
+    }
+    for (uint32_t t = 0; t < clutter->charts.texel_count; t++) {
+        struct mrt_clutter_face *face = &clutter->faces[clutter->face_of_texel[t]];
+        clutter->texels[face->first_texel + face->texel_count++] = t;
+    }
+}
+
+static void index_triangles(struct mrt_clutter *clutter)
+{
+    memset(clutter->chart_triangle, 0xff, clutter->triangles * sizeof *clutter->chart_triangle);
+    for (uint32_t t = 0; t < clutter->charts.triangle_count; t++) {
+        const struct chart_triangle *triangle = &clutter->charts.triangles[t];
+        clutter->chart_triangle[clutter->first_triangle[triangle->instance] + triangle->triangle] =
+            t;
+    }
+}
+
+static bool make_faces(struct builder *s, int max_faces)
+{
+    struct mrt_clutter *clutter = s->clutter;
+    place_texels(s);
+    make_pieces(s);
+    qsort(s->pieces, s->piece_count, sizeof *s->pieces, compare_pieces);
+    clutter->face_count = number_faces(s, max_faces);
+    clutter->faces = host_alloc(clutter->host, (size_t)clutter->face_count, sizeof *clutter->faces);
+    if (!clutter->faces) return false;
+    fill_faces(s);
+    index_triangles(clutter);
+    return true;
+}
+
+bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
+                            int max_faces)
+{
+    const size_t texels = clutter->charts.texel_count;
+    struct host *host = clutter->host;
+    struct builder s = { .clutter = clutter, .map = map };
+    s.places = host_alloc(host, texels, sizeof *s.places);
+    s.pieces = host_alloc(host, texels, sizeof *s.pieces);
+    clutter->texels = host_alloc(host, texels, sizeof *clutter->texels);
+    clutter->face_of_texel = host_alloc(host, texels, sizeof *clutter->face_of_texel);
+    clutter->chart_triangle = host_alloc(host, clutter->triangles, sizeof *clutter->chart_triangle);
+    const bool ok = s.places && s.pieces && clutter->texels && clutter->face_of_texel &&
+                    clutter->chart_triangle && make_faces(&s, max_faces);
+    host_free(host, s.places);
+    host_free(host, s.pieces);
+    return ok;
+}
+
+int mrt_face_of_hit(const struct mrt_clutter *clutter, const struct trace_hit *hit)
+{
+    const struct charts *charts = &clutter->charts;
+    const uint32_t index =
+        clutter->chart_triangle[clutter->first_triangle[hit->instance] + hit->triangle];
+    if (index == CHART_NONE) return -1;
+    const vec2s *place = charts->triangles[index].place;
+    vec2s at = glms_vec2_scale(place[0], 1.0f - hit->u - hit->v);
+    at = glms_vec2_muladds(place[1], hit->u, at);
+    at = glms_vec2_muladds(place[2], hit->v, at);
+    const uint32_t owner = charts->owner[(size_t)at.y * charts->width + (size_t)at.x];
+    return owner == CHART_NONE ? -1 : clutter->face_of_texel[owner];
+}

@@ -1,0 +1,151 @@
+// Which parts of a scene are clutter.
+#include "techniques/mrt/level/clutter.h"
+
+#include "scene/mesh_parts.h"
+
+#include "techniques/mrt/level/wall.h"
+
+#include <math.h>
+
+// As in light_map.glsl: edges of the cell, and cosines.
+static const float WALL_DISTANCE[2] = { 0.1f, 0.15f };
+static const float WALL_COSINE[2] = { 0.35f, 0.65f };
+
+static float smoothstep(const float edge[2], float x)
+{
+    const float t = fminf(fmaxf((x - edge[0]) / (edge[1] - edge[0]), 0.0f), 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+static struct box3 block_bounds(const struct mrt_block *block)
+{
+    struct box3 box = box3_empty();
+    for (int c = 0; c < MRT_CORNERS; c++) box = box3_add_point(box, block->corner[c]);
+    return box;
+}
+
+static bool is_in_box(struct box3 box, vec3s p)
+{
+    for (int a = 0; a < 3; a++)
+        if (!(p.raw[a] >= box.min.raw[a] && p.raw[a] <= box.max.raw[a])) return false;
+    return true;
+}
+
+int mrt_block_of_point(const struct mrt_block_map *map, vec3s world, vec3s *cell)
+{
+    for (int b = 0; b < map->count; b++) {
+        if (!is_in_box(block_bounds(&map->blocks[b]), world)) continue;
+        if (!mrt_warp_inverse(map->blocks[b].corner, world, cell)) continue;
+        if (glms_vec3_max(glms_vec3_abs(*cell)) <= 0.5f) return b;
+    }
+    return -1;
+}
+
+// How much a surface in a block is one of its walls, 0…1.
+static float share_of_walls(const struct mrt_block *block, vec3s cell, vec3s normal)
+{
+    const mat3s j = mrt_warp_jacobian(block->corner, cell);
+    const vec3s n = vec3_unit(glms_mat3_mulv(glms_mat3_transpose(j), normal));
+    float most = 0.0f;
+    for (int f = 0; f < CUBE_FACES; f++) {
+        if (mrt_block_is_open(block, f)) continue;
+        const float side = f & 1 ? 1.0f : -1.0f;
+        const float distance = 0.5f - side * cell.raw[f / 2];
+        const float share = smoothstep(WALL_COSINE, -side * n.raw[f / 2]) *
+                            (1.0f - smoothstep(WALL_DISTANCE, distance));
+        most = fmaxf(most, share);
+    }
+    return most;
+}
+
+// Points of a triangle: the middles of its parts when its edges are cut into so many.
+enum { CUTS = 4, POINTS = CUTS * CUTS };
+
+static vec3s point_of(const vec3s corner[3], int i)
+{
+    // Row r of the cut triangle has 2 r + 1 parts, upright and reversed in turns.
+    const int row = (int)sqrtf((float)i), column = i - row * row;
+    const float third = column % 2 ? 2.0f : 1.0f;
+    const float v = ((float)(column / 2) + third / 3.0f) / CUTS;
+    const float up = ((float)row + (column % 2 ? 1.0f : 2.0f) / 3.0f) / CUTS;
+    vec3s p = glms_vec3_scale(corner[0], 1.0f - up);
+    p = glms_vec3_muladds(corner[1], up - v, p);
+    return glms_vec3_muladds(corner[2], v, p);
+}
+
+struct finder {
+    struct host *host;
+    const struct scene_pose *pose;
+    const struct mrt_block_map *map;
+};
+
+struct part_area {
+    double all, inside; // inside: in blocks, on no wall
+};
+
+static void add_triangle(const struct finder *finder, const vec3s corner[3], bool mirrored,
+                         struct part_area *area)
+{
+    vec3s normal =
+        glms_vec3_cross(glms_vec3_sub(corner[1], corner[0]), glms_vec3_sub(corner[2], corner[0]));
+    const double of_point = (double)glms_vec3_norm(normal) / (2.0 * POINTS);
+    if (!isfinite(of_point)) return;
+    normal = vec3_unit(mirrored ? glms_vec3_negate(normal) : normal);
+    for (int i = 0; i < POINTS; i++) {
+        vec3s cell;
+        const int block = mrt_block_of_point(finder->map, point_of(corner, i), &cell);
+        area->all += of_point;
+        if (block < 0 || mrt_block_is_tube(&finder->map->blocks[block])) continue;
+        const float share = share_of_walls(&finder->map->blocks[block], cell, normal);
+        area->inside += of_point * (1.0 - (double)share);
+    }
+}
+
+static void corners_of(const struct scene_pose *pose, int instance, uint32_t triangle,
+                       vec3s corner[3])
+{
+    const struct mesh *mesh = scene_mesh_of(pose->scene, instance);
+    const vec3s *deformed = pose->deformed[instance].positions;
+    const mat4s world_from_mesh = pose_world_from_instance(pose, instance);
+    for (uint32_t k = 0; k < 3; k++) {
+        const uint32_t v = mesh->indices[3 * (size_t)triangle + k];
+        corner[k] = deformed ? deformed[v] : mat4_point(world_from_mesh, mesh->positions[v]);
+    }
+}
+
+static bool find_in_instance(const struct finder *finder, int instance, bool *is_clutter)
+{
+    const struct mesh *mesh = scene_mesh_of(finder->pose->scene, instance);
+    const uint32_t count = mesh->index_count / 3;
+    const bool mirrored = pose_is_mirrored(finder->pose, instance);
+    uint32_t *part = host_alloc(finder->host, count, sizeof *part);
+    const int parts = part ? mesh_parts(finder->host, mesh, part) : -1;
+    struct part_area *area =
+        parts < 0 ? NULL : host_alloc(finder->host, (size_t)parts, sizeof *area);
+    for (uint32_t t = 0; area && t < count; t++) {
+        vec3s corner[3];
+        corners_of(finder->pose, instance, t, corner);
+        add_triangle(finder, corner, mirrored, &area[part[t]]);
+    }
+    for (uint32_t t = 0; area && t < count; t++)
+        is_clutter[t] = 2.0 * area[part[t]].inside > area[part[t]].all;
+    const bool ok = area;
+    host_free(finder->host, part);
+    host_free(finder->host, area);
+    return ok;
+}
+
+bool mrt_find_clutter(struct host *host, const struct scene_pose *pose,
+                      const struct mrt_block_map *map, bool *is_clutter, size_t *count)
+{
+    const struct finder finder = { host, pose, map };
+    size_t first = 0;
+    *count = 0;
+    for (int i = 0; i < pose->scene->instance_count; i++) {
+        const uint32_t triangles = scene_mesh_of(pose->scene, i)->index_count / 3;
+        if (triangles > 0 && !find_in_instance(&finder, i, is_clutter + first)) return false;
+        for (uint32_t t = 0; t < triangles; t++) *count += is_clutter[first + t];
+        first += triangles;
+    }
+    return true;
+}

@@ -1,0 +1,162 @@
+// Rays of delta operators.
+#include "techniques/mrt/level/delta.h"
+
+#include "core/parallel.h"
+
+#include "techniques/mrt/dictionary/cube_operators.h"
+#include "techniques/mrt/level/probes.h"
+
+#include <string.h>
+
+// Rays start and end so much of their way from walls: clutter may stand on them.
+static const float OFFSET = 1e-3f;
+
+struct job {
+    const struct mrt_delta_input *input;
+    struct mrt_delta *out;
+    struct mrt_rays rays;
+    enum mrt_measure measure;
+    int first_face;
+    bool *touched; // [points]
+};
+
+// Rays of a point towards an opening, and those that pass.
+struct passing {
+    float all[CUBE_FACES], kept[CUBE_FACES];
+};
+
+static bool is_blocked(const struct mrt_delta_input *input, vec3s from, vec3s to,
+                       struct trace_hit *hit)
+{
+    const vec3s start = mrt_warp_point(input->block->corner, from);
+    const vec3s way = glms_vec3_sub(mrt_warp_point(input->block->corner, to), start);
+    return trace_closest(input->objects, glms_vec3_muladds(way, OFFSET, start), way,
+                         1.0f - 2.0f * OFFSET, hit);
+}
+
+static void subtract_wall(const struct job *job, size_t row, const float *weight,
+                          const struct mrt_hit *wall)
+{
+    const struct matrix_f32 *l_imp = job->input->l_imp;
+    struct matrix_f32 *b = &job->out->b;
+    for (int q = 0; q < job->rays.values; q++) {
+        float *to = b->at + (row + (size_t)q) * b->stride;
+        for (int k = 0; k < wall->texels; k++) {
+            const float *from = l_imp->at + (size_t)wall->texel[k] * l_imp->stride;
+            const float w = weight[q] * wall->weight[k];
+            for (size_t m = 0; m < b->columns; m++) to[m] -= w * from[m];
+        }
+    }
+}
+
+static void add_face(const struct job *job, size_t row, const float *weight, int face)
+{
+    const int column = face - job->first_face;
+    struct matrix_f32 *c = &job->out->c;
+    if (column < 0 || column >= (int)c->columns) return;
+    for (int q = 0; q < job->rays.values; q++)
+        c->at[(row + (size_t)q) * c->stride + (size_t)column] += weight[q];
+}
+
+// Returns whether the ray meets the back of clutter.
+static bool follow(const struct job *job, size_t i, struct mrt_point point, int ray,
+                   struct passing *passing)
+{
+    const size_t row = i * (size_t)job->rays.values;
+    const float *weight = job->rays.weight + (size_t)ray * (size_t)job->rays.values;
+    const vec3s way = glms_mat3_mulv(point.frame, job->rays.direction[ray]);
+    struct mrt_hit wall;
+    struct trace_hit hit;
+    mrt_shape_trace(&job->input->shape, point.position, way, &wall);
+    const vec3s end = glms_vec3_muladds(way, wall.distance, point.position);
+    const bool blocked = is_blocked(job->input, point.position, end, &hit);
+    if (wall.opening >= 0) {
+        passing->all[wall.opening] += weight[0];
+        if (!blocked) passing->kept[wall.opening] += weight[0];
+    }
+    if (!blocked) return false;
+    job->touched[i] = true;
+    if (wall.opening < 0) subtract_wall(job, row, weight, &wall);
+    add_face(job, row, weight, mrt_face_of_hit(job->input->clutter, &hit));
+    return !hit.front;
+}
+
+static void trace_point(void *user, size_t i)
+{
+    const struct job *job = user;
+    const struct mrt_point point =
+        mrt_gather_point(&job->input->shape, job->input->probes, job->measure, (int)i);
+    struct passing passing = { 0 };
+    int backs = 0;
+    for (int r = 0; r < job->rays.count; r++) backs += follow(job, i, point, r, &passing);
+    job->out->inside[i] = 2 * backs > job->rays.count;
+    for (int f = 0; f < CUBE_FACES; f++)
+        job->out->kept[f][i] = passing.all[f] > 0.0f ? passing.kept[f] / passing.all[f] : 1.0f;
+}
+
+static size_t points_of(const struct mrt_delta_input *input, enum mrt_measure measure)
+{
+    return (size_t)(measure == MRT_PROBE ? mrt_probes_of_block(input->probes)
+                                         : mrt_shape_texels(&input->shape));
+}
+
+static bool trace_measure(struct mrt_delta_block *out, const struct mrt_delta_input *input,
+                          enum mrt_measure measure)
+{
+    const size_t points = points_of(input, measure);
+    struct host *host = out->host;
+    struct mrt_delta *delta = &out->of[measure];
+    struct job job = {
+        .input = input, .out = delta, .measure = measure, .first_face = out->first_face
+    };
+    bool ok = mrt_rays_init(host, measure, input->rays, &job.rays);
+    const size_t rows = ok ? points * (size_t)job.rays.values : 0;
+    job.touched = host_alloc(host, points, sizeof *job.touched);
+    delta->inside = host_alloc(host, points, sizeof *delta->inside);
+    for (int f = 0; f < CUBE_FACES; f++) {
+        delta->kept[f] = host_alloc(host, points, sizeof **delta->kept);
+        ok = ok && delta->kept[f];
+    }
+    ok = ok && job.touched && delta->inside &&
+         matrix_f32_init(host, &delta->b, rows, input->l_imp->columns) &&
+         matrix_f32_init(host, &delta->c, rows, (size_t)out->face_count);
+    if (ok) parallel_for(points, 4, trace_point, &job);
+    for (size_t i = 0; ok && i < points; i++) out->touched = out->touched || job.touched[i];
+    host_free(host, job.touched);
+    mrt_rays_finish(host, &job.rays);
+    return ok;
+}
+
+int mrt_faces_of_block(const struct mrt_clutter *clutter, int block, int *first)
+{
+    int count = 0;
+    *first = 0;
+    for (int f = 0; f < clutter->face_count; f++) {
+        if (clutter->faces[f].block != block) continue;
+        if (count++ == 0) *first = f;
+    }
+    return count;
+}
+
+bool mrt_delta_block_init(struct mrt_delta_block *out, struct host *host,
+                          const struct mrt_delta_input *input)
+{
+    *out = (struct mrt_delta_block){ .host = host };
+    out->face_count = mrt_faces_of_block(input->clutter, input->index, &out->first_face);
+    const bool ok = trace_measure(out, input, MRT_IRRADIANCE) &&
+                    trace_measure(out, input, MRT_VECTOR) &&
+                    (input->probes == 0 || trace_measure(out, input, MRT_PROBE));
+    if (!ok) mrt_delta_block_finish(out);
+    return ok;
+}
+
+void mrt_delta_block_finish(struct mrt_delta_block *delta)
+{
+    for (int m = 0; delta->host && m < MRT_MEASURES; m++) {
+        matrix_f32_finish(delta->host, &delta->of[m].b);
+        matrix_f32_finish(delta->host, &delta->of[m].c);
+        host_free(delta->host, delta->of[m].inside);
+        for (int f = 0; f < CUBE_FACES; f++) host_free(delta->host, delta->of[m].kept[f]);
+    }
+    *delta = (struct mrt_delta_block){ 0 };
+}

@@ -1,0 +1,288 @@
+// Delta operators of a room with one box: laws, and rays of another ray caster through the scene.
+#include "framework/test.h"
+
+#include "core/rng.h"
+#include "core/sampling.h"
+#include "scene/raycast.h"
+
+#include "techniques/mrt/dictionary/cube_operators.h"
+#include "techniques/mrt/dictionary/gather.h"
+#include "techniques/mrt/level/delta_gather.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { TEXELS = 8, ALL = 6 * TEXELS * TEXELS, RAYS = 1024, CHECKED_RAYS = 16384, FACES = 6 };
+enum { CONSTANT, LINEAR, MODES };
+
+// A closed room of one block, 2 m along its edges, and a box that stands on its floor.
+struct room {
+    struct scene *scene;
+    struct scene_pose pose;
+    struct mrt_block_map map;
+    struct mrt_clutter clutter;
+    struct trace_scene *objects;
+    struct matrix_f32 l_imp;
+    struct mrt_shape shape;
+    struct mrt_delta_block delta;
+};
+
+static void add_box(struct scene *scene, struct box3 box, bool inwards)
+{
+    vec3s positions[24];
+    uint32_t indices[36];
+    for (uint32_t f = 0; f < 6; f++) {
+        for (uint32_t k = 0; k < 4; k++) {
+            const float u = k == 1 || k == 2 ? 1.0f : 0.0f, v = k >= 2 ? 1.0f : 0.0f;
+            const vec3s cell = cube_face_point((int)f, u, v);
+            for (int a = 0; a < 3; a++)
+                positions[4 * f + k].raw[a] =
+                    box.min.raw[a] + (cell.raw[a] + 0.5f) * (box.max.raw[a] - box.min.raw[a]);
+        }
+        const uint32_t quad[6] = { 0, 1, 2, 0, 2, 3 };
+        for (uint32_t k = 0; k < 6; k++) indices[6 * f + k] = 4 * f + quad[inwards ? 5 - k : k];
+    }
+    const struct mesh mesh = { .vertex_count = 24,
+                               .index_count = 36,
+                               .positions = positions,
+                               .indices = indices,
+                               .material = -1 };
+    const struct node node = node_default();
+    const struct instance instance = { .node = scene_add_node(scene, &node),
+                                       .mesh = scene_add_mesh(scene, &mesh),
+                                       .skin = -1 };
+    CHECK(instance.mesh >= 0 && scene_add_instance(scene, &instance) >= 0);
+}
+
+// Radiosity that is linear in space: bilinear lookup is exact but for half a texel at edges.
+static float linear(vec3s cell)
+{
+    return 1.0f + 0.8f * cell.x - 0.5f * cell.y + 0.3f * cell.z;
+}
+
+// Radiosity of the box by the direction of a side.
+static float radiosity_of_side(vec3s normal)
+{
+    return 2.0f + normal.x - 0.5f * normal.y + 0.25f * normal.z;
+}
+
+static const struct box3 BOX = { { { -0.4f, -1.0f, -0.3f } }, { { 0.3f, 0.1f, 0.4f } } };
+
+static void room_init(struct room *room, bool box)
+{
+    const struct mrt_clutter_options options = { 32.0f, 16 };
+    const struct box3 shell = { vec3_of(-1, -1, -1), vec3_of(1, 1, 1) };
+    *room =
+        (struct room){ .scene = scene_create(test_host(), "room"), .shape = mrt_cube(TEXELS, 0) };
+    add_box(room->scene, shell, true);
+    if (box) add_box(room->scene, BOX, false);
+    CHECK(pose_init(&room->pose, room->scene, -1, 0.0f));
+    CHECK(mrt_block_map_init(test_host(), "test", 1, &room->map));
+    mrt_block_init(&room->map.blocks[0], "room", MRT_BLOCK_CUBE);
+    mrt_block_set_box(&room->map.blocks[0], shell);
+    CHECK(mrt_clutter_init(&room->clutter, test_host(), &room->pose, &room->map, &options));
+}
+
+static void room_trace(struct room *room)
+{
+    room->objects = trace_scene_create(test_host(), &room->clutter.objects.pose);
+    CHECK(room->objects && matrix_f32_init(test_host(), &room->l_imp, ALL, MODES));
+    for (int t = 0; t < ALL; t++) {
+        float *row = room->l_imp.at + (size_t)t * room->l_imp.stride;
+        row[CONSTANT] = 1.0f;
+        row[LINEAR] = linear(mrt_shape_texel(&room->shape, t).position);
+    }
+    const struct mrt_delta_input input = { .block = &room->map.blocks[0],
+                                           .shape = room->shape,
+                                           .l_imp = &room->l_imp,
+                                           .clutter = &room->clutter,
+                                           .objects = room->objects,
+                                           .rays = RAYS,
+                                           .probes = 2 };
+    CHECK(mrt_delta_block_init(&room->delta, test_host(), &input));
+}
+
+static void room_finish(struct room *room)
+{
+    mrt_delta_block_finish(&room->delta);
+    matrix_f32_finish(test_host(), &room->l_imp);
+    trace_scene_destroy(room->objects);
+    mrt_clutter_finish(&room->clutter);
+    mrt_block_map_finish(&room->map);
+    pose_finish(&room->pose);
+    scene_destroy(room->scene);
+}
+
+TEST(objects_are_clutter_and_walls_are_not)
+{
+    struct room room;
+    room_init(&room, true);
+    CHECK(room.clutter.triangles == 12 && room.clutter.face_count == FACES);
+    CHECK(room.clutter.walls.scene.instances[1].mesh < 0);
+    CHECK(room.clutter.objects.scene.instances[0].mesh < 0);
+    room_finish(&room);
+    room_init(&room, false);
+    CHECK(room.clutter.triangles == 0);
+    room_finish(&room);
+}
+
+// Where walls and clutter have the same radiosity, clutter changes nothing.
+TEST(a_room_of_one_radiosity_stays_so)
+{
+    struct room room;
+    room_init(&room, true);
+    room_trace(&room);
+    double most = 0.0;
+    for (int m = 0; m < MRT_MEASURES; m++) {
+        const struct mrt_delta *of = &room.delta.of[m];
+        for (size_t r = 0; r < of->b.rows; r++) {
+            double sum = (double)of->b.at[r * of->b.stride + CONSTANT];
+            for (size_t f = 0; f < of->c.columns; f++)
+                sum += (double)of->c.at[r * of->c.stride + f];
+            CHECK_NEAR(sum, 0.0, 1e-4);
+            if (m == MRT_IRRADIANCE)
+                most = fmin(most, (double)of->b.at[r * of->b.stride + CONSTANT]);
+        }
+    }
+    print_message("most light that the box blocks at a texel: %.3f\n", -most);
+    CHECK(most < -0.5);
+    room_finish(&room);
+}
+
+// Irradiance of a texel by rays through the whole scene.
+static double traced(const struct raycast *rays, vec3s position, mat3s frame, uint32_t texel)
+{
+    struct rng rng = rng_for(texel, 1, 2);
+    const vec3s normal = frame.col[2];
+    double sum = 0.0;
+    for (int i = 0; i < CHECKED_RAYS; i++) {
+        const vec3s way = glms_mat3_mulv(frame, sample_hemisphere_cosine(rng_vec2(&rng)));
+        const vec3s from = glms_vec3_muladds(normal, 1e-4f, position);
+        struct raycast_hit hit;
+        if (!raycast_closest(rays, from, way, INFINITY, &hit)) continue;
+        const vec3s at = glms_vec3_muladds(way, hit.distance, from);
+        const bool wall = glms_vec3_max(glms_vec3_abs(at)) > 1.0f - 1e-5f;
+        sum += (double)(wall ? linear(glms_vec3_scale(at, 0.5f)) : radiosity_of_side(hit.normal));
+    }
+    return sum / CHECKED_RAYS;
+}
+
+static double side_light(const struct room *room, size_t texel)
+{
+    const struct mrt_delta *of = &room->delta.of[MRT_IRRADIANCE];
+    double sum = 0.0;
+    for (int f = 0; f < room->clutter.face_count; f++) {
+        const uint32_t first = room->clutter.texels[room->clutter.faces[f].first_texel];
+        sum += (double)(of->c.at[texel * of->c.stride + (size_t)f] *
+                        radiosity_of_side(chart_texel_normal(&room->clutter.charts, first)));
+    }
+    return sum;
+}
+
+// Unshadowed light, by the dictionary's own gather.
+static double unshadowed(const struct room *room, int texel)
+{
+    struct mrt_rays rays;
+    float row[ALL] = { 0 };
+    double sum = 0.0;
+    CHECK(mrt_rays_init(test_host(), MRT_IRRADIANCE, CHECKED_RAYS, &rays));
+    mrt_gather(&room->shape, mrt_shape_texel(&room->shape, texel), &rays, row, ALL);
+    mrt_rays_finish(test_host(), &rays);
+    for (int t = 0; t < ALL; t++)
+        sum += (double)(row[t] * room->l_imp.at[(size_t)t * room->l_imp.stride + LINEAR]);
+    return sum;
+}
+
+TEST(one_bounce_equals_that_of_rays_through_the_scene)
+{
+    struct room room;
+    struct raycast rays;
+    double worst = 0.0, without = 0.0;
+    room_init(&room, true);
+    room_trace(&room);
+    CHECK(raycast_init(&rays, test_host(), &room.pose));
+    const struct mrt_delta *of = &room.delta.of[MRT_IRRADIANCE];
+    for (int t = 0; t < ALL; t += 5) {
+        if (of->inside[t]) continue;
+        const struct mrt_point point = mrt_shape_texel(&room.shape, t);
+        const double expected =
+            traced(&rays, glms_vec3_scale(point.position, 2.0f), point.frame, (uint32_t)t);
+        const double plain = unshadowed(&room, t);
+        const double found = plain + (double)of->b.at[(size_t)t * of->b.stride + LINEAR] +
+                             side_light(&room, (size_t)t);
+        worst = fmax(worst, fabs(found / expected - 1.0));
+        without = fmax(without, fabs(plain / expected - 1.0));
+    }
+    print_message("at most %.3f of the light from rays, %.3f without operators\n", worst, without);
+    CHECK(worst < 0.03);
+    CHECK(without > 0.3);
+    raycast_finish(&rays);
+    room_finish(&room);
+}
+
+TEST(texels_below_the_box_are_inside)
+{
+    struct room room;
+    room_init(&room, true);
+    room_trace(&room);
+    const struct mrt_delta *of = &room.delta.of[MRT_IRRADIANCE];
+    for (int t = 0; t < ALL; t++) {
+        const vec3s at = glms_vec3_scale(mrt_shape_texel(&room.shape, t).position, 2.0f);
+        bool below = at.y < -0.999f;
+        for (int a = 0; a < 3; a += 2)
+            below = below && at.raw[a] > BOX.min.raw[a] && at.raw[a] < BOX.max.raw[a];
+        CHECK(of->inside[t] == below);
+    }
+    room_finish(&room);
+}
+
+// Rows inside become means of rows outside; all others stay.
+TEST(inpainting_takes_valid_neighbors_alone)
+{
+    struct matrix_f32 rows = { 0 };
+    bool inside[16] = { false };
+    CHECK(matrix_f32_init(test_host(), &rows, 16, 1));
+    for (size_t i = 0; i < 16; i++) rows.at[i * rows.stride] = 1000.0f;
+    inside[5] = inside[6] = true;
+    // The neighbours of 5, (1, 1) of 4².
+    static const int around[7] = { 0, 1, 2, 4, 8, 9, 10 };
+    for (int i = 0; i < 7; i++) rows.at[(size_t)around[i] * rows.stride] = (float)i;
+    rows.at[5 * rows.stride] = NAN;
+    mrt_inpaint_texels(&rows, 4, 1, 1, inside);
+    CHECK_NEAR(rows.at[5 * rows.stride], 3.0, 1e-5);
+    CHECK(rows.at[0] == 0.0f && rows.at[15 * rows.stride] == 1000.0f);
+    CHECK(isfinite(rows.at[6 * rows.stride]));
+    matrix_f32_finish(test_host(), &rows);
+}
+
+// A convex object in a closed room sees walls alone.
+TEST(faces_receive_the_light_of_walls)
+{
+    struct room room;
+    room_init(&room, true);
+    room_trace(&room);
+    const struct matrix_f32 *l_imp = &room.l_imp;
+    const struct mrt_gather_input input = { .map = &room.map,
+                                            .l_imp = &l_imp,
+                                            .resolution = TEXELS,
+                                            .clutter = &room.clutter,
+                                            .objects = room.objects,
+                                            .rays = RAYS };
+    struct mrt_gather_faces faces;
+    CHECK(mrt_gather_faces_init(&faces, test_host(), &input, 0));
+    CHECK(faces.count == 1 && faces.from[0].source == 0);
+    for (size_t f = 0; f < FACES; f++) {
+        const float *row = faces.from[0].of_b.at + f * faces.from[0].of_b.stride;
+        const uint32_t texel = room.clutter.texels[room.clutter.faces[f].first_texel];
+        const vec3s normal = chart_texel_normal(&room.clutter.charts, texel);
+        for (size_t k = 0; k < FACES; k++)
+            CHECK_NEAR(faces.of_c.at[f * faces.of_c.stride + k], 0.0, 1e-3);
+        // The bottom lies on the floor.
+        if (normal.y > -0.5f) CHECK_NEAR(row[CONSTANT], 1.0, 1e-3);
+        // Sides see walls that they face: brighter towards +x, darker upwards.
+        if (normal.x > 0.5f) CHECK(row[LINEAR] > 1.1f);
+        if (normal.x < -0.5f) CHECK(row[LINEAR] < 1.0f);
+    }
+    mrt_gather_faces_finish(&faces);
+    room_finish(&room);
+}
