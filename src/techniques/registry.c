@@ -14,17 +14,11 @@
 #include <assert.h>
 #include <string.h>
 
-const struct technique *const techniques[] = { &technique_none,
-                                               &technique_ambient,
-                                               &technique_lpv,
-                                               &technique_holpv,
-                                               &technique_vct,
-                                               &technique_mrt,
-                                               &technique_vo,
-                                               &technique_ssao,
-                                               &technique_hbao,
-                                               &technique_vctao,
-                                               NULL };
+const struct technique *const techniques[] = {
+    &technique_none, &technique_ambient, &technique_lpv,   &technique_holpv,
+    &technique_vct,  &technique_mrt,     &technique_drt,   &technique_vo,
+    &technique_ssao, &technique_hbao,    &technique_vctao, NULL
+};
 
 static bool aliases_are_sound(const struct option_table *options)
 {

@@ -27,6 +27,7 @@ static const struct {
     { "mrt", "", 0 },
     { "mrt", ",solver=cpu", 3 }, // the CPU's light has arrived
     { "mrt", ",probes=true", 0 },
+    { "drt", "", 0 },
 };
 
 // Options after which the next frame still has light of earlier frames. Tolerances are relative to
@@ -39,6 +40,7 @@ static const struct {
     { "vct", "keep_static", 3e-3 },
     // By definition: the irradiance of the last frame is the light of further bounces.
     { "mrt", "feedback", 3e-3 },
+    { "drt", "feedback", 3e-3 },
 };
 
 static double tolerance_of(const char *technique, const char *option)

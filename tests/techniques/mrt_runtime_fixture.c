@@ -57,7 +57,7 @@ static void make_openings(struct mrt_runtime_fixture *f)
         const struct mrt_block *block = &f->map.blocks[i / CUBE_FACES];
         if (block->neighbor[i % CUBE_FACES].block < 0) continue;
         f->openings[f->input.opening_count++] =
-            (struct mrt_opening_input){ i / CUBE_FACES, i % CUBE_FACES };
+            (struct mrt_opening_input){ i / CUBE_FACES, i % CUBE_FACES, i % CUBE_FACES };
     }
 }
 
@@ -78,8 +78,10 @@ void mrt_runtime_fixture_init(struct mrt_runtime_fixture *f, struct mrt_block_ma
     f->input.basis_count = map.count;
     f->input.basis_of_block = f->basis_of_block;
     f->input.openings = f->openings;
+    f->input.responses = f->responses;
+    f->input.response_count = CUBE_FACES;
     for (int face = 0; face < CUBE_FACES; face++)
-        f->input.response[face] =
+        f->responses[face] =
             (struct mrt_response_input){ .u_r = zeros(6 * resolution * resolution, k_r),
                                          .u_vec = zeros(24 * resolution * resolution, k_r) };
 }
@@ -92,8 +94,8 @@ void mrt_runtime_fixture_finish(struct mrt_runtime_fixture *f)
         matrix_f32_finish(test_host(), &f->bases[b].u_vec);
     }
     for (int face = 0; face < CUBE_FACES; face++) {
-        matrix_f32_finish(test_host(), &f->input.response[face].u_r);
-        matrix_f32_finish(test_host(), &f->input.response[face].u_vec);
+        matrix_f32_finish(test_host(), &f->responses[face].u_r);
+        matrix_f32_finish(test_host(), &f->responses[face].u_vec);
     }
     mrt_atlas_finish(&f->atlas);
     mrt_block_map_finish(&f->map);
@@ -136,8 +138,8 @@ void mrt_runtime_fixture_randomize(struct mrt_runtime_fixture *f, uint32_t seed)
         randomize(&f->bases[b].u_vec, &rng, 1e3f);
     }
     for (int face = 0; face < CUBE_FACES; face++) {
-        randomize(&f->input.response[face].u_r, &rng, 1.0f);
-        randomize(&f->input.response[face].u_vec, &rng, 1.0f);
+        randomize(&f->responses[face].u_r, &rng, 1.0f);
+        randomize(&f->responses[face].u_vec, &rng, 1.0f);
     }
     make_pairs(f, &rng);
 }
@@ -231,7 +233,7 @@ static float *solve(const struct mrt_runtime_fixture *f, const float *radiosity,
                 row_dot(values == 1 ? &basis->u_b : &basis->u_vec, rows, b + 3 * block * k_b, c);
             for (int o = 0; o < f->input.opening_count; o++) {
                 if (f->openings[o].block != block) continue;
-                const struct mrt_response_input *response = &f->input.response[f->openings[o].face];
+                const struct mrt_response_input *response = &f->responses[f->openings[o].face];
                 int row = (tile->face * per_tile + i / values % per_tile) * values + i % values;
                 sum += row_dot(values == 1 ? &response->u_r : &response->u_vec, row,
                                r + 3 * o * f->input.k_r, c);

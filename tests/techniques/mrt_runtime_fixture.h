@@ -14,6 +14,7 @@ struct mrt_runtime_fixture {
     struct mrt_opening_input *openings;
     struct mrt_pair_input *pairs;
     float *t_br; // of all pairs
+    struct mrt_response_input responses[CUBE_FACES];
     struct mrt_runtime_input input;
 };
 

@@ -36,6 +36,7 @@ foreach(name light probes retrace)
   ag_test(techniques/mrt_${name} USES techniques LIBRARIES ag_test_mrt ag_test_mrt_map)
 endforeach()
 ag_test(techniques/drt_delta USES techniques)
+ag_test(techniques/drt_frame USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/mrt_frame USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/mrt_places USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 # It compares times.

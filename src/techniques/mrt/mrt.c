@@ -17,6 +17,15 @@ static const struct option_row option_rows[] = {
 };
 #undef OPTION
 
+#define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
+#define MRT_GPU_ONLY
+static const struct option_row drt_option_rows[] = {
+#include "techniques/mrt/mrt_options.def"
+#include "techniques/mrt/drt_options.def"
+};
+#undef MRT_GPU_ONLY
+#undef OPTION
+
 static const struct technique_debug_view debug_views[] = {
     { "blocks", "the block map over the scene: a colour for each block, squares for texels", NULL },
     { "direct", "radiosity of the texels that indirect light comes from", NULL },
@@ -40,17 +49,27 @@ static struct mrt_dictionary_options dictionary_options(const struct mrt_options
     return out;
 }
 
-static bool mrt_check(const struct technique_create *how)
+static bool check(const char *name, const struct technique_create *how)
 {
     const struct mrt_options *options = how->options;
     if (options->modes > 4 * options->prior_modes)
-        return host_fail(how->host, FAIL_ARGUMENT,
-                         "gi mrt: modes=%d exceeds the modes of the prior", (int)options->modes);
+        return host_fail(how->host, FAIL_ARGUMENT, "gi %s: modes=%d exceeds the modes of the prior",
+                         name, (int)options->modes);
     if (options->blocks.at[0] && options->map != MRT_MAP_SCENE)
         return host_fail(how->host, FAIL_ARGUMENT,
-                         "gi mrt: map and blocks=%s are two maps; leave out one of them",
+                         "gi %s: map and blocks=%s are two maps; leave out one of them", name,
                          options->blocks.at);
     return true;
+}
+
+static bool mrt_check(const struct technique_create *how)
+{
+    return check("mrt", how);
+}
+
+static bool drt_check(const struct technique_create *how)
+{
+    return check("drt", how);
 }
 
 static bool mrt_resolve(struct host *host, const struct scene_pose *pose, void *options)
@@ -80,6 +99,13 @@ static bool mrt_create(void *state, const struct technique_create *how)
     return !how->pose || mrt_make_map(mrt, how->pose);
 }
 
+static bool drt_create(void *state, const struct technique_create *how)
+{
+    struct mrt *mrt = state;
+    mrt->delta = true;
+    return mrt_create(state, how);
+}
+
 static bool mrt_load(void *state, const struct tensors *bake)
 {
     struct mrt *mrt = state;
@@ -90,7 +116,8 @@ static bool mrt_load(void *state, const struct tensors *bake)
 static void mrt_set_options(void *state, const void *options)
 {
     struct mrt *mrt = state;
-    option_copy_live(&technique_mrt.options, options, &mrt->options);
+    option_copy_live(mrt->delta ? &technique_drt.options : &technique_mrt.options, options,
+                     &mrt->options);
     mrt->inputs.valid = false;
 }
 
@@ -214,6 +241,8 @@ static void mrt_destroy(void *state)
     mrt_runtime_finish(&mrt->runtime);
     mrt_level_finish(&mrt->level);
     mrt_dictionary_finish(mrt->host, &mrt->dictionary);
+    host_free(mrt->host, mrt->clutter_texels);
+    mrt_clutter_finish(&mrt->clutter);
     mrt_scene_images_finish(&mrt->images);
     mrt_atlas_finish(&mrt->atlas);
     mrt_block_map_finish(&mrt->map);
@@ -234,29 +263,29 @@ static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_
     });
 }
 
+// What both have in common.
+#define MRT_TECHNIQUE(of_name, of_title, of_paper, rows)                                           \
+    .name = of_name, .title = of_title, .paper = of_paper, .role = ROLE_SOURCE,                    \
+    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION,            \
+    .needs = FRAME_WRITES_IRRADIANCE, .bake_version = 4,                                           \
+    .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
+    .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve,          \
+    .bake = mrt_bake, .bake_report = mrt_bake_report, .load = mrt_load,                            \
+    .set_options = mrt_set_options, .invalidate = mrt_invalidate, .record = mrt_record,            \
+    .debug_view = mrt_debug_view, .probes = mrt_probes, .destroy = mrt_destroy,                    \
+    .memory_estimate = mrt_memory_estimate
+
 const struct technique technique_mrt = {
-    .name = "mrt",
-    .title = "modular radiance transfer",
-    .paper = "Loos 2015, Modular Radiance Transfer, ch. 3 and 4",
-    .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | PUBLISHES_PROBES | GATHERS_EMISSION,
-    .needs = FRAME_WRITES_IRRADIANCE,
-    .bake_version = 4,
-    .options = OPTION_TABLE(struct mrt_options, option_rows, NULL),
-    .presets = presets,
-    .debug_views = debug_views,
-    .state_size = sizeof(struct mrt),
+    MRT_TECHNIQUE("mrt", "modular radiance transfer",
+                  "Loos 2015, Modular Radiance Transfer, ch. 3 and 4", option_rows),
     .check = mrt_check,
-    .resolve = mrt_resolve,
-    .bake = mrt_bake,
-    .bake_report = mrt_bake_report,
     .create = mrt_create,
-    .load = mrt_load,
-    .set_options = mrt_set_options,
-    .invalidate = mrt_invalidate,
-    .record = mrt_record,
-    .debug_view = mrt_debug_view,
-    .probes = mrt_probes,
-    .destroy = mrt_destroy,
-    .memory_estimate = mrt_memory_estimate,
+};
+
+const struct technique technique_drt = {
+    MRT_TECHNIQUE("drt", "delta radiance transfer", "Loos 2015, Modular Radiance Transfer, ch. 5",
+                  drt_option_rows),
+    .folder = "mrt",
+    .check = drt_check,
+    .create = drt_create,
 };

@@ -2,6 +2,7 @@
 #include "techniques/mrt/mrt_state.h"
 
 #include "techniques/mrt/level/make_map.h"
+#include "techniques/mrt/runtime/cluttered.h"
 #include "techniques/mrt/runtime/turned.h"
 
 // ---- the map
@@ -70,15 +71,34 @@ bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, struct m
     return ok;
 }
 
+// Texels along an edge of a block, so that a face of clutter has some of them.
+static const float CLUTTER_TEXELS = 32.0f;
+
+static bool make_clutter(struct mrt *mrt, const struct scene_pose *pose)
+{
+    const struct mrt_clutter_options options = { CLUTTER_TEXELS, mrt->options.response_modes };
+    if (!mrt->delta || mrt_block_is_tube(&mrt->map.blocks[0])) return true;
+    if (!mrt_clutter_init(&mrt->clutter, mrt->host, pose, &mrt->map, &options)) return false;
+    if (mrt->clutter.triangles == 0) return true;
+    mrt->clutter_texels = mrt_clutter_light_create(mrt->host, pose, &mrt->clutter);
+    return mrt->clutter_texels;
+}
+
+static bool make_images(struct mrt *mrt, const struct scene_pose *pose)
+{
+    const int probes = mrt_runtime_options_of(&mrt->options).probes ? mrt->options.block_probes : 0;
+    const struct scene_pose *walls = mrt->clutter.triangles > 0 ? &mrt->clutter.walls.pose : pose;
+    return mrt_scene_images_init(mrt->host, pose, walls, &mrt->map, &mrt->atlas, probes,
+                                 &mrt->images);
+}
+
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
 {
     if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
     if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
-    const int probes = mrt_runtime_options_of(&mrt->options).probes ? mrt->options.block_probes : 0;
     const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
-    return mrt->map.count == 0 ||
-           (mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
-            mrt_scene_images_init(mrt->host, pose, &mrt->map, &mrt->atlas, probes, &mrt->images));
+    return mrt->map.count == 0 || (mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
+                                   make_clutter(mrt, pose) && make_images(mrt, pose));
 }
 
 // ---- operators
@@ -94,6 +114,21 @@ struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *opti
     };
 }
 
+static bool start_cluttered(struct mrt *mrt, struct mrt_turned *turned,
+                            const struct mrt_runtime_options *options)
+{
+    const struct mrt_cluttered_options how = { .rays = mrt->options.delta_rays,
+                                               .depth = mrt->options.depth,
+                                               .occlusion = mrt->options.occlusion,
+                                               .reflection = mrt->options.reflection };
+    struct mrt_cluttered cluttered;
+    const bool ok = mrt_cluttered_init(&cluttered, mrt->host, turned, &mrt->level, &mrt->clutter,
+                                       mrt->clutter_texels, &how) &&
+                    mrt_runtime_init(&mrt->runtime, mrt->host, mrt->gpu, &cluttered.input, options);
+    mrt_cluttered_finish(&cluttered);
+    return ok;
+}
+
 static bool start_runtime(struct mrt *mrt)
 {
     struct mrt_turned turned;
@@ -102,7 +137,9 @@ static bool start_runtime(struct mrt *mrt)
     if (ok) {
         turned.input.atlas = &mrt->atlas;
         turned.input.images = &mrt->images;
-        ok = mrt_runtime_init(&mrt->runtime, mrt->host, mrt->gpu, &turned.input, &options);
+        ok = mrt->clutter.triangles > 0
+                 ? start_cluttered(mrt, &turned, &options)
+                 : mrt_runtime_init(&mrt->runtime, mrt->host, mrt->gpu, &turned.input, &options);
     }
     mrt_turned_finish(&turned);
     return ok;

@@ -77,6 +77,13 @@ struct mrt_gpu_border {
     float weight[8];
 };
 
+// A face of clutter: one r-coefficient of an opening that is clutter.
+struct mrt_gpu_clutter_face {
+    uint32_t clutter, slot; // which of those openings, which coefficient
+    uint32_t first_texel, texels;
+    float per_m2; // 1 / area
+};
+
 // Uniform block "mrt_level".
 struct mrt_level_params {
     vec3s grid_origin_m; // lookup grid of blocks
@@ -114,6 +121,7 @@ _Static_assert(sizeof(struct mrt_gpu_block) == 216, "layout is shared with GLSL"
 _Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_face) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");

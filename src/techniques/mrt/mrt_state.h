@@ -2,6 +2,7 @@
 #pragma once
 
 #include "techniques/mrt/dictionary/dictionary.h"
+#include "techniques/mrt/level/clutter_light.h"
 #include "techniques/mrt/level/solver.h"
 #include "techniques/mrt/mrt_host_solver.h"
 #include "techniques/mrt/runtime/runtime.h"
@@ -12,11 +13,12 @@ enum mrt_warp_choice { MRT_WARP_STRETCH, MRT_WARP_RETRACE };
 enum mrt_solver_choice { MRT_SOLVER_GPU, MRT_SOLVER_CPU };
 enum mrt_precision { MRT_PRECISION_HALF, MRT_PRECISION_FLOAT };
 
-enum mrt_clutter { MRT_CLUTTER_WALLS, MRT_CLUTTER_PROBES };
+enum mrt_clutter_light { MRT_CLUTTER_WALLS, MRT_CLUTTER_PROBES };
 
 struct mrt_options {
 #define OPTION OPTION_FIELD
 #include "techniques/mrt/mrt_options.def"
+#include "techniques/mrt/drt_options.def" // 0 in mrt
 #undef OPTION
 };
 
@@ -24,10 +26,13 @@ struct mrt {
     struct host *host;
     struct gpu *gpu;
     struct mrt_options options;
+    bool delta; // drt
     // The level.
     struct mrt_block_map map; // no blocks: an empty scene
     struct mrt_atlas atlas;
     struct mrt_scene_images images;
+    struct mrt_clutter clutter; // drt
+    struct mrt_clutter_texel *clutter_texels;
     // The dictionary and what follows from both.
     struct mrt_dictionary dictionary;
     struct mrt_level level;

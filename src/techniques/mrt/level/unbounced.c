@@ -110,8 +110,10 @@ static bool gather_probes(struct job *job, const struct level_points *level)
     return images->unbounced;
 }
 
+// level: of the probes; NULL: texels alone.
 static bool trace_light(struct mrt_scene_images *images, const struct scene_pose *pose,
-                        const struct trace_scene *scene, const struct level_points *level)
+                        const struct trace_scene *scene, size_t texels,
+                        const struct level_points *level)
 {
     struct emitters emitters = { 0 };
     struct job job = { .images = images };
@@ -120,10 +122,10 @@ static bool trace_light(struct mrt_scene_images *images, const struct scene_pose
     ok = ok && mrt_emitter_samples_init(&job.samples, images->host, scene, &emitters,
                                         pose->scene->instance_count);
     if (ok) {
-        gather_all(&job, (size_t)level->atlas->texels);
-        ok = (level->probes == 0 || gather_probes(&job, level)) &&
-             mrt_outdoors_init(images->host, level->map, pose->bounds, &job.samples,
-                               &images->outdoors);
+        gather_all(&job, texels);
+        ok = !level || ((level->probes == 0 || gather_probes(&job, level)) &&
+                        mrt_outdoors_init(images->host, level->map, pose->bounds, &job.samples,
+                                          &images->outdoors));
     }
     mrt_emitter_samples_finish(&job.samples);
     emitters_finish(&emitters);
@@ -131,19 +133,33 @@ static bool trace_light(struct mrt_scene_images *images, const struct scene_pose
 }
 
 bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
-                           const struct mrt_block_map *map, const struct mrt_atlas *atlas,
-                           int probes, struct mrt_scene_images *out)
+                           const struct scene_pose *walls, const struct mrt_block_map *map,
+                           const struct mrt_atlas *atlas, int probes, struct mrt_scene_images *out)
 {
     const struct level_points level = { map, atlas, probes };
+    const size_t texels = (size_t)atlas->texels;
     *out = (struct mrt_scene_images){ .host = host };
     struct trace_scene *scene = trace_scene_create(host, pose);
-    if (!scene) return false;
-    out->geometry = mrt_geometry_create(host, map, atlas, scene);
-    out->emitted = host_alloc(host, (size_t)atlas->texels, sizeof *out->emitted);
-    out->sky = host_alloc(host, (size_t)atlas->texels, sizeof *out->sky);
-    bool ok = out->geometry && out->emitted && out->sky && trace_light(out, pose, scene, &level);
+    struct trace_scene *only = walls == pose ? scene : trace_scene_create(host, walls);
+    bool ok = scene && only;
+    if (ok) {
+        out->geometry = mrt_geometry_create(host, map, atlas, only);
+        out->emitted = host_alloc(host, texels, sizeof *out->emitted);
+        out->sky = host_alloc(host, texels, sizeof *out->sky);
+        ok = out->geometry && out->emitted && out->sky &&
+             trace_light(out, pose, scene, texels, &level);
+    }
+    if (only != scene) trace_scene_destroy(only);
     trace_scene_destroy(scene);
     return ok;
+}
+
+bool mrt_unbounced_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
+                          const struct trace_scene *scene, size_t texels)
+{
+    images->emitted = host_alloc(images->host, texels, sizeof *images->emitted);
+    images->sky = host_alloc(images->host, texels, sizeof *images->sky);
+    return images->emitted && images->sky && trace_light(images, pose, scene, texels, NULL);
 }
 
 void mrt_scene_images_finish(struct mrt_scene_images *images)

@@ -16,8 +16,12 @@ struct mrt_scene_images {
     struct mrt_outdoors outdoors;
 };
 
-// probes: p, along an edge of a block; 0: none.
+// walls: the part of the pose that texels stand for; it may be the pose itself. probes: p, along an
+// edge of a block; 0: none.
 bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
-                           const struct mrt_block_map *map, const struct mrt_atlas *atlas,
-                           int probes, struct mrt_scene_images *out);
+                           const struct scene_pose *walls, const struct mrt_block_map *map,
+                           const struct mrt_atlas *atlas, int probes, struct mrt_scene_images *out);
+// Light at texels whose geometry is set, without probes.
+bool mrt_unbounced_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
+                          const struct trace_scene *scene, size_t texels);
 void mrt_scene_images_finish(struct mrt_scene_images *images); // accepts zero

@@ -5,6 +5,7 @@
 #include "core/linalg.h"
 
 #include "techniques/mrt/level/atlas.h"
+#include "techniques/mrt/level/clutter_light.h"
 #include "techniques/mrt/level/probes.h"
 #include "techniques/mrt/level/unbounced.h"
 #include "techniques/mrt/level/wall.h"
@@ -16,10 +17,11 @@ struct mrt_basis_input {
     struct matrix_f32 u_b;   // n × k_b
     struct matrix_f32 u_vec; // 4 n × k_b, in the frame of mrt_point; empty: no irradiance by normal
     struct matrix_f32 u_vol; // 9 p³ × k_b, probes in the frame of the cell; empty: none
+    struct matrix_f32 l_imp; // n × k_b; the run time does not read it
 };
 
-// Response of a block to the light of the opening in one face, at the 6 n² texels of a closed cube,
-// 0 on that face; of a tube, at its n² texels.
+// Response of a block to the light of an opening, at the 6 n² texels of a closed cube, 0 on that
+// face; of a tube, at its n² texels.
 struct mrt_response_input {
     struct matrix_f32 u_r;   // 6 n² × k_r
     struct matrix_f32 u_vec; // 24 n² × k_r
@@ -32,8 +34,30 @@ struct mrt_pair_input {
     const float *t_br;   // transposed: k_b rows of k_r, t_br_stride apart
 };
 
+// Light enters a block: by an opening, or from the faces of the clutter in it, whose radiosity is
+// r.
 struct mrt_opening_input {
-    int block, face;
+    int block;
+    int face;     // −1: clutter
+    int response; // of mrt_runtime_input.responses
+};
+
+// A face of the clutter of a block: one of its r-coefficients.
+struct mrt_clutter_face_input {
+    int opening, slot;            // of mrt_runtime_input.openings; which of its r-coefficients
+    int first_texel, texel_count; // in mrt_clutter_input.texels
+    vec3s albedo;                 // mean
+};
+
+struct mrt_clutter_input {
+    const struct mrt_clutter_texel *texels;
+    int texel_count;
+    const struct mrt_clutter_face_input *faces;
+    int face_count;
+    const int *openings; // those that are clutter
+    int opening_count;
+    // [opening_count][k_r][k_r] irradiance of a face (row) of the radiosity of another.
+    const float *coupling;
 };
 
 struct mrt_runtime_input {
@@ -45,9 +69,11 @@ struct mrt_runtime_input {
     const struct mrt_basis_input *bases;
     int basis_count;
     const int *basis_of_block;
-    struct mrt_response_input response[MRT_RESPONSES]; // by mrt_response_of
-    const struct mrt_opening_input *openings;          // in the order of their blocks
+    const struct mrt_response_input *responses;
+    int response_count;
+    const struct mrt_opening_input *openings; // in the order of their blocks
     int opening_count;
     const struct mrt_pair_input *pairs; // in the order of their openings
     int pair_count, t_br_stride;
+    const struct mrt_clutter_input *clutter; // NULL: none
 };

@@ -157,11 +157,12 @@ static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     static const char *const names[] = { "u_r", "u_r_vector", "u_r_probes" };
     struct words w;
     size_t rows = 0;
-    for (int f = 0; f < CUBE_FACES; f++) rows += of_response(&input->response[f], points)->rows;
+    for (int i = 0; i < input->response_count; i++)
+        rows += of_response(&input->responses[i], points)->rows;
     if (!words_init(&w, runtime->host, runtime->options.half, rows, mrt_quads(input->k_r)))
         return false;
-    for (int f = 0; f < CUBE_FACES; f++)
-        put_matrix(&w, of_response(&input->response[f], points), NULL, input->k_r);
+    for (int i = 0; i < input->response_count; i++)
+        put_matrix(&w, of_response(&input->responses[i], points), NULL, input->k_r);
     return words_upload(&w, runtime->gpu, names[points], out);
 }
 

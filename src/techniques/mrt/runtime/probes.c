@@ -38,9 +38,7 @@ static void fill_openings(const struct mrt_runtime_input *input, void *items)
     struct mrt_gpu_opening *openings = items;
     for (int i = 0; i < input->opening_count; i++)
         openings[i] = (struct mrt_gpu_opening){
-            .response = (uint32_t)mrt_response_of(&input->map->blocks[input->openings[i].block],
-                                                  input->openings[i].face) *
-                        (uint32_t)rows_of_block(input),
+            .response = (uint32_t)input->openings[i].response * (uint32_t)rows_of_block(input),
         };
 }
 

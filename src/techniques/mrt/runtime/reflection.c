@@ -30,8 +30,7 @@ static void fill_reflected(const struct builder *s, int block, int first_opening
             const float *u_b = basis->u_b.at + row * basis->u_b.stride;
             for (int k = 0; k < input->k_b; k++) *to++ = albedo * u_b[k];
             for (int i = first_opening; to < out->at + row * out->stride + out->columns; i++) {
-                const struct matrix_f32 *u_r =
-                    &input->response[mrt_response_of(of, input->openings[i].face)].u_r;
+                const struct matrix_f32 *u_r = &input->responses[input->openings[i].response].u_r;
                 const float *from = u_r->at + ((size_t)f * s->face + t) * u_r->stride;
                 for (int k = 0; k < input->k_r; k++) *to++ = albedo * from[k];
             }

@@ -1,6 +1,7 @@
 // Buffers, images and pipelines of a level.
 #include "runtime.h"
 
+#include "techniques/mrt/runtime/clutter.h"
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/outdoors.h"
 #include "techniques/mrt/runtime/probes.h"
@@ -144,7 +145,7 @@ bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gp
     return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
            mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
            mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
-           make_pipelines(out, input);
+           make_pipelines(out, input) && mrt_clutter_upload(out, input);
 }
 
 bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
@@ -182,6 +183,7 @@ void mrt_runtime_finish(struct mrt_runtime *runtime)
     destroy_buffers(runtime);
     mrt_probes_finish(runtime);
     mrt_outdoors_end(runtime);
+    mrt_clutter_end(runtime);
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(runtime->gpu, pipelines[i]);
 

@@ -1,6 +1,8 @@
 // The passes of a frame.
 #include "runtime.h"
 
+#include "techniques/mrt/runtime/clutter.h"
+
 static struct gpu_binding level_binding(const struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     return gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level);
@@ -10,23 +12,13 @@ void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
+    const struct mrt_direct_texels texels = { &runtime->level, b->texels, b->unbounced, b->direct };
     runtime->level.shadow_radius = view->shadow_radius;
     runtime->level.emitters = emitters ? 1.0f : 0.0f;
     gpu_scope_begin(cmd, "direct");
-
-    gpu_dispatch(
-        cmd, runtime->pipelines.direct,
-        GPU_BIND(
-            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
-            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
-            { .name = "shadow_sun_maps",
-              .image = view->shadow_sun_maps,
-              .sampler = view->shadow_sampler },
-            level_binding(runtime, cmd), { .name = "mrt_texels", .buffer = b->texels },
-            { .name = "mrt_unbounced", .buffer = b->unbounced },
-            { .name = "mrt_direct", .buffer = b->direct }),
-        NULL, 0, gpu_groups(runtime->level.texels, MRT_LOCAL), 1, 1);
+    mrt_record_direct_of(runtime, cmd, view, &texels);
     gpu_scope_end(cmd);
+    mrt_record_clutter_direct(runtime, cmd, view);
 }
 
 static void record_project(struct mrt_runtime *runtime, struct gpu_cmd *cmd, gpu_buffer light)
@@ -91,6 +83,7 @@ void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int co
     for (int i = 0; i < count; i++) {
         record_reflect(runtime, cmd, i > 0 ? 1.0f : feedback);
         record_couple(runtime, cmd);
+        mrt_record_clutter(runtime, cmd);
     }
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "reconstruct");

@@ -135,9 +135,8 @@ static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_ru
     (void)runtime;
     for (int i = 0; i < input->opening_count; i++) {
         size_t response = 0;
-        const struct mrt_opening_input *at = &input->openings[i];
-        const int of = mrt_response_of(&input->map->blocks[at->block], at->face);
-        for (int k = 0; k < of; k++) response += input->response[k].u_r.rows;
+        for (int k = 0; k < input->openings[i].response; k++)
+            response += input->responses[k].u_r.rows;
         openings[i] = (struct mrt_gpu_opening){ .response = (uint32_t)response,
                                                 .first_pair = (uint32_t)pair };
         while (pair < input->pair_count && input->pairs[pair].opening == i) pair++;

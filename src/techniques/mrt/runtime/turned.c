@@ -102,7 +102,8 @@ static bool make_basis(struct host *host, const struct mrt_level *level,
            turn_rows(host, &turn, retraced ? &retraced->u_b : &element->u_b, &out->u_b) &&
            turn_vectors(host, &turn, retraced ? &retraced->u_vec : &element->u_vec, &out->u_vec) &&
            turn_probes(host, &turn, dictionary->options.block_probes, &element->u_bvol,
-                       &out->u_vol);
+                       &out->u_vol) &&
+           turn_rows(host, &turn, &element->l_imp, &out->l_imp);
 }
 
 static bool same_basis(const struct mrt_level *level, int i, int j)
@@ -155,7 +156,7 @@ static bool make_tube_responses(struct mrt_turned *out, const struct mrt_diction
         for (int f = 0; ok && f < CUBE_FACES; f++)
             if (mrt_shape_is_open(&tube, f))
                 ok = make_response(out, dictionary, &tube, f,
-                                   &out->input.response[mrt_response_of(&block, f)]);
+                                   &out->responses[mrt_response_of(&block, f)]);
     }
     return ok;
 }
@@ -166,15 +167,17 @@ static bool make_responses(struct mrt_turned *out, const struct mrt_dictionary *
     const struct mrt_shape closed = mrt_cube(dictionary->options.texels, 0);
     bool ok = true;
     for (int f = 0; ok && f < CUBE_FACES; f++)
-        ok = make_response(out, dictionary, &closed, f, &out->input.response[f]);
+        ok = make_response(out, dictionary, &closed, f, &out->responses[f]);
     return ok;
 }
 
 static void make_pairs(struct mrt_turned *out, const struct mrt_level *level)
 {
     for (int i = 0; i < level->entry_count; i++) {
-        out->openings[i] =
-            (struct mrt_opening_input){ level->entries[i].block, level->entries[i].face };
+        const struct mrt_entry entry = level->entries[i];
+        out->openings[i] = (struct mrt_opening_input){
+            entry.block, entry.face, mrt_response_of(&level->map->blocks[entry.block], entry.face)
+        };
         for (int k = level->first_link[i]; k < level->first_link[i + 1]; k++)
             out->pairs[k] = (struct mrt_pair_input){ i, level->links[k].source,
                                                      level->matrices + level->links[k].matrix };
@@ -187,11 +190,12 @@ bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mr
     size_t blocks = (size_t)level->map->count, entries = (size_t)level->entry_count;
     size_t links = (size_t)level->first_link[level->entry_count];
     *out = (struct mrt_turned){ .host = host };
-    out->bases = host_alloc(host, blocks, sizeof *out->bases);
+    out->bases = host_alloc(host, 2 * blocks, sizeof *out->bases);
+    out->responses = host_alloc(host, MRT_RESPONSES, sizeof *out->responses);
     out->basis_of_block = host_alloc(host, blocks, sizeof *out->basis_of_block);
     out->openings = host_alloc(host, entries, sizeof *out->openings);
     out->pairs = host_alloc(host, links, sizeof *out->pairs);
-    if (!out->bases || !out->basis_of_block || !out->openings || !out->pairs ||
+    if (!out->bases || !out->responses || !out->basis_of_block || !out->openings || !out->pairs ||
         !make_bases(out, level, dictionary) || !make_responses(out, dictionary))
         return false;
     make_pairs(out, level);
@@ -202,6 +206,8 @@ bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mr
     input->probes = dictionary->options.block_probes;
     input->bases = out->bases;
     input->basis_of_block = out->basis_of_block;
+    input->responses = out->responses;
+    input->response_count = MRT_RESPONSES;
     input->openings = out->openings;
     input->opening_count = level->entry_count;
     input->pairs = out->pairs;
@@ -210,21 +216,31 @@ bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mr
     return true;
 }
 
+void mrt_basis_input_finish(struct host *host, struct mrt_basis_input *basis)
+{
+    matrix_f32_finish(host, &basis->t_db);
+    matrix_f32_finish(host, &basis->u_b);
+    matrix_f32_finish(host, &basis->u_vec);
+    matrix_f32_finish(host, &basis->u_vol);
+    matrix_f32_finish(host, &basis->l_imp);
+}
+
+void mrt_response_input_finish(struct host *host, struct mrt_response_input *response)
+{
+    matrix_f32_finish(host, &response->u_r);
+    matrix_f32_finish(host, &response->u_vec);
+    matrix_f32_finish(host, &response->u_vol);
+}
+
 void mrt_turned_finish(struct mrt_turned *turned)
 {
     if (!turned->host) return;
-    for (int i = 0; i < turned->input.basis_count; i++) {
-        matrix_f32_finish(turned->host, &turned->bases[i].t_db);
-        matrix_f32_finish(turned->host, &turned->bases[i].u_b);
-        matrix_f32_finish(turned->host, &turned->bases[i].u_vec);
-        matrix_f32_finish(turned->host, &turned->bases[i].u_vol);
-    }
-    for (int face = 0; face < CUBE_FACES; face++) {
-        matrix_f32_finish(turned->host, &turned->input.response[face].u_r);
-        matrix_f32_finish(turned->host, &turned->input.response[face].u_vec);
-        matrix_f32_finish(turned->host, &turned->input.response[face].u_vol);
-    }
+    for (int i = 0; i < turned->input.basis_count; i++)
+        mrt_basis_input_finish(turned->host, &turned->bases[i]);
+    for (int i = 0; turned->responses && i < MRT_RESPONSES; i++)
+        mrt_response_input_finish(turned->host, &turned->responses[i]);
     host_free(turned->host, turned->bases);
+    host_free(turned->host, turned->responses);
     host_free(turned->host, turned->basis_of_block);
     host_free(turned->host, turned->openings);
     host_free(turned->host, turned->pairs);

@@ -6,8 +6,9 @@
 
 struct mrt_turned {
     struct host *host;
-    struct mrt_basis_input *bases;
+    struct mrt_basis_input *bases; // room for two of each block
     int *basis_of_block;
+    struct mrt_response_input *responses; // by mrt_response_of
     struct mrt_opening_input *openings;
     struct mrt_pair_input *pairs;
     struct mrt_runtime_input input; // without atlas and geometry; refers to the level
@@ -15,3 +16,6 @@ struct mrt_turned {
 
 bool mrt_turned_init(struct host *host, const struct mrt_level *level, struct mrt_turned *out);
 void mrt_turned_finish(struct mrt_turned *turned);
+
+void mrt_basis_input_finish(struct host *host, struct mrt_basis_input *basis);
+void mrt_response_input_finish(struct host *host, struct mrt_response_input *response);

@@ -1,0 +1,188 @@
+// Tables and passes of clutter.
+#include "clutter.h"
+
+#include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/tables.h"
+
+#include "technique_shaders.h"
+
+enum { VEC3_BYTES = 12 };
+
+static uint32_t slots_of(const struct mrt_runtime_input *input)
+{
+    return 4 * mrt_quads(input->k_r);
+}
+
+// Which of the openings that are clutter.
+static int clutter_of(const struct mrt_clutter_input *clutter, int opening)
+{
+    int i = 0;
+    while (clutter->openings[i] != opening) i++;
+    return i;
+}
+
+// ---- tables
+
+static void fill_texels(const struct mrt_runtime_input *input, void *items)
+{
+    struct mrt_texel *texels = items;
+    for (int i = 0; i < input->clutter->texel_count; i++) {
+        const struct mrt_clutter_texel *from = &input->clutter->texels[i];
+        texels[i] = (struct mrt_texel){ .position = from->at.position,
+                                        .area_m2 = from->area_m2,
+                                        .normal = from->at.normal,
+                                        .found = true,
+                                        .albedo = from->at.albedo,
+                                        .sky = from->sky,
+                                        .emitted = from->emitted };
+    }
+}
+
+static void fill_faces(const struct mrt_runtime_input *input, void *items)
+{
+    struct mrt_gpu_clutter_face *faces = items;
+    for (int i = 0; i < input->clutter->face_count; i++) {
+        const struct mrt_clutter_face_input *from = &input->clutter->faces[i];
+        float area = 0.0f;
+        for (int t = 0; t < from->texel_count; t++)
+            area += input->clutter->texels[from->first_texel + t].area_m2;
+        faces[i] = (struct mrt_gpu_clutter_face){
+            .clutter = (uint32_t)clutter_of(input->clutter, from->opening),
+            .slot = (uint32_t)from->slot,
+            .first_texel = (uint32_t)from->first_texel,
+            .texels = (uint32_t)from->texel_count,
+            .per_m2 = 1.0f / area,
+        };
+    }
+}
+
+static void fill_openings(const struct mrt_runtime_input *input, void *items)
+{
+    uint32_t *openings = items;
+    for (int i = 0; i < input->clutter->opening_count; i++)
+        openings[i] = (uint32_t)input->clutter->openings[i];
+}
+
+static void fill_albedo(const struct mrt_runtime_input *input, void *items)
+{
+    float *albedo = items;
+    const uint32_t slots = slots_of(input);
+    for (int i = 0; i < input->clutter->face_count; i++) {
+        const struct mrt_clutter_face_input *face = &input->clutter->faces[i];
+        const uint32_t clutter = (uint32_t)clutter_of(input->clutter, face->opening);
+        for (uint32_t c = 0; c < 3; c++)
+            albedo[(3 * clutter + c) * slots + (uint32_t)face->slot] = face->albedo.raw[c];
+    }
+}
+
+static void fill_coupling(const struct mrt_runtime_input *input, void *items)
+{
+    float *coupling = items;
+    const size_t slots = slots_of(input), k_r = (size_t)input->k_r;
+    for (size_t i = 0; i < (size_t)input->clutter->opening_count * k_r * k_r; i++)
+        coupling[(i / k_r) * slots + (i / k_r / k_r) * (slots - k_r) * slots + i % k_r] =
+            input->clutter->coupling[i];
+}
+
+static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                   const char *name, size_t count, size_t size,
+                   void (*fill)(const struct mrt_runtime_input *input, void *items),
+                   gpu_buffer *out)
+{
+    void *items = host_alloc(runtime->host, count, size);
+    if (!items) return false;
+    if (fill) fill(input, items);
+    const bool ok = mrt_buffer_of(runtime->gpu, name, items, count * size, out);
+    host_free(runtime->host, items);
+    return ok;
+}
+
+static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_clutter *c = &runtime->clutter;
+    const struct gpu_constant quads = { MRT_CONSTANT_QUADS_R, mrt_quads(input->k_r) };
+    return gpu_compute_pipeline_create(runtime->gpu, "clutter_mean",
+                                       &shader_mrt_runtime_clutter_mean_comp, &quads, 1,
+                                       &c->mean) &&
+           gpu_compute_pipeline_create(runtime->gpu, "clutter_reflect",
+                                       &shader_mrt_runtime_clutter_reflect_comp, &quads, 1,
+                                       &c->reflect);
+}
+
+bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct mrt_runtime_clutter *c = &runtime->clutter;
+    if (!input->clutter) return true;
+    const size_t slots = slots_of(input), texels = (size_t)input->clutter->texel_count;
+    const size_t openings = (size_t)input->clutter->opening_count, number = sizeof(float);
+    c->texel_count = (uint32_t)texels;
+    c->face_count = (uint32_t)input->clutter->face_count;
+    c->opening_count = (uint32_t)openings;
+    return upload(runtime, input, "clutter_texels", texels, sizeof(struct mrt_texel), fill_texels,
+                  &c->texels) &&
+           upload(runtime, input, "clutter_faces", c->face_count,
+                  sizeof(struct mrt_gpu_clutter_face), fill_faces, &c->faces) &&
+           upload(runtime, input, "clutter_openings", openings, sizeof(uint32_t), fill_openings,
+                  &c->openings) &&
+           upload(runtime, input, "clutter_albedo", openings, 3 * slots * number, fill_albedo,
+                  &c->albedo) &&
+           upload(runtime, input, "clutter_coupling", openings, slots * slots * number,
+                  fill_coupling, &c->coupling) &&
+           upload(runtime, input, "clutter_unbounced", texels, VEC3_BYTES, NULL, &c->unbounced) &&
+           upload(runtime, input, "clutter_radiosity", texels, VEC3_BYTES, NULL, &c->radiosity) &&
+           upload(runtime, input, "clutter_direct", openings, 3 * slots * number, NULL,
+                  &c->direct) &&
+           upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
+                  &c->incident) &&
+           make_pipelines(runtime, input);
+}
+
+void mrt_clutter_end(struct mrt_runtime *runtime)
+{
+    struct mrt_runtime_clutter *c = &runtime->clutter;
+    gpu_buffer *const buffers[] = { &c->texels,    &c->faces,    &c->openings,
+                                    &c->albedo,    &c->coupling, &c->unbounced,
+                                    &c->radiosity, &c->direct,   &c->incident };
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        gpu_buffer_destroy(runtime->gpu, buffers[i]);
+    gpu_pipeline_destroy(runtime->gpu, &c->mean);
+    gpu_pipeline_destroy(runtime->gpu, &c->reflect);
+}
+
+// ---- passes
+
+void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                               const struct frame_view *view)
+{
+    const struct mrt_runtime_clutter *c = &runtime->clutter;
+    if (c->opening_count == 0) return;
+    struct mrt_level_params level = runtime->level;
+    level.texels = c->texel_count;
+    gpu_scope_begin(cmd, "clutter");
+    mrt_record_direct_of(
+        runtime, cmd, view,
+        &(struct mrt_direct_texels){ &level, c->texels, c->unbounced, c->radiosity });
+    gpu_dispatch(cmd, c->mean,
+                 GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
+                          { .name = "mrt_texels", .buffer = c->texels },
+                          { .name = "mrt_clutter_faces", .buffer = c->faces },
+                          { .name = "mrt_direct", .buffer = c->radiosity },
+                          { .name = "mrt_clutter_direct", .buffer = c->direct }),
+                 NULL, 0, c->face_count, 1, 1);
+    gpu_scope_end(cmd);
+}
+
+void mrt_record_clutter(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+{
+    const struct mrt_runtime_clutter *c = &runtime->clutter;
+    if (c->opening_count == 0) return;
+    gpu_dispatch(cmd, c->reflect,
+                 GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
+                          { .name = "mrt_clutter_openings", .buffer = c->openings },
+                          { .name = "mrt_clutter_direct", .buffer = c->direct },
+                          { .name = "mrt_clutter_albedo", .buffer = c->albedo },
+                          { .name = "mrt_clutter_coupling", .buffer = c->coupling },
+                          { .name = "mrt_clutter_incident", .buffer = c->incident },
+                          { .name = "mrt_r", .buffer = runtime->buffers.r }),
+                 NULL, 0, c->opening_count, 1, 1);
+}

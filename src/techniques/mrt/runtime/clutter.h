@@ -1,0 +1,14 @@
+// Clutter of a level on the GPU: direct light of its texels, c of its faces.
+#pragma once
+
+#include "techniques/mrt/runtime/runtime.h"
+
+// Without clutter of the input nothing is created. mrt_clutter_end accepts zero.
+bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+void mrt_clutter_end(struct mrt_runtime *runtime);
+
+// Radiosity of direct light of the faces; runtime->level has the parameters of direct light.
+void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                               const struct frame_view *view);
+// After T_b→r of each bounce.
+void mrt_record_clutter(struct mrt_runtime *runtime, struct gpu_cmd *cmd);

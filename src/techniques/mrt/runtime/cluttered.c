@@ -1,0 +1,394 @@
+// Bases, responses, openings and pairs of blocks with clutter.
+#include "techniques/mrt/runtime/cluttered.h"
+
+#include "techniques/mrt/level/delta_gather.h"
+
+#include <string.h>
+
+struct builder {
+    struct mrt_cluttered *out;
+    struct mrt_turned *turned;
+    const struct mrt_level *level;
+    const struct mrt_clutter *clutter;
+    const struct mrt_cluttered_options *options;
+    struct trace_scene *objects;
+    const struct matrix_f32 **l_imp; // of each block
+    int old_opening, old_pair;       // of the turned operators that were taken
+};
+
+// ---- matrices
+
+static bool copy_matrix(struct host *host, const struct matrix_f32 *from, struct matrix_f32 *to)
+{
+    if (!matrix_f32_init(host, to, from->rows, from->columns)) return false;
+    for (size_t r = 0; r < from->rows; r++)
+        memcpy(to->at + r * to->stride, from->at + r * from->stride,
+               from->columns * sizeof *to->at);
+    return true;
+}
+
+static void add_matrix(struct matrix_f32 *to, const struct matrix_f32 *change)
+{
+    for (size_t r = 0; r < to->rows; r++)
+        for (size_t c = 0; c < to->columns; c++)
+            to->at[r * to->stride + c] += change->at[r * change->stride + c];
+}
+
+static int values_of(enum mrt_measure measure)
+{
+    static const int values[MRT_MEASURES] = { 1, MRT_VECTOR_COEFFICIENTS, MRT_PROBE_COEFFICIENTS };
+    return values[measure];
+}
+
+// ---- bases: U_b + ΔU_b
+
+static struct matrix_f32 *of_basis(struct mrt_basis_input *basis, enum mrt_measure measure)
+{
+    return measure == MRT_IRRADIANCE ? &basis->u_b
+           : measure == MRT_VECTOR   ? &basis->u_vec
+                                     : &basis->u_vol;
+}
+
+static void change_basis(const struct builder *s, const struct mrt_block *block,
+                         const struct mrt_delta_block *delta, struct mrt_basis_input *basis)
+{
+    for (int m = 0; m < MRT_MEASURES; m++) {
+        const struct mrt_delta *of = &delta->of[m];
+        struct matrix_f32 *rows = of_basis(basis, (enum mrt_measure)m);
+        if (rows->rows == 0 || !of->inside) continue;
+        add_matrix(rows, &of->b);
+        if (m == MRT_PROBE)
+            mrt_inpaint_probes(rows, s->turned->input.probes, of->inside);
+        else
+            mrt_inpaint_texels(rows, s->level->resolution, mrt_block_walls(block),
+                               values_of((enum mrt_measure)m), of->inside);
+    }
+}
+
+static bool add_basis(struct builder *s, int block, const struct mrt_delta_block *delta)
+{
+    struct mrt_turned *turned = s->turned;
+    struct host *host = turned->host;
+    const struct mrt_basis_input *old = &turned->bases[turned->basis_of_block[block]];
+    struct mrt_basis_input *basis = &turned->bases[turned->input.basis_count];
+    turned->basis_of_block[block] = turned->input.basis_count++;
+    basis->open = old->open;
+    const bool ok = copy_matrix(host, &old->t_db, &basis->t_db) &&
+                    copy_matrix(host, &old->u_b, &basis->u_b) &&
+                    copy_matrix(host, &old->u_vec, &basis->u_vec) &&
+                    copy_matrix(host, &old->u_vol, &basis->u_vol) &&
+                    copy_matrix(host, &old->l_imp, &basis->l_imp);
+    if (ok) change_basis(s, &s->level->map->blocks[block], delta, basis);
+    s->l_imp[block] = &basis->l_imp;
+    return ok;
+}
+
+// ---- responses
+
+static struct matrix_f32 *of_response(struct mrt_response_input *response, enum mrt_measure measure)
+{
+    return measure == MRT_IRRADIANCE ? &response->u_r
+           : measure == MRT_VECTOR   ? &response->u_vec
+                                     : &response->u_vol;
+}
+
+// Visits each texel of the walls: its index in the closed cube and in the block.
+struct wall_texels {
+    const struct mrt_block *block;
+    int in_face, face, wall;
+};
+
+static bool next_wall(struct wall_texels *at)
+{
+    at->face++;
+    while (at->face < CUBE_FACES && !mrt_block_has_wall(at->block, at->face)) at->face++;
+    at->wall++;
+    return at->face < CUBE_FACES;
+}
+
+static struct wall_texels walls_of(const struct builder *s, int block)
+{
+    return (struct wall_texels){ &s->level->map->blocks[block],
+                                 s->level->resolution * s->level->resolution, -1, -1 };
+}
+
+static void scale_row(struct matrix_f32 *m, size_t row, float scale)
+{
+    for (size_t c = 0; c < m->columns; c++) m->at[row * m->stride + c] *= scale;
+}
+
+// The share of an opening's light that clutter lets pass, at each point.
+static void keep_share(const struct builder *s, int block, int face,
+                       const struct mrt_delta_block *delta, enum mrt_measure measure,
+                       struct matrix_f32 *rows)
+{
+    const int values = values_of(measure);
+    const float *kept = delta->of[measure].kept[face];
+    if (measure == MRT_PROBE) {
+        for (size_t r = 0; r < rows->rows; r++) scale_row(rows, r, kept[r / (size_t)values]);
+        mrt_inpaint_probes(rows, s->turned->input.probes, delta->of[measure].inside);
+        return;
+    }
+    for (struct wall_texels at = walls_of(s, block); next_wall(&at);) {
+        const size_t closed = (size_t)(at.face * at.in_face), own = (size_t)(at.wall * at.in_face);
+        for (int i = 0; i < at.in_face * values; i++)
+            scale_row(rows, closed * (size_t)values + (size_t)i, kept[own + (size_t)(i / values)]);
+        struct matrix_f32 wall = matrix_f32_block(rows, closed * (size_t)values, 0,
+                                                  (size_t)(at.in_face * values), rows->columns);
+        mrt_inpaint_texels(&wall, s->level->resolution, 1, values, delta->of[measure].inside + own);
+    }
+}
+
+static bool add_kept_response(struct builder *s, int block, int face,
+                              const struct mrt_delta_block *delta,
+                              struct mrt_opening_input *opening)
+{
+    const struct mrt_response_input *old = &s->out->responses[opening->response];
+    const int index = s->out->input.response_count++;
+    struct mrt_response_input *response = &s->out->responses[index];
+    struct host *host = s->out->host;
+    opening->response = index;
+    if (!copy_matrix(host, &old->u_r, &response->u_r) ||
+        !copy_matrix(host, &old->u_vec, &response->u_vec) ||
+        !copy_matrix(host, &old->u_vol, &response->u_vol))
+        return false;
+    for (int m = 0; m < MRT_MEASURES; m++) {
+        struct matrix_f32 *rows = of_response(response, (enum mrt_measure)m);
+        if (rows->rows > 0 && delta->of[m].inside)
+            keep_share(s, block, face, delta, (enum mrt_measure)m, rows);
+    }
+    return true;
+}
+
+// ΔU_c in the rows of a response.
+static void put_faces(const struct builder *s, int block, const struct mrt_delta_block *delta,
+                      enum mrt_measure measure, struct matrix_f32 *rows)
+{
+    const struct matrix_f32 *c = &delta->of[measure].c;
+    const bool *inside = delta->of[measure].inside;
+    const size_t values = (size_t)values_of(measure), bytes = c->columns * sizeof *c->at;
+    if (measure == MRT_PROBE) {
+        for (size_t r = 0; r < c->rows; r++)
+            memcpy(rows->at + r * rows->stride, c->at + r * c->stride, bytes);
+        mrt_inpaint_probes(rows, s->turned->input.probes, inside);
+        return;
+    }
+    for (struct wall_texels at = walls_of(s, block); next_wall(&at);) {
+        const size_t count = (size_t)at.in_face * values;
+        const size_t closed = (size_t)at.face * count, own = (size_t)at.wall * count;
+        for (size_t i = 0; i < count; i++)
+            memcpy(rows->at + (closed + i) * rows->stride, c->at + (own + i) * c->stride, bytes);
+        struct matrix_f32 wall = matrix_f32_block(rows, closed, 0, count, rows->columns);
+        mrt_inpaint_texels(&wall, s->level->resolution, 1, (int)values,
+                           inside + at.wall * at.in_face);
+    }
+}
+
+static bool add_face_response(struct builder *s, int block, const struct mrt_delta_block *delta,
+                              int index)
+{
+    const struct mrt_response_input *like = &s->turned->responses[0];
+    struct mrt_response_input *response = &s->out->responses[index];
+    for (int m = 0; m < MRT_MEASURES; m++) {
+        const struct matrix_f32 *sizes =
+            of_response((struct mrt_response_input *)like, (enum mrt_measure)m);
+        struct matrix_f32 *rows = of_response(response, (enum mrt_measure)m);
+        if (!matrix_f32_init(s->out->host, rows, sizes->rows, sizes->columns)) return false;
+        if (rows->rows > 0 && delta->of[m].inside)
+            put_faces(s, block, delta, (enum mrt_measure)m, rows);
+    }
+    return true;
+}
+
+// ---- openings
+
+static struct mrt_opening_input *new_opening(struct builder *s, struct mrt_opening_input opening)
+{
+    struct mrt_opening_input *to = &s->out->openings[s->out->input.opening_count++];
+    *to = opening;
+    return to;
+}
+
+static bool add_openings(struct builder *s, int block, const struct mrt_delta_block *delta)
+{
+    const struct mrt_runtime_input *old = &s->turned->input;
+    bool ok = true;
+    while (ok && s->old_opening < old->opening_count &&
+           old->openings[s->old_opening].block == block) {
+        const int index = s->out->input.opening_count;
+        struct mrt_opening_input *to = new_opening(s, old->openings[s->old_opening]);
+        if (delta->touched && s->options->occlusion)
+            ok = add_kept_response(s, block, to->face, delta, to);
+        for (; s->old_pair < old->pair_count && old->pairs[s->old_pair].opening == s->old_opening;
+             s->old_pair++) {
+            struct mrt_pair_input *pair = &s->out->pairs[s->out->input.pair_count++];
+            *pair = old->pairs[s->old_pair];
+            pair->opening = index;
+        }
+        s->old_opening++;
+    }
+    return ok;
+}
+
+// ---- the opening of clutter
+
+// T_b→r is stored transposed: k_b rows of t_br_stride.
+static bool add_gathered(struct builder *s, int opening, const struct mrt_gathered *from)
+{
+    const size_t k_b = from->of_b.columns, stride = (size_t)s->turned->input.t_br_stride;
+    struct matrix_f32 *matrix = &s->out->gathered[s->out->gathered_count++];
+    if (!matrix_f32_init(s->out->host, matrix, 1, k_b * stride)) return false;
+    for (size_t f = 0; f < from->of_b.rows; f++)
+        for (size_t m = 0; m < k_b; m++)
+            matrix->at[m * stride + f] = from->of_b.at[f * from->of_b.stride + m];
+    s->out->pairs[s->out->input.pair_count++] =
+        (struct mrt_pair_input){ opening, from->source, matrix->at };
+    return true;
+}
+
+static void add_faces(struct builder *s, int opening, const struct mrt_delta_block *delta,
+                      const struct mrt_gather_faces *gathered,
+                      const struct mrt_clutter_texel *texels)
+{
+    struct mrt_clutter_input *clutter = &s->out->clutter;
+    const int k_r = s->turned->input.k_r, at = clutter->opening_count++;
+    float *coupling = s->out->coupling + (size_t)at * (size_t)(k_r * k_r);
+    s->out->clutter_openings[at] = opening;
+    for (int i = 0; i < delta->face_count; i++) {
+        const struct mrt_clutter_face *from = &s->clutter->faces[delta->first_face + i];
+        struct mrt_clutter_face_input *to = &s->out->faces[clutter->face_count++];
+        *to = (struct mrt_clutter_face_input){ .opening = opening,
+                                               .slot = i,
+                                               .first_texel = (int)from->first_texel,
+                                               .texel_count = (int)from->texel_count };
+        float area = 0.0f;
+        for (int t = to->first_texel; t < to->first_texel + to->texel_count; t++) {
+            to->albedo = glms_vec3_muladds(texels[t].at.albedo, texels[t].area_m2, to->albedo);
+            area += texels[t].area_m2;
+        }
+        to->albedo = glms_vec3_divs(to->albedo, area);
+        for (int k = 0; k < delta->face_count; k++)
+            coupling[i * k_r + k] =
+                gathered->of_c.at[(size_t)i * gathered->of_c.stride + (size_t)k];
+    }
+}
+
+static bool add_clutter(struct builder *s, int block, const struct mrt_delta_block *delta,
+                        const struct mrt_clutter_texel *texels)
+{
+    const int opening = s->out->input.opening_count, response = s->out->input.response_count++;
+    const struct mrt_gather_input input = { .map = s->level->map,
+                                            .l_imp = s->l_imp,
+                                            .resolution = s->level->resolution,
+                                            .clutter = s->clutter,
+                                            .objects = s->objects,
+                                            .rays = s->options->rays,
+                                            .depth = s->options->depth };
+    struct mrt_gather_faces gathered = { 0 };
+    new_opening(s, (struct mrt_opening_input){ block, -1, response });
+    bool ok = add_face_response(s, block, delta, response) &&
+              mrt_gather_faces_init(&gathered, s->out->host, &input, block);
+    for (int i = 0; ok && i < gathered.count; i++) ok = add_gathered(s, opening, &gathered.from[i]);
+    if (ok) add_faces(s, opening, delta, &gathered, texels);
+    mrt_gather_faces_finish(&gathered);
+    return ok;
+}
+
+static bool add_block(struct builder *s, int block, const struct mrt_clutter_texel *texels)
+{
+    const struct mrt_block *at = &s->level->map->blocks[block];
+    const struct mrt_delta_input input = { .block = at,
+                                           .index = block,
+                                           .shape = mrt_level_cell(s->level, block),
+                                           .l_imp = s->l_imp[block],
+                                           .clutter = s->clutter,
+                                           .objects = s->objects,
+                                           .rays = s->options->rays,
+                                           .probes = s->turned->input.probes };
+    struct mrt_delta_block delta = { 0 };
+    bool ok = mrt_delta_block_init(&delta, s->out->host, &input);
+    if (ok && delta.touched && s->options->occlusion) ok = add_basis(s, block, &delta);
+    ok = ok && add_openings(s, block, &delta);
+    if (ok && delta.face_count > 0 && s->options->reflection)
+        ok = add_clutter(s, block, &delta, texels);
+    mrt_delta_block_finish(&delta);
+    return ok;
+}
+
+// ---- all of it
+
+static bool allocate(struct mrt_cluttered *out, const struct mrt_turned *turned, int faces)
+{
+    const struct mrt_runtime_input *old = &turned->input;
+    const size_t blocks = (size_t)old->map->count, openings = (size_t)old->opening_count;
+    const size_t pairs = (size_t)old->pair_count, k_r = (size_t)old->k_r;
+    struct host *host = out->host;
+    out->responses = host_alloc(host, MRT_RESPONSES + openings + blocks, sizeof *out->responses);
+    out->openings = host_alloc(host, openings + blocks, sizeof *out->openings);
+    out->pairs = host_alloc(host, pairs + blocks * blocks, sizeof *out->pairs);
+    out->gathered = host_alloc(host, blocks * blocks, sizeof *out->gathered);
+    out->faces = host_alloc(host, (size_t)faces, sizeof *out->faces);
+    out->clutter_openings = host_alloc(host, blocks, sizeof *out->clutter_openings);
+    out->coupling = host_alloc(host, blocks * k_r * k_r, sizeof *out->coupling);
+    return out->responses && out->openings && out->pairs && out->gathered && out->faces &&
+           out->clutter_openings && out->coupling;
+}
+
+static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
+                         const struct mrt_clutter *clutter, const struct mrt_clutter_texel *texels)
+{
+    out->input.basis_count = turned->input.basis_count;
+    out->input.responses = out->responses;
+    out->input.openings = out->openings;
+    out->input.pairs = out->pairs;
+    out->clutter.texels = texels;
+    out->clutter.texel_count = (int)clutter->charts.texel_count;
+    out->clutter.faces = out->faces;
+    out->clutter.openings = out->clutter_openings;
+    out->clutter.coupling = out->coupling;
+    if (out->clutter.opening_count > 0) out->input.clutter = &out->clutter;
+}
+
+bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt_turned *turned,
+                        const struct mrt_level *level, const struct mrt_clutter *clutter,
+                        const struct mrt_clutter_texel *texels,
+                        const struct mrt_cluttered_options *options)
+{
+    const int blocks = level->map->count;
+    struct builder s = {
+        .out = out, .turned = turned, .level = level, .clutter = clutter, .options = options
+    };
+    *out = (struct mrt_cluttered){ .host = host, .input = turned->input };
+    out->input.opening_count = out->input.pair_count = 0;
+    s.objects = trace_scene_create(host, &clutter->objects.pose);
+    s.l_imp = host_alloc(host, (size_t)blocks, sizeof *s.l_imp);
+    bool ok = s.objects && s.l_imp && allocate(out, turned, clutter->face_count);
+    for (int i = 0; ok && i < MRT_RESPONSES; i++) out->responses[i] = turned->responses[i];
+    out->shared_responses = MRT_RESPONSES;
+    for (int b = 0; ok && b < blocks; b++)
+        s.l_imp[b] = &turned->bases[turned->basis_of_block[b]].l_imp;
+    for (int b = 0; ok && b < blocks; b++) ok = add_block(&s, b, texels);
+    trace_scene_destroy(s.objects);
+    host_free(host, s.l_imp);
+    if (ok)
+        finish_input(out, turned, clutter, texels);
+    else
+        mrt_cluttered_finish(out);
+    return ok;
+}
+
+void mrt_cluttered_finish(struct mrt_cluttered *out)
+{
+    if (!out->host) return;
+    for (int i = out->shared_responses; out->responses && i < out->input.response_count; i++)
+        mrt_response_input_finish(out->host, &out->responses[i]);
+    for (int i = 0; i < out->gathered_count; i++) matrix_f32_finish(out->host, &out->gathered[i]);
+    host_free(out->host, out->responses);
+    host_free(out->host, out->openings);
+    host_free(out->host, out->pairs);
+    host_free(out->host, out->gathered);
+    host_free(out->host, out->faces);
+    host_free(out->host, out->clutter_openings);
+    host_free(out->host, out->coupling);
+    *out = (struct mrt_cluttered){ 0 };
+}

@@ -1,0 +1,39 @@
+// Operators of a level with clutter (level/delta.h), as input of the run time.
+//
+// Clutter changes the operators, not the passes: blocks that it touches have bases U_b + ΔU_b and
+// responses of their openings of their own, and the faces of a block's clutter are one more opening
+// of it, whose response is ΔU_c. Its r is c, the radiosity of the faces: light of b of all blocks
+// that they see is carried by T_b→r, and clutter.c adds direct light and albedo.
+#pragma once
+
+#include "techniques/mrt/level/delta.h"
+#include "techniques/mrt/runtime/turned.h"
+
+struct mrt_cluttered_options {
+    int rays, depth; // rays per texel; openings that light on clutter passes at most
+    bool occlusion;  // clutter blocks light
+    bool reflection; // it reflects light
+};
+
+struct mrt_cluttered {
+    struct host *host;
+    struct mrt_response_input *responses;
+    int shared_responses; // the first ones, of the turned operators
+    struct mrt_opening_input *openings;
+    struct mrt_pair_input *pairs;
+    struct matrix_f32 *gathered; // T_b→r of faces
+    int gathered_count;
+    struct mrt_clutter_face_input *faces;
+    int *clutter_openings;
+    float *coupling;
+    struct mrt_clutter_input clutter;
+    struct mrt_runtime_input input; // refers to `turned`
+};
+
+// Adds bases to `turned`, which must outlive the input. texels: those of clutter->texels, in their
+// order. mrt_cluttered_finish accepts zero.
+bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt_turned *turned,
+                        const struct mrt_level *level, const struct mrt_clutter *clutter,
+                        const struct mrt_clutter_texel *texels,
+                        const struct mrt_cluttered_options *options);
+void mrt_cluttered_finish(struct mrt_cluttered *cluttered);
