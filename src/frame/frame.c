@@ -403,6 +403,7 @@ static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct f
     view->geometry_moved = f->scene.moved;
     view->lights_changed = f->lights_changed;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) view->layers[l] = f->layers[l];
+    if (indirect && indirect->update) indirect->update(indirect->user, cmd, view);
     if (indirect && indirect->record) indirect->record(indirect->user, cmd, view);
 }
 

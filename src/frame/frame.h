@@ -63,6 +63,7 @@ enum frame_layer {
 // The frame as techniques see it; valid while they record. Layers that were not requested are empty
 // handles.
 struct frame_view {
+    int number; // of the view: 0 is the renderer's camera, others share its light
     uint32_t width, height;
     uint64_t index;                          // frames since the last resize or scene change
     const struct frame_constants *constants; // CPU copy of the block
@@ -117,8 +118,10 @@ enum frame_need {
 };
 
 struct frame_indirect {
-    void (*record)(void *user, struct gpu_cmd *cmd,
-                   const struct frame_view *view); // records only; cannot fail
+    // Both record only and cannot fail. `update`: once a frame, with its first view; may be NULL.
+    // `record`: each view.
+    void (*update)(void *user, struct gpu_cmd *cmd, const struct frame_view *view);
+    void (*record)(void *user, struct gpu_cmd *cmd, const struct frame_view *view);
     void *user;
     uint32_t needs; // frame_need bits
 };

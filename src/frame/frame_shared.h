@@ -14,6 +14,7 @@
 
 #define FRAME_MAX_LIGHTS   64
 #define FRAME_MAX_CASCADES 4
+#define FRAME_MAX_VIEWS    8
 
 // Uniform block "frame_constants".
 struct frame_constants {

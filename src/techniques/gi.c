@@ -30,21 +30,35 @@ static bool check_term(const struct gi *gi, const struct technique *technique,
     return !technique->check || technique->check(how);
 }
 
+// The common state gets the further views, too.
+static bool add_views(const struct gi *gi, const struct technique *technique, void *state)
+{
+    for (int v = 1; v < FRAME_MAX_VIEWS; v++) {
+        const struct gi_view *view = &gi->views[v];
+        if (view->width > 0 && technique->resize &&
+            !technique->resize(state, v, view->width, view->height))
+            return false;
+    }
+    return true;
+}
+
 bool gi_create_state(const struct gi *gi, const struct technique *technique, const void *options,
-                     const struct tensors *bake, const struct scene_pose *pose, void **state)
+                     const struct tensors *bake, const struct scene_pose *pose, int view,
+                     void **state)
 {
     const struct technique_create how = { .host = gi->host,
                                           .gpu = gi->gpu,
                                           .pose = pose,
                                           .options = options,
-                                          .width = gi->width,
-                                          .height = gi->height };
+                                          .width = view ? gi->views[view].width : gi->width,
+                                          .height = view ? gi->views[view].height : gi->height };
     *state = NULL;
     if (!check_term(gi, technique, bake, &how)) return false;
     if (!(*state = host_alloc(gi->host, 1, technique->state_size))) return false;
     gpu_owner_push(gi->gpu, technique->name);
     const bool ok = technique->create(*state, &how) &&
-                    (technique->bake_version == 0 || technique->load(*state, bake));
+                    (technique->bake_version == 0 || technique->load(*state, bake)) &&
+                    (gi_is_per_view(technique) || add_views(gi, technique, *state));
     gpu_owner_pop(gi->gpu);
     return ok;
 }
@@ -76,7 +90,7 @@ struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_s
     if (!gi_spec_copy(&gi->spec, spec)) goto fail;
     for (int i = 0; i < gi->spec.count; i++)
         if (!gi_create_state(gi, gi->spec.technique[i], gi->spec.options[i], bakes->of_term[i],
-                             pose, &gi->state[i]))
+                             pose, 0, &gi->state[i]))
             goto fail;
     return gi;
 fail:
@@ -87,8 +101,11 @@ fail:
 void gi_destroy(struct gi *gi)
 {
     if (!gi) return;
-    for (int i = 0; i < gi->spec.count; i++)
+    for (int i = 0; i < gi->spec.count; i++) {
         gi_destroy_state(gi, gi->spec.technique[i], gi->state[i]);
+        for (int v = 1; v < FRAME_MAX_VIEWS; v++)
+            gi_destroy_state(gi, gi->spec.technique[i], gi->views[v].state[i]);
+    }
     gpu_image_destroy(gi->gpu, &gi->debug_image);
     probe_view_destroy(&gi->probe_view, gi->gpu);
     gi_spec_finish(&gi->spec);
@@ -112,11 +129,48 @@ bool gi_resize(struct gi *gi, uint32_t width, uint32_t height)
     gi->height = height;
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = enter(gi, i);
-        const bool ok = !technique->resize || technique->resize(gi->state[i], width, height);
+        const bool ok = !technique->resize || technique->resize(gi->state[i], 0, width, height);
         leave(gi);
         if (!ok) return false;
     }
     return !gi->debug_name || make_debug_image(gi);
+}
+
+static bool resize_term(struct gi *gi, int term, int v, const struct scene_pose *pose)
+{
+    const struct technique *technique = gi->spec.technique[term];
+    struct gi_view *view = &gi->views[v];
+    if (!gi_is_per_view(technique))
+        return !technique->resize ||
+               technique->resize(gi->state[term], v, view->width, view->height);
+    if (view->state[term] && view->width > 0)
+        return !technique->resize ||
+               technique->resize(view->state[term], 0, view->width, view->height);
+    gi_destroy_state(gi, technique, view->state[term]);
+    view->state[term] = NULL;
+    return view->width == 0 || gi_create_state(gi, technique, gi->spec.options[term], NULL, pose, v,
+                                               &view->state[term]);
+}
+
+static void remove_view(struct gi *gi, int view, const struct scene_pose *pose)
+{
+    gi->views[view].width = gi->views[view].height = 0;
+    for (int i = 0; i < gi->spec.count; i++) resize_term(gi, i, view, pose);
+}
+
+bool gi_resize_view(struct gi *gi, int view, const struct scene_pose *pose, uint32_t width,
+                    uint32_t height)
+{
+    bool ok = true;
+    gi->views[view].width = width;
+    gi->views[view].height = height;
+    for (int i = 0; ok && i < gi->spec.count; i++) {
+        enter(gi, i);
+        ok = resize_term(gi, i, view, pose);
+        leave(gi);
+    }
+    if (!ok) remove_view(gi, view, pose);
+    return ok;
 }
 
 // Once for each technique that cannot follow changed surfaces.
@@ -160,7 +214,10 @@ void gi_invalidate(struct gi *gi, uint32_t changes)
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = gi->spec.technique[i];
         if (changes & surfaces && is_fixed(gi, i)) warn_of_change(gi, i);
-        if (technique->invalidate) technique->invalidate(gi->state[i], changes);
+        if (!technique->invalidate) continue;
+        technique->invalidate(gi->state[i], changes);
+        for (int v = 1; v < FRAME_MAX_VIEWS; v++)
+            if (gi->views[v].state[i]) technique->invalidate(gi->views[v].state[i], changes);
     }
 }
 
@@ -208,14 +265,38 @@ static void record_debug_view(struct gi *gi, struct gpu_cmd *cmd, const struct f
     }
 }
 
+static void gi_update(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct gi *gi = user;
+    for (int i = 0; i < gi->spec.count; i++) {
+        const struct technique *technique = enter(gi, i);
+        if (technique->update) technique->update(gi->state[i], cmd, view);
+        leave(gi);
+    }
+}
+
+static void record_term(struct gi *gi, int term, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const struct technique *technique = gi->spec.technique[term];
+    void *own = gi->views[view->number].state[term];
+    if (view->number == 0 || !gi_is_per_view(technique)) {
+        technique->record(gi->state[term], cmd, view);
+    } else if (own) {
+        struct frame_view as_first = *view;
+        as_first.number = 0;
+        technique->record(own, cmd, &as_first);
+    }
+}
+
 static void gi_record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct gi *gi = user;
     for (int i = 0; i < gi->spec.count; i++) {
-        enter(gi, i)->record(gi->state[i], cmd, view);
+        enter(gi, i);
+        record_term(gi, i, cmd, view);
         leave(gi);
     }
-    if (gi->debug_name) record_debug_view(gi, cmd, view);
+    if (gi->debug_name && view->number == 0) record_debug_view(gi, cmd, view);
 }
 
 struct frame_indirect gi_hook(struct gi *gi)
@@ -226,7 +307,9 @@ struct frame_indirect gi_hook(struct gi *gi)
         needs |= technique->needs;
         if (technique->more_needs) needs |= technique->more_needs(gi->spec.options[i]);
     }
-    return (struct frame_indirect){ .record = gi_record, .user = gi, .needs = needs };
+    return (struct frame_indirect){
+        .update = gi_update, .record = gi_record, .user = gi, .needs = needs
+    };
 }
 
 static const struct technique_debug_view *find_debug_view(const struct gi *gi, const char *name,

@@ -36,6 +36,10 @@ struct gi *gi_create_baked(struct host *host, struct gpu *gpu, const struct gi_s
                            uint32_t width, uint32_t height);
 void gi_destroy(struct gi *gi);
 bool gi_resize(struct gi *gi, uint32_t width, uint32_t height);
+// Adds a view of the same light, 1 to FRAME_MAX_VIEWS − 1, or changes its size. 0 × 0 removes it.
+// false: there is no such view any more.
+bool gi_resize_view(struct gi *gi, int view, const struct scene_pose *pose, uint32_t width,
+                    uint32_t height);
 // technique_change bits. A technique that cannot follow them warns once and goes on.
 void gi_invalidate(struct gi *gi, uint32_t changes);
 // Whether a technique cannot follow moving geometry, and has not yet warned.

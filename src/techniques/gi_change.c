@@ -10,14 +10,25 @@ static bool may_continue(const struct technique *technique, const void *now, con
     return effect < 0 || (effect <= INVALIDATE && technique->set_options);
 }
 
-static void set_options(const struct technique *technique, void *state, void *now, const void *next)
+static void apply_options(const struct technique *technique, void *state, const void *options,
+                          int effect)
 {
+    if (!state) return;
+    technique->set_options(state, options);
+    if (effect == INVALIDATE && technique->invalidate)
+        technique->invalidate(state, CHANGED_OPTIONS);
+}
+
+// Of a running term, in all views.
+static void set_options(struct gi *gi, int term, void *now, const void *next)
+{
+    const struct technique *technique = gi->spec.technique[term];
     const int effect = option_difference(&technique->options, now, next);
     if (effect < 0) return;
     option_copy_live(&technique->options, next, now);
-    technique->set_options(state, now);
-    if (effect == INVALIDATE && technique->invalidate)
-        technique->invalidate(state, CHANGED_OPTIONS);
+    apply_options(technique, gi->state[term], now, effect);
+    for (int v = 1; v < FRAME_MAX_VIEWS; v++)
+        apply_options(technique, gi->views[v].state[term], now, effect);
 }
 
 int gi_continues(const struct gi *gi, const struct gi_spec *spec, int term)
@@ -35,8 +46,7 @@ bool gi_set_options(struct gi *gi, const struct gi_spec *spec)
     if (spec->count != gi->spec.count) return false;
     for (int i = 0; i < spec->count; i++)
         if (gi_continues(gi, spec, i) != i) return false;
-    for (int i = 0; i < spec->count; i++)
-        set_options(gi->spec.technique[i], gi->state[i], gi->spec.options[i], spec->options[i]);
+    for (int i = 0; i < spec->count; i++) set_options(gi, i, gi->spec.options[i], spec->options[i]);
     return true;
 }
 
@@ -51,41 +61,75 @@ static void move_debug_view(struct gi *gi, const struct technique *technique)
     gi_set_debug_view(gi, NULL);
 }
 
-// Takes over `next` and `created`: the states of the terms that do not continue.
-static void exchange(struct gi *gi, struct gi_spec *next, void *const created[GI_MAX_TERMS])
+// States by view, of the terms that do not continue.
+struct created {
+    void *state[FRAME_MAX_VIEWS][GI_MAX_TERMS];
+};
+
+static void **state_of(struct gi *gi, int view, int term)
+{
+    return view ? &gi->views[view].state[term] : &gi->state[term];
+}
+
+// Takes over `next` and `created`.
+static void exchange(struct gi *gi, struct gi_spec *next, const struct created *created)
 {
     struct gi before = *gi;
     gi->spec = *next;
     for (int i = 0; i < next->count; i++) {
         const int from = gi_continues(&before, next, i);
-        gi->state[i] = created[i];
-        if (from < 0) continue;
-        gi->state[i] = before.state[from];
-        before.state[from] = NULL;
-        set_options(next->technique[i], gi->state[i], before.spec.options[from], next->options[i]);
+        for (int v = 0; v < FRAME_MAX_VIEWS; v++) {
+            *state_of(gi, v, i) = from < 0 ? created->state[v][i] : *state_of(&before, v, from);
+            if (from >= 0) *state_of(&before, v, from) = NULL;
+        }
+        if (from >= 0) set_options(gi, i, before.spec.options[from], next->options[i]);
     }
+    for (int v = 0; v < FRAME_MAX_VIEWS; v++)
+        for (int i = next->count; i < GI_MAX_TERMS; i++) *state_of(gi, v, i) = NULL;
     if (gi->debug_name) move_debug_view(gi, before.spec.technique[before.debug_term]);
     for (int i = 0; i < before.spec.count; i++)
-        gi_destroy_state(gi, before.spec.technique[i], before.state[i]);
+        for (int v = 0; v < FRAME_MAX_VIEWS; v++)
+            gi_destroy_state(gi, before.spec.technique[i], *state_of(&before, v, i));
     gi_spec_finish(&before.spec);
+}
+
+static bool create_term(const struct gi *gi, const struct gi_spec *next, int term,
+                        const struct tensors *bake, const struct scene_pose *pose,
+                        struct created *created)
+{
+    const struct technique *technique = next->technique[term];
+    for (int v = 0; v < FRAME_MAX_VIEWS; v++) {
+        const bool wanted = v == 0 || (gi->views[v].width > 0 && gi_is_per_view(technique));
+        if (wanted && !gi_create_state(gi, technique, next->options[term], bake, pose, v,
+                                       &created->state[v][term]))
+            return false;
+    }
+    return true;
+}
+
+static void destroy_created(const struct gi *gi, const struct gi_spec *next,
+                            const struct created *created)
+{
+    for (int i = 0; i < next->count; i++)
+        for (int v = 0; v < FRAME_MAX_VIEWS; v++)
+            gi_destroy_state(gi, next->technique[i], created->state[v][i]);
 }
 
 bool gi_change(struct gi *gi, const struct gi_spec *spec, const struct gi_bakes *bakes,
                const struct scene_pose *pose)
 {
     struct gi_spec next;
-    void *created[GI_MAX_TERMS] = { NULL };
+    struct created created = { { { NULL } } };
     if (gi_set_options(gi, spec)) return true;
     if (!gi_spec_copy(&next, spec)) return false;
     for (int i = 0; i < next.count; i++)
         if (gi_continues(gi, &next, i) < 0 &&
-            !gi_create_state(gi, next.technique[i], next.options[i], bakes->of_term[i], pose,
-                             &created[i]))
+            !create_term(gi, &next, i, bakes->of_term[i], pose, &created))
             goto fail;
-    exchange(gi, &next, created);
+    exchange(gi, &next, &created);
     return true;
 fail:
-    for (int i = 0; i < next.count; i++) gi_destroy_state(gi, next.technique[i], created[i]);
+    destroy_created(gi, &next, &created);
     gi_spec_finish(&next);
     return false;
 }

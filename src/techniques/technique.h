@@ -44,7 +44,7 @@ struct technique_preset {
 #define PROBES_VIEW      "probes"
 #define PROBES_VIEW_HELP "white spheres at the probes and surfaces lit by them; needs probes=true"
 
-// Irradiance at the points of a grid, in the format of frame/probes.glsl. Each record fills it.
+// Irradiance at the points of a grid, in the format of frame/probes.glsl. Each update fills it.
 struct probe_volume {
     gpu_image image; // RGBA16F
     struct frame_probes grid;
@@ -97,15 +97,20 @@ struct technique {
     // After `create`: takes what it needs of a bake, whose identity has been checked and whose
     // content is untrusted (tensors_expect). The tensors end with the call.
     bool (*load)(void *state, const struct tensors *bake);
-    bool (*resize)(void *state, uint32_t width, uint32_t height);
+    // A view has this size: view 0 that of `create` until then. 0 × 0: the view has ended.
+    bool (*resize)(void *state, int view, uint32_t width, uint32_t height);
     void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
     void (*invalidate)(void *state, uint32_t changes);     // technique_change bits
-    void (*record)(void *state, struct gpu_cmd *cmd,
-                   const struct frame_view *view); // no allocation, no wait, no failure
+    // No allocation, no wait, no failure. `update` is the light that all views share: volumes,
+    // voxels, probes; once a frame, with the first view. `record` is what a view's pixels get of
+    // it; once a view. A technique without `update` shares nothing: each view has a state of its
+    // own, for which it is view 0.
+    void (*update)(void *state, struct gpu_cmd *cmd, const struct frame_view *view);
+    void (*record)(void *state, struct gpu_cmd *cmd, const struct frame_view *view);
     void (*debug_view)(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
                        const char *name,
                        gpu_image out); // RGBA16F of the frame's size, scaled radiance
-    // With PUBLISHES_PROBES: the volume that the newest record filled. false: the option `probes`
+    // With PUBLISHES_PROBES: the volume that the newest update filled. false: the option `probes`
     // is off.
     bool (*probes)(void *state, struct probe_volume *out);
     void (*destroy)(void *state); // accepts any half-built state

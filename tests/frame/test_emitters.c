@@ -372,7 +372,7 @@ TEST_GPU(techniques_get_the_list_when_they_ask_for_it)
     struct frame_fixture s;
     room(&s, gpu, 1, 1000);
     struct seen seen;
-    s.indirect = (struct frame_indirect){ look, &seen, 0 };
+    s.indirect = (struct frame_indirect){ .record = look, .user = &seen, .needs = 0 };
     fixture_open(&s);
     fixture_render(&s);
     CHECK(seen.count == 0 && !seen.bound);
@@ -394,7 +394,8 @@ TEST_GPU(no_strength_of_emission_leaves_the_range_of_the_images)
         room(&s, gpu, sizes[i / 3], radiances[i % 3]);
         fixture_look(&s, vec3_of(0, 3.85f, 0), vec3_of(0, 4, 0));
         struct seen seen;
-        s.indirect = (struct frame_indirect){ look, &seen, FRAME_NEEDS_EMITTERS };
+        s.indirect =
+            (struct frame_indirect){ .record = look, .user = &seen, .needs = FRAME_NEEDS_EMITTERS };
         fixture_open(&s);
         fixture_render(&s);
         CHECK_RELATIVE(fixture_pixel(&s, READ_EMISSIVE, 16, 16).x, radiances[i % 3], 1e-3);

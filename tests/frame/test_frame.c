@@ -49,9 +49,10 @@ TEST_GPU(composite_is_the_sum_of_the_layers)
     struct frame_fixture s;
     begin(&s, gpu);
     struct constant_layers f = { .irradiance = 500, .specular = 20, .visibility = 0.5f };
-    s.indirect = (struct frame_indirect){
-        fill, &f, FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR | FRAME_WRITES_VISIBILITY
-    };
+    s.indirect = (struct frame_indirect){ .record = fill,
+                                          .user = &f,
+                                          .needs = FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR |
+                                                   FRAME_WRITES_VISIBILITY };
     s.input.want_indirect_layer = true;
     fixture_open(&s);
     fixture_render(&s);
@@ -110,9 +111,11 @@ TEST_GPU(exposure_equals_the_cpus)
         s.width = i == 0 ? 32 : i == 1 ? 131 : 640;
         s.height = i == 0 ? 32 : i == 1 ? 77 : 360;
         if (i == 3)
-            s.indirect = (struct frame_indirect){
-                fill, &f, FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR | FRAME_WRITES_VISIBILITY
-            };
+            s.indirect =
+                (struct frame_indirect){ .record = fill,
+                                         .user = &f,
+                                         .needs = FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR |
+                                                  FRAME_WRITES_VISIBILITY };
         fixture_look(&s, vec3_of(0, 1, 3), vec3_of(0, 1, 0)); // half of the image is background
         fixture_open(&s);
         fixture_render(&s);
@@ -133,9 +136,11 @@ TEST_GPU(light_of_a_technique_alone_is_exposed_to_middle_grey)
         begin(&s, gpu);
         s.input.light_count = 0;
         struct constant_layers f = { .irradiance = i ? 1400 : 700, .visibility = 1 };
-        s.indirect = (struct frame_indirect){
-            fill, &f, FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR | FRAME_WRITES_VISIBILITY
-        };
+        s.indirect =
+            (struct frame_indirect){ .record = fill,
+                                     .user = &f,
+                                     .needs = FRAME_WRITES_IRRADIANCE | FRAME_WRITES_SPECULAR |
+                                              FRAME_WRITES_VISIBILITY };
         fixture_open(&s);
         fixture_render(&s);
         assert_true(frame_exposure(s.frame, &ev[i]));
@@ -266,7 +271,7 @@ TEST_GPU(changes_are_reported_once)
     struct frame_fixture s;
     begin(&s, gpu);
     struct changes c;
-    s.indirect = (struct frame_indirect){ store_changes, &c, 0 };
+    s.indirect = (struct frame_indirect){ .record = store_changes, .user = &c, .needs = 0 };
     fixture_open(&s);
     fixture_render(&s);
     CHECK(c.cut && c.moved && c.lights && c.index == 0 && c.ratio == 1);

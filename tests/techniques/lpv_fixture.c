@@ -31,6 +31,7 @@ void lpv_fixture_render(struct lpv *lpv, struct rsm_fixture *rsm)
 {
     struct gpu_cmd *cmd = gpu_frame_begin(rsm->gpu);
     assert_non_null(cmd);
+    technique_lpv.update(lpv, cmd, &rsm->view);
     technique_lpv.record(lpv, cmd, &rsm->view);
     CHECK(gpu_frame_end(rsm->gpu, cmd));
     CHECK(gpu_wait(rsm->gpu));

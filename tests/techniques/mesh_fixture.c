@@ -90,6 +90,7 @@ void mesh_fixture_render(struct mesh_fixture *meshes, struct lpv *lpv)
     assert_non_null(cmd);
     scene_gpu_update(&meshes->scene_gpu, cmd, &meshes->pose, false);
     rsm->view.geometry_moved = meshes->scene_gpu.moved;
+    technique_lpv.update(lpv, cmd, &rsm->view);
     technique_lpv.record(lpv, cmd, &rsm->view);
     CHECK(gpu_frame_end(rsm->gpu, cmd));
     CHECK(gpu_wait(rsm->gpu));

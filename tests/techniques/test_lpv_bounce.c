@@ -12,12 +12,14 @@ enum { SIDES = 6, SIDE_NUMBERS = LPV_FIXTURE_COLOURS + 1, NUMBERS = SIDES * SIDE
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
+    technique_lpv.update(user, cmd, view);
     technique_lpv.record(user, cmd, view);
 }
 
 static void use(struct frame_fixture *s, struct lpv *lpv)
 {
-    s->indirect = (struct frame_indirect){ record, lpv, technique_lpv.needs };
+    s->indirect =
+        (struct frame_indirect){ .record = record, .user = lpv, .needs = technique_lpv.needs };
 }
 
 // Σ reflectance × area over all cells, and Σ area, in m²: [side][colour or area].

@@ -16,6 +16,7 @@ struct run {
 
 static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
+    technique_lpv.update(user, cmd, view);
     technique_lpv.record(user, cmd, view);
 }
 
@@ -103,7 +104,8 @@ static void change(struct run *run, const struct event *event)
 static float *render(struct run *run, const struct event *event)
 {
     change(run, event);
-    run->s.indirect = (struct frame_indirect){ record, run->lpv, technique_lpv.needs };
+    run->s.indirect =
+        (struct frame_indirect){ .record = record, .user = run->lpv, .needs = technique_lpv.needs };
     fixture_render(&run->s);
     return fixture_read(&run->s, READ_IRRADIANCE);
 }

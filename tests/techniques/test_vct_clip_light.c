@@ -277,6 +277,7 @@ struct viewer {
 static void record_view(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct viewer *viewer = user;
+    technique_vct.update(viewer->vct, cmd, view);
     technique_vct.record(viewer->vct, cmd, view);
     technique_vct.debug_view(viewer->vct, cmd, view, viewer->view, viewer->image);
 }

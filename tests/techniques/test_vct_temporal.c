@@ -44,7 +44,7 @@ static float *alone(const struct vct_fixture *fixture, size_t count)
     const float scale = frame_radiance_scale(fixture->frame_fixture.frame);
     float *rgba = malloc(pixels * 4 * sizeof *rgba), *out = malloc(count * sizeof *out);
     CHECK(gpu_image_download_float(fixture->frame_fixture.gpu,
-                                   vct_temporal_now(&fixture->vct->temporal), 0, 0, rgba, 4,
+                                   vct_temporal_now(fixture->vct->temporal), 0, 0, rgba, 4,
                                    pixels * 4));
     for (size_t i = 0; i < count; i++) out[i] = rgba[i / 3 * 4 + i % 3] / scale;
     free(rgba);
@@ -63,9 +63,9 @@ TEST_GPU(history_is_the_weighted_mean_of_the_frames)
     double *mean_of_them = calloc(3 * pixels, sizeof *mean_of_them);
     for (int frame = 0; frame < 9; frame++) {
         fixture_render(&fixture.frame_fixture);
-        float *now = channels(&fixture, vct_temporal_now(&fixture.vct->temporal), 3);
+        float *now = channels(&fixture, vct_temporal_now(fixture.vct->temporal), 3);
         float *got =
-            channels(&fixture, fixture.vct->temporal.light[fixture.vct->temporal.newest], 4);
+            channels(&fixture, fixture.vct->temporal->light[fixture.vct->temporal->newest], 4);
         const double w = frame < 4 ? frame : 4; // at most `frames`
         for (size_t i = 0; i < 3 * pixels; i++) {
             mean_of_them[i] = (w * mean_of_them[i] + (double)now[i]) / (w + 1.0);
@@ -307,7 +307,7 @@ TEST_GPU(history_follows_objects_and_resets_where_uncovered)
     fixture_render(s);
     struct image after = image_of(s);
     float *history =
-        channels(&fixture, fixture.vct->temporal.light[fixture.vct->temporal.newest], 4);
+        channels(&fixture, fixture.vct->temporal->light[fixture.vct->temporal->newest], 4);
     int on_box = 0, followed = 0, uncovered = 0, begun = 0, still = 0, kept = 0;
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
         const vec3s was = vector(before.position, i), is = vector(after.position, i);
@@ -403,7 +403,7 @@ TEST_GPU(a_camera_cut_resets_history)
     assert_memory_equal(cut, fresh, bytes);
     free(cut), free(fresh);
     fresh = render_first_frame(gpu, off, OTHER_CAMERA, OTHER_TARGET, 40);
-    CHECK(technique_vct.resize(fixture.vct, 40, 40));
+    CHECK(technique_vct.resize(fixture.vct, 0, 40, 40));
     fixture_resize(&fixture.frame_fixture, 40, 40);
     cut = vct_fixture_irradiance_after(&fixture, 1);
     assert_memory_equal(cut, fresh, floats_of(&fixture) * sizeof *fresh);

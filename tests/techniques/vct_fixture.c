@@ -13,7 +13,8 @@ static void record(void *user, struct gpu_cmd *cmd, const struct frame_view *vie
 {
     struct vct *vct = user;
     gpu_owner_push(vct->gpu, vct->name);
-    technique_vct.record(vct, cmd, view); // the same function for vctao
+    technique_vct.update(vct, cmd, view); // the same functions for vctao
+    technique_vct.record(vct, cmd, view);
     gpu_owner_pop(vct->gpu);
 }
 

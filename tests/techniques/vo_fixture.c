@@ -27,7 +27,9 @@ struct vo_fixture vo_fixture_create(struct frame_fixture *frame_fixture, const c
                                           .height = frame_fixture->height };
     CHECK(technique_vo.create(fixture.vo, &how));
     gi_spec_finish(&spec);
-    frame_fixture->indirect = (struct frame_indirect){ record, fixture.vo, technique_vo.needs };
+    frame_fixture->indirect = (struct frame_indirect){ .record = record,
+                                                       .user = fixture.vo,
+                                                       .needs = technique_vo.needs };
     return fixture;
 }
 

@@ -87,7 +87,7 @@ static struct ambient_push push_of(const struct ambient *ambient, const struct f
     };
 }
 
-static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+static void ambient_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct ambient *ambient = state;
     const struct ambient_push push = push_of(ambient, view);
@@ -104,7 +104,13 @@ static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_
     }
     gpu_dispatch(cmd, ambient->total, GPU_BIND(partials, result), &push, sizeof push, 1, 1, 1);
     gpu_scope_end(cmd);
+}
 
+static void ambient_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct ambient *ambient = state;
+    const struct ambient_push push = push_of(ambient, view);
+    const struct gpu_binding result = { .name = "ambient_result", .buffer = ambient->result };
     gpu_scope_begin(cmd, "fill");
     gpu_dispatch(cmd, ambient->fill,
                  GPU_BIND(result, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
@@ -144,6 +150,7 @@ const struct technique technique_ambient = {
     .state_size = sizeof(struct ambient),
     .create = ambient_create,
     .set_options = ambient_set_options,
+    .update = ambient_update,
     .record = ambient_record,
     .destroy = ambient_destroy,
     .memory_estimate = ambient_memory_estimate,

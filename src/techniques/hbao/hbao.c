@@ -50,8 +50,9 @@ static bool hbao_create(void *state, const struct technique_create *how)
                                        &hbao->horizons);
 }
 
-static bool hbao_resize(void *state, uint32_t width, uint32_t height)
+static bool hbao_resize(void *state, int view, uint32_t width, uint32_t height)
 {
+    (void)view;
     return screen_ao_resize(&((struct hbao *)state)->ao, width, height);
 }
 

@@ -139,18 +139,21 @@ static bool record_light(struct lpv *lpv, struct gpu_cmd *cmd, const struct fram
     return true;
 }
 
+static void lpv_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct lpv *lpv = state;
+    if (lpv_prepare(lpv, view)) record_light(lpv, cmd, view);
+    lpv_record_probes(lpv, cmd);
+}
+
 static void lpv_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct lpv *lpv = state;
-    if (!lpv_prepare(lpv, view)) {
+    if (lpv->lit)
+        lpv_record_application(lpv, cmd, view);
+    else
         gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
                         (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
-        lpv_record_probes(lpv, cmd);
-        return;
-    }
-    record_light(lpv, cmd, view);
-    lpv_record_application(lpv, cmd, view);
-    lpv_record_probes(lpv, cmd);
 }
 
 static void lpv_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -196,9 +199,9 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
     .options = OPTION_TABLE(struct lpv_options, rows_, aliases), .presets = presets_,              \
     .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),                         \
-    .set_options = lpv_set_options, .invalidate = lpv_invalidate, .record = lpv_record,            \
-    .debug_view = lpv_debug_view, .probes = lpv_probes, .destroy = lpv_destroy,                    \
-    .memory_estimate = lpv_memory_estimate
+    .set_options = lpv_set_options, .invalidate = lpv_invalidate, .update = lpv_update,            \
+    .record = lpv_record, .debug_view = lpv_debug_view, .probes = lpv_probes,                      \
+    .destroy = lpv_destroy, .memory_estimate = lpv_memory_estimate
 
 const struct technique technique_lpv = {
     LPV_TECHNIQUE("lpv", "light propagation volumes",

@@ -113,7 +113,7 @@ vec3 surface_irradiance(vec3 surface, vec3 n)
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(lpv.width, lpv.height)))) return;
+    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
     vec3 result = vec3(0.0);
     if (z > 0.0) {

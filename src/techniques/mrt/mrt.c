@@ -193,15 +193,10 @@ static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct f
         mrt_record_bounces(&mrt->runtime, cmd, mrt->options.bounces, first_feedback(mrt, view));
 }
 
-static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct mrt *mrt = state;
-    if (mrt->map.count == 0) {
-        gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
-                        (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
-        return;
-    }
-
+    if (mrt->map.count == 0) return;
     find_kept(mrt, view);
     if (!mrt->kept) {
         mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
@@ -210,8 +205,17 @@ static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         mrt_record_probes(&mrt->runtime, cmd, view, mrt->options.gain);
         mrt_record_outdoors(&mrt->runtime, cmd, view);
     }
-    mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
     mrt->lit = true;
+}
+
+static void mrt_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct mrt *mrt = state;
+    if (mrt->map.count == 0)
+        gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
+                        (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+    else
+        mrt_record_apply(&mrt->runtime, cmd, view, mrt->options.gain);
 }
 
 static void mrt_debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
@@ -271,9 +275,9 @@ static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_
     .options = OPTION_TABLE(struct mrt_options, rows, NULL), .presets = presets,                   \
     .debug_views = debug_views, .state_size = sizeof(struct mrt), .resolve = mrt_resolve,          \
     .bake = mrt_bake, .bake_report = mrt_bake_report, .load = mrt_load,                            \
-    .set_options = mrt_set_options, .invalidate = mrt_invalidate, .record = mrt_record,            \
-    .debug_view = mrt_debug_view, .probes = mrt_probes, .destroy = mrt_destroy,                    \
-    .memory_estimate = mrt_memory_estimate
+    .set_options = mrt_set_options, .invalidate = mrt_invalidate, .update = mrt_update,            \
+    .record = mrt_record, .debug_view = mrt_debug_view, .probes = mrt_probes,                      \
+    .destroy = mrt_destroy, .memory_estimate = mrt_memory_estimate
 
 const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",

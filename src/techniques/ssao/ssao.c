@@ -70,8 +70,9 @@ static bool ssao_create(void *state, const struct technique_create *how)
            create_points(ssao);
 }
 
-static bool ssao_resize(void *state, uint32_t width, uint32_t height)
+static bool ssao_resize(void *state, int view, uint32_t width, uint32_t height)
 {
+    (void)view;
     return screen_ao_resize(&((struct ssao *)state)->ao, width, height);
 }
 

@@ -95,11 +95,32 @@ static bool vctao_check(const struct technique_create *how)
 
 // ---- Creation and changes -----------------------------------------------------------------------
 
-static bool vct_resize(void *state, uint32_t width, uint32_t height)
+static bool resize_temporal(struct vct *vct, struct vct_temporal *temporal, uint32_t width,
+                            uint32_t height)
+{
+    if (width == 0) vct_temporal_destroy(temporal, vct->gpu);
+    if (width == 0 || !vct->options.temporal) return true;
+    temporal->unlit = vct->options.occlusion;
+    return vct_temporal_resize(temporal, vct->gpu, width, height) &&
+           (temporal->filter.id || vct_temporal_create(temporal, vct->gpu));
+}
+
+static bool vct_resize(void *state, int view, uint32_t width, uint32_t height)
 {
     struct vct *vct = state;
-    return vct_create_images(vct, width, height) &&
-           (!vct->options.temporal || vct_temporal_resize(&vct->temporal, vct->gpu, width, height));
+    return vct_create_images(vct, view, width, height) &&
+           resize_temporal(vct, &vct->views[view].temporal, width, height);
+}
+
+static void select_view(struct vct *vct, int view)
+{
+    vct->pixels = vct_pixels_of(vct, view);
+    vct->temporal = &vct->views[view].temporal;
+}
+
+static void forget_histories(struct vct *vct)
+{
+    for (int i = 0; i < FRAME_MAX_VIEWS; i++) vct_temporal_invalidate(&vct->views[i].temporal);
 }
 
 static bool create(struct vct *vct, const char *name, const struct technique_create *how,
@@ -110,12 +131,11 @@ static bool create(struct vct *vct, const char *name, const struct technique_cre
     vct->host = how->host;
     vct->gpu = how->gpu;
     vct->options = options;
-    vct->temporal.unlit = options.occlusion;
     vct->clip_count = vct_clip_count(&vct->options);
     vct_cone_axes(vct->options.cones, vct->cone_axes);
-    return vct_resize(vct, how->width, how->height) && vct_create_resources(vct) &&
-           vct_create_pipelines(vct) &&
-           (!vct->options.temporal || vct_temporal_create(&vct->temporal, vct->gpu));
+    select_view(vct, 0);
+    return vct_resize(vct, 0, how->width, how->height) && vct_create_resources(vct) &&
+           vct_create_pipelines(vct);
 }
 
 static bool vct_create(void *state, const struct technique_create *how)
@@ -147,7 +167,7 @@ static void vct_set_options(void *state, const void *options)
         vct->options.offset != previous.offset || vct->options.step_size != previous.step_size)
         vct->light_valid = vct->bounced_valid = false;
     vct_cone_axes(vct->options.cones, vct->cone_axes);
-    vct_temporal_invalidate(&vct->temporal);
+    forget_histories(vct);
 }
 
 static void vct_invalidate(void *state, uint32_t changes)
@@ -157,8 +177,7 @@ static void vct_invalidate(void *state, uint32_t changes)
     if (changes & CHANGED_OPTIONS) vct->light_valid = vct->bounced_valid = false;
     vct->lit_index = VCT_NEVER;
     // The history follows lights and movable geometry.
-    if (changes & ~(uint32_t)(CHANGED_LIGHT | CHANGED_MOVABLE))
-        vct_temporal_invalidate(&vct->temporal);
+    if (changes & ~(uint32_t)(CHANGED_LIGHT | CHANGED_MOVABLE)) forget_histories(vct);
 }
 
 // ---- Frames -------------------------------------------------------------------------------------
@@ -219,29 +238,43 @@ static void record_specular(struct vct *vct, struct gpu_cmd *cmd, const struct f
     if (emitters) vct_refill_volume(vct, cmd);
 }
 
-static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+// The history of a view, and the points on small emitters that its frame samples.
+static void begin_view(struct vct *vct, const struct frame_view *view)
+{
+    select_view(vct, view->number);
+    if (vct->options.temporal)
+        vct_temporal_begin(vct->temporal, view, vct->options.frames, vct->options.clamp,
+                           vct->settles);
+    if (vct->options.small_emitters)
+        vct_small_emitters_update(&vct->small_emitters, view, vct->temporal->number);
+    else
+        vct->small_emitters.count = 0;
+}
+
+static void vct_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct vct *vct = state;
     vct->ready = vct_clipmap_update(vct, view);
-    if (!vct->ready) {
-        clear(vct, cmd, view);
-        vct_temporal_invalidate(&vct->temporal);
-        return;
-    }
+    if (!vct->ready) return;
     vct->params = params_of(vct, view);
-    if (vct->options.temporal)
-        vct_temporal_begin(&vct->temporal, view, vct->options.frames, vct->options.clamp,
-                           vct->bounces_left > 0);
-    if (vct->options.small_emitters)
-        vct_small_emitters_update(&vct->small_emitters, view, vct->temporal.number);
-    else
-        vct->small_emitters.count = 0;
+    vct->settles = vct->bounces_left > 0;
+    begin_view(vct, view);
     record_voxels(vct, cmd, view);
     const bool bounced = !vct->options.occlusion && vct_record_bounce(vct, cmd, view);
     vct_record_light(vct, cmd, view, bounced);
+}
+
+static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct vct *vct = state;
+    if (!vct->ready) {
+        clear(vct, cmd, view);
+        vct_temporal_invalidate(&vct->views[view->number].temporal);
+        return;
+    }
+    if (view->number > 0) begin_view(vct, view);
     vct_record_cones(vct, cmd, view);
-    if (vct->options.temporal)
-        vct_temporal_record(&vct->temporal, cmd, view, vct_result(vct, view));
+    if (vct->options.temporal) vct_temporal_record(vct->temporal, cmd, view, vct_result(vct, view));
     if (vct->options.specular) record_specular(vct, cmd, view);
 }
 
@@ -267,7 +300,8 @@ static void vct_destroy(void *state)
     struct vct *vct = state;
     if (!vct->gpu) return;
     vct_report_overflow(vct);
-    vct_temporal_destroy(&vct->temporal, vct->gpu);
+    for (int i = 0; i < FRAME_MAX_VIEWS; i++)
+        vct_temporal_destroy(&vct->views[i].temporal, vct->gpu);
     vct_destroy_pipelines(vct);
     vct_destroy_resources(vct);
 }
@@ -321,6 +355,7 @@ const struct technique technique_vct = {
     .resize = vct_resize,
     .set_options = vct_set_options,
     .invalidate = vct_invalidate,
+    .update = vct_update,
     .record = vct_record,
     .debug_view = vct_debug_view,
     .destroy = vct_destroy,
@@ -346,6 +381,7 @@ const struct technique technique_vctao = {
     .resize = vct_resize,
     .set_options = vct_set_options,
     .invalidate = vct_invalidate,
+    .update = vct_update,
     .record = vct_record,
     .debug_view = vct_debug_view,
     .destroy = vct_destroy,

@@ -34,6 +34,21 @@ struct vct_overflow { // of voxel sets, reported some frames later
     bool pending; // there are voxels whose counters have not been copied yet
 };
 
+// Images of traced pixels, of one view at a time.
+struct vct_pixels {
+    uint32_t width, height;
+    gpu_image edge_image;             // R8: discontinuities
+    gpu_image cone_normal_image;      // RG16F: octahedral, axis of each pixel's cone set
+    gpu_image traced[3], gathered[3]; // RGBA16F: cone sums of each colour
+    gpu_image gathered_irradiance;    // RGBA16F: irradiance, fraction of the cone set
+};
+
+struct vct_view {
+    uint32_t width, height;       // 0: there is no such view
+    struct vct_pixels pixels;     // empty if those of view 0 have the right size
+    struct vct_temporal temporal; // with temporal
+};
+
 struct vct {
     const char *name; // of the technique, for messages
     struct host *host;
@@ -63,15 +78,11 @@ struct vct {
     gpu_image block_image;    // RGBA32U, of the first grid: see rays/rays_shared.h
     gpu_image first_slots[2]; // R32U, of each block and set
 
-    // Images of traced pixels, `width` by `height`.
-    uint32_t width, height;
-    gpu_image edge_image;             // R8: discontinuities
-    gpu_image cone_normal_image;      // RG16F: octahedral, axis of each pixel's cone set
-    gpu_image traced[3], gathered[3]; // RGBA16F: cone sums of each colour
-    gpu_image gathered_irradiance;    // RGBA16F: irradiance, fraction of the cone set
+    struct vct_view views[FRAME_MAX_VIEWS];
+    struct vct_pixels *pixels;     // of the view being recorded
+    struct vct_temporal *temporal; // likewise
 
     vec3s cone_axes[VCT_MAX_CONES];
-    struct vct_temporal temporal; // with temporal
 
     // Kept between frames.
     struct vct_params params; // of the frame being recorded, but for the placement of a grid
@@ -84,6 +95,7 @@ struct vct {
     bool bounced_valid;       // bounced irradiance is that of `bounce_inputs`
     struct vct_bounce_inputs bounce_inputs;
     int bounces_left;          // that still propagate a change of light
+    bool settles;              // there were some when the frame began
     const struct scene *scene; // of the voxels
     uint64_t draw_list;        // of scene_gpu, as is static_set
     uint64_t static_set;       // of the static voxels

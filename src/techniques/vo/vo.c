@@ -43,8 +43,9 @@ static bool vo_create(void *state, const struct technique_create *how)
     return vo_create_estimate(vo);
 }
 
-static bool vo_resize(void *state, uint32_t width, uint32_t height)
+static bool vo_resize(void *state, int view, uint32_t width, uint32_t height)
 {
+    (void)view;
     struct vo *vo = state;
     return screen_ao_resize(&vo->ao, width, height) &&
            (vo->options.mode != VO_MODE_AREAS || vo_resize_pyramid(vo, width, height));

@@ -63,13 +63,13 @@ static struct vct_cone_params pixel_cones(const struct vct *vct, const struct fr
     struct vct_cone_params params = params_of(vct, view, vct->options.cones, side);
     const uint32_t count = params.cone_count;
     params.step = vct_step(&vct->options);
-    params.width = vct->width;
-    params.height = vct->height;
+    params.width = vct->pixels->width;
+    params.height = vct->pixels->height;
     for (uint32_t i = 0; i < count; i++)
         params.cones[i] =
             vec4_of(vct->cone_axes[i],
                     1.0f / (float)(count * (uint32_t)pixels_tracing(i, side * side, count)));
-    vct_stratum_axes(vct->options.temporal ? vct->temporal.number : 0, params.set_axes);
+    vct_stratum_axes(vct->options.temporal ? vct->temporal->number : 0, params.set_axes);
     return params;
 }
 
@@ -84,19 +84,19 @@ static void trace_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame
 {
     const uint32_t side = (uint32_t)vct->options.interleave; // of a block
     gpu_scope_begin(cmd, "cones");
-    gpu_dispatch(cmd, vct->cones[vct->small_emitters.count > 0],
-                 GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap,
-                          view->constants_binding, p->cones, p->depth, p->normal, p->cone_normal,
-                          { .name = "light", .image = vct->light, .sampler = vct->linear },
-                          { .name = "red", .image = vct->traced[0] },
-                          { .name = "green", .image = vct->traced[1] },
-                          { .name = "blue", .image = vct->traced[2] },
-                          { .name = "irradiance", .image = result },
-                          VCT_RAY_BINDINGS(vct, &vct->clips[0]),
-                          vct_small_emitters_binding(vct, cmd), vct_svo_binding(vct, cmd),
-                          { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
-                 NULL, 0, side * side * gpu_groups(gpu_groups(vct->width, side), VCT_LOCAL_2D),
-                 gpu_groups(gpu_groups(vct->height, side), VCT_LOCAL_2D), 1);
+    gpu_dispatch(
+        cmd, vct->cones[vct->small_emitters.count > 0],
+        GPU_BIND(vct_grid_binding(vct, &vct->clips[0], cmd), p->clipmap, view->constants_binding,
+                 p->cones, p->depth, p->normal, p->cone_normal,
+                 { .name = "light", .image = vct->light, .sampler = vct->linear },
+                 { .name = "red", .image = vct->pixels->traced[0] },
+                 { .name = "green", .image = vct->pixels->traced[1] },
+                 { .name = "blue", .image = vct->pixels->traced[2] },
+                 { .name = "irradiance", .image = result }, VCT_RAY_BINDINGS(vct, &vct->clips[0]),
+                 vct_small_emitters_binding(vct, cmd), vct_svo_binding(vct, cmd),
+                 { .name = "vct_svo_nodes", .buffer = vct->svo.nodes }),
+        NULL, 0, side * side * gpu_groups(gpu_groups(vct->pixels->width, side), VCT_LOCAL_2D),
+        gpu_groups(gpu_groups(vct->pixels->height, side), VCT_LOCAL_2D), 1);
     gpu_scope_end(cmd);
 }
 
@@ -110,7 +110,7 @@ static void gather(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p,
                  { .name = "green", .image = from[1] }, { .name = "blue", .image = from[2] },
                  { .name = "red_sum", .image = to[0] }, { .name = "green_sum", .image = to[1] },
                  { .name = "blue_sum", .image = to[2] },
-                 { .name = "irradiance", .image = vct->gathered_irradiance }),
+                 { .name = "irradiance", .image = vct->pixels->gathered_irradiance }),
         NULL, 0, across, down, 1);
 }
 
@@ -128,10 +128,10 @@ static void find_edges(struct vct *vct, struct gpu_cmd *cmd, const struct frame_
 static void gather_cones(struct vct *vct, struct gpu_cmd *cmd, const struct pixels *p)
 {
     gpu_scope_begin(cmd, "gather");
-    gather(vct, cmd, p, vct->gather_rows, vct->traced, vct->gathered,
-           gpu_groups(vct->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
-    gather(vct, cmd, p, vct->gather_columns, vct->gathered, vct->traced, p->across,
-           gpu_groups(vct->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
+    gather(vct, cmd, p, vct->gather_rows, vct->pixels->traced, vct->pixels->gathered,
+           gpu_groups(vct->pixels->width, VCT_LOCAL_2D * VCT_GATHER_ROW), p->down);
+    gather(vct, cmd, p, vct->gather_columns, vct->pixels->gathered, vct->pixels->traced, p->across,
+           gpu_groups(vct->pixels->height, VCT_LOCAL_2D * VCT_GATHER_ROW));
     gpu_scope_end(cmd);
 }
 
@@ -142,7 +142,7 @@ static void blur(struct vct *vct, struct gpu_cmd *cmd, const struct frame_view *
     gpu_scope_begin(cmd, "blur");
     gpu_dispatch(cmd, vct->blur,
                  GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
-                          { .name = "gathered", .image = vct->gathered_irradiance },
+                          { .name = "gathered", .image = vct->pixels->gathered_irradiance },
                           { .name = "irradiance", .image = result }),
                  NULL, 0, gpu_groups(p->across, VCT_BLUR_TILE), gpu_groups(p->down, VCT_BLUR_TILE),
                  1);
@@ -156,9 +156,9 @@ static void upsample(struct vct *vct, struct gpu_cmd *cmd, const struct frame_vi
     gpu_scope_begin(cmd, "upsample");
     gpu_dispatch(cmd, vct->upsample,
                  GPU_BIND(view->constants_binding, p->clipmap, p->cones, p->depth, p->normal,
-                          p->cone_normal, { .name = "red", .image = vct->traced[0] },
-                          { .name = "green", .image = vct->traced[1] },
-                          { .name = "blue", .image = vct->traced[2] },
+                          p->cone_normal, { .name = "red", .image = vct->pixels->traced[0] },
+                          { .name = "green", .image = vct->pixels->traced[1] },
+                          { .name = "blue", .image = vct->pixels->traced[2] },
                           { .name = "irradiance", .image = result }),
                  NULL, 0, p->across, p->down, 1);
     gpu_scope_end(cmd);
@@ -168,17 +168,17 @@ void vct_record_cones(struct vct *vct, struct gpu_cmd *cmd, const struct frame_v
 {
     const bool temporal = vct->options.temporal;
     struct vct_cone_params params = pixel_cones(vct, view);
-    if (temporal) vct_temporal_rotate_cones(&vct->temporal, &params);
-    const gpu_image result = temporal ? vct_temporal_now(&vct->temporal) : vct_result(vct, view);
+    if (temporal) vct_temporal_rotate_cones(vct->temporal, &params);
+    const gpu_image result = temporal ? vct_temporal_now(vct->temporal) : vct_result(vct, view);
     const struct pixels p = { .clipmap = vct_clipmap_binding(vct, cmd),
                               .cones = gpu_transient(cmd, "vct_cones", &params, sizeof params),
                               .depth = { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                               .normal = { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                              .edges = { .name = "edges", .image = vct->edge_image },
+                              .edges = { .name = "edges", .image = vct->pixels->edge_image },
                               .cone_normal = { .name = "cone_normal",
-                                               .image = vct->cone_normal_image },
-                              .across = gpu_groups(vct->width, VCT_LOCAL_2D),
-                              .down = gpu_groups(vct->height, VCT_LOCAL_2D) };
+                                               .image = vct->pixels->cone_normal_image },
+                              .across = gpu_groups(vct->pixels->width, VCT_LOCAL_2D),
+                              .down = gpu_groups(vct->pixels->height, VCT_LOCAL_2D) };
     find_edges(vct, cmd, view, &p);
     trace_cones(vct, cmd, view, &p, result);
     const bool interleaved = params.interleave > 1;
