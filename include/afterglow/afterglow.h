@@ -14,5 +14,6 @@
 #include <afterglow/scene.h>
 #include <afterglow/texture.h>
 #include <afterglow/types.h>
+#include <afterglow/view.h>
 
 #endif

@@ -103,7 +103,8 @@ struct ag_device_counters {
     uint64_t compiled;    ///< of the pipelines: compiled, not reused after their destruction
     uint64_t frames;      ///< recorded
     uint64_t transfers;   ///< blocking uploads and downloads
-    uint64_t reserved[8]; ///< 0; see ABI in types.h
+    uint64_t passes;      ///< of frames, recorded
+    uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 AG_API void ag_device_get_counters(const struct ag_device *device, struct ag_device_counters *out);
 

@@ -11,6 +11,8 @@
 AG_BEGIN
 
 struct ag_renderer;
+struct ag_view;
+struct ag_view_frame;
 
 struct ag_renderer_desc {
     int width, height; ///< pixels, 1…16384; default 1280×720
@@ -109,8 +111,10 @@ struct ag_frame_desc {
     /// default NULL: none. Without id_layer, the first such frame of a renderer creates an image
     /// and pipelines; it keeps them.
     const int *pick;
-    const struct ag_gbuffer *gbuffer; ///< with host_gbuffer: required; else NULL, the default
-    uint64_t reserved[6];             ///< 0; see ABI in types.h
+    const struct ag_gbuffer *gbuffer;  ///< with host_gbuffer: required; else NULL, the default
+    const struct ag_view_frame *views; ///< further views of this frame, see view.h; default NULL
+    int view_count;                    ///< default 0
+    uint64_t reserved[4];              ///< 0; see ABI in types.h
 };
 /// Sets every member except `camera`; ag_scene_default_camera, ag_scene_camera and ag_scene_look_at
 /// return one.

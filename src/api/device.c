@@ -212,4 +212,5 @@ void ag_device_get_counters(const struct ag_device *device, struct ag_device_cou
     out->compiled = counters->compiled;
     out->frames = counters->frames;
     out->transfers = counters->transfers;
+    out->passes = counters->passes;
 }

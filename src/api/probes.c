@@ -12,7 +12,7 @@ static enum ag_result find(const char *function, struct ag_renderer *r, struct p
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE_FOR(function, context, r, "renderer is NULL");
-    AG_REQUIRE_FOR(function, context, r->rendered, "no frame has been rendered");
+    AG_REQUIRE_FOR(function, context, r->main.rendered, "no frame has been rendered");
     return api_done(context, gi_probes(r->gi, out));
 }
 
@@ -63,7 +63,7 @@ static bool download(struct ag_renderer *r, const struct probe_volume *volume,
     size_t texels = (size_t)size->width * size->height * size->depth;
     float *values = host_alloc(host, texels, 4 * sizeof *values);
     bool ok = values && gpu_image_download_float(gpu, volume->image, 0, 0, values, 4, 4 * texels);
-    if (ok) unpack(probes, values, size, &volume->grid, frame_radiance_scale(r->frame));
+    if (ok) unpack(probes, values, size, &volume->grid, frame_radiance_scale(r->main.frame));
     host_free(host, values);
     return ok;
 }
@@ -150,6 +150,6 @@ enum ag_result ag_renderer_probes_handle(struct ag_renderer *r, struct ag_probes
     grid_of(&volume, out->first, &out->spacing, out->counts);
     out->slab = volume.grid.slab;
     out->vk_image = gpu_image_handle(r->device->gpu, volume.image, &out->vk_layout);
-    out->scale = frame_radiance_scale(r->frame);
+    out->scale = frame_radiance_scale(r->main.frame);
     return api_done(context, true);
 }

@@ -14,8 +14,8 @@ void ag_renderer_desc_default(struct ag_renderer_desc *desc)
     };
 }
 
-static enum ag_result size_check(const char *function, struct ag_context *context, int width,
-                                 int height)
+enum ag_result renderer_size_check(const char *function, struct ag_context *context, int width,
+                                   int height)
 {
     AG_REQUIRE_FOR(function, context,
                    width >= 1 && width <= MAX_SIZE && height >= 1 && height <= MAX_SIZE,
@@ -49,7 +49,7 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
     if (!desc) desc = &fallback;
     AG_REQUIRE_KNOWN(__func__, context, desc);
     AG_REQUIRE(context, light_count >= 0, "light_count %d is negative", light_count);
-    enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
+    enum ag_result checked = renderer_size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
     struct gi_spec spec = { 0 };
     struct frame_options options;
@@ -102,18 +102,18 @@ static bool build(struct ag_renderer *r, const struct ag_renderer_desc *desc)
     if (!api_pose_at(r->scene, &r->pose, 0, 0.0)) return false;
     r->seen = r->scene->scene->revisions;
     renderer_keep_surfaces(r);
-    if (!(r->frame = frame_create(host, r->device->gpu, &r->options))) return false;
-    if (!frame_set_scene(r->frame, r->scene->scene)) return false;
-    if (!frame_resize(r->frame, width, height)) return false;
+    if (!(r->main.frame = frame_create(host, r->device->gpu, &r->options))) return false;
+    if (!frame_set_scene(r->main.frame, r->scene->scene)) return false;
+    if (!frame_resize(r->main.frame, width, height)) return false;
     struct renderer_bakes bakes = { 0 };
     if (renderer_bakes_find(&bakes, host, desc, &r->spec, NULL, &r->pose))
         r->gi =
             gi_create_baked(host, r->device->gpu, &r->spec, &bakes.found, &r->pose, width, height);
     renderer_bakes_finish(&bakes);
-    r->sized = r->gi != NULL;
-    if (r->sized) renderer_warn_of_source(r);
-    if (r->sized) renderer_warn_of_darkness(r);
-    return r->sized;
+    r->main.sized = r->gi != NULL;
+    if (r->main.sized) renderer_warn_of_source(r);
+    if (r->main.sized) renderer_warn_of_darkness(r);
+    return r->main.sized;
 }
 
 enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *scene,
@@ -130,7 +130,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     AG_REQUIRE_KNOWN(__func__, context, desc);
     AG_REQUIRE(context, !desc->host_gbuffer || !desc->id_layer,
                "id_layer and host_gbuffer exclude each other: a program's own G-buffer has no ids");
-    enum ag_result checked = size_check(__func__, context, desc->width, desc->height);
+    enum ag_result checked = renderer_size_check(__func__, context, desc->width, desc->height);
     if (checked != AG_OK) return checked;
     checked = renderer_bakes_check(__func__, context, desc->bakes, desc->bake_count);
     if (checked != AG_OK) return checked;
@@ -139,14 +139,15 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     if (!r) return api_done(context, false);
     r->device = device;
     r->scene = scene;
-    r->width = desc->width;
-    r->height = desc->height;
-    r->indirect_layer = desc->indirect_layer;
-    r->display_layer = desc->display_layer;
-    r->motion_layer = desc->motion_layer;
-    r->id_layer = desc->id_layer;
-    r->host_gbuffer = desc->host_gbuffer;
-    r->shown.layer = FRAME_COLOR;
+    r->main.renderer = r;
+    r->main.width = desc->width;
+    r->main.height = desc->height;
+    r->main.indirect_layer = desc->indirect_layer;
+    r->main.display_layer = desc->display_layer;
+    r->main.motion_layer = desc->motion_layer;
+    r->main.id_layer = desc->id_layer;
+    r->main.host_gbuffer = desc->host_gbuffer;
+    r->main.shown.layer = FRAME_COLOR;
     scene->renderers++;
     r->client = gpu_client_add(device->gpu);
     renderer_enter(r);
@@ -165,7 +166,7 @@ void ag_renderer_destroy(struct ag_renderer *r)
     if (!r) return;
     renderer_recordings_done(r, UINT64_MAX);
     if (r->gi) gi_destroy(r->gi);
-    frame_destroy(r->frame);
+    frame_destroy(r->main.frame);
     pose_finish(&r->pose);
     gi_spec_finish(&r->spec);
     host_free(renderer_host(r), r->gi_text);
@@ -179,16 +180,16 @@ enum ag_result ag_renderer_resize(struct ag_renderer *r, int width, int height)
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE(context, r, "renderer is NULL");
-    enum ag_result checked = size_check(__func__, context, width, height);
+    enum ag_result checked = renderer_size_check(__func__, context, width, height);
     if (checked != AG_OK) return checked;
-    r->rendered = 0;
-    r->width = width;
-    r->height = height;
+    r->main.rendered = 0;
+    r->main.width = width;
+    r->main.height = height;
     renderer_enter(r);
-    r->sized = frame_resize(r->frame, (uint32_t)width, (uint32_t)height) &&
-               gi_resize(r->gi, (uint32_t)width, (uint32_t)height);
+    r->main.sized = frame_resize(r->main.frame, (uint32_t)width, (uint32_t)height) &&
+                    gi_resize(r->gi, (uint32_t)width, (uint32_t)height);
     renderer_leave(r);
-    return api_done(context, r->sized);
+    return api_done(context, r->main.sized);
 }
 
 const char *ag_renderer_gi(const struct ag_renderer *r)

@@ -20,26 +20,124 @@ void ag_frame_desc_default(struct ag_frame_desc *desc)
     if (desc) *desc = (struct ag_frame_desc){ .auto_exposure = true };
 }
 
-static enum ag_result frame_check(const char *function, const struct ag_renderer *r,
+// One view of a frame, while it is recorded.
+struct shot {
+    struct ag_view *view;
+    const struct ag_camera *camera;
+    bool auto_exposure, camera_cut;
+    float exposure_ev;
+    const struct ag_gbuffer *gbuffer;
+    struct frame_gbuffer images; // of gbuffer
+    struct frame_input input;
+};
+struct shots {
+    struct shot list[FRAME_MAX_VIEWS];
+    int count;
+};
+
+// desc has been checked.
+static void list_shots(struct ag_renderer *r, const struct ag_frame_desc *desc, struct shots *out)
+{
+    out->count = 1 + desc->view_count;
+    out->list[0] = (struct shot){ .view = &r->main,
+                                  .camera = &desc->camera,
+                                  .auto_exposure = desc->auto_exposure,
+                                  .camera_cut = desc->camera_cut,
+                                  .exposure_ev = desc->exposure_ev,
+                                  .gbuffer = desc->gbuffer };
+    for (int i = 0; i < desc->view_count; i++) {
+        const struct ag_view_frame *own = &desc->views[i];
+        out->list[1 + i] = (struct shot){ .view = own->view,
+                                          .camera = &own->camera,
+                                          .auto_exposure = own->auto_exposure,
+                                          .camera_cut = own->camera_cut,
+                                          .exposure_ev = own->exposure_ev,
+                                          .gbuffer = own->gbuffer };
+    }
+}
+
+static enum ag_result shot_check(const char *function, const struct shot *shot)
+{
+    struct ag_context *context = view_context(shot->view);
+    AG_REQUIRE_FOR(function, context, shot->view->sized, "the last resize failed");
+    AG_REQUIRE_FOR(function, context, shot->auto_exposure || isfinite(shot->exposure_ev),
+                   "exposure_ev is not finite");
+    enum ag_result checked = renderer_gbuffer_check(function, shot->view, shot->gbuffer);
+    return checked != AG_OK ? checked : api_camera_check(context, function, shot->camera);
+}
+
+static enum ag_result views_check(const char *function, const struct ag_renderer *r,
+                                  const struct ag_frame_desc *desc)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE_FOR(function, context, desc->view_count >= 0 && desc->view_count <= r->views,
+                   "view_count is %d, and the renderer has %d views", desc->view_count, r->views);
+    AG_REQUIRE_FOR(function, context, desc->view_count == 0 || desc->views, "views is NULL");
+    for (int i = 0; i < desc->view_count; i++) {
+        const struct ag_view *view = desc->views[i].view;
+        AG_REQUIRE_FOR(function, context, view && view->renderer == r,
+                       "views[%d] is NULL or of another renderer", i);
+        AG_REQUIRE_KNOWN(function, context, &desc->views[i]);
+        for (int k = 0; k < i; k++)
+            AG_REQUIRE_FOR(function, context, desc->views[k].view != view,
+                           "views[%d] and views[%d] are the same", k, i);
+    }
+    return AG_OK;
+}
+
+static enum ag_result pick_check(const char *function, const struct ag_renderer *r,
+                                 const struct ag_frame_desc *desc)
+{
+    struct ag_context *context = renderer_context(r);
+    if (!desc->pick) return AG_OK;
+    AG_REQUIRE_FOR(function, context, !desc->gbuffer,
+                   "pick needs the layer id, which the program's own G-buffer does not have");
+    AG_REQUIRE_FOR(function, context,
+                   desc->pick[0] >= 0 && desc->pick[0] < r->main.width && desc->pick[1] >= 0 &&
+                       desc->pick[1] < r->main.height,
+                   "pick %d, %d is not in an image of %d×%d", desc->pick[0], desc->pick[1],
+                   r->main.width, r->main.height);
+    return AG_OK;
+}
+
+static enum ag_result frame_check(const char *function, struct ag_renderer *r,
                                   const struct ag_frame_desc *desc)
 {
     struct ag_context *context = renderer_context(r);
     AG_REQUIRE_FOR(function, context, desc, "desc is NULL");
     AG_REQUIRE_KNOWN(function, context, desc);
-    AG_REQUIRE_FOR(function, context, r->sized, "the last resize failed");
     AG_REQUIRE_FOR(function, context, api_animation_exists(r->scene, desc->animation),
                    "animation %d is not one of %d", desc->animation,
                    r->scene->scene->animation_count);
     AG_REQUIRE_FOR(function, context, isfinite(desc->time_s), "time_s is not finite");
-    AG_REQUIRE_FOR(function, context, desc->auto_exposure || isfinite(desc->exposure_ev),
-                   "exposure_ev is not finite");
-    AG_REQUIRE_FOR(function, context,
-                   !desc->pick || (desc->pick[0] >= 0 && desc->pick[0] < r->width &&
-                                   desc->pick[1] >= 0 && desc->pick[1] < r->height),
-                   "pick %d, %d is not in an image of %d×%d", desc->pick[0], desc->pick[1],
-                   r->width, r->height);
-    enum ag_result checked = renderer_gbuffer_check(function, r, desc);
-    return checked != AG_OK ? checked : api_camera_check(context, function, &desc->camera);
+    enum ag_result checked = pick_check(function, r, desc);
+    if (checked == AG_OK) checked = views_check(function, r, desc);
+    if (checked != AG_OK) return checked;
+    struct shots shots;
+    list_shots(r, desc, &shots);
+    for (int i = 0; i < shots.count && checked == AG_OK; i++)
+        checked = shot_check(function, &shots.list[i]);
+    return checked;
+}
+
+static bool prepare_shot(struct shot *shot, const struct frame_input *common,
+                         const struct frame_indirect *hook)
+{
+    struct ag_view *view = shot->view;
+    if (!renderer_gbuffer_open(view, shot->gbuffer, &shot->images)) return false;
+    shot->input = *common;
+    shot->input.camera = api_camera(shot->camera);
+    shot->input.auto_exposure = shot->auto_exposure;
+    shot->input.exposure_ev = shot->exposure_ev;
+    shot->input.camera_cut = shot->camera_cut;
+    shot->input.want_indirect_layer = view->indirect_layer;
+    shot->input.want_motion_layer = view->motion_layer;
+    shot->input.want_id_layer = view->id_layer;
+    shot->input.want_display = view->display_layer;
+    shot->input.shown = &view->shown;
+    shot->input.gbuffer = shot->gbuffer ? &shot->images : NULL;
+    view->shown.image = view->shows_debug ? gi_debug_image(view->renderer->gi) : (gpu_image){ 0 };
+    return frame_prepare(view->frame, &shot->input, hook);
 }
 
 static void warn_of_animation(const struct ag_renderer *r)
@@ -50,34 +148,25 @@ static void warn_of_animation(const struct ag_renderer *r)
 }
 
 // All steps that may allocate; recording must not.
-static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc,
-                    const struct frame_gbuffer *gbuffer, struct frame_input *input,
+static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc, struct shots *shots,
                     struct frame_indirect *hook)
 {
     if (!api_pose_at(r->scene, &r->pose, desc->animation, desc->time_s)) return false;
     const uint32_t changes = renderer_scene_changes(r);
     if (changes) gi_invalidate(r->gi, changes);
     warn_of_animation(r);
-    *input = (struct frame_input){ .pose = &r->pose,
-                                   .camera = api_camera(&desc->camera),
-                                   .lights = r->lights,
-                                   .light_count = renderer_scene_lights(r),
-                                   .sky = r->scene->scene->sky,
-                                   .auto_exposure = desc->auto_exposure,
-                                   .exposure_ev = desc->exposure_ev,
-                                   .camera_cut = desc->camera_cut,
-                                   .want_indirect_layer = r->indirect_layer,
-                                   .want_motion_layer = r->motion_layer,
-                                   .want_id_layer = r->id_layer,
-                                   .pick = desc->pick != NULL,
-                                   .pick_x = desc->pick ? (uint32_t)desc->pick[0] : 0,
-                                   .pick_y = desc->pick ? (uint32_t)desc->pick[1] : 0,
-                                   .want_display = r->display_layer,
-                                   .shown = &r->shown,
-                                   .gbuffer = desc->gbuffer ? gbuffer : NULL };
-    r->shown.image = r->shows_debug ? gi_debug_image(r->gi) : (gpu_image){ 0 };
+    struct frame_input common = { .pose = &r->pose,
+                                  .lights = r->lights,
+                                  .light_count = renderer_scene_lights(r),
+                                  .sky = r->scene->scene->sky };
     *hook = gi_hook(r->gi);
-    return frame_prepare(r->frame, input, hook);
+    for (int i = 0; i < shots->count; i++) {
+        common.pick = i == 0 && desc->pick;
+        common.pick_x = common.pick ? (uint32_t)desc->pick[0] : 0;
+        common.pick_y = common.pick ? (uint32_t)desc->pick[1] : 0;
+        if (!prepare_shot(&shots->list[i], &common, hook)) return false;
+    }
+    return true;
 }
 
 static bool fail_lost(struct ag_renderer *r)
@@ -88,26 +177,33 @@ static bool fail_lost(struct ag_renderer *r)
                      gpu_info(r->device->gpu)->name);
 }
 
+static void count_shots(struct shots *shots)
+{
+    for (int i = 0; i < shots->count; i++) shots->list[i].view->rendered++;
+}
+
 // Into a caller's command buffer, or to be submitted if that is NULL. *cmd is NULL if recording has
 // not begun.
 static bool record(struct ag_renderer *r, const struct ag_frame_desc *desc, void *commands,
                    struct gpu_cmd **cmd)
 {
     struct gpu *gpu = r->device->gpu;
-    struct frame_input input;
     struct frame_indirect hook;
-    struct frame_gbuffer gbuffer;
+    struct shots shots;
     *cmd = NULL;
+    list_shots(r, desc, &shots);
     renderer_enter(r);
-    bool ok = renderer_gbuffer_open(r, desc->gbuffer, &gbuffer) &&
-              prepare(r, desc, &gbuffer, &input, &hook);
+    bool ok = prepare(r, desc, &shots, &hook);
     if (ok) {
         *cmd = commands ? gpu_frame_begin_adopted(gpu, commands) : gpu_frame_begin(gpu);
-        if (*cmd) frame_record(r->frame, *cmd, &input, &hook);
+        for (int i = 0; *cmd && i < shots.count; i++)
+            frame_record(shots.list[i].view->frame, *cmd, &shots.list[i].input, &hook);
         ok = (*cmd && gpu_frame_end(gpu, *cmd)) || fail_lost(r);
     }
-    renderer_gbuffer_finish(r, &gbuffer);
+    for (int i = 0; i < shots.count; i++)
+        renderer_gbuffer_finish(shots.list[i].view, &shots.list[i].images);
     renderer_leave(r);
+    if (ok || (*cmd && commands)) count_shots(&shots);
     return ok;
 }
 
@@ -120,7 +216,6 @@ enum ag_result ag_renderer_render(struct ag_renderer *r, const struct ag_frame_d
     if (checked != AG_OK) return checked;
     struct gpu_cmd *cmd;
     bool ok = record(r, desc, NULL, &cmd);
-    if (ok) r->rendered++;
     return api_done(context, ok);
 }
 
@@ -138,9 +233,8 @@ enum ag_result ag_renderer_record(struct ag_renderer *r, const struct ag_frame_d
     struct gpu_cmd *cmd;
     bool ok = record(r, desc, vk_command_buffer, &cmd);
     if (!cmd) return api_done(context, ok);
-    *frame = frame_number(r->frame);
+    *frame = frame_number(r->main.frame);
     r->recorded[r->recorded_count++] = (struct recorded_frame){ cmd, *frame };
-    r->rendered++;
     return api_done(context, ok);
 }
 

@@ -5,13 +5,13 @@
 
 #include "frame/frame.h"
 
-struct ag_renderer;
+struct ag_view;
 
-// Whether the frame has a G-buffer exactly if the renderer was created for one.
-enum ag_result renderer_gbuffer_check(const char *function, const struct ag_renderer *renderer,
-                                      const struct ag_frame_desc *desc);
+// Whether there is a G-buffer exactly if the view was created for one.
+enum ag_result renderer_gbuffer_check(const char *function, const struct ag_view *view,
+                                      const struct ag_gbuffer *gbuffer);
 // Wraps the images; false: one of them has the wrong size, format, usage or layout. Finish in any
 // case, after the frame has been recorded.
-bool renderer_gbuffer_open(const struct ag_renderer *renderer, const struct ag_gbuffer *gbuffer,
+bool renderer_gbuffer_open(const struct ag_view *view, const struct ag_gbuffer *gbuffer,
                            struct frame_gbuffer *out);
-void renderer_gbuffer_finish(const struct ag_renderer *renderer, struct frame_gbuffer *gbuffer);
+void renderer_gbuffer_finish(const struct ag_view *view, struct frame_gbuffer *gbuffer);

@@ -53,7 +53,7 @@ enum ag_result ag_renderer_set_frame_options(struct ag_renderer *r, const char *
     if (!ok || option_difference(&frame_option_table, &parsed, &r->options) < 0)
         return api_done(context, ok);
     renderer_enter(r);
-    ok = frame_set_options(r->frame, &parsed);
+    ok = frame_set_options(r->main.frame, &parsed);
     renderer_leave(r);
     gi_invalidate(r->gi, CHANGED_OPTIONS); // kept light is from the maps of before
     if (ok) r->options = parsed;

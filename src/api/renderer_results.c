@@ -13,10 +13,10 @@ enum ag_result ag_renderer_exposure(struct ag_renderer *r, float *ev)
     AG_REQUIRE(context, r, "renderer is NULL");
     AG_REQUIRE_POINTER(context, ev);
     *ev = 0.0f;
-    AG_REQUIRE(context, r->rendered, "no frame has been rendered");
+    AG_REQUIRE(context, r->main.rendered, "no frame has been rendered");
     enum ag_result waited = ag_renderer_wait(r);
     if (waited != AG_OK) return waited;
-    return api_done(context, frame_exposure(r->frame, ev));
+    return api_done(context, frame_exposure(r->main.frame, ev));
 }
 
 // The first entries of a list of the layer below, whose structs have the layout of the public ones.
@@ -45,7 +45,7 @@ static int finished_timings(const struct ag_renderer *r, struct ag_timing *out, 
 int ag_renderer_timings(struct ag_renderer *r, struct ag_timing *out, int capacity)
 {
     if (!r || capacity < 0 || (!out && capacity > 0)) return 0;
-    if (!r->rendered || ag_renderer_wait(r) != AG_OK) return 0;
+    if (!r->main.rendered || ag_renderer_wait(r) != AG_OK) return 0;
     return finished_timings(r, out, capacity);
 }
 
@@ -78,7 +78,7 @@ enum ag_result ag_renderer_picked(struct ag_renderer *r, struct ag_pick *out)
     *out = (struct ag_pick){ .instance = -1, .triangle = -1 };
     AG_REQUIRE(context, r, "renderer is NULL");
     struct frame_pick pick;
-    if (!frame_newest_pick(r->frame, &pick)) return api_done(context, true);
+    if (!frame_newest_pick(r->main.frame, &pick)) return api_done(context, true);
     out->frame = pick.number;
     out->x = (int)pick.x;
     out->y = (int)pick.y;
@@ -94,7 +94,7 @@ enum ag_result ag_renderer_finished(struct ag_renderer *r, struct ag_finished_fr
     *out = (struct ag_finished_frame){ 0 };
     AG_REQUIRE(context, r, "renderer is NULL");
     struct frame_report report;
-    if (!frame_newest_report(r->frame, &report)) return api_done(context, true);
+    if (!frame_newest_report(r->main.frame, &report)) return api_done(context, true);
     out->frame = report.number;
     out->exposure_ev = report.exposure_ev;
     out->scale = report.radiance_scale;

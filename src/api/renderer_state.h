@@ -13,6 +13,18 @@ struct recorded_frame {
     uint64_t number;
 };
 
+// One camera's images. The first one is the renderer's own.
+struct ag_view {
+    struct ag_renderer *renderer;
+    struct frame *frame;
+    bool indirect_layer, display_layer, motion_layer, id_layer, host_gbuffer;
+    struct frame_shown shown; // by the layer "display"; its image is set for each frame
+    bool shows_debug;         // the debug view, if one is set
+    int width, height;        // of the last resize
+    bool sized;               // it succeeded
+    uint64_t rendered;        // frames since the last resize
+};
+
 struct ag_renderer {
     struct ag_device *device;
     struct ag_scene *scene;
@@ -22,20 +34,15 @@ struct ag_renderer {
     char *bake_folder; // NULL: none
     struct scene_pose pose;
     struct scene_revisions seen; // of the scene, in the newest frame
-    struct frame *frame;
+    struct ag_view main;
     struct gi *gi;
     struct world_light lights[FRAME_MAX_LIGHTS];
     struct recorded_frame recorded[GPU_ADOPTED_FRAMES]; // oldest first
     int recorded_count;
-    uint32_t client; // of the device: gpu_client_add
-    bool indirect_layer, display_layer, motion_layer, id_layer, host_gbuffer;
-    struct frame_shown shown;  // by the layer "display"; its image is set for each frame
-    bool shows_debug;          // the debug view, if one is set
-    int width, height;         // of the last resize
-    bool sized;                // it succeeded
+    uint32_t client;           // of the device: gpu_client_add
     uint64_t created_surfaces; // hash of the surfaces that techniques were created with
     bool said_limit;           // the warning about too many lights was logged
-    uint64_t rendered;         // frames since the last resize
+    int views;                 // besides the first
 };
 
 static inline struct ag_context *renderer_context(const struct ag_renderer *renderer)
@@ -55,6 +62,11 @@ static inline void renderer_keep_surfaces(struct ag_renderer *renderer)
         renderer->created_surfaces = pose_surfaces_hash(&renderer->pose);
 }
 
+static inline struct ag_context *view_context(const struct ag_view *view)
+{
+    return view ? view->renderer->device->context : NULL;
+}
+
 // Around all that creates objects or records: memory and times count for the renderer.
 static inline void renderer_enter(const struct ag_renderer *renderer)
 {
@@ -71,6 +83,16 @@ void renderer_warn_of_source(const struct ag_renderer *renderer); // that was ad
 void renderer_warn_of_darkness(const struct ag_renderer *renderer);
 // "" and NULL: the defaults.
 bool renderer_parse_frame_options(struct host *host, const char *text, struct frame_options *out);
+
+// layers.c. The layers of a view, for public functions of that name.
+enum ag_result view_read(const char *function, struct ag_view *view, const char *layer,
+                         struct ag_image **out);
+enum ag_result view_layer_handle(const char *function, struct ag_view *view, const char *layer,
+                                 struct ag_layer_handle *out);
+
+// renderer.c
+enum ag_result renderer_size_check(const char *function, struct ag_context *context, int width,
+                                   int height);
 
 // renderer_frames.c. The GPU has completed the recorded frames up to this number.
 void renderer_recordings_done(struct ag_renderer *renderer, uint64_t number);

@@ -25,13 +25,41 @@ static bool create_ggx_albedo(struct frame *f)
 {
     struct gpu_buffer_desc desc = { "frame.ggx_albedo", sizeof ggx_albedo_table,
                                     GPU_BUFFER_STORAGE };
-    return gpu_buffer_create(f->gpu, &desc, &f->ggx_albedo) &&
-           gpu_buffer_upload(f->gpu, f->ggx_albedo, 0, ggx_albedo_table, sizeof ggx_albedo_table);
+    return gpu_buffer_create(f->gpu, &desc, &f->common->ggx_albedo) &&
+           gpu_buffer_upload(f->gpu, f->common->ggx_albedo, 0, ggx_albedo_table,
+                             sizeof ggx_albedo_table);
 }
 
 static struct gpu_binding ggx_albedo_binding(const struct frame *f)
 {
-    return (struct gpu_binding){ "ggx_albedo", .buffer = f->ggx_albedo };
+    return (struct gpu_binding){ "ggx_albedo", .buffer = f->common->ggx_albedo };
+}
+
+static bool init_common(struct frame *f, const struct frame_options *options)
+{
+    struct frame_common *c = f->common;
+    c->options = *options;
+    c->views[0] = f;
+    return shadow_init(&c->shadow, f->host, f->gpu, (uint32_t)options->shadow_size,
+                       (uint32_t)options->cascades) &&
+           rsm_init(&c->rsm, f->host, f->gpu, (uint32_t)options->rsm_size) &&
+           direct_init(&c->direct, f->gpu, (uint32_t)options->cascades) &&
+           composite_init(&c->composite, f->gpu) && create_ggx_albedo(f);
+}
+
+static void finish_common(struct frame *f)
+{
+    struct frame_common *c = f->common;
+    gpu_buffer_destroy(f->gpu, &c->ggx_albedo);
+    display_finish(&c->display);
+    composite_finish(&c->composite);
+    direct_finish(&c->direct);
+    rsm_finish(&c->rsm);
+    shadow_finish(&c->shadow);
+    gbuffer_finish(&c->gbuffer);
+    emitters_finish(&c->emitters);
+    scene_gpu_finish(&c->scene);
+    host_free(f->host, c);
 }
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options)
@@ -40,17 +68,43 @@ struct frame *frame_create(struct host *host, struct gpu *gpu, const struct fram
     if (!f) return NULL;
     f->host = host;
     f->gpu = gpu;
-    f->options = *options;
-    if (shadow_init(&f->shadow, host, gpu, (uint32_t)options->shadow_size,
-                    (uint32_t)options->cascades) &&
-        rsm_init(&f->rsm, host, gpu, (uint32_t)options->rsm_size) &&
-        direct_init(&f->direct, gpu, (uint32_t)options->cascades) &&
-        exposure_init(&f->exposure, gpu) && composite_init(&f->composite, gpu) &&
-        create_ggx_albedo(f) && reports_init(f)) {
+    f->common = host_alloc(host, 1, sizeof *f->common);
+    if (f->common && init_common(f, options) && exposure_init(&f->exposure, gpu) && reports_init(f))
         return f;
-    }
     frame_destroy(f);
     return NULL;
+}
+
+static int free_view_number(const struct frame_common *c)
+{
+    for (int i = 1; i < FRAME_MAX_VIEWS; i++)
+        if (!c->views[i]) return i;
+    return -1;
+}
+
+struct frame *frame_create_view(struct frame *first)
+{
+    const int number = free_view_number(first->common);
+    if (number < 0) {
+        host_fail(first->host, FAIL_ARGUMENT, "frame: there are %d views, at most %d",
+                  FRAME_MAX_VIEWS, FRAME_MAX_VIEWS);
+        return NULL;
+    }
+    struct frame *f = host_alloc(first->host, 1, sizeof *f);
+    if (!f) return NULL;
+    f->host = first->host;
+    f->gpu = first->gpu;
+    f->common = first->common;
+    f->view_number = number;
+    f->common->views[number] = f;
+    if (exposure_init(&f->exposure, f->gpu)) return f;
+    frame_destroy(f);
+    return NULL;
+}
+
+int frame_view_number(const struct frame *f)
+{
+    return f->view_number;
 }
 
 void frame_destroy(struct frame *f)
@@ -58,16 +112,11 @@ void frame_destroy(struct frame *f)
     if (!f) return;
     frame_destroy_layers(f);
     reports_finish(f);
-    gpu_buffer_destroy(f->gpu, &f->ggx_albedo);
-    display_finish(&f->display);
-    composite_finish(&f->composite);
     exposure_finish(&f->exposure);
-    direct_finish(&f->direct);
-    rsm_finish(&f->rsm);
-    shadow_finish(&f->shadow);
-    gbuffer_finish(&f->gbuffer);
-    emitters_finish(&f->emitters);
-    scene_gpu_finish(&f->scene);
+    if (f->view_number > 0)
+        f->common->views[f->view_number] = NULL;
+    else if (f->common)
+        finish_common(f);
     host_free(f->host, f);
 }
 
@@ -76,9 +125,9 @@ bool frame_set_options(struct frame *f, const struct frame_options *options)
     struct shadow shadow = { 0 };
     struct direct direct = { 0 };
     struct rsm rsm = { 0 };
-    const bool sized =
-        options->shadow_size != f->options.shadow_size || options->cascades != f->options.cascades;
-    const bool rsm_sized = options->rsm_size != f->options.rsm_size;
+    const bool sized = options->shadow_size != f->common->options.shadow_size ||
+                       options->cascades != f->common->options.cascades;
+    const bool rsm_sized = options->rsm_size != f->common->options.rsm_size;
     const uint32_t cascades = (uint32_t)options->cascades;
     // Finishes those of before, or after a failure the new ones.
     bool ok = !sized ||
@@ -86,32 +135,37 @@ bool frame_set_options(struct frame *f, const struct frame_options *options)
                direct_init(&direct, f->gpu, cascades));
     ok = ok && (!rsm_sized || rsm_init(&rsm, f->host, f->gpu, (uint32_t)options->rsm_size));
     if (ok && sized) {
-        SWAP(struct shadow, shadow, f->shadow);
-        SWAP(struct direct, direct, f->direct);
+        SWAP(struct shadow, shadow, f->common->shadow);
+        SWAP(struct direct, direct, f->common->direct);
     }
-    if (ok && rsm_sized) SWAP(struct rsm, rsm, f->rsm);
+    if (ok && rsm_sized) SWAP(struct rsm, rsm, f->common->rsm);
     direct_finish(&direct);
     shadow_finish(&shadow);
     rsm_finish(&rsm);
-    if (ok) f->options = *options;
+    if (ok) f->common->options = *options;
     return ok;
 }
 
 bool frame_set_scene(struct frame *f, const struct scene *scene)
 {
-    const uint64_t updates = f->scene.updates;
-    emitters_finish(&f->emitters);
-    scene_gpu_finish(&f->scene);
-    f->has_scene = f->prepared = false;
-    f->index = 0;
-    if (!scene_gpu_init(&f->scene, f->host, f->gpu, scene) ||
-        !emitters_init(&f->emitters, f->host, scene)) {
-        emitters_finish(&f->emitters);
-        scene_gpu_finish(&f->scene);
+    const uint64_t updates = f->common->scene.updates;
+    emitters_finish(&f->common->emitters);
+    scene_gpu_finish(&f->common->scene);
+    f->common->has_scene = false;
+    for (int i = 0; i < FRAME_MAX_VIEWS; i++) {
+        struct frame *view = f->common->views[i];
+        if (!view) continue;
+        view->prepared = false;
+        view->index = 0;
+    }
+    if (!scene_gpu_init(&f->common->scene, f->host, f->gpu, scene) ||
+        !emitters_init(&f->common->emitters, f->host, scene)) {
+        emitters_finish(&f->common->emitters);
+        scene_gpu_finish(&f->common->scene);
         return false;
     }
-    f->scene.updates = updates + 1; // invalidates cached maps of the previous scene
-    f->has_scene = true;
+    f->common->scene.updates = updates + 1; // invalidates cached maps of the previous scene
+    f->common->has_scene = true;
     return true;
 }
 
@@ -201,42 +255,62 @@ static uint32_t meter_variant_of(uint32_t variant)
 static bool prepare_composite(struct frame *f, const struct frame_input *input)
 {
     f->composite_variant = composite_variant_of(input, f->needs);
-    return composite_prepare(&f->composite, f->composite_variant) &&
-           (!shows_layer(input) || display_prepare(&f->display, f->gpu)) &&
+    return composite_prepare(&f->common->composite, f->composite_variant) &&
+           (!shows_layer(input) || display_prepare(&f->common->display, f->gpu)) &&
            (!input->auto_exposure ||
-            composite_prepare(&f->composite, meter_variant_of(f->composite_variant)));
+            composite_prepare(&f->common->composite, meter_variant_of(f->composite_variant)));
 }
 
 static uint32_t direct_features(const struct frame *f)
 {
-    const bool emission = f->imported ? f->imported >> FRAME_EMISSIVE & 1u
-                                      : f->scene.max_emissive > 0 || f->scene.has_unlit;
+    const bool emission = f->imported
+                              ? f->imported >> FRAME_EMISSIVE & 1u
+                              : f->common->scene.max_emissive > 0 || f->common->scene.has_unlit;
     return (f->layers[FRAME_DIELECTRIC].id ? DIRECT_DIELECTRIC : 0) |
-           (f->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) | (emission ? DIRECT_EMISSION : 0);
+           (f->common->options.shadow_filter > 0 ? DIRECT_FILTERED : 0) |
+           (emission ? DIRECT_EMISSION : 0);
 }
 
-static bool prepare_lights(struct frame *f, const struct frame_input *input)
+static size_t most_pixels(const struct frame_common *common)
+{
+    size_t most = 1;
+    for (int i = 0; i < FRAME_MAX_VIEWS; i++) {
+        const struct frame *view = common->views[i];
+        const size_t pixels = view ? (size_t)view->width * view->height : 0;
+        if (pixels > most) most = pixels;
+    }
+    return most;
+}
+
+static bool prepare_direct(struct frame *f, const struct frame_input *input)
+{
+    int suns = 0;
+    for (int i = 0; i < input->light_count; i++) suns += input->lights[i].type == LIGHT_SUN;
+    f->direct_variant = direct_variant(suns, input->light_count - suns, direct_features(f));
+    return direct_prepare(&f->common->direct, f->direct_variant, most_pixels(f->common));
+}
+
+// Shadow maps and reflective shadow maps, and what the scene has become.
+static bool prepare_maps(struct frame *f, const struct frame_input *input)
 {
     static const uint32_t types[] = { FRAME_LIGHT_SUN, FRAME_LIGHT_POINT, FRAME_LIGHT_SPOT };
-    int suns = 0, sun_faces = 0, shadow_faces = 0, rsm_faces = 0;
+    struct frame_common *c = f->common;
+    int sun_faces = 0, shadow_faces = 0, rsm_faces = 0;
     for (int i = 0; i < input->light_count; i++) {
-        const bool sun = input->lights[i].type == LIGHT_SUN;
-        suns += sun;
-        *(sun ? &sun_faces : &shadow_faces) +=
-            shadow_faces_of(&f->shadow, types[input->lights[i].type]);
-        rsm_faces += rsm_faces_of(types[input->lights[i].type]);
+        const uint32_t type = types[input->lights[i].type];
+        *(type == FRAME_LIGHT_SUN ? &sun_faces : &shadow_faces) +=
+            shadow_faces_of(&c->shadow, type);
+        rsm_faces += rsm_faces_of(type);
     }
     if (!(f->needs & FRAME_NEEDS_RSM)) rsm_faces = 0;
-    f->direct_variant = direct_variant(suns, input->light_count - suns, direct_features(f));
-    return shadow_prepare(&f->shadow, sun_faces, shadow_faces) &&
-           direct_prepare(&f->direct, f->direct_variant, f->width, f->height) &&
-           rsm_prepare(&f->rsm, rsm_faces, f->scene.variants_used);
+    return shadow_prepare(&c->shadow, sun_faces, shadow_faces) &&
+           rsm_prepare(&c->rsm, rsm_faces, c->scene.variants_used);
 }
 
 // The images of the frame, and the pipelines of its own G-buffer.
 static bool prepare_layers(struct frame *f, const struct frame_input *input, uint32_t kept)
 {
-    const bool dielectrics = f->scene.has_dielectrics;
+    const bool dielectrics = f->common->scene.has_dielectrics;
     const uint32_t optional = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
                               (f->needs & FRAME_NEEDS_ID ? GBUFFER_ID : 0) |
                               (dielectrics ? GBUFFER_DIELECTRIC : 0);
@@ -246,31 +320,33 @@ static bool prepare_layers(struct frame *f, const struct frame_input *input, uin
         return check_gbuffer(f) &&
                frame_make_layers(f, written | f->imported, kept | 1u << FRAME_MATERIAL);
     return frame_make_layers(f, written | gbuffer_layers(f->needs, dielectrics), kept) &&
-           gbuffer_prepare(&f->gbuffer, f->gpu, f->scene.variants_used, optional);
+           gbuffer_prepare(&f->common->gbuffer, f->gpu, f->common->scene.variants_used, optional);
 }
 
 bool frame_prepare(struct frame *f, const struct frame_input *input,
                    const struct frame_indirect *indirect)
 {
     f->prepared = false;
-    if (!f->has_scene || f->width == 0) {
+    if (!f->common->has_scene || f->width == 0) {
         return host_fail(f->host, FAIL_ARGUMENT, "frame: no %s was set",
-                         f->has_scene ? "size" : "scene");
+                         f->common->has_scene ? "size" : "scene");
     }
     if (input->light_count < 0 || input->light_count > FRAME_MAX_LIGHTS) {
         return host_fail(f->host, FAIL_ARGUMENT, "frame: %d lights, at most %d", input->light_count,
                          FRAME_MAX_LIGHTS);
     }
-    if (input->pose->scene != f->scene.scene)
+    if (input->pose->scene != f->common->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
-    if (!scene_gpu_follow(&f->scene) || !emitters_follow(&f->emitters)) return false;
+    const bool is_first = f->view_number == 0;
+    if (is_first && !(scene_gpu_follow(&f->common->scene) && emitters_follow(&f->common->emitters)))
+        return false;
     if (input->pick) f->pinned |= 1u << FRAME_ID; // only the first pick creates the image
     const uint32_t kept = kept_layers(f, input);
     f->needs = (indirect ? indirect->needs : 0) |
                (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0) |
                (input->want_id_layer || input->pick ? FRAME_NEEDS_ID : 0);
-    f->prepared =
-        prepare_layers(f, input, kept) && prepare_lights(f, input) && prepare_composite(f, input);
+    f->prepared = prepare_layers(f, input, kept) && (!is_first || prepare_maps(f, input)) &&
+                  prepare_direct(f, input) && prepare_composite(f, input);
     return f->prepared;
 }
 
@@ -291,34 +367,40 @@ static void record_gbuffer(struct frame *f, struct gpu_cmd *cmd)
         .width = f->width,
         .height = f->height,
     };
-    gbuffer_record(&f->gbuffer, cmd, &f->scene, &targets, f->constants.clip_from_world,
-                   f->constants_binding);
+    gbuffer_record(&f->common->gbuffer, cmd, &f->common->scene, &targets,
+                   f->constants.clip_from_world, f->constants_binding);
+}
+
+// The maps of the only sun as this view sees them. Whether it can use their blocks.
+static bool place_sun(struct frame *f)
+{
+    const int count = (int)f->common->shadow.cascades;
+    f->sun = shadow_view_of_sun(f->common->shadow.faces, count, f->camera.eye);
+    return direct_variant_of_blocks(f->direct_variant) != 0 &&
+           shadow_view_is_precise(&f->sun, f->common->shadow.faces, count);
 }
 
 // Of the only sun, if the direct pass has a variant for them.
 static void record_blocks(struct frame *f, struct gpu_cmd *cmd)
 {
-    const int count = (int)f->shadow.cascades;
-    f->sun = shadow_view_of_sun(f->shadow.faces, count, f->camera.eye);
-    f->has_blocks = direct_variant_of_blocks(f->direct_variant) != 0 &&
-                    shadow_view_is_precise(&f->sun, f->shadow.faces, count) &&
-                    shadow_record_blocks(&f->shadow, cmd, &f->lights[0]);
+    f->has_blocks = place_sun(f) && shadow_record_blocks(&f->common->shadow, cmd, &f->lights[0]);
 }
 
 static void record_shadows(struct frame *f, struct gpu_cmd *cmd)
 {
     struct frame_view *view = &f->view;
     // A storage block is never empty.
-    size_t faces = f->shadow.face_count ? (size_t)f->shadow.face_count : 1;
-    view->shadow_maps = f->shadow.maps;
-    view->shadow_sun_maps = f->shadow.sun_maps;
-    view->shadow_sampler = f->shadow.sampler;
-    view->shadow_size = f->shadow.sun_size;
-    view->shadow_radius = f->options.shadow_filter;
-    view->shadow_faces_binding =
-        gpu_transient(cmd, "shadow_faces", f->shadow.faces, faces * sizeof *f->shadow.faces);
-    shadow_record(&f->shadow, cmd, &f->scene, f->lights, f->light_count, f->options.keep_maps);
-    view->maps_drawn = f->shadow.drawn;
+    size_t faces = f->common->shadow.face_count ? (size_t)f->common->shadow.face_count : 1;
+    view->shadow_maps = f->common->shadow.maps;
+    view->shadow_sun_maps = f->common->shadow.sun_maps;
+    view->shadow_sampler = f->common->shadow.sampler;
+    view->shadow_size = f->common->shadow.sun_size;
+    view->shadow_radius = f->common->options.shadow_filter;
+    view->shadow_faces_binding = gpu_transient(cmd, "shadow_faces", f->common->shadow.faces,
+                                               faces * sizeof *f->common->shadow.faces);
+    shadow_record(&f->common->shadow, cmd, &f->common->scene, f->lights, f->light_count,
+                  f->common->options.keep_maps);
+    view->maps_drawn = f->common->shadow.drawn;
     record_blocks(f, cmd);
 }
 
@@ -333,11 +415,11 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .material = f->layers[FRAME_MATERIAL],
         .dielectric = f->layers[FRAME_DIELECTRIC],
         .emissive = f->layers[FRAME_EMISSIVE],
-        .shadow_maps = f->shadow.maps,
-        .shadow_sun_maps = f->shadow.sun_maps,
-        .shadow_blocks = f->shadow.sun_blocks,
-        .shadow_sampler = f->shadow.sampler,
-        .shadow_radius = f->options.shadow_filter,
+        .shadow_maps = f->common->shadow.maps,
+        .shadow_sun_maps = f->common->shadow.sun_maps,
+        .shadow_blocks = f->common->shadow.sun_blocks,
+        .shadow_sampler = f->common->shadow.sampler,
+        .shadow_radius = f->common->options.shadow_filter,
         .constants = f->constants_binding,
         .lights = f->lights_binding,
         .shadow_faces = f->view.shadow_faces_binding,
@@ -346,65 +428,75 @@ static void record_direct(struct frame *f, struct gpu_cmd *cmd)
         .width = f->width,
         .height = f->height,
     };
-    direct_record(&f->direct, cmd, &in, f->layers[FRAME_DIRECT]);
+    direct_record(&f->common->direct, cmd, &in, f->layers[FRAME_DIRECT]);
 }
 
 static void record_rsm(struct frame *f, struct gpu_cmd *cmd)
 {
     struct frame_view *view = &f->view;
-    view->rsm_size = f->rsm.size;
-    view->rsm_face_count = f->rsm.face_count;
-    if (f->rsm.face_count == 0) return;
-    view->rsm_faces = f->rsm.faces;
-    view->rsm_depth = f->rsm.depth;
-    view->rsm_normal = f->rsm.normal;
-    view->rsm_flux = f->rsm.flux;
-    view->rsm_faces_binding = gpu_transient(cmd, "rsm_faces", f->rsm.faces,
-                                            (size_t)f->rsm.face_count * sizeof *f->rsm.faces);
+    view->rsm_size = f->common->rsm.size;
+    view->rsm_face_count = f->common->rsm.face_count;
+    if (f->common->rsm.face_count == 0) return;
+    view->rsm_faces = f->common->rsm.faces;
+    view->rsm_depth = f->common->rsm.depth;
+    view->rsm_normal = f->common->rsm.normal;
+    view->rsm_flux = f->common->rsm.flux;
+    view->rsm_faces_binding =
+        gpu_transient(cmd, "rsm_faces", f->common->rsm.faces,
+                      (size_t)f->common->rsm.face_count * sizeof *f->common->rsm.faces);
     const struct gpu_binding bindings[3] = { f->constants_binding, f->lights_binding,
                                              view->rsm_faces_binding };
-    rsm_record(&f->rsm, cmd, &f->scene, f->lights, bindings, f->options.keep_maps);
-    view->maps_drawn += f->rsm.drawn;
+    rsm_record(&f->common->rsm, cmd, &f->common->scene, f->lights, bindings,
+               f->common->options.keep_maps);
+    view->maps_drawn += f->common->rsm.drawn;
 }
 
 static void record_emitters(struct frame *f, struct gpu_cmd *cmd)
 {
     struct frame_view *view = &f->view;
     if (!(f->needs & FRAME_NEEDS_EMITTERS)) return;
-    emitters_scale(&f->emitters, f->constants.radiance_scale);
-    size_t count = f->emitters.count ? (size_t)f->emitters.count : 1; // never an empty block
-    view->emitter_count = f->emitters.count;
-    view->emitters = f->emitters.scaled;
-    view->emitter_origins = f->emitters.origins;
-    view->emitters_binding = gpu_transient(cmd, "frame_emitters", f->emitters.scaled,
-                                           count * sizeof *f->emitters.scaled);
+    emitters_scale(&f->common->emitters, f->constants.radiance_scale);
+    size_t count =
+        f->common->emitters.count ? (size_t)f->common->emitters.count : 1; // never an empty block
+    view->emitter_count = f->common->emitters.count;
+    view->emitters = f->common->emitters.scaled;
+    view->emitter_origins = f->common->emitters.origins;
+    view->emitters_binding = gpu_transient(cmd, "frame_emitters", f->common->emitters.scaled,
+                                           count * sizeof *f->common->emitters.scaled);
     view->emitted_irradiance = f->emitted_irradiance;
 }
 
-static void record_indirect(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
-                            const struct frame_indirect *indirect)
+// What is of this view alone.
+static void complete_view(struct frame *f)
 {
     struct frame_view *view = &f->view;
+    view->number = f->view_number;
     view->width = f->width;
     view->height = f->height;
     view->index = f->index;
-    view->keep = f->options.keep_maps;
     view->constants = &f->constants;
     view->constants_binding = f->constants_binding;
+    view->camera = f->camera;
+    view->camera_cut = f->camera_cut;
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++) view->layers[l] = f->layers[l];
+}
+
+static void record_light(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                         const struct frame_indirect *indirect)
+{
+    struct frame_view *view = &f->view;
+    complete_view(f);
+    view->keep = f->common->options.keep_maps;
     view->lights_binding = f->lights_binding;
     view->ggx_albedo_binding = ggx_albedo_binding(f);
     view->lights = f->lights;
     view->light_count = f->light_count;
     view->pose = input->pose;
-    view->scene = &f->scene;
-    view->camera = input->camera;
+    view->scene = &f->common->scene;
     view->bounds = input->pose->bounds;
-    view->camera_cut = f->camera_cut;
-    view->geometry_moved = f->scene.moved;
+    view->geometry_moved = f->common->scene.moved;
     view->lights_changed = f->lights_changed;
-    for (int l = 0; l < FRAME_LAYER_COUNT; l++) view->layers[l] = f->layers[l];
     if (indirect && indirect->update) indirect->update(indirect->user, cmd, view);
-    if (indirect && indirect->record) indirect->record(indirect->user, cmd, view);
 }
 
 static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
@@ -424,7 +516,7 @@ static void composite(struct frame *f, struct gpu_cmd *cmd, uint32_t variant)
         { "exposure_state", .buffer = f->exposure.state },
         { "exposure_histogram", .buffer = f->exposure.histogram },
     };
-    composite_record(&f->composite, cmd, variant, &images, bindings, f->width, f->height);
+    composite_record(&f->common->composite, cmd, variant, &images, bindings, f->width, f->height);
 }
 
 static void record_exposure(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
@@ -484,32 +576,66 @@ static void record_display(struct frame *f, struct gpu_cmd *cmd, const struct fr
         { "exposure_state", .buffer = f->exposure.state },
     };
     gpu_scope_begin(cmd, "display");
-    display_record(&f->display, cmd, display_kind(shown), &images, bindings, f->width, f->height);
+    display_record(&f->common->display, cmd, display_kind(shown), &images, bindings, f->width,
+                   f->height);
     gpu_scope_end(cmd);
 }
 
-void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
-                  const struct frame_indirect *indirect)
+// From the G-buffer and the light on.
+static void record_image(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                         const struct frame_indirect *indirect)
 {
-    if (!f->prepared) return;
+    if (indirect && indirect->record) indirect->record(indirect->user, cmd, &f->view);
+    record_exposure(f, cmd, input);
+    record_composite(f, cmd);
+    record_display(f, cmd, input);
+    frame_forget_gbuffer(f);
+    f->index++;
+}
+
+static void record_first(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                         const struct frame_indirect *indirect)
+{
     f->view = (struct frame_view){ 0 };
-    emitters_update(&f->emitters, input->pose);
+    emitters_update(&f->common->emitters, input->pose);
     frame_begin(f, cmd, input);
-    scene_gpu_update(&f->scene, cmd, input->pose, f->camera_cut);
+    scene_gpu_update(&f->common->scene, cmd, input->pose, f->camera_cut);
     frame_clear_unwritten(f, cmd);
     record_gbuffer(f, cmd);
     record_shadows(f, cmd);
     record_direct(f, cmd);
     record_rsm(f, cmd);
     record_emitters(f, cmd);
-    record_indirect(f, cmd, input, indirect);
-    record_exposure(f, cmd, input);
-    record_composite(f, cmd);
-    record_display(f, cmd, input);
-    frame_forget_gbuffer(f);
-    f->index++;
+    record_light(f, cmd, input, indirect);
+    record_image(f, cmd, input, indirect);
     f->number++;
     reports_record(f, cmd, input);
+}
+
+// After the first view, whose light it has.
+static void record_further(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                           const struct frame_indirect *indirect)
+{
+    const struct frame *first = f->common->views[0];
+    f->view = first->view;
+    frame_begin_view(f, cmd, input);
+    f->has_blocks = place_sun(f) && first->has_blocks;
+    frame_clear_unwritten(f, cmd);
+    record_gbuffer(f, cmd);
+    record_direct(f, cmd);
+    complete_view(f);
+    record_image(f, cmd, input, indirect);
+    f->number = first->number;
+}
+
+void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                  const struct frame_indirect *indirect)
+{
+    if (!f->prepared) return;
+    if (f->view_number == 0)
+        record_first(f, cmd, input, indirect);
+    else
+        record_further(f, cmd, input, indirect);
 }
 
 float frame_radiance_scale(const struct frame *f)

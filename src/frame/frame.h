@@ -161,7 +161,14 @@ struct frame_input {
 };
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);
-void frame_destroy(struct frame *frame); // accepts NULL
+// A further view of a frame: its own size, images, exposure and history, and the scene, maps and
+// light of the frame. It goes through frame_resize, frame_prepare and frame_record after the frame
+// itself, in the same command buffer and with the same pose and lights; a frame may leave it out.
+// Shadow cascades fit the frame's own camera.
+struct frame *frame_create_view(struct frame *frame);
+int frame_view_number(const struct frame *frame); // 0: not a further view
+// Accepts NULL. Views first.
+void frame_destroy(struct frame *frame);
 // From the next frame on; creates only what the changed options size.
 bool frame_set_options(struct frame *frame, const struct frame_options *options);
 // Uploads meshes and textures; the scene must outlive the frame or the next frame_set_scene.

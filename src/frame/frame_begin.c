@@ -63,6 +63,12 @@ static void begin_camera(struct frame *f, const struct frame_input *input)
     c->near_m = input->camera.near_m;
 }
 
+static float emissive_scale(const struct frame_constants *c, const struct frame_input *input)
+{
+    const bool own = !input->gbuffer || !(input->gbuffer->emissive_scale > 0.0f);
+    return own ? 1.0f : c->radiance_scale / input->gbuffer->emissive_scale;
+}
+
 void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
 {
     struct frame_constants *c = &f->constants;
@@ -72,39 +78,62 @@ void frame_begin(struct frame *f, struct gpu_cmd *cmd, const struct frame_input 
         .lights = input->lights,
         .light_count = input->light_count,
         .sky = input->sky,
-        .max_emissive = f->scene.max_emissive,
-        .emitted_flux = f->emitters.flux,
+        .max_emissive = f->common->scene.max_emissive,
+        .emitted_flux = f->common->emitters.flux,
         .bounds = input->pose->bounds,
     };
     c->radiance_scale = frame_scale(&light);
     c->unlit_white =
         c->radiance_scale * unlit_white(input->lights, input->light_count, input->sky,
-                                        luminance(f->emitters.flux), input->pose->bounds);
+                                        luminance(f->common->emitters.flux), input->pose->bounds);
     f->fallback_luminance = frame_fallback_luminance(&light) * c->radiance_scale;
     // Where all that is seen is unlit, its white exposes to 1.
-    if (f->scene.has_unlit) f->fallback_luminance = 0.18f * c->unlit_white;
-    c->emissive_scale = input->gbuffer && input->gbuffer->emissive_scale > 0.0f
-                            ? c->radiance_scale / input->gbuffer->emissive_scale
-                            : 1.0f;
+    if (f->common->scene.has_unlit) f->fallback_luminance = 0.18f * c->unlit_white;
+    c->emissive_scale = emissive_scale(c, input);
     c->previous_scale_ratio = f->index == 0 ? 1.0f : c->radiance_scale / previous_scale;
     c->sky = glms_vec3_scale(input->sky, c->radiance_scale);
-    f->emitted_irradiance =
-        glms_vec3_scale(emitters_irradiance(&f->emitters, input->pose->bounds), c->radiance_scale);
+    f->emitted_irradiance = glms_vec3_scale(
+        emitters_irradiance(&f->common->emitters, input->pose->bounds), c->radiance_scale);
     c->width = f->width;
     c->height = f->height;
     c->frame_index = (uint32_t)f->index;
     begin_lights(f, input, c->radiance_scale);
     c->light_count = (uint32_t)f->light_count;
-    shadow_place(&f->shadow, f->lights, f->light_count,
+    shadow_place(&f->common->shadow, f->lights, f->light_count,
                  &(struct shadow_view){
                      .camera = input->camera,
                      .aspect = (float)f->width / (float)f->height,
                      .bounds = input->pose->bounds,
-                     .cascade_blend = f->options.cascade_blend,
-                     .filter_radius = f->options.shadow_filter,
+                     .cascade_blend = f->common->options.cascade_blend,
+                     .filter_radius = f->common->options.shadow_filter,
                  });
-    rsm_place(&f->rsm, f->lights, f->light_count, input->pose->bounds);
+    rsm_place(&f->common->rsm, f->lights, f->light_count, input->pose->bounds);
     f->constants_binding = gpu_transient(cmd, "frame_constants", c, sizeof *c);
     // Whole: direct.comp has a uniform block of this size.
     f->lights_binding = gpu_transient(cmd, "frame_lights", f->lights, sizeof f->lights);
+}
+
+// The history continues if this view was recorded in the frame before, too.
+void frame_begin_view(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
+{
+    const struct frame *first = f->common->views[0];
+    const float previous_scale = f->constants.radiance_scale;
+    struct frame_constants *c = &f->constants;
+    struct frame_input own = *input;
+    own.camera_cut |= f->number + 1 != first->number || first->camera_cut;
+    begin_camera(f, &own);
+    const struct frame_constants *shared = &first->constants;
+    c->sky = shared->sky;
+    c->radiance_scale = shared->radiance_scale;
+    c->unlit_white = shared->unlit_white;
+    c->light_count = shared->light_count;
+    c->previous_scale_ratio = f->camera_cut ? 1.0f : c->radiance_scale / previous_scale;
+    c->emissive_scale = emissive_scale(c, input);
+    c->width = f->width;
+    c->height = f->height;
+    c->frame_index = (uint32_t)f->index;
+    f->fallback_luminance = first->fallback_luminance;
+    f->light_count = first->light_count;
+    f->lights_binding = first->lights_binding;
+    f->constants_binding = gpu_transient(cmd, "frame_constants", c, sizeof *c);
 }

@@ -23,12 +23,9 @@ struct frame_reports {
     struct frame_pick newest_pick;
 };
 
-struct frame {
-    struct host *host;
-    struct gpu *gpu;
+// What the views of a frame share, owned by the first.
+struct frame_common {
     struct frame_options options;
-    uint32_t width, height; // 0 before the first resize
-
     struct scene_gpu scene;
     struct emitters emitters;
     bool has_scene;
@@ -36,15 +33,25 @@ struct frame {
     struct shadow shadow;
     struct rsm rsm;
     struct direct direct;
-    struct exposure exposure;
     struct composite composite;
     struct display display;
+    gpu_buffer ggx_albedo;                // core/ggx_albedo.h
+    struct frame *views[FRAME_MAX_VIEWS]; // [0]: the first; NULL: there is none
+};
+
+struct frame {
+    struct host *host;
+    struct gpu *gpu;
+    struct frame_common *common;
+    int view_number;        // 0: the first
+    uint32_t width, height; // 0 before the first resize
+
+    struct exposure exposure;
     gpu_image layers[FRAME_LAYER_COUNT];
-    uint32_t imported;     // bit l: layer l is the caller's, until the frame is recorded
-    uint32_t pinned;       // bit l: layer l, by frame_pin_layer
-    uint32_t unwritten;    // set by frame_prepare: kept layers that no pass or technique writes
-    uint32_t neutral;      // those of them that have their neutral value
-    gpu_buffer ggx_albedo; // core/ggx_albedo.h
+    uint32_t imported;  // bit l: layer l is the caller's, until the frame is recorded
+    uint32_t pinned;    // bit l: layer l, by frame_pin_layer
+    uint32_t unwritten; // set by frame_prepare: kept layers that no pass or technique writes
+    uint32_t neutral;   // those of them that have their neutral value
 
     // Set by frame_prepare.
     uint32_t needs;             // frame_need bits
@@ -66,7 +73,7 @@ struct frame {
     bool has_blocks;            // its maps have blocks
     struct gpu_binding constants_binding, lights_binding;
     struct frame_view view;
-    uint64_t number; // see struct frame_report
+    uint64_t number; // see struct frame_report; of a further view: that of the first
     struct frame_reports reports;
 };
 
@@ -86,4 +93,6 @@ void reports_finish(struct frame *frame);
 void reports_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);
 
 // frame_begin.c: constants, lights and change flags of a new frame.
+// Of a further view: the light and the scale are those of the first.
+void frame_begin_view(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);
 void frame_begin(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input);

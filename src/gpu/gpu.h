@@ -430,5 +430,6 @@ struct gpu_counters {
     uint64_t pipelines;         // created
     uint64_t compiled;          // of these, not taken from the pool of destroyed ones
     uint64_t frames, transfers; // submitted; frames in a caller's command buffer too
+    uint64_t passes;            // scopes begun
 };
 const struct gpu_counters *gpu_counters(const struct gpu *gpu);

@@ -88,6 +88,7 @@ void gpu_scope_begin(struct gpu_cmd *cmd, const char *name)
                                                   .pLabelName = name });
     }
     push(cmd, name);
+    cmd->gpu->counters.passes++;
 }
 
 void gpu_scope_end(struct gpu_cmd *cmd)

@@ -38,6 +38,8 @@ TEST(default_functions_accept_nothing)
     ag_device_desc_default(NULL);
     ag_renderer_desc_default(NULL);
     ag_frame_desc_default(NULL);
+    ag_view_desc_default(NULL);
+    ag_view_frame_default(NULL);
     ag_material_desc_default(NULL);
     ag_material_maps_default(NULL);
     ag_light_desc_default(NULL, AG_LIGHT_SUN);
@@ -109,6 +111,15 @@ TEST(a_null_object_is_refused)
     CHECK_REFUSED(NULL, ag_renderer_create(NULL, NULL, NULL, &renderer));
     assert_null(renderer);
     CHECK_REFUSED(NULL, ag_renderer_resize(NULL, 1, 1));
+    struct ag_view *view = (struct ag_view *)1;
+    struct ag_layer_handle handle;
+    CHECK_REFUSED(NULL, ag_view_create(NULL, NULL, &view));
+    assert_null(view);
+    CHECK_REFUSED(NULL, ag_view_resize(NULL, 1, 1));
+    CHECK_REFUSED(NULL, ag_view_read(NULL, "color", &image));
+    CHECK_REFUSED(NULL, ag_view_layer_handle(NULL, "color", &handle));
+    CHECK_REFUSED(NULL, ag_view_exposure(NULL, &ev));
+    ag_view_destroy(NULL);
     CHECK_REFUSED(NULL, ag_renderer_render(NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_record(NULL, NULL, NULL, NULL));
     CHECK_REFUSED(NULL, ag_renderer_recorded_done(NULL, 1));

@@ -32,7 +32,7 @@ static void make_scene(struct frame_fixture *s, float tilt)
 static uint32_t undecided_pixels(struct frame_fixture *s)
 {
     struct direct_list_header header = { 0 };
-    CHECK(gpu_buffer_download(s->gpu, s->frame->direct.list, 0, &header, sizeof header));
+    CHECK(gpu_buffer_download(s->gpu, s->frame->common->direct.list, 0, &header, sizeof header));
     return header.count;
 }
 

@@ -64,11 +64,11 @@ static bool prepare_undecided(struct direct *d, bool emission)
                                        &shader_direct_undecided_comp, constants, 2, pipeline);
 }
 
-bool direct_prepare(struct direct *d, uint32_t variant, uint32_t width, uint32_t height)
+bool direct_prepare(struct direct *d, uint32_t variant, size_t pixels)
 {
     const uint32_t blocks = direct_variant_of_blocks(variant);
     // Every binding of the shader needs a buffer: that of a pixel where there is no list.
-    return prepare_pipeline(d, variant) && prepare_list(d, blocks ? (size_t)width * height : 1) &&
+    return prepare_pipeline(d, variant) && prepare_list(d, blocks ? pixels : 1) &&
            (!blocks ||
             (prepare_pipeline(d, blocks) && prepare_undecided(d, has_emission(variant))));
 }

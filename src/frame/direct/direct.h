@@ -38,8 +38,9 @@ bool direct_init(struct direct *direct, struct gpu *gpu, uint32_t cascades);
 uint32_t direct_variant(int suns, int locals, uint32_t features);
 // The variant of one sun whose maps have blocks, if there is one; else 0.
 uint32_t direct_variant_of_blocks(uint32_t variant);
-// Creates what is missing for the variant, and for its variant of blocks.
-bool direct_prepare(struct direct *direct, uint32_t variant, uint32_t width, uint32_t height);
+// Creates what is missing for the variant, and for its variant of blocks, in images of up to so
+// many pixels.
+bool direct_prepare(struct direct *direct, uint32_t variant, size_t pixels);
 void direct_record(const struct direct *direct, struct gpu_cmd *cmd, const struct direct_input *in,
                    gpu_image out);
 void direct_finish(struct direct *direct); // accepts zero

@@ -1,0 +1,56 @@
+/// Further views of a renderer: other cameras that see the same light in the same frames, for split
+/// screen, mirrors, portals. Scene, shadow maps, reflective shadow maps, volumes, voxels and light
+/// maps are made once a frame; a view has its own images, exposure and history.
+///
+/// What follows a camera follows that of ag_frame_desc: the finer shadow cascades of a sun, and the
+/// finer grids of lpv:cascades and vct:levels. Other views have their light from the coarser ones
+/// where they look elsewhere.
+#ifndef AFTERGLOW_VIEW_H
+#define AFTERGLOW_VIEW_H
+
+#include <afterglow/renderer.h>
+
+AG_BEGIN
+
+/// Members as in ag_renderer_desc.
+struct ag_view_desc {
+    int width, height;    ///< pixels, 1…16384; default 1280×720
+    bool indirect_layer;  ///< default false
+    bool display_layer;   ///< default true
+    bool motion_layer;    ///< default false
+    bool host_gbuffer;    ///< default false
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
+};
+AG_API void ag_view_desc_default(struct ag_view_desc *desc);
+/// Adds a view; a renderer has at most seven. Destroy it before the renderer. desc NULL: the
+/// defaults.
+AG_API enum ag_result ag_view_create(struct ag_renderer *renderer, const struct ag_view_desc *desc,
+                                     struct ag_view **out);
+AG_API void ag_view_destroy(struct ag_view *view);
+/// As ag_renderer_resize, for this view alone.
+AG_API enum ag_result ag_view_resize(struct ag_view *view, int width, int height);
+
+/// A view in one frame, for ag_frame_desc.views. A view that a frame leaves out keeps its images
+/// and begins its history again later. A camera cut of the frame is one of all views.
+struct ag_view_frame {
+    struct ag_view *view;
+    struct ag_camera camera;
+    bool auto_exposure;               ///< as in ag_frame_desc; default true
+    float exposure_ev;                ///< likewise
+    bool camera_cut;                  ///< of this view; default false
+    const struct ag_gbuffer *gbuffer; ///< with host_gbuffer: required; else NULL, the default
+    uint64_t reserved[4];             ///< 0; see ABI in types.h
+};
+/// Sets every member except `view` and `camera`.
+AG_API void ag_view_frame_default(struct ag_view_frame *frame);
+
+/// As ag_renderer_read, ag_renderer_layer_handle and ag_renderer_exposure, of the newest frame that
+/// had the view. There are no layers id and debug.
+AG_API enum ag_result ag_view_read(struct ag_view *view, const char *layer, struct ag_image **out);
+AG_API enum ag_result ag_view_layer_handle(struct ag_view *view, const char *layer,
+                                           struct ag_layer_handle *out);
+AG_API enum ag_result ag_view_exposure(struct ag_view *view, float *ev);
+
+AG_END
+
+#endif

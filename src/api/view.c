@@ -1,0 +1,113 @@
+// Further views of a renderer.
+#include "api/renderer_state.h"
+
+void ag_view_desc_default(struct ag_view_desc *desc)
+{
+    if (desc) *desc = (struct ag_view_desc){ .width = 1280, .height = 720, .display_layer = true };
+}
+
+void ag_view_frame_default(struct ag_view_frame *frame)
+{
+    if (frame) *frame = (struct ag_view_frame){ .auto_exposure = true };
+}
+
+static bool resize(struct ag_view *v, int width, int height)
+{
+    struct ag_renderer *r = v->renderer;
+    v->rendered = 0;
+    v->width = width;
+    v->height = height;
+    renderer_enter(r);
+    v->sized = frame_resize(v->frame, (uint32_t)width, (uint32_t)height) &&
+               gi_resize_view(r->gi, frame_view_number(v->frame), &r->pose, (uint32_t)width,
+                              (uint32_t)height);
+    renderer_leave(r);
+    return v->sized;
+}
+
+static bool create_frame(struct ag_view *v)
+{
+    renderer_enter(v->renderer);
+    v->frame = frame_create_view(v->renderer->main.frame);
+    renderer_leave(v->renderer);
+    return v->frame;
+}
+
+enum ag_result ag_view_create(struct ag_renderer *r, const struct ag_view_desc *desc,
+                              struct ag_view **out)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE(context, r, "renderer is NULL");
+    struct ag_view_desc fallback;
+    ag_view_desc_default(&fallback);
+    if (!desc) desc = &fallback;
+    AG_REQUIRE_KNOWN(__func__, context, desc);
+    enum ag_result checked = renderer_size_check(__func__, context, desc->width, desc->height);
+    if (checked != AG_OK) return checked;
+
+    struct ag_view *v = host_alloc(&context->host, 1, sizeof *v);
+    if (!v) return api_done(context, false);
+    *v = (struct ag_view){ .renderer = r,
+                           .indirect_layer = desc->indirect_layer,
+                           .display_layer = desc->display_layer,
+                           .motion_layer = desc->motion_layer,
+                           .host_gbuffer = desc->host_gbuffer,
+                           .shown = { .layer = FRAME_COLOR } };
+    r->views++;
+    const bool ok = create_frame(v) && resize(v, desc->width, desc->height);
+    const enum ag_result result = api_done(context, ok);
+    if (ok)
+        *out = v;
+    else
+        ag_view_destroy(v);
+    return result;
+}
+
+void ag_view_destroy(struct ag_view *v)
+{
+    if (!v) return;
+    struct ag_renderer *r = v->renderer;
+    if (v->frame) gi_resize_view(r->gi, frame_view_number(v->frame), &r->pose, 0, 0);
+    frame_destroy(v->frame);
+    r->views--;
+    host_free(renderer_host(r), v);
+}
+
+enum ag_result ag_view_resize(struct ag_view *v, int width, int height)
+{
+    struct ag_context *context = view_context(v);
+    AG_REQUIRE(context, v, "view is NULL");
+    enum ag_result checked = renderer_size_check(__func__, context, width, height);
+    return checked != AG_OK ? checked : api_done(context, resize(v, width, height));
+}
+
+enum ag_result ag_view_read(struct ag_view *v, const char *layer, struct ag_image **out)
+{
+    struct ag_context *context = view_context(v);
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE(context, v, "view is NULL");
+    return view_read(__func__, v, layer, out);
+}
+
+enum ag_result ag_view_layer_handle(struct ag_view *v, const char *layer,
+                                    struct ag_layer_handle *out)
+{
+    struct ag_context *context = view_context(v);
+    AG_REQUIRE_POINTER(context, out);
+    *out = (struct ag_layer_handle){ 0 };
+    AG_REQUIRE(context, v, "view is NULL");
+    return view_layer_handle(__func__, v, layer, out);
+}
+
+enum ag_result ag_view_exposure(struct ag_view *v, float *ev)
+{
+    struct ag_context *context = view_context(v);
+    AG_REQUIRE_POINTER(context, ev);
+    *ev = 0.0f;
+    AG_REQUIRE(context, v, "view is NULL");
+    AG_REQUIRE(context, v->rendered, "no frame has been rendered");
+    enum ag_result waited = ag_renderer_wait(v->renderer);
+    if (waited != AG_OK) return waited;
+    return api_done(context, frame_exposure(v->frame, ev));
+}
