@@ -23,7 +23,7 @@ unset LD_LIBRARY_PATH AFTERGLOW_IMPORTER
 # ---- pkg-config: C and C++, shared and static, the same picture
 # shellcheck disable=SC2086 # lists of words
 {
-    for name in minimal textured balls measure side_by_side; do
+    for name in minimal textured balls measure side_by_side views; do
         "$cc" -Wall -Werror "$doc/examples/$name.c" $flags "$rpath" -o "$work/$name"
     done
     "$cc" -Wall -Werror "$doc/examples/host.c" $flags -lvulkan "$rpath" -o "$work/host"
