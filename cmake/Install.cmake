@@ -6,7 +6,7 @@ set(package ${CMAKE_INSTALL_LIBDIR}/cmake/afterglow)
 install(DIRECTORY include/afterglow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS afterglow_import DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/afterglow)
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.c)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.[ch])
 # What a host's own shaders include: `glslc -DAG_GLSL=1 -I <prefix>/share/afterglow/glsl`. Paths are those of src/.
 foreach(file core/shared.h core/sh.glsl frame/frame_shared.h frame/octahedral.glsl frame/probes.glsl)
   get_filename_component(folder ${file} DIRECTORY)

@@ -1,13 +1,15 @@
-// A host with its own Vulkan device: renders 100 frames, two in flight, into its own command
-// buffers. Between frames it moves a light and an object and changes options. Each frame's picture
-// is copied to the host's own memory; the last one becomes a PNG.
+// A host with its own Vulkan device and G-buffer: renders 100 frames, two in flight, into its own
+// command buffers. Between frames it moves a light and an object and changes options. Each frame's
+// picture is copied to the host's own memory; the last one becomes a PNG.
 //
 //     host OUT.png [validate]
 //
 // `validate` turns the validation layer on; any message of it is a failure. Build it with an
 // installed library:
 //
-//     cc host.c $(pkg-config --cflags --libs afterglow vulkan) -o host
+//     cc host.c host_surfaces.c $(pkg-config --cflags --libs afterglow vulkan) -lm -o host
+#include "host_surfaces.h"
+
 #include <afterglow/afterglow.h>
 #include <afterglow/vulkan.h>
 
@@ -18,14 +20,21 @@
 
 enum { WIDTH = 160, HEIGHT = 90, FRAMES = 100, IN_FLIGHT = 2 };
 
-// A frame in flight: commands, their fence, and where the image goes.
+struct mapped_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    void *bytes;
+};
+
+// A frame in flight: commands, their fence, its G-buffer, and where the image goes.
 struct slot {
     VkCommandBuffer commands;
     VkFence fence;
-    VkBuffer buffer;
-    VkDeviceMemory memory;
-    unsigned char *pixels; // mapped: RGBA, sRGB-encoded
-    uint64_t number;       // of the frame that the GPU executes; 0: none
+    struct mapped_buffer surfaces; // boxes_draw
+    VkImage images[SURFACE_IMAGES];
+    VkDeviceMemory image_memory[SURFACE_IMAGES];
+    struct mapped_buffer picture; // RGBA, sRGB-encoded
+    uint64_t number;              // of the frame that the GPU executes; 0: none
 };
 
 struct host {
@@ -44,6 +53,7 @@ struct host {
     struct ag_device *lent;
     struct ag_scene *scene;
     struct ag_renderer *renderer;
+    struct box boxes[BOXES];
 };
 
 static void check_vk(VkResult result, const char *what)
@@ -163,37 +173,70 @@ static void create_device(struct host *host)
 
 // ---- frames in flight
 
-static uint32_t mapped_memory_type(const struct host *host, uint32_t bits)
+static void allocate_memory(const struct host *host, const VkMemoryRequirements *needs,
+                            VkMemoryPropertyFlags wanted, VkDeviceMemory *out)
 {
     VkPhysicalDeviceMemoryProperties p;
-    const VkMemoryPropertyFlags wanted =
-        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     vkGetPhysicalDeviceMemoryProperties(host->physical, &p);
     uint32_t i = 0;
-    while (!((bits >> i & 1u) && (p.memoryTypes[i].propertyFlags & wanted) == wanted)) i++;
-    return i; // Vulkan guarantees that there is one for buffers
+    while (
+        !((needs->memoryTypeBits >> i & 1u) && (p.memoryTypes[i].propertyFlags & wanted) == wanted))
+        i++; // Vulkan guarantees that there is one
+    VkMemoryAllocateInfo info;
+    memset(&info, 0, sizeof info);
+    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    info.allocationSize = needs->size;
+    info.memoryTypeIndex = i;
+    check_vk(vkAllocateMemory(host->device, &info, NULL, out), "vkAllocateMemory");
 }
 
-static void create_picture(const struct host *host, struct slot *slot)
+static void create_mapped_buffer(const struct host *host, VkDeviceSize bytes,
+                                 VkBufferUsageFlags usage, struct mapped_buffer *out)
 {
     VkBufferCreateInfo info;
     memset(&info, 0, sizeof info);
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = 4 * WIDTH * HEIGHT;
-    info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    check_vk(vkCreateBuffer(host->device, &info, NULL, &slot->buffer), "vkCreateBuffer");
+    info.size = bytes;
+    info.usage = usage;
+    check_vk(vkCreateBuffer(host->device, &info, NULL, &out->buffer), "vkCreateBuffer");
     VkMemoryRequirements needs;
-    vkGetBufferMemoryRequirements(host->device, slot->buffer, &needs);
-    VkMemoryAllocateInfo allocate;
-    memset(&allocate, 0, sizeof allocate);
-    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocate.allocationSize = needs.size;
-    allocate.memoryTypeIndex = mapped_memory_type(host, needs.memoryTypeBits);
-    check_vk(vkAllocateMemory(host->device, &allocate, NULL, &slot->memory), "vkAllocateMemory");
-    check_vk(vkBindBufferMemory(host->device, slot->buffer, slot->memory, 0), "vkBindBufferMemory");
-    void *mapped = NULL;
-    check_vk(vkMapMemory(host->device, slot->memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
-    slot->pixels = (unsigned char *)mapped;
+    vkGetBufferMemoryRequirements(host->device, out->buffer, &needs);
+    allocate_memory(host, &needs,
+                    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                    &out->memory);
+    check_vk(vkBindBufferMemory(host->device, out->buffer, out->memory, 0), "vkBindBufferMemory");
+    check_vk(vkMapMemory(host->device, out->memory, 0, VK_WHOLE_SIZE, 0, &out->bytes),
+             "vkMapMemory");
+}
+
+// Those of struct ag_gbuffer.
+static const VkFormat surface_formats[SURFACE_IMAGES] = {
+    VK_FORMAT_D32_SFLOAT,    // SURFACE_DEPTH
+    VK_FORMAT_R16G16_SFLOAT, // SURFACE_NORMAL
+    VK_FORMAT_R8G8B8A8_SRGB, // SURFACE_ALBEDO
+};
+static const VkImageUsageFlags surface_usage =
+    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+static const VkImageLayout surface_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+
+static void create_surface_image(const struct host *host, VkFormat format, VkImage *image,
+                                 VkDeviceMemory *memory)
+{
+    VkImageCreateInfo info;
+    memset(&info, 0, sizeof info);
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent.width = WIDTH;
+    info.extent.height = HEIGHT;
+    info.extent.depth = info.mipLevels = info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = surface_usage;
+    check_vk(vkCreateImage(host->device, &info, NULL, image), "vkCreateImage");
+    VkMemoryRequirements needs;
+    vkGetImageMemoryRequirements(host->device, *image, &needs);
+    allocate_memory(host, &needs, 0, memory);
+    check_vk(vkBindImageMemory(host->device, *image, *memory, 0), "vkBindImageMemory");
 }
 
 static void create_slots(struct host *host)
@@ -216,17 +259,32 @@ static void create_slots(struct host *host)
         struct slot *slot = &host->slots[i];
         check_vk(vkAllocateCommandBuffers(host->device, &allocate, &slot->commands), "commands");
         check_vk(vkCreateFence(host->device, &fence, NULL, &slot->fence), "vkCreateFence");
-        create_picture(host, slot);
+        create_mapped_buffer(host, 4 * WIDTH * HEIGHT, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                             &slot->picture);
+        create_mapped_buffer(host, SURFACE_IMAGES * 4 * WIDTH * HEIGHT,
+                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &slot->surfaces);
+        for (int k = 0; k < SURFACE_IMAGES; k++)
+            create_surface_image(host, surface_formats[k], &slot->images[k],
+                                 &slot->image_memory[k]);
     }
+}
+
+static void destroy_slot(const struct host *host, const struct slot *slot)
+{
+    vkDestroyBuffer(host->device, slot->picture.buffer, NULL);
+    vkFreeMemory(host->device, slot->picture.memory, NULL);
+    vkDestroyBuffer(host->device, slot->surfaces.buffer, NULL);
+    vkFreeMemory(host->device, slot->surfaces.memory, NULL);
+    for (int k = 0; k < SURFACE_IMAGES; k++) {
+        vkDestroyImage(host->device, slot->images[k], NULL);
+        vkFreeMemory(host->device, slot->image_memory[k], NULL);
+    }
+    vkDestroyFence(host->device, slot->fence, NULL);
 }
 
 static void destroy_device(struct host *host)
 {
-    for (int i = 0; i < IN_FLIGHT; i++) {
-        vkDestroyBuffer(host->device, host->slots[i].buffer, NULL);
-        vkFreeMemory(host->device, host->slots[i].memory, NULL);
-        vkDestroyFence(host->device, host->slots[i].fence, NULL);
-    }
+    for (int i = 0; i < IN_FLIGHT; i++) destroy_slot(host, &host->slots[i]);
     vkDestroyCommandPool(host->device, host->pool, NULL);
     vkDestroyDevice(host->device, NULL);
     destroy_messenger(host);
@@ -259,6 +317,20 @@ static void adopt_device(struct host *host)
 
 enum { LAMP = 0 }; // index in the scene
 
+// The library knows the surfaces for their light, the host draws them.
+static void create_scene(struct host *host)
+{
+    struct ag_light_desc lamp;
+    ag_light_desc_default(&lamp, AG_LIGHT_POINT);
+    lamp.position[0] = -0.3f;
+    lamp.position[1] = 1.6f;
+    for (int i = 0; i < 3; i++) lamp.intensity[i] = 100; // candela
+    check(host, ag_scene_create(host->context, &host->scene));
+    boxes_begin(host->boxes);
+    check(host, boxes_add(host->boxes, host->scene));
+    check(host, ag_scene_add_light(host->scene, &lamp, NULL));
+}
+
 static void create_renderer(struct host *host)
 {
     struct ag_renderer_desc desc;
@@ -266,27 +338,21 @@ static void create_renderer(struct host *host)
     desc.width = WIDTH;
     desc.height = HEIGHT;
     desc.gi = "lpv:dim=16";
-    check(host, ag_scene_load(host->context, "@cornell:light=point", &host->scene));
+    desc.host_gbuffer = true;
     check(host, ag_renderer_create(host->lent, host->scene, &desc, &host->renderer));
 }
 
-// Moves the lamp along half a circle and lifts the last instance, a block.
+// Moves the lamp along half a circle and lifts a block.
 static void move(struct host *host, int frame)
 {
     const float turn = 3.14159265f * (float)frame / (float)FRAMES;
     struct ag_light_info lamp;
     check(host, ag_scene_get_light(host->scene, LAMP, 0, 0.0, &lamp));
-    lamp.light.position[0] += 0.02f * cosf(turn);
-    lamp.light.position[2] += 0.02f * sinf(turn);
+    lamp.light.position[0] += 0.01f * cosf(turn);
+    lamp.light.position[2] += 0.01f * sinf(turn);
     check(host, ag_scene_set_light(host->scene, LAMP, &lamp.light));
-
-    struct ag_scene_info info;
-    struct ag_instance_info block;
-    check(host, ag_scene_get_info(host->scene, 0, 0.0, &info));
-    check(host, ag_scene_get_instance(host->scene, info.instances - 1, 0, 0.0, &block));
-    block.world_from_mesh[13] += 0.01f * sinf(turn);
-    check(host,
-          ag_scene_set_instance_transform(host->scene, info.instances - 1, block.world_from_mesh));
+    host->boxes[BLOCK].center[1] += 0.006f * sinf(turn);
+    check(host, box_move(&host->boxes[BLOCK], host->scene));
 }
 
 // A live option in each tenth frame, another technique and smaller shadow maps once. Frames in
@@ -303,7 +369,8 @@ static void change_options(struct host *host, int frame)
 // ---- a frame
 
 // Orders everything before it ahead of everything after it, and the host's reads.
-static void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to)
+static void barrier(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
+                    VkImageLayout from, VkImageLayout to)
 {
     VkMemoryBarrier2 memory;
     memset(&memory, 0, sizeof memory);
@@ -322,7 +389,7 @@ static void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from,
     layout.newLayout = to;
     layout.srcQueueFamilyIndex = layout.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     layout.image = image;
-    layout.subresourceRange.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+    layout.subresourceRange.aspectMask = aspect;
     layout.subresourceRange.levelCount = layout.subresourceRange.layerCount = 1;
     VkDependencyInfo info;
     memset(&info, 0, sizeof info);
@@ -334,6 +401,51 @@ static void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from,
     vkCmdPipelineBarrier2(commands, &info);
 }
 
+static VkBufferImageCopy whole_image(VkImageAspectFlags aspect, VkDeviceSize offset)
+{
+    VkBufferImageCopy region;
+    memset(&region, 0, sizeof region);
+    region.bufferOffset = offset;
+    region.imageSubresource.aspectMask = aspect;
+    region.imageSubresource.layerCount = 1;
+    region.imageExtent.width = WIDTH;
+    region.imageExtent.height = HEIGHT;
+    region.imageExtent.depth = 1;
+    return region;
+}
+
+static void describe(const struct slot *slot, enum surface_image which, struct ag_layer_handle *out)
+{
+    out->vk_image = (void *)slot->images[which];
+    out->vk_format = (uint32_t)surface_formats[which];
+    out->vk_usage = surface_usage;
+    out->vk_layout = (uint32_t)surface_layout;
+    out->width = WIDTH;
+    out->height = HEIGHT;
+    out->scale = 1;
+}
+
+// Where an engine would rasterise. The images of two frames alternate; what they had is discarded.
+static void draw_surfaces(const struct host *host, const struct ag_camera *camera,
+                          const struct slot *slot, struct ag_gbuffer *out)
+{
+    boxes_draw(host->boxes, camera, WIDTH, HEIGHT, slot->surfaces.bytes);
+    for (int k = 0; k < SURFACE_IMAGES; k++) {
+        const VkImageAspectFlags aspect =
+            k == SURFACE_DEPTH ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+        const VkImageLayout target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        const VkBufferImageCopy region = whole_image(aspect, (VkDeviceSize)k * 4 * WIDTH * HEIGHT);
+        barrier(slot->commands, slot->images[k], aspect, VK_IMAGE_LAYOUT_UNDEFINED, target);
+        vkCmdCopyBufferToImage(slot->commands, slot->surfaces.buffer, slot->images[k], target, 1,
+                               &region);
+        barrier(slot->commands, slot->images[k], aspect, target, surface_layout);
+    }
+    memset(out, 0, sizeof *out);
+    describe(slot, SURFACE_DEPTH, &out->depth);
+    describe(slot, SURFACE_NORMAL, &out->normal);
+    describe(slot, SURFACE_ALBEDO, &out->albedo);
+}
+
 // Where an engine would light its own surfaces with "irradiance", or present "display". The layout
 // that the copy needs is exchanged for the library's afterwards.
 static void copy_picture(const struct host *host, const struct slot *slot)
@@ -341,27 +453,26 @@ static void copy_picture(const struct host *host, const struct slot *slot)
     struct ag_layer_handle display;
     check(host, ag_renderer_layer_handle(host->renderer, "display", &display));
     const VkImage image = ag_vulkan_image(&display);
-    VkBufferImageCopy region;
-    memset(&region, 0, sizeof region);
-    region.imageSubresource.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
-    region.imageSubresource.layerCount = 1;
-    region.imageExtent.width = WIDTH;
-    region.imageExtent.height = HEIGHT;
-    region.imageExtent.depth = 1;
+    const VkImageAspectFlags color = VK_IMAGE_ASPECT_COLOR_BIT;
+    const VkBufferImageCopy region = whole_image(color, 0);
     const VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    barrier(slot->commands, image, ag_vulkan_layout(&display), source);
-    vkCmdCopyImageToBuffer(slot->commands, image, source, slot->buffer, 1, &region);
-    barrier(slot->commands, image, source, ag_vulkan_layout(&display));
+    barrier(slot->commands, image, color, ag_vulkan_layout(&display), source);
+    vkCmdCopyImageToBuffer(slot->commands, image, source, slot->picture.buffer, 1, &region);
+    barrier(slot->commands, image, color, source, ag_vulkan_layout(&display));
 }
 
-static void render(struct host *host, const struct ag_frame_desc *frame, struct slot *slot)
+static void render(struct host *host, struct ag_frame_desc *frame, struct slot *slot)
 {
     VkCommandBufferBeginInfo begin;
     memset(&begin, 0, sizeof begin);
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check_vk(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer");
+    struct ag_gbuffer gbuffer;
+    draw_surfaces(host, &frame->camera, slot, &gbuffer);
+    frame->gbuffer = &gbuffer; // needed only during the call
     check(host, ag_renderer_record(host->renderer, frame, slot->commands, &slot->number));
+    frame->gbuffer = NULL;
     copy_picture(host, slot);
     check_vk(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer");
     VkSubmitInfo submit;
@@ -377,7 +488,8 @@ static void render_all(struct host *host)
     struct ag_frame_desc frame;
     struct ag_layer_handle display;
     ag_frame_desc_default(&frame);
-    check(host, ag_scene_default_camera(host->scene, 0, 0.0, &frame.camera, NULL));
+    const float eye[3] = { 0, 1, 4 }, target[3] = { 0, 1, 0 };
+    check(host, ag_scene_look_at(host->scene, eye, target, 0.7f, &frame.camera));
     // The first call for a layer submits commands of its own: before the first frame.
     check(host, ag_renderer_layer_handle(host->renderer, "display", &display));
     for (int i = 0; i < FRAMES; i++) {
@@ -403,7 +515,8 @@ static float linear_from_srgb(unsigned char byte)
 // The image of the last frame; images of the library are linear.
 static void write_picture(const struct host *host, const char *path)
 {
-    const unsigned char *pixels = host->slots[(FRAMES - 1) % IN_FLIGHT].pixels;
+    const unsigned char *pixels =
+        (const unsigned char *)host->slots[(FRAMES - 1) % IN_FLIGHT].picture.bytes;
     struct ag_image *image = NULL;
     check(host, ag_image_create(host->context, WIDTH, HEIGHT, 3, &image));
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
@@ -424,6 +537,7 @@ int main(int argc, char **argv)
     create_device(&host);
     create_slots(&host);
     adopt_device(&host);
+    create_scene(&host);
     create_renderer(&host);
     render_all(&host);
     write_picture(&host, argv[1]);

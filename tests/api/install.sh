@@ -26,9 +26,9 @@ unset LD_LIBRARY_PATH AFTERGLOW_IMPORTER
     for name in minimal textured balls measure side_by_side views; do
         "$cc" -Wall -Werror "$doc/examples/$name.c" $flags "$rpath" -o "$work/$name"
     done
-    "$cc" -Wall -Werror "$doc/examples/host.c" $flags -lvulkan "$rpath" -o "$work/host"
+    "$cc" -Wall -Werror "$doc"/examples/host*.c $flags -lvulkan -lm "$rpath" -o "$work/host"
     for name in minimal host; do
-        "$cxx" -x c++ -std=c++20 -Wall -Werror "$doc/examples/$name.c" -x none $flags -lvulkan "$rpath" -o "$work/$name-cxx"
+        "$cxx" -x c++ -std=c++20 -Wall -Werror "$doc/examples/$name"*.c -x none $flags -lvulkan "$rpath" -o "$work/$name-cxx"
     done
     "$cc" "$doc/examples/minimal.c" $static_flags -o "$work/minimal-static"
     "$cxx" -x c++ -std=c++20 "$doc/examples/minimal.c" -x none $static_flags -o "$work/minimal-static-cxx"
