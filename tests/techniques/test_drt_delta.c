@@ -7,7 +7,7 @@
 
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"
-#include "techniques/mrt/level/delta_gather.h"
+#include "techniques/mrt/clutter/delta_gather.h"
 
 #include <math.h>
 #include <string.h>

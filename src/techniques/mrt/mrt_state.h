@@ -2,7 +2,7 @@
 #pragma once
 
 #include "techniques/mrt/dictionary/dictionary.h"
-#include "techniques/mrt/level/clutter_light.h"
+#include "techniques/mrt/clutter/clutter_light.h"
 #include "techniques/mrt/level/solver.h"
 #include "techniques/mrt/mrt_host_solver.h"
 #include "techniques/mrt/runtime/runtime.h"

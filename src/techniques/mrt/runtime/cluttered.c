@@ -1,7 +1,7 @@
 // Bases, responses, openings and pairs of blocks with clutter.
 #include "techniques/mrt/runtime/cluttered.h"
 
-#include "techniques/mrt/level/delta_gather.h"
+#include "techniques/mrt/clutter/delta_gather.h"
 
 #include <string.h>
 

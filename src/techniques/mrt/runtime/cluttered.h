@@ -1,4 +1,4 @@
-// Operators of a level with clutter (level/delta.h), as input of the run time.
+// Operators of a level with clutter (clutter/delta.h), as input of the run time.
 //
 // Clutter changes the operators, not the passes: blocks that it touches have bases U_b + ΔU_b and
 // responses of their openings of their own, and the faces of a block's clutter are one more opening
@@ -6,7 +6,7 @@
 // that they see is carried by T_b→r, and clutter.c adds direct light and albedo.
 #pragma once
 
-#include "techniques/mrt/level/delta.h"
+#include "techniques/mrt/clutter/delta.h"
 #include "techniques/mrt/runtime/turned.h"
 
 struct mrt_cluttered_options {

@@ -5,7 +5,7 @@
 #include "core/linalg.h"
 
 #include "techniques/mrt/level/atlas.h"
-#include "techniques/mrt/level/clutter_light.h"
+#include "techniques/mrt/clutter/clutter_light.h"
 #include "techniques/mrt/level/probes.h"
 #include "techniques/mrt/level/unbounced.h"
 #include "techniques/mrt/level/wall.h"

@@ -1,5 +1,5 @@
 // Clutter's texels as a geometry image.
-#include "techniques/mrt/level/clutter_light.h"
+#include "techniques/mrt/clutter/clutter_light.h"
 
 // Rays that find the material start so far from the surface, m.
 static const float AWAY = 1e-3f;

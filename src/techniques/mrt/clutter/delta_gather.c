@@ -1,5 +1,5 @@
 // Cosine-distributed rays from the texels of a face through the cells of the blocks.
-#include "techniques/mrt/level/delta_gather.h"
+#include "techniques/mrt/clutter/delta_gather.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"

@@ -1,5 +1,5 @@
 // Which parts of a scene are clutter.
-#include "techniques/mrt/level/clutter.h"
+#include "techniques/mrt/clutter/clutter.h"
 
 #include "scene/mesh_parts.h"
 

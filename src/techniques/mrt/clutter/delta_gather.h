@@ -2,7 +2,7 @@
 // face: the coefficients c of the next bounce.
 #pragma once
 
-#include "techniques/mrt/level/delta.h"
+#include "techniques/mrt/clutter/delta.h"
 
 // Irradiance of the faces of a block, of b of a source block.
 struct mrt_gathered {

@@ -16,7 +16,7 @@
 #include "trace/trace.h"
 
 #include "techniques/mrt/dictionary/rays.h"
-#include "techniques/mrt/level/clutter.h"
+#include "techniques/mrt/clutter/clutter.h"
 #include "techniques/mrt/level/wall.h"
 
 enum { MRT_MEASURES = 3 }; // enum mrt_measure

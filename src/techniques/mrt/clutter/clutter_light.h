@@ -1,7 +1,7 @@
 // Points of clutter where a frame computes direct light, and their light of emitters and the sky.
 #pragma once
 
-#include "techniques/mrt/level/clutter.h"
+#include "techniques/mrt/clutter/clutter.h"
 #include "techniques/mrt/level/unbounced.h"
 
 struct mrt_clutter_texel {
