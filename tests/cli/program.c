@@ -63,6 +63,15 @@ static const struct run *run_list(const char *first, va_list more)
     return execute(words);
 }
 
+const struct run *run_program(const char *words, ...)
+{
+    va_list more;
+    va_start(more, words);
+    const struct run *result = run_list(words, more);
+    va_end(more);
+    return result;
+}
+
 const struct run *run_expect(int status, const char *words, ...)
 {
     va_list more;

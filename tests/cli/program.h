@@ -15,6 +15,8 @@ struct run {
 // the others are single arguments: run_expect(0, "render @cornell -o", path, NULL). The result is
 // valid until the next call.
 const struct run *run_expect(int status, const char *words, ...) __attribute__((sentinel));
+// Likewise, with any status.
+const struct run *run_program(const char *words, ...) __attribute__((sentinel));
 // The output is a single line, "afterglow: …", on standard error.
 void check_one_error_line(const struct run *result);
 // The standard output as JSON; the caller releases it.

@@ -82,23 +82,46 @@ static void full_disk(bool full)
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
 }
 
-TEST(a_full_disk_is_reported_with_the_path_of_the_user)
+TEST(a_full_disk_is_reported_with_the_path_of_an_image)
 {
-    require_device();
-    char folder[1024], image[1024];
-    snprintf(folder, sizeof folder, "%s", test_path("full"));
+    char image[1024];
     snprintf(image, sizeof image, "%s", test_path("full.exr"));
     full_disk(true);
     const struct run *result =
-        run_expect(1, "compare @cornell --size 64x64 --frames 1 --spp 1 --gi none --no-cache -o",
-                   folder, NULL);
-    const bool folder_is_named = strstr(result->err, folder) && !strstr(result->err, ".tmp-");
-    const bool says_why = strstr(result->err, "File too large");
-    result = run_expect(1, "reference @cornell --size 64x64 --spp 1 -o", image, NULL);
+        run_program("reference @cornell --size 64x64 --spp 1 -o", image, NULL);
     full_disk(false);
-    CHECK(folder_is_named && says_why && !file_exists(folder));
+    CHECK(result->status == 1 && !file_exists(image));
     CHECK(strstr(result->err, image) && !strstr(result->err, ".tmp-"));
-    CHECK(strstr(result->err, "File too large") && !file_exists(image));
+    CHECK(strstr(result->err, "File too large"));
+}
+
+// Drivers whose device memory is in nameless files cannot work below the limit: lavapipe of
+// Mesa 25.
+static void require_device_on_full_disk(void)
+{
+    full_disk(true);
+    const struct run *result =
+        run_program("render @cornell --size 8x8 --gi none --quiet -o", test_path("8.png"), NULL);
+    full_disk(false);
+    if (result->status == 0) return;
+    if (result->status != -1) fail_msg("a small image: %s", result->err);
+    print_message("skipped: the driver does not work with a limit of file sizes\n");
+    skip();
+}
+
+TEST(a_full_disk_is_reported_with_the_path_of_a_folder)
+{
+    require_device();
+    require_device_on_full_disk();
+    char folder[1024];
+    snprintf(folder, sizeof folder, "%s", test_path("full"));
+    full_disk(true);
+    const struct run *result = run_program(
+        "compare @cornell --size 64x64 --frames 1 --spp 1 --gi none --no-cache -o", folder, NULL);
+    full_disk(false);
+    CHECK(result->status == 1 && !file_exists(folder));
+    CHECK(strstr(result->err, folder) && !strstr(result->err, ".tmp-"));
+    CHECK(strstr(result->err, "File too large"));
 }
 
 // Others may be able to write to a shared cache: a link there neither is read nor leads a write
