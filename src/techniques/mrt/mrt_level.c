@@ -2,7 +2,7 @@
 #include "techniques/mrt/mrt_state.h"
 
 #include "techniques/mrt/level/make_map.h"
-#include "techniques/mrt/runtime/cluttered.h"
+#include "techniques/mrt/runtime/clutter/cluttered.h"
 #include "techniques/mrt/runtime/turned.h"
 
 // ---- the map

@@ -1,7 +1,7 @@
 // Buffers, images and pipelines of a level.
 #include "runtime.h"
 
-#include "techniques/mrt/runtime/clutter.h"
+#include "techniques/mrt/runtime/clutter/clutter.h"
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/outdoors.h"
 #include "techniques/mrt/runtime/probes.h"

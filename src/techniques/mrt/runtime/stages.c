@@ -1,7 +1,7 @@
 // The passes of a frame.
 #include "runtime.h"
 
-#include "techniques/mrt/runtime/clutter.h"
+#include "techniques/mrt/runtime/clutter/clutter.h"
 
 static struct gpu_binding level_binding(const struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {

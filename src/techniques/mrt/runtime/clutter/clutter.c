@@ -1,5 +1,5 @@
 // Tables and passes of clutter.
-#include "clutter.h"
+#include "techniques/mrt/runtime/clutter/clutter.h"
 
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/tables.h"

@@ -1,5 +1,5 @@
 // Bases, responses, openings and pairs of blocks with clutter.
-#include "techniques/mrt/runtime/cluttered.h"
+#include "techniques/mrt/runtime/clutter/cluttered.h"
 
 #include "techniques/mrt/clutter/delta_gather.h"
 
