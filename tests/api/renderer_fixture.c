@@ -135,3 +135,13 @@ void fixture_print_base(int technique, const struct ag_technique_info *info, cha
         separator = ',';
     }
 }
+
+struct ag_bake *fixture_bake(struct renderer_fixture *s, const char *gi,
+                             const struct ag_technique_info *info)
+{
+    struct ag_bake *bake = NULL;
+    if (!info->needs_bake) return NULL;
+    assert_int_equal(ag_bake_create(s->scene, gi, NULL, &bake), AG_OK);
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    return bake;
+}

@@ -90,12 +90,8 @@ TEST(with_an_equal_gbuffer_all_layers_are_equal_to_the_bit)
     struct ag_technique_info info;
     for (int i = 0; ag_technique_get(i, &info); i++) {
         char base[FIXTURE_SPEC], longer[2 * FIXTURE_SPEC];
-        struct ag_bake *bake = NULL;
         fixture_print_base(i, &info, base);
-        if (info.needs_bake) {
-            assert_int_equal(ag_bake_create(s.scene, base, NULL, &bake), AG_OK);
-            assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
-        }
+        struct ag_bake *bake = fixture_bake(&s, base, &info);
         check_equal(&s, base, bake);
         for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
             if (strcmp(variants[v].technique, info.name) != 0) continue;

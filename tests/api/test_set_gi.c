@@ -159,12 +159,8 @@ TEST(a_live_option_creates_nothing_and_the_next_frame_equals_a_new_renderers)
     struct ag_technique_info info;
     for (int i = 0; ag_technique_get(i, &info); i++) {
         char base[FIXTURE_SPEC];
-        struct ag_bake *bake = NULL;
         fixture_print_base(i, &info, base);
-        if (info.needs_bake) {
-            assert_int_equal(ag_bake_create(s.scene, base, NULL, &bake), AG_OK);
-            assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
-        }
+        struct ag_bake *bake = fixture_bake(&s, base, &info);
         const struct bakes bakes = { { bake }, bake != NULL };
         int checked = 0;
         for (size_t b = 0; b < sizeof bases / sizeof *bases; b++) {

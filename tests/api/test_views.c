@@ -156,12 +156,8 @@ TEST(each_view_equals_that_of_a_renderer_alone_to_the_bit)
     struct ag_technique_info info;
     for (int i = 0; ag_technique_get(i, &info); i++) {
         char base[FIXTURE_SPEC], longer[2 * FIXTURE_SPEC];
-        struct ag_bake *bake = NULL;
         fixture_print_base(i, &info, base);
-        if (info.needs_bake) {
-            assert_int_equal(ag_bake_create(s.scene, base, NULL, &bake), AG_OK);
-            assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
-        }
+        struct ag_bake *bake = fixture_bake(&s, base, &info);
         int checked = 0;
         for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
             if (strcmp(variants[v].technique, info.name) != 0) continue;
@@ -255,12 +251,8 @@ TEST(two_views_share_every_light_pass_and_cost_less_than_two_fifths_more_memory)
     struct ag_technique_info info;
     for (int i = 0; ag_technique_get(i, &info); i++) {
         char base[FIXTURE_SPEC];
-        struct ag_bake *bake = NULL;
         fixture_print_base(i, &info, base);
-        if (info.needs_bake) {
-            assert_int_equal(ag_bake_create(s.scene, base, NULL, &bake), AG_OK);
-            assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
-        }
+        struct ag_bake *bake = fixture_bake(&s, base, &info);
         check_shared(&s, base, bake);
         ag_bake_destroy(bake);
     }
