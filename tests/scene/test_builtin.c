@@ -312,6 +312,7 @@ TEST(rooms_are_closed_so_that_no_light_leaks)
         "@maze:blocks=1",
         "@maze:blocks=64",
         "@maze:blocks=20,seed=7",
+        "@maze:blocks=3,pillars=4",
         "@tunnel",
         "@tunnel:pieces=1",
         "@tunnel:pieces=64",

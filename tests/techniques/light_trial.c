@@ -1,7 +1,8 @@
 // Irradiance of a fixture's scene by techniques and by the reference.
 #include "techniques/light_trial.h"
 
-#include "techniques/gi.h"
+#include "techniques/gi_fixture.h"
+#include "techniques/gi_spec.h"
 #include "trace/trace.h"
 
 #include <math.h>
@@ -31,7 +32,7 @@ struct trial_irradiance trial_technique(struct frame_fixture *s, const char *tex
     struct gi_spec spec;
     fixture_open(s);
     CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_create(test_host(), s->gpu, &spec, &s->pose, s->width, s->height);
+    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, s->width, s->height);
     assert_non_null(gi);
     s->indirect = gi_hook(gi);
     fixture_render(s);

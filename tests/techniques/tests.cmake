@@ -4,7 +4,7 @@ add_library(ag_test_techniques STATIC techniques/gi_fixture.c techniques/geometr
 target_link_libraries(ag_test_techniques PUBLIC ag_test_frame_fixture ag_techniques PRIVATE afterglow_flags m)
 
 add_library(ag_test_light_trial STATIC techniques/light_trial.c techniques/light_trial_scenes.c)
-target_link_libraries(ag_test_light_trial PUBLIC ag_test_frame_fixture ag_techniques ag_trace PRIVATE afterglow_flags m)
+target_link_libraries(ag_test_light_trial PUBLIC ag_test_frame_fixture ag_test_techniques ag_techniques ag_trace PRIVATE afterglow_flags m)
 
 foreach(name emission gi_bake gi_spec lpv_bounce lpv_cascades lpv_flux lpv_geometry_maps lpv_geometry_scene lpv_history lpv_math lpv_occlusion lpv_sky lpv_twin
     technique_invariants technique_smoke vct_bounces vct_clips vct_clip_light vct_small_emitters vct_light vct_kept_light vct_edge_cases vct_hidden vct_screen vct_specular vct_storage vct_temporal vct_history vct_voxels visibility vo
@@ -37,6 +37,7 @@ foreach(name light probes retrace)
 endforeach()
 ag_test(techniques/drt_delta USES techniques)
 ag_test(techniques/drt_frame USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
+ag_test(techniques/drt_pillars USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/mrt_frame USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/mrt_places USES techniques LIBRARIES ag_test_techniques ag_test_frame_fixture)
 # It compares times.

@@ -1,6 +1,6 @@
 // @maze: cubes on a square plan, each connected to an earlier one by a missing face (the
 // two-dimensional mazes of Loos 2015, chapter 3). Other neighbours have a wall between them. The
-// light is in the first block.
+// light is in the first block. Pillars are objects inside blocks (chapter 5).
 #include "scene/builtin/parts.h"
 
 #include "core/rng.h"
@@ -191,6 +191,35 @@ static bool build_cameras(struct scene *scene, const struct maze *maze, float si
     return camera.node >= 0 && scene_add_camera(scene, &camera) >= 0;
 }
 
+// Between the middle of a block and its walls; of the edge length.
+static const float PILLAR_PLACE = 0.22f, PILLAR_WIDTH = 0.14f, PILLAR_HEIGHT = 0.7f;
+
+// They stand on the floor and end below the ceiling (Loos 2015, section 5.4: pillars of five
+// faces).
+static bool build_pillars(struct scene *scene, const struct maze *maze,
+                          const struct maze_options *o)
+{
+    static const float corners[4][2] = { { 1, 1 }, { -1, -1 }, { 1, -1 }, { -1, 1 } };
+    const int count = o->pillars * maze->count;
+    const int material =
+        count > 0 ? builtin_diffuse(scene, "pillars", vec3_of(0.70f, 0.66f, 0.60f)) : 0;
+    const float half = 0.5f * PILLAR_WIDTH * o->size, place = PILLAR_PLACE * o->size;
+    bool ok = material >= 0;
+    for (int i = 0; ok && i < count; i++) {
+        const float *corner = corners[i % o->pillars];
+        const vec3s middle = block_middle(maze, i / o->pillars, o->size, 0.0f);
+        const vec3s foot = glms_vec3_add(middle, vec3_of(place * corner[0], 0, place * corner[1]));
+        char name[32];
+        struct shape_builder builder;
+        snprintf(name, sizeof name, "pillar %d", i);
+        shape_begin(&builder, scene);
+        shape_box(&builder, glms_vec3_add(foot, vec3_of(-half, 0, -half)),
+                  glms_vec3_add(foot, vec3_of(half, PILLAR_HEIGHT * o->size, half)));
+        ok = shape_emit(&builder, name, material) >= 0;
+    }
+    return ok;
+}
+
 // One block of the block map for each cube, from floor to ceiling, up to the middle of the walls.
 static bool build_blocks(struct scene *scene, const struct maze *maze, float size)
 {
@@ -219,7 +248,7 @@ static bool build_maze(struct scene *scene, const void *options)
     if (!maze) return false;
     lay_maze(maze, o->blocks, (uint32_t)o->seed);
     bool ok =
-        build_walls(scene, maze, o->size) &&
+        build_walls(scene, maze, o->size) && build_pillars(scene, maze, o) &&
         builtin_sphere_light(scene, vec3_of(0, 0.62f * o->size, 0), o->light == 1, o->lumens) &&
         build_cameras(scene, maze, o->size) && build_blocks(scene, maze, o->size);
     host_free(scene->host, maze);
