@@ -1,6 +1,8 @@
 // A grid over all blocks; each cell lists the blocks whose bounds, with a margin, touch it.
 #include "tables.h"
 
+#include "techniques/mrt/runtime/objects.h"
+
 #include <math.h>
 
 // Of the bounds: surfaces outside still belong to the nearest block (MRT_BEYOND in locate.glsl).
@@ -155,10 +157,10 @@ bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_
     visit_all(&grid, map, add_block, &lists);
     for (size_t i = 0; i < cells; i++)
         place_nearest_first(&grid, map, i, lists.candidates + lists.cell[i][0], lists.cell[i][1]);
-    ok = mrt_buffer_of(runtime->gpu, "cells", lists.cell, cells * sizeof *lists.cell,
+    ok = mrt_buffer_of(runtime, "cells", lists.cell, cells * sizeof *lists.cell,
                        &runtime->buffers.cells) &&
-         mrt_buffer_of(runtime->gpu, "candidates", lists.candidates,
-                       total * sizeof *lists.candidates, &runtime->buffers.candidates);
+         mrt_buffer_of(runtime, "candidates", lists.candidates, total * sizeof *lists.candidates,
+                       &runtime->buffers.candidates);
 done:
     host_free(runtime->host, lists.cell);
     host_free(runtime->host, lists.candidates);

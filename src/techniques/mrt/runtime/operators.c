@@ -6,6 +6,7 @@
 #include "operators.h"
 
 #include "techniques/mrt/runtime/half.h"
+#include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/reflection.h"
 #include "techniques/mrt/runtime/tables.h"
 
@@ -45,9 +46,10 @@ static void put_row(struct words *w, const float *from, size_t stride, const flo
         put(w, m < count ? from[(size_t)m * stride] * (factor ? factor[m] : 1.0f) : 0.0f);
 }
 
-static bool words_upload(struct words *w, struct gpu *gpu, const char *name, gpu_buffer *out)
+static bool words_upload(struct words *w, struct mrt_runtime *runtime, const char *name,
+                         gpu_buffer *out)
 {
-    bool ok = mrt_buffer_of(gpu, name, w->at, w->numbers * (w->half ? 2 : 4), out);
+    bool ok = mrt_buffer_of(runtime, name, w->at, w->numbers * (w->half ? 2 : 4), out);
     host_free(w->host, w->at);
     return ok;
 }
@@ -111,7 +113,7 @@ static bool upload_t_db(struct mrt_runtime *runtime, const struct mrt_runtime_in
         for (size_t texel = 0; texel < t->columns; texel++)
             put_row(&w, t->at + texel, t->stride, scales->of_b + i * scales->k_b, input->k_b);
     }
-    return words_upload(&w, runtime->gpu, "t_db", &runtime->buffers.t_db);
+    return words_upload(&w, runtime, "t_db", &runtime->buffers.t_db);
 }
 
 static void put_matrix(struct words *w, const struct matrix_f32 *m, const float *factor, int count)
@@ -148,7 +150,7 @@ static bool upload_u_b(struct mrt_runtime *runtime, const struct mrt_runtime_inp
     for (int i = 0; i < input->basis_count; i++)
         put_matrix(&w, of_basis(&input->bases[i], points), scales->inverse + i * scales->k_b,
                    input->k_b);
-    return words_upload(&w, runtime->gpu, names[points], out);
+    return words_upload(&w, runtime, names[points], out);
 }
 
 static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
@@ -163,7 +165,7 @@ static bool upload_u_r(struct mrt_runtime *runtime, const struct mrt_runtime_inp
         return false;
     for (int i = 0; i < input->response_count; i++)
         put_matrix(&w, of_response(&input->responses[i], points), NULL, input->k_r);
-    return words_upload(&w, runtime->gpu, names[points], out);
+    return words_upload(&w, runtime, names[points], out);
 }
 
 // By column: [pair][k_b][k_r], with k_b padded too.
@@ -186,7 +188,7 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_in
                                                : zero);
         }
     }
-    return words_upload(&w, runtime->gpu, "t_br", &runtime->buffers.t_br);
+    return words_upload(&w, runtime, "t_br", &runtime->buffers.t_br);
 }
 
 bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)

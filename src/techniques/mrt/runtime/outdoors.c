@@ -1,13 +1,14 @@
 // Table, image and pass of the grid of outdoor probes.
 #include "outdoors.h"
 
+#include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/tables.h"
 
 #include "technique_shaders.h"
 
 #include <string.h>
 
-static bool make_image(struct gpu *gpu, const int count[3], gpu_image *out)
+static bool make_image(struct mrt_runtime *runtime, const int count[3], gpu_image *out)
 {
     const struct gpu_image_desc desc = { .name = "outdoors",
                                          .dimension = GPU_3D,
@@ -16,7 +17,7 @@ static bool make_image(struct gpu *gpu, const int count[3], gpu_image *out)
                                          .height = (uint32_t)count[1],
                                          .depth = FRAME_PROBE_SLABS * (uint32_t)count[2],
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    return gpu_image_create(gpu, &desc, out);
+    return mrt_image_of(runtime, &desc, out);
 }
 
 static bool upload_table(struct mrt_runtime *runtime, const struct mrt_outdoors *outdoors)
@@ -31,7 +32,7 @@ static bool upload_table(struct mrt_runtime *runtime, const struct mrt_outdoors 
         memcpy(items[i].light.sky, from->light.sky, sizeof items[i].light.sky);
         items[i].open = from->open;
     }
-    const bool ok = mrt_buffer_of(runtime->gpu, "outdoor_probes", items, count * sizeof *items,
+    const bool ok = mrt_buffer_of(runtime, "outdoor_probes", items, count * sizeof *items,
                                   &runtime->outdoors.probes);
     host_free(runtime->host, items);
     return ok;
@@ -41,16 +42,16 @@ bool mrt_outdoors_upload(struct mrt_runtime *runtime, const struct mrt_runtime_i
 {
     const struct mrt_outdoors *outdoors = &input->images->outdoors;
     const int none[3] = { 1, 1, 1 };
-    if (!outdoors->probes) return make_image(runtime->gpu, none, &runtime->outdoors.image);
+    if (!outdoors->probes) return make_image(runtime, none, &runtime->outdoors.image);
     runtime->level.outdoors_m = outdoors->grid.first_m;
     runtime->level.outdoors_spacing_m = outdoors->grid.spacing_m;
     runtime->level.outdoors_x = outdoors->grid.count[0];
     runtime->level.outdoors_y = outdoors->grid.count[1];
     runtime->level.outdoors_z = outdoors->grid.count[2];
-    return make_image(runtime->gpu, outdoors->grid.count, &runtime->outdoors.image) &&
+    return make_image(runtime, outdoors->grid.count, &runtime->outdoors.image) &&
            upload_table(runtime, outdoors) &&
-           gpu_compute_pipeline_create(runtime->gpu, "outdoors", &shader_mrt_runtime_outdoors_comp,
-                                       NULL, 0, &runtime->outdoors.fill);
+           mrt_pipeline_of(runtime, "outdoors", &shader_mrt_runtime_outdoors_comp, NULL, 0,
+                           &runtime->outdoors.fill);
 }
 
 void mrt_outdoors_end(struct mrt_runtime *runtime)

@@ -6,6 +6,7 @@
 
 #include "core/sh.h"
 
+#include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/tables.h"
 
@@ -87,7 +88,7 @@ static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *
     void *items = host_alloc(runtime->host, count, size);
     if (!items) return false;
     fill(input, items);
-    bool ok = mrt_buffer_of(runtime->gpu, name, items, count * size, out);
+    bool ok = mrt_buffer_of(runtime, name, items, count * size, out);
     host_free(runtime->host, items);
     return ok;
 }
@@ -112,8 +113,8 @@ static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_
 
 // ---- images
 
-static bool make_image(struct gpu *gpu, const char *name, uint32_t width, uint32_t height,
-                       uint32_t depth, gpu_image *out)
+static bool make_image(struct mrt_runtime *runtime, const char *name, uint32_t width,
+                       uint32_t height, uint32_t depth, gpu_image *out)
 {
     const struct gpu_image_desc desc = { .name = name,
                                          .dimension = GPU_3D,
@@ -122,7 +123,7 @@ static bool make_image(struct gpu *gpu, const char *name, uint32_t width, uint32
                                          .height = height,
                                          .depth = depth,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    return gpu_image_create(gpu, &desc, out);
+    return mrt_image_of(runtime, &desc, out);
 }
 
 static bool make_bricks(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
@@ -131,9 +132,8 @@ static bool make_bricks(struct mrt_runtime *runtime, const struct mrt_runtime_in
     const uint32_t columns = (uint32_t)ceil(sqrt((double)blocks));
     runtime->level.brick_columns = columns;
     runtime->level.probes = (uint32_t)input->probes;
-    return make_image(runtime->gpu, "bricks", columns * edge,
-                      (blocks + columns - 1) / columns * edge, FRAME_PROBE_SLABS * edge,
-                      &runtime->probes.bricks);
+    return make_image(runtime, "bricks", columns * edge, (blocks + columns - 1) / columns * edge,
+                      FRAME_PROBE_SLABS * edge, &runtime->probes.bricks);
 }
 
 // Points at most MAX_VOLUME along the longest side, not denser than the probes of a cube.
@@ -166,27 +166,23 @@ static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_in
                                         mrt_block_is_tube(&input->map->blocks[0]) };
     if (!runtime->options.publish) return true;
     p->grid = grid_of(input);
-    return make_image(runtime->gpu, "probe_volume", (uint32_t)p->grid.count_x,
-                      (uint32_t)p->grid.count_y, FRAME_PROBE_SLABS * (uint32_t)p->grid.slab,
-                      &p->volume) &&
-           gpu_compute_pipeline_create(runtime->gpu, "probe_volume",
-                                       &shader_mrt_runtime_probe_volume_comp, &tubes, 1,
-                                       &p->publish);
+    return make_image(runtime, "probe_volume", (uint32_t)p->grid.count_x, (uint32_t)p->grid.count_y,
+                      FRAME_PROBE_SLABS * (uint32_t)p->grid.slab, &p->volume) &&
+           mrt_pipeline_of(runtime, "probe_volume", &shader_mrt_runtime_probe_volume_comp, &tubes,
+                           1, &p->publish);
 }
 
 bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
-    if (!runtime->options.probes) return make_image(runtime->gpu, "bricks", 1, 1, 1, &p->bricks);
+    if (!runtime->options.probes) return make_image(runtime, "bricks", 1, 1, 1, &p->bricks);
     const size_t rows = (size_t)input->map->count * rows_of_block(input);
     const size_t texels = (size_t)input->atlas->texels, triple = 3 * sizeof(float);
-    const struct gpu_buffer_desc light = { "probe_light", rows * triple, GPU_BUFFER_STORAGE };
-    const struct gpu_buffer_desc radiosity = { "radiosity", texels * triple, GPU_BUFFER_STORAGE };
-    return upload_tables(runtime, input) && gpu_buffer_create(runtime->gpu, &light, &p->light) &&
-           gpu_buffer_create(runtime->gpu, &radiosity, &p->radiosity) &&
+    return upload_tables(runtime, input) &&
+           mrt_buffer_of(runtime, "probe_light", NULL, rows * triple, &p->light) &&
+           mrt_buffer_of(runtime, "radiosity", NULL, texels * triple, &p->radiosity) &&
            make_bricks(runtime, input) && make_volume(runtime, input) &&
-           gpu_compute_pipeline_create(runtime->gpu, "bricks", &shader_mrt_runtime_bricks_comp,
-                                       NULL, 0, &p->fill);
+           mrt_pipeline_of(runtime, "bricks", &shader_mrt_runtime_bricks_comp, NULL, 0, &p->fill);
 }
 
 bool mrt_probes_make_empty(struct mrt_runtime *runtime)
@@ -196,7 +192,7 @@ bool mrt_probes_make_empty(struct mrt_runtime *runtime)
         .spacing_m = 1.0f, .count_x = 1, .count_y = 1, .count_z = 1, .slab = 1
     };
     return !runtime->options.publish ||
-           make_image(runtime->gpu, "probe_volume", 1, 1, FRAME_PROBE_SLABS, &p->volume);
+           make_image(runtime, "probe_volume", 1, 1, FRAME_PROBE_SLABS, &p->volume);
 }
 
 void mrt_probes_finish(struct mrt_runtime *runtime)

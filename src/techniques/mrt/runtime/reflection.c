@@ -2,6 +2,7 @@
 // per block, which all bounces share.
 #include "reflection.h"
 
+#include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/tables.h"
 
@@ -90,7 +91,7 @@ bool mrt_reflection_upload(struct mrt_runtime *runtime, const struct mrt_runtime
         while (opening < input->opening_count && input->openings[opening].block == b) opening++;
         ok = add_block(&s, b, first, opening - first);
     }
-    ok = ok && mrt_buffer_of(runtime->gpu, "reflection", all, columns * 3 * rows * sizeof *all,
+    ok = ok && mrt_buffer_of(runtime, "reflection", all, columns * 3 * rows * sizeof *all,
                              &runtime->buffers.reflection);
     host_free(runtime->host, all);
     return ok;

@@ -2,6 +2,7 @@
 #include "runtime.h"
 
 #include "techniques/mrt/runtime/clutter/clutter.h"
+#include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/outdoors.h"
 #include "techniques/mrt/runtime/probes.h"
@@ -11,31 +12,26 @@
 
 enum { VEC3_BYTES = 12, MAX_CONSTANTS = 7, VECTOR_VALUES = 4 };
 
-static bool make_empty(struct gpu *gpu, const char *name, size_t bytes, gpu_buffer *out)
-{
-    const struct gpu_buffer_desc desc = { name, bytes ? bytes : 16, GPU_BUFFER_STORAGE };
-    return gpu_buffer_create(gpu, &desc, out);
-}
-
 static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_buffers *b = &runtime->buffers;
-    struct gpu *gpu = runtime->gpu;
     const size_t light = (size_t)runtime->level.texels * VEC3_BYTES;
     const size_t quad = 3 * 4 * sizeof(float);
-    return make_empty(gpu, "unbounced", light, &b->unbounced) &&
-           make_empty(gpu, "direct", light, &b->direct) &&
-           make_empty(gpu, "b_direct", runtime->block_count * mrt_quads(input->k_b) * quad,
-                      &b->b_direct) &&
-           make_empty(gpu, "b", runtime->block_count * mrt_quads(input->k_b) * quad, &b->b) &&
-           make_empty(gpu, "r", runtime->opening_count * mrt_quads(input->k_r) * quad, &b->r) &&
-           make_empty(gpu, "irradiance", light, &b->irradiance) &&
+    return mrt_buffer_of(runtime, "unbounced", NULL, light, &b->unbounced) &&
+           mrt_buffer_of(runtime, "direct", NULL, light, &b->direct) &&
+           mrt_buffer_of(runtime, "b_direct", NULL,
+                         runtime->block_count * mrt_quads(input->k_b) * quad, &b->b_direct) &&
+           mrt_buffer_of(runtime, "b", NULL, runtime->block_count * mrt_quads(input->k_b) * quad,
+                         &b->b) &&
+           mrt_buffer_of(runtime, "r", NULL, runtime->opening_count * mrt_quads(input->k_r) * quad,
+                         &b->r) &&
+           mrt_buffer_of(runtime, "irradiance", NULL, light, &b->irradiance) &&
            (!runtime->options.vector ||
-            make_empty(gpu, "vector", VECTOR_VALUES * light, &b->vector));
+            mrt_buffer_of(runtime, "vector", NULL, VECTOR_VALUES * light, &b->vector));
 }
 
-static bool make_image(struct gpu *gpu, const char *name, uint32_t width, uint32_t height,
-                       uint32_t layers, gpu_image *out)
+static bool make_image(struct mrt_runtime *runtime, const char *name, uint32_t width,
+                       uint32_t height, uint32_t layers, gpu_image *out)
 {
     const struct gpu_image_desc desc = { .name = name,
                                          .dimension = GPU_2D_ARRAY,
@@ -44,7 +40,7 @@ static bool make_image(struct gpu *gpu, const char *name, uint32_t width, uint32
                                          .height = height,
                                          .depth = layers,
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
-    return gpu_image_create(gpu, &desc, out);
+    return mrt_image_of(runtime, &desc, out);
 }
 
 static bool make_images(struct mrt_runtime *runtime)
@@ -56,10 +52,11 @@ static bool make_images(struct mrt_runtime *runtime)
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
-    return gpu_sampler_get(runtime->gpu, &linear, &runtime->linear) &&
-           make_image(runtime->gpu, "light_map", level->map_width, level->map_height, 1,
+    // Equal samplers are shared: a planned run time gets that of the one whose place it takes.
+    return (runtime->plan || gpu_sampler_get(runtime->gpu, &linear, &runtime->linear)) &&
+           make_image(runtime, "light_map", level->map_width, level->map_height, 1,
                       &runtime->buffers.light_map) &&
-           make_image(runtime->gpu, "vector_map", vector ? level->map_width : 1,
+           make_image(runtime, "vector_map", vector ? level->map_width : 1,
                       vector ? level->map_height : 1, 3, &runtime->buffers.vector_map);
 }
 
@@ -95,8 +92,8 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
     for (uint32_t i = 0; i < MAX_CONSTANTS; i++)
         if (pipeline->constants >> i & 1u)
             constants[count++] = (struct gpu_constant){ i, values[i] };
-    return gpu_compute_pipeline_create(runtime->gpu, pipeline->name, pipeline->shader, constants,
-                                       count, pipeline->out);
+    return mrt_pipeline_of(runtime, pipeline->name, pipeline->shader, constants, count,
+                           pipeline->out);
 }
 
 enum {
@@ -137,15 +134,30 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
     return true;
 }
 
+static bool make_all(struct mrt_runtime *out, const struct mrt_runtime_input *input)
+{
+    return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
+           mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
+           mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
+           make_pipelines(out, input) && mrt_clutter_upload(out, input);
+}
+
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options)
 {
     *out = (struct mrt_runtime){ .host = host, .gpu = gpu, .options = *options };
-    return mrt_tables_upload(out, input) && mrt_lookup_grid_upload(out, input->map) &&
-           mrt_probes_upload(out, input) && mrt_outdoors_upload(out, input) &&
-           mrt_operators_upload(out, input) && make_buffers(out, input) && make_images(out) &&
-           make_pipelines(out, input) && mrt_clutter_upload(out, input);
+    return make_all(out, input);
+}
+
+bool mrt_runtime_plan(struct mrt_runtime *out, struct mrt_plan *plan,
+                      const struct mrt_runtime_input *input,
+                      const struct mrt_runtime_options *options)
+{
+    *out = (struct mrt_runtime){ .host = plan->host, .plan = plan, .options = *options };
+    const bool ok = make_all(out, input);
+    out->plan = NULL;
+    return ok;
 }
 
 bool mrt_runtime_init_empty(struct mrt_runtime *out, struct host *host, struct gpu *gpu,

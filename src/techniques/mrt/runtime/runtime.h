@@ -64,9 +64,12 @@ struct mrt_runtime_clutter {
     uint32_t texel_count, face_count, opening_count;
 };
 
+struct mrt_plan;
+
 struct mrt_runtime {
     struct host *host;
     struct gpu *gpu;
+    struct mrt_plan *plan; // while it is planned, else NULL
     struct mrt_runtime_options options;
     struct mrt_level_params level;
     uint32_t block_count, opening_count;
@@ -80,6 +83,10 @@ struct mrt_runtime {
 
 // The input may end with the call, but for map and atlas.
 bool mrt_runtime_init(struct mrt_runtime *out, struct host *host, struct gpu *gpu,
+                      const struct mrt_runtime_input *input,
+                      const struct mrt_runtime_options *options);
+// On a thread without a GPU: what the run time has, but for the handles (objects.h).
+bool mrt_runtime_plan(struct mrt_runtime *out, struct mrt_plan *plan,
                       const struct mrt_runtime_input *input,
                       const struct mrt_runtime_options *options);
 // Of a scene without blocks: a dark probe volume, where it is published.

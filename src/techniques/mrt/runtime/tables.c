@@ -1,15 +1,9 @@
 // Tables of texels, tiles, blocks, openings and borders.
 #include "tables.h"
 
-#include <string.h>
+#include "techniques/mrt/runtime/objects.h"
 
-bool mrt_buffer_of(struct gpu *gpu, const char *name, const void *data, size_t bytes,
-                   gpu_buffer *out)
-{
-    const struct gpu_buffer_desc desc = { name, bytes ? bytes : 16, GPU_BUFFER_STORAGE };
-    return gpu_buffer_create(gpu, &desc, out) &&
-           (bytes == 0 || gpu_buffer_upload(gpu, *out, 0, data, bytes));
-}
+#include <string.h>
 
 // An array of `count` items that `fill` writes, in a new buffer.
 static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
@@ -21,7 +15,7 @@ static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *
     void *items = host_alloc(runtime->host, (size_t)count, size);
     if (!items) return false;
     fill(runtime, input, items);
-    bool ok = mrt_buffer_of(runtime->gpu, name, items, (size_t)count * size, out);
+    bool ok = mrt_buffer_of(runtime, name, items, (size_t)count * size, out);
     host_free(runtime->host, items);
     return ok;
 }

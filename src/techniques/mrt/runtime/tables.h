@@ -12,6 +12,3 @@ enum { MRT_LOOKUP_CELLS = 32 }; // along the longest side of the level
 
 // ---- lookup_grid.c: the blocks near each cell of a grid, for locate.glsl.
 bool mrt_lookup_grid_upload(struct mrt_runtime *runtime, const struct mrt_block_map *map);
-// A storage buffer with this content; 16 zero bytes where there is none.
-bool mrt_buffer_of(struct gpu *gpu, const char *name, const void *data, size_t bytes,
-                   gpu_buffer *out);

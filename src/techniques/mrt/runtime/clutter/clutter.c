@@ -1,6 +1,7 @@
 // Tables and passes of clutter.
 #include "techniques/mrt/runtime/clutter/clutter.h"
 
+#include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/tables.h"
 
@@ -92,7 +93,7 @@ static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *
     void *items = host_alloc(runtime->host, count, size);
     if (!items) return false;
     if (fill) fill(input, items);
-    const bool ok = mrt_buffer_of(runtime->gpu, name, items, count * size, out);
+    const bool ok = mrt_buffer_of(runtime, name, items, count * size, out);
     host_free(runtime->host, items);
     return ok;
 }
@@ -101,12 +102,10 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
     const struct gpu_constant quads = { MRT_CONSTANT_QUADS_R, mrt_quads(input->k_r) };
-    return gpu_compute_pipeline_create(runtime->gpu, "clutter_mean",
-                                       &shader_mrt_runtime_clutter_mean_comp, &quads, 1,
-                                       &c->mean) &&
-           gpu_compute_pipeline_create(runtime->gpu, "clutter_reflect",
-                                       &shader_mrt_runtime_clutter_reflect_comp, &quads, 1,
-                                       &c->reflect);
+    return mrt_pipeline_of(runtime, "clutter_mean", &shader_mrt_runtime_clutter_mean_comp, &quads,
+                           1, &c->mean) &&
+           mrt_pipeline_of(runtime, "clutter_reflect", &shader_mrt_runtime_clutter_reflect_comp,
+                           &quads, 1, &c->reflect);
 }
 
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
