@@ -2,7 +2,7 @@
 #pragma once
 
 #include "techniques/geometry_twin.h"
-#include "techniques/lpv_fixture.h"
+#include "techniques/lpv/lpv_fixture.h"
 
 enum { GEOMETRY_SIZE = 24, GEOMETRY_WIDTH = 20, GEOMETRY_HEIGHT = 12 }; // of maps and images
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frame/scene_gpu.h"
-#include "techniques/lpv_fixture.h"
+#include "techniques/lpv/lpv_fixture.h"
 
 struct mesh_fixture {
     struct rsm_fixture *rsm;

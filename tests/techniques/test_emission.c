@@ -164,7 +164,7 @@ static void move_lamp(struct room *r, float x)
     r->frame_fixture.pose.world_from_node[node].raw[3][0] = x;
 }
 
-// Bounces that take several frames are tested by test_vct_bounces; this is the first frame.
+// Bounces that take several frames are tested by techniques.vct.bounces; this is the first frame.
 static const char *at_once(const struct technique *t)
 {
     return strcmp(t->name, "vct") == 0 ? "vct:bounces=1" : t->name;
@@ -237,9 +237,9 @@ static double facing_wall(struct gpu *gpu, const char *gi)
 #define ONE_GRID "cascades=1,steps=64,bounces=0"
 
 // Propagation keeps a mean cosine of 0.95 per step, a direction for about twenty cells: the more
-// cells between two walls, the more light reaches the side walls instead. test_lpv_flux measures
-// the same for a lit wall (0.50 and 0.41 of the reference for 16 and 24 cells) and compares the sum
-// over all walls with their form factors.
+// cells between two walls, the more light reaches the side walls instead. techniques.lpv.flux
+// measures the same for a lit wall (0.50 and 0.41 of the reference for 16 and 24 cells) and
+// compares the sum over all walls with their form factors.
 TEST_GPU(lpv_of_an_emissive_wall_gives_the_opposite_wall_a_part_of_its_form_factor)
 {
     const double truth = PI * facing_squares();

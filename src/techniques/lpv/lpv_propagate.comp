@@ -9,7 +9,7 @@
 // and re-projects it as a lobe around an axis n: the coefficients of a lobe are the polynomials of
 // the bands at n. A receiver sums Φ, Φ n and the products Φ n nᵀ (struct sums); one factor per
 // coefficient converts these sums. Directions are (p, q, q) in the order of a neighbour's axes, up
-// to signs; common terms of the faces of a neighbour are factored out. test_lpv_twin compares this
+// to signs; common terms of the faces of a neighbour are factored out. lpv.twin compares this
 // with the plain sum over faces.
 #version 460
 #extension GL_EXT_control_flow_attributes : require

@@ -1,0 +1,132 @@
+// Geometry images of levels, and the walls that stand for surfaces.
+#include "framework/test.h"
+#include "techniques/mrt/mrt_map_fixture.h"
+
+#include "core/rng.h"
+
+#include "techniques/mrt/level/geometry.h"
+#include "techniques/mrt/level/make_map.h"
+
+#include <math.h>
+
+enum { RESOLUTION = 8 };
+
+struct level {
+    struct scene *scene;
+    struct scene_pose pose;
+    struct trace_scene *trace;
+    struct mrt_block_map map;
+    struct mrt_atlas atlas;
+    struct mrt_geometry_texel *geometry;
+};
+
+static struct level make_at(const char *spec, bool single, int resolution)
+{
+    struct level l = { .scene = scene_load(test_host(), spec) };
+    CHECK(l.scene && pose_init(&l.pose, l.scene, -1, 0.0f));
+    CHECK((l.trace = trace_scene_create(test_host(), &l.pose)) != NULL);
+    CHECK(single ? mrt_map_single(test_host(), &l.pose, &l.map)
+                 : mrt_block_map_of_scene(test_host(), l.scene, &l.map));
+    CHECK(mrt_atlas_init(test_host(), &l.map, resolution, &l.atlas));
+    CHECK((l.geometry = mrt_geometry_create(test_host(), &l.map, &l.atlas, l.trace)) != NULL);
+    return l;
+}
+
+static struct level make(const char *spec, bool single)
+{
+    return make_at(spec, single, RESOLUTION);
+}
+
+static void finish(struct level *l)
+{
+    host_free(test_host(), l->geometry);
+    mrt_atlas_finish(&l->atlas);
+    mrt_block_map_finish(&l->map);
+    trace_scene_destroy(l->trace);
+    pose_finish(&l->pose);
+    scene_destroy(l->scene);
+}
+
+// Walls of the maze are half of 0.24 m inside the borders of the blocks: at 16 texels the outermost
+// ones begin inside them.
+TEST(texels_of_a_maze_are_on_its_walls)
+{
+    enum { FINE = 16 };
+    struct level l = make_at("@maze:blocks=7,light=point", false, FINE);
+    int missed = 0, far = 0;
+    for (int i = 0; i < l.atlas.texels; i++) {
+        const struct mrt_geometry_texel *texel = &l.geometry[i];
+        const struct mrt_tile *tile = &l.atlas.tiles[i / (FINE * FINE)];
+        const struct mrt_block *block = &l.map.blocks[tile->block];
+        vec3s cell, inward = glms_vec3_negate(cube_from_face(tile->face).col[2]);
+        missed += !texel->found;
+        CHECK(mrt_warp_inverse(block->corner, texel->position, &cell));
+        float depth = 0.5f + glms_vec3_dot(inward, cell);
+        far += !(depth > -0.001f && depth < 0.045f);
+        CHECK(glms_vec3_dot(inward, texel->normal) > 0.99f);
+        float albedo = glms_vec3_max(texel->albedo);
+        CHECK_NEAR(albedo, 0.55, 0.25);
+    }
+    print_message("%d texels, %d without a surface, %d away from their wall\n", l.atlas.texels,
+                  missed, far);
+    CHECK(missed == 0 && far == 0);
+    finish(&l);
+}
+
+TEST(texels_of_an_open_side_have_no_surface_and_no_albedo)
+{
+    struct level l = make("@cornell:light=point", true);
+    int n = RESOLUTION * RESOLUTION, front = l.atlas.tile_of_face[CUBE_FRONT];
+    for (int i = 0; i < l.atlas.texels; i++) {
+        const struct mrt_geometry_texel *texel = &l.geometry[i];
+        CHECK(texel->found || i / n == front); // open towards +z
+        CHECK(texel->found || glms_vec3_norm(texel->albedo) == 0.0f);
+        CHECK(isfinite(glms_vec3_norm(texel->position)));
+        CHECK_NEAR(glms_vec3_norm(texel->normal), 1, 1e-4);
+    }
+    CHECK(!l.geometry[front * n + n / 2].found);
+    finish(&l);
+}
+
+TEST(texels_of_an_emitter_emit)
+{
+    struct level l = make("@cornell", true);
+    float most = 0.0f;
+    for (int i = 0; i < l.atlas.texels; i++)
+        most = fmaxf(most, glms_vec3_max(l.geometry[i].emission));
+    CHECK(most > 0.0f);
+    finish(&l);
+}
+
+// A texel's own surface belongs to that texel.
+TEST(the_wall_of_a_texel_is_its_own)
+{
+    struct level l = make("@maze:blocks=7,light=point", false);
+    int n = RESOLUTION * RESOLUTION;
+    for (int i = 0; i < l.atlas.texels; i++) {
+        const struct mrt_tile *tile = &l.atlas.tiles[i / n];
+        struct mrt_wall_point point;
+        int block = mrt_block_of_surface(&l.map, l.geometry[i].position, l.geometry[i].normal,
+                                         0.25f, &point);
+        CHECK(block == tile->block && point.face == tile->face);
+        CHECK_NEAR(point.s, ((float)(i % n % RESOLUTION) + 0.5f) / RESOLUTION, 1e-3);
+        CHECK_NEAR(point.t, ((float)(i % n / RESOLUTION) + 0.5f) / RESOLUTION, 1e-3);
+    }
+    finish(&l);
+}
+
+TEST(a_surface_that_faces_its_way_has_the_same_wall_in_a_warped_and_turned_block)
+{
+    struct mrt_block block;
+    mrt_block_init(&block, "b", MRT_BLOCK_CUBE);
+    for (int o = 0; o < MRT_ORIENTATIONS; o++) {
+        mrt_block_set_box(&block, (struct box3){ vec3_of(-1, -2, -3), vec3_of(1, 2, 3) });
+        for (int c = 4; c < 8; c++) block.corner[c].x += 0.5f; // sheared
+        mrt_turn_block(&block, o);
+        struct mrt_wall_point point;
+        CHECK(mrt_wall_of_surface(&block, vec3_of(0.1f, 0.3f, 0), vec3_of(0, 1, 0), 0.1f, &point));
+        vec3s wall = mrt_warp_point(block.corner, cube_face_point(point.face, point.s, point.t));
+        CHECK_NEAR(glms_vec3_distance(wall, vec3_of(0.1f, -2, 0)), 0, 1e-4);
+        CHECK(!mrt_wall_of_surface(&block, vec3_of(0, 5, 0), vec3_of(0, 1, 0), 0.1f, &point));
+    }
+}

@@ -1,0 +1,70 @@
+// History of cone tracing after a change of light: error of each frame against the settled image,
+// the mean of 200 later frames.
+#include "techniques/vct/vct_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double error_of(const float *a, const float *b, size_t count)
+{
+    double d = 0.0, sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        d += fabs((double)a[i] - (double)b[i]);
+        sum += (double)b[i];
+    }
+    return d / sum;
+}
+
+enum change { LIGHT_MOVES, BOX_MOVES, LIGHT_JUMPS };
+
+// Ten frames of motion, the last one of which is not rendered; or one jump.
+static void change_scene(struct vct_fixture *fixture, int box, enum change change)
+{
+    struct frame_fixture *s = &fixture->frame_fixture;
+    const int steps = change == LIGHT_JUMPS ? 1 : 10;
+    for (int i = 0; i < steps; i++) {
+        if (i > 0) fixture_render(s);
+        if (change == BOX_MOVES)
+            vct_fixture_move_box(fixture, box, vec3_of(-0.15f, 0.3f, 0.2f));
+        else
+            s->lights[0].position.x += change == LIGHT_MOVES ? 0.4f : 4.0f;
+    }
+}
+
+// Prints the error of the frames after the change, and returns that of the fourth.
+static double error_after(struct gpu *gpu, const char *options, enum change change)
+{
+    static const char *const names[] = { "a moving light", "a moving box", "a jump of the light" };
+    enum { BEFORE = 40, SHOWN = 8, SETTLED = 200 };
+    struct vct_fixture fixture;
+    const int box = vct_fixture_room(&fixture, gpu);
+    fixture.frame_fixture.width = fixture.frame_fixture.height = 64;
+    vct_fixture_open(&fixture, options);
+    const size_t count = (size_t)fixture.frame_fixture.width * fixture.frame_fixture.height * 3;
+    float *e[SHOWN], *before = vct_fixture_irradiance_after(&fixture, BEFORE);
+    change_scene(&fixture, box, change);
+    for (int i = 0; i < SHOWN; i++) e[i] = vct_fixture_irradiance_after(&fixture, 1);
+    float *settled = vct_fixture_irradiance_after(&fixture, SETTLED);
+    const double changed = error_of(before, settled, count),
+                 fourth = error_of(e[3], settled, count);
+    print_message("%s: %s by %.1f %%; then", options, names[change], 100.0 * changed);
+    for (int i = 0; i < SHOWN; i++) {
+        print_message(" %.2f", 100.0 * error_of(e[i], settled, count));
+        free(e[i]);
+    }
+    print_message(" %%\n");
+    CHECK(changed > 5.0 * fourth); // without a change the test is void
+    free(before), free(settled);
+    vct_fixture_finish(&fixture);
+    return fourth;
+}
+
+TEST_GPU(history_follows_a_change_within_four_frames)
+{
+    static const char *const options[] = { "resolution=32,temporal=true",
+                                           "resolution=128,temporal=true" };
+    for (int i = 0; i < 2; i++)
+        for (enum change change = LIGHT_MOVES; change <= LIGHT_JUMPS; change++)
+            CHECK(error_after(gpu, options[i], change) <= 0.02);
+}
