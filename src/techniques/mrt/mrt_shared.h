@@ -17,6 +17,7 @@
 #define MRT_CONSTANT_PROBES  4 // bool: surfaces inside blocks are lit by probes
 #define MRT_CONSTANT_AFFINE  5 // bool: all warps of the level are affine
 #define MRT_CONSTANT_TUBES   6 // bool: blocks are tubes, else cubes
+#define MRT_CONSTANT_CLUTTER 7 // bool: some openings are clutter
 #define MRT_MAX_QUADS        16
 
 // A texel of the geometry image: the point of the scene where direct light is computed.
@@ -51,10 +52,13 @@ struct mrt_gpu_block {
     int32_t bend;        // of a tube: enum tube_bend; −1: a cube
 };
 
-// An opening through which light enters a block, and the blocks that send it.
+// An opening through which light enters a block, and the blocks that send it; or the clutter of a
+// block, and the blocks that light it.
 struct mrt_gpu_opening {
     uint32_t response; // first row of its response tables
     uint32_t first_pair, pairs;
+    uint32_t quads;  // of its coefficients; the others are 0
+    int32_t clutter; // which; −1: an opening
 };
 
 // Light of emissive surfaces (lux) and the sky (of radiance 1/π) at a probe: nine SH coefficients
@@ -120,7 +124,7 @@ _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 216, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_opening) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_opening) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");

@@ -40,6 +40,7 @@ static void fill_openings(const struct mrt_runtime_input *input, void *items)
     for (int i = 0; i < input->opening_count; i++)
         openings[i] = (struct mrt_gpu_opening){
             .response = (uint32_t)input->openings[i].response * (uint32_t)rows_of_block(input),
+            .quads = mrt_used_quads(input, i),
         };
 }
 

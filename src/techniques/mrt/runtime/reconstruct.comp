@@ -15,6 +15,7 @@
 layout(local_size_x = MRT_LOCAL) in;
 
 layout(constant_id = MRT_CONSTANT_VALUES) const uint VALUES = 1;
+layout(constant_id = MRT_CONSTANT_CLUTTER) const bool CLUTTER = false;
 
 layout(set = 0, binding = 5, scalar) readonly buffer mrt_b
 {
@@ -64,10 +65,12 @@ void add_basis(uint row, inout vec3 sum[4])
         }
 }
 
-void add_response(uint row, inout vec3 sum[4])
+// Clutter with few faces has few coefficients.
+void add_response(uint row, uint used, inout vec3 sum[4])
 {
-    for (uint v = 0u; v < VALUES; v++)
-        for (uint q = 0u; q < QUADS_R; q++) {
+    uint quads = CLUTTER ? used : QUADS_R;
+    for (uint q = 0u; q < quads; q++)
+        for (uint v = 0u; v < VALUES; v++) {
             vec4 weights = MRT_QUAD(u_r, (row * VALUES + v) * QUADS_R + q);
             for (uint c = 0u; c < 3u; c++) sum[v][c] += dot(weights, coefficients[c * QUADS_R + q]);
         }
@@ -84,7 +87,8 @@ void main()
     uint first = block_table[tile.block].first_opening;
     for (uint k = 0u; k < block_table[tile.block].openings; k++) {
         share_r(first + k);
-        if (inside) add_response(opening_table[first + k].response + tile.response_row + i, sum);
+        mrt_gpu_opening opening = opening_table[first + k];
+        if (inside) add_response(opening.response + tile.response_row + i, opening.quads, sum);
     }
     if (!inside) return;
     for (uint v = 0u; v < VALUES; v++)

@@ -10,7 +10,7 @@
 
 #include "technique_shaders.h"
 
-enum { VEC3_BYTES = 12, MAX_CONSTANTS = 7, VECTOR_VALUES = 4 };
+enum { VEC3_BYTES = 12, MAX_CONSTANTS = 8, VECTOR_VALUES = 4 };
 
 static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
@@ -86,6 +86,7 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
         [MRT_CONSTANT_PROBES] = runtime->options.clutter,
         [MRT_CONSTANT_AFFINE] = is_affine(input->map),
         [MRT_CONSTANT_TUBES] = mrt_block_is_tube(&input->map->blocks[0]),
+        [MRT_CONSTANT_CLUTTER] = input->clutter != NULL,
     };
     struct gpu_constant constants[MAX_CONSTANTS];
     int count = 0;
@@ -104,7 +105,8 @@ enum {
     PROBES = 1 << MRT_CONSTANT_PROBES,
     AFFINE = 1 << MRT_CONSTANT_AFFINE,
     TUBES = 1 << MRT_CONSTANT_TUBES,
-    ALL = HALF | QUADS_B | QUADS_R | VALUES,
+    CLUTTER = 1 << MRT_CONSTANT_CLUTTER,
+    ALL = HALF | QUADS_B | QUADS_R | VALUES | CLUTTER,
 };
 
 static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)

@@ -57,10 +57,10 @@ struct mrt_runtime_outdoors {
 
 // Without clutter all counts are 0 and the others are empty.
 struct mrt_runtime_clutter {
-    gpu_buffer texels, faces, openings, albedo, coupling; // tables
-    gpu_buffer unbounced, radiosity;                      // vec3 per texel
+    gpu_buffer texels, faces, albedo, coupling; // tables
+    gpu_buffer unbounced, radiosity;            // vec3 per texel
     gpu_buffer direct, incident; // radiosity of direct light, irradiance: [opening][colour][slot]
-    gpu_pipeline mean, reflect;
+    gpu_pipeline mean, couple;
     uint32_t texel_count, face_count, opening_count;
 };
 

@@ -49,6 +49,10 @@ static void record_reflect(struct mrt_runtime *runtime, struct gpu_cmd *cmd, flo
 static void record_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
+    if (runtime->clutter.opening_count > 0) {
+        mrt_record_clutter_couple(runtime, cmd);
+        return;
+    }
     gpu_dispatch(cmd, runtime->pipelines.couple,
                  GPU_BIND(level_binding(runtime, cmd),
                           { .name = "mrt_openings", .buffer = b->openings },
@@ -83,7 +87,6 @@ void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int co
     for (int i = 0; i < count; i++) {
         record_reflect(runtime, cmd, i > 0 ? 1.0f : feedback);
         record_couple(runtime, cmd);
-        mrt_record_clutter(runtime, cmd);
     }
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "reconstruct");

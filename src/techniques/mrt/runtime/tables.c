@@ -2,6 +2,7 @@
 #include "tables.h"
 
 #include "techniques/mrt/runtime/objects.h"
+#include "techniques/mrt/runtime/operators.h"
 
 #include <string.h>
 
@@ -121,18 +122,30 @@ static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runt
     }
 }
 
+uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening)
+{
+    uint32_t faces = 0;
+    if (input->openings[opening].face >= 0) return mrt_quads(input->k_r);
+    for (int i = 0; i < input->clutter->face_count; i++)
+        faces += input->clutter->faces[i].opening == opening;
+    return (faces + 3) / 4;
+}
+
 static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                           void *items)
 {
     struct mrt_gpu_opening *openings = items;
-    int pair = 0;
+    int pair = 0, clutter = 0;
     (void)runtime;
     for (int i = 0; i < input->opening_count; i++) {
         size_t response = 0;
         for (int k = 0; k < input->openings[i].response; k++)
             response += input->responses[k].u_r.rows;
         openings[i] = (struct mrt_gpu_opening){ .response = (uint32_t)response,
-                                                .first_pair = (uint32_t)pair };
+                                                .first_pair = (uint32_t)pair,
+                                                .quads = mrt_used_quads(input, i),
+                                                .clutter = -1 };
+        if (input->openings[i].face < 0) openings[i].clutter = clutter++;
         while (pair < input->pair_count && input->pairs[pair].opening == i) pair++;
         openings[i].pairs = (uint32_t)pair - openings[i].first_pair;
     }

@@ -6,6 +6,8 @@
 // Uploads texels, tiles, blocks, openings, pairs and borders into new buffers; fills
 // runtime->level but for the lookup grid.
 bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+// Of an opening's coefficients.
+uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening);
 // First texel of a block, those of its walls in ascending order; −1: no wall.
 int mrt_first_texel(const struct mrt_atlas *atlas, int block);
 enum { MRT_LOOKUP_CELLS = 32 }; // along the longest side of the level

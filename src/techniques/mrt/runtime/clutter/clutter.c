@@ -57,13 +57,6 @@ static void fill_faces(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-static void fill_openings(const struct mrt_runtime_input *input, void *items)
-{
-    uint32_t *openings = items;
-    for (int i = 0; i < input->clutter->opening_count; i++)
-        openings[i] = (uint32_t)input->clutter->openings[i];
-}
-
 static void fill_albedo(const struct mrt_runtime_input *input, void *items)
 {
     float *albedo = items;
@@ -80,9 +73,10 @@ static void fill_coupling(const struct mrt_runtime_input *input, void *items)
 {
     float *coupling = items;
     const size_t slots = slots_of(input), k_r = (size_t)input->k_r;
-    for (size_t i = 0; i < (size_t)input->clutter->opening_count * k_r * k_r; i++)
-        coupling[(i / k_r) * slots + (i / k_r / k_r) * (slots - k_r) * slots + i % k_r] =
-            input->clutter->coupling[i];
+    for (size_t i = 0; i < (size_t)input->clutter->opening_count * k_r * k_r; i++) {
+        const size_t clutter = i / k_r / k_r, to = i / k_r % k_r, from = i % k_r;
+        coupling[(clutter * slots + from) * slots + to] = input->clutter->coupling[i];
+    }
 }
 
 static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
@@ -101,11 +95,15 @@ static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *
 static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    const struct gpu_constant quads = { MRT_CONSTANT_QUADS_R, mrt_quads(input->k_r) };
-    return mrt_pipeline_of(runtime, "clutter_mean", &shader_mrt_runtime_clutter_mean_comp, &quads,
-                           1, &c->mean) &&
-           mrt_pipeline_of(runtime, "clutter_reflect", &shader_mrt_runtime_clutter_reflect_comp,
-                           &quads, 1, &c->reflect);
+    const struct gpu_constant constants[] = {
+        { MRT_CONSTANT_QUADS_R, mrt_quads(input->k_r) },
+        { MRT_CONSTANT_QUADS_B, mrt_quads(input->k_b) },
+        { MRT_CONSTANT_HALF, runtime->options.half },
+    };
+    return mrt_pipeline_of(runtime, "clutter_mean", &shader_mrt_runtime_clutter_mean_comp,
+                           constants, 1, &c->mean) &&
+           mrt_pipeline_of(runtime, "clutter_couple", &shader_mrt_runtime_clutter_couple_comp,
+                           constants, 3, &c->couple);
 }
 
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
@@ -121,8 +119,6 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
                   &c->texels) &&
            upload(runtime, input, "clutter_faces", c->face_count,
                   sizeof(struct mrt_gpu_clutter_face), fill_faces, &c->faces) &&
-           upload(runtime, input, "clutter_openings", openings, sizeof(uint32_t), fill_openings,
-                  &c->openings) &&
            upload(runtime, input, "clutter_albedo", openings, 3 * slots * number, fill_albedo,
                   &c->albedo) &&
            upload(runtime, input, "clutter_coupling", openings, slots * slots * number,
@@ -139,13 +135,12 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
 void mrt_clutter_end(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    gpu_buffer *const buffers[] = { &c->texels,    &c->faces,    &c->openings,
-                                    &c->albedo,    &c->coupling, &c->unbounced,
-                                    &c->radiosity, &c->direct,   &c->incident };
+    gpu_buffer *const buffers[] = { &c->texels,    &c->faces,     &c->albedo, &c->coupling,
+                                    &c->unbounced, &c->radiosity, &c->direct, &c->incident };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_pipeline_destroy(runtime->gpu, &c->mean);
-    gpu_pipeline_destroy(runtime->gpu, &c->reflect);
+    gpu_pipeline_destroy(runtime->gpu, &c->couple);
 }
 
 // ---- passes
@@ -171,17 +166,19 @@ void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     gpu_scope_end(cmd);
 }
 
-void mrt_record_clutter(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
+void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
+    const struct mrt_runtime_buffers *b = &runtime->buffers;
     const struct mrt_runtime_clutter *c = &runtime->clutter;
-    if (c->opening_count == 0) return;
-    gpu_dispatch(cmd, c->reflect,
+    gpu_dispatch(cmd, c->couple,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
-                          { .name = "mrt_clutter_openings", .buffer = c->openings },
+                          { .name = "mrt_openings", .buffer = b->openings },
+                          { .name = "mrt_sources", .buffer = b->sources },
+                          { .name = "mrt_t_br", .buffer = b->t_br },
+                          { .name = "mrt_b", .buffer = b->b }, { .name = "mrt_r", .buffer = b->r },
                           { .name = "mrt_clutter_direct", .buffer = c->direct },
                           { .name = "mrt_clutter_albedo", .buffer = c->albedo },
                           { .name = "mrt_clutter_coupling", .buffer = c->coupling },
-                          { .name = "mrt_clutter_incident", .buffer = c->incident },
-                          { .name = "mrt_r", .buffer = runtime->buffers.r }),
-                 NULL, 0, c->opening_count, 1, 1);
+                          { .name = "mrt_clutter_incident", .buffer = c->incident }),
+                 NULL, 0, runtime->opening_count, 1, 1);
 }

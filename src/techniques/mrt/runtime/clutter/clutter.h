@@ -10,5 +10,5 @@ void mrt_clutter_end(struct mrt_runtime *runtime);
 // Radiosity of direct light of the faces; runtime->level has the parameters of direct light.
 void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view);
-// After T_b→r of each bounce.
-void mrt_record_clutter(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
+// T_b→r of each bounce and c, where there is clutter.
+void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
