@@ -8,6 +8,7 @@
 #define MRT_LOCAL        64  // workgroup size over texels
 #define MRT_LOCAL_2D     8   // workgroup size over pixels, in x and y
 #define MRT_REDUCE_LOCAL 256 // workgroup size of sums over texels and over modes
+#define MRT_FACE_SAMPLES 32  // texels of a face of clutter that lights are computed at, at most
 
 // Specialization constants.
 #define MRT_CONSTANT_HALF    0 // operators are half floats, else floats
@@ -46,6 +47,7 @@ struct mrt_gpu_block {
     uint32_t first_texel, texels;
     uint32_t basis_row; // of first_texel
     uint32_t first_opening, openings;
+    uint32_t columns;    // of its bounce: b and its openings, but coefficients that are 0
     int32_t neighbor[6]; // block beyond each face; −1: none
     vec3s middle;        // world, of the cell
     vec3s inverse[3];    // rows of the warp's inverse Jacobian there
@@ -88,6 +90,12 @@ struct mrt_gpu_clutter_face {
     float per_m2; // 1 / area
 };
 
+// A texel where lights of a face of clutter are computed.
+struct mrt_gpu_clutter_sample {
+    uint32_t texel;
+    float share; // of the face; 0: none
+};
+
 // Uniform block "mrt_level".
 struct mrt_level_params {
     vec3s grid_origin_m; // lookup grid of blocks
@@ -121,11 +129,12 @@ struct mrt_view_push {
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct mrt_texel) == 60, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_block) == 216, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_block) == 220, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");

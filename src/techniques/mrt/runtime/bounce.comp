@@ -39,7 +39,7 @@ void main()
     uint quad = lane % QUADS_B, stripe = lane / QUADS_B, stripes = MRT_REDUCE_LOCAL / QUADS_B;
     uint k_b = 4u * QUADS_B, k_r = 4u * QUADS_R, opening = block_table[block].first_opening;
     uint first = block * k_b + opening * k_r;
-    uint columns = level.feedback > 0.0 ? k_b + block_table[block].openings * k_r : 0u;
+    uint columns = level.feedback > 0.0 ? block_table[block].columns : 0u;
     vec4 sum[3] = { vec4(0.0), vec4(0.0), vec4(0.0) };
     if (stripe < stripes)
         for (uint i = stripe; i < columns; i += stripes)

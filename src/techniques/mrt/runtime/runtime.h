@@ -57,11 +57,11 @@ struct mrt_runtime_outdoors {
 
 // Without clutter all counts are 0 and the others are empty.
 struct mrt_runtime_clutter {
-    gpu_buffer texels, faces, albedo, coupling; // tables
-    gpu_buffer unbounced, radiosity;            // vec3 per texel
-    gpu_buffer direct, incident; // radiosity of direct light, irradiance: [opening][colour][slot]
-    gpu_pipeline mean, couple;
-    uint32_t texel_count, face_count, opening_count;
+    gpu_buffer texels, faces, samples, albedo, coupling; // tables
+    gpu_buffer unbounced;                                // vec3 per texel: irradiance
+    gpu_buffer direct, incident; // radiosity of direct light, irradiance: [clutter][colour][slot]
+    gpu_pipeline light, couple;
+    uint32_t face_count, opening_count;
 };
 
 struct mrt_plan;
@@ -107,13 +107,6 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size);
 // Radiosity of the texels before any bounce.
 void mrt_record_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                        const struct frame_view *view, bool emitters);
-// The same of other texels: direct light of `level`, whose count it has.
-struct mrt_direct_texels {
-    const struct mrt_level_params *level;
-    gpu_buffer texels, unbounced, radiosity;
-};
-void mrt_record_direct_of(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
-                          const struct frame_view *view, const struct mrt_direct_texels *texels);
 // Indirect irradiance of the texels after `count` bounces. feedback: the weight of the last call's
 // indirect light, which the first one reflects too; 0: none.
 void mrt_record_bounces(struct mrt_runtime *runtime, struct gpu_cmd *cmd, int count,

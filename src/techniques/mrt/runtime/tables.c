@@ -99,6 +99,23 @@ static void fill_inverse(const struct mrt_block *from, struct mrt_gpu_block *to)
             vec3_of(inverse.col[0].raw[a], inverse.col[1].raw[a], inverse.col[2].raw[a]);
 }
 
+uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening)
+{
+    uint32_t faces = 0;
+    if (input->openings[opening].face >= 0) return mrt_quads(input->k_r);
+    for (int i = 0; i < input->clutter->face_count; i++)
+        faces += input->clutter->faces[i].opening == opening;
+    return (faces + 3) / 4;
+}
+
+// Clutter is the last opening of its block.
+static uint32_t columns_of(const struct mrt_runtime_input *input, int first_opening, int end)
+{
+    uint32_t quads = mrt_quads(input->k_b);
+    for (int i = first_opening; i < end; i++) quads += mrt_used_quads(input, i);
+    return 4 * quads;
+}
+
 static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
                         void *items)
 {
@@ -119,16 +136,8 @@ static void fill_blocks(const struct mrt_runtime *runtime, const struct mrt_runt
         to->first_opening = (uint32_t)opening;
         while (opening < input->opening_count && input->openings[opening].block == b) opening++;
         to->openings = (uint32_t)opening - to->first_opening;
+        to->columns = columns_of(input, (int)to->first_opening, opening);
     }
-}
-
-uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening)
-{
-    uint32_t faces = 0;
-    if (input->openings[opening].face >= 0) return mrt_quads(input->k_r);
-    for (int i = 0; i < input->clutter->face_count; i++)
-        faces += input->clutter->faces[i].opening == opening;
-    return (faces + 3) / 4;
 }
 
 static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_runtime_input *input,

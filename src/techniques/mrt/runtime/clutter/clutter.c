@@ -7,6 +7,8 @@
 
 #include "technique_shaders.h"
 
+#include <math.h>
+
 enum { VEC3_BYTES = 12 };
 
 static uint32_t slots_of(const struct mrt_runtime_input *input)
@@ -57,6 +59,32 @@ static void fill_faces(const struct mrt_runtime_input *input, void *items)
     }
 }
 
+// One texel of each of equal stretches of a face, at places that no width of a chart repeats.
+static int sample_of(const struct mrt_clutter_face_input *face, int sample)
+{
+    static const double GOLDEN = 0.6180339887498949;
+    if (face->texel_count <= MRT_FACE_SAMPLES) return sample < face->texel_count ? sample : -1;
+    const double turns = GOLDEN * sample;
+    return (int)((sample + turns - floor(turns)) * face->texel_count / MRT_FACE_SAMPLES);
+}
+
+static void fill_samples(const struct mrt_runtime_input *input, void *items)
+{
+    struct mrt_gpu_clutter_sample *samples = items;
+    for (int i = 0; i < input->clutter->face_count; i++, samples += MRT_FACE_SAMPLES) {
+        const struct mrt_clutter_face_input *face = &input->clutter->faces[i];
+        float area = 0.0f;
+        for (int s = 0; s < MRT_FACE_SAMPLES; s++) {
+            const int at = sample_of(face, s);
+            if (at < 0) continue;
+            samples[s].texel = (uint32_t)(face->first_texel + at);
+            samples[s].share = input->clutter->texels[samples[s].texel].area_m2;
+            area += samples[s].share;
+        }
+        for (int s = 0; s < MRT_FACE_SAMPLES; s++) samples[s].share /= area;
+    }
+}
+
 static void fill_albedo(const struct mrt_runtime_input *input, void *items)
 {
     float *albedo = items;
@@ -100,8 +128,8 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { MRT_CONSTANT_QUADS_B, mrt_quads(input->k_b) },
         { MRT_CONSTANT_HALF, runtime->options.half },
     };
-    return mrt_pipeline_of(runtime, "clutter_mean", &shader_mrt_runtime_clutter_mean_comp,
-                           constants, 1, &c->mean) &&
+    return mrt_pipeline_of(runtime, "clutter_direct", &shader_mrt_runtime_clutter_direct_comp,
+                           constants, 1, &c->light) &&
            mrt_pipeline_of(runtime, "clutter_couple", &shader_mrt_runtime_clutter_couple_comp,
                            constants, 3, &c->couple);
 }
@@ -112,19 +140,20 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
     if (!input->clutter) return true;
     const size_t slots = slots_of(input), texels = (size_t)input->clutter->texel_count;
     const size_t openings = (size_t)input->clutter->opening_count, number = sizeof(float);
-    c->texel_count = (uint32_t)texels;
     c->face_count = (uint32_t)input->clutter->face_count;
     c->opening_count = (uint32_t)openings;
     return upload(runtime, input, "clutter_texels", texels, sizeof(struct mrt_texel), fill_texels,
                   &c->texels) &&
            upload(runtime, input, "clutter_faces", c->face_count,
                   sizeof(struct mrt_gpu_clutter_face), fill_faces, &c->faces) &&
+           upload(runtime, input, "clutter_samples", c->face_count,
+                  MRT_FACE_SAMPLES * sizeof(struct mrt_gpu_clutter_sample), fill_samples,
+                  &c->samples) &&
            upload(runtime, input, "clutter_albedo", openings, 3 * slots * number, fill_albedo,
                   &c->albedo) &&
            upload(runtime, input, "clutter_coupling", openings, slots * slots * number,
                   fill_coupling, &c->coupling) &&
            upload(runtime, input, "clutter_unbounced", texels, VEC3_BYTES, NULL, &c->unbounced) &&
-           upload(runtime, input, "clutter_radiosity", texels, VEC3_BYTES, NULL, &c->radiosity) &&
            upload(runtime, input, "clutter_direct", openings, 3 * slots * number, NULL,
                   &c->direct) &&
            upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
@@ -135,11 +164,11 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
 void mrt_clutter_end(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    gpu_buffer *const buffers[] = { &c->texels,    &c->faces,     &c->albedo, &c->coupling,
-                                    &c->unbounced, &c->radiosity, &c->direct, &c->incident };
+    gpu_buffer *const buffers[] = { &c->texels,   &c->faces,     &c->samples, &c->albedo,
+                                    &c->coupling, &c->unbounced, &c->direct,  &c->incident };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
-    gpu_pipeline_destroy(runtime->gpu, &c->mean);
+    gpu_pipeline_destroy(runtime->gpu, &c->light);
     gpu_pipeline_destroy(runtime->gpu, &c->couple);
 }
 
@@ -150,19 +179,22 @@ void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 {
     const struct mrt_runtime_clutter *c = &runtime->clutter;
     if (c->opening_count == 0) return;
-    struct mrt_level_params level = runtime->level;
-    level.texels = c->texel_count;
     gpu_scope_begin(cmd, "clutter");
-    mrt_record_direct_of(
-        runtime, cmd, view,
-        &(struct mrt_direct_texels){ &level, c->texels, c->unbounced, c->radiosity });
-    gpu_dispatch(cmd, c->mean,
-                 GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
-                          { .name = "mrt_texels", .buffer = c->texels },
-                          { .name = "mrt_clutter_faces", .buffer = c->faces },
-                          { .name = "mrt_direct", .buffer = c->radiosity },
-                          { .name = "mrt_clutter_direct", .buffer = c->direct }),
-                 NULL, 0, c->face_count, 1, 1);
+    gpu_dispatch(
+        cmd, c->light,
+        GPU_BIND(
+            view->constants_binding, view->lights_binding, view->shadow_faces_binding,
+            { .name = "shadow_maps", .image = view->shadow_maps, .sampler = view->shadow_sampler },
+            { .name = "shadow_sun_maps",
+              .image = view->shadow_sun_maps,
+              .sampler = view->shadow_sampler },
+            gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
+            { .name = "mrt_texels", .buffer = c->texels },
+            { .name = "mrt_unbounced", .buffer = c->unbounced },
+            { .name = "mrt_clutter_faces", .buffer = c->faces },
+            { .name = "mrt_clutter_samples", .buffer = c->samples },
+            { .name = "mrt_clutter_direct", .buffer = c->direct }),
+        NULL, 0, c->face_count, 1, 1);
     gpu_scope_end(cmd);
 }
 

@@ -39,9 +39,9 @@ vec4 radiosity_of(uint at)
     return c;
 }
 
-void add_faces(uint clutter, uint quad, uint stripe, uint stripes, inout vec4 sum[3])
+void add_faces(uint clutter, uint quads, uint quad, uint stripe, uint stripes, inout vec4 sum[3])
 {
-    for (uint k = stripe; k < 4u * QUADS_R; k += stripes) {
+    for (uint k = stripe; k < 4u * quads; k += stripes) {
         vec4 weights = coupling[(clutter * 4u * QUADS_R + k) * QUADS_R + quad];
         for (uint c = 0u; c < 3u; c++) sum[c] += weights * radiosity[c * QUADS_R + k / 4u][k % 4u];
     }
@@ -50,19 +50,21 @@ void add_faces(uint clutter, uint quad, uint stripe, uint stripes, inout vec4 su
 void main()
 {
     uint opening = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
-    uint quad = lane % QUADS_R, stripe = lane / QUADS_R, stripes = MRT_REDUCE_LOCAL / QUADS_R;
+    uint quads = opening_table[opening].quads;
+    uint quad = lane % quads, stripe = lane / quads, stripes = MRT_REDUCE_LOCAL / quads;
     int clutter = opening_table[opening].clutter;
-    bool faces = clutter >= 0, writes = lane < 3u * QUADS_R;
-    uint own = uint(max(clutter, 0)) * 3u * QUADS_R + lane;
+    bool faces = clutter >= 0, writes = lane < 3u * quads;
+    // Of the quad that this invocation writes: its colour is `stripe`.
+    uint at = stripe * QUADS_R + quad, own = uint(max(clutter, 0)) * 3u * QUADS_R + at;
     vec4 sum[3] = { vec4(0.0), vec4(0.0), vec4(0.0) }, c = vec4(0.0);
-    if (faces && writes) radiosity[lane] = c = radiosity_of(own);
+    if (faces && writes) radiosity[at] = c = radiosity_of(own);
     barrier();
     if (stripe < stripes) add_pairs(opening, quad, stripe, stripes, sum);
-    if (stripe < stripes && faces) add_faces(uint(clutter), quad, stripe, stripes, sum);
+    if (stripe < stripes && faces) add_faces(uint(clutter), quads, quad, stripe, stripes, sum);
     for (int i = 0; i < 3; i++) partial_sums[i][lane] = sum[i];
     barrier();
     if (!writes) return;
-    vec4 arrived = sum_of_stripes(lane / QUADS_R, lane % QUADS_R, QUADS_R);
-    r_table[opening * 3u * QUADS_R + lane] = faces ? c : arrived;
+    vec4 arrived = sum_of_stripes(stripe, quad, quads);
+    r_table[opening * 3u * QUADS_R + at] = faces ? c : arrived;
     if (faces) incident[own] = arrived;
 }
