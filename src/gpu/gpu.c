@@ -159,6 +159,7 @@ void gpu_destroy(struct gpu *gpu)
     if (gpu->device) {
         gpu_wait(gpu);
         free_objects(gpu);
+        host_free(gpu->host, gpu->aliases);
         memory_finish(gpu);
         if (!gpu->adopted) vkDestroyDevice(gpu->device, NULL);
     }

@@ -261,6 +261,7 @@ static void zero_buffer(struct gpu_cmd *cmd, struct buffer *buffer)
 void hazard_image(struct gpu_cmd *cmd, struct image *image, const struct range *range,
                   const struct access *access)
 {
+    if (image->alias) alias_use(cmd, image);
     if (image->zero_pending) zero_image(cmd, image);
     use_image(cmd, image, range, access);
 }

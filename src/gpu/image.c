@@ -154,6 +154,7 @@ static struct image *image_new(struct gpu *gpu, const struct gpu_image_desc *des
     image->desc = d;
     snprintf(image->name, sizeof image->name, "%s", d.name);
     image->desc.name = image->name;
+    image->desc.alias = NULL;
     image->layers = d.dimension == GPU_3D ? 1 : d.depth;
     image->aspect = d.format == GPU_D32F ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
     image->whole = true;
@@ -165,7 +166,15 @@ static struct image *image_new(struct gpu *gpu, const struct gpu_image_desc *des
     return image;
 }
 
-static bool create_handle(struct gpu *gpu, struct image *image)
+static bool allocate(struct gpu *gpu, struct image *image, const char *alias)
+{
+    VkMemoryRequirements needs;
+    vkGetImageMemoryRequirements(gpu->device, image->handle, &needs);
+    if (alias && gpu->client) return alias_allocate(gpu, image, alias, &needs);
+    return memory_allocate(gpu, &needs, MEMORY_DEVICE, false, image->name, &image->memory);
+}
+
+static bool create_handle(struct gpu *gpu, struct image *image, const char *alias)
 {
     VkImageCreateInfo info = create_info(&image->desc);
     if (!check_supported(gpu, &image->desc, &info)) return false;
@@ -174,13 +183,11 @@ static bool create_handle(struct gpu *gpu, struct image *image)
         return false;
     }
     VK_NAME(gpu, VK_OBJECT_TYPE_IMAGE, image->handle, image->name);
-    VkMemoryRequirements needs;
-    vkGetImageMemoryRequirements(gpu->device, image->handle, &needs);
-    if (!memory_allocate(gpu, &needs, MEMORY_DEVICE, false, image->name, &image->memory))
-        return false;
-    if (image->memory.recycled) image->hazards[0] = hazard_recycled();
-    return VK_CHECK(gpu, vkBindImageMemory(gpu->device, image->handle, image->memory.memory,
-                                           image->memory.offset));
+    if (!allocate(gpu, image, alias)) return false;
+    const struct allocation *memory = image->alias ? &image->alias->memory : &image->memory;
+    if (memory->recycled) image->hazards[0] = hazard_recycled();
+    return VK_CHECK(gpu,
+                    vkBindImageMemory(gpu->device, image->handle, memory->memory, memory->offset));
 }
 
 bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_image *out)
@@ -190,7 +197,7 @@ bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, gpu_im
     struct image *image = image_new(gpu, desc);
     if (!image) return false;
     image->zero_pending = true;
-    if (!create_handle(gpu, image)) goto fail;
+    if (!create_handle(gpu, image, desc->alias)) goto fail;
     out->id = table_add(gpu->host, &gpu->images, image);
     if (!out->id) goto fail;
     gpu->counters.images++;
@@ -227,6 +234,7 @@ void image_free(struct gpu *gpu, void *object)
         vkDestroyImageView(gpu->device, image->views[i].handle, gpu->allocator);
     }
     if (!image->wrapped) vkDestroyImage(gpu->device, image->handle, gpu->allocator);
+    alias_release(gpu, image);
     memory_free(gpu, &image->memory);
     host_free(gpu->host, image->views);
     host_free(gpu->host, image->hazards);

@@ -210,6 +210,7 @@ bool memory_allocate(struct gpu *gpu, const VkMemoryRequirements *needs, enum me
         out->offset = memory->offset + offset;
         out->mapped = memory->mapped ? (char *)memory->mapped + offset : NULL;
         out->owner = owner;
+        out->type = best;
         out->recycled = block->recycled;
         gpu->memory.owners[owner].bytes += needs->size;
         return true;

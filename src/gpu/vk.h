@@ -71,6 +71,7 @@ struct allocation {
     VkDeviceSize offset, bytes;
     void *mapped; // at offset; NULL for MEMORY_DEVICE
     uint32_t owner;
+    uint32_t type; // of memory, index
     bool recycled; // the memory was in use before
 };
 
@@ -121,6 +122,23 @@ struct batch {
     uint32_t image_count;
 };
 
+// ---- Memory aliasing (alias.c) ------------------------------------------------------------------
+
+// Memory of images that are used one after the other.
+struct alias {
+    char name[NAME_SIZE];
+    uint32_t client, users;
+    struct allocation memory;
+    struct image *current; // used last; NULL: none, or destroyed
+    struct hazard last;    // accesses of destroyed images
+};
+// Memory for a new image without one, shared with the images of that name if it fits.
+bool alias_allocate(struct gpu *gpu, struct image *image, const char *name,
+                    const VkMemoryRequirements *needs);
+void alias_release(struct gpu *gpu, struct image *image);
+// Before each access to an image that has an alias.
+void alias_use(struct gpu_cmd *cmd, struct image *image);
+
 struct range { // of subresources
     uint32_t mip, mip_count, layer, layer_count;
 };
@@ -146,7 +164,8 @@ struct image {
     struct hazard *hazards; // [layer × mips + mip]
     struct image_view *views;
     uint32_t view_count;
-    struct allocation memory;
+    struct alias *alias;      // has the memory; NULL: none
+    struct allocation memory; // empty with an alias
 };
 
 struct buffer {
@@ -441,6 +460,8 @@ struct gpu {
 
     VkPipelineCache pipeline_cache;
     struct memory memory;
+    struct alias **aliases;
+    uint32_t alias_count;
     struct table images, buffers, samplers, pipelines;
     struct pipeline_pool pipeline_pool;
     uint32_t internal_buffers; // rings, not counted as live objects

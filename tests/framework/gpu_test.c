@@ -107,8 +107,8 @@ gpu_image test_gpu_image(struct gpu *gpu, enum gpu_dimension dimension, enum gpu
                          uint32_t usage)
 {
     gpu_image image;
-    struct gpu_image_desc desc = { "test.image", dimension, format, width,
-                                   height,       depth,     mips,   usage };
+    struct gpu_image_desc desc = { "test.image", dimension, format, width, height,
+                                   depth,        mips,      usage,  NULL };
     if (!gpu_image_create(gpu, &desc, &image)) fail_msg("no image: %s", test_last_message());
     return image;
 }

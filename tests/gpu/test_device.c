@@ -164,34 +164,36 @@ TEST_GPU(invalid_images_and_buffers_are_refused_with_the_reason)
 {
     const struct gpu_limits *l = gpu_limits(gpu);
     const uint32_t s = GPU_SAMPLED;
-    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 0, 4, 1, 1, s },
+    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 0, 4, 1, 1, s, NULL },
+                  FAIL_ARGUMENT);
+    check_refused(gpu,
+                  (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, l->max_image_2d + 1, 4, 1, 1,
+                                           s, NULL },
                   FAIL_ARGUMENT);
     check_refused(
-        gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, l->max_image_2d + 1, 4, 1, 1, s },
+        gpu, (struct gpu_image_desc){ "test.bad", GPU_3D, GPU_R8, 4, 4, UINT32_MAX, 1, s, NULL },
         FAIL_ARGUMENT);
     check_refused(gpu,
-                  (struct gpu_image_desc){ "test.bad", GPU_3D, GPU_R8, 4, 4, UINT32_MAX, 1, s },
+                  (struct gpu_image_desc){ "test.bad", GPU_2D_ARRAY, GPU_R8, 4, 4,
+                                           l->max_layers + 1, 1, s, NULL },
+                  FAIL_ARGUMENT);
+    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 4, 4, 2, 1, s, NULL },
+                  FAIL_ARGUMENT);
+    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_CUBE, GPU_R8, 4, 8, 6, 1, s, NULL },
                   FAIL_ARGUMENT);
     check_refused(
-        gpu,
-        (struct gpu_image_desc){ "test.bad", GPU_2D_ARRAY, GPU_R8, 4, 4, l->max_layers + 1, 1, s },
+        gpu, (struct gpu_image_desc){ "test.bad", GPU_CUBE_ARRAY, GPU_R8, 4, 4, 7, 1, s, NULL },
         FAIL_ARGUMENT);
-    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 4, 4, 2, 1, s },
+    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 4, 4, 1, 4, s, NULL },
                   FAIL_ARGUMENT);
-    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_CUBE, GPU_R8, 4, 8, 6, 1, s },
+    check_refused(
+        gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_FORMAT_COUNT, 4, 4, 1, 1, s, NULL },
+        FAIL_ARGUMENT);
+    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 4, 4, 1, 1, 64, NULL },
                   FAIL_ARGUMENT);
-    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_CUBE_ARRAY, GPU_R8, 4, 4, 7, 1, s },
-                  FAIL_ARGUMENT);
-    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 4, 4, 1, 4, s },
-                  FAIL_ARGUMENT);
-    check_refused(gpu,
-                  (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_FORMAT_COUNT, 4, 4, 1, 1, s },
-                  FAIL_ARGUMENT);
-    check_refused(gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_R8, 4, 4, 1, 1, 64 },
-                  FAIL_ARGUMENT);
-    check_refused(gpu,
-                  (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_D32F, 4, 4, 1, 1, GPU_STORAGE },
-                  FAIL_UNSUPPORTED);
+    check_refused(
+        gpu, (struct gpu_image_desc){ "test.bad", GPU_2D, GPU_D32F, 4, 4, 1, 1, GPU_STORAGE, NULL },
+        FAIL_UNSUPPORTED);
     gpu_buffer buffer;
     assert_false(gpu_buffer_create(
         gpu, &(struct gpu_buffer_desc){ "test.bad", 0, GPU_BUFFER_STORAGE }, &buffer));

@@ -185,9 +185,9 @@ TEST_GPU(clears_fills_and_copies_keep_order_with_dispatches)
 TEST_GPU(images_are_cleared_and_copied_with_all_mips_and_layers)
 {
     const struct gpu_image_desc descs[] = {
-        { "test.a", GPU_2D_ARRAY, GPU_RGBA16F, 8, 4, 3, 2, GPU_SAMPLED },
-        { "test.b", GPU_2D_ARRAY, GPU_RGBA16F, 8, 4, 3, 2, GPU_STORAGE },
-        { "test.depth", GPU_2D_ARRAY, GPU_D32F, 8, 4, 3, 2, GPU_SAMPLED },
+        { "test.a", GPU_2D_ARRAY, GPU_RGBA16F, 8, 4, 3, 2, GPU_SAMPLED, NULL },
+        { "test.b", GPU_2D_ARRAY, GPU_RGBA16F, 8, 4, 3, 2, GPU_STORAGE, NULL },
+        { "test.depth", GPU_2D_ARRAY, GPU_D32F, 8, 4, 3, 2, GPU_SAMPLED, NULL },
     };
     gpu_image images[3];
     for (int i = 0; i < 3; i++) CHECK(gpu_image_create(gpu, &descs[i], &images[i]));

@@ -170,7 +170,7 @@ static bool use_device(struct host *host)
     struct gpu *gpu = gpu_create(host, &(struct gpu_desc){ .device = NULL });
     if (!gpu) return false;
     const struct gpu_image_desc image_desc = {
-        "test.image", GPU_2D, GPU_R32F, 16, 16, 1, 2, GPU_SAMPLED | GPU_STORAGE
+        "test.image", GPU_2D, GPU_R32F, 16, 16, 1, 2, GPU_SAMPLED | GPU_STORAGE, NULL
     };
     const struct gpu_buffer_desc buffer_desc = { "test.buffer", 4, GPU_BUFFER_STORAGE };
     const uint32_t words[4] = { 1, 2, 3, 4 };

@@ -6,7 +6,7 @@ foreach(name dispatch reload render scope transfer)
   ag_test(gpu/${name} USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders)
 endforeach()
 # These look inside, or make Vulkan objects of their own.
-foreach(name device hazard memory pipeline_pool)
+foreach(name alias device hazard memory pipeline_pool)
   ag_test(gpu/${name} USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders Vulkan::Vulkan)
 endforeach()
 ag_test(gpu/adopt USES gpu LIBRARIES ag_test_gpu ag_test_gpu_shaders ag_test_own_device)
