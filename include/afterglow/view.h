@@ -2,6 +2,11 @@
 /// screen, mirrors, portals. Scene, shadow maps, reflective shadow maps, volumes, voxels and light
 /// maps are made once a frame; a view has its own images, exposure and history.
 ///
+/// Views are rendered one after the other, and what only one of them needs at a time shares memory:
+/// G-buffer, irradiance, visibility. A view keeps the layers color and display, those that its
+/// description names, and those whose handle has been asked for (ag_view_layer_handle); only these
+/// can be read. The renderer's own camera is rendered last and keeps all its layers.
+///
 /// What follows a camera follows that of ag_frame_desc: the finer shadow cascades of a sun, and the
 /// finer grids of lpv:cascades and vct:levels. Other views have their light from the coarser ones
 /// where they look elsewhere.
@@ -19,6 +24,7 @@ struct ag_view_desc {
     bool display_layer;   ///< default true
     bool motion_layer;    ///< default false
     bool host_gbuffer;    ///< default false
+    bool all_layers;      ///< keep every layer, in memory of its own; default false
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 AG_API void ag_view_desc_default(struct ag_view_desc *desc);
@@ -45,7 +51,8 @@ struct ag_view_frame {
 AG_API void ag_view_frame_default(struct ag_view_frame *frame);
 
 /// As ag_renderer_read, ag_renderer_layer_handle and ag_renderer_exposure, of the newest frame that
-/// had the view. There are no layers id and debug.
+/// had the view. There are no layers id and debug. A layer is kept from the next frame on, once its
+/// handle has been asked for.
 AG_API enum ag_result ag_view_read(struct ag_view *view, const char *layer, struct ag_image **out);
 AG_API enum ag_result ag_view_layer_handle(struct ag_view *view, const char *layer,
                                            struct ag_layer_handle *out);

@@ -97,6 +97,31 @@ static const struct layer *layer_kept(const struct ag_view *v, const char *name)
     return layer && !need ? layer : NULL;
 }
 
+static bool keeps(const struct ag_view *v, const struct layer *layer)
+{
+    if (v == &v->renderer->main || v->all_layers) return true;
+    switch (layer->read) {
+    case READ_POSITION:
+        return frame_keeps_layer(v->frame, FRAME_DEPTH);
+    case READ_NORMAL: // the albedo's alpha tells where there is a surface
+        return frame_keeps_layer(v->frame, FRAME_NORMAL) &&
+               frame_keeps_layer(v->frame, FRAME_ALBEDO);
+    default:
+        return frame_keeps_layer(v->frame, (enum frame_layer)layer->image);
+    }
+}
+
+static bool fail_not_kept(const struct ag_view *v, const struct layer *layer)
+{
+    return host_fail(renderer_host(v->renderer), FAIL_ARGUMENT,
+                     "cannot read layer %s: the view did not keep it; create the view with "
+                     "all_layers, or ask for its handle%s before the frame",
+                     layer->name,
+                     layer->read == READ_NORMAL     ? " and that of albedo"
+                     : layer->read == READ_POSITION ? " of depth"
+                                                    : "");
+}
+
 static bool read_debug(struct ag_view *v, struct image *image)
 {
     struct gpu *gpu = v->renderer->device->gpu;
@@ -125,6 +150,7 @@ enum ag_result view_read(const char *function, struct ag_view *v, const char *na
     AG_REQUIRE_FOR(function, context, v->rendered, "no frame has been rendered");
     const struct layer *layer = layer_kept(v, name);
     if (!layer) return api_done(context, false);
+    if (!keeps(v, layer)) return api_done(context, fail_not_kept(v, layer));
     enum ag_result result = ag_renderer_wait(v->renderer);
     if (result != AG_OK) return result;
     const struct gpu_image_desc *size =

@@ -134,6 +134,7 @@ static bool prepare_shot(struct shot *shot, const struct frame_input *common,
     shot->input.want_motion_layer = view->motion_layer;
     shot->input.want_id_layer = view->id_layer;
     shot->input.want_display = view->display_layer;
+    shot->input.keep_layers = view->all_layers;
     shot->input.shown = &view->shown;
     shot->input.gbuffer = shot->gbuffer ? &shot->images : NULL;
     view->shown.image = view->shows_debug ? gi_debug_image(view->renderer->gi) : (gpu_image){ 0 };
@@ -177,6 +178,17 @@ static bool fail_lost(struct ag_renderer *r)
                      gpu_info(r->device->gpu)->name);
 }
 
+// The first one last: other views share the memory of its layers.
+static void record_shots(struct shots *shots, struct gpu_cmd *cmd,
+                         const struct frame_indirect *hook)
+{
+    struct shot *first = &shots->list[0];
+    frame_record_light(first->view->frame, cmd, &first->input, hook);
+    for (int i = 1; i < shots->count; i++)
+        frame_record_view(shots->list[i].view->frame, cmd, &shots->list[i].input, hook);
+    frame_record_view(first->view->frame, cmd, &first->input, hook);
+}
+
 static void count_shots(struct shots *shots)
 {
     for (int i = 0; i < shots->count; i++) shots->list[i].view->rendered++;
@@ -196,8 +208,7 @@ static bool record(struct ag_renderer *r, const struct ag_frame_desc *desc, void
     bool ok = prepare(r, desc, &shots, &hook);
     if (ok) {
         *cmd = commands ? gpu_frame_begin_adopted(gpu, commands) : gpu_frame_begin(gpu);
-        for (int i = 0; *cmd && i < shots.count; i++)
-            frame_record(shots.list[i].view->frame, *cmd, &shots.list[i].input, &hook);
+        if (*cmd) record_shots(&shots, *cmd, &hook);
         ok = (*cmd && gpu_frame_end(gpu, *cmd)) || fail_lost(r);
     }
     for (int i = 0; i < shots.count; i++)

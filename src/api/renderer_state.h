@@ -18,6 +18,7 @@ struct ag_view {
     struct ag_renderer *renderer;
     struct frame *frame;
     bool indirect_layer, display_layer, motion_layer, id_layer, host_gbuffer;
+    bool all_layers;          // of a further view: keeps what nothing else asks for
     struct frame_shown shown; // by the layer "display"; its image is set for each frame
     bool shows_debug;         // the debug view, if one is set
     int width, height;        // of the last resize

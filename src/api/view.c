@@ -53,6 +53,7 @@ enum ag_result ag_view_create(struct ag_renderer *r, const struct ag_view_desc *
                            .display_layer = desc->display_layer,
                            .motion_layer = desc->motion_layer,
                            .host_gbuffer = desc->host_gbuffer,
+                           .all_layers = desc->all_layers,
                            .shown = { .layer = FRAME_COLOR } };
     r->views++;
     const bool ok = create_frame(v) && resize(v, desc->width, desc->height);

@@ -1,5 +1,5 @@
-// One frame: frame_record is the order of passes. Each pass has its own folder and gets the results
-// of earlier passes as arguments.
+// One frame: frame_record_light and frame_record_view are the order of passes. Each pass has its
+// own folder and gets the results of earlier passes as arguments.
 #include "frame/frame_state.h"
 
 #include "core/ggx_albedo.h"
@@ -236,6 +236,15 @@ static uint32_t kept_layers(const struct frame *f, const struct frame_input *inp
     return f->pinned | (by_layer ? 1u << input->shown->layer : 0);
 }
 
+// Layers whose value outlives the frame. The first view is recorded last: all of its.
+static uint32_t own_layers(const struct frame *f, const struct frame_input *input, uint32_t kept)
+{
+    if (f->view_number == 0 || input->keep_layers) return ~0u;
+    return kept | 1u << FRAME_COLOR | (input->want_display ? 1u << FRAME_DISPLAY : 0) |
+           (input->want_indirect_layer ? 1u << FRAME_INDIRECT : 0) |
+           (input->want_motion_layer ? 1u << FRAME_MOTION : 0);
+}
+
 static uint32_t composite_variant_of(const struct frame_input *input, uint32_t needs)
 {
     return (needs & FRAME_WRITES_IRRADIANCE ? COMPOSITE_IRRADIANCE : 0) |
@@ -345,6 +354,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     f->needs = (indirect ? indirect->needs : 0) |
                (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0) |
                (input->want_id_layer || input->pick ? FRAME_NEEDS_ID : 0);
+    f->own = own_layers(f, input, kept);
     f->prepared = prepare_layers(f, input, kept) && (!is_first || prepare_maps(f, input)) &&
                   prepare_direct(f, input) && prepare_composite(f, input);
     return f->prepared;
@@ -593,49 +603,59 @@ static void record_image(struct frame *f, struct gpu_cmd *cmd, const struct fram
     f->index++;
 }
 
-static void record_first(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
-                         const struct frame_indirect *indirect)
+void frame_record_light(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                        const struct frame_indirect *indirect)
 {
+    if (!f->prepared) return;
+    f->common->viewed = false;
     f->view = (struct frame_view){ 0 };
     emitters_update(&f->common->emitters, input->pose);
     frame_begin(f, cmd, input);
     scene_gpu_update(&f->common->scene, cmd, input->pose, f->camera_cut);
-    frame_clear_unwritten(f, cmd);
-    record_gbuffer(f, cmd);
+    if (f->needs & FRAME_UPDATE_NEEDS_GBUFFER) record_gbuffer(f, cmd);
     record_shadows(f, cmd);
-    record_direct(f, cmd);
     record_rsm(f, cmd);
     record_emitters(f, cmd);
     record_light(f, cmd, input, indirect);
-    record_image(f, cmd, input, indirect);
     f->number++;
-    reports_record(f, cmd, input);
 }
 
-// After the first view, whose light it has.
-static void record_further(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
-                           const struct frame_indirect *indirect)
+static void begin_further(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input)
 {
     const struct frame *first = f->common->views[0];
     f->view = first->view;
     frame_begin_view(f, cmd, input);
     f->has_blocks = place_sun(f) && first->has_blocks;
-    frame_clear_unwritten(f, cmd);
-    record_gbuffer(f, cmd);
-    record_direct(f, cmd);
     complete_view(f);
-    record_image(f, cmd, input, indirect);
     f->number = first->number;
+    f->common->viewed = true;
+}
+
+// The first view has it already if light needed it and no other view has overwritten it.
+static bool needs_gbuffer(const struct frame *f)
+{
+    return f->view_number > 0 || !(f->needs & FRAME_UPDATE_NEEDS_GBUFFER) || f->common->viewed;
+}
+
+void frame_record_view(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
+                       const struct frame_indirect *indirect)
+{
+    if (!f->prepared) return;
+    const bool is_first = f->view_number == 0;
+    if (!is_first) begin_further(f, cmd, input);
+    frame_clear_unwritten(f, cmd);
+    if (needs_gbuffer(f)) record_gbuffer(f, cmd);
+    record_direct(f, cmd);
+    record_image(f, cmd, input, indirect);
+    f->kept = f->own;
+    if (is_first) reports_record(f, cmd, input);
 }
 
 void frame_record(struct frame *f, struct gpu_cmd *cmd, const struct frame_input *input,
                   const struct frame_indirect *indirect)
 {
-    if (!f->prepared) return;
-    if (f->view_number == 0)
-        record_first(f, cmd, input, indirect);
-    else
-        record_further(f, cmd, input, indirect);
+    frame_record_light(f, cmd, input, indirect);
+    frame_record_view(f, cmd, input, indirect);
 }
 
 float frame_radiance_scale(const struct frame *f)

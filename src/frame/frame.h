@@ -114,12 +114,13 @@ enum frame_need {
     FRAME_WRITES_SPECULAR = 8,
     FRAME_WRITES_VISIBILITY = 16,
     FRAME_NEEDS_EMITTERS = 32,
-    FRAME_NEEDS_ID = 64, // of the frame itself
+    FRAME_NEEDS_ID = 64,              // of the frame itself
+    FRAME_UPDATE_NEEDS_GBUFFER = 128, // `update` reads depth and normals of the first view
 };
 
 struct frame_indirect {
-    // Both record only and cannot fail. `update`: once a frame, with its first view; may be NULL.
-    // `record`: each view.
+    // Both record only and cannot fail. `update`: once a frame, with its first view, of whose
+    // layers it may read what FRAME_UPDATE_NEEDS_GBUFFER names; may be NULL. `record`: each view.
     void (*update)(void *user, struct gpu_cmd *cmd, const struct frame_view *view);
     void (*record)(void *user, struct gpu_cmd *cmd, const struct frame_view *view);
     void *user;
@@ -153,6 +154,7 @@ struct frame_input {
     bool want_indirect_layer;         // fill FRAME_INDIRECT
     bool want_motion_layer;           // fill FRAME_MOTION even without FRAME_NEEDS_MOTION
     bool want_id_layer;               // fill FRAME_ID
+    bool keep_layers;                 // of a further view, also those that nothing else asks for
     bool pick;                        // report the FRAME_ID of a pixel, below the size
     uint32_t pick_x, pick_y;
     bool want_display;                   // fill FRAME_DISPLAY
@@ -162,9 +164,12 @@ struct frame_input {
 
 struct frame *frame_create(struct host *host, struct gpu *gpu, const struct frame_options *options);
 // A further view of a frame: its own size, images, exposure and history, and the scene, maps and
-// light of the frame. It goes through frame_resize, frame_prepare and frame_record after the frame
-// itself, in the same command buffer and with the same pose and lights; a frame may leave it out.
-// Shadow cascades fit the frame's own camera.
+// light of the frame. It goes through frame_resize, frame_prepare after the frame itself, and
+// frame_record_view in the same command buffer and with the same pose and lights; a frame may leave
+// it out. Shadow cascades fit the frame's own camera.
+//
+// Layers that a further view does not keep share memory with those of the other views, and have no
+// value after the frame. It keeps FRAME_COLOR, what its input wants, and pinned layers.
 struct frame *frame_create_view(struct frame *frame);
 int frame_view_number(const struct frame *frame); // 0: not a further view
 // Accepts NULL. Views first.
@@ -178,9 +183,17 @@ bool frame_resize(struct frame *frame, uint32_t width, uint32_t height); // 1…
 // call before recording when scene, lights or needs changed.
 bool frame_prepare(struct frame *frame, const struct frame_input *input,
                    const struct frame_indirect *indirect);
-// Records the whole frame. Cannot fail, does not allocate.
+// These cannot fail and do not allocate. What all views share; `frame` is the first.
+void frame_record_light(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
+                        const struct frame_indirect *indirect);
+// What one view sees: the further views of the frame, then the first, whose layers last.
+void frame_record_view(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
+                       const struct frame_indirect *indirect);
+// Both, of a frame with one view.
 void frame_record(struct frame *frame, struct gpu_cmd *cmd, const struct frame_input *input,
                   const struct frame_indirect *indirect);
+// Whether the layer has its value after the newest recorded frame.
+bool frame_keeps_layer(const struct frame *frame, enum frame_layer layer);
 // Keeps a layer, and creates it if there is a size, whether or not a technique writes it: without
 // one, frames clear it to a neutral value (visibility 1, else 0). Until the next resize its image
 // stays the same.

@@ -27,9 +27,22 @@ static const struct layer table[FRAME_LAYER_COUNT] = {
     [FRAME_DISPLAY] = { "frame.display", GPU_RGBA8, GPU_SAMPLED | GPU_STORAGE },
 };
 
+// Views are recorded one after the other, and each writes a layer before it reads it.
+static bool is_aliased(const struct frame *frame, int l)
+{
+    return frame->view_number == 0 || !(frame->own >> l & 1u);
+}
+
+static uint32_t with_bit(uint32_t bits, int l, bool set)
+{
+    return set ? bits | 1u << l : bits & ~(1u << l);
+}
+
 static bool make_layer(struct frame *frame, int l)
 {
     if (frame->layers[l].id) return true;
+    frame->aliased = with_bit(frame->aliased, l, is_aliased(frame, l));
+    frame->neutral = with_bit(frame->neutral, l, false);
     struct gpu_image_desc desc = {
         .name = table[l].name,
         .dimension = GPU_2D,
@@ -37,6 +50,7 @@ static bool make_layer(struct frame *frame, int l)
         .width = frame->width,
         .height = frame->height,
         .usage = table[l].usage,
+        .alias = is_aliased(frame, l) ? table[l].name : NULL,
     };
     return gpu_image_create(frame->gpu, &desc, &frame->layers[l]);
 }
@@ -69,14 +83,20 @@ void frame_forget_gbuffer(struct frame *frame)
     frame->imported = 0;
 }
 
+// Of a further view: its image has the memory that it should have.
+static bool is_settled(const struct frame *frame, int l)
+{
+    return frame->view_number == 0 || frame->imported >> l & 1u ||
+           (frame->aliased >> l & 1u) == is_aliased(frame, l);
+}
+
 bool frame_make_layers(struct frame *frame, uint32_t written, uint32_t kept)
 {
     frame->unwritten = kept & ~written;
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
-        if (!((written | kept) >> l & 1u))
-            gpu_image_destroy(frame->gpu, &frame->layers[l]);
-        else if (!make_layer(frame, l))
-            return false;
+        const bool wanted = (written | kept) >> l & 1u;
+        if (!wanted || !is_settled(frame, l)) gpu_image_destroy(frame->gpu, &frame->layers[l]);
+        if (wanted && !make_layer(frame, l)) return false;
     }
     return true;
 }
@@ -85,11 +105,14 @@ bool frame_pin_layer(struct frame *frame, enum frame_layer layer)
 {
     if ((unsigned)layer >= FRAME_LAYER_COUNT) return false;
     frame->pinned |= 1u << layer;
+    frame->own |= 1u << layer;
+    if (!is_settled(frame, (int)layer)) gpu_image_destroy(frame->gpu, &frame->layers[layer]);
     return frame->width == 0 || make_layer(frame, (int)layer);
 }
 
 void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd)
 {
+    if (frame->common->viewed) frame->neutral &= ~frame->aliased; // overwritten
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) {
         const float value = l == FRAME_VISIBILITY || l == FRAME_MATERIAL ? 1.0f : 0.0f;
         const float other = l == FRAME_MATERIAL ? 0.0f : value; // roughness 1, metallic 0
@@ -101,9 +124,14 @@ void frame_clear_unwritten(struct frame *frame, struct gpu_cmd *cmd)
 
 void frame_destroy_layers(struct frame *frame)
 {
-    frame->neutral = 0;
+    frame->neutral = frame->kept = 0;
     frame_forget_gbuffer(frame);
     for (int l = 0; l < FRAME_LAYER_COUNT; l++) gpu_image_destroy(frame->gpu, &frame->layers[l]);
+}
+
+bool frame_keeps_layer(const struct frame *frame, enum frame_layer layer)
+{
+    return (unsigned)layer < FRAME_LAYER_COUNT && frame->kept >> layer & 1u;
 }
 
 gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer)

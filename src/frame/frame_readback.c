@@ -139,6 +139,9 @@ bool frame_read(struct frame *f, enum frame_readback what, float *pixels, int ch
         return host_fail(f->host, FAIL_ARGUMENT, "frame layer %s: it was not requested",
                          source->name);
     }
+    if (!frame_keeps_layer(f, source->layer)) {
+        return host_fail(f->host, FAIL_ARGUMENT, "frame layer %s: it was not kept", source->name);
+    }
     if (what == READ_DEPTH) return read_depth(f, pixels);
     if (what == READ_POSITION) return read_position(f, pixels);
     if (what == READ_NORMAL) return read_normal(f, pixels);

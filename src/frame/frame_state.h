@@ -29,6 +29,7 @@ struct frame_common {
     struct scene_gpu scene;
     struct emitters emitters;
     bool has_scene;
+    bool viewed; // further views of the frame being recorded have used shared layers
     struct gbuffer gbuffer;
     struct shadow shadow;
     struct rsm rsm;
@@ -52,6 +53,9 @@ struct frame {
     uint32_t pinned;    // bit l: layer l, by frame_pin_layer
     uint32_t unwritten; // set by frame_prepare: kept layers that no pass or technique writes
     uint32_t neutral;   // those of them that have their neutral value
+    uint32_t own;       // set by frame_prepare: of a further view, what it keeps
+    uint32_t aliased;   // bit l: the image of layer l shares memory with other views
+    uint32_t kept;      // layers that have their value since the newest recorded frame
 
     // Set by frame_prepare.
     uint32_t needs;             // frame_need bits

@@ -1,6 +1,6 @@
 // Several views of a renderer: each shows what a renderer with its camera alone shows, and the
 // light is made once.
-#include "api/renderer_fixture.h"
+#include "api/view_fixture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,6 +16,7 @@ static const struct {
     { "ambient", "", 0 },
     { "lpv", ":dim=16,cascades=1", 0 },
     { "lpv", "", 0.005 },
+    { "lpv", ":dim=16,cascades=1,geometry=maps", 0.1 }, // surfels of the first camera's view
     { "holpv", ":dim=16,cascades=1", 0 },
     { "holpv", ":dim=16,cascades=2", 0.005 },
     { "mrt", "", 0 },
@@ -32,64 +33,6 @@ static const struct {
     { "ssao", "", 0 },
     { "hbao", "", 0 },
 };
-
-// From the other side of the room.
-static struct ag_camera other_camera(const struct ag_camera *camera)
-{
-    struct ag_camera other = *camera;
-    for (int i = 0; i < 3; i++)
-        other.eye[i] += 0.3f * (camera->target[i] - camera->eye[i]) + (i == 0 ? 0.4f : 0.1f);
-    other.vertical_fov_rad *= 1.2f;
-    return other;
-}
-
-static struct ag_renderer *make(struct renderer_fixture *s, const char *gi, int width, int height,
-                                const struct ag_bake *bake)
-{
-    struct ag_renderer *renderer = NULL;
-    struct ag_renderer_desc desc = fixture_renderer_desc(gi);
-    desc.width = width;
-    desc.height = height;
-    desc.bakes = &bake;
-    desc.bake_count = bake != NULL;
-    if (ag_renderer_create(s->device, s->scene, &desc, &renderer) != AG_OK)
-        fail_msg("%s: %s", gi, ag_context_last_error(s->context));
-    return renderer;
-}
-
-static struct ag_view *make_view(struct renderer_fixture *s, struct ag_renderer *renderer,
-                                 int width, int height)
-{
-    struct ag_view *view = NULL;
-    struct ag_view_desc desc;
-    ag_view_desc_default(&desc);
-    desc.width = width;
-    desc.height = height;
-    desc.indirect_layer = desc.motion_layer = true;
-    if (ag_view_create(renderer, &desc, &view) != AG_OK)
-        fail_msg("%s", ag_context_last_error(s->context));
-    return view;
-}
-
-static void render(struct renderer_fixture *s, struct ag_renderer *renderer,
-                   const struct ag_camera *camera, const struct ag_view_frame *views, int count)
-{
-    struct ag_frame_desc frame = s->frame;
-    frame.camera = *camera;
-    frame.views = views;
-    frame.view_count = count;
-    if (ag_renderer_render(renderer, &frame) != AG_OK)
-        fail_msg("%s: %s", ag_renderer_gi(renderer), ag_context_last_error(s->context));
-}
-
-static struct ag_view_frame in_frame(struct ag_view *view, const struct ag_camera *camera)
-{
-    struct ag_view_frame frame;
-    ag_view_frame_default(&frame);
-    frame.view = view;
-    frame.camera = *camera;
-    return frame;
-}
 
 enum { FIRST_OF_CAMERA = 6 };
 static const char *const layers[] = { "irradiance", "specular", "visibility", "indirect", "color",
@@ -121,30 +64,55 @@ static void check_layers(struct renderer_fixture *s, const char *what, struct ag
     }
 }
 
+// What a view keeps that shares its other layers: color, display, and `asked`.
+static void check_kept(struct renderer_fixture *s, const char *what, struct ag_view *view,
+                       const char *asked, struct ag_renderer *alone, double tolerance)
+{
+    const char *const kept[] = { "color", "display", asked };
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
+        struct ag_image *got = NULL, *expected = fixture_read_from(s, alone, kept[i]);
+        if (ag_view_read(view, kept[i], &got) != AG_OK)
+            fail_msg("%s: %s", kept[i], ag_context_last_error(s->context));
+        const double difference = fixture_difference(got, expected);
+        if (difference > (tolerance > 0 ? 0.1 : 0.0))
+            fail_msg("%s: %s of the view that shares memory differs by %g", what, kept[i],
+                     difference);
+        ag_image_destroy(s->context, got);
+        ag_image_destroy(s->context, expected);
+    }
+}
+
 // Three frames of two moving cameras, in one renderer and in two.
 static void check_equal(struct renderer_fixture *s, const char *gi, const struct ag_bake *bake,
                         int width, int height, double tolerance)
 {
-    struct ag_renderer *both = make(s, gi, FIXTURE_WIDTH, FIXTURE_HEIGHT, bake);
-    struct ag_renderer *first = make(s, gi, FIXTURE_WIDTH, FIXTURE_HEIGHT, bake);
-    struct ag_renderer *second = make(s, gi, width, height, bake);
-    struct ag_view *view = make_view(s, both, width, height);
-    struct ag_camera camera = s->frame.camera, other = other_camera(&camera);
+    struct ag_renderer *both = view_make_renderer(s, gi, FIXTURE_WIDTH, FIXTURE_HEIGHT, bake);
+    struct ag_renderer *first = view_make_renderer(s, gi, FIXTURE_WIDTH, FIXTURE_HEIGHT, bake);
+    struct ag_renderer *second = view_make_renderer(s, gi, width, height, bake);
+    struct ag_view *view = view_make(s, both, width, height);
+    struct ag_view *lean = view_make_lean(s, both, width, height);
+    struct ag_camera camera = s->frame.camera, other = view_other_camera(&camera);
+    struct ag_layer_handle handle;
+    const char *asked = strstr(gi, "ambient+") ? "visibility" : "irradiance";
+    assert_int_equal(ag_view_layer_handle(lean, asked, &handle), AG_OK);
     for (int i = 0; i < 3; i++) {
         camera.eye[0] += 0.01f;
         other.eye[1] += 0.01f;
-        const struct ag_view_frame further = in_frame(view, &other);
-        render(s, both, &camera, &further, 1);
-        render(s, first, &camera, NULL, 0);
-        render(s, second, &other, NULL, 0);
+        const struct ag_view_frame further[] = { view_in_frame(view, &other),
+                                                 view_in_frame(lean, &other) };
+        view_render(s, both, &camera, further, 2);
+        view_render(s, first, &camera, NULL, 0);
+        view_render(s, second, &other, NULL, 0);
     }
     check_layers(s, gi, both, NULL, first, 0.0);
     check_layers(s, gi, both, view, second, tolerance);
+    check_kept(s, gi, lean, asked, second, tolerance);
     float ev[2];
     assert_int_equal(ag_view_exposure(view, &ev[0]), AG_OK);
     assert_int_equal(ag_renderer_exposure(second, &ev[1]), AG_OK);
     CHECK(tolerance > 0 ? fabsf(ev[0] - ev[1]) < 0.1f : ev[0] == ev[1]);
     ag_view_destroy(view);
+    ag_view_destroy(lean);
     ag_renderer_destroy(both);
     ag_renderer_destroy(first);
     ag_renderer_destroy(second);
@@ -162,9 +130,11 @@ TEST(each_view_equals_that_of_a_renderer_alone_to_the_bit)
         for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
             if (strcmp(variants[v].technique, info.name) != 0) continue;
             snprintf(longer, sizeof longer, "%s%s", base, variants[v].options);
-            const bool smaller = checked++ == 0;
-            check_equal(&s, longer, bake, smaller ? 40 : FIXTURE_WIDTH,
-                        smaller ? 24 : FIXTURE_HEIGHT, variants[v].tolerance);
+            static const int sizes[][2] = { { 40, 24 },
+                                            { FIXTURE_WIDTH, FIXTURE_HEIGHT },
+                                            { 72, 40 } };
+            const int *size = sizes[checked++ % 3];
+            check_equal(&s, longer, bake, size[0], size[1], variants[v].tolerance);
         }
         if (!checked) fail_msg("%s is in no row of variants", info.name);
         ag_bake_destroy(bake);
@@ -202,7 +172,7 @@ static int passes(struct renderer_fixture *s, struct ag_renderer *renderer,
 {
     struct ag_device_counters before, after;
     ag_device_get_counters(s->device, &before);
-    render(s, renderer, &s->frame.camera, views, count);
+    view_render(s, renderer, &s->frame.camera, views, count);
     ag_device_get_counters(s->device, &after);
     return (int)(after.passes - before.passes);
 }
@@ -219,17 +189,17 @@ static uint64_t memory_of(struct ag_renderer *renderer)
 // keep_maps=false: the light is made in every frame.
 static void check_shared(struct renderer_fixture *s, const char *gi, const struct ag_bake *bake)
 {
-    struct ag_renderer *renderer = make(s, gi, FIXTURE_WIDTH, FIXTURE_HEIGHT, bake);
+    struct ag_renderer *renderer = view_make_renderer(s, gi, FIXTURE_WIDTH, FIXTURE_HEIGHT, bake);
     assert_int_equal(
         ag_renderer_set_frame_options(renderer, "shadow_size=256,rsm_size=64,keep_maps=false"),
         AG_OK);
-    for (int i = 0; i < 3; i++) render(s, renderer, &s->frame.camera, NULL, 0);
+    for (int i = 0; i < 3; i++) view_render(s, renderer, &s->frame.camera, NULL, 0);
     const int alone = passes(s, renderer, NULL, 0), of_view = passes_of_view(renderer);
     const uint64_t bytes = memory_of(renderer);
-    struct ag_view *view = make_view(s, renderer, FIXTURE_WIDTH, FIXTURE_HEIGHT);
-    const struct ag_camera other = other_camera(&s->frame.camera);
-    const struct ag_view_frame further = in_frame(view, &other);
-    for (int i = 0; i < 3; i++) render(s, renderer, &s->frame.camera, &further, 1);
+    struct ag_view *view = view_make(s, renderer, FIXTURE_WIDTH, FIXTURE_HEIGHT);
+    const struct ag_camera other = view_other_camera(&s->frame.camera);
+    const struct ag_view_frame further = view_in_frame(view, &other);
+    for (int i = 0; i < 3; i++) view_render(s, renderer, &s->frame.camera, &further, 1);
     const int together = passes(s, renderer, &further, 1);
     const uint64_t both = memory_of(renderer);
     if (getenv("VIEWS_PRINT"))
@@ -259,36 +229,109 @@ TEST(two_views_share_every_light_pass_and_cost_less_than_two_fifths_more_memory)
     fixture_close(&s);
 }
 
+static double memory_ratio(struct renderer_fixture *s, const char *gi, bool all_layers)
+{
+    struct ag_view_desc desc;
+    ag_view_desc_default(&desc);
+    desc.width = 512;
+    desc.height = 288;
+    desc.all_layers = all_layers;
+    struct ag_renderer *renderer = view_make_renderer(s, gi, desc.width, desc.height, NULL);
+    assert_int_equal(ag_renderer_set_frame_options(renderer, "shadow_size=128,rsm_size=32"), AG_OK);
+    view_render(s, renderer, &s->frame.camera, NULL, 0);
+    const uint64_t one = memory_of(renderer);
+    struct ag_view *view = view_create(s, renderer, &desc);
+    const struct ag_view_frame further = view_in_frame(view, &s->frame.camera);
+    view_render(s, renderer, &s->frame.camera, &further, 1);
+    const uint64_t both = memory_of(renderer);
+    if (getenv("VIEWS_PRINT"))
+        printf("%-28s %7.2f MB, with a second view %7.2f MB: %.3f\n", gi, (double)one * 1e-6,
+               (double)both * 1e-6, (double)both / (double)one);
+    ag_view_destroy(view);
+    ag_renderer_destroy(renderer);
+    return (double)both / (double)one;
+}
+
+TEST(a_second_view_costs_less_than_two_fifths_of_a_renderer_where_images_dominate)
+{
+    static const char *const specs[] = { "none",
+                                         "ambient",
+                                         "lpv:dim=16,cascades=1",
+                                         "lpv:dim=16,cascades=1,geometry=maps",
+                                         "holpv:dim=8,cascades=1",
+                                         "vct:resolution=32",
+                                         "vct:resolution=32,temporal=true",
+                                         "ambient+vo",
+                                         "ambient+vo:temporal=true",
+                                         "ambient+vo:mode=areas",
+                                         "ambient+hbao",
+                                         "ambient+ssao:half_resolution=true",
+                                         "ambient+vctao:resolution=32" };
+    struct renderer_fixture s = fixture_open_lit(NULL);
+    for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) {
+        const double ratio = memory_ratio(&s, specs[i], false);
+        if (!(ratio < 1.4)) fail_msg("%s: %.3f", specs[i], ratio);
+    }
+    CHECK(memory_ratio(&s, "none", true) > 1.7); // nothing shared
+    fixture_close(&s);
+}
+
+TEST(a_layer_is_read_from_a_view_only_if_it_keeps_it)
+{
+    struct renderer_fixture s = fixture_open_lit("lpv:dim=16");
+    struct ag_view *view = view_make_lean(&s, s.renderer, 40, 24);
+    const struct ag_view_frame further = view_in_frame(view, &s.frame.camera);
+    struct ag_layer_handle handle;
+    struct ag_image *image = NULL;
+    view_render(&s, s.renderer, &s.frame.camera, &further, 1);
+    static const char *const shared[] = { "irradiance", "position", "normal", "direct" };
+    for (size_t i = 0; i < sizeof shared / sizeof *shared; i++) {
+        assert_int_equal(ag_view_read(view, shared[i], &image), AG_ERROR_ARGUMENT);
+        CHECK(strstr(ag_context_last_error(s.context), "all_layers") != NULL);
+    }
+    // From the next frame on.
+    assert_int_equal(ag_view_layer_handle(view, "depth", &handle), AG_OK);
+    assert_int_equal(ag_view_read(view, "depth", &image), AG_ERROR_ARGUMENT);
+    view_render(&s, s.renderer, &s.frame.camera, &further, 1);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(ag_view_read(view, i ? "position" : "depth", &image), AG_OK);
+        ag_image_destroy(s.context, image);
+    }
+    assert_int_equal(ag_view_read(view, "normal", &image), AG_ERROR_ARGUMENT);
+    ag_view_destroy(view);
+    fixture_close(&s);
+}
+
 TEST(views_come_and_go_are_left_out_and_follow_changes_of_the_spec)
 {
     static const char *const specs[] = { "vct:resolution=32,temporal=true+vo:temporal=true",
                                          "lpv:dim=16+ssao", "lpv:dim=16+vo:samples=5", "none" };
     struct renderer_fixture s = fixture_open_lit("lpv:dim=16");
-    const struct ag_camera other = other_camera(&s.frame.camera);
-    struct ag_view *views[2] = { make_view(&s, s.renderer, 40, 24),
-                                 make_view(&s, s.renderer, FIXTURE_WIDTH, FIXTURE_HEIGHT) };
+    const struct ag_camera other = view_other_camera(&s.frame.camera);
+    struct ag_view *views[2] = { view_make(&s, s.renderer, 40, 24),
+                                 view_make(&s, s.renderer, FIXTURE_WIDTH, FIXTURE_HEIGHT) };
     for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) {
         assert_int_equal(ag_renderer_set_gi(s.renderer, specs[i], NULL, 0), AG_OK);
-        const struct ag_view_frame all[2] = { in_frame(views[0], &other),
-                                              in_frame(views[1], &s.frame.camera) };
-        render(&s, s.renderer, &s.frame.camera, all, 2);
-        render(&s, s.renderer, &s.frame.camera, NULL, 0);
-        render(&s, s.renderer, &s.frame.camera, all + 1, 1);
+        const struct ag_view_frame all[2] = { view_in_frame(views[0], &other),
+                                              view_in_frame(views[1], &s.frame.camera) };
+        view_render(&s, s.renderer, &s.frame.camera, all, 2);
+        view_render(&s, s.renderer, &s.frame.camera, NULL, 0);
+        view_render(&s, s.renderer, &s.frame.camera, all + 1, 1);
         assert_int_equal(ag_view_resize(views[0], 20 + (int)i, 10), AG_OK);
         assert_int_equal(ag_renderer_resize(s.renderer, 30 + (int)i, 20), AG_OK);
-        render(&s, s.renderer, &s.frame.camera, all, 2);
+        view_render(&s, s.renderer, &s.frame.camera, all, 2);
         ag_view_destroy(views[1]);
-        views[1] = make_view(&s, s.renderer, 50, 30);
+        views[1] = view_make(&s, s.renderer, 50, 30);
         // From the start: the same as a renderer alone.
-        struct ag_renderer *alone = make(&s, specs[i], 50, 30, NULL);
+        struct ag_renderer *alone = view_make_renderer(&s, specs[i], 50, 30, NULL);
         struct ag_frame_desc frame = s.frame;
-        const struct ag_view_frame newest = in_frame(views[1], &other);
+        const struct ag_view_frame newest = view_in_frame(views[1], &other);
         frame.camera_cut = true;
         frame.views = &newest;
         frame.view_count = 1;
         assert_int_equal(ag_renderer_resize(s.renderer, 50, 30), AG_OK);
         assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_OK);
-        render(&s, alone, &other, NULL, 0);
+        view_render(&s, alone, &other, NULL, 0);
         struct ag_image *got = NULL, *expected = fixture_read_from(&s, alone, "visibility");
         assert_int_equal(ag_view_read(views[1], "visibility", &got), AG_OK);
         CHECK(fixture_difference(got, expected) == 0.0);
@@ -304,14 +347,14 @@ TEST(wrong_views_are_refused)
 {
     struct renderer_fixture s = fixture_open_lit("none");
     struct ag_view *views[8] = { NULL };
-    for (int i = 0; i < 7; i++) views[i] = make_view(&s, s.renderer, 8, 8);
+    for (int i = 0; i < 7; i++) views[i] = view_make(&s, s.renderer, 8, 8);
     assert_int_equal(ag_view_create(s.renderer, NULL, &views[7]), AG_ERROR_ARGUMENT);
     assert_null(views[7]);
     for (int i = 1; i < 7; i++) ag_view_destroy(views[i]);
-    struct ag_renderer *stranger = make(&s, "none", 8, 8, NULL);
-    struct ag_view *strange = make_view(&s, stranger, 8, 8);
-    struct ag_view_frame list[2] = { in_frame(views[0], &s.frame.camera),
-                                     in_frame(views[0], &s.frame.camera) };
+    struct ag_renderer *stranger = view_make_renderer(&s, "none", 8, 8, NULL);
+    struct ag_view *strange = view_make(&s, stranger, 8, 8);
+    struct ag_view_frame list[2] = { view_in_frame(views[0], &s.frame.camera),
+                                     view_in_frame(views[0], &s.frame.camera) };
     struct ag_frame_desc frame = s.frame;
     frame.views = list;
     frame.view_count = 2;
@@ -326,7 +369,7 @@ TEST(wrong_views_are_refused)
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
     list[0].view = NULL;
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
-    list[0] = in_frame(views[0], &s.frame.camera);
+    list[0] = view_in_frame(views[0], &s.frame.camera);
     list[0].reserved[3] = 1;
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
     list[0].reserved[3] = 0;
@@ -334,7 +377,7 @@ TEST(wrong_views_are_refused)
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_ERROR_ARGUMENT);
     struct ag_image *image = NULL;
     assert_int_equal(ag_view_read(views[0], "color", &image), AG_ERROR_ARGUMENT);
-    list[0] = in_frame(views[0], &s.frame.camera);
+    list[0] = view_in_frame(views[0], &s.frame.camera);
     assert_int_equal(ag_renderer_render(s.renderer, &frame), AG_OK);
     assert_int_equal(ag_view_read(views[0], "debug", &image), AG_ERROR_ARGUMENT);
     ag_view_destroy(strange);

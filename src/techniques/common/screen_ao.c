@@ -29,14 +29,15 @@ struct gpu_constant screen_ao_step(const struct screen_ao *ao)
 
 // ---- creation and destruction
 
-static bool create_image(struct screen_ao *ao, const char *name, enum gpu_format format,
-                         gpu_image *out)
+static bool create_image(struct screen_ao *ao, const char *name, const char *alias,
+                         enum gpu_format format, gpu_image *out)
 {
     const struct gpu_image_desc desc = { .name = name,
                                          .format = format,
                                          .width = ao->work_width,
                                          .height = ao->work_height,
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+                                         .usage = GPU_SAMPLED | GPU_STORAGE,
+                                         .alias = alias };
     gpu_image_destroy(ao->gpu, out);
     return gpu_image_create(ao->gpu, &desc, out);
 }
@@ -48,11 +49,14 @@ bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height)
     ao->work_width = work_size(&ao->options, width);
     ao->work_height = work_size(&ao->options, height);
     ao->previous_near_m = 0.0f;
-    if (!create_image(ao, "estimate", ESTIMATE_FORMAT, &ao->estimate)) return false;
-    if (ao->options.blur && !create_image(ao, "scratch", ESTIMATE_FORMAT, &ao->scratch))
+    // Of one view at a time, but for the history.
+    if (!create_image(ao, "estimate", "ao.estimate", ESTIMATE_FORMAT, &ao->estimate)) return false;
+    if (ao->options.blur &&
+        !create_image(ao, "scratch", "ao.scratch", ESTIMATE_FORMAT, &ao->scratch))
         return false;
-    return !ao->options.temporal || (create_image(ao, "history", HISTORY_FORMAT, &ao->history[0]) &&
-                                     create_image(ao, "history", HISTORY_FORMAT, &ao->history[1]));
+    return !ao->options.temporal ||
+           (create_image(ao, "history", NULL, HISTORY_FORMAT, &ao->history[0]) &&
+            create_image(ao, "history", NULL, HISTORY_FORMAT, &ao->history[1]));
 }
 
 static bool create_pipeline(struct screen_ao *ao, const char *name, const struct gpu_shader *shader,

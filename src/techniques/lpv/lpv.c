@@ -193,12 +193,18 @@ static uint64_t lpv_memory_estimate(const void *options, uint32_t width, uint32_
     return lpv_volumes_bytes(options);
 }
 
+static uint32_t lpv_more_needs(const void *options)
+{
+    const struct lpv_options *o = options;
+    return o->geometry == LPV_GEOMETRY_MAPS ? FRAME_UPDATE_NEEDS_GBUFFER : 0;
+}
+
 #define LPV_TECHNIQUE(name_, title_, paper_, rows_, presets_)                                      \
     .name = name_, .title = title_, .paper = paper_, .folder = "lpv", .role = ROLE_SOURCE,         \
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | PUBLISHES_PROBES | GATHERS_EMISSION,     \
     .needs = FRAME_NEEDS_RSM | FRAME_NEEDS_EMITTERS | FRAME_WRITES_IRRADIANCE,                     \
-    .options = OPTION_TABLE(struct lpv_options, rows_, aliases), .presets = presets_,              \
-    .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),                         \
+    .more_needs = lpv_more_needs, .options = OPTION_TABLE(struct lpv_options, rows_, aliases),     \
+    .presets = presets_, .debug_views = debug_views, .state_size = sizeof(struct lpv_cascades),    \
     .set_options = lpv_set_options, .invalidate = lpv_invalidate, .update = lpv_update,            \
     .record = lpv_record, .debug_view = lpv_debug_view, .probes = lpv_probes,                      \
     .destroy = lpv_destroy, .memory_estimate = lpv_memory_estimate

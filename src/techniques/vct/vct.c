@@ -114,8 +114,17 @@ static bool vct_resize(void *state, int view, uint32_t width, uint32_t height)
 
 static void select_view(struct vct *vct, int view)
 {
-    vct->pixels = vct_pixels_of(vct, view);
+    vct->pixels = &vct->views[view].pixels;
     vct->temporal = &vct->views[view].temporal;
+    vct->begun = view;
+}
+
+static void place_small_emitters(struct vct *vct, const struct frame_view *view)
+{
+    if (vct->options.small_emitters)
+        vct_small_emitters_update(&vct->small_emitters, view, vct->temporal->number);
+    else
+        vct->small_emitters.count = 0;
 }
 
 static void forget_histories(struct vct *vct)
@@ -245,10 +254,15 @@ static void begin_view(struct vct *vct, const struct frame_view *view)
     if (vct->options.temporal)
         vct_temporal_begin(vct->temporal, view, vct->options.frames, vct->options.clamp,
                            vct->settles);
-    if (vct->options.small_emitters)
-        vct_small_emitters_update(&vct->small_emitters, view, vct->temporal->number);
-    else
-        vct->small_emitters.count = 0;
+    place_small_emitters(vct, view);
+}
+
+// The first view, which the update has begun, after further views.
+static void resume_view(struct vct *vct, const struct frame_view *view)
+{
+    if (vct->begun == view->number) return;
+    select_view(vct, view->number);
+    place_small_emitters(vct, view);
 }
 
 static void vct_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -272,7 +286,10 @@ static void vct_record(void *state, struct gpu_cmd *cmd, const struct frame_view
         vct_temporal_invalidate(&vct->views[view->number].temporal);
         return;
     }
-    if (view->number > 0) begin_view(vct, view);
+    if (view->number > 0)
+        begin_view(vct, view);
+    else
+        resume_view(vct, view);
     vct_record_cones(vct, cmd, view);
     if (vct->options.temporal) vct_temporal_record(vct->temporal, cmd, view, vct_result(vct, view));
     if (vct->options.specular) record_specular(vct, cmd, view);

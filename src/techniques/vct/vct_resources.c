@@ -139,6 +139,7 @@ static struct gpu_image_desc image_desc(const struct vct_options *options,
 
 // ---- Creation -----------------------------------------------------------------------------------
 
+// In use while a view is recorded: views share the memory.
 static bool create_image_2d(struct vct *vct, const struct vct_pixels *pixels, const char *name,
                             enum gpu_format format, gpu_image *out)
 {
@@ -146,15 +147,16 @@ static bool create_image_2d(struct vct *vct, const struct vct_pixels *pixels, co
                                          .format = format,
                                          .width = pixels->width,
                                          .height = pixels->height,
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+                                         .usage = GPU_SAMPLED | GPU_STORAGE,
+                                         .alias = name };
     return gpu_image_create(vct->gpu, &desc, out);
 }
 
-static bool create_cone_sums(struct vct *vct, const struct vct_pixels *pixels, const char *name,
-                             gpu_image out[3])
+static bool create_cone_sums(struct vct *vct, const struct vct_pixels *pixels,
+                             const char *const names[3], gpu_image out[3])
 {
     for (int i = 0; i < 3; i++)
-        if (!create_image_2d(vct, pixels, name, GPU_RGBA16F, &out[i])) return false;
+        if (!create_image_2d(vct, pixels, names[i], GPU_RGBA16F, &out[i])) return false;
     return true;
 }
 
@@ -170,46 +172,21 @@ static void destroy_pixels(struct vct *vct, struct vct_pixels *pixels)
     *pixels = (struct vct_pixels){ 0 };
 }
 
-static bool create_pixels(struct vct *vct, uint32_t width, uint32_t height, struct vct_pixels *out)
+bool vct_create_images(struct vct *vct, int number, uint32_t width, uint32_t height)
 {
+    static const char *const traced[] = { "traced_red", "traced_green", "traced_blue" };
+    static const char *const gathered[] = { "gathered_red", "gathered_green", "gathered_blue" };
+    struct vct_pixels *out = &vct->views[number].pixels;
     destroy_pixels(vct, out);
+    if (width == 0) return true;
     out->width = gpu_groups(width, vct_step(&vct->options));
     out->height = gpu_groups(height, vct_step(&vct->options));
     return create_image_2d(vct, out, "edges", GPU_R8, &out->edge_image) &&
            create_image_2d(vct, out, "cone_normal", GPU_RG16F, &out->cone_normal_image) &&
            create_image_2d(vct, out, "gathered_irradiance", GPU_RGBA16F,
                            &out->gathered_irradiance) &&
-           create_cone_sums(vct, out, "traced", out->traced) &&
-           create_cone_sums(vct, out, "gathered", out->gathered);
-}
-
-// Views are recorded one after the other: one set of images suffices for views of equal size.
-static bool settle_pixels(struct vct *vct, int number)
-{
-    const struct vct_view *first = &vct->views[0];
-    struct vct_view *view = &vct->views[number];
-    if (number > 0 && view->width == first->width && view->height == first->height) {
-        destroy_pixels(vct, &view->pixels);
-        return true;
-    }
-    return view->width == 0 || create_pixels(vct, view->width, view->height, &view->pixels);
-}
-
-bool vct_create_images(struct vct *vct, int number, uint32_t width, uint32_t height)
-{
-    struct vct_view *view = &vct->views[number];
-    view->width = width;
-    view->height = height;
-    if (width == 0) destroy_pixels(vct, &view->pixels);
-    for (int i = number; i < (number == 0 ? FRAME_MAX_VIEWS : number + 1); i++)
-        if (vct->views[i].width > 0 && !settle_pixels(vct, i)) return false;
-    return true;
-}
-
-struct vct_pixels *vct_pixels_of(struct vct *vct, int number)
-{
-    struct vct_view *view = &vct->views[number];
-    return view->pixels.width > 0 ? &view->pixels : &vct->views[0].pixels;
+           create_cone_sums(vct, out, traced, out->traced) &&
+           create_cone_sums(vct, out, gathered, out->gathered);
 }
 
 static bool create_voxel_image(struct vct *vct, const struct image_plan *plan)

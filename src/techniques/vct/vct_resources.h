@@ -4,12 +4,9 @@
 #include "techniques/vct/vct_options.h"
 
 struct vct;
-struct vct_pixels;
 
 // Of the traced pixels of a view; 0 × 0 destroys them.
 bool vct_create_images(struct vct *vct, int view, uint32_t width, uint32_t height);
-// Those in which a view is recorded.
-struct vct_pixels *vct_pixels_of(struct vct *vct, int view);
 bool vct_create_resources(struct vct *vct); // buffers, voxel images, light volume
 void vct_destroy_resources(struct vct *vct);
 uint64_t vct_resource_bytes(const struct vct_options *options, uint32_t width, uint32_t height);

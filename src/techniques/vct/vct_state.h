@@ -44,8 +44,7 @@ struct vct_pixels {
 };
 
 struct vct_view {
-    uint32_t width, height;       // 0: there is no such view
-    struct vct_pixels pixels;     // empty if those of view 0 have the right size
+    struct vct_pixels pixels;     // empty if there is no such view
     struct vct_temporal temporal; // with temporal
 };
 
@@ -81,6 +80,7 @@ struct vct {
     struct vct_view views[FRAME_MAX_VIEWS];
     struct vct_pixels *pixels;     // of the view being recorded
     struct vct_temporal *temporal; // likewise
+    int begun;                     // view whose history and points are those of the frame
 
     vec3s cone_axes[VCT_MAX_CONES];
 

@@ -38,7 +38,8 @@ bool vo_resize_pyramid(struct vo *vo, uint32_t width, uint32_t height)
                                          .width = half_of(width),
                                          .height = half_of(height),
                                          .mips = levels_of(width, height),
-                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+                                         .usage = GPU_SAMPLED | GPU_STORAGE,
+                                         .alias = "vo.moments" };
     gpu_image_destroy(vo->gpu, &vo->moments);
     return gpu_image_create(vo->gpu, &desc, &vo->moments);
 }
