@@ -186,6 +186,17 @@ static enum status add_default_light(struct session *session)
     return DONE;
 }
 
+// What the library says of an option's value, without the name of the function.
+static enum status fail_option(const struct session *session, enum ag_result result,
+                               const char *option)
+{
+    static const char call[] = "cannot call ";
+    const char *why = ag_context_last_error(session->context);
+    const char *end = strncmp(why, call, sizeof call - 1) == 0 ? strstr(why, ": ") : NULL;
+    if (result != AG_ERROR_ARGUMENT || !end) return fail_library(session->context, result);
+    return wrong_usage("wrong value %s: %s", option, end + 2);
+}
+
 static enum ag_result add_light(struct ag_scene *scene, const struct light_value *light)
 {
     return light->is_area ? ag_scene_add_area_light(scene, &light->area, NULL)
@@ -221,6 +232,12 @@ static void warn_of_empty_scene(struct session *session)
                  session->arguments->positional[0]);
 }
 
+static enum status set_sky(struct session *session)
+{
+    const enum ag_result result = ag_scene_set_sky(session->scene, session->arguments->sky);
+    return result == AG_OK ? DONE : fail_option(session, result, "--sky");
+}
+
 enum status session_light(struct session *session)
 {
     const struct arguments *a = session->arguments;
@@ -230,10 +247,14 @@ enum status session_light(struct session *session)
     enum ag_result result = AG_OK;
     describe_light(session);
     if (a->no_scene_lights) result = ag_scene_remove_lights(session->scene);
-    for (int i = 0; i < a->light_count && result == AG_OK; i++)
+    if (result != AG_OK) return fail_library(session->context, result);
+    for (int i = 0; i < a->light_count; i++) {
+        char option[LIGHT_SIZE];
         result = add_light(session->scene, &a->lights[i]);
-    if (result == AG_OK && a->has_sky) result = ag_scene_set_sky(session->scene, a->sky);
-    return result == AG_OK ? DONE : fail_library(session->context, result);
+        snprintf(option, sizeof option, "--light %s", a->light_texts[i]);
+        if (result != AG_OK) return fail_option(session, result, option);
+    }
+    return a->has_sky ? set_sky(session) : DONE;
 }
 
 // ---- camera
@@ -244,7 +265,7 @@ static enum status camera_from_options(struct session *session, struct ag_camera
     double fov_deg = a->has_fov ? a->fov_deg : FOV_DEG;
     enum ag_result result =
         ag_scene_look_at(session->scene, a->eye, a->target, radians(fov_deg), out);
-    if (result != AG_OK) return fail_library(session->context, result);
+    if (result != AG_OK) return fail_option(session, result, "--eye, --target");
     char eye[SPEC_SIZE], target[SPEC_SIZE];
     print_floats(eye, a->eye);
     print_floats(target, a->target);

@@ -182,6 +182,10 @@ TEST(wrong_lights_are_wrong_usage)
         { "render @cornell --light area:0,0,0:0,0,0:1,1:1,1,1", "direction" },
         { "render @cornell --light area:0,0,0:0,-1,0:1,1:1,1,-1", "negative" },
         { "render @cornell --light :", "sun:" },
+        { "render @cornell --light sun:0,-1,0:1,1e38,1", "wrong value --light sun:0,-1,0" },
+        { "render @cornell --light point:1e30,0,0:1,1,1", "wrong value --light point:1e30" },
+        { "render @cornell --sky 1e38,0,0", "wrong value --sky: radiance" },
+        { "render @cornell --eye 1e19,0,0 --target 0,0,0", "wrong value --eye, --target: eye" },
     };
     CHECK_WRONG(cases, 2);
 }

@@ -8,15 +8,15 @@
 #include <time.h>
 #include <unistd.h>
 
-// What is on standard error after a step of that many milliseconds.
-static const char *said_after(long ms)
+// What is on standard error after a frame of that many milliseconds.
+static const char *said_after(int frame, long ms)
 {
     static char text[512];
     const struct timespec step = { ms / 1000, ms % 1000 * 1000000 };
     int kept = dup(STDERR_FILENO), file = open(test_path("said"), O_RDWR | O_CREAT | O_TRUNC, 0600);
     assert_true(kept >= 0 && file >= 0);
     dup2(file, STDERR_FILENO);
-    waiting_begin(2, 7);
+    waiting_begin(frame, 7);
     nanosleep(&step, NULL);
     waiting_end();
     dup2(kept, STDERR_FILENO);
@@ -27,16 +27,18 @@ static const char *said_after(long ms)
     return text;
 }
 
-TEST(a_frame_of_six_seconds_is_said_once)
+// Later frames follow a line of progress.
+TEST(a_first_frame_of_six_seconds_is_said_once_a_later_one_is_not)
 {
-    CHECK_STRING(said_after(6000), "afterglow: rendering frame 3 of 7: 5 s so far\n");
+    CHECK_STRING(said_after(0, 6000), "afterglow: rendering frame 1 of 7: 5 s so far\n");
+    CHECK_STRING(said_after(1, 6000), "");
 }
 
 TEST(short_frames_are_not_said_and_end_at_once)
 {
     struct timespec begin, end;
     clock_gettime(CLOCK_MONOTONIC, &begin);
-    for (int i = 0; i < 20; i++) CHECK_STRING(said_after(1), "");
+    for (int i = 0; i < 20; i++) CHECK_STRING(said_after(i, 1), "");
     clock_gettime(CLOCK_MONOTONIC, &end);
     CHECK(end.tv_sec - begin.tv_sec < 4);
 }

@@ -6,7 +6,8 @@
 #include <stdbool.h>
 #include <time.h>
 
-enum { FIRST_S = 5, EVERY_S = 10 };
+// Before a later frame there is a line of progress, with the remaining time.
+enum { FIRST_S = 5, LATER_S = 20, EVERY_S = 10 };
 
 static struct {
     pthread_t thread;
@@ -20,8 +21,8 @@ static void *say(void *unused)
 {
     struct timespec next;
     clock_gettime(CLOCK_REALTIME, &next);
-    int passed_s = FIRST_S;
-    next.tv_sec += FIRST_S;
+    int passed_s = state.frame == 0 ? FIRST_S : LATER_S;
+    next.tv_sec += passed_s;
     pthread_mutex_lock(&state.mutex);
     while (!state.stop) {
         if (pthread_cond_timedwait(&state.ended, &state.mutex, &next) == 0) continue;
