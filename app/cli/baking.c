@@ -219,8 +219,8 @@ static enum status prepare_one(struct baking *b, struct session *session, const 
     ag_bake_desc_default(&desc);
     desc.technique = technique;
     desc.seed = a->seed;
-    enum status status = find_given(session, technique, &given);
-    if (status == DONE) status = baking_begin(b, session, gi, &desc, NULL);
+    enum status status = baking_begin(b, session, gi, &desc, NULL);
+    if (status == DONE) status = find_given(session, b->technique, &given);
     if (status != DONE) return status;
     if (given) {
         enum ag_result result = ag_bake_load(b->bake, given);

@@ -94,7 +94,8 @@ AG_API enum ag_result ag_bake_partial_origin(struct ag_context *context, const c
                                              struct ag_bake_origin *out);
 
 struct ag_bake_info {
-    const char *technique, *options; ///< owned by the bake
+    /// Owned by the bake. technique: as in its file, mrt for drt, which has the same bake.
+    const char *technique, *options;
     char key[33];         ///< names what it depends on: a file KEY.safetensors in a cache
     bool complete;        ///< run to its end, or loaded
     double seconds;       ///< wall time of all runs; NaN: loaded from a file that does not state it

@@ -289,7 +289,7 @@ enum ag_result ag_bake_get_info(const struct ag_bake *b, struct ag_bake_info *ou
     struct ag_context *context = context_of(b);
     AG_REQUIRE(context, b, "bake is NULL");
     AG_REQUIRE_POINTER(context, out);
-    *out = (struct ag_bake_info){ .technique = b->spec.technique[b->term]->name,
+    *out = (struct ag_bake_info){ .technique = gi_bake_name(b->spec.technique[b->term]),
                                   .options = bake_options_text(b->bake),
                                   .complete = bake_is_complete(b->bake),
                                   .seconds = bake_seconds(b->bake),

@@ -7,12 +7,17 @@
 #include <string.h>
 #include <unistd.h>
 
+static bool same_bake(const struct technique *a, const struct technique *b)
+{
+    return strcmp(gi_bake_name(a), gi_bake_name(b)) == 0;
+}
+
 static const struct bake *find_given(const struct ag_renderer_desc *desc, const struct bake *wanted,
                                      const struct technique *technique, bool *of_technique)
 {
     for (int i = 0; i < desc->bake_count; i++) {
         const struct ag_bake *given = desc->bakes[i];
-        if (!given || given->spec.technique[given->term] != technique) continue;
+        if (!given || !same_bake(given->spec.technique[given->term], technique)) continue;
         *of_technique = true;
         if (bake_is_complete(given->bake) && bake_fits(given->bake, wanted)) return given->bake;
     }

@@ -14,6 +14,11 @@ int gi_spec_bakes(const struct gi_spec *spec, int index, int *term)
     return count;
 }
 
+const char *gi_bake_name(const struct technique *technique)
+{
+    return technique->bake_name ? technique->bake_name : technique->name;
+}
+
 char *gi_bake_options(struct host *host, const struct technique *technique, const void *options)
 {
     char *text = host_strdup(host, "");
@@ -54,7 +59,7 @@ static struct bake *create_resolved(struct host *host, const struct technique *t
                                     const struct technique_bake *how, struct bake_identity identity)
 {
     char *options = gi_bake_options(host, technique, how->options);
-    identity.technique = technique->name;
+    identity.technique = gi_bake_name(technique);
     identity.version = technique->bake_version;
     identity.options = options;
     struct bake *bake = options ? bake_create(host, &identity) : NULL;

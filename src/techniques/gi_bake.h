@@ -6,6 +6,8 @@
 
 // How many techniques of the spec bake; *term is that of the index-th one, -1 past the last.
 int gi_spec_bakes(const struct gi_spec *spec, int index, int *term);
+// The technique in a bake's identity: another one where both have the same bake.
+const char *gi_bake_name(const struct technique *technique);
 // The options that are part of a bake's identity, "a=1,b=2": those of effect REBAKE. Owned by the
 // caller.
 char *gi_bake_options(struct host *host, const struct technique *technique, const void *options);

@@ -73,6 +73,7 @@ struct technique {
     uint32_t capabilities; // technique_capability bits
     uint32_t needs;        // frame_need bits
     int bake_version;      // 0: no bake
+    const char *bake_name; // of the technique that has the same bake; NULL: the technique's name
     struct option_table options;
     const struct technique_preset *presets; // by ascending cost; ends with a NULL name; may be NULL
     const struct technique_debug_view *debug_views; // ends with a NULL name; may be NULL

@@ -6,6 +6,7 @@
 #include "frame/frame_fixture.h"
 #include "framework/test.h"
 
+#include <stdio.h>
 #include <string.h>
 
 struct fake_options {
@@ -116,6 +117,32 @@ TEST(gi_bake_depends_on_options_of_effect_rebake_alone)
     gi_spec_finish(&spec);
     gi_spec_finish(&same);
     gi_spec_finish(&other);
+}
+
+static void print_key(const char *text, char out[HASH128_TEXT])
+{
+    struct gi_spec spec;
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    const struct technique_bake how = { .options = spec.options[0] };
+    struct bake *bake = gi_bake_create(test_host(), spec.technique[0], &how,
+                                       (struct bake_identity){ .program = "1.0" });
+    assert_non_null(bake);
+    bake_key(bake, out);
+    bake_destroy(bake);
+    gi_spec_finish(&spec);
+}
+
+TEST(drt_has_the_bake_of_mrt)
+{
+    static const char *const options[] = { "", ":texels=8", ":quality=low" };
+    char mrt[HASH128_TEXT], drt[HASH128_TEXT], spec[64];
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        snprintf(spec, sizeof spec, "mrt%s", options[i]);
+        print_key(spec, mrt);
+        snprintf(spec, sizeof spec, "drt%s", options[i]);
+        print_key(spec, drt);
+        CHECK_STRING(drt, mrt);
+    }
 }
 
 TEST(gi_spec_lists_the_techniques_that_bake)

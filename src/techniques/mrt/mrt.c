@@ -290,6 +290,7 @@ const struct technique technique_drt = {
     MRT_TECHNIQUE("drt", "delta radiance transfer", "Loos 2015, Modular Radiance Transfer, ch. 5",
                   drt_option_rows),
     .folder = "mrt",
+    .bake_name = "mrt",
     .check = drt_check,
     .create = drt_create,
 };
