@@ -99,6 +99,13 @@ static bool mrt_create(void *state, const struct technique_create *how)
     return !how->pose || mrt_make_map(mrt, how->pose);
 }
 
+// Pixels find their clutter by their triangle.
+static uint32_t drt_more_needs(const void *options)
+{
+    const struct mrt_options *o = options;
+    return o->gather && o->vector ? FRAME_NEEDS_ID : 0;
+}
+
 static bool drt_create(void *state, const struct technique_create *how)
 {
     struct mrt *mrt = state;
@@ -291,6 +298,7 @@ const struct technique technique_drt = {
                   drt_option_rows),
     .folder = "mrt",
     .bake_name = "mrt",
+    .more_needs = drt_more_needs,
     .check = drt_check,
     .create = drt_create,
 };

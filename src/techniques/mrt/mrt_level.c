@@ -72,7 +72,7 @@ bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, struct m
 }
 
 // Texels along an edge of a block, so that a face of clutter has some of them.
-static const float CLUTTER_TEXELS = 32.0f;
+static const float CLUTTER_TEXELS = 16.0f;
 
 static bool make_clutter(struct mrt *mrt, const struct scene_pose *pose)
 {
@@ -120,7 +120,9 @@ static bool start_cluttered(struct mrt *mrt, struct mrt_turned *turned,
     const struct mrt_cluttered_options how = { .rays = mrt->options.delta_rays,
                                                .depth = mrt->options.depth,
                                                .occlusion = mrt->options.occlusion,
-                                               .reflection = mrt->options.reflection };
+                                               .reflection = mrt->options.reflection,
+                                               .gather =
+                                                   mrt->options.gather && mrt->options.vector };
     struct mrt_cluttered cluttered;
     const bool ok = mrt_cluttered_init(&cluttered, mrt->host, turned, &mrt->level, &mrt->clutter,
                                        mrt->clutter_texels, &how) &&

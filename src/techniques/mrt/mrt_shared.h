@@ -96,6 +96,17 @@ struct mrt_gpu_clutter_sample {
     float share; // of the face; 0: none
 };
 
+// A triangle of clutter in the atlas of its light map: (u, v) = axis · position + offset, clamped.
+struct mrt_gpu_clutter_triangle {
+    vec3s u_axis, v_axis; // texels per metre
+    vec2s offset, low, high;
+    vec3s normal; // world, unit, of the front
+};
+
+struct mrt_clutter_fill_push {
+    uint32_t width, texels; // of the atlas
+};
+
 // Uniform block "mrt_level".
 struct mrt_level_params {
     vec3s grid_origin_m; // lookup grid of blocks
@@ -135,6 +146,8 @@ _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared wi
 _Static_assert(sizeof(struct mrt_gpu_opening) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_triangle) == 60, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_clutter_fill_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");

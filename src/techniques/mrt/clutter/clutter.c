@@ -46,7 +46,12 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
     out->indices = host_alloc(out->host, all, 6 * sizeof *out->indices);
     out->first_triangle =
         host_alloc(out->host, (size_t)pose->scene->instance_count, sizeof *out->first_triangle);
-    if (!out->indices || !out->first_triangle) return false;
+    out->number = host_alloc(out->host, all, sizeof *out->number);
+    out->triangles_of_instance = host_alloc(out->host, (size_t)pose->scene->instance_count,
+                                            sizeof *out->triangles_of_instance);
+    out->scene_triangles = all;
+    if (!out->indices || !out->first_triangle || !out->number || !out->triangles_of_instance)
+        return false;
     if (!start_part(out->host, &out->walls, pose) || !start_part(out->host, &out->objects, pose))
         return false;
     size_t first = 0, objects = 0;
@@ -54,6 +59,7 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
         const struct mesh *mesh = scene_mesh_of(pose->scene, i);
         const uint32_t count = mesh->index_count / 3;
         out->first_triangle[i] = objects;
+        out->triangles_of_instance[i] = pose->scene->instances[i].mesh < 0 ? 0 : count;
         if (pose->scene->instances[i].mesh < 0) continue;
         out->walls.scene.meshes[i].indices = out->indices + 3 * first;
         out->objects.scene.meshes[i].indices = out->indices + 3 * (all + first);
@@ -61,6 +67,7 @@ static bool split(struct mrt_clutter *out, const struct scene_pose *pose, const 
             const bool object = is_clutter[first + t];
             append(&(object ? &out->objects : &out->walls)->scene.meshes[i],
                    mesh->indices + 3 * (size_t)t);
+            out->number[first + t] = object ? (uint32_t)objects : CHART_NONE;
             objects += object;
         }
         first += count;
@@ -119,6 +126,8 @@ void mrt_clutter_finish(struct mrt_clutter *clutter)
     charts_finish(&clutter->charts);
     host_free(host, clutter->indices);
     host_free(host, clutter->first_triangle);
+    host_free(host, clutter->number);
+    host_free(host, clutter->triangles_of_instance);
     host_free(host, clutter->faces);
     host_free(host, clutter->texels);
     host_free(host, clutter->face_of_texel);

@@ -31,8 +31,12 @@ struct mrt_clutter {
     struct charts charts;           // of `objects`
     struct mrt_clutter_face *faces; // in the order of their blocks
     int face_count;
-    uint32_t *texels;         // of the charts, face after face
-    int *face_of_texel;       // [charts.texel_count]
+    uint32_t *texels;   // of the charts, face after face
+    int *face_of_texel; // [charts.texel_count]
+    size_t scene_triangles;
+    uint32_t *triangles_of_instance; // [instances] of the scene
+    uint32_t *number; // [triangles of the scene, instance after instance] of those of `objects`;
+                      // CHART_NONE: of a wall
     size_t *first_triangle;   // [instances], of chart_triangle
     uint32_t *chart_triangle; // [triangles of `objects`, instance after instance], of
                               // charts.triangles; CHART_NONE: without area

@@ -1,6 +1,8 @@
 // Cosine-distributed rays from the texels of a face through the cells of the blocks.
 #include "techniques/mrt/clutter/delta_gather.h"
 
+#include "techniques/mrt/clutter/cell_ray.h"
+
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "core/sampling.h"
@@ -16,29 +18,10 @@ struct job {
     size_t k_b, faces;
 };
 
-struct ray {
-    int block;
-    vec3s position, direction; // in the cell
-};
-
 static int mean_count(uint32_t texels, int rays)
 {
     const int each = (rays + (int)texels - 1) / (int)texels;
     return each < 16 ? 16 : each;
-}
-
-// The ray in the cell of a block. False where the warp has no inverse there.
-static bool enter(const struct mrt_block_map *map, int block, vec3s from, vec3s way,
-                  struct ray *ray)
-{
-    const vec3s *corner = map->blocks[block].corner;
-    ray->block = block;
-    if (!mrt_warp_inverse(corner, from, &ray->position)) return false;
-    ray->position = glms_vec3_maxv(glms_vec3_minv(ray->position, vec3_of(0.5f, 0.5f, 0.5f)),
-                                   vec3_of(-0.5f, -0.5f, -0.5f));
-    const mat3s cell_from_world = glms_mat3_inv(mrt_warp_jacobian(corner, ray->position));
-    ray->direction = vec3_unit(glms_mat3_mulv(cell_from_world, way));
-    return glms_vec3_norm2(ray->direction) > 0.0f;
 }
 
 static void add_wall(const struct job *job, int block, size_t face, float weight,
@@ -54,30 +37,20 @@ static void add_wall(const struct job *job, int block, size_t face, float weight
 }
 
 // Follows a ray that no clutter blocks through openings to a wall.
-static void follow(const struct job *job, struct ray ray, vec3s way, size_t face, float weight)
+static void follow(const struct job *job, struct mrt_cell_ray ray, vec3s way, size_t face,
+                   float weight)
 {
     const struct mrt_block_map *map = job->input->map;
     for (int passed = 0; passed <= job->input->depth; passed++) {
-        const struct mrt_block *block = &map->blocks[ray.block];
-        const struct mrt_shape shape = mrt_block_shape(block, job->input->resolution);
         struct mrt_hit hit;
-        mrt_shape_trace(&shape, ray.position, ray.direction, &hit);
+        const vec3s end = mrt_cell_ray_end(map, job->input->resolution, &ray, &hit);
         if (hit.opening < 0) {
             add_wall(job, ray.block, face, weight, &hit);
             return;
         }
-        const int next = block->neighbor[hit.opening].block;
-        const vec3s at = glms_vec3_muladds(ray.direction, hit.distance, ray.position);
-        if (next < 0 || !enter(map, next, mrt_warp_point(block->corner, at), way, &ray)) return;
+        const int next = map->blocks[ray.block].neighbor[hit.opening].block;
+        if (next < 0 || !mrt_cell_ray_enter(map, next, end, way, &ray)) return;
     }
-}
-
-static vec3s turned_to(vec3s normal, vec3s local)
-{
-    vec3s u, v;
-    basis_of(normal, &u, &v);
-    return glms_vec3_add(glms_vec3_muladds(u, local.x, glms_vec3_scale(v, local.y)),
-                         glms_vec3_scale(normal, local.z));
 }
 
 static void add_face(const struct job *job, size_t face, float weight, const struct trace_hit *hit)
@@ -89,15 +62,11 @@ static void add_face(const struct job *job, size_t face, float weight, const str
 }
 
 // How far a ray goes before it meets a wall of its block: clutter beyond that does not block it.
-static float way_in_block(const struct job *job, const struct ray *ray, vec3s from)
+static float way_in_block(const struct job *job, const struct mrt_cell_ray *ray, vec3s from)
 {
-    const struct mrt_block *block = &job->input->map->blocks[ray->block];
-    const struct mrt_shape shape = mrt_block_shape(block, job->input->resolution);
     struct mrt_hit hit;
-    mrt_shape_trace(&shape, ray->position, ray->direction, &hit);
-    if (hit.opening >= 0) return INFINITY;
-    const vec3s end = glms_vec3_muladds(ray->direction, hit.distance, ray->position);
-    return glms_vec3_distance(from, mrt_warp_point(block->corner, end));
+    const vec3s end = mrt_cell_ray_end(job->input->map, job->input->resolution, ray, &hit);
+    return hit.opening >= 0 ? INFINITY : glms_vec3_distance(from, end);
 }
 
 static void trace_texel(const struct job *job, size_t face, uint32_t texel, int rays, float weight)
@@ -108,12 +77,13 @@ static void trace_texel(const struct job *job, size_t face, uint32_t texel, int 
     const vec3s position = clutter->charts.texels[texel].position;
     const vec3s from = glms_vec3_muladds(
         normal, 1e-4f * (1.0f + glms_vec3_max(glms_vec3_abs(position))), position);
+    const mat3s frame = mrt_frame_of_normal(normal);
     for (int r = 0; r < rays; r++) {
         const vec2s u = sobol_2d((uint32_t)r, pcg_hash(texel) | 1u);
-        const vec3s way = turned_to(normal, sample_hemisphere_cosine(u));
+        const vec3s way = glms_mat3_mulv(frame, sample_hemisphere_cosine(u));
         struct trace_hit hit;
-        struct ray ray;
-        const bool enters = enter(job->input->map, of->block, from, way, &ray);
+        struct mrt_cell_ray ray;
+        const bool enters = mrt_cell_ray_enter(job->input->map, of->block, from, way, &ray);
         const float most = enters ? way_in_block(job, &ray, from) : INFINITY;
         if (trace_closest(job->input->objects, from, way, most, &hit))
             add_face(job, face, weight, &hit);

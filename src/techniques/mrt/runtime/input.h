@@ -49,6 +49,22 @@ struct mrt_clutter_face_input {
     vec3s albedo;                 // mean
 };
 
+// Light of a block at the texels of its clutter, four values each (clutter/clutter_map.h).
+struct mrt_clutter_rows_input {
+    int block, first_texel, texel_count;   // in mrt_clutter_input.texels
+    struct matrix_f32 u_b;                 // texel_count · 4 × k_b
+    struct matrix_f32 u_r[CUBE_FACES + 1]; // × k_r, of the openings of the block
+};
+
+// The light map of clutter; rows NULL: there is none.
+struct mrt_clutter_atlas_input {
+    const struct mrt_clutter_rows_input *rows;
+    int count;
+    uint32_t width, height;
+    const uint32_t *source; // [width × height] in mrt_clutter_input.texels; CHART_NONE: no surface
+    const struct mrt_clutter *clutter; // charts, and triangles of the scene
+};
+
 struct mrt_clutter_input {
     const struct mrt_clutter_texel *texels;
     int texel_count;
@@ -58,6 +74,7 @@ struct mrt_clutter_input {
     int opening_count;
     // [opening_count][k_r][k_r] irradiance of a face (row) of the radiosity of another.
     const float *coupling;
+    struct mrt_clutter_atlas_input map;
 };
 
 struct mrt_runtime_input {

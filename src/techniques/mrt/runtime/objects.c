@@ -51,6 +51,19 @@ bool mrt_buffer_of(struct mrt_runtime *runtime, const char *name, const void *da
            (!data || bytes == 0 || gpu_buffer_upload(runtime->gpu, *out, 0, data, bytes));
 }
 
+bool mrt_table_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                      const char *name, size_t count, size_t size,
+                      void (*fill)(const struct mrt_runtime_input *input, void *items),
+                      gpu_buffer *out)
+{
+    void *items = host_alloc(runtime->host, count, size);
+    if (!items) return false;
+    if (fill) fill(input, items);
+    const bool ok = mrt_buffer_of(runtime, name, items, count * size, out);
+    host_free(runtime->host, items);
+    return ok;
+}
+
 bool mrt_image_of(struct mrt_runtime *runtime, const struct gpu_image_desc *desc, gpu_image *out)
 {
     if (!runtime->plan) return gpu_image_create(runtime->gpu, desc, out);

@@ -10,6 +10,11 @@
 // A storage buffer with this content; zeros where data is NULL, 16 of them where bytes is 0.
 bool mrt_buffer_of(struct mrt_runtime *runtime, const char *name, const void *data, size_t bytes,
                    gpu_buffer *out);
+// The same of `count` items that `fill` writes; zeros where it is NULL.
+bool mrt_table_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                      const char *name, size_t count, size_t size,
+                      void (*fill)(const struct mrt_runtime_input *input, void *items),
+                      gpu_buffer *out);
 bool mrt_image_of(struct mrt_runtime *runtime, const struct gpu_image_desc *desc, gpu_image *out);
 bool mrt_pipeline_of(struct mrt_runtime *runtime, const char *name, const struct gpu_shader *shader,
                      const struct gpu_constant *constants, int count, gpu_pipeline *out);

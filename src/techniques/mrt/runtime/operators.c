@@ -5,6 +5,7 @@
 // undoes it. Powers of two change no bit of the result beyond that.
 #include "operators.h"
 
+#include "techniques/mrt/dictionary/rays.h"
 #include "techniques/mrt/runtime/half.h"
 #include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/reflection.h"
@@ -191,6 +192,54 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_in
     return words_upload(&w, runtime, "t_br", &runtime->buffers.t_br);
 }
 
+// ---- the light map of clutter
+
+static size_t rows_of_map(const struct mrt_clutter_rows_input *rows)
+{
+    return MRT_VECTOR_COEFFICIENTS * (size_t)MRT_LOCAL *
+           mrt_clutter_map_tiles((size_t)rows->texel_count);
+}
+
+static void put_padded(struct words *w, const struct matrix_f32 *m, size_t rows,
+                       const float *factor, int count)
+{
+    const float zero = 0.0f;
+    put_matrix(w, m, factor, count);
+    for (size_t i = m->rows * 4 * mrt_quads(count); i < rows * 4 * mrt_quads(count); i++)
+        put(w, zero);
+}
+
+// T rows of a block and opening are those of its tiles.
+static bool upload_clutter_map(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
+                               const struct mrt_scales *scales)
+{
+    const struct mrt_clutter_atlas_input *map = &input->clutter->map;
+    struct mrt_runtime_clutter_map *to = &runtime->clutter.map;
+    struct words b, r;
+    size_t rows_b = 0, rows_r = 0;
+    for (int i = 0; i < map->count; i++) {
+        rows_b += rows_of_map(&map->rows[i]);
+        for (int k = 0; k <= CUBE_FACES && map->rows[i].u_r[k].rows > 0; k++)
+            rows_r += rows_of_map(&map->rows[i]);
+    }
+    if (!words_init(&b, runtime->host, runtime->options.half, rows_b, mrt_quads(input->k_b)))
+        return false;
+    if (!words_init(&r, runtime->host, runtime->options.half, rows_r, mrt_quads(input->k_r))) {
+        host_free(b.host, b.at);
+        return false;
+    }
+    for (int i = 0; i < map->count; i++) {
+        const struct mrt_clutter_rows_input *rows = &map->rows[i];
+        const size_t count = rows_of_map(rows);
+        put_padded(&b, &rows->u_b, count,
+                   scales->inverse + input->basis_of_block[rows->block] * scales->k_b, input->k_b);
+        for (int k = 0; k <= CUBE_FACES && rows->u_r[k].rows > 0; k++)
+            put_padded(&r, &rows->u_r[k], count, NULL, input->k_r);
+    }
+    const bool ok = words_upload(&b, runtime, "clutter_u_b", &to->u_b);
+    return words_upload(&r, runtime, "clutter_u_r", &to->u_r) && ok;
+}
+
 bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_scales scales = { 0 };
@@ -205,6 +254,8 @@ bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_
     if (ok && runtime->options.probes)
         ok = upload_u_b(runtime, input, &scales, PROBES, &runtime->probes.u_b) &&
              upload_u_r(runtime, input, PROBES, &runtime->probes.u_r);
+    if (ok && input->clutter && input->clutter->map.count > 0)
+        ok = upload_clutter_map(runtime, input, &scales);
     scales_finish(&scales, runtime->host);
     return ok;
 }

@@ -80,36 +80,22 @@ static void fill_unbounced(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-// `count` items that `fill` writes, in a new buffer.
-static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                   const char *name, size_t count, size_t size,
-                   void (*fill)(const struct mrt_runtime_input *input, void *items),
-                   gpu_buffer *out)
-{
-    void *items = host_alloc(runtime->host, count, size);
-    if (!items) return false;
-    fill(input, items);
-    bool ok = mrt_buffer_of(runtime, name, items, count * size, out);
-    host_free(runtime->host, items);
-    return ok;
-}
-
 static bool upload_tables(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
     const size_t blocks = (size_t)input->map->count;
     const size_t probes = blocks * (size_t)mrt_probes_of_block(input->probes);
     const size_t texels = blocks * (size_t)mrt_brick_texels(input->probes);
-    return upload(runtime, input, "probe_tiles", blocks, sizeof(struct mrt_gpu_tile), fill_tiles,
-                  &p->tiles) &&
-           upload(runtime, input, "probe_openings", (size_t)input->opening_count,
-                  sizeof(struct mrt_gpu_opening), fill_openings, &p->openings) &&
-           upload(runtime, input, "brick_sources", texels, sizeof(uint32_t), fill_sources,
-                  &p->sources) &&
-           upload(runtime, input, "probe_turns", blocks, VALUES * VALUES * sizeof(float),
-                  fill_turns, &p->turns) &&
-           upload(runtime, input, "probe_unbounced", probes, sizeof(struct mrt_gpu_probe),
-                  fill_unbounced, &p->unbounced);
+    return mrt_table_upload(runtime, input, "probe_tiles", blocks, sizeof(struct mrt_gpu_tile),
+                            fill_tiles, &p->tiles) &&
+           mrt_table_upload(runtime, input, "probe_openings", (size_t)input->opening_count,
+                            sizeof(struct mrt_gpu_opening), fill_openings, &p->openings) &&
+           mrt_table_upload(runtime, input, "brick_sources", texels, sizeof(uint32_t), fill_sources,
+                            &p->sources) &&
+           mrt_table_upload(runtime, input, "probe_turns", blocks, VALUES * VALUES * sizeof(float),
+                            fill_turns, &p->turns) &&
+           mrt_table_upload(runtime, input, "probe_unbounced", probes, sizeof(struct mrt_gpu_probe),
+                            fill_unbounced, &p->unbounced);
 }
 
 // ---- images

@@ -55,6 +55,17 @@ struct mrt_runtime_outdoors {
     gpu_pipeline fill;
 };
 
+// The light map of clutter; without one tile_count is 0 and the others are empty.
+struct mrt_runtime_clutter_map {
+    gpu_buffer tiles, openings, u_b, u_r;     // as those of texels
+    gpu_buffer light;                         // vec3 per texel and value
+    gpu_buffer sources;                       // per texel of the atlas: in `light`, in `unbounced`
+    gpu_buffer instances, numbers, triangles; // of the scene, of its triangles, of clutter
+    gpu_image image;
+    gpu_pipeline fill, apply;
+    uint32_t tile_count, width, height;
+};
+
 // Without clutter all counts are 0 and the others are empty.
 struct mrt_runtime_clutter {
     gpu_buffer texels, faces, samples, albedo, coupling; // tables
@@ -62,6 +73,7 @@ struct mrt_runtime_clutter {
     gpu_buffer direct, incident; // radiosity of direct light, irradiance: [clutter][colour][slot]
     gpu_pipeline light, couple;
     uint32_t face_count, opening_count;
+    struct mrt_runtime_clutter_map map;
 };
 
 struct mrt_plan;

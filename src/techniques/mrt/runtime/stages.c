@@ -140,6 +140,7 @@ void mrt_record_light_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
         record_fill(runtime, cmd, true);
     }
     gpu_scope_end(cmd);
+    mrt_record_clutter_map(runtime, cmd);
 }
 
 // U_bvol b and U_r r, in the frames of the cells.
@@ -240,6 +241,7 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
             { .name = "normal", .image = view->layers[FRAME_NORMAL] },
             { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
         NULL, 0, gpu_groups(view->width, MRT_LOCAL_2D), gpu_groups(view->height, MRT_LOCAL_2D), 1);
+    mrt_record_clutter_pixels(runtime, cmd, view);
     gpu_scope_end(cmd);
 }
 

@@ -107,19 +107,6 @@ static void fill_coupling(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-static bool upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input,
-                   const char *name, size_t count, size_t size,
-                   void (*fill)(const struct mrt_runtime_input *input, void *items),
-                   gpu_buffer *out)
-{
-    void *items = host_alloc(runtime->host, count, size);
-    if (!items) return false;
-    if (fill) fill(input, items);
-    const bool ok = mrt_buffer_of(runtime, name, items, count * size, out);
-    host_free(runtime->host, items);
-    return ok;
-}
-
 static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
@@ -142,23 +129,24 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
     const size_t openings = (size_t)input->clutter->opening_count, number = sizeof(float);
     c->face_count = (uint32_t)input->clutter->face_count;
     c->opening_count = (uint32_t)openings;
-    return upload(runtime, input, "clutter_texels", texels, sizeof(struct mrt_texel), fill_texels,
-                  &c->texels) &&
-           upload(runtime, input, "clutter_faces", c->face_count,
-                  sizeof(struct mrt_gpu_clutter_face), fill_faces, &c->faces) &&
-           upload(runtime, input, "clutter_samples", c->face_count,
-                  MRT_FACE_SAMPLES * sizeof(struct mrt_gpu_clutter_sample), fill_samples,
-                  &c->samples) &&
-           upload(runtime, input, "clutter_albedo", openings, 3 * slots * number, fill_albedo,
-                  &c->albedo) &&
-           upload(runtime, input, "clutter_coupling", openings, slots * slots * number,
-                  fill_coupling, &c->coupling) &&
-           upload(runtime, input, "clutter_unbounced", texels, VEC3_BYTES, NULL, &c->unbounced) &&
-           upload(runtime, input, "clutter_direct", openings, 3 * slots * number, NULL,
-                  &c->direct) &&
-           upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
-                  &c->incident) &&
-           make_pipelines(runtime, input);
+    return mrt_table_upload(runtime, input, "clutter_texels", texels, sizeof(struct mrt_texel),
+                            fill_texels, &c->texels) &&
+           mrt_table_upload(runtime, input, "clutter_faces", c->face_count,
+                            sizeof(struct mrt_gpu_clutter_face), fill_faces, &c->faces) &&
+           mrt_table_upload(runtime, input, "clutter_samples", c->face_count,
+                            MRT_FACE_SAMPLES * sizeof(struct mrt_gpu_clutter_sample), fill_samples,
+                            &c->samples) &&
+           mrt_table_upload(runtime, input, "clutter_albedo", openings, 3 * slots * number,
+                            fill_albedo, &c->albedo) &&
+           mrt_table_upload(runtime, input, "clutter_coupling", openings, slots * slots * number,
+                            fill_coupling, &c->coupling) &&
+           mrt_table_upload(runtime, input, "clutter_unbounced", texels, VEC3_BYTES, NULL,
+                            &c->unbounced) &&
+           mrt_table_upload(runtime, input, "clutter_direct", openings, 3 * slots * number, NULL,
+                            &c->direct) &&
+           mrt_table_upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
+                            &c->incident) &&
+           make_pipelines(runtime, input) && mrt_clutter_map_upload(runtime, input);
 }
 
 void mrt_clutter_end(struct mrt_runtime *runtime)
@@ -170,6 +158,7 @@ void mrt_clutter_end(struct mrt_runtime *runtime)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_pipeline_destroy(runtime->gpu, &c->light);
     gpu_pipeline_destroy(runtime->gpu, &c->couple);
+    mrt_clutter_map_end(runtime);
 }
 
 // ---- passes

@@ -6,9 +6,16 @@
 // Without clutter of the input nothing is created. mrt_clutter_end accepts zero.
 bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 void mrt_clutter_end(struct mrt_runtime *runtime);
+// ---- map.c: its light map
+bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
+void mrt_clutter_map_end(struct mrt_runtime *runtime);
 
 // Radiosity of direct light of the faces; runtime->level has the parameters of direct light.
 void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+                               const struct frame_view *view);
+// Its light map, from the newest b and r; pixels that it lights, in place of what `apply` found.
+void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd);
+void mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view);
 // T_b→r of each bounce and c, where there is clutter.
 void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd);

@@ -294,8 +294,22 @@ static bool add_clutter(struct builder *s, int block, const struct mrt_delta_blo
     return ok;
 }
 
+static bool add_map(struct builder *s, int block, int first_opening)
+{
+    const struct mrt_runtime_input *input = &s->out->input;
+    const struct mrt_clutter_map_input how = { .map = s->level->map,
+                                               .l_imp = s->l_imp[block],
+                                               .resolution = s->level->resolution,
+                                               .clutter = s->clutter,
+                                               .objects = s->objects,
+                                               .rays = s->options->rays };
+    return mrt_mapped_add(&s->out->mapped, s->turned, &how, block, s->out->openings + first_opening,
+                          input->opening_count - first_opening);
+}
+
 static bool add_block(struct builder *s, int block, const struct mrt_clutter_texel *texels)
 {
+    const int first_opening = s->out->input.opening_count;
     const struct mrt_block *at = &s->level->map->blocks[block];
     const struct mrt_delta_input input = { .block = at,
                                            .index = block,
@@ -311,6 +325,7 @@ static bool add_block(struct builder *s, int block, const struct mrt_clutter_tex
     ok = ok && add_openings(s, block, &delta);
     if (ok && delta.face_count > 0 && s->options->reflection)
         ok = add_clutter(s, block, &delta, texels);
+    if (ok && delta.face_count > 0 && s->options->gather) ok = add_map(s, block, first_opening);
     mrt_delta_block_finish(&delta);
     return ok;
 }
@@ -330,6 +345,7 @@ static bool allocate(struct mrt_cluttered *out, const struct mrt_turned *turned,
     out->faces = host_alloc(host, (size_t)faces, sizeof *out->faces);
     out->clutter_openings = host_alloc(host, blocks, sizeof *out->clutter_openings);
     out->coupling = host_alloc(host, blocks * k_r * k_r, sizeof *out->coupling);
+    if (!mrt_mapped_init(&out->mapped, host, (int)blocks)) return false;
     return out->responses && out->openings && out->pairs && out->gathered && out->faces &&
            out->clutter_openings && out->coupling;
 }
@@ -346,7 +362,9 @@ static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
     out->clutter.faces = out->faces;
     out->clutter.openings = out->clutter_openings;
     out->clutter.coupling = out->coupling;
-    if (out->clutter.opening_count > 0) out->input.clutter = &out->clutter;
+    out->clutter.map = out->mapped.input;
+    if (out->clutter.opening_count > 0 || out->mapped.input.count > 0)
+        out->input.clutter = &out->clutter;
 }
 
 bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt_turned *turned,
@@ -370,6 +388,7 @@ bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt
     for (int b = 0; ok && b < blocks; b++) ok = add_block(&s, b, texels);
     trace_scene_destroy(s.objects);
     host_free(host, s.l_imp);
+    ok = ok && (!options->gather || mrt_mapped_place(&out->mapped, clutter));
     if (ok)
         finish_input(out, turned, clutter, texels);
     else
@@ -383,6 +402,7 @@ void mrt_cluttered_finish(struct mrt_cluttered *out)
     for (int i = out->shared_responses; out->responses && i < out->input.response_count; i++)
         mrt_response_input_finish(out->host, &out->responses[i]);
     for (int i = 0; i < out->gathered_count; i++) matrix_f32_finish(out->host, &out->gathered[i]);
+    mrt_mapped_finish(&out->mapped);
     host_free(out->host, out->responses);
     host_free(out->host, out->openings);
     host_free(out->host, out->pairs);

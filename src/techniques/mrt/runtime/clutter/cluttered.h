@@ -7,12 +7,14 @@
 #pragma once
 
 #include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/runtime/clutter/mapped.h"
 #include "techniques/mrt/runtime/turned.h"
 
 struct mrt_cluttered_options {
     int rays, depth; // rays per texel; openings that light on clutter passes at most
     bool occlusion;  // clutter blocks light
     bool reflection; // it reflects light
+    bool gather;     // it has a light map
 };
 
 struct mrt_cluttered {
@@ -26,6 +28,7 @@ struct mrt_cluttered {
     struct mrt_clutter_face_input *faces;
     int *clutter_openings;
     float *coupling;
+    struct mrt_mapped mapped;
     struct mrt_clutter_input clutter;
     struct mrt_runtime_input input; // refers to `turned`
 };

@@ -1,0 +1,45 @@
+// Light on the texels of a block's clutter (Loos 2015, section 5.3.3: C_b), for a light map of it.
+//
+// A texel has four values: the linear SH of irradiance by normal, in the world's frame, that fit
+// the hemisphere around the surface's normal as OHLSH do (appendix B), and at that normal are the
+// irradiance. Light that enters by an opening is that of the probes around the texel, scaled by the
+// share of its rays to the opening that no clutter blocks.
+#pragma once
+
+#include "core/linalg.h"
+#include "trace/trace.h"
+
+#include "techniques/mrt/dictionary/rays.h"
+#include "techniques/mrt/clutter/clutter.h"
+
+struct mrt_clutter_map {
+    struct host *host;
+    int block;
+    uint32_t first_texel; // in clutter->texels
+    size_t texel_count;
+    struct matrix_f32 b;     // texels · 4 × k_b
+    struct matrix_f32 c;     // texels · 4 × faces of the block
+    float *kept[CUBE_FACES]; // of each texel, by opening
+    bool *inside;            // of each texel: it is inside another object
+};
+
+struct mrt_clutter_map_input {
+    const struct mrt_block_map *map;
+    const struct matrix_f32 *l_imp; // of the block, in its frame
+    int resolution;                 // of walls
+    const struct mrt_clutter *clutter;
+    const struct trace_scene *objects;
+    int rays; // of a texel, a power of two
+};
+
+// The same bits for any number of threads. A block without faces has no texels.
+// mrt_clutter_map_finish accepts zero.
+bool mrt_clutter_map_init(struct mrt_clutter_map *out, struct host *host,
+                          const struct mrt_clutter_map_input *input, int block);
+void mrt_clutter_map_finish(struct mrt_clutter_map *map);
+
+// Light of an opening at the texels, texels · 4 × k_r, from that of its probes: p³ · 9 × k_r in
+// the frame of the cell.
+bool mrt_clutter_map_response(const struct mrt_clutter_map *map,
+                              const struct mrt_clutter_map_input *input, int face,
+                              const struct matrix_f32 *probes, int p, struct matrix_f32 *out);

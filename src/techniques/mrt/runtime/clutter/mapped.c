@@ -1,0 +1,154 @@
+#include "techniques/mrt/runtime/clutter/mapped.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks)
+{
+    *out = (struct mrt_mapped){ .host = host };
+    out->rows = host_alloc(host, (size_t)blocks, sizeof *out->rows);
+    out->input.rows = out->rows;
+    return out->rows;
+}
+
+// Faces are the first columns of an opening that is clutter.
+static bool widen(struct host *host, const struct matrix_f32 *from, size_t columns,
+                  struct matrix_f32 *to)
+{
+    if (!matrix_f32_init(host, to, from->rows, columns)) return false;
+    for (size_t r = 0; r < from->rows; r++)
+        memcpy(to->at + r * to->stride, from->at + r * from->stride,
+               from->columns * sizeof *to->at);
+    return true;
+}
+
+static bool add_openings(struct mrt_clutter_rows_input *rows, const struct mrt_turned *turned,
+                         const struct mrt_clutter_map *map,
+                         const struct mrt_clutter_map_input *input,
+                         const struct mrt_opening_input *openings, int opening_count)
+{
+    bool ok = true;
+    for (int i = 0; ok && i < opening_count; i++) {
+        const int face = openings[i].face;
+        if (face < 0) {
+            ok = widen(map->host, &map->c, (size_t)turned->input.k_r, &rows->u_r[i]);
+            continue;
+        }
+        const struct mrt_response_input *response =
+            &turned->responses[mrt_response_of(&input->map->blocks[rows->block], face)];
+        ok = mrt_clutter_map_response(map, input, face, &response->u_vol, turned->input.probes,
+                                      &rows->u_r[i]);
+    }
+    return ok;
+}
+
+static bool keep_inside(struct mrt_mapped *out, const struct mrt_clutter_map *map,
+                        const struct charts *charts)
+{
+    if (!out->inside) out->inside = host_alloc(out->host, charts->texel_count, sizeof *out->inside);
+    if (out->inside)
+        memcpy(out->inside + map->first_texel, map->inside, map->texel_count * sizeof *map->inside);
+    return out->inside;
+}
+
+bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
+                    const struct mrt_clutter_map_input *input, int block,
+                    const struct mrt_opening_input *openings, int opening_count)
+{
+    struct mrt_clutter_map map;
+    if (!mrt_clutter_map_init(&map, out->host, input, block)) return false;
+    struct mrt_clutter_rows_input *rows = &out->rows[out->input.count++];
+    *rows = (struct mrt_clutter_rows_input){ .block = block,
+                                             .first_texel = (int)map.first_texel,
+                                             .texel_count = (int)map.texel_count,
+                                             .u_b = map.b };
+    map.b = (struct matrix_f32){ 0 };
+    const bool ok = keep_inside(out, &map, &input->clutter->charts) &&
+                    add_openings(rows, turned, &map, input, openings, opening_count);
+    mrt_clutter_map_finish(&map);
+    return ok;
+}
+
+// ---- the atlas
+
+struct placer {
+    const struct charts *charts;
+    const uint32_t *chart_of; // of each texel of the charts
+    const uint32_t *place_of; // in mrt_clutter.texels
+    const bool *inside;       // by place
+};
+
+static bool is_valid(const struct placer *s, uint32_t texel, uint32_t chart)
+{
+    return texel != CHART_NONE && s->chart_of[texel] == chart && !s->inside[s->place_of[texel]];
+}
+
+// The nearest valid texel of its chart, on squares around it; itself where there is none.
+static uint32_t nearest_valid(const struct placer *s, uint32_t texel)
+{
+    const uint32_t of = s->chart_of[texel];
+    const struct chart *chart = &s->charts->charts[of];
+    const int x = (int)s->charts->texels[texel].x, y = (int)s->charts->texels[texel].y;
+    const int left = (int)chart->x, bottom = (int)chart->y;
+    const int right = left + (int)chart->width, top = bottom + (int)chart->height;
+    const int most = (int)(chart->width > chart->height ? chart->width : chart->height);
+    for (int away = 1; away < most; away++)
+        for (int j = y - away; j <= y + away; j++) {
+            const int step = abs(j - y) == away ? 1 : 2 * away;
+            for (int i = x - away; i <= x + away && j >= bottom && j < top; i += step) {
+                if (i < left || i >= right) continue;
+                const uint32_t owner = s->charts->owner[(size_t)j * s->charts->width + (size_t)i];
+                if (is_valid(s, owner, of)) return owner;
+            }
+        }
+    return texel;
+}
+
+static void place(const struct placer *s, struct mrt_mapped *out)
+{
+    const struct charts *charts = s->charts;
+    for (size_t i = 0; i < (size_t)charts->width * charts->height; i++) {
+        uint32_t texel = charts->owner[i];
+        if (texel != CHART_NONE && s->inside[s->place_of[texel]]) texel = nearest_valid(s, texel);
+        out->source[i] = texel == CHART_NONE ? CHART_NONE : s->place_of[texel];
+    }
+}
+
+bool mrt_mapped_place(struct mrt_mapped *out, const struct mrt_clutter *clutter)
+{
+    const struct charts *charts = &clutter->charts;
+    struct host *host = out->host;
+    uint32_t *chart_of = host_alloc(host, charts->texel_count, sizeof *chart_of);
+    uint32_t *place_of = host_alloc(host, charts->texel_count, sizeof *place_of);
+    out->source = host_alloc(host, (size_t)charts->width * charts->height, sizeof *out->source);
+    const bool ok =
+        chart_of && place_of && out->source && (out->inside || charts->texel_count == 0);
+    if (ok) {
+        for (uint32_t c = 0; c < charts->count; c++)
+            for (uint32_t i = 0; i < charts->charts[c].texel_count; i++)
+                chart_of[charts->charts[c].first_texel + i] = c;
+        for (uint32_t i = 0; i < charts->texel_count; i++) place_of[clutter->texels[i]] = i;
+        place(&(struct placer){ charts, chart_of, place_of, out->inside }, out);
+        out->input.source = out->source;
+        out->input.width = charts->width;
+        out->input.height = charts->height;
+        out->input.clutter = clutter;
+    }
+    host_free(host, chart_of);
+    host_free(host, place_of);
+    return ok;
+}
+
+void mrt_mapped_finish(struct mrt_mapped *mapped)
+{
+    if (!mapped->host) return;
+    for (int i = 0; i < mapped->input.count; i++) {
+        matrix_f32_finish(mapped->host, &mapped->rows[i].u_b);
+        for (int k = 0; k <= CUBE_FACES; k++)
+            matrix_f32_finish(mapped->host, &mapped->rows[i].u_r[k]);
+    }
+    host_free(mapped->host, mapped->rows);
+    host_free(mapped->host, mapped->inside);
+    host_free(mapped->host, mapped->source);
+    *mapped = (struct mrt_mapped){ 0 };
+}
