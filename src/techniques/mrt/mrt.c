@@ -103,7 +103,7 @@ static bool mrt_create(void *state, const struct technique_create *how)
 static uint32_t drt_more_needs(const void *options)
 {
     const struct mrt_options *o = options;
-    return o->gather && o->vector ? FRAME_NEEDS_ID : 0;
+    return o->gather && o->reflection && o->vector ? FRAME_NEEDS_ID : 0;
 }
 
 static bool drt_create(void *state, const struct technique_create *how)

@@ -121,8 +121,9 @@ static bool start_cluttered(struct mrt *mrt, struct mrt_turned *turned,
                                                .depth = mrt->options.depth,
                                                .occlusion = mrt->options.occlusion,
                                                .reflection = mrt->options.reflection,
-                                               .gather =
-                                                   mrt->options.gather && mrt->options.vector };
+                                               .gather = mrt->options.gather &&
+                                                         mrt->options.reflection &&
+                                                         mrt->options.vector };
     struct mrt_cluttered cluttered;
     const bool ok = mrt_cluttered_init(&cluttered, mrt->host, turned, &mrt->level, &mrt->clutter,
                                        mrt->clutter_texels, &how) &&

@@ -3,10 +3,13 @@
 
 #include "core/rng.h"
 #include "core/sampling.h"
+#include "core/sh.h"
 #include "scene/raycast.h"
 
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/dictionary/gather.h"
+#include "techniques/mrt/clutter/cell_ray.h"
+#include "techniques/mrt/clutter/clutter_map.h"
 #include "techniques/mrt/clutter/delta_gather.h"
 
 #include <math.h>
@@ -68,14 +71,24 @@ static float radiosity_of_side(vec3s normal)
 
 static const struct box3 BOX = { { { -0.4f, -1.0f, -0.3f } }, { { 0.3f, 0.1f, 0.4f } } };
 
-static void room_init(struct room *room, bool box)
+// In its middle is the first of 2³ probes.
+static const struct box3 HOLLOW = { { { -0.8f, -0.8f, -0.8f } }, { { -0.2f, -0.2f, -0.2f } } };
+static const struct box3 HOLE = { { { -0.7f, -0.7f, -0.7f } }, { { -0.3f, -0.3f, -0.3f } } };
+
+enum content { EMPTY, WITH_BOX, WITH_HOLLOW_BOX };
+
+static void room_init(struct room *room, enum content content)
 {
     const struct mrt_clutter_options options = { 32.0f, 16 };
     const struct box3 shell = { vec3_of(-1, -1, -1), vec3_of(1, 1, 1) };
     *room =
         (struct room){ .scene = scene_create(test_host(), "room"), .shape = mrt_cube(TEXELS, 0) };
     add_box(room->scene, shell, true);
-    if (box) add_box(room->scene, BOX, false);
+    if (content == WITH_BOX) add_box(room->scene, BOX, false);
+    if (content == WITH_HOLLOW_BOX) {
+        add_box(room->scene, HOLLOW, false);
+        add_box(room->scene, HOLE, true);
+    }
     CHECK(pose_init(&room->pose, room->scene, -1, 0.0f));
     CHECK(mrt_block_map_init(test_host(), "test", 1, &room->map));
     mrt_block_init(&room->map.blocks[0], "room", MRT_BLOCK_CUBE);
@@ -116,12 +129,12 @@ static void room_finish(struct room *room)
 TEST(objects_are_clutter_and_walls_are_not)
 {
     struct room room;
-    room_init(&room, true);
+    room_init(&room, WITH_BOX);
     CHECK(room.clutter.triangles == 12 && room.clutter.face_count == FACES);
     CHECK(room.clutter.walls.scene.instances[1].mesh < 0);
     CHECK(room.clutter.objects.scene.instances[0].mesh < 0);
     room_finish(&room);
-    room_init(&room, false);
+    room_init(&room, EMPTY);
     CHECK(room.clutter.triangles == 0);
     room_finish(&room);
 }
@@ -130,7 +143,7 @@ TEST(objects_are_clutter_and_walls_are_not)
 TEST(a_room_of_one_radiosity_stays_so)
 {
     struct room room;
-    room_init(&room, true);
+    room_init(&room, WITH_BOX);
     room_trace(&room);
     double most = 0.0;
     for (int m = 0; m < MRT_MEASURES; m++) {
@@ -198,7 +211,7 @@ TEST(one_bounce_equals_that_of_rays_through_the_scene)
     struct room room;
     struct raycast rays;
     double worst = 0.0, without = 0.0;
-    room_init(&room, true);
+    room_init(&room, WITH_BOX);
     room_trace(&room);
     CHECK(raycast_init(&rays, test_host(), &room.pose));
     const struct mrt_delta *of = &room.delta.of[MRT_IRRADIANCE];
@@ -223,7 +236,7 @@ TEST(one_bounce_equals_that_of_rays_through_the_scene)
 TEST(texels_below_the_box_are_inside)
 {
     struct room room;
-    room_init(&room, true);
+    room_init(&room, WITH_BOX);
     room_trace(&room);
     const struct mrt_delta *of = &room.delta.of[MRT_IRRADIANCE];
     for (int t = 0; t < ALL; t++) {
@@ -233,6 +246,17 @@ TEST(texels_below_the_box_are_inside)
             below = below && at.raw[a] > BOX.min.raw[a] && at.raw[a] < BOX.max.raw[a];
         CHECK(of->inside[t] == below);
     }
+    room_finish(&room);
+}
+
+TEST(no_light_enters_a_closed_box)
+{
+    struct room room;
+    room_init(&room, WITH_HOLLOW_BOX);
+    room_trace(&room);
+    const struct mrt_delta *of = &room.delta.of[MRT_PROBE];
+    for (int i = 0; i < 8; i++) CHECK(of->closed[i] == (i == 0) && !of->inside[i]);
+    for (int f = 0; f < CUBE_FACES; f++) CHECK(of->kept[f][0] == 0.0f);
     room_finish(&room);
 }
 
@@ -259,7 +283,7 @@ TEST(inpainting_takes_valid_neighbors_alone)
 TEST(faces_receive_the_light_of_walls)
 {
     struct room room;
-    room_init(&room, true);
+    room_init(&room, WITH_BOX);
     room_trace(&room);
     const struct matrix_f32 *l_imp = &room.l_imp;
     const struct mrt_gather_input input = { .map = &room.map,
@@ -284,5 +308,51 @@ TEST(faces_receive_the_light_of_walls)
         if (normal.x < -0.5f) CHECK(row[LINEAR] < 1.0f);
     }
     mrt_gather_faces_finish(&faces);
+    room_finish(&room);
+}
+
+// The irradiance that a texel of the light map has at a normal, of mode `mode`.
+static double map_light(const struct mrt_clutter_map *map, size_t texel, int mode, vec3s normal)
+{
+    float basis[4];
+    double sum = 0.0;
+    sh_eval(2, normal, basis);
+    for (size_t q = 0; q < 4; q++)
+        sum += (double)(basis[q] * map->b.at[(4 * texel + q) * map->b.stride + (size_t)mode]);
+    return sum;
+}
+
+TEST(the_light_map_of_clutter_has_the_light_of_rays)
+{
+    struct room room;
+    struct raycast rays;
+    struct mrt_clutter_map map;
+    double worst = 0.0, tilted = 0.0;
+    room_init(&room, WITH_BOX);
+    room_trace(&room);
+    CHECK(raycast_init(&rays, test_host(), &room.pose));
+    const struct mrt_clutter_map_input input = { &room.map,     &room.l_imp,  TEXELS,
+                                                 &room.clutter, room.objects, RAYS };
+    CHECK(mrt_clutter_map_init(&map, test_host(), &input, 0));
+    CHECK(map.texel_count == room.clutter.charts.texel_count);
+    for (size_t i = 0; i < map.texel_count; i += 7) {
+        const uint32_t texel = room.clutter.texels[i];
+        const mat3s frame = mrt_frame_of_normal(chart_texel_normal(&room.clutter.charts, texel));
+        if (frame.col[2].y < -0.5f) continue; // the bottom lies on the floor
+        const vec3s position = room.clutter.charts.texels[texel].position;
+        const double expected = traced(&rays, position, frame, texel);
+        const double found = map_light(&map, i, LINEAR, frame.col[2]);
+        worst = fmax(worst, fabs(found / expected - 1.0));
+        // Radiosity 1 in front of the surface: (1 + cosine) / 2 at a normal beside its own.
+        const vec3s beside = vec3_unit(glms_vec3_add(frame.col[2], frame.col[0]));
+        const double at_45 = map_light(&map, i, CONSTANT, beside);
+        tilted = fmax(tilted, fabs(at_45 - 0.5 * (1.0 + sqrt(0.5))));
+        CHECK(!map.inside[i]);
+    }
+    print_message("at most %.3f of the light from rays, %.3f at 45 degrees\n", worst, tilted);
+    CHECK(worst < 0.03);
+    CHECK(tilted < 0.1);
+    mrt_clutter_map_finish(&map);
+    raycast_finish(&rays);
     room_finish(&room);
 }

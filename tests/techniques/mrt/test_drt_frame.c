@@ -15,6 +15,12 @@ enum { SIZE = 32, FLOATS = SIZE * SIZE * 3, TEXT = 512 };
     "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=8,"         \
     "block_probes=2"
 
+// Each side of the hollow box is a face.
+#define HOLLOW                                                                                     \
+    ":map=single,texels=8,rays=1024,modes=24,lightfield_positions=4,lightfield_directions=6,"      \
+    "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=12,"        \
+    "block_probes=2"
+
 struct room {
     const char *technique, *options;
     bool box;
@@ -109,4 +115,41 @@ TEST_GPU(drt_feedback_converges)
     CHECK_RELATIVE(sum_of(bounces), sum_of(feedback), 5e-3);
     free(bounces);
     free(feedback);
+}
+
+// The camera in a closed hollow box, which is clutter; a lit room is around it. Returns the
+// irradiance; the caller frees it.
+static float *irradiance_in_hollow(struct gpu *gpu, const char *text)
+{
+    struct frame_fixture s;
+    struct gi_spec spec;
+    fixture_init(&s, gpu);
+    const int material = fixture_matte(&s, vec3_of(0.6f, 0.5f, 0.4f));
+    fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, material);
+    fixture_box(&s, vec3_of(-0.8f, 0.6f, -0.8f), vec3_of(0.8f, 2.2f, 0.8f), false, material);
+    fixture_box(&s, vec3_of(-0.7f, 0.7f, -0.7f), vec3_of(0.7f, 2.1f, 0.7f), true, material);
+    fixture_look(&s, vec3_of(-0.5f, 1.9f, 0.5f), vec3_of(0.5f, 0.8f, -0.5f));
+    fixture_add_point(&s, vec3_of(-1.5f, 2.7f, -1.2f), vec3_of(100, 60, 20));
+    fixture_open(&s);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    struct gi *gi = gi_fixture_create(s.gpu, &spec, &s.pose, SIZE, SIZE);
+    assert_non_null(gi);
+    s.indirect = gi_hook(gi);
+    gi_spec_finish(&spec);
+    fixture_render(&s);
+    float *out = fixture_read(&s, READ_IRRADIANCE);
+    gi_destroy(gi);
+    fixture_finish(&s);
+    return out;
+}
+
+// mrt's light passes through.
+TEST_GPU(drt_has_no_light_in_closed_clutter)
+{
+    float *through = irradiance_in_hollow(gpu, "mrt" HOLLOW);
+    float *inside = irradiance_in_hollow(gpu, "drt" HOLLOW);
+    CHECK(sum_of(through) > 0.0);
+    CHECK(sum_of(inside) == 0.0);
+    free(inside);
+    free(through);
 }

@@ -58,9 +58,12 @@ static void add_face(const struct job *job, size_t row, const float *weight, int
         c->at[(row + (size_t)q) * c->stride + (size_t)column] += weight[q];
 }
 
-// Returns whether the ray meets the back of clutter.
-static bool follow(const struct job *job, size_t i, struct mrt_point point, int ray,
-                   struct passing *passing)
+struct blocked {
+    int rays, backs; // of all; that meet the back of clutter
+};
+
+static void follow(const struct job *job, size_t i, struct mrt_point point, int ray,
+                   struct passing *passing, struct blocked *count)
 {
     const size_t row = i * (size_t)job->rays.values;
     const float *weight = job->rays.weight + (size_t)ray * (size_t)job->rays.values;
@@ -74,11 +77,12 @@ static bool follow(const struct job *job, size_t i, struct mrt_point point, int 
         passing->all[wall.opening] += weight[0];
         if (!blocked) passing->kept[wall.opening] += weight[0];
     }
-    if (!blocked) return false;
+    if (!blocked) return;
+    count->rays++;
+    count->backs += !hit.front;
     job->touched[i] = true;
     if (wall.opening < 0) subtract_wall(job, row, weight, &wall);
     add_face(job, row, weight, mrt_face_of_hit(job->input->clutter, &hit));
-    return !hit.front;
 }
 
 static void trace_point(void *user, size_t i)
@@ -87,11 +91,14 @@ static void trace_point(void *user, size_t i)
     const struct mrt_point point =
         mrt_gather_point(&job->input->shape, job->input->probes, job->measure, (int)i);
     struct passing passing = { 0 };
-    int backs = 0;
-    for (int r = 0; r < job->rays.count; r++) backs += follow(job, i, point, r, &passing);
-    job->out->inside[i] = 2 * backs > job->rays.count;
+    struct blocked count = { 0 };
+    for (int r = 0; r < job->rays.count; r++) follow(job, i, point, r, &passing, &count);
+    job->out->inside[i] = 2 * count.backs > job->rays.count;
+    job->out->closed[i] = count.rays == job->rays.count;
     for (int f = 0; f < CUBE_FACES; f++)
-        job->out->kept[f][i] = passing.all[f] > 0.0f ? passing.kept[f] / passing.all[f] : 1.0f;
+        job->out->kept[f][i] = passing.all[f] > 0.0f ? passing.kept[f] / passing.all[f]
+                               : job->out->closed[i] ? 0.0f
+                                                     : 1.0f;
 }
 
 static size_t points_of(const struct mrt_delta_input *input, enum mrt_measure measure)
@@ -113,11 +120,12 @@ static bool trace_measure(struct mrt_delta_block *out, const struct mrt_delta_in
     const size_t rows = ok ? points * (size_t)job.rays.values : 0;
     job.touched = host_alloc(host, points, sizeof *job.touched);
     delta->inside = host_alloc(host, points, sizeof *delta->inside);
+    delta->closed = host_alloc(host, points, sizeof *delta->closed);
     for (int f = 0; f < CUBE_FACES; f++) {
         delta->kept[f] = host_alloc(host, points, sizeof **delta->kept);
         ok = ok && delta->kept[f];
     }
-    ok = ok && job.touched && delta->inside &&
+    ok = ok && job.touched && delta->inside && delta->closed &&
          matrix_f32_init(host, &delta->b, rows, input->l_imp->columns) &&
          matrix_f32_init(host, &delta->c, rows, (size_t)out->face_count);
     if (ok) parallel_for(points, 4, trace_point, &job);
@@ -156,6 +164,7 @@ void mrt_delta_block_finish(struct mrt_delta_block *delta)
         matrix_f32_finish(delta->host, &delta->of[m].b);
         matrix_f32_finish(delta->host, &delta->of[m].c);
         host_free(delta->host, delta->of[m].inside);
+        host_free(delta->host, delta->of[m].closed);
         for (int f = 0; f < CUBE_FACES; f++) host_free(delta->host, delta->of[m].kept[f]);
     }
     *delta = (struct mrt_delta_block){ 0 };

@@ -27,11 +27,15 @@ static bool copy_matrix(struct host *host, const struct matrix_f32 *from, struct
     return true;
 }
 
-static void add_matrix(struct matrix_f32 *to, const struct matrix_f32 *change)
+// U_b + ΔU_b. U_b has the error of other rays, which does not cancel where nothing arrives.
+static void add_shadows(struct matrix_f32 *to, const struct mrt_delta *delta, int values)
 {
     for (size_t r = 0; r < to->rows; r++)
-        for (size_t c = 0; c < to->columns; c++)
-            to->at[r * to->stride + c] += change->at[r * change->stride + c];
+        for (size_t c = 0; c < to->columns; c++) {
+            float *u = &to->at[r * to->stride + c];
+            *u = delta->closed[r / (size_t)values] ? 0.0f
+                                                   : *u + delta->b.at[r * delta->b.stride + c];
+        }
 }
 
 static int values_of(enum mrt_measure measure)
@@ -56,7 +60,7 @@ static void change_basis(const struct builder *s, const struct mrt_block *block,
         const struct mrt_delta *of = &delta->of[m];
         struct matrix_f32 *rows = of_basis(basis, (enum mrt_measure)m);
         if (rows->rows == 0 || !of->inside) continue;
-        add_matrix(rows, &of->b);
+        add_shadows(rows, of, values_of((enum mrt_measure)m));
         if (m == MRT_PROBE)
             mrt_inpaint_probes(rows, s->turned->input.probes, of->inside);
         else

@@ -4,6 +4,7 @@
 
 #include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
+#include "techniques/mrt/runtime/tables.h"
 
 #include "techniques/mrt/dictionary/rays.h"
 
