@@ -37,6 +37,29 @@ static bool parse_options(struct host *host, const struct ag_renderer_desc *desc
            gi_spec_parse(spec, host, desc->gi ? desc->gi : "");
 }
 
+bool renderer_parse_quietly(struct ag_context *context, const struct ag_renderer_desc *desc,
+                            struct gi_spec *spec, struct frame_options *options)
+{
+    struct host *host = &context->host;
+    const enum log_level log_up_to = host->log_up_to;
+    host->log_up_to = LOG_ERROR; // ag_renderer_create logs the same warnings
+    const bool ok = parse_options(host, desc, spec, options);
+    host->log_up_to = log_up_to;
+    return ok;
+}
+
+struct frame_input renderer_wants(const struct ag_renderer_desc *desc)
+{
+    static const struct frame_gbuffer some;
+    return (struct frame_input){
+        .want_indirect_layer = desc->indirect_layer,
+        .want_motion_layer = desc->motion_layer,
+        .want_id_layer = desc->id_layer,
+        .want_display = desc->display_layer,
+        .gbuffer = desc->host_gbuffer ? &some : NULL,
+    };
+}
+
 enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
                                            const struct ag_renderer_desc *desc, int light_count,
                                            uint64_t *bytes)
@@ -53,15 +76,12 @@ enum ag_result ag_renderer_estimate_memory(struct ag_context *context,
     if (checked != AG_OK) return checked;
     struct gi_spec spec = { 0 };
     struct frame_options options;
-    struct host *host = &context->host;
-    const enum log_level log_up_to = host->log_up_to;
-    host->log_up_to = LOG_ERROR; // ag_renderer_create logs the same warnings
-    bool ok = parse_options(host, desc, &spec, &options);
-    host->log_up_to = log_up_to;
-    uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
-    if (light_count > FRAME_MAX_LIGHTS) light_count = FRAME_MAX_LIGHTS;
+    const bool ok = renderer_parse_quietly(context, desc, &spec, &options);
+    const uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
+    struct frame_input input = renderer_wants(desc);
+    input.light_count = light_count < FRAME_MAX_LIGHTS ? light_count : FRAME_MAX_LIGHTS;
     if (ok)
-        *bytes = frame_memory_estimate(&options, width, height, light_count) +
+        *bytes = frame_memory_estimate(&options, &input, gi_spec_needs(&spec), width, height) +
                  gi_memory_estimate(&spec, width, height);
     gi_spec_finish(&spec);
     return api_done(context, ok);

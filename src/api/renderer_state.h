@@ -85,6 +85,13 @@ void renderer_warn_of_darkness(const struct ag_renderer *renderer);
 // "" and NULL: the defaults.
 bool renderer_parse_frame_options(struct host *host, const char *text, struct frame_options *out);
 
+// Both texts of a description, without warnings. Finish *spec in any case.
+bool renderer_parse_quietly(struct ag_context *context, const struct ag_renderer_desc *desc,
+                            struct gi_spec *spec, struct frame_options *options);
+
+// The layers of a description, for estimates of memory.
+struct frame_input renderer_wants(const struct ag_renderer_desc *desc);
+
 // layers.c. The layers of a view, for public functions of that name.
 enum ag_result view_read(const char *function, struct ag_view *view, const char *layer,
                          struct ag_image **out);

@@ -11,6 +11,48 @@ void ag_view_frame_default(struct ag_view_frame *frame)
     if (frame) *frame = (struct ag_view_frame){ .auto_exposure = true };
 }
 
+static struct frame_input view_wants(const struct ag_view_desc *desc)
+{
+    struct frame_input wants =
+        renderer_wants(&(struct ag_renderer_desc){ .indirect_layer = desc->indirect_layer,
+                                                   .motion_layer = desc->motion_layer,
+                                                   .display_layer = desc->display_layer,
+                                                   .host_gbuffer = desc->host_gbuffer });
+    wants.keep_layers = desc->all_layers;
+    return wants;
+}
+
+enum ag_result ag_view_estimate_memory(struct ag_context *context,
+                                       const struct ag_renderer_desc *renderer,
+                                       const struct ag_view_desc *desc, uint64_t *bytes)
+{
+    AG_REQUIRE_POINTER(context, bytes);
+    *bytes = 0;
+    AG_REQUIRE_POINTER(context, context);
+    struct ag_renderer_desc renderer_fallback;
+    struct ag_view_desc fallback;
+    ag_renderer_desc_default(&renderer_fallback);
+    ag_view_desc_default(&fallback);
+    if (!renderer) renderer = &renderer_fallback;
+    if (!desc) desc = &fallback;
+    AG_REQUIRE_KNOWN(__func__, context, renderer);
+    AG_REQUIRE_KNOWN(__func__, context, desc);
+    enum ag_result checked = renderer_size_check(__func__, context, desc->width, desc->height);
+    if (checked != AG_OK) return checked;
+    struct gi_spec spec = { 0 };
+    struct frame_options options;
+    const bool ok = renderer_parse_quietly(context, renderer, &spec, &options);
+    const uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
+    const bool larger = desc->width > renderer->width || desc->height > renderer->height;
+    const struct frame_input first = renderer_wants(renderer), input = view_wants(desc);
+    const uint32_t needs = ok ? gi_spec_needs(&spec) : 0;
+    if (ok)
+        *bytes = frame_view_memory_estimate(&input, larger ? NULL : &first, needs, width, height) +
+                 gi_view_memory_estimate(&spec, width, height, larger);
+    gi_spec_finish(&spec);
+    return api_done(context, ok);
+}
+
 static bool resize(struct ag_view *v, int width, int height)
 {
     struct ag_renderer *r = v->renderer;

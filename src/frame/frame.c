@@ -185,21 +185,10 @@ bool frame_resize(struct frame *f, uint32_t width, uint32_t height)
 
 // ---- Preparation --------------------------------------------------------------------------------
 
-static const uint32_t LEAST_GBUFFER = 1u << FRAME_DEPTH | 1u << FRAME_NORMAL | 1u << FRAME_ALBEDO;
-
-// Of the frame's own G-buffer.
-static uint32_t gbuffer_layers(uint32_t needs, bool has_dielectrics)
-{
-    return LEAST_GBUFFER | 1u << FRAME_MATERIAL | 1u << FRAME_EMISSIVE |
-           (needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0) |
-           (needs & FRAME_NEEDS_ID ? 1u << FRAME_ID : 0) |
-           (has_dielectrics ? 1u << FRAME_DIELECTRIC : 0);
-}
-
 static bool check_gbuffer(struct frame *f)
 {
     const uint32_t needed =
-        LEAST_GBUFFER | (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0);
+        FRAME_LEAST_GBUFFER | (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0);
     const uint32_t missing = needed & ~f->imported;
     if (!missing) return true;
     return host_fail(f->host, FAIL_ARGUMENT, "gbuffer has no image of the layer %s%s",
@@ -207,19 +196,8 @@ static bool check_gbuffer(struct frame *f)
                      : missing >> FRAME_NORMAL & 1u ? "normal"
                      : missing >> FRAME_ALBEDO & 1u ? "albedo"
                                                     : "motion",
-                     missing & LEAST_GBUFFER ? "" : ", which a technique or motion_layer needs");
-}
-
-// Of all passes after the G-buffer.
-static uint32_t wanted_layers(const struct frame_input *input, uint32_t needs)
-{
-    uint32_t wanted = 1u << FRAME_DIRECT | 1u << FRAME_COLOR;
-    if (needs & FRAME_WRITES_IRRADIANCE) wanted |= 1u << FRAME_IRRADIANCE;
-    if (needs & FRAME_WRITES_SPECULAR) wanted |= 1u << FRAME_SPECULAR;
-    if (needs & FRAME_WRITES_VISIBILITY) wanted |= 1u << FRAME_VISIBILITY;
-    if (input->want_indirect_layer) wanted |= 1u << FRAME_INDIRECT;
-    if (input->want_display) wanted |= 1u << FRAME_DISPLAY;
-    return wanted;
+                     missing & FRAME_LEAST_GBUFFER ? ""
+                                                   : ", which a technique or motion_layer needs");
 }
 
 // Whether the display image is of another layer than the colour.
@@ -234,15 +212,6 @@ static uint32_t kept_layers(const struct frame *f, const struct frame_input *inp
 {
     const bool by_layer = shows_layer(input) && !input->shown->image.id;
     return f->pinned | (by_layer ? 1u << input->shown->layer : 0);
-}
-
-// Layers whose value outlives the frame. The first view is recorded last: all of its.
-static uint32_t own_layers(const struct frame *f, const struct frame_input *input, uint32_t kept)
-{
-    if (f->view_number == 0 || input->keep_layers) return ~0u;
-    return kept | 1u << FRAME_COLOR | (input->want_display ? 1u << FRAME_DISPLAY : 0) |
-           (input->want_indirect_layer ? 1u << FRAME_INDIRECT : 0) |
-           (input->want_motion_layer ? 1u << FRAME_MOTION : 0);
 }
 
 static uint32_t composite_variant_of(const struct frame_input *input, uint32_t needs)
@@ -323,12 +292,12 @@ static bool prepare_layers(struct frame *f, const struct frame_input *input, uin
     const uint32_t optional = (f->needs & FRAME_NEEDS_MOTION ? GBUFFER_MOTION : 0) |
                               (f->needs & FRAME_NEEDS_ID ? GBUFFER_ID : 0) |
                               (dielectrics ? GBUFFER_DIELECTRIC : 0);
-    const uint32_t written = wanted_layers(input, f->needs);
+    const uint32_t written = frame_image_layers(input, f->needs);
     frame_import_gbuffer(f, input->gbuffer);
     if (input->gbuffer)
         return check_gbuffer(f) &&
                frame_make_layers(f, written | f->imported, kept | 1u << FRAME_MATERIAL);
-    return frame_make_layers(f, written | gbuffer_layers(f->needs, dielectrics), kept) &&
+    return frame_make_layers(f, written | frame_gbuffer_layers(f->needs, dielectrics), kept) &&
            gbuffer_prepare(&f->common->gbuffer, f->gpu, f->common->scene.variants_used, optional);
 }
 
@@ -354,7 +323,7 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     f->needs = (indirect ? indirect->needs : 0) |
                (input->want_motion_layer || kept >> FRAME_MOTION & 1u ? FRAME_NEEDS_MOTION : 0) |
                (input->want_id_layer || input->pick ? FRAME_NEEDS_ID : 0);
-    f->own = own_layers(f, input, kept);
+    f->own = f->view_number ? kept | frame_kept_layers(input) : ~0u;
     f->prepared = prepare_layers(f, input, kept) && (!is_first || prepare_maps(f, input)) &&
                   prepare_direct(f, input) && prepare_composite(f, input);
     return f->prepared;

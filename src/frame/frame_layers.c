@@ -1,7 +1,5 @@
-// The images of a frame: formats, creation, destruction, memory estimate.
+// The images of a frame: formats, creation, destruction.
 #include "frame/frame_state.h"
-
-#include "core/ggx_albedo.h"
 
 struct layer {
     const char *name;
@@ -53,6 +51,32 @@ static bool make_layer(struct frame *frame, int l)
         .alias = is_aliased(frame, l) ? table[l].name : NULL,
     };
     return gpu_image_create(frame->gpu, &desc, &frame->layers[l]);
+}
+
+uint32_t frame_gbuffer_layers(uint32_t needs, bool has_dielectrics)
+{
+    return FRAME_LEAST_GBUFFER | 1u << FRAME_MATERIAL | 1u << FRAME_EMISSIVE |
+           (needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0) |
+           (needs & FRAME_NEEDS_ID ? 1u << FRAME_ID : 0) |
+           (has_dielectrics ? 1u << FRAME_DIELECTRIC : 0);
+}
+
+uint32_t frame_image_layers(const struct frame_input *input, uint32_t needs)
+{
+    return 1u << FRAME_DIRECT | 1u << FRAME_COLOR |
+           (needs & FRAME_WRITES_IRRADIANCE ? 1u << FRAME_IRRADIANCE : 0) |
+           (needs & FRAME_WRITES_SPECULAR ? 1u << FRAME_SPECULAR : 0) |
+           (needs & FRAME_WRITES_VISIBILITY ? 1u << FRAME_VISIBILITY : 0) |
+           (input->want_indirect_layer ? 1u << FRAME_INDIRECT : 0) |
+           (input->want_display ? 1u << FRAME_DISPLAY : 0);
+}
+
+uint32_t frame_kept_layers(const struct frame_input *input)
+{
+    if (input->keep_layers) return ~0u;
+    return 1u << FRAME_COLOR | (input->want_display ? 1u << FRAME_DISPLAY : 0) |
+           (input->want_indirect_layer ? 1u << FRAME_INDIRECT : 0) |
+           (input->want_motion_layer ? 1u << FRAME_MOTION : 0);
 }
 
 enum gpu_format frame_layer_format(enum frame_layer layer)
@@ -138,22 +162,4 @@ gpu_image frame_layer_image(const struct frame *frame, enum frame_layer layer)
 {
     if ((unsigned)layer >= FRAME_LAYER_COUNT) return (gpu_image){ 0 };
     return frame->layers[layer];
-}
-
-// Upper bound: all layers, and every light a sun or a point light, whichever has more texels.
-uint64_t frame_memory_estimate(const struct frame_options *options, uint32_t width, uint32_t height,
-                               int light_count)
-{
-    uint64_t texel_bytes = 0;
-    for (int l = 0; l < FRAME_LAYER_COUNT; l++)
-        texel_bytes += (uint64_t)gpu_format_bytes(table[l].format);
-    uint64_t lights = (uint64_t)(light_count > 0 ? light_count : 0);
-    uint64_t shadow = (uint64_t)options->shadow_size, rsm = (uint64_t)options->rsm_size;
-    uint64_t sun = (uint64_t)options->cascades * shadow * shadow,
-             local = 6 * (shadow / 2) * (shadow / 2);
-    int rsm_bytes = gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) +
-                    gpu_format_bytes(GPU_RGBA8_SRGB); // per texel
-    return sizeof ggx_albedo_table + texel_bytes * width * height +
-           lights * ((sun > local ? sun : local) * (uint64_t)gpu_format_bytes(GPU_D32F) +
-                     6 * rsm * rsm * (uint64_t)rsm_bytes);
 }

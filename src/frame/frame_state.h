@@ -82,6 +82,12 @@ struct frame {
 };
 
 // frame_layers.c
+// Bits of layers: those of the frame's own G-buffer; those of all passes after it; those that a
+// further view keeps, if they are written.
+enum { FRAME_LEAST_GBUFFER = 1u << FRAME_DEPTH | 1u << FRAME_NORMAL | 1u << FRAME_ALBEDO };
+uint32_t frame_gbuffer_layers(uint32_t needs, bool has_dielectrics);
+uint32_t frame_image_layers(const struct frame_input *input, uint32_t needs);
+uint32_t frame_kept_layers(const struct frame_input *input);
 // Bit l: layer l. `written` by passes or techniques; `kept` in any case. Destroys others.
 bool frame_make_layers(struct frame *frame, uint32_t written, uint32_t kept);
 // Makes a caller's G-buffer the frame's until frame_forget_gbuffer. NULL: none.

@@ -301,14 +301,8 @@ static void gi_record(void *user, struct gpu_cmd *cmd, const struct frame_view *
 
 struct frame_indirect gi_hook(struct gi *gi)
 {
-    uint32_t needs = 0;
-    for (int i = 0; i < gi->spec.count; i++) {
-        const struct technique *technique = gi->spec.technique[i];
-        needs |= technique->needs;
-        if (technique->more_needs) needs |= technique->more_needs(gi->spec.options[i]);
-    }
     return (struct frame_indirect){
-        .update = gi_update, .record = gi_record, .user = gi, .needs = needs
+        .update = gi_update, .record = gi_record, .user = gi, .needs = gi_spec_needs(&gi->spec)
     };
 }
 

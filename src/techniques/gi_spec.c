@@ -213,6 +213,33 @@ char *gi_spec_print(const struct gi_spec *spec)
     return text;
 }
 
+uint32_t gi_spec_needs(const struct gi_spec *spec)
+{
+    uint32_t needs = 0;
+    for (int i = 0; i < spec->count; i++) {
+        const struct technique *technique = spec->technique[i];
+        needs |= technique->needs;
+        if (technique->more_needs) needs |= technique->more_needs(spec->options[i]);
+    }
+    return needs;
+}
+
+uint64_t gi_view_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height,
+                                 bool larger)
+{
+    uint64_t bytes = 0;
+    for (int i = 0; i < spec->count; i++) {
+        const struct technique *technique = spec->technique[i];
+        const void *options = spec->options[i];
+        if (larger && technique->memory_estimate)
+            bytes += technique->memory_estimate(options, width, height) -
+                     technique->memory_estimate(options, 0, 0);
+        else if (technique->view_memory)
+            bytes += technique->view_memory(options, width, height);
+    }
+    return bytes;
+}
+
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height)
 {
     uint64_t bytes = 0;

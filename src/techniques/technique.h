@@ -117,4 +117,7 @@ struct technique {
     void (*destroy)(void *state); // accepts any half-built state
     // Bytes of GPU memory for these options at this size, without creating anything.
     uint64_t (*memory_estimate)(const void *options, uint32_t width, uint32_t height);
+    // Of these what a further view adds that shares the memory of the first (gpu_image_desc.alias):
+    // its history. NULL: nothing.
+    uint64_t (*view_memory)(const void *options, uint32_t width, uint32_t height);
 };

@@ -459,6 +459,13 @@ TEST(reserved_members_are_zero_by_default_and_refused_otherwise)
     renderer.reserved[6] = 1;
     assert_int_equal(ag_renderer_estimate_memory(context, &renderer, 0, &bytes), AG_ERROR_ARGUMENT);
 
+    struct ag_view_desc view;
+    memset(&view, 0xff, sizeof view);
+    ag_view_desc_default(&view);
+    assert_int_equal(ag_view_estimate_memory(context, NULL, &view, &bytes), AG_OK);
+    view.reserved[7] = 1;
+    assert_int_equal(ag_view_estimate_memory(context, NULL, &view, &bytes), AG_ERROR_ARGUMENT);
+
     struct ag_compare_desc compare;
     struct ag_metrics metrics;
     struct ag_image *image;

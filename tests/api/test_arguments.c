@@ -73,6 +73,7 @@ TEST(a_null_context_is_refused)
     CHECK_REFUSED(NULL, ag_image_metrics(NULL, NULL, NULL, NULL, &metrics));
     CHECK_REFUSED(NULL, ag_image_error_map(NULL, NULL, NULL, NULL, AG_DIFFERENCE_FLIP, 0, &image));
     CHECK_REFUSED(NULL, ag_renderer_estimate_memory(NULL, NULL, 0, &bytes));
+    CHECK_REFUSED(NULL, ag_view_estimate_memory(NULL, NULL, NULL, &bytes));
     CHECK_STRING(ag_context_last_error(NULL), "");
     (void)context;
 }
@@ -160,6 +161,7 @@ TEST(null_results_are_refused)
     CHECK_REFUSED(context, ag_image_read(context, "a.png", NULL, NULL));
     CHECK_REFUSED(context, ag_image_read_attribute(context, "a.exr", "name", NULL, 0));
     CHECK_REFUSED(context, ag_renderer_estimate_memory(context, NULL, 0, NULL));
+    CHECK_REFUSED(context, ag_view_estimate_memory(context, NULL, NULL, NULL));
     CHECK_REFUSED(context, ag_renderer_create(NULL, scene, NULL, NULL));
     CHECK_REFUSED(context, ag_scene_get_info(scene, 0, 0, NULL));
     CHECK_REFUSED(context, ag_scene_camera(scene, "main", 0, 0, NULL));

@@ -327,7 +327,7 @@ TEST_GPU(memory_estimate_bounds_a_frames_memory)
     uint64_t taken = 0;
     for (int i = 0; i < count; i++)
         if (strcmp(memory[i].owner, "frame") == 0) taken = memory[i].bytes;
-    uint64_t estimate = frame_memory_estimate(&s.options, 200, 100, s.input.light_count);
-    CHECK(taken > 0 && taken <= estimate && estimate < 4 * taken);
+    uint64_t estimate = frame_memory_estimate(&s.options, &s.input, s.indirect.needs, 200, 100);
+    CHECK(taken > 0 && taken <= estimate && estimate < 2 * taken);
     fixture_finish(&s);
 }

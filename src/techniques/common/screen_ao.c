@@ -107,12 +107,23 @@ void screen_ao_finish(struct screen_ao *ao)
     *ao = (struct screen_ao){ 0 };
 }
 
+static uint64_t pixels_of(const struct screen_ao_options *options, uint32_t width, uint32_t height)
+{
+    return (uint64_t)work_size(options, width) * work_size(options, height);
+}
+
+uint64_t screen_ao_history_memory(const struct screen_ao_options *options, uint32_t width,
+                                  uint32_t height)
+{
+    if (!options->temporal) return 0;
+    return 2 * (uint64_t)gpu_format_bytes(HISTORY_FORMAT) * pixels_of(options, width, height);
+}
+
 uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height)
 {
-    const uint64_t pixels = (uint64_t)work_size(options, width) * work_size(options, height);
-    const uint64_t history = options->temporal ? 2 * (uint64_t)gpu_format_bytes(HISTORY_FORMAT) : 0;
-    return pixels *
-           ((uint64_t)gpu_format_bytes(ESTIMATE_FORMAT) * (options->blur ? 2 : 1) + history);
+    return (uint64_t)gpu_format_bytes(ESTIMATE_FORMAT) * (options->blur ? 2 : 1) *
+               pixels_of(options, width, height) +
+           screen_ao_history_memory(options, width, height);
 }
 
 // ---- a frame

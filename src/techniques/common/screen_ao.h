@@ -32,6 +32,9 @@ bool screen_ao_init(struct screen_ao *ao, struct gpu *gpu, const struct screen_a
 bool screen_ao_resize(struct screen_ao *ao, uint32_t width, uint32_t height);
 void screen_ao_finish(struct screen_ao *ao); // accepts zero
 uint64_t screen_ao_memory(const struct screen_ao_options *options, uint32_t width, uint32_t height);
+// Of these the history.
+uint64_t screen_ao_history_memory(const struct screen_ao_options *options, uint32_t width,
+                                  uint32_t height);
 
 // The constant SCREEN_AO_CONSTANT_STEP, which every shader of the estimate has.
 struct gpu_constant screen_ao_step(const struct screen_ao *ao);

@@ -93,6 +93,12 @@ static uint64_t hbao_memory_estimate(const void *options, uint32_t width, uint32
     return screen_ao_memory(&ao, width, height);
 }
 
+static uint64_t hbao_view_memory(const void *options, uint32_t width, uint32_t height)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    return screen_ao_history_memory(&ao, width, height);
+}
+
 const struct technique technique_hbao = {
     .name = "hbao",
     .title = "horizon-based ambient occlusion",
@@ -108,4 +114,5 @@ const struct technique technique_hbao = {
     .record = hbao_record,
     .destroy = hbao_destroy,
     .memory_estimate = hbao_memory_estimate,
+    .view_memory = hbao_view_memory,
 };

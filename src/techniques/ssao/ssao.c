@@ -106,6 +106,12 @@ static uint64_t ssao_memory_estimate(const void *options, uint32_t width, uint32
     return screen_ao_memory(&ao, width, height);
 }
 
+static uint64_t ssao_view_memory(const void *options, uint32_t width, uint32_t height)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    return screen_ao_history_memory(&ao, width, height);
+}
+
 const struct technique technique_ssao = {
     .name = "ssao",
     .title = "screen-space ambient occlusion, points in a sphere",
@@ -122,4 +128,5 @@ const struct technique technique_ssao = {
     .record = ssao_record,
     .destroy = ssao_destroy,
     .memory_estimate = ssao_memory_estimate,
+    .view_memory = ssao_view_memory,
 };

@@ -354,6 +354,18 @@ static uint64_t vctao_memory_estimate(const void *options, uint32_t width, uint3
     return memory_estimate(vct_occlusion_options(options), width, height);
 }
 
+static uint64_t vct_view_memory(const void *options, uint32_t width, uint32_t height)
+{
+    const struct vct_options light = vct_light_options(options);
+    return light.temporal ? vct_temporal_memory(width, height) : 0;
+}
+
+static uint64_t vctao_view_memory(const void *options, uint32_t width, uint32_t height)
+{
+    const struct vct_options occlusion = vct_occlusion_options(options);
+    return occlusion.temporal ? vct_temporal_memory(width, height) : 0;
+}
+
 const struct technique technique_vct = {
     .name = "vct",
     .title = "voxel cone tracing",
@@ -377,6 +389,7 @@ const struct technique technique_vct = {
     .debug_view = vct_debug_view,
     .destroy = vct_destroy,
     .memory_estimate = vct_memory_estimate,
+    .view_memory = vct_view_memory,
 };
 
 const struct technique technique_vctao = {
@@ -403,4 +416,5 @@ const struct technique technique_vctao = {
     .debug_view = vct_debug_view,
     .destroy = vct_destroy,
     .memory_estimate = vctao_memory_estimate,
+    .view_memory = vctao_view_memory,
 };

@@ -90,6 +90,12 @@ static uint32_t vo_more_needs(const void *options)
     return ((const struct vo_options *)options)->temporal ? FRAME_NEEDS_MOTION : 0;
 }
 
+static uint64_t vo_view_memory(const void *options, uint32_t width, uint32_t height)
+{
+    const struct screen_ao_options ao = ao_options(options);
+    return screen_ao_history_memory(&ao, width, height);
+}
+
 const struct technique technique_vo = {
     .name = "vo",
     .title = "volumetric obscurance",
@@ -108,4 +114,5 @@ const struct technique technique_vo = {
     .record = vo_record,
     .destroy = vo_destroy,
     .memory_estimate = vo_memory_estimate,
+    .view_memory = vo_view_memory,
 };

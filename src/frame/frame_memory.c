@@ -1,0 +1,69 @@
+// Estimates of the memory of a frame and of its views.
+#include "frame/frame_state.h"
+
+#include "core/ggx_albedo.h"
+
+#include "frame/shadow/shadow_shared.h"
+
+// Drivers pad images and buffers; exposure and reports of a frame take less than one page.
+static const uint64_t PAGE_BYTES = 64u << 10;
+
+static uint64_t padded(uint64_t bytes)
+{
+    return (bytes + PAGE_BYTES - 1) / PAGE_BYTES * PAGE_BYTES;
+}
+
+static uint64_t layer_bytes(uint32_t layers, uint32_t width, uint32_t height)
+{
+    uint64_t bytes = 0;
+    for (int l = 0; l < FRAME_LAYER_COUNT; l++)
+        if (layers >> l & 1u)
+            bytes += padded((uint64_t)width * height *
+                            (uint64_t)gpu_format_bytes(frame_layer_format((enum frame_layer)l)));
+    return bytes;
+}
+
+// As if the scene has dielectrics of an own specular.
+static uint32_t layers_of(const struct frame_input *input, uint32_t needs)
+{
+    if (input->want_motion_layer) needs |= FRAME_NEEDS_MOTION;
+    if (input->want_id_layer || input->pick) needs |= FRAME_NEEDS_ID;
+    const uint32_t own = input->gbuffer ? 1u << FRAME_MATERIAL : frame_gbuffer_layers(needs, true);
+    return own | frame_image_layers(input, needs);
+}
+
+// A sun, a point or a spot light: whichever has more texels.
+static uint64_t light_bytes(const struct frame_options *options, uint32_t needs)
+{
+    const uint64_t size = (uint64_t)options->shadow_size, rsm_size = (uint64_t)options->rsm_size;
+    const uint64_t blocks = gpu_groups((uint32_t)size, SHADOW_BLOCK);
+    const uint64_t sun =
+        (uint64_t)options->cascades * (size * size * (uint64_t)gpu_format_bytes(GPU_D32F) +
+                                       blocks * blocks * (uint64_t)gpu_format_bytes(GPU_RGBA16F));
+    const uint64_t local = 6 * (size / 2) * (size / 2) * (uint64_t)gpu_format_bytes(GPU_D32F);
+    const int texel =
+        gpu_format_bytes(GPU_D32F) + gpu_format_bytes(GPU_RG16F) + gpu_format_bytes(GPU_RGBA8_SRGB);
+    const uint64_t rsm = needs & FRAME_NEEDS_RSM ? 6 * rsm_size * rsm_size * (uint64_t)texel : 0;
+    return padded(sun > local ? sun : local) + padded(rsm);
+}
+
+uint64_t frame_memory_estimate(const struct frame_options *options, const struct frame_input *input,
+                               uint32_t needs, uint32_t width, uint32_t height)
+{
+    const uint64_t lights = input->light_count > 0 ? (uint64_t)input->light_count : 0;
+    // The list of the pixels that direct light of a single sun leaves undecided.
+    const uint64_t list = lights == 1 ? (uint64_t)width * height * sizeof(uint32_t) : 0;
+    return 2 * PAGE_BYTES + padded(sizeof ggx_albedo_table) + padded(list) +
+           layer_bytes(layers_of(input, needs), width, height) +
+           lights * light_bytes(options, needs);
+}
+
+uint64_t frame_view_memory_estimate(const struct frame_input *input,
+                                    const struct frame_input *first, uint32_t needs, uint32_t width,
+                                    uint32_t height)
+{
+    const uint32_t shared = first ? layers_of(first, needs) & ~frame_kept_layers(input) : 0;
+    const uint64_t list = first ? 0 : (uint64_t)width * height * sizeof(uint32_t);
+    return PAGE_BYTES + padded(list) +
+           layer_bytes(layers_of(input, needs) & ~shared, width, height);
+}

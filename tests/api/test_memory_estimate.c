@@ -1,0 +1,106 @@
+// Estimates of memory against what renderers and views take: an upper bound, at most a quarter and
+// a MiB above.
+#include "api/view_fixture.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { WIDTH = 512, HEIGHT = 288 };
+
+// Without the scene.
+static uint64_t taken_by(struct ag_renderer *renderer)
+{
+    struct ag_memory owners[64];
+    assert_int_equal(ag_renderer_wait(renderer), AG_OK); // what was destroyed is freed
+    const int count = ag_renderer_memory(renderer, owners, 64);
+    uint64_t bytes = 0;
+    for (int i = 0; i < count; i++)
+        if (strcmp(owners[i].owner, "scene") != 0) bytes += owners[i].bytes;
+    return bytes;
+}
+
+static void check_bound(const char *what, const char *gi, uint64_t taken, uint64_t estimate)
+{
+    if (getenv("VIEWS_PRINT"))
+        printf("%-28s %-18s %8.2f MB, estimate %8.2f\n", gi, what, (double)taken * 1e-6,
+               (double)estimate * 1e-6);
+    if (taken > estimate || (double)estimate > 1.25 * (double)taken + 1048576.0)
+        fail_msg("%s, %s: %.2f MB, estimated %.2f", gi, what, (double)taken * 1e-6,
+                 (double)estimate * 1e-6);
+}
+
+static void check_view(struct renderer_fixture *s, const char *what,
+                       const struct ag_renderer_desc *renderer_desc, struct ag_renderer *renderer,
+                       const struct ag_view_desc *desc, struct ag_frame_desc frame)
+{
+    uint64_t estimate;
+    assert_int_equal(ag_view_estimate_memory(s->context, renderer_desc, desc, &estimate), AG_OK);
+    const uint64_t before = taken_by(renderer);
+    struct ag_view *view = view_create(s, renderer, desc);
+    const struct ag_view_frame further = view_in_frame(view, &frame.camera);
+    frame.views = &further;
+    frame.view_count = 1;
+    if (ag_renderer_render(renderer, &frame) != AG_OK)
+        fail_msg("%s", ag_context_last_error(s->context));
+    check_bound(what, renderer_desc->gi, taken_by(renderer) - before, estimate);
+    ag_view_destroy(view);
+}
+
+static void check_views(struct renderer_fixture *s, const struct ag_renderer_desc *renderer_desc,
+                        struct ag_renderer *renderer, const struct ag_frame_desc *frame)
+{
+    struct ag_view_desc desc;
+    ag_view_desc_default(&desc);
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    check_view(s, "view", renderer_desc, renderer, &desc, *frame);
+    desc.all_layers = desc.indirect_layer = true;
+    check_view(s, "view, all layers", renderer_desc, renderer, &desc, *frame);
+    desc.all_layers = false;
+    desc.width += 64;
+    check_view(s, "larger view", renderer_desc, renderer, &desc, *frame);
+}
+
+static struct ag_layer_handle layer(struct renderer_fixture *s, const char *name)
+{
+    struct ag_layer_handle handle;
+    if (ag_renderer_layer_handle(s->renderer, name, &handle) != AG_OK)
+        fail_msg("%s: %s", name, ag_context_last_error(s->context));
+    return handle;
+}
+
+// With an own G-buffer, or with that of the fixture's renderer.
+static void check(struct renderer_fixture *s, const char *gi, bool hosted)
+{
+    struct ag_renderer_desc desc = fixture_renderer_desc(gi);
+    struct ag_renderer *renderer = NULL;
+    uint64_t estimate;
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    desc.host_gbuffer = hosted;
+    assert_int_equal(ag_renderer_estimate_memory(s->context, &desc, 1, &estimate), AG_OK);
+    assert_int_equal(ag_renderer_create(s->device, s->scene, &desc, &renderer), AG_OK);
+    const struct ag_gbuffer gbuffer = { .depth = layer(s, "depth"),
+                                        .normal = layer(s, "normal"),
+                                        .albedo = layer(s, "albedo"),
+                                        .motion = layer(s, "motion") };
+    struct ag_frame_desc frame = s->frame;
+    if (hosted) frame.gbuffer = &gbuffer;
+    if (ag_renderer_render(renderer, &frame) != AG_OK)
+        fail_msg("%s", ag_context_last_error(s->context));
+    check_bound(hosted ? "own G-buffer" : "renderer", gi, taken_by(renderer), estimate);
+    check_views(s, &desc, renderer, &frame);
+    ag_renderer_destroy(renderer);
+}
+
+TEST(estimates_are_upper_bounds_within_a_quarter_with_views_and_a_programs_gbuffer)
+{
+    static const char *const specs[] = { "none", "lpv:dim=16,cascades=1+vo:temporal=true",
+                                         "vct:resolution=32,temporal=true" };
+    struct renderer_fixture s = fixture_open("none", NULL);
+    assert_int_equal(ag_renderer_resize(s.renderer, WIDTH, HEIGHT), AG_OK);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    for (size_t i = 0; i < sizeof specs / sizeof *specs; i++)
+        for (int hosted = 0; hosted < 2; hosted++) check(&s, specs[i], hosted);
+    fixture_close(&s);
+}
