@@ -119,6 +119,7 @@ static struct memory_block *block_new(struct gpu *gpu, const struct gpu_memory_r
     }
     block->next = gpu->memory.blocks;
     gpu->memory.blocks = block;
+    gpu->memory.block_count++;
     return block;
 }
 
@@ -239,6 +240,30 @@ static void block_give(struct gpu *gpu, struct memory_block *block, struct free_
     }
 }
 
+static bool is_empty(const struct memory_block *block)
+{
+    return block->free_count == 1 && block->free[0].bytes == block->bytes;
+}
+
+// One empty block of each kind stays, for what comes and goes.
+static bool has_another_empty(const struct gpu *gpu, const struct memory_block *block)
+{
+    for (const struct memory_block *b = gpu->memory.blocks; b; b = b->next)
+        if (b != block && !b->single && is_empty(b) && b->type == block->type &&
+            b->linear == block->linear && b->device.request.mapped == block->device.request.mapped)
+            return true;
+    return false;
+}
+
+static void remove_block(struct gpu *gpu, struct memory_block *block)
+{
+    struct memory_block **at = &gpu->memory.blocks;
+    while (*at != block) at = &(*at)->next;
+    *at = block->next;
+    gpu->memory.block_count--;
+    block_free(gpu, block);
+}
+
 void memory_free(struct gpu *gpu, struct allocation *allocation)
 {
     struct memory_block *block = allocation->block;
@@ -248,14 +273,8 @@ void memory_free(struct gpu *gpu, struct allocation *allocation)
     const VkDeviceSize offset = allocation->offset - block->device.block.offset;
     block_give(gpu, block, (struct free_range){ offset, allocation->bytes });
     *allocation = (struct allocation){ 0 };
-    bool empty = block->free_count == 1 && block->free[0].bytes == block->bytes;
-    if (!block->single || !empty) return;
-    for (struct memory_block **at = &gpu->memory.blocks; *at; at = &(*at)->next) {
-        if (*at != block) continue;
-        *at = block->next;
-        block_free(gpu, block);
-        return;
-    }
+    if (is_empty(block) && (block->single || has_another_empty(gpu, block)))
+        remove_block(gpu, block);
 }
 
 void memory_finish(struct gpu *gpu)

@@ -85,6 +85,7 @@ struct memory {
     VkPhysicalDeviceMemoryProperties properties;
     VkDeviceSize max_allocation;
     struct memory_block *blocks;
+    uint32_t block_count;
     struct memory_owner *owners;
     uint32_t owner_count;
 };

@@ -123,6 +123,22 @@ TEST_GPU(objects_in_use_are_freed_after_the_gpu_is_done)
     gpu_buffer_destroy(gpu, &total);
 }
 
+// Blocks have 64 MiB: nine images of 15 MiB take three of them.
+TEST_GPU(of_blocks_that_become_empty_one_is_kept)
+{
+    enum { COUNT = 9 };
+    gpu_image images[COUNT];
+    const uint32_t before = gpu->memory.block_count;
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < COUNT; i++)
+            images[i] = test_gpu_image(gpu, GPU_2D, GPU_R8, 4096, 3840, 1, 1, GPU_SAMPLED);
+        CHECK(gpu->memory.block_count >= before + 2);
+        for (int i = 0; i < COUNT; i++) gpu_image_destroy(gpu, &images[(4 * i + 1) % COUNT]);
+        CHECK(gpu_wait(gpu));
+        CHECK(gpu->memory.block_count <= before + 1);
+    }
+}
+
 TEST_GPU(objects_are_created_and_destroyed_over_many_frames)
 {
     uint32_t expected = 0, got;
