@@ -7,7 +7,7 @@
 
 // ---- Nodes of one object ------------------------------------------------------------------------
 
-// A node for one object, by preference one that was released. `name` is a literal.
+// A node for one object, by preference one that was released. `name` is a literal, or a node's.
 static int take_node(struct scene *scene, const char *name)
 {
     const int node = scene->free_node;
@@ -44,7 +44,7 @@ bool scene_set_instance_transform(struct scene *scene, int instance, mat4s world
     if (it->skin >= 0)
         return scene_refuse(scene, "instance", scene->nodes[it->node].name,
                             "its skin places it: move the joints");
-    if (!own_node(scene, "instance", &it->node, &it->own_node)) return false;
+    if (!own_node(scene, scene->nodes[it->node].name, &it->node, &it->own_node)) return false;
     scene->nodes[it->node].matrix = world_from_mesh;
     scene_changed(scene, &scene->revisions.transforms);
     scene_set_instance_movable(scene, instance, true);

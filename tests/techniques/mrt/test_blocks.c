@@ -161,8 +161,10 @@ static bool read_map(const char *text, struct mrt_block_map *map)
 }
 
 #define MAP(blocks) "{'afterglow_block_map':1,'blocks':[" blocks "]}"
-#define BOX_A       "'name':'hall','box':[[0,0,0],[2,1,1]]"
-#define BOX_B       "'name':'room','box':[[2,0,0],[3,1,1]]"
+#define NAMED(lists)                                                                               \
+    "{'afterglow_block_map':1," lists ",'blocks':[{'name':'a','box':[[0,0,0],[1,1,1]]}]}"
+#define BOX_A "'name':'hall','box':[[0,0,0],[2,1,1]]"
+#define BOX_B "'name':'room','box':[[2,0,0],[3,1,1]]"
 
 TEST(a_file_gives_blocks_with_their_openings)
 {
@@ -205,11 +207,16 @@ TEST(malformed_maps_are_refused_with_the_name_of_the_block)
         { MAP("{'name':'pipe','shape':'straight','open':['+x'],'box':[[0,0,0],[1,1,1]]}"), "pipe",
           "openings" },
         { MAP("{'box':[[0,0,0],[1,1,1]]}"), "block 0", "name" },
+        { NAMED("'clutter':'table'"), "clutter", "array" },
+        { NAMED("'walls':[7]"), "walls", "array of names" },
+        { NAMED("'walls':['']"), "walls", "array of names" },
+        { NAMED("'clutter':['table','table']"), "clutter", "table is named twice" },
+        { NAMED("'clutter':['table'],'walls':['table']"), "walls", "table is named twice" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct mrt_block_map map;
         CHECK(!read_map(cases[i].text, &map));
-        CHECK(map.blocks == NULL);
+        CHECK(map.blocks == NULL && map.named == NULL);
         if (!strstr(test_last_message(), cases[i].name) ||
             !strstr(test_last_message(), cases[i].why))
             fail_msg("case %zu: %s", i, test_last_message());
@@ -233,11 +240,23 @@ TEST(too_many_blocks_are_refused_with_the_name_of_the_first_beyond)
     host_free(test_host(), text);
 }
 
+TEST(a_file_names_clutter_and_walls)
+{
+    struct mrt_block_map map;
+    CHECK(read_map(NAMED("'clutter':['table','lamp'],'walls':['door']"), &map));
+    CHECK(map.named_count == 3);
+    CHECK_STRING(map.named[1].node, "lamp");
+    CHECK_STRING(map.named[2].node, "door");
+    CHECK(map.named[1].clutter && !map.named[2].clutter);
+    mrt_block_map_finish(&map);
+}
+
 // Every prefix, and every byte changed: refused or read, under the sanitizers.
 TEST(damaged_files_do_not_crash)
 {
     static const char text[] =
-        MAP("{" BOX_A ",'open':['+y'],'neighbors':{'+x':'room'}},{" BOX_B "}");
+        "{'afterglow_block_map':1,'clutter':['table'],'walls':['door'],'blocks':["
+        "{" BOX_A ",'open':['+y'],'neighbors':{'+x':'room'}},{" BOX_B "}]}";
     for (size_t i = 0; i + 1 < sizeof text; i++) {
         char copy[sizeof text];
         struct mrt_block_map map;

@@ -3,6 +3,8 @@
 // from the walls that it faces away from or does not face: by the rule that tells pixels of walls
 // from surfaces inside (light_map.glsl).
 //
+// Nodes can be named as clutter or as walls instead (docs/block-maps.md).
+//
 // Its triangles have charts (scene/charts). Their parts in each block are merged into at most
 // `max_faces` faces of that block. A face has one radiosity, the constant basis of section 5.3.2.
 #pragma once
@@ -60,6 +62,15 @@ bool mrt_find_clutter(struct host *host, const struct scene_pose *pose,
                       const struct mrt_block_map *map, bool *is_clutter, size_t *count);
 // The block that contains the point, −1: none.
 int mrt_block_of_point(const struct mrt_block_map *map, vec3s world, vec3s *cell);
+
+// ---- clutter_named.c
+
+enum mrt_named { MRT_NAMED_NOT, MRT_NAMED_CLUTTER, MRT_NAMED_WALL };
+// An mrt_named of each node of the scene, by the names of the map and the extras of nodes; a node
+// without has that of its parent. The caller frees it. NULL: FAIL_FORMAT where the scene lacks a
+// node of the map, or without memory.
+unsigned char *mrt_named_nodes(struct host *host, const struct scene *scene,
+                               const struct mrt_block_map *map);
 
 // ---- clutter_faces.c
 

@@ -135,17 +135,31 @@ static bool find_in_instance(const struct finder *finder, int instance, bool *is
     return ok;
 }
 
+static bool decide(const struct finder *finder, int instance, const unsigned char *named,
+                   bool *is_clutter)
+{
+    const struct scene *scene = finder->pose->scene;
+    const unsigned char name = named[scene->instances[instance].node];
+    if (name == MRT_NAMED_NOT) return find_in_instance(finder, instance, is_clutter);
+    for (uint32_t t = 0; t < scene_mesh_of(scene, instance)->index_count / 3; t++)
+        is_clutter[t] = name == MRT_NAMED_CLUTTER;
+    return true;
+}
+
 bool mrt_find_clutter(struct host *host, const struct scene_pose *pose,
                       const struct mrt_block_map *map, bool *is_clutter, size_t *count)
 {
     const struct finder finder = { host, pose, map };
+    unsigned char *named = mrt_named_nodes(host, pose->scene, map);
     size_t first = 0;
+    bool ok = named;
     *count = 0;
-    for (int i = 0; i < pose->scene->instance_count; i++) {
+    for (int i = 0; ok && i < pose->scene->instance_count; i++) {
         const uint32_t triangles = scene_mesh_of(pose->scene, i)->index_count / 3;
-        if (triangles > 0 && !find_in_instance(&finder, i, is_clutter + first)) return false;
+        ok = triangles == 0 || decide(&finder, i, named, is_clutter + first);
         for (uint32_t t = 0; t < triangles; t++) *count += is_clutter[first + t];
         first += triangles;
     }
-    return true;
+    host_free(host, named);
+    return ok;
 }

@@ -23,6 +23,8 @@ bool mrt_block_map_init(struct host *host, const char *what, size_t count,
 
 void mrt_block_map_finish(struct mrt_block_map *map)
 {
+    for (int i = 0; i < map->named_count; i++) host_free(map->host, map->named[i].node);
+    if (map->host) host_free(map->host, map->named);
     if (map->host) host_free(map->host, map->blocks);
     *map = (struct mrt_block_map){ 0 };
 }

@@ -6,10 +6,20 @@
 
 #include "techniques/mrt/level/block.h"
 
+// A node whose meshes, with those of its descendants, are clutter, or walls, whatever is found
+// (clutter/clutter.h).
+enum { MRT_MAX_NAMED = 1024 }; // of each kind
+struct mrt_named_part {
+    char *node;
+    bool clutter;
+};
+
 struct mrt_block_map {
     struct host *host;
     struct mrt_block *blocks;
     int count;
+    struct mrt_named_part *named;
+    int named_count;
 };
 
 // At most MRT_MAX_BLOCKS blocks, all zero. `what` names the map in messages.
@@ -47,6 +57,8 @@ bool mrt_block_map_as_cubes(const char *what, struct mrt_block_map *map);
 // ---- block_map_json.c: FAIL_FORMAT where the JSON is malformed.
 
 bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_map *map);
+// Whether the `extras` of a node say that it is clutter, or that it is not.
+bool mrt_clutter_of_extras(const struct node *node, bool *clutter);
 // From the `extras` of nodes in the default pose. A scene without blocks gives an empty map.
 bool mrt_block_map_of_scene(struct host *host, const struct scene *scene,
                             struct mrt_block_map *map);

@@ -12,6 +12,7 @@
 #include <string.h>
 
 static const char *const EXTRAS_KEY = "afterglow_block";
+static const char *const CLUTTER_KEY = "afterglow_clutter";
 static const char *const TOO_MANY = "too many blocks are before it";
 
 // One block of the source. `json` is borrowed.
@@ -184,6 +185,52 @@ static bool read_source(const struct source *source, struct mrt_block_map *map)
     return mrt_block_map_check(source->what, map);
 }
 
+// ---- names of clutter
+
+static bool wrong_list(const char *path, struct mrt_block_map *map, const char *list,
+                       const char *why)
+{
+    return host_fail(map->host, FAIL_FORMAT, "%s: %s: %s", path, list, why);
+}
+
+static bool is_named(const struct mrt_block_map *map, const char *node)
+{
+    for (int i = 0; i < map->named_count; i++)
+        if (strcmp(map->named[i].node, node) == 0) return true;
+    return false;
+}
+
+static bool add_names(const char *path, const json_t *root, const char *list, bool clutter,
+                      struct mrt_block_map *map)
+{
+    const json_t *names = json_object_get(root, list);
+    if (names && !json_is_array(names)) return wrong_list(path, map, list, "it is not an array");
+    if (json_array_size(names) > MRT_MAX_NAMED)
+        return wrong_list(path, map, list, "it has too many names");
+    for (size_t i = 0; i < json_array_size(names); i++) {
+        const char *node = json_string_value(json_array_get(names, i));
+        if (!node || !node[0]) return wrong_list(path, map, list, "it is not an array of names");
+        if (is_named(map, node))
+            return host_fail(map->host, FAIL_FORMAT, "%s: %s: %.200s is named twice", path, list,
+                             node);
+        char *copy = host_strdup(map->host, node);
+        if (!copy) return false;
+        map->named[map->named_count++] = (struct mrt_named_part){ copy, clutter };
+    }
+    return true;
+}
+
+static bool read_names(const char *path, const json_t *root, struct mrt_block_map *map)
+{
+    const size_t count = json_array_size(json_object_get(root, "clutter")) +
+                         json_array_size(json_object_get(root, "walls"));
+    if (count > 0 && count <= 2 * (size_t)MRT_MAX_NAMED)
+        map->named = host_alloc(map->host, count, sizeof *map->named);
+    if (count > 0 && count <= 2 * (size_t)MRT_MAX_NAMED && !map->named) return false;
+    return add_names(path, root, "clutter", true, map) &&
+           add_names(path, root, "walls", false, map);
+}
+
 // ---- a file
 
 static bool read_document(struct host *host, const char *path, const json_t *root,
@@ -206,7 +253,7 @@ static bool read_document(struct host *host, const char *path, const json_t *roo
         else if (i >= MRT_MAX_BLOCKS)
             ok = wrong(&source, name, TOO_MANY);
     }
-    ok = ok && read_source(&source, map);
+    ok = ok && read_source(&source, map) && read_names(path, root, map);
     host_free(host, source.blocks);
     return ok;
 }
@@ -228,6 +275,17 @@ bool mrt_block_map_read(struct host *host, const char *path, struct mrt_block_ma
 }
 
 // ---- nodes of a scene
+
+bool mrt_clutter_of_extras(const struct node *node, bool *clutter)
+{
+    if (!node->extras || !strstr(node->extras, CLUTTER_KEY)) return false;
+    json_t *extras = json_loads(node->extras, 0, NULL);
+    const json_t *value = json_object_get(extras, CLUTTER_KEY);
+    const bool said = json_is_boolean(value);
+    *clutter = json_is_true(value);
+    json_decref(extras);
+    return said;
+}
 
 struct node_blocks {
     struct source source;
