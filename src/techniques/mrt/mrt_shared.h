@@ -61,6 +61,12 @@ struct mrt_gpu_opening {
     uint32_t first_pair, pairs;
     uint32_t quads;  // of its coefficients; the others are 0
     int32_t clutter; // which; −1: an opening
+    uint32_t first_face_pair, face_pairs;
+};
+
+// Faces that send light to an opening.
+struct mrt_gpu_face_pair {
+    uint32_t clutter, quads; // of their coefficients
 };
 
 // Light of emissive surfaces (lux) and the sky (of radiance 1/π) at a probe: nine SH coefficients
@@ -143,7 +149,8 @@ _Static_assert(sizeof(struct mrt_gpu_tile) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_block) == 220, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_opening) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_opening) == 28, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_face_pair) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_triangle) == 60, "layout is shared with GLSL");

@@ -36,37 +36,35 @@ static void add_wall(const struct job *job, int block, size_t face, float weight
     }
 }
 
-// Follows a ray that no clutter blocks through openings to a wall.
-static void follow(const struct job *job, struct mrt_cell_ray ray, vec3s way, size_t face,
-                   float weight)
+// Where a ray ends that no clutter blocks.
+struct ray_end {
+    int block; // −1: on no wall
+    float distance;
+    struct mrt_hit hit;
+};
+
+static struct ray_end end_of(const struct job *job, struct mrt_cell_ray ray, vec3s from, vec3s way)
 {
     const struct mrt_block_map *map = job->input->map;
+    struct ray_end out = { .block = -1, .distance = INFINITY };
     for (int passed = 0; passed <= job->input->depth; passed++) {
-        struct mrt_hit hit;
-        const vec3s end = mrt_cell_ray_end(map, job->input->resolution, &ray, &hit);
-        if (hit.opening < 0) {
-            add_wall(job, ray.block, face, weight, &hit);
-            return;
+        const vec3s end = mrt_cell_ray_end(map, job->input->resolution, &ray, &out.hit);
+        if (out.hit.opening < 0) {
+            out.block = ray.block;
+            out.distance = glms_vec3_distance(from, end);
+            break;
         }
-        const int next = map->blocks[ray.block].neighbor[hit.opening].block;
-        if (next < 0 || !mrt_cell_ray_enter(map, next, end, way, &ray)) return;
+        const int next = map->blocks[ray.block].neighbor[out.hit.opening].block;
+        if (next < 0 || !mrt_cell_ray_enter(map, next, end, way, &ray)) break;
     }
+    return out;
 }
 
 static void add_face(const struct job *job, size_t face, float weight, const struct trace_hit *hit)
 {
-    const int column = mrt_face_of_hit(job->input->clutter, hit) - job->first_face;
-    if (column < 0 || column >= (int)job->faces) return;
+    const int column = mrt_face_of_hit(job->input->clutter, hit);
     struct matrix_f32 *of_c = &job->out->of_c;
-    of_c->at[face * of_c->stride + (size_t)column] += weight;
-}
-
-// How far a ray goes before it meets a wall of its block: clutter beyond that does not block it.
-static float way_in_block(const struct job *job, const struct mrt_cell_ray *ray, vec3s from)
-{
-    struct mrt_hit hit;
-    const vec3s end = mrt_cell_ray_end(job->input->map, job->input->resolution, ray, &hit);
-    return hit.opening >= 0 ? INFINITY : glms_vec3_distance(from, end);
+    if (column >= 0) of_c->at[face * of_c->stride + (size_t)column] += weight;
 }
 
 static void trace_texel(const struct job *job, size_t face, uint32_t texel, int rays, float weight)
@@ -83,12 +81,13 @@ static void trace_texel(const struct job *job, size_t face, uint32_t texel, int 
         const vec3s way = glms_mat3_mulv(frame, sample_hemisphere_cosine(u));
         struct trace_hit hit;
         struct mrt_cell_ray ray;
-        const bool enters = mrt_cell_ray_enter(job->input->map, of->block, from, way, &ray);
-        const float most = enters ? way_in_block(job, &ray, from) : INFINITY;
-        if (trace_closest(job->input->objects, from, way, most, &hit))
+        struct ray_end end = { .block = -1, .distance = INFINITY };
+        if (mrt_cell_ray_enter(job->input->map, of->block, from, way, &ray))
+            end = end_of(job, ray, from, way);
+        if (trace_closest(job->input->objects, from, way, end.distance, &hit))
             add_face(job, face, weight, &hit);
-        else if (enters)
-            follow(job, ray, way, face, weight);
+        else if (end.block >= 0)
+            add_wall(job, end.block, face, weight, &end.hit);
     }
 }
 
@@ -141,7 +140,8 @@ bool mrt_gather_faces_init(struct mrt_gather_faces *out, struct host *host,
     job.faces = (size_t)mrt_faces_of_block(input->clutter, block, &job.first_face);
     job.of_b = host_alloc(host, blocks * job.faces, job.k_b * sizeof *job.of_b);
     job.reached = host_alloc(host, blocks * job.faces, sizeof *job.reached);
-    bool ok = job.of_b && job.reached && matrix_f32_init(host, &out->of_c, job.faces, job.faces);
+    bool ok = job.of_b && job.reached &&
+              matrix_f32_init(host, &out->of_c, job.faces, (size_t)input->clutter->face_count);
     if (ok) parallel_for(job.faces, 1, trace_face, &job);
     ok = ok && keep_sources(out, &job);
     host_free(host, job.of_b);

@@ -14,7 +14,7 @@ struct mrt_gather_faces {
     struct host *host;
     struct mrt_gathered *from; // ascending sources
     int count;
-    struct matrix_f32 of_c; // faces × faces of the same block
+    struct matrix_f32 of_c; // faces × all faces
 };
 
 struct mrt_gather_input {

@@ -65,6 +65,12 @@ struct mrt_clutter_atlas_input {
     const struct mrt_clutter *clutter; // charts, and triangles of the scene
 };
 
+// Light of the faces of a block in the coefficients of an opening: r, or the irradiance of faces.
+struct mrt_face_pair_input {
+    int opening, source;    // of mrt_runtime_input.openings; a block
+    struct matrix_f32 of_c; // faces of the source × k_r
+};
+
 struct mrt_clutter_input {
     const struct mrt_clutter_texel *texels;
     int texel_count;
@@ -72,8 +78,8 @@ struct mrt_clutter_input {
     int face_count;
     const int *openings; // those that are clutter
     int opening_count;
-    // [opening_count][k_r][k_r] irradiance of a face (row) of the radiosity of another.
-    const float *coupling;
+    const struct mrt_face_pair_input *pairs; // in the order of their openings
+    int pair_count;
     struct mrt_clutter_atlas_input map;
 };
 

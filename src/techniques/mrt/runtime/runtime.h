@@ -68,9 +68,12 @@ struct mrt_runtime_clutter_map {
 
 // Without clutter all counts are 0 and the others are empty.
 struct mrt_runtime_clutter {
-    gpu_buffer texels, faces, samples, albedo, coupling; // tables
-    gpu_buffer unbounced;                                // vec3 per texel: irradiance
-    gpu_buffer direct, incident; // radiosity of direct light, irradiance: [clutter][colour][slot]
+    gpu_buffer texels, faces, samples, albedo, coupling, pairs; // tables
+    gpu_buffer unbounced;                                       // vec3 per texel: irradiance
+    // Radiosity of direct light; irradiance of the newest bounce, [newest], and the one before:
+    // [clutter][colour][slot].
+    gpu_buffer direct, incident[2];
+    int newest;
     gpu_pipeline light, couple;
     uint32_t face_count, opening_count;
     struct mrt_runtime_clutter_map map;

@@ -144,7 +144,7 @@ static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_ru
                           void *items)
 {
     struct mrt_gpu_opening *openings = items;
-    int pair = 0, clutter = 0;
+    int pair = 0, clutter = 0, face_pair = 0;
     (void)runtime;
     for (int i = 0; i < input->opening_count; i++) {
         size_t response = 0;
@@ -157,6 +157,11 @@ static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_ru
         if (input->openings[i].face < 0) openings[i].clutter = clutter++;
         while (pair < input->pair_count && input->pairs[pair].opening == i) pair++;
         openings[i].pairs = (uint32_t)pair - openings[i].first_pair;
+        openings[i].first_face_pair = (uint32_t)face_pair;
+        while (input->clutter && face_pair < input->clutter->pair_count &&
+               input->clutter->pairs[face_pair].opening == i)
+            face_pair++;
+        openings[i].face_pairs = (uint32_t)face_pair - openings[i].first_face_pair;
     }
 }
 

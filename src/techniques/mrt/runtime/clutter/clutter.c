@@ -97,13 +97,33 @@ static void fill_albedo(const struct mrt_runtime_input *input, void *items)
     }
 }
 
+static int clutter_of_block(const struct mrt_runtime_input *input, int block)
+{
+    int i = 0;
+    while (input->openings[input->clutter->openings[i]].block != block) i++;
+    return i;
+}
+
+static void fill_face_pairs(const struct mrt_runtime_input *input, void *items)
+{
+    struct mrt_gpu_face_pair *pairs = items;
+    for (int i = 0; i < input->clutter->pair_count; i++)
+        pairs[i] = (struct mrt_gpu_face_pair){
+            .clutter = (uint32_t)clutter_of_block(input, input->clutter->pairs[i].source),
+            .quads = mrt_quads((int)input->clutter->pairs[i].of_c.rows),
+        };
+}
+
 static void fill_coupling(const struct mrt_runtime_input *input, void *items)
 {
     float *coupling = items;
-    const size_t slots = slots_of(input), k_r = (size_t)input->k_r;
-    for (size_t i = 0; i < (size_t)input->clutter->opening_count * k_r * k_r; i++) {
-        const size_t clutter = i / k_r / k_r, to = i / k_r % k_r, from = i % k_r;
-        coupling[(clutter * slots + from) * slots + to] = input->clutter->coupling[i];
+    const size_t slots = slots_of(input);
+    for (int i = 0; i < input->clutter->pair_count; i++) {
+        const struct matrix_f32 *of_c = &input->clutter->pairs[i].of_c;
+        for (size_t from = 0; from < of_c->rows; from++)
+            for (size_t to = 0; to < of_c->columns; to++)
+                coupling[((size_t)i * slots + from) * slots + to] =
+                    of_c->at[from * of_c->stride + to];
     }
 }
 
@@ -127,6 +147,7 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
     if (!input->clutter) return true;
     const size_t slots = slots_of(input), texels = (size_t)input->clutter->texel_count;
     const size_t openings = (size_t)input->clutter->opening_count, number = sizeof(float);
+    const size_t pairs = (size_t)input->clutter->pair_count;
     c->face_count = (uint32_t)input->clutter->face_count;
     c->opening_count = (uint32_t)openings;
     return mrt_table_upload(runtime, input, "clutter_texels", texels, sizeof(struct mrt_texel),
@@ -138,22 +159,27 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
                             &c->samples) &&
            mrt_table_upload(runtime, input, "clutter_albedo", openings, 3 * slots * number,
                             fill_albedo, &c->albedo) &&
-           mrt_table_upload(runtime, input, "clutter_coupling", openings, slots * slots * number,
+           mrt_table_upload(runtime, input, "clutter_coupling", pairs, slots * slots * number,
                             fill_coupling, &c->coupling) &&
+           mrt_table_upload(runtime, input, "clutter_pairs", pairs,
+                            sizeof(struct mrt_gpu_face_pair), fill_face_pairs, &c->pairs) &&
            mrt_table_upload(runtime, input, "clutter_unbounced", texels, VEC3_BYTES, NULL,
                             &c->unbounced) &&
            mrt_table_upload(runtime, input, "clutter_direct", openings, 3 * slots * number, NULL,
                             &c->direct) &&
            mrt_table_upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
-                            &c->incident) &&
+                            &c->incident[0]) &&
+           mrt_table_upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
+                            &c->incident[1]) &&
            make_pipelines(runtime, input) && mrt_clutter_map_upload(runtime, input);
 }
 
 void mrt_clutter_end(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    gpu_buffer *const buffers[] = { &c->texels,   &c->faces,     &c->samples, &c->albedo,
-                                    &c->coupling, &c->unbounced, &c->direct,  &c->incident };
+    gpu_buffer *const buffers[] = { &c->texels,      &c->faces,     &c->samples, &c->albedo,
+                                    &c->coupling,    &c->unbounced, &c->direct,  &c->incident[0],
+                                    &c->incident[1], &c->pairs };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_pipeline_destroy(runtime->gpu, &c->light);
@@ -190,7 +216,9 @@ void mrt_record_clutter_direct(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
 void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
-    const struct mrt_runtime_clutter *c = &runtime->clutter;
+    struct mrt_runtime_clutter *c = &runtime->clutter;
+    const gpu_buffer before = c->incident[c->newest];
+    c->newest = 1 - c->newest;
     gpu_dispatch(cmd, c->couple,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
                           { .name = "mrt_openings", .buffer = b->openings },
@@ -200,6 +228,8 @@ void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
                           { .name = "mrt_clutter_direct", .buffer = c->direct },
                           { .name = "mrt_clutter_albedo", .buffer = c->albedo },
                           { .name = "mrt_clutter_coupling", .buffer = c->coupling },
-                          { .name = "mrt_clutter_incident", .buffer = c->incident }),
+                          { .name = "mrt_clutter_pairs", .buffer = c->pairs },
+                          { .name = "mrt_clutter_before", .buffer = before },
+                          { .name = "mrt_clutter_incident", .buffer = c->incident[c->newest] }),
                  NULL, 0, runtime->opening_count, 1, 1);
 }

@@ -1,9 +1,13 @@
 // Bases, responses, openings and pairs of blocks with clutter.
 #include "techniques/mrt/runtime/clutter/cluttered.h"
 
+#include "techniques/mrt/clutter/delta_entry.h"
 #include "techniques/mrt/clutter/delta_gather.h"
 
 #include <string.h>
+
+// Rays of a texel that find clutter beyond openings: all texels of a block make a few coefficients.
+enum { ENTRY_RAYS = 256 };
 
 struct builder {
     struct mrt_cluttered *out;
@@ -13,6 +17,7 @@ struct builder {
     const struct mrt_cluttered_options *options;
     struct trace_scene *objects;
     const struct matrix_f32 **l_imp; // of each block
+    int *sources;                    // [blocks], of an opening
     int old_opening, old_pair;       // of the turned operators that were taken
 };
 
@@ -213,6 +218,96 @@ static struct mrt_opening_input *new_opening(struct builder *s, struct mrt_openi
     return to;
 }
 
+// T_b→r is stored transposed: k_b rows of t_br_stride.
+static bool add_pair(struct builder *s, int opening, int source, const struct matrix_f32 *of_b)
+{
+    const size_t k_b = of_b->columns, stride = (size_t)s->turned->input.t_br_stride;
+    struct matrix_f32 *matrix = &s->out->gathered[s->out->gathered_count++];
+    if (!matrix_f32_init(s->out->host, matrix, 1, k_b * stride)) return false;
+    for (size_t f = 0; f < of_b->rows; f++)
+        for (size_t m = 0; m < k_b; m++)
+            matrix->at[m * stride + f] = of_b->at[f * of_b->stride + m];
+    s->out->pairs[s->out->input.pair_count++] =
+        (struct mrt_pair_input){ opening, source, matrix->at };
+    return true;
+}
+
+// of_c: coefficients of the opening × faces. Without any light there is no pair.
+static bool add_face_pair(struct builder *s, int opening, int source, const struct matrix_f32 *of_c)
+{
+    bool any = false;
+    for (size_t i = 0; i < of_c->rows * of_c->columns; i++)
+        any = any || of_c->at[i / of_c->columns * of_c->stride + i % of_c->columns] != 0.0f;
+    if (!any) return true;
+    struct mrt_face_pair_input *pair = &s->out->face_pairs[s->out->face_pair_count++];
+    *pair = (struct mrt_face_pair_input){ .opening = opening, .source = source };
+    if (!matrix_f32_init(s->out->host, &pair->of_c, of_c->columns, (size_t)s->turned->input.k_r))
+        return false;
+    for (size_t r = 0; r < of_c->rows; r++)
+        for (size_t f = 0; f < of_c->columns; f++)
+            pair->of_c.at[f * pair->of_c.stride + r] = of_c->at[r * of_c->stride + f];
+    return true;
+}
+
+static int pairs_of_opening(const struct mrt_runtime_input *input, int opening, int first)
+{
+    int count = 0;
+    while (first + count < input->pair_count && input->pairs[first + count].opening == opening)
+        count++;
+    return count;
+}
+
+// Without clutter in any of the blocks that send light the entry is empty.
+static bool trace_entry(struct builder *s, int index, int pairs, struct mrt_delta_entry *out)
+{
+    const struct mrt_opening_input *opening = &s->turned->input.openings[index];
+    const struct mrt_delta_entry_input input = { .map = s->level->map,
+                                                 .l_imp = s->l_imp,
+                                                 .resolution = s->level->resolution,
+                                                 .clutter = s->clutter,
+                                                 .objects = s->objects,
+                                                 .rays = ENTRY_RAYS,
+                                                 .depth = s->options->depth,
+                                                 .block = opening->block,
+                                                 .face = opening->face,
+                                                 .u_r =
+                                                     &s->turned->responses[opening->response].u_r,
+                                                 .sources = s->sources,
+                                                 .source_count = pairs };
+    bool any = false;
+    *out = (struct mrt_delta_entry){ 0 };
+    for (int i = 0; i < pairs; i++) {
+        int first;
+        s->sources[i] = s->turned->input.pairs[s->old_pair + i].source;
+        any = any || mrt_faces_of_block(s->clutter, s->sources[i], &first) > 0;
+    }
+    return !any || mrt_delta_entry_init(out, s->out->host, &input);
+}
+
+static bool add_opening_pairs(struct builder *s, int opening)
+{
+    const struct mrt_runtime_input *old = &s->turned->input;
+    const int count = pairs_of_opening(old, s->old_opening, s->old_pair);
+    struct mrt_delta_entry entry;
+    bool ok = trace_entry(s, s->old_opening, count, &entry);
+    for (int i = 0; ok && i < count; i++) {
+        const struct mrt_pair_input *pair = &old->pairs[s->old_pair + i];
+        const struct mrt_delta_source *source = entry.count > 0 ? &entry.sources[i] : NULL;
+        if (source && source->hidden && s->options->occlusion) {
+            ok = add_pair(s, opening, pair->source, &source->b);
+        } else {
+            struct mrt_pair_input *to = &s->out->pairs[s->out->input.pair_count++];
+            *to = *pair;
+            to->opening = opening;
+        }
+        if (ok && source && source->c.columns > 0 && s->options->reflection)
+            ok = add_face_pair(s, opening, pair->source, &source->c);
+    }
+    mrt_delta_entry_finish(&entry);
+    s->old_pair += count;
+    return ok;
+}
+
 static bool add_openings(struct builder *s, int block, const struct mrt_delta_block *delta)
 {
     const struct mrt_runtime_input *old = &s->turned->input;
@@ -223,12 +318,7 @@ static bool add_openings(struct builder *s, int block, const struct mrt_delta_bl
         struct mrt_opening_input *to = new_opening(s, old->openings[s->old_opening]);
         if (delta->touched && s->options->occlusion)
             ok = add_kept_response(s, block, to->face, delta, to);
-        for (; s->old_pair < old->pair_count && old->pairs[s->old_pair].opening == s->old_opening;
-             s->old_pair++) {
-            struct mrt_pair_input *pair = &s->out->pairs[s->out->input.pair_count++];
-            *pair = old->pairs[s->old_pair];
-            pair->opening = index;
-        }
+        ok = ok && add_opening_pairs(s, index);
         s->old_opening++;
     }
     return ok;
@@ -236,28 +326,26 @@ static bool add_openings(struct builder *s, int block, const struct mrt_delta_bl
 
 // ---- the opening of clutter
 
-// T_b→r is stored transposed: k_b rows of t_br_stride.
-static bool add_gathered(struct builder *s, int opening, const struct mrt_gathered *from)
+// Light of the faces of all blocks on those of one.
+static bool add_couplings(struct builder *s, int opening, const struct matrix_f32 *of_c)
 {
-    const size_t k_b = from->of_b.columns, stride = (size_t)s->turned->input.t_br_stride;
-    struct matrix_f32 *matrix = &s->out->gathered[s->out->gathered_count++];
-    if (!matrix_f32_init(s->out->host, matrix, 1, k_b * stride)) return false;
-    for (size_t f = 0; f < from->of_b.rows; f++)
-        for (size_t m = 0; m < k_b; m++)
-            matrix->at[m * stride + f] = from->of_b.at[f * from->of_b.stride + m];
-    s->out->pairs[s->out->input.pair_count++] =
-        (struct mrt_pair_input){ opening, from->source, matrix->at };
-    return true;
+    bool ok = true;
+    for (int b = 0; ok && b < s->level->map->count; b++) {
+        int first;
+        const int faces = mrt_faces_of_block(s->clutter, b, &first);
+        if (faces == 0) continue;
+        const struct matrix_f32 part =
+            matrix_f32_block(of_c, 0, (size_t)first, of_c->rows, (size_t)faces);
+        ok = add_face_pair(s, opening, b, &part);
+    }
+    return ok;
 }
 
 static void add_faces(struct builder *s, int opening, const struct mrt_delta_block *delta,
-                      const struct mrt_gather_faces *gathered,
                       const struct mrt_clutter_texel *texels)
 {
     struct mrt_clutter_input *clutter = &s->out->clutter;
-    const int k_r = s->turned->input.k_r, at = clutter->opening_count++;
-    float *coupling = s->out->coupling + (size_t)at * (size_t)(k_r * k_r);
-    s->out->clutter_openings[at] = opening;
+    s->out->clutter_openings[clutter->opening_count++] = opening;
     for (int i = 0; i < delta->face_count; i++) {
         const struct mrt_clutter_face *from = &s->clutter->faces[delta->first_face + i];
         struct mrt_clutter_face_input *to = &s->out->faces[clutter->face_count++];
@@ -271,9 +359,6 @@ static void add_faces(struct builder *s, int opening, const struct mrt_delta_blo
             area += texels[t].area_m2;
         }
         to->albedo = glms_vec3_divs(to->albedo, area);
-        for (int k = 0; k < delta->face_count; k++)
-            coupling[i * k_r + k] =
-                gathered->of_c.at[(size_t)i * gathered->of_c.stride + (size_t)k];
     }
 }
 
@@ -292,8 +377,10 @@ static bool add_clutter(struct builder *s, int block, const struct mrt_delta_blo
     new_opening(s, (struct mrt_opening_input){ block, -1, response });
     bool ok = add_face_response(s, block, delta, response) &&
               mrt_gather_faces_init(&gathered, s->out->host, &input, block);
-    for (int i = 0; ok && i < gathered.count; i++) ok = add_gathered(s, opening, &gathered.from[i]);
-    if (ok) add_faces(s, opening, delta, &gathered, texels);
+    for (int i = 0; ok && i < gathered.count; i++)
+        ok = add_pair(s, opening, gathered.from[i].source, &gathered.from[i].of_b);
+    ok = ok && add_couplings(s, opening, &gathered.of_c);
+    if (ok) add_faces(s, opening, delta, texels);
     mrt_gather_faces_finish(&gathered);
     return ok;
 }
@@ -340,18 +427,18 @@ static bool allocate(struct mrt_cluttered *out, const struct mrt_turned *turned,
 {
     const struct mrt_runtime_input *old = &turned->input;
     const size_t blocks = (size_t)old->map->count, openings = (size_t)old->opening_count;
-    const size_t pairs = (size_t)old->pair_count, k_r = (size_t)old->k_r;
+    const size_t pairs = (size_t)old->pair_count;
     struct host *host = out->host;
     out->responses = host_alloc(host, MRT_RESPONSES + openings + blocks, sizeof *out->responses);
     out->openings = host_alloc(host, openings + blocks, sizeof *out->openings);
     out->pairs = host_alloc(host, pairs + blocks * blocks, sizeof *out->pairs);
-    out->gathered = host_alloc(host, blocks * blocks, sizeof *out->gathered);
+    out->gathered = host_alloc(host, pairs + blocks * blocks, sizeof *out->gathered);
     out->faces = host_alloc(host, (size_t)faces, sizeof *out->faces);
     out->clutter_openings = host_alloc(host, blocks, sizeof *out->clutter_openings);
-    out->coupling = host_alloc(host, blocks * k_r * k_r, sizeof *out->coupling);
+    out->face_pairs = host_alloc(host, pairs + blocks * blocks, sizeof *out->face_pairs);
     if (!mrt_mapped_init(&out->mapped, host, (int)blocks)) return false;
     return out->responses && out->openings && out->pairs && out->gathered && out->faces &&
-           out->clutter_openings && out->coupling;
+           out->clutter_openings && out->face_pairs;
 }
 
 static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
@@ -365,7 +452,8 @@ static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
     out->clutter.texel_count = (int)clutter->charts.texel_count;
     out->clutter.faces = out->faces;
     out->clutter.openings = out->clutter_openings;
-    out->clutter.coupling = out->coupling;
+    out->clutter.pairs = out->face_pairs;
+    out->clutter.pair_count = out->face_pair_count;
     out->clutter.map = out->mapped.input;
     if (out->clutter.opening_count > 0 || out->mapped.input.count > 0)
         out->input.clutter = &out->clutter;
@@ -384,7 +472,8 @@ bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt
     out->input.opening_count = out->input.pair_count = 0;
     s.objects = trace_scene_create(host, &clutter->objects.pose);
     s.l_imp = host_alloc(host, (size_t)blocks, sizeof *s.l_imp);
-    bool ok = s.objects && s.l_imp && allocate(out, turned, clutter->face_count);
+    s.sources = host_alloc(host, (size_t)blocks, sizeof *s.sources);
+    bool ok = s.objects && s.l_imp && s.sources && allocate(out, turned, clutter->face_count);
     for (int i = 0; ok && i < MRT_RESPONSES; i++) out->responses[i] = turned->responses[i];
     out->shared_responses = MRT_RESPONSES;
     for (int b = 0; ok && b < blocks; b++)
@@ -392,6 +481,7 @@ bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt
     for (int b = 0; ok && b < blocks; b++) ok = add_block(&s, b, texels);
     trace_scene_destroy(s.objects);
     host_free(host, s.l_imp);
+    host_free(host, s.sources);
     ok = ok && (!options->gather || mrt_mapped_place(&out->mapped, clutter));
     if (ok)
         finish_input(out, turned, clutter, texels);
@@ -413,6 +503,8 @@ void mrt_cluttered_finish(struct mrt_cluttered *out)
     host_free(out->host, out->gathered);
     host_free(out->host, out->faces);
     host_free(out->host, out->clutter_openings);
-    host_free(out->host, out->coupling);
+    for (int i = 0; i < out->face_pair_count; i++)
+        matrix_f32_finish(out->host, &out->face_pairs[i].of_c);
+    host_free(out->host, out->face_pairs);
     *out = (struct mrt_cluttered){ 0 };
 }

@@ -27,7 +27,8 @@ struct mrt_cluttered {
     int gathered_count;
     struct mrt_clutter_face_input *faces;
     int *clutter_openings;
-    float *coupling;
+    struct mrt_face_pair_input *face_pairs;
+    int face_pair_count;
     struct mrt_mapped mapped;
     struct mrt_clutter_input clutter;
     struct mrt_runtime_input input; // refers to `turned`
