@@ -22,6 +22,14 @@ static struct frame_input view_wants(const struct ag_view_desc *desc)
     return wants;
 }
 
+// No larger, and at least two fifths of the size: see gpu_image_desc.alias. Padding may decide.
+static bool shares_memory(const struct ag_renderer_desc *renderer, const struct ag_view_desc *view)
+{
+    const double first = (double)renderer->width * renderer->height;
+    const double own = (double)view->width * view->height;
+    return view->width <= renderer->width && view->height <= renderer->height && own > 0.45 * first;
+}
+
 enum ag_result ag_view_estimate_memory(struct ag_context *context,
                                        const struct ag_renderer_desc *renderer,
                                        const struct ag_view_desc *desc, uint64_t *bytes)
@@ -43,12 +51,12 @@ enum ag_result ag_view_estimate_memory(struct ag_context *context,
     struct frame_options options;
     const bool ok = renderer_parse_quietly(context, renderer, &spec, &options);
     const uint32_t width = (uint32_t)desc->width, height = (uint32_t)desc->height;
-    const bool larger = desc->width > renderer->width || desc->height > renderer->height;
+    const bool apart = !shares_memory(renderer, desc);
     const struct frame_input first = renderer_wants(renderer), input = view_wants(desc);
     const uint32_t needs = ok ? gi_spec_needs(&spec) : 0;
     if (ok)
-        *bytes = frame_view_memory_estimate(&input, larger ? NULL : &first, needs, width, height) +
-                 gi_view_memory_estimate(&spec, width, height, larger);
+        *bytes = frame_view_memory_estimate(&input, apart ? NULL : &first, needs, width, height) +
+                 gi_view_memory_estimate(&spec, width, height, apart);
     gi_spec_finish(&spec);
     return api_done(context, ok);
 }

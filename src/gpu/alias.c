@@ -8,13 +8,18 @@
 #include <stdio.h>
 #include <string.h>
 
+// Images of a smaller size keep the memory of a larger one: no more than 5/2 of what they need.
+static bool suits(const struct allocation *memory, const VkMemoryRequirements *needs)
+{
+    return memory->bytes >= needs->size && 2 * memory->bytes <= 5 * needs->size &&
+           memory->offset % needs->alignment == 0 && needs->memoryTypeBits >> memory->type & 1u;
+}
+
 static bool fits(const struct gpu *gpu, const struct alias *alias, const char *name,
                  const VkMemoryRequirements *needs)
 {
-    const struct allocation *memory = &alias->memory;
-    return alias->client == gpu->client && strcmp(alias->name, name) == 0 &&
-           memory->bytes >= needs->size && memory->offset % needs->alignment == 0 &&
-           needs->memoryTypeBits >> memory->type & 1u;
+    return alias->alive > 0 && alias->client == gpu->client && strcmp(alias->name, name) == 0 &&
+           suits(&alias->memory, needs);
 }
 
 static struct alias *find(const struct gpu *gpu, const char *name,
@@ -50,6 +55,7 @@ bool alias_allocate(struct gpu *gpu, struct image *image, const char *name,
     if (!alias) alias = add(gpu, name, image->name, needs);
     if (!alias) return false;
     alias->users++;
+    alias->alive++;
     image->alias = alias;
     return true;
 }
@@ -74,10 +80,18 @@ static void remove_alias(struct gpu *gpu, struct alias *alias)
     host_free(gpu->host, alias);
 }
 
+void alias_retire(struct image *image)
+{
+    if (!image->alias || image->retired) return;
+    image->retired = true;
+    image->alias->alive--;
+}
+
 void alias_release(struct gpu *gpu, struct image *image)
 {
     struct alias *alias = image->alias;
     if (!alias) return;
+    alias_retire(image);
     if (alias->current == image) {
         add_accesses(&alias->last, image);
         alias->current = NULL;

@@ -148,9 +148,9 @@ struct gpu_image_desc {
     uint32_t depth;
     uint32_t mips;  // 0 is 1
     uint32_t usage; // gpu_image_usage; copies and clears are always allowed
-    // Memory aliasing: images of one client with the same text here share memory, if the first of
-    // them is large enough. The content of one lasts until another is used, and no operation uses
-    // two. NULL, or client 0: memory of its own.
+    // Memory aliasing: images of one client with the same text here share memory if a new one needs
+    // no more than one that exists, and at least two fifths of it. The content of one lasts until
+    // another is used, and no operation uses two. NULL, or client 0: memory of its own.
     const char *alias;
 };
 

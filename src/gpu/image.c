@@ -245,7 +245,9 @@ void gpu_image_destroy(struct gpu *gpu, gpu_image *handle)
 {
     struct image *image = gpu && handle ? table_remove(&gpu->images, handle->id) : NULL;
     if (handle) handle->id = 0;
-    if (image) deferred_delete_add(gpu, image_free, image);
+    if (!image) return;
+    alias_retire(image);
+    deferred_delete_add(gpu, image_free, image);
 }
 
 const struct gpu_image_desc *gpu_image_info(const struct gpu *gpu, gpu_image handle)

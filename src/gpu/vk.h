@@ -128,7 +128,8 @@ struct batch {
 // Memory of images that are used one after the other.
 struct alias {
     char name[NAME_SIZE];
-    uint32_t client, users;
+    uint32_t client;
+    uint32_t users, alive; // images: not freed, not destroyed
     struct allocation memory;
     struct image *current; // used last; NULL: none, or destroyed
     struct hazard last;    // accesses of destroyed images
@@ -136,6 +137,7 @@ struct alias {
 // Memory for a new image without one, shared with the images of that name if it fits.
 bool alias_allocate(struct gpu *gpu, struct image *image, const char *name,
                     const VkMemoryRequirements *needs);
+void alias_retire(struct image *image); // it is destroyed: new images do not join it
 void alias_release(struct gpu *gpu, struct image *image);
 // Before each access to an image that has an alias.
 void alias_use(struct gpu_cmd *cmd, struct image *image);
@@ -166,6 +168,7 @@ struct image {
     struct image_view *views;
     uint32_t view_count;
     struct alias *alias;      // has the memory; NULL: none
+    bool retired;             // destroyed, but not yet freed
     struct allocation memory; // empty with an alias
 };
 

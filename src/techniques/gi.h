@@ -68,6 +68,6 @@ bool gi_has_debug_view(const struct gi *gi);
 bool gi_probes(const struct gi *gi, struct probe_volume *out);
 uint64_t gi_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height);
 uint32_t gi_spec_needs(const struct gi_spec *spec); // frame_need bits
-// What a further view of this size adds; larger: than the first one, so that it shares nothing.
+// What a further view of this size adds; apart: it shares no memory.
 uint64_t gi_view_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height,
-                                 bool larger);
+                                 bool apart);

@@ -225,13 +225,13 @@ uint32_t gi_spec_needs(const struct gi_spec *spec)
 }
 
 uint64_t gi_view_memory_estimate(const struct gi_spec *spec, uint32_t width, uint32_t height,
-                                 bool larger)
+                                 bool apart)
 {
     uint64_t bytes = 0;
     for (int i = 0; i < spec->count; i++) {
         const struct technique *technique = spec->technique[i];
         const void *options = spec->options[i];
-        if (larger && technique->memory_estimate)
+        if (apart && technique->memory_estimate)
             bytes += technique->memory_estimate(options, width, height) -
                      technique->memory_estimate(options, 0, 0);
         else if (technique->view_memory)

@@ -59,6 +59,10 @@ static void check_views(struct renderer_fixture *s, const struct ag_renderer_des
     desc.all_layers = false;
     desc.width += 64;
     check_view(s, "larger view", renderer_desc, renderer, &desc, *frame);
+    desc.width = WIDTH / 2;
+    check_view(s, "half a view", renderer_desc, renderer, &desc, *frame);
+    desc.height = HEIGHT / 4;
+    check_view(s, "small view", renderer_desc, renderer, &desc, *frame);
 }
 
 static struct ag_layer_handle layer(struct renderer_fixture *s, const char *name)

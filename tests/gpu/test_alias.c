@@ -57,7 +57,7 @@ TEST_GPU(an_image_waits_for_all_accesses_of_the_one_whose_memory_it_takes_over)
 {
     const uint32_t client = gpu_client_add(gpu);
     gpu_client_set(gpu, client);
-    gpu_image a = make(gpu, "scratch", 64), b = make(gpu, "scratch", 32);
+    gpu_image a = make(gpu, "scratch", 64), b = make(gpu, "scratch", 48);
     struct gpu_cmd *cmd = gpu_frame_begin(gpu);
     use(cmd, a, COMPUTE, true);
     use(cmd, a, FRAGMENT, false);
@@ -87,7 +87,7 @@ TEST_GPU(images_of_one_client_and_name_share_memory_that_is_large_enough)
     gpu_client_set(gpu, clients[0]);
     gpu_image first = make(gpu, "scratch", 64);
     const uint64_t bytes = client_bytes(gpu, clients[0]);
-    gpu_image same = make(gpu, "scratch", 64), smaller = make(gpu, "scratch", 32);
+    gpu_image same = make(gpu, "scratch", 64), smaller = make(gpu, "scratch", 48);
     assert_int_equal(client_bytes(gpu, clients[0]), bytes);
     gpu_image larger = make(gpu, "scratch", 128), even = make(gpu, "scratch", 100);
     CHECK(client_bytes(gpu, clients[0]) >= bytes + 4 * bytes);
@@ -104,6 +104,17 @@ TEST_GPU(images_of_one_client_and_name_share_memory_that_is_large_enough)
     assert_int_equal(client_bytes(gpu, clients[0]), bytes);
     assert_int_equal(client_bytes(gpu, clients[1]), 0);
     gpu_image_destroy(gpu, &same);
+    assert_true(gpu_wait(gpu));
+    assert_int_equal(client_bytes(gpu, clients[0]), 0);
+    // A small image does not keep the memory of a large one, alive or destroyed.
+    gpu_client_set(gpu, clients[0]);
+    gpu_image large = make(gpu, "scratch", 128), small = make(gpu, "scratch", 64);
+    gpu_image_destroy(gpu, &large);
+    gpu_image medium = make(gpu, "scratch", 96);
+    assert_true(gpu_wait(gpu));
+    CHECK(client_bytes(gpu, clients[0]) < 4 * bytes);
+    gpu_image_destroy(gpu, &small);
+    gpu_image_destroy(gpu, &medium);
     assert_true(gpu_wait(gpu));
     assert_int_equal(client_bytes(gpu, clients[0]), 0);
     // The device itself, client 0, shares nothing.
