@@ -2,6 +2,7 @@
 #include "scene/image_decode.h"
 
 #include "scene/jpeg_check.h"
+#include "scene/png_check.h"
 #include "scene/scene.h"
 
 #include <limits.h>
@@ -73,7 +74,7 @@ const char *image_decode_size(const uint8_t *data, size_t size, int *width, int 
     if (size > INT_MAX) return "it has more than 2 GiB";
     largest_block = BLOCK_ALLOWANCE;
     const bool jpeg = size > 0 && data[0] == 0xff; // fill bytes may precede the second marker byte
-    const char *unsound = jpeg ? jpeg_check(data, size) : NULL;
+    const char *unsound = jpeg ? jpeg_check(data, size) : png_check(data, size);
     if (unsound) return unsound;
     if (!stbi_info_from_memory(data, (int)size, width, height, &channels)) {
         const char *reason = stbi_failure_reason();

@@ -77,3 +77,26 @@ TEST(jpeg_segments_without_tables_are_skipped)
     if (why) fail_msg("%s", why);
     assert_int_equal(width, 3);
 }
+
+// Width, height, 8 bits, RGB; CRCs are not read.
+static void add_png_head(struct bytes *file)
+{
+    add(file, (const uint8_t *)"\x89PNG\r\n\x1a\n", 8);
+    add(file, (const uint8_t *)"\0\0\0\x0dIHDR\0\0\0\x03\0\0\0\x02\x08\x02\0\0\0", 21);
+    add(file, (const uint8_t[4]){ 0 }, 4);
+}
+
+// A chunk before it is skipped by its length.
+TEST(a_png_with_an_empty_first_idat_chunk_is_refused)
+{
+    for (uint8_t length = 0; length < 2; length++) {
+        struct bytes file = { 0 };
+        int width = 0, height = 0;
+        add_png_head(&file);
+        add(&file, (const uint8_t *)"\0\0\0\4tEXtIDAT\0\0\0\0", 16);
+        add(&file, (const uint8_t[]){ 0, 0, 0, length }, 4);
+        add(&file, (const uint8_t *)"IDAT", 4);
+        const char *why = size_of(&file, &width, &height);
+        CHECK_STRING(why ? why : "none", length == 0 ? "its first IDAT chunk is empty" : "none");
+    }
+}
