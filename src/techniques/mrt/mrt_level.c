@@ -21,6 +21,7 @@ static bool make_auto(struct host *host, const struct scene_pose *pose, struct m
     }
     bool ok = mrt_map_auto(host, pose, seeds, count, map);
     host_free(host, seeds);
+    map->is_found = ok;
     return ok;
 }
 
@@ -74,11 +75,24 @@ bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, struct m
 // Texels along an edge of a block, so that a face of clutter has some of them.
 static const float CLUTTER_TEXELS = 16.0f;
 
-static bool make_clutter(struct mrt *mrt, const struct scene_pose *pose)
+static bool find_clutter(struct mrt *mrt, const struct scene_pose *pose)
 {
     const struct mrt_clutter_options options = { CLUTTER_TEXELS, mrt->options.response_modes };
-    if (!mrt->delta || mrt_block_is_tube(&mrt->map.blocks[0])) return true;
+    const bool vertical = mrt->options.maze == MRT_MAZE_3D;
+    bool opened;
     if (!mrt_clutter_init(&mrt->clutter, mrt->host, pose, &mrt->map, &options)) return false;
+    if (mrt->clutter.triangles == 0 || !mrt->map.is_found) return true;
+    if (!mrt_open_clutter_walls(&mrt->map, &mrt->clutter, vertical, &opened)) return false;
+    if (!opened) return true;
+    mrt_clutter_finish(&mrt->clutter);
+    return mrt_clutter_init(&mrt->clutter, mrt->host, pose, &mrt->map, &options);
+}
+
+// May open the map.
+static bool make_clutter(struct mrt *mrt, const struct scene_pose *pose)
+{
+    if (!mrt->delta || mrt_block_is_tube(&mrt->map.blocks[0])) return true;
+    if (!find_clutter(mrt, pose)) return false;
     if (mrt->clutter.triangles == 0) return true;
     mrt->clutter_texels = mrt_clutter_light_create(mrt->host, pose, &mrt->clutter);
     return mrt->clutter_texels;
@@ -97,8 +111,9 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
     if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
     if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
     const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
-    return mrt->map.count == 0 || (mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
-                                   make_clutter(mrt, pose) && make_images(mrt, pose));
+    return mrt->map.count == 0 || (make_clutter(mrt, pose) &&
+                                   mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
+                                   make_images(mrt, pose));
 }
 
 // ---- operators

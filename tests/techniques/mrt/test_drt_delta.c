@@ -10,6 +10,7 @@
 #include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/clutter/cell_ray.h"
 #include "techniques/mrt/clutter/clutter_map.h"
+#include "techniques/mrt/clutter/delta_entry.h"
 #include "techniques/mrt/clutter/delta_gather.h"
 
 #include <math.h>
@@ -355,4 +356,100 @@ TEST(the_light_map_of_clutter_has_the_light_of_rays)
     mrt_clutter_map_finish(&map);
     raycast_finish(&rays);
     room_finish(&room);
+}
+
+// Two closed blocks beside each other, in a shell, with one more box.
+static void pair_init(struct room *pair, struct box3 box)
+{
+    const struct mrt_clutter_options options = { 16.0f, 16 };
+    const struct box3 shell = { vec3_of(-3, -1, -1), vec3_of(1, 1, 1) };
+    *pair = (struct room){ .scene = scene_create(test_host(), "pair") };
+    add_box(pair->scene, shell, true);
+    add_box(pair->scene, box, false);
+    // Clutter in any case.
+    add_box(pair->scene, (struct box3){ vec3_of(0.5f, -1, 0.5f), vec3_of(0.7f, -0.6f, 0.7f) },
+            false);
+    CHECK(pose_init(&pair->pose, pair->scene, -1, 0.0f));
+    CHECK(mrt_block_map_init(test_host(), "test", 2, &pair->map));
+    for (int b = 0; b < 2; b++) {
+        const float low = b == 0 ? -3.0f : -1.0f;
+        mrt_block_init(&pair->map.blocks[b], b == 0 ? "low" : "high", MRT_BLOCK_CUBE);
+        mrt_block_set_box(&pair->map.blocks[b],
+                          (struct box3){ vec3_of(low, -1, -1), vec3_of(low + 2.0f, 1, 1) });
+    }
+    CHECK(mrt_clutter_init(&pair->clutter, test_host(), &pair->pose, &pair->map, &options));
+}
+
+static const struct box3 SCREEN = { { { -0.6f, -0.9f, -0.9f } }, { { -0.4f, 0.9f, 0.5f } } };
+static const struct box3 PARTITION = { { { -1.05f, -1, -1 } }, { { -0.95f, 1, 1 } } };
+
+TEST(blocks_open_where_clutter_alone_is_between_them)
+{
+    struct room pair;
+    bool any;
+    pair_init(&pair, PARTITION);
+    CHECK(mrt_open_clutter_walls(&pair.map, &pair.clutter, false, &any));
+    CHECK(!any && pair.map.blocks[0].neighbor[1].block < 0);
+    room_finish(&pair);
+    pair_init(&pair, SCREEN);
+    CHECK(pair.clutter.triangles == 24);
+    CHECK(mrt_open_clutter_walls(&pair.map, &pair.clutter, false, &any));
+    CHECK(any && pair.map.blocks[0].neighbor[1].block == 1);
+    room_finish(&pair);
+}
+
+// Of rays through an opening each ends on a wall or on clutter: where both have radiosity 1, all of
+// them count.
+TEST(light_through_an_opening_is_of_walls_or_of_clutter)
+{
+    enum { ENTRY_RAYS = 256 };
+    struct room pair;
+    struct matrix_f32 ones[2] = { { 0 }, { 0 } }, u_r = { 0 };
+    const struct matrix_f32 *l_imp[2] = { &ones[0], &ones[1] };
+    struct mrt_delta_entry entry;
+    struct mrt_rays rays;
+    bool any;
+    double all = 0.0, faces = 0.0;
+    pair_init(&pair, SCREEN);
+    CHECK(mrt_open_clutter_walls(&pair.map, &pair.clutter, false, &any));
+    pair.objects = trace_scene_create(test_host(), &pair.clutter.objects.pose);
+    for (int b = 0; b < 2; b++) {
+        const struct mrt_shape shape = mrt_block_shape(&pair.map.blocks[b], TEXELS);
+        CHECK(matrix_f32_init(test_host(), &ones[b], (size_t)mrt_shape_texels(&shape), 1));
+        for (size_t i = 0; i < ones[b].rows; i++) ones[b].at[i * ones[b].stride] = 1.0f;
+    }
+    CHECK(matrix_f32_init(test_host(), &u_r, ALL, 1));
+    for (size_t i = 0; i < ALL; i++) u_r.at[i * u_r.stride] = 1.0f;
+    const struct mrt_delta_entry_input input = { .map = &pair.map,
+                                                 .l_imp = l_imp,
+                                                 .resolution = TEXELS,
+                                                 .clutter = &pair.clutter,
+                                                 .objects = pair.objects,
+                                                 .rays = ENTRY_RAYS,
+                                                 .block = 0,
+                                                 .face = 1,
+                                                 .u_r = &u_r,
+                                                 .sources = (const int[]){ 1 },
+                                                 .source_count = 1 };
+    CHECK(mrt_delta_entry_init(&entry, test_host(), &input));
+    CHECK(mrt_rays_init(test_host(), MRT_IRRADIANCE, ENTRY_RAYS, &rays));
+    const struct mrt_shape open = mrt_cube(TEXELS, 1u << 1), closed = mrt_cube(TEXELS, 0);
+    for (int t = 0; t < ALL; t++)
+        for (int r = 0; r < ENTRY_RAYS && t / (TEXELS * TEXELS) != 1; r++) {
+            const struct mrt_point point = mrt_shape_texel(&closed, t);
+            struct mrt_hit hit;
+            mrt_shape_trace(&open, point.position, glms_mat3_mulv(point.frame, rays.direction[r]),
+                            &hit);
+            all += hit.opening >= 0 ? 1.0 / ENTRY_RAYS : 0.0;
+        }
+    for (size_t f = 0; f < entry.sources[0].c.columns; f++)
+        faces += (double)entry.sources[0].c.at[f];
+    print_message("%.3f of the light through the opening is of clutter\n", faces / all);
+    CHECK(entry.sources[0].hidden && faces > 0.4 * all);
+    CHECK_RELATIVE((double)entry.sources[0].b.at[0] + faces, all, 1e-3);
+    mrt_rays_finish(test_host(), &rays);
+    mrt_delta_entry_finish(&entry);
+    for (int b = 0; b < 2; b++) matrix_f32_finish(test_host(), &ones[b]);
+    matrix_f32_finish(test_host(), &u_r);
+    room_finish(&pair);
 }

@@ -72,6 +72,13 @@ enum mrt_named { MRT_NAMED_NOT, MRT_NAMED_CLUTTER, MRT_NAMED_WALL };
 unsigned char *mrt_named_nodes(struct host *host, const struct scene *scene,
                                const struct mrt_block_map *map);
 
+// ---- clutter_open.c
+
+// Connects blocks whose common wall is clutter alone. vertical: floors and ceilings too. Writes
+// whether there were any: the clutter is then that of another map.
+bool mrt_open_clutter_walls(struct mrt_block_map *map, const struct mrt_clutter *clutter,
+                            bool vertical, bool *any);
+
 // ---- clutter_faces.c
 
 // The face at a hit of `objects`; −1: of a triangle without area.

@@ -18,6 +18,7 @@ struct mrt_block_map {
     struct host *host;
     struct mrt_block *blocks;
     int count;
+    bool is_found; // in the free space of a scene
     struct mrt_named_part *named;
     int named_count;
 };
