@@ -70,9 +70,9 @@ struct mrt_runtime_clutter_map {
 struct mrt_runtime_clutter {
     gpu_buffer texels, faces, samples, albedo, coupling, pairs; // tables
     gpu_buffer unbounced;                                       // vec3 per texel: irradiance
-    // Radiosity of direct light; irradiance of the newest bounce, [newest], and the one before:
-    // [clutter][colour][slot].
-    gpu_buffer direct, incident[2];
+    // Radiosity of direct light; of what is reflected of the newest bounce, [newest], and of the
+    // one before: [clutter][colour][slot].
+    gpu_buffer direct, reflected[2];
     int newest;
     gpu_pipeline light, couple;
     uint32_t face_count, opening_count;

@@ -167,19 +167,19 @@ bool mrt_clutter_upload(struct mrt_runtime *runtime, const struct mrt_runtime_in
                             &c->unbounced) &&
            mrt_table_upload(runtime, input, "clutter_direct", openings, 3 * slots * number, NULL,
                             &c->direct) &&
-           mrt_table_upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
-                            &c->incident[0]) &&
-           mrt_table_upload(runtime, input, "clutter_incident", openings, 3 * slots * number, NULL,
-                            &c->incident[1]) &&
+           mrt_table_upload(runtime, input, "clutter_reflected", openings, 3 * slots * number, NULL,
+                            &c->reflected[0]) &&
+           mrt_table_upload(runtime, input, "clutter_reflected", openings, 3 * slots * number, NULL,
+                            &c->reflected[1]) &&
            make_pipelines(runtime, input) && mrt_clutter_map_upload(runtime, input);
 }
 
 void mrt_clutter_end(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    gpu_buffer *const buffers[] = { &c->texels,      &c->faces,     &c->samples, &c->albedo,
-                                    &c->coupling,    &c->unbounced, &c->direct,  &c->incident[0],
-                                    &c->incident[1], &c->pairs };
+    gpu_buffer *const buffers[] = { &c->texels,       &c->faces,     &c->samples, &c->albedo,
+                                    &c->coupling,     &c->unbounced, &c->direct,  &c->reflected[0],
+                                    &c->reflected[1], &c->pairs };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_pipeline_destroy(runtime->gpu, &c->light);
@@ -217,7 +217,7 @@ void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
     const struct mrt_runtime_buffers *b = &runtime->buffers;
     struct mrt_runtime_clutter *c = &runtime->clutter;
-    const gpu_buffer before = c->incident[c->newest];
+    const gpu_buffer before = c->reflected[c->newest];
     c->newest = 1 - c->newest;
     gpu_dispatch(cmd, c->couple,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
@@ -230,6 +230,6 @@ void mrt_record_clutter_couple(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
                           { .name = "mrt_clutter_coupling", .buffer = c->coupling },
                           { .name = "mrt_clutter_pairs", .buffer = c->pairs },
                           { .name = "mrt_clutter_before", .buffer = before },
-                          { .name = "mrt_clutter_incident", .buffer = c->incident[c->newest] }),
+                          { .name = "mrt_clutter_reflected", .buffer = c->reflected[c->newest] }),
                  NULL, 0, runtime->opening_count, 1, 1);
 }

@@ -1,6 +1,7 @@
 // couple.comp of a level with clutter. The coefficients of an opening that is clutter are c, the
-// radiosity of its faces: of direct light, and of the irradiance E after the bounce before. T_b→r
-// gives E of this bounce by walls, to which faces add theirs, as they do to r of openings (T_c→r).
+// radiosity of its faces: of direct light, and of what they reflect of the irradiance E after the
+// bounce before. T_b→r gives E of this bounce by walls, to which faces add theirs, as they do to r
+// of openings (T_c→r).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +14,7 @@ layout(set = 0, binding = 6, scalar) writeonly buffer mrt_r
 };
 layout(set = 0, binding = 7, scalar) readonly buffer mrt_clutter_direct
 {
-    vec4 c_direct[]; // [clutter][colour][quad]
+    float c_direct[]; // [clutter][colour][face]
 };
 layout(set = 0, binding = 8, scalar) readonly buffer mrt_clutter_albedo
 {
@@ -29,54 +30,56 @@ layout(set = 0, binding = 10, scalar) readonly buffer mrt_clutter_pairs
 };
 layout(set = 0, binding = 11, scalar) readonly buffer mrt_clutter_before
 {
-    vec4 before[]; // E after the bounce before: [clutter][colour][quad]
+    float before[]; // what faces reflect of E after the bounce before: [clutter][colour][face]
 };
-layout(set = 0, binding = 12, scalar) writeonly buffer mrt_clutter_incident
+layout(set = 0, binding = 12, scalar) writeonly buffer mrt_clutter_reflected
 {
-    vec4 incident[];
+    vec4 reflected[]; // the same after this bounce: [clutter][colour][quad]
 };
 
-shared vec4 radiosity[3 * MRT_MAX_QUADS]; // [colour][quad]
-
-vec4 radiosity_of(uint at)
+// c. Each reader computes it: that is cheaper than barriers around shared memory.
+float radiosity_of(uint at)
 {
-    vec4 c = c_direct[at];
     // Without feedback the last bounce, which may be of no frame, does not count.
-    if (level.feedback > 0.0) c += level.feedback * albedo[at] * before[at];
-    return c;
+    return level.feedback > 0.0 ? c_direct[at] + level.feedback * before[at] : c_direct[at];
 }
 
-// All invocations of the group call this together.
-void add_faces(uint pair, bool used, uint quad, uint stripe, uint stripes, inout vec4 sum[3])
+void add_faces(uint opening, uint quad, uint stripe, uint stripes, inout vec4 sum[3])
 {
-    mrt_gpu_face_pair from = pair_table[pair];
-    uint lane = gl_LocalInvocationIndex;
-    barrier();
-    if (lane < 3u * QUADS_R) radiosity[lane] = radiosity_of(from.clutter * 3u * QUADS_R + lane);
-    barrier();
-    for (uint k = stripe; k < 4u * from.quads && used; k += stripes) {
-        vec4 weights = coupling[(pair * 4u * QUADS_R + k) * QUADS_R + quad];
-        for (uint c = 0u; c < 3u; c++) sum[c] += weights * radiosity[c * QUADS_R + k / 4u][k % 4u];
+    uint slots = 4u * QUADS_R, first = opening_table[opening].first_face_pair;
+    for (uint i = stripe; i < opening_table[opening].face_pairs * slots; i += stripes) {
+        mrt_gpu_face_pair from = pair_table[first + i / slots];
+        uint face = i % slots;
+        if (face >= 4u * from.quads) continue;
+        vec4 weights = coupling[(first * slots + i) * QUADS_R + quad];
+        for (uint c = 0u; c < 3u; c++)
+            sum[c] += weights * radiosity_of((from.clutter * 3u + c) * slots + face);
     }
+}
+
+vec4 radiosity_of_quad(uint quad)
+{
+    return vec4(radiosity_of(4u * quad), radiosity_of(4u * quad + 1u), radiosity_of(4u * quad + 2u),
+                radiosity_of(4u * quad + 3u));
 }
 
 void main()
 {
     uint opening = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
-    uint quads = opening_table[opening].quads, first = opening_table[opening].first_face_pair;
+    uint quads = opening_table[opening].quads;
     uint quad = lane % quads, stripe = lane / quads, stripes = MRT_REDUCE_LOCAL / quads;
     int clutter = opening_table[opening].clutter;
-    bool faces = clutter >= 0, writes = lane < 3u * quads;
-    // Of the quad that this invocation writes: its colour is `stripe`.
-    uint at = stripe * QUADS_R + quad, own = uint(max(clutter, 0)) * 3u * QUADS_R + at;
     vec4 sum[3] = { vec4(0.0), vec4(0.0), vec4(0.0) };
-    if (stripe < stripes) add_pairs(opening, quad, stripe, stripes, sum);
-    for (uint i = 0u; i < opening_table[opening].face_pairs; i++)
-        add_faces(first + i, stripe < stripes, quad, stripe, stripes, sum);
+    if (stripe < stripes) {
+        add_pairs(opening, quad, stripe, stripes, sum);
+        add_faces(opening, quad, stripe, stripes, sum);
+    }
     for (int i = 0; i < 3; i++) partial_sums[i][lane] = sum[i];
     barrier();
-    if (!writes) return;
+    if (lane >= 3u * quads) return;
+    // Of the quad that this invocation writes: its colour is `stripe`.
+    uint at = stripe * QUADS_R + quad, own = uint(max(clutter, 0)) * 3u * QUADS_R + at;
     vec4 arrived = sum_of_stripes(stripe, quad, quads);
-    r_table[opening * 3u * QUADS_R + at] = faces ? radiosity_of(own) : arrived;
-    if (faces) incident[own] = arrived;
+    r_table[opening * 3u * QUADS_R + at] = clutter >= 0 ? radiosity_of_quad(own) : arrived;
+    if (clutter >= 0) reflected[own] = albedo[own] * arrived;
 }
