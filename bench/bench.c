@@ -4,6 +4,7 @@
 #include "csv.h"
 
 #include <string.h>
+#include <time.h>
 
 struct command {
     const struct bench_program *program;
@@ -109,6 +110,23 @@ enum ag_result bench_create_renderer(const struct bench *bench, struct ag_scene 
     if (result == AG_OK) result = ag_renderer_create(bench->device, scene, &desc, out);
     bench_bakes_finish(&bakes);
     return result;
+}
+
+uint64_t bench_memory_of(struct ag_renderer *renderer, const char *owner)
+{
+    struct ag_memory owners[PASSES_MAX];
+    const int count = ag_renderer_memory(renderer, owners, PASSES_MAX);
+    uint64_t bytes = 0;
+    for (int i = 0; i < count && i < PASSES_MAX; i++)
+        if (!owner || strcmp(owners[i].owner, owner) == 0) bytes += owners[i].bytes;
+    return bytes;
+}
+
+double bench_now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
 enum ag_result bench_write_png(const struct bench *bench, const char *folder, const char *scene,

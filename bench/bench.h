@@ -53,6 +53,9 @@ enum ag_result bench_open_scene(const struct bench *bench, const char *name,
 enum ag_result bench_create_renderer(const struct bench *bench, struct ag_scene *scene,
                                      const char *gi, const char *frame_options,
                                      struct ag_renderer **out);
+// GPU memory of a renderer's owner, as "vct"; NULL: of all.
+uint64_t bench_memory_of(struct ag_renderer *renderer, const char *owner);
+double bench_now_ms(void);
 // Writes "<folder>/<scene>-<variant>.png".
 enum ag_result bench_write_png(const struct bench *bench, const char *folder, const char *scene,
                                const char *variant, const struct ag_image *image);

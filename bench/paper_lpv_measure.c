@@ -168,16 +168,6 @@ static void add_pass(struct technique_cost *cost, const struct pass_time *pass,
     cost->technique_ms += pass->median_ms;
 }
 
-static uint64_t memory_of(struct ag_renderer *renderer, const char *technique)
-{
-    struct ag_memory memory[PASSES_MAX];
-    uint64_t bytes = 0;
-    int count = ag_renderer_memory(renderer, memory, PASSES_MAX);
-    for (int i = 0; i < count && i < PASSES_MAX; i++)
-        if (strcmp(memory[i].owner, technique) == 0) bytes += memory[i].bytes;
-    return bytes;
-}
-
 static enum ag_result measure_cost(struct measure *measure, struct ag_scene *loaded,
                                    const struct ag_frame_desc *frame, struct measured *m)
 {
@@ -190,7 +180,7 @@ static enum ag_result measure_cost(struct measure *measure, struct ag_scene *loa
         result = passes_measure(renderer, frame, measure->bench->frames, passes, &count);
     m->cost = (struct technique_cost){ 0 };
     for (int i = 0; i < count; i++) add_pass(&m->cost, &passes[i], m->technique);
-    if (result == AG_OK) m->cost.bytes = memory_of(renderer, m->technique);
+    if (result == AG_OK) m->cost.bytes = bench_memory_of(renderer, m->technique);
     ag_renderer_destroy(renderer);
     return result;
 }

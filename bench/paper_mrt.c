@@ -17,7 +17,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 enum { PATH_SIZE = 1024, STEP = 5, MOST = 125, SIZES = MOST / STEP };
 
@@ -68,13 +67,6 @@ static enum ag_result open_bakes(const struct mrt_bench *b, const char *gi, stru
     return result;
 }
 
-static double now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
 static enum ag_result measure_parts(const struct mrt_bench *b, const char *gi, const char *maze,
                                     struct maze_time *out)
 {
@@ -84,17 +76,12 @@ static enum ag_result measure_parts(const struct mrt_bench *b, const char *gi, c
     struct ag_renderer *renderer = NULL;
     int count = 0;
     enum ag_result result = bench_open_scene(&b->bench, maze, &scene, &frame);
-    const double begun = now_ms();
+    const double begun = bench_now_ms();
     if (result == AG_OK)
         result = bench_create_renderer(&b->bench, scene, gi, "keep_maps=false", &renderer);
-    out->create_ms = now_ms() - begun;
+    out->create_ms = bench_now_ms() - begun;
     if (result == AG_OK) result = passes_measure(renderer, &frame, b->bench.frames, passes, &count);
-    for (int i = 0; i < count; i++)
-        for (int part = 0; part < PARTS; part++) {
-            const char *stage = passes_stage(passes[i].name, gi);
-            if (stage && strcmp(stage, PART_NAMES[part]) == 0)
-                out->part_ms[part] = passes[i].median_ms;
-        }
+    passes_of_stages(passes, count, gi, PART_NAMES, PARTS, out->part_ms);
     ag_renderer_destroy(renderer);
     ag_scene_destroy(scene);
     return result;

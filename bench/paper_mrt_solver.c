@@ -1,6 +1,8 @@
 // Modes, levels and solver of mrt, inside the library: a renderer does not tell their times.
 #include "paper_mrt_solver.h"
 
+#include "bench.h"
+
 #include "api/bake_state.h"
 #include "core/rng.h"
 #include "techniques/mrt/dictionary/transfer.h"
@@ -9,14 +11,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <time.h>
-
-static double now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 int paper_mrt_modes(const struct ag_bake *bake, const char *sigma, double share)
 {
@@ -109,10 +103,10 @@ static bool make_light(struct host *host, struct maze *maze)
 
 static bool make_level(const struct paper_dictionary *d, struct maze *maze, double *ms)
 {
-    const double begun = now_ms();
+    const double begun = bench_now_ms();
     const bool ok = mrt_level_init(d->host, &maze->map, &d->dictionary, &d->level, &maze->level) &&
                     mrt_solver_init(d->host, &maze->level, &maze->solver);
-    *ms = now_ms() - begun;
+    *ms = bench_now_ms() - begun;
     return ok;
 }
 
@@ -120,9 +114,9 @@ static double least_ms(struct maze *maze, int runs)
 {
     double least = INFINITY;
     for (int i = 0; i < runs; i++) {
-        const double begun = now_ms();
+        const double begun = bench_now_ms();
         mrt_solve(&maze->solver, maze->light, maze->indirect);
-        least = fmin(least, now_ms() - begun);
+        least = fmin(least, bench_now_ms() - begun);
     }
     return least;
 }

@@ -3,18 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_OWNERS = 32 };
-
-// Of the device, so of all its renderers together.
-static uint64_t vct_bytes(struct ag_renderer *renderer)
-{
-    struct ag_memory owners[MAX_OWNERS];
-    int count = ag_renderer_memory(renderer, owners, MAX_OWNERS);
-    for (int i = 0; i < count && i < MAX_OWNERS; i++)
-        if (strcmp(owners[i].owner, "vct") == 0) return owners[i].bytes;
-    return 0;
-}
-
 static bool stage_has(const char *const *passes, const char *name)
 {
     for (; *passes; passes++) {
@@ -58,7 +46,7 @@ enum ag_result vct_measure(const struct vct_measurement *measurement,
         result = bench_create_renderer(measurement->bench, measurement->scene, measurement->gi[m],
                                        "keep_maps=false", &renderers[m]);
         if (result != AG_OK) break;
-        uint64_t bytes = vct_bytes(renderers[m]);
+        uint64_t bytes = bench_memory_of(renderers[m], "vct");
         out[m] = (struct vct_method){ .total_ms = INFINITY, .bytes = bytes - previous };
         for (int s = 0; s < VCT_MAX_STAGES; s++) out[m].ms[s] = INFINITY;
         previous = bytes;

@@ -23,8 +23,7 @@ static int index_of(struct collection *c, const char *name)
 
 static void collect(void *user, int index, const struct ag_timing *timings, int count)
 {
-    struct collection *c = user;
-    (void)index;
+    struct collection *c = (struct collection *)user + index;
     for (int i = 0; i < count; i++) {
         const int p = index_of(c, timings[i].name);
         if (p >= 0 && c->passes[p].count < PASSES_MAX_FRAMES)
@@ -46,18 +45,30 @@ static void summarize(struct pass_time *pass, double *ms)
     pass->p95_ms = ms[(95 * count + 99) / 100 - 1];
 }
 
+enum ag_result passes_measure_all(struct ag_renderer *const *renderers, int renderer_count,
+                                  const struct ag_frame_desc *frame, int frames,
+                                  struct pass_time (*out)[PASSES_MAX], int *counts)
+{
+    struct collection *all = calloc((size_t)renderer_count, sizeof *all);
+    if (!all) return AG_ERROR_MEMORY;
+    for (int r = 0; r < renderer_count; r++) {
+        counts[r] = 0;
+        all[r].passes = out[r];
+        all[r].count = &counts[r];
+    }
+    enum ag_result result =
+        passes_alternate(renderers, renderer_count, frame, frames, collect, all);
+    for (int r = 0; r < renderer_count; r++)
+        for (int i = 0; i < counts[r]; i++) summarize(&out[r][i], all[r].ms[i]);
+    free(all);
+    return result;
+}
+
 enum ag_result passes_measure(struct ag_renderer *renderer, const struct ag_frame_desc *frame,
                               int frames, struct pass_time out[PASSES_MAX], int *count)
 {
-    *count = 0;
-    struct collection *collection = malloc(sizeof *collection);
-    if (!collection) return AG_ERROR_MEMORY;
-    collection->passes = out;
-    collection->count = count;
-    enum ag_result result = passes_alternate(&renderer, 1, frame, frames, collect, collection);
-    for (int i = 0; i < *count; i++) summarize(&out[i], collection->ms[i]);
-    free(collection);
-    return result;
+    return passes_measure_all(&renderer, 1, frame, frames, (struct pass_time(*)[PASSES_MAX])out,
+                              count);
 }
 
 enum ag_result passes_alternate(struct ag_renderer *const *renderers, int renderer_count,
@@ -82,6 +93,18 @@ const char *passes_stage(const char *pass, const char *gi)
     const size_t length = strcspn(gi, ":");
     const bool owned = strncmp(pass, gi, length) == 0 && pass[length] == '.';
     return owned ? pass + length + 1 : NULL;
+}
+
+void passes_of_stages(const struct pass_time *passes, int count, const char *gi,
+                      const char *const *names, int name_count, double *out_ms)
+{
+    for (int n = 0; n < name_count; n++) {
+        out_ms[n] = 0.0;
+        for (int i = 0; i < count; i++) {
+            const char *stage = passes_stage(passes[i].name, gi);
+            if (stage && strcmp(stage, names[n]) == 0) out_ms[n] = passes[i].median_ms;
+        }
+    }
 }
 
 void passes_keep_least(double *least, double ms)

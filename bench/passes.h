@@ -17,6 +17,11 @@ struct pass_time {
 enum ag_result passes_measure(struct ag_renderer *renderer, const struct ag_frame_desc *frame,
                               int frames, struct pass_time out[PASSES_MAX], int *count);
 
+// The same of several renderers, whose frames alternate: other load is that of all.
+enum ag_result passes_measure_all(struct ag_renderer *const *renderers, int renderer_count,
+                                  const struct ag_frame_desc *frame, int frames,
+                                  struct pass_time (*out)[PASSES_MAX], int *counts);
+
 // Renders 1 + `frames` frames with each renderer, alternating between renderers, and waits for each
 // frame. After each but the first, `sample` gets the timings of renderer `index`.
 typedef void (*passes_sample)(void *user, int index, const struct ag_timing *timings, int count);
@@ -27,6 +32,10 @@ enum ag_result passes_alternate(struct ag_renderer *const *renderers, int render
 // The name of a pass within its technique: "cones" for "vct.cones" and "vct:cones=9"; NULL for
 // passes of other owners.
 const char *passes_stage(const char *pass, const char *gi);
+
+// Medians of a technique's passes by stage, 0 where it lacks one: out_ms[i] is that of names[i].
+void passes_of_stages(const struct pass_time *passes, int count, const char *gi,
+                      const char *const *names, int name_count, double *out_ms);
 
 // The smaller of `ms` and *least, where 0 stands for no value yet.
 void passes_keep_least(double *least, double ms);

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_SPECS = 16, MAX_OWNERS = 64 };
+enum { MAX_SPECS = 16 };
 
 struct views_bench {
     struct bench bench;
@@ -17,15 +17,6 @@ struct views_bench {
     int spec_count;
     const char *folder; // NULL: no images
 };
-
-static uint64_t bytes_of(struct ag_renderer *renderer)
-{
-    struct ag_memory owners[MAX_OWNERS];
-    const int count = ag_renderer_memory(renderer, owners, MAX_OWNERS);
-    uint64_t bytes = 0;
-    for (int i = 0; i < count && i < MAX_OWNERS; i++) bytes += owners[i].bytes;
-    return bytes;
-}
 
 // Nearer to the target and to the side.
 static struct ag_camera other_camera(const struct ag_camera *camera)
@@ -71,13 +62,13 @@ static enum ag_result measure_views(const struct views_bench *b, const char *sce
     desc.height = b->bench.height;
     further.camera = other_camera(&frame.camera);
     enum ag_result result = ag_renderer_render(renderer, &frame);
-    const double one = 1e-6 * (double)bytes_of(renderer);
+    const double one = 1e-6 * (double)bench_memory_of(renderer, NULL);
     if (result == AG_OK) result = ag_view_create(renderer, &desc, &further.view);
     frame.views = &further;
     frame.view_count = 1;
     for (int i = 0; i < b->bench.frames && result == AG_OK; i++)
         result = ag_renderer_render(renderer, &frame);
-    const double two = 1e-6 * (double)bytes_of(renderer);
+    const double two = 1e-6 * (double)bench_memory_of(renderer, NULL);
     if (result == AG_OK) printf("  %-24s  %8.1f  %8.1f  %6.2f\n", gi, one, two, two / one);
     if (result == AG_OK) result = write_views(b, scene, gi, renderer, further.view);
     ag_view_destroy(further.view);

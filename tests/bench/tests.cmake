@@ -3,6 +3,8 @@ ag_test(bench/plot USES core)
 target_sources(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR}/bench/plot.c)
 target_include_directories(test_bench_plot PRIVATE ${CMAKE_SOURCE_DIR})
 
+add_test(NAME bench.paper_drt COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_drt.sh $<TARGET_FILE:bench_paper_drt> $<TARGET_FILE:afterglow>)
+set_tests_properties(bench.paper_drt PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)
 add_test(NAME bench.paper_lpv COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_lpv.sh $<TARGET_FILE:bench_paper_lpv> $<TARGET_FILE:afterglow>)
 set_tests_properties(bench.paper_lpv PROPERTIES TIMEOUT 300 LABELS bench SKIP_RETURN_CODE 77)
 add_test(NAME bench.paper_mrt COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/paper_mrt.sh $<TARGET_FILE:bench_paper_mrt> $<TARGET_FILE:afterglow>)
