@@ -68,3 +68,8 @@ int parallel_threads(void)
 {
     return omp_get_max_threads();
 }
+
+void parallel_limit(int threads)
+{
+    if (threads < omp_get_max_threads()) omp_set_num_threads(threads < 1 ? 1 : threads);
+}

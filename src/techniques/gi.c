@@ -186,7 +186,8 @@ static void warn_of_change(struct gi *gi, int term)
 
 static bool is_fixed(const struct gi *gi, int term)
 {
-    return !(gi->spec.technique[term]->capabilities & CAN_MOVE_GEOMETRY);
+    const struct technique *technique = gi->spec.technique[term];
+    return !(technique->capabilities & CAN_MOVE_GEOMETRY) && !technique->follow;
 }
 
 bool gi_would_warn_of_movement(const struct gi *gi)
@@ -218,6 +219,15 @@ void gi_invalidate(struct gi *gi, uint32_t changes)
         technique->invalidate(gi->state[i], changes);
         for (int v = 1; v < FRAME_MAX_VIEWS; v++)
             if (gi->views[v].state[i]) technique->invalidate(gi->views[v].state[i], changes);
+    }
+}
+
+void gi_follow(struct gi *gi, const struct scene_pose *pose)
+{
+    for (int i = 0; i < gi->spec.count; i++) {
+        const struct technique *technique = enter(gi, i);
+        if (technique->follow) technique->follow(gi->state[i], pose);
+        leave(gi);
     }
 }
 

@@ -102,6 +102,9 @@ struct technique {
     bool (*resize)(void *state, int view, uint32_t width, uint32_t height);
     void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
     void (*invalidate)(void *state, uint32_t changes);     // technique_change bits
+    // Before each frame is recorded, with the pose that it shows: follows changes of surfaces,
+    // which techniques without it or CAN_MOVE_GEOMETRY do not, with a warning of gi.c.
+    void (*follow)(void *state, const struct scene_pose *pose);
     // No allocation, no wait, no failure. `update` is the light that all views share: volumes,
     // voxels, probes; once a frame, with the first view. `record` is what a view's pixels get of
     // it; once a view. A technique without `update` shares nothing: each view has a state of its

@@ -110,14 +110,15 @@ static bool drt_create(void *state, const struct technique_create *how)
 {
     struct mrt *mrt = state;
     mrt->delta = true;
-    return mrt_create(state, how);
+    return mrt_create(state, how) && (!how->pose || mrt_update_init(mrt, how->pose));
 }
 
 static bool mrt_load(void *state, const struct tensors *bake)
 {
     struct mrt *mrt = state;
     const struct mrt_dictionary_options options = dictionary_options(&mrt->options);
-    return mrt_dictionary_init(mrt->host, bake, &options, &mrt->dictionary) && mrt_make_level(mrt);
+    return mrt_dictionary_init(mrt->host, bake, &options, &mrt->dictionary) &&
+           (mrt_make_level(mrt) || mrt_update_pass_on(mrt));
 }
 
 static void mrt_set_options(void *state, const void *options)
@@ -191,19 +192,37 @@ static bool record_host_solution(struct mrt *mrt, struct gpu_cmd *cmd,
                                   });
 }
 
+// What fed back is not in the coefficients of new operators: bounces take its place once.
+enum { BOUNCES_OF_NEW_OPERATORS = 16 };
+
+static void record_bounces(struct mrt *mrt, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    const bool lost = mrt->options.feedback && mrt->update.swapped;
+    const float feedback = lost ? 0.0f : first_feedback(mrt, view);
+    const int more = lost ? BOUNCES_OF_NEW_OPERATORS : 0;
+    mrt_record_bounces(&mrt->runtime, cmd, mrt->options.bounces + more, feedback);
+    mrt->update.swapped = false;
+}
+
 // Until the CPU's first result arrives the GPU solves.
 static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     if (mrt->options.solver == MRT_SOLVER_CPU && record_host_solution(mrt, cmd, view))
         mrt_record_coefficients(&mrt->runtime, cmd);
     else
-        mrt_record_bounces(&mrt->runtime, cmd, mrt->options.bounces, first_feedback(mrt, view));
+        record_bounces(mrt, cmd, view);
+}
+
+static void drt_follow(void *state, const struct scene_pose *pose)
+{
+    mrt_update_follow(state, pose);
 }
 
 static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct mrt *mrt = state;
     if (mrt->map.count == 0) return;
+    if (mrt_update_record(mrt, cmd)) mrt->inputs.valid = false;
     find_kept(mrt, view);
     if (!mrt->kept) {
         mrt_record_direct(&mrt->runtime, cmd, view, mrt->options.emitters);
@@ -248,13 +267,12 @@ static void mrt_destroy(void *state)
 {
     struct mrt *mrt = state;
     if (!mrt->host) return;
+    mrt_update_finish(mrt);
     mrt_host_solver_finish(&mrt->host_solver);
     mrt_runtime_finish(&mrt->runtime);
     mrt_level_finish(&mrt->level);
     mrt_dictionary_finish(mrt->host, &mrt->dictionary);
-    host_free(mrt->host, mrt->clutter_texels);
-    mrt_clutter_finish(&mrt->clutter);
-    mrt_scene_images_finish(&mrt->images);
+    mrt_parts_finish(&mrt->parts);
     mrt_atlas_finish(&mrt->atlas);
     mrt_block_map_finish(&mrt->map);
 }
@@ -301,4 +319,5 @@ const struct technique technique_drt = {
     .more_needs = drt_more_needs,
     .check = drt_check,
     .create = drt_create,
+    .follow = drt_follow,
 };

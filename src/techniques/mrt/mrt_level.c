@@ -76,35 +76,106 @@ bool mrt_resolve_maze(struct host *host, const struct scene_pose *pose, struct m
 // paper-drt.md), and the light map takes the more time.
 static const float CLUTTER_TEXELS = 10.0f;
 
-static bool find_clutter(struct mrt *mrt, const struct scene_pose *pose)
+static bool find_clutter(struct mrt_parts *out, const struct mrt *mrt,
+                         const struct scene_pose *pose)
 {
     const struct mrt_clutter_options options = { CLUTTER_TEXELS, mrt->options.response_modes };
-    const bool vertical = mrt->options.maze == MRT_MAZE_3D;
-    bool opened;
-    if (!mrt_clutter_init(&mrt->clutter, mrt->host, pose, &mrt->map, &options)) return false;
-    if (mrt->clutter.triangles == 0 || !mrt->map.is_found) return true;
-    if (!mrt_open_clutter_walls(&mrt->map, &mrt->clutter, vertical, &opened)) return false;
-    if (!opened) return true;
-    mrt_clutter_finish(&mrt->clutter);
-    return mrt_clutter_init(&mrt->clutter, mrt->host, pose, &mrt->map, &options);
-}
-
-// May open the map.
-static bool make_clutter(struct mrt *mrt, const struct scene_pose *pose)
-{
     if (!mrt->delta || mrt_block_is_tube(&mrt->map.blocks[0])) return true;
-    if (!find_clutter(mrt, pose)) return false;
-    if (mrt->clutter.triangles == 0) return true;
-    mrt->clutter_texels = mrt_clutter_light_create(mrt->host, pose, &mrt->clutter);
-    return mrt->clutter_texels;
+    return mrt_clutter_init(&out->clutter, out->host, pose, &mrt->map, &options);
 }
 
-static bool make_images(struct mrt *mrt, const struct scene_pose *pose)
+// May open the map: once, as operators follow from it.
+static bool find_clutter_and_open(struct mrt *mrt, const struct scene_pose *pose)
+{
+    const bool vertical = mrt->options.maze == MRT_MAZE_3D;
+    struct mrt_clutter *clutter = &mrt->parts.clutter;
+    bool opened;
+    if (!find_clutter(&mrt->parts, mrt, pose)) return false;
+    if (clutter->triangles == 0 || !mrt->map.is_found) return true;
+    if (!mrt_open_clutter_walls(&mrt->map, clutter, vertical, &opened)) return false;
+    if (!opened) return true;
+    mrt_clutter_finish(clutter);
+    return find_clutter(&mrt->parts, mrt, pose);
+}
+
+static bool light_clutter(struct mrt_parts *out, const struct scene_pose *pose)
+{
+    if (out->clutter.triangles == 0) return true;
+    out->clutter_texels = mrt_clutter_light_create(out->host, pose, &out->clutter);
+    return out->clutter_texels;
+}
+
+static struct hash128 hash_of_walls(const struct scene_pose *walls)
+{
+    const struct scene *scene = walls->scene;
+    struct hash128 hash = hash128_add((struct hash128){ 0 }, &scene->revisions.materials,
+                                      sizeof scene->revisions.materials);
+    for (int i = 0; i < scene->instance_count; i++) {
+        const struct mesh *mesh = scene_mesh_of(scene, i);
+        if (mesh->index_count == 0) continue;
+        const mat4s world_from_mesh = pose_world_from_instance(walls, i);
+        const vec3s *deformed = walls->deformed[i].positions;
+        const int ids[2] = { i, mesh->material };
+        hash = hash128_add(hash, ids, sizeof ids);
+        hash = hash128_add(hash, mesh->indices, mesh->index_count * sizeof *mesh->indices);
+        hash = hash128_add(hash, deformed ? deformed : mesh->positions,
+                           mesh->vertex_count * sizeof *deformed);
+        hash = hash128_add(hash, &world_from_mesh, sizeof world_from_mesh);
+    }
+    return hash;
+}
+
+static bool note_walls(struct mrt_parts *out, const struct scene_pose *walls)
+{
+    out->instance_count = walls->scene->instance_count;
+    out->has_walls = host_alloc(out->host, (size_t)out->instance_count, sizeof *out->has_walls);
+    for (int i = 0; out->has_walls && i < out->instance_count; i++)
+        out->has_walls[i] = scene_mesh_of(walls->scene, i)->index_count > 0;
+    return out->has_walls;
+}
+
+static bool make_images(struct mrt_parts *out, const struct mrt *mrt, const struct scene_pose *pose,
+                        const struct mrt_parts *last)
 {
     const int probes = mrt_runtime_options_of(&mrt->options).probes ? mrt->options.block_probes : 0;
-    const struct scene_pose *walls = mrt->clutter.triangles > 0 ? &mrt->clutter.walls.pose : pose;
-    return mrt_scene_images_init(mrt->host, pose, walls, &mrt->map, &mrt->atlas, probes,
-                                 &mrt->images);
+    const struct scene_pose *walls = out->clutter.triangles > 0 ? &out->clutter.walls.pose : pose;
+    if (mrt->delta) out->walls = hash_of_walls(walls);
+    const bool same =
+        last && last->walls.high == out->walls.high && last->walls.low == out->walls.low;
+    return (!mrt->delta || note_walls(out, walls)) &&
+           mrt_scene_images_init(out->host, pose, walls, &mrt->map, &mrt->atlas, probes,
+                                 same ? last->images.geometry : NULL, &out->images);
+}
+
+bool mrt_parts_init(struct mrt_parts *out, struct host *host, const struct mrt *mrt,
+                    const struct scene_pose *pose, const struct mrt_parts *last)
+{
+    *out = (struct mrt_parts){ .host = host };
+    return find_clutter(out, mrt, pose) && light_clutter(out, pose) &&
+           make_images(out, mrt, pose, last);
+}
+
+void mrt_parts_end_clutter(struct mrt_parts *parts)
+{
+    host_free(parts->host, parts->clutter_texels);
+    parts->clutter_texels = NULL;
+    mrt_clutter_finish(&parts->clutter);
+}
+
+void mrt_parts_finish(struct mrt_parts *parts)
+{
+    if (!parts->host) return;
+    mrt_parts_end_clutter(parts);
+    mrt_scene_images_finish(&parts->images);
+    host_free(parts->host, parts->has_walls);
+    *parts = (struct mrt_parts){ 0 };
+}
+
+void mrt_parts_replace(struct mrt_parts *to, struct mrt_parts *from)
+{
+    mrt_parts_finish(to);
+    *to = *from;
+    *from = (struct mrt_parts){ 0 };
 }
 
 bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
@@ -112,9 +183,11 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose)
     if (!choose_map(mrt->host, pose, &mrt->options, &mrt->map)) return false;
     if (mrt->options.maze == MRT_MAZE_AUTO) mrt->options.maze = (int32_t)maze_of(&mrt->map);
     const int resolution = mrt_face_texels((enum mrt_maze)mrt->options.maze, mrt->options.texels);
-    return mrt->map.count == 0 || (make_clutter(mrt, pose) &&
-                                   mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
-                                   make_images(mrt, pose));
+    mrt->parts = (struct mrt_parts){ .host = mrt->host };
+    return mrt->map.count == 0 ||
+           (find_clutter_and_open(mrt, pose) &&
+            mrt_atlas_init(mrt->host, &mrt->map, resolution, &mrt->atlas) &&
+            light_clutter(&mrt->parts, pose) && make_images(&mrt->parts, mrt, pose, NULL));
 }
 
 // ---- operators
@@ -130,37 +203,55 @@ struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *opti
     };
 }
 
-static bool start_cluttered(struct mrt *mrt, struct mrt_turned *turned,
-                            const struct mrt_runtime_options *options)
+static bool finish_runtime(const struct mrt *mrt, struct host *host,
+                           const struct mrt_runtime_input *input, const struct mrt_build *how,
+                           struct mrt_runtime *out)
 {
-    const struct mrt_cluttered_options how = { .rays = mrt->options.delta_rays,
-                                               .depth = mrt->options.depth,
-                                               .occlusion = mrt->options.occlusion,
-                                               .reflection = mrt->options.reflection,
-                                               .gather = mrt->options.gather &&
-                                                         mrt->options.reflection &&
-                                                         mrt->options.vector };
+    const struct mrt_runtime_options options = mrt_runtime_options_of(&mrt->options);
+    return how->plan ? mrt_runtime_plan(out, how->plan, input, &options)
+                     : mrt_runtime_init(out, host, mrt->gpu, input, &options);
+}
+
+static bool make_cluttered(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
+                           struct mrt_turned *turned, const struct mrt_build *how,
+                           struct mrt_runtime *out)
+{
+    const struct mrt_cluttered_options options = { .rays = mrt->options.delta_rays,
+                                                   .depth = mrt->options.depth,
+                                                   .occlusion = mrt->options.occlusion,
+                                                   .reflection = mrt->options.reflection,
+                                                   .gather = mrt->options.gather &&
+                                                             mrt->options.reflection &&
+                                                             mrt->options.vector,
+                                                   .stop = how->stop };
     struct mrt_cluttered cluttered;
-    const bool ok = mrt_cluttered_init(&cluttered, mrt->host, turned, &mrt->level, &mrt->clutter,
-                                       mrt->clutter_texels, &how) &&
-                    mrt_runtime_init(&mrt->runtime, mrt->host, mrt->gpu, &cluttered.input, options);
+    const bool ok = mrt_cluttered_init(&cluttered, host, turned, &mrt->level, &parts->clutter,
+                                       parts->clutter_texels, how->cache, &options) &&
+                    finish_runtime(mrt, host, &cluttered.input, how, out);
     mrt_cluttered_finish(&cluttered);
+    return ok;
+}
+
+bool mrt_make_runtime(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
+                      const struct mrt_build *how, struct mrt_runtime *out)
+{
+    struct mrt_turned turned;
+    bool ok = mrt_turned_init(host, &mrt->level, &turned);
+    if (ok) {
+        turned.input.atlas = &mrt->atlas;
+        turned.input.images = &parts->images;
+        ok = parts->clutter.triangles > 0 ? make_cluttered(mrt, host, parts, &turned, how, out)
+                                          : finish_runtime(mrt, host, &turned.input, how, out);
+    }
+    mrt_turned_finish(&turned);
     return ok;
 }
 
 static bool start_runtime(struct mrt *mrt)
 {
-    struct mrt_turned turned;
-    const struct mrt_runtime_options options = mrt_runtime_options_of(&mrt->options);
-    bool ok = mrt_turned_init(mrt->host, &mrt->level, &turned);
-    if (ok) {
-        turned.input.atlas = &mrt->atlas;
-        turned.input.images = &mrt->images;
-        ok = mrt->clutter.triangles > 0
-                 ? start_cluttered(mrt, &turned, &options)
-                 : mrt_runtime_init(&mrt->runtime, mrt->host, mrt->gpu, &turned.input, &options);
-    }
-    mrt_turned_finish(&turned);
+    const struct mrt_build how = { .cache = &mrt->update.cache };
+    const bool ok = mrt_make_runtime(mrt, mrt->host, &mrt->parts, &how, &mrt->runtime);
+    mrt_parts_end_clutter(&mrt->parts);
     return ok;
 }
 
@@ -175,5 +266,5 @@ bool mrt_make_level(struct mrt *mrt)
            start_runtime(mrt) &&
            (mrt->options.solver == MRT_SOLVER_GPU ||
             mrt_host_solver_init(&mrt->host_solver, mrt->host, mrt->gpu, &mrt->level,
-                                 mrt->images.geometry));
+                                 mrt->parts.images.geometry));
 }

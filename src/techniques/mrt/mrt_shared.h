@@ -109,6 +109,21 @@ struct mrt_gpu_clutter_triangle {
     vec3s normal; // world, unit, of the front
 };
 
+// Triangles of an instance of the scene.
+struct mrt_gpu_clutter_instance {
+    uint32_t first, triangles;
+};
+
+// From where an instance is to where it was when the light map was made: p.x x + p.y y + p.z z +
+// by. 0: it was not there.
+struct mrt_gpu_clutter_move {
+    vec3s x, y, z, by;
+};
+
+struct mrt_clutter_apply_push {
+    uint32_t instances, moved; // moved: there are moves
+};
+
 struct mrt_clutter_fill_push {
     uint32_t width, texels; // of the atlas
 };
@@ -154,6 +169,9 @@ _Static_assert(sizeof(struct mrt_gpu_face_pair) == 8, "layout is shared with GLS
 _Static_assert(sizeof(struct mrt_gpu_clutter_face) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_triangle) == 60, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_instance) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_move) == 48, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_clutter_apply_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");

@@ -3,8 +3,10 @@
 
 #include "techniques/mrt/dictionary/dictionary.h"
 #include "techniques/mrt/clutter/clutter_light.h"
+#include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/level/solver.h"
 #include "techniques/mrt/mrt_host_solver.h"
+#include "techniques/mrt/mrt_update.h"
 #include "techniques/mrt/runtime/runtime.h"
 #include "techniques/technique.h"
 
@@ -12,6 +14,8 @@ enum mrt_map_choice { MRT_MAP_SCENE, MRT_MAP_AUTO, MRT_MAP_SINGLE };
 enum mrt_warp_choice { MRT_WARP_STRETCH, MRT_WARP_RETRACE };
 enum mrt_solver_choice { MRT_SOLVER_GPU, MRT_SOLVER_CPU };
 enum mrt_precision { MRT_PRECISION_HALF, MRT_PRECISION_FLOAT };
+
+enum mrt_update_choice { MRT_UPDATE_BACKGROUND, MRT_UPDATE_WAIT };
 
 enum mrt_clutter_light { MRT_CLUTTER_WALLS, MRT_CLUTTER_PROBES };
 
@@ -22,6 +26,17 @@ struct mrt_options {
 #undef OPTION
 };
 
+// What follows from a pose of the scene, on the blocks of the map. It must not move.
+struct mrt_parts {
+    struct host *host;
+    struct mrt_clutter clutter; // drt; until the operators are made, as its texels
+    struct mrt_clutter_texel *clutter_texels;
+    struct mrt_scene_images images;
+    struct hash128 walls; // what images.geometry was traced of
+    bool *has_walls;      // [instance_count]: of instances, surfaces that are no clutter
+    int instance_count;
+};
+
 struct mrt {
     struct host *host;
     struct gpu *gpu;
@@ -30,9 +45,8 @@ struct mrt {
     // The level.
     struct mrt_block_map map; // no blocks: an empty scene
     struct mrt_atlas atlas;
-    struct mrt_scene_images images;
-    struct mrt_clutter clutter; // drt
-    struct mrt_clutter_texel *clutter_texels;
+    struct mrt_parts parts;
+    struct mrt_update update; // drt
     // The dictionary and what follows from both.
     struct mrt_dictionary dictionary;
     struct mrt_level level;
@@ -58,3 +72,21 @@ bool mrt_make_map(struct mrt *mrt, const struct scene_pose *pose);
 struct mrt_runtime_options mrt_runtime_options_of(const struct mrt_options *options);
 // Operators of the level, from the dictionary, on the GPU.
 bool mrt_make_level(struct mrt *mrt);
+
+// Those of another pose. last: of the pose before, NULL: none; its geometry serves again where the
+// walls are the same. mrt_parts_finish accepts zero.
+bool mrt_parts_init(struct mrt_parts *out, struct host *host, const struct mrt *mrt,
+                    const struct scene_pose *pose, const struct mrt_parts *last);
+void mrt_parts_finish(struct mrt_parts *parts);
+// Moves images and walls, of parts without clutter.
+void mrt_parts_replace(struct mrt_parts *to, struct mrt_parts *from);
+// Frees what operators are made of. Images and walls stay.
+void mrt_parts_end_clutter(struct mrt_parts *parts);
+
+struct mrt_build {
+    struct mrt_delta_cache *cache; // drt
+    struct mrt_plan *plan;         // NULL: on the GPU
+    const atomic_bool *stop;       // as of mrt_delta_input
+};
+bool mrt_make_runtime(const struct mrt *mrt, struct host *host, const struct mrt_parts *parts,
+                      const struct mrt_build *how, struct mrt_runtime *out);

@@ -10,8 +10,7 @@
 #include "techniques/mrt/dictionary/gather.h"
 #include "techniques/mrt/clutter/cell_ray.h"
 #include "techniques/mrt/clutter/clutter_map.h"
-#include "techniques/mrt/clutter/delta_entry.h"
-#include "techniques/mrt/clutter/delta_gather.h"
+#include "techniques/mrt/clutter/delta_cache.h"
 
 #include <math.h>
 #include <string.h>
@@ -111,6 +110,8 @@ static void room_trace(struct room *room)
                                            .l_imp = &room->l_imp,
                                            .clutter = &room->clutter,
                                            .objects = room->objects,
+                                           .bounds = mrt_clutter_bounds_in(&room->clutter,
+                                                                           &room->map.blocks[0]),
                                            .rays = RAYS,
                                            .probes = 2 };
     CHECK(mrt_delta_block_init(&room->delta, test_host(), &input));
@@ -332,8 +333,8 @@ TEST(the_light_map_of_clutter_has_the_light_of_rays)
     room_init(&room, WITH_BOX);
     room_trace(&room);
     CHECK(raycast_init(&rays, test_host(), &room.pose));
-    const struct mrt_clutter_map_input input = { &room.map,     &room.l_imp,  TEXELS,
-                                                 &room.clutter, room.objects, RAYS };
+    const struct mrt_clutter_map_input input = { &room.map,    &room.l_imp, TEXELS, &room.clutter,
+                                                 room.objects, RAYS,        NULL };
     CHECK(mrt_clutter_map_init(&map, test_host(), &input, 0));
     CHECK(map.texel_count == room.clutter.charts.texel_count);
     for (size_t i = 0; i < map.texel_count; i += 7) {

@@ -131,6 +131,8 @@ void mrt_clutter_finish(struct mrt_clutter *clutter)
     host_free(host, clutter->faces);
     host_free(host, clutter->texels);
     host_free(host, clutter->face_of_texel);
+    host_free(host, clutter->chart_faces);
+    host_free(host, clutter->first_chart_face);
     host_free(host, clutter->chart_triangle);
     *clutter = (struct mrt_clutter){ 0 };
 }

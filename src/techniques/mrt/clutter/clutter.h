@@ -25,6 +25,11 @@ struct mrt_clutter_face {
     uint32_t first_texel, texel_count; // in mrt_clutter.texels
 };
 
+// The face that a chart is part of in a block.
+struct mrt_chart_face {
+    int block, face;
+};
+
 struct mrt_clutter {
     struct host *host;
     size_t triangles; // of the clutter; 0: there is none, and the rest is empty
@@ -33,8 +38,10 @@ struct mrt_clutter {
     struct charts charts;           // of `objects`
     struct mrt_clutter_face *faces; // in the order of their blocks
     int face_count;
-    uint32_t *texels;   // of the charts, face after face
-    int *face_of_texel; // [charts.texel_count]
+    uint32_t *texels;                   // of the charts, face after face
+    struct mrt_chart_face *chart_faces; // chart after chart
+    int *face_of_texel;                 // [charts.texel_count]
+    uint32_t *first_chart_face;         // [charts.count + 1]
     size_t scene_triangles;
     uint32_t *triangles_of_instance; // [instances] of the scene
     uint32_t *number; // [triangles of the scene, instance after instance] of those of `objects`;
@@ -81,7 +88,10 @@ bool mrt_open_clutter_walls(struct mrt_block_map *map, const struct mrt_clutter 
 
 // ---- clutter_faces.c
 
-// The face at a hit of `objects`; −1: of a triangle without area.
-int mrt_face_of_hit(const struct mrt_clutter *clutter, const struct trace_hit *hit);
+// The face of a block at a hit of `objects`; −1: none, as of a triangle without area.
+int mrt_face_of_hit(const struct mrt_clutter *clutter, int block, const struct trace_hit *hit);
+// The face of any block, by the texel that is hit.
+int mrt_face_at(const struct mrt_clutter *clutter, const struct trace_hit *hit);
+int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t chart);
 bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
                             int max_faces);

@@ -165,6 +165,27 @@ static void fill_faces(const struct builder *s)
     }
 }
 
+static bool fill_chart_faces(const struct builder *s)
+{
+    struct mrt_clutter *clutter = s->clutter;
+    const size_t charts = clutter->charts.count;
+    uint32_t *first = host_alloc(clutter->host, charts + 1, sizeof *first);
+    clutter->first_chart_face = first;
+    clutter->chart_faces = host_alloc(clutter->host, s->piece_count, sizeof *clutter->chart_faces);
+    if (!first || !clutter->chart_faces) return false;
+    for (uint32_t i = 0; i < s->piece_count; i++) first[s->pieces[i].chart + 1]++;
+    for (size_t c = 0; c < charts; c++) first[c + 1] += first[c];
+    for (uint32_t i = s->piece_count; i > 0; i--) {
+        const struct piece *piece = &s->pieces[i - 1];
+        clutter->chart_faces[--first[piece->chart + 1]] =
+            (struct mrt_chart_face){ piece->block, piece->face };
+    }
+    // Each entry is now the first of its own chart, one place too late.
+    for (size_t c = 0; c < charts; c++) first[c] = first[c + 1];
+    first[charts] = s->piece_count;
+    return true;
+}
+
 static void index_triangles(struct mrt_clutter *clutter)
 {
     memset(clutter->chart_triangle, 0xff, clutter->triangles * sizeof *clutter->chart_triangle);
@@ -186,7 +207,7 @@ static bool make_faces(struct builder *s, int max_faces)
     if (!clutter->faces) return false;
     fill_faces(s);
     index_triangles(clutter);
-    return true;
+    return fill_chart_faces(s);
 }
 
 bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_map *map,
@@ -207,7 +228,24 @@ bool mrt_make_clutter_faces(struct mrt_clutter *clutter, const struct mrt_block_
     return ok;
 }
 
-int mrt_face_of_hit(const struct mrt_clutter *clutter, const struct trace_hit *hit)
+int mrt_face_of_chart(const struct mrt_clutter *clutter, int block, uint32_t chart)
+{
+    for (uint32_t i = clutter->first_chart_face[chart]; i < clutter->first_chart_face[chart + 1];
+         i++)
+        if (clutter->chart_faces[i].block == block) return clutter->chart_faces[i].face;
+    return -1;
+}
+
+int mrt_face_of_hit(const struct mrt_clutter *clutter, int block, const struct trace_hit *hit)
+{
+    const uint32_t index =
+        clutter->chart_triangle[clutter->first_triangle[hit->instance] + hit->triangle];
+    return index == CHART_NONE
+               ? -1
+               : mrt_face_of_chart(clutter, block, clutter->charts.triangles[index].chart);
+}
+
+int mrt_face_at(const struct mrt_clutter *clutter, const struct trace_hit *hit)
 {
     const struct charts *charts = &clutter->charts;
     const uint32_t index =

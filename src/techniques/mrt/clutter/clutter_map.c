@@ -67,7 +67,8 @@ static void add_wall(const struct texel_job *t, const float weight[VALUES],
 
 static void add_face(struct texel_job *t, const float weight[VALUES], const struct trace_hit *hit)
 {
-    const int column = mrt_face_of_hit(t->job->input->clutter, hit) - t->job->first_face;
+    const int column =
+        mrt_face_of_hit(t->job->input->clutter, t->job->out->block, hit) - t->job->first_face;
     struct matrix_f32 *c = &t->job->out->c;
     t->backs += !hit->front;
     if (column < 0 || column >= (int)c->columns) return;
@@ -112,6 +113,7 @@ static void trace_texel(void *user, size_t i)
     const struct job *job = user;
     const struct charts *charts = &job->input->clutter->charts;
     const uint32_t texel = chart_texel_of(job->input, job->out, i);
+    if (mrt_is_stopped(job->input->stop)) return;
     const vec3s normal = chart_texel_normal(charts, texel);
     const vec3s position = charts->texels[texel].position;
     const float away = 1e-4f * (1.0f + glms_vec3_max(glms_vec3_abs(position)));
@@ -144,6 +146,7 @@ bool mrt_clutter_map_init(struct mrt_clutter_map *out, struct host *host,
          matrix_f32_init(host, &out->c, out->texel_count * VALUES, (size_t)faces) &&
          mrt_rays_init(host, MRT_VECTOR, input->rays, &job.rays);
     if (ok) parallel_for(out->texel_count, 4, trace_texel, &job);
+    ok = ok && !mrt_is_stopped(input->stop);
     mrt_rays_finish(host, &job.rays);
     if (!ok) mrt_clutter_map_finish(out);
     return ok;
@@ -241,7 +244,7 @@ static void respond(void *user, size_t i)
     }
 }
 
-bool mrt_clutter_map_response(const struct mrt_clutter_map *map,
+bool mrt_clutter_map_response(const struct mrt_clutter_map *map, struct host *host,
                               const struct mrt_clutter_map_input *input, int face,
                               const struct matrix_f32 *probes, int p, struct matrix_f32 *out)
 {
@@ -254,7 +257,7 @@ bool mrt_clutter_map_response(const struct mrt_clutter_map *map,
         .world_from_cell = mrt_block_rotation(&input->map->blocks[map->block]),
         .out = out,
     };
-    if (!matrix_f32_init(map->host, out, map->texel_count * VALUES, probes->columns)) return false;
+    if (!matrix_f32_init(host, out, map->texel_count * VALUES, probes->columns)) return false;
     if (probes->rows > 0) parallel_for(map->texel_count, 16, respond, (void *)&job);
     return true;
 }

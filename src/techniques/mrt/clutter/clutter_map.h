@@ -12,6 +12,8 @@
 #include "techniques/mrt/dictionary/rays.h"
 #include "techniques/mrt/clutter/clutter.h"
 
+#include <stdatomic.h>
+
 struct mrt_clutter_map {
     struct host *host;
     int block;
@@ -29,7 +31,8 @@ struct mrt_clutter_map_input {
     int resolution;                 // of walls
     const struct mrt_clutter *clutter;
     const struct trace_scene *objects;
-    int rays; // of a texel, a power of two
+    int rays;                // of a texel, a power of two
+    const atomic_bool *stop; // as of mrt_delta_input
 };
 
 // The same bits for any number of threads. A block without faces has no texels.
@@ -40,6 +43,6 @@ void mrt_clutter_map_finish(struct mrt_clutter_map *map);
 
 // Light of an opening at the texels, texels · 4 × k_r, from that of its probes: p³ · 9 × k_r in
 // the frame of the cell.
-bool mrt_clutter_map_response(const struct mrt_clutter_map *map,
+bool mrt_clutter_map_response(const struct mrt_clutter_map *map, struct host *host,
                               const struct mrt_clutter_map_input *input, int face,
                               const struct matrix_f32 *probes, int p, struct matrix_f32 *out);

@@ -6,6 +6,7 @@
 #include "techniques/mrt/dictionary/cube_operators.h"
 #include "techniques/mrt/level/probes.h"
 
+#include <math.h>
 #include <string.h>
 
 // Rays start and end so much of their way from walls: clutter may stand on them.
@@ -25,11 +26,26 @@ struct passing {
     float all[CUBE_FACES], kept[CUBE_FACES];
 };
 
+// Whether the segment from start to start + way touches the box.
+static bool touches(struct box3 box, vec3s start, vec3s way)
+{
+    float enter = 0.0f, leave = 1.0f;
+    for (int a = 0; a < 3; a++) {
+        // Infinite where the segment is at right angles to the axis.
+        const float one = (box.min.raw[a] - start.raw[a]) / way.raw[a];
+        const float other = (box.max.raw[a] - start.raw[a]) / way.raw[a];
+        enter = fmaxf(enter, fminf(one, other));
+        leave = fminf(leave, fmaxf(one, other));
+    }
+    return !(enter > leave);
+}
+
 static bool is_blocked(const struct mrt_delta_input *input, vec3s from, vec3s to,
                        struct trace_hit *hit)
 {
     const vec3s start = mrt_warp_point(input->block->corner, from);
     const vec3s way = glms_vec3_sub(mrt_warp_point(input->block->corner, to), start);
+    if (!touches(input->bounds, start, way)) return false;
     return trace_closest(input->objects, glms_vec3_muladds(way, OFFSET, start), way,
                          1.0f - 2.0f * OFFSET, hit);
 }
@@ -82,7 +98,7 @@ static void follow(const struct job *job, size_t i, struct mrt_point point, int 
     count->backs += !hit.front;
     job->touched[i] = true;
     if (wall.opening < 0) subtract_wall(job, row, weight, &wall);
-    add_face(job, row, weight, mrt_face_of_hit(job->input->clutter, &hit));
+    add_face(job, row, weight, mrt_face_of_hit(job->input->clutter, job->input->index, &hit));
 }
 
 static void trace_point(void *user, size_t i)
@@ -92,6 +108,7 @@ static void trace_point(void *user, size_t i)
         mrt_gather_point(&job->input->shape, job->input->probes, job->measure, (int)i);
     struct passing passing = { 0 };
     struct blocked count = { 0 };
+    if (mrt_is_stopped(job->input->stop)) return;
     for (int r = 0; r < job->rays.count; r++) follow(job, i, point, r, &passing, &count);
     job->out->inside[i] = 2 * count.backs > job->rays.count;
     job->out->closed[i] = count.rays == job->rays.count;
@@ -129,6 +146,7 @@ static bool trace_measure(struct mrt_delta_block *out, const struct mrt_delta_in
          matrix_f32_init(host, &delta->b, rows, input->l_imp->columns) &&
          matrix_f32_init(host, &delta->c, rows, (size_t)out->face_count);
     if (ok) parallel_for(points, 4, trace_point, &job);
+    ok = ok && !mrt_is_stopped(input->stop);
     for (size_t i = 0; ok && i < points; i++) out->touched = out->touched || job.touched[i];
     host_free(host, job.touched);
     mrt_rays_finish(host, &job.rays);
@@ -151,6 +169,7 @@ bool mrt_delta_block_init(struct mrt_delta_block *out, struct host *host,
 {
     *out = (struct mrt_delta_block){ .host = host };
     out->face_count = mrt_faces_of_block(input->clutter, input->index, &out->first_face);
+    if (box3_is_empty(input->bounds)) return true;
     const bool ok = trace_measure(out, input, MRT_IRRADIANCE) &&
                     trace_measure(out, input, MRT_VECTOR) &&
                     (input->probes == 0 || trace_measure(out, input, MRT_PROBE));

@@ -19,6 +19,8 @@
 #include "techniques/mrt/clutter/clutter.h"
 #include "techniques/mrt/level/wall.h"
 
+#include <stdatomic.h>
+
 enum { MRT_MEASURES = 3 }; // enum mrt_measure
 
 // What clutter changes at the points of a block: texels of its walls, or probes.
@@ -44,8 +46,15 @@ struct mrt_delta_input {
     const struct matrix_f32 *l_imp; // texels × k_b, in the frame of the block
     const struct mrt_clutter *clutter;
     const struct trace_scene *objects; // of the clutter alone
+    struct box3 bounds;                // of clutter in the block, world; empty: there is none
     int rays, probes;                  // per point; along an edge, 0: none
+    const atomic_bool *stop;           // NULL, or ends the work early, as a failure
 };
+
+static inline bool mrt_is_stopped(const atomic_bool *stop)
+{
+    return stop && atomic_load_explicit(stop, memory_order_relaxed);
+}
 
 // The same bits for any number of threads. mrt_delta_block_finish accepts zero.
 bool mrt_delta_block_init(struct mrt_delta_block *out, struct host *host,

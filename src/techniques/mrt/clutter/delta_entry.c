@@ -2,7 +2,6 @@
 #include "techniques/mrt/clutter/delta_entry.h"
 
 #include "techniques/mrt/clutter/cell_ray.h"
-#include "techniques/mrt/clutter/delta.h"
 
 #include "core/parallel.h"
 
@@ -45,14 +44,14 @@ static void add_wall(const struct job *job, size_t point, int source, int block,
 }
 
 // The first clutter of other blocks on a way.
-static bool meets_face(const struct job *job, vec3s from, vec3s to, size_t point)
+static bool meets_face(const struct job *job, int block, vec3s from, vec3s to, size_t point)
 {
     const vec3s way = glms_vec3_sub(to, from);
     struct trace_hit hit;
     if (!trace_closest(job->input->objects, glms_vec3_muladds(way, OFFSET, from), way,
                        1.0f - OFFSET, &hit))
         return false;
-    const int face = mrt_face_of_hit(job->input->clutter, &hit);
+    const int face = mrt_face_of_hit(job->input->clutter, block, &hit);
     if (face < 0) return true;
     job->c.at[point * job->c.stride + (size_t)face] += 1.0f / (float)job->rays.count;
     return true;
@@ -68,7 +67,7 @@ static void follow(const struct job *job, size_t point, vec3s from, vec3s way, i
         if (block < 0 || !mrt_cell_ray_enter(map, block, from, way, &ray)) return;
         const vec3s end = mrt_cell_ray_end(map, job->input->resolution, &ray, &wall);
         const int source = source_of(job->input, block);
-        hidden = hidden || meets_face(job, from, end, point);
+        hidden = hidden || meets_face(job, block, from, end, point);
         if (wall.opening < 0) {
             if (source >= 0) add_wall(job, point, source, block, hidden, &wall);
             return;
@@ -83,7 +82,7 @@ static void trace_point(void *user, size_t i)
     const struct job *job = user;
     const struct mrt_block *block = &job->input->map->blocks[job->input->block];
     const size_t in_face = (size_t)(job->closed.resolution * job->closed.resolution);
-    if (i / in_face == (size_t)job->input->face) return;
+    if (i / in_face == (size_t)job->input->face || mrt_is_stopped(job->input->stop)) return;
     const struct mrt_point point = mrt_shape_texel(&job->closed, (int)i);
     for (int r = 0; r < job->rays.count; r++) {
         const vec3s way = glms_mat3_mulv(point.frame, job->rays.direction[r]);
@@ -127,6 +126,7 @@ static bool trace_entry(struct mrt_delta_entry *out, struct host *host, struct j
               matrix_f32_init(host, &job->c, points, job->faces) &&
               mrt_rays_init(host, MRT_IRRADIANCE, input->rays, &job->rays);
     if (ok) parallel_for(points, 4, trace_point, job);
+    ok = ok && !mrt_is_stopped(input->stop);
     for (int i = 0; ok && i < input->source_count; i++) {
         out->sources[i].block = input->sources[i];
         ok = project(host, job, &out->sources[i], i);

@@ -9,7 +9,7 @@
 #include "core/linalg.h"
 #include "trace/trace.h"
 
-#include "techniques/mrt/clutter/clutter.h"
+#include "techniques/mrt/clutter/delta.h"
 
 struct mrt_delta_source {
     int block;
@@ -35,6 +35,7 @@ struct mrt_delta_entry_input {
     const struct matrix_f32 *u_r; // of its response
     const int *sources;           // blocks that send light to it
     int source_count;
+    const atomic_bool *stop; // as of mrt_delta_input
 };
 
 // The same bits for any number of threads. mrt_delta_entry_finish accepts zero.

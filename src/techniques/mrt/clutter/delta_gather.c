@@ -12,7 +12,7 @@
 struct job {
     const struct mrt_gather_input *input;
     struct mrt_gather_faces *out;
-    int first_face;
+    int block, first_face;
     float *of_b;   // [blocks][faces][k_b]
     bool *reached; // [blocks][faces]
     size_t k_b, faces;
@@ -62,22 +62,26 @@ static struct ray_end end_of(const struct job *job, struct mrt_cell_ray ray, vec
 
 static void add_face(const struct job *job, size_t face, float weight, const struct trace_hit *hit)
 {
-    const int column = mrt_face_of_hit(job->input->clutter, hit);
+    const int column = mrt_face_at(job->input->clutter, hit);
     struct matrix_f32 *of_c = &job->out->of_c;
     if (column >= 0) of_c->at[face * of_c->stride + (size_t)column] += weight;
 }
 
-static void trace_texel(const struct job *job, size_t face, uint32_t texel, int rays, float weight)
+static void trace_texel(const struct job *job, size_t face, uint32_t of_face, int rays,
+                        float weight)
 {
     const struct mrt_clutter *clutter = job->input->clutter;
     const struct mrt_clutter_face *of = &clutter->faces[(size_t)job->first_face + face];
+    const uint32_t texel = clutter->texels[of->first_texel + of_face];
+    // By places in the block, which do not depend on clutter of others.
+    const uint32_t seed = pcg_hash(of_face + pcg_hash((uint32_t)face)) | 1u;
     const vec3s normal = chart_texel_normal(&clutter->charts, texel);
     const vec3s position = clutter->charts.texels[texel].position;
     const vec3s from = glms_vec3_muladds(
         normal, 1e-4f * (1.0f + glms_vec3_max(glms_vec3_abs(position))), position);
     const mat3s frame = mrt_frame_of_normal(normal);
     for (int r = 0; r < rays; r++) {
-        const vec2s u = sobol_2d((uint32_t)r, pcg_hash(texel) | 1u);
+        const vec2s u = sobol_2d((uint32_t)r, seed);
         const vec3s way = glms_mat3_mulv(frame, sample_hemisphere_cosine(u));
         struct trace_hit hit;
         struct mrt_cell_ray ray;
@@ -96,6 +100,7 @@ static void trace_face(void *user, size_t face)
     const struct job *job = user;
     const struct mrt_clutter *clutter = job->input->clutter;
     const struct mrt_clutter_face *of = &clutter->faces[(size_t)job->first_face + face];
+    if (mrt_is_stopped(job->input->stop)) return;
     const int rays = mean_count(of->texel_count, job->input->rays);
     float area = 0.0f;
     for (uint32_t t = 0; t < of->texel_count; t++)
@@ -103,7 +108,7 @@ static void trace_face(void *user, size_t face)
     for (uint32_t t = 0; t < of->texel_count; t++) {
         const uint32_t texel = clutter->texels[of->first_texel + t];
         const float share = clutter->charts.texels[texel].area_m2 / area;
-        trace_texel(job, face, texel, rays, share / (float)rays);
+        trace_texel(job, face, t, rays, share / (float)rays);
     }
 }
 
@@ -135,7 +140,9 @@ bool mrt_gather_faces_init(struct mrt_gather_faces *out, struct host *host,
                            const struct mrt_gather_input *input, int block)
 {
     const size_t blocks = (size_t)input->map->count;
-    struct job job = { .input = input, .out = out, .k_b = input->l_imp[block]->columns };
+    struct job job = {
+        .input = input, .out = out, .block = block, .k_b = input->l_imp[block]->columns
+    };
     *out = (struct mrt_gather_faces){ .host = host };
     job.faces = (size_t)mrt_faces_of_block(input->clutter, block, &job.first_face);
     job.of_b = host_alloc(host, blocks * job.faces, job.k_b * sizeof *job.of_b);
@@ -143,7 +150,7 @@ bool mrt_gather_faces_init(struct mrt_gather_faces *out, struct host *host,
     bool ok = job.of_b && job.reached &&
               matrix_f32_init(host, &out->of_c, job.faces, (size_t)input->clutter->face_count);
     if (ok) parallel_for(job.faces, 1, trace_face, &job);
-    ok = ok && keep_sources(out, &job);
+    ok = ok && !mrt_is_stopped(input->stop) && keep_sources(out, &job);
     host_free(host, job.of_b);
     host_free(host, job.reached);
     if (!ok) mrt_gather_faces_finish(out);

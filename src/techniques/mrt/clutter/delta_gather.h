@@ -23,8 +23,9 @@ struct mrt_gather_input {
     int resolution;                        // of walls
     const struct mrt_clutter *clutter;
     const struct trace_scene *objects;
-    int rays;  // of a face, at least
-    int depth; // openings that a ray passes at most
+    int rays;                // of a face, at least
+    int depth;               // openings that a ray passes at most
+    const atomic_bool *stop; // as of mrt_delta_input
 };
 
 // The same bits for any number of threads. mrt_gather_faces_finish accepts zero.

@@ -8,6 +8,7 @@
 #include "core/sampling.h"
 
 #include <math.h>
+#include <string.h>
 
 enum {
     PROBES = 8, // rays per texel that find out whether the sky is seen at all
@@ -132,24 +133,43 @@ static bool trace_light(struct mrt_scene_images *images, const struct scene_pose
     return ok;
 }
 
+static struct mrt_geometry_texel *geometry_of(struct host *host, const struct scene_pose *walls,
+                                              const struct mrt_block_map *map,
+                                              const struct mrt_atlas *atlas)
+{
+    struct trace_scene *scene = trace_scene_create(host, walls);
+    struct mrt_geometry_texel *out = scene ? mrt_geometry_create(host, map, atlas, scene) : NULL;
+    trace_scene_destroy(scene);
+    return out;
+}
+
+static struct mrt_geometry_texel *copy_of(struct host *host, const struct mrt_geometry_texel *from,
+                                          size_t count)
+{
+    struct mrt_geometry_texel *out = host_alloc(host, count, sizeof *out);
+    if (out) memcpy(out, from, count * sizeof *out);
+    return out;
+}
+
 bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
                            const struct scene_pose *walls, const struct mrt_block_map *map,
-                           const struct mrt_atlas *atlas, int probes, struct mrt_scene_images *out)
+                           const struct mrt_atlas *atlas, int probes,
+                           const struct mrt_geometry_texel *kept, struct mrt_scene_images *out)
 {
     const struct level_points level = { map, atlas, probes };
     const size_t texels = (size_t)atlas->texels;
     *out = (struct mrt_scene_images){ .host = host };
     struct trace_scene *scene = trace_scene_create(host, pose);
-    struct trace_scene *only = walls == pose ? scene : trace_scene_create(host, walls);
-    bool ok = scene && only;
+    bool ok = scene;
     if (ok) {
-        out->geometry = mrt_geometry_create(host, map, atlas, only);
+        out->geometry = kept            ? copy_of(host, kept, texels)
+                        : walls == pose ? mrt_geometry_create(host, map, atlas, scene)
+                                        : geometry_of(host, walls, map, atlas);
         out->emitted = host_alloc(host, texels, sizeof *out->emitted);
         out->sky = host_alloc(host, texels, sizeof *out->sky);
         ok = out->geometry && out->emitted && out->sky &&
              trace_light(out, pose, scene, texels, &level);
     }
-    if (only != scene) trace_scene_destroy(only);
     trace_scene_destroy(scene);
     return ok;
 }

@@ -17,10 +17,11 @@ struct mrt_scene_images {
 };
 
 // walls: the part of the pose that texels stand for; it may be the pose itself. probes: p, along an
-// edge of a block; 0: none.
+// edge of a block; 0: none. kept: the geometry of the same walls, NULL: it is traced.
 bool mrt_scene_images_init(struct host *host, const struct scene_pose *pose,
                            const struct scene_pose *walls, const struct mrt_block_map *map,
-                           const struct mrt_atlas *atlas, int probes, struct mrt_scene_images *out);
+                           const struct mrt_atlas *atlas, int probes,
+                           const struct mrt_geometry_texel *kept, struct mrt_scene_images *out);
 // Light at texels whose geometry is set, without probes.
 bool mrt_unbounced_texels(struct mrt_scene_images *images, const struct scene_pose *pose,
                           const struct trace_scene *scene, size_t texels);

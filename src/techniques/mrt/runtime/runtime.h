@@ -63,7 +63,9 @@ struct mrt_runtime_clutter_map {
     gpu_buffer instances, numbers, triangles; // of the scene, of its triangles, of clutter
     gpu_image image;
     gpu_pipeline fill, apply;
-    uint32_t tile_count, width, height;
+    uint32_t tile_count, width, height, instance_count;
+    // [instance_count] of the frame, NULL: no instance has moved since. Of the caller.
+    const struct mrt_gpu_clutter_move *moves;
 };
 
 // Without clutter all counts are 0 and the others are empty.

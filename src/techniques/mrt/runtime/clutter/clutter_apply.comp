@@ -13,7 +13,7 @@ layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;
 
 layout(set = 0, binding = 2, scalar) readonly buffer mrt_clutter_instances
 {
-    uint first_of_instance[]; // in number_table
+    mrt_gpu_clutter_instance instance_table[]; // in number_table
 };
 layout(set = 0, binding = 3, scalar) readonly buffer mrt_clutter_numbers
 {
@@ -27,6 +27,14 @@ layout(set = 0, binding = 5) uniform sampler2DArray clutter_map;
 layout(set = 0, binding = 6) uniform usampler2D id;
 layout(set = 0, binding = 7) uniform sampler2D depth;
 layout(set = 0, binding = 8) uniform sampler2D normal;
+layout(set = 0, binding = 10, scalar) readonly buffer mrt_clutter_moves
+{
+    mrt_gpu_clutter_move move_table[];
+};
+layout(push_constant, scalar) uniform push_block
+{
+    mrt_clutter_apply_push push;
+};
 layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D irradiance;
 
 vec3 map_irradiance(mrt_gpu_clutter_triangle triangle, vec3 position, vec3 n)
@@ -46,14 +54,23 @@ void main()
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     uvec2 shown = texelFetch(id, pixel, 0).rg;
     if (shown.x == 0u) return;
-    uint number = number_table[first_of_instance[shown.x - 1u] + shown.y - 1u];
+    uint instance = shown.x - 1u, of_instance = shown.y - 1u;
+    // One that was added since the map was made has the light of probes.
+    if (instance >= push.instances || of_instance >= instance_table[instance].triangles) return;
+    uint number = number_table[instance_table[instance].first + of_instance];
     if (number == ~0u) return;
     mrt_gpu_clutter_triangle triangle = triangle_table[number];
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-    // The map has the light of the front.
-    if (dot(n, triangle.normal) <= 0.0) return;
     float z = texelFetch(depth, pixel, 0).r;
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
+    if (push.moved != 0u) {
+        mrt_gpu_clutter_move move = move_table[instance];
+        position = mat3(move.x, move.y, move.z) * position + move.by;
+        n = mat3(move.x, move.y, move.z) * n;
+        n /= max(length(n), 1e-20);
+    }
+    // The map has the light of the front.
+    if (dot(n, triangle.normal) <= 0.0) return;
     vec3 light = level.gain * map_irradiance(triangle, position, n);
     imageStore(irradiance, pixel, vec4(min(light, vec3(HALF_MAX)), 1.0));
 }

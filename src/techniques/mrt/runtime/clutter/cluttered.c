@@ -1,9 +1,6 @@
 // Bases, responses, openings and pairs of blocks with clutter.
 #include "techniques/mrt/runtime/clutter/cluttered.h"
 
-#include "techniques/mrt/clutter/delta_entry.h"
-#include "techniques/mrt/clutter/delta_gather.h"
-
 #include <string.h>
 
 // Rays of a texel that find clutter beyond openings: all texels of a block make a few coefficients.
@@ -16,6 +13,7 @@ struct builder {
     const struct mrt_clutter *clutter;
     const struct mrt_cluttered_options *options;
     struct trace_scene *objects;
+    struct mrt_delta_cache *cache;
     const struct matrix_f32 **l_imp; // of each block
     int *sources;                    // [blocks], of an opening
     int old_opening, old_pair;       // of the turned operators that were taken
@@ -258,7 +256,7 @@ static int pairs_of_opening(const struct mrt_runtime_input *input, int opening, 
 }
 
 // Without clutter in any of the blocks that send light the entry is empty.
-static bool trace_entry(struct builder *s, int index, int pairs, struct mrt_delta_entry *out)
+static bool trace_entry(struct builder *s, int index, int pairs, const struct mrt_delta_entry **out)
 {
     const struct mrt_opening_input *opening = &s->turned->input.openings[index];
     const struct mrt_delta_entry_input input = { .map = s->level->map,
@@ -273,26 +271,28 @@ static bool trace_entry(struct builder *s, int index, int pairs, struct mrt_delt
                                                  .u_r =
                                                      &s->turned->responses[opening->response].u_r,
                                                  .sources = s->sources,
-                                                 .source_count = pairs };
+                                                 .source_count = pairs,
+                                                 .stop = s->options->stop };
     bool any = false;
-    *out = (struct mrt_delta_entry){ 0 };
     for (int i = 0; i < pairs; i++) {
         int first;
         s->sources[i] = s->turned->input.pairs[s->old_pair + i].source;
         any = any || mrt_faces_of_block(s->clutter, s->sources[i], &first) > 0;
     }
-    return !any || mrt_delta_entry_init(out, s->out->host, &input);
+    static const struct mrt_delta_entry empty = { 0 };
+    *out = any ? mrt_kept_entry(s->cache, &input) : &empty;
+    return *out;
 }
 
 static bool add_opening_pairs(struct builder *s, int opening)
 {
     const struct mrt_runtime_input *old = &s->turned->input;
     const int count = pairs_of_opening(old, s->old_opening, s->old_pair);
-    struct mrt_delta_entry entry;
+    const struct mrt_delta_entry *entry;
     bool ok = trace_entry(s, s->old_opening, count, &entry);
     for (int i = 0; ok && i < count; i++) {
         const struct mrt_pair_input *pair = &old->pairs[s->old_pair + i];
-        const struct mrt_delta_source *source = entry.count > 0 ? &entry.sources[i] : NULL;
+        const struct mrt_delta_source *source = entry->count > 0 ? &entry->sources[i] : NULL;
         if (source && source->hidden && s->options->occlusion) {
             ok = add_pair(s, opening, pair->source, &source->b);
         } else {
@@ -303,7 +303,6 @@ static bool add_opening_pairs(struct builder *s, int opening)
         if (ok && source && source->c.columns > 0 && s->options->reflection)
             ok = add_face_pair(s, opening, pair->source, &source->c);
     }
-    mrt_delta_entry_finish(&entry);
     s->old_pair += count;
     return ok;
 }
@@ -372,16 +371,16 @@ static bool add_clutter(struct builder *s, int block, const struct mrt_delta_blo
                                             .clutter = s->clutter,
                                             .objects = s->objects,
                                             .rays = s->options->rays,
-                                            .depth = s->options->depth };
-    struct mrt_gather_faces gathered = { 0 };
+                                            .depth = s->options->depth,
+                                            .stop = s->options->stop };
     new_opening(s, (struct mrt_opening_input){ block, -1, response });
-    bool ok = add_face_response(s, block, delta, response) &&
-              mrt_gather_faces_init(&gathered, s->out->host, &input, block);
-    for (int i = 0; ok && i < gathered.count; i++)
-        ok = add_pair(s, opening, gathered.from[i].source, &gathered.from[i].of_b);
-    ok = ok && add_couplings(s, opening, &gathered.of_c);
+    if (!add_face_response(s, block, delta, response)) return false;
+    const struct mrt_gather_faces *gathered = mrt_kept_gather(s->cache, &input, block);
+    bool ok = gathered;
+    for (int i = 0; ok && i < gathered->count; i++)
+        ok = add_pair(s, opening, gathered->from[i].source, &gathered->from[i].of_b);
+    ok = ok && add_couplings(s, opening, &gathered->of_c);
     if (ok) add_faces(s, opening, delta, texels);
-    mrt_gather_faces_finish(&gathered);
     return ok;
 }
 
@@ -393,9 +392,10 @@ static bool add_map(struct builder *s, int block, int first_opening)
                                                .resolution = s->level->resolution,
                                                .clutter = s->clutter,
                                                .objects = s->objects,
-                                               .rays = s->options->rays };
-    return mrt_mapped_add(&s->out->mapped, s->turned, &how, block, s->out->openings + first_opening,
-                          input->opening_count - first_opening);
+                                               .rays = s->options->rays,
+                                               .stop = s->options->stop };
+    return mrt_mapped_add(&s->out->mapped, s->turned, s->cache, &how, block,
+                          s->out->openings + first_opening, input->opening_count - first_opening);
 }
 
 static bool add_block(struct builder *s, int block, const struct mrt_clutter_texel *texels)
@@ -408,16 +408,17 @@ static bool add_block(struct builder *s, int block, const struct mrt_clutter_tex
                                            .l_imp = s->l_imp[block],
                                            .clutter = s->clutter,
                                            .objects = s->objects,
+                                           .bounds = mrt_clutter_bounds_in(s->clutter, at),
                                            .rays = s->options->rays,
-                                           .probes = s->turned->input.probes };
-    struct mrt_delta_block delta = { 0 };
-    bool ok = mrt_delta_block_init(&delta, s->out->host, &input);
-    if (ok && delta.touched && s->options->occlusion) ok = add_basis(s, block, &delta);
-    ok = ok && add_openings(s, block, &delta);
-    if (ok && delta.face_count > 0 && s->options->reflection)
-        ok = add_clutter(s, block, &delta, texels);
-    if (ok && delta.face_count > 0 && s->options->gather) ok = add_map(s, block, first_opening);
-    mrt_delta_block_finish(&delta);
+                                           .probes = s->turned->input.probes,
+                                           .stop = s->options->stop };
+    const struct mrt_delta_block *delta = mrt_kept_delta(s->cache, &input);
+    bool ok = delta;
+    if (ok && delta->touched && s->options->occlusion) ok = add_basis(s, block, delta);
+    ok = ok && add_openings(s, block, delta);
+    if (ok && delta->face_count > 0 && s->options->reflection)
+        ok = add_clutter(s, block, delta, texels);
+    if (ok && delta->face_count > 0 && s->options->gather) ok = add_map(s, block, first_opening);
     return ok;
 }
 
@@ -461,13 +462,16 @@ static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
 
 bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt_turned *turned,
                         const struct mrt_level *level, const struct mrt_clutter *clutter,
-                        const struct mrt_clutter_texel *texels,
+                        const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
                         const struct mrt_cluttered_options *options)
 {
     const int blocks = level->map->count;
-    struct builder s = {
-        .out = out, .turned = turned, .level = level, .clutter = clutter, .options = options
-    };
+    struct builder s = { .out = out,
+                         .turned = turned,
+                         .level = level,
+                         .clutter = clutter,
+                         .cache = cache,
+                         .options = options };
     *out = (struct mrt_cluttered){ .host = host, .input = turned->input };
     out->input.opening_count = out->input.pair_count = 0;
     s.objects = trace_scene_create(host, &clutter->objects.pose);

@@ -6,15 +6,16 @@
 // that they see is carried by T_b→r, and clutter.c adds direct light and albedo.
 #pragma once
 
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/runtime/clutter/mapped.h"
 #include "techniques/mrt/runtime/turned.h"
 
 struct mrt_cluttered_options {
-    int rays, depth; // rays per texel; openings that light on clutter passes at most
-    bool occlusion;  // clutter blocks light
-    bool reflection; // it reflects light
-    bool gather;     // it has a light map
+    int rays, depth;         // rays per texel; openings that light on clutter passes at most
+    bool occlusion;          // clutter blocks light
+    bool reflection;         // it reflects light
+    bool gather;             // it has a light map
+    const atomic_bool *stop; // as of mrt_delta_input
 };
 
 struct mrt_cluttered {
@@ -35,9 +36,9 @@ struct mrt_cluttered {
 };
 
 // Adds bases to `turned`, which must outlive the input. texels: those of clutter->texels, in their
-// order. mrt_cluttered_finish accepts zero.
+// order. The cache must outlive the call only. mrt_cluttered_finish accepts zero.
 bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt_turned *turned,
                         const struct mrt_level *level, const struct mrt_clutter *clutter,
-                        const struct mrt_clutter_texel *texels,
+                        const struct mrt_clutter_texel *texels, struct mrt_delta_cache *cache,
                         const struct mrt_cluttered_options *options);
 void mrt_cluttered_finish(struct mrt_cluttered *cluttered);

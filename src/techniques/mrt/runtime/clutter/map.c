@@ -77,15 +77,17 @@ static void fill_sources(const struct mrt_runtime_input *input, void *items)
     }
 }
 
-// Of triangles of the scene, the first of each instance.
+// Triangles of the scene, instance after instance.
 static void fill_instances(const struct mrt_runtime_input *input, void *items)
 {
     const struct scene *scene = &input->clutter->map.clutter->walls.scene;
     const struct mrt_clutter *clutter = input->clutter->map.clutter;
-    uint32_t *first = items, next = 0;
+    struct mrt_gpu_clutter_instance *instances = items;
+    uint32_t next = 0;
     for (int i = 0; i < scene->instance_count; i++) {
-        first[i] = next;
-        next += clutter->triangles_of_instance[i];
+        const uint32_t count = clutter->triangles_of_instance[i];
+        instances[i] = (struct mrt_gpu_clutter_instance){ next, count };
+        next += count;
     }
 }
 
@@ -148,14 +150,16 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     map->tile_count = (uint32_t)tiles;
     map->width = from->width;
     map->height = from->height;
+    map->instance_count = (uint32_t)instances;
     return mrt_table_upload(runtime, input, "clutter_tiles", tiles, sizeof(struct mrt_gpu_tile),
                             fill_tiles, &map->tiles) &&
            mrt_table_upload(runtime, input, "clutter_map_openings", (size_t)input->opening_count,
                             sizeof(struct mrt_gpu_opening), fill_openings, &map->openings) &&
            mrt_table_upload(runtime, input, "clutter_sources", (size_t)from->width * from->height,
                             sizeof(struct source), fill_sources, &map->sources) &&
-           mrt_table_upload(runtime, input, "clutter_instances", instances, sizeof(uint32_t),
-                            fill_instances, &map->instances) &&
+           mrt_table_upload(runtime, input, "clutter_instances", instances,
+                            sizeof(struct mrt_gpu_clutter_instance), fill_instances,
+                            &map->instances) &&
            mrt_table_upload(runtime, input, "clutter_numbers", from->clutter->scene_triangles,
                             sizeof(uint32_t), fill_numbers, &map->numbers) &&
            mrt_table_upload(
@@ -218,11 +222,14 @@ void mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view)
 {
     const struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
+    const struct mrt_clutter_apply_push push = { m->instance_count, m->moves != NULL };
     if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return;
     gpu_dispatch(cmd, m->apply,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
                           view->constants_binding,
                           { .name = "mrt_clutter_instances", .buffer = m->instances },
+                          gpu_transient(cmd, "mrt_clutter_moves", m->moves,
+                                        m->moves ? m->instance_count * sizeof *m->moves : 0),
                           { .name = "mrt_clutter_numbers", .buffer = m->numbers },
                           { .name = "mrt_clutter_triangles", .buffer = m->triangles },
                           { .name = "clutter_map", .image = m->image, .sampler = runtime->linear },
@@ -230,6 +237,6 @@ void mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                           { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                           { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                           { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-                 NULL, 0, gpu_groups(view->width, MRT_LOCAL_2D),
+                 &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
                  gpu_groups(view->height, MRT_LOCAL_2D), 1);
 }

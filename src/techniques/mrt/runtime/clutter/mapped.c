@@ -22,8 +22,8 @@ static bool widen(struct host *host, const struct matrix_f32 *from, size_t colum
     return true;
 }
 
-static bool add_openings(struct mrt_clutter_rows_input *rows, const struct mrt_turned *turned,
-                         const struct mrt_clutter_map *map,
+static bool add_openings(struct host *host, struct mrt_clutter_rows_input *rows,
+                         const struct mrt_turned *turned, const struct mrt_clutter_map *map,
                          const struct mrt_clutter_map_input *input,
                          const struct mrt_opening_input *openings, int opening_count)
 {
@@ -31,13 +31,13 @@ static bool add_openings(struct mrt_clutter_rows_input *rows, const struct mrt_t
     for (int i = 0; ok && i < opening_count; i++) {
         const int face = openings[i].face;
         if (face < 0) {
-            ok = widen(map->host, &map->c, (size_t)turned->input.k_r, &rows->u_r[i]);
+            ok = widen(host, &map->c, (size_t)turned->input.k_r, &rows->u_r[i]);
             continue;
         }
         const struct mrt_response_input *response =
             &turned->responses[mrt_response_of(&input->map->blocks[rows->block], face)];
-        ok = mrt_clutter_map_response(map, input, face, &response->u_vol, turned->input.probes,
-                                      &rows->u_r[i]);
+        ok = mrt_clutter_map_response(map, host, input, face, &response->u_vol,
+                                      turned->input.probes, &rows->u_r[i]);
     }
     return ok;
 }
@@ -52,21 +52,18 @@ static bool keep_inside(struct mrt_mapped *out, const struct mrt_clutter_map *ma
 }
 
 bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
-                    const struct mrt_clutter_map_input *input, int block,
-                    const struct mrt_opening_input *openings, int opening_count)
+                    struct mrt_delta_cache *cache, const struct mrt_clutter_map_input *input,
+                    int block, const struct mrt_opening_input *openings, int opening_count)
 {
-    struct mrt_clutter_map map;
-    if (!mrt_clutter_map_init(&map, out->host, input, block)) return false;
+    const struct mrt_clutter_map *map = mrt_kept_map(cache, input, block);
+    if (!map) return false;
     struct mrt_clutter_rows_input *rows = &out->rows[out->input.count++];
     *rows = (struct mrt_clutter_rows_input){ .block = block,
-                                             .first_texel = (int)map.first_texel,
-                                             .texel_count = (int)map.texel_count,
-                                             .u_b = map.b };
-    map.b = (struct matrix_f32){ 0 };
-    const bool ok = keep_inside(out, &map, &input->clutter->charts) &&
-                    add_openings(rows, turned, &map, input, openings, opening_count);
-    mrt_clutter_map_finish(&map);
-    return ok;
+                                             .first_texel = (int)map->first_texel,
+                                             .texel_count = (int)map->texel_count };
+    return widen(out->host, &map->b, map->b.columns, &rows->u_b) &&
+           keep_inside(out, map, &input->clutter->charts) &&
+           add_openings(out->host, rows, turned, map, input, openings, opening_count);
 }
 
 // ---- the atlas

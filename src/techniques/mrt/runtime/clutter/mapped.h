@@ -1,7 +1,7 @@
 // Operators of the light map of clutter (clutter/clutter_map.h), and the map's atlas.
 #pragma once
 
-#include "techniques/mrt/clutter/clutter_map.h"
+#include "techniques/mrt/clutter/delta_cache.h"
 #include "techniques/mrt/runtime/turned.h"
 
 struct mrt_mapped {
@@ -16,8 +16,8 @@ struct mrt_mapped {
 bool mrt_mapped_init(struct mrt_mapped *out, struct host *host, int blocks);
 // Light at the clutter of a block with faces. openings: those of the block in the run time's input.
 bool mrt_mapped_add(struct mrt_mapped *out, const struct mrt_turned *turned,
-                    const struct mrt_clutter_map_input *input, int block,
-                    const struct mrt_opening_input *openings, int opening_count);
+                    struct mrt_delta_cache *cache, const struct mrt_clutter_map_input *input,
+                    int block, const struct mrt_opening_input *openings, int opening_count);
 // After all blocks: sources of the atlas. Texels inside objects have that of the nearest other one
 // of their chart.
 bool mrt_mapped_place(struct mrt_mapped *out, const struct mrt_clutter *clutter);

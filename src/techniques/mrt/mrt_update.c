@@ -1,0 +1,302 @@
+#include "techniques/mrt/mrt_state.h"
+
+#include "core/parallel.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+// Bytes that a frame copies at most.
+static const size_t COPIED = 4u << 20;
+
+static void take_message(void *user, enum log_level level, const char *text)
+{
+    struct mrt_update *update = user;
+    if (level == LOG_ERROR) snprintf(update->error, sizeof update->error, "%s", text);
+}
+
+static double now(void)
+{
+    struct timespec at;
+    clock_gettime(CLOCK_MONOTONIC, &at);
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
+// ---- the thread
+
+static bool make(struct mrt *mrt)
+{
+    struct mrt_update *u = &mrt->update;
+    const struct mrt_build how = { .cache = &u->cache, .plan = &u->plan, .stop = &u->stop };
+    const bool ok = mrt_parts_init(u->parts, &u->host, mrt, &u->snapshot.pose, &mrt->parts) &&
+                    !mrt_is_stopped(&u->stop) &&
+                    mrt_make_runtime(mrt, &u->host, u->parts, &how, &u->next);
+    mrt_parts_end_clutter(u->parts);
+    return ok;
+}
+
+static void *run(void *user)
+{
+    struct mrt *mrt = user;
+    const double begin = now();
+    // The other half is for frames.
+    if (!mrt->update.waited_for) parallel_limit(parallel_threads() / 2);
+    mrt->update.ok = make(mrt);
+    mrt->update.seconds = now() - begin;
+    atomic_store(&mrt->update.done, true);
+    return NULL;
+}
+
+// ---- where instances were
+
+struct mrt_place {
+    int mesh; // −1: none
+    bool deformed;
+    mat4s world_from_mesh;
+};
+
+static void free_places(struct mrt_update *u, struct mrt_places *places)
+{
+    host_free(&u->host, places->at);
+    host_free(&u->host, places->moves);
+    *places = (struct mrt_places){ 0 };
+}
+
+// Of the snapshot.
+static bool note_places(struct mrt_update *u, struct mrt_places *out)
+{
+    const struct scene *scene = &u->snapshot.scene;
+    free_places(u, out);
+    out->at = host_alloc(&u->host, (size_t)scene->instance_count, sizeof *out->at);
+    out->moves = host_alloc(&u->host, (size_t)scene->instance_count, sizeof *out->moves);
+    if (!out->at || !out->moves) return false;
+    out->count = scene->instance_count;
+    for (int i = 0; i < out->count; i++) {
+        struct mrt_place *at = &out->at[i];
+        at->mesh = scene->instances[i].mesh;
+        if (at->mesh < 0) continue;
+        at->deformed = u->snapshot.pose.deformed[i].positions;
+        at->world_from_mesh = pose_world_from_instance(&u->snapshot.pose, i);
+    }
+    return true;
+}
+
+static struct mrt_gpu_clutter_move move_of(mat4s m)
+{
+    return (struct mrt_gpu_clutter_move){ vec3_xyz(m.col[0]), vec3_xyz(m.col[1]),
+                                          vec3_xyz(m.col[2]), vec3_xyz(m.col[3]) };
+}
+
+// Whether an instance is elsewhere in the frame.
+static bool find_move(const struct mrt_update *u, int i)
+{
+    const struct mrt_place *was = &u->places.at[i];
+    const struct scene *scene = u->pose->scene;
+    struct mrt_gpu_clutter_move *move = &u->places.moves[i];
+    *move = (struct mrt_gpu_clutter_move){ 0 };
+    if (i >= scene->instance_count || scene->instances[i].mesh != was->mesh || was->mesh < 0)
+        return was->mesh >= 0;
+    *move = move_of(glms_mat4_identity());
+    if (was->deformed) return false; // the map has its triangles as they were
+    const mat4s now = pose_world_from_instance(u->pose, i);
+    if (memcmp(&now, &was->world_from_mesh, sizeof now) == 0) return false;
+    *move = move_of(glms_mat4_mul(was->world_from_mesh, glms_mat4_inv(now)));
+    return true;
+}
+
+// Pixels of a moved object find the light that it had at the same point of its surface.
+static void find_moves(struct mrt *mrt)
+{
+    struct mrt_update *u = &mrt->update;
+    bool moved = false;
+    for (int i = 0; i < u->places.count; i++) moved |= find_move(u, i);
+    mrt->runtime.clutter.map.moves = moved ? u->places.moves : NULL;
+}
+
+// ---- what it made
+
+// Where it was left, but for the snapshot: its pose has been tried.
+static void drop(struct mrt *mrt)
+{
+    struct mrt_update *u = &mrt->update;
+    if (u->next.gpu) mrt_runtime_finish(&u->next);
+    u->next = (struct mrt_runtime){ 0 };
+    mrt_plan_finish(&u->plan);
+    if (u->parts) mrt_parts_finish(u->parts);
+    u->state = MRT_IDLE;
+}
+
+static void fail(struct mrt *mrt, const char *why)
+{
+    struct mrt_update *u = &mrt->update;
+    if (!u->said_failure)
+        host_log(mrt->host, LOG_WARNING,
+                 "drt: objects moved, but their indirect light stays as it was: %s", why);
+    u->said_failure = true;
+    drop(mrt);
+}
+
+static void say_walls(struct mrt *mrt)
+{
+    if (!mrt->update.said_walls)
+        host_log(mrt->host, LOG_WARNING,
+                 "drt: walls changed, but the blocks keep those at the renderer's creation; only "
+                 "objects inside blocks may move; lpv and vct follow all surfaces");
+    mrt->update.said_walls = true;
+}
+
+static bool had_walls(const struct mrt_parts *parts, int instance)
+{
+    return instance < parts->instance_count && parts->has_walls[instance];
+}
+
+static void check_walls(struct mrt *mrt)
+{
+    const struct mrt_update *u = &mrt->update;
+    for (int i = 0; i < u->changed_count; i++)
+        if (u->changed[i] && (had_walls(&mrt->parts, i) || had_walls(u->parts, i))) {
+            say_walls(mrt);
+            return;
+        }
+}
+
+static void join(struct mrt *mrt)
+{
+    struct mrt_update *u = &mrt->update;
+    pthread_join(u->thread, NULL);
+    if (!u->ok) {
+        fail(mrt, u->error);
+        return;
+    }
+    check_walls(mrt);
+    u->next.gpu = mrt->gpu;
+    u->next.host = mrt->host;
+    u->next.linear = mrt->runtime.linear;
+    if (!note_places(u, &u->next_places) || !mrt_plan_create(&u->plan, &u->next)) {
+        fail(mrt, "out of memory");
+        return;
+    }
+    u->said_failure = false;
+    u->state = MRT_COPYING;
+    host_log(mrt->host, LOG_DEBUG, "drt: operators of %d blocks with objects made again in %.2f s",
+             u->cache.traced, u->seconds);
+}
+
+// ---- starting it
+
+static bool note_changes(struct mrt_update *u, const struct scene_pose *pose)
+{
+    const int then = u->snapshot.scene.instance_count, is = pose->scene->instance_count;
+    host_free(&u->host, u->changed);
+    u->changed_count = then > is ? then : is;
+    u->changed = host_alloc(&u->host, (size_t)u->changed_count, sizeof *u->changed);
+    for (int i = 0; u->changed && i < u->changed_count; i++)
+        u->changed[i] = !scene_snapshot_has_instance(&u->snapshot, pose, i);
+    if (!u->changed) u->changed_count = 0;
+    return u->changed;
+}
+
+static void start(struct mrt *mrt, const struct scene_pose *pose)
+{
+    struct mrt_update *u = &mrt->update;
+    u->error[0] = 0;
+    u->cache.traced = 0;
+    u->waited_for = mrt->options.update == MRT_UPDATE_WAIT;
+    u->plan = (struct mrt_plan){ .host = &u->host };
+    atomic_store(&u->stop, false);
+    atomic_store(&u->done, false);
+    if (!note_changes(u, pose) || !scene_snapshot_take(&u->snapshot, pose))
+        fail(mrt, u->error);
+    else if (pthread_create(&u->thread, NULL, run, mrt) != 0)
+        fail(mrt, "no thread could be started");
+    else
+        u->state = MRT_RUNNING;
+}
+
+// Of tubes and scenes without blocks there is no clutter.
+static bool can_follow(const struct mrt *mrt)
+{
+    return mrt->map.count > 0 && !mrt_block_is_tube(&mrt->map.blocks[0]);
+}
+
+static void follow(struct mrt *mrt, const struct scene_pose *pose)
+{
+    struct mrt_update *u = &mrt->update;
+    const bool wait = mrt->options.update == MRT_UPDATE_WAIT;
+    if (!u->host.log || (u->said_walls && !can_follow(mrt))) return;
+    if (u->state == MRT_RUNNING && (wait || atomic_load(&u->done))) join(mrt);
+    if (u->state == MRT_RUNNING || (u->state == MRT_COPYING && !wait)) return;
+    if (scene_snapshot_is_current(&u->snapshot, pose)) return;
+    if (!can_follow(mrt)) {
+        say_walls(mrt);
+        return;
+    }
+    drop(mrt);
+    start(mrt, pose);
+    if (wait && u->state == MRT_RUNNING) join(mrt);
+}
+
+void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose)
+{
+    follow(mrt, pose);
+    mrt->update.pose = pose;
+    find_moves(mrt);
+}
+
+bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd)
+{
+    struct mrt_update *u = &mrt->update;
+    if (u->state != MRT_COPYING) return false;
+    const size_t most = mrt->options.update == MRT_UPDATE_WAIT ? SIZE_MAX : COPIED;
+    if (!mrt_plan_record(&u->plan, &u->next, cmd, most)) return false;
+    mrt_runtime_finish(&mrt->runtime);
+    mrt->runtime = u->next;
+    u->next = (struct mrt_runtime){ 0 };
+    free_places(u, &u->places);
+    u->places = u->next_places;
+    u->next_places = (struct mrt_places){ 0 };
+    find_moves(mrt);
+    mrt_parts_replace(&mrt->parts, u->parts);
+    u->swapped = true;
+    drop(mrt);
+    return true;
+}
+
+// ---- creation
+
+bool mrt_update_init(struct mrt *mrt, const struct scene_pose *pose)
+{
+    struct mrt_update *u = &mrt->update;
+    u->host = host_default();
+    u->host.log = take_message;
+    u->host.user = u;
+    u->snapshot.host = &u->host;
+    u->parts = host_alloc(&u->host, 1, sizeof *u->parts);
+    return (u->parts && scene_snapshot_take(&u->snapshot, pose) && note_places(u, &u->places) &&
+            mrt_delta_cache_init(&u->cache, &u->host, mrt->map.count)) ||
+           mrt_update_pass_on(mrt);
+}
+
+bool mrt_update_pass_on(struct mrt *mrt)
+{
+    const struct mrt_update *u = &mrt->update;
+    if (u->error[0]) host_fail(mrt->host, u->host.failure, "%s", u->error);
+    return false;
+}
+
+void mrt_update_finish(struct mrt *mrt)
+{
+    struct mrt_update *u = &mrt->update;
+    if (!u->host.log) return;
+    if (u->state == MRT_RUNNING) {
+        atomic_store(&u->stop, true);
+        pthread_join(u->thread, NULL);
+    }
+    drop(mrt);
+    free_places(u, &u->places);
+    free_places(u, &u->next_places);
+    host_free(&u->host, u->parts);
+    host_free(&u->host, u->changed);
+    mrt_delta_cache_finish(&u->cache);
+    scene_snapshot_finish(&u->snapshot);
+}

@@ -1,0 +1,61 @@
+// Operators of clutter that moved, made by another thread while frames use the old ones.
+//
+// The thread works on a copy of the scene (scene/snapshot.h) and without the GPU: it plans a run
+// time (runtime/objects.h), whose content frames copy in parts. The frame with the last part takes
+// the new run time, whole. Changes meanwhile wait for the next turn: the newest pose counts.
+#pragma once
+
+#include "scene/snapshot.h"
+
+#include "techniques/mrt/clutter/delta_cache.h"
+#include "techniques/mrt/runtime/objects.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+struct mrt;
+struct mrt_parts;
+
+enum mrt_update_state { MRT_IDLE, MRT_RUNNING, MRT_COPYING };
+
+// Where instances were when operators were made, and the way back from where they are.
+struct mrt_places {
+    struct mrt_place *at;
+    struct mrt_gpu_clutter_move *moves;
+    int count;
+};
+
+struct mrt_update {
+    // Of the thread. It has libc's memory: an allocator of the program is called on its thread
+    // only.
+    struct host host;
+    char error[256];
+    enum mrt_update_state state;
+    pthread_t thread;
+    atomic_bool stop, done;
+    bool waited_for;
+    bool ok; // of the thread
+    struct scene_snapshot snapshot;
+    struct mrt_delta_cache cache;
+    struct mrt_parts *parts; // being made
+    struct mrt_runtime next;
+    struct mrt_plan plan;
+    struct mrt_places places, next_places;
+    const struct scene_pose *pose; // of the frame
+    double seconds;                // the last one took
+    bool *changed;                 // [changed_count]: instances, since the operators before
+    int changed_count;
+    bool said_walls, said_failure;
+    bool swapped; // this frame has other operators than the last
+};
+
+bool mrt_update_init(struct mrt *mrt, const struct scene_pose *pose);
+void mrt_update_finish(struct mrt *mrt); // accepts zero
+// After a failure with memory of the update: gives its message to the technique's host. False.
+bool mrt_update_pass_on(struct mrt *mrt);
+
+// Before a frame: takes what the thread has made, and starts it where the scene has changed. With
+// update=wait it waits. After a failure the old operators stay, with one warning.
+void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose);
+// In a frame: copies; true: the operators are new from now on.
+bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd);
