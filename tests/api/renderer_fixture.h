@@ -10,6 +10,12 @@
 
 enum { FIXTURE_WIDTH = 48, FIXTURE_HEIGHT = 32, FIXTURE_SPEC = 512 };
 
+// Options of mrt and drt for a bake of a second, with delta operators of few rays.
+#define FIXTURE_SMALL_DICTIONARY                                                                   \
+    "maze=plane,texels=6,rays=256,modes=12,lightfield_positions=4,lightfield_directions=6,"        \
+    "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=8,"         \
+    "block_probes=2,delta_rays=64"
+
 struct renderer_fixture {
     struct ag_context *context;
     struct ag_device *device;
