@@ -277,19 +277,31 @@ static void mrt_destroy(void *state)
     mrt_block_map_finish(&mrt->map);
 }
 
-static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_t height)
+static uint64_t estimate(const struct mrt_options *o, bool cluttered)
 {
-    const struct mrt_options *o = options;
-    (void)width;
-    (void)height;
     return mrt_runtime_bytes(&(struct mrt_runtime_size){
         .resolution = mrt_face_texels((enum mrt_maze)o->maze, o->texels),
         .tube = o->maze == MRT_TUNNEL,
+        .cluttered = cluttered,
         .k_b = o->modes,
         .k_r = o->response_modes,
         .probes = o->block_probes,
         .options = mrt_runtime_options_of(o),
     });
+}
+
+static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    (void)width;
+    (void)height;
+    return estimate(options, false);
+}
+
+static uint64_t drt_memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    (void)width;
+    (void)height;
+    return estimate(options, true);
 }
 
 // What both have in common.
@@ -302,13 +314,14 @@ static uint64_t mrt_memory_estimate(const void *options, uint32_t width, uint32_
     .bake = mrt_bake, .bake_report = mrt_bake_report, .load = mrt_load,                            \
     .set_options = mrt_set_options, .invalidate = mrt_invalidate, .update = mrt_update,            \
     .record = mrt_record, .debug_view = mrt_debug_view, .probes = mrt_probes,                      \
-    .destroy = mrt_destroy, .memory_estimate = mrt_memory_estimate
+    .destroy = mrt_destroy
 
 const struct technique technique_mrt = {
     MRT_TECHNIQUE("mrt", "modular radiance transfer",
                   "Loos 2015, Modular Radiance Transfer, ch. 3 and 4", option_rows),
     .check = mrt_check,
     .create = mrt_create,
+    .memory_estimate = mrt_memory_estimate,
 };
 
 const struct technique technique_drt = {
@@ -320,4 +333,5 @@ const struct technique technique_drt = {
     .check = drt_check,
     .create = drt_create,
     .follow = drt_follow,
+    .memory_estimate = drt_memory_estimate,
 };

@@ -90,6 +90,11 @@ static bool find_clutter_and_open(struct mrt *mrt, const struct scene_pose *pose
     const bool vertical = mrt->options.maze == MRT_MAZE_3D;
     struct mrt_clutter *clutter = &mrt->parts.clutter;
     bool opened;
+    if (mrt->delta && mrt_block_is_tube(&mrt->map.blocks[0]))
+        host_log(mrt->host, LOG_WARNING,
+                 "gi drt: the blocks of %s are tubes, which have no clutter: its light is that of "
+                 "mrt; maze=plane has cubes",
+                 pose->scene->name);
     if (!find_clutter(&mrt->parts, mrt, pose)) return false;
     if (clutter->triangles == 0 || !mrt->map.is_found) return true;
     if (!mrt_open_clutter_walls(&mrt->map, clutter, vertical, &opened)) return false;

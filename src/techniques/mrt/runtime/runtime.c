@@ -224,6 +224,21 @@ static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
            texels * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
 }
 
+// A basis and a response of its own, one more opening, T_b→r and T_c→r.
+static uint64_t bytes_of_clutter(const struct mrt_runtime_size *size)
+{
+    const uint64_t texels = walls_of(size) * (uint64_t)(size->resolution * size->resolution);
+    const uint64_t number = size->options.half ? 2 : 4;
+    const uint64_t values = size->options.vector ? 1 + VECTOR_VALUES : 1;
+    const uint64_t k_b = 4 * mrt_quads(size->k_b), k_r = 4 * mrt_quads(size->k_r);
+    const uint64_t probes =
+        size->options.probes ? MRT_PROBE_VALUES * (uint64_t)mrt_probes_of_block(size->probes) : 0;
+    if (!size->cluttered || size->tube) return 0;
+    return number * (texels * k_b * (1 + values) + (texels * values + probes) * k_r + probes * k_b +
+                     k_b * k_r) +
+           sizeof(float) * (3 * k_b * k_r + k_r * k_r + 5 * 3 * k_r);
+}
+
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
 {
     const uint64_t n = (uint64_t)size->resolution, walls = walls_of(size), texels = walls * n * n;
@@ -238,5 +253,5 @@ uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)
            walls * (4 * n + 4) * sizeof(struct mrt_gpu_border) +
            texels * k_b * number * (1 + values) + 3 * k_b * k_b * sizeof(float) +
            MRT_RESPONSES * texels * k_r * number * values + map * (size->options.vector ? 4 : 1) +
-           bytes_of_probes(size);
+           bytes_of_probes(size) + bytes_of_clutter(size);
 }

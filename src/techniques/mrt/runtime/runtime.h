@@ -113,10 +113,11 @@ void mrt_runtime_finish(struct mrt_runtime *runtime); // accepts zero and half-b
 
 struct mrt_runtime_size {
     int resolution, k_b, k_r, probes;
-    bool tube;
+    bool tube, cluttered; // cluttered: with clutter in it
     struct mrt_runtime_options options;
 };
-// Bytes on the GPU of a level of one closed cube, or of one tube.
+// Bytes on the GPU of a level of one closed cube, or of one tube. Of clutter it has no texels:
+// their number is the scene's.
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size);
 
 // ---- stages of a frame, in this order (stages.c)
