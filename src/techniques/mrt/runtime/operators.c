@@ -5,8 +5,8 @@
 // undoes it. Powers of two change no bit of the result beyond that.
 #include "operators.h"
 
+#include "core/half.h"
 #include "techniques/mrt/dictionary/rays.h"
-#include "techniques/mrt/runtime/half.h"
 #include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/reflection.h"
 #include "techniques/mrt/runtime/tables.h"
@@ -34,7 +34,7 @@ static bool words_init(struct words *w, struct host *host, bool half, size_t row
 static void put(struct words *w, float value)
 {
     if (w->half)
-        ((uint16_t *)w->at)[w->numbers++] = mrt_half_of(value);
+        ((uint16_t *)w->at)[w->numbers++] = half_from_float(value);
     else
         ((float *)w->at)[w->numbers++] = value;
 }
