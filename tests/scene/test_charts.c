@@ -443,7 +443,7 @@ TEST(chosen_triangles_alone_have_charts)
     bool *chosen = host_alloc(test_host(), count, sizeof *chosen);
     struct charts charts;
     for (size_t i = count / 2; i < count; i++) chosen[i] = true;
-    const struct charts_options options = { 16.0f, 1u << 20, chosen };
+    const struct charts_options options = { 16.0f, 1u << 20, chosen, 0 };
     CHECK(charts_init(&charts, test_host(), &pose, &options));
     CHECK(charts.triangle_count == count - count / 2);
     charts_finish(&charts);

@@ -14,6 +14,8 @@ static double first_density(const struct surface *surface, const struct charts_o
     const double most = (double)options->max_texels;
     double density = (double)options->texels_per_m;
     density = fmin(density, sqrt(most / surface->area_m2));
+    if (options->surface_texels > 0)
+        density = fmin(density, sqrt((double)options->surface_texels / surface->area_m2));
     density = fmin(density, 0.25 * (double)CHART_MAX_SIDE / (double)surface->longest_m);
     return fmin(density, 16.0 * most / surface->edges_m);
 }
