@@ -315,6 +315,9 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     }
     if (input->pose->scene != f->common->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
+    if (input->gbuffer && indirect && indirect->needs & FRAME_NEEDS_ID)
+        return host_fail(f->host, FAIL_UNSUPPORTED,
+                         "gbuffer has no layer of triangles, which a technique needs");
     const bool is_first = f->view_number == 0;
     if (is_first && !(scene_gpu_follow(&f->common->scene) && emitters_follow(&f->common->emitters)))
         return false;

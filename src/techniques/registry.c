@@ -7,6 +7,7 @@
 #include "techniques/lpv/lpv.h"
 #include "techniques/mrt/mrt.h"
 #include "techniques/none/none.h"
+#include "techniques/radiosity/radiosity.h"
 #include "techniques/ssao/ssao.h"
 #include "techniques/vct/vct.h"
 #include "techniques/vo/vo.h"
@@ -14,11 +15,19 @@
 #include <assert.h>
 #include <string.h>
 
-const struct technique *const techniques[] = {
-    &technique_none, &technique_ambient, &technique_lpv,   &technique_holpv,
-    &technique_vct,  &technique_mrt,     &technique_drt,   &technique_vo,
-    &technique_ssao, &technique_hbao,    &technique_vctao, NULL
-};
+const struct technique *const techniques[] = { &technique_none,
+                                               &technique_ambient,
+                                               &technique_lpv,
+                                               &technique_holpv,
+                                               &technique_vct,
+                                               &technique_mrt,
+                                               &technique_drt,
+                                               &technique_radiosity,
+                                               &technique_vo,
+                                               &technique_ssao,
+                                               &technique_hbao,
+                                               &technique_vctao,
+                                               NULL };
 
 static bool aliases_are_sound(const struct option_table *options)
 {

@@ -28,6 +28,7 @@ static const struct {
     { "mrt", ",solver=cpu", 3 }, // the CPU's light has arrived
     { "mrt", ",probes=true", 0 },
     { "drt", "", 0 },
+    { "radiosity", "", 0 },
 };
 
 // Options after which the next frame still has light of earlier frames. Tolerances are relative to

@@ -1,0 +1,76 @@
+// Walls that stand on a chart divide its clusters, and nodes are groups only where their clusters
+// see each other: else the light of one room would be that of the next.
+#include "techniques/radiosity/bake/gather.h"
+
+#include "core/parallel.h"
+
+// Points are compared at this height over the surface, in distances between them, so that a curved
+// surface does not hide its own.
+static const float HEIGHT = 0.25f;
+
+struct spot {
+    vec3s position, normal;
+};
+
+static struct spot spot_of(const struct radiosity_scene *scene, uint32_t texel)
+{
+    return (struct spot){ radiosity_chart_texel(&scene->map, texel)->position,
+                          scene->map.texels[texel].normal };
+}
+
+static bool see_each_other(const struct radiosity_scene *scene, struct spot a, struct spot b)
+{
+    const float height = HEIGHT * glms_vec3_distance(a.position, b.position);
+    const vec3s from = glms_vec3_muladds(a.normal, height, a.position);
+    const vec3s to = glms_vec3_muladds(b.normal, height, b.position);
+    return height == 0.0f || !trace_occluded(scene->trace, from, glms_vec3_sub(to, from), 1.0f);
+}
+
+// The first texel of a cluster that is not inside of something; without one the first.
+static uint32_t first_open(const struct radiosity_scene *scene, uint32_t cluster)
+{
+    const struct radiosity_map *map = &scene->map;
+    for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++) {
+        const uint32_t texel = map->members[m];
+        if (!radiosity_is_inside(scene, texel, radiosity_chart_texel(map, texel)->position))
+            return texel;
+    }
+    return map->members[map->first[cluster]];
+}
+
+static void divide_cluster(void *user, size_t cluster)
+{
+    struct radiosity_scene *scene = user;
+    const struct radiosity_map *map = &scene->map;
+    if (map->first[cluster + 1] - map->first[cluster] < 2) return;
+    const struct spot from = spot_of(scene, first_open(scene, (uint32_t)cluster));
+    for (uint32_t m = map->first[cluster]; m < map->first[cluster + 1]; m++)
+        scene->part[map->members[m]] =
+            !see_each_other(scene, from, spot_of(scene, map->members[m]));
+}
+
+static void find_group(void *user, size_t n)
+{
+    struct radiosity_scene *scene = user;
+    const struct radiosity_map *map = &scene->map;
+    const struct radiosity_node *node = &map->tree.nodes[n];
+    if (node->count > RADIOSITY_GROUP) return;
+    const struct spot from = spot_of(scene, first_open(scene, node->first));
+    scene->is_group[n] = true;
+    for (uint32_t c = node->first + 1; c < node->first + node->count; c++)
+        if (!see_each_other(scene, from, spot_of(scene, first_open(scene, c))))
+            scene->is_group[n] = false;
+}
+
+bool radiosity_divide(struct radiosity_scene *scene)
+{
+    struct radiosity_map *map = &scene->map;
+    scene->part = host_alloc(scene->host, map->texel_count, sizeof *scene->part);
+    if (!scene->part) return false;
+    parallel_for(map->cluster_count, 64, divide_cluster, scene);
+    if (!radiosity_map_divide(map, scene->part)) return false;
+    scene->is_group = host_alloc(scene->host, map->tree.count, sizeof *scene->is_group);
+    if (!scene->is_group) return false;
+    parallel_for(map->tree.count, 64, find_group, scene);
+    return true;
+}

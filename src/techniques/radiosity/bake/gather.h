@@ -1,0 +1,68 @@
+// Light that reaches a texel, by rays: form factors of the clusters, the sky, emissive surfaces.
+#pragma once
+
+#include "trace/trace_scene.h"
+
+#include "techniques/radiosity/radiosity_map.h"
+
+// What all tasks share. radiosity_scene_finish accepts zero.
+struct radiosity_scene {
+    struct host *host;
+    const struct scene_pose *pose;
+    struct radiosity_options options;
+    struct radiosity_map map;
+    struct trace_scene *trace;
+    uint32_t *mesh_of; // [instances] in trace->meshes
+    uint8_t *part;     // [texels]
+    bool *is_group;    // [nodes] clusters of it see each other
+};
+bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
+                          const struct scene_pose *pose, const struct radiosity_options *options);
+void radiosity_scene_finish(struct radiosity_scene *scene);
+
+// Irradiance on the texel, and the integral of radiance times direction over its hemisphere (the
+// vector irradiance), whose component along the normal is that irradiance.
+struct radiosity_light {
+    float irradiance, vector[3];
+};
+
+// Sums over rays: the share of those that meet a cluster, and of their directions over the cosine
+// the components along the texel's tangents (basis_of).
+struct radiosity_factor {
+    float weight, along[2];
+};
+
+struct radiosity_gather {
+    struct radiosity_factor *factor; // [clusters], in shares of 1
+    uint32_t *met;                   // clusters whose factor is not 0, in the order of the rays
+    uint32_t met_count;
+    struct radiosity_light sky;        // of radiance 1
+    struct radiosity_light emitted[3]; // by colour, lux
+};
+
+// Where a texel is sampled, and the share of it that is not inside of something; 0: none is.
+struct radiosity_point {
+    vec3s position;
+    float share;
+};
+struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene, uint32_t texel);
+
+// ---- divide.c
+
+// Parts of all texels, the clusters that follow, and which nodes are groups.
+bool radiosity_divide(struct radiosity_scene *scene);
+
+// ---- point.c, reflectance.c
+
+bool radiosity_is_inside(const struct radiosity_scene *scene, uint32_t texel, vec3s at);
+
+// Barycentric weights of a place in the atlas. False: it is outside of the triangle.
+bool radiosity_weigh(const struct chart_triangle *triangle, float x, float y, float *u, float *v);
+
+// position: of the texel. Clears what the last call left in *gather, whose arrays are zeroed before
+// the first one.
+void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s position,
+                      uint64_t seed, struct radiosity_gather *gather);
+
+// Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance).
+vec3s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel);

@@ -1,0 +1,130 @@
+#include "techniques/radiosity/bake/row.h"
+
+#include "core/rng.h"
+
+bool radiosity_rows_init(struct radiosity_rows *rows, struct host *host,
+                         const struct radiosity_scene *scene)
+{
+    const struct radiosity_tree *tree = &scene->map.tree;
+    *rows = (struct radiosity_rows){ .host = host, .tree = tree, .is_group = scene->is_group };
+    rows->sum = host_alloc(host, tree->count, sizeof *rows->sum);
+    rows->touched = host_alloc(host, tree->count, sizeof *rows->touched);
+    rows->heap = host_alloc(host, tree->count, sizeof *rows->heap);
+    return rows->sum && rows->touched && rows->heap;
+}
+
+void radiosity_rows_finish(struct radiosity_rows *rows)
+{
+    if (!rows->host) return;
+    host_free(rows->host, rows->sum);
+    host_free(rows->host, rows->touched);
+    host_free(rows->host, rows->heap);
+    *rows = (struct radiosity_rows){ 0 };
+}
+
+// ---- a heap, the heaviest entry first; of equal ones the lesser node
+
+static bool precedes(const struct radiosity_entry *a, const struct radiosity_entry *b)
+{
+    if (a->factor.weight != b->factor.weight) return a->factor.weight > b->factor.weight;
+    return a->node < b->node;
+}
+
+static void push(struct radiosity_entry *heap, uint32_t *count, struct radiosity_entry entry)
+{
+    uint32_t at = (*count)++;
+    for (; at > 0 && precedes(&entry, &heap[(at - 1) / 2]); at = (at - 1) / 2)
+        heap[at] = heap[(at - 1) / 2];
+    heap[at] = entry;
+}
+
+static struct radiosity_entry pop(struct radiosity_entry *heap, uint32_t *count)
+{
+    const struct radiosity_entry first = heap[0], last = heap[--*count];
+    uint32_t at = 0;
+    for (uint32_t child = 1; child < *count; child = 2 * at + 1) {
+        if (child + 1 < *count && precedes(&heap[child + 1], &heap[child])) child++;
+        if (!precedes(&heap[child], &last)) break;
+        heap[at] = heap[child];
+        at = child;
+    }
+    heap[at] = last;
+    return first;
+}
+
+// ---- rows
+
+// Adds the factors of a cluster to itself and to what is above it.
+static uint32_t add_upwards(struct radiosity_rows *rows, uint32_t cluster,
+                            struct radiosity_factor factor, uint32_t touched)
+{
+    for (uint32_t n = cluster; n != RADIOSITY_NO_NODE; n = rows->tree->nodes[n].parent) {
+        struct radiosity_factor *sum = &rows->sum[n];
+        if (sum->weight == 0.0f) rows->touched[touched++] = n;
+        sum->weight += factor.weight;
+        sum->along[0] += factor.along[0];
+        sum->along[1] += factor.along[1];
+    }
+    return touched;
+}
+
+static struct radiosity_entry entry_of(const struct radiosity_rows *rows, uint32_t node)
+{
+    const struct radiosity_factor f = rows->sum[node];
+    return (struct radiosity_entry){
+        node, { f.weight, { f.along[0] / f.weight, f.along[1] / f.weight } }
+    };
+}
+
+static uint32_t root_of(const struct radiosity_tree *tree)
+{
+    return tree->leaves > 1 ? tree->leaves : 0;
+}
+
+// Replaces an entry by those of its children that were met. False: there is no room, or it is a
+// cluster.
+static bool refine(struct radiosity_rows *rows, uint32_t node, uint32_t room, uint32_t *heap)
+{
+    const uint32_t *child = rows->tree->nodes[node].child;
+    if (child[0] == RADIOSITY_NO_NODE) return false;
+    const bool met[2] = { rows->sum[child[0]].weight > 0.0f, rows->sum[child[1]].weight > 0.0f };
+    if (met[0] && met[1] && room == 0) return false;
+    for (int k = 0; k < 2; k++)
+        if (met[k]) push(rows->heap, heap, entry_of(rows, child[k]));
+    return true;
+}
+
+// The group in a node that stands for it.
+static uint32_t group_of(const struct radiosity_rows *rows, uint32_t node, struct rng *rng)
+{
+    const struct radiosity_node *nodes = rows->tree->nodes;
+    while (!rows->is_group[node]) {
+        const uint32_t *child = nodes[node].child;
+        const float low = rows->sum[child[0]].weight, high = rows->sum[child[1]].weight;
+        node = child[rng_float(rng) * (low + high) < low ? 0 : 1];
+        // Rounding may choose a child that was not met.
+        if (rows->sum[node].weight == 0.0f) node = child[low > 0.0f ? 0 : 1];
+    }
+    return node;
+}
+
+uint32_t radiosity_make_row(struct radiosity_rows *rows, const struct radiosity_gather *gather,
+                            uint32_t most, uint64_t seed, struct radiosity_entry *out)
+{
+    uint32_t touched = 0, count = 0, heap = 0;
+    struct rng rng = rng_for((uint32_t)seed, (uint32_t)(seed >> 32), 0);
+    for (uint32_t i = 0; i < gather->met_count; i++)
+        touched = add_upwards(rows, gather->met[i], gather->factor[gather->met[i]], touched);
+    if (touched > 0) push(rows->heap, &heap, entry_of(rows, root_of(rows->tree)));
+    while (heap > 0) {
+        struct radiosity_entry entry = pop(rows->heap, &heap);
+        // Entries in the heap stay, in the end.
+        const uint32_t room = most - (count + heap + 1);
+        if (refine(rows, entry.node, room, &heap)) continue;
+        entry.node = group_of(rows, entry.node, &rng);
+        out[count++] = entry;
+    }
+    for (uint32_t i = 0; i < touched; i++)
+        rows->sum[rows->touched[i]] = (struct radiosity_factor){ 0 };
+    return count;
+}

@@ -1,0 +1,266 @@
+// Stages of the bake: rays of all texels, then rows of clusters, which are the means of their
+// texels' rows.
+#include "techniques/radiosity/radiosity_tensors.h"
+
+#include "bake/scene_key.h"
+#include "core/half.h"
+#include "techniques/radiosity/bake/row.h"
+
+#include <string.h>
+
+enum { TEXELS_PER_TASK = 128, CLUSTERS_PER_TASK = 64 };
+
+struct job {
+    struct radiosity_scene scene;
+    const struct scene_pose *pose;
+    struct radiosity_options options;
+};
+
+static bool prepare(void *argument, struct host *host)
+{
+    struct job *job = argument;
+    return radiosity_scene_init(&job->scene, host, job->pose, &job->options);
+}
+
+static void finish(void *argument)
+{
+    struct job *job = argument;
+    radiosity_scene_finish(&job->scene);
+}
+
+// Room of a task: factors of all clusters, and one row.
+struct room {
+    struct radiosity_gather gather;
+    struct radiosity_rows rows;
+    struct radiosity_entry *row;
+};
+
+static bool room_init(struct room *room, struct host *host, const struct job *job)
+{
+    const struct radiosity_tree *tree = &job->scene.map.tree;
+    const size_t entries = 2 * (size_t)job->options.sources;
+    *room = (struct room){ .row = host_alloc(host, entries, sizeof *room->row) };
+    room->gather.factor = host_alloc(host, tree->leaves, sizeof *room->gather.factor);
+    room->gather.met = host_alloc(host, tree->leaves, sizeof *room->gather.met);
+    return room->row && room->gather.factor && room->gather.met &&
+           radiosity_rows_init(&room->rows, host, &job->scene);
+}
+
+static void room_finish(struct room *room, struct host *host)
+{
+    radiosity_rows_finish(&room->rows);
+    host_free(host, room->gather.factor);
+    host_free(host, room->gather.met);
+    host_free(host, room->row);
+}
+
+// ---- texels
+
+enum { OUT_SOURCE, OUT_FACTOR, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_PART, OUT_COUNT };
+
+static void write_row(const struct radiosity_entry *row, uint32_t count, uint16_t *source,
+                      uint16_t *factor)
+{
+    for (uint32_t k = 0; k < count; k++) {
+        source[k] = (uint16_t)row[k].node;
+        factor[3 * k] = half_from_float(row[k].factor.weight);
+        factor[3 * k + 1] = half_from_float(row[k].factor.along[0]);
+        factor[3 * k + 2] = half_from_float(row[k].factor.along[1]);
+    }
+}
+
+static void gather_texel(const struct bake_task *task, struct room *room, uint64_t first,
+                         uint64_t i)
+{
+    const struct job *job = task->job;
+    const size_t sources = (size_t)job->options.sources;
+    const uint32_t texel = (uint32_t)(first + i);
+    struct radiosity_gather *gather = &room->gather;
+    const struct radiosity_point point = radiosity_find_point(&job->scene, texel);
+    memcpy((float *)task->out[OUT_POINT] + 4 * i, &point, sizeof point);
+    ((uint8_t *)task->out[OUT_PART])[i] = job->scene.part[texel];
+    if (point.share == 0.0f) return;
+    radiosity_gather(&job->scene, texel, point.position, task->bake_seed, gather);
+    const uint32_t count = radiosity_make_row(&room->rows, gather, (uint32_t)sources,
+                                              task->bake_seed ^ (uint64_t)texel << 32, room->row);
+    write_row(room->row, count, (uint16_t *)task->out[OUT_SOURCE] + i * sources,
+              (uint16_t *)task->out[OUT_FACTOR] + 3 * i * sources);
+    memcpy((float *)task->out[OUT_SKY] + 4 * i, &gather->sky, sizeof gather->sky);
+    memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->emitted, sizeof gather->emitted);
+    const vec3s albedo = radiosity_reflectance(&job->scene, texel);
+    memcpy((float *)task->out[OUT_ALBEDO] + 3 * i, albedo.raw, sizeof albedo.raw);
+}
+
+static bool run_texels(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    uint64_t count, first = bake_task_rows(task, OUT_SOURCE, &count);
+    struct room room;
+    bool ok = room_init(&room, task->host, job);
+    if (job->scene.map.texel_count == 0) count = 0;
+    for (uint64_t i = 0; ok && i < count; i++) {
+        ok = !bake_task_cancelled(task);
+        if (ok) gather_texel(task, &room, first, i);
+    }
+    room_finish(&room, task->host);
+    return ok;
+}
+
+static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t texels,
+                       uint64_t clusters)
+{
+    const uint64_t sources = (uint64_t)job->options.sources;
+    const struct bake_output out[OUT_COUNT] = {
+        { RADIOSITY_SOURCE, TENSOR_U16, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_ALBEDO, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
+    };
+    const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
+    const size_t room =
+        sizeof(struct radiosity_factor) + sizeof(uint32_t) + sizeof(struct radiosity_entry);
+    return bake_plan_add(
+        plan, &(struct bake_stage){ .name = "texels",
+                                    .wave = 0,
+                                    .task_count = tasks,
+                                    .run = run_texels,
+                                    .outputs = out,
+                                    .output_count = OUT_COUNT,
+                                    .rays = (double)texels * job->options.rays / (double)tasks,
+                                    .texels = (double)texels / (double)tasks,
+                                    .scratch_bytes = (size_t)clusters * room });
+}
+
+// ---- clusters
+
+struct clusters {
+    const struct radiosity_map *map;
+    const uint16_t *source, *factor;
+    const struct radiosity_point *points;
+    size_t sources;
+    float *area; // [clusters] of the texels, as far as they are open, m²
+};
+
+static float area_of(const struct clusters *of, uint32_t texel)
+{
+    return of->points[texel].share * radiosity_chart_texel(of->map, texel)->area_m2;
+}
+
+static void find_areas(const struct clusters *of)
+{
+    for (uint32_t i = 0; i < of->map->texel_count; i++)
+        of->area[of->map->texels[i].cluster] += area_of(of, i);
+}
+
+// A node's weight is that of its clusters by area, as its radiosity is their mean.
+static void add_node(const struct clusters *of, const struct radiosity_node *node, float weight,
+                     struct radiosity_gather *sum)
+{
+    float area = 0.0f;
+    for (uint32_t c = node->first; c < node->first + node->count; c++) area += of->area[c];
+    for (uint32_t c = node->first; c < node->first + node->count; c++) {
+        const float part = area > 0.0f ? weight * of->area[c] / area : 0.0f;
+        if (!(part > 0.0f)) continue;
+        if (sum->factor[c].weight == 0.0f) sum->met[sum->met_count++] = c;
+        sum->factor[c].weight += part;
+    }
+}
+
+static void add_row(const struct clusters *of, uint32_t texel, float share,
+                    struct radiosity_gather *sum)
+{
+    for (size_t k = 0; k < of->sources; k++) {
+        const size_t at = texel * of->sources + k;
+        const float weight = share * float_from_half(of->factor[3 * at]);
+        if (weight == 0.0f) return;
+        add_node(of, &of->map->tree.nodes[of->source[at]], weight, sum);
+    }
+}
+
+static void sum_texels(const struct clusters *of, uint32_t cluster, struct radiosity_gather *sum)
+{
+    for (uint32_t i = 0; i < sum->met_count; i++) sum->factor[sum->met[i]].weight = 0.0f;
+    sum->met_count = 0;
+    if (!(of->area[cluster] > 0.0f)) return;
+    for (uint32_t m = of->map->first[cluster]; m < of->map->first[cluster + 1]; m++) {
+        const uint32_t texel = of->map->members[m];
+        add_row(of, texel, area_of(of, texel) / of->area[cluster], sum);
+    }
+}
+
+static void merge_rows(const struct bake_task *task, const struct clusters *of, struct room *room)
+{
+    const size_t most = 2 * of->sources;
+    uint64_t count, first = bake_task_rows(task, 0, &count);
+    for (uint64_t i = 0; i < count && first + i < of->map->cluster_count; i++) {
+        sum_texels(of, (uint32_t)(first + i), &room->gather);
+        const uint32_t entries = radiosity_make_row(&room->rows, &room->gather, (uint32_t)most,
+                                                    task->bake_seed ^ (first + i), room->row);
+        for (uint32_t k = 0; k < entries; k++) {
+            ((uint16_t *)task->out[0])[i * most + k] = (uint16_t)room->row[k].node;
+            ((uint16_t *)task->out[1])[i * most + k] = half_from_float(room->row[k].factor.weight);
+        }
+    }
+}
+
+static bool run_clusters(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    const struct tensor *source = bake_task_input(task, RADIOSITY_SOURCE);
+    const struct tensor *factor = bake_task_input(task, RADIOSITY_FACTOR);
+    const struct tensor *points = bake_task_input(task, RADIOSITY_POINT);
+    if (!source || !factor || !points) return false;
+    const struct radiosity_map *map = &job->scene.map;
+    const struct clusters of = { map,
+                                 source->data,
+                                 factor->data,
+                                 points->data,
+                                 (size_t)job->options.sources,
+                                 host_alloc(task->host, map->cluster_count, sizeof(float)) };
+    struct room room;
+    const bool ok = room_init(&room, task->host, job) && of.area;
+    if (ok) {
+        find_areas(&of);
+        merge_rows(task, &of, &room);
+    }
+    room_finish(&room, task->host);
+    host_free(task->host, of.area);
+    return ok;
+}
+
+static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t clusters)
+{
+    const uint64_t most = 2 * (uint64_t)job->options.sources;
+    const struct bake_output out[] = {
+        { RADIOSITY_CLUSTER_SOURCE, TENSOR_U16, 2, { clusters, most }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, 2, { clusters, most }, BAKE_ROWS, BAKE_SAVED },
+    };
+    return bake_plan_add(
+        plan, &(struct bake_stage){
+                  .name = "clusters",
+                  .wave = 1,
+                  .task_count = (size_t)((clusters + CLUSTERS_PER_TASK - 1) / CLUSTERS_PER_TASK),
+                  .run = run_clusters,
+                  .outputs = out,
+                  .output_count = 2 });
+}
+
+bool radiosity_bake(struct bake_plan *plan, const struct technique_bake *how)
+{
+    struct job *job = bake_plan_alloc(plan, 1, sizeof *job);
+    if (!job) return false;
+    job->pose = how->pose;
+    job->options = *(const struct radiosity_options *)how->options;
+    bake_plan_depends(plan, scene_key(how->pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
+    // The size of the tensors is that of the charts: clusters are not divided yet.
+    struct radiosity_map map;
+    if (!radiosity_map_init(&map, bake_plan_host(plan), how->pose, &job->options)) return false;
+    const uint64_t texels = radiosity_rows(map.texel_count);
+    const uint64_t clusters = radiosity_cluster_rows(&map);
+    radiosity_map_finish(&map);
+    bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
+    return add_texels(plan, job, texels, clusters) && add_clusters(plan, job, clusters);
+}

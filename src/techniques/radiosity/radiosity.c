@@ -1,0 +1,224 @@
+// Radiosity: direct-to-indirect transfer of static geometry (Loos 2015, sections 2.5.3 and 3.2.1;
+// Giuffrida 2016, section 3.2). Form factors from clusters of surface to the texels of a light map
+// are baked; each frame in which a light has changed computes direct light at the texels, all
+// bounces between clusters, and the light map. Pixels look it up. Diffuse only; lights may move.
+#include "techniques/radiosity/radiosity.h"
+
+#include "techniques/radiosity/radiosity_state.h"
+
+#include "core/hash.h"
+
+#include "technique_shaders.h"
+
+#define OPTION(...) OPTION_ROW(struct radiosity_options, __VA_ARGS__)
+static const struct option_row option_rows[] = {
+#include "techniques/radiosity/radiosity_options.def"
+};
+#undef OPTION
+
+static const struct technique_preset presets[] = {
+    { "low", "texels=16384,rays=256,sources=24,bounces=8" },
+    { "medium", "" },
+    { "high", "texels=131072,rays=1024,sources=64,cluster=3" },
+    { NULL, NULL },
+};
+
+static bool create(void *state, const struct technique_create *how)
+{
+    struct radiosity *s = state;
+    s->host = how->host;
+    s->gpu = how->gpu;
+    s->options = *(const struct radiosity_options *)how->options;
+    if (!how->pose) return true;
+    s->instances = (uint32_t)how->pose->scene->instance_count;
+    if (!radiosity_map_init(&s->map, s->host, how->pose, &s->options)) return false;
+    s->sides = s->map.texel_count > s->map.charts.texel_count ? 2 : 1;
+    return true;
+}
+
+static bool make_buffers(struct radiosity *s)
+{
+    enum { VEC3_BYTES = 12, VEC4_BYTES = 16 };
+    struct radiosity_buffers *b = &s->buffers;
+    const size_t texels = s->map.texel_count, nodes = s->map.tree.count;
+    const struct {
+        const char *name;
+        size_t bytes;
+        gpu_buffer *out;
+    } rows[] = {
+        { "flux", texels * VEC3_BYTES, &b->flux },
+        { "light", texels * 3 * VEC4_BYTES, &b->light },
+        { "sent", nodes * VEC3_BYTES, &b->sent },
+        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[0] },
+        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[1] },
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const struct gpu_buffer_desc desc = { rows[i].name, rows[i].bytes, GPU_BUFFER_STORAGE };
+        if (!gpu_buffer_create(s->gpu, &desc, rows[i].out)) return false;
+    }
+    return true;
+}
+
+static bool make_light_map(struct radiosity *s)
+{
+    const struct gpu_image_desc desc = { .name = "light_map",
+                                         .dimension = GPU_2D_ARRAY,
+                                         .format = GPU_RGBA16F,
+                                         .width = s->map.charts.width,
+                                         .height = s->map.charts.height,
+                                         .depth = RADIOSITY_LAYERS * s->sides,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    const struct gpu_sampler_desc linear = { .name = "light_map",
+                                             .filter = GPU_LINEAR,
+                                             .mip_filter = GPU_NEAREST,
+                                             .wrap_u = GPU_CLAMP,
+                                             .wrap_v = GPU_CLAMP,
+                                             .wrap_w = GPU_CLAMP };
+    return gpu_image_create(s->gpu, &desc, &s->buffers.light_map) &&
+           gpu_sampler_get(s->gpu, &linear, &s->linear);
+}
+
+static bool make_pipelines(struct radiosity *s)
+{
+    struct radiosity_pipelines *p = &s->pipelines;
+    const struct {
+        const char *name;
+        const struct gpu_shader *shader;
+        gpu_pipeline *out;
+    } rows[] = {
+        { "direct", &shader_radiosity_direct_comp, &p->direct },
+        { "clusters", &shader_radiosity_clusters_comp, &p->clusters },
+        { "nodes", &shader_radiosity_nodes_comp, &p->nodes },
+        { "solve", &shader_radiosity_solve_comp, &p->solve },
+        { "gather", &shader_radiosity_gather_comp, &p->gather },
+        { "map", &shader_radiosity_map_comp, &p->map },
+        { "apply", &shader_radiosity_apply_comp, &p->apply },
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (!gpu_compute_pipeline_create(s->gpu, rows[i].name, rows[i].shader, NULL, 0,
+                                         rows[i].out))
+            return false;
+    return true;
+}
+
+static bool load(void *state, const struct tensors *bake)
+{
+    struct radiosity *s = state;
+    if (!radiosity_upload(s, bake)) return false;
+    return s->map.texel_count == 0 || (make_buffers(s) && make_light_map(s) && make_pipelines(s));
+}
+
+static void set_options(void *state, const void *options)
+{
+    struct radiosity *s = state;
+    option_copy_live(&technique_radiosity.options, options, &s->options);
+    s->inputs.valid = false;
+}
+
+static void invalidate(void *state, uint32_t changes)
+{
+    struct radiosity *s = state;
+    if (changes & ~(uint32_t)CHANGED_CAMERA) s->inputs.valid = false;
+}
+
+// Lights, sky and exposure, in the units of the frame.
+static uint64_t hash_of_light(const struct frame_view *view)
+{
+    const struct frame_constants *c = view->constants;
+    uint64_t hash =
+        hash_bytes(&c->radiance_scale, sizeof c->radiance_scale, (uint64_t)view->shadow_radius);
+    hash = hash_bytes(&c->sky, sizeof c->sky, hash);
+    return hash_bytes(view->lights, (size_t)view->light_count * sizeof *view->lights, hash);
+}
+
+// Whether the light map has the light of this frame.
+static bool is_kept(struct radiosity *s, const struct frame_view *view)
+{
+    const uint64_t light = hash_of_light(view);
+    const bool same = view->keep && s->inputs.valid && view->index > 0 &&
+                      view->index == s->inputs.index + 1 && light == s->inputs.light &&
+                      !view->geometry_moved && !view->lights_changed;
+    s->inputs.valid = true;
+    s->inputs.index = view->index;
+    s->inputs.light = light;
+    return same;
+}
+
+static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct radiosity *s = state;
+    if (s->map.texel_count == 0 || is_kept(s, view)) return;
+    radiosity_record_light(s, cmd, view);
+}
+
+static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct radiosity *s = state;
+    if (s->map.texel_count == 0)
+        gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
+                        (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+    else
+        radiosity_record_apply(s, cmd, view);
+}
+
+static void destroy_buffers(struct radiosity *s)
+{
+    struct radiosity_buffers *b = &s->buffers;
+    gpu_buffer *const buffers[] = { &b->texels,       &b->factors,        &b->clusters,
+                                    &b->members,      &b->nodes,          &b->owners,
+                                    &b->instances,    &b->triangles,      &b->flux,
+                                    &b->light,        &b->sent,           &b->radiosity[0],
+                                    &b->radiosity[1], &b->cluster_factors };
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        gpu_buffer_destroy(s->gpu, buffers[i]);
+    gpu_image_destroy(s->gpu, &b->light_map);
+}
+
+static void destroy(void *state)
+{
+    struct radiosity *s = state;
+    if (!s->host) return;
+    struct radiosity_pipelines *p = &s->pipelines;
+    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve,
+                                        &p->gather, &p->map,      &p->apply };
+    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
+        gpu_pipeline_destroy(s->gpu, pipelines[i]);
+    destroy_buffers(s);
+    radiosity_map_finish(&s->map);
+}
+
+// Of a light map that charts fill by two thirds, on one side.
+static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    const struct radiosity_options *o = options;
+    const uint64_t texels = (uint64_t)o->texels * 2 / 3;
+    const uint64_t clusters = texels / (uint64_t)(o->cluster * o->cluster) + 1;
+    const uint64_t sources = (uint64_t)o->sources;
+    (void)width;
+    (void)height;
+    return texels * (sizeof(struct radiosity_gpu_texel) + 8 * sources + 12 + 48 + 4) +
+           clusters * (sizeof(struct radiosity_gpu_cluster) + 8 * sources + 8 + 6 * 12) +
+           (uint64_t)o->texels * (4 + 8 * RADIOSITY_LAYERS);
+}
+
+const struct technique technique_radiosity = {
+    .name = "radiosity",
+    .title = "baked radiosity of static geometry",
+    .paper = "Loos 2015, Modular Radiance Transfer, sec. 2.5.3; Giuffrida 2016, sec. 3.2",
+    .role = ROLE_SOURCE,
+    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | GATHERS_EMISSION,
+    .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
+    .bake_version = 1,
+    .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
+    .presets = presets,
+    .state_size = sizeof(struct radiosity),
+    .bake = radiosity_bake,
+    .create = create,
+    .load = load,
+    .set_options = set_options,
+    .invalidate = invalidate,
+    .update = update,
+    .record = record,
+    .destroy = destroy,
+    .memory_estimate = memory_estimate,
+};

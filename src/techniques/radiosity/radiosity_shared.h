@@ -1,0 +1,84 @@
+// Data of the light map that the host uploads for the shaders of radiosity. Scalar layout.
+#ifndef AG_RADIOSITY_SHARED_H
+#define AG_RADIOSITY_SHARED_H
+
+#include "core/shared.h"
+
+#define RADIOSITY_LOCAL    64 // workgroup size over texels and clusters
+#define RADIOSITY_LOCAL_2D 8  // over pixels and texels of the map, in x and y
+
+// Layers of the light map for one side of the surfaces: one for each colour. A texel is the
+// irradiance along the surface's normal, and the vector irradiance.
+#define RADIOSITY_LAYERS 3
+
+struct radiosity_gpu_texel {
+    vec3s position; // world
+    float area_m2;  // 0: hidden inside of something
+    vec3s normal;   // unit, of its side
+    vec3s reflectance;
+    vec4s sky;        // irradiance along the normal, vector irradiance: of a sky of radiance 1
+    vec4s emitted[3]; // the same by colour, lux
+};
+
+struct radiosity_gpu_cluster {
+    vec3s reflectance;     // mean by area
+    float area_m2;         // of texels that are not hidden
+    uint32_t first, count; // in the list of members
+};
+
+// A node of the tree above the clusters.
+struct radiosity_gpu_node {
+    uint32_t first, count; // clusters; count 0: it is no source
+};
+
+// Where a triangle of the scene is in the light map: x = u · (position, 1), y = v · (position, 1),
+// in texels.
+struct radiosity_gpu_triangle {
+    vec4s u, v;
+    vec3s normal;   // unit, of the front
+    uint32_t sides; // 0: it is not in the map; 1: its front is; 2: both are
+};
+
+struct radiosity_direct_push {
+    uint32_t texels;
+    int32_t shadow_radius; // texels of the shadow map
+    float emitters;        // 1: emissive surfaces are sources, 0: they are not
+};
+
+struct radiosity_solve_push {
+    uint32_t clusters, entries; // entries: of a row
+    float over;                 // relaxation factor
+};
+
+struct radiosity_nodes_push {
+    uint32_t clusters, nodes;
+};
+
+struct radiosity_gather_push {
+    uint32_t texels, entries;
+    float emitters;
+};
+
+struct radiosity_map_push {
+    uint32_t width, height; // of the light map
+};
+
+struct radiosity_apply_push {
+    uint32_t width, height;
+    uint32_t instances; // later ones are not in the map
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct radiosity_gpu_texel) == 104, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gpu_cluster) == 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gpu_triangle) == 48, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_direct_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gpu_node) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_nodes_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gather_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_map_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_apply_push) == 12, "layout is shared with GLSL");
+#endif
+
+#endif

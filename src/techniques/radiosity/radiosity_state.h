@@ -1,0 +1,47 @@
+// The private state of radiosity.
+#pragma once
+
+#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_tensors.h"
+
+struct radiosity_buffers {
+    gpu_buffer texels, factors;                           // of texels
+    gpu_buffer clusters, members, nodes, cluster_factors; // of clusters
+    gpu_buffer owners, instances, triangles;              // of the light map
+    gpu_buffer flux, light;                               // [texels] of the newest light
+    gpu_buffer sent, radiosity[2];                        // [clusters and nodes] likewise
+    gpu_image light_map;
+};
+
+struct radiosity_pipelines {
+    gpu_pipeline direct, clusters, nodes, solve, gather, map, apply;
+};
+
+struct radiosity {
+    struct host *host;
+    struct gpu *gpu;
+    struct radiosity_options options;
+    struct radiosity_map map; // without texels: an empty scene
+    uint32_t instances, sides;
+    float spectral_radius; // of ρ F, at least
+    struct radiosity_buffers buffers;
+    struct radiosity_pipelines pipelines;
+    gpu_sampler linear;
+    // What the light of the newest frame was computed from.
+    struct {
+        bool valid;
+        uint64_t index, light; // of the frame; hash
+    } inputs;
+};
+
+// ---- radiosity_upload.c
+
+// Tables of the light map and of a bake on the GPU.
+bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
+
+// ---- radiosity_record.c
+
+void radiosity_record_light(struct radiosity *state, struct gpu_cmd *cmd,
+                            const struct frame_view *view);
+void radiosity_record_apply(struct radiosity *state, struct gpu_cmd *cmd,
+                            const struct frame_view *view);

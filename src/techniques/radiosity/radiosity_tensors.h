@@ -1,0 +1,33 @@
+// The content of a bake: sparse form factors of texels and of clusters, and the light of the sky
+// and of emissive surfaces. README.md has units and axes.
+#pragma once
+
+#include "bake/bake.h"
+
+#include "techniques/radiosity/radiosity_map.h"
+#include "techniques/technique.h"
+
+#define RADIOSITY_SOURCE         "texels/source"      // U16 [texels][sources]: nodes of the tree
+#define RADIOSITY_FACTOR         "texels/factor"      // F16 [texels][sources][3]
+#define RADIOSITY_ALBEDO         "texels/reflectance" // F32 [texels][3]
+#define RADIOSITY_SKY            "texels/sky"         // F32 [texels][4]
+#define RADIOSITY_EMITTED        "texels/emitted"     // F32 [texels][3][4]
+#define RADIOSITY_POINT          "texels/point"       // F32 [texels][4]
+#define RADIOSITY_PART           "texels/part"        // U8 [texels]
+#define RADIOSITY_CLUSTER_SOURCE "clusters/source"    // U16 [clusters][2 · sources]
+#define RADIOSITY_CLUSTER_FACTOR "clusters/factor"    // F16 [clusters][2 · sources]
+
+// Rows of a tensor: an empty scene has one, of zeros.
+static inline uint64_t radiosity_rows(uint32_t count)
+{
+    return count > 0 ? count : 1;
+}
+
+// Of a map whose clusters are not divided: there is room for two parts of each.
+static inline uint64_t radiosity_cluster_rows(const struct radiosity_map *map)
+{
+    return radiosity_rows(2 * map->cluster_count);
+}
+
+// ---- bake/stages.c
+bool radiosity_bake(struct bake_plan *plan, const struct technique_bake *how);

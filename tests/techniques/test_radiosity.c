@@ -1,0 +1,223 @@
+// Radiosity: rows of form factors, the bake's bytes, a furnace, lights that change.
+#include "frame/frame_fixture.h"
+#include "techniques/gi_bake.h"
+#include "techniques/gi_spec.h"
+
+#include "core/half.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SMALL "radiosity:texels=2048,rays=100,sources=16"
+
+static int emissive(struct frame_fixture *s, float albedo, float emission)
+{
+    struct material m = material_default();
+    m.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
+    m.emissive = vec3_of(emission, emission, emission);
+    m.metallic = 0;
+    m.roughness = 1;
+    m.specular = 0; // the furnace's reflectance is the albedo
+    return fixture_material(s, &m);
+}
+
+// A closed room, seen from a corner.
+static void room(struct frame_fixture *s, struct gpu *gpu, float albedo, float emission)
+{
+    fixture_init(s, gpu);
+    fixture_box(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, emissive(s, albedo, emission));
+    fixture_look(s, vec3_of(-1.7f, 2.6f, 1.7f), vec3_of(1, 0.5f, -1));
+}
+
+// Below 0 it is sunk into the floor.
+static void add_block(struct frame_fixture *s, float bottom)
+{
+    fixture_box(s, vec3_of(-0.4f, bottom, -0.6f), vec3_of(0.8f, bottom + 1.2f, 0.5f), false,
+                emissive(s, 0.5f, 0));
+}
+
+struct run {
+    struct gi_spec spec;
+    struct gi_baked baked;
+    struct gi *gi;
+};
+
+static void start(struct run *run, struct frame_fixture *s, const char *text)
+{
+    fixture_open(s);
+    CHECK(gi_spec_parse(&run->spec, test_host(), text));
+    CHECK(gi_bake_all(&run->baked, test_host(), &run->spec, &s->pose));
+    run->gi = gi_create_baked(test_host(), s->gpu, &run->spec, &run->baked.bakes, &s->pose,
+                              s->width, s->height);
+    assert_non_null(run->gi);
+    s->indirect = gi_hook(run->gi);
+}
+
+static void stop(struct run *run, struct frame_fixture *s)
+{
+    gi_destroy(run->gi);
+    gi_baked_finish(&run->baked);
+    gi_spec_finish(&run->spec);
+    fixture_finish(s);
+}
+
+// ---- the bake
+
+static struct bake *bake_of(struct gi_spec *spec, const struct technique_bake *how, int threads)
+{
+    struct bake *bake = gi_bake_create(test_host(), spec->technique[0], how,
+                                       (struct bake_identity){ .program = "test" });
+    assert_non_null(bake);
+    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = threads }));
+    return bake;
+}
+
+TEST_GPU(bake_has_the_same_bytes_for_any_number_of_threads)
+{
+    struct frame_fixture s;
+    struct gi_spec spec;
+    room(&s, gpu, 0.5f, 10);
+    add_block(&s, 0.4f);
+    fixture_open(&s);
+    CHECK(gi_spec_parse(&spec, test_host(), SMALL));
+    const struct technique_bake how = { .pose = &s.pose, .options = spec.options[0] };
+    struct bake *one = bake_of(&spec, &how, 1), *three = bake_of(&spec, &how, 3);
+    const struct tensors *a = bake_tensors(one), *b = bake_tensors(three);
+    CHECK(a->count == b->count && a->count > 0);
+    for (size_t i = 0; i < a->count; i++) {
+        CHECK(a->at[i].bytes == b->at[i].bytes);
+        assert_memory_equal(a->at[i].data, b->at[i].data, a->at[i].bytes);
+    }
+    bake_destroy(one);
+    bake_destroy(three);
+    gi_spec_finish(&spec);
+    fixture_finish(&s);
+}
+
+static void check_rows(const struct tensors *bake)
+{
+    const struct tensor *factor = tensors_find(bake, "texels/factor");
+    const uint64_t texels = factor->shape[0], sources = factor->shape[1];
+    double worst = 0.0;
+    for (uint64_t i = 0; i < texels; i++) {
+        double sum = 0.0;
+        for (uint64_t k = 0; k < sources; k++)
+            sum += (double)float_from_half(((const uint16_t *)factor->data)[3 * (i * sources + k)]);
+        worst = fmax(worst, fabs(sum - 1.0));
+    }
+    print_message("%u rows sum to 1 within %.2g\n", (unsigned)texels, worst);
+    CHECK(worst < 1e-3);
+}
+
+TEST_GPU(rows_of_a_closed_room_sum_to_one)
+{
+    struct frame_fixture s;
+    struct run run;
+    room(&s, gpu, 0.5f, 10);
+    add_block(&s, 0.4f);
+    start(&run, &s, SMALL);
+    check_rows(run.baked.bakes.of_term[0]);
+    stop(&run, &s);
+}
+
+// ---- light
+
+TEST_GPU(furnace_has_the_emission_over_one_minus_the_albedo)
+{
+    static const float ALBEDO[] = { 0.5f, 0.8f };
+    for (int i = 0; i < 2; i++) {
+        struct frame_fixture s;
+        struct run run;
+        room(&s, gpu, ALBEDO[i], 10);
+        start(&run, &s, "radiosity:texels=2048");
+        fixture_render(&s);
+        const double expected = GLM_PI * 10 / (1 - (double)ALBEDO[i]);
+        float *e = fixture_read(&s, READ_IRRADIANCE);
+        double least = HUGE_VAL, most = 0;
+        for (size_t p = 0; p < 3 * (size_t)s.width * s.height; p++) {
+            least = fmin(least, (double)e[p] / expected);
+            most = fmax(most, (double)e[p] / expected);
+        }
+        print_message("albedo %.1f: %.4f to %.4f of L/(1 - albedo)\n", (double)ALBEDO[i], least,
+                      most);
+        CHECK(least > 0.99 && most < 1.01);
+        free(e);
+        stop(&run, &s);
+    }
+}
+
+static double mean_irradiance(struct frame_fixture *s)
+{
+    fixture_render(s);
+    float *e = fixture_read(s, READ_IRRADIANCE);
+    const size_t count = 3 * (size_t)s->width * s->height;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) sum += (double)e[i] / (double)count;
+    free(e);
+    return sum;
+}
+
+TEST_GPU(a_light_that_is_switched_off_leaves_nothing_in_the_next_frame)
+{
+    struct frame_fixture s;
+    struct run run;
+    room(&s, gpu, 0.7f, 0);
+    struct world_light *light = fixture_add_point(&s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
+    start(&run, &s, SMALL);
+    const double lit = mean_irradiance(&s), again = mean_irradiance(&s);
+    CHECK(lit > 1.0 && lit == again);
+    light->intensity = vec3_of(0, 0, 0);
+    CHECK(mean_irradiance(&s) == 0.0);
+    light->intensity = vec3_of(100, 100, 100);
+    CHECK(mean_irradiance(&s) == lit);
+    stop(&run, &s);
+}
+
+// Passes that a frame records.
+static uint64_t passes_of_frame(struct frame_fixture *s)
+{
+    const uint64_t before = gpu_counters(s->gpu)->passes;
+    fixture_render(s);
+    return gpu_counters(s->gpu)->passes - before;
+}
+
+TEST_GPU(a_still_scene_costs_the_lookup_alone)
+{
+    struct frame_fixture s;
+    struct run run;
+    room(&s, gpu, 0.7f, 10);
+    start(&run, &s, SMALL);
+    fixture_render(&s);
+    const uint64_t still = passes_of_frame(&s);
+    fixture_add_point(&s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
+    fixture_render(&s);
+    s.lights[0].intensity = vec3_of(50, 50, 50);
+    const uint64_t changed = passes_of_frame(&s);
+    // direct, bounces, gather, light_map; the shadow maps of the light are kept.
+    CHECK(changed >= still + 4);
+    CHECK(passes_of_frame(&s) <= changed - 4);
+    stop(&run, &s);
+}
+
+// The floor beside the block has the light of texels whose middle is under it.
+TEST_GPU(nothing_is_black_beside_a_sunk_block)
+{
+    struct frame_fixture s;
+    struct run run;
+    room(&s, gpu, 0.5f, 10);
+    add_block(&s, -0.3f);
+    start(&run, &s, SMALL);
+    fixture_render(&s);
+    float *e = fixture_read(&s, READ_IRRADIANCE);
+    double least = HUGE_VAL, sum = 0.0;
+    const size_t count = 3 * (size_t)s.width * s.height;
+    for (size_t i = 0; i < count; i++) {
+        least = fmin(least, (double)e[i]);
+        sum += (double)e[i] / (double)count;
+    }
+    print_message("beside a sunk block at least %.3f of the mean irradiance\n", least / sum);
+    CHECK(least > 0.3 * sum);
+    free(e);
+    stop(&run, &s);
+}
