@@ -41,7 +41,7 @@ static const struct {
     { "vct", "keep_static", 3e-3 },
     // By definition: the irradiance of the last frame is the light of further bounces.
     { "mrt", "feedback", 3e-3 },
-    { "drt", "feedback", 3e-3 },
+    { "drt", "feedback", 2e-3 },
 };
 
 static double tolerance_of(const char *technique, const char *option)
