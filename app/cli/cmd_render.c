@@ -72,6 +72,7 @@ static void renderer_desc(const struct job *job, struct ag_renderer_desc *desc)
     desc->display_layer = output_has_layer(&job->output, "display");
     desc->motion_layer = output_has_layer(&job->output, "motion");
     desc->id_layer = output_has_layer(&job->output, "id");
+    desc->wait_for_updates = true; // the same files each time
 }
 
 // Detects wrong usage before any file or device is opened.

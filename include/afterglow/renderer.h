@@ -32,6 +32,9 @@ struct ag_renderer_desc {
     bool id_layer; ///< keep the layer "id"; default false
     /// Each frame is given a G-buffer (ag_frame_desc.gbuffer); not with id_layer; default false.
     bool host_gbuffer;
+    /// Frames depend on scene and time alone: work that techniques do beside frames, as drt does after
+    /// objects moved, is waited for, as with their option "update=wait"; default false.
+    bool wait_for_updates;
     uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
 AG_API void ag_renderer_desc_default(struct ag_renderer_desc *desc);

@@ -167,6 +167,7 @@ enum ag_result ag_renderer_create(struct ag_device *device, struct ag_scene *sce
     r->main.motion_layer = desc->motion_layer;
     r->main.id_layer = desc->id_layer;
     r->main.host_gbuffer = desc->host_gbuffer;
+    r->wait_for_updates = desc->wait_for_updates;
     r->main.shown.layer = FRAME_COLOR;
     scene->renderers++;
     r->client = gpu_client_add(device->gpu);

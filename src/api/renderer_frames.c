@@ -156,7 +156,7 @@ static bool prepare(struct ag_renderer *r, const struct ag_frame_desc *desc, str
     const uint32_t changes = renderer_scene_changes(r);
     if (changes) gi_invalidate(r->gi, changes);
     warn_of_animation(r);
-    gi_follow(r->gi, &r->pose);
+    gi_follow(r->gi, &r->pose, r->wait_for_updates);
     struct frame_input common = { .pose = &r->pose,
                                   .lights = r->lights,
                                   .light_count = renderer_scene_lights(r),

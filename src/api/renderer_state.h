@@ -42,6 +42,7 @@ struct ag_renderer {
     int recorded_count;
     uint32_t client;           // of the device: gpu_client_add
     uint64_t created_surfaces; // hash of the surfaces that techniques were created with
+    bool wait_for_updates;     // as in ag_renderer_desc
     bool said_limit;           // the warning about too many lights was logged
     int views;                 // besides the first
 };

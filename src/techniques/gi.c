@@ -222,11 +222,11 @@ void gi_invalidate(struct gi *gi, uint32_t changes)
     }
 }
 
-void gi_follow(struct gi *gi, const struct scene_pose *pose)
+void gi_follow(struct gi *gi, const struct scene_pose *pose, bool wait)
 {
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = enter(gi, i);
-        if (technique->follow) technique->follow(gi->state[i], pose);
+        if (technique->follow) technique->follow(gi->state[i], pose, wait);
         leave(gi);
     }
 }

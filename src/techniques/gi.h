@@ -42,8 +42,8 @@ bool gi_resize_view(struct gi *gi, int view, const struct scene_pose *pose, uint
                     uint32_t height);
 // technique_change bits. A technique that cannot follow them warns once and goes on.
 void gi_invalidate(struct gi *gi, uint32_t changes);
-// Before each frame, with its pose, once the changes are known.
-void gi_follow(struct gi *gi, const struct scene_pose *pose);
+// Before each frame, with its pose, once the changes are known. `wait`: for work beside frames.
+void gi_follow(struct gi *gi, const struct scene_pose *pose, bool wait);
 // Whether a technique cannot follow moving geometry, and has not yet warned.
 bool gi_would_warn_of_movement(const struct gi *gi);
 // The animation has moved surfaces since the creation: such techniques warn once.

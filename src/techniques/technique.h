@@ -103,8 +103,9 @@ struct technique {
     void (*set_options)(void *state, const void *options); // only effects LIVE and INVALIDATE
     void (*invalidate)(void *state, uint32_t changes);     // technique_change bits
     // Before each frame is recorded, with the pose that it shows: follows changes of surfaces,
-    // which techniques without it or CAN_MOVE_GEOMETRY do not, with a warning of gi.c.
-    void (*follow)(void *state, const struct scene_pose *pose);
+    // which techniques without it or CAN_MOVE_GEOMETRY do not, with a warning of gi.c. `wait`: the
+    // frame shows them, however long it takes.
+    void (*follow)(void *state, const struct scene_pose *pose, bool wait);
     // No allocation, no wait, no failure. `update` is the light that all views share: volumes,
     // voxels, probes; once a frame, with the first view. `record` is what a view's pixels get of
     // it; once a view. A technique without `update` shares nothing: each view has a state of its

@@ -88,6 +88,7 @@ static const struct {
     AT(ag_renderer_desc, bake_folder, 48),
     AT(ag_renderer_desc, id_layer, 56),
     AT(ag_renderer_desc, host_gbuffer, 57),
+    AT(ag_renderer_desc, wait_for_updates, 58),
     AT(ag_renderer_desc, reserved, 64),
     SIZE(ag_frame_desc, 136),
     AT(ag_frame_desc, camera, 0),

@@ -34,6 +34,7 @@ struct moving {
     struct ag_scene *of_bake;
     struct ag_bake *bake;
     int box; // an instance
+    bool wait;
 };
 
 static struct ag_renderer *new_renderer(struct moving *m, const char *gi)
@@ -43,6 +44,7 @@ static struct ag_renderer *new_renderer(struct moving *m, const char *gi)
     const struct ag_bake *bake = m->bake;
     desc.bakes = &bake;
     desc.bake_count = 1;
+    desc.wait_for_updates = m->wait;
     if (ag_renderer_create(m->s.device, m->s.scene, &desc, &renderer) != AG_OK)
         fail_msg("%s", ag_context_last_error(m->s.context));
     return renderer;
@@ -164,6 +166,23 @@ TEST(a_renderer_ends_while_it_updates)
         ag_renderer_destroy(m.s.renderer);
         m.s.renderer = new_renderer(&m, BACKGROUND);
     }
+    moving_close(&m);
+}
+
+TEST(a_program_may_wait_for_the_light)
+{
+    struct moving m = moving_open(BACKGROUND);
+    m.wait = true;
+    ag_renderer_destroy(m.s.renderer);
+    m.s.renderer = new_renderer(&m, BACKGROUND);
+    struct ag_image *before = frame_of(&m, m.s.renderer);
+    assert_int_equal(place(m.s.scene, m.box, 1.0f), AG_OK);
+    struct ag_image *now = frame_of(&m, m.s.renderer), *after = fresh_frame(&m);
+    CHECK(same(now, after));
+    CHECK(!same(now, before));
+    ag_image_destroy(m.s.context, before);
+    ag_image_destroy(m.s.context, now);
+    ag_image_destroy(m.s.context, after);
     moving_close(&m);
 }
 

@@ -213,9 +213,9 @@ static void record_solution(struct mrt *mrt, struct gpu_cmd *cmd, const struct f
         record_bounces(mrt, cmd, view);
 }
 
-static void drt_follow(void *state, const struct scene_pose *pose)
+static void drt_follow(void *state, const struct scene_pose *pose, bool wait)
 {
-    mrt_update_follow(state, pose);
+    mrt_update_follow(state, pose, wait);
 }
 
 static void mrt_update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)

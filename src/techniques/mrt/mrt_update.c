@@ -201,7 +201,7 @@ static void start(struct mrt *mrt, const struct scene_pose *pose)
     struct mrt_update *u = &mrt->update;
     u->error[0] = 0;
     u->cache.traced = 0;
-    u->waited_for = mrt->options.update == MRT_UPDATE_WAIT;
+    u->waited_for = u->waits;
     u->plan = (struct mrt_plan){ .host = &u->host };
     atomic_store(&u->stop, false);
     atomic_store(&u->done, false);
@@ -222,7 +222,7 @@ static bool can_follow(const struct mrt *mrt)
 static void follow(struct mrt *mrt, const struct scene_pose *pose)
 {
     struct mrt_update *u = &mrt->update;
-    const bool wait = mrt->options.update == MRT_UPDATE_WAIT;
+    const bool wait = u->waits;
     if (!u->host.log || (u->said_walls && !can_follow(mrt))) return;
     if (u->state == MRT_RUNNING && (wait || atomic_load(&u->done))) join(mrt);
     if (u->state == MRT_RUNNING || (u->state == MRT_COPYING && !wait)) return;
@@ -236,8 +236,9 @@ static void follow(struct mrt *mrt, const struct scene_pose *pose)
     if (wait && u->state == MRT_RUNNING) join(mrt);
 }
 
-void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose)
+void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose, bool wait)
 {
+    mrt->update.waits = wait || mrt->options.update == MRT_UPDATE_WAIT;
     follow(mrt, pose);
     mrt->update.pose = pose;
     find_moves(mrt);
@@ -247,7 +248,7 @@ bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd)
 {
     struct mrt_update *u = &mrt->update;
     if (u->state != MRT_COPYING) return false;
-    const size_t most = mrt->options.update == MRT_UPDATE_WAIT ? SIZE_MAX : COPIED;
+    const size_t most = u->waits ? SIZE_MAX : COPIED;
     if (!mrt_plan_record(&u->plan, &u->next, cmd, most)) return false;
     mrt_runtime_finish(&mrt->runtime);
     mrt->runtime = u->next;

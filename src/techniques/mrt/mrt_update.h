@@ -33,7 +33,8 @@ struct mrt_update {
     enum mrt_update_state state;
     pthread_t thread;
     atomic_bool stop, done;
-    bool waited_for;
+    bool waits;      // frames wait for the thread
+    bool waited_for; // by the frame that started it
     bool ok; // of the thread
     struct scene_snapshot snapshot;
     struct mrt_delta_cache cache;
@@ -55,7 +56,7 @@ void mrt_update_finish(struct mrt *mrt); // accepts zero
 bool mrt_update_pass_on(struct mrt *mrt);
 
 // Before a frame: takes what the thread has made, and starts it where the scene has changed. With
-// update=wait it waits. After a failure the old operators stay, with one warning.
-void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose);
+// update=wait, or if the program wants it, it waits. After a failure the old operators stay, with one warning.
+void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose, bool wait);
 // In a frame: copies; true: the operators are new from now on.
 bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd);
