@@ -64,12 +64,22 @@ static bool check_sources(struct radiosity *s, const struct content *c)
                      nodes);
 }
 
+static bool fits(struct radiosity *s, const char *name, size_t bytes)
+{
+    const uint64_t most = gpu_limits(s->gpu)->max_storage_bytes;
+    if (bytes <= most) return true;
+    return host_fail(s->host, FAIL_UNSUPPORTED,
+                     "radiosity: its %s have %.0f MB, above the limit of %s, %.0f MB: give fewer "
+                     "texels or sources",
+                     name, (double)bytes * 1e-6, gpu_info(s->gpu)->name, (double)most * 1e-6);
+}
+
 static bool upload(struct radiosity *s, const char *name, void *items, size_t count, size_t size,
                    gpu_buffer *out)
 {
     const size_t bytes = count * size;
     const struct gpu_buffer_desc desc = { name, bytes > 0 ? bytes : 16, GPU_BUFFER_STORAGE };
-    const bool ok = items && gpu_buffer_create(s->gpu, &desc, out) &&
+    const bool ok = items && fits(s, name, bytes) && gpu_buffer_create(s->gpu, &desc, out) &&
                     (bytes == 0 || gpu_buffer_upload(s->gpu, *out, 0, items, bytes));
     host_free(s->host, items);
     return ok;
