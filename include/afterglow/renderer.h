@@ -32,8 +32,8 @@ struct ag_renderer_desc {
     bool id_layer; ///< keep the layer "id"; default false
     /// Each frame is given a G-buffer (ag_frame_desc.gbuffer); not with id_layer; default false.
     bool host_gbuffer;
-    /// Frames depend on scene and time alone: work that techniques do beside frames, as drt does after
-    /// objects moved, is waited for, as with their option "update=wait"; default false.
+    /// Frames depend on scene and time alone: work that techniques do beside frames, as drt does
+    /// after objects moved, is waited for, as with their option "update=wait"; default false.
     bool wait_for_updates;
     uint64_t reserved[7]; ///< 0; see ABI in types.h
 };
@@ -102,6 +102,9 @@ struct ag_gbuffer {
     /// R16G16B16A16_SFLOAT: the layer motion, alpha 1 at surfaces. Required by techniques with a
     /// history (vct:temporal=true …) and by motion_layer.
     struct ag_layer_handle motion;
+    /// R32G32_UINT: instance and triangle, each plus 1, 0: no surface; as the layer id. Required by
+    /// radiosity; without it drt lights objects by probes.
+    struct ag_layer_handle id;
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 
@@ -169,7 +172,7 @@ AG_API const char *ag_layer_name(int index);
 /// - debug: the debug view; requires ag_renderer_set_debug_view
 ///
 /// With host_gbuffer, albedo, normal, position, depth, emissive and motion are the program's own
-/// and cannot be read here; there is no id, and a frame cannot pick.
+/// and cannot be read here; there is no layer id, and a frame cannot pick.
 AG_API enum ag_result ag_renderer_read(struct ag_renderer *renderer, const char *layer,
                                        struct ag_image **out);
 /// For programs that share the device; also before the first frame. "position" has no image.

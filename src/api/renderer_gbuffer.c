@@ -17,6 +17,7 @@ static const struct {
     { FRAME_DIELECTRIC, "gbuffer.dielectric", offsetof(struct ag_gbuffer, dielectric) },
     { FRAME_EMISSIVE, "gbuffer.emissive", offsetof(struct ag_gbuffer, emissive) },
     { FRAME_MOTION, "gbuffer.motion", offsetof(struct ag_gbuffer, motion) },
+    { FRAME_ID, "gbuffer.id", offsetof(struct ag_gbuffer, id) },
 };
 enum { MEMBER_COUNT = sizeof members / sizeof *members };
 

@@ -187,17 +187,20 @@ bool frame_resize(struct frame *f, uint32_t width, uint32_t height)
 
 static bool check_gbuffer(struct frame *f)
 {
-    const uint32_t needed =
-        FRAME_LEAST_GBUFFER | (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0);
+    const uint32_t needed = FRAME_LEAST_GBUFFER |
+                            (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0) |
+                            (f->needs & FRAME_REQUIRES_ID ? 1u << FRAME_ID : 0);
     const uint32_t missing = needed & ~f->imported;
     if (!missing) return true;
     return host_fail(f->host, FAIL_ARGUMENT, "gbuffer has no image of the layer %s%s",
                      missing >> FRAME_DEPTH & 1u    ? "depth"
                      : missing >> FRAME_NORMAL & 1u ? "normal"
                      : missing >> FRAME_ALBEDO & 1u ? "albedo"
-                                                    : "motion",
-                     missing & FRAME_LEAST_GBUFFER ? ""
-                                                   : ", which a technique or motion_layer needs");
+                     : missing >> FRAME_MOTION & 1u ? "motion"
+                                                    : "id",
+                     missing & FRAME_LEAST_GBUFFER  ? ""
+                     : missing >> FRAME_MOTION & 1u ? ", which a technique or motion_layer needs"
+                                                    : ", which a technique needs");
 }
 
 // Whether the display image is of another layer than the colour.
@@ -315,9 +318,6 @@ bool frame_prepare(struct frame *f, const struct frame_input *input,
     }
     if (input->pose->scene != f->common->scene.scene)
         return host_fail(f->host, FAIL_ARGUMENT, "frame: the pose belongs to another scene");
-    if (input->gbuffer && indirect && indirect->needs & FRAME_NEEDS_ID)
-        return host_fail(f->host, FAIL_UNSUPPORTED,
-                         "gbuffer has no layer of triangles, which a technique needs");
     const bool is_first = f->view_number == 0;
     if (is_first && !(scene_gpu_follow(&f->common->scene) && emitters_follow(&f->common->emitters)))
         return false;

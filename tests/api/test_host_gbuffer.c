@@ -28,6 +28,15 @@ static struct ag_renderer *make(struct renderer_fixture *s, const char *gi, bool
     return renderer;
 }
 
+static struct renderer_fixture open_with_ids(void)
+{
+    struct renderer_fixture s = fixture_open_lit(NULL);
+    struct ag_renderer_desc desc = fixture_renderer_desc("none");
+    desc.id_layer = true;
+    assert_int_equal(ag_renderer_create(s.device, s.scene, &desc, &s.renderer), AG_OK);
+    return s;
+}
+
 static struct ag_layer_handle layer(struct renderer_fixture *s, const char *name)
 {
     struct ag_layer_handle handle;
@@ -43,7 +52,8 @@ static struct ag_gbuffer gbuffer_of(struct renderer_fixture *s)
                                 .normal = layer(s, "normal"),
                                 .albedo = layer(s, "albedo"),
                                 .emissive = layer(s, "emissive"),
-                                .motion = layer(s, "motion") };
+                                .motion = layer(s, "motion"),
+                                .id = layer(s, "id") };
 }
 
 // A frame of the fixture's renderer, then one each with its G-buffer and with an own one.
@@ -86,7 +96,7 @@ static void check_equal(struct renderer_fixture *s, const char *gi, const struct
 
 TEST(with_an_equal_gbuffer_all_layers_are_equal_to_the_bit)
 {
-    struct renderer_fixture s = fixture_open_lit("none");
+    struct renderer_fixture s = open_with_ids();
     struct ag_technique_info info;
     for (int i = 0; ag_technique_get(i, &info); i++) {
         char base[FIXTURE_SPEC], longer[2 * FIXTURE_SPEC];
@@ -113,9 +123,29 @@ static void check_refused(struct renderer_fixture *s, struct ag_renderer *render
         fail_msg("%s is not in: %s", expected, ag_context_last_error(s->context));
 }
 
+// Pixels find their light by instance and triangle.
+TEST(radiosity_needs_ids)
+{
+    struct renderer_fixture s = open_with_ids();
+    struct ag_technique_info info;
+    char base[FIXTURE_SPEC];
+    int i = 0;
+    while (ag_technique_get(i, &info) && strcmp(info.name, "radiosity") != 0) i++;
+    fixture_print_base(i, &info, base);
+    struct ag_bake *bake = fixture_bake(&s, base, &info);
+    struct ag_renderer *hosted = make(&s, base, true, bake);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    struct ag_gbuffer gbuffer = gbuffer_of(&s);
+    gbuffer.id.vk_image = NULL;
+    check_refused(&s, hosted, &gbuffer, "layer id, which a technique needs");
+    ag_renderer_destroy(hosted);
+    ag_bake_destroy(bake);
+    fixture_close(&s);
+}
+
 TEST(what_is_missing_or_has_another_form_is_named)
 {
-    struct renderer_fixture s = fixture_open_lit("none");
+    struct renderer_fixture s = open_with_ids();
     struct ag_renderer_desc desc = fixture_renderer_desc("ambient+vo:temporal=true");
     struct ag_renderer *hosted = NULL;
     desc.host_gbuffer = true;
@@ -185,7 +215,7 @@ TEST(what_is_missing_or_has_another_form_is_named)
 
 TEST(a_renderer_without_an_own_gbuffer_takes_less_memory)
 {
-    struct renderer_fixture s = fixture_open_lit("none");
+    struct renderer_fixture s = open_with_ids();
     struct ag_renderer *hosted = make(&s, "none", true, NULL);
     uint64_t bytes[2] = { 0, 0 };
     struct ag_renderer *const renderers[2] = { s.renderer, hosted };

@@ -35,7 +35,7 @@ struct mrt_update {
     atomic_bool stop, done;
     bool waits;      // frames wait for the thread
     bool waited_for; // by the frame that started it
-    bool ok; // of the thread
+    bool ok;         // of the thread
     struct scene_snapshot snapshot;
     struct mrt_delta_cache cache;
     struct mrt_parts *parts; // being made
@@ -56,7 +56,8 @@ void mrt_update_finish(struct mrt *mrt); // accepts zero
 bool mrt_update_pass_on(struct mrt *mrt);
 
 // Before a frame: takes what the thread has made, and starts it where the scene has changed. With
-// update=wait, or if the program wants it, it waits. After a failure the old operators stay, with one warning.
+// update=wait, or if the program wants it, it waits. After a failure the old operators stay, with
+// one warning.
 void mrt_update_follow(struct mrt *mrt, const struct scene_pose *pose, bool wait);
 // In a frame: copies; true: the operators are new from now on.
 bool mrt_update_record(struct mrt *mrt, struct gpu_cmd *cmd);
