@@ -9,6 +9,8 @@
 
 #include "core/hash.h"
 
+#include "techniques/common/light_hash.h"
+
 #include <string.h>
 
 #define OPTION(...) OPTION_ROW(struct mrt_options, __VA_ARGS__)
@@ -139,11 +141,7 @@ static void mrt_invalidate(void *state, uint32_t changes)
 // Lights, sky and live options, in the units of the frame.
 static uint64_t hash_of_light(const struct mrt *mrt, const struct frame_view *view)
 {
-    const struct frame_constants *c = view->constants;
-    uint64_t hash = hash_bytes(&mrt->options, sizeof mrt->options, (uint64_t)view->shadow_radius);
-    hash = hash_bytes(&c->radiance_scale, sizeof c->radiance_scale, hash);
-    hash = hash_bytes(&c->sky, sizeof c->sky, hash);
-    return hash_bytes(view->lights, (size_t)view->light_count * sizeof *view->lights, hash);
+    return hash_bytes(&mrt->options, sizeof mrt->options, light_hash(view));
 }
 
 // The light map shows the light of a frame since which nothing has changed. Feedback converges over

@@ -6,7 +6,7 @@
 
 #include "techniques/radiosity/radiosity_state.h"
 
-#include "core/hash.h"
+#include "techniques/common/light_hash.h"
 
 #include "technique_shaders.h"
 
@@ -121,20 +121,10 @@ static void invalidate(void *state, uint32_t changes)
     if (changes & ~(uint32_t)CHANGED_CAMERA) s->inputs.valid = false;
 }
 
-// Lights, sky and exposure, in the units of the frame.
-static uint64_t hash_of_light(const struct frame_view *view)
-{
-    const struct frame_constants *c = view->constants;
-    uint64_t hash =
-        hash_bytes(&c->radiance_scale, sizeof c->radiance_scale, (uint64_t)view->shadow_radius);
-    hash = hash_bytes(&c->sky, sizeof c->sky, hash);
-    return hash_bytes(view->lights, (size_t)view->light_count * sizeof *view->lights, hash);
-}
-
 // Whether the light map has the light of this frame.
 static bool is_kept(struct radiosity *s, const struct frame_view *view)
 {
-    const uint64_t light = hash_of_light(view);
+    const uint64_t light = light_hash(view);
     const bool same = view->keep && s->inputs.valid && view->index > 0 &&
                       view->index == s->inputs.index + 1 && light == s->inputs.light &&
                       !view->geometry_moved && !view->lights_changed;

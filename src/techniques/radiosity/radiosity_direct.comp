@@ -1,8 +1,5 @@
 // Light that texels reflect before any bounce: of all lights, with shadows, of emissive surfaces
 // and of the sky. In scaled lumen: radiosity times area.
-//
-// A texel stands for its area A. A light of intensity I at distance d → 0 lights a wall by I/d²,
-// but sends it 2πI only: with d² + A/2π, a texel never receives more than that flux.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -14,6 +11,7 @@
 #include "frame/frame.glsl"
 #include "frame/light.glsl"
 #include "frame/shadow/shadow.glsl"
+#include "techniques/common/texel_light.glsl"
 #include "techniques/radiosity/radiosity_texels.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -31,27 +29,6 @@ layout(set = 0, binding = 6, scalar) writeonly buffer radiosity_flux
     vec3 flux_table[];
 };
 
-const float PI = 3.14159265;
-
-vec3 irradiance_of(radiosity_gpu_texel texel, frame_light light)
-{
-    vec3 to_light = -light.direction;
-    float attenuation = 1.0;
-    if (light.type != FRAME_LIGHT_SUN) {
-        to_light = light.position - texel.position;
-        float distance2 = dot(to_light, to_light);
-        to_light *= inversesqrt(max(distance2, 1e-12));
-        attenuation = light_cone(light, -to_light) * light_window(light, distance2) /
-                      (distance2 + texel.area_m2 / (2.0 * PI));
-    }
-    float cosine = dot(texel.normal, to_light);
-    if (cosine <= 0.0 || attenuation <= 0.0) return vec3(0.0);
-    if (light.shadow_first >= 0)
-        attenuation *= shadow_visibility(light, texel.position, texel.normal, to_light, true,
-                                         push.shadow_radius);
-    return light.intensity * (attenuation * cosine);
-}
-
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -63,7 +40,8 @@ void main()
             irradiance[c] =
                 radiosity_unbounced(texel, c, frame.sky, push.emitters * frame.radiance_scale).x;
         for (uint k = 0; k < frame.light_count; k++)
-            irradiance += irradiance_of(texel, frame_light_table[k]);
+            irradiance += texel_irradiance(texel.position, texel.normal, texel.area_m2,
+                                           frame_light_table[k], push.shadow_radius);
     }
     flux_table[i] = texel.area_m2 * texel.reflectance * irradiance;
 }
