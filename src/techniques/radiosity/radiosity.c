@@ -5,6 +5,7 @@
 #include "techniques/radiosity/radiosity.h"
 
 #include "techniques/radiosity/radiosity_state.h"
+#include "techniques/radiosity/radiosity_statics.h"
 
 #include "techniques/common/light_hash.h"
 
@@ -31,9 +32,12 @@ static bool create(void *state, const struct technique_create *how)
     s->options = *(const struct radiosity_options *)how->options;
     if (!how->pose) return true;
     s->instances = (uint32_t)how->pose->scene->instance_count;
-    if (!radiosity_map_init(&s->map, s->host, how->pose, &s->options)) return false;
+    struct radiosity_statics statics;
+    const bool ok = radiosity_statics_init(&statics, s->host, how->pose) &&
+                    radiosity_map_init(&s->map, s->host, &statics.pose, &s->options);
+    radiosity_statics_finish(&statics);
     s->sides = s->map.texel_count > s->map.charts.texel_count ? 2 : 1;
-    return true;
+    return ok;
 }
 
 static bool make_buffers(struct radiosity *s)
@@ -198,7 +202,7 @@ const struct technique technique_radiosity = {
     .role = ROLE_SOURCE,
     .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_REQUIRES_ID,
-    .bake_version = 1,
+    .bake_version = 2,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct radiosity),

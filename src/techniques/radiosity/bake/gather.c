@@ -15,9 +15,11 @@ bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
                           const struct scene_pose *pose, const struct radiosity_options *options)
 {
     const size_t instances = (size_t)pose->scene->instance_count;
-    *scene = (struct radiosity_scene){ .host = host, .pose = pose, .options = *options };
-    if (!radiosity_map_init(&scene->map, host, pose, options)) return false;
-    scene->trace = trace_scene_create(host, pose);
+    *scene = (struct radiosity_scene){ .host = host, .options = *options };
+    if (!radiosity_statics_init(&scene->statics, host, pose) ||
+        !radiosity_map_init(&scene->map, host, &scene->statics.pose, options))
+        return false;
+    scene->trace = trace_scene_create(host, &scene->statics.pose);
     scene->mesh_of = host_alloc(host, instances, sizeof *scene->mesh_of);
     if (!scene->trace || !scene->mesh_of) return false;
     for (size_t i = 0; i < instances; i++) scene->mesh_of[i] = UINT32_MAX;
@@ -30,6 +32,7 @@ void radiosity_scene_finish(struct radiosity_scene *scene)
 {
     if (!scene->host) return;
     trace_scene_destroy(scene->trace);
+    radiosity_statics_finish(&scene->statics);
     host_free(scene->host, scene->mesh_of);
     host_free(scene->host, scene->part);
     host_free(scene->host, scene->is_group);
@@ -120,23 +123,34 @@ static void add_cluster(struct radiosity_gather *gather, const struct receiver *
     factor->along[1] += local.y / (local.z * r->rays);
 }
 
-static void add_hit(const struct radiosity_scene *scene, const struct receiver *r,
-                    struct radiosity_gather *gather, const struct ray *ray,
-                    const struct ray_hit *hit, vec3s local)
+struct radiosity_seen radiosity_seen_at(const struct radiosity_scene *scene, const struct ray *ray,
+                                        const struct ray_hit *hit)
 {
     const struct trace_mesh *mesh = &scene->trace->meshes[hit->geometry];
     const float along = -glms_vec3_dot(mesh->facets[hit->triangle].normal, ray->direction);
     const bool back = along < 0.0f;
-    if (mesh->material->emissive && (!back || mesh->material->double_sided)) {
-        const float pdf = light_emitter_pdf(scene->trace, hit->geometry, hit->triangle,
-                                            hit->distance, fabsf(along));
-        add_emission(gather, r, ray->direction,
-                     surface_emission(mesh, hit->triangle, hit->u, hit->v), pdf);
+    struct radiosity_seen seen = { .cluster = CHART_NONE,
+                                   .inside = back && !mesh->material->double_sided };
+    if (seen.inside) return seen;
+    if (mesh->material->emissive) {
+        seen.emission = surface_emission(mesh, hit->triangle, hit->u, hit->v);
+        seen.pdf = light_emitter_pdf(scene->trace, hit->geometry, hit->triangle, hit->distance,
+                                     fabsf(along));
     }
-    if (back && !mesh->material->double_sided) return;
     const uint32_t texel =
         radiosity_texel_at(&scene->map, mesh->instance, hit->triangle, hit->u, hit->v, back);
-    if (texel != CHART_NONE) add_cluster(gather, r, scene->map.texels[texel].cluster, local);
+    if (texel != CHART_NONE) seen.cluster = scene->map.texels[texel].cluster;
+    return seen;
+}
+
+static void add_hit(const struct radiosity_scene *scene, const struct receiver *r,
+                    struct radiosity_gather *gather, const struct ray *ray,
+                    const struct ray_hit *hit, vec3s local)
+{
+    const struct radiosity_seen seen = radiosity_seen_at(scene, ray, hit);
+    if (glms_vec3_max(seen.emission) > 0.0f)
+        add_emission(gather, r, ray->direction, seen.emission, seen.pdf);
+    if (seen.cluster != CHART_NONE) add_cluster(gather, r, seen.cluster, local);
 }
 
 static void clear(struct radiosity_gather *gather)

@@ -4,11 +4,12 @@
 #include "trace/trace_scene.h"
 
 #include "techniques/radiosity/radiosity_map.h"
+#include "techniques/radiosity/radiosity_statics.h"
 
 // What all tasks share. radiosity_scene_finish accepts zero.
 struct radiosity_scene {
     struct host *host;
-    const struct scene_pose *pose;
+    struct radiosity_statics statics;
     struct radiosity_options options;
     struct radiosity_map map;
     struct trace_scene *trace;
@@ -39,6 +40,16 @@ struct radiosity_gather {
     struct radiosity_light sky;        // of radiance 1
     struct radiosity_light emitted[3]; // by colour, lux
 };
+
+// What a ray meets.
+struct radiosity_seen {
+    uint32_t cluster; // CHART_NONE: it has no texel there
+    bool inside;      // the back of a single-sided surface
+    vec3s emission;   // cd/m²; 0: none
+    float pdf;        // of light_sample_emitter, sr⁻¹
+};
+struct radiosity_seen radiosity_seen_at(const struct radiosity_scene *scene, const struct ray *ray,
+                                        const struct ray_hit *hit);
 
 // Where a texel is sampled, and the share of it that is not inside of something; 0: none is.
 struct radiosity_point {

@@ -248,19 +248,28 @@ static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t
                   .output_count = 2 });
 }
 
+static bool add_stages(struct bake_plan *plan, struct job *job, const struct scene_pose *statics)
+{
+    bake_plan_depends(plan, scene_key(statics, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
+    // The size of the tensors is that of the charts: clusters are not divided yet.
+    struct radiosity_map map;
+    if (!radiosity_map_init(&map, bake_plan_host(plan), statics, &job->options)) return false;
+    const uint64_t texels = radiosity_rows(map.texel_count);
+    const uint64_t clusters = radiosity_cluster_rows(&map);
+    radiosity_map_finish(&map);
+    bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
+    return add_texels(plan, job, texels, clusters) && add_clusters(plan, job, clusters);
+}
+
 bool radiosity_bake(struct bake_plan *plan, const struct technique_bake *how)
 {
     struct job *job = bake_plan_alloc(plan, 1, sizeof *job);
     if (!job) return false;
     job->pose = how->pose;
     job->options = *(const struct radiosity_options *)how->options;
-    bake_plan_depends(plan, scene_key(how->pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
-    // The size of the tensors is that of the charts: clusters are not divided yet.
-    struct radiosity_map map;
-    if (!radiosity_map_init(&map, bake_plan_host(plan), how->pose, &job->options)) return false;
-    const uint64_t texels = radiosity_rows(map.texel_count);
-    const uint64_t clusters = radiosity_cluster_rows(&map);
-    radiosity_map_finish(&map);
-    bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
-    return add_texels(plan, job, texels, clusters) && add_clusters(plan, job, clusters);
+    struct radiosity_statics statics;
+    if (!radiosity_statics_init(&statics, bake_plan_host(plan), how->pose)) return false;
+    const bool ok = add_stages(plan, job, &statics.pose);
+    radiosity_statics_finish(&statics);
+    return ok;
 }

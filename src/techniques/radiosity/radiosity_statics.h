@@ -1,0 +1,18 @@
+// The part of a scene that is baked: instances that are expected to stay where they are. Others
+// have no texels, and neither occlude nor reflect light in the bake: those that are marked movable,
+// and those that an animation of the scene moves or deforms, played or not.
+#pragma once
+
+#include "core/host.h"
+#include "scene/pose.h"
+
+// A copy of the scene without these instances, and its pose; both share all else with the originals,
+// which must outlive them. radiosity_statics_finish accepts zero.
+struct radiosity_statics {
+    struct host *host;
+    struct scene scene;
+    struct scene_pose pose; // its bounds are of the whole scene
+};
+bool radiosity_statics_init(struct radiosity_statics *out, struct host *host,
+                            const struct scene_pose *pose);
+void radiosity_statics_finish(struct radiosity_statics *statics);
