@@ -1,33 +1,16 @@
 // Objects inside blocks that move while drt renders: their light is made by another thread, and
-// changes from one frame to the next, whole. The thread sanitizer watches (preset tsan).
-#include "api/renderer_fixture.h"
+// changes from one frame to the next, whole.
+#include "api/moving_box.h"
 
 #include "api/renderer_state.h"
 #include "techniques/gi_state.h"
 #include "techniques/mrt/mrt_state.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { PIXELS = FIXTURE_WIDTH * FIXTURE_HEIGHT, MANY_FRAMES = 20000 };
-
-static const char SCENE[] = "@cornell:light=point";
-static const char BACKGROUND[] = "drt:map=single," FIXTURE_SMALL_DICTIONARY;
-static const char WAIT[] = "drt:map=single,update=wait," FIXTURE_SMALL_DICTIONARY;
-
-// Surfaces of a scene stay while a bake uses it: the dictionary, which is that of all scenes, has a
-// scene of its own.
-static struct ag_bake *bake_of(struct ag_context *context, struct ag_scene **scene)
-{
-    struct ag_bake *bake = NULL;
-    if (ag_scene_load(context, SCENE, scene) != AG_OK ||
-        ag_bake_create(*scene, WAIT, NULL, &bake) != AG_OK ||
-        ag_bake_run(bake, NULL, NULL) != AG_OK)
-        return NULL;
-    return bake;
-}
 
 struct moving {
     struct renderer_fixture s;
@@ -50,37 +33,15 @@ static struct ag_renderer *new_renderer(struct moving *m, const char *gi)
     return renderer;
 }
 
-static int add_box(struct ag_scene *scene)
-{
-    static const float corners[24] = { -1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,
-                                       -1, -1, 1,  1, -1, 1,  1, 1, 1,  -1, 1, 1 };
-    static const uint32_t faces[36] = { 0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
-                                        3, 6, 2, 3, 7, 6, 0, 4, 7, 0, 7, 3, 1, 2, 6, 1, 6, 5 };
-    const struct ag_mesh_desc desc = {
-        .positions = corners, .vertex_count = 8, .indices = faces, .index_count = 36, .material = 0
-    };
-    int mesh, instance = -1;
-    const float matrix[16] = { 0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, -1, 1, 1.2f, 1 };
-    if (ag_scene_add_mesh(scene, &desc, &mesh) != AG_OK ||
-        ag_scene_add_instance(scene, mesh, matrix, &instance) != AG_OK)
-        return -1;
-    return instance;
-}
-
-static enum ag_result place(struct ag_scene *scene, int instance, float x)
-{
-    const float matrix[16] = { 0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, x, 1, 1.2f, 1 };
-    return ag_scene_set_instance_transform(scene, instance, matrix);
-}
-
 static struct moving moving_open(const char *gi)
 {
     struct moving m = { .s = fixture_open("none", NULL) };
-    m.bake = bake_of(m.s.context, &m.of_bake);
+    m.bake = moving_box_bake(m.s.context, &m.of_bake);
     assert_non_null(m.bake);
-    m.box = add_box(m.s.scene);
+    m.box = moving_box_add(m.s.scene);
     assert_true(m.box >= 0);
-    assert_int_equal(place(m.s.scene, m.box, -1.0f), AG_OK); // it counts as movable from now on
+    // It counts as movable from now on.
+    assert_int_equal(moving_box_place(m.s.scene, m.box, -1.0f), AG_OK);
     ag_renderer_destroy(m.s.renderer);
     m.s.renderer = new_renderer(&m, gi);
     fixture_last_warning[0] = 0;
@@ -102,7 +63,7 @@ static struct ag_image *frame_of(struct moving *m, struct ag_renderer *renderer)
 
 static struct ag_image *fresh_frame(struct moving *m)
 {
-    struct ag_renderer *renderer = new_renderer(m, WAIT);
+    struct ag_renderer *renderer = new_renderer(m, MOVING_BOX_WAIT);
     struct ag_image *image = frame_of(m, renderer);
     ag_renderer_destroy(renderer);
     return image;
@@ -132,9 +93,9 @@ static int steps_until(struct moving *m, const struct ag_image *expected)
 
 TEST(light_of_a_moved_object_changes_in_one_frame)
 {
-    struct moving m = moving_open(BACKGROUND);
+    struct moving m = moving_open(MOVING_BOX_BACKGROUND);
     struct ag_image *before = frame_of(&m, m.s.renderer);
-    assert_int_equal(place(m.s.scene, m.box, 1.0f), AG_OK);
+    assert_int_equal(moving_box_place(m.s.scene, m.box, 1.0f), AG_OK);
     struct ag_image *after = fresh_frame(&m);
     CHECK(!same(before, after));
     CHECK(steps_until(&m, after) <= 1);
@@ -146,9 +107,9 @@ TEST(light_of_a_moved_object_changes_in_one_frame)
 
 TEST(the_last_of_many_moves_counts)
 {
-    struct moving m = moving_open(BACKGROUND);
+    struct moving m = moving_open(MOVING_BOX_BACKGROUND);
     for (int i = 0; i < 20; i++) {
-        assert_int_equal(place(m.s.scene, m.box, -1.0f + 0.1f * (float)i), AG_OK);
+        assert_int_equal(moving_box_place(m.s.scene, m.box, -1.0f + 0.1f * (float)i), AG_OK);
         assert_int_equal(ag_renderer_render(m.s.renderer, &m.s.frame), AG_OK);
     }
     struct ag_image *after = fresh_frame(&m);
@@ -159,24 +120,24 @@ TEST(the_last_of_many_moves_counts)
 
 TEST(a_renderer_ends_while_it_updates)
 {
-    struct moving m = moving_open(BACKGROUND);
+    struct moving m = moving_open(MOVING_BOX_BACKGROUND);
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(place(m.s.scene, m.box, 0.3f * (float)i), AG_OK);
+        assert_int_equal(moving_box_place(m.s.scene, m.box, 0.3f * (float)i), AG_OK);
         assert_int_equal(ag_renderer_render(m.s.renderer, &m.s.frame), AG_OK);
         ag_renderer_destroy(m.s.renderer);
-        m.s.renderer = new_renderer(&m, BACKGROUND);
+        m.s.renderer = new_renderer(&m, MOVING_BOX_BACKGROUND);
     }
     moving_close(&m);
 }
 
 TEST(a_program_may_wait_for_the_light)
 {
-    struct moving m = moving_open(BACKGROUND);
+    struct moving m = moving_open(MOVING_BOX_BACKGROUND);
     m.wait = true;
     ag_renderer_destroy(m.s.renderer);
-    m.s.renderer = new_renderer(&m, BACKGROUND);
+    m.s.renderer = new_renderer(&m, MOVING_BOX_BACKGROUND);
     struct ag_image *before = frame_of(&m, m.s.renderer);
-    assert_int_equal(place(m.s.scene, m.box, 1.0f), AG_OK);
+    assert_int_equal(moving_box_place(m.s.scene, m.box, 1.0f), AG_OK);
     struct ag_image *now = frame_of(&m, m.s.renderer), *after = fresh_frame(&m);
     CHECK(same(now, after));
     CHECK(!same(now, before));
@@ -188,7 +149,7 @@ TEST(a_program_may_wait_for_the_light)
 
 TEST(walls_that_move_are_said_once)
 {
-    struct moving m = moving_open(WAIT);
+    struct moving m = moving_open(MOVING_BOX_WAIT);
     const float matrix[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.01f, 0, 1 };
     assert_int_equal(ag_scene_set_instance_transform(m.s.scene, 0, matrix), AG_OK);
     ag_image_destroy(m.s.context, frame_of(&m, m.s.renderer));
@@ -216,15 +177,16 @@ static void *refuse(void *user, void *old, size_t bytes)
 
 TEST(without_memory_the_old_light_stays)
 {
-    struct moving m = moving_open(WAIT);
+    struct moving m = moving_open(MOVING_BOX_WAIT);
     struct mrt *mrt = m.s.renderer->gi->state[0];
-    assert_int_equal(place(m.s.scene, m.box, 1.0f), AG_OK);
+    assert_int_equal(moving_box_place(m.s.scene, m.box, 1.0f), AG_OK);
     struct ag_image *after = fresh_frame(&m), *old = NULL;
     mrt->update.host.reallocate = refuse;
     int failures = 0;
     for (int most = 0, ok = 0; !ok; most += 1 + most / 3) {
         // Another place each time: one that was tried is not tried again.
-        assert_int_equal(place(m.s.scene, m.box, 1.0f + 1e-4f * (float)(1 + failures)), AG_OK);
+        assert_int_equal(moving_box_place(m.s.scene, m.box, 1.0f + 1e-4f * (float)(1 + failures)),
+                         AG_OK);
         atomic_store(&allocations_left, most);
         fixture_last_warning[0] = 0;
         struct ag_image *now = frame_of(&m, m.s.renderer);
@@ -236,7 +198,7 @@ TEST(without_memory_the_old_light_stays)
     }
     CHECK(failures > 5);
     mrt->update.host.reallocate = NULL;
-    assert_int_equal(place(m.s.scene, m.box, 1.0f), AG_OK);
+    assert_int_equal(moving_box_place(m.s.scene, m.box, 1.0f), AG_OK);
     struct ag_image *now = frame_of(&m, m.s.renderer);
     CHECK(same(now, after));
     CHECK(!same(old, after));
@@ -244,62 +206,4 @@ TEST(without_memory_the_old_light_stays)
     ag_image_destroy(m.s.context, old);
     ag_image_destroy(m.s.context, now);
     moving_close(&m);
-}
-
-// ---- Two contexts on two threads
-
-struct other {
-    pthread_t thread;
-    bool failed;
-};
-
-// Objects move while updates run; nothing is asserted on a thread that is not the test's.
-static bool render_moving(struct ag_context *context, struct ag_device *device)
-{
-    struct ag_scene *scene = NULL, *of_bake = NULL;
-    struct ag_renderer *renderer = NULL;
-    struct ag_bake *bake = bake_of(context, &of_bake);
-    const struct ag_bake *one = bake;
-    struct ag_renderer_desc desc = fixture_renderer_desc(BACKGROUND);
-    struct ag_frame_desc frame;
-    desc.bakes = &one;
-    desc.bake_count = 1;
-    ag_frame_desc_default(&frame);
-    bool ok = bake && ag_scene_load(context, SCENE, &scene) == AG_OK &&
-              ag_scene_camera(scene, "main", 0, 0, &frame.camera) == AG_OK;
-    const int box = ok ? add_box(scene) : -1;
-    ok = ok && box >= 0 && ag_renderer_create(device, scene, &desc, &renderer) == AG_OK;
-    for (int i = 0; ok && i < 12; i++)
-        ok = place(scene, box, -1.0f + 0.1f * (float)i) == AG_OK &&
-             ag_renderer_render(renderer, &frame) == AG_OK && ag_renderer_wait(renderer) == AG_OK;
-    ag_renderer_destroy(renderer);
-    ag_bake_destroy(bake);
-    ag_scene_destroy(scene);
-    ag_scene_destroy(of_bake);
-    return ok;
-}
-
-static void *run_other(void *user)
-{
-    struct other *other = user;
-    struct ag_context *context = NULL;
-    struct ag_device *device = NULL;
-    struct ag_device_desc desc;
-    ag_device_desc_default(&desc);
-    other->failed = ag_context_create(NULL, &context) != AG_OK ||
-                    ag_device_create(context, &desc, &device) != AG_OK ||
-                    !render_moving(context, device);
-    ag_device_destroy(device);
-    ag_context_destroy(context);
-    return NULL;
-}
-
-TEST(objects_move_in_two_contexts_on_two_threads)
-{
-    struct other other[2] = { 0 };
-    test_gpu_require();
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(pthread_create(&other[i].thread, NULL, run_other, &other[i]), 0);
-    for (int i = 0; i < 2; i++) assert_int_equal(pthread_join(other[i].thread, NULL), 0);
-    CHECK(!other[0].failed && !other[1].failed);
 }
