@@ -1,13 +1,12 @@
-// The part of a scene that is baked: instances that are expected to stay where they are. Others
-// have no texels, and neither occlude nor reflect light in the bake: those that are marked movable,
-// and those that an animation of the scene moves or deforms, played or not.
+// The part of a scene that is baked: instances that are expected to stay where they are. Dynamic
+// ones (scene/dynamic.h) have no texels, and neither occlude nor reflect light in the bake.
 #pragma once
 
 #include "core/host.h"
 #include "scene/pose.h"
 
-// A copy of the scene without these instances, and its pose; both share all else with the originals,
-// which must outlive them. radiosity_statics_finish accepts zero.
+// A copy of the scene without these instances, and its pose; both share all else with the
+// originals, which must outlive them. radiosity_statics_finish accepts zero.
 struct radiosity_statics {
     struct host *host;
     struct scene scene;
