@@ -9,7 +9,7 @@ layout(local_size_x = RADIOSITY_LOCAL) in;
 
 layout(push_constant, scalar) uniform push_block
 {
-    radiosity_solve_push push;
+    radiosity_clusters_push push;
 };
 layout(set = 0, binding = 0, scalar) readonly buffer radiosity_clusters
 {

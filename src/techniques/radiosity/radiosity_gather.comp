@@ -6,6 +6,7 @@
 
 #define RADIOSITY_TEXELS_BINDING 1
 #include "frame/frame.glsl"
+#include "techniques/radiosity/radiosity_row.glsl"
 #include "techniques/radiosity/radiosity_texels.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
@@ -14,7 +15,7 @@ layout(push_constant, scalar) uniform push_block
 {
     radiosity_gather_push push;
 };
-// [entry][texel]: source, form factor; then the components along the tangents (halves).
+// [entry][texel of the block]: source and form factor; components along the tangents (halves).
 layout(set = 0, binding = 2, scalar) readonly buffer radiosity_factors
 {
     uvec2 factor_table[];
@@ -30,14 +31,15 @@ layout(set = 0, binding = 4, scalar) writeonly buffer radiosity_light
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= push.texels) return;
+    uint row = gl_GlobalInvocationID.x;
+    if (row >= push.count) return;
+    uint i = push.first + row;
     radiosity_gpu_texel texel = texel_table[i];
     vec3 irradiance = vec3(0.0), by_u = vec3(0.0), by_v = vec3(0.0);
     for (uint k = 0; k < push.entries; k++) {
-        uvec2 word = factor_table[k * push.texels + i];
-        if (word.x >> 16 == 0u) break; // rows end with zeros
-        vec3 light = unpackHalf2x16(word.x).y * sent_table[word.x & 0xffffu];
+        uvec2 word = factor_table[k * push.count + row];
+        if (radiosity_has_ended(word.x)) break;
+        vec3 light = radiosity_form_factor(word.x) * sent_table[radiosity_source(word.x)];
         vec2 along = unpackHalf2x16(word.y);
         irradiance += light;
         by_u += along.x * light;

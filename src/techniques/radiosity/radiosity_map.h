@@ -10,6 +10,7 @@
 #include "scene/charts/charts.h"
 
 #include "techniques/radiosity/radiosity_options.h"
+#include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/radiosity_tree.h"
 
 struct radiosity_texel {
@@ -34,8 +35,8 @@ struct radiosity_map {
     uint32_t *chart_triangle;   // [triangles of the scene] in charts.triangles; CHART_NONE: no area
 };
 
-// Nodes of more clusters do not fit in 16 bits. radiosity_map_finish accepts zero.
-enum { RADIOSITY_MAX_CLUSTERS = 32768 };
+// A tree has less than twice as many nodes as clusters. radiosity_map_finish accepts zero.
+enum { RADIOSITY_MAX_CLUSTERS = 1 << (RADIOSITY_NODE_BITS - 1) };
 bool radiosity_map_init(struct radiosity_map *out, struct host *host, const struct scene_pose *pose,
                         const struct radiosity_options *options);
 // Makes the clusters again, with the part of each texel, 0 or 1: at most twice as many.

@@ -20,7 +20,7 @@ static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct
 
 static void record_clusters(struct radiosity *s, struct gpu_cmd *cmd)
 {
-    const struct radiosity_solve_push push = { .clusters = s->map.cluster_count };
+    const struct radiosity_clusters_push push = { s->map.cluster_count };
     gpu_dispatch(cmd, s->pipelines.clusters,
                  GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
                           { .name = "radiosity_members", .buffer = s->buffers.members },
@@ -40,19 +40,31 @@ static void record_nodes(struct radiosity *s, struct gpu_cmd *cmd, gpu_buffer ra
                  &push, sizeof push, gpu_groups(push.nodes, RADIOSITY_LOCAL), 1, 1);
 }
 
+static void record_step_of(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_buffer last,
+                           gpu_buffer next, const struct radiosity_block *block)
+{
+    const struct radiosity_solve_push push = { block->first, block->count,
+                                               2 * (uint32_t)s->options.sources, over };
+    gpu_dispatch(cmd, s->pipelines.solve,
+                 GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
+                          { .name = "radiosity_cluster_factors",
+                            .buffer = s->buffers.cluster_factors,
+                            .offset = block->offset,
+                            .bytes = block->bytes },
+                          { .name = "radiosity_sent", .buffer = s->buffers.sent },
+                          { .name = "radiosity_last", .buffer = last },
+                          { .name = "radiosity_next", .buffer = next }),
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
+}
+
 static void record_step(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_buffer last,
                         gpu_buffer next)
 {
-    const struct radiosity_solve_push push = { s->map.cluster_count,
-                                               2 * (uint32_t)s->options.sources, over };
-    gpu_dispatch(
-        cmd, s->pipelines.solve,
-        GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
-                 { .name = "radiosity_cluster_factors", .buffer = s->buffers.cluster_factors },
-                 { .name = "radiosity_sent", .buffer = s->buffers.sent },
-                 { .name = "radiosity_last", .buffer = last },
-                 { .name = "radiosity_next", .buffer = next }),
-        &push, sizeof push, gpu_groups(push.clusters, RADIOSITY_LOCAL), 1, 1);
+    for (uint32_t first = 0; first < s->map.cluster_count;) {
+        const struct radiosity_block block = radiosity_cluster_block(s, first);
+        record_step_of(s, cmd, over, last, next, &block);
+        first += block.count;
+    }
 }
 
 // Returns the buffer with the radiosity of all bounces. The relaxation factors of the Chebyshev
@@ -76,18 +88,33 @@ static gpu_buffer record_solution(struct radiosity *s, struct gpu_cmd *cmd)
     return last;
 }
 
-static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
-                          gpu_buffer radiosity)
+static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
+                             const struct frame_view *view, gpu_buffer radiosity,
+                             const struct radiosity_block *block)
 {
-    const struct radiosity_gather_push push = { s->map.texel_count, (uint32_t)s->options.sources,
+    const struct radiosity_gather_push push = { block->first, block->count,
+                                                (uint32_t)s->options.sources,
                                                 s->options.emitters ? 1.0f : 0.0f };
     gpu_dispatch(cmd, s->pipelines.gather,
                  GPU_BIND(view->constants_binding,
                           { .name = "radiosity_texels", .buffer = s->buffers.texels },
-                          { .name = "radiosity_factors", .buffer = s->buffers.factors },
+                          { .name = "radiosity_factors",
+                            .buffer = s->buffers.factors,
+                            .offset = block->offset,
+                            .bytes = block->bytes },
                           { .name = "radiosity_sent", .buffer = radiosity },
                           { .name = "radiosity_light", .buffer = s->buffers.light }),
-                 &push, sizeof push, gpu_groups(push.texels, RADIOSITY_LOCAL), 1, 1);
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
+}
+
+static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                          gpu_buffer radiosity)
+{
+    for (uint32_t first = 0; first < s->map.texel_count;) {
+        const struct radiosity_block block = radiosity_texel_block(s, first);
+        record_gather_of(s, cmd, view, radiosity, &block);
+        first += block.count;
+    }
 }
 
 static void record_map(struct radiosity *s, struct gpu_cmd *cmd)

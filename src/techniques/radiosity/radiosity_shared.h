@@ -11,6 +11,10 @@
 // irradiance along the surface's normal, and the vector irradiance.
 #define RADIOSITY_LAYERS 3
 
+// An entry of a row: the node in the lower bits, above it the form factor as a half, of which the
+// upper two bits are zero: it is below 2.
+#define RADIOSITY_NODE_BITS 18
+
 struct radiosity_gpu_texel {
     vec3s position; // world
     float area_m2;  // 0: hidden inside of something
@@ -45,17 +49,23 @@ struct radiosity_direct_push {
     float emitters;        // 1: emissive surfaces are sources, 0: they are not
 };
 
+struct radiosity_clusters_push {
+    uint32_t clusters;
+};
+
+// Rows of clusters `first` … `first` + `count` − 1.
 struct radiosity_solve_push {
-    uint32_t clusters, entries; // entries: of a row
-    float over;                 // relaxation factor
+    uint32_t first, count, entries; // entries: of a row
+    float over;                     // relaxation factor
 };
 
 struct radiosity_nodes_push {
     uint32_t clusters, nodes;
 };
 
+// Rows of texels `first` … `first` + `count` − 1.
 struct radiosity_gather_push {
-    uint32_t texels, entries;
+    uint32_t first, count, entries;
     float emitters;
 };
 
@@ -73,10 +83,11 @@ _Static_assert(sizeof(struct radiosity_gpu_texel) == 104, "layout is shared with
 _Static_assert(sizeof(struct radiosity_gpu_cluster) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_triangle) == 48, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_direct_push) == 12, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_solve_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_node) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_nodes_push) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gather_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_map_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_apply_push) == 12, "layout is shared with GLSL");
 #endif

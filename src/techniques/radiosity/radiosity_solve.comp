@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/radiosity_row.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL) in;
 
@@ -16,7 +16,7 @@ layout(set = 0, binding = 0, scalar) readonly buffer radiosity_clusters
 {
     radiosity_gpu_cluster cluster_table[];
 };
-// [entry][cluster]: source in the lower 16 bits, form factor (half) in the upper ones.
+// [entry][cluster of the block]
 layout(set = 0, binding = 1, scalar) readonly buffer radiosity_cluster_factors
 {
     uint factor_table[];
@@ -36,14 +36,15 @@ layout(set = 0, binding = 4, scalar) buffer radiosity_next
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= push.clusters) return;
+    uint row = gl_GlobalInvocationID.x;
+    if (row >= push.count) return;
     vec3 sum = vec3(0.0);
     for (uint k = 0; k < push.entries; k++) {
-        uint word = factor_table[k * push.clusters + i];
-        if (word >> 16 == 0u) break; // rows end with zeros
-        sum += unpackHalf2x16(word).y * last_table[word & 0xffffu];
+        uint word = factor_table[k * push.count + row];
+        if (radiosity_has_ended(word)) break;
+        sum += radiosity_form_factor(word) * last_table[radiosity_source(word)];
     }
+    uint i = push.first + row;
     vec3 bounced = sent_table[i] + cluster_table[i].reflectance * sum;
     vec3 before = push.over == 1.0 ? vec3(0.0) : next_table[i];
     next_table[i] = push.over * (bounced - before) + before;

@@ -13,6 +13,12 @@ struct radiosity_buffers {
     gpu_image light_map;
 };
 
+// Rows of form factors in one binding: a table may have more bytes than a binding.
+struct radiosity_block {
+    uint32_t first, count; // rows
+    size_t offset, bytes;
+};
+
 struct radiosity_pipelines {
     gpu_pipeline direct, clusters, nodes, solve, gather, map, apply;
 };
@@ -34,10 +40,18 @@ struct radiosity {
     } inputs;
 };
 
-// ---- radiosity_upload.c
+// ---- radiosity_upload.c, radiosity_factors.c
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
+// Both tables of form factors, block after block. Rows are those of a bake.
+bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
+                              const uint16_t *factor, const uint32_t *cluster_source,
+                              const uint16_t *cluster_factor);
+
+// The block that begins with a row.
+struct radiosity_block radiosity_texel_block(const struct radiosity *state, uint32_t first);
+struct radiosity_block radiosity_cluster_block(const struct radiosity *state, uint32_t first);
 
 // ---- radiosity_record.c
 

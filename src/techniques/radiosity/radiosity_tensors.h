@@ -7,14 +7,14 @@
 #include "techniques/radiosity/radiosity_map.h"
 #include "techniques/technique.h"
 
-#define RADIOSITY_SOURCE         "texels/source"      // U16 [texels][sources]: nodes of the tree
+#define RADIOSITY_SOURCE         "texels/source"      // U32 [texels][sources]: nodes of the tree
 #define RADIOSITY_FACTOR         "texels/factor"      // F16 [texels][sources][3]
 #define RADIOSITY_ALBEDO         "texels/reflectance" // F32 [texels][3]
 #define RADIOSITY_SKY            "texels/sky"         // F32 [texels][4]
 #define RADIOSITY_EMITTED        "texels/emitted"     // F32 [texels][3][4]
 #define RADIOSITY_POINT          "texels/point"       // F32 [texels][4]
 #define RADIOSITY_PART           "texels/part"        // U8 [texels]
-#define RADIOSITY_CLUSTER_SOURCE "clusters/source"    // U16 [clusters][2 · sources]
+#define RADIOSITY_CLUSTER_SOURCE "clusters/source"    // U32 [clusters][2 · sources]
 #define RADIOSITY_CLUSTER_FACTOR "clusters/factor"    // F16 [clusters][2 · sources]
 
 // Rows of a tensor: an empty scene has one, of zeros.

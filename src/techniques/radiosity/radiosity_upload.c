@@ -7,7 +7,8 @@
 #include <string.h>
 
 struct content {
-    const uint16_t *source, *factor, *cluster_source, *cluster_factor;
+    const uint32_t *source, *cluster_source;
+    const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
     const float *reflectance, *sky, *emitted, *point;
     size_t sources, cluster_sources;
@@ -25,14 +26,14 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
                    (int)(sizeof((const uint64_t[]){ __VA_ARGS__ }) / sizeof(uint64_t)),            \
                    (const uint64_t[]){ __VA_ARGS__ })
     *out = (struct content){ .sources = k, .cluster_sources = 2 * k };
-    return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U16, n, k)) &&
+    return (out->source = EXPECT(RADIOSITY_SOURCE, TENSOR_U32, n, k)) &&
            (out->factor = EXPECT(RADIOSITY_FACTOR, TENSOR_F16, n, k, 3)) &&
            (out->reflectance = EXPECT(RADIOSITY_ALBEDO, TENSOR_F32, n, 3)) &&
            (out->sky = EXPECT(RADIOSITY_SKY, TENSOR_F32, n, 4)) &&
            (out->emitted = EXPECT(RADIOSITY_EMITTED, TENSOR_F32, n, 3, 4)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
            (out->point = EXPECT(RADIOSITY_POINT, TENSOR_F32, n, 4)) &&
-           (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U16, c, 2 * k)) &&
+           (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
 #undef EXPECT
 }
@@ -47,11 +48,27 @@ static bool divide(struct radiosity *s, const struct content *c)
     return radiosity_map_divide(&s->map, c->part);
 }
 
-static bool are_below(const uint16_t *at, size_t count, uint32_t limit)
+static bool are_below(const uint32_t *at, size_t count, uint32_t limit)
 {
     for (size_t i = 0; i < count; i++)
         if (at[i] >= limit) return false;
     return true;
+}
+
+// Every `stride`-th value is a form factor.
+static bool are_below_2(const uint16_t *half, size_t count, size_t stride)
+{
+    for (size_t i = 0; i < count; i++)
+        if (half[i * stride] >> (32 - RADIOSITY_NODE_BITS)) return false;
+    return true;
+}
+
+static bool check_factors(struct radiosity *s, const struct content *c)
+{
+    if (are_below_2(c->factor, s->map.texel_count * c->sources, 3) &&
+        are_below_2(c->cluster_factor, s->map.cluster_count * c->cluster_sources, 1))
+        return true;
+    return host_fail(s->host, FAIL_FORMAT, "bake of radiosity: a form factor is not in 0…2");
 }
 
 static bool check_sources(struct radiosity *s, const struct content *c)
@@ -105,20 +122,6 @@ static bool upload_texels(struct radiosity *s, const struct content *c)
         memcpy(texels[i].emitted, c->emitted + 12 * (size_t)i, 12 * sizeof(float));
     }
     return upload(s, "texels", texels, count, sizeof *texels, &s->buffers.texels);
-}
-
-// Entries of all texels side by side, so that neighbouring invocations read neighbouring words.
-static bool upload_factors(struct radiosity *s, const struct content *c)
-{
-    const size_t count = s->map.texel_count;
-    uint32_t(*words)[2] = host_alloc(s->host, count * c->sources, sizeof *words);
-    for (size_t i = 0; words && i < count; i++)
-        for (size_t k = 0; k < c->sources; k++) {
-            const uint16_t *factor = c->factor + 3 * (i * c->sources + k);
-            words[k * count + i][0] = c->source[i * c->sources + k] | (uint32_t)factor[0] << 16;
-            words[k * count + i][1] = factor[1] | (uint32_t)factor[2] << 16;
-        }
-    return upload(s, "factors", words, count * c->sources, sizeof *words, &s->buffers.factors);
 }
 
 // ---- clusters
@@ -221,19 +224,6 @@ static bool upload_nodes(struct radiosity *s)
     return upload(s, "nodes", nodes, count, sizeof *nodes, &s->buffers.nodes);
 }
 
-static bool upload_cluster_factors(struct radiosity *s, const struct content *c)
-{
-    const size_t count = s->map.cluster_count;
-    uint32_t *words = host_alloc(s->host, count * c->cluster_sources, sizeof *words);
-    for (size_t i = 0; words && i < count; i++)
-        for (size_t k = 0; k < c->cluster_sources; k++) {
-            const size_t at = i * c->cluster_sources + k;
-            words[k * count + i] = c->cluster_source[at] | (uint32_t)c->cluster_factor[at] << 16;
-        }
-    return upload(s, "cluster_factors", words, count * c->cluster_sources, sizeof *words,
-                  &s->buffers.cluster_factors);
-}
-
 static bool upload_clusters(struct radiosity *s, const struct content *c)
 {
     const uint32_t count = s->map.cluster_count;
@@ -245,7 +235,7 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
     ok = ok && find_spectral_radius(s, c, clusters);
     ok &= upload(s, "clusters", clusters, count, sizeof *clusters, &s->buffers.clusters);
     ok &= upload(s, "members", members, s->map.texel_count, sizeof *members, &s->buffers.members);
-    return ok && upload_nodes(s) && upload_cluster_factors(s, c);
+    return ok && upload_nodes(s);
 }
 
 // ---- the light map
@@ -315,8 +305,10 @@ static bool upload_triangles(struct radiosity *s)
 
 static bool upload_all(struct radiosity *s, const struct content *c)
 {
-    return upload_texels(s, c) && upload_factors(s, c) && upload_clusters(s, c) &&
-           upload_owners(s, c) && upload_triangles(s);
+    return upload_texels(s, c) &&
+           radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
+                                    c->cluster_factor) &&
+           upload_clusters(s, c) && upload_owners(s, c) && upload_triangles(s);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
@@ -324,7 +316,7 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     struct content c;
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
-    if (!divide(s, &c) || !check_sources(s, &c)) return false;
+    if (!divide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
     c.hidden = host_alloc(s->host, s->map.texel_count, sizeof *c.hidden);
     for (uint32_t i = 0; c.hidden && i < s->map.texel_count; i++)
         c.hidden[i] = !(c.point[4 * (size_t)i + 3] > 0.0f);

@@ -58,11 +58,11 @@ static void room_finish(struct room *room, struct host *host)
 
 enum { OUT_SOURCE, OUT_FACTOR, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_PART, OUT_COUNT };
 
-static void write_row(const struct radiosity_entry *row, uint32_t count, uint16_t *source,
+static void write_row(const struct radiosity_entry *row, uint32_t count, uint32_t *source,
                       uint16_t *factor)
 {
     for (uint32_t k = 0; k < count; k++) {
-        source[k] = (uint16_t)row[k].node;
+        source[k] = row[k].node;
         factor[3 * k] = half_from_float(row[k].factor.weight);
         factor[3 * k + 1] = half_from_float(row[k].factor.along[0]);
         factor[3 * k + 2] = half_from_float(row[k].factor.along[1]);
@@ -83,7 +83,7 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
     radiosity_gather(&job->scene, texel, point.position, task->bake_seed, gather);
     const uint32_t count = radiosity_make_row(&room->rows, gather, (uint32_t)sources,
                                               task->bake_seed ^ (uint64_t)texel << 32, room->row);
-    write_row(room->row, count, (uint16_t *)task->out[OUT_SOURCE] + i * sources,
+    write_row(room->row, count, (uint32_t *)task->out[OUT_SOURCE] + i * sources,
               (uint16_t *)task->out[OUT_FACTOR] + 3 * i * sources);
     memcpy((float *)task->out[OUT_SKY] + 4 * i, &gather->sky, sizeof gather->sky);
     memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->emitted, sizeof gather->emitted);
@@ -111,7 +111,7 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
 {
     const uint64_t sources = (uint64_t)job->options.sources;
     const struct bake_output out[OUT_COUNT] = {
-        { RADIOSITY_SOURCE, TENSOR_U16, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_SOURCE, TENSOR_U32, 2, { texels, sources }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_FACTOR, TENSOR_F16, 3, { texels, sources, 3 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_ALBEDO, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_SKY, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
@@ -138,7 +138,8 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
 
 struct clusters {
     const struct radiosity_map *map;
-    const uint16_t *source, *factor;
+    const uint32_t *source;
+    const uint16_t *factor;
     const struct radiosity_point *points;
     size_t sources;
     float *area; // [clusters] of the texels, as far as they are open, m²
@@ -200,7 +201,7 @@ static void merge_rows(const struct bake_task *task, const struct clusters *of, 
         const uint32_t entries = radiosity_make_row(&room->rows, &room->gather, (uint32_t)most,
                                                     task->bake_seed ^ (first + i), room->row);
         for (uint32_t k = 0; k < entries; k++) {
-            ((uint16_t *)task->out[0])[i * most + k] = (uint16_t)room->row[k].node;
+            ((uint32_t *)task->out[0])[i * most + k] = room->row[k].node;
             ((uint16_t *)task->out[1])[i * most + k] = half_from_float(room->row[k].factor.weight);
         }
     }
@@ -235,7 +236,7 @@ static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t
 {
     const uint64_t most = 2 * (uint64_t)job->options.sources;
     const struct bake_output out[] = {
-        { RADIOSITY_CLUSTER_SOURCE, TENSOR_U16, 2, { clusters, most }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, 2, { clusters, most }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, 2, { clusters, most }, BAKE_ROWS, BAKE_SAVED },
     };
     return bake_plan_add(
