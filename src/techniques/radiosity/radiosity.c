@@ -96,6 +96,7 @@ static bool make_pipelines(struct radiosity *s)
         { "solve", &shader_radiosity_solve_comp, &p->solve },
         { "gather", &shader_radiosity_gather_comp, &p->gather },
         { "map", &shader_radiosity_map_comp, &p->map },
+        { "seams", &shader_radiosity_seams_comp, &p->seams },
         { "apply", &shader_radiosity_apply_comp, &p->apply },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
@@ -158,11 +159,12 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 static void destroy_buffers(struct radiosity *s)
 {
     struct radiosity_buffers *b = &s->buffers;
-    gpu_buffer *const buffers[] = { &b->texels,       &b->factors,        &b->clusters,
-                                    &b->members,      &b->nodes,          &b->owners,
-                                    &b->instances,    &b->triangles,      &b->flux,
-                                    &b->light,        &b->sent,           &b->radiosity[0],
-                                    &b->radiosity[1], &b->cluster_factors };
+    gpu_buffer *const buffers[] = { &b->texels,         &b->factors,      &b->clusters,
+                                    &b->members,        &b->nodes,        &b->owners,
+                                    &b->instances,      &b->triangles,    &b->places,
+                                    &b->seams,          &b->flux,         &b->light,
+                                    &b->sent,           &b->radiosity[0], &b->radiosity[1],
+                                    &b->cluster_factors };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(s->gpu, buffers[i]);
     gpu_image_destroy(s->gpu, &b->light_map);
@@ -174,7 +176,7 @@ static void destroy(void *state)
     if (!s->host) return;
     struct radiosity_pipelines *p = &s->pipelines;
     gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve,
-                                        &p->gather, &p->map,      &p->apply };
+                                        &p->gather, &p->map,      &p->seams, &p->apply };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     destroy_buffers(s);

@@ -254,6 +254,17 @@ uint32_t radiosity_texel_at(const struct radiosity_map *map, int instance, uint3
     return first == CHART_NONE ? CHART_NONE : first + (texel - chart->first_texel);
 }
 
+uint32_t radiosity_texel_of_place(const struct radiosity_map *map, size_t place)
+{
+    const struct charts *charts = &map->charts;
+    const size_t side = (size_t)charts->width * charts->height;
+    const uint32_t texel = charts->owner[place % side];
+    if (texel == CHART_NONE || place < side) return texel;
+    const uint32_t chart = charts->triangles[charts->texels[texel].triangle].chart;
+    if (map->back_of[chart] == CHART_NONE) return CHART_NONE;
+    return map->back_of[chart] + (texel - charts->charts[chart].first_texel);
+}
+
 // ---- hidden texels
 
 struct filling {

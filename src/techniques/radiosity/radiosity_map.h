@@ -51,6 +51,8 @@ static inline const struct chart_texel *radiosity_chart_texel(const struct radio
 // The texel at a point of a triangle; CHART_NONE: the triangle has no area, or no back.
 uint32_t radiosity_texel_at(const struct radiosity_map *map, int instance, uint32_t triangle,
                             float u, float v, bool back);
+// The texel of a place of the light map, (side · height + y) · width + x; CHART_NONE: none.
+uint32_t radiosity_texel_of_place(const struct radiosity_map *map, size_t place);
 // [texel_count] the texel whose light each one shows: itself, or where `hidden` the nearest of the
 // same side of its chart that is not; itself where all are. Owned by the caller.
 uint32_t *radiosity_fill(const struct radiosity_map *map, const bool *hidden);

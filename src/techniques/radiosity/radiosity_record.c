@@ -128,6 +128,18 @@ static void record_map(struct radiosity *s, struct gpu_cmd *cmd)
                  gpu_groups(push.height, RADIOSITY_LOCAL_2D), s->sides);
 }
 
+static void record_seams(struct radiosity *s, struct gpu_cmd *cmd)
+{
+    const struct radiosity_seams_push push = { s->seam_places, RADIOSITY_SEAM_ENTRIES,
+                                               s->map.charts.width, s->map.charts.height };
+    gpu_dispatch(cmd, s->pipelines.seams,
+                 GPU_BIND({ .name = "radiosity_places", .buffer = s->buffers.places },
+                          { .name = "radiosity_seam_rows", .buffer = s->buffers.seams },
+                          { .name = "radiosity_light", .buffer = s->buffers.light },
+                          { .name = "light_map", .image = s->buffers.light_map }),
+                 &push, sizeof push, gpu_groups(push.places, RADIOSITY_LOCAL), 1, 1);
+}
+
 void radiosity_record_light(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     gpu_scope_begin(cmd, "direct");
@@ -142,6 +154,10 @@ void radiosity_record_light(struct radiosity *s, struct gpu_cmd *cmd, const stru
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "light_map");
     record_map(s, cmd);
+    gpu_scope_end(cmd);
+    if (!s->options.seams || s->seam_places == 0) return;
+    gpu_scope_begin(cmd, "seams");
+    record_seams(s, cmd);
     gpu_scope_end(cmd);
 }
 

@@ -43,6 +43,12 @@ struct radiosity_gpu_triangle {
     uint32_t sides; // 0: it is not in the map; 1: its front is; 2: both are
 };
 
+// A texel's share of the light of a place beside a seam.
+struct radiosity_gpu_seam {
+    uint32_t texel;
+    float weight;
+};
+
 struct radiosity_direct_push {
     uint32_t texels;
     int32_t shadow_radius; // texels of the shadow map
@@ -73,6 +79,11 @@ struct radiosity_map_push {
     uint32_t width, height; // of the light map
 };
 
+struct radiosity_seams_push {
+    uint32_t places, entries; // entries: of a row
+    uint32_t width, height;   // of the light map
+};
+
 struct radiosity_apply_push {
     uint32_t width, height;
     uint32_t instances; // later ones are not in the map
@@ -82,6 +93,8 @@ struct radiosity_apply_push {
 _Static_assert(sizeof(struct radiosity_gpu_texel) == 104, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_cluster) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_triangle) == 48, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gpu_seam) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_seams_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_direct_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_solve_push) == 16, "layout is shared with GLSL");

@@ -1,6 +1,7 @@
 // The private state of radiosity.
 #pragma once
 
+#include "techniques/radiosity/radiosity_seams.h"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
@@ -8,6 +9,7 @@ struct radiosity_buffers {
     gpu_buffer texels, factors;                           // of texels
     gpu_buffer clusters, members, nodes, cluster_factors; // of clusters
     gpu_buffer owners, instances, triangles;              // of the light map
+    gpu_buffer places, seams;                             // beside seams
     gpu_buffer flux, light;                               // [texels] of the newest light
     gpu_buffer sent, radiosity[2];                        // [clusters and nodes] likewise
     gpu_image light_map;
@@ -20,7 +22,7 @@ struct radiosity_block {
 };
 
 struct radiosity_pipelines {
-    gpu_pipeline direct, clusters, nodes, solve, gather, map, apply;
+    gpu_pipeline direct, clusters, nodes, solve, gather, map, seams, apply;
 };
 
 struct radiosity {
@@ -29,6 +31,7 @@ struct radiosity {
     struct radiosity_options options;
     struct radiosity_map map; // without texels: an empty scene
     uint32_t instances, sides;
+    uint32_t seam_places;
     float spectral_radius; // of ρ F, at least
     struct radiosity_buffers buffers;
     struct radiosity_pipelines pipelines;

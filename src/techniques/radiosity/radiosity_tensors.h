@@ -14,6 +14,8 @@
 #define RADIOSITY_EMITTED        "texels/emitted"     // F32 [texels][3][4]
 #define RADIOSITY_POINT          "texels/point"       // F32 [texels][4]
 #define RADIOSITY_PART           "texels/part"        // U8 [texels]
+#define RADIOSITY_SEAM_TEXEL     "seams/texel"        // U32 [places][RADIOSITY_SEAM_ENTRIES]
+#define RADIOSITY_SEAM_WEIGHT    "seams/weight"       // F32 [places][RADIOSITY_SEAM_ENTRIES]
 #define RADIOSITY_CLUSTER_SOURCE "clusters/source"    // U32 [clusters][2 · sources]
 #define RADIOSITY_CLUSTER_FACTOR "clusters/factor"    // F16 [clusters][2 · sources]
 

@@ -11,6 +11,10 @@ struct content {
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
     const float *reflectance, *sky, *emitted, *point;
+    const uint32_t *seam_texel;
+    const float *seam_weight;
+    struct radiosity_seams seams;
+    uint32_t *shown; // [texels] whose light each one shows
     size_t sources, cluster_sources;
     bool *hidden;
 };
@@ -36,6 +40,22 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
 #undef EXPECT
+}
+
+// Rows of the places beside seams, which the charts have.
+static bool find_seams(struct radiosity *s, const struct tensors *bake, struct content *c)
+{
+    if (!radiosity_seams_init(&c->seams, &s->map, RADIOSITY_SEAM_POINTS)) return false;
+    const uint64_t shape[2] = { radiosity_rows(c->seams.count), RADIOSITY_SEAM_ENTRIES };
+    c->seam_texel = tensors_expect(s->host, bake, RADIOSITY_SEAM_TEXEL, TENSOR_U32, 2, shape);
+    c->seam_weight = tensors_expect(s->host, bake, RADIOSITY_SEAM_WEIGHT, TENSOR_F32, 2, shape);
+    bool ok = c->seam_texel && c->seam_weight;
+    for (size_t i = 0; ok && i < (size_t)c->seams.count * RADIOSITY_SEAM_ENTRIES; i++)
+        if (c->seam_texel[i] >= s->map.texel_count || !isfinite(c->seam_weight[i]))
+            ok = host_fail(s->host, FAIL_FORMAT, "bake of radiosity: texel %u of a seam",
+                           c->seam_texel[i]);
+    if (!ok) radiosity_seams_finish(&c->seams);
+    return ok;
 }
 
 // The clusters that the bake has.
@@ -244,21 +264,27 @@ static bool upload_owners(struct radiosity *s, const struct content *c)
 {
     const struct charts *charts = &s->map.charts;
     const size_t side = (size_t)charts->width * charts->height;
-    uint32_t *shown = radiosity_fill(&s->map, c->hidden);
     uint32_t *owners = host_alloc(s->host, s->sides * side, sizeof *owners);
-    for (size_t i = 0; shown && owners && i < s->sides * side; i++) {
-        uint32_t texel = charts->owner[i % side];
-        if (texel != CHART_NONE && i >= side) {
-            const uint32_t chart = charts->triangles[charts->texels[texel].triangle].chart;
-            texel = s->map.back_of[chart] == CHART_NONE
-                        ? CHART_NONE
-                        : s->map.back_of[chart] + (texel - charts->charts[chart].first_texel);
-        }
-        owners[i] = texel == CHART_NONE ? CHART_NONE : shown[texel];
+    for (size_t i = 0; owners && i < s->sides * side; i++) {
+        const uint32_t texel = radiosity_texel_of_place(&s->map, i);
+        owners[i] = texel == CHART_NONE ? CHART_NONE : c->shown[texel];
     }
-    const bool ok = shown;
-    host_free(s->host, shown);
-    return upload(s, "owners", owners, s->sides * side, sizeof *owners, &s->buffers.owners) && ok;
+    return upload(s, "owners", owners, s->sides * side, sizeof *owners, &s->buffers.owners);
+}
+
+// Entries of all places side by side.
+static bool upload_seams(struct radiosity *s, const struct content *c)
+{
+    const size_t count = c->seams.count, entries = RADIOSITY_SEAM_ENTRIES;
+    struct radiosity_gpu_seam *rows = host_alloc(s->host, count * entries, sizeof *rows);
+    uint32_t *places = host_alloc(s->host, count, sizeof *places);
+    for (size_t i = 0; rows && i < count * entries; i++)
+        rows[i % entries * count + i / entries] =
+            (struct radiosity_gpu_seam){ c->shown[c->seam_texel[i]], c->seam_weight[i] };
+    if (places) memcpy(places, c->seams.places, count * sizeof *places);
+    s->seam_places = (uint32_t)count;
+    const bool ok = upload(s, "seams", rows, count * entries, sizeof *rows, &s->buffers.seams);
+    return upload(s, "places", places, count, sizeof *places, &s->buffers.places) && ok;
 }
 
 // The affine map from the triangle's plane to one coordinate of the atlas.
@@ -308,7 +334,8 @@ static bool upload_all(struct radiosity *s, const struct content *c)
     return upload_texels(s, c) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
-           upload_clusters(s, c) && upload_owners(s, c) && upload_triangles(s);
+           upload_clusters(s, c) && upload_owners(s, c) && upload_seams(s, c) &&
+           upload_triangles(s);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
@@ -317,10 +344,14 @@ bool radiosity_upload(struct radiosity *s, const struct tensors *bake)
     if (!find_tensors(s, bake, &c)) return false;
     if (s->map.texel_count == 0) return true;
     if (!divide(s, &c) || !check_sources(s, &c) || !check_factors(s, &c)) return false;
+    if (!find_seams(s, bake, &c)) return false;
     c.hidden = host_alloc(s->host, s->map.texel_count, sizeof *c.hidden);
     for (uint32_t i = 0; c.hidden && i < s->map.texel_count; i++)
         c.hidden[i] = !(c.point[4 * (size_t)i + 3] > 0.0f);
-    const bool ok = c.hidden && upload_all(s, &c);
+    if (c.hidden) c.shown = radiosity_fill(&s->map, c.hidden);
+    const bool ok = c.shown && upload_all(s, &c);
     host_free(s->host, c.hidden);
+    host_free(s->host, c.shown);
+    radiosity_seams_finish(&c.seams);
     return ok;
 }

@@ -4,6 +4,7 @@
 
 #include "bake/scene_key.h"
 #include "core/half.h"
+#include "techniques/radiosity/bake/close.h"
 #include "techniques/radiosity/bake/row.h"
 
 #include <string.h>
@@ -12,6 +13,7 @@ enum { TEXELS_PER_TASK = 128, CLUSTERS_PER_TASK = 64 };
 
 struct job {
     struct radiosity_scene scene;
+    struct radiosity_closing closing;
     const struct scene_pose *pose;
     struct radiosity_options options;
 };
@@ -19,12 +21,14 @@ struct job {
 static bool prepare(void *argument, struct host *host)
 {
     struct job *job = argument;
-    return radiosity_scene_init(&job->scene, host, job->pose, &job->options);
+    return radiosity_scene_init(&job->scene, host, job->pose, &job->options) &&
+           radiosity_closing_init(&job->closing, &job->scene);
 }
 
 static void finish(void *argument)
 {
     struct job *job = argument;
+    radiosity_closing_finish(&job->closing);
     radiosity_scene_finish(&job->scene);
 }
 
@@ -257,9 +261,14 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
     if (!radiosity_map_init(&map, bake_plan_host(plan), statics, &job->options)) return false;
     const uint64_t texels = radiosity_rows(map.texel_count);
     const uint64_t clusters = radiosity_cluster_rows(&map);
+    struct radiosity_seams seams;
+    const bool ok = radiosity_seams_init(&seams, &map, RADIOSITY_SEAM_POINTS);
+    const uint32_t places = seams.count;
+    radiosity_seams_finish(&seams);
     radiosity_map_finish(&map);
     bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
-    return add_texels(plan, job, texels, clusters) && add_clusters(plan, job, clusters);
+    return ok && add_texels(plan, job, texels, clusters) && add_clusters(plan, job, clusters) &&
+           radiosity_add_seams(plan, &job->closing, places);
 }
 
 bool radiosity_bake(struct bake_plan *plan, const struct technique_bake *how)
