@@ -221,3 +221,61 @@ TEST_GPU(nothing_is_black_beside_a_sunk_block)
     free(e);
     stop(&run, &s);
 }
+
+// ---- specular light
+
+static int metal(struct frame_fixture *s, float roughness)
+{
+    struct material m = material_default();
+    m.base_color = vec4_of(vec3_of(1, 1, 1), 1);
+    m.metallic = 1;
+    m.roughness = roughness;
+    return fixture_material(s, &m);
+}
+
+TEST_GPU(metal_reflects_uniform_light_whole)
+{
+    static const float ROUGHNESS[] = { 0.1f, 0.5f, 1.0f };
+    for (int i = 0; i < 3; i++) {
+        struct frame_fixture s;
+        struct run run;
+        room(&s, gpu, 0, 10);
+        fixture_box(&s, vec3_of(-0.4f, 0.4f, -0.6f), vec3_of(0.8f, 1.6f, 0.5f), false,
+                    metal(&s, ROUGHNESS[i]));
+        start(&run, &s, "radiosity:texels=2048");
+        fixture_render(&s);
+        const vec3s l = fixture_pixel(&s, READ_SPECULAR, s.width / 2, s.height / 2);
+        const vec3s wall = fixture_pixel(&s, READ_SPECULAR, 0, 0);
+        print_message("roughness %.1f: %.3f of the light\n", (double)ROUGHNESS[i],
+                      (double)l.x / 10);
+        CHECK_NEAR(l.x, 10.0, 0.2);
+        CHECK(wall.x == 0.0f);
+        stop(&run, &s);
+    }
+}
+
+// Radiance that a metal floor reflects to an eye on one side of it; a panel at +x emits light.
+static double seen_from(struct gpu *gpu, float eye, const char *text)
+{
+    struct frame_fixture s;
+    struct run run;
+    fixture_init(&s, gpu);
+    fixture_floor(&s, 1, metal(&s, 0.3f));
+    fixture_quad(&s, vec3_of(2, 0, -3), vec3_of(2, 0, 3), vec3_of(2, 3, 3), vec3_of(2, 3, -3),
+                 emissive(&s, 0, 10));
+    fixture_look(&s, vec3_of(eye, 0.8f, 0), vec3_of(0, 0, 0));
+    start(&run, &s, text);
+    fixture_render(&s);
+    const double seen = (double)fixture_pixel(&s, READ_SPECULAR, s.width / 2, s.height / 2).x;
+    stop(&run, &s);
+    return seen;
+}
+
+TEST_GPU(metal_reflects_the_side_that_light_comes_from)
+{
+    const double towards = seen_from(gpu, -1, "radiosity:texels=2048");
+    const double away = seen_from(gpu, 1, "radiosity:texels=2048");
+    print_message("towards the light %.2f cd/m2, away from it %.2f\n", towards, away);
+    CHECK(towards > 3 * away && towards > 1.0 && towards < 10.0 && away >= 0.0);
+    CHECK(seen_from(gpu, -1, "radiosity:texels=2048,specular=false") == 0.0);
+}

@@ -1,7 +1,7 @@
 // Radiosity: direct-to-indirect transfer of static geometry (Loos 2015, sections 2.5.3 and 3.2.1;
 // Giuffrida 2016, section 3.2). Form factors from clusters of surface to the texels of a light map
 // are baked; each frame in which a light has changed computes direct light at the texels, all
-// bounces between clusters, and the light map. Pixels look it up. Diffuse only; lights may move.
+// bounces between clusters, and the light map. Pixels look it up. Surfaces send diffuse light only.
 #include "techniques/radiosity/radiosity.h"
 
 #include "techniques/radiosity/radiosity_state.h"
@@ -97,7 +97,10 @@ static bool make_pipelines(struct radiosity *s)
         { "gather", &shader_radiosity_gather_comp, &p->gather },
         { "map", &shader_radiosity_map_comp, &p->map },
         { "seams", &shader_radiosity_seams_comp, &p->seams },
-        { "apply", &shader_radiosity_apply_comp, &p->apply },
+        { "apply",
+          s->options.specular ? &shader_radiosity_apply_specular_comp
+                              : &shader_radiosity_apply_diffuse_comp,
+          &p->apply },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!gpu_compute_pipeline_create(s->gpu, rows[i].name, rows[i].shader, NULL, 0,
@@ -149,11 +152,13 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
-    if (s->map.texel_count == 0)
-        gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE],
-                        (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
-    else
+    if (s->map.texel_count > 0) {
         radiosity_record_apply(s, cmd, view);
+        return;
+    }
+    const float black[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE], black);
+    if (s->options.specular) gpu_clear_image(cmd, view->layers[FRAME_SPECULAR], black);
 }
 
 static void destroy_buffers(struct radiosity *s)
@@ -183,6 +188,12 @@ static void destroy(void *state)
     radiosity_map_finish(&s->map);
 }
 
+static uint32_t more_needs(const void *options)
+{
+    const struct radiosity_options *o = options;
+    return o->specular ? FRAME_WRITES_SPECULAR : 0;
+}
+
 // Of a light map that charts fill by two thirds, on one side.
 static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t height)
 {
@@ -202,12 +213,13 @@ const struct technique technique_radiosity = {
     .title = "baked radiosity of static geometry",
     .paper = "Loos 2015, Modular Radiance Transfer, sec. 2.5.3; Giuffrida 2016, sec. 3.2",
     .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | GATHERS_EMISSION,
+    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_REQUIRES_ID,
     .bake_version = 3,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct radiosity),
+    .more_needs = more_needs,
     .bake = radiosity_bake,
     .create = create,
     .load = load,

@@ -1,11 +1,19 @@
 // Irradiance of each pixel from the light map. With irradiance E along the surface's normal and
 // vector irradiance V, bands 0 and 1 of spherical harmonics have E(n) = (E + n·V) / 2: n·V is E for
 // the surface's own normal, so that E(n) is exact there, and in uniform light for all normals.
+//
+// SPECULAR: also the radiance that the specular lobe reflects, from what both say of the radiance
+// over the surface, L(ω) = E(n)/π + 3/(2π) V·t, with t the part of ω along the surface: its
+// irradiance is E(n) and its vector irradiance V along the surface, and uniform light is exact.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#if SPECULAR
+#define GGX_ALBEDO_BINDING 8
+#endif
 #include "frame/frame.glsl"
+#include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/radiosity/radiosity_shared.h"
 
@@ -28,6 +36,12 @@ layout(set = 0, binding = 5, scalar) readonly buffer radiosity_triangles
 };
 layout(set = 0, binding = 6) uniform sampler2DArray light_map;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D irradiance;
+#if SPECULAR
+layout(set = 0, binding = 9) uniform sampler2D albedo;
+layout(set = 0, binding = 10) uniform sampler2D material;
+layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
+layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
+#endif
 
 // The place in the light map; z: the first layer, negative where there is none.
 vec3 place_of(uvec2 ids, vec3 position)
@@ -42,28 +56,65 @@ vec3 place_of(uvec2 ids, vec3 position)
                 back ? float(RADIOSITY_LAYERS) : 0.0);
 }
 
-vec3 light_at(vec3 place, vec3 n)
+// Irradiance and vector irradiance by colour.
+struct light_at_pixel {
+    vec3 irradiance;
+    mat3 vector; // a column for each colour
+};
+
+light_at_pixel light_at(vec3 place, vec3 n)
 {
     vec2 uv = place.xy / vec2(push.width, push.height);
-    vec3 light;
+    light_at_pixel light;
     for (int c = 0; c < 3; c++) {
         vec4 texel = textureLod(light_map, vec3(uv, place.z + float(c)), 0.0);
-        light[c] = 0.5 * (texel.x + dot(texel.yzw, n));
+        light.irradiance[c] = 0.5 * (texel.x + dot(texel.yzw, n));
+        light.vector[c] = texel.yzw;
     }
-    return clamp(light, vec3(0.0), vec3(HALF_MAX));
+    light.irradiance = clamp(light.irradiance, vec3(0.0), vec3(HALF_MAX));
+    return light;
 }
+
+#if SPECULAR
+// How far the mean direction of the lobe leans, over the mirror direction's. A fit within 0.04 from
+// n·v = 0.25 on.
+float lean_of(float alpha)
+{
+    return (1.0 - alpha) / (1.0 + 1.2 * alpha * alpha);
+}
+
+vec3 reflected(ivec2 pixel, vec3 position, vec3 n, light_at_pixel light)
+{
+    vec4 lobe = BRDF_DEFAULT_DIELECTRIC;
+    if (push.has_dielectric != 0u) lobe = texelFetch(dielectric, pixel, 0);
+    brdf_material m =
+        brdf_material_of(texelFetch(albedo, pixel, 0).rgb, texelFetch(material, pixel, 0).rg, lobe);
+    vec3 to_viewer = normalize(frame.camera_position - position);
+    vec3 along = (dot(to_viewer, n) * n - to_viewer) * lean_of(brdf_alpha(m.roughness));
+    vec3 radiance = BRDF_INV_PI * (light.irradiance + 1.5 * (along * light.vector));
+    return brdf_lobes_at(m, brdf_cosine(n, to_viewer)).specular_albedo *
+           clamp(radiance, vec3(0.0), vec3(HALF_MAX));
+}
+#endif
 
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     float z = texelFetch(depth, pixel, 0).r;
-    vec3 result = vec3(0.0);
+    light_at_pixel light = light_at_pixel(vec3(0.0), mat3(0.0));
+    vec3 radiance = vec3(0.0);
     if (z > 0.0) {
-        vec3 place =
-            place_of(texelFetch(id, pixel, 0).rg, frame_world_position(frame_uv(uvec2(pixel)), z));
-        if (place.z >= 0.0)
-            result = light_at(place, octahedral_decode(texelFetch(normal, pixel, 0).rg));
+        vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
+        vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+        vec3 place = place_of(texelFetch(id, pixel, 0).rg, position);
+        if (place.z >= 0.0) light = light_at(place, n);
+#if SPECULAR
+        radiance = reflected(pixel, position, n, light);
+#endif
     }
-    imageStore(irradiance, pixel, vec4(result, 1.0));
+    imageStore(irradiance, pixel, vec4(light.irradiance, 1.0));
+#if SPECULAR
+    imageStore(specular, pixel, vec4(radiance, 1.0));
+#endif
 }

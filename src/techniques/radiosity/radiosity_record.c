@@ -163,18 +163,26 @@ void radiosity_record_light(struct radiosity *s, struct gpu_cmd *cmd, const stru
 
 void radiosity_record_apply(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
+    const gpu_image *layers = view->layers;
+    const gpu_image dielectric = layers[FRAME_DIELECTRIC];
     const struct radiosity_apply_push push = { s->map.charts.width, s->map.charts.height,
-                                               s->instances };
+                                               s->instances, dielectric.id != 0 };
     gpu_scope_begin(cmd, "apply");
     gpu_dispatch(
         cmd, s->pipelines.apply,
-        GPU_BIND(view->constants_binding, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
-                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "id", .image = view->layers[FRAME_ID] },
-                 { .name = "radiosity_instances", .buffer = s->buffers.instances },
-                 { .name = "radiosity_triangles", .buffer = s->buffers.triangles },
-                 { .name = "light_map", .image = s->buffers.light_map, .sampler = s->linear },
-                 { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+        GPU_BIND(
+            view->constants_binding, view->ggx_albedo_binding,
+            { .name = "depth", .image = layers[FRAME_DEPTH] },
+            { .name = "normal", .image = layers[FRAME_NORMAL] },
+            { .name = "albedo", .image = layers[FRAME_ALBEDO] },
+            { .name = "material", .image = layers[FRAME_MATERIAL] },
+            { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
+            { .name = "id", .image = layers[FRAME_ID] },
+            { .name = "radiosity_instances", .buffer = s->buffers.instances },
+            { .name = "radiosity_triangles", .buffer = s->buffers.triangles },
+            { .name = "light_map", .image = s->buffers.light_map, .sampler = s->linear },
+            { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+            { .name = "specular", .image = layers[FRAME_SPECULAR] }),
         &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),
         gpu_groups(view->height, RADIOSITY_LOCAL_2D), 1);
     gpu_scope_end(cmd);

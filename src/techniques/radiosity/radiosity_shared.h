@@ -87,6 +87,7 @@ struct radiosity_seams_push {
 struct radiosity_apply_push {
     uint32_t width, height;
     uint32_t instances; // later ones are not in the map
+    uint32_t has_dielectric;
 };
 
 #ifndef AG_GLSL
@@ -102,7 +103,7 @@ _Static_assert(sizeof(struct radiosity_gpu_node) == 8, "layout is shared with GL
 _Static_assert(sizeof(struct radiosity_nodes_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_map_push) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_apply_push) == 12, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_apply_push) == 16, "layout is shared with GLSL");
 #endif
 
 #endif
