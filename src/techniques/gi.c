@@ -256,6 +256,17 @@ bool gi_probes(const struct gi *gi, struct probe_volume *out)
     return fail_probes(gi);
 }
 
+bool gi_light_map(const struct gi *gi, int *term, gpu_image *out)
+{
+    for (int i = 0; i < gi->spec.count; i++) {
+        const struct technique *technique = gi->spec.technique[i];
+        *term = i;
+        if (technique->light_map) *out = technique->light_map(gi->state[i]);
+        if (technique->light_map && out->id) return true;
+    }
+    return host_fail(gi->host, FAIL_ARGUMENT, "light map: no technique of the stack has one");
+}
+
 static bool shows_probes(const struct technique *technique, const char *view)
 {
     return (technique->capabilities & PUBLISHES_PROBES) && strcmp(view, PROBES_VIEW) == 0;

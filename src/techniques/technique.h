@@ -50,6 +50,8 @@ struct probe_volume {
     struct frame_probes grid;
 };
 
+struct charts; // scene/charts/charts.h
+
 struct technique_create {
     struct host *host;
     struct gpu *gpu;
@@ -118,6 +120,12 @@ struct technique {
     // With PUBLISHES_PROBES: the volume that the newest update filled. false: the option `probes`
     // is off.
     bool (*probes)(void *state, struct probe_volume *out);
+    // The light map: the charts of static surfaces (scene/statics.h), and for each side and colour
+    // a layer of irradiance along the surface's normal and vector irradiance, scaled radiance,
+    // RGBA16F, that the newest update filled.
+    bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
+                   struct charts *out);
+    gpu_image (*light_map)(void *state);
     void (*destroy)(void *state); // accepts any half-built state
     // Bytes of GPU memory for these options at this size, without creating anything.
     uint64_t (*memory_estimate)(const void *options, uint32_t width, uint32_t height);

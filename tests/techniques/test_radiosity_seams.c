@@ -4,7 +4,7 @@
 #include "techniques/gi_bake.h"
 #include "techniques/gi_spec.h"
 #include "techniques/radiosity/radiosity_seams.h"
-#include "techniques/radiosity/radiosity_statics.h"
+#include "scene/statics.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ struct baked {
     struct scene_pose pose;
     struct gi_spec spec;
     struct bake *bake;
-    struct radiosity_statics statics;
+    struct scene_statics statics;
     struct radiosity_map map;
 };
 
@@ -30,14 +30,14 @@ static void open_baked(struct baked *b, const char *name)
     b->bake = gi_bake_create(test_host(), b->spec.technique[0], &how,
                              (struct bake_identity){ .program = "test" });
     CHECK(b->bake && bake_run(b->bake, &(struct bake_run_options){ .threads = 2 }));
-    CHECK(radiosity_statics_init(&b->statics, test_host(), &b->pose));
+    CHECK(scene_statics_init(&b->statics, test_host(), &b->pose));
     CHECK(radiosity_map_init(&b->map, test_host(), &b->statics.pose, b->spec.options[0]));
 }
 
 static void close_baked(struct baked *b)
 {
     radiosity_map_finish(&b->map);
-    radiosity_statics_finish(&b->statics);
+    scene_statics_finish(&b->statics);
     bake_destroy(b->bake);
     gi_spec_finish(&b->spec);
     pose_finish(&b->pose);

@@ -5,7 +5,7 @@
 #include "techniques/radiosity/radiosity.h"
 
 #include "techniques/radiosity/radiosity_state.h"
-#include "techniques/radiosity/radiosity_statics.h"
+#include "scene/statics.h"
 
 #include "techniques/common/light_hash.h"
 
@@ -32,10 +32,10 @@ static bool create(void *state, const struct technique_create *how)
     s->options = *(const struct radiosity_options *)how->options;
     if (!how->pose) return true;
     s->instances = (uint32_t)how->pose->scene->instance_count;
-    struct radiosity_statics statics;
-    const bool ok = radiosity_statics_init(&statics, s->host, how->pose) &&
+    struct scene_statics statics;
+    const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
                     radiosity_map_init(&s->map, s->host, &statics.pose, &s->options);
-    radiosity_statics_finish(&statics);
+    scene_statics_finish(&statics);
     s->sides = s->map.texel_count > s->map.charts.texel_count ? 2 : 1;
     return ok;
 }
@@ -161,6 +161,18 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     if (s->options.specular) gpu_clear_image(cmd, view->layers[FRAME_SPECULAR], black);
 }
 
+static bool charts(const struct scene_pose *statics, const void *options, struct host *host,
+                   struct charts *out)
+{
+    return radiosity_charts_init(out, host, statics, options);
+}
+
+static gpu_image light_map(void *state)
+{
+    const struct radiosity *s = state;
+    return s->buffers.light_map;
+}
+
 static void destroy_buffers(struct radiosity *s)
 {
     struct radiosity_buffers *b = &s->buffers;
@@ -227,6 +239,8 @@ const struct technique technique_radiosity = {
     .invalidate = invalidate,
     .update = update,
     .record = record,
+    .charts = charts,
+    .light_map = light_map,
     .destroy = destroy,
     .memory_estimate = memory_estimate,
 };

@@ -151,8 +151,8 @@ static bool index_triangles(struct radiosity_map *map, const struct scene *scene
 // atlas has room for the gutters of those.
 enum { DENSITY_TRIES = 4, ATLAS_ROOM = 64, MOST_ATLAS = 1 << 28 };
 
-static bool make_charts(struct radiosity_map *map, const struct scene_pose *pose,
-                        const struct radiosity_options *options)
+bool radiosity_charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
+                           const struct radiosity_options *options)
 {
     const uint32_t texels = (uint32_t)options->texels;
     struct charts_options how = { .texels_per_m = options->density > 0.0f ? options->density : 1e6f,
@@ -161,11 +161,11 @@ static bool make_charts(struct radiosity_map *map, const struct scene_pose *pose
                                                     : MOST_ATLAS,
                                   .surface_texels = texels };
     for (int i = 0; i < DENSITY_TRIES; i++) {
-        if (!charts_init(&map->charts, map->host, pose, &how)) return false;
-        const uint32_t touched = map->charts.texel_count;
+        if (!charts_init(out, host, pose, &how)) return false;
+        const uint32_t touched = out->texel_count;
         if (touched <= texels + texels / 8 || how.surface_texels < 2) return true;
         how.surface_texels = (uint32_t)((double)how.surface_texels * texels / touched);
-        if (i + 1 < DENSITY_TRIES) charts_finish(&map->charts);
+        if (i + 1 < DENSITY_TRIES) charts_finish(out);
     }
     return true;
 }
@@ -195,8 +195,9 @@ bool radiosity_map_init(struct radiosity_map *out, struct host *host, const stru
                         const struct radiosity_options *options)
 {
     *out = (struct radiosity_map){ .host = host };
-    const bool ok = make_charts(out, pose, options) && make_texels(out, pose->scene) &&
-                    make_sources(out, options) && index_triangles(out, pose->scene);
+    const bool ok = radiosity_charts_init(&out->charts, host, pose, options) &&
+                    make_texels(out, pose->scene) && make_sources(out, options) &&
+                    index_triangles(out, pose->scene);
     if (!ok) radiosity_map_finish(out);
     return ok;
 }

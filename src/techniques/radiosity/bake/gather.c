@@ -16,7 +16,7 @@ bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
 {
     const size_t instances = (size_t)pose->scene->instance_count;
     *scene = (struct radiosity_scene){ .host = host, .options = *options };
-    if (!radiosity_statics_init(&scene->statics, host, pose) ||
+    if (!scene_statics_init(&scene->statics, host, pose) ||
         !radiosity_map_init(&scene->map, host, &scene->statics.pose, options))
         return false;
     scene->trace = trace_scene_create(host, &scene->statics.pose);
@@ -32,7 +32,7 @@ void radiosity_scene_finish(struct radiosity_scene *scene)
 {
     if (!scene->host) return;
     trace_scene_destroy(scene->trace);
-    radiosity_statics_finish(&scene->statics);
+    scene_statics_finish(&scene->statics);
     host_free(scene->host, scene->mesh_of);
     host_free(scene->host, scene->part);
     host_free(scene->host, scene->is_group);

@@ -4,12 +4,12 @@
 #include "trace/trace_scene.h"
 
 #include "techniques/radiosity/radiosity_map.h"
-#include "techniques/radiosity/radiosity_statics.h"
+#include "scene/statics.h"
 
 // What all tasks share. radiosity_scene_finish accepts zero.
 struct radiosity_scene {
     struct host *host;
-    struct radiosity_statics statics;
+    struct scene_statics statics;
     struct radiosity_options options;
     struct radiosity_map map;
     struct trace_scene *trace;

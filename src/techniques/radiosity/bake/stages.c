@@ -277,9 +277,9 @@ bool radiosity_bake(struct bake_plan *plan, const struct technique_bake *how)
     if (!job) return false;
     job->pose = how->pose;
     job->options = *(const struct radiosity_options *)how->options;
-    struct radiosity_statics statics;
-    if (!radiosity_statics_init(&statics, bake_plan_host(plan), how->pose)) return false;
+    struct scene_statics statics;
+    if (!scene_statics_init(&statics, bake_plan_host(plan), how->pose)) return false;
     const bool ok = add_stages(plan, job, &statics.pose);
-    radiosity_statics_finish(&statics);
+    scene_statics_finish(&statics);
     return ok;
 }

@@ -1,15 +1,14 @@
-#include "techniques/radiosity/radiosity_statics.h"
+#include "scene/statics.h"
 
 #include "scene/dynamic.h"
 
 #include <string.h>
 
-bool radiosity_statics_init(struct radiosity_statics *out, struct host *host,
-                            const struct scene_pose *pose)
+bool scene_statics_init(struct scene_statics *out, struct host *host, const struct scene_pose *pose)
 {
     const struct scene *scene = pose->scene;
     const size_t count = (size_t)scene->instance_count;
-    *out = (struct radiosity_statics){ .host = host, .scene = *scene, .pose = *pose };
+    *out = (struct scene_statics){ .host = host, .scene = *scene, .pose = *pose };
     out->pose.scene = &out->scene;
     out->scene.instances = host_alloc(host, count, sizeof *out->scene.instances);
     bool *dynamic = scene_dynamic_instances(host, scene);
@@ -19,12 +18,12 @@ bool radiosity_statics_init(struct radiosity_statics *out, struct host *host,
     for (size_t i = 0; ok && i < count; i++)
         if (dynamic[i]) out->scene.instances[i].mesh = -1;
     host_free(host, dynamic);
-    if (!ok) radiosity_statics_finish(out);
+    if (!ok) scene_statics_finish(out);
     return ok;
 }
 
-void radiosity_statics_finish(struct radiosity_statics *statics)
+void scene_statics_finish(struct scene_statics *statics)
 {
     if (statics->host) host_free(statics->host, statics->scene.instances);
-    *statics = (struct radiosity_statics){ 0 };
+    *statics = (struct scene_statics){ 0 };
 }

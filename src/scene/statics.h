@@ -1,0 +1,17 @@
+// The part of a scene that is baked: instances that are expected to stay where they are. Dynamic
+// ones (scene/dynamic.h) have no texels, and neither occlude nor reflect light in a bake.
+#pragma once
+
+#include "core/host.h"
+#include "scene/pose.h"
+
+// A copy of the scene without these instances, and its pose; both share all else with the
+// originals, which must outlive them. scene_statics_finish accepts zero.
+struct scene_statics {
+    struct host *host;
+    struct scene scene;
+    struct scene_pose pose; // its bounds are of the whole scene
+};
+bool scene_statics_init(struct scene_statics *out, struct host *host,
+                        const struct scene_pose *pose);
+void scene_statics_finish(struct scene_statics *statics);
