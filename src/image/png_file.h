@@ -14,3 +14,7 @@ bool png_read_size(struct host *host, const char *path, int *width, int *height)
 
 float srgb_encode(float linear);
 float srgb_decode(float encoded);
+
+// 8-bit sRGB pixels as the bytes of a PNG file, owned by the caller (host_free).
+bool png_encode(struct host *host, const uint8_t *rgba, int width, int height, uint8_t **out,
+                size_t *size);

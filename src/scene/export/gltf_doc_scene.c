@@ -1,0 +1,236 @@
+// A document of a scene: nodes, meshes at them, lights, cameras and skins.
+#include "scene/export/gltf_scene.h"
+
+#include <math.h>
+#include <string.h>
+
+// A power of two that is at least the largest component: products with it are exact.
+static float strength_of(vec3s v)
+{
+    int exponent;
+    const float most = glms_vec3_max(v);
+    if (!(most > 1.0f)) return 1.0f;
+    frexpf(most, &exponent);
+    return ldexpf(1.0f, exponent);
+}
+
+static bool is_vec3(vec3s v, float x)
+{
+    return v.x == x && v.y == x && v.z == x;
+}
+
+// ---- nodes
+
+static void add_transform(struct gltf_doc *doc, json_t *out, const struct node *node)
+{
+    if (node->has_matrix) {
+        gltf_doc_set(doc, out, "matrix", gltf_doc_floats(&node->matrix.raw[0][0], 16));
+        return;
+    }
+    if (!is_vec3(node->translation, 0.0f))
+        gltf_doc_set(doc, out, "translation", gltf_doc_floats(node->translation.raw, 3));
+    if (node->rotation.x != 0.0f || node->rotation.y != 0.0f || node->rotation.z != 0.0f)
+        gltf_doc_set(doc, out, "rotation", gltf_doc_floats(node->rotation.raw, 4));
+    if (!is_vec3(node->scale, 1.0f))
+        gltf_doc_set(doc, out, "scale", gltf_doc_floats(node->scale.raw, 3));
+}
+
+static void add_nodes(struct scene_export *x)
+{
+    struct gltf_doc *doc = x->doc;
+    for (int i = 0; i < x->scene->node_count; i++) {
+        const struct node *node = &x->scene->nodes[i];
+        json_t *out = json_object();
+        if (node->name) gltf_doc_set(doc, out, "name", gltf_doc_text(node->name));
+        add_transform(doc, out, node);
+        if (node->extras) gltf_doc_set(doc, out, "extras", json_loads(node->extras, 0, NULL));
+        gltf_doc_add(doc, "nodes", out);
+    }
+}
+
+static json_t *node_at(struct gltf_doc *doc, size_t node)
+{
+    return json_array_get(gltf_doc_array(doc, "nodes"), node);
+}
+
+static void append(struct gltf_doc *doc, json_t *object, const char *key, size_t value)
+{
+    json_t *list = json_object_get(object, key);
+    if (!list) {
+        gltf_doc_set(doc, object, key, json_array());
+        list = json_object_get(object, key);
+    }
+    if (json_array_append_new(list, json_integer((json_int_t)value)) != 0) doc->failed = true;
+}
+
+static void add_hierarchy(struct scene_export *x)
+{
+    struct gltf_doc *doc = x->doc;
+    json_t *scene = json_object();
+    for (int i = 0; i < x->scene->node_count; i++) {
+        const int parent = x->scene->nodes[i].parent;
+        if (parent < 0)
+            append(doc, scene, "nodes", (size_t)i);
+        else
+            append(doc, node_at(doc, (size_t)parent), "children", (size_t)i);
+    }
+    if (!is_vec3(x->scene->sky, 0.0f))
+        gltf_doc_set(doc, gltf_doc_child(doc, scene, "extras"), "afterglow_sky",
+                     gltf_doc_floats(x->scene->sky.raw, 3));
+    gltf_doc_add(doc, "scenes", scene);
+    gltf_doc_set(doc, doc->root, "scene", json_integer(0));
+}
+
+// ---- instances
+
+static void add_mobility(struct gltf_doc *doc, json_t *node, const struct instance *instance)
+{
+    if (instance->movable)
+        gltf_doc_set(doc, gltf_doc_child(doc, node, "extras"), "afterglow_mobility",
+                     json_string("movable"));
+}
+
+// Instances at one node are primitives of one mesh.
+static void add_instance(struct scene_export *x, int i)
+{
+    struct gltf_doc *doc = x->doc;
+    const struct instance *instance = &x->scene->instances[i];
+    const struct mesh *mesh = scene_mesh_of(x->scene, i);
+    json_t *node = node_at(doc, (size_t)instance->node);
+    if (!json_object_get(node, "mesh")) {
+        const size_t added =
+            gltf_doc_add(doc, "meshes",
+                         json_pack("{s:o, s:[]}", "name",
+                                   gltf_doc_text(mesh->name ? mesh->name : "mesh"), "primitives"));
+        gltf_doc_set(doc, node, "mesh", json_integer((json_int_t)added));
+    }
+    const size_t of = (size_t)json_integer_value(json_object_get(node, "mesh"));
+    json_t *primitives =
+        json_object_get(json_array_get(gltf_doc_array(doc, "meshes"), of), "primitives");
+    doc->places[i] = (struct gltf_place){ (size_t)instance->node, of, json_array_size(primitives) };
+    json_t *primitive = gltf_doc_primitive(x, instance->mesh);
+    if (json_array_append_new(primitives, json_deep_copy(primitive)) != 0) doc->failed = true;
+    if (instance->skin >= 0) gltf_doc_set(doc, node, "skin", json_integer(instance->skin));
+    if (instance->morph_weights)
+        gltf_doc_set(doc, node, "weights",
+                     gltf_doc_floats(instance->morph_weights, (size_t)mesh->morph_count));
+    add_mobility(doc, node, instance);
+}
+
+static void add_instances(struct scene_export *x)
+{
+    for (int i = 0; i < x->scene->instance_count; i++) {
+        x->doc->places[i].node = SIZE_MAX;
+        if (x->scene->instances[i].mesh >= 0) add_instance(x, i);
+    }
+}
+
+// ---- lights and cameras
+
+// glTF has one light or camera of a node: others have nodes of their own.
+static json_t *free_node(struct gltf_doc *doc, int node, const char *key, const char *extension)
+{
+    json_t *at = node_at(doc, (size_t)node);
+    json_t *taken = json_object_get(at, key);
+    if (taken && extension) taken = json_object_get(taken, extension);
+    if (!taken) return at;
+    const size_t added = gltf_doc_add(doc, "nodes", json_object());
+    append(doc, at, "children", added);
+    return node_at(doc, added);
+}
+
+static json_t *light_json(const struct light *light)
+{
+    static const char *const types[] = { "directional", "point", "spot" };
+    const float strength = strength_of(light->intensity);
+    const vec3s color = glms_vec3_divs(light->intensity, strength);
+    json_t *out = json_pack(
+        "{s:o, s:s, s:o, s:f}", "name", gltf_doc_text(light->name ? light->name : "light"), "type",
+        types[light->type], "color", gltf_doc_floats(color.raw, 3), "intensity", (double)strength);
+    if (out && light->range_m > 0.0f)
+        json_object_set_new(out, "range", json_real((double)light->range_m));
+    if (out && light->type == LIGHT_SPOT)
+        json_object_set_new(out, "spot",
+                            json_pack("{s:f, s:f}", "innerConeAngle", (double)light->inner_rad,
+                                      "outerConeAngle", (double)light->outer_rad));
+    return out;
+}
+
+static void add_lights(struct scene_export *x)
+{
+    static const char EXTENSION[] = "KHR_lights_punctual";
+    struct gltf_doc *doc = x->doc;
+    for (int i = 0; i < x->scene->light_count; i++) {
+        const struct light *light = &x->scene->lights[i];
+        if (light->off) continue;
+        gltf_doc_use_extension(doc, EXTENSION);
+        json_t *root = gltf_doc_child(doc, gltf_doc_child(doc, doc->root, "extensions"), EXTENSION);
+        json_t *list = json_object_get(root, "lights");
+        if (!list) gltf_doc_set(doc, root, "lights", json_array());
+        list = json_object_get(root, "lights");
+        if (json_array_append_new(list, light_json(light)) != 0) doc->failed = true;
+        json_t *node = free_node(doc, light->node, "extensions", EXTENSION);
+        gltf_doc_set(doc, gltf_doc_child(doc, gltf_doc_child(doc, node, "extensions"), EXTENSION),
+                     "light", json_integer((json_int_t)json_array_size(list) - 1));
+    }
+}
+
+static void add_cameras(struct scene_export *x)
+{
+    struct gltf_doc *doc = x->doc;
+    for (int i = 0; i < x->scene->camera_count; i++) {
+        const struct camera *camera = &x->scene->cameras[i];
+        const size_t added = gltf_doc_add(
+            doc, "cameras",
+            json_pack("{s:o, s:s, s:{s:f, s:f}}", "name",
+                      gltf_doc_text(camera->name ? camera->name : "camera"), "type", "perspective",
+                      "perspective", "yfov", (double)camera->vertical_fov_rad, "znear",
+                      (double)camera->near_m));
+        gltf_doc_set(doc, free_node(doc, camera->node, "camera", NULL), "camera",
+                     json_integer((json_int_t)added));
+    }
+}
+
+// ---- skins
+
+static void add_skins(struct scene_export *x)
+{
+    struct gltf_doc *doc = x->doc;
+    for (int i = 0; i < x->scene->skin_count; i++) {
+        const struct skin *skin = &x->scene->skins[i];
+        const size_t matrices = gltf_doc_add_accessor(doc, skin->joint_from_mesh, GLTF_FLOAT,
+                                                      "MAT4", (size_t)skin->joint_count);
+        json_t *out =
+            json_pack("{s:[], s:I}", "joints", "inverseBindMatrices", (json_int_t)matrices);
+        for (int k = 0; out && k < skin->joint_count; k++)
+            append(doc, out, "joints", (size_t)skin->joints[k]);
+        gltf_doc_add(doc, "skins", out);
+    }
+}
+
+bool gltf_doc_of_scene(struct gltf_doc *doc, struct host *host, const struct scene *scene)
+{
+    if (!gltf_doc_init(doc, host)) return false;
+    struct scene_export x = { .doc = doc, .scene = scene };
+    const size_t instances = (size_t)scene->instance_count, meshes = (size_t)scene->mesh_count;
+    doc->places = host_alloc(host, instances, sizeof *doc->places);
+    x.primitives = host_alloc(host, meshes, sizeof(json_t *));
+    const bool ok = doc->places && x.primitives;
+    if (ok) {
+        doc->place_count = scene->instance_count;
+        gltf_doc_set(doc, doc->root, "asset",
+                     json_pack("{s:s, s:s}", "version", "2.0", "generator", "Afterglow"));
+        gltf_doc_materials(&x);
+        add_nodes(&x);
+        add_hierarchy(&x);
+        add_instances(&x);
+        add_lights(&x);
+        add_cameras(&x);
+        add_skins(&x);
+        gltf_doc_animations(&x);
+    }
+    for (size_t i = 0; x.primitives && i < meshes; i++) json_decref(x.primitives[i]);
+    host_free(host, x.primitives);
+    return ok &&
+           (!doc->failed || host_fail(host, FAIL_MEMORY, "%s: glTF: out of memory", scene->name));
+}
