@@ -21,6 +21,8 @@ if(NOT embree_FOUND)
 endif()
 set(EMBREE_TARGET embree)
 string(REGEX MATCH "^[0-9]+" EMBREE_MAJOR "${embree_VERSION}")
+# Optional: denoised light maps (src/lightmap/denoise.c).
+find_package(OpenImageDenoise 2 QUIET CONFIG)
 find_program(GLSLC glslc REQUIRED)
 # Chart.js 3, minified, embedded in the report page of `afterglow compare`.
 find_file(CHART_JS chart.min.js PATHS /usr/share/javascript PATH_SUFFIXES chart.js Chart.js REQUIRED)

@@ -1,0 +1,295 @@
+// A vertex at the border of charts has coordinates in each of them: the first stay at the vertex,
+// others get copies of it after all vertices.
+#include "lightmap/attach.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct variant {
+    vec2s uv;
+    uint32_t vertex; // of which it is a copy
+    uint32_t next;   // variant of that vertex; CHART_NONE: none
+};
+
+struct unwrapped {
+    struct host *host;
+    const uint32_t *source;   // of a mesh's vertex; NULL: itself
+    uint32_t given;           // vertices before
+    struct variant *variants; // [given + 3 triangles] first one of each vertex, then copies
+    uint32_t count;
+    bool *used;        // [given]
+    uint32_t *indices; // [3 triangles]
+};
+
+struct attaching {
+    struct gltf_doc *doc;
+    const struct charts *charts;
+    const struct scene *scene;
+    size_t *triangle_0; // [instances + 1] first triangle of an instance, in chart_triangle
+    uint32_t *chart_triangle;
+};
+
+// ---- triangles
+
+static bool index_triangles(struct attaching *a)
+{
+    const int instances = a->scene->instance_count;
+    const size_t count = scene_triangle_count(a->scene);
+    struct host *host = a->charts->host;
+    a->triangle_0 = host_alloc(host, (size_t)instances + 1, sizeof *a->triangle_0);
+    a->chart_triangle = host_alloc(host, count, sizeof *a->chart_triangle);
+    if (!a->triangle_0 || !a->chart_triangle) return false;
+    for (int i = 0; i < instances; i++)
+        a->triangle_0[i + 1] = a->triangle_0[i] + scene_mesh_of(a->scene, i)->index_count / 3;
+    memset(a->chart_triangle, 0xff, count * sizeof *a->chart_triangle);
+    for (uint32_t t = 0; t < a->charts->triangle_count; t++) {
+        const struct chart_triangle *of = &a->charts->triangles[t];
+        a->chart_triangle[a->triangle_0[of->instance] + of->triangle] = t;
+    }
+    return true;
+}
+
+static bool has_charts(const struct attaching *a, int instance)
+{
+    for (size_t t = a->triangle_0[instance]; t < a->triangle_0[instance + 1]; t++)
+        if (a->chart_triangle[t] != CHART_NONE) return true;
+    return false;
+}
+
+// ---- vertices
+
+static uint32_t variant_of(struct unwrapped *u, uint32_t vertex, vec2s uv)
+{
+    uint32_t at = vertex;
+    if (!u->used[vertex]) {
+        u->used[vertex] = true;
+        u->variants[vertex] = (struct variant){ uv, vertex, CHART_NONE };
+        return vertex;
+    }
+    for (;; at = u->variants[at].next) {
+        const vec2s other = u->variants[at].uv;
+        if (other.x == uv.x && other.y == uv.y) return at;
+        if (u->variants[at].next == CHART_NONE) break;
+    }
+    u->variants[at].next = u->count;
+    u->variants[u->count] = (struct variant){ uv, vertex, CHART_NONE };
+    return u->count++;
+}
+
+// Triangles without an area are in no chart: their corners have the coordinates of others there.
+static void unwrap_corner(const struct attaching *a, struct unwrapped *u, const struct mesh *mesh,
+                          uint32_t chart_triangle, uint32_t corner)
+{
+    const uint32_t v = mesh->indices[corner], vertex = u->source ? u->source[v] : v;
+    u->indices[corner] = vertex;
+    if (chart_triangle == CHART_NONE) return;
+    const vec2s place = a->charts->triangles[chart_triangle].place[corner % 3];
+    const vec2s uv = { { place.x / (float)a->charts->width, place.y / (float)a->charts->height } };
+    u->indices[corner] = variant_of(u, vertex, uv);
+}
+
+static bool unwrap(const struct attaching *a, int instance, struct unwrapped *u)
+{
+    const struct mesh *mesh = scene_mesh_of(a->scene, instance);
+    const bool of_file = a->doc->of_file && mesh->source;
+    *u = (struct unwrapped){ .host = a->charts->host,
+                             .source = of_file ? mesh->source : NULL,
+                             .given = of_file ? mesh->source_count : mesh->vertex_count };
+    const size_t most = (size_t)u->given + mesh->index_count;
+    u->variants = host_alloc(u->host, most, sizeof *u->variants);
+    u->used = host_alloc(u->host, u->given, sizeof *u->used);
+    u->indices = host_alloc(u->host, mesh->index_count, sizeof *u->indices);
+    if (!u->variants || !u->used || !u->indices) return false;
+    u->count = u->given;
+    for (uint32_t i = 0; i < mesh->index_count; i++)
+        unwrap_corner(a, u, mesh, a->chart_triangle[a->triangle_0[instance] + i / 3], i);
+    return true;
+}
+
+static void unwrapped_finish(struct unwrapped *u)
+{
+    host_free(u->host, u->variants);
+    host_free(u->host, u->used);
+    host_free(u->host, u->indices);
+}
+
+// ---- the primitive
+
+// Bits of the sets that textures of a material use: members "texCoord", at any depth.
+static uint32_t sets_of(const json_t *json)
+{
+    uint32_t sets = 0;
+    const char *key;
+    json_t *value;
+    size_t i;
+    if (json_is_array(json)) json_array_foreach(json, i, value) sets |= sets_of(value);
+    if (!json_is_object(json)) return sets;
+    json_object_foreach((json_t *)json, key, value)
+    {
+        const json_int_t set = json_integer_value(value);
+        if (strcmp(key, "texCoord") == 0 && set >= 0 && set < 32) sets |= 1u << set;
+        if (strcmp(key, "index") == 0) sets |= 1u << 31; // of a texture
+        sets |= sets_of(value);
+    }
+    return sets;
+}
+
+static uint32_t sets_of_primitive(struct gltf_doc *doc, const json_t *primitive)
+{
+    json_t *materials = gltf_doc_array(doc, "materials");
+    const json_t *material = json_object_get(primitive, "material");
+    uint32_t sets = 0;
+    if (material) sets = sets_of(json_array_get(materials, (size_t)json_integer_value(material)));
+    const json_t *variants =
+        json_object_get(json_object_get(primitive, "extensions"), "KHR_materials_variants");
+    size_t i;
+    json_t *mapping;
+    json_array_foreach(json_object_get(variants, "mappings"), i, mapping)
+    {
+        const json_int_t of = json_integer_value(json_object_get(mapping, "material"));
+        sets |= sets_of(json_array_get(materials, (size_t)of));
+    }
+    return sets;
+}
+
+static size_t add_coordinates(struct gltf_doc *doc, const struct unwrapped *u, bool zeros)
+{
+    vec2s *uv = host_alloc(doc->host, u->count, sizeof *uv);
+    if (!uv) {
+        doc->failed = true;
+        return 0;
+    }
+    for (uint32_t i = 0; !zeros && i < u->count; i++) uv[i] = u->variants[i].uv;
+    const size_t added = gltf_doc_add_accessor(doc, uv, GLTF_FLOAT, "VEC2", u->count);
+    host_free(doc->host, uv);
+    return added;
+}
+
+// Sets are numbered from 0 without gaps (section 3.7.2.1): absent ones become these, or zeros
+// where a texture could use them.
+static void set_coordinates(struct gltf_doc *doc, json_t *primitive, const struct unwrapped *u)
+{
+    json_t *attributes = json_object_get(primitive, "attributes");
+    const uint32_t taken = sets_of_primitive(doc, primitive);
+    char name[32];
+    int set = 1;
+    while (set < 31 && taken >> set & 1u) set++;
+    const size_t added = add_coordinates(doc, u, false);
+    for (int k = 0; k < set; k++) {
+        snprintf(name, sizeof name, "TEXCOORD_%d", k);
+        if (json_object_get(attributes, name)) continue;
+        const size_t filled = taken ? add_coordinates(doc, u, true) : added;
+        gltf_doc_set(doc, attributes, name, json_integer((json_int_t)filled));
+    }
+    snprintf(name, sizeof name, "TEXCOORD_%d", set);
+    gltf_doc_set(doc, attributes, name, json_integer((json_int_t)added));
+    json_t *extras = gltf_doc_child(doc, primitive, "extras");
+    gltf_doc_set(doc, extras, LIGHTMAP_EXTRAS, json_pack("{s:i}", "texCoord", set));
+}
+
+static bool extend(struct gltf_doc *doc, json_t *attributes, const struct unwrapped *u,
+                   const uint32_t *more)
+{
+    const char *name;
+    json_t *value;
+    void *next;
+    json_object_foreach_safe(attributes, next, name, value)
+    {
+        size_t added;
+        if (!gltf_doc_extend_accessor(doc, (size_t)json_integer_value(value), u->given, more,
+                                      u->count - u->given, &added))
+            return false;
+        gltf_doc_set(doc, attributes, name, json_integer((json_int_t)added));
+    }
+    return true;
+}
+
+// All attributes, also of morph targets, get the copies, and triangles their indices.
+static bool divide_vertices(struct gltf_doc *doc, json_t *primitive, const struct unwrapped *u,
+                            uint32_t index_count)
+{
+    const uint32_t copies = u->count - u->given;
+    uint32_t *more = host_alloc(doc->host, copies, sizeof *more);
+    if (!more) return false;
+    for (uint32_t i = 0; i < copies; i++) more[i] = u->variants[u->given + i].vertex;
+    bool ok = extend(doc, json_object_get(primitive, "attributes"), u, more);
+    size_t i;
+    json_t *target;
+    json_array_foreach(json_object_get(primitive, "targets"), i, target) ok =
+        ok && extend(doc, target, u, more);
+    host_free(doc->host, more);
+    json_object_del(primitive, "mode"); // strips and fans become triangles
+    gltf_doc_set(doc, primitive, "indices",
+                 json_integer((json_int_t)gltf_doc_add_accessor(doc, u->indices, GLTF_UINT,
+                                                                "SCALAR", index_count)));
+    return ok;
+}
+
+// A compressed copy would not have the coordinates.
+static void drop_compression(json_t *primitive)
+{
+    json_t *extensions = json_object_get(primitive, "extensions");
+    json_object_del(extensions, "KHR_draco_mesh_compression");
+    if (extensions && json_object_size(extensions) == 0) json_object_del(primitive, "extensions");
+}
+
+static bool attach_instance(const struct attaching *a, int instance)
+{
+    struct gltf_doc *doc = a->doc;
+    const struct gltf_place *place = &doc->places[instance];
+    json_t *mesh = json_array_get(gltf_doc_array(doc, "meshes"), place->mesh);
+    json_t *primitive = json_array_get(json_object_get(mesh, "primitives"), place->primitive);
+    struct unwrapped u;
+    bool ok = unwrap(a, instance, &u);
+    if (ok) {
+        drop_compression(primitive);
+        if (u.count > u.given)
+            ok =
+                divide_vertices(doc, primitive, &u, scene_mesh_of(a->scene, instance)->index_count);
+        if (ok) set_coordinates(doc, primitive, &u);
+    }
+    unwrapped_finish(&u);
+    return ok;
+}
+
+// ---- meshes
+
+// Meshes at several nodes are copied, but for the first node.
+static bool separate_meshes(struct gltf_doc *doc)
+{
+    const size_t count = json_array_size(gltf_doc_array(doc, "meshes"));
+    size_t *owner = host_alloc(doc->host, count, sizeof *owner); // node + 1
+    size_t *copy = host_alloc(doc->host, count, sizeof *copy);   // the newest one
+    for (int i = 0; owner && copy && i < doc->place_count; i++) {
+        struct gltf_place *place = &doc->places[i];
+        const size_t mesh = place->mesh, node = place->node + 1;
+        if (place->node == SIZE_MAX) continue;
+        if (owner[mesh] == 0) {
+            owner[mesh] = node;
+            copy[mesh] = mesh;
+        } else if (owner[mesh] != node) {
+            // Places of a node follow each other.
+            owner[mesh] = node;
+            copy[mesh] = gltf_doc_add(
+                doc, "meshes", json_deep_copy(json_array_get(gltf_doc_array(doc, "meshes"), mesh)));
+            gltf_doc_set(doc, json_array_get(gltf_doc_array(doc, "nodes"), place->node), "mesh",
+                         json_integer((json_int_t)copy[mesh]));
+        }
+        place->mesh = copy[mesh];
+    }
+    const bool ok = owner && copy;
+    host_free(doc->host, owner);
+    host_free(doc->host, copy);
+    return ok;
+}
+
+bool lightmap_attach(struct gltf_doc *doc, const struct charts *charts, const struct scene *scene)
+{
+    struct attaching a = { .doc = doc, .charts = charts, .scene = scene };
+    bool ok = index_triangles(&a) && separate_meshes(doc);
+    for (int i = 0; ok && i < doc->place_count && i < scene->instance_count; i++)
+        if (doc->places[i].node != SIZE_MAX && has_charts(&a, i)) ok = attach_instance(&a, i);
+    host_free(charts->host, a.triangle_0);
+    host_free(charts->host, a.chart_triangle);
+    return ok;
+}

@@ -1,0 +1,88 @@
+// The reference's light transport (trace/path.c) from the points of a texel, as if they were white
+// and diffuse: paths that begin with cosine-distributed directions.
+#include "lightmap/gather.h"
+
+#include "core/rng.h"
+#include "trace/next_event.h"
+
+bool gather_scene_init(struct gather_scene *s, struct host *host, const struct scene_pose *pose,
+                       const struct charts *charts)
+{
+    const size_t instances = (size_t)pose->scene->instance_count;
+    *s = (struct gather_scene){ .host = host, .charts = charts };
+    s->trace = trace_scene_create(host, pose);
+    s->mesh_of = host_alloc(host, instances, sizeof *s->mesh_of);
+    if (!s->trace || !s->mesh_of) return false;
+    for (uint32_t m = 0; m < s->trace->mesh_count; m++)
+        s->mesh_of[s->trace->meshes[m].instance] = m;
+    return gather_list_triangles(s);
+}
+
+void gather_scene_finish(struct gather_scene *s)
+{
+    if (!s->host) return;
+    trace_scene_destroy(s->trace);
+    host_free(s->host, s->mesh_of);
+    host_free(s->host, s->first);
+    host_free(s->host, s->meeting);
+    *s = (struct gather_scene){ 0 };
+}
+
+static struct path_start start_at(const struct gather_scene *s, const struct gather_point *point,
+                                  bool back)
+{
+    struct path_start start = { .hit = true, .surface = gather_surface(s, point, back) };
+    start.bsdf = surface_bsdf(&start.surface, start.surface.normal, true);
+    return start;
+}
+
+// The reflected radiance of a white surface is E/π.
+vec3s gather_punctual(const struct gather_scene *s, const struct gather_points *points, bool back)
+{
+    vec3s sum = vec3_of(0, 0, 0);
+    uint64_t rays = 0;
+    if (points->count == 0 || s->trace->lights.punctual_count == 0) return sum;
+    for (int k = 0; k < points->count; k++) {
+        const struct path_start start = start_at(s, &points->at[k], back);
+        sum = glms_vec3_add(sum,
+                            next_event_all_punctual(s->trace, &start.surface, &start.bsdf, &rays));
+    }
+    return glms_vec3_scale(sum, GLM_PIf / (float)points->count);
+}
+
+static void add_batch(const struct path_settings *settings, struct path_sample *samples, int count,
+                      double sum[3])
+{
+    uint64_t rays = 0;
+    path_trace(settings, samples, count, &rays);
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += (double)samples[i].light.irradiance_emitters_sky.raw[c];
+}
+
+vec3s gather_paths(const struct gather_scene *s, const struct gather_points *points,
+                   struct gather_texel texel, int samples, uint64_t seed)
+{
+    const struct path_settings settings = {
+        .scene = s->trace,
+        .bounces = -1,
+        .direct = true,
+        .indirect = true,
+        .seed = (uint32_t)(rng_mix(seed + texel.back) >> 32),
+    };
+    struct path_start starts[GATHER_POINTS];
+    struct path_sample batch[PATH_BATCH];
+    double sum[3] = { 0.0, 0.0, 0.0 };
+    if (points->count == 0 || samples < 1) return vec3_of(0, 0, 0);
+    for (int k = 0; k < points->count; k++) starts[k] = start_at(s, &points->at[k], texel.back);
+    for (int done = 0; done < samples;) {
+        int count = 0;
+        for (; count < PATH_BATCH && done < samples; count++, done++)
+            batch[count] = (struct path_sample){ .start = &starts[done % points->count],
+                                                 .pixel = texel.texel,
+                                                 .sample = (uint32_t)done };
+        add_batch(&settings, batch, count, sum);
+    }
+    for (int c = 0; c < 3; c++) sum[c] /= (double)samples;
+    return vec3_of((float)sum[0], (float)sum[1], (float)sum[2]);
+}

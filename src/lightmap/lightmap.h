@@ -1,0 +1,56 @@
+// Light maps of static surfaces as images: irradiance of all bounces, for other engines. Rows of
+// light for each texel, of a bake by the path tracer or of a technique's light map, become images
+// whose gutters repeat the nearest texel of their chart.
+#pragma once
+
+#include "bake/bake.h"
+#include "image/image.h"
+#include "scene/charts/charts.h"
+
+// Charts of double-sided materials have a back, whose texels follow those of all fronts.
+bool lightmap_has_back(const struct scene *scene, const struct chart *chart);
+// Texels of the fronts, and as many again where some chart has a back.
+uint64_t lightmap_rows(const struct charts *charts, const struct scene *scene);
+
+// ---- stages.c: light by the path tracer
+
+#define LIGHTMAP_PUNCTUAL "texels/punctual" // F32 [texels of both sides][3], lux
+#define LIGHTMAP_REST     "texels/rest" // F32 [texels of both sides][4], lux; share of open points
+
+struct lightmap_bake {
+    const struct scene_pose *pose; // outlives the bake
+    int samples;                   // paths of a texel
+    // The charts of static surfaces: the same for each call.
+    bool (*charts)(const struct scene_pose *statics, const void *options, struct host *host,
+                   struct charts *out);
+    const void *options;
+};
+// In the identity of the bake.
+#define LIGHTMAP_NAME "lightmap"
+enum { LIGHTMAP_VERSION = 1 };
+bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how);
+
+// ---- lightmap.c
+
+enum lightmap_side { LIGHTMAP_FRONT, LIGHTMAP_BACK, LIGHTMAP_SIDES };
+
+struct lightmap {
+    struct host *host;
+    struct charts charts;
+    bool has_back;                           // some material is double-sided
+    struct image irradiance[LIGHTMAP_SIDES]; // lux; v downwards as in glTF
+};
+// Takes the charts over, also on failure. lightmap_finish accepts zero.
+bool lightmap_init(struct lightmap *out, struct charts *charts, const struct scene *scene);
+void lightmap_finish(struct lightmap *map);
+
+// punctual: with direct light of punctual lights. FAIL_FORMAT: the tensors are not of these charts.
+bool lightmap_set_paths(struct lightmap *map, const struct tensors *bake, bool punctual);
+// Light of a technique, for each side and colour an image of irradiance along the surface's normal
+// and vector irradiance, times `scale`. punctual: direct light of punctual lights is added.
+struct lightmap_layers {
+    const float *at[LIGHTMAP_SIDES][3]; // [height][width][4]
+    float scale;
+};
+bool lightmap_set_layers(struct lightmap *map, const struct scene_pose *pose,
+                         const struct lightmap_layers *layers, bool punctual);

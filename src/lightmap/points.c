@@ -1,0 +1,191 @@
+// Where a texel is sampled.
+#include "lightmap/gather.h"
+
+#include "core/rng.h"
+#include "core/sampling.h"
+#include "scene/charts/raster.h"
+
+#include <math.h>
+
+// ---- triangles of texels
+
+static struct raster_polygon polygon_of(const struct chart_triangle *t)
+{
+    struct raster_polygon polygon = { .count = 3 };
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 2; a++) polygon.at[k][a] = (double)t->place[k].raw[a];
+    return polygon;
+}
+
+static void range_of(const struct raster_polygon *polygon, int axis, uint32_t *low, uint32_t *high)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < polygon->count; i++) {
+        least = fmin(least, polygon->at[i][axis]);
+        most = fmax(most, polygon->at[i][axis]);
+    }
+    *low = (uint32_t)least; // places are inside of the atlas
+    *high = (uint32_t)most + 1;
+}
+
+// Calls with `list` NULL count, later ones fill.
+static void visit_triangle(const struct charts *charts, uint32_t triangle, const uint32_t *texel_of,
+                           uint32_t *first, uint32_t *list)
+{
+    const struct raster_polygon whole = polygon_of(&charts->triangles[triangle]);
+    uint32_t top, bottom, left, right;
+    range_of(&whole, 1, &top, &bottom);
+    for (uint32_t y = top; y < bottom && y < charts->height; y++) {
+        const struct raster_polygon row = raster_clip(&whole, 1, (double)y);
+        if (row.count < 3) continue;
+        range_of(&row, 0, &left, &right);
+        for (uint32_t x = left; x < right && x < charts->width; x++) {
+            const uint32_t texel = texel_of[(size_t)y * charts->width + x];
+            if (texel == CHART_NONE) continue;
+            if (list) list[first[texel]] = triangle;
+            first[texel]++;
+        }
+    }
+}
+
+// [width × height] the texel at a place, without gutters. Owned by the caller.
+static uint32_t *texels_of(struct host *host, const struct charts *charts)
+{
+    const size_t count = (size_t)charts->width * charts->height;
+    uint32_t *texel_of = host_alloc(host, count, sizeof *texel_of);
+    for (size_t i = 0; texel_of && i < count; i++) texel_of[i] = CHART_NONE;
+    for (uint32_t i = 0; texel_of && i < charts->texel_count; i++)
+        texel_of[(size_t)charts->texels[i].y * charts->width + charts->texels[i].x] = i;
+    return texel_of;
+}
+
+bool gather_list_triangles(struct gather_scene *s)
+{
+    const struct charts *charts = s->charts;
+    const uint32_t count = charts->texel_count;
+    uint32_t *texel_of = texels_of(s->host, charts);
+    s->first = host_alloc(s->host, (size_t)count + 2, sizeof *s->first);
+    if (texel_of && s->first) {
+        // Counted two places further, so that filling leaves the first index of each texel.
+        for (uint32_t t = 0; t < charts->triangle_count; t++)
+            visit_triangle(charts, t, texel_of, s->first + 2, NULL);
+        for (uint32_t i = 0; i < count; i++) s->first[i + 2] += s->first[i + 1];
+        s->meeting = host_alloc(s->host, s->first[count + 1], sizeof *s->meeting);
+        for (uint32_t t = 0; s->meeting && t < charts->triangle_count; t++)
+            visit_triangle(charts, t, texel_of, s->first + 1, s->meeting);
+    }
+    host_free(s->host, texel_of);
+    return s->meeting;
+}
+
+// ---- points
+
+static bool weigh(const struct chart_triangle *t, double x, double y, struct gather_point *out)
+{
+    double area[3], sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        struct raster_triangle part;
+        for (int c = 0; c < 3; c++) {
+            part.at[c][0] = c == k ? x : (double)t->place[c].x;
+            part.at[c][1] = c == k ? y : (double)t->place[c].y;
+        }
+        area[k] = raster_area2(&part);
+        sum += area[k];
+    }
+    for (int k = 0; k < 3; k++)
+        if (!(area[k] / sum >= 0.0)) return false;
+    out->u = (float)(area[1] / sum);
+    out->v = (float)(area[2] / sum);
+    return true;
+}
+
+static bool find_triangle(const struct gather_scene *s, uint32_t texel, double x, double y,
+                          struct gather_point *out)
+{
+    for (uint32_t i = s->first[texel]; i < s->first[texel + 1]; i++) {
+        out->triangle = s->meeting[i];
+        if (weigh(&s->charts->triangles[out->triangle], x, y, out)) return true;
+    }
+    return false;
+}
+
+struct surface gather_surface(const struct gather_scene *s, const struct gather_point *point,
+                              bool back)
+{
+    const struct chart_triangle *t = &s->charts->triangles[point->triangle];
+    const struct ray_hit hit = {
+        .geometry = s->mesh_of[t->instance], .triangle = t->triangle, .u = point->u, .v = point->v
+    };
+    const struct trace_mesh *mesh = &s->trace->meshes[hit.geometry];
+    const vec3s front = mesh->facets[t->triangle].normal;
+    const struct ray ray = { .direction = back ? front : glms_vec3_negate(front) };
+    struct surface surface;
+    surface_at(s->trace, &ray, &hit, NULL, &surface);
+    uint32_t corner[3];
+    trace_corners(mesh, t->triangle, corner);
+    vec3s n = glms_vec3_scale(mesh->vertices[corner[0]].normal, 1.0f - hit.u - hit.v);
+    n = glms_vec3_muladds(mesh->vertices[corner[1]].normal, hit.u, n);
+    n = vec3_unit(glms_vec3_muladds(mesh->vertices[corner[2]].normal, hit.v, n));
+    if (back) n = glms_vec3_negate(n);
+    surface.normal = glms_vec3_dot(n, surface.geometric) > 0.0f ? n : surface.geometric;
+    surface.material = (struct bsdf_material){ .albedo = vec3_of(1, 1, 1), .roughness = 1.0f };
+    surface.emission = vec3_of(0, 0, 0);
+    surface.unlit = false;
+    return surface;
+}
+
+static bool meets_back(const struct gather_scene *s, vec3s from, vec3s direction)
+{
+    const struct ray ray = { from, direction, 0.0f, INFINITY };
+    struct ray_hit hit;
+    if (!embree_closest(s->trace->embree, &ray, NULL, false, &hit)) return false;
+    const struct trace_mesh *mesh = &s->trace->meshes[hit.geometry];
+    return !mesh->material->double_sided &&
+           glms_vec3_dot(mesh->facets[hit.triangle].normal, direction) > 0.0f;
+}
+
+// Most rays meet the back of single-sided surfaces. Points whose first rays meet none are not.
+enum { FIRST_PROBES = 4, PROBES = 16 };
+
+static bool is_inside(const struct gather_scene *s, const struct gather_point *point, bool back)
+{
+    const struct surface surface = gather_surface(s, point, back);
+    vec3s u, v;
+    int behind = 0;
+    basis_of(surface.geometric, &u, &v);
+    for (uint32_t k = 0; k < PROBES; k++) {
+        if (k == FIRST_PROBES && behind == 0) return false;
+        const vec3s local = sample_hemisphere_cosine(sobol_2d(k, 1));
+        vec3s direction = glms_vec3_scale(surface.geometric, local.z);
+        direction = glms_vec3_muladds(u, local.x, direction);
+        direction = glms_vec3_muladds(v, local.y, direction);
+        behind += meets_back(s, surface_leave(&surface, direction), direction);
+    }
+    return 2 * behind > PROBES;
+}
+
+static void add_point(const struct gather_scene *s, const struct gather_point *point, bool back,
+                      struct gather_points *out)
+{
+    if (!is_inside(s, point, back)) out->at[out->count++] = *point;
+}
+
+void gather_find_points(const struct gather_scene *s, struct gather_texel texel,
+                        struct gather_points *out)
+{
+    const struct chart_texel *t = &s->charts->texels[texel.texel];
+    bool covered = false;
+    out->count = 0;
+    for (uint32_t k = 0; k < GATHER_POINTS; k++) {
+        struct gather_point point;
+        // The first 16 points of the sequence are one in each square of a 4 × 4 grid.
+        const vec2s at = sobol_2d(k, pcg_hash(texel.texel) | 1u);
+        if (!find_triangle(s, texel.texel, (double)t->x + (double)at.x, (double)t->y + (double)at.y,
+                           &point))
+            continue;
+        covered = true;
+        add_point(s, &point, texel.back, out);
+    }
+    if (!covered) // a sliver
+        add_point(s, &(struct gather_point){ t->triangle, t->u, t->v }, texel.back, out);
+}
