@@ -297,6 +297,20 @@ static bool set_bake_output(struct arguments *a, const char *value, const char *
     return has_extension(value, "safetensors");
 }
 
+static bool set_lightmap(struct arguments *a, const char *value, const char **why)
+{
+    *why = "it must be the name of a folder";
+    a->lightmap = value;
+    return value[0] != 0;
+}
+
+static bool set_denoise(struct arguments *a, const char *value, const char **why)
+{
+    (void)value, (void)why;
+    a->denoise = true;
+    return true;
+}
+
 static bool add_bake_file(struct arguments *a, const char *value, const char **why)
 {
     *why = "at most 8 files";

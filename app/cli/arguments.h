@@ -59,6 +59,8 @@ struct arguments {
     int shard, shard_count;   // count 0: everything
     long long max_memory_mib; // 0: no limit
     const char *report;       // NULL: none
+    const char *lightmap;     // a folder; NULL: none
+    bool denoise;
     // cache
     bool clear;
     // compare

@@ -1,6 +1,7 @@
 // afterglow bake: what a technique precomputes, to a file or to the cache.
 #include "baking.h"
 #include "commands.h"
+#include "light_map.h"
 #include "cli/files/json.h"
 
 #include <stdio.h>
@@ -27,7 +28,7 @@ static enum status check_usage(const struct arguments *a)
                            a->positional[0]);
     if (a->shard_count > 0 && a->report)
         return wrong_usage("cannot use --report with --shard: the bake is complete after --merge");
-    return DONE;
+    return light_map_check_others(a);
 }
 
 static enum status check_outputs(const struct arguments *a)
@@ -158,6 +159,7 @@ static enum status report(struct job *job)
 
 static enum status bake(const struct arguments *arguments)
 {
+    if (arguments->lightmap) return light_map_bake(arguments);
     struct job *job = calloc(1, sizeof *job);
     if (!job) return fail("cannot bake %s: out of memory", arguments->positional[0]);
     job->arguments = arguments;
@@ -183,25 +185,33 @@ const struct command command_bake = {
     .positional_count = 1,
     .usage = "SCENE --gi SPEC [options]",
     .summary = "precompute the data of a technique on the CPU",
-    .text = "Precomputes the data of a technique for SCENE, once. render and compare do it by\n"
-            "themselves when nothing fits; this command does it ahead, elsewhere or in parts.\n"
-            "\n"
-            "Says first what it needs: rays, time, memory, bytes on disk. Runs on all cores.\n"
-            "Ctrl-C keeps what is finished; the same command continues with it.\n"
-            "Neither threads, parts nor interruptions change the file.\n"
-            "\n"
-            "The file is in the safetensors format: in Python,\n"
-            "safetensors.numpy.load_file('maze.safetensors') returns its arrays by name.\n",
-    .examples = "  afterglow bake @maze --gi mrt\n"
-                "      into the cache, where render and compare find it\n"
-                "  afterglow bake @maze --gi mrt -o maze.safetensors\n"
-                "  afterglow render @maze --gi mrt --bake maze.safetensors\n"
-                "      into a file, and use it\n"
-                "  afterglow bake @maze --gi mrt --report report.json --force\n"
-                "      bake again and write seconds, bytes and figures of each stage\n"
-                "  afterglow bake @maze --gi mrt --shard 0/2 -o part0.safetensors\n"
-                "  afterglow bake @maze --gi mrt --shard 1/2 -o part1.safetensors\n"
-                "  afterglow bake --merge part0.safetensors part1.safetensors -o all.safetensors\n"
-                "      two parts, on two machines, joined\n",
+    .text =
+        "Precomputes the data of a technique for SCENE, once. render and compare do it by\n"
+        "themselves when nothing fits; this command does it ahead, elsewhere or in parts.\n"
+        "\n"
+        "Says first what it needs: rays, time, memory, bytes on disk. Runs on all cores.\n"
+        "Ctrl-C keeps what is finished; the same command continues with it.\n"
+        "Neither threads, parts nor interruptions change the file.\n"
+        "\n"
+        "With --lightmap, writes a light map for other engines instead: see docs/lightmaps.md.\n"
+        "\n"
+        "The file is in the safetensors format: in Python,\n"
+        "safetensors.numpy.load_file('maze.safetensors') returns its arrays by name.\n",
+    .examples =
+        "  afterglow bake @maze --gi mrt\n"
+        "      into the cache, where render and compare find it\n"
+        "  afterglow bake @maze --gi mrt -o maze.safetensors\n"
+        "  afterglow render @maze --gi mrt --bake maze.safetensors\n"
+        "      into a file, and use it\n"
+        "  afterglow bake @maze --gi mrt --report report.json --force\n"
+        "      bake again and write seconds, bytes and figures of each stage\n"
+        "  afterglow bake @maze --gi mrt --shard 0/2 -o part0.safetensors\n"
+        "  afterglow bake @maze --gi mrt --shard 1/2 -o part1.safetensors\n"
+        "  afterglow bake --merge part0.safetensors part1.safetensors -o all.safetensors\n"
+        "      two parts, on two machines, joined\n"
+        "  afterglow bake house.glb --lightmap maps\n"
+        "      light map of radiosity: maps/irradiance.exr and maps/scene.glb\n"
+        "  afterglow bake house.glb --lightmap maps --spp 256\n"
+        "      the same by path tracing, which Ctrl-C interrupts and the next run continues\n",
     .run = bake,
 };

@@ -8,6 +8,7 @@
 #include <afterglow/context.h>
 #include <afterglow/device.h>
 #include <afterglow/image.h>
+#include <afterglow/lightmap.h>
 #include <afterglow/probes.h>
 #include <afterglow/reference.h>
 #include <afterglow/renderer.h>

@@ -23,7 +23,10 @@ struct ag_bake_desc {
     double checkpoint_every_s; ///< with a checkpoint; default 30; 0: only when cancelled
     uint64_t max_memory_bytes; ///< refuse to run if more would be needed; default 0: no limit
     bool full_report;          ///< also compute what only ag_bake_report shows; default false
-    uint64_t reserved[8];      ///< 0; see ABI in types.h
+    /// Not the data of the technique, but its light map (lightmap.h), by so many paths a texel, 1
+    /// to 1000000. Lights and sky are those at ag_bake_create. Default 0
+    int lightmap_samples;
+    uint64_t reserved[8]; ///< 0; see ABI in types.h
 };
 AG_API void ag_bake_desc_default(struct ag_bake_desc *desc);
 

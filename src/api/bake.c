@@ -1,6 +1,7 @@
 // Bakes: checks arguments and forwards to bake/ and the techniques.
 #include "api/bake_state.h"
 
+#include "lightmap/lightmap.h"
 #include "techniques/gi_bake.h"
 
 #include <stdio.h>
@@ -9,7 +10,9 @@
 #include <sys/resource.h>
 
 static const double CHECKPOINT_EVERY_S = 30.0;
-enum { TECHNIQUE_NAME = 32 };
+enum { TECHNIQUE_NAME = 32, MOST_SAMPLES = 1000000 };
+// Versions of the charts, in that of a light map.
+enum { LIGHTMAP_VERSIONS = 10000 };
 
 #define TEXT_OF(x) #x
 #define TEXT(x)    TEXT_OF(x)
@@ -83,10 +86,35 @@ static struct bake_run_options run_options(const struct ag_bake_desc *desc)
                                       .max_memory_bytes = desc->max_memory_bytes };
 }
 
+// The light map's texels are the technique's; a path needs none of its other data.
+static struct bake *create_lightmap(struct ag_bake *b, struct bake_identity identity)
+{
+    struct host *host = &b->context->host;
+    const struct technique *technique = b->spec.technique[b->term];
+    char *options = gi_bake_options(host, technique, b->spec.options[b->term]);
+    char *text = options ? host_sprintf(host, "%s,samples=%d", options, b->lightmap_samples) : NULL;
+    identity.technique = LIGHTMAP_NAME;
+    identity.version = LIGHTMAP_VERSION * LIGHTMAP_VERSIONS + technique->bake_version;
+    identity.options = text;
+    struct bake *bake = text ? bake_create(host, &identity) : NULL;
+    const struct lightmap_bake how = { .pose = &b->pose,
+                                       .samples = b->lightmap_samples,
+                                       .charts = technique->charts,
+                                       .options = b->spec.options[b->term] };
+    host_free(host, options);
+    host_free(host, text);
+    if (!bake || lightmap_add_stages(bake_plan_of(bake), &how)) return bake;
+    bake_destroy(bake);
+    return NULL;
+}
+
 static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *desc)
 {
     struct host *host = &b->context->host;
     if (!gi_spec_parse(&b->spec, host, gi) || !find_term(b, gi, desc->technique)) return false;
+    b->lightmap_samples = desc->lightmap_samples;
+    if (b->lightmap_samples > 0 && !b->spec.technique[b->term]->charts)
+        return host_fail(host, FAIL_ARGUMENT, "cannot bake %s: it has no light map", gi);
     b->options = run_options(desc);
     if (!api_pose_at(b->scene, &b->pose, desc->animation, desc->time_s)) return false;
     if (!gi_bake_resolve(host, b->spec.technique[b->term], &b->pose, b->spec.options[b->term]))
@@ -99,7 +127,10 @@ static bool build(struct ag_bake *b, const char *gi, const struct ag_bake_desc *
                                             .program = api_program(),
                                             .gi = text,
                                             .scene_name = b->scene->scene->name };
-    if (text) b->bake = gi_bake_create(host, b->spec.technique[b->term], &b->how, identity);
+    if (text && b->lightmap_samples > 0)
+        b->bake = create_lightmap(b, identity);
+    else if (text)
+        b->bake = gi_bake_create(host, b->spec.technique[b->term], &b->how, identity);
     host_free(host, text);
     return b->bake != NULL;
 }
@@ -115,6 +146,9 @@ static enum ag_result desc_check(const char *function, const struct ag_scene *sc
     AG_REQUIRE_FOR(function, context,
                    desc->shard_count == 0 || (desc->shard >= 0 && desc->shard < desc->shard_count),
                    "shard %d is not one of %d", desc->shard, desc->shard_count);
+    AG_REQUIRE_FOR(function, context,
+                   desc->lightmap_samples >= 0 && desc->lightmap_samples <= MOST_SAMPLES,
+                   "lightmap_samples %d is not 0 to %d", desc->lightmap_samples, MOST_SAMPLES);
     AG_REQUIRE_FOR(function, context, desc->checkpoint_every_s >= 0.0,
                    "checkpoint_every_s is negative");
     AG_REQUIRE_FOR(function, context, api_animation_exists(scene, desc->animation),
@@ -284,12 +318,17 @@ enum ag_result ag_bake_partial_origin(struct ag_context *context, const char *pa
 
 // ---- results
 
+static const char *name_of(const struct ag_bake *b)
+{
+    return b->lightmap_samples > 0 ? LIGHTMAP_NAME : gi_bake_name(b->spec.technique[b->term]);
+}
+
 enum ag_result ag_bake_get_info(const struct ag_bake *b, struct ag_bake_info *out)
 {
     struct ag_context *context = context_of(b);
     AG_REQUIRE(context, b, "bake is NULL");
     AG_REQUIRE_POINTER(context, out);
-    *out = (struct ag_bake_info){ .technique = gi_bake_name(b->spec.technique[b->term]),
+    *out = (struct ag_bake_info){ .technique = name_of(b),
                                   .options = bake_options_text(b->bake),
                                   .complete = bake_is_complete(b->bake),
                                   .seconds = bake_seconds(b->bake),
@@ -347,13 +386,15 @@ static bool write_report(struct ag_bake *b)
     report_destroy(b->report);
     b->report = report_create(&b->context->host);
     if (!b->report) return false;
-    report_text_value(b->report, "technique", technique->name);
+    report_text_value(b->report, "technique",
+                      b->lightmap_samples > 0 ? LIGHTMAP_NAME : technique->name);
     report_options(b->report, technique, b->spec.options[b->term]);
     report_stages(b->report, b->bake);
     report_number(b->report, "seconds", bake_seconds(b->bake));
     report_number(b->report, "peak_memory_bytes", peak_memory_bytes());
     report_number(b->report, "bytes", (double)bake_bytes(b->bake));
-    return !technique->bake_report || technique->bake_report(b->report, b->bake, &b->how);
+    return b->lightmap_samples > 0 || !technique->bake_report ||
+           technique->bake_report(b->report, b->bake, &b->how);
 }
 
 enum ag_result ag_bake_report(struct ag_bake *b, const char **json)

@@ -10,7 +10,8 @@ struct ag_bake {
     struct ag_context *context;
     struct ag_scene *scene;
     struct gi_spec spec;
-    int term; // of the spec
+    int term;             // of the spec
+    int lightmap_samples; // 0: the data of the technique
     struct scene_pose pose;
     struct technique_bake how; // refers to spec and pose
     struct bake *bake;

@@ -1,0 +1,208 @@
+// Light maps as files: by the path tracer, through a bake, or by a renderer of a technique.
+#include "light_map.h"
+#include "baking.h"
+#include "cli/files/folder.h"
+#include "cli/files/interrupt.h"
+#include "cli/files/json.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char MARK[] = "irradiance.exr";
+static const char DEFAULT_GI[] = "radiosity";
+enum { FRAME_SIDE = 16, FRAMES = 2 };
+
+struct job {
+    const struct arguments *arguments;
+    struct session session;
+    struct folder folder;
+    struct baking baking; // with --spp
+    struct bakes bakes;   // of the technique
+    struct ag_device *device;
+    struct ag_renderer *renderer;
+    struct ag_lightmap *lightmap;
+};
+
+// ---- checks of the command line
+
+static bool is_ours(const char *name)
+{
+    return strcmp(name, MARK) == 0 || strcmp(name, "irradiance_back.exr") == 0 ||
+           strcmp(name, "scene.glb") == 0;
+}
+
+static const char *gi_of(const struct arguments *a)
+{
+    return a->has_gi ? a->gi : DEFAULT_GI;
+}
+
+enum status light_map_check_others(const struct arguments *a)
+{
+    const char *option = a->has_spp           ? "--spp"
+                         : a->indirect_only   ? "--indirect-only"
+                         : a->denoise         ? "--denoise"
+                         : a->light_count > 0 ? "--light"
+                         : a->has_sky         ? "--sky"
+                         : a->no_scene_lights ? "--no-scene-lights"
+                         : a->device          ? "--device"
+                                              : NULL;
+    if (!option) return DONE;
+    return wrong_usage("cannot use %s: it requires --lightmap DIR", option);
+}
+
+static enum status check_usage(const struct arguments *a)
+{
+    const char *option = a->output            ? "-o"
+                         : a->report          ? "--report"
+                         : a->report_full     ? "--report-full"
+                         : a->shard_count > 0 ? "--shard"
+                         : a->merge           ? "--merge"
+                                              : NULL;
+    if (!option) return DONE;
+    return wrong_usage("cannot use %s with --lightmap: choose one", option);
+}
+
+static enum status check_scene(const struct job *job)
+{
+    struct ag_scene_info info = { 0 };
+    ag_scene_get_info(job->session.scene, -1, 0.0, &info);
+    if (info.triangles > 0) return DONE;
+    return fail("cannot bake a light map of %s: it has no triangles",
+                job->arguments->positional[0]);
+}
+
+static enum status fail_call(const struct job *job, enum ag_result result)
+{
+    fail_library(job->session.context, result);
+    return FAILED;
+}
+
+// ---- by paths
+
+static enum status gather_paths(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.seed = a->seed;
+    desc.threads = a->threads;
+    desc.max_memory_bytes = (uint64_t)a->max_memory_mib << 20;
+    desc.lightmap_samples = a->spp;
+    enum status status = baking_begin(&job->baking, &job->session, gi_of(a), &desc, NULL);
+    if (status != DONE) return status;
+    session_say(&job->session);
+    if (a->force || !baking_load(&job->baking)) status = baking_run(&job->baking, false);
+    return status;
+}
+
+static enum status take_paths(struct job *job, const struct ag_lightmap_desc *desc)
+{
+    enum status status = gather_paths(job);
+    if (status != DONE) return status;
+    const enum ag_result result = ag_lightmap_from_bake(job->baking.bake, desc, &job->lightmap);
+    return result == AG_OK ? DONE : fail_call(job, result);
+}
+
+// ---- by a technique
+
+static enum ag_result create_renderer(struct job *job)
+{
+    struct ag_device_desc device;
+    struct ag_renderer_desc desc;
+    ag_device_desc_default(&device);
+    device.device = job->arguments->device;
+    const enum ag_result result = ag_device_create(job->session.context, &device, &job->device);
+    if (result != AG_OK) return result;
+    ag_renderer_desc_default(&desc);
+    desc.width = desc.height = FRAME_SIDE;
+    desc.gi = gi_of(job->arguments);
+    desc.bakes = job->bakes.bakes;
+    desc.bake_count = job->bakes.count;
+    return ag_renderer_create(job->device, job->session.scene, &desc, &job->renderer);
+}
+
+static enum ag_result render(struct job *job, const struct ag_camera *camera)
+{
+    enum ag_result result = AG_OK;
+    struct ag_frame_desc frame;
+    ag_frame_desc_default(&frame);
+    frame.camera = *camera;
+    for (int i = 0; i < FRAMES && result == AG_OK; i++)
+        result = ag_renderer_render(job->renderer, &frame);
+    return result;
+}
+
+static enum status take_technique(struct job *job, const struct ag_lightmap_desc *desc)
+{
+    struct ag_camera camera;
+    enum status status = session_camera(&job->session, 0.0, &camera);
+    if (status != DONE) return status;
+    session_say(&job->session);
+    status = bakes_prepare(&job->bakes, &job->session, gi_of(job->arguments));
+    if (status != DONE) return status;
+    enum ag_result result = create_renderer(job);
+    if (result == AG_OK) result = render(job, &camera);
+    if (result == AG_OK) result = ag_lightmap_from_renderer(job->renderer, desc, &job->lightmap);
+    return result == AG_OK ? DONE : fail_call(job, result);
+}
+
+// ---- results
+
+static enum status write_folder(struct job *job)
+{
+    enum status status = folder_begin(&job->folder);
+    if (status != DONE) return status;
+    interrupt_hold();
+    const enum ag_result result = ag_lightmap_write(job->lightmap, job->folder.beside.path);
+    interrupt_release();
+    return result == AG_OK ? folder_commit(&job->folder, MARK) : fail_call(job, result);
+}
+
+static enum status report(const struct job *job)
+{
+    struct ag_lightmap_info info;
+    ag_lightmap_get_info(job->lightmap, &info);
+    note("light map of %dx%d, %d texels in %d charts, %.3g texels per metre; written: %s",
+         info.width, info.height, info.texels, info.charts, (double)info.texels_per_m,
+         job->folder.shown);
+    if (!job->arguments->json) return DONE;
+    return json_print(json_pack("{s:o, s:[i, i], s:i, s:i, s:o, s:b}", "output",
+                                json_text(job->folder.shown), "size", info.width, info.height,
+                                "texels", info.texels, "charts", info.charts, "texels_per_m",
+                                json_double((double)info.texels_per_m), "back", info.has_back));
+}
+
+static enum status run(struct job *job)
+{
+    const struct arguments *a = job->arguments;
+    struct ag_lightmap_desc desc;
+    ag_lightmap_desc_default(&desc);
+    desc.indirect_only = a->indirect_only;
+    desc.denoise = a->denoise;
+    enum status status = check_usage(a);
+    if (status == DONE) status = folder_plan(&job->folder, a->lightmap, MARK, is_ours);
+    if (status == DONE) status = session_begin(&job->session, a);
+    if (status == DONE) status = session_load(&job->session, a->positional[0]);
+    if (status == DONE) status = check_scene(job);
+    if (status == DONE) status = session_light(&job->session);
+    if (status == DONE) status = a->has_spp ? take_paths(job, &desc) : take_technique(job, &desc);
+    if (status == DONE) status = write_folder(job);
+    return status == DONE ? report(job) : status;
+}
+
+enum status light_map_bake(const struct arguments *arguments)
+{
+    struct job *job = calloc(1, sizeof *job);
+    if (!job) return fail("cannot bake %s: out of memory", arguments->positional[0]);
+    job->arguments = arguments;
+    const enum status status = run(job);
+    ag_lightmap_destroy(job->lightmap);
+    ag_renderer_destroy(job->renderer);
+    ag_device_destroy(job->device);
+    bakes_finish(&job->bakes);
+    baking_end(&job->baking);
+    folder_abort(&job->folder);
+    session_end(&job->session);
+    free(job);
+    return status;
+}

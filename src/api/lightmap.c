@@ -1,0 +1,200 @@
+// Light maps: checks arguments and forwards to lightmap/ and the techniques.
+#include "api/bake_state.h"
+#include "api/renderer_state.h"
+
+#include "lightmap/denoise.h"
+#include "lightmap/write.h"
+#include "scene/statics.h"
+
+#include <string.h>
+
+struct ag_lightmap {
+    struct ag_context *context;
+    struct ag_scene *scene;
+    struct lightmap map;
+    struct lightmap_facts facts;
+    char *gi;
+};
+
+static struct ag_context *context_of(const struct ag_lightmap *l)
+{
+    return l ? l->context : NULL;
+}
+
+void ag_lightmap_desc_default(struct ag_lightmap_desc *desc)
+{
+    if (desc) *desc = (struct ag_lightmap_desc){ 0 };
+}
+
+// ---- creation
+
+static bool make_map(struct ag_lightmap *l, const struct gi_spec *spec, int term,
+                     const struct scene_pose *pose)
+{
+    struct host *host = &l->context->host;
+    struct scene_statics statics;
+    struct charts charts = { 0 };
+    if (!scene_statics_init(&statics, host, pose)) return false;
+    bool ok = spec->technique[term]->charts(&statics.pose, spec->options[term], host, &charts) &&
+              lightmap_init(&l->map, &charts, pose->scene);
+    scene_statics_finish(&statics);
+    l->gi = ok ? gi_spec_print(spec) : NULL;
+    l->facts.gi = l->gi;
+    return l->gi;
+}
+
+static enum ag_result begin(const char *function, struct ag_scene *scene,
+                            const struct ag_lightmap_desc *desc, struct ag_lightmap **out)
+{
+    struct ag_context *context = scene->context;
+    AG_REQUIRE_KNOWN(function, context, desc);
+    struct ag_lightmap *l = host_alloc(&context->host, 1, sizeof *l);
+    if (!l) return api_done(context, false);
+    l->context = context;
+    l->scene = scene;
+    l->facts.punctual = !desc->indirect_only;
+    scene->bakes++;
+    *out = l;
+    return AG_OK;
+}
+
+static enum ag_result done(struct ag_lightmap *l, const struct ag_lightmap_desc *desc, bool ok,
+                           struct ag_lightmap **out)
+{
+    ok = ok && (!desc->denoise || lightmap_denoise(&l->map));
+    const enum ag_result result = api_done(l->context, ok);
+    if (ok)
+        *out = l;
+    else
+        ag_lightmap_destroy(l);
+    return result;
+}
+
+enum ag_result ag_lightmap_from_bake(const struct ag_bake *bake,
+                                     const struct ag_lightmap_desc *desc, struct ag_lightmap **out)
+{
+    struct ag_context *context = bake ? bake->context : NULL;
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE(context, bake, "bake is NULL");
+    AG_REQUIRE(context, bake->lightmap_samples > 0,
+               "the bake is of a technique: set lightmap_samples");
+    AG_REQUIRE(context, bake_is_complete(bake->bake), "the bake is incomplete: run it first");
+    const struct ag_lightmap_desc fallback = { 0 };
+    struct ag_lightmap *l = NULL;
+    if (!desc) desc = &fallback;
+    const enum ag_result begun = begin(__func__, bake->scene, desc, &l);
+    if (begun != AG_OK) return begun;
+    l->facts.samples = bake->lightmap_samples;
+    const bool ok = make_map(l, &bake->spec, bake->term, &bake->pose) &&
+                    lightmap_set_paths(&l->map, bake_tensors(bake->bake), !desc->indirect_only);
+    return done(l, desc, ok, out);
+}
+
+// ---- of a renderer
+
+enum { CHANNELS = 4 };
+
+static bool download(struct ag_renderer *r, const struct lightmap *map, gpu_image image,
+                     float *pixels, struct lightmap_layers *out)
+{
+    struct gpu *gpu = r->device->gpu;
+    const size_t count = (size_t)map->charts.width * map->charts.height * CHANNELS;
+    *out = (struct lightmap_layers){ .scale = frame_radiance_scale(r->main.frame) };
+    for (int side = 0; side < (map->has_back ? 2 : 1); side++)
+        for (int c = 0; c < 3; c++) {
+            float *at = pixels + count * (size_t)(3 * side + c);
+            out->at[side][c] = at;
+            if (!gpu_image_download_float(gpu, image, 0, (uint32_t)(3 * side + c), at, CHANNELS,
+                                          count))
+                return false;
+        }
+    return true;
+}
+
+static bool has_size_of(const struct lightmap *map, const struct gpu_image_desc *size)
+{
+    return size->width == map->charts.width && size->height == map->charts.height;
+}
+
+static bool set_layers(struct ag_lightmap *l, struct ag_renderer *r, gpu_image image)
+{
+    struct host *host = &l->context->host;
+    struct lightmap_layers layers;
+    if (!has_size_of(&l->map, gpu_image_info(r->device->gpu, image)))
+        return host_fail(host, FAIL_ARGUMENT, "light map of %s: its static surfaces have changed",
+                         l->scene->scene->name);
+    const size_t texels = (size_t)l->map.charts.width * l->map.charts.height;
+    float *pixels = host_alloc(host, texels * 6, CHANNELS * sizeof *pixels);
+    const bool ok = pixels && download(r, &l->map, image, pixels, &layers) &&
+                    lightmap_set_layers(&l->map, &r->pose, &layers, l->facts.punctual);
+    host_free(host, pixels);
+    return ok;
+}
+
+enum ag_result ag_lightmap_from_renderer(struct ag_renderer *r, const struct ag_lightmap_desc *desc,
+                                         struct ag_lightmap **out)
+{
+    struct ag_context *context = renderer_context(r);
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE(context, r, "renderer is NULL");
+    AG_REQUIRE(context, r->main.rendered, "no frame has been rendered");
+    const struct ag_lightmap_desc fallback = { 0 };
+    struct ag_lightmap *l = NULL;
+    gpu_image image;
+    int term;
+    if (!desc) desc = &fallback;
+    if (!gi_light_map(r->gi, &term, &image)) return api_done(context, false);
+    enum ag_result result = ag_renderer_wait(r);
+    if (result == AG_OK) result = begin(__func__, r->scene, desc, &l);
+    if (result != AG_OK) return result;
+    return done(l, desc, make_map(l, &r->spec, term, &r->pose) && set_layers(l, r, image), out);
+}
+
+void ag_lightmap_destroy(struct ag_lightmap *l)
+{
+    if (!l) return;
+    lightmap_finish(&l->map);
+    host_free(&l->context->host, l->gi);
+    l->scene->bakes--;
+    host_free(&l->context->host, l);
+}
+
+// ---- results
+
+enum ag_result ag_lightmap_get_info(const struct ag_lightmap *l, struct ag_lightmap_info *out)
+{
+    struct ag_context *context = context_of(l);
+    AG_REQUIRE(context, l, "lightmap is NULL");
+    AG_REQUIRE_POINTER(context, out);
+    const struct charts *charts = &l->map.charts;
+    *out = (struct ag_lightmap_info){ .width = (int)charts->width,
+                                      .height = (int)charts->height,
+                                      .has_back = l->map.has_back,
+                                      .charts = (int)charts->count,
+                                      .texels = (int)charts->texel_count,
+                                      .texels_per_m = charts->texels_per_m };
+    return AG_OK;
+}
+
+enum ag_result ag_lightmap_read(const struct ag_lightmap *l, bool back, struct ag_image **out)
+{
+    struct ag_context *context = context_of(l);
+    AG_REQUIRE_OUT(context, out);
+    AG_REQUIRE(context, l, "lightmap is NULL");
+    AG_REQUIRE(context, !back || l->map.has_back, "no material is double-sided");
+    const struct image *map = &l->map.irradiance[back ? LIGHTMAP_BACK : LIGHTMAP_FRONT];
+    struct image copy = { 0 };
+    const bool ok = image_init(&copy, &context->host, map->width, map->height, map->channels);
+    if (ok)
+        memcpy(copy.pixels, map->pixels,
+               (size_t)map->width * (size_t)map->height * 3 * sizeof *copy.pixels);
+    return api_give_image(context, ok, &copy, out);
+}
+
+enum ag_result ag_lightmap_write(const struct ag_lightmap *l, const char *folder)
+{
+    struct ag_context *context = context_of(l);
+    AG_REQUIRE(context, l, "lightmap is NULL");
+    AG_REQUIRE(context, folder && folder[0], "folder is empty");
+    return api_done(context, lightmap_write(&l->map, l->scene->scene, &l->facts, folder));
+}

@@ -1,0 +1,145 @@
+// Light maps through the public interface: of a renderer's radiosity, and by paths.
+#include "api/renderer_fixture.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define SPEC "radiosity:texels=8192,rays=128"
+enum { SAMPLES = 64 };
+
+// Complete, of the fixture's scene. samples 0: of the technique.
+static struct ag_bake *bake_of(struct renderer_fixture *s, int samples)
+{
+    struct ag_bake *bake = NULL;
+    struct ag_bake_desc desc;
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = samples;
+    assert_int_equal(ag_bake_create(s->scene, SPEC, &desc, &bake), AG_OK);
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    return bake;
+}
+
+static void open_renderer(struct renderer_fixture *s)
+{
+    struct ag_renderer_desc desc = fixture_renderer_desc(SPEC);
+    struct ag_bake *bake = bake_of(s, 0);
+    const struct ag_bake *bakes[] = { bake };
+    desc.bakes = bakes;
+    desc.bake_count = 1;
+    assert_int_equal(ag_renderer_create(s->device, s->scene, &desc, &s->renderer), AG_OK);
+    ag_bake_destroy(bake);
+}
+
+static struct ag_image *map_of(struct ag_lightmap *lightmap)
+{
+    struct ag_image *image = NULL;
+    assert_int_equal(ag_lightmap_read(lightmap, false, &image), AG_OK);
+    ag_lightmap_destroy(lightmap);
+    return image;
+}
+
+static double mean_of(const struct ag_image *image)
+{
+    double sum = 0.0;
+    const size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++) sum += (double)image->pixels[i];
+    return sum / (double)count;
+}
+
+static struct ag_image *map_of_renderer(struct renderer_fixture *s, bool indirect_only)
+{
+    struct ag_lightmap_desc desc;
+    struct ag_lightmap *lightmap = NULL;
+    ag_lightmap_desc_default(&desc);
+    desc.indirect_only = indirect_only;
+    assert_int_equal(ag_lightmap_from_renderer(s->renderer, &desc, &lightmap), AG_OK);
+    return map_of(lightmap);
+}
+
+static struct ag_image *map_of_paths(struct ag_bake *bake, bool indirect_only)
+{
+    const struct ag_lightmap_desc desc = { .indirect_only = indirect_only };
+    struct ag_lightmap *lightmap = NULL;
+    assert_int_equal(ag_lightmap_from_bake(bake, &desc, &lightmap), AG_OK);
+    return map_of(lightmap);
+}
+
+TEST_GPU(maps_of_radiosity_and_of_paths_agree)
+{
+    (void)gpu;
+    struct renderer_fixture s = fixture_open(NULL, NULL);
+    open_renderer(&s);
+    for (int i = 0; i < 2; i++) assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    struct ag_bake *paths = bake_of(&s, SAMPLES);
+    double last = 0.0;
+    for (int direct = 0; direct < 2; direct++) {
+        struct ag_image *a = map_of_renderer(&s, !direct), *b = map_of_paths(paths, !direct);
+        assert_int_equal(a->width, b->width);
+        print_message("%s: %.1f and %.1f lx, mean difference %.3f\n", direct ? "all" : "indirect",
+                      mean_of(a), mean_of(b), fixture_difference(a, b));
+        CHECK_RELATIVE(mean_of(a), mean_of(b), 0.05);
+        CHECK(mean_of(a) > last);
+        last = mean_of(a);
+        ag_image_destroy(s.context, a);
+        ag_image_destroy(s.context, b);
+    }
+    ag_bake_destroy(paths);
+    ag_renderer_destroy(s.renderer);
+    s.renderer = NULL;
+    fixture_close(&s);
+}
+
+TEST_GPU(light_maps_are_of_techniques_that_have_one)
+{
+    (void)gpu;
+    struct renderer_fixture s = fixture_open("none", NULL);
+    struct ag_lightmap *lightmap = (struct ag_lightmap *)1;
+    assert_int_equal(ag_lightmap_from_renderer(s.renderer, NULL, &lightmap), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_renderer_render(s.renderer, &s.frame), AG_OK);
+    assert_int_equal(ag_lightmap_from_renderer(s.renderer, NULL, &lightmap), AG_ERROR_ARGUMENT);
+    CHECK(lightmap == NULL);
+    CHECK_STRING(ag_context_last_error(s.context), "light map: no technique of the stack has one");
+    fixture_close(&s);
+}
+
+TEST(light_map_functions_refuse_wrong_arguments)
+{
+    struct ag_context *context = fixture_context();
+    struct ag_scene *scene = NULL;
+    struct ag_bake *bake = NULL;
+    struct ag_bake_desc desc;
+    struct ag_lightmap *lightmap = NULL;
+    struct ag_lightmap_info info;
+    struct ag_image *image;
+    assert_int_equal(ag_scene_load(context, "@cornell", &scene), AG_OK);
+    ag_bake_desc_default(&desc);
+    desc.lightmap_samples = -1;
+    assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_ERROR_ARGUMENT);
+    desc.lightmap_samples = 1;
+    assert_int_equal(ag_bake_create(scene, "mrt", &desc, &bake), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_bake_create(scene, SPEC, &desc, &bake), AG_OK);
+    assert_int_equal(ag_lightmap_from_bake(bake, NULL, &lightmap), AG_ERROR_ARGUMENT);
+    CHECK(strstr(ag_context_last_error(context), "incomplete"));
+    assert_int_equal(ag_bake_run(bake, NULL, NULL), AG_OK);
+    struct ag_lightmap_desc unknown;
+    memset(&unknown, 0xff, sizeof unknown);
+    ag_lightmap_desc_default(&unknown);
+    unknown.reserved[7] = 1;
+    assert_int_equal(ag_lightmap_from_bake(bake, &unknown, &lightmap), AG_ERROR_ARGUMENT);
+    ag_lightmap_desc_default(NULL);
+    assert_int_equal(ag_lightmap_from_bake(NULL, NULL, &lightmap), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_from_renderer(NULL, NULL, &lightmap), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_from_bake(bake, NULL, &lightmap), AG_OK);
+    assert_int_equal(ag_lightmap_get_info(lightmap, &info), AG_OK);
+    CHECK(info.width > 0 && info.texels > 1000 && !info.has_back && info.texels_per_m > 0.0f);
+    assert_int_equal(ag_lightmap_get_info(NULL, &info), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_read(lightmap, true, &image), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_write(lightmap, ""), AG_ERROR_ARGUMENT);
+    assert_int_equal(ag_lightmap_write(lightmap, test_path("absent")), AG_ERROR_FILE);
+    ag_lightmap_destroy(lightmap);
+    ag_lightmap_destroy(NULL);
+    ag_bake_destroy(bake);
+    ag_scene_destroy(scene);
+    ag_context_destroy(context);
+}
