@@ -5,10 +5,11 @@
 
 #include "core/shared.h"
 
-#define MRT_LOCAL        64  // workgroup size over texels
-#define MRT_LOCAL_2D     8   // workgroup size over pixels, in x and y
-#define MRT_REDUCE_LOCAL 256 // workgroup size of sums over texels and over modes
-#define MRT_FACE_SAMPLES 32  // texels of a face of clutter that lights are computed at, at most
+#define MRT_LOCAL         64  // workgroup size over texels
+#define MRT_LOCAL_2D      8   // workgroup size over pixels, in x and y
+#define MRT_REDUCE_LOCAL  256 // workgroup size of sums over texels and over modes
+#define MRT_CLUTTER_LOCAL 64  // workgroup size of r and c of a level with clutter
+#define MRT_FACE_SAMPLES  32  // texels of a face of clutter that lights are computed at, at most
 
 // Specialization constants.
 #define MRT_CONSTANT_HALF    0 // operators are half floats, else floats
@@ -59,14 +60,9 @@ struct mrt_gpu_block {
 struct mrt_gpu_opening {
     uint32_t response; // first row of its response tables
     uint32_t first_pair, pairs;
-    uint32_t quads;  // of its coefficients; the others are 0
-    int32_t clutter; // which; −1: an opening
-    uint32_t first_face_pair, face_pairs;
-};
-
-// Faces that send light to an opening.
-struct mrt_gpu_face_pair {
-    uint32_t clutter, quads; // of their coefficients
+    uint32_t quads;                 // of its coefficients; the others are 0
+    int32_t clutter;                // which; −1: an opening
+    uint32_t first_sender, senders; // faces that send light to it
 };
 
 // Light of emissive surfaces (lux) and the sky (of radiance 1/π) at a probe: nine SH coefficients
@@ -91,9 +87,14 @@ struct mrt_gpu_border {
 
 // A face of clutter: one r-coefficient of an opening that is clutter.
 struct mrt_gpu_clutter_face {
-    uint32_t clutter, slot; // which of those openings, which coefficient
-    uint32_t first_texel, texels;
-    float per_m2; // 1 / area
+    uint32_t clutter, slot;         // which of those openings, which coefficient
+    uint32_t first_sample, samples; // of its group
+    vec3s emitted, sky;             // as of struct mrt_texel, times albedo: means over its texels
+};
+
+// Faces of a workgroup of MRT_LOCAL samples.
+struct mrt_gpu_clutter_group {
+    uint32_t first_face, faces;
 };
 
 // A texel where lights of a face of clutter are computed.
@@ -124,8 +125,16 @@ struct mrt_clutter_apply_push {
     uint32_t instances, moved; // moved: there are moves
 };
 
+// A texel of the light map of clutter, and whose light it has.
+struct mrt_gpu_clutter_place {
+    uint32_t x, y;
+    uint32_t light, texel; // of mrt_clutter_light, of the clutter's texels
+};
+
 struct mrt_clutter_fill_push {
-    uint32_t width, texels; // of the atlas
+    uint32_t places;
+    float emitted; // radiance scale; 0: emissive surfaces are no sources
+    vec3s sky;     // irradiance of a texel whose `sky` is 1
 };
 
 // Uniform block "mrt_level".
@@ -165,14 +174,15 @@ _Static_assert(sizeof(struct mrt_gpu_block) == 220, "layout is shared with GLSL"
 _Static_assert(sizeof(struct mrt_gpu_probe) == 144, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_outdoor_probe) == 148, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_opening) == 28, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_face_pair) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_gpu_clutter_face) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_face) == 40, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_group) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_gpu_clutter_place) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_sample) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_triangle) == 60, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_instance) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_move) == 48, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_apply_push) == 8, "layout is shared with GLSL");
-_Static_assert(sizeof(struct mrt_clutter_fill_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_clutter_fill_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_view_push) == 4, "layout is shared with GLSL");

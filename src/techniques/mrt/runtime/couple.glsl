@@ -8,7 +8,7 @@
 #include "techniques/mrt/runtime/operators.glsl"
 #include "techniques/mrt/runtime/reduce.glsl"
 
-layout(local_size_x = MRT_REDUCE_LOCAL) in;
+layout(local_size_x = MRT_LANES) in;
 
 layout(set = 0, binding = 3) readonly buffer mrt_sources
 {

@@ -7,6 +7,10 @@
 
 layout(local_size_x = MRT_LOCAL) in;
 
+layout(set = 0, binding = 6, scalar) writeonly buffer mrt_unbounced
+{
+    vec3 unbounced_table[]; // irradiance of emissive surfaces and the sky
+};
 layout(set = 0, binding = 7, scalar) writeonly buffer mrt_direct
 {
     vec3 direct_table[];
@@ -17,7 +21,7 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= level.texels) return;
     mrt_texel texel = texel_table[i];
-    vec3 unbounced = unbounced_of(texel), irradiance = unbounced;
+    vec3 unbounced = unbounced_of(texel.emitted, vec3(texel.sky)), irradiance = unbounced;
     add_lights(texel, irradiance);
     unbounced_table[i] = unbounced;
     direct_table[i] = texel.albedo * irradiance;

@@ -17,16 +17,12 @@ layout(set = 0, binding = 5, scalar) readonly buffer frame_lights
 {
     frame_light frame_light_table[];
 };
-layout(set = 0, binding = 6, scalar) writeonly buffer mrt_unbounced
-{
-    vec3 unbounced_table[]; // irradiance of emissive surfaces and the sky
-};
 const float PI = 3.14159265;
 
-vec3 unbounced_of(mrt_texel texel)
+// Light of emissive surfaces and the sky.
+vec3 unbounced_of(vec3 emitted, vec3 sky)
 {
-    vec3 unbounced = texel.emitted * (frame.radiance_scale * level.emitters);
-    return unbounced + PI * texel.sky * frame.sky;
+    return emitted * (frame.radiance_scale * level.emitters) + PI * sky * frame.sky;
 }
 
 void add_lights(mrt_texel texel, inout vec3 irradiance)

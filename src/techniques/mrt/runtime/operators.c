@@ -192,6 +192,25 @@ static bool upload_t_br(struct mrt_runtime *runtime, const struct mrt_runtime_in
     return words_upload(&w, runtime, "t_br", &runtime->buffers.t_br);
 }
 
+// ---- clutter
+
+// T_c→r and C_c, face after face of each opening.
+static bool upload_coupling(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
+{
+    struct words w;
+    uint32_t count = 0;
+    for (int i = 0; i < input->opening_count; i++) count += mrt_senders(input, i, NULL);
+    struct mrt_sender *senders = host_alloc(runtime->host, count, sizeof *senders);
+    bool ok = senders &&
+              words_init(&w, runtime->host, runtime->options.half, count, mrt_quads(input->k_r));
+    for (int i = 0; ok && i < input->opening_count; i++) {
+        const uint32_t of_opening = mrt_senders(input, i, senders);
+        for (uint32_t k = 0; k < of_opening; k++) put_row(&w, senders[k].of_c, 1, NULL, input->k_r);
+    }
+    host_free(runtime->host, senders);
+    return ok && words_upload(&w, runtime, "clutter_coupling", &runtime->clutter.coupling);
+}
+
 // ---- the light map of clutter
 
 static size_t rows_of_map(const struct mrt_clutter_rows_input *rows)
@@ -254,6 +273,7 @@ bool mrt_operators_upload(struct mrt_runtime *runtime, const struct mrt_runtime_
     if (ok && runtime->options.probes)
         ok = upload_u_b(runtime, input, &scales, PROBES, &runtime->probes.u_b) &&
              upload_u_r(runtime, input, PROBES, &runtime->probes.u_r);
+    if (ok && input->clutter) ok = upload_coupling(runtime, input);
     if (ok && input->clutter && input->clutter->map.count > 0)
         ok = upload_clutter_map(runtime, input, &scales);
     scales_finish(&scales, runtime->host);

@@ -4,13 +4,16 @@
 #ifndef AG_MRT_REDUCE_GLSL
 #define AG_MRT_REDUCE_GLSL
 
-shared vec4 partial_sums[3][MRT_REDUCE_LOCAL];
+#ifndef MRT_LANES
+#define MRT_LANES MRT_REDUCE_LOCAL
+#endif
+
+shared vec4 partial_sums[3][MRT_LANES];
 
 vec4 sum_of_stripes(uint colour, uint quad, uint quads)
 {
     vec4 sum = vec4(0.0);
-    for (uint i = quad; i < MRT_REDUCE_LOCAL / quads * quads; i += quads)
-        sum += partial_sums[colour][i];
+    for (uint i = quad; i < MRT_LANES / quads * quads; i += quads) sum += partial_sums[colour][i];
     return sum;
 }
 

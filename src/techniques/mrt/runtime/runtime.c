@@ -236,7 +236,7 @@ static uint64_t bytes_of_clutter(const struct mrt_runtime_size *size)
     if (!size->cluttered || size->tube) return 0;
     return number * (texels * k_b * (1 + values) + (texels * values + probes) * k_r + probes * k_b +
                      k_b * k_r) +
-           sizeof(float) * (3 * k_b * k_r + k_r * k_r + 5 * 3 * k_r);
+           number * k_r * k_r + sizeof(float) * (3 * k_b * k_r + 5 * 3 * k_r);
 }
 
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)

@@ -59,25 +59,26 @@ struct mrt_runtime_outdoors {
 struct mrt_runtime_clutter_map {
     gpu_buffer tiles, openings, u_b, u_r;     // as those of texels
     gpu_buffer light;                         // vec3 per texel and value
-    gpu_buffer sources;                       // per texel of the atlas: in `light`, in `unbounced`
+    gpu_buffer places;                        // texels of the atlas that have light
     gpu_buffer instances, numbers, triangles; // of the scene, of its triangles, of clutter
     gpu_image image;
     gpu_pipeline fill, apply;
     uint32_t tile_count, width, height, instance_count;
+    bool is_clear;                          // the others, of the image
+    struct mrt_clutter_fill_push fill_push; // of the newest direct light
     // [instance_count] of the frame, NULL: no instance has moved since. Of the caller.
     const struct mrt_gpu_clutter_move *moves;
 };
 
 // Without clutter all counts are 0 and the others are empty.
 struct mrt_runtime_clutter {
-    gpu_buffer texels, faces, samples, albedo, coupling, pairs; // tables
-    gpu_buffer unbounced;                                       // vec3 per texel: irradiance
+    gpu_buffer texels, groups, faces, samples, albedo, coupling, senders; // tables
     // Radiosity of direct light; of what is reflected of the newest bounce, [newest], and of the
     // one before: [clutter][colour][slot].
     gpu_buffer direct, reflected[2];
     int newest;
     gpu_pipeline light, couple;
-    uint32_t face_count, opening_count;
+    uint32_t group_count, opening_count;
     struct mrt_runtime_clutter_map map;
 };
 

@@ -105,7 +105,30 @@ uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening)
     if (input->openings[opening].face >= 0) return mrt_quads(input->k_r);
     for (int i = 0; i < input->clutter->face_count; i++)
         faces += input->clutter->faces[i].opening == opening;
-    return (faces + 3) / 4;
+    return faces > 0 ? (faces + 3) / 4 : 1;
+}
+
+static bool sends(const struct matrix_f32 *of_c, size_t face)
+{
+    for (size_t k = 0; k < of_c->columns; k++)
+        if (of_c->at[face * of_c->stride + k] != 0.0f) return true;
+    return false;
+}
+
+uint32_t mrt_senders(const struct mrt_runtime_input *input, int opening, struct mrt_sender *out)
+{
+    uint32_t count = 0;
+    for (int i = 0; input->clutter && i < input->clutter->pair_count; i++) {
+        const struct mrt_face_pair_input *pair = &input->clutter->pairs[i];
+        for (size_t f = 0; pair->opening == opening && f < pair->of_c.rows; f++) {
+            if (!sends(&pair->of_c, f)) continue;
+            if (out)
+                out[count] = (struct mrt_sender){ pair->source, (int)f,
+                                                  pair->of_c.at + f * pair->of_c.stride };
+            count++;
+        }
+    }
+    return count;
 }
 
 // Clutter is the last opening of its block.
@@ -144,7 +167,8 @@ static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_ru
                           void *items)
 {
     struct mrt_gpu_opening *openings = items;
-    int pair = 0, clutter = 0, face_pair = 0;
+    int pair = 0, clutter = 0;
+    uint32_t sender = 0;
     (void)runtime;
     for (int i = 0; i < input->opening_count; i++) {
         size_t response = 0;
@@ -157,11 +181,9 @@ static void fill_openings(const struct mrt_runtime *runtime, const struct mrt_ru
         if (input->openings[i].face < 0) openings[i].clutter = clutter++;
         while (pair < input->pair_count && input->pairs[pair].opening == i) pair++;
         openings[i].pairs = (uint32_t)pair - openings[i].first_pair;
-        openings[i].first_face_pair = (uint32_t)face_pair;
-        while (input->clutter && face_pair < input->clutter->pair_count &&
-               input->clutter->pairs[face_pair].opening == i)
-            face_pair++;
-        openings[i].face_pairs = (uint32_t)face_pair - openings[i].first_face_pair;
+        openings[i].first_sender = sender;
+        openings[i].senders = mrt_senders(input, i, NULL);
+        sender += openings[i].senders;
     }
 }
 

@@ -8,6 +8,14 @@
 bool mrt_tables_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input);
 // Of an opening's coefficients.
 uint32_t mrt_used_quads(const struct mrt_runtime_input *input, int opening);
+// A face of clutter that sends light to an opening.
+struct mrt_sender {
+    int block, slot;   // of the opening that is its clutter
+    const float *of_c; // [k_r]
+};
+// Writes them to `out` unless that is NULL; returns their number. Those that send none are left
+// out.
+uint32_t mrt_senders(const struct mrt_runtime_input *input, int opening, struct mrt_sender *out);
 // First texel of a block, those of its walls in ascending order; −1: no wall.
 int mrt_first_texel(const struct mrt_atlas *atlas, int block);
 enum { MRT_LOOKUP_CELLS = 32 }; // along the longest side of the level

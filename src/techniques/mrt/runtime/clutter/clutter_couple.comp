@@ -1,11 +1,11 @@
-// couple.comp of a level with clutter. The coefficients of an opening that is clutter are c, the
-// radiosity of its faces: of direct light, and of what they reflect of the irradiance E after the
-// bounce before. T_b→r gives E of this bounce by walls, to which faces add theirs, as they do to r
-// of openings (T_c→r).
+// couple.comp of a level with clutter: r = T_b→r b + T_c→r c. The coefficients of an opening that
+// is clutter are c, the radiosity of its faces: of direct light, and what they reflect of the
+// irradiance E after the bounce before. E of this bounce, C_b b + C_c c, is summed as r is.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#define MRT_LANES MRT_CLUTTER_LOCAL
 #include "techniques/mrt/runtime/couple.glsl"
 
 layout(set = 0, binding = 6, scalar) writeonly buffer mrt_r
@@ -20,13 +20,13 @@ layout(set = 0, binding = 8, scalar) readonly buffer mrt_clutter_albedo
 {
     vec4 albedo[]; // [clutter][colour][quad]
 };
-layout(set = 0, binding = 9, scalar) readonly buffer mrt_clutter_coupling
+layout(set = 0, binding = 9) readonly buffer mrt_clutter_coupling
 {
-    vec4 coupling[]; // [pair][face that sends][quad of the opening]
+    uint coupling[]; // [sender of an opening][k_r]
 };
-layout(set = 0, binding = 10, scalar) readonly buffer mrt_clutter_pairs
+layout(set = 0, binding = 10) readonly buffer mrt_clutter_senders
 {
-    mrt_gpu_face_pair pair_table[];
+    uint sender_table[]; // [sender of an opening]: its face in c_direct, of red
 };
 layout(set = 0, binding = 11, scalar) readonly buffer mrt_clutter_before
 {
@@ -37,23 +37,21 @@ layout(set = 0, binding = 12, scalar) writeonly buffer mrt_clutter_reflected
     vec4 reflected[]; // the same after this bounce: [clutter][colour][quad]
 };
 
-// c. Each reader computes it: that is cheaper than barriers around shared memory.
+// c. Each reader computes it: that is cheaper than a pass. Without feedback the last bounce, which
+// may be of no frame, does not count.
 float radiosity_of(uint at)
 {
-    // Without feedback the last bounce, which may be of no frame, does not count.
-    return level.feedback > 0.0 ? c_direct[at] + level.feedback * before[at] : c_direct[at];
+    float direct = c_direct[at], bounced = direct + level.feedback * before[at];
+    return level.feedback > 0.0 ? bounced : direct;
 }
 
-void add_faces(uint opening, uint quad, uint stripe, uint stripes, inout vec4 sum[3])
+void add_senders(uint opening, uint quad, uint stripe, uint stripes, inout vec4 sum[3])
 {
-    uint slots = 4u * QUADS_R, first = opening_table[opening].first_face_pair;
-    for (uint i = stripe; i < opening_table[opening].face_pairs * slots; i += stripes) {
-        mrt_gpu_face_pair from = pair_table[first + i / slots];
-        uint face = i % slots;
-        if (face >= 4u * from.quads) continue;
-        vec4 weights = coupling[(first * slots + i) * QUADS_R + quad];
-        for (uint c = 0u; c < 3u; c++)
-            sum[c] += weights * radiosity_of((from.clutter * 3u + c) * slots + face);
+    uint end = opening_table[opening].first_sender + opening_table[opening].senders;
+    for (uint i = opening_table[opening].first_sender + stripe; i < end; i += stripes) {
+        vec4 weights = MRT_QUAD(coupling, i * QUADS_R + quad);
+        uint at = sender_table[i];
+        for (uint c = 0u; c < 3u; c++) sum[c] += weights * radiosity_of(at + c * 4u * QUADS_R);
     }
 }
 
@@ -67,12 +65,12 @@ void main()
 {
     uint opening = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
     uint quads = opening_table[opening].quads;
-    uint quad = lane % quads, stripe = lane / quads, stripes = MRT_REDUCE_LOCAL / quads;
+    uint quad = lane % quads, stripe = lane / quads, stripes = MRT_LANES / quads;
     int clutter = opening_table[opening].clutter;
     vec4 sum[3] = { vec4(0.0), vec4(0.0), vec4(0.0) };
     if (stripe < stripes) {
         add_pairs(opening, quad, stripe, stripes, sum);
-        add_faces(opening, quad, stripe, stripes, sum);
+        add_senders(opening, quad, stripe, stripes, sum);
     }
     for (int i = 0; i < 3; i++) partial_sums[i][lane] = sum[i];
     barrier();

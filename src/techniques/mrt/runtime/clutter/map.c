@@ -10,6 +10,7 @@
 
 #include "technique_shaders.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { VALUES = MRT_VECTOR_COEFFICIENTS, VEC3_BYTES = 12 };
@@ -40,41 +41,77 @@ static void fill_tiles(const struct mrt_runtime_input *input, void *items)
     }
 }
 
+// Of an opening, up to the last coefficient that lights the clutter.
+static uint32_t quads_of(const struct matrix_f32 *u_r)
+{
+    size_t used = 0;
+    for (size_t r = 0; r < u_r->rows; r++)
+        for (size_t c = u_r->columns; c > used; c--)
+            if (u_r->at[r * u_r->stride + c - 1] != 0.0f) used = c;
+    return (uint32_t)(used + 3) / 4;
+}
+
 // Of blocks without clutter no tile reads them.
 static void fill_openings(const struct mrt_runtime_input *input, void *items)
 {
     const struct mrt_clutter_atlas_input *map = &input->clutter->map;
     struct mrt_gpu_opening *openings = items;
     uint32_t row = 0;
-    for (int i = 0, rows = 0; i < input->opening_count; i++) {
+    for (int i = 0, rows = 0, first = 0; i < input->opening_count; i++) {
         while (rows < map->count && map->rows[rows].block < input->openings[i].block) rows++;
         if (rows == map->count || map->rows[rows].block != input->openings[i].block) continue;
+        if (input->openings[first].block != input->openings[i].block) first = i;
         openings[i].response = row;
-        openings[i].quads = mrt_used_quads(input, i);
+        openings[i].quads = quads_of(&map->rows[rows].u_r[i - first]);
         row += (uint32_t)mrt_clutter_map_tiles((size_t)map->rows[rows].texel_count) * MRT_LOCAL;
     }
 }
 
-struct source {
-    uint32_t light, unbounced; // CHART_NONE: no surface
-};
-
-static void fill_sources(const struct mrt_runtime_input *input, void *items)
+// Where the light of a texel of the clutter is.
+static uint32_t light_of(const struct mrt_clutter_atlas_input *map, uint32_t texel)
 {
-    const struct mrt_clutter_atlas_input *map = &input->clutter->map;
-    struct source *sources = items;
-    for (size_t i = 0; i < (size_t)map->width * map->height; i++) {
-        const uint32_t texel = map->source[i];
-        uint32_t first = 0;
-        sources[i] = (struct source){ CHART_NONE, CHART_NONE };
-        for (int k = 0; texel != CHART_NONE && k < map->count; k++) {
-            const struct mrt_clutter_rows_input *rows = &map->rows[k];
-            const uint32_t local = texel - (uint32_t)rows->first_texel;
-            if (texel >= (uint32_t)rows->first_texel && local < (uint32_t)rows->texel_count)
-                sources[i] = (struct source){ first + local, texel };
-            first += (uint32_t)mrt_clutter_map_tiles((size_t)rows->texel_count) * MRT_LOCAL;
-        }
+    uint32_t first = 0;
+    for (int k = 0; k < map->count; k++) {
+        const struct mrt_clutter_rows_input *rows = &map->rows[k];
+        const uint32_t local = texel - (uint32_t)rows->first_texel;
+        if (texel >= (uint32_t)rows->first_texel && local < (uint32_t)rows->texel_count)
+            return first + local;
+        first += (uint32_t)mrt_clutter_map_tiles((size_t)rows->texel_count) * MRT_LOCAL;
     }
+    return CHART_NONE;
+}
+
+// A lookup reads the texels that the surface touches and the eight around each.
+static bool is_read(const struct charts *charts, uint32_t place)
+{
+    const uint32_t owner = charts->owner[place];
+    if (owner == CHART_NONE) return false;
+    const int x = (int)(place % charts->width) - (int)charts->texels[owner].x;
+    const int y = (int)(place / charts->width) - (int)charts->texels[owner].y;
+    return abs(x) <= 1 && abs(y) <= 1;
+}
+
+// Texels of the atlas that lookups read. `out` may be NULL.
+static uint32_t list_places(const struct mrt_clutter_atlas_input *map,
+                            struct mrt_gpu_clutter_place *out)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < map->width * map->height; i++) {
+        const uint32_t texel = map->source[i];
+        const bool read = texel != CHART_NONE && is_read(&map->clutter->charts, i);
+        const uint32_t light = read ? light_of(map, texel) : CHART_NONE;
+        if (light == CHART_NONE) continue;
+        if (out)
+            out[count] =
+                (struct mrt_gpu_clutter_place){ i % map->width, i / map->width, light, texel };
+        count++;
+    }
+    return count;
+}
+
+static void fill_places(const struct mrt_runtime_input *input, void *items)
+{
+    list_places(&input->clutter->map, items);
 }
 
 // Triangles of the scene, instance after instance.
@@ -151,12 +188,13 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
     map->width = from->width;
     map->height = from->height;
     map->instance_count = (uint32_t)instances;
+    map->fill_push.places = list_places(from, NULL);
     return mrt_table_upload(runtime, input, "clutter_tiles", tiles, sizeof(struct mrt_gpu_tile),
                             fill_tiles, &map->tiles) &&
            mrt_table_upload(runtime, input, "clutter_map_openings", (size_t)input->opening_count,
                             sizeof(struct mrt_gpu_opening), fill_openings, &map->openings) &&
-           mrt_table_upload(runtime, input, "clutter_sources", (size_t)from->width * from->height,
-                            sizeof(struct source), fill_sources, &map->sources) &&
+           mrt_table_upload(runtime, input, "clutter_places", map->fill_push.places,
+                            sizeof(struct mrt_gpu_clutter_place), fill_places, &map->places) &&
            mrt_table_upload(runtime, input, "clutter_instances", instances,
                             sizeof(struct mrt_gpu_clutter_instance), fill_instances,
                             &map->instances) &&
@@ -177,9 +215,8 @@ bool mrt_clutter_map_upload(struct mrt_runtime *runtime, const struct mrt_runtim
 void mrt_clutter_map_end(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
-    gpu_buffer *const buffers[] = { &m->tiles,     &m->openings, &m->u_b,
-                                    &m->u_r,       &m->light,    &m->sources,
-                                    &m->instances, &m->numbers,  &m->triangles };
+    gpu_buffer *const buffers[] = { &m->tiles,  &m->openings,  &m->u_b,     &m->u_r,      &m->light,
+                                    &m->places, &m->instances, &m->numbers, &m->triangles };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_image_destroy(runtime->gpu, &m->image);
@@ -191,12 +228,13 @@ void mrt_clutter_map_end(struct mrt_runtime *runtime)
 
 void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 {
-    const struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
+    struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
     if (m->tile_count == 0) return;
-    const struct mrt_clutter_fill_push push = { m->width, m->width * m->height };
     struct mrt_level_params level = runtime->level;
     level.texels_of_tile = MRT_LOCAL;
     gpu_scope_begin(cmd, "clutter_map");
+    if (!m->is_clear) gpu_clear_image(cmd, m->image, (const float[4]){ 0.0f });
+    m->is_clear = true;
     gpu_dispatch(cmd, runtime->pipelines.reconstruct_vector,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &level, sizeof level),
                           { .name = "mrt_tiles", .buffer = m->tiles },
@@ -209,11 +247,12 @@ void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
                           { .name = "mrt_irradiance", .buffer = m->light }),
                  NULL, 0, 1, m->tile_count, 1);
     gpu_dispatch(cmd, m->fill,
-                 GPU_BIND({ .name = "mrt_clutter_sources", .buffer = m->sources },
+                 GPU_BIND({ .name = "mrt_clutter_places", .buffer = m->places },
                           { .name = "mrt_clutter_light", .buffer = m->light },
-                          { .name = "mrt_unbounced", .buffer = runtime->clutter.unbounced },
+                          { .name = "mrt_texels", .buffer = runtime->clutter.texels },
                           { .name = "clutter_map", .image = m->image }),
-                 &push, sizeof push, gpu_groups(push.texels, MRT_LOCAL), 1, 1);
+                 &m->fill_push, sizeof m->fill_push, gpu_groups(m->fill_push.places, MRT_LOCAL), 1,
+                 1);
     gpu_scope_end(cmd);
 }
 
