@@ -1,6 +1,8 @@
 // Bases, responses, openings and pairs of blocks with clutter.
 #include "techniques/mrt/runtime/clutter/cluttered.h"
 
+#include "techniques/mrt/runtime/clutter/face_order.h"
+
 #include <string.h>
 
 // Rays of a texel that find clutter beyond openings: all texels of a block make a few coefficients.
@@ -487,10 +489,9 @@ bool mrt_cluttered_init(struct mrt_cluttered *out, struct host *host, struct mrt
     host_free(host, s.l_imp);
     host_free(host, s.sources);
     ok = ok && (!options->gather || mrt_mapped_place(&out->mapped, clutter));
-    if (ok)
-        finish_input(out, turned, clutter, texels);
-    else
-        mrt_cluttered_finish(out);
+    if (ok) finish_input(out, turned, clutter, texels);
+    ok = ok && mrt_order_faces(out);
+    if (!ok) mrt_cluttered_finish(out);
     return ok;
 }
 
