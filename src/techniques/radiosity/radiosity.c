@@ -44,7 +44,7 @@ static bool make_buffers(struct radiosity *s)
 {
     enum { VEC3_BYTES = 12, VEC4_BYTES = 16 };
     struct radiosity_buffers *b = &s->buffers;
-    const size_t texels = s->map.texel_count, nodes = s->map.tree.count;
+    const size_t texels = s->map.texel_count, nodes = s->map.tree.count, groups = s->groups;
     const struct {
         const char *name;
         size_t bytes;
@@ -53,8 +53,9 @@ static bool make_buffers(struct radiosity *s)
         { "flux", texels * VEC3_BYTES, &b->flux },
         { "light", texels * 3 * VEC4_BYTES, &b->light },
         { "sent", nodes * VEC3_BYTES, &b->sent },
-        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[0] },
-        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[1] },
+        { "group_sent", groups * VEC3_BYTES, &b->group_sent },
+        { "radiosity", groups * VEC3_BYTES, &b->radiosity[0] },
+        { "radiosity", groups * VEC3_BYTES, &b->radiosity[1] },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         const struct gpu_buffer_desc desc = { rows[i].name, rows[i].bytes, GPU_BUFFER_STORAGE };
@@ -92,8 +93,10 @@ static bool make_pipelines(struct radiosity *s)
     } rows[] = {
         { "direct", &shader_radiosity_direct_comp, &p->direct },
         { "clusters", &shader_radiosity_clusters_comp, &p->clusters },
-        { "nodes", &shader_radiosity_nodes_comp, &p->nodes },
+        { "groups", &shader_radiosity_groups_comp, &p->groups },
         { "solve", &shader_radiosity_solve_comp, &p->solve },
+        { "reflect", &shader_radiosity_reflect_comp, &p->reflect },
+        { "nodes", &shader_radiosity_nodes_comp, &p->nodes },
         { "gather", &shader_radiosity_gather_comp, &p->gather },
         { "map", &shader_radiosity_map_comp, &p->map },
         { "seams", &shader_radiosity_seams_comp, &p->seams },
@@ -176,12 +179,12 @@ static gpu_image light_map(void *state)
 static void destroy_buffers(struct radiosity *s)
 {
     struct radiosity_buffers *b = &s->buffers;
-    gpu_buffer *const buffers[] = { &b->texels,         &b->factors,      &b->clusters,
-                                    &b->members,        &b->nodes,        &b->owners,
-                                    &b->instances,      &b->triangles,    &b->places,
-                                    &b->seams,          &b->flux,         &b->light,
-                                    &b->sent,           &b->radiosity[0], &b->radiosity[1],
-                                    &b->cluster_factors };
+    gpu_buffer *const buffers[] = {
+        &b->texels, &b->factors,   &b->clusters,      &b->members,      &b->nodes,
+        &b->owners, &b->instances, &b->triangles,     &b->places,       &b->seams,
+        &b->flux,   &b->light,     &b->sent,          &b->radiosity[0], &b->radiosity[1],
+        &b->groups, &b->group_of,  &b->group_factors, &b->group_sent
+    };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(s->gpu, buffers[i]);
     gpu_image_destroy(s->gpu, &b->light_map);
@@ -192,8 +195,9 @@ static void destroy(void *state)
     struct radiosity *s = state;
     if (!s->host) return;
     struct radiosity_pipelines *p = &s->pipelines;
-    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve,
-                                        &p->gather, &p->map,      &p->seams, &p->apply };
+    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->groups, &p->reflect,
+                                        &p->nodes,  &p->solve,    &p->gather, &p->map,
+                                        &p->seams,  &p->apply };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     destroy_buffers(s);
@@ -216,7 +220,8 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     (void)width;
     (void)height;
     return texels * (sizeof(struct radiosity_gpu_texel) + 8 * sources + 12 + 48 + 4) +
-           clusters * (sizeof(struct radiosity_gpu_cluster) + 8 * sources + 8 + 6 * 12) +
+           clusters * (sizeof(struct radiosity_gpu_cluster) + sizeof(struct radiosity_gpu_group) +
+                       4 * sources + 12 + 5 * 12) +
            (uint64_t)o->texels * (4 + 8 * RADIOSITY_LAYERS);
 }
 
