@@ -1,5 +1,6 @@
 // A vertex at the border of charts has coordinates in each of them: the first stay at the vertex,
-// others get copies of it after all vertices.
+// others get copies of it after all vertices. Attributes of primitives without divided vertices are
+// kept.
 #include "lightmap/attach.h"
 
 #include <stdio.h>
@@ -14,10 +15,12 @@ struct variant {
 struct unwrapped {
     struct host *host;
     const uint32_t *source;   // of a mesh's vertex; NULL: itself
-    uint32_t given;           // vertices before
-    struct variant *variants; // [given + 3 triangles] first one of each vertex, then copies
+    uint32_t total;           // vertices before
+    bool changed;             // vertices are others than before
+    struct variant *variants; // [total + 3 triangles] first one of each vertex, then copies
     uint32_t count;
-    bool *used;        // [given]
+    bool *used;        // [total] it has coordinates
+    bool *kept;        // [total] a corner is there
     uint32_t *indices; // [3 triangles]
 };
 
@@ -82,10 +85,32 @@ static void unwrap_corner(const struct attaching *a, struct unwrapped *u, const 
 {
     const uint32_t v = mesh->indices[corner], vertex = u->source ? u->source[v] : v;
     u->indices[corner] = vertex;
+    u->kept[vertex] = true;
     if (chart_triangle == CHART_NONE) return;
     const vec2s place = a->charts->triangles[chart_triangle].place[corner % 3];
     const vec2s uv = { { place.x / (float)a->charts->width, place.y / (float)a->charts->height } };
     u->indices[corner] = variant_of(u, vertex, uv);
+}
+
+// Primitives may share one large vertex buffer, which is not copied for each of them: where at most
+// half of it is used, only those vertices stay.
+static bool drop_unused(struct unwrapped *u, uint32_t index_count)
+{
+    uint32_t kept = 0, next = 0;
+    for (uint32_t v = 0; v < u->total; v++) kept += u->kept[v];
+    if (2 * (uint64_t)kept > u->total) return true;
+    uint32_t *place = host_alloc(u->host, u->count, sizeof *place);
+    if (!place) return false;
+    for (uint32_t v = 0; v < u->count; v++) {
+        place[v] = next;
+        if (v < u->total && !u->kept[v]) continue;
+        u->variants[next++] = u->variants[v];
+    }
+    for (uint32_t i = 0; i < index_count; i++) u->indices[i] = place[u->indices[i]];
+    u->changed = true;
+    u->count = next;
+    host_free(u->host, place);
+    return true;
 }
 
 static bool unwrap(const struct attaching *a, int instance, struct unwrapped *u)
@@ -94,22 +119,26 @@ static bool unwrap(const struct attaching *a, int instance, struct unwrapped *u)
     const bool of_file = a->doc->of_file && mesh->source;
     *u = (struct unwrapped){ .host = a->charts->host,
                              .source = of_file ? mesh->source : NULL,
-                             .given = of_file ? mesh->source_count : mesh->vertex_count };
-    const size_t most = (size_t)u->given + mesh->index_count;
+                             .total = of_file ? mesh->source_count : mesh->vertex_count };
+    const size_t most = (size_t)u->total + mesh->index_count;
     u->variants = host_alloc(u->host, most, sizeof *u->variants);
-    u->used = host_alloc(u->host, u->given, sizeof *u->used);
+    u->used = host_alloc(u->host, u->total, sizeof *u->used);
+    u->kept = host_alloc(u->host, u->total, sizeof *u->kept);
     u->indices = host_alloc(u->host, mesh->index_count, sizeof *u->indices);
-    if (!u->variants || !u->used || !u->indices) return false;
-    u->count = u->given;
+    if (!u->variants || !u->used || !u->kept || !u->indices) return false;
+    for (uint32_t v = 0; v < u->total; v++) u->variants[v].vertex = v;
+    u->count = u->total;
     for (uint32_t i = 0; i < mesh->index_count; i++)
         unwrap_corner(a, u, mesh, a->chart_triangle[a->triangle_0[instance] + i / 3], i);
-    return true;
+    u->changed = u->count > u->total;
+    return drop_unused(u, mesh->index_count);
 }
 
 static void unwrapped_finish(struct unwrapped *u)
 {
     host_free(u->host, u->variants);
     host_free(u->host, u->used);
+    host_free(u->host, u->kept);
     host_free(u->host, u->indices);
 }
 
@@ -187,8 +216,8 @@ static void set_coordinates(struct gltf_doc *doc, json_t *primitive, const struc
     gltf_doc_set(doc, extras, LIGHTMAP_EXTRAS, json_pack("{s:i}", "texCoord", set));
 }
 
-static bool extend(struct gltf_doc *doc, json_t *attributes, const struct unwrapped *u,
-                   const uint32_t *more)
+static bool gather(struct gltf_doc *doc, json_t *attributes, const struct unwrapped *u,
+                   const uint32_t *source)
 {
     const char *name;
     json_t *value;
@@ -196,28 +225,27 @@ static bool extend(struct gltf_doc *doc, json_t *attributes, const struct unwrap
     json_object_foreach_safe(attributes, next, name, value)
     {
         size_t added;
-        if (!gltf_doc_extend_accessor(doc, (size_t)json_integer_value(value), u->given, more,
-                                      u->count - u->given, &added))
+        if (!gltf_doc_gather_accessor(doc, (size_t)json_integer_value(value), u->total, source,
+                                      u->count, &added))
             return false;
         gltf_doc_set(doc, attributes, name, json_integer((json_int_t)added));
     }
     return true;
 }
 
-// All attributes, also of morph targets, get the copies, and triangles their indices.
-static bool divide_vertices(struct gltf_doc *doc, json_t *primitive, const struct unwrapped *u,
-                            uint32_t index_count)
+// All attributes, also of morph targets, get the vertices, and triangles their indices.
+static bool replace_vertices(struct gltf_doc *doc, json_t *primitive, const struct unwrapped *u,
+                             uint32_t index_count)
 {
-    const uint32_t copies = u->count - u->given;
-    uint32_t *more = host_alloc(doc->host, copies, sizeof *more);
-    if (!more) return false;
-    for (uint32_t i = 0; i < copies; i++) more[i] = u->variants[u->given + i].vertex;
-    bool ok = extend(doc, json_object_get(primitive, "attributes"), u, more);
+    uint32_t *source = host_alloc(doc->host, u->count, sizeof *source);
+    if (!source) return false;
+    for (uint32_t i = 0; i < u->count; i++) source[i] = u->variants[i].vertex;
+    bool ok = gather(doc, json_object_get(primitive, "attributes"), u, source);
     size_t i;
     json_t *target;
     json_array_foreach(json_object_get(primitive, "targets"), i, target) ok =
-        ok && extend(doc, target, u, more);
-    host_free(doc->host, more);
+        ok && gather(doc, target, u, source);
+    host_free(doc->host, source);
     json_object_del(primitive, "mode"); // strips and fans become triangles
     gltf_doc_set(doc, primitive, "indices",
                  json_integer((json_int_t)gltf_doc_add_accessor(doc, u->indices, GLTF_UINT,
@@ -243,9 +271,9 @@ static bool attach_instance(const struct attaching *a, int instance)
     bool ok = unwrap(a, instance, &u);
     if (ok) {
         drop_compression(primitive);
-        if (u.count > u.given)
-            ok =
-                divide_vertices(doc, primitive, &u, scene_mesh_of(a->scene, instance)->index_count);
+        if (u.changed)
+            ok = replace_vertices(doc, primitive, &u,
+                                  scene_mesh_of(a->scene, instance)->index_count);
         if (ok) set_coordinates(doc, primitive, &u);
     }
     unwrapped_finish(&u);

@@ -231,6 +231,33 @@ TEST(coordinates_do_not_replace_a_set_that_a_texture_uses)
     gltf_doc_finish(&doc);
 }
 
+// One triangle of a vertex buffer that other primitives may share.
+TEST(vertices_that_a_primitive_does_not_use_are_not_copied)
+{
+    char json[4096];
+    snprintf(json, sizeof json, "%s", SHEET("{'doubleSided':true}"));
+    char *count = strstr(json, "'count':12");
+    memcpy(count, "'count':3 ", 10);
+    struct scene *scene = load_sheet(json);
+    struct gltf_doc doc;
+    bool same;
+    CHECK(gltf_doc_of_file(&doc, test_host(), scene, &same) && same);
+    attach(&doc, scene);
+    const json_t *primitive = primitive_of(&doc, 0);
+    const json_t *accessor =
+        json_array_get(gltf_doc_array(&doc, "accessors"),
+                       index_of(json_object_get(primitive, "attributes"), "POSITION"));
+    assert_int_equal(index_of(accessor, "count"), 3);
+    CHECK(json_number_value(json_array_get(json_object_get(accessor, "max"), 1)) == 1.0);
+    CHECK(json_number_value(json_array_get(json_object_get(accessor, "max"), 2)) == 0.0);
+    CHECK(mark_at(&doc, primitive, 2) == 13); // vertices 0, 1 and 3
+    struct scene *copy = written(&doc);
+    check_same(scene, copy);
+    scene_destroy(copy);
+    scene_destroy(scene);
+    gltf_doc_finish(&doc);
+}
+
 TEST(files_that_have_changed_since_are_not_copied)
 {
     struct scene *scene = load_sheet(SHEET("{}"));

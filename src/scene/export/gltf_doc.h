@@ -50,9 +50,10 @@ json_t *gltf_doc_floats(const float *values, size_t count);
 enum gltf_component { GLTF_USHORT = 5123, GLTF_UINT = 5125, GLTF_FLOAT = 5126 };
 size_t gltf_doc_add_view(struct gltf_doc *doc, const void *data, size_t size);
 // type: "SCALAR", "VEC2", …
-// A copy of an accessor with elements added: copies of the elements `more`, after all others. False
-// (host_fail) where its elements are not in the buffer, or their number is not `count`.
-bool gltf_doc_extend_accessor(struct gltf_doc *doc, size_t accessor, size_t count,
-                              const uint32_t *more, size_t more_count, size_t *out);
+// A new accessor whose element i is element source[i] of a given one of `given` elements, with its
+// range where that states one. False (host_fail) where the elements are not in the buffer, or their
+// number is another one.
+bool gltf_doc_gather_accessor(struct gltf_doc *doc, size_t accessor, size_t given,
+                              const uint32_t *source, size_t count, size_t *out);
 size_t gltf_doc_add_accessor(struct gltf_doc *doc, const void *data, enum gltf_component component,
                              const char *type, size_t count);

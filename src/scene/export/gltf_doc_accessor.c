@@ -7,7 +7,7 @@ struct elements {
     struct gltf_doc *doc;
     json_t *json; // of the accessor
     size_t size, count;
-    uint8_t *bytes; // [count + more] tight
+    uint8_t *bytes; // [count] tight
 };
 
 static size_t number(const json_t *object, const char *key, size_t fallback)
@@ -89,48 +89,114 @@ static bool read_sparse(struct elements *e)
     return true;
 }
 
+// ---- the new accessor
+
+static double component_at(const uint8_t *bytes, size_t type)
+{
+    int16_t s = 0;
+    uint16_t us = 0;
+    uint32_t u = 0;
+    float f = 0.0f;
+    switch (type) {
+    case 5120:
+        return (double)(int8_t)bytes[0];
+    case 5121:
+        return (double)bytes[0];
+    case 5122:
+        memcpy(&s, bytes, sizeof s);
+        return (double)s;
+    case 5123:
+        memcpy(&us, bytes, sizeof us);
+        return (double)us;
+    case 5125:
+        memcpy(&u, bytes, sizeof u);
+        return (double)u;
+    default:
+        memcpy(&f, bytes, sizeof f);
+        return (double)f;
+    }
+}
+
+// The least or the largest value of each component.
+static void set_range(struct elements *e, json_t *accessor, const char *key, bool largest)
+{
+    const size_t type = number(accessor, "componentType", 0);
+    const size_t size = type < 5122 ? 1 : type < 5125 ? 2 : 4;
+    json_t *range = json_array();
+    for (size_t at = 0; at < e->size; at += size) {
+        double value = component_at(e->bytes + at, type);
+        for (size_t i = 1; i < e->count; i++) {
+            const double other = component_at(e->bytes + i * e->size + at, type);
+            if (largest ? other > value : other < value) value = other;
+        }
+        json_t *json = type == 5126 ? json_real(value) : json_integer((json_int_t)value);
+        if (json_array_append_new(range, json) != 0) e->doc->failed = true;
+    }
+    gltf_doc_set(e->doc, accessor, key, range);
+}
+
 // Elements of vertex attributes begin at multiples of 4 bytes.
-static size_t add_elements(struct elements *e, size_t count)
+static size_t add_view(struct elements *e)
 {
     struct gltf_doc *doc = e->doc;
     const size_t stride = (e->size + 3) & ~(size_t)3;
-    uint8_t *padded = host_alloc(doc->host, count, stride);
+    uint8_t *padded = host_alloc(doc->host, e->count, stride);
     if (!padded) {
         doc->failed = true;
         return 0;
     }
-    for (size_t i = 0; i < count; i++) memcpy(padded + i * stride, e->bytes + i * e->size, e->size);
-    const size_t view = gltf_doc_add_view(doc, padded, count * stride);
+    for (size_t i = 0; i < e->count; i++)
+        memcpy(padded + i * stride, e->bytes + i * e->size, e->size);
+    const size_t view = gltf_doc_add_view(doc, padded, e->count * stride);
     if (stride != e->size)
         gltf_doc_set(doc, json_array_get(gltf_doc_array(doc, "bufferViews"), view), "byteStride",
                      json_integer((json_int_t)stride));
     host_free(doc->host, padded);
+    return view;
+}
+
+static size_t add_elements(struct elements *e)
+{
+    struct gltf_doc *doc = e->doc;
+    const size_t view = add_view(e);
     json_t *copy = json_deep_copy(e->json);
     json_object_del(copy, "sparse");
     json_object_del(copy, "byteOffset");
     gltf_doc_set(doc, copy, "bufferView", json_integer((json_int_t)view));
-    gltf_doc_set(doc, copy, "count", json_integer((json_int_t)count));
+    gltf_doc_set(doc, copy, "count", json_integer((json_int_t)e->count));
+    if (json_object_get(copy, "min")) set_range(e, copy, "min", false);
+    if (json_object_get(copy, "max")) set_range(e, copy, "max", true);
     return gltf_doc_add(doc, "accessors", copy);
 }
 
-bool gltf_doc_extend_accessor(struct gltf_doc *doc, size_t accessor, size_t count,
-                              const uint32_t *more, size_t more_count, size_t *out)
+static bool take_elements(struct elements *e, const uint32_t *source, size_t count)
+{
+    uint8_t *taken = host_alloc(e->doc->host, count, e->size);
+    if (!taken) return false;
+    for (size_t i = 0; i < count; i++)
+        memcpy(taken + i * e->size, e->bytes + source[i] * e->size, e->size);
+    host_free(e->doc->host, e->bytes);
+    e->bytes = taken;
+    e->count = count;
+    return true;
+}
+
+bool gltf_doc_gather_accessor(struct gltf_doc *doc, size_t accessor, size_t given,
+                              const uint32_t *source, size_t count, size_t *out)
 {
     struct elements e = { .doc = doc,
                           .json = json_array_get(gltf_doc_array(doc, "accessors"), accessor),
-                          .count = count };
+                          .count = given };
     e.size = element_size(e.json);
-    e.bytes = host_alloc(doc->host, count + more_count, e.size);
+    e.bytes = host_alloc(doc->host, given, e.size);
     if (!e.bytes) return false;
-    const bool ok =
-        e.size > 0 && number(e.json, "count", 0) == count && read_base(&e) && read_sparse(&e);
-    if (ok) {
-        for (size_t i = 0; i < more_count; i++)
-            memcpy(e.bytes + (count + i) * e.size, e.bytes + more[i] * e.size, e.size);
-        *out = add_elements(&e, count + more_count);
-    }
+    const bool found =
+        e.size > 0 && number(e.json, "count", 0) == given && read_base(&e) && read_sparse(&e);
+    const bool ok = found && take_elements(&e, source, count);
+    if (ok) *out = add_elements(&e);
     host_free(doc->host, e.bytes);
-    return ok || host_fail(doc->host, FAIL_FORMAT,
-                           "glTF: accessor %zu has not %zu elements inside of the buffer", accessor,
-                           count);
+    return found ? ok
+                 : host_fail(doc->host, FAIL_FORMAT,
+                             "glTF: accessor %zu has not %zu elements inside of the buffer",
+                             accessor, given);
 }
