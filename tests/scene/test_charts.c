@@ -443,10 +443,112 @@ TEST(chosen_triangles_alone_have_charts)
     bool *chosen = host_alloc(test_host(), count, sizeof *chosen);
     struct charts charts;
     for (size_t i = count / 2; i < count; i++) chosen[i] = true;
-    const struct charts_options options = { 16.0f, 1u << 20, chosen, 0 };
+    const struct charts_options options = { .texels_per_m = 16.0f,
+                                            .max_texels = 1u << 20,
+                                            .chosen = chosen };
     CHECK(charts_init(&charts, test_host(), &pose, &options));
     CHECK(charts.triangle_count == count - count / 2);
     charts_finish(&charts);
     host_free(test_host(), chosen);
     close_scene(scene, &pose);
+}
+
+// ---- spots
+
+// Laws that spots keep; their texels have no extent.
+static void check_spots(const struct charts *charts)
+{
+    double area = 0.0, expected = 0.0;
+    check_rectangles_are_apart(charts);
+    check_lookups_stay_in_the_chart(charts);
+    for (uint32_t i = 0; i < charts->texel_count; i++) area += (double)charts->texels[i].area_m2;
+    for (uint32_t c = 0; c < charts->count; c++) {
+        const struct chart *chart = &charts->charts[c];
+        for (uint32_t i = 0; i < chart->triangle_count; i++)
+            expected += (double)charts->triangles[chart->first_triangle + i].area_m2;
+        CHECK(!chart->spot || (chart->width == 3 && chart->height == 3 && chart->texel_count == 1));
+    }
+    CHECK_RELATIVE(area, expected, 1e-3);
+}
+
+enum { TILES = 6 };
+
+static void add_quad(vec3s *positions, uint32_t *indices, uint32_t quad, vec3s corner, vec3s a,
+                     vec3s b)
+{
+    static const uint32_t order[6] = { 0, 1, 2, 0, 2, 3 };
+    vec3s *at = &positions[4 * quad];
+    at[0] = corner;
+    at[1] = glms_vec3_add(corner, a);
+    at[2] = glms_vec3_add(at[1], b);
+    at[3] = glms_vec3_add(corner, b);
+    for (int k = 0; k < 6; k++) indices[6 * quad + (uint32_t)k] = 4 * quad + order[k];
+}
+
+// Tiles of 5 cm in a row, inside of one texel; a wall of 5 cm between the halves of the row.
+static struct scene *tiles(bool wall)
+{
+    vec3s positions[4 * (TILES + 2)];
+    uint32_t indices[6 * (TILES + 2)];
+    for (uint32_t i = 0; i < TILES; i++)
+        add_quad(positions, indices, i, vec3_of(0.05f + 0.16f * (float)i, 0, 0.5f),
+                 vec3_of(0, 0, 0.05f), vec3_of(0.05f, 0, 0));
+    for (uint32_t i = 0; i < 2; i++)
+        add_quad(positions, indices, TILES + i, vec3_of(i ? 0.475f : 0.425f, -1, -2),
+                 i ? vec3_of(0, 4, 0) : vec3_of(0, 0, 4), i ? vec3_of(0, 0, 4) : vec3_of(0, 4, 0));
+    const uint32_t quads = TILES + (wall ? 2u : 0u);
+    const struct mesh mesh = { .vertex_count = 4 * quads,
+                               .index_count = 6 * quads,
+                               .positions = positions,
+                               .indices = indices,
+                               .material = -1 };
+    return scene_of(&mesh, 1);
+}
+
+static uint32_t spots_of_tiles(bool wall, enum charts_join join)
+{
+    struct scene *scene = tiles(wall);
+    struct scene_pose pose;
+    struct charts charts;
+    const struct charts_options options = { .texels_per_m = 1.0f,
+                                            .max_texels = 1u << 20,
+                                            .join = join };
+    CHECK(pose_init(&pose, scene, -1, 0.0f));
+    CHECK(charts_init(&charts, test_host(), &pose, &options));
+    check_each_triangle_is_in_one_chart(&charts, &pose);
+    check_spots(&charts);
+    uint32_t spots = 0;
+    for (uint32_t c = 0; c < charts.count; c++) spots += charts.charts[c].spot;
+    charts_finish(&charts);
+    close_scene(scene, &pose);
+    return spots;
+}
+
+TEST(small_charts_that_see_each_other_share_a_texel)
+{
+    CHECK(spots_of_tiles(false, CHARTS_APART) == 0);
+    CHECK(spots_of_tiles(false, CHARTS_JOINED) == 1);
+    CHECK(spots_of_tiles(true, CHARTS_JOINED) == 2);
+}
+
+TEST(instances_share_texels_only_where_wanted)
+{
+    static const struct {
+        enum charts_join join;
+        bool fewer;
+    } cases[] = { { CHARTS_JOINED, false }, { CHARTS_JOINED_ACROSS, true } };
+    for (int i = 0; i < 2; i++) {
+        struct scene *scene = two_quads(0.5f, 0.0f, 4);
+        struct scene_pose pose;
+        struct charts charts;
+        const struct charts_options options = { .texels_per_m = 0.05f,
+                                                .max_texels = 1u << 20,
+                                                .join = cases[i].join };
+        CHECK(pose_init(&pose, scene, -1, 0.0f));
+        CHECK(charts_init(&charts, test_host(), &pose, &options));
+        check_spots(&charts);
+        CHECK((charts.count < 4) == cases[i].fewer);
+        charts_finish(&charts);
+        close_scene(scene, &pose);
+    }
 }

@@ -1,6 +1,7 @@
 // From a pose to charts: triangles, growth at a density, packing; again at a lower density where
 // the atlas has too many texels.
 #include "scene/charts/grow.h"
+#include "scene/charts/join.h"
 #include "scene/charts/pack.h"
 #include "scene/charts/texels.h"
 
@@ -20,6 +21,21 @@ static double first_density(const struct surface *surface, const struct charts_o
     return fmin(density, 16.0 * most / surface->edges_m);
 }
 
+static uint32_t gutter_of(bool spot)
+{
+    return spot ? CHART_SPOT_GUTTER : CHART_GUTTER;
+}
+
+static void place_triangle(struct chart_triangle *out, const struct chart *chart,
+                           double place[3][2])
+{
+    for (int k = 0; k < 3; k++) {
+        const double x = chart->spot ? 0.5 : place[k][0], y = chart->spot ? 0.5 : place[k][1];
+        out->place[k].x = (float)(x + gutter_of(chart->spot) + chart->x);
+        out->place[k].y = (float)(y + gutter_of(chart->spot) + chart->y);
+    }
+}
+
 static void take_triangle(struct charts *out, const struct surface *surface,
                           const struct grown *grown, uint32_t at)
 {
@@ -32,13 +48,10 @@ static void take_triangle(struct charts *out, const struct surface *surface,
                                    .normal = from->normal,
                                    .area_m2 = from->area_m2 };
     struct chart *chart = &out->charts[to->chart];
-    chart->instance = from->instance;
+    if (at == chart->first_triangle) chart->instance = from->instance;
     chart->area_m2 += from->area_m2;
     memcpy(to->corner, from->corner, sizeof to->corner);
-    for (int k = 0; k < 3; k++) {
-        to->place[k].x = (float)(grown->place[source][k][0] + CHART_GUTTER + chart->x);
-        to->place[k].y = (float)(grown->place[source][k][1] + CHART_GUTTER + chart->y);
-    }
+    place_triangle(to, chart, grown->place[source]);
 }
 
 static bool start_charts(struct charts *out, const struct grown *grown)
@@ -48,12 +61,16 @@ static bool start_charts(struct charts *out, const struct grown *grown)
     if (!out->charts) return false;
     for (uint32_t i = 0; i < grown->count; i++) {
         const struct grown_chart *from = &grown->charts[i];
+        const uint32_t gutters = 2 * gutter_of(from->spot);
+        const uint32_t width = from->spot ? 0 : (uint32_t)from->width;
+        const uint32_t height = from->spot ? 0 : (uint32_t)from->height;
         // One texel more: places become floats after they were packed.
         out->charts[i] = (struct chart){ .unwrapped = from->unwrapped,
+                                         .spot = from->spot,
                                          .first_triangle = from->first_triangle,
                                          .triangle_count = from->triangle_count,
-                                         .width = (uint32_t)from->width + 1 + 2 * CHART_GUTTER,
-                                         .height = (uint32_t)from->height + 1 + 2 * CHART_GUTTER,
+                                         .width = width + 1 + gutters,
+                                         .height = height + 1 + gutters,
                                          .normal = from->normal };
     }
     return true;
@@ -71,13 +88,15 @@ static bool finish_charts(struct charts *out, const struct surface *surface,
 
 // *packed: false where the density is too high.
 static bool try_density(struct charts *out, const struct surface *surface, double density,
-                        uint32_t max_texels, bool *packed)
+                        const struct charts_options *options, bool *packed)
 {
     struct grown grown = { 0 };
     *packed = false;
     out->texels_per_m = (float)density;
-    bool ok = grow_charts(&grown, out->host, surface, density) && start_charts(out, &grown) &&
-              pack_charts(out, max_texels, packed);
+    bool ok = grow_charts(&grown, out->host, surface, density);
+    if (ok && options->join != CHARTS_APART)
+        ok = join_spots(&grown, surface, density, options->join == CHARTS_JOINED_ACROSS);
+    ok = ok && start_charts(out, &grown) && pack_charts(out, options->max_texels, packed);
     if (ok && *packed) ok = finish_charts(out, surface, &grown);
     grown_finish(&grown);
     return ok;
@@ -101,7 +120,7 @@ static bool find_density(struct charts *out, const struct scene_pose *pose,
     double density = first_density(surface, options);
     for (int i = 0; i < DENSITY_TRIES && density > 0.0; i++) {
         bool packed;
-        if (!try_density(out, surface, density, options->max_texels, &packed)) return false;
+        if (!try_density(out, surface, density, options, &packed)) return false;
         if (packed) return true;
         const double texels = (double)out->width * (double)out->height;
         const double ratio = sqrt((double)options->max_texels / fmax(texels, 1.0));

@@ -5,16 +5,27 @@
 //
 // A chart's rectangle has a gutter of CHART_GUTTER texels around the texels that its surface
 // touches; rectangles do not overlap. Coordinates in the atlas are in texels, centres at ½.
+//
+// Charts that would fit in a texel may be joined to spots: one texel at whose centre all corners
+// are, with a gutter of one texel.
 #pragma once
 
 #include "scene/pose.h"
 
-enum { CHART_GUTTER = 2, CHART_MAX_SIDE = 16384 };
+enum { CHART_GUTTER = 2, CHART_SPOT_GUTTER = 1, CHART_MAX_SIDE = 16384 };
 #define CHART_NONE UINT32_MAX
 
 // Normals within a chart of clusters differ from its plane's by at most acos of this. Lengths are
 // therefore shortened, and areas, by at most this factor.
 #define CHART_MIN_COSINE 0.75f
+
+// Which charts that fit in a texel share one. They see each other, within a texel's length, and
+// face one way.
+enum charts_join {
+    CHARTS_APART,         // none; there are no spots
+    CHARTS_JOINED,        // those of an instance
+    CHARTS_JOINED_ACROSS, // those of all instances, if all or none are double-sided
+};
 
 struct charts_options {
     float texels_per_m;  // wanted; the density is lowered until the atlas fits
@@ -23,11 +34,13 @@ struct charts_options {
     const bool *chosen;
     // Of the surface, wanted: its area is so many texels. Charts touch more. 0: no wish.
     uint32_t surface_texels;
+    enum charts_join join;
 };
 
 struct chart {
-    int instance;
+    int instance;   // of a spot: of its first triangle
     bool unwrapped; // an island of TEXCOORD_1
+    bool spot;
     uint32_t first_triangle, triangle_count;
     uint32_t first_texel, texel_count;
     uint32_t x, y, width, height; // gutters included

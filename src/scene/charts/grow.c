@@ -290,6 +290,9 @@ static bool unwrapped_frame(struct growth *growth, uint32_t seed, struct frame *
 
 // ---- charts
 
+// Of coordinates, which are sums of products: a chart that begins at −ROUNDING begins at 0.
+static const double ROUNDING = 1e-6;
+
 // Moves the least coordinates to 0: the second pass may have taken more or fewer triangles.
 static void close_chart(struct growth *growth, uint32_t first, const struct frame *frame)
 {
@@ -297,11 +300,13 @@ static void close_chart(struct growth *growth, uint32_t first, const struct fram
     double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
     for (uint32_t i = 0; i < 6 * growth->queued; i++) {
         const double at = out->place[growth->queue[i / 6]][i / 2 % 3][i % 2];
-        low[i % 2] = fmin(low[i % 2], floor(at));
+        low[i % 2] = fmin(low[i % 2], floor(at + ROUNDING));
         high[i % 2] = fmax(high[i % 2], at);
     }
-    for (uint32_t i = 0; i < 6 * growth->queued; i++)
-        out->place[growth->queue[i / 6]][i / 2 % 3][i % 2] -= low[i % 2];
+    for (uint32_t i = 0; i < 6 * growth->queued; i++) {
+        double *at = &out->place[growth->queue[i / 6]][i / 2 % 3][i % 2];
+        *at = fmax(*at - low[i % 2], 0.0);
+    }
     for (uint32_t i = 0; i < growth->queued; i++) {
         out->order[first + i] = growth->queue[i];
         out->chart_of[growth->queue[i]] = out->count;

@@ -46,6 +46,8 @@ static void add_triangle(struct surface *out, const struct scene_pose *pose, int
     struct surface_triangle *t = &out->triangles[out->count];
     *t = (struct surface_triangle){ .instance = instance,
                                     .triangle = triangle,
+                                    .double_sided =
+                                        pose->scene->materials[mesh->material].double_sided,
                                     .unwrapped = unwrapped,
                                     .neighbor = { CHART_NONE, CHART_NONE, CHART_NONE } };
     for (uint32_t k = 0; k < 3; k++) {

@@ -9,6 +9,7 @@ struct surface_triangle {
     vec3s corner[3];
     vec3s normal; // unit, of the front
     float area_m2;
+    bool double_sided;
     bool unwrapped; // uv is TEXCOORD_1, and edges connect where that is equal
     vec2s uv[3];
     uint32_t neighbor[3]; // across the edge from corner k to k + 1; CHART_NONE: none

@@ -73,6 +73,32 @@ static void add_triangle(const struct charts *charts, uint32_t triangle, struct 
     }
 }
 
+// All of a spot is in one texel, whose triangle is the largest.
+static void add_spot(const struct charts *charts, struct cells *cells)
+{
+    const struct chart *chart = cells->chart;
+    struct cell *cell = &cells->at[CHART_SPOT_GUTTER * (chart->width + 1)];
+    for (uint32_t i = 0; i < chart->triangle_count; i++) {
+        const uint32_t t = chart->first_triangle + i;
+        const double area = (double)charts->triangles[t].area_m2;
+        cell->area_m2 += area;
+        if (!(area > cell->largest)) continue;
+        cell->largest = area;
+        cell->triangle = t;
+    }
+}
+
+static void add_chart(const struct charts *charts, struct cells *cells)
+{
+    const struct chart *chart = cells->chart;
+    if (chart->spot) {
+        add_spot(charts, cells);
+        return;
+    }
+    for (uint32_t t = 0; t < chart->triangle_count; t++)
+        add_triangle(charts, chart->first_triangle + t, cells);
+}
+
 // Barycentric weights of a place in the triangle; rounding may leave it by a little.
 static void weigh(const struct chart_triangle *t, const double at[2], double weight[3])
 {
@@ -93,9 +119,9 @@ static struct chart_texel texel_of(const struct charts *charts, const struct cel
                                    uint32_t y)
 {
     const struct chart_triangle *t = &charts->triangles[cell->triangle];
-    double weight[3];
+    double weight[3] = { 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0 };
     struct chart_texel texel = { .x = x, .y = y, .triangle = cell->triangle };
-    weigh(t, cell->middle, weight);
+    if (!charts->charts[t->chart].spot) weigh(t, cell->middle, weight);
     texel.u = (float)weight[1];
     texel.v = (float)weight[2];
     texel.area_m2 = (float)cell->area_m2;
@@ -169,8 +195,7 @@ bool make_chart_texels(struct charts *charts)
             struct chart *chart = &charts->charts[i];
             memset(cells, 0, (size_t)chart->width * chart->height * sizeof *cells);
             struct cells grid = { chart, cells };
-            for (uint32_t t = 0; t < chart->triangle_count; t++)
-                add_triangle(charts, chart->first_triangle + t, &grid);
+            add_chart(charts, &grid);
             emit(charts, chart, cells, own);
         }
     }
