@@ -149,7 +149,23 @@ static bool index_triangles(struct radiosity_map *map, const struct scene *scene
 
 // Charts of a surface in many small parts touch several times as many texels as its area has. The
 // atlas has room for the gutters of those.
-enum { DENSITY_TRIES = 4, ATLAS_ROOM = 64, MOST_ATLAS = 1 << 28 };
+enum { DENSITY_TRIES = 5, ATLAS_ROOM = 64, MOST_ATLAS = 1 << 28 };
+
+// What may bring the number of texels nearer to the wanted one. False: nothing.
+static bool want_fewer(struct charts_options *how, uint32_t texels, const struct charts *charts)
+{
+    // Each small part of a surface has a texel at any density: the others keep a quarter of them.
+    const uint32_t least = texels / 4;
+    if (charts->texel_count <= texels + texels / 8) return false;
+    if (how->surface_texels > least) {
+        const double surface = (double)how->surface_texels * texels / charts->texel_count;
+        how->surface_texels = surface > least ? (uint32_t)surface : least;
+        return true;
+    }
+    if (how->join == CHARTS_JOINED_ACROSS) return false;
+    how->join = CHARTS_JOINED_ACROSS;
+    return true;
+}
 
 bool radiosity_charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                            const struct radiosity_options *options)
@@ -159,12 +175,11 @@ bool radiosity_charts_init(struct charts *out, struct host *host, const struct s
                                   .max_texels = texels < MOST_ATLAS / ATLAS_ROOM
                                                     ? texels * ATLAS_ROOM
                                                     : MOST_ATLAS,
-                                  .surface_texels = texels };
+                                  .surface_texels = texels,
+                                  .join = CHARTS_JOINED };
     for (int i = 0; i < DENSITY_TRIES; i++) {
         if (!charts_init(out, host, pose, &how)) return false;
-        const uint32_t touched = out->texel_count;
-        if (touched <= texels + texels / 8 || how.surface_texels < 2) return true;
-        how.surface_texels = (uint32_t)((double)how.surface_texels * texels / touched);
+        if (!want_fewer(&how, texels, out)) return true;
         if (i + 1 < DENSITY_TRIES) charts_finish(out);
     }
     return true;

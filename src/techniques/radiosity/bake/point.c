@@ -46,23 +46,55 @@ static vec3s point_of(const struct chart_triangle *t, float u, float v)
     return glms_vec3_muladds(t->corner[2], v, p);
 }
 
-struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene, uint32_t texel)
+// The share of points that are open; the first of them becomes the sample.
+struct search {
+    int tried, open;
+    struct radiosity_point point;
+};
+
+static void try_point(const struct radiosity_scene *scene, uint32_t texel, vec3s at,
+                      struct search *search)
+{
+    search->tried++;
+    if (radiosity_is_inside(scene, texel, at)) return;
+    if (search->open++ == 0) search->point.position = at;
+}
+
+// A spot has no extent in the atlas: the middles of its triangles.
+static void search_spot(const struct radiosity_scene *scene, uint32_t texel,
+                        const struct chart *chart, struct search *search)
+{
+    const uint32_t step = 1 + chart->triangle_count / (ACROSS * ACROSS);
+    for (uint32_t i = 0; i < chart->triangle_count; i += step)
+        try_point(scene, texel,
+                  point_of(&scene->map.charts.triangles[chart->first_triangle + i], 1.0f / 3.0f,
+                           1.0f / 3.0f),
+                  search);
+}
+
+static void search_square(const struct radiosity_scene *scene, uint32_t texel,
+                          const struct chart_triangle *of, struct search *search)
 {
     const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
-    const struct chart_triangle *of = &scene->map.charts.triangles[t->triangle];
-    struct radiosity_point point = { t->position, 1.0f };
-    if (!radiosity_is_inside(scene, texel, t->position)) return point;
-    int tried = 1, open = 0;
     for (int i = 0; i < ACROSS * ACROSS; i++) {
         const float x = (float)t->x + ((float)(i % ACROSS) + 0.5f) / ACROSS;
         const float y = (float)t->y + ((float)(i / ACROSS) + 0.5f) / ACROSS;
         float u, v;
-        if (!radiosity_weigh(of, x, y, &u, &v)) continue;
-        const vec3s at = point_of(of, u, v);
-        tried++;
-        if (radiosity_is_inside(scene, texel, at)) continue;
-        if (open++ == 0) point.position = at;
+        if (radiosity_weigh(of, x, y, &u, &v)) try_point(scene, texel, point_of(of, u, v), search);
     }
-    point.share = (float)open / (float)tried;
-    return point;
+}
+
+struct radiosity_point radiosity_find_point(const struct radiosity_scene *scene, uint32_t texel)
+{
+    const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
+    const struct chart_triangle *of = &scene->map.charts.triangles[t->triangle];
+    const struct chart *chart = &scene->map.charts.charts[of->chart];
+    struct search search = { .tried = 1, .point = { t->position, 1.0f } };
+    if (!radiosity_is_inside(scene, texel, t->position)) return search.point;
+    if (chart->spot)
+        search_spot(scene, texel, chart, &search);
+    else
+        search_square(scene, texel, of, &search);
+    search.point.share = (float)search.open / (float)search.tried;
+    return search.point;
 }

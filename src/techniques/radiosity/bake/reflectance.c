@@ -19,30 +19,55 @@ bool radiosity_weigh(const struct chart_triangle *t, float x, float y, float *u,
     return *u >= 0.0f && *v >= 0.0f && *u + *v <= 1.0f;
 }
 
+static vec3s reflectance_at(const struct radiosity_scene *scene, const struct chart_triangle *of,
+                            vec3s normal, float u, float v)
+{
+    const struct ray_hit hit = { .distance = 1.0f,
+                                 .geometry = scene->mesh_of[of->instance],
+                                 .triangle = of->triangle,
+                                 .u = u,
+                                 .v = v };
+    vec3s at = glms_vec3_scale(of->corner[0], 1.0f - u - v);
+    at = glms_vec3_muladds(of->corner[1], u, at);
+    at = glms_vec3_muladds(of->corner[2], v, at);
+    const struct ray ray = { glms_vec3_add(at, normal), glms_vec3_negate(normal), 0.0f, INFINITY };
+    struct surface surface;
+    surface_at(scene->trace, &ray, &hit, NULL, &surface);
+    return surface_reflectance(&surface);
+}
+
+// The mean of the middles of its triangles by area.
+static vec3s reflectance_of_spot(const struct radiosity_scene *scene, const struct chart *chart,
+                                 vec3s normal)
+{
+    vec3s sum = vec3_of(0, 0, 0);
+    for (uint32_t i = 0; i < chart->triangle_count; i++) {
+        const struct chart_triangle *t = &scene->map.charts.triangles[chart->first_triangle + i];
+        sum = glms_vec3_muladds(reflectance_at(scene, t, normal, 1.0f / 3.0f, 1.0f / 3.0f),
+                                t->area_m2, sum);
+    }
+    return glms_vec3_divs(sum, chart->area_m2);
+}
+
 vec3s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel)
 {
     const struct chart_texel *t = radiosity_chart_texel(&scene->map, texel);
     const struct chart_triangle *of = &scene->map.charts.triangles[t->triangle];
+    const struct chart *chart = &scene->map.charts.charts[of->chart];
     const vec3s normal = scene->map.texels[texel].normal;
-    const uint32_t mesh = scene->mesh_of[of->instance];
-    const int across =
-        scene->trace->meshes[mesh].material->mapped || scene->trace->meshes[mesh].mesh->colors
-            ? POINTS_ACROSS
-            : 1;
+    const struct trace_mesh *mesh = &scene->trace->meshes[scene->mesh_of[of->instance]];
+    const int across = mesh->material->mapped || mesh->mesh->colors ? POINTS_ACROSS : 1;
     vec3s sum = vec3_of(0, 0, 0);
+    if (chart->spot) return reflectance_of_spot(scene, chart, normal);
     for (int i = 0; i < across * across; i++) {
-        struct ray_hit hit = { .distance = 1.0f, .geometry = mesh, .triangle = of->triangle };
         const float x = ((float)(i % across) + 0.5f) / (float)across;
         const float y = ((float)(i / across) + 0.5f) / (float)across;
-        if (!radiosity_weigh(of, (float)t->x + x, (float)t->y + y, &hit.u, &hit.v)) {
-            hit.u = t->u;
-            hit.v = t->v;
+        float u, v;
+        if (!radiosity_weigh(of, (float)t->x + x, (float)t->y + y, &u, &v)) {
+            u = t->u;
+            v = t->v;
         }
-        const struct ray ray = { glms_vec3_add(t->position, normal), glms_vec3_negate(normal), 0.0f,
-                                 INFINITY };
-        struct surface surface;
-        surface_at(scene->trace, &ray, &hit, NULL, &surface);
-        sum = glms_vec3_add(sum, surface_reflectance(&surface));
+        sum = glms_vec3_add(sum, reflectance_at(scene, of, normal, u, v));
     }
     return glms_vec3_divs(sum, (float)(across * across));
 }
