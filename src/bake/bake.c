@@ -31,6 +31,8 @@ struct bake *bake_create(struct host *host, const struct bake_identity *identity
 void bake_destroy(struct bake *bake)
 {
     if (!bake) return;
+    const struct bake_job *job = &bake->plan.job;
+    if (job->destroy) job->destroy(job->job);
     results_free(bake);
     safetensors_finish(bake->host, &bake->file);
     host_free(bake->host, bake->plan.stages);

@@ -72,6 +72,9 @@ struct bake_job {
     void *job;
     bool (*prepare)(void *job, struct host *host);
     void (*finish)(void *job);
+    // What planning and preparing leave for a next run: called once, when the plan ends; may be
+    // NULL.
+    void (*destroy)(void *job);
     size_t bytes; // of memory that `prepare` takes, for the estimate
 };
 void bake_plan_set_job(struct bake_plan *plan, const struct bake_job *job);

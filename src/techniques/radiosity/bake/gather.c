@@ -12,12 +12,14 @@
 enum { RAYS_PER_LIGHT_SAMPLE = 4 };
 
 bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
-                          const struct scene_pose *pose, const struct radiosity_options *options)
+                          const struct scene_pose *pose, const struct radiosity_options *options,
+                          struct radiosity_map *map)
 {
     const size_t instances = (size_t)pose->scene->instance_count;
-    *scene = (struct radiosity_scene){ .host = host, .options = *options };
-    if (!scene_statics_init(&scene->statics, host, pose) ||
-        !radiosity_map_init(&scene->map, host, &scene->statics.pose, options))
+    *scene = (struct radiosity_scene){ .host = host, .options = *options, .map = *map };
+    *map = (struct radiosity_map){ 0 };
+    if (!scene_statics_init(&scene->statics, host, pose)) return false;
+    if (!scene->map.host && !radiosity_map_init(&scene->map, host, &scene->statics.pose, options))
         return false;
     scene->trace = trace_scene_create(host, &scene->statics.pose);
     scene->mesh_of = host_alloc(host, instances, sizeof *scene->mesh_of);

@@ -17,8 +17,10 @@ struct radiosity_scene {
     uint8_t *part;     // [texels]
     bool *is_group;    // [nodes] clusters of it see each other
 };
+// map: taken over, without parts; zero: it is made.
 bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
-                          const struct scene_pose *pose, const struct radiosity_options *options);
+                          const struct scene_pose *pose, const struct radiosity_options *options,
+                          struct radiosity_map *map);
 void radiosity_scene_finish(struct radiosity_scene *scene);
 
 // Irradiance on the texel, and the integral of radiance times direction over its hemisphere (the

@@ -14,6 +14,7 @@ enum { TEXELS_PER_TASK = 128, CLUSTERS_PER_TASK = 64 };
 struct job {
     struct radiosity_scene scene;
     struct radiosity_closing closing;
+    struct radiosity_map map; // before the first run and between runs: without parts
     const struct scene_pose *pose;
     struct radiosity_options options;
 };
@@ -21,7 +22,7 @@ struct job {
 static bool prepare(void *argument, struct host *host)
 {
     struct job *job = argument;
-    return radiosity_scene_init(&job->scene, host, job->pose, &job->options) &&
+    return radiosity_scene_init(&job->scene, host, job->pose, &job->options, &job->map) &&
            radiosity_closing_init(&job->closing, &job->scene);
 }
 
@@ -29,7 +30,16 @@ static void finish(void *argument)
 {
     struct job *job = argument;
     radiosity_closing_finish(&job->closing);
+    job->map = job->scene.map;
+    job->scene.map = (struct radiosity_map){ 0 };
     radiosity_scene_finish(&job->scene);
+    if (job->map.host && !radiosity_map_divide(&job->map, NULL)) radiosity_map_finish(&job->map);
+}
+
+static void destroy(void *argument)
+{
+    struct job *job = argument;
+    radiosity_map_finish(&job->map);
 }
 
 // Room of a task: factors of all clusters, and one row.
@@ -257,16 +267,17 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
 {
     bake_plan_depends(plan, scene_key(statics, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
     // The size of the tensors is that of the charts: clusters are not divided yet.
-    struct radiosity_map map;
-    if (!radiosity_map_init(&map, bake_plan_host(plan), statics, &job->options)) return false;
-    const uint64_t texels = radiosity_rows(map.texel_count);
-    const uint64_t clusters = radiosity_cluster_rows(&map);
+    struct radiosity_map *map = &job->map;
+    if (!radiosity_map_init(map, bake_plan_host(plan), statics, &job->options)) return false;
+    bake_plan_set_job(
+        plan,
+        &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish, .destroy = destroy });
+    const uint64_t texels = radiosity_rows(map->texel_count);
+    const uint64_t clusters = radiosity_cluster_rows(map);
     struct radiosity_seams seams;
-    const bool ok = radiosity_seams_init(&seams, &map, RADIOSITY_SEAM_POINTS);
+    const bool ok = radiosity_seams_init(&seams, map, RADIOSITY_SEAM_POINTS);
     const uint32_t places = seams.count;
     radiosity_seams_finish(&seams);
-    radiosity_map_finish(&map);
-    bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
     return ok && add_texels(plan, job, texels, clusters) && add_clusters(plan, job, clusters) &&
            radiosity_add_seams(plan, &job->closing, places);
 }
