@@ -109,9 +109,7 @@ static enum status estimate(struct baking *b)
     enum ag_result result = ag_bake_estimate(b->bake, false, &needs);
     // Refused before the probe, which takes memory too.
     if (result == AG_OK && mib > 0 && needs.peak_memory_bytes > (uint64_t)mib << 20)
-        return fail("cannot bake %s: it needs about %.0f MiB, more than --max-memory %lld; choose "
-                    "smaller options or fewer threads",
-                    b->technique, (double)needs.peak_memory_bytes / 1048576.0, mib);
+        return fail_bake(b, ag_bake_run(b->bake, NULL, NULL));
     if (result == AG_OK) result = ag_bake_estimate(b->bake, true, &needs);
     if (result != AG_OK) return fail_bake(b, result);
     b->estimate_seconds = needs.seconds;

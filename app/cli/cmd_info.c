@@ -11,11 +11,29 @@ static const char *const light_types[] = {
     [AG_LIGHT_SUN] = "sun", [AG_LIGHT_POINT] = "point", [AG_LIGHT_SPOT] = "spot"
 };
 
+// Which technique's light map is counted.
+#define LIGHT_MAP_GI "radiosity"
+
 struct facts {
     const char *scene;
     struct ag_scene_info info;
     struct defaults defaults;
+    struct ag_bake_estimate light_map; // of radiosity at its defaults; 0 texels: none
 };
+
+// Charts are made of the geometry alone: nothing is baked.
+static void find_light_map(struct session *session, double time_s, struct ag_bake_estimate *out)
+{
+    struct ag_bake_desc desc;
+    struct ag_bake *bake = NULL;
+    ag_bake_desc_default(&desc);
+    desc.animation = session->animation;
+    desc.time_s = time_s;
+    *out = (struct ag_bake_estimate){ 0 };
+    if (ag_bake_create(session->scene, LIGHT_MAP_GI, &desc, &bake) == AG_OK)
+        ag_bake_estimate(bake, false, out);
+    ag_bake_destroy(bake);
+}
 
 // ---- JSON
 
@@ -102,11 +120,20 @@ static json_t *bounds_json(const struct ag_scene_info *info)
                      json_floats(info->bounds_max, 3));
 }
 
+static json_t *light_map_json(const struct ag_bake_estimate *map)
+{
+    if (map->charts == 0) return json_null();
+    return json_pack("{s:s, s:f, s:I, s:o}", "technique", LIGHT_MAP_GI, "texels", map->texels,
+                     "charts", (json_int_t)map->charts, "texels_per_m",
+                     json_float(map->texels_per_m));
+}
+
 static enum status info_json(struct session *session, const struct facts *facts)
 {
     const struct ag_scene_info *i = &facts->info;
     return json_print(json_pack(
-        "{s:o, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, s:o, s:o, s:o, s:o}",
+        "{s:o, s:I, s:I, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:b, s:I, s:o, s:o, s:o, s:o, s:o, "
+        "s:o}",
         "scene", json_text(facts->scene), "triangles", (json_int_t)i->triangles, "vertices",
         (json_int_t)i->vertices, "meshes", i->meshes, "instances", i->instances, "images",
         i->images, "skins", i->skins, "nodes", i->nodes, "bounds", bounds_json(i), "sky",
@@ -115,7 +142,7 @@ static enum status info_json(struct session *session, const struct facts *facts)
         list_of(session, i->cameras, camera_json), "materials",
         list_of(session, i->materials, material_json), "animations",
         list_of(session, i->animations, animation_json), "defaults",
-        defaults_json(&facts->defaults)));
+        defaults_json(&facts->defaults), "light_map", light_map_json(&facts->light_map)));
 }
 
 // ---- text
@@ -142,6 +169,13 @@ static void print_counts(const struct ag_scene_info *i)
     printf("memory       %.1f MB\n", (double)i->memory_bytes * 1e-6);
     print_vector("sky          ", i->sky, " cd/m2\n");
     printf("emissive     %s\n", i->emissive ? "yes" : "no");
+}
+
+static void print_light_map(const struct ag_bake_estimate *map)
+{
+    if (map->charts == 0) return;
+    printf("light map    %.0f texels in %u charts, %.3g per metre (%s)\n", map->texels,
+           (unsigned)map->charts, (double)map->texels_per_m, LIGHT_MAP_GI);
 }
 
 static void print_lights(struct session *session, int count)
@@ -220,6 +254,7 @@ static void info_text(struct session *session, const struct facts *facts)
 {
     printf("%s\n", printable(facts->scene).s);
     print_counts(&facts->info);
+    print_light_map(&facts->light_map);
     print_lights(session, facts->info.lights);
     print_cameras(session, facts->info.cameras);
     print_animations(session, facts->info.animations);
@@ -240,6 +275,7 @@ static enum status info(const struct arguments *arguments)
             ag_scene_get_info(session.scene, session.animation, arguments->time_s, &facts.info);
         if (result != AG_OK) status = fail_library(session.context, result);
     }
+    if (status == DONE) find_light_map(&session, arguments->time_s, &facts.light_map);
     if (status == DONE && arguments->json)
         status = info_json(&session, &facts);
     else if (status == DONE)
@@ -255,6 +291,7 @@ const struct command command_info = {
     .usage = "SCENE [options]",
     .summary = "show the contents of SCENE: size, lights, cameras, materials",
     .text = "Shows counts, size, lights, cameras, animations and materials of SCENE.\n"
+            "The light map is that of radiosity at its defaults.\n"
             "If light or camera are missing, shows the options that render would use.\n"
             "Lengths are in metres, suns in lux, other lights in candela.\n",
     .examples = "  afterglow info house.glb\n"

@@ -49,7 +49,9 @@ struct ag_bake_estimate {
     double seconds;             ///< NaN without a probe
     uint64_t file_bytes;        ///< of the finished file
     uint64_t peak_memory_bytes; ///< beyond the scene
-    uint64_t reserved[4];       ///< 0; see ABI in types.h
+    uint32_t charts;            ///< of a light map; 0 where the technique has none
+    float texels_per_m;         ///< of a light map, on all charts
+    uint64_t reserved[3];       ///< 0; see ABI in types.h
 };
 /// What ag_bake_run will need. probe: run a few tasks, about a second, to estimate the time; their
 /// results are kept.

@@ -210,7 +210,9 @@ enum ag_result ag_bake_estimate(struct ag_bake *b, bool probe, struct ag_bake_es
                                       .rays = estimate.rays,
                                       .seconds = estimate.seconds,
                                       .file_bytes = estimate.file_bytes,
-                                      .peak_memory_bytes = estimate.peak_memory_bytes };
+                                      .peak_memory_bytes = estimate.peak_memory_bytes,
+                                      .charts = estimate.light_map.charts,
+                                      .texels_per_m = estimate.light_map.texels_per_m };
     return api_done(context, ok);
 }
 

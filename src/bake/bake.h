@@ -34,6 +34,7 @@ bool bake_fits(const struct bake *a, const struct bake *b);
 struct bake_estimate {
     double texels, rays, seconds;           // of the part, with a shard
     uint64_t file_bytes, peak_memory_bytes; // without the scene
+    struct bake_light_map light_map;        // zero: there is none
 };
 // probe: measures a few tasks, which takes about a second, and keeps their results; without it
 // `seconds` is NaN. options: as for the run that follows.

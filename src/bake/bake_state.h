@@ -33,6 +33,7 @@ struct bake_plan {
     int waves;      // number of waves
     int waves_done; // whose results are complete and reduced
     struct bake_job job;
+    struct bake_light_map light_map; // zero: there is none
     bool depends_on_scene;
     struct hash128 scene;
 };

@@ -62,7 +62,7 @@ bool bake_estimate(struct bake *bake, const struct bake_run_options *options, bo
 {
     const int threads = options->threads > 0 ? options->threads : parallel_threads();
     const struct bake_run_options few = { .threads = threads };
-    *out = (struct bake_estimate){ .seconds = (double)NAN };
+    *out = (struct bake_estimate){ .seconds = (double)NAN, .light_map = bake->plan.light_map };
     add_stages(bake, options, out);
     out->peak_memory_bytes = estimate_peak_memory(bake, threads);
     if (!probe) return true;

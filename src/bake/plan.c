@@ -131,6 +131,11 @@ void bake_plan_depends(struct bake_plan *plan, struct hash128 key)
     plan->scene = key;
 }
 
+void bake_plan_set_light_map(struct bake_plan *plan, struct bake_light_map map)
+{
+    plan->light_map = map;
+}
+
 void bake_plan_set_job(struct bake_plan *plan, const struct bake_job *job)
 {
     plan->job = *job;

@@ -65,6 +65,13 @@ char *bake_plan_name(struct bake_plan *plan, const char *format, ...)
 // bake/scene_key.h. Without a call the bake is independent of the scene.
 void bake_plan_depends(struct bake_plan *plan, struct hash128 key);
 
+// A light map that the bake is for, so that estimates can say how fine it is.
+struct bake_light_map {
+    uint32_t charts;
+    float texels_per_m;
+};
+void bake_plan_set_light_map(struct bake_plan *plan, struct bake_light_map map);
+
 // State shared by all tasks, read-only while they run. `prepare` (may be NULL) runs once on the
 // calling thread before the first task, `finish` (may be NULL) after the last one, also after a
 // failed prepare.

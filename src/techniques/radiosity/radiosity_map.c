@@ -167,16 +167,35 @@ static bool want_fewer(struct charts_options *how, uint32_t texels, const struct
     return true;
 }
 
+// Of the surface, where the density is given.
+enum { MOST_TEXELS = 1 << 22 };
+
+static bool charts_at(struct charts *out, struct host *host, const struct scene_pose *pose,
+                      float density)
+{
+    const struct charts_options how = { .texels_per_m = density,
+                                        .max_texels = MOST_ATLAS,
+                                        .surface_texels = MOST_TEXELS,
+                                        .join = CHARTS_JOINED };
+    if (!charts_init(out, host, pose, &how)) return false;
+    const float reached = out->texels_per_m;
+    if (out->count == 0 || reached > 0.999f * density) return true;
+    return host_fail(host, FAIL_MEMORY,
+                     "radiosity: density=%g needs more than %d texels for %s; density=%.3g fits",
+                     (double)density, MOST_TEXELS, pose->scene->name, 0.99 * (double)reached);
+}
+
 bool radiosity_charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                            const struct radiosity_options *options)
 {
     const uint32_t texels = (uint32_t)options->texels;
-    struct charts_options how = { .texels_per_m = options->density > 0.0f ? options->density : 1e6f,
+    struct charts_options how = { .texels_per_m = 1e6f,
                                   .max_texels = texels < MOST_ATLAS / ATLAS_ROOM
                                                     ? texels * ATLAS_ROOM
                                                     : MOST_ATLAS,
                                   .surface_texels = texels,
                                   .join = CHARTS_JOINED };
+    if (options->density > 0.0f) return charts_at(out, host, pose, options->density);
     for (int i = 0; i < DENSITY_TRIES; i++) {
         if (!charts_init(out, host, pose, &how)) return false;
         if (!want_fewer(&how, texels, out)) return true;

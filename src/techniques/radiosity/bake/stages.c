@@ -60,6 +60,12 @@ static bool room_init(struct room *room, struct host *host, const struct job *jo
            radiosity_rows_init(&room->rows, host, &job->scene);
 }
 
+static size_t room_bytes(uint64_t clusters)
+{
+    const size_t sum = sizeof(struct radiosity_factor) + sizeof(uint32_t);
+    return (size_t)clusters * (sum + 2 * (sum + sizeof(struct radiosity_entry)));
+}
+
 static void room_finish(struct room *room, struct host *host)
 {
     radiosity_rows_finish(&room->rows);
@@ -134,8 +140,6 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
         { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
     };
     const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
-    const size_t room =
-        sizeof(struct radiosity_factor) + sizeof(uint32_t) + sizeof(struct radiosity_entry);
     return bake_plan_add(
         plan, &(struct bake_stage){ .name = "texels",
                                     .wave = 0,
@@ -145,7 +149,7 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
                                     .output_count = OUT_COUNT,
                                     .rays = (double)texels * job->options.rays / (double)tasks,
                                     .texels = (double)texels / (double)tasks,
-                                    .scratch_bytes = (size_t)clusters * room });
+                                    .scratch_bytes = room_bytes(clusters) });
 }
 
 // ---- clusters
@@ -260,7 +264,21 @@ static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t
                   .task_count = (size_t)((clusters + CLUSTERS_PER_TASK - 1) / CLUSTERS_PER_TASK),
                   .run = run_clusters,
                   .outputs = out,
-                  .output_count = 2 });
+                  .output_count = 2,
+                  .scratch_bytes = room_bytes(clusters) });
+}
+
+// Of the map and of what a trace scene has for each triangle: its hierarchy (Embree's quads take
+// about 120 bytes for each), corners and facets.
+static size_t prepared_bytes(const struct radiosity_map *map)
+{
+    enum { TRACE_TRIANGLE = 240 };
+    const struct charts *charts = &map->charts;
+    const size_t atlas = (size_t)charts->width * charts->height;
+    return charts->triangle_count * (sizeof *charts->triangles + TRACE_TRIANGLE) +
+           atlas * sizeof *charts->owner + charts->texel_count * sizeof *charts->texels +
+           map->texel_count * (sizeof *map->texels + sizeof(uint32_t)) +
+           2 * (size_t)map->cluster_count * (2 * sizeof *map->tree.nodes + sizeof(uint32_t));
 }
 
 static bool add_stages(struct bake_plan *plan, struct job *job, const struct scene_pose *statics)
@@ -269,9 +287,13 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
     // The size of the tensors is that of the charts: clusters are not divided yet.
     struct radiosity_map *map = &job->map;
     if (!radiosity_map_init(map, bake_plan_host(plan), statics, &job->options)) return false;
-    bake_plan_set_job(
-        plan,
-        &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish, .destroy = destroy });
+    bake_plan_set_job(plan, &(struct bake_job){ .job = job,
+                                                .prepare = prepare,
+                                                .finish = finish,
+                                                .destroy = destroy,
+                                                .bytes = prepared_bytes(map) });
+    bake_plan_set_light_map(
+        plan, (struct bake_light_map){ map->charts.count, map->charts.texels_per_m });
     const uint64_t texels = radiosity_rows(map->texel_count);
     const uint64_t clusters = radiosity_cluster_rows(map);
     struct radiosity_seams seams;
