@@ -45,8 +45,9 @@ struct bake_stage {
     const struct bake_output *outputs;
     int output_count; // at most BAKE_MAX_OUTPUTS
     // Of one task, for estimates of time and memory. flops: floating-point operations of dense
-    // linear algebra. scratch_bytes: memory beyond the outputs.
-    double rays, flops, texels;
+    // linear algebra. others: work that is neither, in rays that take as long. scratch_bytes:
+    // memory beyond the outputs.
+    double rays, flops, others, texels;
     size_t scratch_bytes;
 };
 enum { BAKE_MAX_OUTPUTS = 16 };

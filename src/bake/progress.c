@@ -52,7 +52,8 @@ struct prediction prediction_now(const struct bake *bake, double per_flop_s)
 static double task_seconds(const struct planned_stage *stage, const struct prediction *p)
 {
     if (stage->done_count > 0) return stage->seconds / (double)stage->done_count;
-    return TASK_OVERHEAD_S + stage->what.rays * p->per_ray_s + stage->what.flops * p->per_flop_s;
+    return TASK_OVERHEAD_S + (stage->what.rays + stage->what.others) * p->per_ray_s +
+           stage->what.flops * p->per_flop_s;
 }
 
 size_t run_tasks(const struct bake_stage *stage, const struct bake_run_options *options,

@@ -323,7 +323,22 @@ static bool is_queued(const struct bake_run *run, const struct planned_stage *st
     return false;
 }
 
-// One task of each kind.
+// About so many rays are traced to find out how long they take. Tasks of few rays have other work,
+// of which one must be enough.
+static const double PROBE_RAYS = 3e5, FEW_RAYS = 1e4;
+
+// Tasks over all of the stage: rays of its first part may be the shortest.
+static void queue_probes(struct bake_run *run, struct planned_stage *stage)
+{
+    const size_t count = stage->what.task_count;
+    size_t probes = stage->what.rays > FEW_RAYS ? (size_t)(PROBE_RAYS / stage->what.rays) : 1;
+    if (probes > count) probes = count;
+    if (probes == 0) probes = 1;
+    for (size_t i = 0; i < probes; i++)
+        run->queue[run->queue_count++] = (struct queued_task){ stage, i * count / probes };
+}
+
+// A few tasks of each kind.
 static void fill_probe(struct bake_run *run)
 {
     struct bake_plan *plan = &run->bake->plan;
@@ -331,7 +346,7 @@ static void fill_probe(struct bake_run *run)
     for (int s = 0; s < plan->stage_count; s++) {
         struct planned_stage *stage = &plan->stages[s];
         if (stage->what.wave == 0 && stage->done_count == 0 && !is_queued(run, stage))
-            run->queue[run->queue_count++] = (struct queued_task){ stage, 0 };
+            queue_probes(run, stage);
     }
 }
 

@@ -182,7 +182,8 @@ struct bake *bake_sample_create(struct bake_sample *sample, const struct bake_id
     struct bake_sample **job = bake_plan_alloc(plan, 1, sizeof *job);
     CHECK(job != NULL);
     *job = sample;
-    bake_plan_set_job(plan, &(struct bake_job){ job, prepare, finish, 10000 });
+    bake_plan_set_job(plan, &(struct bake_job){
+                                .job = job, .prepare = prepare, .finish = finish, .bytes = 10000 });
     bake_plan_depends(plan, hash128_add_text((struct hash128){ 0 }, "scene"));
     CHECK(add_first_wave(plan, sample) && add_other_waves(plan, sample));
     return bake;

@@ -3,7 +3,8 @@
 
 #include "techniques/radiosity/radiosity_tensors.h"
 
-enum { PLACES_PER_TASK = 512 };
+// A place takes as long as so many rays, measured.
+enum { PLACES_PER_TASK = 512, RAYS_PER_PLACE = 50 };
 
 static bool run_seams(const struct bake_task *task)
 {
@@ -43,5 +44,6 @@ bool radiosity_add_seams(struct bake_plan *plan, const struct radiosity_closing 
                              .argument = closing,
                              .outputs = out,
                              .output_count = 2,
+                             .others = (double)RAYS_PER_PLACE * PLACES_PER_TASK,
                              .scratch_bytes = (size_t)places * 8 });
 }

@@ -250,22 +250,26 @@ static bool run_clusters(const struct bake_task *task)
     return ok;
 }
 
-static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t clusters)
+// Each entry of the texels' rows is walked up the tree, which takes as long as a ray.
+static bool add_clusters(struct bake_plan *plan, const struct job *job, uint64_t texels,
+                         uint64_t clusters)
 {
     const uint64_t most = 2 * (uint64_t)job->options.sources;
+    const size_t tasks = (size_t)((clusters + CLUSTERS_PER_TASK - 1) / CLUSTERS_PER_TASK);
     const struct bake_output out[] = {
         { RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, 2, { clusters, most }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, 2, { clusters, most }, BAKE_ROWS, BAKE_SAVED },
     };
     return bake_plan_add(
-        plan, &(struct bake_stage){
-                  .name = "clusters",
-                  .wave = 1,
-                  .task_count = (size_t)((clusters + CLUSTERS_PER_TASK - 1) / CLUSTERS_PER_TASK),
-                  .run = run_clusters,
-                  .outputs = out,
-                  .output_count = 2,
-                  .scratch_bytes = room_bytes(clusters) });
+        plan, &(struct bake_stage){ .name = "clusters",
+                                    .wave = 1,
+                                    .task_count = tasks,
+                                    .run = run_clusters,
+                                    .outputs = out,
+                                    .output_count = 2,
+                                    .others = (double)texels * (double)job->options.sources /
+                                              (double)tasks,
+                                    .scratch_bytes = room_bytes(clusters) });
 }
 
 // Of the map and of what a trace scene has for each triangle: its hierarchy (Embree's quads take
@@ -292,15 +296,16 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
                                                 .finish = finish,
                                                 .destroy = destroy,
                                                 .bytes = prepared_bytes(map) });
-    bake_plan_set_light_map(
-        plan, (struct bake_light_map){ map->charts.count, map->charts.texels_per_m });
+    bake_plan_set_light_map(plan,
+                            (struct bake_light_map){ map->charts.count, map->charts.texels_per_m });
     const uint64_t texels = radiosity_rows(map->texel_count);
     const uint64_t clusters = radiosity_cluster_rows(map);
     struct radiosity_seams seams;
     const bool ok = radiosity_seams_init(&seams, map, RADIOSITY_SEAM_POINTS);
     const uint32_t places = seams.count;
     radiosity_seams_finish(&seams);
-    return ok && add_texels(plan, job, texels, clusters) && add_clusters(plan, job, clusters) &&
+    return ok && add_texels(plan, job, texels, clusters) &&
+           add_clusters(plan, job, texels, clusters) &&
            radiosity_add_seams(plan, &job->closing, places);
 }
 
