@@ -21,6 +21,17 @@ static int emitter(struct frame_fixture *s, float albedo)
     return fixture_material(s, &m);
 }
 
+// Of the scene: a position inside a room.
+static void add_camera(struct frame_fixture *s, vec3s at)
+{
+    const struct camera camera = { .name = "camera",
+                                   .node = scene_add_node_looking(s->scene, "camera", at,
+                                                                  vec3_of(0, 0, -1)),
+                                   .vertical_fov_rad = 1,
+                                   .near_m = 0.1f };
+    assert_true(camera.node >= 0 && scene_add_camera(s->scene, &camera) >= 0);
+}
+
 void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_dark_room)
 {
     const float t = SLAB;
@@ -39,6 +50,8 @@ void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_da
     for (size_t i = 0; i < sizeof slabs / sizeof slabs[0]; i++)
         fixture_box(s, slabs[i].min, slabs[i].max, false, white);
     fixture_add_sun(s, vec3_of(0.3f, -1, 0.2f), grey(1000));
+    add_camera(s, vec3_of(-2, 1.5f, 0));
+    add_camera(s, vec3_of(2, 1.5f, 0));
     if (camera_in_dark_room)
         fixture_look(s, vec3_of(3.8f, 2.5f, 1.8f), vec3_of(0, 0.8f, -1.5f));
     else

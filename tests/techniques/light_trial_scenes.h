@@ -5,7 +5,8 @@
 #include "frame/frame_fixture.h"
 
 // Two rooms of 4 × 3 × 4, side by side, of slabs 0.05 thick. The left one is open to the sun of
-// 1000 lux above, the right one is closed. The camera is in one of them.
+// 1000 lux above, the right one is closed. The camera is in one of them. The scene has a camera in
+// each, where mrt begins to find blocks.
 void trial_two_rooms(struct frame_fixture *s, struct gpu *gpu, bool camera_in_dark_room);
 
 // A square plane of 6 in the sun (1000 lux) or under a uniform sky (1 cd/m²), tilted around z.

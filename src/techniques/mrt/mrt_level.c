@@ -38,15 +38,16 @@ static bool read_map(struct host *host, const struct scene_pose *pose,
     return false;
 }
 
-// No blocks where the scene has no volume: there is no room to light.
+// No blocks where the scene has no surface; one where it has no volume.
 static bool choose_map(struct host *host, const struct scene_pose *pose,
                        const struct mrt_options *options, struct mrt_block_map *map)
 {
     const vec3s size = box3_size(pose->bounds);
     *map = (struct mrt_block_map){ 0 };
-    if (!(size.x > 0.0f && size.y > 0.0f && size.z > 0.0f)) return true;
+    const bool flat = !(glms_vec3_min(size) > 0.0f);
+    if (!(glms_vec3_max(size) > 0.0f)) return true;
     if (options->blocks.at[0]) return read_map(host, pose, options, map);
-    if (options->map == MRT_MAP_SINGLE) return mrt_map_single(host, pose, map);
+    if (options->map == MRT_MAP_SINGLE || flat) return mrt_map_single(host, pose, map);
     if (options->map == MRT_MAP_SCENE) {
         if (!read_map(host, pose, options, map)) return false;
         if (map->count > 0) return true;

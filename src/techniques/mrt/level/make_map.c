@@ -9,12 +9,26 @@
 #include <stdio.h>
 
 static const float MAX_ASPECT = 1.6f; // of boxes that are made larger: the dictionary has cubes
+static const float FLAT = 0.05f;      // least edge of a single block, of the longest
+
+// A plane is in the middle of a flat block.
+static struct box3 box_of(struct box3 bounds)
+{
+    const vec3s size = box3_size(bounds);
+    const float least = FLAT * glms_vec3_max(size);
+    for (int a = 0; a < 3; a++) {
+        const float more = 0.5f * fmaxf(least - size.raw[a], 0.0f);
+        bounds.min.raw[a] -= more;
+        bounds.max.raw[a] += more;
+    }
+    return bounds;
+}
 
 bool mrt_map_single(struct host *host, const struct scene_pose *pose, struct mrt_block_map *map)
 {
     if (!mrt_block_map_init(host, pose->scene->name, 1, map)) return false;
     mrt_block_init(&map->blocks[0], "scene", MRT_BLOCK_CUBE);
-    mrt_block_set_box(&map->blocks[0], pose->bounds);
+    mrt_block_set_box(&map->blocks[0], box_of(pose->bounds));
     if (mrt_block_map_check(pose->scene->name, map)) return true;
     mrt_block_map_finish(map);
     return false;
