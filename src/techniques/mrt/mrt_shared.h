@@ -20,6 +20,7 @@
 #define MRT_CONSTANT_AFFINE  5 // bool: all warps of the level are affine
 #define MRT_CONSTANT_TUBES   6 // bool: blocks are tubes, else cubes
 #define MRT_CONSTANT_CLUTTER 7 // bool: some openings are clutter
+#define MRT_CONSTANT_SIGHT   8 // voxels along an edge of a block that see probes; 0: all are seen
 #define MRT_MAX_QUADS        16
 
 // A texel of the geometry image: the point of the scene where direct light is computed.
@@ -131,6 +132,10 @@ struct mrt_gpu_clutter_place {
     uint32_t light, texel; // of mrt_clutter_light, of the clutter's texels
 };
 
+struct mrt_apply_push {
+    uint32_t clutter_is_lit; // where the alpha of irradiance is 1
+};
+
 struct mrt_clutter_fill_push {
     uint32_t places;
     float emitted; // radiance scale; 0: emissive surfaces are no sources
@@ -164,6 +169,12 @@ struct mrt_view_push {
     uint32_t view; // MRT_VIEW_…
 };
 
+// A voxel of a block (clutter/probe_sight.h): bits of probes, openness in 1/255, whether some of it
+// is in a solid.
+#define MRT_SIGHT_PROBES 0xffu
+#define MRT_SIGHT_OPEN   8
+#define MRT_SIGHT_SOLID  0x10000u
+
 #define MRT_VIEW_BLOCKS 0
 #define MRT_VIEW_DIRECT 1
 
@@ -182,6 +193,7 @@ _Static_assert(sizeof(struct mrt_gpu_clutter_triangle) == 60, "layout is shared 
 _Static_assert(sizeof(struct mrt_gpu_clutter_instance) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_clutter_move) == 48, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_apply_push) == 8, "layout is shared with GLSL");
+_Static_assert(sizeof(struct mrt_apply_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_clutter_fill_push) == 20, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_gpu_border) == 72, "layout is shared with GLSL");
 _Static_assert(sizeof(struct mrt_level_params) == 112, "layout is shared with GLSL");

@@ -3,6 +3,10 @@
 #include "techniques/gi_fixture.h"
 #include "techniques/gi_spec.h"
 
+#include "core/sh.h"
+#include "techniques/gi_state.h"
+#include "techniques/mrt/mrt_state.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,10 +19,10 @@ enum { SIZE = 32, FLOATS = SIZE * SIZE * 3, TEXT = 512 };
     "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=8,"         \
     "block_probes=2"
 
-// Each side of the hollow box is a face.
+// Each side of the boxes is a face.
 #define HOLLOW                                                                                     \
     ":map=single,texels=8,rays=1024,modes=24,lightfield_positions=4,lightfield_directions=6,"      \
-    "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=12,"        \
+    "lightfield_supersampling=1,lightfield_modes=16,lightfield_rounds=0,response_modes=20,"        \
     "block_probes=2"
 
 struct room {
@@ -28,28 +32,36 @@ struct room {
     int frames;
 };
 
-// A closed room, with a box in it or without. The caller frees the irradiance.
+// A closed room, with a box in it or without, after some frames. The caller destroys the stack and
+// finishes the fixture.
+static struct gi *render_room(struct frame_fixture *s, struct gpu *gpu, struct room room)
+{
+    struct gi_spec spec;
+    char text[TEXT];
+    fixture_init(s, gpu);
+    const int material = fixture_matte(s, vec3_of(0.6f, 0.5f, 0.4f));
+    fixture_box(s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, material);
+    if (room.box)
+        fixture_box(s, vec3_of(-0.5f, 0, -0.5f), vec3_of(0.6f, 1.3f, 0.4f), false, material);
+    fixture_look(s, vec3_of(-1.5f, 2.5f, 1.5f), vec3_of(0.5f, 0, -0.5f));
+    fixture_add_point(s, vec3_of(-1.2f, 2.2f, -1),
+                      glms_vec3_scale(vec3_of(100, 60, 20), room.power));
+    snprintf(text, sizeof text, "%s" DICTIONARY "%s", room.technique, room.options);
+    fixture_open(s);
+    CHECK(gi_spec_parse(&spec, test_host(), text));
+    struct gi *gi = gi_fixture_create(s->gpu, &spec, &s->pose, SIZE, SIZE);
+    assert_non_null(gi);
+    s->indirect = gi_hook(gi);
+    gi_spec_finish(&spec);
+    for (int i = 0; i < room.frames; i++) fixture_render(s);
+    return gi;
+}
+
+// The caller frees the irradiance.
 static float *irradiance_of(struct gpu *gpu, struct room room)
 {
     struct frame_fixture s;
-    struct gi_spec spec;
-    char text[TEXT];
-    fixture_init(&s, gpu);
-    const int material = fixture_matte(&s, vec3_of(0.6f, 0.5f, 0.4f));
-    fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, material);
-    if (room.box)
-        fixture_box(&s, vec3_of(-0.5f, 0, -0.5f), vec3_of(0.6f, 1.3f, 0.4f), false, material);
-    fixture_look(&s, vec3_of(-1.5f, 2.5f, 1.5f), vec3_of(0.5f, 0, -0.5f));
-    fixture_add_point(&s, vec3_of(-1.2f, 2.2f, -1),
-                      glms_vec3_scale(vec3_of(100, 60, 20), room.power));
-    snprintf(text, sizeof text, "%s" DICTIONARY "%s", room.technique, room.options);
-    fixture_open(&s);
-    CHECK(gi_spec_parse(&spec, test_host(), text));
-    struct gi *gi = gi_fixture_create(s.gpu, &spec, &s.pose, SIZE, SIZE);
-    assert_non_null(gi);
-    s.indirect = gi_hook(gi);
-    gi_spec_finish(&spec);
-    for (int i = 0; i < room.frames; i++) fixture_render(&s);
+    struct gi *gi = render_room(&s, gpu, room);
     float *out = fixture_read(&s, READ_IRRADIANCE);
     gi_destroy(gi);
     fixture_finish(&s);
@@ -117,16 +129,19 @@ TEST_GPU(drt_feedback_converges)
     free(feedback);
 }
 
-// The camera in a closed hollow box, which is clutter; a lit room is around it. Returns the
-// irradiance; the caller frees it.
-static float *irradiance_in_hollow(struct gpu *gpu, const char *text)
+// The camera in a closed hollow box with a small box in it, which are clutter; a lit room is around
+// it. thin: its sides are 1 cm thick, else 10 cm. Returns the irradiance; the caller frees it.
+static float *irradiance_in_hollow(struct gpu *gpu, const char *text, bool thin)
 {
     struct frame_fixture s;
     struct gi_spec spec;
     fixture_init(&s, gpu);
     const int material = fixture_matte(&s, vec3_of(0.6f, 0.5f, 0.4f));
     fixture_box(&s, vec3_of(-2, 0, -2), vec3_of(2, 3, 2), true, material);
-    fixture_box(&s, vec3_of(-0.8f, 0.6f, -0.8f), vec3_of(0.8f, 2.2f, 0.8f), false, material);
+    const float outer = thin ? 0.71f : 0.8f;
+    fixture_box(&s, vec3_of(-outer, 1.4f - outer, -outer), vec3_of(outer, 1.4f + outer, outer),
+                false, material);
+    fixture_box(&s, vec3_of(0.2f, 0.7f, -0.6f), vec3_of(0.6f, 1.1f, -0.2f), false, material);
     fixture_box(&s, vec3_of(-0.7f, 0.7f, -0.7f), vec3_of(0.7f, 2.1f, 0.7f), true, material);
     fixture_look(&s, vec3_of(-0.5f, 1.9f, 0.5f), vec3_of(0.5f, 0.8f, -0.5f));
     fixture_add_point(&s, vec3_of(-1.5f, 2.7f, -1.2f), vec3_of(100, 60, 20));
@@ -146,10 +161,116 @@ static float *irradiance_in_hollow(struct gpu *gpu, const char *text)
 // mrt's light passes through.
 TEST_GPU(drt_has_no_light_in_closed_clutter)
 {
-    float *through = irradiance_in_hollow(gpu, "mrt" HOLLOW);
-    float *inside = irradiance_in_hollow(gpu, "drt" HOLLOW);
-    CHECK(sum_of(through) > 0.0);
-    CHECK(sum_of(inside) == 0.0);
-    free(inside);
-    free(through);
+    static const char *const options[] = { "", ",gather=false" };
+    for (int thin = 0; thin < 2; thin++) {
+        float *through = irradiance_in_hollow(gpu, "mrt" HOLLOW, thin);
+        CHECK(sum_of(through) > 0.0);
+        for (int i = 0; i < 2; i++) {
+            char text[TEXT];
+            snprintf(text, sizeof text, "drt" HOLLOW "%s", options[i]);
+            float *inside = irradiance_in_hollow(gpu, text, thin);
+            print_message("drt%s: %.4f of the light in a %s box\n", options[i],
+                          sum_of(inside) / sum_of(through), thin ? "thin" : "thick");
+            CHECK(sum_of(inside) == 0.0);
+            free(inside);
+        }
+        free(through);
+    }
+}
+
+// ---- Before the pixel
+
+// Least green irradiance of values, and the mean.
+struct least {
+    double least, mean;
+    int count;
+};
+
+static void add_value(struct least *to, double e)
+{
+    to->least = to->count == 0 ? e : fmin(to->least, e);
+    to->mean += (e - to->mean) / (double)++to->count;
+}
+
+static float *read_floats(struct gpu *gpu, gpu_buffer buffer, size_t floats)
+{
+    float *out = calloc(floats, sizeof *out);
+    assert_non_null(out);
+    CHECK(gpu_buffer_download(gpu, buffer, 0, out, floats * sizeof *out));
+    return out;
+}
+
+static struct least least_of_walls(struct mrt_runtime *runtime)
+{
+    const size_t texels = runtime->level.texels;
+    struct least out = { 0 };
+    float *e = read_floats(runtime->gpu, runtime->buffers.irradiance, 3 * texels);
+    for (size_t i = 0; i < texels; i++) add_value(&out, (double)e[3 * i + 1]);
+    free(e);
+    return out;
+}
+
+// By the normals to the sides, edges and corners of a cube.
+static struct least least_of_probes(struct mrt_runtime *runtime)
+{
+    const size_t p = runtime->level.probes, probes = p * p * p;
+    struct least out = { 0 };
+    float *e = read_floats(runtime->gpu, runtime->probes.light, 27 * probes);
+    for (size_t i = 0; i < probes; i++)
+        for (int d = 0; d < 27; d++) {
+            const vec3s way =
+                vec3_of((float)(d % 3 - 1), (float)(d / 3 % 3 - 1), (float)(d / 9 - 1));
+            float basis[9];
+            double sum = 0.0;
+            if (d == 13) continue;
+            sh_eval(3, vec3_unit(way), basis);
+            for (size_t k = 0; k < 9; k++) sum += (double)basis[k] * (double)e[(9 * i + k) * 3 + 1];
+            add_value(&out, sum);
+        }
+    free(e);
+    return out;
+}
+
+// At the normals of the texels, which are found once more: the run time does not keep them.
+static struct least least_of_clutter(const struct frame_fixture *s, struct mrt *mrt)
+{
+    const struct mrt_clutter_options options = { 10, mrt->options.response_modes };
+    struct mrt_clutter clutter;
+    struct least out = { 0 };
+    CHECK(mrt_clutter_init(&clutter, test_host(), &s->pose, &mrt->map, &options));
+    const size_t texels = clutter.charts.texel_count;
+    float *e = read_floats(mrt->gpu, mrt->runtime.clutter.map.light, 12 * texels);
+    for (size_t i = 0; i < texels; i++) {
+        float basis[4];
+        double sum = 0.0;
+        sh_eval(2, chart_texel_normal(&clutter.charts, clutter.texels[i]), basis);
+        for (size_t k = 0; k < 4; k++) sum += (double)basis[k] * (double)e[(4 * i + k) * 3 + 1];
+        add_value(&out, sum);
+    }
+    free(e);
+    mrt_clutter_finish(&clutter);
+    return out;
+}
+
+// Up to the pixel light is linear, so that what is negative is not cut off. What clutter leaves of
+// U_b is the difference of two sets of rays.
+TEST_GPU(drt_has_no_negative_light_before_the_pixel)
+{
+    for (int bounces = 1; bounces <= 8; bounces += 7) {
+        struct frame_fixture s;
+        char options[TEXT];
+        snprintf(options, sizeof options, ",bounces=%d", bounces);
+        struct gi *gi = render_room(&s, gpu, (struct room){ "drt", options, true, 1, 1 });
+        struct mrt *mrt = gi->state[0];
+        const struct least of[] = { least_of_walls(&mrt->runtime), least_of_probes(&mrt->runtime),
+                                    least_of_clutter(&s, mrt) };
+        static const char *const names[] = { "walls", "probes", "clutter" };
+        for (int i = 0; i < 3; i++) {
+            print_message("%d bounces, %s: at least %.4f of the mean irradiance\n", bounces,
+                          names[i], of[i].least / of[i].mean);
+            CHECK(of[i].count > 0 && of[i].least >= 0.0);
+        }
+        gi_destroy(gi);
+        fixture_finish(&s);
+    }
 }

@@ -1,5 +1,5 @@
 // Rays of delta operators.
-#include "techniques/mrt/clutter/delta.h"
+#include "techniques/mrt/clutter/probe_sight.h"
 
 #include "core/parallel.h"
 
@@ -8,9 +8,6 @@
 
 #include <math.h>
 #include <string.h>
-
-// Rays start and end so much of their way from walls: clutter may stand on them.
-static const float OFFSET = 1e-3f;
 
 struct job {
     const struct mrt_delta_input *input;
@@ -25,30 +22,6 @@ struct job {
 struct passing {
     float all[CUBE_FACES], kept[CUBE_FACES];
 };
-
-// Whether the segment from start to start + way touches the box.
-static bool touches(struct box3 box, vec3s start, vec3s way)
-{
-    float enter = 0.0f, leave = 1.0f;
-    for (int a = 0; a < 3; a++) {
-        // Infinite where the segment is at right angles to the axis.
-        const float one = (box.min.raw[a] - start.raw[a]) / way.raw[a];
-        const float other = (box.max.raw[a] - start.raw[a]) / way.raw[a];
-        enter = fmaxf(enter, fminf(one, other));
-        leave = fminf(leave, fmaxf(one, other));
-    }
-    return !(enter > leave);
-}
-
-static bool is_blocked(const struct mrt_delta_input *input, vec3s from, vec3s to,
-                       struct trace_hit *hit)
-{
-    const vec3s start = mrt_warp_point(input->block->corner, from);
-    const vec3s way = glms_vec3_sub(mrt_warp_point(input->block->corner, to), start);
-    if (!touches(input->bounds, start, way)) return false;
-    return trace_closest(input->objects, glms_vec3_muladds(way, OFFSET, start), way,
-                         1.0f - 2.0f * OFFSET, hit);
-}
 
 static void subtract_wall(const struct job *job, size_t row, const float *weight,
                           const struct mrt_hit *wall)
@@ -88,7 +61,7 @@ static void follow(const struct job *job, size_t i, struct mrt_point point, int 
     struct trace_hit hit;
     mrt_shape_trace(&job->input->shape, point.position, way, &wall);
     const vec3s end = glms_vec3_muladds(way, wall.distance, point.position);
-    const bool blocked = is_blocked(job->input, point.position, end, &hit);
+    const bool blocked = mrt_delta_blocked(job->input, point.position, end, &hit);
     if (wall.opening >= 0) {
         passing->all[wall.opening] += weight[0];
         if (!blocked) passing->kept[wall.opening] += weight[0];
@@ -164,15 +137,23 @@ int mrt_faces_of_block(const struct mrt_clutter *clutter, int block, int *first)
     return count;
 }
 
+static bool find_sight(struct mrt_delta_block *out, const struct mrt_delta_input *input)
+{
+    const size_t edge = (size_t)mrt_sight_edge(input->probes);
+    out->sight = host_alloc(out->host, edge * edge * edge, sizeof *out->sight);
+    if (out->sight) mrt_probe_sight(input, out->sight);
+    return out->sight && !mrt_is_stopped(input->stop);
+}
+
 bool mrt_delta_block_init(struct mrt_delta_block *out, struct host *host,
                           const struct mrt_delta_input *input)
 {
     *out = (struct mrt_delta_block){ .host = host };
     out->face_count = mrt_faces_of_block(input->clutter, input->index, &out->first_face);
     if (box3_is_empty(input->bounds)) return true;
-    const bool ok = trace_measure(out, input, MRT_IRRADIANCE) &&
-                    trace_measure(out, input, MRT_VECTOR) &&
-                    (input->probes == 0 || trace_measure(out, input, MRT_PROBE));
+    const bool ok =
+        trace_measure(out, input, MRT_IRRADIANCE) && trace_measure(out, input, MRT_VECTOR) &&
+        (input->probes == 0 || (trace_measure(out, input, MRT_PROBE) && find_sight(out, input)));
     if (!ok) mrt_delta_block_finish(out);
     return ok;
 }
@@ -186,5 +167,6 @@ void mrt_delta_block_finish(struct mrt_delta_block *delta)
         host_free(delta->host, delta->of[m].closed);
         for (int f = 0; f < CUBE_FACES; f++) host_free(delta->host, delta->of[m].kept[f]);
     }
+    if (delta->host) host_free(delta->host, delta->sight);
     *delta = (struct mrt_delta_block){ 0 };
 }

@@ -37,6 +37,7 @@ struct mrt_delta_block {
     bool touched; // some ray is blocked; else the operators are 0
     int first_face, face_count;
     struct mrt_delta of[MRT_MEASURES];
+    uint32_t *sight; // probe_sight.h; NULL: without probes
 };
 
 struct mrt_delta_input {
@@ -70,3 +71,9 @@ int mrt_faces_of_block(const struct mrt_clutter *clutter, int block, int *first)
 void mrt_inpaint_texels(struct matrix_f32 *rows, int resolution, int walls, int values,
                         const bool *inside);
 void mrt_inpaint_probes(struct matrix_f32 *rows, int p, const bool *inside);
+
+// ---- delta_ray.c
+
+// Whether clutter is on the segment between two points of the cell.
+bool mrt_delta_blocked(const struct mrt_delta_input *input, vec3s from, vec3s to,
+                       struct trace_hit *hit);

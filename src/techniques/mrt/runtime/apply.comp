@@ -11,6 +11,7 @@
 #define MRT_VECTOR_MAP_BINDING 7
 #define MRT_BRICKS_BINDING     11
 #define MRT_OUTDOORS_BINDING   12
+#define MRT_SIGHT_BINDING      13
 #include "core/sh.glsl"
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
@@ -24,12 +25,17 @@ layout(local_size_x = MRT_LOCAL_2D, local_size_y = MRT_LOCAL_2D) in;
 
 layout(set = 0, binding = 8) uniform sampler2D depth;
 layout(set = 0, binding = 9) uniform sampler2D normal;
-layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D irradiance;
+layout(set = 0, binding = 10, rgba16f) uniform image2D irradiance;
+layout(push_constant, scalar) uniform push_block
+{
+    mrt_apply_push push;
+};
 
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
+    if (push.clutter_is_lit != 0u && imageLoad(irradiance, pixel).a > 0.0) return;
     float z = texelFetch(depth, pixel, 0).r;
     vec3 result = vec3(0.0);
     if (z > 0.0)

@@ -7,6 +7,7 @@
 #define MRT_CELLS_BINDING      3
 #define MRT_CANDIDATES_BINDING 4
 #define MRT_BRICKS_BINDING     5
+#define MRT_SIGHT_BINDING      7
 #include "core/half.glsl"
 #include "core/sh.glsl"
 #include "frame/frame_shared.h"
@@ -31,11 +32,17 @@ void main()
     ivec3 at = ivec3(i % count.x, i / count.x % count.y, i / (count.x * count.y));
     if (at.z >= count.z) return;
     mrt_place place = locate(grid.first_m + grid.spacing_m * vec3(at));
-    vec3 texel = vec3(0.0), size = vec3(textureSize(bricks, 0));
-    if (place.block >= 0) texel = brick_texel(place);
+    mrt_seen seen;
+    seen.lookups = 0;
+    if (place.block >= 0) seen = seen_from(place, vec3(0.0));
     for (int s = 0; s < FRAME_PROBE_SLABS; s++) {
         vec3 slab = vec3(0.0, 0.0, float(s * (int(level.probes) + 2)));
-        vec4 values = place.block < 0 ? vec4(0.0) : textureLod(bricks, (texel + slab) / size, 0.0);
+        vec4 values = vec4(0.0);
+        for (int i = 0; i < seen.lookups; i++) {
+            float weight;
+            vec3 texel = lookup_of(seen, i, weight) + slab;
+            values += weight * textureLod(bricks, texel / vec3(textureSize(bricks, 0)), 0.0);
+        }
         imageStore(volume, at + ivec3(0, 0, s * grid.slab),
                    clamp(level.gain * values, -HALF_MAX, HALF_MAX));
     }

@@ -6,6 +6,7 @@
 
 #include "core/sh.h"
 
+#include "techniques/mrt/clutter/probe_sight.h"
 #include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
 #include "techniques/mrt/runtime/tables.h"
@@ -123,6 +124,15 @@ static bool make_bricks(struct mrt_runtime *runtime, const struct mrt_runtime_in
                       FRAME_PROBE_SLABS * edge, &runtime->probes.bricks);
 }
 
+_Static_assert(MRT_VOXEL_PROBES == MRT_SIGHT_PROBES && MRT_VOXEL_OPEN == MRT_SIGHT_OPEN &&
+                   MRT_VOXEL_SOLID == MRT_SIGHT_SOLID,
+               "shaders read what probe_sight.c writes");
+
+uint32_t mrt_sight_voxels(const struct mrt_runtime_input *input)
+{
+    return input->sight ? (uint32_t)mrt_sight_edge(input->probes) : 0;
+}
+
 // Points at most MAX_VOLUME along the longest side, not denser than the probes of a cube.
 static struct frame_probes grid_of(const struct mrt_runtime_input *input)
 {
@@ -149,19 +159,24 @@ static struct frame_probes grid_of(const struct mrt_runtime_input *input)
 static bool make_volume(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
-    const struct gpu_constant tubes = { MRT_CONSTANT_TUBES,
-                                        mrt_block_is_tube(&input->map->blocks[0]) };
+    const struct gpu_constant constants[] = {
+        { MRT_CONSTANT_TUBES, mrt_block_is_tube(&input->map->blocks[0]) },
+        { MRT_CONSTANT_SIGHT, mrt_sight_voxels(input) },
+    };
     if (!runtime->options.publish) return true;
     p->grid = grid_of(input);
     return make_image(runtime, "probe_volume", (uint32_t)p->grid.count_x, (uint32_t)p->grid.count_y,
                       FRAME_PROBE_SLABS * (uint32_t)p->grid.slab, &p->volume) &&
-           mrt_pipeline_of(runtime, "probe_volume", &shader_mrt_runtime_probe_volume_comp, &tubes,
-                           1, &p->publish);
+           mrt_pipeline_of(runtime, "probe_volume", &shader_mrt_runtime_probe_volume_comp,
+                           constants, 2, &p->publish);
 }
 
 bool mrt_probes_upload(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
+    if (!mrt_buffer_of(runtime, "probe_sight", input->sight,
+                       input->sight ? input->sight_count * sizeof *input->sight : 0, &p->sight))
+        return false;
     if (!runtime->options.probes) return make_image(runtime, "bricks", 1, 1, 1, &p->bricks);
     const size_t rows = (size_t)input->map->count * rows_of_block(input);
     const size_t texels = (size_t)input->atlas->texels, triple = 3 * sizeof(float);
@@ -185,9 +200,9 @@ bool mrt_probes_make_empty(struct mrt_runtime *runtime)
 void mrt_probes_finish(struct mrt_runtime *runtime)
 {
     struct mrt_runtime_probes *p = &runtime->probes;
-    gpu_buffer *const buffers[] = { &p->tiles, &p->openings,  &p->sources,
-                                    &p->turns, &p->unbounced, &p->u_b,
-                                    &p->u_r,   &p->light,     &p->radiosity };
+    gpu_buffer *const buffers[] = { &p->tiles,     &p->openings, &p->sources, &p->turns,
+                                    &p->unbounced, &p->u_b,      &p->u_r,     &p->light,
+                                    &p->radiosity, &p->sight };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(runtime->gpu, buffers[i]);
     gpu_image_destroy(runtime->gpu, &p->bricks);

@@ -1,6 +1,7 @@
 // Buffers, images and pipelines of a level.
 #include "runtime.h"
 
+#include "techniques/mrt/clutter/probe_sight.h"
 #include "techniques/mrt/runtime/clutter/clutter.h"
 #include "techniques/mrt/runtime/objects.h"
 #include "techniques/mrt/runtime/operators.h"
@@ -10,7 +11,7 @@
 
 #include "technique_shaders.h"
 
-enum { VEC3_BYTES = 12, MAX_CONSTANTS = 8, VECTOR_VALUES = 4 };
+enum { VEC3_BYTES = 12, MAX_CONSTANTS = 9, VECTOR_VALUES = 4 };
 
 static bool make_buffers(struct mrt_runtime *runtime, const struct mrt_runtime_input *input)
 {
@@ -87,6 +88,7 @@ static bool make_pipeline(struct mrt_runtime *runtime, const struct mrt_runtime_
         [MRT_CONSTANT_AFFINE] = is_affine(input->map),
         [MRT_CONSTANT_TUBES] = mrt_block_is_tube(&input->map->blocks[0]),
         [MRT_CONSTANT_CLUTTER] = input->clutter != NULL,
+        [MRT_CONSTANT_SIGHT] = mrt_sight_voxels(input),
     };
     struct gpu_constant constants[MAX_CONSTANTS];
     int count = 0;
@@ -106,6 +108,7 @@ enum {
     AFFINE = 1 << MRT_CONSTANT_AFFINE,
     TUBES = 1 << MRT_CONSTANT_TUBES,
     CLUTTER = 1 << MRT_CONSTANT_CLUTTER,
+    SIGHT = 1 << MRT_CONSTANT_SIGHT,
     ALL = HALF | QUADS_B | QUADS_R | VALUES | CLUTTER,
 };
 
@@ -120,8 +123,8 @@ static bool make_pipelines(struct mrt_runtime *runtime, const struct mrt_runtime
         { &p->couple, "couple", &shader_mrt_runtime_couple_comp, HALF | QUADS_B | QUADS_R, 0 },
         { &p->reconstruct, "reconstruct", &shader_mrt_runtime_reconstruct_comp, ALL, 1 },
         { &p->fill, "fill", &shader_mrt_runtime_fill_comp, VALUES, 1 },
-        { &p->apply, "apply", &shader_mrt_runtime_apply_comp, VALUES | PROBES | AFFINE | TUBES,
-          values },
+        { &p->apply, "apply", &shader_mrt_runtime_apply_comp,
+          VALUES | PROBES | AFFINE | TUBES | SIGHT, values },
         { &p->debug, "debug", &shader_mrt_runtime_debug_comp, AFFINE | TUBES, 0 },
     };
     const struct pipeline vector[] = {
@@ -224,6 +227,12 @@ static uint64_t bytes_of_probes(const struct mrt_runtime_size *size)
            texels * (sizeof(uint32_t) + 8 * FRAME_PROBE_SLABS) + published;
 }
 
+static uint64_t bytes_of_sight(const struct mrt_runtime_size *size)
+{
+    const uint64_t edge = size->options.probes ? (uint64_t)mrt_sight_edge(size->probes) : 0;
+    return (1 + edge * edge * edge) * sizeof(uint32_t);
+}
+
 // A basis and a response of its own, one more opening, T_b→r and T_c→r.
 static uint64_t bytes_of_clutter(const struct mrt_runtime_size *size)
 {
@@ -236,7 +245,8 @@ static uint64_t bytes_of_clutter(const struct mrt_runtime_size *size)
     if (!size->cluttered || size->tube) return 0;
     return number * (texels * k_b * (1 + values) + (texels * values + probes) * k_r + probes * k_b +
                      k_b * k_r) +
-           number * k_r * k_r + sizeof(float) * (3 * k_b * k_r + 5 * 3 * k_r);
+           number * k_r * k_r + sizeof(float) * (3 * k_b * k_r + 5 * 3 * k_r) +
+           bytes_of_sight(size);
 }
 
 uint64_t mrt_runtime_bytes(const struct mrt_runtime_size *size)

@@ -40,6 +40,7 @@ struct mrt_runtime_probes {
     gpu_buffer tiles, openings, u_b, u_r; // as those of texels
     gpu_buffer sources, turns, unbounced; // tables of bricks.comp
     gpu_buffer radiosity;                 // vec3 per texel, of a solver on the host
+    gpu_buffer sight;                     // mrt_runtime_input.sight
     gpu_buffer light;                     // vec3 [block][probe][9], in the frame of the cell
     gpu_image bricks;
     gpu_pipeline fill;

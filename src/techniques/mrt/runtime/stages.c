@@ -188,6 +188,7 @@ static void record_volume(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
                           { .name = "mrt_cells", .buffer = b->cells },
                           { .name = "mrt_candidates", .buffer = b->candidates },
                           { .name = "bricks", .image = p->bricks, .sampler = runtime->linear },
+                          { .name = "mrt_probe_sight", .buffer = p->sight },
                           { .name = "volume", .image = p->volume }),
                  &p->grid, sizeof p->grid, gpu_groups(count, MRT_LOCAL), 1, 1);
 }
@@ -225,6 +226,7 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
     const struct mrt_runtime_buffers *b = &runtime->buffers;
     runtime->level.gain = gain;
     gpu_scope_begin(cmd, "apply");
+    const struct mrt_apply_push push = { mrt_record_clutter_pixels(runtime, cmd, view) };
     gpu_dispatch(
         cmd, runtime->pipelines.apply,
         GPU_BIND(
@@ -236,12 +238,13 @@ void mrt_record_apply(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
             { .name = "light_map", .image = b->light_map, .sampler = runtime->linear },
             { .name = "vector_map", .image = b->vector_map, .sampler = runtime->linear },
             { .name = "bricks", .image = runtime->probes.bricks, .sampler = runtime->linear },
+            { .name = "mrt_probe_sight", .buffer = runtime->probes.sight },
             { .name = "outdoors", .image = runtime->outdoors.image, .sampler = runtime->linear },
             { .name = "depth", .image = view->layers[FRAME_DEPTH] },
             { .name = "normal", .image = view->layers[FRAME_NORMAL] },
             { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
-        NULL, 0, gpu_groups(view->width, MRT_LOCAL_2D), gpu_groups(view->height, MRT_LOCAL_2D), 1);
-    mrt_record_clutter_pixels(runtime, cmd, view);
+        &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
+        gpu_groups(view->height, MRT_LOCAL_2D), 1);
     gpu_scope_end(cmd);
 }
 

@@ -48,17 +48,17 @@ vec3 map_irradiance(mrt_gpu_clutter_triangle triangle, vec3 position, vec3 n)
     return max(sum, vec3(0.0));
 }
 
-void main()
+// Whether the map lights the pixel.
+bool find_light(ivec2 pixel, out vec3 light)
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
     uvec2 shown = texelFetch(id, pixel, 0).rg;
-    if (shown.x == 0u) return;
+    if (shown.x == 0u) return false;
     uint instance = shown.x - 1u, of_instance = shown.y - 1u;
     // One that was added since the map was made has the light of probes.
-    if (instance >= push.instances || of_instance >= instance_table[instance].triangles) return;
+    if (instance >= push.instances || of_instance >= instance_table[instance].triangles)
+        return false;
     uint number = number_table[instance_table[instance].first + of_instance];
-    if (number == ~0u) return;
+    if (number == ~0u) return false;
     mrt_gpu_clutter_triangle triangle = triangle_table[number];
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
     float z = texelFetch(depth, pixel, 0).r;
@@ -70,7 +70,17 @@ void main()
         n /= max(length(n), 1e-20);
     }
     // The map has the light of the front.
-    if (dot(n, triangle.normal) <= 0.0) return;
-    vec3 light = level.gain * map_irradiance(triangle, position, n);
-    imageStore(irradiance, pixel, vec4(min(light, vec3(HALF_MAX)), 1.0));
+    if (dot(n, triangle.normal) <= 0.0) return false;
+    light = level.gain * map_irradiance(triangle, position, n);
+    return true;
+}
+
+// Alpha is 0 where apply.comp has to find the light.
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
+    vec3 light = vec3(0.0);
+    bool found = find_light(pixel, light);
+    imageStore(irradiance, pixel, vec4(min(light, vec3(HALF_MAX)), found ? 1.0 : 0.0));
 }

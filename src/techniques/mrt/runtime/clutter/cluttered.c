@@ -1,6 +1,7 @@
 // Bases, responses, openings and pairs of blocks with clutter.
 #include "techniques/mrt/runtime/clutter/cluttered.h"
 
+#include "techniques/mrt/clutter/probe_sight.h"
 #include "techniques/mrt/runtime/clutter/face_order.h"
 
 #include <string.h>
@@ -400,6 +401,23 @@ static bool add_map(struct builder *s, int block, int first_opening)
                           s->out->openings + first_opening, input->opening_count - first_opening);
 }
 
+static size_t voxels_of(const struct mrt_turned *turned)
+{
+    const size_t edge = turned->input.probes > 0 ? (size_t)mrt_sight_edge(turned->input.probes) : 0;
+    return edge * edge * edge;
+}
+
+static void add_sight(struct builder *s, int block, const struct mrt_delta_block *delta)
+{
+    struct mrt_runtime_input *input = &s->out->input;
+    const size_t voxels = voxels_of(s->turned);
+    if (!delta->sight) return;
+    input->sight = s->out->sight;
+    s->out->sight[block] = (uint32_t)input->sight_count;
+    memcpy(s->out->sight + input->sight_count, delta->sight, voxels * sizeof *delta->sight);
+    input->sight_count += voxels;
+}
+
 static bool add_block(struct builder *s, int block, const struct mrt_clutter_texel *texels)
 {
     const int first_opening = s->out->input.opening_count;
@@ -416,7 +434,10 @@ static bool add_block(struct builder *s, int block, const struct mrt_clutter_tex
                                            .stop = s->options->stop };
     const struct mrt_delta_block *delta = mrt_kept_delta(s->cache, &input);
     bool ok = delta;
-    if (ok && delta->touched && s->options->occlusion) ok = add_basis(s, block, delta);
+    if (ok && delta->touched && s->options->occlusion) {
+        ok = add_basis(s, block, delta);
+        add_sight(s, block, delta);
+    }
     ok = ok && add_openings(s, block, delta);
     if (ok && delta->face_count > 0 && s->options->reflection)
         ok = add_clutter(s, block, delta, texels);
@@ -439,9 +460,11 @@ static bool allocate(struct mrt_cluttered *out, const struct mrt_turned *turned,
     out->faces = host_alloc(host, (size_t)faces, sizeof *out->faces);
     out->clutter_openings = host_alloc(host, blocks, sizeof *out->clutter_openings);
     out->face_pairs = host_alloc(host, pairs + blocks * blocks, sizeof *out->face_pairs);
+    out->sight = host_alloc(host, blocks * (1 + voxels_of(turned)), sizeof *out->sight);
+    out->input.sight_count = blocks;
     if (!mrt_mapped_init(&out->mapped, host, (int)blocks)) return false;
     return out->responses && out->openings && out->pairs && out->gathered && out->faces &&
-           out->clutter_openings && out->face_pairs;
+           out->clutter_openings && out->face_pairs && out->sight;
 }
 
 static void finish_input(struct mrt_cluttered *out, struct mrt_turned *turned,
@@ -508,6 +531,7 @@ void mrt_cluttered_finish(struct mrt_cluttered *out)
     host_free(out->host, out->gathered);
     host_free(out->host, out->faces);
     host_free(out->host, out->clutter_openings);
+    host_free(out->host, out->sight);
     for (int i = 0; i < out->face_pair_count; i++)
         matrix_f32_finish(out->host, &out->face_pairs[i].of_c);
     host_free(out->host, out->face_pairs);

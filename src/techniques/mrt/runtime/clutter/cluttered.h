@@ -30,6 +30,7 @@ struct mrt_cluttered {
     int *clutter_openings;
     struct mrt_face_pair_input *face_pairs;
     int face_pair_count;
+    uint32_t *sight; // mrt_runtime_input.sight
     struct mrt_mapped mapped;
     struct mrt_clutter_input clutter;
     struct mrt_runtime_input input; // refers to `turned`

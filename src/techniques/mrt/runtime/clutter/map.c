@@ -257,12 +257,12 @@ void mrt_record_clutter_map(struct mrt_runtime *runtime, struct gpu_cmd *cmd)
 }
 
 // A G-buffer of the host without identifiers leaves these pixels to `apply`.
-void mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
+bool mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                                const struct frame_view *view)
 {
     const struct mrt_runtime_clutter_map *m = &runtime->clutter.map;
     const struct mrt_clutter_apply_push push = { m->instance_count, m->moves != NULL };
-    if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return;
+    if (m->tile_count == 0 || !view->layers[FRAME_ID].id) return false;
     gpu_dispatch(cmd, m->apply,
                  GPU_BIND(gpu_transient(cmd, "mrt_level", &runtime->level, sizeof runtime->level),
                           view->constants_binding,
@@ -278,4 +278,5 @@ void mrt_record_clutter_pixels(struct mrt_runtime *runtime, struct gpu_cmd *cmd,
                           { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
                  &push, sizeof push, gpu_groups(view->width, MRT_LOCAL_2D),
                  gpu_groups(view->height, MRT_LOCAL_2D), 1);
+    return true;
 }
