@@ -170,12 +170,39 @@ static void add_point(const struct gather_scene *s, const struct gather_point *p
     if (!is_inside(s, point, back)) out->at[out->count++] = *point;
 }
 
+// The triangle at a share of the chart's area.
+static uint32_t triangle_at(const struct charts *charts, const struct chart *chart, float share)
+{
+    uint32_t t = chart->first_triangle;
+    const uint32_t last = t + chart->triangle_count - 1;
+    float rest = share * chart->area_m2;
+    while (t < last && rest >= charts->triangles[t].area_m2) rest -= charts->triangles[t++].area_m2;
+    return t;
+}
+
+// All corners of a spot are at one place: its points are spread over its surface.
+static void find_spot_points(const struct gather_scene *s, const struct chart *chart,
+                             struct gather_texel texel, struct gather_points *out)
+{
+    for (uint32_t k = 0; k < GATHER_POINTS; k++) {
+        const vec2s at = sample_triangle(sobol_2d(k, pcg_hash(texel.texel) | 1u));
+        const float share = ((float)k + 0.5f) / GATHER_POINTS;
+        add_point(s, &(struct gather_point){ triangle_at(s->charts, chart, share), at.x, at.y },
+                  texel.back, out);
+    }
+}
+
 void gather_find_points(const struct gather_scene *s, struct gather_texel texel,
                         struct gather_points *out)
 {
     const struct chart_texel *t = &s->charts->texels[texel.texel];
+    const struct chart *chart = &s->charts->charts[s->charts->triangles[t->triangle].chart];
     bool covered = false;
     out->count = 0;
+    if (chart->spot) {
+        find_spot_points(s, chart, texel, out);
+        return;
+    }
     for (uint32_t k = 0; k < GATHER_POINTS; k++) {
         struct gather_point point;
         // The first 16 points of the sequence are one in each square of a 4 × 4 grid.
