@@ -102,8 +102,8 @@ struct ag_gbuffer {
     /// R16G16B16A16_SFLOAT: the layer motion, alpha 1 at surfaces. Required by techniques with a
     /// history (vct:temporal=true …) and by motion_layer.
     struct ag_layer_handle motion;
-    /// R32G32_UINT: instance and triangle, each plus 1, 0: no surface; as the layer id. Required by
-    /// radiosity; without it drt lights objects by probes.
+    /// R32G32_UINT: instance and triangle, each plus 1, 0: no surface; as the layer id. Without it
+    /// probes light all surfaces of radiosity and the objects of drt.
     struct ag_layer_handle id;
     uint64_t reserved[8]; ///< 0; see ABI in types.h
 };

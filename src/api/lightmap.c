@@ -35,11 +35,8 @@ static bool make_map(struct ag_lightmap *l, const struct gi_spec *spec, int term
     struct scene_statics statics;
     struct charts charts = { 0 };
     if (!scene_statics_init(&statics, host, pose)) return false;
-    const enum log_level before = host->log_up_to;
-    host->log_up_to = LOG_ERROR; // warnings about the charts were logged with the bake
-    bool ok = spec->technique[term]->charts(&statics.pose, spec->options[term], host, &charts);
-    host->log_up_to = before;
-    ok = ok && lightmap_init(&l->map, &charts, pose->scene);
+    bool ok = spec->technique[term]->charts(&statics.pose, spec->options[term], host, &charts) &&
+              lightmap_init(&l->map, &charts, pose->scene);
     scene_statics_finish(&statics);
     l->gi = ok ? gi_spec_print(spec) : NULL;
     l->facts.gi = l->gi;

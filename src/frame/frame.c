@@ -187,17 +187,15 @@ bool frame_resize(struct frame *f, uint32_t width, uint32_t height)
 
 static bool check_gbuffer(struct frame *f)
 {
-    const uint32_t needed = FRAME_LEAST_GBUFFER |
-                            (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0) |
-                            (f->needs & FRAME_REQUIRES_ID ? 1u << FRAME_ID : 0);
+    const uint32_t needed =
+        FRAME_LEAST_GBUFFER | (f->needs & FRAME_NEEDS_MOTION ? 1u << FRAME_MOTION : 0);
     const uint32_t missing = needed & ~f->imported;
     if (!missing) return true;
     return host_fail(f->host, FAIL_ARGUMENT, "gbuffer has no image of the layer %s%s",
                      missing >> FRAME_DEPTH & 1u    ? "depth"
                      : missing >> FRAME_NORMAL & 1u ? "normal"
                      : missing >> FRAME_ALBEDO & 1u ? "albedo"
-                     : missing >> FRAME_MOTION & 1u ? "motion"
-                                                    : "id",
+                                                    : "motion",
                      missing & FRAME_LEAST_GBUFFER  ? ""
                      : missing >> FRAME_MOTION & 1u ? ", which a technique or motion_layer needs"
                                                     : ", which a technique needs");

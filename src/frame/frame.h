@@ -116,7 +116,6 @@ enum frame_need {
     FRAME_NEEDS_EMITTERS = 32,
     FRAME_NEEDS_ID = 64,              // a program's G-buffer may be without it
     FRAME_UPDATE_NEEDS_GBUFFER = 128, // `update` reads depth and normals of the first view
-    FRAME_REQUIRES_ID = 256,          // with FRAME_NEEDS_ID: also of a program's G-buffer
 };
 
 struct frame_indirect {

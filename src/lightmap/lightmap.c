@@ -20,19 +20,15 @@ uint64_t lightmap_rows(const struct charts *charts, const struct scene *scene)
     return charts->texel_count;
 }
 
-bool lightmap_fail_empty(struct host *host, const struct scene *scene)
-{
-    return host_fail(host, FAIL_ARGUMENT, "light map of %s: the scene has no static triangles",
-                     scene->name);
-}
-
 bool lightmap_init(struct lightmap *out, struct charts *charts, const struct scene *scene)
 {
     struct host *host = charts->host;
     *out = (struct lightmap){ .host = host, .charts = *charts };
     *charts = (struct charts){ 0 };
     const int width = (int)out->charts.width, height = (int)out->charts.height;
-    bool ok = width > 0 || lightmap_fail_empty(host, scene);
+    bool ok =
+        width > 0 || host_fail(host, FAIL_ARGUMENT,
+                               "light map of %s: the scene has no static triangles", scene->name);
     out->has_back = lightmap_rows(&out->charts, scene) > out->charts.texel_count;
     for (int side = 0; ok && side < (out->has_back ? 2 : 1); side++)
         ok = image_init(&out->irradiance[side], host, width, height, 3);

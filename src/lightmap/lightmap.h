@@ -12,9 +12,6 @@ bool lightmap_has_back(const struct scene *scene, const struct chart *chart);
 // Texels of the fronts, and as many again where some chart has a back.
 uint64_t lightmap_rows(const struct charts *charts, const struct scene *scene);
 
-// Always false; without static triangles there is no light map.
-bool lightmap_fail_empty(struct host *host, const struct scene *scene);
-
 // ---- stages.c: light by the path tracer
 
 #define LIGHTMAP_PUNCTUAL "texels/punctual" // F32 [texels of both sides][3], lux

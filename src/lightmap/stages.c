@@ -18,12 +18,9 @@ struct job {
 static bool prepare(void *argument, struct host *host)
 {
     struct job *job = argument;
-    const enum log_level before = host->log_up_to;
-    if (!scene_statics_init(&job->statics, host, job->how.pose)) return false;
-    host->log_up_to = LOG_ERROR; // warnings about the charts were logged for the plan
-    const bool ok = job->how.charts(&job->statics.pose, job->how.options, host, &job->charts);
-    host->log_up_to = before;
-    return ok && gather_scene_init(&job->scene, host, &job->statics.pose, &job->charts);
+    return scene_statics_init(&job->statics, host, job->how.pose) &&
+           job->how.charts(&job->statics.pose, job->how.options, host, &job->charts) &&
+           gather_scene_init(&job->scene, host, &job->statics.pose, &job->charts);
 }
 
 static void finish(void *argument)
@@ -94,8 +91,9 @@ static struct hash128 key_of(const struct scene_pose *pose)
 // Some thousand paths, so that a task takes a fraction of a second.
 enum { PATHS_PER_TASK = 16384, RAYS_PER_PATH = 8 };
 
-static bool add_stage(struct bake_plan *plan, int samples, uint64_t texels)
+static bool add_stage(struct bake_plan *plan, int samples, uint64_t rows)
 {
+    const uint64_t texels = rows > 0 ? rows : 1; // an empty scene has one row, of zeros
     const uint64_t tasks = (texels * (uint64_t)samples + PATHS_PER_TASK - 1) / PATHS_PER_TASK;
     const struct bake_output out[] = {
         { LIGHTMAP_PUNCTUAL, TENSOR_F32, 2, { texels, 3 }, BAKE_ROWS, BAKE_SAVED },
@@ -119,7 +117,7 @@ static bool count_texels(struct host *host, const struct lightmap_bake *how,
     if (!how->charts(statics, how->options, host, &charts)) return false;
     *rows = lightmap_rows(&charts, statics->scene);
     charts_finish(&charts);
-    return *rows > 0 || lightmap_fail_empty(host, statics->scene);
+    return true;
 }
 
 bool lightmap_add_stages(struct bake_plan *plan, const struct lightmap_bake *how)

@@ -174,23 +174,6 @@ TEST_GPU(a_light_that_is_switched_off_leaves_nothing_in_the_next_frame)
     stop(&run, &s);
 }
 
-TEST_GPU(a_light_that_moves_leaves_nothing_of_earlier_frames)
-{
-    struct frame_fixture s;
-    struct run run;
-    room(&s, gpu, 0.7f, 0);
-    struct world_light *light = fixture_add_point(&s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
-    start(&run, &s, SMALL);
-    const double here = mean_irradiance(&s);
-    light->position = vec3_of(0.2f, 2, 0);
-    const double there = mean_irradiance(&s);
-    light->position = vec3_of(0, 2, 0);
-    CHECK(here != there && mean_irradiance(&s) == here);
-    light->position = vec3_of(0.2f, 2, 0);
-    CHECK(mean_irradiance(&s) == there);
-    stop(&run, &s);
-}
-
 // Passes that a frame records.
 static uint64_t passes_of_frame(struct frame_fixture *s)
 {

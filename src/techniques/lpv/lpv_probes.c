@@ -49,6 +49,6 @@ void lpv_record_probes(struct lpv *finest, struct gpu_cmd *cmd)
 bool lpv_probes_publish(const struct lpv *finest, struct probe_volume *out)
 {
     if (!finest->options.probes) return false;
-    *out = (struct probe_volume){ finest->volumes.probes, probe_grid(finest) };
+    *out = (struct probe_volume){ .image = finest->volumes.probes, .grid = probe_grid(finest) };
     return true;
 }

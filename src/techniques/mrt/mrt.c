@@ -257,7 +257,8 @@ static bool mrt_probes(void *state, struct probe_volume *out)
 {
     const struct mrt *mrt = state;
     if (!mrt->options.probes) return false;
-    *out = (struct probe_volume){ mrt->runtime.probes.volume, mrt->runtime.probes.grid };
+    *out = (struct probe_volume){ .image = mrt->runtime.probes.volume,
+                                  .grid = mrt->runtime.probes.grid };
     return true;
 }
 

@@ -34,6 +34,7 @@ static bool create(void *state, const struct technique_create *how)
     s->instances = (uint32_t)how->pose->scene->instance_count;
     struct scene_statics statics;
     const bool ok = scene_statics_init(&statics, s->host, how->pose) &&
+                    radiosity_followed_init(&s->followed, s->host, how->pose, &statics) &&
                     radiosity_map_init(&s->map, s->host, &statics.pose, &s->options);
     scene_statics_finish(&statics);
     s->sides = s->map.texel_count > s->map.charts.texel_count ? 2 : 1;
@@ -44,7 +45,7 @@ static bool make_buffers(struct radiosity *s)
 {
     enum { VEC3_BYTES = 12, VEC4_BYTES = 16 };
     struct radiosity_buffers *b = &s->buffers;
-    const size_t texels = s->map.texel_count, nodes = s->map.tree.count, groups = s->groups;
+    const size_t texels = s->map.texel_count, nodes = s->map.tree.count;
     const struct {
         const char *name;
         size_t bytes;
@@ -53,12 +54,12 @@ static bool make_buffers(struct radiosity *s)
         { "flux", texels * VEC3_BYTES, &b->flux },
         { "light", texels * 3 * VEC4_BYTES, &b->light },
         { "sent", nodes * VEC3_BYTES, &b->sent },
-        { "group_sent", groups * VEC3_BYTES, &b->group_sent },
-        { "radiosity", groups * VEC3_BYTES, &b->radiosity[0] },
-        { "radiosity", groups * VEC3_BYTES, &b->radiosity[1] },
+        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[0] },
+        { "radiosity", nodes * VEC3_BYTES, &b->radiosity[1] },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const struct gpu_buffer_desc desc = { rows[i].name, rows[i].bytes, GPU_BUFFER_STORAGE };
+        const size_t bytes = rows[i].bytes > 0 ? rows[i].bytes : VEC4_BYTES;
+        const struct gpu_buffer_desc desc = { rows[i].name, bytes, GPU_BUFFER_STORAGE };
         if (!gpu_buffer_create(s->gpu, &desc, rows[i].out)) return false;
     }
     return true;
@@ -93,10 +94,8 @@ static bool make_pipelines(struct radiosity *s)
     } rows[] = {
         { "direct", &shader_radiosity_direct_comp, &p->direct },
         { "clusters", &shader_radiosity_clusters_comp, &p->clusters },
-        { "groups", &shader_radiosity_groups_comp, &p->groups },
-        { "solve", &shader_radiosity_solve_comp, &p->solve },
-        { "reflect", &shader_radiosity_reflect_comp, &p->reflect },
         { "nodes", &shader_radiosity_nodes_comp, &p->nodes },
+        { "solve", &shader_radiosity_solve_comp, &p->solve },
         { "gather", &shader_radiosity_gather_comp, &p->gather },
         { "map", &shader_radiosity_map_comp, &p->map },
         { "seams", &shader_radiosity_seams_comp, &p->seams },
@@ -115,8 +114,10 @@ static bool make_pipelines(struct radiosity *s)
 static bool load(void *state, const struct tensors *bake)
 {
     struct radiosity *s = state;
-    if (!radiosity_upload(s, bake)) return false;
-    return s->map.texel_count == 0 || (make_buffers(s) && make_light_map(s) && make_pipelines(s));
+    const struct radiosity_probes_create how = { s->host, s->gpu, &s->map, &s->options };
+    if (!radiosity_upload(s, bake) || !make_buffers(s)) return false;
+    return radiosity_probes_init(&s->probes, &how, bake) &&
+           (s->map.texel_count == 0 || (make_light_map(s) && make_pipelines(s)));
 }
 
 static void set_options(void *state, const void *options)
@@ -145,23 +146,40 @@ static bool is_kept(struct radiosity *s, const struct frame_view *view)
     return same;
 }
 
+static void follow(void *state, const struct scene_pose *pose, bool wait)
+{
+    struct radiosity *s = state;
+    (void)wait;
+    radiosity_followed_update(&s->followed, pose);
+}
+
+static void gather_probes(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    if (!s->probes.fresh)
+        radiosity_probes_record_gather(&s->probes, cmd, view, s->solution, s->options.emitters);
+}
+
 static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
-    if (s->map.texel_count == 0 || is_kept(s, view)) return;
-    radiosity_record_light(s, cmd, view);
+    if (!is_kept(s, view)) {
+        s->probes.fresh = false;
+        s->solution = s->buffers.sent;
+        if (s->map.texel_count > 0) radiosity_record_light(s, cmd, view);
+    }
+    if (s->options.probes) gather_probes(s, cmd, view);
 }
 
+// Probes have no light before a view needs it.
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct radiosity *s = state;
-    if (s->map.texel_count > 0) {
-        radiosity_record_apply(s, cmd, view);
-        return;
-    }
-    const float black[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
-    gpu_clear_image(cmd, view->layers[FRAME_IRRADIANCE], black);
-    if (s->options.specular) gpu_clear_image(cmd, view->layers[FRAME_SPECULAR], black);
+    const bool mapped = view->layers[FRAME_ID].id && s->map.texel_count > 0;
+    if (mapped) radiosity_record_apply(s, cmd, view);
+    if (mapped && !s->followed.any_lit) return;
+    const struct radiosity_lit lit = { mapped ? s->followed.lit : NULL, s->followed.count };
+    gather_probes(s, cmd, view);
+    radiosity_probes_record_apply(&s->probes, cmd, view, lit);
 }
 
 static bool charts(const struct scene_pose *statics, const void *options, struct host *host,
@@ -176,15 +194,28 @@ static gpu_image light_map(void *state)
     return s->buffers.light_map;
 }
 
+static bool probes(void *state, struct probe_volume *out)
+{
+    const struct radiosity *s = state;
+    if (!s->options.probes) return false;
+    *out = (struct probe_volume){ s->probes.volume, s->probes.grid, s->probes.depth };
+    return true;
+}
+
+static const struct technique_debug_view views[] = {
+    { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
+    { NULL, NULL, NULL },
+};
+
 static void destroy_buffers(struct radiosity *s)
 {
     struct radiosity_buffers *b = &s->buffers;
-    gpu_buffer *const buffers[] = {
-        &b->texels, &b->factors,   &b->clusters,      &b->members,      &b->nodes,
-        &b->owners, &b->instances, &b->triangles,     &b->places,       &b->seams,
-        &b->flux,   &b->light,     &b->sent,          &b->radiosity[0], &b->radiosity[1],
-        &b->groups, &b->group_of,  &b->group_factors, &b->group_sent
-    };
+    gpu_buffer *const buffers[] = { &b->texels,         &b->factors,      &b->clusters,
+                                    &b->members,        &b->nodes,        &b->owners,
+                                    &b->instances,      &b->triangles,    &b->places,
+                                    &b->seams,          &b->flux,         &b->light,
+                                    &b->sent,           &b->radiosity[0], &b->radiosity[1],
+                                    &b->cluster_factors };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(s->gpu, buffers[i]);
     gpu_image_destroy(s->gpu, &b->light_map);
@@ -195,12 +226,13 @@ static void destroy(void *state)
     struct radiosity *s = state;
     if (!s->host) return;
     struct radiosity_pipelines *p = &s->pipelines;
-    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->groups, &p->reflect,
-                                        &p->nodes,  &p->solve,    &p->gather, &p->map,
-                                        &p->seams,  &p->apply };
+    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve,
+                                        &p->gather, &p->map,      &p->seams, &p->apply };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     destroy_buffers(s);
+    radiosity_probes_finish(&s->probes, s->gpu);
+    radiosity_followed_finish(&s->followed);
     radiosity_map_finish(&s->map);
 }
 
@@ -220,9 +252,8 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     (void)width;
     (void)height;
     return texels * (sizeof(struct radiosity_gpu_texel) + 8 * sources + 12 + 48 + 4) +
-           clusters * (sizeof(struct radiosity_gpu_cluster) + sizeof(struct radiosity_gpu_group) +
-                       4 * sources + 12 + 5 * 12) +
-           (uint64_t)o->texels * (4 + 8 * RADIOSITY_LAYERS);
+           clusters * (sizeof(struct radiosity_gpu_cluster) + 8 * sources + 8 + 6 * 12) +
+           (uint64_t)o->texels * (4 + 8 * RADIOSITY_LAYERS) + radiosity_probes_memory(o);
 }
 
 const struct technique technique_radiosity = {
@@ -230,11 +261,13 @@ const struct technique technique_radiosity = {
     .title = "baked radiosity of static geometry",
     .paper = "Loos 2015, Modular Radiance Transfer, sec. 2.5.3; Giuffrida 2016, sec. 3.2",
     .role = ROLE_SOURCE,
-    .capabilities = CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION,
-    .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_REQUIRES_ID,
-    .bake_version = 6,
+    .capabilities =
+        CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
+    .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
+    .bake_version = 7,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
+    .debug_views = views,
     .state_size = sizeof(struct radiosity),
     .more_needs = more_needs,
     .bake = radiosity_bake,
@@ -242,10 +275,12 @@ const struct technique technique_radiosity = {
     .load = load,
     .set_options = set_options,
     .invalidate = invalidate,
+    .follow = follow,
     .update = update,
     .record = record,
     .charts = charts,
     .light_map = light_map,
+    .probes = probes,
     .destroy = destroy,
     .memory_estimate = memory_estimate,
 };

@@ -15,6 +15,7 @@
 #include "frame/frame.glsl"
 #include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
+#include "techniques/radiosity/radiosity_lobe.glsl"
 #include "techniques/radiosity/radiosity_shared.h"
 
 layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
@@ -76,13 +77,6 @@ light_at_pixel light_at(vec3 place, vec3 n)
 }
 
 #if SPECULAR
-// How far the mean direction of the lobe leans, over the mirror direction's. A fit within 0.04 from
-// n·v = 0.25 on.
-float lean_of(float alpha)
-{
-    return (1.0 - alpha) / (1.0 + 1.2 * alpha * alpha);
-}
-
 vec3 reflected(ivec2 pixel, vec3 position, vec3 n, light_at_pixel light)
 {
     vec4 lobe = BRDF_DEFAULT_DIELECTRIC;

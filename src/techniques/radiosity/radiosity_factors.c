@@ -3,7 +3,7 @@
 #include "techniques/radiosity/radiosity_state.h"
 
 // A block begins at a multiple of 256 bytes, which is enough for all devices.
-enum { ROW_STEP = 64, TEXEL_WORDS = 2 };
+enum { ROW_STEP = 64, TEXEL_WORDS = 2, CLUSTER_WORDS = 1 };
 
 static struct radiosity_block block_at(const struct radiosity *s, uint32_t first, uint32_t rows,
                                        size_t row_bytes)
@@ -19,9 +19,19 @@ static size_t texel_row_bytes(const struct radiosity *s)
     return (size_t)s->options.sources * TEXEL_WORDS * sizeof(uint32_t);
 }
 
+static size_t cluster_row_bytes(const struct radiosity *s)
+{
+    return 2 * (size_t)s->options.sources * CLUSTER_WORDS * sizeof(uint32_t);
+}
+
 struct radiosity_block radiosity_texel_block(const struct radiosity *s, uint32_t first)
 {
     return block_at(s, first, s->map.texel_count, texel_row_bytes(s));
+}
+
+struct radiosity_block radiosity_cluster_block(const struct radiosity *s, uint32_t first)
+{
+    return block_at(s, first, s->map.cluster_count, cluster_row_bytes(s));
 }
 
 static uint32_t pack(uint32_t node, uint16_t factor)
@@ -52,6 +62,16 @@ static void pack_texels(const struct table *of, const struct radiosity_block *bl
         }
 }
 
+static void pack_clusters(const struct table *of, const struct radiosity_block *block,
+                          uint32_t *words)
+{
+    for (size_t row = 0; row < block->count; row++)
+        for (size_t k = 0; k < of->sources; k++) {
+            const size_t from = (block->first + row) * of->sources + k;
+            words[k * block->count + row] = pack(of->source[from], of->factor[from]);
+        }
+}
+
 static bool upload_block(struct radiosity *s, const struct table *of,
                          const struct radiosity_block *block)
 {
@@ -75,15 +95,21 @@ static bool upload_table(struct radiosity *s, const struct table *of)
     return ok;
 }
 
-bool radiosity_upload_factors(struct radiosity *s, const uint32_t *source, const uint16_t *factor)
+bool radiosity_upload_factors(struct radiosity *s, const uint32_t *source, const uint16_t *factor,
+                              const uint32_t *cluster_source, const uint16_t *cluster_factor)
 {
+    const size_t sources = (size_t)s->options.sources;
     const struct table texels = { "factors",
                                   source,
                                   factor,
-                                  (size_t)s->options.sources,
+                                  sources,
                                   texel_row_bytes(s),
                                   s->map.texel_count,
                                   pack_texels,
                                   &s->buffers.factors };
-    return upload_table(s, &texels);
+    const struct table clusters = { "cluster_factors",    cluster_source,
+                                    cluster_factor,       2 * sources,
+                                    cluster_row_bytes(s), s->map.cluster_count,
+                                    pack_clusters,        &s->buffers.cluster_factors };
+    return upload_table(s, &texels) && upload_table(s, &clusters);
 }

@@ -1,8 +1,6 @@
 // The passes of a frame.
 #include "techniques/radiosity/radiosity_state.h"
 
-#include <math.h>
-
 static void record_direct(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     const struct radiosity_direct_push push = { s->map.texel_count, view->shadow_radius,
@@ -31,101 +29,68 @@ static void record_clusters(struct radiosity *s, struct gpu_cmd *cmd)
                  &push, sizeof push, gpu_groups(push.clusters, RADIOSITY_LOCAL), 1, 1);
 }
 
-static void record_groups(struct radiosity *s, struct gpu_cmd *cmd)
-{
-    const struct radiosity_groups_push push = { s->groups };
-    gpu_dispatch(cmd, s->pipelines.groups,
-                 GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
-                          { .name = "radiosity_groups", .buffer = s->buffers.groups },
-                          { .name = "radiosity_sent", .buffer = s->buffers.sent },
-                          { .name = "radiosity_group_sent", .buffer = s->buffers.group_sent }),
-                 &push, sizeof push, gpu_groups(push.groups, RADIOSITY_LOCAL), 1, 1);
-}
-
-static void record_step(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_buffer last,
-                        gpu_buffer next)
-{
-    const struct radiosity_solve_push push = { s->groups, s->group_entries, over };
-    gpu_dispatch(cmd, s->pipelines.solve,
-                 GPU_BIND({ .name = "radiosity_groups", .buffer = s->buffers.groups },
-                          { .name = "radiosity_group_factors", .buffer = s->buffers.group_factors },
-                          { .name = "radiosity_group_sent", .buffer = s->buffers.group_sent },
-                          { .name = "radiosity_last", .buffer = last },
-                          { .name = "radiosity_next", .buffer = next }),
-                 &push, sizeof push, gpu_groups(push.groups, RADIOSITY_LOCAL), 1, 1);
-}
-
-static void record_reflect(struct radiosity *s, struct gpu_cmd *cmd, gpu_buffer received)
-{
-    const struct radiosity_clusters_push push = { s->map.cluster_count };
-    gpu_dispatch(cmd, s->pipelines.reflect,
-                 GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
-                          { .name = "radiosity_group_of", .buffer = s->buffers.group_of },
-                          { .name = "radiosity_received", .buffer = received },
-                          { .name = "radiosity_sent", .buffer = s->buffers.sent }),
-                 &push, sizeof push, gpu_groups(push.clusters, RADIOSITY_LOCAL), 1, 1);
-}
-
-static void record_nodes(struct radiosity *s, struct gpu_cmd *cmd)
+static void record_nodes(struct radiosity *s, struct gpu_cmd *cmd, gpu_buffer radiosity)
 {
     const struct radiosity_nodes_push push = { s->map.cluster_count,
                                                s->map.tree.count - s->map.cluster_count };
     gpu_dispatch(cmd, s->pipelines.nodes,
                  GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
                           { .name = "radiosity_nodes", .buffer = s->buffers.nodes },
-                          { .name = "radiosity_sent", .buffer = s->buffers.sent }),
+                          { .name = "radiosity_sent", .buffer = radiosity }),
                  &push, sizeof push, gpu_groups(push.nodes, RADIOSITY_LOCAL), 1, 1);
 }
 
-// After k steps the error is at most 2 rᵏ/(1 + r²ᵏ) of the first, r = σ/(1 + √(1 − σ²)).
-static const float MOST_ERROR = 1e-3f;
-
-static int steps_of(const struct radiosity *s)
+static void record_step_of(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_buffer last,
+                           gpu_buffer next, const struct radiosity_block *block)
 {
-    const float square = s->spectral_radius * s->spectral_radius;
-    const float r = s->spectral_radius / (1.0f + sqrtf(1.0f - square));
-    float power = 1.0f;
-    int steps = 0;
-    for (; steps < s->options.bounces && 2.0f * power > MOST_ERROR * (1.0f + power * power);
-         steps++)
-        power *= r;
-    return steps;
+    const struct radiosity_solve_push push = { block->first, block->count,
+                                               2 * (uint32_t)s->options.sources, over };
+    gpu_dispatch(cmd, s->pipelines.solve,
+                 GPU_BIND({ .name = "radiosity_clusters", .buffer = s->buffers.clusters },
+                          { .name = "radiosity_cluster_factors",
+                            .buffer = s->buffers.cluster_factors,
+                            .offset = block->offset,
+                            .bytes = block->bytes },
+                          { .name = "radiosity_sent", .buffer = s->buffers.sent },
+                          { .name = "radiosity_last", .buffer = last },
+                          { .name = "radiosity_next", .buffer = next }),
+                 &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
-// Leaves the irradiance of each group in the buffer that is returned. The relaxation factors of the
-// Chebyshev method are those of eigenvalues in ± the spectral radius σ: 1, 1/(1 − σ²/2),
-// 1/(1 − σ²ω/4), …
-static gpu_buffer record_solution(struct radiosity *s, struct gpu_cmd *cmd, int steps)
+static void record_step(struct radiosity *s, struct gpu_cmd *cmd, float over, gpu_buffer last,
+                        gpu_buffer next)
+{
+    for (uint32_t first = 0; first < s->map.cluster_count;) {
+        const struct radiosity_block block = radiosity_cluster_block(s, first);
+        record_step_of(s, cmd, over, last, next, &block);
+        first += block.count;
+    }
+}
+
+// Returns the buffer with the radiosity of all bounces. The relaxation factors of the Chebyshev
+// method are those of eigenvalues in ± the spectral radius σ: 1, 1/(1 − σ²/2), 1/(1 − σ²ω/4), …
+static gpu_buffer record_solution(struct radiosity *s, struct gpu_cmd *cmd)
 {
     const float square = s->spectral_radius * s->spectral_radius;
-    gpu_buffer last = s->buffers.group_sent;
+    gpu_buffer last = s->buffers.sent;
     float over = 1.0f;
+    record_nodes(s, cmd, last);
     // The second step starts from it and the first step's result.
-    gpu_copy_buffer(cmd, s->buffers.radiosity[1], 0, s->buffers.group_sent, 0,
-                    s->groups * sizeof(vec3s));
-    for (int i = 0; i < steps; i++) {
-        const gpu_buffer next = s->buffers.radiosity[i & 1];
+    gpu_copy_buffer(cmd, s->buffers.radiosity[1], 0, s->buffers.sent, 0,
+                    s->map.cluster_count * sizeof(vec3s));
+    for (int i = 0; i < s->options.bounces; i++) {
         if (i == 1) over = 1.0f / (1.0f - 0.5f * square);
         if (i > 1) over = 1.0f / (1.0f - 0.25f * square * over);
-        record_step(s, cmd, i + 1 < steps ? over : 0.0f, last, next);
-        last = next;
+        record_step(s, cmd, over, last, s->buffers.radiosity[i & 1]);
+        last = s->buffers.radiosity[i & 1];
+        record_nodes(s, cmd, last);
     }
     return last;
 }
 
-// Light of all bounces of the clusters and the nodes.
-static void record_bounces(struct radiosity *s, struct gpu_cmd *cmd)
-{
-    const int steps = steps_of(s);
-    if (steps > 0) {
-        record_groups(s, cmd);
-        record_reflect(s, cmd, record_solution(s, cmd, steps));
-    }
-    record_nodes(s, cmd);
-}
-
 static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
-                             const struct frame_view *view, const struct radiosity_block *block)
+                             const struct frame_view *view, gpu_buffer radiosity,
+                             const struct radiosity_block *block)
 {
     const struct radiosity_gather_push push = { block->first, block->count,
                                                 (uint32_t)s->options.sources,
@@ -137,16 +102,17 @@ static void record_gather_of(struct radiosity *s, struct gpu_cmd *cmd,
                             .buffer = s->buffers.factors,
                             .offset = block->offset,
                             .bytes = block->bytes },
-                          { .name = "radiosity_sent", .buffer = s->buffers.sent },
+                          { .name = "radiosity_sent", .buffer = radiosity },
                           { .name = "radiosity_light", .buffer = s->buffers.light }),
                  &push, sizeof push, gpu_groups(push.count, RADIOSITY_LOCAL), 1, 1);
 }
 
-static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view)
+static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct frame_view *view,
+                          gpu_buffer radiosity)
 {
     for (uint32_t first = 0; first < s->map.texel_count;) {
         const struct radiosity_block block = radiosity_texel_block(s, first);
-        record_gather_of(s, cmd, view, &block);
+        record_gather_of(s, cmd, view, radiosity, &block);
         first += block.count;
     }
 }
@@ -181,10 +147,11 @@ void radiosity_record_light(struct radiosity *s, struct gpu_cmd *cmd, const stru
     record_clusters(s, cmd);
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "bounces");
-    record_bounces(s, cmd);
+    const gpu_buffer radiosity = record_solution(s, cmd);
     gpu_scope_end(cmd);
+    s->solution = radiosity;
     gpu_scope_begin(cmd, "gather");
-    record_gather(s, cmd, view);
+    record_gather(s, cmd, view, radiosity);
     gpu_scope_end(cmd);
     gpu_scope_begin(cmd, "light_map");
     record_map(s, cmd);

@@ -30,13 +30,6 @@ struct radiosity_gpu_cluster {
     uint32_t first, count; // in the list of members
 };
 
-// Clusters that receive one irradiance of bounced light.
-struct radiosity_gpu_group {
-    vec3s reflectance; // mean by area
-    float area_m2;
-    uint32_t first, count; // clusters
-};
-
 // A node of the tree above the clusters.
 struct radiosity_gpu_node {
     uint32_t first, count; // clusters; count 0: it is no source
@@ -66,13 +59,10 @@ struct radiosity_clusters_push {
     uint32_t clusters;
 };
 
-struct radiosity_groups_push {
-    uint32_t groups;
-};
-
+// Rows of clusters `first` … `first` + `count` − 1.
 struct radiosity_solve_push {
-    uint32_t groups, entries; // entries: of a row
-    float over;               // relaxation factor; 0: the last step
+    uint32_t first, count, entries; // entries: of a row
+    float over;                     // relaxation factor
 };
 
 struct radiosity_nodes_push {
@@ -108,9 +98,7 @@ _Static_assert(sizeof(struct radiosity_gpu_seam) == 8, "layout is shared with GL
 _Static_assert(sizeof(struct radiosity_seams_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_direct_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_solve_push) == 12, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_groups_push) == 4, "layout is shared with GLSL");
-_Static_assert(sizeof(struct radiosity_gpu_group) == 24, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_solve_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_node) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_nodes_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gather_push) == 16, "layout is shared with GLSL");

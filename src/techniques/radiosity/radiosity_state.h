@@ -1,20 +1,19 @@
 // The private state of radiosity.
 #pragma once
 
-#include "techniques/radiosity/radiosity_groups.h"
+#include "techniques/radiosity/probes/probes.h"
+#include "techniques/radiosity/radiosity_follow.h"
 #include "techniques/radiosity/radiosity_seams.h"
 #include "techniques/radiosity/radiosity_shared.h"
 #include "techniques/radiosity/radiosity_tensors.h"
 
 struct radiosity_buffers {
-    gpu_buffer texels, factors;                 // of texels
-    gpu_buffer clusters, members, nodes;        // of clusters
-    gpu_buffer groups, group_of, group_factors; // of groups
-    gpu_buffer owners, instances, triangles;    // of the light map
-    gpu_buffer places, seams;                   // beside seams
-    gpu_buffer flux, light;                     // [texels] of the newest light
-    gpu_buffer sent;                            // [clusters and nodes] likewise
-    gpu_buffer group_sent, radiosity[2];        // [groups] likewise
+    gpu_buffer texels, factors;                           // of texels
+    gpu_buffer clusters, members, nodes, cluster_factors; // of clusters
+    gpu_buffer owners, instances, triangles;              // of the light map
+    gpu_buffer places, seams;                             // beside seams
+    gpu_buffer flux, light;                               // [texels] of the newest light
+    gpu_buffer sent, radiosity[2];                        // [clusters and nodes] likewise
     gpu_image light_map;
 };
 
@@ -25,7 +24,7 @@ struct radiosity_block {
 };
 
 struct radiosity_pipelines {
-    gpu_pipeline direct, clusters, groups, solve, reflect, nodes, gather, map, seams, apply;
+    gpu_pipeline direct, clusters, nodes, solve, gather, map, seams, apply;
 };
 
 struct radiosity {
@@ -35,11 +34,13 @@ struct radiosity {
     struct radiosity_map map; // without texels: an empty scene
     uint32_t instances, sides;
     uint32_t seam_places;
-    uint32_t groups, group_entries;
     float spectral_radius; // of ρ F, at least
     struct radiosity_buffers buffers;
     struct radiosity_pipelines pipelines;
     gpu_sampler linear;
+    gpu_buffer solution; // one of the buffers: the radiosity of all bounces
+    struct radiosity_probes probes;
+    struct radiosity_followed followed;
     // What the light of the newest frame was computed from.
     struct {
         bool valid;
@@ -51,12 +52,14 @@ struct radiosity {
 
 // Tables of the light map and of a bake on the GPU.
 bool radiosity_upload(struct radiosity *state, const struct tensors *bake);
-// The form factors of texels, block after block. Rows are those of a bake.
+// Both tables of form factors, block after block. Rows are those of a bake.
 bool radiosity_upload_factors(struct radiosity *state, const uint32_t *source,
-                              const uint16_t *factor);
+                              const uint16_t *factor, const uint32_t *cluster_source,
+                              const uint16_t *cluster_factor);
 
 // The block that begins with a row.
 struct radiosity_block radiosity_texel_block(const struct radiosity *state, uint32_t first);
+struct radiosity_block radiosity_cluster_block(const struct radiosity *state, uint32_t first);
 
 // ---- radiosity_record.c
 

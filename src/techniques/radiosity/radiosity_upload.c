@@ -165,6 +165,71 @@ static struct radiosity_gpu_cluster cluster_of(const struct radiosity *s, const 
     return out;
 }
 
+struct power {
+    const struct content *content;
+    const struct radiosity_tree *tree;
+    const struct radiosity_gpu_cluster *clusters;
+    float *from, *to; // [nodes]
+};
+
+static void fill_nodes(const struct power *p, float *x)
+{
+    for (uint32_t n = p->tree->leaves; n < p->tree->count; n++) {
+        const struct radiosity_node *node = &p->tree->nodes[n];
+        float sum = 0.0f, area = 0.0f;
+        if (node->count > RADIOSITY_GROUP) continue;
+        for (uint32_t c = node->first; c < node->first + node->count; c++) {
+            sum += p->clusters[c].area_m2 * x[c];
+            area += p->clusters[c].area_m2;
+        }
+        x[n] = area > 0.0f ? sum / area : 0.0f;
+    }
+}
+
+// One step of the power method; the largest ratio bounds the spectral radius from above (Collatz
+// 1942).
+static float power_step(const struct power *p)
+{
+    const struct content *c = p->content;
+    float most = 0.0f;
+    fill_nodes(p, p->from);
+    for (size_t i = 0; i < p->tree->leaves; i++) {
+        float sum = 0.0f;
+        for (size_t k = 0; k < c->cluster_sources; k++) {
+            const size_t at = i * c->cluster_sources + k;
+            if (c->cluster_factor[at] == 0) break;
+            sum += float_from_half(c->cluster_factor[at]) * p->from[c->cluster_source[at]];
+        }
+        // Clusters that reflect nothing would end with the ratio 0/0.
+        p->to[i] = fmaxf(sum * glms_vec3_max(p->clusters[i].reflectance), 1e-30f);
+        most = fmaxf(most, p->to[i] / p->from[i]);
+    }
+    return most;
+}
+
+enum { POWER_STEPS = 24 };
+static const float MOST_RADIUS = 0.999f;
+
+static bool find_spectral_radius(struct radiosity *s, const struct content *c,
+                                 const struct radiosity_gpu_cluster *clusters)
+{
+    struct power p = { c, &s->map.tree, clusters,
+                       host_alloc(s->host, s->map.tree.count, sizeof(float)),
+                       host_alloc(s->host, s->map.tree.count, sizeof(float)) };
+    const bool ok = p.from && p.to;
+    s->spectral_radius = MOST_RADIUS;
+    for (uint32_t i = 0; ok && i < s->map.cluster_count; i++) p.from[i] = 1.0f;
+    for (int k = 0; ok && k < POWER_STEPS; k++) {
+        s->spectral_radius = fminf(s->spectral_radius, power_step(&p));
+        float *last = p.from;
+        p.from = p.to;
+        p.to = last;
+    }
+    host_free(s->host, p.from);
+    host_free(s->host, p.to);
+    return ok;
+}
+
 // Nodes of several clusters: groups; the others are empty.
 static bool upload_nodes(struct radiosity *s)
 {
@@ -179,37 +244,6 @@ static bool upload_nodes(struct radiosity *s)
     return upload(s, "nodes", nodes, count, sizeof *nodes, &s->buffers.nodes);
 }
 
-static uint32_t *packed_rows(struct radiosity *s, const struct radiosity_groups *groups)
-{
-    const size_t size = (size_t)groups->entries * groups->count;
-    uint32_t *words = host_alloc(s->host, size, sizeof *words);
-    for (size_t i = 0; words && i < size; i++)
-        words[i] = groups->source[i] | (uint32_t)half_from_float(groups->factor[i])
-                                           << RADIOSITY_NODE_BITS;
-    return words;
-}
-
-static bool upload_groups(struct radiosity *s, const struct content *c,
-                          const struct radiosity_gpu_cluster *clusters)
-{
-    const struct radiosity_cluster_rows rows = { c->cluster_source, c->cluster_factor,
-                                                 c->cluster_sources };
-    struct radiosity_groups g;
-    if (!radiosity_groups_init(&g, &s->map, clusters, &rows, (uint32_t)s->options.sources))
-        return false;
-    s->groups = g.count;
-    s->group_entries = g.entries;
-    s->spectral_radius = g.spectral_radius;
-    bool ok = upload(s, "group_factors", packed_rows(s, &g), (size_t)g.entries * g.count,
-                     sizeof(uint32_t), &s->buffers.group_factors);
-    ok &= upload(s, "groups", g.groups, g.count, sizeof *g.groups, &s->buffers.groups);
-    ok &= upload(s, "group_of", g.of, s->map.cluster_count, sizeof *g.of, &s->buffers.group_of);
-    g.groups = NULL;
-    g.of = NULL;
-    radiosity_groups_finish(&g);
-    return ok;
-}
-
 static bool upload_clusters(struct radiosity *s, const struct content *c)
 {
     const uint32_t count = s->map.cluster_count;
@@ -218,7 +252,7 @@ static bool upload_clusters(struct radiosity *s, const struct content *c)
     bool ok = clusters && members;
     for (uint32_t i = 0; ok && i < count; i++) clusters[i] = cluster_of(s, c, i);
     if (ok) memcpy(members, s->map.members, s->map.texel_count * sizeof *members);
-    ok = ok && upload_groups(s, c, clusters);
+    ok = ok && find_spectral_radius(s, c, clusters);
     ok &= upload(s, "clusters", clusters, count, sizeof *clusters, &s->buffers.clusters);
     ok &= upload(s, "members", members, s->map.texel_count, sizeof *members, &s->buffers.members);
     return ok && upload_nodes(s);
@@ -297,7 +331,9 @@ static bool upload_triangles(struct radiosity *s)
 
 static bool upload_all(struct radiosity *s, const struct content *c)
 {
-    return upload_texels(s, c) && radiosity_upload_factors(s, c->source, c->factor) &&
+    return upload_texels(s, c) &&
+           radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
+                                    c->cluster_factor) &&
            upload_clusters(s, c) && upload_owners(s, c) && upload_seams(s, c) &&
            upload_triangles(s);
 }

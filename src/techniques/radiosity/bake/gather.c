@@ -9,8 +9,6 @@
 
 #include <math.h>
 
-enum { RAYS_PER_LIGHT_SAMPLE = 4 };
-
 bool radiosity_scene_init(struct radiosity_scene *scene, struct host *host,
                           const struct scene_pose *pose, const struct radiosity_options *options,
                           struct radiosity_map *map)
@@ -67,7 +65,7 @@ static struct receiver receiver_of(const struct radiosity_scene *scene, uint32_t
                           .rays = (float)scene->options.rays,
                           .seed = (uint32_t)rng_mix(seed ^ (uint64_t)texel << 32) | 1u };
     if (scene->trace->lights.has_emitters)
-        r.light_samples = (float)(scene->options.rays / RAYS_PER_LIGHT_SAMPLE);
+        r.light_samples = (float)(scene->options.rays / RADIOSITY_RAYS_PER_LIGHT_SAMPLE);
     basis_of(r.normal, &r.tangent, &r.bitangent);
     r.position = glms_vec3_muladds(r.normal, mesh->facets[triangle->triangle].reach, position);
     return r;
@@ -89,19 +87,27 @@ static void add_emission(struct radiosity_gather *gather, const struct receiver 
     }
 }
 
+bool radiosity_sample_emitter(const struct radiosity_scene *scene, vec3s position,
+                              const vec3s *normal, uint32_t k, uint32_t count, uint32_t seed,
+                              struct emitter_sample *out)
+{
+    const vec2s jitter = sobol_2d(k, pcg_hash(seed));
+    const float choice = fminf(((float)k + jitter.x) / (float)count, 1.0f - 0x1p-24f);
+    *out =
+        light_sample_emitter(scene->trace, position, choice, sobol_2d(k, pcg_hash(seed + 1u) | 1u));
+    if (!(out->pdf > 0.0f) || (normal && !(glms_vec3_dot(out->to_light, *normal) > 0.0f)))
+        return false;
+    return !trace_occluded(scene->trace, position, glms_vec3_sub(out->position, position), 1.0f);
+}
+
 static void sample_emitters(const struct radiosity_scene *scene, const struct receiver *r,
                             struct radiosity_gather *gather)
 {
     const uint32_t count = (uint32_t)r->light_samples;
     for (uint32_t k = 0; k < count; k++) {
-        const vec2s jitter = sobol_2d(k, pcg_hash(r->seed));
-        const float choice = fminf(((float)k + jitter.x) / (float)count, 1.0f - 0x1p-24f);
-        const struct emitter_sample s = light_sample_emitter(
-            scene->trace, r->position, choice, sobol_2d(k, pcg_hash(r->seed + 1u) | 1u));
-        if (!(s.pdf > 0.0f) || !(glms_vec3_dot(s.to_light, r->normal) > 0.0f)) continue;
-        if (trace_occluded(scene->trace, r->position, glms_vec3_sub(s.position, r->position), 1.0f))
-            continue;
-        add_emission(gather, r, s.to_light, s.radiance, s.pdf);
+        struct emitter_sample s;
+        if (radiosity_sample_emitter(scene, r->position, &r->normal, k, count, r->seed, &s))
+            add_emission(gather, r, s.to_light, s.radiance, s.pdf);
     }
 }
 
@@ -155,7 +161,7 @@ static void add_hit(const struct radiosity_scene *scene, const struct receiver *
     if (seen.cluster != CHART_NONE) add_cluster(gather, r, seen.cluster, local);
 }
 
-static void clear(struct radiosity_gather *gather)
+void radiosity_gather_clear(struct radiosity_gather *gather)
 {
     struct radiosity_factor *factor = gather->factor;
     uint32_t *met = gather->met;
@@ -171,7 +177,7 @@ void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s
                       uint64_t seed, struct radiosity_gather *gather)
 {
     const struct receiver r = receiver_of(scene, texel, position, seed);
-    clear(gather);
+    radiosity_gather_clear(gather);
     for (uint32_t k = 0; k < (uint32_t)scene->options.rays; k++) {
         vec3s local = sample_hemisphere_cosine(sobol_2d(k, r.seed));
         local.z = fmaxf(local.z, LEAST_COSINE);

@@ -29,10 +29,10 @@ struct radiosity_light {
     float irradiance, vector[3];
 };
 
-// Sums over rays: the share of those that meet a cluster, and of their directions over the cosine
-// the components along the texel's tangents (basis_of).
+// Sums over rays: the share of those that meet a cluster, and of a texel the components of their
+// directions over the cosine along its tangents (basis_of); of a probe their directions.
 struct radiosity_factor {
-    float weight, along[2];
+    float weight, along[3];
 };
 
 struct radiosity_gather {
@@ -43,6 +43,8 @@ struct radiosity_gather {
     struct radiosity_light emitted[3]; // by colour, lux
 };
 
+enum { RADIOSITY_RAYS_PER_LIGHT_SAMPLE = 4 };
+
 // What a ray meets.
 struct radiosity_seen {
     uint32_t cluster; // CHART_NONE: it has no texel there
@@ -52,6 +54,12 @@ struct radiosity_seen {
 };
 struct radiosity_seen radiosity_seen_at(const struct radiosity_scene *scene, const struct ray *ray,
                                         const struct ray_hit *hit);
+
+// Sample k of `count` on emissive surfaces. False: its light does not arrive; with a normal, at
+// that side of a surface.
+bool radiosity_sample_emitter(const struct radiosity_scene *scene, vec3s position,
+                              const vec3s *normal, uint32_t k, uint32_t count, uint32_t seed,
+                              struct emitter_sample *out);
 
 // Where a texel is sampled, and the share of it that is not inside of something; 0: none is.
 struct radiosity_point {
@@ -76,6 +84,9 @@ bool radiosity_weigh(const struct chart_triangle *triangle, float x, float y, fl
 // the first one.
 void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s position,
                       uint64_t seed, struct radiosity_gather *gather);
+
+// Clears what the last call left.
+void radiosity_gather_clear(struct radiosity_gather *gather);
 
 // Mean reflectance of a texel for light that bounces, 0…1 (brdf_bounce_reflectance).
 vec3s radiosity_reflectance(const struct radiosity_scene *scene, uint32_t texel);

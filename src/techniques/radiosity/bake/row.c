@@ -62,8 +62,7 @@ static uint32_t add_upwards(struct radiosity_rows *rows, uint32_t cluster,
         struct radiosity_factor *sum = &rows->sum[n];
         if (sum->weight == 0.0f) rows->touched[touched++] = n;
         sum->weight += factor.weight;
-        sum->along[0] += factor.along[0];
-        sum->along[1] += factor.along[1];
+        for (int a = 0; a < 3; a++) sum->along[a] += factor.along[a];
     }
     return touched;
 }
@@ -72,7 +71,7 @@ static struct radiosity_entry entry_of(const struct radiosity_rows *rows, uint32
 {
     const struct radiosity_factor f = rows->sum[node];
     return (struct radiosity_entry){
-        node, { f.weight, { f.along[0] / f.weight, f.along[1] / f.weight } }
+        node, { f.weight, { f.along[0] / f.weight, f.along[1] / f.weight, f.along[2] / f.weight } }
     };
 }
 

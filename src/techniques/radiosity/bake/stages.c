@@ -6,6 +6,7 @@
 #include "core/half.h"
 #include "techniques/radiosity/bake/close.h"
 #include "techniques/radiosity/bake/row.h"
+#include "techniques/radiosity/probes/stage.h"
 
 #include <string.h>
 
@@ -150,6 +151,20 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
                                     .rays = (double)texels * job->options.rays / (double)tasks,
                                     .texels = (double)texels / (double)tasks,
                                     .scratch_bytes = room_bytes(clusters) });
+}
+
+// ---- probes
+
+static bool run_probes(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    struct room room;
+    const bool ok =
+        room_init(&room, task->host, job) &&
+        radiosity_probe_run(task, &job->scene,
+                            &(struct radiosity_probe_room){ &room.gather, &room.rows, room.row });
+    room_finish(&room, task->host);
+    return ok;
 }
 
 // ---- clusters
@@ -303,8 +318,10 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
     struct radiosity_seams seams;
     const bool ok = radiosity_seams_init(&seams, map, RADIOSITY_SEAM_POINTS);
     const uint32_t places = seams.count;
+    const struct frame_probes grid = radiosity_probe_grid(map, &job->options);
     radiosity_seams_finish(&seams);
     return ok && add_texels(plan, job, texels, clusters) &&
+           radiosity_probe_plan(plan, grid, &job->options, run_probes, room_bytes(clusters)) &&
            add_clusters(plan, job, texels, clusters) &&
            radiosity_add_seams(plan, &job->closing, places);
 }

@@ -1,0 +1,87 @@
+// Irradiance between probes of which some may be behind walls. A probe counts as far as the surface
+// is no farther away than what the probe sees in its direction, by mean and variance of distances
+// and Chebyshev's inequality (Majercik et al. 2019, "Dynamic Diffuse Global Illumination with
+// Ray-Traced Irradiance Fields").
+//
+// The nearness of what is at an offset v is 1/|v|₁, with the L1 norm: on a plane this is a linear
+// function of the place in a face of the octahedral map, so that bilinear interpolation is exact,
+// and the variance is that about a linear function. Euclidean distances of planes that are seen
+// from the side vary within a texel by more than a wall's thickness.
+//
+// The volume is that of frame/probes.glsl with one slab more: of each probe its offset from the
+// grid, in spacings, and 1, or 0 where it has no light of its own. `depth`: RG16F, a tile for each
+// probe, mean and standard deviation of the nearness, in 1/spacing: an octahedral map
+// (frame/octahedral.glsl) of PROBE_DEPTH_SIDE² texels with a border of one. Include after
+// core/sh.glsl, frame/frame_shared.h, frame/octahedral.glsl and frame/probes.glsl.
+#ifndef AG_TECHNIQUES_PROBE_LOOKUP_GLSL
+#define AG_TECHNIQUES_PROBE_LOOKUP_GLSL
+
+#include "techniques/common/probe_lookup_shared.h"
+
+const float PROBE_BIAS = 0.05;   // spacings along the normal, against the variance of planes
+const float PROBE_UNSEEN = 1e-5; // weight of probes behind walls, where all are
+const float PROBE_SPREAD = 0.01; // least deviation, of the mean
+
+vec2 probe_depth(sampler2D depth, int probe, vec3 direction)
+{
+    int columns = textureSize(depth, 0).x / PROBE_DEPTH_TILE;
+    vec2 tile = float(PROBE_DEPTH_TILE) * vec2(probe % columns, probe / columns);
+    vec2 at = (0.5 * octahedral_encode(direction) + 0.5) * float(PROBE_DEPTH_SIDE) + 1.0;
+    return textureLod(depth, (tile + at) / vec2(textureSize(depth, 0)), 0.0).rg;
+}
+
+// to: from the probe, in spacings.
+float probe_visibility(sampler2D depth, int probe, vec3 to)
+{
+    float way = dot(abs(to), vec3(1.0));
+    if (way < 1.0 / PROBE_NEAR) return 1.0;
+    vec2 seen = probe_depth(depth, probe, to);
+    float beyond = seen.x - max(1.0 / way, PROBE_FAR);
+    if (beyond <= 0.0) return 1.0;
+    float deviation = max(seen.y, PROBE_SPREAD * seen.x);
+    float bound = deviation * deviation / (deviation * deviation + beyond * beyond);
+    return bound * bound * bound;
+}
+
+vec3 probe_irradiance(sampler3D volume, int slab, ivec3 cell, float basis[9])
+{
+    vec4 values;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 27; i++) {
+        if (i % 4 == 0) values = texelFetch(volume, cell + ivec3(0, 0, i / 4 * slab), 0);
+        sum[i % 3] += basis[i / 3] * values[i % 4];
+    }
+    return max(sum, vec3(0.0));
+}
+
+// Irradiance by direction, at a point of a surface in the world; points beyond the grid are moved
+// to its cells.
+vec3 probes_seen_irradiance(sampler3D volume, sampler2D depth, frame_probes grid, vec3 position,
+                            vec3 normal, vec3 direction)
+{
+    ivec3 last = ivec3(grid.count_x, grid.count_y, grid.count_z) - 1;
+    vec3 at = (position - grid.first_m) / grid.spacing_m + PROBE_BIAS * normal;
+    at = clamp(at, vec3(-0.5), vec3(last) + 0.5);
+    ivec3 base = ivec3(floor(at));
+    float basis[9];
+    sh9_eval(direction, basis);
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    for (int corner = 0; corner < 8; corner++) {
+        ivec3 step = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        ivec3 cell = clamp(base + step, ivec3(0), last);
+        vec3 linear = mix(1.0 - (at - vec3(base)), at - vec3(base), equal(step, ivec3(1)));
+        vec4 place = texelFetch(volume, cell + ivec3(0, 0, FRAME_PROBE_SLABS * grid.slab), 0);
+        vec3 to = at - vec3(cell) - place.xyz;
+        int probe = (cell.z * grid.count_y + cell.y) * grid.count_x + cell.x;
+        // Probes in front of the surface count more than those behind it.
+        float facing = 0.5 - 0.5 * dot(normal, to) / max(length(to), 1e-4);
+        float seen = place.w * probe_visibility(depth, probe, to) * (facing * facing + 0.2);
+        float weight = linear.x * linear.y * linear.z * (seen + PROBE_UNSEEN);
+        sum += weight * probe_irradiance(volume, grid.slab, cell, basis);
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+#endif

@@ -1,0 +1,86 @@
+// The probe volume (frame/probes.glsl and common/probe_lookup.glsl): irradiance from the clusters,
+// the sky and emissive surfaces, bands 0 to 2. Cells without a probe outside of geometry show the
+// light of another one.
+//
+// A row's entry has a share w of the sphere and the mean m of its directions. Its light w B/π · 4π
+// has Y(m) in band 1; band 2, of second degree, falls with |m|³ where |m| is that of band 1, as in
+// a distribution by diffusion on the sphere.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "core/half.glsl"
+#include "core/sh.glsl"
+#include "frame/frame.glsl"
+#include "frame/probes.glsl"
+#include "techniques/radiosity/radiosity_shared.h"
+#include "techniques/radiosity/probes/probes_shared.h"
+
+layout(local_size_x = RADIOSITY_LOCAL) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    radiosity_probe_gather_push push;
+};
+layout(set = 0, binding = 1, scalar) readonly buffer probe_owners
+{
+    uint owner_table[]; // the probe whose light each one shows
+};
+layout(set = 0, binding = 2, scalar) readonly buffer probe_table
+{
+    radiosity_gpu_probe probes[];
+};
+// [entry][probe]: node; share of the sphere and x, y and z of the mean direction (halves).
+layout(set = 0, binding = 3, scalar) readonly buffer probe_factors
+{
+    uvec3 factor_table[];
+};
+layout(set = 0, binding = 4, scalar) readonly buffer radiosity_sent
+{
+    vec3 sent_table[];
+};
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image3D volume;
+
+vec3 coefficients[9];
+
+void add_entry(uvec3 word)
+{
+    vec2 first = unpackHalf2x16(word.y), second = unpackHalf2x16(word.z);
+    vec3 light = 4.0 * first.x * sent_table[word.x];
+    float x = first.y, y = second.x, z = second.y, r = length(vec3(x, y, z));
+    coefficients[0] += SH_Y0 * light;
+    coefficients[1] += SH_Y1 * y * light;
+    coefficients[2] += SH_Y1 * z * light;
+    coefficients[3] += SH_Y1 * x * light;
+    coefficients[4] += r * SH_Y2_XY * x * y * light;
+    coefficients[5] += r * SH_Y2_XY * y * z * light;
+    coefficients[6] += r * SH_Y2_ZZ * (3.0 * z * z - r * r) * light;
+    coefficients[7] += r * SH_Y2_XY * x * z * light;
+    coefficients[8] += r * SH_Y2_XX_YY * (x * x - y * y) * light;
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.probes) return;
+    uint owner = owner_table[i];
+    float emitters = push.emitters * frame.radiance_scale;
+    for (int c = 0; c < 9; c++) coefficients[c] = vec3(0.0);
+    for (uint k = 0; k < push.entries; k++) {
+        uvec3 word = factor_table[k * push.probes + owner];
+        if ((word.y & 0xffffu) == 0u) break; // rows end with zeros
+        add_entry(word);
+    }
+    for (int c = 0; c < 9; c++) coefficients[c] *= sh9_cosine_weight(c);
+    for (int c = 0; c < 9; c++) {
+        vec3 emitted = vec3(probes[owner].emitted[3 * c], probes[owner].emitted[3 * c + 1],
+                            probes[owner].emitted[3 * c + 2]);
+        coefficients[c] += probes[owner].sky[c] * frame.sky + emitters * emitted;
+        coefficients[c] = clamp(coefficients[c], -HALF_MAX, HALF_MAX);
+    }
+    ivec3 count = ivec3(push.grid.count_x, push.grid.count_y, push.grid.count_z);
+    ivec3 at = ivec3(int(i) % count.x, int(i) / count.x % count.y, int(i) / (count.x * count.y));
+    for (int s = 0; s < FRAME_PROBE_SLABS; s++)
+        imageStore(volume, at + ivec3(0, 0, s * push.grid.slab), probes_slab(coefficients, s));
+    imageStore(volume, at + ivec3(0, 0, FRAME_PROBE_SLABS * push.grid.slab), probes[i].place);
+}

@@ -1,0 +1,62 @@
+#include "techniques/radiosity/probes/grid.h"
+
+#include <math.h>
+
+enum { MOST_PROBES = 1 << 18, MOST_ALONG_AXIS = 128 };
+
+static struct box3 bounds_of(const struct charts *charts)
+{
+    struct box3 box = box3_empty();
+    for (uint32_t t = 0; t < charts->triangle_count; t++)
+        for (int c = 0; c < 3; c++) box = box3_add_point(box, charts->triangles[t].corner[c]);
+    return box;
+}
+
+static int32_t cells_along(float length, float spacing)
+{
+    return (int32_t)fmaxf(ceilf(length / spacing - 1e-3f), 1.0f);
+}
+
+static bool is_within(vec3s size, float spacing, double most)
+{
+    double product = 1.0;
+    for (int a = 0; a < 3; a++) {
+        // Not as integers: a small spacing has more cells than they count.
+        const double cells = ceil(fmax((double)size.raw[a] / (double)spacing - 1e-3, 1.0));
+        if (cells > MOST_ALONG_AXIS) return false;
+        product *= cells;
+    }
+    return product <= most;
+}
+
+// The smallest spacing from `least` upwards that has no more probes.
+static float spacing_of(vec3s size, float least, double most)
+{
+    const float longest = glms_vec3_max(size);
+    float spacing = fmaxf(least, longest / (2.0f * MOST_ALONG_AXIS));
+    while (!is_within(size, spacing, most)) spacing *= 1.02f;
+    return spacing;
+}
+
+struct frame_probes radiosity_probe_grid(const struct radiosity_map *map,
+                                         const struct radiosity_options *options)
+{
+    struct frame_probes grid = {
+        .spacing_m = 1.0f, .count_x = 1, .count_y = 1, .count_z = 1, .slab = 1
+    };
+    const struct box3 box = bounds_of(&map->charts);
+    const vec3s size = box3_size(box);
+    if (box3_is_empty(box) || !(glms_vec3_max(size) > 0.0f)) return grid;
+    grid.spacing_m =
+        options->probe_spacing > 0.0f
+            ? spacing_of(size, options->probe_spacing, MOST_PROBES)
+            : spacing_of(size, 0.0f, fmin((double)radiosity_probes_most(options), MOST_PROBES));
+    int32_t *const counts[3] = { &grid.count_x, &grid.count_y, &grid.count_z };
+    for (int a = 0; a < 3; a++) {
+        *counts[a] = cells_along(size.raw[a], grid.spacing_m);
+        grid.first_m.raw[a] =
+            box.min.raw[a] + 0.5f * (size.raw[a] - grid.spacing_m * (float)(*counts[a] - 1));
+    }
+    grid.slab = grid.count_z;
+    return grid;
+}

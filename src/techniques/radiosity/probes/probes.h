@@ -1,0 +1,42 @@
+// Probes at run time: what moves has their light, and they may be published.
+#pragma once
+
+#include "techniques/radiosity/probes/grid.h"
+#include "techniques/technique.h"
+
+struct radiosity_probes {
+    struct frame_probes grid;
+    uint32_t count, entries;           // entries: of a row
+    gpu_buffer owners, table, factors; // of probes
+    gpu_image volume, depth;           // common/probe_lookup.glsl
+    gpu_pipeline gather, apply_some, apply_all;
+    gpu_sampler linear;
+    bool fresh; // the volume has the light of the newest update
+};
+
+struct radiosity_probes_create {
+    struct host *host;
+    struct gpu *gpu;
+    const struct radiosity_map *map;
+    const struct radiosity_options *options;
+};
+// bake: untrusted. radiosity_probes_finish accepts zero and half-built.
+bool radiosity_probes_init(struct radiosity_probes *out, const struct radiosity_probes_create *how,
+                           const struct tensors *bake);
+void radiosity_probes_finish(struct radiosity_probes *probes, struct gpu *gpu);
+
+// The light of these clusters and nodes, and of what is not in them.
+void radiosity_probes_record_gather(struct radiosity_probes *probes, struct gpu_cmd *cmd,
+                                    const struct frame_view *view, gpu_buffer radiosity,
+                                    bool emitters);
+
+// Pixels of instances whose bit is set and of those beyond `instances`; words NULL: all pixels.
+struct radiosity_lit {
+    const uint32_t *words;
+    uint32_t instances;
+};
+void radiosity_probes_record_apply(const struct radiosity_probes *probes, struct gpu_cmd *cmd,
+                                   const struct frame_view *view, struct radiosity_lit lit);
+
+// Of GPU memory.
+uint64_t radiosity_probes_memory(const struct radiosity_options *options);

@@ -1,0 +1,35 @@
+// Data of probes that the host uploads for the shaders. Scalar layout.
+#ifndef AG_RADIOSITY_PROBES_SHARED_H
+#define AG_RADIOSITY_PROBES_SHARED_H
+
+#include "core/shared.h"
+
+#ifndef AG_GLSL
+#include "frame/frame_shared.h"
+#endif
+
+struct radiosity_gpu_probe {
+    vec4s place;       // offset from the grid, in spacings; 1, or 0: it shows another's light
+    float sky[9];      // irradiance of a sky of radiance 1, Σ c_i Y_i
+    float emitted[27]; // [9][3] of emissive surfaces, lux
+};
+
+struct radiosity_probe_gather_push {
+    AG_STRUCT(frame_probes) grid;
+    uint32_t probes, entries; // entries: of a row
+    float emitters;           // 1: emissive surfaces are sources, 0: they are not
+};
+
+struct radiosity_probe_apply_push {
+    AG_STRUCT(frame_probes) grid;
+    uint32_t instances; // of the table; later ones have light of probes
+    uint32_t has_dielectric;
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct radiosity_gpu_probe) == 160, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_probe_gather_push) == 44, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_probe_apply_push) == 40, "layout is shared with GLSL");
+#endif
+
+#endif

@@ -1,0 +1,52 @@
+// The passes of probes.
+#include "techniques/radiosity/probes/probes.h"
+
+#include "techniques/radiosity/probes/probes_shared.h"
+#include "techniques/radiosity/radiosity_shared.h"
+
+void radiosity_probes_record_gather(struct radiosity_probes *p, struct gpu_cmd *cmd,
+                                    const struct frame_view *view, gpu_buffer radiosity,
+                                    bool emitters)
+{
+    const struct radiosity_probe_gather_push push = { p->grid, p->count, p->entries,
+                                                      emitters ? 1.0f : 0.0f };
+    gpu_scope_begin(cmd, "probes");
+    gpu_dispatch(cmd, p->gather,
+                 GPU_BIND(view->constants_binding, { .name = "probe_owners", .buffer = p->owners },
+                          { .name = "probe_table", .buffer = p->table },
+                          { .name = "probe_factors", .buffer = p->factors },
+                          { .name = "radiosity_sent", .buffer = radiosity },
+                          { .name = "volume", .image = p->volume }),
+                 &push, sizeof push, gpu_groups(push.probes, RADIOSITY_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+    p->fresh = true;
+}
+
+void radiosity_probes_record_apply(const struct radiosity_probes *p, struct gpu_cmd *cmd,
+                                   const struct frame_view *view, struct radiosity_lit lit)
+{
+    static const uint32_t none = 0;
+    const gpu_image *layers = view->layers;
+    const gpu_image dielectric = layers[FRAME_DIELECTRIC];
+    const struct radiosity_probe_apply_push push = { p->grid, lit.instances, dielectric.id != 0 };
+    const size_t words = lit.words && lit.instances > 0 ? (lit.instances + 31) / 32 : 1;
+    gpu_scope_begin(cmd, "apply_probes");
+    gpu_dispatch(
+        cmd, lit.words ? p->apply_some : p->apply_all,
+        GPU_BIND(
+            view->constants_binding, view->ggx_albedo_binding,
+            { .name = "depth", .image = layers[FRAME_DEPTH] },
+            { .name = "normal", .image = layers[FRAME_NORMAL] },
+            { .name = "albedo", .image = layers[FRAME_ALBEDO] },
+            { .name = "material", .image = layers[FRAME_MATERIAL] },
+            { .name = "dielectric", .image = dielectric.id ? dielectric : layers[FRAME_MATERIAL] },
+            { .name = "id", .image = layers[FRAME_ID] },
+            gpu_transient(cmd, "probe_lit", lit.words ? lit.words : &none, words * sizeof none),
+            { .name = "volume", .image = p->volume, .sampler = p->linear },
+            { .name = "probe_depths", .image = p->depth, .sampler = p->linear },
+            { .name = "irradiance", .image = layers[FRAME_IRRADIANCE] },
+            { .name = "specular", .image = layers[FRAME_SPECULAR] }),
+        &push, sizeof push, gpu_groups(view->width, RADIOSITY_LOCAL_2D),
+        gpu_groups(view->height, RADIOSITY_LOCAL_2D), 1);
+    gpu_scope_end(cmd);
+}

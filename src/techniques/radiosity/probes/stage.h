@@ -1,0 +1,20 @@
+// The stage of the bake that makes probes.
+#pragma once
+
+#include "bake/plan.h"
+#include "techniques/radiosity/bake/row.h"
+#include "techniques/radiosity/probes/grid.h"
+
+// Room of a task. row: [2 · sources].
+struct radiosity_probe_room {
+    struct radiosity_gather *gather;
+    struct radiosity_rows *rows;
+    struct radiosity_entry *row;
+};
+
+// `run` calls radiosity_probe_run. room_bytes: of its room.
+bool radiosity_probe_plan(struct bake_plan *plan, struct frame_probes grid,
+                          const struct radiosity_options *options,
+                          bool (*run)(const struct bake_task *task), size_t room_bytes);
+bool radiosity_probe_run(const struct bake_task *task, const struct radiosity_scene *scene,
+                         const struct radiosity_probe_room *room);

@@ -1,0 +1,25 @@
+// Which instances are where they were baked. The others have the light of probes.
+#pragma once
+
+#include "scene/statics.h"
+
+struct radiosity_baked;
+
+struct radiosity_followed {
+    struct host *host;
+    struct radiosity_baked *baked; // [count] at the start
+    uint32_t count;
+    uint32_t *lit;    // a bit for each of these: it is not in the light map, or elsewhere
+    bool any_lit;     // one of these that is in use, or a later one
+    uint64_t started; // revisions of the scene
+    uint64_t revision;
+    bool said_moved, said_added, said_material;
+};
+
+// statics: of the same pose. radiosity_followed_finish accepts zero.
+bool radiosity_followed_init(struct radiosity_followed *out, struct host *host,
+                             const struct scene_pose *pose, const struct scene_statics *statics);
+void radiosity_followed_finish(struct radiosity_followed *followed);
+// Compares with a later pose of the scene; warns once for each kind of change that a bake cannot
+// follow.
+void radiosity_followed_update(struct radiosity_followed *followed, const struct scene_pose *pose);
