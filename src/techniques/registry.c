@@ -41,6 +41,15 @@ static bool aliases_are_sound(const struct option_table *options)
     return true;
 }
 
+// gi.c draws the view of probes.
+static bool views_are_sound(const struct technique *technique)
+{
+    const struct technique_debug_view *view = technique->debug_views;
+    for (; view && view->name && !technique->debug_view; view++)
+        if (strcmp(view->name, PROBES_VIEW) != 0 || !technique->probes) return false;
+    return true;
+}
+
 bool technique_is_sound(const struct technique *technique)
 {
     if (!technique->name || !technique->name[0] || !technique->title || !technique->paper)
@@ -48,7 +57,7 @@ bool technique_is_sound(const struct technique *technique)
     if (strspn(technique->name, "abcdefghijklmnopqrstuvwxyz0123456789") != strlen(technique->name))
         return false;
     if (!technique->create || !technique->record || !technique->destroy) return false;
-    if (technique->debug_views && !technique->debug_view) return false;
+    if (!views_are_sound(technique)) return false;
     if ((technique->bake_version != 0) != ((technique->capabilities & NEEDS_BAKE) != 0))
         return false;
     for (size_t i = 0; i < technique->options.count; i++)
