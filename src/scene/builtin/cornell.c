@@ -8,7 +8,8 @@
 // faces -z, the red wall is on the left.
 //
 // Differs: the ceiling has a hole at the light, to avoid coplanar surfaces; walls can have a
-// thickness.
+// thickness; the box can be closed and have objects that move.
+#include "scene/builtin/cornell_objects.h"
 #include "scene/builtin/parts.h"
 
 #include <math.h>
@@ -87,9 +88,9 @@ static void light_corners(vec3s corner[4])
 }
 
 // The shell's faces by corner, counter-clockwise from inside; the order is the data's.
-enum shell_face { FLOOR, CEILING, BACK, GREEN_WALL, RED_WALL, SHELL_FACES };
-static const int SHELL[SHELL_FACES][4] = {
-    { 1, 0, 4, 5 }, { 3, 7, 6, 2 }, { 5, 4, 6, 7 }, { 4, 0, 2, 6 }, { 1, 5, 7, 3 },
+enum shell_face { FLOOR, CEILING, BACK, GREEN_WALL, RED_WALL, SHELL_FACES, FRONT = SHELL_FACES };
+static const int SHELL[SHELL_FACES + 1][4] = {
+    { 1, 0, 4, 5 }, { 3, 7, 6, 2 }, { 5, 4, 6, 7 }, { 4, 0, 2, 6 }, { 1, 5, 7, 3 }, { 0, 1, 3, 2 },
 };
 
 static void shell_face(struct shape_builder *builder, const vec3s corner[8], enum shell_face face)
@@ -163,6 +164,10 @@ static bool build_shell(struct scene *scene, const struct cornell_options *optio
     if (shape_emit(&builder, "green wall", green) < 0) return false;
     shell_face(&builder, corner, RED_WALL);
     if (shape_emit(&builder, "red wall", red) < 0) return false;
+    if (options->closed) {
+        shell_face(&builder, corner, FRONT);
+        if (shape_emit(&builder, "front wall", white) < 0) return false;
+    }
     if (options->walls > 0.0f) {
         outside(&builder, corner, options->walls);
         if (shape_emit(&builder, "outside", white) < 0) return false;
@@ -201,7 +206,9 @@ static bool build_cornell(struct scene *scene, const void *options)
 {
     // Published: position (278, 273, -800), focal length 35 mm, sensor height 25 mm.
     float vertical_fov_rad = 2.0f * atanf(0.5f * 0.025f / 0.035f);
-    return build_shell(scene, options) && build_light(scene, options) &&
+    const struct cornell_options *o = options;
+    return build_shell(scene, o) && build_light(scene, o) &&
+           cornell_add_objects(scene, o->objects) &&
            builtin_camera(scene, "main", from_data(278, 273, -800), from_data(278, 273, 0),
                           vertical_fov_rad);
 }
