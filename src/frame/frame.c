@@ -581,6 +581,7 @@ void frame_record_light(struct frame *f, struct gpu_cmd *cmd, const struct frame
     f->view = (struct frame_view){ 0 };
     emitters_update(&f->common->emitters, input->pose);
     frame_begin(f, cmd, input);
+    f->common->scene.leaves_dynamic = f->needs & FRAME_LEAVES_DYNAMIC;
     scene_gpu_update(&f->common->scene, cmd, input->pose, f->camera_cut);
     if (f->needs & FRAME_UPDATE_NEEDS_GBUFFER) record_gbuffer(f, cmd);
     record_shadows(f, cmd);

@@ -116,6 +116,8 @@ enum frame_need {
     FRAME_NEEDS_EMITTERS = 32,
     FRAME_NEEDS_ID = 64,              // a program's G-buffer may be without it
     FRAME_UPDATE_NEEDS_GBUFFER = 128, // `update` reads depth and normals of the first view
+    // Dynamic instances neither send nor occlude a source's light: a delta adds what they do.
+    FRAME_LEAVES_DYNAMIC = 256,
 };
 
 struct frame_indirect {

@@ -2,6 +2,7 @@
 #include "frame/scene_gpu_build.h"
 
 #include "frame/octahedral.h"
+#include "scene/dynamic.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -200,7 +201,7 @@ static int compare_draws(const void *left, const void *right)
     return a->instance < b->instance ? -1 : a->instance > b->instance;
 }
 
-static struct scene_draw draw_of(const struct scene_gpu *s, int instance,
+static struct scene_draw draw_of(const struct scene_gpu *s, int instance, bool movable,
                                  const uint32_t *vertex_base, uint32_t deformed_base)
 {
     const struct instance *from = &s->scene->instances[instance];
@@ -212,8 +213,8 @@ static struct scene_draw draw_of(const struct scene_gpu *s, int instance,
         .material = mesh->material,
         .variant = variant_of(mesh, &s->scene->materials[mesh->material]),
         .deformed = deformed,
-        .dynamic = from->movable,
-        .movable = from->movable,
+        .dynamic = movable,
+        .movable = movable,
         .added = from->added,
         .bounds = box3_empty(),
         .push = { .instance = (uint32_t)instance,
@@ -240,17 +241,21 @@ void scene_gpu_summarize_materials(struct scene_gpu *s)
     }
 }
 
-static void list_draws(struct scene_gpu *s, const uint32_t *vertex_base)
+static bool list_draws(struct scene_gpu *s, const uint32_t *vertex_base)
 {
+    bool *movable = scene_dynamic_instances(s->host, s->scene);
+    if (!movable) return false;
     for (int i = 0; i < s->scene->instance_count; i++) {
         if (scene_mesh_of(s->scene, i)->index_count == 0) continue;
-        struct scene_draw draw = draw_of(s, i, vertex_base, s->deformed_vertex_count);
+        struct scene_draw draw = draw_of(s, i, movable[i], vertex_base, s->deformed_vertex_count);
         if (draw.deformed) s->deformed_vertex_count += s->scene->meshes[draw.mesh].vertex_count;
         s->variants_used |= 1u << draw.variant;
         s->dynamic_count += draw.dynamic;
         s->draws[s->draw_count++] = draw;
     }
+    host_free(s->host, movable);
     qsort(s->draws, (size_t)s->draw_count, sizeof *s->draws, compare_draws);
+    return true;
 }
 
 // Arrays that scene_gpu_update fills, so that frames allocate nothing.
@@ -269,10 +274,10 @@ bool scene_gpu_make_draws(struct scene_gpu *s)
     size_t meshes = (size_t)s->scene->mesh_count, count = (size_t)s->scene->instance_count;
     uint32_t *vertex_base = host_alloc(s->host, meshes, sizeof *vertex_base);
     s->draws = host_alloc(s->host, count, sizeof *s->draws);
-    const bool ok = vertex_base && s->draws;
+    bool ok = vertex_base && s->draws;
     for (size_t m = 1; ok && m < meshes; m++)
         vertex_base[m] = vertex_base[m - 1] + s->scene->meshes[m - 1].vertex_count;
-    if (ok) list_draws(s, vertex_base);
+    ok = ok && list_draws(s, vertex_base);
     host_free(s->host, vertex_base);
     scene_gpu_summarize_materials(s);
     return ok && make_frame_arrays(s);

@@ -23,11 +23,12 @@ struct scene_draw {
     struct scene_push push;
     bool deformed;      // vertices are uploaded each frame, in world space
     bool mirrored;      // the transform reverses the winding order in this frame
-    bool dynamic;       // movable, or has moved since the scene was set
+    bool dynamic;       // expected to move (scene/dynamic.h), or has moved since the scene was set
+    bool left;          // dynamic, and neither sends nor occludes a source's light: a delta does
     bool moved;         // since the previous frame: its vertices, or its alpha test
-    bool recolored;     // its material changed since the previous frame
+    bool recolored;     // its material, or `left`, changed since the previous frame
     bool reshaped;      // its mesh has other vertices than in the previous frame
-    bool movable;       // of the instance
+    bool movable;       // expected to move
     bool seen;          // in an earlier frame
     uint64_t added;     // of the instance
     struct box3 bounds; // world space
@@ -64,8 +65,9 @@ struct scene_gpu {
     vec3s *deformed_positions, *deformed_previous; // [deformed_vertex_count]
     uint32_t (*deformed_frames)[2];
     bool has_previous, moved, recolored;
-    uint64_t updates;  // number of uploaded poses
-    int dynamic_count; // number of dynamic draws
+    bool leaves_dynamic; // set before an update: see scene_draw.left
+    uint64_t updates;    // number of uploaded poses
+    int dynamic_count;   // number of dynamic draws
     // Counts changes of the list of draws, and of what static draws look like: what is computed of
     // them is valid while it stays.
     uint64_t draw_list, static_set;

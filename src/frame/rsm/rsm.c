@@ -15,6 +15,7 @@ static const uint32_t VARIANT_BITS =
 struct push {
     struct scene_push draw;
     uint32_t face;
+    float reflects; // 0: its light is left to a delta
 };
 
 bool rsm_init(struct rsm *r, struct host *host, struct gpu *gpu, uint32_t size)
@@ -181,6 +182,7 @@ static void record_face(const struct rsm *r, struct gpu_cmd *cmd, const struct s
     for (int i = 0; i < scene->draw_count; i++) {
         const struct scene_draw *draw = &scene->draws[i];
         if (!projection_may_see(r->faces[face].clip_from_world, draw->bounds)) continue;
+        push.reflects = draw->left ? 0.0f : 1.0f;
         scene_gpu_draw(scene, cmd,
                        &(struct scene_draw_call){
                            .pipeline = r->pipelines[draw->variant & VARIANT_BITS],

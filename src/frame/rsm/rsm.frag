@@ -38,5 +38,5 @@ void main()
     vec3 n = length2 > 1e-12 ? vary_normal * inversesqrt(length2) : -from_light;
     out_normal = octahedral_encode(dot(n, from_light) > 0.0 ? -n : n);
     vec3 reflectance = scene_reflectance(push.draw.material, base, material);
-    out_flux = vec4(reflectance * falloff, 1.0);
+    out_flux = vec4(reflectance * (falloff * push.reflects), 1.0);
 }

@@ -17,6 +17,7 @@ layout(push_constant, scalar) uniform push_block
 {
     scene_push draw;
     uint face; // index in rsm_faces
+    float reflects;
 }
 push;
 

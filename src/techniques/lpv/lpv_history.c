@@ -12,7 +12,7 @@ bool lpv_is_static(const struct scene_draw *draw)
 
 bool lpv_is_moving(const struct scene_draw *draw)
 {
-    return draw->dynamic;
+    return draw->dynamic && !draw->left;
 }
 
 struct lpv_statics lpv_statics_of(const struct lpv *lpv, const struct frame_view *view)
