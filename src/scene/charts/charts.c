@@ -51,6 +51,7 @@ static void take_triangle(struct charts *out, const struct surface *surface,
     if (at == chart->first_triangle) chart->instance = from->instance;
     chart->area_m2 += from->area_m2;
     memcpy(to->corner, from->corner, sizeof to->corner);
+    memcpy(to->vertex_normal, from->vertex_normal, sizeof to->vertex_normal);
     place_triangle(to, chart, grown->place[source]);
 }
 

@@ -52,8 +52,9 @@ struct chart_triangle {
     int instance;
     uint32_t triangle; // of the instance's mesh
     uint32_t chart;
-    vec3s corner[3]; // world, in the order of the mesh's indices
-    vec3s normal;    // unit, of the front
+    vec3s corner[3];        // world, in the order of the mesh's indices
+    vec3s vertex_normal[3]; // of the corners, in the frame of the mesh, not deformed
+    vec3s normal;           // unit, of the front
     float area_m2;
     vec2s place[3]; // of the corners, in the atlas
 };

@@ -53,6 +53,7 @@ static void add_triangle(struct surface *out, const struct scene_pose *pose, int
     for (uint32_t k = 0; k < 3; k++) {
         const uint32_t v = mesh->indices[3 * (size_t)triangle + k];
         t->corner[k] = deformed ? deformed[v] : mat4_point(world_from_mesh, mesh->positions[v]);
+        t->vertex_normal[k] = mesh->normals[v];
         if (unwrapped) t->uv[k] = mesh->uv[1][v];
     }
     t->area_m2 = triangle_area(t->corner, &t->normal);

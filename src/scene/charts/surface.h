@@ -7,7 +7,8 @@ struct surface_triangle {
     int instance;
     uint32_t triangle;
     vec3s corner[3];
-    vec3s normal; // unit, of the front
+    vec3s vertex_normal[3]; // as in chart_triangle
+    vec3s normal;           // unit, of the front
     float area_m2;
     bool double_sided;
     bool unwrapped; // uv is TEXCOORD_1, and edges connect where that is equal

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Between facets of a smooth surface, 30°; light differs at sharper edges.
-static const float LEAST_COSINE = 0.8660254f;
+// Light differs on both sides of an edge, unless its facets are coplanar or the mesh has the same
+// normals there for both.
+static const float COPLANAR = 0.9999f, SMOOTH = 0.966f, SAME_NORMAL = 0.999f;
 
 // ---- edges
 
@@ -17,7 +18,7 @@ struct edge {
 };
 
 struct end {
-    vec3s position;
+    vec3s position, normal; // normal: in the frame of the mesh
     vec2s place;
 };
 
@@ -34,8 +35,8 @@ static void ends_of(const struct charts *charts, uint32_t side, struct end end[2
 {
     const struct chart_triangle *t = &charts->triangles[side / 3];
     const uint32_t a = side % 3, b = (a + 1) % 3;
-    end[0] = (struct end){ glms_vec3_adds(t->corner[a], 0.0f), t->place[a] };
-    end[1] = (struct end){ glms_vec3_adds(t->corner[b], 0.0f), t->place[b] };
+    end[0] = (struct end){ glms_vec3_adds(t->corner[a], 0.0f), t->vertex_normal[a], t->place[a] };
+    end[1] = (struct end){ glms_vec3_adds(t->corner[b], 0.0f), t->vertex_normal[b], t->place[b] };
     if (!precedes(end[1].position, end[0].position)) return;
     const struct end first = end[0];
     end[0] = end[1];
@@ -82,6 +83,17 @@ struct seam {
     uint32_t triangle[2];
 };
 
+static bool is_smooth(const struct charts *charts, const struct seam *seam)
+{
+    const struct chart_triangle *a = &charts->triangles[seam->triangle[0]];
+    const struct chart_triangle *b = &charts->triangles[seam->triangle[1]];
+    if (glms_vec3_dot(a->normal, b->normal) >= COPLANAR) return true;
+    bool same = a->instance == b->instance && glms_vec3_dot(a->normal, b->normal) >= SMOOTH;
+    for (int k = 0; k < 2; k++)
+        same &= glms_vec3_dot(seam->end[0][k].normal, seam->end[1][k].normal) >= SAME_NORMAL;
+    return same;
+}
+
 static bool is_seam(const struct charts *charts, uint32_t a, uint32_t b, struct seam *seam)
 {
     seam->triangle[0] = a / 3;
@@ -94,8 +106,7 @@ static bool is_seam(const struct charts *charts, uint32_t a, uint32_t b, struct 
         if (memcmp(&p, &q, sizeof p) != 0) return false;
         apart |= glms_vec2_distance(seam->end[0][k].place, seam->end[1][k].place) > 1e-3f;
     }
-    return apart && glms_vec3_dot(charts->triangles[a / 3].normal,
-                                  charts->triangles[b / 3].normal) >= LEAST_COSINE;
+    return apart && is_smooth(charts, seam);
 }
 
 static uint32_t number_of(const struct making *m, uint32_t x, uint32_t y, bool back)
