@@ -286,11 +286,21 @@ static void record_debug_view(struct gi *gi, struct gpu_cmd *cmd, const struct f
     }
 }
 
+// A delta's source is the first term.
+static void hand_probes(const struct gi *gi, int term)
+{
+    struct probe_volume probes;
+    const struct technique *technique = gi->spec.technique[term];
+    if (technique->take_probes && probes_of(gi, 0, &probes))
+        technique->take_probes(gi->state[term], &probes);
+}
+
 static void gi_update(void *user, struct gpu_cmd *cmd, const struct frame_view *view)
 {
     struct gi *gi = user;
     for (int i = 0; i < gi->spec.count; i++) {
         const struct technique *technique = enter(gi, i);
+        hand_probes(gi, i);
         if (technique->update) technique->update(gi->state[i], cmd, view);
         leave(gi);
     }

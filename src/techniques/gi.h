@@ -13,7 +13,7 @@ struct gi_spec {
     int count;
     const struct technique *technique[GI_MAX_TERMS];
     void *options[GI_MAX_TERMS];
-    bool added_source; // the text names a visibility technique without a source
+    bool added_source; // the text names other techniques, without a source
 };
 // "" is "none". Errors name the unknown technique or option and the nearest known one.
 bool gi_spec_parse(struct gi_spec *spec, struct host *host, const char *text);

@@ -128,14 +128,52 @@ static bool parse_terms(struct gi_spec *spec, const char *text,
     }
 }
 
-// Occlusion shows on indirect light only, so that a visibility technique alone stands on `ambient`.
+// The first with probes that needs no bake.
+static const struct technique *source_with_probes(const struct technique *const *known)
+{
+    for (size_t i = 0; known[i]; i++)
+        if ((known[i]->capabilities & PUBLISHES_PROBES) && known[i]->bake_version == 0)
+            return known[i];
+    return NULL;
+}
+
+static const struct technique *find_named(const struct technique *const *known, const char *name)
+{
+    for (size_t i = 0; known[i]; i++)
+        if (strcmp(known[i]->name, name) == 0) return known[i];
+    return known[0];
+}
+
+// Occlusion shows on indirect light only, so that a visibility technique alone stands on `ambient`;
+// a delta that needs probes stands on a source that has them.
 static bool add_default_source(struct gi_spec *spec, const struct technique *const *known)
 {
     const struct technique *source = known[0];
-    for (size_t i = 0; spec->count > 0 && known[i]; i++)
-        if (strcmp(known[i]->name, "ambient") == 0) source = known[i];
-    spec->added_source = spec->count > 0;
+    const struct technique *first = spec->count > 0 ? spec->technique[0] : NULL;
+    if (first && first->role == ROLE_DELTA)
+        source = first->take_probes ? source_with_probes(known) : NULL;
+    else if (first)
+        source = find_named(known, "ambient");
+    if (!source)
+        return host_fail(spec->host, FAIL_ARGUMENT, "cannot use %s alone: a delta needs a source",
+                         first->name);
+    spec->added_source = first != NULL;
     return add_technique(spec, source, "");
+}
+
+// Turns the probes of the source on for a delta that needs them.
+static bool ask_for_probes(struct gi_spec *spec)
+{
+    const struct technique *source = spec->technique[0];
+    if (spec->count < 2 || !spec->technique[1]->take_probes) return true;
+    if (!(source->capabilities & PUBLISHES_PROBES))
+        return host_fail(spec->host, FAIL_ARGUMENT,
+                         "cannot use %s with %s, which has no probes: try lpv+%s",
+                         spec->technique[1]->name, source->name, spec->technique[1]->name);
+    const struct option_row *row = option_find(&source->options, "probes");
+    if (row && row->type == OPTION_TYPE_bool8)
+        *(option_bool8 *)((char *)spec->options[0] + row->offset) = true;
+    return true;
 }
 
 bool gi_spec_parse_among(struct gi_spec *spec, struct host *host, const char *text,
@@ -147,13 +185,8 @@ bool gi_spec_parse_among(struct gi_spec *spec, struct host *host, const char *te
                          "cannot read the GI spec: it is longer than %d characters", GI_MAX_TEXT);
     }
     if (!parse_terms(spec, text, known)) goto fail;
-    if (spec->count > 0 && spec->technique[0]->role == ROLE_SOURCE) return true;
-    if (spec->count > 0 && spec->technique[0]->role == ROLE_DELTA) {
-        host_fail(host, FAIL_ARGUMENT, "cannot use %s alone: a delta needs a source",
-                  spec->technique[0]->name);
-        goto fail;
-    }
-    if (add_default_source(spec, known)) return true;
+    const bool has_source = spec->count > 0 && spec->technique[0]->role == ROLE_SOURCE;
+    if ((has_source || add_default_source(spec, known)) && ask_for_probes(spec)) return true;
 fail:
     gi_spec_finish(spec);
     return false;

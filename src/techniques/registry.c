@@ -2,6 +2,7 @@
 #include "techniques/registry.h"
 
 #include "techniques/ambient/ambient.h"
+#include "techniques/dnrt/dnrt.h"
 #include "techniques/gi_preset.h"
 #include "techniques/hbao/hbao.h"
 #include "techniques/lpv/lpv.h"
@@ -15,19 +16,13 @@
 #include <assert.h>
 #include <string.h>
 
-const struct technique *const techniques[] = { &technique_none,
-                                               &technique_ambient,
-                                               &technique_lpv,
-                                               &technique_holpv,
-                                               &technique_vct,
-                                               &technique_mrt,
-                                               &technique_drt,
-                                               &technique_radiosity,
-                                               &technique_vo,
-                                               &technique_ssao,
-                                               &technique_hbao,
-                                               &technique_vctao,
-                                               NULL };
+const struct technique *const techniques[] = { &technique_none,  &technique_ambient,
+                                               &technique_lpv,   &technique_holpv,
+                                               &technique_vct,   &technique_mrt,
+                                               &technique_drt,   &technique_radiosity,
+                                               &technique_dnrt,  &technique_vo,
+                                               &technique_ssao,  &technique_hbao,
+                                               &technique_vctao, NULL };
 
 static bool aliases_are_sound(const struct option_table *options)
 {

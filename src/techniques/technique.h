@@ -123,6 +123,8 @@ struct technique {
     // With PUBLISHES_PROBES: the volume that the newest update filled. false: the option `probes`
     // is off.
     bool (*probes)(void *state, struct probe_volume *out);
+    // Of a delta that needs the probes of its source: before each `update`.
+    void (*take_probes)(void *state, const struct probe_volume *source);
     // The light map: the charts of static surfaces (scene/statics.h), and for each side and colour
     // a layer of irradiance along the surface's normal and vector irradiance, scaled radiance,
     // RGBA16F, that the newest update filled.

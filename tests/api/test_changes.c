@@ -116,7 +116,7 @@ static void recolor(struct ag_scene *scene, struct cube *cube)
     struct ag_material_info info;
     assert_int_equal(ag_scene_get_material(scene, cube->material, &info), AG_OK);
     info.material.base_color[0] = 0.1f;
-    info.material.emissive[1] = 20.0f;
+    info.material.emissive[1] = 60.0f;
     assert_int_equal(ag_scene_set_material(scene, cube->material, &info.material), AG_OK);
 }
 
@@ -205,7 +205,7 @@ static struct differences differences_of(struct renderer_fixture *s, const char 
 // frame depends on nothing but the scene.
 static void check_differences(const char *technique, const struct differences *d)
 {
-    CHECK(d->change > 0.005); // emission of what moves lights nothing in radiosity
+    CHECK(d->change > 0.01);
     if (strcmp(technique, "vct") != 0) assert_true(d->error == 0.0);
     CHECK(d->error <= 0.25 * d->change);
     CHECK(d->settled <= 0.0025);
@@ -227,7 +227,7 @@ TEST(the_next_frame_is_that_of_a_new_renderer)
 {
     struct ag_technique_info info;
     for (int t = 0; ag_technique_get(t, &info); t++) {
-        if (!info.moving_geometry) continue;
+        if (!info.moving_geometry || info.needs_bake) continue;
         struct renderer_fixture s = fixture_open(info.name, NULL);
         check_changes(&s, info.name, info.name, NULL, (struct cube){ .size = 1.8f });
         fixture_close(&s);

@@ -29,6 +29,7 @@ static const struct {
     { "mrt", ",probes=true", 0 },
     { "drt", "", 0 },
     { "radiosity", "", 0 },
+    { "dnrt", "", 0 },
 };
 
 // Options after which the next frame still has light of earlier frames. Tolerances are relative to

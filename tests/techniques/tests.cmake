@@ -20,7 +20,7 @@ ag_test(techniques/sample_sets USES techniques LIBRARIES ag_samples)
 ag_test(techniques/light_trials USES techniques LIBRARIES ag_test_light_trial ag_test_frame_fixture)
 ag_test(techniques/radiosity_probes USES techniques LIBRARIES ag_test_light_trial ag_test_techniques ag_test_frame_fixture)
 
-foreach(technique lpv vct mrt)
+foreach(technique lpv vct mrt dnrt)
   include(${CMAKE_CURRENT_LIST_DIR}/${technique}/tests.cmake)
 endforeach()
 

@@ -1,0 +1,156 @@
+#include "techniques/dnrt/bake/part.h"
+
+#include <math.h>
+
+static bool make_arrays(struct dnrt_part *part, int instances)
+{
+    const struct scene *scene = &part->scene;
+    const size_t count = (size_t)instances;
+    part->scene.instances = host_alloc(part->host, count, sizeof *scene->instances);
+    part->scene.meshes = host_alloc(part->host, count, sizeof *scene->meshes);
+    part->scene.nodes = host_alloc(part->host, count, sizeof *scene->nodes);
+    part->scene.materials =
+        host_alloc(part->host, (size_t)scene->material_count, sizeof *scene->materials);
+    part->pose.world_from_node = host_alloc(part->host, count, sizeof *part->pose.world_from_node);
+    part->pose.deformed = host_alloc(part->host, count, sizeof *part->pose.deformed);
+    return part->scene.instances && part->scene.meshes && part->scene.nodes &&
+           part->scene.materials && part->pose.world_from_node && part->pose.deformed;
+}
+
+// Others than those of the object have no images, which are then not decoded. Normal maps are finer
+// than a volume, and emission is not reflected.
+static void copy_material(struct dnrt_part *part, const struct scene *from, int material)
+{
+    struct material *to = &part->scene.materials[material];
+    *to = from->materials[material];
+    material_clear_emission(to);
+    to->normal_map = texture_use_none();
+}
+
+// Deformed vertices are in world space: a copy of them is the mesh.
+static bool copy_deformed(struct dnrt_part *part, const struct deformed_mesh *from, vec3s origin,
+                          struct mesh *mesh)
+{
+    vec3s *positions = host_alloc(part->host, mesh->vertex_count, sizeof *positions);
+    vec3s *normals = host_alloc(part->host, mesh->vertex_count, sizeof *normals);
+    mesh->positions = positions;
+    mesh->normals = normals;
+    mesh->tangents = NULL;
+    mesh->morph_count = 0;
+    mesh->own_arrays = true;
+    if (!positions || !normals) return false;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        positions[v] = glms_vec3_sub(from->positions[v], origin);
+        normals[v] = from->normals[v]; // the frame has the axes of the world
+    }
+    return true;
+}
+
+static bool add_instance(struct dnrt_part *part, const struct scene_pose *pose, int instance,
+                         vec3s origin, mat3s stretch, int k)
+{
+    const struct scene *from = pose->scene;
+    struct mesh *mesh = &part->scene.meshes[k];
+    *mesh = *scene_mesh_of(from, instance);
+    mesh->own_arrays = false;
+    part->scene.nodes[k] = node_default();
+    part->scene.instances[k] = (struct instance){ .node = k, .mesh = k, .skin = -1 };
+    for (int i = 0; i < 3; i++) part->pose.world_from_node[k].col[i] = vec4_of(stretch.col[i], 0);
+    part->pose.world_from_node[k].raw[3][3] = 1.0f;
+    copy_material(part, from, mesh->material);
+    return !pose->deformed[instance].positions ||
+           copy_deformed(part, &pose->deformed[instance], origin, mesh);
+}
+
+// ---- the bounding sphere
+
+static vec3s vertex(const struct dnrt_part *part, int mesh, uint32_t index)
+{
+    return mat4_point(part->pose.world_from_node[mesh], part->scene.meshes[mesh].positions[index]);
+}
+
+static vec3s farthest(const struct dnrt_part *part, vec3s from, float *distance)
+{
+    vec3s at = from;
+    *distance = 0.0f;
+    for (int k = 0; k < part->scene.mesh_count; k++)
+        for (uint32_t i = 0; i < part->scene.meshes[k].index_count; i++) {
+            const vec3s p = vertex(part, k, part->scene.meshes[k].indices[i]);
+            const float d = glms_vec3_distance(p, from);
+            if (d > *distance) {
+                *distance = d;
+                at = p;
+            }
+        }
+    return at;
+}
+
+// The centre moves towards the farthest vertex by 1/(i + 1): within 1/√i of the smallest sphere
+// (Bădoiu & Clarkson 2003, "Smaller Core-Sets for Balls").
+static void find_sphere(struct dnrt_part *part)
+{
+    enum { STEPS = 64 };
+    struct box3 box = box3_empty();
+    for (int k = 0; k < part->scene.mesh_count; k++)
+        for (uint32_t i = 0; i < part->scene.meshes[k].index_count; i++)
+            box = box3_add_point(box, vertex(part, k, part->scene.meshes[k].indices[i]));
+    if (box3_is_empty(box)) return;
+    vec3s at = box3_centre(box);
+    part->centre = at;
+    farthest(part, at, &part->radius);
+    for (int i = 1; i <= STEPS; i++) {
+        float distance;
+        const vec3s far = farthest(part, at, &distance);
+        if (distance < part->radius) {
+            part->radius = distance;
+            part->centre = at;
+        }
+        at = glms_vec3_lerp(at, far, 1.0f / (float)(i + 1));
+    }
+}
+
+// ----
+
+bool dnrt_part_init(struct dnrt_part *out, struct host *host, const struct scene_pose *pose,
+                    const struct dnrt_objects *objects, int object)
+{
+    const struct dnrt_object *of = &objects->at[object];
+    struct dnrt_frame frame;
+    mat3s stretch;
+    *out = (struct dnrt_part){ .host = host, .scene = *pose->scene, .pose = { .scene = NULL } };
+    struct scene *scene = &out->scene;
+    scene->host = host;
+    scene->light_count = scene->camera_count = scene->skin_count = scene->animation_count = 0;
+    scene->sky = vec3_of(0, 0, 0);
+    scene->instances = NULL;
+    scene->meshes = NULL;
+    scene->nodes = NULL;
+    scene->materials = NULL;
+    out->pose.scene = scene;
+    if (!make_arrays(out, of->count)) return false;
+    for (int m = 0; m < scene->material_count; m++) scene->materials[m] = material_default();
+    scene->instance_count = scene->mesh_count = scene->node_count = of->count;
+    if (!dnrt_object_frame(objects, pose, object, &frame, &stretch)) return true; // radius 0
+    for (int k = 0; k < of->count; k++)
+        if (!add_instance(out, pose, objects->instances[of->first + k], frame.origin, stretch, k))
+            return false;
+    find_sphere(out);
+    return true;
+}
+
+void dnrt_part_finish(struct dnrt_part *part)
+{
+    if (!part->host) return;
+    for (int k = 0; part->scene.meshes && k < part->scene.mesh_count; k++)
+        if (part->scene.meshes[k].own_arrays) {
+            host_free(part->host, part->scene.meshes[k].positions);
+            host_free(part->host, part->scene.meshes[k].normals);
+        }
+    host_free(part->host, part->scene.instances);
+    host_free(part->host, part->scene.meshes);
+    host_free(part->host, part->scene.nodes);
+    host_free(part->host, part->scene.materials);
+    host_free(part->host, part->pose.world_from_node);
+    host_free(part->host, part->pose.deformed);
+    *part = (struct dnrt_part){ 0 };
+}

@@ -1,0 +1,266 @@
+// Stages of the bake: samples of every shape by rays, then their volumes.
+#include "techniques/dnrt/dnrt_bake.h"
+
+#include "bake/scene_key.h"
+#include "core/rng.h"
+#include "techniques/dnrt/bake/part.h"
+#include "techniques/dnrt/bake/transfer.h"
+#include "techniques/dnrt/bake/volume.h"
+#include "techniques/dnrt/dnrt_options.h"
+#include "techniques/dnrt/dnrt_tensors.h"
+
+#include <string.h>
+
+enum { SAMPLES_PER_TASK = 1024 };
+
+struct shape_trace {
+    struct dnrt_part part;
+    struct trace_scene *trace;
+};
+
+struct job {
+    struct dnrt_options options;
+    const struct scene_pose *pose;
+    struct dnrt_objects objects;
+    struct shape_trace *shapes; // [objects.shape_count]
+    struct host *host;          // of `shapes`
+};
+
+static bool prepare_shape(const struct job *job, struct host *host, int shape)
+{
+    struct shape_trace *of = &job->shapes[shape];
+    if (!dnrt_part_init(&of->part, host, job->pose, &job->objects,
+                        job->objects.shapes[shape].object))
+        return false;
+    of->trace = trace_scene_create(host, &of->part.pose);
+    return of->trace != NULL;
+}
+
+static bool prepare(void *argument, struct host *host)
+{
+    struct job *job = argument;
+    job->host = host;
+    if (!dnrt_objects_init(&job->objects, host, job->pose)) return false;
+    job->shapes = host_alloc(host, (size_t)job->objects.shape_count, sizeof *job->shapes);
+    for (int s = 0; job->shapes && s < job->objects.shape_count; s++)
+        if (!prepare_shape(job, host, s)) return false;
+    return job->shapes != NULL;
+}
+
+static void finish(void *argument)
+{
+    struct job *job = argument;
+    for (int s = 0; job->shapes && s < job->objects.shape_count; s++) {
+        trace_scene_destroy(job->shapes[s].trace);
+        dnrt_part_finish(&job->shapes[s].part);
+    }
+    if (job->host) host_free(job->host, job->shapes);
+    job->shapes = NULL;
+    dnrt_objects_finish(&job->objects);
+}
+
+// ---- samples
+
+enum { OUT_TRANSFER, OUT_INSIDE };
+
+static struct dnrt_grid grid_of(const struct job *job, const struct dnrt_part *part)
+{
+    return (struct dnrt_grid){ part->centre, part->radius * job->options.reach,
+                               dnrt_size(&job->options) };
+}
+
+static void write_transfer(const struct dnrt_transfer *transfer, int count, float *to)
+{
+    for (int j = 0; j < count; j++)
+        for (int c = 0; c < 3; c++)
+            to[3 * j + c] = transfer->reflected[j].raw[c] - transfer->hidden[j];
+}
+
+static bool run_samples(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    const struct shape_trace *shape = &job->shapes[*(const int *)task->argument];
+    const struct dnrt_grid grid = grid_of(job, &shape->part);
+    const struct dnrt_sampling how = { shape->trace, shape->part.centre, shape->part.radius,
+                                       dnrt_bands(&job->options), job->options.rays };
+    const int count = dnrt_coefficients(&job->options);
+    uint64_t samples, first = bake_task_rows(task, OUT_TRANSFER, &samples);
+    if (!(shape->part.radius > 0.0f)) return true;
+    for (uint64_t i = 0; i < samples; i++) {
+        if (bake_task_cancelled(task)) return false;
+        const struct dnrt_transfer at =
+            dnrt_transfer_at(&how, dnrt_grid_point(&grid, (int)(first + i)),
+                             (uint32_t)rng_mix(task->bake_seed ^ (first + i) << 32) | 1u);
+        write_transfer(&at, count, (float *)task->out[OUT_TRANSFER] + 3 * (size_t)count * i);
+        ((uint8_t *)task->out[OUT_INSIDE])[i] = at.inside > 0.5f;
+    }
+    return true;
+}
+
+// ---- volumes
+
+enum { OUT_VOLUME, OUT_SCALE, OUT_SPHERE };
+
+struct stage_argument {
+    int shape;
+    const char *transfer, *inside; // tensors of the samples
+};
+
+static void encode(const struct job *job, const float *values, void *const *out)
+{
+    const int planes = 3 * dnrt_coefficients(&job->options);
+    const int samples = dnrt_grid_count(dnrt_size(&job->options));
+    float *scale = out[OUT_SCALE];
+    for (int p = 0; p < planes; p++) {
+        const size_t at = (size_t)p * (size_t)samples;
+        if (job->options.bits == DNRT_BITS_16)
+            scale[p] =
+                dnrt_encode_half(values + p, samples, planes, (uint16_t *)out[OUT_VOLUME] + at);
+        else
+            scale[p] =
+                dnrt_encode_byte(values + p, samples, planes, (uint8_t *)out[OUT_VOLUME] + at);
+    }
+}
+
+static bool run_volume(const struct bake_task *task)
+{
+    const struct job *job = task->job;
+    const struct stage_argument *of = task->argument;
+    const struct dnrt_part *part = &job->shapes[of->shape].part;
+    const struct tensor *transfer = bake_task_input(task, of->transfer);
+    const struct tensor *inside = bake_task_input(task, of->inside);
+    const float sphere[4] = { part->centre.x, part->centre.y, part->centre.z, part->radius };
+    if (!transfer || !inside) return false;
+    float *values = host_alloc(task->host, transfer->bytes, 1);
+    if (!values) return false;
+    memcpy(values, transfer->data, transfer->bytes);
+    const bool ok = dnrt_fill_inside(task->host, dnrt_size(&job->options),
+                                     3 * dnrt_coefficients(&job->options), inside->data, values);
+    if (ok) encode(job, values, task->out);
+    memcpy(task->out[OUT_SPHERE], sphere, sizeof sphere);
+    host_free(task->host, values);
+    return ok;
+}
+
+// ---- the plan
+
+static bool add_samples(struct bake_plan *plan, const struct job *job,
+                        const struct stage_argument *of)
+{
+    const uint64_t samples = (uint64_t)dnrt_grid_count(dnrt_size(&job->options));
+    const size_t tasks = (size_t)(samples / SAMPLES_PER_TASK);
+    const struct bake_output out[] = {
+        { of->transfer,
+          TENSOR_F32,
+          2,
+          { samples, 3 * (uint64_t)dnrt_coefficients(&job->options) },
+          BAKE_ROWS,
+          1 },
+        { of->inside, TENSOR_U8, 1, { samples }, BAKE_ROWS, 1 },
+    };
+    const char *name = bake_plan_name(plan, "shape %d samples", of->shape);
+    return name && bake_plan_add(plan, &(struct bake_stage){ .name = name,
+                                                             .wave = 0,
+                                                             .task_count = tasks,
+                                                             .run = run_samples,
+                                                             .argument = &of->shape,
+                                                             .outputs = out,
+                                                             .output_count = 2,
+                                                             .rays = (double)SAMPLES_PER_TASK *
+                                                                     job->options.rays });
+}
+
+static bool add_volume(struct bake_plan *plan, const struct job *job,
+                       const struct stage_argument *of)
+{
+    const uint64_t n = (uint64_t)dnrt_size(&job->options);
+    const uint64_t count = (uint64_t)dnrt_coefficients(&job->options);
+    const struct bake_output out[] = {
+        { bake_plan_name(plan, DNRT_VOLUME, of->shape),
+          job->options.bits == DNRT_BITS_16 ? TENSOR_F16 : TENSOR_U8,
+          5,
+          { count, 3, n, n, n },
+          BAKE_ROWS,
+          BAKE_SAVED },
+        { bake_plan_name(plan, DNRT_SCALE, of->shape),
+          TENSOR_F32,
+          2,
+          { count, 3 },
+          BAKE_ROWS,
+          BAKE_SAVED },
+        { bake_plan_name(plan, DNRT_SPHERE, of->shape),
+          TENSOR_F32,
+          1,
+          { 4 },
+          BAKE_ROWS,
+          BAKE_SAVED },
+    };
+    const char *name = bake_plan_name(plan, "shape %d volume", of->shape);
+    return name && out[0].name && out[1].name && out[2].name &&
+           bake_plan_add(plan, &(struct bake_stage){ .name = name,
+                                                     .wave = 1,
+                                                     .task_count = 1,
+                                                     .run = run_volume,
+                                                     .argument = of,
+                                                     .outputs = out,
+                                                     .output_count = 3,
+                                                     .flops = (double)(n * n * n * count * 6),
+                                                     .scratch_bytes =
+                                                         (size_t)(n * n * n * (count * 12 + 4)) });
+}
+
+static struct stage_argument *arguments_of(struct bake_plan *plan, int shape)
+{
+    struct stage_argument *of = bake_plan_alloc(plan, 1, sizeof *of);
+    if (!of) return NULL;
+    of->shape = shape;
+    of->transfer = bake_plan_name(plan, "shape/%d/transfer", shape);
+    of->inside = bake_plan_name(plan, "shape/%d/inside", shape);
+    return of->transfer && of->inside ? of : NULL;
+}
+
+static bool add_stages(struct bake_plan *plan, const struct job *job, int shapes)
+{
+    struct stage_argument *of[2] = { NULL, NULL };
+    for (int wave = 0; wave < 2; wave++)
+        for (int s = 0; s < shapes; s++) {
+            of[wave] = arguments_of(plan, s);
+            if (!of[wave]) return false;
+            if (!(wave == 0 ? add_samples : add_volume)(plan, job, of[wave])) return false;
+        }
+    return true;
+}
+
+// Of every shape in its own frame: placing objects elsewhere changes nothing.
+static bool add_key(struct bake_plan *plan, const struct job *job,
+                    const struct dnrt_objects *objects)
+{
+    struct hash128 key = hash128_add_text((struct hash128){ 0 }, "dnrt");
+    for (int s = 0; s < objects->shape_count; s++) {
+        struct dnrt_part part;
+        const bool ok = dnrt_part_init(&part, bake_plan_host(plan), job->pose, objects,
+                                       objects->shapes[s].object);
+        const struct hash128 of =
+            ok ? scene_key(&part.pose, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS)
+               : (struct hash128){ 0 };
+        key = hash128_add(key, &of, sizeof of);
+        dnrt_part_finish(&part);
+        if (!ok) return false;
+    }
+    bake_plan_depends(plan, key);
+    return true;
+}
+
+bool dnrt_bake(struct bake_plan *plan, const struct technique_bake *how)
+{
+    struct job *job = bake_plan_alloc(plan, 1, sizeof *job);
+    struct dnrt_objects objects;
+    if (!job) return false;
+    job->pose = how->pose;
+    job->options = *(const struct dnrt_options *)how->options;
+    bake_plan_set_job(plan, &(struct bake_job){ .job = job, .prepare = prepare, .finish = finish });
+    const bool ok = dnrt_objects_init(&objects, bake_plan_host(plan), how->pose) &&
+                    add_key(plan, job, &objects) && add_stages(plan, job, objects.shape_count);
+    dnrt_objects_finish(&objects);
+    return ok;
+}

@@ -1,0 +1,234 @@
+// Deferred neighboring radiance transfer (Giuffrida 2016): what dynamic objects do to the light of
+// a source that ignores them. Each reflects light onto its surroundings and hides light behind it,
+// by a volume of transfer vectors that is baked once for its mesh and multiplied by the light at
+// the object in every frame.
+#include "techniques/dnrt/dnrt.h"
+
+#include "techniques/dnrt/dnrt_bake.h"
+#include "techniques/dnrt/dnrt_state.h"
+
+#include "technique_shaders.h"
+
+#include <math.h>
+
+#define OPTION(...) OPTION_ROW(struct dnrt_options, __VA_ARGS__)
+static const struct option_row option_rows[] = {
+#include "techniques/dnrt/dnrt_options.def"
+};
+#undef OPTION
+
+static const struct technique_preset presets[] = {
+    { "low", "size=16,bits=8" },
+    { "medium", "" },
+    { "high", "coefficients=9,rays=512" },
+    { NULL, NULL },
+};
+
+// ---- creation
+
+static bool resize(void *state, int view, uint32_t width, uint32_t height)
+{
+    struct dnrt *s = state;
+    const size_t tiles = (size_t)gpu_groups(width, DNRT_TILE) * gpu_groups(height, DNRT_TILE);
+    (void)view;
+    if (tiles > s->most_tiles) s->most_tiles = tiles;
+    return dnrt_make_tiles(s);
+}
+
+static bool create(void *state, const struct technique_create *how)
+{
+    struct dnrt *s = state;
+    s->host = how->host;
+    s->gpu = how->gpu;
+    s->options = *(const struct dnrt_options *)how->options;
+    if (!how->pose) return true;
+    if (!dnrt_objects_init(&s->baked, s->host, how->pose)) return false;
+    s->volumes = host_alloc(s->host, (size_t)s->baked.shape_count, sizeof *s->volumes);
+    if (s->baked.count == 0)
+        host_log(s->host, LOG_WARNING,
+                 "dnrt: %s has no dynamic objects: it changes nothing (docs/library.md: mobility)",
+                 how->pose->scene->name);
+    return s->volumes && resize(s, 0, how->width, how->height) && dnrt_find_objects(s, how->pose);
+}
+
+static bool make_pipelines(struct dnrt *s)
+{
+    const struct gpu_constant volumes[] = {
+        { 0, (uint32_t)dnrt_coefficients(&s->options) },
+        { 1, s->options.bits == DNRT_BITS_8 },
+    };
+    const struct gpu_constant with_id = { 0, true }, without_id = { 0, false };
+    return gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_comp, NULL, 0,
+                                       &s->light_pipeline) &&
+           gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, volumes, 2,
+                                       &s->volumes_pipeline) &&
+           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_comp, &with_id, 1,
+                                       &s->apply_pipeline) &&
+           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_comp, &without_id, 1,
+                                       &s->apply_without_id);
+}
+
+static bool load(void *state, const struct tensors *bake)
+{
+    struct dnrt *s = state;
+    return s->baked.count == 0 || (dnrt_upload(s, bake) && make_pipelines(s));
+}
+
+static void set_options(void *state, const void *options)
+{
+    struct dnrt *s = state;
+    option_copy_live(&technique_dnrt.options, options, &s->options);
+}
+
+// ---- frames
+
+static void place_object(struct dnrt *s, const struct scene_pose *pose, int object)
+{
+    const struct dnrt_object *of = &s->objects.at[object];
+    const struct dnrt_volume *volume = of->shape >= 0 ? &s->volumes[of->shape] : NULL;
+    const int n = dnrt_size(&s->options), across = s->slots[0], layer = across * s->slots[1];
+    struct dnrt_gpu_object *to = &s->gpu_objects[object];
+    struct dnrt_frame frame;
+    mat3s stretch;
+    *to = (struct dnrt_gpu_object){ .shape = -1 };
+    if (!volume || !dnrt_object_frame(&s->objects, pose, object, &frame, &stretch)) return;
+    *to = (struct dnrt_gpu_object){
+        .centre = mat4_point(dnrt_world_from_object(&frame), volume->centre),
+        .half_m = volume->radius * s->options.reach * frame.scale,
+        .axis = { frame.rotation.col[0], frame.rotation.col[1], frame.rotation.col[2] },
+        .shape = volume->radius > 0.0f ? of->shape : -1,
+        .slot_x = object % across * n,
+        .slot_y = object / across % s->slots[1] * n,
+        .slot_z = object / layer * n,
+        .first_instance = (uint32_t)s->objects.instances[of->first],
+        .instance_count = (uint32_t)of->count,
+    };
+}
+
+static void take_probes(void *state, const struct probe_volume *source)
+{
+    struct dnrt *s = state;
+    s->source = *source;
+}
+
+static struct gpu_binding objects_binding(const struct dnrt *s, struct gpu_cmd *cmd)
+{
+    return gpu_transient(cmd, "dnrt_objects", s->gpu_objects,
+                         (size_t)s->objects.count * sizeof *s->gpu_objects);
+}
+
+static void record_light(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects)
+{
+    const struct dnrt_light_push push = { s->source.grid, (uint32_t)s->objects.count };
+    gpu_scope_begin(cmd, "light");
+    gpu_dispatch(cmd, s->light_pipeline,
+                 GPU_BIND({ .name = "probes", .image = s->source.image, .sampler = s->linear },
+                          objects, { .name = "dnrt_light", .buffer = s->light }),
+                 &push, sizeof push, gpu_groups(push.objects, DNRT_LOCAL), 1, 1);
+    gpu_scope_end(cmd);
+}
+
+static void record_volumes(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects)
+{
+    enum { SAMPLES = 4 }; // of an invocation
+    const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options) };
+    const uint32_t samples = push.size * push.size * push.size;
+    gpu_scope_begin(cmd, "volumes");
+    gpu_dispatch(cmd, s->volumes_pipeline,
+                 GPU_BIND(objects, { .name = "dnrt_light", .buffer = s->light },
+                          { .name = "dnrt_shapes", .buffer = s->shapes },
+                          { .name = "dnrt_samples", .buffer = s->samples },
+                          { .name = "volumes", .image = s->image }),
+                 &push, sizeof push, gpu_groups(samples / SAMPLES, DNRT_LOCAL),
+                 (uint32_t)s->objects.count, 1);
+    gpu_scope_end(cmd);
+}
+
+static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct dnrt *s = state;
+    if (s->objects.count == 0 || s->image.id == 0) return;
+    for (int i = 0; i < s->objects.count; i++) place_object(s, view->pose, i);
+    const struct gpu_binding objects = objects_binding(s, cmd);
+    record_light(s, cmd, objects);
+    record_volumes(s, cmd, objects);
+}
+
+static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
+{
+    struct dnrt *s = state;
+    struct dnrt_apply_push push = { .objects = (uint32_t)s->objects.count,
+                                    .words = gpu_groups((uint32_t)s->objects.count, 32),
+                                    .tiles_x = gpu_groups(view->width, DNRT_TILE),
+                                    .size = (uint32_t)dnrt_size(&s->options),
+                                    .fade = s->options.fade };
+    const bool has_id = view->layers[FRAME_ID].id != 0;
+    if (push.objects == 0 || s->image.id == 0) return;
+    const uint32_t tiles = dnrt_find_tiles(s, view, push.words, s->tiles);
+    if (tiles == 0) return;
+    gpu_scope_begin(cmd, "apply");
+    gpu_dispatch(
+        cmd, has_id ? s->apply_pipeline : s->apply_without_id,
+        GPU_BIND(view->constants_binding, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
+                 { .name = "normal", .image = view->layers[FRAME_NORMAL] },
+                 { .name = "id", .image = view->layers[FRAME_ID] }, objects_binding(s, cmd),
+                 gpu_transient(cmd, "dnrt_tiles", s->tiles,
+                               (size_t)tiles * (1 + push.words) * sizeof *s->tiles),
+                 { .name = "volumes", .image = s->image, .sampler = s->linear },
+                 { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
+        &push, sizeof push, tiles, 1, 1);
+    gpu_scope_end(cmd);
+}
+
+static void destroy(void *state)
+{
+    struct dnrt *s = state;
+    if (!s->host) return;
+    gpu_pipeline *const pipelines[] = { &s->light_pipeline, &s->volumes_pipeline,
+                                        &s->apply_pipeline, &s->apply_without_id };
+    gpu_buffer *const buffers[] = { &s->shapes, &s->samples, &s->light };
+    for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
+        gpu_pipeline_destroy(s->gpu, pipelines[i]);
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
+        gpu_buffer_destroy(s->gpu, buffers[i]);
+    gpu_image_destroy(s->gpu, &s->image);
+    host_free(s->host, s->gpu_objects);
+    host_free(s->host, s->volumes);
+    host_free(s->host, s->tiles);
+    dnrt_objects_finish(&s->objects);
+    dnrt_objects_finish(&s->baked);
+}
+
+// Of one object.
+static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t height)
+{
+    const struct dnrt_options *o = options;
+    const uint64_t n = (uint64_t)dnrt_size(o), samples = n * n * n;
+    (void)width;
+    (void)height;
+    return samples * (3 * (uint64_t)dnrt_coefficients(o) * (o->bits == DNRT_BITS_16 ? 2 : 1) + 8);
+}
+
+const struct technique technique_dnrt = {
+    .name = "dnrt",
+    .title = "deferred neighboring radiance transfer",
+    .paper = "Giuffrida 2016, Deferred Neighboring Radiance Transfer",
+    .role = ROLE_DELTA,
+    .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | NEEDS_BAKE,
+    .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_LEAVES_DYNAMIC,
+    .bake_version = 1,
+    .options = OPTION_TABLE(struct dnrt_options, option_rows, NULL),
+    .presets = presets,
+    .state_size = sizeof(struct dnrt),
+    .bake = dnrt_bake,
+    .create = create,
+    .load = load,
+    .resize = resize,
+    .set_options = set_options,
+    .follow = dnrt_follow,
+    .take_probes = take_probes,
+    .update = update,
+    .record = record,
+    .destroy = destroy,
+    .memory_estimate = memory_estimate,
+};

@@ -1,0 +1,103 @@
+// Objects that come, go, or get another shape while frames are rendered. An object whose mesh and
+// stretch are in the bake has that volume; others need another bake.
+#include "techniques/dnrt/dnrt_state.h"
+
+// Volumes lie side by side in a cube.
+static bool make_image(struct dnrt *s)
+{
+    const uint32_t size = (uint32_t)dnrt_size(&s->options);
+    int n = 1;
+    while (n * n * n < s->objects.count) n++;
+    const struct gpu_image_desc desc = { .name = "volumes",
+                                         .dimension = GPU_3D,
+                                         .format = GPU_RGBA16F,
+                                         .width = size * (uint32_t)n,
+                                         .height = size * (uint32_t)n,
+                                         .depth = size * (uint32_t)n,
+                                         .usage = GPU_SAMPLED | GPU_STORAGE };
+    const struct gpu_sampler_desc linear = { .name = "volumes",
+                                             .filter = GPU_LINEAR,
+                                             .mip_filter = GPU_NEAREST,
+                                             .wrap_u = GPU_CLAMP,
+                                             .wrap_v = GPU_CLAMP,
+                                             .wrap_w = GPU_CLAMP };
+    const struct gpu_buffer_desc light = { "light",
+                                           (size_t)(n * n * n) * DNRT_COEFFICIENTS * sizeof(vec3s),
+                                           GPU_BUFFER_STORAGE };
+    if (s->image.id && n <= s->slots[0]) return true;
+    gpu_image_destroy(s->gpu, &s->image);
+    gpu_buffer_destroy(s->gpu, &s->light);
+    for (int i = 0; i < 3; i++) s->slots[i] = n;
+    return gpu_image_create(s->gpu, &desc, &s->image) &&
+           gpu_sampler_get(s->gpu, &linear, &s->linear) &&
+           gpu_buffer_create(s->gpu, &light, &s->light);
+}
+
+bool dnrt_make_tiles(struct dnrt *s)
+{
+    const size_t words = s->most_tiles * (1 + gpu_groups((uint32_t)s->objects.count, 32));
+    if (words <= s->tiles_words) return true;
+    uint32_t *tiles = host_realloc(s->host, s->tiles, words, sizeof *tiles);
+    if (!tiles) return false;
+    s->tiles = tiles;
+    s->tiles_words = words;
+    return true;
+}
+
+// Once.
+static void warn(struct dnrt *s, int without)
+{
+    if (s->warned || (without == 0 && s->objects.count <= DNRT_MAX_OBJECTS)) return;
+    s->warned = true;
+    if (without > 0)
+        host_log(s->host, LOG_WARNING,
+                 "dnrt: %d dynamic objects are not in the bake and change no light until another "
+                 "one",
+                 without);
+    else
+        host_log(s->host, LOG_WARNING, "dnrt: of %d dynamic objects the first %d change the light",
+                 s->objects.count, DNRT_MAX_OBJECTS);
+}
+
+static bool make_room(struct dnrt *s)
+{
+    host_free(s->host, s->gpu_objects);
+    s->gpu_objects = host_alloc(s->host, (size_t)s->objects.count, sizeof *s->gpu_objects);
+    if (s->gpu_objects && dnrt_make_tiles(s) &&
+        (s->baked.count == 0 || s->objects.count == 0 || make_image(s)))
+        return true;
+    s->objects.count = 0;
+    return false;
+}
+
+bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose)
+{
+    struct dnrt_objects found;
+    int without = 0;
+    if (!dnrt_objects_init(&found, s->host, pose)) {
+        dnrt_objects_finish(&found);
+        s->objects.count = 0;
+        return false;
+    }
+    dnrt_objects_finish(&s->objects);
+    s->objects = found;
+    for (int i = 0; i < found.count; i++) {
+        found.at[i].shape = dnrt_find_shape(&s->baked, &found, pose, i);
+        without += found.at[i].shape < 0;
+    }
+    if (s->baked.count > 0) warn(s, without);
+    if (s->objects.count > DNRT_MAX_OBJECTS) s->objects.count = DNRT_MAX_OBJECTS;
+    s->seen = pose->scene->revisions;
+    return make_room(s);
+}
+
+void dnrt_follow(void *state, const struct scene_pose *pose, bool wait)
+{
+    struct dnrt *s = state;
+    const struct scene_revisions *now = &pose->scene->revisions;
+    (void)wait;
+    if (s->baked.count == 0) return;
+    if (now->layout != s->seen.layout || now->instances != s->seen.instances ||
+        now->transforms != s->seen.transforms)
+        dnrt_find_objects(s, pose);
+}

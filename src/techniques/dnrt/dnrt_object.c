@@ -1,0 +1,145 @@
+// Which instances are dynamic objects, and which objects share a volume.
+#include "techniques/dnrt/dnrt_object.h"
+
+#include "scene/dynamic.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- objects
+
+static bool joins(const struct dnrt_objects *out, const struct scene_pose *pose, int instance)
+{
+    const struct dnrt_object *last = &out->at[out->count - 1];
+    return out->count > 0 && !last->deformed && !pose->deformed[instance].positions &&
+           last->node == pose->scene->instances[instance].node;
+}
+
+// Instances of a node, its mesh's primitives, follow each other.
+static void add_instance(struct dnrt_objects *out, const struct scene_pose *pose, int instance,
+                         int *instances)
+{
+    if (!joins(out, pose, instance))
+        out->at[out->count++] =
+            (struct dnrt_object){ .node = pose->scene->instances[instance].node,
+                                  .deformed = pose->deformed[instance].positions != NULL,
+                                  .first = *instances };
+    out->at[out->count - 1].count++;
+    out->instances[(*instances)++] = instance;
+}
+
+static bool find_objects(struct dnrt_objects *out, const struct scene_pose *pose)
+{
+    const struct scene *scene = pose->scene;
+    bool *dynamic = scene_dynamic_instances(out->host, scene);
+    int instances = 0;
+    for (int i = 0; dynamic && i < scene->instance_count; i++)
+        if (dynamic[i] && scene_mesh_of(scene, i)->index_count > 0)
+            add_instance(out, pose, i, &instances);
+    host_free(out->host, dynamic);
+    return dynamic != NULL;
+}
+
+// ---- frames
+
+static struct box3 deformed_bounds(const struct scene_pose *pose, int instance)
+{
+    struct box3 box = box3_empty();
+    for (uint32_t v = 0; v < scene_mesh_of(pose->scene, instance)->vertex_count; v++)
+        box = box3_add_point(box, pose->deformed[instance].positions[v]);
+    return box;
+}
+
+bool dnrt_object_frame(const struct dnrt_objects *objects, const struct scene_pose *pose,
+                       int object, struct dnrt_frame *frame, mat3s *stretch)
+{
+    const struct dnrt_object *of = &objects->at[object];
+    const int first = objects->instances[of->first];
+    if (!of->deformed) return dnrt_frame_of(pose_world_from_instance(pose, first), frame, stretch);
+    const struct box3 box = deformed_bounds(pose, first);
+    *frame = (struct dnrt_frame){ box3_centre(box), glms_mat3_identity(), 1.0f };
+    *stretch = glms_mat3_identity();
+    return !box3_is_empty(box);
+}
+
+// ---- shapes
+
+// Within two steps of its rounding.
+static bool same_stretch(mat3s a, mat3s b)
+{
+    for (int i = 0; i < 9; i++)
+        if (fabsf(a.raw[i / 3][i % 3] - b.raw[i / 3][i % 3]) > 0x1p-11f) return false;
+    return true;
+}
+
+static bool has_meshes(const struct dnrt_objects *of, const struct dnrt_shape *shape,
+                       const struct dnrt_objects *objects, const struct scene_pose *pose,
+                       const struct dnrt_object *object)
+{
+    if (shape->deformed != object->deformed || shape->count != object->count) return false;
+    for (int i = 0; i < shape->count; i++) {
+        const int instance = objects->instances[object->first + i];
+        if (of->meshes[shape->first + i] != pose->scene->instances[instance].mesh) return false;
+    }
+    return true;
+}
+
+int dnrt_find_shape(const struct dnrt_objects *of, const struct dnrt_objects *objects,
+                    const struct scene_pose *pose, int object)
+{
+    struct dnrt_frame frame;
+    mat3s stretch;
+    if (!dnrt_object_frame(objects, pose, object, &frame, &stretch)) return -1;
+    for (int s = 0; s < of->shape_count; s++)
+        if (has_meshes(of, &of->shapes[s], objects, pose, &objects->at[object]) &&
+            same_stretch(of->shapes[s].stretch, stretch))
+            return s;
+    return -1;
+}
+
+static void add_shape(struct dnrt_objects *out, const struct scene_pose *pose, int object,
+                      int *meshes)
+{
+    const struct dnrt_object *of = &out->at[object];
+    struct dnrt_shape *shape = &out->shapes[out->shape_count++];
+    struct dnrt_frame frame;
+    *shape = (struct dnrt_shape){ object, *meshes, of->count, of->deformed, glms_mat3_identity() };
+    dnrt_object_frame(out, pose, object, &frame, &shape->stretch);
+    for (int i = 0; i < of->count; i++)
+        out->meshes[(*meshes)++] = pose->scene->instances[out->instances[of->first + i]].mesh;
+}
+
+static void find_shapes(struct dnrt_objects *out, const struct scene_pose *pose)
+{
+    int meshes = 0;
+    for (int i = 0; i < out->count; i++) {
+        out->at[i].shape = out->at[i].deformed ? -1 : dnrt_find_shape(out, out, pose, i);
+        if (out->at[i].shape >= 0) continue;
+        out->at[i].shape = out->shape_count;
+        add_shape(out, pose, i, &meshes);
+    }
+}
+
+bool dnrt_objects_init(struct dnrt_objects *out, struct host *host, const struct scene_pose *pose)
+{
+    const size_t most = (size_t)pose->scene->instance_count;
+    *out = (struct dnrt_objects){ .host = host };
+    out->instances = host_alloc(host, most, sizeof *out->instances);
+    out->meshes = host_alloc(host, most, sizeof *out->meshes);
+    out->at = host_alloc(host, most, sizeof *out->at);
+    out->shapes = host_alloc(host, most, sizeof *out->shapes);
+    if (!out->instances || !out->meshes || !out->at || !out->shapes || !find_objects(out, pose))
+        return false;
+    find_shapes(out, pose);
+    return true;
+}
+
+void dnrt_objects_finish(struct dnrt_objects *objects)
+{
+    if (!objects->host) return;
+    host_free(objects->host, objects->instances);
+    host_free(objects->host, objects->meshes);
+    host_free(objects->host, objects->at);
+    host_free(objects->host, objects->shapes);
+    *objects = (struct dnrt_objects){ 0 };
+}

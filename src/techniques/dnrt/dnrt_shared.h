@@ -1,0 +1,54 @@
+// Data of dynamic objects that the host uploads for the shaders of dnrt. Scalar layout.
+#ifndef AG_DNRT_SHARED_H
+#define AG_DNRT_SHARED_H
+
+#include "core/shared.h"
+
+#ifndef AG_GLSL
+#include "frame/frame_shared.h"
+#endif
+
+#define DNRT_LOCAL        64  // workgroup size over samples of a volume
+#define DNRT_TILE         16  // pixels along an edge of a tile, a workgroup
+#define DNRT_MAX_OBJECTS  256 // a tile has a bit for each
+#define DNRT_COEFFICIENTS 9   // of irradiance at an object
+
+struct dnrt_gpu_object {
+    vec3s centre;                            // of its volume, world, m
+    float half_m;                            // of an edge of the inner volume
+    vec3s axis[3];                           // unit, of the object's frame, in the world
+    int32_t shape;                           // −1: it has no volume
+    int32_t slot_x, slot_y, slot_z;          // of its volume among all, in texels
+    uint32_t first_instance, instance_count; // its own pixels
+};
+
+// The baked volume of a shape: planes of samples, coefficient after coefficient, red green blue.
+struct dnrt_gpu_shape {
+    uint32_t first_word;                // in dnrt_samples
+    float scale[3 * DNRT_COEFFICIENTS]; // of a plane
+};
+
+struct dnrt_light_push {
+    AG_STRUCT(frame_probes) grid;
+    uint32_t objects;
+};
+
+struct dnrt_volumes_push {
+    uint32_t size; // samples along an edge
+};
+
+struct dnrt_apply_push {
+    uint32_t objects;
+    uint32_t words;   // of a tile's bits
+    uint32_t tiles_x; // across the image
+    uint32_t size;
+    float fade; // where the outer volume ends, in halves of the inner one's edge
+};
+
+#ifndef AG_GLSL
+_Static_assert(sizeof(struct dnrt_gpu_object) == 19 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_gpu_shape) == 28 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_apply_push) == 5 * 4, "layout is shared with GLSL");
+#endif
+
+#endif

@@ -1,0 +1,54 @@
+// Private state of the technique.
+#pragma once
+
+#include "techniques/technique.h"
+
+#include "techniques/dnrt/dnrt_object.h"
+#include "techniques/dnrt/dnrt_options.h"
+
+#include "frame/frame_shared.h"
+#include "techniques/dnrt/dnrt_shared.h"
+
+// What identifies a baked shape, and its bounding sphere in the object's frame.
+struct dnrt_volume {
+    vec3s centre;
+    float radius;
+};
+
+struct dnrt {
+    struct host *host;
+    struct gpu *gpu;
+    struct dnrt_options options;
+    struct dnrt_objects baked;   // of the pose of `create`: their shapes are in the bake
+    struct dnrt_objects objects; // of the newest pose; shape: in `baked`, −1: none
+    struct scene_revisions seen; // of the scene when `objects` were found
+    bool warned;                 // of objects without a volume
+    struct dnrt_volume *volumes; // [baked.shape_count]
+    int slots[3];                // room for volumes along x, y, z of the image
+    gpu_buffer shapes, samples, light;
+    gpu_image image; // volumes of all objects in their light
+    gpu_sampler linear;
+    gpu_pipeline light_pipeline, volumes_pipeline, apply_pipeline, apply_without_id;
+    struct probe_volume source;          // of the newest `take_probes`
+    struct dnrt_gpu_object *gpu_objects; // [objects] of the frame
+    uint32_t *tiles;                     // room for the tiles of a view
+    size_t most_tiles;                   // of a view
+    size_t tiles_words;                  // allocated
+};
+
+// ---- dnrt_upload.c
+
+bool dnrt_upload(struct dnrt *s, const struct tensors *bake);
+
+// ---- dnrt_follow.c
+
+// Objects of the pose, and room for their volumes and tiles. Without memory there are none.
+bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose);
+bool dnrt_make_tiles(struct dnrt *s);
+void dnrt_follow(void *state, const struct scene_pose *pose, bool wait);
+
+// ---- dnrt_tiles.c
+
+// Writes [tile][1 + words] for tiles that an object reaches and returns their number.
+uint32_t dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view, uint32_t words,
+                         uint32_t *tiles);

@@ -1,0 +1,93 @@
+// Which tiles of the image an object reaches: those of the rectangle around the corners of its
+// outer volume.
+#include "techniques/dnrt/dnrt_state.h"
+
+#include <math.h>
+#include <string.h>
+
+struct rectangle {
+    int first[2], end[2]; // in tiles
+};
+
+static int tiles_of(uint32_t pixels)
+{
+    return (int)gpu_groups(pixels, DNRT_TILE);
+}
+
+static vec3s corner_of(const struct dnrt_gpu_object *object, float half, int corner)
+{
+    vec3s p = object->centre;
+    for (int i = 0; i < 3; i++)
+        p = glms_vec3_muladds(object->axis[i], corner >> i & 1 ? half : -half, p);
+    return p;
+}
+
+// All of the image where a corner is behind the near plane, and none where all are.
+static struct rectangle rectangle_of(const struct frame_view *view,
+                                     const struct dnrt_gpu_object *object, float half)
+{
+    const int tiles[2] = { tiles_of(view->width), tiles_of(view->height) };
+    const uint32_t size[2] = { view->width, view->height };
+    float least[2] = { INFINITY, INFINITY }, most[2] = { -INFINITY, -INFINITY };
+    int behind = 0;
+    for (int k = 0; k < 8; k++) {
+        const vec4s clip = glms_mat4_mulv(view->constants->clip_from_world,
+                                          vec4_of(corner_of(object, half, k), 1));
+        if (!(clip.w > view->constants->near_m)) {
+            behind++;
+            continue;
+        }
+        for (int i = 0; i < 2; i++) {
+            least[i] = fminf(least[i], clip.raw[i] / clip.w);
+            most[i] = fmaxf(most[i], clip.raw[i] / clip.w);
+        }
+    }
+    struct rectangle r = { { 0, 0 }, { tiles[0], tiles[1] } };
+    for (int i = 0; i < 2; i++) {
+        if (behind == 8) r.end[i] = 0;
+        if (behind > 0) continue;
+        const float scale = 0.5f * (float)size[i] / DNRT_TILE;
+        r.first[i] = (int)fmaxf(floorf((least[i] + 1.0f) * scale), 0.0f);
+        r.end[i] = (int)fminf(floorf((most[i] + 1.0f) * scale) + 1.0f, (float)tiles[i]);
+    }
+    return r;
+}
+
+static void mark(uint32_t *tiles, int across, uint32_t words, struct rectangle r, int object)
+{
+    for (int y = r.first[1]; y < r.end[1]; y++)
+        for (int x = r.first[0]; x < r.end[0]; x++)
+            tiles[(size_t)(y * across + x) * (1 + words) + 1 + (size_t)object / 32] |=
+                1u << object % 32;
+}
+
+// Moves those with a bit to the front.
+static uint32_t keep_marked(uint32_t *tiles, uint32_t count, uint32_t words)
+{
+    uint32_t kept = 0;
+    for (uint32_t t = 0; t < count; t++) {
+        const uint32_t *from = tiles + (size_t)t * (1 + words);
+        uint32_t any = 0;
+        for (uint32_t w = 1; w <= words; w++) any |= from[w];
+        if (any == 0) continue;
+        uint32_t *to = tiles + (size_t)kept++ * (1 + words);
+        memmove(to, from, (1 + words) * sizeof *to);
+        to[0] = t;
+    }
+    return kept;
+}
+
+uint32_t dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view, uint32_t words,
+                         uint32_t *tiles)
+{
+    const int across = tiles_of(view->width);
+    const uint32_t count = (uint32_t)(across * tiles_of(view->height));
+    memset(tiles, 0, (size_t)count * (1 + words) * sizeof *tiles);
+    for (int i = 0; i < s->objects.count; i++) {
+        const struct dnrt_gpu_object *object = &s->gpu_objects[i];
+        const float half = object->half_m * s->options.fade;
+        if (object->shape >= 0 && half > 0.0f)
+            mark(tiles, across, words, rectangle_of(view, object, half), i);
+    }
+    return keep_marked(tiles, count, words);
+}

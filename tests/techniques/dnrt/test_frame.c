@@ -1,0 +1,302 @@
+// dnrt in frames: the change of each pixel against the bake, evaluated on the CPU.
+#include "frame/frame_fixture.h"
+#include "techniques/dnrt/sphere_fixture.h"
+#include "techniques/gi_bake.h"
+#include "techniques/gi_spec.h"
+
+#include "core/half.h"
+#include "core/sh.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SOURCE "lpv:geometry=off,dim=16,cascades=1,bounces=0,probes=true"
+enum { N = 16, BALLS = 2 };
+static const float REACH = 2.0f, FADE = 2.0f; // the defaults
+
+struct dnrt_scene {
+    struct frame_fixture fixture;
+    struct gi_spec spec;
+    struct gi_baked baked;
+    struct gi *gi;
+};
+
+static const vec3s CENTRE[BALLS] = { { { -0.2f, 0.8f, 0.1f } }, { { 0.9f, 0.7f, -0.6f } } };
+static const float RADIUS[BALLS] = { 0.4f, 0.3f };
+
+static versors turn_of(int ball)
+{
+    return glms_quatv(0.9f + (float)ball, vec3_of(0.48f, 0.6f, -0.64f));
+}
+
+static void add_ball(struct frame_fixture *s, int mesh, int ball)
+{
+    struct node node = node_default();
+    node.translation = CENTRE[ball];
+    node.rotation = turn_of(ball);
+    node.scale = vec3_of(RADIUS[ball], RADIUS[ball], RADIUS[ball]);
+    s->scene->instances[fixture_instance(s, mesh, &node)].movable = true;
+}
+
+// A floor and a red wall in the sun, and those of two balls that have a bit in `balls`.
+static void open_scene(struct dnrt_scene *d, struct gpu *gpu, const char *gi, unsigned balls)
+{
+    struct frame_fixture *s = &d->fixture;
+    fixture_init(s, gpu);
+    fixture_floor(s, 3, fixture_matte(s, vec3_of(0.7f, 0.7f, 0.7f)));
+    fixture_quad(s, vec3_of(-3, 0, -2), vec3_of(3, 0, -2), vec3_of(3, 3, -2), vec3_of(-3, 3, -2),
+                 fixture_matte(s, vec3_of(0.8f, 0.1f, 0.1f)));
+    const int mesh = sphere_fixture_add(s->scene, fixture_matte(s, vec3_of(0.2f, 0.4f, 0.9f)));
+    for (int b = 0; b < BALLS; b++)
+        if (balls >> b & 1) add_ball(s, mesh, b);
+    fixture_add_sun(s, vec3_of(0.3f, -1, -0.6f), vec3_of(1000, 1000, 1000));
+    fixture_look(s, vec3_of(0, 2.4f, 3.4f), vec3_of(0, 0.4f, -0.6f));
+    s->input.want_id_layer = true;
+    fixture_open(s);
+    CHECK(gi_spec_parse(&d->spec, test_host(), gi));
+    CHECK(gi_bake_all(&d->baked, test_host(), &d->spec, &s->pose));
+    d->gi =
+        gi_create_baked(test_host(), gpu, &d->spec, &d->baked.bakes, &s->pose, s->width, s->height);
+    assert_non_null(d->gi);
+    s->indirect = gi_hook(d->gi);
+    s->indirect.needs |= FRAME_LEAVES_DYNAMIC; // also of a source alone
+    fixture_render(s);
+}
+
+static void close_scene(struct dnrt_scene *d)
+{
+    gi_destroy(d->gi);
+    gi_baked_finish(&d->baked);
+    gi_spec_finish(&d->spec);
+    fixture_finish(&d->fixture);
+}
+
+// ---- the change of a pixel, by the definition
+
+struct ball_volume {
+    vec3s centre;
+    mat3s object_from_world; // rotation
+    float half;
+    float light[3][9]; // π c in the object's frame, lux
+    const float *scale;
+    const struct tensor *volume;
+};
+
+static float lookup(const float *image, int width, int height, const float at[3], int channel)
+{
+    float sum = 0;
+    for (int k = 0; k < 8; k++) {
+        float weight = 1;
+        int p[3];
+        for (int i = 0; i < 3; i++) {
+            const float low = floorf(at[i]);
+            p[i] = (int)low + (k >> i & 1);
+            weight *= k >> i & 1 ? at[i] - low : 1 - (at[i] - low);
+        }
+        if (weight > 0)
+            sum +=
+                weight * image[4 * (((size_t)p[2] * (size_t)height + (size_t)p[1]) * (size_t)width +
+                                    (size_t)p[0]) +
+                               (size_t)channel];
+    }
+    return sum;
+}
+
+// Irradiance of the source's probes at a point, over normals, lux.
+static void probes_at(struct dnrt_scene *d, vec3s point, float c[3][9])
+{
+    struct probe_volume probes;
+    CHECK(gi_probes(d->gi, &probes));
+    const struct gpu_image_desc *desc = gpu_image_info(d->fixture.gpu, probes.image);
+    const size_t floats = 4 * (size_t)desc->width * desc->height * desc->depth;
+    float *image = malloc(floats * sizeof *image);
+    CHECK(gpu_image_download_float(d->fixture.gpu, probes.image, 0, 0, image, 4, floats));
+    const int count[] = { probes.grid.count_x, probes.grid.count_y, probes.grid.count_z };
+    for (int value = 0; value < 27; value++) {
+        float at[3];
+        for (int i = 0; i < 3; i++)
+            at[i] =
+                fminf(fmaxf((point.raw[i] - probes.grid.first_m.raw[i]) / probes.grid.spacing_m, 0),
+                      (float)(count[i] - 1));
+        at[2] += (float)(value / 4 * probes.grid.slab);
+        c[value % 3][value / 3] =
+            lookup(image, (int)desc->width, (int)desc->height, at, value % 4) /
+            frame_radiance_scale(d->fixture.frame);
+    }
+    free(image);
+}
+
+static struct ball_volume volume_of(struct dnrt_scene *d, int ball)
+{
+    const struct tensors *bake = d->baked.bakes.of_term[1];
+    struct ball_volume v = {
+        .centre = CENTRE[ball],
+        .half = REACH * RADIUS[ball],
+        .object_from_world = glms_mat3_transpose(glms_quat_mat3(turn_of(ball))),
+        .scale = tensors_find(bake, "shape/0/scale")->data,
+        .volume = tensors_find(bake, "shape/0/volume"),
+    };
+    float c[3][9];
+    probes_at(d, v.centre, c);
+    for (int i = 0; i < 3; i++) {
+        sh_rotate(3, v.object_from_world, c[i], v.light[i]);
+        for (int j = 0; j < 9; j++) v.light[i][j] *= GLM_PIf;
+    }
+    return v;
+}
+
+static float sample_of(const struct ball_volume *v, int plane, int index)
+{
+    const size_t at = (size_t)plane * N * N * N + (size_t)index;
+    return v->scale[plane] * (v->volume->type == TENSOR_F16
+                                  ? float_from_half(((const uint16_t *)v->volume->data)[at])
+                                  : (float)(((const uint8_t *)v->volume->data)[at] - 128) / 127);
+}
+
+static float interpolate(const struct ball_volume *v, int colour, const float at[3])
+{
+    const int count = (int)v->volume->shape[0];
+    float sum = 0;
+    for (int k = 0; k < 8; k++) {
+        float weight = 1;
+        int index = 0;
+        for (int i = 2; i >= 0; i--) {
+            const int low = (int)fminf(floorf(at[i]), N - 2);
+            const float part = at[i] - (float)low;
+            weight *= k >> i & 1 ? part : 1 - part;
+            index = index * N + low + (k >> i & 1);
+        }
+        for (int j = 0; j < count; j++)
+            sum += weight * v->light[colour][j] * sample_of(v, 3 * j + colour, index);
+    }
+    return sum;
+}
+
+static vec3s change_of(const struct ball_volume *v, vec3s position, vec3s normal)
+{
+    const vec3s to_centre = glms_vec3_sub(v->centre, position);
+    const float cosine = glms_vec3_dot(glms_vec3_normalize(to_centre), normal);
+    vec3s p = glms_mat3_mulv(v->object_from_world, glms_vec3_negate(to_centre));
+    p = glms_vec3_divs(p, v->half);
+    const float border = glms_vec3_max(glms_vec3_abs(p));
+    vec3s change = vec3_of(0, 0, 0);
+    if (cosine <= 0 || border >= FADE) return change;
+    const float end = 1 / (FADE * FADE);
+    const float fall = border > 1 ? (1 / (border * border) - end) / (1 - end) : 1;
+    float at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = (0.5f + 0.5f * p.raw[i] / fmaxf(border, 1)) * (float)(N - 1);
+    for (int c = 0; c < 3; c++) change.raw[c] = cosine * fall * interpolate(v, c, at);
+    return change;
+}
+
+// ---- tests
+
+struct pixels {
+    float *irradiance, *position, *normal, *id;
+    size_t count;
+};
+
+static struct pixels read_pixels(struct dnrt_scene *d)
+{
+    struct frame_fixture *s = &d->fixture;
+    return (struct pixels){ fixture_read(s, READ_IRRADIANCE), fixture_read(s, READ_POSITION),
+                            fixture_read(s, READ_NORMAL), fixture_read(s, READ_ID),
+                            (size_t)s->width * s->height };
+}
+
+static void free_pixels(struct pixels *p)
+{
+    free(p->irradiance);
+    free(p->position);
+    free(p->normal);
+    free(p->id);
+}
+
+static vec3s at(const float *image, size_t pixel)
+{
+    return vec3_of(image[3 * pixel], image[3 * pixel + 1], image[3 * pixel + 2]);
+}
+
+static bool is_ground(const struct pixels *p, size_t pixel)
+{
+    return p->id[2 * pixel] == 0 || p->id[2 * pixel] == 1;
+}
+
+// Of a ball's own pixels the other one's; here the balls are far enough from each other.
+static vec3s sum_of_changes(const struct ball_volume volumes[BALLS], unsigned balls,
+                            const struct pixels *p, size_t i)
+{
+    vec3s sum = vec3_of(0, 0, 0);
+    for (int b = 0; b < BALLS; b++)
+        if (balls >> b & 1)
+            sum = glms_vec3_add(sum, change_of(&volumes[b], at(p->position, i), at(p->normal, i)));
+    return sum;
+}
+
+// The light of several objects is the sum of each alone.
+static void check_change(struct gpu *gpu, const char *options, unsigned balls)
+{
+    char gi[128];
+    struct dnrt_scene with, without;
+    struct ball_volume volumes[BALLS];
+    snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=64%s", SOURCE, options);
+    open_scene(&without, gpu, SOURCE, balls);
+    struct pixels before = read_pixels(&without);
+    close_scene(&without);
+    open_scene(&with, gpu, gi, balls);
+    struct pixels after = read_pixels(&with);
+    for (int b = 0; b < BALLS; b++) volumes[b] = volume_of(&with, b);
+    double most = 0, worst = 0;
+    for (size_t i = 0; i < after.count; i++) {
+        if (!is_ground(&after, i)) continue;
+        const vec3s actual = glms_vec3_sub(at(after.irradiance, i), at(before.irradiance, i));
+        const vec3s least = glms_vec3_negate(at(before.irradiance, i));
+        const vec3s expected = glms_vec3_maxv(sum_of_changes(volumes, balls, &after, i), least);
+        most = fmax(most, (double)glms_vec3_norm(expected));
+        worst = fmax(worst, (double)glms_vec3_distance(actual, expected));
+    }
+    print_message("%s: largest change %.3g lux, error %.2g of it\n", gi, most, worst / most);
+    CHECK(most > 1 && worst < 0.01 * most);
+    free_pixels(&before);
+    free_pixels(&after);
+    close_scene(&with);
+}
+
+TEST_GPU(pixels_change_as_the_bake_says)
+{
+    check_change(gpu, "", 1);
+    check_change(gpu, ",coefficients=9", 2);
+    check_change(gpu, ",bits=8", 3);
+}
+
+// With the balls that have a bit in `balls`.
+static struct pixels pixels_of(struct gpu *gpu, const char *gi, unsigned balls)
+{
+    struct dnrt_scene d;
+    open_scene(&d, gpu, gi, balls);
+    const struct pixels p = read_pixels(&d);
+    close_scene(&d);
+    return p;
+}
+
+TEST_GPU(pixels_far_from_objects_equal_those_of_the_source_to_the_bit)
+{
+    struct pixels before = pixels_of(gpu, SOURCE, 2);
+    struct pixels after = pixels_of(gpu, SOURCE "+dnrt:size=16,rays=16,fade=1.5", 2);
+    size_t far = 0, near = 0;
+    for (size_t i = 0; i < after.count; i++) {
+        const vec3s from = glms_vec3_sub(at(after.position, i), CENTRE[1]);
+        const bool same = memcmp(before.irradiance + 3 * i, after.irradiance + 3 * i, 12) == 0;
+        if (glms_vec3_norm(from) > 1.7321f * 1.5f * REACH * RADIUS[1]) {
+            CHECK(same);
+            far++;
+        }
+        near += !same;
+    }
+    CHECK(far > 20 && near > 20);
+    free_pixels(&before);
+    free_pixels(&after);
+}

@@ -1,0 +1,241 @@
+// Transfer of an object to a point beside it: a unit sphere against closed forms, volumes.
+#include "framework/test.h"
+#include "techniques/dnrt/sphere_fixture.h"
+
+#include "techniques/dnrt/bake/transfer.h"
+#include "techniques/dnrt/bake/volume.h"
+#include "techniques/dnrt/dnrt_object.h"
+
+#include "core/half.h"
+#include "core/rng.h"
+#include "trace/trace.h"
+
+#include <math.h>
+
+// ---- a unit sphere
+
+struct ball {
+    struct scene *scene;
+    struct scene_pose pose;
+    struct trace_scene *trace;
+    struct dnrt_sampling how;
+};
+
+static void ball_open(struct ball *ball, float albedo)
+{
+    struct material material = material_default();
+    material.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
+    material.metallic = 0;
+    material.specular = 0; // its reflectance is the albedo
+    ball->scene = scene_create(test_host(), "ball");
+    const int mesh = sphere_fixture_add(ball->scene, scene_add_material(ball->scene, &material));
+    const struct node node = node_default();
+    const struct instance it = { .node = scene_add_node(ball->scene, &node),
+                                 .mesh = mesh,
+                                 .skin = -1 };
+    CHECK(scene_add_instance(ball->scene, &it) == 0);
+    CHECK(pose_init(&ball->pose, ball->scene, -1, 0));
+    ball->trace = trace_scene_create(test_host(), &ball->pose);
+    assert_non_null(ball->trace);
+    ball->how = (struct dnrt_sampling){ ball->trace, vec3_of(0, 0, 0), 1.0f, 3, 1024 };
+}
+
+static void ball_close(struct ball *ball)
+{
+    trace_scene_destroy(ball->trace);
+    pose_finish(&ball->pose);
+    scene_destroy(ball->scene);
+}
+
+// ---- closed forms: a unit sphere of albedo 1, its centre at distance d along `towards`
+//
+// k: the cone sin θ ≤ 1/d around n_o, 2π ∫ P_l(cos θ) cos θ sin θ dθ / π².
+// t: the sphere's points with μ = cos of their normal to −n_o from 1/d to 1. With r² = 1 + d² − 2dμ
+// the solid angle times the receiver's cosine is 2π (d − μ)(dμ − 1)/r⁴ dμ; with x = r² and
+// a = d² − 1 it is 2π/(8d²) (a²/x² − 1) dx, x from (d − 1)² to a, and μ = (1 + d² − x)/(2d).
+
+static double hidden_of(int band, double d)
+{
+    const double c = sqrt(1.0 - 1.0 / (d * d));
+    const double integral[] = { 0.5 / (d * d), (1.0 - c * c * c) / 3.0,
+                                0.375 * (1.0 - pow(c, 4)) - 0.25 * (1.0 - c * c) };
+    return integral[band] * 2.0 / M_PI;
+}
+
+static double reflected_of(int band, double d)
+{
+    const double a = d * d - 1.0, b = d * d + 1.0, low = (d - 1.0) * (d - 1.0);
+    const double log_ratio = log(a / low);
+    // ∫ x^n (a²/x² − 1) dx
+    const double i0 = 4.0;
+    const double i1 = a * a * log_ratio - 0.5 * (a * a - low * low);
+    const double i2 = a * a * (a - low) - (a * a * a - low * low * low) / 3.0;
+    const double m1 = (b * i0 - i1) / (2.0 * d);
+    const double m2 = (b * b * i0 - 2.0 * b * i1 + i2) / (4.0 * d * d);
+    const double p[] = { i0, m1, 1.5 * m2 - 0.5 * i0 };
+    return p[band] / (8.0 * d * d) * 2.0 / M_PI;
+}
+
+enum { RUNS = 16 };
+
+static void check_mean(const double *values, double exact, const char *what, int j, double d)
+{
+    double sum = 0, square = 0;
+    for (int i = 0; i < RUNS; i++) sum += values[i] / RUNS;
+    for (int i = 0; i < RUNS; i++) square += (values[i] - sum) * (values[i] - sum);
+    const double error = sqrt(square / (RUNS * (RUNS - 1.0)));
+    if (fabs(sum - exact) > 3.0 * error + 5e-4)
+        fail_msg("%s_%d at %g: %g ± %g, not %g", what, j, d, sum, error, exact);
+}
+
+static void check_distance(const struct ball *ball, double d)
+{
+    const vec3s to_point = glms_vec3_normalize(vec3_of(0.3f, -0.8f, 0.5f));
+    const vec3s n_o = glms_vec3_negate(to_point);
+    struct dnrt_transfer at[RUNS];
+    float along[9], against[9];
+    sh_eval(3, n_o, along);
+    sh_eval(3, to_point, against);
+    for (int i = 0; i < RUNS; i++)
+        at[i] = dnrt_transfer_at(&ball->how, glms_vec3_scale(to_point, (float)d),
+                                 pcg_hash((uint32_t)i) | 1u);
+    for (int j = 0; j < 9; j++) {
+        const int band = j == 0 ? 0 : j < 4 ? 1 : 2;
+        double hidden[RUNS], reflected[RUNS];
+        for (int i = 0; i < RUNS; i++) {
+            hidden[i] = (double)at[i].hidden[j];
+            reflected[i] = (double)at[i].reflected[j].x;
+        }
+        check_mean(hidden, hidden_of(band, d) * (double)along[j], "k", j, d);
+        check_mean(reflected, reflected_of(band, d) * (double)against[j], "t", j, d);
+    }
+}
+
+TEST(a_sphere_reflects_and_hides_as_the_closed_forms_say)
+{
+    struct ball ball;
+    ball_open(&ball, 1);
+    for (int i = 0; i < 4; i++) check_distance(&ball, (const double[]){ 1.5, 2, 3, 4 }[i]);
+    ball_close(&ball);
+}
+
+// t_0 = k_0 = Y00/(π d²).
+TEST(the_closed_forms_agree_in_constant_light)
+{
+    for (double d = 1.25; d < 8; d *= 1.5) {
+        CHECK_RELATIVE(hidden_of(0, d), 1.0 / (M_PI * d * d), 1e-12);
+        CHECK_RELATIVE(reflected_of(0, d), hidden_of(0, d), 1e-9);
+    }
+}
+
+TEST(constant_light_is_not_changed_by_a_white_sphere)
+{
+    struct ball ball;
+    ball_open(&ball, 1);
+    for (int i = 0; i < 16; i++) {
+        const vec3s point = glms_vec3_scale(vec3_of(0.48f, 0.6f, 0.64f), 1.1f + 0.3f * (float)i);
+        const struct dnrt_transfer at = dnrt_transfer_at(&ball.how, point, 7);
+        CHECK_NEAR(at.reflected[0].x - at.hidden[0], 0, 1e-6);
+        CHECK(at.hidden[0] > 0);
+        CHECK(at.inside == 0);
+    }
+    ball_close(&ball);
+}
+
+TEST(transfer_is_linear_in_the_reflectance)
+{
+    struct ball white, grey;
+    ball_open(&white, 1);
+    ball_open(&grey, 0.25f);
+    const vec3s point = vec3_of(1.2f, 0.9f, -0.4f);
+    const struct dnrt_transfer a = dnrt_transfer_at(&white.how, point, 3);
+    const struct dnrt_transfer b = dnrt_transfer_at(&grey.how, point, 3);
+    for (int j = 0; j < 9; j++) {
+        CHECK_NEAR(b.reflected[j].y, 0.25f * a.reflected[j].y, 1e-6);
+        CHECK(b.hidden[j] == a.hidden[j]);
+    }
+    ball_close(&white);
+    ball_close(&grey);
+}
+
+TEST(points_inside_are_told_by_the_backs_that_they_see)
+{
+    struct ball ball;
+    ball_open(&ball, 1);
+    CHECK(dnrt_transfer_at(&ball.how, vec3_of(0.5f, 0.2f, 0), 1).inside > 0.99f);
+    CHECK(dnrt_transfer_at(&ball.how, vec3_of(1.01f, 0, 0), 1).inside == 0);
+    ball_close(&ball);
+}
+
+// ---- volumes
+
+TEST(an_encoded_plane_is_within_half_a_step)
+{
+    enum { COUNT = 4096 };
+    static float values[COUNT];
+    static uint8_t bytes[COUNT];
+    static uint16_t halves[COUNT];
+    struct rng rng = rng_for(1, 2, 3);
+    for (int i = 0; i < COUNT; i++) values[i] = 0.03f * (2.0f * rng_float(&rng) - 1.0f);
+    const float scale = dnrt_encode_byte(values, COUNT, 1, bytes);
+    const float half_scale = dnrt_encode_half(values, COUNT, 1, halves);
+    CHECK(scale == half_scale);
+    for (int i = 0; i < COUNT; i++) {
+        CHECK_NEAR((float)(bytes[i] - 128) / 127.0f * scale, values[i], 0.5001f / 127.0f * scale);
+        CHECK_NEAR(float_from_half(halves[i]) * scale, values[i], 0x1p-11f * scale);
+    }
+}
+
+TEST(zero_stays_zero_in_a_plane)
+{
+    const float values[3] = { 0.5f, 0, -0.25f };
+    uint8_t bytes[3];
+    dnrt_encode_byte(values, 3, 1, bytes);
+    CHECK(bytes[1] == 128);
+}
+
+TEST(samples_inside_get_the_mean_of_their_neighbours)
+{
+    enum { N = 4 };
+    uint8_t inside[N * N * N] = { 0 };
+    float values[N * N * N];
+    for (int i = 0; i < N * N * N; i++) values[i] = (float)(i % N);
+    const int at = 1 + N + N * N;
+    inside[at] = 1;
+    values[at] = 1000;
+    CHECK(dnrt_fill_inside(test_host(), N, 1, inside, values));
+    CHECK_NEAR(values[at], (0 + 2 + 1 + 1 + 1 + 1) / 6.0f, 1e-6);
+}
+
+// ---- frames
+
+TEST(a_frame_is_what_a_matrix_has_beside_its_stretch)
+{
+    const mat4s stretch = glms_scale_make(vec3_of(2, 1, 0.5f));
+    mat4s m = glms_translate_make(vec3_of(3, 4, 5));
+    m = glms_rotate(m, 1.1f, vec3_of(0.3f, -0.5f, 0.8f));
+    m = glms_mat4_mul(m, glms_scale_make(vec3_of(7, 7, 7)));
+    m = glms_mat4_mul(m, stretch);
+    struct dnrt_frame frame;
+    mat3s rest;
+    CHECK(dnrt_frame_of(m, &frame, &rest));
+    CHECK_NEAR(frame.scale, 7, 1e-4);
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++) CHECK_NEAR(rest.raw[c][r], stretch.raw[c][r], 3e-4);
+    const mat4s world = dnrt_world_from_object(&frame);
+    const vec3s p = vec3_of(0.2f, -0.7f, 0.4f);
+    const vec3s a = mat4_point(world, glms_mat3_mulv(rest, p)), b = mat4_point(m, p);
+    CHECK_NEAR(glms_vec3_distance(a, b), 0, 3e-3);
+}
+
+TEST(a_mirrored_frame_rotates_without_mirroring)
+{
+    const mat4s m =
+        glms_mat4_mul(glms_rotate_make(0.7f, vec3_of(0, 1, 0)), glms_scale_make(vec3_of(-2, 2, 2)));
+    struct dnrt_frame frame;
+    mat3s rest;
+    CHECK(dnrt_frame_of(m, &frame, &rest));
+    CHECK_NEAR(glms_mat3_det(frame.rotation), 1, 1e-5);
+    CHECK_NEAR(glms_mat3_det(rest), -1, 1e-3);
+    CHECK_NEAR(frame.scale, 2, 1e-5);
+}
