@@ -27,6 +27,7 @@ static void open_renderer(struct renderer_fixture *s)
     const struct ag_bake *bakes[] = { bake };
     desc.bakes = bakes;
     desc.bake_count = 1;
+    ag_renderer_destroy(s->renderer);
     assert_int_equal(ag_renderer_create(s->device, s->scene, &desc, &s->renderer), AG_OK);
     ag_bake_destroy(bake);
 }
