@@ -53,6 +53,7 @@ static bool make_buffers(struct radiosity *s)
     } rows[] = {
         { "flux", texels * VEC3_BYTES, &b->flux },
         { "light", texels * 3 * VEC4_BYTES, &b->light },
+        { "smoothed", texels * 3 * VEC4_BYTES, &b->smoothed },
         { "sent", nodes * VEC3_BYTES, &b->sent },
         { "radiosity", nodes * VEC3_BYTES, &b->radiosity[0] },
         { "radiosity", nodes * VEC3_BYTES, &b->radiosity[1] },
@@ -97,6 +98,7 @@ static bool make_pipelines(struct radiosity *s)
         { "nodes", &shader_radiosity_nodes_comp, &p->nodes },
         { "solve", &shader_radiosity_solve_comp, &p->solve },
         { "gather", &shader_radiosity_gather_comp, &p->gather },
+        { "smooth", &shader_radiosity_smooth_comp, &p->smooth },
         { "map", &shader_radiosity_map_comp, &p->map },
         { "seams", &shader_radiosity_seams_comp, &p->seams },
         { "apply",
@@ -210,12 +212,12 @@ static const struct technique_debug_view views[] = {
 static void destroy_buffers(struct radiosity *s)
 {
     struct radiosity_buffers *b = &s->buffers;
-    gpu_buffer *const buffers[] = { &b->texels,         &b->factors,      &b->clusters,
-                                    &b->members,        &b->nodes,        &b->owners,
-                                    &b->instances,      &b->triangles,    &b->places,
-                                    &b->seams,          &b->flux,         &b->light,
-                                    &b->sent,           &b->radiosity[0], &b->radiosity[1],
-                                    &b->cluster_factors };
+    gpu_buffer *const buffers[] = { &b->texels,       &b->factors,      &b->clusters,
+                                    &b->members,      &b->nodes,        &b->owners,
+                                    &b->instances,    &b->triangles,    &b->places,
+                                    &b->seams,        &b->flux,         &b->light,
+                                    &b->points,       &b->smoothed,     &b->sent,
+                                    &b->radiosity[0], &b->radiosity[1], &b->cluster_factors };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(s->gpu, buffers[i]);
     gpu_image_destroy(s->gpu, &b->light_map);
@@ -226,8 +228,8 @@ static void destroy(void *state)
     struct radiosity *s = state;
     if (!s->host) return;
     struct radiosity_pipelines *p = &s->pipelines;
-    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve,
-                                        &p->gather, &p->map,      &p->seams, &p->apply };
+    gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve, &p->gather,
+                                        &p->smooth, &p->map,      &p->seams, &p->apply };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     destroy_buffers(s);
@@ -264,7 +266,7 @@ const struct technique technique_radiosity = {
     .capabilities =
         CAN_MOVE_LIGHTS | NEEDS_BAKE | MAKES_SPECULAR | GATHERS_EMISSION | PUBLISHES_PROBES,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID,
-    .bake_version = 8,
+    .bake_version = 9,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
     .debug_views = views,

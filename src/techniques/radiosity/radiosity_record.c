@@ -117,12 +117,29 @@ static void record_gather(struct radiosity *s, struct gpu_cmd *cmd, const struct
     }
 }
 
+static void record_smooth(struct radiosity *s, struct gpu_cmd *cmd)
+{
+    const struct radiosity_smooth_push push = { s->map.texel_count, s->map.charts.width };
+    gpu_dispatch(cmd, s->pipelines.smooth,
+                 GPU_BIND({ .name = "radiosity_points", .buffer = s->buffers.points },
+                          { .name = "radiosity_owners", .buffer = s->buffers.owners },
+                          { .name = "radiosity_light", .buffer = s->buffers.light },
+                          { .name = "radiosity_smoothed", .buffer = s->buffers.smoothed }),
+                 &push, sizeof push, gpu_groups(push.texels, RADIOSITY_LOCAL), 1, 1);
+}
+
+// Of the texels whose light is shown.
+static gpu_buffer shown_light(const struct radiosity *s)
+{
+    return s->options.smooth ? s->buffers.smoothed : s->buffers.light;
+}
+
 static void record_map(struct radiosity *s, struct gpu_cmd *cmd)
 {
     const struct radiosity_map_push push = { s->map.charts.width, s->map.charts.height };
     gpu_dispatch(cmd, s->pipelines.map,
                  GPU_BIND({ .name = "radiosity_owners", .buffer = s->buffers.owners },
-                          { .name = "radiosity_light", .buffer = s->buffers.light },
+                          { .name = "radiosity_light", .buffer = shown_light(s) },
                           { .name = "light_map", .image = s->buffers.light_map }),
                  &push, sizeof push, gpu_groups(push.width, RADIOSITY_LOCAL_2D),
                  gpu_groups(push.height, RADIOSITY_LOCAL_2D), s->sides);
@@ -135,7 +152,7 @@ static void record_seams(struct radiosity *s, struct gpu_cmd *cmd)
     gpu_dispatch(cmd, s->pipelines.seams,
                  GPU_BIND({ .name = "radiosity_places", .buffer = s->buffers.places },
                           { .name = "radiosity_seam_rows", .buffer = s->buffers.seams },
-                          { .name = "radiosity_light", .buffer = s->buffers.light },
+                          { .name = "radiosity_light", .buffer = shown_light(s) },
                           { .name = "light_map", .image = s->buffers.light_map }),
                  &push, sizeof push, gpu_groups(push.places, RADIOSITY_LOCAL), 1, 1);
 }
@@ -153,6 +170,11 @@ void radiosity_record_light(struct radiosity *s, struct gpu_cmd *cmd, const stru
     gpu_scope_begin(cmd, "gather");
     record_gather(s, cmd, view, radiosity);
     gpu_scope_end(cmd);
+    if (s->options.smooth) {
+        gpu_scope_begin(cmd, "smooth");
+        record_smooth(s, cmd);
+        gpu_scope_end(cmd);
+    }
     gpu_scope_begin(cmd, "light_map");
     record_map(s, cmd);
     gpu_scope_end(cmd);

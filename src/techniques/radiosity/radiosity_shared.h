@@ -24,6 +24,13 @@ struct radiosity_gpu_texel {
     vec4s emitted[3]; // the same by colour, lux
 };
 
+// Where a texel is sampled, and what it sees.
+struct radiosity_gpu_point {
+    vec3s position;         // world
+    float inverse_distance; // mean over its rays, 1/m
+    uint32_t place;         // in the light map: (side · height + y) · width + x
+};
+
 struct radiosity_gpu_cluster {
     vec3s reflectance;     // mean by area
     float area_m2;         // of texels that are not hidden
@@ -75,6 +82,10 @@ struct radiosity_gather_push {
     float emitters;
 };
 
+struct radiosity_smooth_push {
+    uint32_t texels, width; // width: of the light map
+};
+
 struct radiosity_map_push {
     uint32_t width, height; // of the light map
 };
@@ -92,6 +103,8 @@ struct radiosity_apply_push {
 
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct radiosity_gpu_texel) == 104, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gpu_point) == 20, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_smooth_push) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_cluster) == 24, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_triangle) == 48, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_seam) == 8, "layout is shared with GLSL");

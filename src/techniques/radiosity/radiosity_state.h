@@ -10,9 +10,10 @@
 struct radiosity_buffers {
     gpu_buffer texels, factors;                           // of texels
     gpu_buffer clusters, members, nodes, cluster_factors; // of clusters
+    gpu_buffer points;                                    // of texels, for `smooth`
     gpu_buffer owners, instances, triangles;              // of the light map
     gpu_buffer places, seams;                             // beside seams
-    gpu_buffer flux, light;                               // [texels] of the newest light
+    gpu_buffer flux, light, smoothed;                     // [texels] of the newest light
     gpu_buffer sent, radiosity[2];                        // [clusters and nodes] likewise
     gpu_image light_map;
 };
@@ -24,7 +25,7 @@ struct radiosity_block {
 };
 
 struct radiosity_pipelines {
-    gpu_pipeline direct, clusters, nodes, solve, gather, map, seams, apply;
+    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, apply;
 };
 
 struct radiosity {

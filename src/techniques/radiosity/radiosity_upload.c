@@ -10,7 +10,7 @@ struct content {
     const uint32_t *source, *cluster_source;
     const uint16_t *factor, *cluster_factor;
     const uint8_t *part;
-    const float *reflectance, *sky, *emitted, *point;
+    const float *reflectance, *sky, *emitted, *point, *inverse_distance;
     const uint32_t *seam_texel;
     const float *seam_weight;
     struct radiosity_seams seams;
@@ -36,6 +36,7 @@ static bool find_tensors(struct radiosity *s, const struct tensors *bake, struct
            (out->sky = EXPECT(RADIOSITY_SKY, TENSOR_F32, n, 4)) &&
            (out->emitted = EXPECT(RADIOSITY_EMITTED, TENSOR_F32, n, 3, 4)) &&
            (out->part = EXPECT(RADIOSITY_PART, TENSOR_U8, n)) &&
+           (out->inverse_distance = EXPECT(RADIOSITY_DISTANCE, TENSOR_F32, n)) &&
            (out->point = EXPECT(RADIOSITY_POINT, TENSOR_F32, n, 4)) &&
            (out->cluster_source = EXPECT(RADIOSITY_CLUSTER_SOURCE, TENSOR_U32, c, 2 * k)) &&
            (out->cluster_factor = EXPECT(RADIOSITY_CLUSTER_FACTOR, TENSOR_F16, c, 2 * k));
@@ -142,6 +143,20 @@ static bool upload_texels(struct radiosity *s, const struct content *c)
         memcpy(texels[i].emitted, c->emitted + 12 * (size_t)i, 12 * sizeof(float));
     }
     return upload(s, "texels", texels, count, sizeof *texels, &s->buffers.texels);
+}
+
+static bool upload_points(struct radiosity *s, const struct content *c)
+{
+    const uint32_t count = s->map.texel_count, width = s->map.charts.width;
+    struct radiosity_gpu_point *points = host_alloc(s->host, count, sizeof *points);
+    for (uint32_t i = 0; points && i < count; i++) {
+        const struct chart_texel *t = radiosity_chart_texel(&s->map, i);
+        const uint32_t row = (s->map.texels[i].back ? s->map.charts.height : 0) + t->y;
+        points[i].inverse_distance = c->inverse_distance[i];
+        points[i].place = row * width + t->x;
+        memcpy(&points[i].position, c->point + 4 * (size_t)i, 3 * sizeof(float));
+    }
+    return upload(s, "points", points, count, sizeof *points, &s->buffers.points);
 }
 
 // ---- clusters
@@ -334,8 +349,8 @@ static bool upload_all(struct radiosity *s, const struct content *c)
     return upload_texels(s, c) &&
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
-           upload_clusters(s, c) && upload_owners(s, c) && upload_seams(s, c) &&
-           upload_triangles(s);
+           upload_points(s, c) && upload_clusters(s, c) && upload_owners(s, c) &&
+           upload_seams(s, c) && upload_triangles(s);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)

@@ -172,6 +172,7 @@ void radiosity_gather_clear(struct radiosity_gather *gather)
 
 // Directions along the surface have no finite weight in the vector irradiance.
 static const float LEAST_COSINE = 1e-3f;
+static const float LEAST_DISTANCE_M = 1e-6f;
 
 void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s position,
                       uint64_t seed, struct radiosity_gather *gather)
@@ -185,10 +186,12 @@ void radiosity_gather(const struct radiosity_scene *scene, uint32_t texel, vec3s
         ray.direction = glms_vec3_muladds(r.tangent, local.x, ray.direction);
         ray.direction = glms_vec3_muladds(r.bitangent, local.y, ray.direction);
         struct ray_hit hit;
-        if (embree_closest(scene->trace->embree, &ray, NULL, false, &hit))
+        if (embree_closest(scene->trace->embree, &ray, NULL, false, &hit)) {
             add_hit(scene, &r, gather, &ray, &hit, local);
-        else
+            gather->inverse_distance += 1.0f / (fmaxf(hit.distance, LEAST_DISTANCE_M) * r.rays);
+        } else {
             add_sky(gather, &r, ray.direction, local.z);
+        }
     }
     sample_emitters(scene, &r, gather);
 }

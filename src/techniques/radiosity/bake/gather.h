@@ -41,6 +41,7 @@ struct radiosity_gather {
     uint32_t met_count;
     struct radiosity_light sky;        // of radiance 1
     struct radiosity_light emitted[3]; // by colour, lux
+    float inverse_distance;            // mean over the rays, 1/m
 };
 
 enum { RADIOSITY_RAYS_PER_LIGHT_SAMPLE = 4 };

@@ -77,7 +77,17 @@ static void room_finish(struct room *room, struct host *host)
 
 // ---- texels
 
-enum { OUT_SOURCE, OUT_FACTOR, OUT_ALBEDO, OUT_SKY, OUT_EMITTED, OUT_POINT, OUT_PART, OUT_COUNT };
+enum {
+    OUT_SOURCE,
+    OUT_FACTOR,
+    OUT_ALBEDO,
+    OUT_SKY,
+    OUT_EMITTED,
+    OUT_POINT,
+    OUT_PART,
+    OUT_DISTANCE,
+    OUT_COUNT
+};
 
 static void write_row(const struct radiosity_entry *row, uint32_t count, uint32_t *source,
                       uint16_t *factor)
@@ -108,6 +118,7 @@ static void gather_texel(const struct bake_task *task, struct room *room, uint64
               (uint16_t *)task->out[OUT_FACTOR] + 3 * i * sources);
     memcpy((float *)task->out[OUT_SKY] + 4 * i, &gather->sky, sizeof gather->sky);
     memcpy((float *)task->out[OUT_EMITTED] + 12 * i, gather->emitted, sizeof gather->emitted);
+    ((float *)task->out[OUT_DISTANCE])[i] = gather->inverse_distance;
     const vec3s albedo = radiosity_reflectance(&job->scene, texel);
     memcpy((float *)task->out[OUT_ALBEDO] + 3 * i, albedo.raw, sizeof albedo.raw);
 }
@@ -139,6 +150,7 @@ static bool add_texels(struct bake_plan *plan, const struct job *job, uint64_t t
         { RADIOSITY_EMITTED, TENSOR_F32, 3, { texels, 3, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_POINT, TENSOR_F32, 2, { texels, 4 }, BAKE_ROWS, BAKE_SAVED },
         { RADIOSITY_PART, TENSOR_U8, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
+        { RADIOSITY_DISTANCE, TENSOR_F32, 1, { texels }, BAKE_ROWS, BAKE_SAVED },
     };
     const size_t tasks = (size_t)((texels + TEXELS_PER_TASK - 1) / TEXELS_PER_TASK);
     return bake_plan_add(
