@@ -8,14 +8,15 @@
 
 // ---- objects
 
+// Primitives of a node's mesh are instances that follow each other.
 static bool joins(const struct dnrt_objects *out, const struct scene_pose *pose, int instance)
 {
+    if (out->count == 0 || pose->deformed[instance].positions) return false;
     const struct dnrt_object *last = &out->at[out->count - 1];
-    return out->count > 0 && !last->deformed && !pose->deformed[instance].positions &&
+    return !last->deformed && out->instances[last->first] + last->count == instance &&
            last->node == pose->scene->instances[instance].node;
 }
 
-// Instances of a node, its mesh's primitives, follow each other.
 static void add_instance(struct dnrt_objects *out, const struct scene_pose *pose, int instance,
                          int *instances)
 {

@@ -17,7 +17,7 @@ mat4s dnrt_world_from_object(const struct dnrt_frame *frame);
 // mesh and stretch share a volume. False: the matrix has no inverse.
 bool dnrt_frame_of(mat4s world_from_mesh, struct dnrt_frame *frame, mat3s *stretch);
 
-// Instances at a node.
+// Instances at a node, numbered one after another.
 struct dnrt_object {
     int node;
     bool deformed; // skinned or morphed: its frame is the world's axes at the middle of its bounds

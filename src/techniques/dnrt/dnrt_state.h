@@ -9,7 +9,7 @@
 #include "frame/frame_shared.h"
 #include "techniques/dnrt/dnrt_shared.h"
 
-// What identifies a baked shape, and its bounding sphere in the object's frame.
+// The bounding sphere of a baked shape, in the object's frame.
 struct dnrt_volume {
     vec3s centre;
     float radius;
