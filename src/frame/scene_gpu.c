@@ -2,7 +2,7 @@
 #include "frame/scene_gpu_build.h"
 
 #include "frame/octahedral.h"
-#include "scene/dynamic.h"
+#include "scene/statics.h"
 
 #include <math.h>
 #include <stdlib.h>

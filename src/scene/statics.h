@@ -1,11 +1,15 @@
 // The part of a scene that is baked: instances that are expected to stay where they are. Dynamic
-// ones (scene/dynamic.h) have no texels, and neither occlude nor reflect light in a bake.
+// ones have no texels, and neither occlude nor reflect light in a bake.
 #pragma once
 
 #include "core/host.h"
 #include "scene/pose.h"
 
-// A copy of the scene without these instances, and its pose; both share all else with the
+// [instance_count]: instances that are marked movable, and those that an animation of the scene
+// moves or deforms, played or not. The caller frees it. NULL without memory.
+bool *scene_dynamic_instances(struct host *host, const struct scene *scene);
+
+// A copy of the scene without dynamic instances, and its pose; both share all else with the
 // originals, which must outlive them. scene_statics_finish accepts zero.
 struct scene_statics {
     struct host *host;

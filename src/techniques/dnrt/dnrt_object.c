@@ -1,7 +1,7 @@
 // Which instances are dynamic objects, and which objects share a volume.
 #include "techniques/dnrt/dnrt_object.h"
 
-#include "scene/dynamic.h"
+#include "scene/statics.h"
 
 #include <math.h>
 #include <string.h>
