@@ -1,7 +1,6 @@
 // Radiosity: rows of form factors, the bake's bytes, a furnace, lights that change.
 #include "frame/frame_fixture.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/baked_fixture.h"
 
 #include "core/half.h"
 
@@ -35,31 +34,6 @@ static void add_block(struct frame_fixture *s, float bottom)
 {
     fixture_box(s, vec3_of(-0.4f, bottom, -0.6f), vec3_of(0.8f, bottom + 1.2f, 0.5f), false,
                 emissive(s, 0.5f, 0));
-}
-
-struct run {
-    struct gi_spec spec;
-    struct gi_baked baked;
-    struct gi *gi;
-};
-
-static void start(struct run *run, struct frame_fixture *s, const char *text)
-{
-    fixture_open(s);
-    CHECK(gi_spec_parse(&run->spec, test_host(), text));
-    CHECK(gi_bake_all(&run->baked, test_host(), &run->spec, &s->pose));
-    run->gi = gi_create_baked(test_host(), s->gpu, &run->spec, &run->baked.bakes, &s->pose,
-                              s->width, s->height);
-    assert_non_null(run->gi);
-    s->indirect = gi_hook(run->gi);
-}
-
-static void stop(struct run *run, struct frame_fixture *s)
-{
-    gi_destroy(run->gi);
-    gi_baked_finish(&run->baked);
-    gi_spec_finish(&run->spec);
-    fixture_finish(s);
 }
 
 // ---- the bake
@@ -113,12 +87,12 @@ static void check_rows(const struct tensors *bake)
 TEST_GPU(rows_of_a_closed_room_sum_to_one)
 {
     struct frame_fixture s;
-    struct run run;
+    struct baked_fixture run;
     room(&s, gpu, 0.5f, 10);
     add_block(&s, 0.4f);
-    start(&run, &s, SMALL);
+    baked_fixture_open(&run, &s, SMALL);
     check_rows(run.baked.bakes.of_term[0]);
-    stop(&run, &s);
+    baked_fixture_close(&run, &s);
 }
 
 // ---- light
@@ -128,9 +102,9 @@ TEST_GPU(furnace_has_the_emission_over_one_minus_the_albedo)
     static const float ALBEDO[] = { 0.5f, 0.8f };
     for (int i = 0; i < 2; i++) {
         struct frame_fixture s;
-        struct run run;
+        struct baked_fixture run;
         room(&s, gpu, ALBEDO[i], 10);
-        start(&run, &s, "radiosity:texels=2048");
+        baked_fixture_open(&run, &s, "radiosity:texels=2048");
         fixture_render(&s);
         const double expected = GLM_PI * 10 / (1 - (double)ALBEDO[i]);
         float *e = fixture_read(&s, READ_IRRADIANCE);
@@ -143,7 +117,7 @@ TEST_GPU(furnace_has_the_emission_over_one_minus_the_albedo)
                       most);
         CHECK(least > 0.99 && most < 1.01);
         free(e);
-        stop(&run, &s);
+        baked_fixture_close(&run, &s);
     }
 }
 
@@ -161,17 +135,17 @@ static double mean_irradiance(struct frame_fixture *s)
 TEST_GPU(a_light_that_is_switched_off_leaves_nothing_in_the_next_frame)
 {
     struct frame_fixture s;
-    struct run run;
+    struct baked_fixture run;
     room(&s, gpu, 0.7f, 0);
     struct world_light *light = fixture_add_point(&s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
-    start(&run, &s, SMALL);
+    baked_fixture_open(&run, &s, SMALL);
     const double lit = mean_irradiance(&s), again = mean_irradiance(&s);
     CHECK(lit > 1.0 && lit == again);
     light->intensity = vec3_of(0, 0, 0);
     CHECK(mean_irradiance(&s) == 0.0);
     light->intensity = vec3_of(100, 100, 100);
     CHECK(mean_irradiance(&s) == lit);
-    stop(&run, &s);
+    baked_fixture_close(&run, &s);
 }
 
 // Passes that a frame records.
@@ -185,9 +159,9 @@ static uint64_t passes_of_frame(struct frame_fixture *s)
 TEST_GPU(a_still_scene_costs_the_lookup_alone)
 {
     struct frame_fixture s;
-    struct run run;
+    struct baked_fixture run;
     room(&s, gpu, 0.7f, 10);
-    start(&run, &s, SMALL);
+    baked_fixture_open(&run, &s, SMALL);
     fixture_render(&s);
     const uint64_t still = passes_of_frame(&s);
     fixture_add_point(&s, vec3_of(0, 2, 0), vec3_of(100, 100, 100));
@@ -197,17 +171,17 @@ TEST_GPU(a_still_scene_costs_the_lookup_alone)
     // direct, bounces, gather, light_map; the shadow maps of the light are kept.
     CHECK(changed >= still + 4);
     CHECK(passes_of_frame(&s) <= changed - 4);
-    stop(&run, &s);
+    baked_fixture_close(&run, &s);
 }
 
 // The floor beside the block has the light of texels whose middle is under it.
 TEST_GPU(nothing_is_black_beside_a_sunk_block)
 {
     struct frame_fixture s;
-    struct run run;
+    struct baked_fixture run;
     room(&s, gpu, 0.5f, 10);
     add_block(&s, -0.3f);
-    start(&run, &s, SMALL);
+    baked_fixture_open(&run, &s, SMALL);
     fixture_render(&s);
     float *e = fixture_read(&s, READ_IRRADIANCE);
     double least = HUGE_VAL, sum = 0.0;
@@ -219,7 +193,7 @@ TEST_GPU(nothing_is_black_beside_a_sunk_block)
     print_message("beside a sunk block at least %.3f of the mean irradiance\n", least / sum);
     CHECK(least > 0.3 * sum);
     free(e);
-    stop(&run, &s);
+    baked_fixture_close(&run, &s);
 }
 
 // ---- specular light
@@ -238,11 +212,11 @@ TEST_GPU(metal_reflects_uniform_light_whole)
     static const float ROUGHNESS[] = { 0.1f, 0.5f, 1.0f };
     for (int i = 0; i < 3; i++) {
         struct frame_fixture s;
-        struct run run;
+        struct baked_fixture run;
         room(&s, gpu, 0, 10);
         fixture_box(&s, vec3_of(-0.4f, 0.4f, -0.6f), vec3_of(0.8f, 1.6f, 0.5f), false,
                     metal(&s, ROUGHNESS[i]));
-        start(&run, &s, "radiosity:texels=2048");
+        baked_fixture_open(&run, &s, "radiosity:texels=2048");
         fixture_render(&s);
         const vec3s l = fixture_pixel(&s, READ_SPECULAR, s.width / 2, s.height / 2);
         const vec3s wall = fixture_pixel(&s, READ_SPECULAR, 0, 0);
@@ -250,7 +224,7 @@ TEST_GPU(metal_reflects_uniform_light_whole)
                       (double)l.x / 10);
         CHECK_NEAR(l.x, 10.0, 0.2);
         CHECK(wall.x == 0.0f);
-        stop(&run, &s);
+        baked_fixture_close(&run, &s);
     }
 }
 
@@ -258,16 +232,16 @@ TEST_GPU(metal_reflects_uniform_light_whole)
 static double seen_from(struct gpu *gpu, float eye, const char *text)
 {
     struct frame_fixture s;
-    struct run run;
+    struct baked_fixture run;
     fixture_init(&s, gpu);
     fixture_floor(&s, 1, metal(&s, 0.3f));
     fixture_quad(&s, vec3_of(2, 0, -3), vec3_of(2, 0, 3), vec3_of(2, 3, 3), vec3_of(2, 3, -3),
                  emissive(&s, 0, 10));
     fixture_look(&s, vec3_of(eye, 0.8f, 0), vec3_of(0, 0, 0));
-    start(&run, &s, text);
+    baked_fixture_open(&run, &s, text);
     fixture_render(&s);
     const double seen = (double)fixture_pixel(&s, READ_SPECULAR, s.width / 2, s.height / 2).x;
-    stop(&run, &s);
+    baked_fixture_close(&run, &s);
     return seen;
 }
 

@@ -1,7 +1,6 @@
 // Probes of radiosity: what moves is not in the bake, and is lit without light through walls.
 #include "frame/frame_fixture.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
+#include "techniques/baked_fixture.h"
 #include "techniques/light_trial.h"
 #include "techniques/light_trial_scenes.h"
 
@@ -101,45 +100,20 @@ static struct trial_irradiance irradiance_of(struct frame_fixture *s, int first)
     return sum;
 }
 
-struct run {
-    struct gi_spec spec;
-    struct gi_baked baked;
-    struct gi *gi;
-};
-
-static void start(struct run *run, struct frame_fixture *s, const char *text)
-{
-    fixture_open(s);
-    CHECK(gi_spec_parse(&run->spec, test_host(), text));
-    CHECK(gi_bake_all(&run->baked, test_host(), &run->spec, &s->pose));
-    run->gi = gi_create_baked(test_host(), s->gpu, &run->spec, &run->baked.bakes, &s->pose,
-                              s->width, s->height);
-    assert_non_null(run->gi);
-    s->indirect = gi_hook(run->gi);
-}
-
-static void stop(struct run *run, struct frame_fixture *s)
-{
-    gi_destroy(run->gi);
-    gi_baked_finish(&run->baked);
-    gi_spec_finish(&run->spec);
-    fixture_finish(s);
-}
-
 // Radiance is the same from everywhere: bands above 0 are noise of the rays.
 TEST_GPU(an_object_in_a_furnace_has_the_walls_irradiance)
 {
     struct frame_fixture s;
-    struct run run;
+    struct baked_fixture run;
     room(&s, gpu, 0.5f, 10);
     const int object = add_movable_box(&s, vec3_of(0.2f, 0.8f, -0.2f), 1.2f, gray(&s, 0.5f, 0));
-    start(&run, &s, "radiosity:texels=4096");
+    baked_fixture_open(&run, &s, "radiosity:texels=4096");
     const double expected = GLM_PI * 10 / (1 - 0.5);
     const struct trial_irradiance e = irradiance_of(&s, object);
     print_message("object in a furnace: %.4f to %.4f of L/(1 - albedo)\n", e.least / expected,
                   e.most / expected);
     CHECK(e.least > 0.99 * expected && e.most < 1.01 * expected);
-    stop(&run, &s);
+    baked_fixture_close(&run, &s);
 }
 
 // Walls of 5 cm between a sunlit room and a dark one, a twelfth or less of the probes' distance.
@@ -154,16 +128,16 @@ TEST_GPU(an_object_in_a_dark_room_has_no_light_of_the_next_room)
         double mean[2];
         for (int dark = 0; dark < 2; dark++) {
             struct frame_fixture s;
-            struct run run;
+            struct baked_fixture run;
             const float side = dark ? 1.0f : -1.0f, size = 0.8f;
             trial_two_rooms(&s, gpu, dark);
             const vec3s at =
                 vec3_of(side * (0.025f + cases[i].distance + 0.5f * size), 0.9f, -0.3f);
             const int object = add_movable_box(&s, at, size, gray(&s, 0.5f, 0));
             fixture_look(&s, vec3_of(at.x + side * 1.2f, 1.9f, 1.2f), at);
-            start(&run, &s, cases[i].gi);
+            baked_fixture_open(&run, &s, cases[i].gi);
             mean[dark] = irradiance_of(&s, object).mean[1];
-            stop(&run, &s);
+            baked_fixture_close(&run, &s);
         }
         print_message("object %.2f m from the wall: %.5f of the sunlit room's (%.1f lux)\n",
                       (double)cases[i].distance, mean[1] / mean[0], mean[0]);

@@ -1,8 +1,6 @@
 // dnrt in frames: the change of each pixel against the bake, evaluated on the CPU.
-#include "frame/frame_fixture.h"
+#include "techniques/baked_fixture.h"
 #include "techniques/dnrt/sphere_fixture.h"
-#include "techniques/gi_bake.h"
-#include "techniques/gi_spec.h"
 
 #include "core/half.h"
 #include "core/sh.h"
@@ -18,9 +16,7 @@ static const float REACH = 2.0f, FADE = 2.0f; // the defaults
 
 struct dnrt_scene {
     struct frame_fixture fixture;
-    struct gi_spec spec;
-    struct gi_baked baked;
-    struct gi *gi;
+    struct baked_fixture run;
 };
 
 static const vec3s CENTRE[BALLS] = { { { -0.2f, 0.8f, 0.1f } }, { { 0.9f, 0.7f, -0.6f } } };
@@ -54,23 +50,14 @@ static void open_scene(struct dnrt_scene *d, struct gpu *gpu, const char *gi, un
     fixture_add_sun(s, vec3_of(0.3f, -1, -0.6f), vec3_of(1000, 1000, 1000));
     fixture_look(s, vec3_of(0, 2.4f, 3.4f), vec3_of(0, 0.4f, -0.6f));
     s->input.want_id_layer = true;
-    fixture_open(s);
-    CHECK(gi_spec_parse(&d->spec, test_host(), gi));
-    CHECK(gi_bake_all(&d->baked, test_host(), &d->spec, &s->pose));
-    d->gi =
-        gi_create_baked(test_host(), gpu, &d->spec, &d->baked.bakes, &s->pose, s->width, s->height);
-    assert_non_null(d->gi);
-    s->indirect = gi_hook(d->gi);
+    baked_fixture_open(&d->run, s, gi);
     s->indirect.needs |= FRAME_LEAVES_DYNAMIC; // also of a source alone
     fixture_render(s);
 }
 
 static void close_scene(struct dnrt_scene *d)
 {
-    gi_destroy(d->gi);
-    gi_baked_finish(&d->baked);
-    gi_spec_finish(&d->spec);
-    fixture_finish(&d->fixture);
+    baked_fixture_close(&d->run, &d->fixture);
 }
 
 // ---- the change of a pixel, by the definition
@@ -108,7 +95,7 @@ static float lookup(const float *image, int width, int height, const float at[3]
 static void probes_at(struct dnrt_scene *d, vec3s point, float c[3][9])
 {
     struct probe_volume probes;
-    CHECK(gi_probes(d->gi, &probes));
+    CHECK(gi_probes(d->run.gi, &probes));
     const struct gpu_image_desc *desc = gpu_image_info(d->fixture.gpu, probes.image);
     const size_t floats = 4 * (size_t)desc->width * desc->height * desc->depth;
     float *image = malloc(floats * sizeof *image);
@@ -130,7 +117,7 @@ static void probes_at(struct dnrt_scene *d, vec3s point, float c[3][9])
 
 static struct ball_volume volume_of(struct dnrt_scene *d, int ball)
 {
-    const struct tensors *bake = d->baked.bakes.of_term[1];
+    const struct tensors *bake = d->run.baked.bakes.of_term[1];
     struct ball_volume v = {
         .centre = CENTRE[ball],
         .half = REACH * RADIUS[ball],
