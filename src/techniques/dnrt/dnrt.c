@@ -57,14 +57,13 @@ static bool make_pipelines(struct dnrt *s)
         { 0, (uint32_t)dnrt_coefficients(&s->options) },
         { 1, s->options.bits == DNRT_BITS_8 },
     };
-    const struct gpu_constant with_id = { 0, true }, without_id = { 0, false };
     return gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_comp, NULL, 0,
                                        &s->light_pipeline) &&
            gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, volumes, 2,
                                        &s->volumes_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_comp, &with_id, 1,
+           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_id_comp, NULL, 0,
                                        &s->apply_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_comp, &without_id, 1,
+           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_plain_comp, NULL, 0,
                                        &s->apply_without_id);
 }
 

@@ -10,7 +10,6 @@
 #include "techniques/dnrt/dnrt_shared.h"
 
 layout(local_size_x = DNRT_TILE, local_size_y = DNRT_TILE) in;
-layout(constant_id = 0) const bool HAS_ID = true;
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -18,7 +17,9 @@ layout(push_constant, scalar) uniform push_block
 };
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
+#ifdef DNRT_ID
 layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
+#endif
 layout(set = 0, binding = 4, scalar) readonly buffer dnrt_objects
 {
     dnrt_gpu_object object_table[];
@@ -73,7 +74,11 @@ void main()
     if (z <= 0.0) return;
     vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
     vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-    uint instance = HAS_ID ? texelFetch(id, pixel, 0).r - 1u : ~0u;
+#ifdef DNRT_ID
+    uint instance = texelFetch(id, pixel, 0).r - 1u;
+#else
+    uint instance = ~0u;
+#endif
     vec3 change = vec3(0.0);
     for (uint w = 0; w < push.words; w++) {
         for (uint bits = tile_table[group + 1u + w]; bits != 0u; bits &= bits - 1u) {
