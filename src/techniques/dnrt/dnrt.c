@@ -53,17 +53,21 @@ static bool create(void *state, const struct technique_create *how)
 
 static bool make_pipelines(struct dnrt *s)
 {
-    const struct gpu_constant volumes[] = {
-        { 0, (uint32_t)dnrt_coefficients(&s->options) },
-        { 1, s->options.bits == DNRT_BITS_8 },
+    const struct gpu_constant constants[] = {
+        { 0, s->options.grid == DNRT_GRID_QUADRATIC },
+        { 1, (uint32_t)dnrt_normals(&s->options) },
+        { 2, (uint32_t)dnrt_coefficients(&s->options) },
+        { 3, s->options.bits == DNRT_BITS_8 },
     };
     return gpu_compute_pipeline_create(s->gpu, "light", &shader_dnrt_light_comp, NULL, 0,
                                        &s->light_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, volumes, 2,
-                                       &s->volumes_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_id_comp, NULL, 0,
+           gpu_compute_pipeline_create(s->gpu, "bounce", &shader_dnrt_bounce_comp, constants, 4,
+                                       &s->bounce_pipeline) &&
+           gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, constants + 1,
+                                       3, &s->volumes_pipeline) &&
+           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_id_comp, constants, 2,
                                        &s->apply_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_plain_comp, NULL, 0,
+           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_plain_comp, constants, 2,
                                        &s->apply_without_id);
 }
 
@@ -86,6 +90,7 @@ static void place_object(struct dnrt *s, const struct scene_pose *pose, int obje
     const struct dnrt_object *of = &s->objects.at[object];
     const struct dnrt_volume *volume = of->shape >= 0 ? &s->volumes[of->shape] : NULL;
     const int n = dnrt_size(&s->options), across = s->slots[0], layer = across * s->slots[1];
+    const int normals = dnrt_normals(&s->options);
     struct dnrt_gpu_object *to = &s->gpu_objects[object];
     struct dnrt_frame frame;
     mat3s stretch;
@@ -96,11 +101,14 @@ static void place_object(struct dnrt *s, const struct scene_pose *pose, int obje
         .half_m = volume->radius * s->options.reach * frame.scale,
         .axis = { frame.rotation.col[0], frame.rotation.col[1], frame.rotation.col[2] },
         .shape = volume->radius > 0.0f ? of->shape : -1,
-        .slot_x = object % across * n,
+        .slot_x = object % across * normals * n,
         .slot_y = object / across % s->slots[1] * n,
         .slot_z = object / layer * n,
         .first_instance = (uint32_t)s->objects.instances[of->first],
         .instance_count = (uint32_t)of->count,
+        .box_centre =
+            glms_vec3_scale(glms_vec3_sub(volume->box_centre, volume->centre), frame.scale),
+        .box_half = glms_vec3_scale(volume->box_half, frame.scale),
     };
 }
 
@@ -127,10 +135,33 @@ static void record_light(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding
     gpu_scope_end(cmd);
 }
 
-static void record_volumes(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects)
+// Returns the first entry of the newest light.
+static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects)
+{
+    const uint32_t count = (uint32_t)s->objects.count, part = count * DNRT_COEFFICIENTS;
+    struct dnrt_bounce_push push = { .objects = count,
+                                     .size = (uint32_t)dnrt_size(&s->options),
+                                     .fade = s->options.fade };
+    if (count < 2 || s->options.bounces < 2) return 0;
+    gpu_scope_begin(cmd, "bounces");
+    for (int bounce = 1; bounce < s->options.bounces; bounce++) {
+        push.to = (bounce % 2 ? 1 : 2) * part;
+        gpu_dispatch(cmd, s->bounce_pipeline,
+                     GPU_BIND(objects, { .name = "dnrt_light", .buffer = s->light },
+                              { .name = "dnrt_shapes", .buffer = s->shapes },
+                              { .name = "dnrt_samples", .buffer = s->samples }),
+                     &push, sizeof push, count, 1, 1);
+        push.from = push.to;
+    }
+    gpu_scope_end(cmd);
+    return push.from;
+}
+
+static void record_volumes(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects,
+                           uint32_t light)
 {
     enum { SAMPLES = 4 }; // of an invocation
-    const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options) };
+    const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options), light };
     const uint32_t samples = push.size * push.size * push.size;
     gpu_scope_begin(cmd, "volumes");
     gpu_dispatch(cmd, s->volumes_pipeline,
@@ -139,7 +170,7 @@ static void record_volumes(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_bindi
                           { .name = "dnrt_samples", .buffer = s->samples },
                           { .name = "volumes", .image = s->image }),
                  &push, sizeof push, gpu_groups(samples / SAMPLES, DNRT_LOCAL),
-                 (uint32_t)s->objects.count, 1);
+                 (uint32_t)(s->objects.count * dnrt_normals(&s->options)), 1);
     gpu_scope_end(cmd);
 }
 
@@ -150,7 +181,7 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     for (int i = 0; i < s->objects.count; i++) place_object(s, view->pose, i);
     const struct gpu_binding objects = objects_binding(s, cmd);
     record_light(s, cmd, objects);
-    record_volumes(s, cmd, objects);
+    record_volumes(s, cmd, objects, record_bounces(s, cmd, objects));
 }
 
 static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *view)
@@ -183,8 +214,9 @@ static void destroy(void *state)
 {
     struct dnrt *s = state;
     if (!s->host) return;
-    gpu_pipeline *const pipelines[] = { &s->light_pipeline, &s->volumes_pipeline,
-                                        &s->apply_pipeline, &s->apply_without_id };
+    gpu_pipeline *const pipelines[] = { &s->light_pipeline, &s->bounce_pipeline,
+                                        &s->volumes_pipeline, &s->apply_pipeline,
+                                        &s->apply_without_id };
     gpu_buffer *const buffers[] = { &s->shapes, &s->samples, &s->light };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
@@ -205,7 +237,8 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     const uint64_t n = (uint64_t)dnrt_size(o), samples = n * n * n;
     (void)width;
     (void)height;
-    return samples * (3 * (uint64_t)dnrt_coefficients(o) * (o->bits == DNRT_BITS_16 ? 2 : 1) + 8);
+    return samples * (uint64_t)dnrt_normals(o) *
+           (3 * (uint64_t)dnrt_coefficients(o) * (o->bits == DNRT_BITS_16 ? 2 : 1) + 8);
 }
 
 const struct technique technique_dnrt = {
@@ -215,7 +248,7 @@ const struct technique technique_dnrt = {
     .role = ROLE_DELTA,
     .capabilities = CAN_MOVE_GEOMETRY | CAN_MOVE_LIGHTS | NEEDS_BAKE,
     .needs = FRAME_WRITES_IRRADIANCE | FRAME_NEEDS_ID | FRAME_LEAVES_DYNAMIC,
-    .bake_version = 1,
+    .bake_version = 2,
     .options = OPTION_TABLE(struct dnrt_options, option_rows, NULL),
     .presets = presets,
     .state_size = sizeof(struct dnrt),

@@ -1,6 +1,6 @@
-// Adds to each pixel's irradiance what objects change: (n_o·n)₊ times their volumes (Giuffrida
-// 2016, equation 16). Workgroups are the tiles of the image that some object reaches. A pixel that
-// none changes is not written.
+// Adds to each pixel's irradiance what objects change: their volumes times weights of its normal,
+// (n_o·n)₊ of one volume (Giuffrida 2016, equation 16). Workgroups are the tiles of the image that
+// some object reaches. A pixel that none changes is not written.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,6 +8,8 @@
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/dnrt/dnrt_shared.h"
+
+#include "techniques/dnrt/dnrt_receiver.glsl"
 
 layout(local_size_x = DNRT_TILE, local_size_y = DNRT_TILE) in;
 
@@ -31,31 +33,19 @@ layout(set = 0, binding = 5, scalar) readonly buffer dnrt_tiles
 layout(set = 0, binding = 6) uniform sampler3D volumes;
 layout(set = 0, binding = 7, rgba16f) uniform image2D irradiance;
 
-// Between the border of the inner volume, at 1, and the outer one's: the inverse square of the
-// distance, less its value at the end.
-float fall_off(float distance)
-{
-    if (distance <= 1.0) return 1.0;
-    float end = 1.0 / (push.fade * push.fade);
-    return max((1.0 / (distance * distance) - end) / (1.0 - end), 0.0);
-}
-
 vec3 change_by(dnrt_gpu_object object, vec3 position, vec3 n)
 {
-    vec3 to_centre = object.centre - position;
-    float distance = length(to_centre);
-    float cosine = dot(to_centre, n) / max(distance, 1e-12);
-    if (cosine <= 0.0 || object.shape < 0) return vec3(0.0);
-    vec3 at = -vec3(dot(to_centre, object.axis[0]), dot(to_centre, object.axis[1]),
-                    dot(to_centre, object.axis[2])) /
-              object.half_m;
-    float border = max(abs(at.x), max(abs(at.y), abs(at.z)));
-    if (border >= max(push.fade, 1.0)) return vec3(0.0);
-    at /= max(border, 1.0);
+    dnrt_receiver at = dnrt_receiver_of(object, position, n);
+    vec3 weights, sum = vec3(0.0);
+    if (!dnrt_weights(object, at, push.fade, weights)) return sum;
     vec3 texel = vec3(object.slot_x, object.slot_y, object.slot_z) + 0.5 +
-                 (0.5 * at + 0.5) * float(push.size - 1u);
-    vec3 volume = textureLod(volumes, texel / vec3(textureSize(volumes, 0)), 0.0).rgb;
-    return (cosine * fall_off(border)) * volume;
+                 dnrt_sample_of(object, at, push.size);
+    for (uint i = 0; i < LOOKUPS; i++) {
+        vec3 slot = vec3(float(dnrt_volume_of(at, i) * push.size), 0.0, 0.0);
+        sum += weights[i] *
+               textureLod(volumes, (texel + slot) / vec3(textureSize(volumes, 0)), 0.0).rgb;
+    }
+    return sum;
 }
 
 bool is_own(dnrt_gpu_object object, uint instance)

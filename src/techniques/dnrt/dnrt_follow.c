@@ -2,18 +2,29 @@
 // stretch are in the bake has that volume; others need another bake.
 #include "techniques/dnrt/dnrt_state.h"
 
-// Volumes lie side by side in a cube.
+// Room for objects along the edges of a cube of volumes; those of an object lie along x.
+static void count_slots(const struct dnrt *s, int slots[3])
+{
+    const int normals = dnrt_normals(&s->options);
+    int edge = 1;
+    do {
+        slots[0] = edge < normals ? 1 : edge / normals;
+        slots[1] = slots[2] = edge++;
+    } while (slots[0] * slots[1] * slots[2] < s->objects.count);
+}
+
 static bool make_image(struct dnrt *s)
 {
     const uint32_t size = (uint32_t)dnrt_size(&s->options);
-    int n = 1;
-    while (n * n * n < s->objects.count) n++;
+    int n[3];
+    count_slots(s, n);
     const struct gpu_image_desc desc = { .name = "volumes",
                                          .dimension = GPU_3D,
                                          .format = GPU_RGBA16F,
-                                         .width = size * (uint32_t)n,
-                                         .height = size * (uint32_t)n,
-                                         .depth = size * (uint32_t)n,
+                                         .width =
+                                             size * (uint32_t)(n[0] * dnrt_normals(&s->options)),
+                                         .height = size * (uint32_t)n[1],
+                                         .depth = size * (uint32_t)n[2],
                                          .usage = GPU_SAMPLED | GPU_STORAGE };
     const struct gpu_sampler_desc linear = { .name = "volumes",
                                              .filter = GPU_LINEAR,
@@ -21,13 +32,12 @@ static bool make_image(struct dnrt *s)
                                              .wrap_u = GPU_CLAMP,
                                              .wrap_v = GPU_CLAMP,
                                              .wrap_w = GPU_CLAMP };
-    const struct gpu_buffer_desc light = { "light",
-                                           (size_t)(n * n * n) * DNRT_COEFFICIENTS * sizeof(vec3s),
-                                           GPU_BUFFER_STORAGE };
-    if (s->image.id && n <= s->slots[0]) return true;
+    const size_t entries = (size_t)(n[0] * n[1] * n[2]) * DNRT_COEFFICIENTS * DNRT_LIGHT_PARTS;
+    const struct gpu_buffer_desc light = { "light", entries * sizeof(vec3s), GPU_BUFFER_STORAGE };
+    if (s->image.id && n[2] <= s->slots[2]) return true;
     gpu_image_destroy(s->gpu, &s->image);
     gpu_buffer_destroy(s->gpu, &s->light);
-    for (int i = 0; i < 3; i++) s->slots[i] = n;
+    for (int i = 0; i < 3; i++) s->slots[i] = n[i];
     return gpu_image_create(s->gpu, &desc, &s->image) &&
            gpu_sampler_get(s->gpu, &linear, &s->linear) &&
            gpu_buffer_create(s->gpu, &light, &s->light);

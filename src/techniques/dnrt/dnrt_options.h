@@ -6,6 +6,9 @@
 enum { DNRT_SIZE_16, DNRT_SIZE_32, DNRT_SIZE_64 };
 enum { DNRT_COEFFICIENTS_4, DNRT_COEFFICIENTS_9 };
 enum { DNRT_BITS_16, DNRT_BITS_8 };
+enum { DNRT_NORMALS_1, DNRT_NORMALS_3, DNRT_NORMALS_6 };
+enum { DNRT_GRID_UNIFORM, DNRT_GRID_QUADRATIC };
+enum { DNRT_OCCLUDED_IRRADIANCE, DNRT_OCCLUDED_RADIANCE };
 
 struct dnrt_options {
 #define OPTION OPTION_FIELD
@@ -27,4 +30,11 @@ static inline int dnrt_bands(const struct dnrt_options *options)
 static inline int dnrt_coefficients(const struct dnrt_options *options)
 {
     return dnrt_bands(options) * dnrt_bands(options);
+}
+
+// Normals of receivers that a shape has a volume for.
+static inline int dnrt_normals(const struct dnrt_options *options)
+{
+    static const int COUNT[] = { 1, 3, 6 };
+    return COUNT[options->normals];
 }

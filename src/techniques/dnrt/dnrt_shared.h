@@ -20,9 +20,11 @@ struct dnrt_gpu_object {
     int32_t shape;                           // −1: it has no volume
     int32_t slot_x, slot_y, slot_z;          // of its volume among all, in texels
     uint32_t first_instance, instance_count; // its own pixels
+    vec3s box_centre, box_half;              // of its bounds, from the centre, along the axes, m
 };
 
-// The baked volume of a shape: planes of samples, coefficient after coefficient, red green blue.
+// The baked volume of a shape and a normal of receivers: planes of samples, coefficient after
+// coefficient, red green blue.
 struct dnrt_gpu_shape {
     uint32_t first_word;                // in dnrt_samples
     float scale[3 * DNRT_COEFFICIENTS]; // of a plane
@@ -33,8 +35,16 @@ struct dnrt_light_push {
     uint32_t objects;
 };
 
+struct dnrt_bounce_push {
+    uint32_t objects;
+    uint32_t from, to; // entries of dnrt_light before those of the objects, read and written
+    uint32_t size;
+    float fade;
+};
+
 struct dnrt_volumes_push {
-    uint32_t size; // samples along an edge
+    uint32_t size;  // samples along an edge
+    uint32_t first; // entry of dnrt_light
 };
 
 struct dnrt_apply_push {
@@ -46,7 +56,7 @@ struct dnrt_apply_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct dnrt_gpu_object) == 19 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_gpu_object) == 25 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_gpu_shape) == 28 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_apply_push) == 5 * 4, "layout is shared with GLSL");
 #endif

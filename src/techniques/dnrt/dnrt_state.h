@@ -9,11 +9,15 @@
 #include "frame/frame_shared.h"
 #include "techniques/dnrt/dnrt_shared.h"
 
-// The bounding sphere of a baked shape, in the object's frame.
+// The bounding sphere of a baked shape and its bounding box, in the object's frame.
 struct dnrt_volume {
     vec3s centre;
     float radius;
+    vec3s box_centre, box_half;
 };
+
+// Entries of `light`: of the probes, and two that bounces fill by turns.
+enum { DNRT_LIGHT_PARTS = 3 };
 
 struct dnrt {
     struct host *host;
@@ -24,11 +28,12 @@ struct dnrt {
     struct scene_revisions seen; // of the scene when `objects` were found
     bool warned;                 // of objects without a volume
     struct dnrt_volume *volumes; // [baked.shape_count]
-    int slots[3];                // room for volumes along x, y, z of the image
+    int slots[3];                // room for objects along x, y, z of the image
     gpu_buffer shapes, samples, light;
     gpu_image image; // volumes of all objects in their light
     gpu_sampler linear;
-    gpu_pipeline light_pipeline, volumes_pipeline, apply_pipeline, apply_without_id;
+    gpu_pipeline light_pipeline, bounce_pipeline, volumes_pipeline;
+    gpu_pipeline apply_pipeline, apply_without_id;
     struct probe_volume source;          // of the newest `take_probes`
     struct dnrt_gpu_object *gpu_objects; // [objects] of the frame
     uint32_t *tiles;                     // room for the tiles of a view

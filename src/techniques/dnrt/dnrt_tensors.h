@@ -1,6 +1,7 @@
 // Names of the tensors of a bake; shape K of dnrt_objects has those of index K.
 #pragma once
 
-#define DNRT_VOLUME "shape/%d/volume" // F16 or U8 [coefficient][rgb][z][y][x], of the scale
-#define DNRT_SCALE  "shape/%d/scale"  // F32 [coefficient][rgb]: of m = t − k
+#define DNRT_VOLUME "shape/%d/volume" // F16 or U8 [normal][coefficient][rgb][z][y][x], of the scale
+#define DNRT_SCALE  "shape/%d/scale"  // F32 [normal][coefficient][rgb]: of m = t − k
 #define DNRT_SPHERE "shape/%d/sphere" // F32 [4]: centre and radius in the object's frame
+#define DNRT_BOX    "shape/%d/box"    // F32 [2][3]: centre and half edges of the bounding box

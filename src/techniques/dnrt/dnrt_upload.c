@@ -12,7 +12,7 @@ enum { NAME_SIZE = 32 };
 struct content {
     struct dnrt_gpu_shape *shapes;
     uint8_t *samples;
-    size_t shape_bytes; // of the samples of one
+    size_t shape_bytes; // of the samples of one and a normal
 };
 
 static const void *expect(struct dnrt *s, const struct tensors *bake, const char *format, int shape,
@@ -23,28 +23,41 @@ static const void *expect(struct dnrt *s, const struct tensors *bake, const char
     return tensors_expect(s->host, bake, name, type, rank, extent);
 }
 
-static bool take_sphere(struct dnrt *s, int shape, const float *sphere)
+static bool take_bounds(struct dnrt *s, int shape, const float *sphere, const float *box)
 {
-    s->volumes[shape] = (struct dnrt_volume){ vec3_of(sphere[0], sphere[1], sphere[2]), sphere[3] };
+    s->volumes[shape] =
+        (struct dnrt_volume){ vec3_of(sphere[0], sphere[1], sphere[2]), sphere[3],
+                              vec3_of(box[0], box[1], box[2]), vec3_of(box[3], box[4], box[5]) };
     if (sphere[3] >= 0.0f) return true;
     return host_fail(s->host, FAIL_FORMAT, "bake of dnrt: the radius of shape %d is negative",
                      shape);
 }
 
+static size_t planes_of(const struct dnrt_options *options)
+{
+    return 3 * (size_t)dnrt_coefficients(options);
+}
+
 static bool take_shape(struct dnrt *s, const struct tensors *bake, int shape, struct content *out)
 {
     const uint64_t n = (uint64_t)dnrt_size(&s->options),
-                   c = (uint64_t)dnrt_coefficients(&s->options);
-    const bool half = s->options.bits == DNRT_BITS_16;
+                   c = (uint64_t)dnrt_coefficients(&s->options),
+                   normals = (uint64_t)dnrt_normals(&s->options);
+    const enum tensor_type type = s->options.bits == DNRT_BITS_16 ? TENSOR_F16 : TENSOR_U8;
     const float *sphere = expect(s, bake, DNRT_SPHERE, shape, TENSOR_F32, 1, (uint64_t[]){ 4 });
-    const float *scale = expect(s, bake, DNRT_SCALE, shape, TENSOR_F32, 2, (uint64_t[]){ c, 3 });
-    const void *volume = expect(s, bake, DNRT_VOLUME, shape, half ? TENSOR_F16 : TENSOR_U8, 5,
-                                (uint64_t[]){ c, 3, n, n, n });
-    if (!sphere || !scale || !volume || !take_sphere(s, shape, sphere)) return false;
-    struct dnrt_gpu_shape *to = &out->shapes[shape];
-    to->first_word = (uint32_t)((size_t)shape * out->shape_bytes / 4);
-    memcpy(to->scale, scale, 3 * (size_t)c * sizeof *scale);
-    memcpy(out->samples + (size_t)shape * out->shape_bytes, volume, out->shape_bytes);
+    const float *box = expect(s, bake, DNRT_BOX, shape, TENSOR_F32, 2, (uint64_t[]){ 2, 3 });
+    const float *scale =
+        expect(s, bake, DNRT_SCALE, shape, TENSOR_F32, 3, (uint64_t[]){ normals, c, 3 });
+    const uint8_t *volume =
+        expect(s, bake, DNRT_VOLUME, shape, type, 6, (uint64_t[]){ normals, c, 3, n, n, n });
+    if (!sphere || !box || !scale || !volume || !take_bounds(s, shape, sphere, box)) return false;
+    const size_t first = (size_t)shape * normals, planes = planes_of(&s->options);
+    for (size_t i = 0; i < normals; i++) {
+        struct dnrt_gpu_shape *to = &out->shapes[first + i];
+        to->first_word = (uint32_t)((first + i) * out->shape_bytes / 4);
+        memcpy(to->scale, scale + planes * i, planes * sizeof *scale);
+    }
+    memcpy(out->samples + first * out->shape_bytes, volume, normals * out->shape_bytes);
     return true;
 }
 
@@ -57,7 +70,7 @@ static bool make(struct dnrt *s, const char *name, const void *items, size_t byt
 
 static bool take_shapes(struct dnrt *s, const struct tensors *bake, struct content *content)
 {
-    const size_t count = (size_t)s->baked.shape_count;
+    const size_t count = (size_t)s->baked.shape_count * (size_t)dnrt_normals(&s->options);
     if (!content->shapes || !content->samples) return false;
     for (int i = 0; i < s->baked.shape_count; i++)
         if (!take_shape(s, bake, i, content)) return false;
@@ -71,16 +84,17 @@ static bool fits(struct dnrt *s, size_t bytes)
     if (bytes <= most) return true;
     return host_fail(s->host, FAIL_UNSUPPORTED,
                      "dnrt: volumes of %d objects have %.0f MB, above the limit of %s, %.0f MB: "
-                     "give dnrt:size=16 or dnrt:bits=8",
+                     "give dnrt:size=16, dnrt:bits=8 or fewer dnrt:normals",
                      s->baked.shape_count, (double)bytes * 1e-6, gpu_info(s->gpu)->name,
                      (double)most * 1e-6);
 }
 
 bool dnrt_upload(struct dnrt *s, const struct tensors *bake)
 {
-    const size_t n = (size_t)dnrt_size(&s->options), count = (size_t)s->baked.shape_count;
-    struct content content = { .shape_bytes = 3 * (size_t)dnrt_coefficients(&s->options) * n * n *
-                                              n * (s->options.bits == DNRT_BITS_16 ? 2 : 1) };
+    const size_t n = (size_t)dnrt_size(&s->options);
+    const size_t count = (size_t)s->baked.shape_count * (size_t)dnrt_normals(&s->options);
+    struct content content = { .shape_bytes = planes_of(&s->options) * n * n * n *
+                                              (s->options.bits == DNRT_BITS_16 ? 2 : 1) };
     if (!fits(s, count * content.shape_bytes)) return false;
     content.shapes = host_alloc(s->host, count, sizeof *content.shapes);
     content.samples = host_alloc(s->host, count, content.shape_bytes);

@@ -5,13 +5,11 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "core/half.glsl"
 #include "frame/frame_shared.h"
 #include "techniques/dnrt/dnrt_shared.h"
 
 layout(local_size_x = DNRT_LOCAL) in;
-layout(constant_id = 0) const uint COEFFICIENTS = 4;
-layout(constant_id = 1) const bool BYTES = false; // of a sample, else half floats
+layout(constant_id = 1) const uint NORMALS = 1; // of receivers: volumes of an object
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -35,28 +33,19 @@ layout(set = 0, binding = 3, scalar) readonly buffer dnrt_samples
 };
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image3D volumes;
 
-// Of the four samples from `first` on in a plane, a multiple of 4.
-vec4 samples_of(uint plane_word, uint first)
-{
-    if (BYTES) {
-        uvec4 bytes = (uvec4(word_table[plane_word + first / 4u]) >> uvec4(0, 8, 16, 24)) & 255u;
-        return (vec4(bytes) - 128.0) / 127.0;
-    }
-    uint word = plane_word + first / 2u;
-    return vec4(unpackHalf2x16(word_table[word]), unpackHalf2x16(word_table[word + 1u]));
-}
+#include "techniques/dnrt/dnrt_samples.glsl"
 
 void main()
 {
     uint first = 4u * gl_GlobalInvocationID.x, n = push.size, count = n * n * n;
-    uint index = gl_GlobalInvocationID.y;
+    uint index = gl_GlobalInvocationID.y / NORMALS, normal = gl_GlobalInvocationID.y % NORMALS;
     dnrt_gpu_object object = object_table[index];
     if (first >= count || object.shape < 0) return;
-    dnrt_gpu_shape shape = shape_table[object.shape];
-    uint words = count / (BYTES ? 4u : 2u);
+    dnrt_gpu_shape shape = shape_table[NORMALS * uint(object.shape) + normal];
+    uint words = samples_words(count);
     vec4 sum[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
     for (uint j = 0; j < COEFFICIENTS; j++) {
-        vec3 light = light_table[index * DNRT_COEFFICIENTS + j];
+        vec3 light = light_table[push.first + index * DNRT_COEFFICIENTS + j];
         for (uint c = 0; c < 3; c++) {
             uint plane = 3u * j + c;
             sum[c] += (light[c] * shape.scale[plane]) *
@@ -64,7 +53,7 @@ void main()
         }
     }
     ivec3 to = ivec3(object.slot_x, object.slot_y, object.slot_z) +
-               ivec3(first % n, first / n % n, first / (n * n));
+               ivec3(normal * n + first % n, first / n % n, first / (n * n));
     for (int i = 0; i < 4; i++) {
         vec3 change = vec3(sum[0][i], sum[1][i], sum[2][i]);
         imageStore(volumes, to + ivec3(i, 0, 0),

@@ -19,7 +19,7 @@ struct dnrt_scene {
     struct baked_fixture run;
 };
 
-static const vec3s CENTRE[BALLS] = { { { -0.2f, 0.8f, 0.1f } }, { { 0.9f, 0.7f, -0.6f } } };
+static const vec3s CENTRE[BALLS] = { { { -0.2f, 0.8f, 0.1f } }, { { 0.5f, 0.7f, -0.3f } } };
 static const float RADIUS[BALLS] = { 0.4f, 0.3f };
 
 static versors turn_of(int ball)
@@ -65,7 +65,8 @@ static void close_scene(struct dnrt_scene *d)
 struct ball_volume {
     vec3s centre;
     mat3s object_from_world; // rotation
-    float half;
+    float radius, half;
+    bool quadratic;
     float light[3][9]; // π c in the object's frame, lux
     const float *scale;
     const struct tensor *volume;
@@ -115,12 +116,14 @@ static void probes_at(struct dnrt_scene *d, vec3s point, float c[3][9])
     free(image);
 }
 
-static struct ball_volume volume_of(struct dnrt_scene *d, int ball)
+static struct ball_volume volume_of(struct dnrt_scene *d, int ball, bool quadratic)
 {
     const struct tensors *bake = d->run.baked.bakes.of_term[1];
     struct ball_volume v = {
         .centre = CENTRE[ball],
+        .radius = RADIUS[ball],
         .half = REACH * RADIUS[ball],
+        .quadratic = quadratic,
         .object_from_world = glms_mat3_transpose(glms_quat_mat3(turn_of(ball))),
         .scale = tensors_find(bake, "shape/0/scale")->data,
         .volume = tensors_find(bake, "shape/0/volume"),
@@ -142,9 +145,10 @@ static float sample_of(const struct ball_volume *v, int plane, int index)
                                   : (float)(((const uint8_t *)v->volume->data)[at] - 128) / 127);
 }
 
-static float interpolate(const struct ball_volume *v, int colour, const float at[3])
+// π Σ c_j m_j of the volume of a normal.
+static float interpolate(const struct ball_volume *v, int normal, int colour, const float at[3])
 {
-    const int count = (int)v->volume->shape[0];
+    const int count = (int)v->volume->shape[1];
     float sum = 0;
     for (int k = 0; k < 8; k++) {
         float weight = 1;
@@ -156,27 +160,65 @@ static float interpolate(const struct ball_volume *v, int colour, const float at
             index = index * N + low + (k >> i & 1);
         }
         for (int j = 0; j < count; j++)
-            sum += weight * v->light[colour][j] * sample_of(v, 3 * j + colour, index);
+            sum += weight * v->light[colour][j] *
+                   sample_of(v, 3 * (count * normal + j) + colour, index);
     }
     return sum;
 }
 
-static vec3s change_of(const struct ball_volume *v, vec3s position, vec3s normal)
+// Weights of the volumes for a receiver: of n_o; of x, y and z, where a sphere has the part
+// ½ + ½ cosθ d/r above the horizon; of each axis both ways.
+static void weights_of(const struct ball_volume *v, vec3s position, vec3s normal, float weights[6])
 {
     const vec3s to_centre = glms_vec3_sub(v->centre, position);
-    const float cosine = glms_vec3_dot(glms_vec3_normalize(to_centre), normal);
-    vec3s p = glms_mat3_mulv(v->object_from_world, glms_vec3_negate(to_centre));
-    p = glms_vec3_divs(p, v->half);
+    const vec3s n = glms_mat3_mulv(v->object_from_world, normal);
+    const vec3s n_o = glms_mat3_mulv(v->object_from_world, glms_vec3_normalize(to_centre));
+    const float distance = glms_vec3_norm(to_centre), cosine = glms_vec3_dot(n_o, n);
+    // The box of a sphere in its own frame.
+    const float extent = v->radius * (fabsf(n.x) + fabsf(n.y) + fabsf(n.z));
+    const float part = glm_clamp(0.5f + 0.5f * cosine * distance / extent, 0, 1);
+    for (int i = 0; i < 6; i++) weights[i] = 0;
+    if (v->volume->shape[0] == 1) weights[0] = fmaxf(cosine, 0);
+    for (int i = 0; i < 3; i++) {
+        if (v->volume->shape[0] == 6) weights[2 * i + (n.raw[i] < 0)] = n.raw[i] * n.raw[i];
+        if (v->volume->shape[0] == 3)
+            weights[i] =
+                part * n.raw[i] + part * (1 - part) * fminf(extent / distance, 1) * n_o.raw[i];
+    }
+}
+
+static vec3s change_of(const struct ball_volume *v, vec3s position, vec3s normal)
+{
+    const vec3s from_centre = glms_vec3_sub(position, v->centre);
+    const vec3s p = glms_vec3_divs(glms_mat3_mulv(v->object_from_world, from_centre), v->half);
     const float border = glms_vec3_max(glms_vec3_abs(p));
     vec3s change = vec3_of(0, 0, 0);
-    if (cosine <= 0 || border >= FADE) return change;
+    if (border >= FADE) return change;
     const float end = 1 / (FADE * FADE);
     const float fall = border > 1 ? (1 / (border * border) - end) / (1 - end) : 1;
-    float at[3];
-    for (int i = 0; i < 3; i++)
-        at[i] = (0.5f + 0.5f * p.raw[i] / fmaxf(border, 1)) * (float)(N - 1);
-    for (int c = 0; c < 3; c++) change.raw[c] = cosine * fall * interpolate(v, c, at);
+    float at[3], weights[6];
+    weights_of(v, position, normal, weights);
+    for (int i = 0; i < 3; i++) {
+        const float u = p.raw[i] / fmaxf(border, 1);
+        at[i] = (0.5f + 0.5f * (v->quadratic ? copysignf(sqrtf(fabsf(u)), u) : u)) * (float)(N - 1);
+    }
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < (int)v->volume->shape[0]; i++)
+            change.raw[c] += weights[i] * fall * interpolate(v, i, c, at);
     return change;
+}
+
+// What the second ball adds to the light at the first, π times coefficients over normals: a change
+// of irradiance V (n·n_o)₊.
+static void add_bounce(const struct ball_volume *from, struct ball_volume *to)
+{
+    const vec3s n_o = glms_vec3_normalize(glms_vec3_sub(from->centre, to->centre));
+    const vec3s change = change_of(from, to->centre, n_o);
+    float zonal[3], cosine[9];
+    zh_clamped_cosine(3, zonal);
+    zh_rotate(3, zonal, glms_mat3_mulv(to->object_from_world, n_o), cosine);
+    for (int c = 0; c < 3; c++)
+        for (int j = 0; j < 9; j++) to->light[c][j] += GLM_PIf * change.raw[c] * cosine[j];
 }
 
 // ---- tests
@@ -226,7 +268,7 @@ static vec3s sum_of_changes(const struct ball_volume volumes[BALLS], unsigned ba
 // The light of several objects is the sum of each alone.
 static void check_change(struct gpu *gpu, const char *options, unsigned balls)
 {
-    char gi[128];
+    char gi[192];
     struct dnrt_scene with, without;
     struct ball_volume volumes[BALLS];
     snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=64%s", SOURCE, options);
@@ -235,7 +277,8 @@ static void check_change(struct gpu *gpu, const char *options, unsigned balls)
     close_scene(&without);
     open_scene(&with, gpu, gi, balls);
     struct pixels after = read_pixels(&with);
-    for (int b = 0; b < BALLS; b++) volumes[b] = volume_of(&with, b);
+    for (int b = 0; b < BALLS; b++)
+        volumes[b] = volume_of(&with, b, strstr(options, "quadratic") != NULL);
     double most = 0, worst = 0;
     for (size_t i = 0; i < after.count; i++) {
         if (!is_ground(&after, i)) continue;
@@ -252,13 +295,6 @@ static void check_change(struct gpu *gpu, const char *options, unsigned balls)
     close_scene(&with);
 }
 
-TEST_GPU(pixels_change_as_the_bake_says)
-{
-    check_change(gpu, "", 1);
-    check_change(gpu, ",coefficients=9", 2);
-    check_change(gpu, ",bits=8", 3);
-}
-
 // With the balls that have a bit in `balls`.
 static struct pixels pixels_of(struct gpu *gpu, const char *gi, unsigned balls)
 {
@@ -267,6 +303,75 @@ static struct pixels pixels_of(struct gpu *gpu, const char *gi, unsigned balls)
     const struct pixels p = read_pixels(&d);
     close_scene(&d);
     return p;
+}
+
+TEST_GPU(pixels_change_as_the_bake_says)
+{
+    check_change(gpu, "", 1);
+    check_change(gpu, ",coefficients=9", 2);
+    check_change(gpu, ",bits=8", 3);
+}
+
+TEST_GPU(pixels_change_by_volumes_of_several_normals)
+{
+    check_change(gpu, ",normals=3,grid=quadratic", 3);
+    check_change(gpu, ",normals=6,coefficients=9,bits=8", 3);
+}
+
+// What a second bounce changes against what it should: the least-squares factor, since the change
+// of a pixel is of the size of the image's rounding.
+static void check_bounce(struct gpu *gpu, const char *options)
+{
+    char gi[192];
+    struct dnrt_scene d;
+    struct ball_volume first[BALLS], second[BALLS];
+    snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=64,%s", SOURCE, options);
+    struct pixels before = pixels_of(gpu, gi, 3);
+    snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=64,bounces=2,%s", SOURCE, options);
+    open_scene(&d, gpu, gi, 3);
+    struct pixels after = read_pixels(&d);
+    for (int b = 0; b < BALLS; b++)
+        first[b] = second[b] = volume_of(&d, b, strstr(options, "quadratic") != NULL);
+    for (int b = 0; b < BALLS; b++) add_bounce(&first[1 - b], &second[b]);
+    double product = 0, square = 0;
+    for (size_t i = 0; i < after.count; i++) {
+        if (!is_ground(&after, i)) continue;
+        const vec3s actual = glms_vec3_sub(at(after.irradiance, i), at(before.irradiance, i));
+        const vec3s expected = glms_vec3_sub(sum_of_changes(second, 3, &after, i),
+                                             sum_of_changes(first, 3, &after, i));
+        product += (double)glms_vec3_dot(actual, expected);
+        square += (double)glms_vec3_norm2(expected);
+    }
+    print_message("%s: factor %.4f, root of the sum of squares %.3g lux\n", gi, product / square,
+                  sqrt(square));
+    CHECK(square > 1 && fabs(product / square - 1) < 0.03);
+    free_pixels(&before);
+    free_pixels(&after);
+    close_scene(&d);
+}
+
+TEST_GPU(objects_get_the_light_that_others_change)
+{
+    check_bounce(gpu, "bits=16");
+    check_bounce(gpu, "normals=3,coefficients=9,bits=8,grid=quadratic");
+    check_bounce(gpu, "normals=6");
+}
+
+// Of two balls, which reflect light onto each other.
+TEST_GPU(further_bounces_converge)
+{
+    struct pixels of[4];
+    double change[4] = { 0 };
+    for (int b = 0; b < 4; b++) {
+        char gi[192];
+        snprintf(gi, sizeof gi, "%s+dnrt:size=16,rays=64,bounces=%d", SOURCE, b + 1);
+        of[b] = pixels_of(gpu, gi, 3);
+        for (size_t i = 0; b > 0 && i < 3 * of[b].count; i++)
+            change[b] += fabs((double)of[b].irradiance[i] - (double)of[b - 1].irradiance[i]);
+    }
+    print_message("changes by bounces 2 to 4: %g %g %g\n", change[1], change[2], change[3]);
+    CHECK(change[1] > 0 && change[2] < 0.5 * change[1] && change[3] < 0.5 * change[2]);
+    for (int b = 0; b < 4; b++) free_pixels(&of[b]);
 }
 
 TEST_GPU(pixels_far_from_objects_equal_those_of_the_source_to_the_bit)

@@ -11,6 +11,7 @@
 #include "trace/trace.h"
 
 #include <math.h>
+#include <string.h>
 
 // ---- a unit sphere
 
@@ -21,14 +22,15 @@ struct ball {
     struct dnrt_sampling how;
 };
 
-static void ball_open(struct ball *ball, float albedo)
+// Of `add`'s mesh.
+static void object_open(struct ball *ball, float albedo, int (*add)(struct scene *, int material))
 {
     struct material material = material_default();
     material.base_color = vec4_of(vec3_of(albedo, albedo, albedo), 1);
     material.metallic = 0;
     material.specular = 0; // its reflectance is the albedo
     ball->scene = scene_create(test_host(), "ball");
-    const int mesh = sphere_fixture_add(ball->scene, scene_add_material(ball->scene, &material));
+    const int mesh = add(ball->scene, scene_add_material(ball->scene, &material));
     const struct node node = node_default();
     const struct instance it = { .node = scene_add_node(ball->scene, &node),
                                  .mesh = mesh,
@@ -37,7 +39,12 @@ static void ball_open(struct ball *ball, float albedo)
     CHECK(pose_init(&ball->pose, ball->scene, -1, 0));
     ball->trace = trace_scene_create(test_host(), &ball->pose);
     assert_non_null(ball->trace);
-    ball->how = (struct dnrt_sampling){ ball->trace, vec3_of(0, 0, 0), 1.0f, 3, 1024 };
+    ball->how = (struct dnrt_sampling){ ball->trace, vec3_of(0, 0, 0), 1.0f, 3, 1024, 1, false };
+}
+
+static void ball_open(struct ball *ball, float albedo)
+{
+    object_open(ball, albedo, sphere_fixture_add);
 }
 
 static void ball_close(struct ball *ball)
@@ -97,14 +104,14 @@ static void check_distance(const struct ball *ball, double d)
     sh_eval(3, n_o, along);
     sh_eval(3, to_point, against);
     for (int i = 0; i < RUNS; i++)
-        at[i] = dnrt_transfer_at(&ball->how, glms_vec3_scale(to_point, (float)d),
-                                 pcg_hash((uint32_t)i) | 1u);
+        dnrt_transfer_at(&ball->how, glms_vec3_scale(to_point, (float)d),
+                         pcg_hash((uint32_t)i) | 1u, &at[i]);
     for (int j = 0; j < 9; j++) {
         const int band = j == 0 ? 0 : j < 4 ? 1 : 2;
         double hidden[RUNS], reflected[RUNS];
         for (int i = 0; i < RUNS; i++) {
-            hidden[i] = (double)at[i].hidden[j];
-            reflected[i] = (double)at[i].reflected[j].x;
+            hidden[i] = (double)at[i].of[0].hidden[j];
+            reflected[i] = (double)at[i].of[0].reflected[j].x;
         }
         check_mean(hidden, hidden_of(band, d) * (double)along[j], "k", j, d);
         check_mean(reflected, reflected_of(band, d) * (double)against[j], "t", j, d);
@@ -116,6 +123,67 @@ TEST(a_sphere_reflects_and_hides_as_the_closed_forms_say)
     struct ball ball;
     ball_open(&ball, 1);
     for (int i = 0; i < 4; i++) check_distance(&ball, (const double[]){ 1.5, 2, 3, 4 }[i]);
+    ball_close(&ball);
+}
+
+// The vector irradiance along n_o, and of the six normals the one that is n_o, which has all of the
+// sphere above its horizon, are the irradiance of a receiver that faces the sphere.
+static void check_normals(struct ball *ball, int axis, int normals, double d)
+{
+    vec3s n_o = glms_vec3_normalize(vec3_of(-0.6f, 0.5f, 0.3f));
+    struct dnrt_transfer at[RUNS];
+    float along[9];
+    if (normals == 6) n_o = vec3_of(axis == 0, -(axis == 1), axis == 2);
+    sh_eval(3, n_o, along);
+    ball->how.normals = normals;
+    for (int i = 0; i < RUNS; i++)
+        dnrt_transfer_at(&ball->how, glms_vec3_scale(n_o, (float)-d), pcg_hash((uint32_t)i) | 1u,
+                         &at[i]);
+    for (int j = 0; j < 9; j++) {
+        const int band = j == 0 ? 0 : j < 4 ? 1 : 2;
+        const double against = (band == 1 ? -1 : 1) * (double)along[j];
+        double hidden[RUNS] = { 0 }, reflected[RUNS] = { 0 };
+        for (int i = 0; i < RUNS; i++)
+            for (int v = 0; v < normals; v++) {
+                const float other = v / 2 == axis && v % 2 == (axis == 1) ? 1.0f : 0.0f;
+                const float weight = normals == 3 ? n_o.raw[v] : other;
+                hidden[i] += (double)(weight * at[i].of[v].hidden[j]);
+                reflected[i] += (double)(weight * at[i].of[v].reflected[j].x);
+            }
+        check_mean(hidden, hidden_of(band, d) * (double)along[j], "k", j, d);
+        check_mean(reflected, reflected_of(band, d) * against, "t", j, d);
+    }
+}
+
+TEST(several_normals_have_the_irradiance_of_each)
+{
+    struct ball ball;
+    ball_open(&ball, 1);
+    for (int i = 0; i < 3; i++) {
+        check_normals(&ball, i, 3, (const double[]){ 1.5, 2.5, 4 }[i]);
+        check_normals(&ball, i, 6, (const double[]){ 1.5, 2.5, 4 }[i]);
+    }
+    ball_close(&ball);
+}
+
+// (x)₊ − (−x)₊ = x.
+TEST(both_ways_of_an_axis_differ_by_the_vector_irradiance)
+{
+    struct ball ball;
+    ball_open(&ball, 0.5f);
+    const vec3s point = vec3_of(0.9f, 0.2f, 0.6f);
+    struct dnrt_transfer axes, ways;
+    ball.how.normals = 3;
+    dnrt_transfer_at(&ball.how, point, 5, &axes);
+    ball.how.normals = 6;
+    dnrt_transfer_at(&ball.how, point, 5, &ways);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 9; j++) {
+            const struct dnrt_vectors *plus = &ways.of[2 * i], *minus = &ways.of[2 * i + 1];
+            CHECK_NEAR(plus->hidden[j] - minus->hidden[j], axes.of[i].hidden[j], 1e-5);
+            CHECK_NEAR(plus->reflected[j].x - minus->reflected[j].x, axes.of[i].reflected[j].x,
+                       1e-5);
+        }
     ball_close(&ball);
 }
 
@@ -134,9 +202,10 @@ TEST(constant_light_is_not_changed_by_a_white_sphere)
     ball_open(&ball, 1);
     for (int i = 0; i < 16; i++) {
         const vec3s point = glms_vec3_scale(vec3_of(0.48f, 0.6f, 0.64f), 1.1f + 0.3f * (float)i);
-        const struct dnrt_transfer at = dnrt_transfer_at(&ball.how, point, 7);
-        CHECK_NEAR(at.reflected[0].x - at.hidden[0], 0, 1e-6);
-        CHECK(at.hidden[0] > 0);
+        struct dnrt_transfer at;
+        dnrt_transfer_at(&ball.how, point, 7, &at);
+        CHECK_NEAR(at.of[0].reflected[0].x - at.of[0].hidden[0], 0, 1e-6);
+        CHECK(at.of[0].hidden[0] > 0);
         CHECK(at.inside == 0);
     }
     ball_close(&ball);
@@ -148,11 +217,12 @@ TEST(transfer_is_linear_in_the_reflectance)
     ball_open(&white, 1);
     ball_open(&grey, 0.25f);
     const vec3s point = vec3_of(1.2f, 0.9f, -0.4f);
-    const struct dnrt_transfer a = dnrt_transfer_at(&white.how, point, 3);
-    const struct dnrt_transfer b = dnrt_transfer_at(&grey.how, point, 3);
+    struct dnrt_transfer a, b;
+    dnrt_transfer_at(&white.how, point, 3, &a);
+    dnrt_transfer_at(&grey.how, point, 3, &b);
     for (int j = 0; j < 9; j++) {
-        CHECK_NEAR(b.reflected[j].y, 0.25f * a.reflected[j].y, 1e-6);
-        CHECK(b.hidden[j] == a.hidden[j]);
+        CHECK_NEAR(b.of[0].reflected[j].y, 0.25f * a.of[0].reflected[j].y, 1e-6);
+        CHECK(b.of[0].hidden[j] == a.of[0].hidden[j]);
     }
     ball_close(&white);
     ball_close(&grey);
@@ -162,12 +232,97 @@ TEST(points_inside_are_told_by_the_backs_that_they_see)
 {
     struct ball ball;
     ball_open(&ball, 1);
-    CHECK(dnrt_transfer_at(&ball.how, vec3_of(0.5f, 0.2f, 0), 1).inside > 0.99f);
-    CHECK(dnrt_transfer_at(&ball.how, vec3_of(1.01f, 0, 0), 1).inside == 0);
+    struct dnrt_transfer inside, outside;
+    dnrt_transfer_at(&ball.how, vec3_of(0.5f, 0.2f, 0), 1, &inside);
+    dnrt_transfer_at(&ball.how, vec3_of(1.01f, 0, 0), 1, &outside);
+    CHECK(inside.inside > 0.99f);
+    CHECK(outside.inside == 0);
     ball_close(&ball);
 }
 
+// ---- self-transfer
+
+TEST(a_convex_object_does_not_shadow_itself)
+{
+    struct ball ball;
+    ball_open(&ball, 0.5f);
+    const vec3s point = vec3_of(1.2f, 0.9f, -0.4f);
+    struct dnrt_transfer without, with;
+    dnrt_transfer_at(&ball.how, point, 3, &without);
+    ball.how.self = true;
+    dnrt_transfer_at(&ball.how, point, 3, &with);
+    for (int j = 0; j < 9; j++)
+        CHECK_NEAR(with.of[0].reflected[j].x, without.of[0].reflected[j].x, 1e-4);
+    ball_close(&ball);
+}
+
+// A hemispherical bowl, single surfaces that are seen from within: every point of it sees the bowl
+// by a form factor of ½ and the opening by the other half.
+static int add_bowl(struct scene *scene, int material)
+{
+    enum { RINGS = 48, AROUND = 96, VERTICES = (RINGS + 1) * (AROUND + 1) };
+    static vec3s positions[VERTICES], normals[VERTICES];
+    static uint32_t indices[6 * RINGS * AROUND];
+    uint32_t count = 0;
+    for (int r = 0; r <= RINGS; r++)
+        for (int a = 0; a <= AROUND; a++) {
+            const float theta = GLM_PI_2f * (float)r / RINGS, phi = 2 * GLM_PIf * (float)a / AROUND;
+            const vec3s p = vec3_of(sinf(theta) * cosf(phi), -cosf(theta), sinf(theta) * sinf(phi));
+            positions[r * (AROUND + 1) + a] = p;
+            normals[r * (AROUND + 1) + a] = glms_vec3_negate(p);
+        }
+    for (uint32_t r = 0; r < RINGS; r++)
+        for (uint32_t a = 0; a < AROUND; a++) {
+            const uint32_t i = r * (AROUND + 1) + a, up = i + AROUND + 1;
+            const uint32_t quad[6] = { i, i + 1, up + 1, i, up + 1, up };
+            memcpy(indices + count, quad, sizeof quad);
+            count += 6;
+        }
+    const struct mesh mesh = { .name = "bowl",
+                               .vertex_count = VERTICES,
+                               .index_count = count,
+                               .positions = positions,
+                               .normals = normals,
+                               .indices = indices,
+                               .material = material };
+    return scene_add_mesh(scene, &mesh);
+}
+
+// Its irradiance in constant light is that outside times E with E = ½ + ½ ρ E.
+static void check_bowl(float albedo)
+{
+    struct ball bowl;
+    struct dnrt_transfer with, without;
+    object_open(&bowl, albedo, add_bowl);
+    const vec3s point = vec3_of(0, 2, 0); // it sees nothing but the inside
+    bowl.how.rays = 16384;
+    dnrt_transfer_at(&bowl.how, point, 11, &without);
+    bowl.how.self = true;
+    dnrt_transfer_at(&bowl.how, point, 11, &with);
+    const float irradiance = 0.5f / (1 - 0.5f * albedo);
+    CHECK_RELATIVE(with.of[0].reflected[0].x, irradiance * without.of[0].reflected[0].x, 0.01);
+    CHECK(with.of[0].hidden[0] == without.of[0].hidden[0]);
+    ball_close(&bowl);
+}
+
+TEST(a_bowl_shadows_and_lights_itself_as_the_closed_form_says)
+{
+    check_bowl(0.2f);
+    check_bowl(0.8f);
+    check_bowl(1);
+}
+
 // ---- volumes
+
+TEST(samples_of_a_quadratic_grid_are_denser_at_the_centre)
+{
+    const struct dnrt_grid grid = { vec3_of(1, 2, 3), 4, 17, true };
+    const vec3s corner = dnrt_grid_point(&grid, 0), centre = dnrt_grid_point(&grid, 8 + 17 * 8);
+    CHECK(corner.x == -3 && corner.y == -2 && corner.z == -1);
+    CHECK(centre.x == 1 && centre.y == 2);
+    CHECK_NEAR(dnrt_grid_point(&grid, 12).x - 1, 4 * 0.25f, 1e-6); // u = ½
+    CHECK_NEAR(dnrt_grid_point(&grid, 4).x - 1, -4 * 0.25f, 1e-6);
+}
 
 TEST(an_encoded_plane_is_within_half_a_step)
 {

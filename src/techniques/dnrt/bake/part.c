@@ -95,6 +95,7 @@ static void find_sphere(struct dnrt_part *part)
         for (uint32_t i = 0; i < part->scene.meshes[k].index_count; i++)
             box = box3_add_point(box, vertex(part, k, part->scene.meshes[k].indices[i]));
     if (box3_is_empty(box)) return;
+    part->box = box;
     vec3s at = box3_centre(box);
     part->centre = at;
     farthest(part, at, &part->radius);

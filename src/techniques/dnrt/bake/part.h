@@ -8,8 +8,9 @@ struct dnrt_part {
     struct host *host;
     struct scene scene; // without lights
     struct scene_pose pose;
-    vec3s centre; // of the bounding sphere, the paper's centroid, m
-    float radius; // m; 0: there is no triangle
+    vec3s centre;    // of the bounding sphere, the paper's centroid, m
+    float radius;    // m; 0: there is no triangle
+    struct box3 box; // of its vertices
 };
 
 // dnrt_part_finish accepts zero.

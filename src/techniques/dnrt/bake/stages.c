@@ -66,14 +66,33 @@ enum { OUT_TRANSFER, OUT_INSIDE };
 static struct dnrt_grid grid_of(const struct job *job, const struct dnrt_part *part)
 {
     return (struct dnrt_grid){ part->centre, part->radius * job->options.reach,
-                               dnrt_size(&job->options) };
+                               dnrt_size(&job->options), job->options.grid == DNRT_GRID_QUADRATIC };
 }
 
-static void write_transfer(const struct dnrt_transfer *transfer, int count, float *to)
+// What k_j is multiplied by: c_j are coefficients of irradiance, the radiance behind the object has
+// c_j over the band's factor of the clamped cosine (appendix B.2, Ramamoorthi & Hanrahan 2001),
+// where the paper has c_j / π.
+static float hidden_factor(const struct dnrt_options *options, int coefficient)
 {
-    for (int j = 0; j < count; j++)
-        for (int c = 0; c < 3; c++)
-            to[3 * j + c] = transfer->reflected[j].raw[c] - transfer->hidden[j];
+    const int band = coefficient == 0 ? 0 : coefficient < SH_COUNT(2) ? 1 : 2;
+    const float radiance[] = { 1.0f, 1.5f, 4.0f }; // π over π, 2π/3, π/4
+    return options->occluded == DNRT_OCCLUDED_RADIANCE ? radiance[band] : 1.0f;
+}
+
+// m = t − k of each normal.
+static void write_transfer(const struct dnrt_options *options, const struct dnrt_transfer *transfer,
+                           float *to)
+{
+    for (int i = 0; i < dnrt_normals(options); i++)
+        for (int j = 0; j < dnrt_coefficients(options); j++, to += 3) {
+            const float hidden = transfer->of[i].hidden[j] * hidden_factor(options, j);
+            for (int c = 0; c < 3; c++) to[c] = transfer->of[i].reflected[j].raw[c] - hidden;
+        }
+}
+
+static size_t planes_of(const struct dnrt_options *options)
+{
+    return 3 * (size_t)dnrt_normals(options) * (size_t)dnrt_coefficients(options);
 }
 
 static bool run_samples(const struct bake_task *task)
@@ -81,17 +100,24 @@ static bool run_samples(const struct bake_task *task)
     const struct job *job = task->job;
     const struct shape_trace *shape = &job->shapes[*(const int *)task->argument];
     const struct dnrt_grid grid = grid_of(job, &shape->part);
-    const struct dnrt_sampling how = { shape->trace, shape->part.centre, shape->part.radius,
-                                       dnrt_bands(&job->options), job->options.rays };
-    const int count = dnrt_coefficients(&job->options);
+    const struct dnrt_sampling how = {
+        .trace = shape->trace,
+        .centre = shape->part.centre,
+        .radius = shape->part.radius,
+        .bands = dnrt_bands(&job->options),
+        .rays = job->options.rays,
+        .normals = dnrt_normals(&job->options),
+        .self = job->options.self,
+    };
+    const size_t planes = planes_of(&job->options);
     uint64_t samples, first = bake_task_rows(task, OUT_TRANSFER, &samples);
     if (!(shape->part.radius > 0.0f)) return true;
     for (uint64_t i = 0; i < samples; i++) {
         if (bake_task_cancelled(task)) return false;
-        const struct dnrt_transfer at =
-            dnrt_transfer_at(&how, dnrt_grid_point(&grid, (int)(first + i)),
-                             (uint32_t)rng_mix(task->bake_seed ^ (first + i) << 32) | 1u);
-        write_transfer(&at, count, (float *)task->out[OUT_TRANSFER] + 3 * (size_t)count * i);
+        struct dnrt_transfer at;
+        dnrt_transfer_at(&how, dnrt_grid_point(&grid, (int)(first + i)),
+                         (uint32_t)rng_mix(task->bake_seed ^ (first + i) << 32) | 1u, &at);
+        write_transfer(&job->options, &at, (float *)task->out[OUT_TRANSFER] + planes * i);
         ((uint8_t *)task->out[OUT_INSIDE])[i] = at.inside > 0.5f;
     }
     return true;
@@ -99,7 +125,7 @@ static bool run_samples(const struct bake_task *task)
 
 // ---- volumes
 
-enum { OUT_VOLUME, OUT_SCALE, OUT_SPHERE };
+enum { OUT_VOLUME, OUT_SCALE, OUT_SPHERE, OUT_BOX };
 
 struct stage_argument {
     int shape;
@@ -108,7 +134,7 @@ struct stage_argument {
 
 static void encode(const struct job *job, const float *values, void *const *out)
 {
-    const int planes = 3 * dnrt_coefficients(&job->options);
+    const int planes = (int)planes_of(&job->options);
     const int samples = dnrt_grid_count(dnrt_size(&job->options));
     float *scale = out[OUT_SCALE];
     for (int p = 0; p < planes; p++) {
@@ -122,6 +148,15 @@ static void encode(const struct job *job, const float *values, void *const *out)
     }
 }
 
+static void write_bounds(const struct dnrt_part *part, void *const *out)
+{
+    const vec3s box[2] = { box3_centre(part->box),
+                           glms_vec3_scale(glms_vec3_sub(part->box.max, part->box.min), 0.5f) };
+    const vec4s sphere = vec4_of(part->centre, part->radius);
+    memcpy(out[OUT_SPHERE], &sphere, sizeof sphere);
+    if (part->radius > 0.0f) memcpy(out[OUT_BOX], box, sizeof box);
+}
+
 static bool run_volume(const struct bake_task *task)
 {
     const struct job *job = task->job;
@@ -129,15 +164,14 @@ static bool run_volume(const struct bake_task *task)
     const struct dnrt_part *part = &job->shapes[of->shape].part;
     const struct tensor *transfer = bake_task_input(task, of->transfer);
     const struct tensor *inside = bake_task_input(task, of->inside);
-    const float sphere[4] = { part->centre.x, part->centre.y, part->centre.z, part->radius };
     if (!transfer || !inside) return false;
     float *values = host_alloc(task->host, transfer->bytes, 1);
     if (!values) return false;
     memcpy(values, transfer->data, transfer->bytes);
     const bool ok = dnrt_fill_inside(task->host, dnrt_size(&job->options),
-                                     3 * dnrt_coefficients(&job->options), inside->data, values);
+                                     (int)planes_of(&job->options), inside->data, values);
     if (ok) encode(job, values, task->out);
-    memcpy(task->out[OUT_SPHERE], sphere, sizeof sphere);
+    write_bounds(part, task->out);
     host_free(task->host, values);
     return ok;
 }
@@ -150,12 +184,7 @@ static bool add_samples(struct bake_plan *plan, const struct job *job,
     const uint64_t samples = (uint64_t)dnrt_grid_count(dnrt_size(&job->options));
     const size_t tasks = (size_t)(samples / SAMPLES_PER_TASK);
     const struct bake_output out[] = {
-        { of->transfer,
-          TENSOR_F32,
-          2,
-          { samples, 3 * (uint64_t)dnrt_coefficients(&job->options) },
-          BAKE_ROWS,
-          1 },
+        { of->transfer, TENSOR_F32, 2, { samples, planes_of(&job->options) }, BAKE_ROWS, 1 },
         { of->inside, TENSOR_U8, 1, { samples }, BAKE_ROWS, 1 },
     };
     const char *name = bake_plan_name(plan, "shape %d samples", of->shape);
@@ -175,17 +204,18 @@ static bool add_volume(struct bake_plan *plan, const struct job *job,
 {
     const uint64_t n = (uint64_t)dnrt_size(&job->options);
     const uint64_t count = (uint64_t)dnrt_coefficients(&job->options);
+    const uint64_t normals = (uint64_t)dnrt_normals(&job->options);
     const struct bake_output out[] = {
         { bake_plan_name(plan, DNRT_VOLUME, of->shape),
           job->options.bits == DNRT_BITS_16 ? TENSOR_F16 : TENSOR_U8,
-          5,
-          { count, 3, n, n, n },
+          6,
+          { normals, count, 3, n, n, n },
           BAKE_ROWS,
           BAKE_SAVED },
         { bake_plan_name(plan, DNRT_SCALE, of->shape),
           TENSOR_F32,
-          2,
-          { count, 3 },
+          3,
+          { normals, count, 3 },
           BAKE_ROWS,
           BAKE_SAVED },
         { bake_plan_name(plan, DNRT_SPHERE, of->shape),
@@ -194,19 +224,26 @@ static bool add_volume(struct bake_plan *plan, const struct job *job,
           { 4 },
           BAKE_ROWS,
           BAKE_SAVED },
+        { bake_plan_name(plan, DNRT_BOX, of->shape),
+          TENSOR_F32,
+          2,
+          { 2, 3 },
+          BAKE_ROWS,
+          BAKE_SAVED },
     };
     const char *name = bake_plan_name(plan, "shape %d volume", of->shape);
-    return name && out[0].name && out[1].name && out[2].name &&
-           bake_plan_add(plan, &(struct bake_stage){ .name = name,
-                                                     .wave = 1,
-                                                     .task_count = 1,
-                                                     .run = run_volume,
-                                                     .argument = of,
-                                                     .outputs = out,
-                                                     .output_count = 3,
-                                                     .flops = (double)(n * n * n * count * 6),
-                                                     .scratch_bytes =
-                                                         (size_t)(n * n * n * (count * 12 + 4)) });
+    return name && out[0].name && out[1].name && out[2].name && out[3].name &&
+           bake_plan_add(plan,
+                         &(struct bake_stage){
+                             .name = name,
+                             .wave = 1,
+                             .task_count = 1,
+                             .run = run_volume,
+                             .argument = of,
+                             .outputs = out,
+                             .output_count = 4,
+                             .flops = (double)(n * n * n * normals * count * 6),
+                             .scratch_bytes = (size_t)(n * n * n * (normals * count * 12 + 4)) });
 }
 
 static struct stage_argument *arguments_of(struct bake_plan *plan, int shape)

@@ -4,14 +4,17 @@
 #include "core/host.h"
 #include "core/vec.h"
 
+#include <math.h>
 #include <stdint.h>
 
 // A cube around the object's centre, with samples on its faces: sample (x, y, z), each below
-// `size`, at centre + half · (2 x/(size − 1) − 1, …).
+// `size`, at centre + half · (u, …) with u = 2 x/(size − 1) − 1, or u |u| if quadratic (appendix
+// B.1).
 struct dnrt_grid {
     vec3s centre;
     float half; // of an edge, m
     int size;
+    bool quadratic;
 };
 
 static inline int dnrt_grid_count(int size)
@@ -23,8 +26,10 @@ static inline vec3s dnrt_grid_point(const struct dnrt_grid *grid, int index)
 {
     const int n = grid->size, xyz[3] = { index % n, index / n % n, index / (n * n) };
     vec3s p = grid->centre;
-    for (int i = 0; i < 3; i++)
-        p.raw[i] += grid->half * (2.0f * (float)xyz[i] / (float)(n - 1) - 1.0f);
+    for (int i = 0; i < 3; i++) {
+        const float u = 2.0f * (float)xyz[i] / (float)(n - 1) - 1.0f;
+        p.raw[i] += grid->half * (grid->quadratic ? u * fabsf(u) : u);
+    }
     return p;
 }
 

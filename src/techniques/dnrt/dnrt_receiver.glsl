@@ -1,0 +1,77 @@
+// What a receiver looks up in the volumes of an object: where, and the weight of each. Include
+// after dnrt_shared.h.
+#ifndef DNRT_RECEIVER_GLSL
+#define DNRT_RECEIVER_GLSL
+
+layout(constant_id = 1) const uint NORMALS = 1;       // 1, 3 or 6 volumes, bake/transfer.h
+layout(constant_id = 0) const bool QUADRATIC = false; // the grid
+const uint LOOKUPS = NORMALS == 1u ? 1u : 3u;         // with a weight
+
+struct dnrt_receiver {
+    vec3 position; // from the object's centre, along its axes, m
+    vec3 normal;   // along its axes
+};
+
+dnrt_receiver dnrt_receiver_of(dnrt_gpu_object object, vec3 position, vec3 normal)
+{
+    mat3 axes = mat3(object.axis[0], object.axis[1], object.axis[2]);
+    return dnrt_receiver((position - object.centre) * axes, normal * axes);
+}
+
+// Between the border of the inner volume, at 1, and the outer one's: the inverse square of the
+// distance, less its value at the end.
+float dnrt_fall_off(float distance, float fade)
+{
+    if (distance <= 1.0) return 1.0;
+    float end = 1.0 / (fade * fade);
+    return max((1.0 / (distance * distance) - end) / (1.0 - end), 0.0);
+}
+
+// The normal whose product with the vector irradiance is the irradiance from above the horizon. An
+// object is above with `part` of its box's extent along the normal: all of it counts, or of a
+// sphere of this extent the cosine from above, part² h/d, is that of its form factor (a quadratic
+// fit of Snyder 1996, "Area Light Sources for Real-Time Graphics").
+vec3 dnrt_above_horizon(dnrt_gpu_object object, dnrt_receiver at)
+{
+    vec3 to_box = object.box_centre - at.position;
+    float extent = max(dot(abs(at.normal), object.box_half), 1e-12);
+    float part = clamp(0.5 * dot(to_box, at.normal) / extent + 0.5, 0.0, 1.0);
+    float distance = max(length(to_box), 1e-12);
+    float below = (1.0 - part) * min(extent / distance, 1.0) / distance;
+    return part * (at.normal + below * to_box);
+}
+
+// Weights of the volumes: of one, of x, y and z, or of −x or x, −y or y, −z or z. False: it sees
+// nothing of the object.
+bool dnrt_weights(dnrt_gpu_object object, dnrt_receiver at, float fade, out vec3 weights)
+{
+    vec3 extent = abs(at.position) / object.half_m;
+    float border = max(extent.x, max(extent.y, extent.z));
+    weights = vec3(0.0);
+    if (object.shape < 0 || border >= max(fade, 1.0)) return false;
+    if (NORMALS == 1u)
+        weights.x = max(-dot(at.position, at.normal) / max(length(at.position), 1e-12), 0.0);
+    else if (NORMALS == 3u)
+        weights = dnrt_above_horizon(object, at);
+    else
+        weights = at.normal * at.normal;
+    weights *= dnrt_fall_off(border, fade);
+    return weights != vec3(0.0);
+}
+
+// The volume of the i-th weight.
+uint dnrt_volume_of(dnrt_receiver at, uint i)
+{
+    return NORMALS == 6u ? 2u * i + (at.normal[i] < 0.0 ? 1u : 0u) : i;
+}
+
+// The position among the samples of a volume, 0 to size − 1 along each edge.
+vec3 dnrt_sample_of(dnrt_gpu_object object, dnrt_receiver at, uint size)
+{
+    vec3 p = at.position / object.half_m;
+    p /= max(max(abs(p.x), max(abs(p.y), abs(p.z))), 1.0);
+    if (QUADRATIC) p = sign(p) * sqrt(abs(p));
+    return (0.5 * p + 0.5) * float(size - 1u);
+}
+
+#endif
