@@ -204,20 +204,25 @@ static bool probes(void *state, struct probe_volume *out)
     return true;
 }
 
-static const struct technique_debug_view views[] = {
-    { PROBES_VIEW, PROBES_VIEW_HELP, NULL },
-    { NULL, NULL, NULL },
-};
+static void debug_view(void *state, struct gpu_cmd *cmd, const struct frame_view *view,
+                       const char *name, gpu_image out)
+{
+    struct radiosity *s = state;
+    if (view->layers[FRAME_ID].id && s->map.texel_count > 0)
+        radiosity_view_record(s, cmd, view, name, out);
+    else
+        gpu_clear_image(cmd, out, (const float[4]){ 0.0f, 0.0f, 0.0f, 1.0f });
+}
 
 static void destroy_buffers(struct radiosity *s)
 {
     struct radiosity_buffers *b = &s->buffers;
-    gpu_buffer *const buffers[] = { &b->texels,       &b->factors,      &b->clusters,
-                                    &b->members,      &b->nodes,        &b->owners,
-                                    &b->instances,    &b->triangles,    &b->places,
-                                    &b->seams,        &b->flux,         &b->light,
-                                    &b->points,       &b->smoothed,     &b->sent,
-                                    &b->radiosity[0], &b->radiosity[1], &b->cluster_factors };
+    gpu_buffer *const buffers[] = {
+        &b->texels, &b->factors,      &b->clusters,     &b->members,        &b->nodes,
+        &b->owners, &b->instances,    &b->triangles,    &b->places,         &b->seams,
+        &b->flux,   &b->light,        &b->points,       &b->labels,         &b->smoothed,
+        &b->sent,   &b->radiosity[0], &b->radiosity[1], &b->cluster_factors
+    };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(s->gpu, buffers[i]);
     gpu_image_destroy(s->gpu, &b->light_map);
@@ -229,7 +234,7 @@ static void destroy(void *state)
     if (!s->host) return;
     struct radiosity_pipelines *p = &s->pipelines;
     gpu_pipeline *const pipelines[] = { &p->direct, &p->clusters, &p->nodes, &p->solve, &p->gather,
-                                        &p->smooth, &p->map,      &p->seams, &p->apply };
+                                        &p->smooth, &p->map,      &p->seams, &p->apply, &p->view };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     destroy_buffers(s);
@@ -253,7 +258,8 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     const uint64_t sources = (uint64_t)o->sources;
     (void)width;
     (void)height;
-    return texels * (sizeof(struct radiosity_gpu_texel) + 8 * sources + 12 + 48 + 4) +
+    const uint64_t label = sizeof(struct radiosity_gpu_label);
+    return texels * (sizeof(struct radiosity_gpu_texel) + label + 8 * sources + 12 + 48 + 4) +
            clusters * (sizeof(struct radiosity_gpu_cluster) + 8 * sources + 8 + 6 * 12) +
            (uint64_t)o->texels * (4 + 8 * RADIOSITY_LAYERS) + radiosity_probes_memory(o);
 }
@@ -269,7 +275,7 @@ const struct technique technique_radiosity = {
     .bake_version = 9,
     .options = OPTION_TABLE(struct radiosity_options, option_rows, NULL),
     .presets = presets,
-    .debug_views = views,
+    .debug_views = radiosity_views,
     .state_size = sizeof(struct radiosity),
     .more_needs = more_needs,
     .bake = radiosity_bake,
@@ -280,6 +286,7 @@ const struct technique technique_radiosity = {
     .follow = follow,
     .update = update,
     .record = record,
+    .debug_view = debug_view,
     .charts = charts,
     .light_map = light_map,
     .probes = probes,

@@ -16,7 +16,9 @@
 #include "frame/brdf.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/radiosity/radiosity_lobe.glsl"
-#include "techniques/radiosity/radiosity_shared.h"
+#define RADIOSITY_INSTANCES_BINDING 4
+#define RADIOSITY_TRIANGLES_BINDING 5
+#include "techniques/radiosity/radiosity_place.glsl"
 
 layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
 
@@ -27,14 +29,6 @@ layout(push_constant, scalar) uniform push_block
 layout(set = 0, binding = 1) uniform sampler2D depth;
 layout(set = 0, binding = 2) uniform sampler2D normal;
 layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
-layout(set = 0, binding = 4, scalar) readonly buffer radiosity_instances
-{
-    uint first_table[]; // [instances + 1] first triangle
-};
-layout(set = 0, binding = 5, scalar) readonly buffer radiosity_triangles
-{
-    radiosity_gpu_triangle triangle_table[];
-};
 layout(set = 0, binding = 6) uniform sampler2DArray light_map;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D irradiance;
 #if SPECULAR
@@ -43,19 +37,6 @@ layout(set = 0, binding = 10) uniform sampler2D material;
 layout(set = 0, binding = 11) uniform sampler2D dielectric; // FRAME_DIELECTRIC if `has_dielectric`
 layout(set = 0, binding = 12, rgba16f) uniform writeonly image2D specular;
 #endif
-
-// The place in the light map; z: the first layer, negative where there is none.
-vec3 place_of(uvec2 ids, vec3 position)
-{
-    if (ids.x == 0u || ids.x > push.instances) return vec3(-1.0);
-    uint triangle = first_table[ids.x - 1u] + ids.y - 1u;
-    if (triangle >= first_table[ids.x]) return vec3(-1.0);
-    radiosity_gpu_triangle t = triangle_table[triangle];
-    if (t.sides == 0u) return vec3(-1.0);
-    bool back = t.sides == 2u && dot(t.normal, frame.camera_position - position) < 0.0;
-    return vec3(dot(t.u, vec4(position, 1.0)), dot(t.v, vec4(position, 1.0)),
-                back ? float(RADIOSITY_LAYERS) : 0.0);
-}
 
 // Irradiance and vector irradiance by colour.
 struct light_at_pixel {
@@ -68,7 +49,8 @@ light_at_pixel light_at(vec3 place, vec3 n)
     vec2 uv = place.xy / vec2(push.width, push.height);
     light_at_pixel light;
     for (int c = 0; c < 3; c++) {
-        vec4 texel = textureLod(light_map, vec3(uv, place.z + float(c)), 0.0);
+        vec4 texel =
+            textureLod(light_map, vec3(uv, place.z * float(RADIOSITY_LAYERS) + float(c)), 0.0);
         light.irradiance[c] = 0.5 * (texel.x + dot(texel.yzw, n));
         light.vector[c] = texel.yzw;
     }
@@ -101,7 +83,7 @@ void main()
     if (z > 0.0) {
         vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
         vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-        vec3 place = place_of(texelFetch(id, pixel, 0).rg, position);
+        vec3 place = radiosity_place_of(texelFetch(id, pixel, 0).rg, push.instances, position);
         if (place.z >= 0.0) light = light_at(place, n);
 #if SPECULAR
         radiance = reflected(pixel, position, n, light);

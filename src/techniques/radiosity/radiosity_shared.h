@@ -56,6 +56,21 @@ struct radiosity_gpu_seam {
     float weight;
 };
 
+// What debug views show of a texel.
+struct radiosity_gpu_label {
+    uint32_t place; // in the light map, as of points
+    uint32_t chart, cluster;
+    uint32_t state; // RADIOSITY_SAMPLED_…
+};
+#define RADIOSITY_SAMPLED_IN_MIDDLE 0
+#define RADIOSITY_SAMPLED_BESIDE    1 // the middle is inside of something
+#define RADIOSITY_NOT_SAMPLED       2 // all of it is
+
+#define RADIOSITY_VIEW_CHARTS   0
+#define RADIOSITY_VIEW_TEXELS   1
+#define RADIOSITY_VIEW_CLUSTERS 2
+#define RADIOSITY_VIEW_VALIDITY 3
+
 struct radiosity_direct_push {
     uint32_t texels;
     int32_t shadow_radius; // texels of the shadow map
@@ -101,6 +116,12 @@ struct radiosity_apply_push {
     uint32_t has_dielectric;
 };
 
+struct radiosity_view_push {
+    uint32_t width, height; // of the light map
+    uint32_t instances;     // later ones are not in the map
+    uint32_t view;          // RADIOSITY_VIEW_…
+};
+
 #ifndef AG_GLSL
 _Static_assert(sizeof(struct radiosity_gpu_texel) == 104, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_point) == 20, "layout is shared with GLSL");
@@ -109,6 +130,8 @@ _Static_assert(sizeof(struct radiosity_gpu_cluster) == 24, "layout is shared wit
 _Static_assert(sizeof(struct radiosity_gpu_triangle) == 48, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_gpu_seam) == 8, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_seams_push) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_gpu_label) == 16, "layout is shared with GLSL");
+_Static_assert(sizeof(struct radiosity_view_push) == 16, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_direct_push) == 12, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_clusters_push) == 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct radiosity_solve_push) == 16, "layout is shared with GLSL");

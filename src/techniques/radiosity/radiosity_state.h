@@ -13,6 +13,7 @@ struct radiosity_buffers {
     gpu_buffer points;                                    // of texels, for `smooth`
     gpu_buffer owners, instances, triangles;              // of the light map
     gpu_buffer places, seams;                             // beside seams
+    gpu_buffer labels;                                    // of texels, for debug views
     gpu_buffer flux, light, smoothed;                     // [texels] of the newest light
     gpu_buffer sent, radiosity[2];                        // [clusters and nodes] likewise
     gpu_image light_map;
@@ -25,7 +26,7 @@ struct radiosity_block {
 };
 
 struct radiosity_pipelines {
-    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, apply;
+    gpu_pipeline direct, clusters, nodes, solve, gather, smooth, map, seams, apply, view;
 };
 
 struct radiosity {
@@ -68,3 +69,11 @@ void radiosity_record_light(struct radiosity *state, struct gpu_cmd *cmd,
                             const struct frame_view *view);
 void radiosity_record_apply(struct radiosity *state, struct gpu_cmd *cmd,
                             const struct frame_view *view);
+
+// ---- radiosity_view.c
+
+extern const struct technique_debug_view radiosity_views[];
+// points: [texels] position (m), share, of a bake.
+bool radiosity_view_init(struct radiosity *state, const float *points);
+void radiosity_view_record(struct radiosity *state, struct gpu_cmd *cmd,
+                           const struct frame_view *view, const char *name, gpu_image out);

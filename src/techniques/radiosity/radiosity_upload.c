@@ -350,7 +350,7 @@ static bool upload_all(struct radiosity *s, const struct content *c)
            radiosity_upload_factors(s, c->source, c->factor, c->cluster_source,
                                     c->cluster_factor) &&
            upload_points(s, c) && upload_clusters(s, c) && upload_owners(s, c) &&
-           upload_seams(s, c) && upload_triangles(s);
+           upload_seams(s, c) && upload_triangles(s) && radiosity_view_init(s, c->point);
 }
 
 bool radiosity_upload(struct radiosity *s, const struct tensors *bake)

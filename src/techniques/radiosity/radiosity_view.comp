@@ -1,0 +1,80 @@
+// Debug views: what the light map is made of, on the surfaces that have it.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "frame/frame.glsl"
+#include "frame/octahedral.glsl"
+#define RADIOSITY_INSTANCES_BINDING 4
+#define RADIOSITY_TRIANGLES_BINDING 5
+#include "techniques/radiosity/radiosity_place.glsl"
+
+layout(local_size_x = RADIOSITY_LOCAL_2D, local_size_y = RADIOSITY_LOCAL_2D) in;
+
+layout(push_constant, scalar) uniform push_block
+{
+    radiosity_view_push push;
+};
+layout(set = 0, binding = 1) uniform sampler2D depth;
+layout(set = 0, binding = 2) uniform sampler2D normal;
+layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
+layout(set = 0, binding = 6, scalar) readonly buffer radiosity_owners
+{
+    uint owner_table[]; // [side][y][x]
+};
+layout(set = 0, binding = 7, scalar) readonly buffer radiosity_labels
+{
+    radiosity_gpu_label label_table[];
+};
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D target;
+
+const vec3 NONE = vec3(0.02); // no light map
+const vec3 VALID = vec3(0.2), BESIDE = vec3(0.6, 0.45, 0.05), FILLED = vec3(0.7, 0.05, 0.05),
+           BLACK = vec3(0.5, 0.0, 0.5);
+
+// Integers of neighbours have colours far apart: the finalizer of MurmurHash3.
+vec3 colour_of(uint number)
+{
+    uint h = (number ^ number >> 16) * 0x85ebca6bu;
+    h = (h ^ h >> 13) * 0xc2b2ae35u;
+    h ^= h >> 16;
+    return 0.08 + 0.6 * vec3(uvec3(h, h >> 8, h >> 16) & 0xffu) / 255.0;
+}
+
+vec3 validity_of(radiosity_gpu_label label, uint place)
+{
+    if (label.state == uint(RADIOSITY_NOT_SAMPLED)) return BLACK;
+    if (label.place != place) return FILLED;
+    return label.state == uint(RADIOSITY_SAMPLED_BESIDE) ? BESIDE : VALID;
+}
+
+vec3 colour_at(vec3 at)
+{
+    // Rounding at an edge of a triangle may leave the texels of its chart, not its gutter.
+    uvec2 texel = uvec2(clamp(at.xy, vec2(0.0), vec2(push.width, push.height) - 1.0));
+    uint place = (uint(at.z) * push.height + texel.y) * push.width + texel.x;
+    uint owner = owner_table[place];
+    if (owner == 0xffffffffu) return NONE;
+    if (push.view == uint(RADIOSITY_VIEW_TEXELS))
+        return vec3((texel.x + texel.y & 1u) == 0u ? 0.5 : 0.15);
+    radiosity_gpu_label label = label_table[owner];
+    if (push.view == uint(RADIOSITY_VIEW_CHARTS)) return colour_of(label.chart);
+    if (push.view == uint(RADIOSITY_VIEW_CLUSTERS)) return colour_of(label.cluster);
+    return validity_of(label, place);
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
+    float z = texelFetch(depth, pixel, 0).r;
+    vec3 colour = vec3(0.0);
+    if (z > 0.0) {
+        vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
+        vec3 at = radiosity_place_of(texelFetch(id, pixel, 0).rg, push.instances, position);
+        vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+        float facing = abs(dot(n, normalize(frame.camera_position - position)));
+        colour = (at.z < 0.0 ? NONE : colour_at(at)) * (0.5 + 0.5 * facing);
+    }
+    imageStore(target, pixel, vec4(colour, 1.0));
+}
