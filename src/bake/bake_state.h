@@ -85,6 +85,12 @@ bool bake_resume(struct bake *bake, const char *path);
 
 uint64_t estimate_peak_memory(const struct bake *bake, int threads);
 
+// ---- advice.c
+
+// A density of the light map, as %.3g has it, at which the bake needs at most `limit`: the largest
+// within some percent. 0: none was found. Charts are made several times.
+double advised_density(const struct bake *bake, uint64_t needed, uint64_t limit, int threads);
+
 // ---- progress.c: times, predicted from those of finished tasks and the costs in the plan
 
 struct prediction {

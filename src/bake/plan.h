@@ -70,6 +70,9 @@ void bake_plan_depends(struct bake_plan *plan, struct hash128 key);
 struct bake_light_map {
     uint32_t charts;
     float texels_per_m;
+    // Adds the stages at another density to an empty plan; job: of the bake's own plan. For advice
+    // where memory is short; NULL: there is none.
+    bool (*plan_at)(struct bake_plan *plan, const void *job, float texels_per_m);
 };
 void bake_plan_set_light_map(struct bake_plan *plan, struct bake_light_map map);
 

@@ -17,7 +17,8 @@ struct scene *scene_create(struct host *host, const char *name)
     arena_init(&scene->arena, host);
     scene->free_node = -1;
     scene->name = arena_strdup(&scene->arena, name_or_empty(name));
-    if (!scene->name) goto fail;
+    scene->warned_of_unwraps = arena_alloc(&scene->arena, 1, sizeof *scene->warned_of_unwraps);
+    if (!scene->name || !scene->warned_of_unwraps) goto fail;
     return scene;
 fail:
     scene_destroy(scene);

@@ -7,6 +7,7 @@
 #include "core/arena.h"
 #include "core/vec.h"
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 enum texture_wrap { WRAP_REPEAT, WRAP_MIRROR, WRAP_CLAMP };
@@ -206,6 +207,9 @@ struct scene {
     int animation_count;
     vec3s sky;             // uniform radiance from outside, cd/m²
     uint64_t content_hash; // of the file's bytes or of the built-in's name
+    // A warning has said that unwraps are broken: light maps are planned several times. Shared with
+    // copies of this struct.
+    atomic_bool *warned_of_unwraps;
 };
 
 // Loads a file (glTF 2.0, .glb; OBJ, PLY, FBX, X) or a built-in, "@name" or "@name:key=value,…".

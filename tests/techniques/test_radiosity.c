@@ -1,4 +1,4 @@
-// Radiosity: rows of form factors, the bake's bytes, a furnace, lights that change.
+// Radiosity: rows of form factors, a furnace, lights that change.
 #include "frame/frame_fixture.h"
 #include "techniques/baked_fixture.h"
 
@@ -37,37 +37,6 @@ static void add_block(struct frame_fixture *s, float bottom)
 }
 
 // ---- the bake
-
-static struct bake *bake_of(struct gi_spec *spec, const struct technique_bake *how, int threads)
-{
-    struct bake *bake = gi_bake_create(test_host(), spec->technique[0], how,
-                                       (struct bake_identity){ .program = "test" });
-    assert_non_null(bake);
-    CHECK(bake_run(bake, &(struct bake_run_options){ .threads = threads }));
-    return bake;
-}
-
-TEST_GPU(bake_has_the_same_bytes_for_any_number_of_threads)
-{
-    struct frame_fixture s;
-    struct gi_spec spec;
-    room(&s, gpu, 0.5f, 10);
-    add_block(&s, 0.4f);
-    fixture_open(&s);
-    CHECK(gi_spec_parse(&spec, test_host(), SMALL));
-    const struct technique_bake how = { .pose = &s.pose, .options = spec.options[0] };
-    struct bake *one = bake_of(&spec, &how, 1), *three = bake_of(&spec, &how, 3);
-    const struct tensors *a = bake_tensors(one), *b = bake_tensors(three);
-    CHECK(a->count == b->count && a->count > 0);
-    for (size_t i = 0; i < a->count; i++) {
-        CHECK(a->at[i].bytes == b->at[i].bytes);
-        assert_memory_equal(a->at[i].data, b->at[i].data, a->at[i].bytes);
-    }
-    bake_destroy(one);
-    bake_destroy(three);
-    gi_spec_finish(&spec);
-    fixture_finish(&s);
-}
 
 static void check_rows(const struct tensors *bake)
 {

@@ -84,8 +84,8 @@ struct charts {
     uint32_t without_area; // chosen triangles that are in no chart
 };
 
-// Deterministic. A warning names the meshes whose TEXCOORD_1 cannot be used. FAIL_MEMORY where no
-// density fits. charts_finish accepts zero.
+// Deterministic. A warning, one for a scene, names the meshes whose TEXCOORD_1 cannot be used.
+// FAIL_MEMORY where no density fits. charts_finish accepts zero.
 bool charts_init(struct charts *out, struct host *host, const struct scene_pose *pose,
                  const struct charts_options *options);
 void charts_finish(struct charts *charts);

@@ -12,7 +12,7 @@
 
 // ---- triangles
 
-// One warning names the first mesh whose TEXCOORD_1 is broken.
+// One warning for a scene names the first mesh whose TEXCOORD_1 is broken.
 struct unwraps {
     enum unwrap_fault *fault; // [mesh_count]
     bool *checked;
@@ -31,7 +31,7 @@ static bool check_mesh(struct host *host, const struct scene *scene, int mesh, s
 
 static void warn(struct host *host, const struct scene *scene, const struct unwraps *u)
 {
-    if (u->broken == 0) return;
+    if (u->broken == 0 || atomic_exchange(scene->warned_of_unwraps, true)) return;
     const char *name = scene->meshes[u->first].name;
     host_log(host, LOG_WARNING, "TEXCOORD_1 of %d meshes in %s: of '%s' it %s; charts replace it",
              u->broken, scene->name, name ? name : "", unwrap_fault_text(u->fault[u->first]));

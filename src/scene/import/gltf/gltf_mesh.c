@@ -2,6 +2,7 @@
 #include "scene/import/gltf/gltf.h"
 
 #include "scene/import/import_mesh.h"
+#include "scene/scene_check.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -198,6 +199,28 @@ static bool check_compression(struct primitive *p)
                      import->path, import_printable(p->mesh->name).s);
 }
 
+static bool uses_second_set(const struct material *m)
+{
+    const struct texture_use *const maps[] = { &m->base_color_map, &m->metallic_roughness_map,
+                                               &m->normal_map,     &m->emissive_map,
+                                               &m->specular_map,   &m->specular_color_map };
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+        if (maps[i]->image >= 0 && maps[i]->uv_set == 1) return true;
+    return false;
+}
+
+// A second set that no texture uses is for light maps, which need none.
+static void drop_broken_unwrap(struct primitive *p)
+{
+    struct mesh *mesh = p->mesh;
+    bool finite = true;
+    for (uint32_t i = 0; mesh->uv[1] && i < mesh->index_count; i++)
+        finite &= vec2_is_finite(mesh->uv[1][mesh->indices[i]]);
+    if (finite || uses_second_set(&p->gltf->import->scene->materials[mesh->material])) return;
+    import_note(p->gltf->import, "TEXCOORD_1 that is not finite");
+    mesh->uv[1] = NULL;
+}
+
 static bool load_vertices(struct primitive *p, int position_accessor)
 {
     struct mesh *mesh = p->mesh;
@@ -208,6 +231,7 @@ static bool load_vertices(struct primitive *p, int position_accessor)
     if (!mesh->normals) mesh->tangents = NULL; // ignored then, as glTF 2.0 requires
     mesh->uv[0] = (vec2s *)floats(p, p->attributes, "TEXCOORD_0", 2);
     mesh->uv[1] = (vec2s *)floats(p, p->attributes, "TEXCOORD_1", 2);
+    if (!p->gltf->failed) drop_broken_unwrap(p);
     return !p->gltf->failed && load_colors(p) && load_skinning(p) && load_morphs(p);
 }
 

@@ -312,6 +312,14 @@ static size_t prepared_bytes(const struct radiosity_map *map)
            2 * (size_t)map->cluster_count * (2 * sizeof *map->tree.nodes + sizeof(uint32_t));
 }
 
+static bool plan_at(struct bake_plan *plan, const void *user, float texels_per_m)
+{
+    const struct job *job = user;
+    struct radiosity_options options = job->options;
+    options.density = texels_per_m;
+    return radiosity_bake(plan, &(struct technique_bake){ .pose = job->pose, .options = &options });
+}
+
 static bool add_stages(struct bake_plan *plan, struct job *job, const struct scene_pose *statics)
 {
     bake_plan_depends(plan, scene_key(statics, SCENE_KEY_GEOMETRY | SCENE_KEY_MATERIALS));
@@ -323,8 +331,8 @@ static bool add_stages(struct bake_plan *plan, struct job *job, const struct sce
                                                 .finish = finish,
                                                 .destroy = destroy,
                                                 .bytes = prepared_bytes(map) });
-    bake_plan_set_light_map(plan,
-                            (struct bake_light_map){ map->charts.count, map->charts.texels_per_m });
+    bake_plan_set_light_map(
+        plan, (struct bake_light_map){ map->charts.count, map->charts.texels_per_m, plan_at });
     const uint64_t texels = radiosity_rows(map->texel_count);
     const uint64_t clusters = radiosity_cluster_rows(map);
     struct radiosity_seams seams;
