@@ -10,6 +10,7 @@
 #include "technique_shaders.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #define OPTION(...) OPTION_ROW(struct dnrt_options, __VA_ARGS__)
 static const struct option_row option_rows[] = {
@@ -85,25 +86,30 @@ static void set_options(void *state, const void *options)
 
 // ---- frames
 
+static uint32_t slot_of(const struct dnrt *s, int object)
+{
+    const int n = dnrt_size(&s->options), across = s->slots[0], layer = across * s->slots[1];
+    const int x = object % across * dnrt_normals(&s->options) * n,
+              y = object / across % s->slots[1] * n;
+    return (uint32_t)(x | y << 10 | object / layer * n << 20);
+}
+
 static void place_object(struct dnrt *s, const struct scene_pose *pose, int object)
 {
     const struct dnrt_object *of = &s->objects.at[object];
     const struct dnrt_volume *volume = of->shape >= 0 ? &s->volumes[of->shape] : NULL;
-    const int n = dnrt_size(&s->options), across = s->slots[0], layer = across * s->slots[1];
-    const int normals = dnrt_normals(&s->options);
     struct dnrt_gpu_object *to = &s->gpu_objects[object];
     struct dnrt_frame frame;
     mat3s stretch;
     *to = (struct dnrt_gpu_object){ .shape = -1 };
     if (!volume || !dnrt_object_frame(&s->objects, pose, object, &frame, &stretch)) return;
+    const versors turn = glms_quat_normalize(glms_mat3_quat(frame.rotation));
     *to = (struct dnrt_gpu_object){
         .centre = mat4_point(dnrt_world_from_object(&frame), volume->centre),
         .half_m = volume->radius * s->options.reach * frame.scale,
-        .axis = { frame.rotation.col[0], frame.rotation.col[1], frame.rotation.col[2] },
+        .rotation = { turn.x, turn.y, turn.z, turn.w },
         .shape = volume->radius > 0.0f ? of->shape : -1,
-        .slot_x = object % across * normals * n,
-        .slot_y = object / across % s->slots[1] * n,
-        .slot_z = object / layer * n,
+        .slot = slot_of(s, object),
         .first_instance = (uint32_t)s->objects.instances[of->first],
         .instance_count = (uint32_t)of->count,
         .box_centre =
@@ -124,15 +130,27 @@ static struct gpu_binding objects_binding(const struct dnrt *s, struct gpu_cmd *
                          (size_t)s->objects.count * sizeof *s->gpu_objects);
 }
 
+static bool has_bounces(const struct dnrt *s)
+{
+    return s->objects.count > 1 && s->options.bounces > 1;
+}
+
 static void record_light(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects)
 {
-    const struct dnrt_light_push push = { s->source.grid, (uint32_t)s->objects.count };
+    // What other objects change of an object's light is not compared.
+    const bool bounces = has_bounces(s);
+    const struct dnrt_light_push push = { s->source.grid, (uint32_t)s->objects.count,
+                                          (uint32_t)dnrt_normals(&s->options),
+                                          s->stale || bounces };
     gpu_scope_begin(cmd, "light");
+    gpu_fill_buffer(cmd, s->changed, offsetof(struct dnrt_changed, groups_y), sizeof(uint32_t), 0);
     gpu_dispatch(cmd, s->light_pipeline,
                  GPU_BIND({ .name = "probes", .image = s->source.image, .sampler = s->linear },
-                          objects, { .name = "dnrt_light", .buffer = s->light }),
+                          objects, { .name = "dnrt_light", .buffer = s->light },
+                          { .name = "dnrt_changed", .buffer = s->changed }),
                  &push, sizeof push, gpu_groups(push.objects, DNRT_LOCAL), 1, 1);
     gpu_scope_end(cmd);
+    s->stale = bounces;
 }
 
 // Returns the first entry of the newest light.
@@ -142,7 +160,7 @@ static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_b
     struct dnrt_bounce_push push = { .objects = count,
                                      .size = (uint32_t)dnrt_size(&s->options),
                                      .fade = s->options.fade };
-    if (count < 2 || s->options.bounces < 2) return 0;
+    if (!has_bounces(s)) return 0;
     gpu_scope_begin(cmd, "bounces");
     for (int bounce = 1; bounce < s->options.bounces; bounce++) {
         push.to = (bounce % 2 ? 1 : 2) * part;
@@ -157,20 +175,19 @@ static uint32_t record_bounces(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_b
     return push.from;
 }
 
+// Only of objects whose light or shape has changed: none in a still scene.
 static void record_volumes(struct dnrt *s, struct gpu_cmd *cmd, struct gpu_binding objects,
                            uint32_t light)
 {
-    enum { SAMPLES = 4 }; // of an invocation
     const struct dnrt_volumes_push push = { (uint32_t)dnrt_size(&s->options), light };
-    const uint32_t samples = push.size * push.size * push.size;
     gpu_scope_begin(cmd, "volumes");
-    gpu_dispatch(cmd, s->volumes_pipeline,
-                 GPU_BIND(objects, { .name = "dnrt_light", .buffer = s->light },
-                          { .name = "dnrt_shapes", .buffer = s->shapes },
-                          { .name = "dnrt_samples", .buffer = s->samples },
-                          { .name = "volumes", .image = s->image }),
-                 &push, sizeof push, gpu_groups(samples / SAMPLES, DNRT_LOCAL),
-                 (uint32_t)(s->objects.count * dnrt_normals(&s->options)), 1);
+    gpu_dispatch_indirect(cmd, s->volumes_pipeline,
+                          GPU_BIND(objects, { .name = "dnrt_light", .buffer = s->light },
+                                   { .name = "dnrt_shapes", .buffer = s->shapes },
+                                   { .name = "dnrt_samples", .buffer = s->samples },
+                                   { .name = "dnrt_changed", .buffer = s->changed },
+                                   { .name = "volumes", .image = s->image }),
+                          &push, sizeof push, s->changed, 0);
     gpu_scope_end(cmd);
 }
 
@@ -201,9 +218,11 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
         cmd, has_id ? s->apply_pipeline : s->apply_without_id,
         GPU_BIND(view->constants_binding, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                  { .name = "normal", .image = view->layers[FRAME_NORMAL] },
-                 { .name = "id", .image = view->layers[FRAME_ID] }, objects_binding(s, cmd),
+                 { .name = "id", .image = view->layers[FRAME_ID] },
+                 gpu_transient(cmd, "dnrt_objects", s->gpu_objects,
+                               DNRT_MAX_OBJECTS * sizeof *s->gpu_objects),
                  gpu_transient(cmd, "dnrt_tiles", s->tiles,
-                               (size_t)tiles * (1 + push.words) * sizeof *s->tiles),
+                               (size_t)tiles * (DNRT_TILE_BITS + push.words) * sizeof *s->tiles),
                  { .name = "volumes", .image = s->image, .sampler = s->linear },
                  { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
         &push, sizeof push, tiles, 1, 1);
@@ -217,7 +236,7 @@ static void destroy(void *state)
     gpu_pipeline *const pipelines[] = { &s->light_pipeline, &s->bounce_pipeline,
                                         &s->volumes_pipeline, &s->apply_pipeline,
                                         &s->apply_without_id };
-    gpu_buffer *const buffers[] = { &s->shapes, &s->samples, &s->light };
+    gpu_buffer *const buffers[] = { &s->shapes, &s->samples, &s->light, &s->changed };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)

@@ -2,16 +2,22 @@
 // (n_o·n)₊ of one volume (Giuffrida 2016, equation 16). Workgroups are the tiles of the image that
 // some object reaches. A pixel that none changes is not written.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#define FRAME_CONSTANTS_COPIED
 #include "frame/frame.glsl"
 #include "frame/octahedral.glsl"
 #include "techniques/dnrt/dnrt_shared.h"
 
+#include "techniques/dnrt/dnrt_object.glsl"
 #include "techniques/dnrt/dnrt_receiver.glsl"
 
-layout(local_size_x = DNRT_TILE, local_size_y = DNRT_TILE) in;
+// An invocation has quads of 2 × 2 pixels, this number one below the other: it skips those without
+// a surface.
+const int ROWS = 4;
+layout(local_size_x = DNRT_TILE / 2, local_size_y = DNRT_TILE / 2 / ROWS) in;
 
 layout(push_constant, scalar) uniform push_block
 {
@@ -22,62 +28,171 @@ layout(set = 0, binding = 2) uniform sampler2D normal;
 #ifdef DNRT_ID
 layout(set = 0, binding = 3) uniform usampler2D id; // FRAME_ID
 #endif
-layout(set = 0, binding = 4, scalar) readonly buffer dnrt_objects
+layout(set = 0, binding = 4, scalar) uniform dnrt_objects
 {
-    dnrt_gpu_object object_table[];
+    dnrt_gpu_object object_table[DNRT_MAX_OBJECTS];
 };
 layout(set = 0, binding = 5, scalar) readonly buffer dnrt_tiles
 {
-    uint tile_table[]; // [group][1 + words]: the tile, and a bit for each object
+    // [group][DNRT_TILE_BITS + words]: the tile; the distance of pixels that share a lookup, m, as
+    // bits of a float; a bit for each object.
+    uint tile_table[];
 };
 layout(set = 0, binding = 6) uniform sampler3D volumes;
 layout(set = 0, binding = 7, rgba16f) uniform image2D irradiance;
-
-vec3 change_by(dnrt_gpu_object object, vec3 position, vec3 n)
-{
-    dnrt_receiver at = dnrt_receiver_of(object, position, n);
-    vec3 weights, sum = vec3(0.0);
-    if (!dnrt_weights(object, at, push.fade, weights)) return sum;
-    vec3 texel = vec3(object.slot_x, object.slot_y, object.slot_z) + 0.5 +
-                 dnrt_sample_of(object, at, push.size);
-    for (uint i = 0; i < LOOKUPS; i++) {
-        vec3 slot = vec3(float(dnrt_volume_of(at, i) * push.size), 0.0, 0.0);
-        sum += weights[i] *
-               textureLod(volumes, (texel + slot) / vec3(textureSize(volumes, 0)), 0.0).rgb;
-    }
-    return sum;
-}
 
 bool is_own(dnrt_gpu_object object, uint instance)
 {
     return instance - object.first_instance < object.instance_count;
 }
 
+struct pixel_quad {
+    bvec4 counts; // has a surface, in the image
+    vec3 position[4], normal[4];
+    uint instance[4];
+    vec3 change[4];
+};
+
+const ivec2 CORNER[4] = ivec2[4](ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), ivec2(1, 1));
+
+ivec2 corner_of(ivec2 first, int i)
+{
+    return min(first + CORNER[i], ivec2(frame.width, frame.height) - 1);
+}
+
+vec4 depths_at(ivec2 first)
+{
+    vec4 z;
+    [[unroll]] for (int i = 0; i < 4; i++) z[i] = texelFetch(depth, corner_of(first, i), 0).r;
+    return z;
+}
+
+void read_quad(ivec2 first, vec4 z, out pixel_quad q)
+{
+    [[unroll]] for (int i = 0; i < 4; i++)
+    {
+        ivec2 pixel = corner_of(first, i);
+        q.counts[i] = z[i] > 0.0;
+        q.position[i] = frame.camera_position + frame_view_distance(max(z[i], 1e-12)) *
+                                                    frame_view_ray(frame_uv(uvec2(pixel)));
+        q.normal[i] = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+#ifdef DNRT_ID
+        q.instance[i] = texelFetch(id, pixel, 0).r - 1u;
+#else
+        q.instance[i] = ~0u;
+#endif
+        q.change[i] = vec3(0.0);
+    }
+}
+
+// To the pixels `of` the quad: their lookups are at one position. With six volumes the normal of
+// the pixel, of which there is one, chooses among them.
+void add_object(dnrt_gpu_object object, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
+{
+    vec3 to_centre = object.centre - position;
+    dnrt_receiver at = dnrt_receiver(dnrt_object_from_world(object, -to_centre), vec3(0.0));
+    if (NORMALS == 6u) at.normal = dnrt_object_from_world(object, n);
+    vec3 texel = vec3(dnrt_slot(object)) + 0.5 + dnrt_sample_of(object, at, push.size);
+    float reach = dnrt_reach(object, at.position, push.fade);
+    vec3 change[LOOKUPS];
+    [[unroll]] for (uint k = 0; k < LOOKUPS; k++)
+    {
+        vec3 slot = vec3(float(dnrt_volume_of(at, k) * push.size), 0.0, 0.0);
+        change[k] = textureLod(volumes, (texel + slot) / vec3(textureSize(volumes, 0)), 0.0).rgb;
+        change[k] = reach == 0.0 ? vec3(0.0) : reach * change[k];
+    }
+    to_centre /= max(length(to_centre), 1e-12);
+    [[unroll]] for (int i = 0; i < 4; i++)
+    {
+        vec3 weights = vec3(max(dot(to_centre, q.normal[i]), 0.0), 0.0, 0.0);
+        if (NORMALS > 1u) {
+            at.normal = dnrt_object_from_world(object, q.normal[i]);
+            weights = dnrt_weights(object, at);
+        }
+        if (!of[i] || reach == 0.0 || is_own(object, q.instance[i])) weights = vec3(0.0);
+        [[unroll]] for (uint k = 0; k < LOOKUPS; k++) q.change[i] += weights[k] * change[k];
+    }
+}
+
+// Pixels on one surface share a lookup, of which there is one more where a quad has an edge.
+void add_objects(uint group, float share_m, inout pixel_quad q)
+{
+    bvec4 left = q.counts;
+    do {
+        int chosen = 3;
+        vec3 first = q.position[3], n = q.normal[3], sum = vec3(0.0);
+        [[unroll]] for (int i = 2; i >= 0; i--) if (left[i])
+        {
+            chosen = i;
+            first = q.position[i];
+            n = q.normal[i];
+        }
+        bvec4 near;
+        float count = 0.0;
+        [[unroll]] for (int i = 0; i < 4; i++)
+        {
+            near[i] = left[i] && (i == chosen || distance(first, q.position[i]) <= share_m);
+            sum += near[i] ? q.position[i] : vec3(0.0);
+            count += near[i] ? 1.0 : 0.0;
+            left[i] = left[i] && i != chosen && !near[i];
+        }
+        vec3 position = sum / max(count, 1.0);
+        uint w = 0u;
+        do {
+            uint bits = tile_table[group + DNRT_TILE_BITS + w];
+            do {
+                uint index = 32u * w + uint(max(findLSB(bits), 0));
+                bvec4 now = near;
+                if (bits == 0u) now = bvec4(false);
+                add_object(object_table[index], position, n, now, q);
+                bits &= bits - 1u;
+            } while (bits != 0u);
+        } while (++w < push.words);
+    } while (any(left));
+}
+
+void write_quad(ivec2 first, pixel_quad q)
+{
+    ivec2 size = ivec2(frame.width, frame.height);
+    [[unroll]] for (int i = 0; i < 4; i++)
+    {
+        ivec2 pixel = first + CORNER[i];
+        if (!q.counts[i] || q.change[i] == vec3(0.0) || any(greaterThanEqual(pixel, size)))
+            continue;
+        vec4 before = imageLoad(irradiance, pixel);
+        vec3 after = clamp(before.rgb + q.change[i], vec3(0.0), vec3(HALF_MAX));
+        imageStore(irradiance, pixel, vec4(after, before.a));
+    }
+}
+
+// Moves to the next quad with a surface.
+vec4 next_quad(inout ivec2 first, int end)
+{
+    vec4 z = vec4(0.0);
+    [[dont_unroll]] for (; first.y < end; first.y += 2)
+    {
+        z = depths_at(first);
+        if (any(greaterThan(z, vec4(0.0)))) break;
+    }
+    return z;
+}
+
 void main()
 {
-    uint group = gl_WorkGroupID.x * (1u + push.words);
+    frame = frame_block;
+    uint group = gl_WorkGroupID.x * (DNRT_TILE_BITS + push.words);
     uint tile = tile_table[group];
-    ivec2 pixel = ivec2(DNRT_TILE * uvec2(tile % push.tiles_x, tile / push.tiles_x) +
-                        gl_LocalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(frame.width, frame.height)))) return;
-    float z = texelFetch(depth, pixel, 0).r;
-    if (z <= 0.0) return;
-    vec3 position = frame_world_position(frame_uv(uvec2(pixel)), z);
-    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-#ifdef DNRT_ID
-    uint instance = texelFetch(id, pixel, 0).r - 1u;
-#else
-    uint instance = ~0u;
-#endif
-    vec3 change = vec3(0.0);
-    for (uint w = 0; w < push.words; w++) {
-        for (uint bits = tile_table[group + 1u + w]; bits != 0u; bits &= bits - 1u) {
-            dnrt_gpu_object object = object_table[32u * w + uint(findLSB(bits))];
-            if (!is_own(object, instance)) change += change_by(object, position, n);
-        }
-    }
-    if (change == vec3(0.0)) return;
-    vec4 before = imageLoad(irradiance, pixel);
-    imageStore(irradiance, pixel,
-               vec4(clamp(before.rgb + change, vec3(0.0), vec3(HALF_MAX)), before.a));
+    float share_m = uintBitsToFloat(tile_table[group + 1u]);
+    ivec2 first = ivec2(DNRT_TILE * uvec2(tile % push.tiles_x, tile / push.tiles_x) +
+                        uvec2(2, 2 * ROWS) * gl_LocalInvocationID.xy);
+    int end = first.x < int(frame.width) ? min(first.y + 2 * ROWS, int(frame.height)) : 0;
+    vec4 z = next_quad(first, end);
+    do {
+        pixel_quad q;
+        read_quad(first, first.y < end ? z : vec4(0.0), q);
+        add_objects(group, share_m, q);
+        write_quad(first, q);
+        first.y += 2;
+        z = next_quad(first, end);
+    } while (first.y < end);
 }

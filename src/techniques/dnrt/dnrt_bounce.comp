@@ -11,6 +11,7 @@
 #include "frame/frame_shared.h"
 #include "techniques/dnrt/dnrt_shared.h"
 
+#include "techniques/dnrt/dnrt_object.glsl"
 #include "techniques/dnrt/dnrt_receiver.glsl"
 
 layout(local_size_x = DNRT_LOCAL) in;
@@ -62,8 +63,9 @@ vec3 transfer_at(uint shape_index, uint j, vec3 at)
 vec3 change_at(uint index, dnrt_gpu_object object, vec3 position, vec3 n)
 {
     dnrt_receiver at = dnrt_receiver_of(object, position, n);
-    vec3 weights, sum = vec3(0.0);
-    if (!dnrt_weights(object, at, push.fade, weights)) return sum;
+    vec3 weights = dnrt_reach(object, at.position, push.fade) * dnrt_weights(object, at);
+    vec3 sum = vec3(0.0);
+    if (weights == vec3(0.0)) return sum;
     vec3 texel = dnrt_sample_of(object, at, push.size);
     for (uint i = 0; i < LOOKUPS; i++) {
         uint shape = NORMALS * uint(object.shape) + dnrt_volume_of(at, i);
@@ -83,7 +85,7 @@ void add_change(uint index, dnrt_gpu_object to, inout vec3 sum[9])
     n_o = normalize(n_o);
     vec3 facing = change_at(index, object, to.centre, n_o);
     if (facing == vec3(0.0)) return;
-    sh9_eval(n_o * mat3(to.axis[0], to.axis[1], to.axis[2]), basis);
+    sh9_eval(dnrt_object_from_world(to, n_o), basis);
     for (int j = 0; j < 9; j++)
         sum[j] += (j == 0 ? SH_COSINE_0 : j < 4 ? SH_COSINE_1 : SH_COSINE_2) * basis[j] * facing;
 }

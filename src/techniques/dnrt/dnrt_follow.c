@@ -34,6 +34,7 @@ static bool make_image(struct dnrt *s)
                                              .wrap_w = GPU_CLAMP };
     const size_t entries = (size_t)(n[0] * n[1] * n[2]) * DNRT_COEFFICIENTS * DNRT_LIGHT_PARTS;
     const struct gpu_buffer_desc light = { "light", entries * sizeof(vec3s), GPU_BUFFER_STORAGE };
+    s->stale = true;
     if (s->image.id && n[2] <= s->slots[2]) return true;
     gpu_image_destroy(s->gpu, &s->image);
     gpu_buffer_destroy(s->gpu, &s->light);
@@ -45,7 +46,8 @@ static bool make_image(struct dnrt *s)
 
 bool dnrt_make_tiles(struct dnrt *s)
 {
-    const size_t words = s->most_tiles * (1 + gpu_groups((uint32_t)s->objects.count, 32));
+    const size_t words =
+        s->most_tiles * (DNRT_TILE_BITS + gpu_groups((uint32_t)s->objects.count, 32));
     if (words <= s->tiles_words) return true;
     uint32_t *tiles = host_realloc(s->host, s->tiles, words, sizeof *tiles);
     if (!tiles) return false;
@@ -72,7 +74,7 @@ static void warn(struct dnrt *s, int without)
 static bool make_room(struct dnrt *s)
 {
     host_free(s->host, s->gpu_objects);
-    s->gpu_objects = host_alloc(s->host, (size_t)s->objects.count, sizeof *s->gpu_objects);
+    s->gpu_objects = host_alloc(s->host, DNRT_MAX_OBJECTS, sizeof *s->gpu_objects);
     if (s->gpu_objects && dnrt_make_tiles(s) &&
         (s->baked.count == 0 || s->objects.count == 0 || make_image(s)))
         return true;

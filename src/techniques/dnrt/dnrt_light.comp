@@ -1,5 +1,6 @@
 // The light at each object: irradiance of the source's probes at its centre, as coefficients over
-// normals in the object's frame, times π: what the volumes are multiplied by.
+// normals in the object's frame, times π: what the volumes are multiplied by. Lists the objects
+// whose volumes have another light.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -7,7 +8,11 @@
 #include "core/sh.glsl"
 #include "frame/frame_shared.h"
 #include "frame/probes.glsl"
+// A struct and a block cannot share a name.
+#define dnrt_changed dnrt_changed_data
 #include "techniques/dnrt/dnrt_shared.h"
+#undef dnrt_changed
+#include "techniques/dnrt/dnrt_object.glsl"
 
 layout(local_size_x = DNRT_LOCAL) in;
 
@@ -20,9 +25,13 @@ layout(set = 0, binding = 1, scalar) readonly buffer dnrt_objects
 {
     dnrt_gpu_object object_table[];
 };
-layout(set = 0, binding = 2, scalar) writeonly buffer dnrt_light
+layout(set = 0, binding = 2, scalar) buffer dnrt_light
 {
     vec3 light_table[]; // [object][coefficient]
+};
+layout(set = 0, binding = 3, scalar) buffer dnrt_changed
+{
+    dnrt_changed_data changed;
 };
 
 const float PI = 3.14159265;
@@ -69,6 +78,16 @@ void main()
         for (int k = 0; k < 4; k++)
             if (4 * s + k < 27) c[(4 * s + k) / 3][(4 * s + k) % 3] = PI * values[k];
     }
-    rotate(mat3(object.axis[0], object.axis[1], object.axis[2]), c);
-    for (int j = 0; j < DNRT_COEFFICIENTS; j++) light_table[index * DNRT_COEFFICIENTS + j] = c[j];
+    rotate(mat3(dnrt_world_from_object(object, vec3(1.0, 0.0, 0.0)),
+                dnrt_world_from_object(object, vec3(0.0, 1.0, 0.0)),
+                dnrt_world_from_object(object, vec3(0.0, 0.0, 1.0))),
+           c);
+    bool differs = push.all != 0u || changed.shape[index] != object.shape;
+    for (int j = 0; j < DNRT_COEFFICIENTS; j++) {
+        uint to = index * DNRT_COEFFICIENTS + j;
+        differs = differs || light_table[to] != c[j];
+        light_table[to] = c[j];
+    }
+    changed.shape[index] = object.shape;
+    if (differs) changed.list[atomicAdd(changed.groups_y, push.normals) / push.normals] = index;
 }

@@ -1,5 +1,5 @@
 // What a receiver looks up in the volumes of an object: where, and the weight of each. Include
-// after dnrt_shared.h.
+// after dnrt_object.glsl.
 #ifndef DNRT_RECEIVER_GLSL
 #define DNRT_RECEIVER_GLSL
 
@@ -14,8 +14,8 @@ struct dnrt_receiver {
 
 dnrt_receiver dnrt_receiver_of(dnrt_gpu_object object, vec3 position, vec3 normal)
 {
-    mat3 axes = mat3(object.axis[0], object.axis[1], object.axis[2]);
-    return dnrt_receiver((position - object.centre) * axes, normal * axes);
+    return dnrt_receiver(dnrt_object_from_world(object, position - object.centre),
+                         dnrt_object_from_world(object, normal));
 }
 
 // Between the border of the inner volume, at 1, and the outer one's: the inverse square of the
@@ -41,22 +41,21 @@ vec3 dnrt_above_horizon(dnrt_gpu_object object, dnrt_receiver at)
     return part * (at.normal + below * to_box);
 }
 
-// Weights of the volumes: of one, of x, y and z, or of −x or x, −y or y, −z or z. False: it sees
-// nothing of the object.
-bool dnrt_weights(dnrt_gpu_object object, dnrt_receiver at, float fade, out vec3 weights)
+// 0: out of the object's reach.
+float dnrt_reach(dnrt_gpu_object object, vec3 position, float fade)
 {
-    vec3 extent = abs(at.position) / object.half_m;
+    vec3 extent = abs(position) / object.half_m;
     float border = max(extent.x, max(extent.y, extent.z));
-    weights = vec3(0.0);
-    if (object.shape < 0 || border >= max(fade, 1.0)) return false;
-    if (NORMALS == 1u)
-        weights.x = max(-dot(at.position, at.normal) / max(length(at.position), 1e-12), 0.0);
-    else if (NORMALS == 3u)
-        weights = dnrt_above_horizon(object, at);
-    else
-        weights = at.normal * at.normal;
-    weights *= dnrt_fall_off(border, fade);
-    return weights != vec3(0.0);
+    return object.shape < 0 || border >= max(fade, 1.0) ? 0.0 : dnrt_fall_off(border, fade);
+}
+
+// Weights of the volumes: of one, of x, y and z, or of −x or x, −y or y, −z or z.
+vec3 dnrt_weights(dnrt_gpu_object object, dnrt_receiver at)
+{
+    if (NORMALS == 3u) return dnrt_above_horizon(object, at);
+    if (NORMALS == 6u) return at.normal * at.normal;
+    float cosine = -dot(at.position, at.normal) / max(length(at.position), 1e-12);
+    return vec3(max(cosine, 0.0), 0.0, 0.0);
 }
 
 // The volume of the i-th weight.

@@ -10,15 +10,17 @@
 
 #define DNRT_LOCAL        64  // workgroup size over samples of a volume
 #define DNRT_TILE         16  // pixels along an edge of a tile, a workgroup
-#define DNRT_MAX_OBJECTS  256 // a tile has a bit for each
+#define DNRT_TILE_BITS    2   // words of a tile before its bits
+#define DNRT_MAX_OBJECTS  192 // a tile has a bit for each
 #define DNRT_COEFFICIENTS 9   // of irradiance at an object
 
+// Few words: a loop over objects in a shader loads them for each invocation.
 struct dnrt_gpu_object {
-    vec3s centre;                            // of its volume, world, m
-    float half_m;                            // of an edge of the inner volume
-    vec3s axis[3];                           // unit, of the object's frame, in the world
-    int32_t shape;                           // −1: it has no volume
-    int32_t slot_x, slot_y, slot_z;          // of its volume among all, in texels
+    vec3s centre;      // of its volume, world, m
+    float half_m;      // of an edge of the inner volume
+    float rotation[4]; // world from object: a unit quaternion, w last
+    int32_t shape;     // −1: it has no volume
+    uint32_t slot;     // of its volume among all, in texels: x, y, z of 10 bits
     uint32_t first_instance, instance_count; // its own pixels
     vec3s box_centre, box_half;              // of its bounds, from the centre, along the axes, m
 };
@@ -30,9 +32,19 @@ struct dnrt_gpu_shape {
     float scale[3 * DNRT_COEFFICIENTS]; // of a plane
 };
 
+// Objects whose light or shape differs from that of their volume, a row of workgroups for each, and
+// the shapes of all.
+struct dnrt_changed {
+    uint32_t groups_x, groups_y, groups_z; // of the pass `volumes`
+    uint32_t list[DNRT_MAX_OBJECTS];
+    int32_t shape[DNRT_MAX_OBJECTS];
+};
+
 struct dnrt_light_push {
     AG_STRUCT(frame_probes) grid;
     uint32_t objects;
+    uint32_t normals; // volumes of an object
+    uint32_t all;     // each is computed again
 };
 
 struct dnrt_bounce_push {
@@ -56,8 +68,12 @@ struct dnrt_apply_push {
 };
 
 #ifndef AG_GLSL
-_Static_assert(sizeof(struct dnrt_gpu_object) == 25 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_gpu_object) == 18 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_gpu_object) * DNRT_MAX_OBJECTS <= 16384,
+               "each device has uniform blocks of this size");
 _Static_assert(sizeof(struct dnrt_gpu_shape) == 28 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_changed) == (3 + 2 * DNRT_MAX_OBJECTS) * 4,
+               "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_apply_push) == 5 * 4, "layout is shared with GLSL");
 #endif
 

@@ -29,13 +29,14 @@ struct dnrt {
     bool warned;                 // of objects without a volume
     struct dnrt_volume *volumes; // [baked.shape_count]
     int slots[3];                // room for objects along x, y, z of the image
-    gpu_buffer shapes, samples, light;
+    gpu_buffer shapes, samples, light, changed;
+    bool stale;      // all volumes of `image`
     gpu_image image; // volumes of all objects in their light
     gpu_sampler linear;
     gpu_pipeline light_pipeline, bounce_pipeline, volumes_pipeline;
     gpu_pipeline apply_pipeline, apply_without_id;
     struct probe_volume source;          // of the newest `take_probes`
-    struct dnrt_gpu_object *gpu_objects; // [objects] of the frame
+    struct dnrt_gpu_object *gpu_objects; // [DNRT_MAX_OBJECTS] of the frame
     uint32_t *tiles;                     // room for the tiles of a view
     size_t most_tiles;                   // of a view
     size_t tiles_words;                  // allocated
@@ -54,6 +55,6 @@ void dnrt_follow(void *state, const struct scene_pose *pose, bool wait);
 
 // ---- dnrt_tiles.c
 
-// Writes [tile][1 + words] for tiles that an object reaches and returns their number.
+// Writes [tile][DNRT_TILE_BITS + words] for tiles that an object reaches and returns their number.
 uint32_t dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view, uint32_t words,
                          uint32_t *tiles);

@@ -14,11 +14,11 @@ static int tiles_of(uint32_t pixels)
     return (int)gpu_groups(pixels, DNRT_TILE);
 }
 
-static vec3s corner_of(const struct dnrt_gpu_object *object, float half, int corner)
+static vec3s corner_of(const struct dnrt_gpu_object *object, mat3s axes, float half, int corner)
 {
     vec3s p = object->centre;
     for (int i = 0; i < 3; i++)
-        p = glms_vec3_muladds(object->axis[i], corner >> i & 1 ? half : -half, p);
+        p = glms_vec3_muladds(axes.col[i], corner >> i & 1 ? half : -half, p);
     return p;
 }
 
@@ -29,10 +29,12 @@ static struct rectangle rectangle_of(const struct frame_view *view,
     const int tiles[2] = { tiles_of(view->width), tiles_of(view->height) };
     const uint32_t size[2] = { view->width, view->height };
     float least[2] = { INFINITY, INFINITY }, most[2] = { -INFINITY, -INFINITY };
+    const float *q = object->rotation;
+    const mat3s axes = glms_quat_mat3((versors){ .raw = { q[0], q[1], q[2], q[3] } });
     int behind = 0;
     for (int k = 0; k < 8; k++) {
         const vec4s clip = glms_mat4_mulv(view->constants->clip_from_world,
-                                          vec4_of(corner_of(object, half, k), 1));
+                                          vec4_of(corner_of(object, axes, half, k), 1));
         if (!(clip.w > view->constants->near_m)) {
             behind++;
             continue;
@@ -53,41 +55,59 @@ static struct rectangle rectangle_of(const struct frame_view *view,
     return r;
 }
 
-static void mark(uint32_t *tiles, int across, uint32_t words, struct rectangle r, int object)
+// Positive floats are ordered as their bits.
+static uint32_t bits_of(float value)
 {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static void mark(uint32_t *tiles, int across, uint32_t words, struct rectangle r, int object,
+                 float share_m)
+{
+    const uint32_t share = bits_of(share_m);
     for (int y = r.first[1]; y < r.end[1]; y++)
-        for (int x = r.first[0]; x < r.end[0]; x++)
-            tiles[(size_t)(y * across + x) * (1 + words) + 1 + (size_t)object / 32] |=
-                1u << object % 32;
+        for (int x = r.first[0]; x < r.end[0]; x++) {
+            uint32_t *tile = tiles + (size_t)(y * across + x) * (DNRT_TILE_BITS + words);
+            if (tile[1] == 0 || share < tile[1]) tile[1] = share;
+            tile[DNRT_TILE_BITS + object / 32] |= 1u << object % 32;
+        }
 }
 
 // Moves those with a bit to the front.
 static uint32_t keep_marked(uint32_t *tiles, uint32_t count, uint32_t words)
 {
+    const size_t stride = DNRT_TILE_BITS + words;
     uint32_t kept = 0;
     for (uint32_t t = 0; t < count; t++) {
-        const uint32_t *from = tiles + (size_t)t * (1 + words);
+        const uint32_t *from = tiles + t * stride;
         uint32_t any = 0;
-        for (uint32_t w = 1; w <= words; w++) any |= from[w];
+        for (uint32_t w = 0; w < words; w++) any |= from[DNRT_TILE_BITS + w];
         if (any == 0) continue;
-        uint32_t *to = tiles + (size_t)kept++ * (1 + words);
-        memmove(to, from, (1 + words) * sizeof *to);
+        uint32_t *to = tiles + kept++ * stride;
+        memmove(to, from, stride * sizeof *to);
         to[0] = t;
     }
     return kept;
 }
+
+// Of the distance of two samples.
+static const float SHARE = 0.5f;
 
 uint32_t dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view, uint32_t words,
                          uint32_t *tiles)
 {
     const int across = tiles_of(view->width);
     const uint32_t count = (uint32_t)(across * tiles_of(view->height));
-    memset(tiles, 0, (size_t)count * (1 + words) * sizeof *tiles);
+    memset(tiles, 0, (size_t)count * (DNRT_TILE_BITS + words) * sizeof *tiles);
     for (int i = 0; i < s->objects.count; i++) {
         const struct dnrt_gpu_object *object = &s->gpu_objects[i];
         const float half = object->half_m * s->options.fade;
+        const float cell_m = 2.0f * object->half_m / (float)(dnrt_size(&s->options) - 1);
         if (object->shape >= 0 && half > 0.0f)
-            mark(tiles, across, words, rectangle_of(view, object, half), i);
+            mark(tiles, across, words, rectangle_of(view, object, half), i,
+                 s->options.normals == DNRT_NORMALS_6 ? 0.0f : SHARE * cell_m);
     }
     return keep_marked(tiles, count, words);
 }

@@ -1,12 +1,16 @@
-// The volume of each object in its light: π Σ c_j m_j, the change of irradiance of a receiver that
-// faces the object's centre (Giuffrida 2016, equation 16). One lookup per pixel is then enough,
-// whatever the number of coefficients. An invocation has four neighbouring samples.
+// The volume of each object whose light has changed: π Σ c_j m_j, the change of irradiance of a
+// receiver that faces the object's centre (Giuffrida 2016, equation 16). One lookup per pixel is
+// then enough, whatever the number of coefficients. An invocation has four neighbouring samples.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "frame/frame_shared.h"
+// A struct and a block cannot share a name.
+#define dnrt_changed dnrt_changed_data
 #include "techniques/dnrt/dnrt_shared.h"
+#undef dnrt_changed
+#include "techniques/dnrt/dnrt_object.glsl"
 
 layout(local_size_x = DNRT_LOCAL) in;
 layout(constant_id = 1) const uint NORMALS = 1; // of receivers: volumes of an object
@@ -32,13 +36,18 @@ layout(set = 0, binding = 3, scalar) readonly buffer dnrt_samples
     uint word_table[];
 };
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image3D volumes;
+layout(set = 0, binding = 5, scalar) readonly buffer dnrt_changed
+{
+    dnrt_changed_data changed;
+};
 
 #include "techniques/dnrt/dnrt_samples.glsl"
 
 void main()
 {
     uint first = 4u * gl_GlobalInvocationID.x, n = push.size, count = n * n * n;
-    uint index = gl_GlobalInvocationID.y / NORMALS, normal = gl_GlobalInvocationID.y % NORMALS;
+    uint row = gl_GlobalInvocationID.y, normal = row % NORMALS;
+    uint index = changed.list[row / NORMALS];
     dnrt_gpu_object object = object_table[index];
     if (first >= count || object.shape < 0) return;
     dnrt_gpu_shape shape = shape_table[NORMALS * uint(object.shape) + normal];
@@ -52,8 +61,8 @@ void main()
                       samples_of(shape.first_word + plane * words, first);
         }
     }
-    ivec3 to = ivec3(object.slot_x, object.slot_y, object.slot_z) +
-               ivec3(normal * n + first % n, first / n % n, first / (n * n));
+    ivec3 to =
+        ivec3(dnrt_slot(object)) + ivec3(normal * n + first % n, first / n % n, first / (n * n));
     for (int i = 0; i < 4; i++) {
         vec3 change = vec3(sum[0][i], sum[1][i], sum[2][i]);
         imageStore(volumes, to + ivec3(i, 0, 0),

@@ -392,3 +392,33 @@ TEST_GPU(pixels_far_from_objects_equal_those_of_the_source_to_the_bit)
     free_pixels(&before);
     free_pixels(&after);
 }
+
+static struct pixels pixels_in_light(struct gpu *gpu, float first_lux, float lux)
+{
+    struct dnrt_scene d;
+    open_scene(&d, gpu, SOURCE "+dnrt:size=16,rays=16", 3);
+    const vec3s direction = glms_vec3_normalize(vec3_of(0.3f, -1, -0.6f));
+    const float frames[] = { first_lux, first_lux, lux };
+    for (int i = 0; i < 3; i++) {
+        d.fixture.lights[0].intensity = vec3_of(frames[i], frames[i], frames[i]);
+        d.fixture.lights[0].direction = direction;
+        fixture_render(&d.fixture);
+    }
+    const struct pixels p = read_pixels(&d);
+    close_scene(&d);
+    return p;
+}
+
+// Volumes are computed again where the light of an object changes, and only there.
+TEST_GPU(volumes_follow_the_light)
+{
+    struct pixels still = pixels_in_light(gpu, 700, 700);
+    struct pixels changed = pixels_in_light(gpu, 1000, 700);
+    struct pixels before = pixels_in_light(gpu, 1000, 1000);
+    const size_t bytes = 3 * still.count * sizeof *still.irradiance;
+    CHECK(memcmp(still.irradiance, changed.irradiance, bytes) == 0);
+    CHECK(memcmp(still.irradiance, before.irradiance, bytes) != 0);
+    free_pixels(&still);
+    free_pixels(&changed);
+    free_pixels(&before);
+}
