@@ -13,31 +13,42 @@ struct denoiser {
     OIDNFilter filter; // RTLightmap
 };
 
+// Null where the place in the chart's rectangle belongs to no chart.
+static float *owned_texel(const struct denoiser *d, int side, const struct chart *chart, uint32_t x,
+                          uint32_t y)
+{
+    const struct charts *charts = &d->map->charts;
+    const uint32_t column = chart->x + x, row = chart->y + y;
+    if (charts->owner[(size_t)row * charts->width + column] == CHART_NONE) return NULL;
+    return image_at(&d->map->irradiance[side], (int)column, (int)row);
+}
+
+static const float *first_owned(const struct denoiser *d, int side, const struct chart *chart)
+{
+    const float *texel = NULL;
+    for (uint32_t i = 0; !texel && i < chart->width * chart->height; i++)
+        texel = owned_texel(d, side, chart, i % chart->width, i / chart->width);
+    return texel;
+}
+
 // Texels beyond the gutter belong to no chart: they get those of the row before.
 static void read_chart(const struct denoiser *d, int side, const struct chart *chart, float *out)
 {
-    const struct charts *charts = &d->map->charts;
-    const float *last = NULL;
-    for (uint32_t y = 0; y < chart->height; y++)
-        for (uint32_t x = 0; x < chart->width; x++) {
-            const uint32_t column = chart->x + x, row = chart->y + y;
-            const bool owned = charts->owner[(size_t)row * charts->width + column] != CHART_NONE;
-            if (owned) last = image_at(&d->map->irradiance[side], (int)column, (int)row);
-            if (last) memcpy(out + 3 * ((size_t)y * chart->width + x), last, 3 * sizeof *out);
-        }
+    const float *last = first_owned(d, side, chart);
+    for (uint32_t i = 0; last && i < chart->width * chart->height; i++) {
+        const float *own = owned_texel(d, side, chart, i % chart->width, i / chart->width);
+        if (own) last = own;
+        memcpy(out + 3 * (size_t)i, last, 3 * sizeof *out);
+    }
 }
 
 static void write_chart(const struct denoiser *d, int side, const struct chart *chart,
                         const float *in)
 {
-    const struct charts *charts = &d->map->charts;
-    for (uint32_t y = 0; y < chart->height; y++)
-        for (uint32_t x = 0; x < chart->width; x++) {
-            const uint32_t column = chart->x + x, row = chart->y + y;
-            if (charts->owner[(size_t)row * charts->width + column] == CHART_NONE) continue;
-            memcpy(image_at(&d->map->irradiance[side], (int)column, (int)row),
-                   in + 3 * ((size_t)y * chart->width + x), 3 * sizeof *in);
-        }
+    for (uint32_t i = 0; i < chart->width * chart->height; i++) {
+        float *own = owned_texel(d, side, chart, i % chart->width, i / chart->width);
+        if (own) memcpy(own, in + 3 * (size_t)i, 3 * sizeof *in);
+    }
 }
 
 static bool denoise_chart(const struct denoiser *d, int side, const struct chart *chart)
