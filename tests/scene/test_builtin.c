@@ -326,6 +326,16 @@ TEST(rooms_are_closed_so_that_no_light_leaks)
     for (size_t i = 0; i < sizeof specs / sizeof *specs; i++) check_closed(specs[i]);
 }
 
+TEST(the_object_of_a_corridor_is_movable_and_closed)
+{
+    check_closed("@corridor:object=true");
+    struct scene *scene = load("@corridor:object=true");
+    int movable = 0;
+    for (int i = 0; i < scene->instance_count; i++) movable += scene->instances[i].movable;
+    assert_int_equal(movable, 1);
+    scene_destroy(scene);
+}
+
 TEST(a_maze_has_the_requested_number_of_blocks)
 {
     for (int blocks = 1; blocks <= 64; blocks += 9) {

@@ -9,7 +9,7 @@
 //
 // Differs: the ceiling has a hole at the light, to avoid coplanar surfaces; walls can have a
 // thickness; the box can be closed and have objects that move.
-#include "scene/builtin/cornell_objects.h"
+#include "scene/builtin/movable_objects.h"
 #include "scene/builtin/parts.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
 // corridor scene of Giuffrida 2016, section 6.2. Each of the four arms ends in a niche around a
 // corner, which light reaches only after several bounces. The end wall of each arm has a colour of
 // its own.
+#include "scene/builtin/movable_objects.h"
 #include "scene/builtin/parts.h"
 
 #include <math.h>
@@ -145,6 +146,23 @@ static bool build_crates(struct scene *scene, const struct corridor_options *o)
     return true;
 }
 
+// Between the crossing and the niche of the arm along +x. The camera sees the floor and a wall on
+// both sides of it.
+static bool build_object(struct scene *scene, const struct corridor_options *o)
+{
+    const float along = 0.25f * (o->length - o->width);
+    const struct movable_object object = { .centre = { { along, 0.75f, 0 } },
+                                           .radius = 0.5f,
+                                           .height = 1.5f,
+                                           .wave = 0.3f,
+                                           .cycles = 2,
+                                           .reflectance = { { 0.15f, 0.35f, 0.85f } } };
+    return movable_object_add(scene, &object) &&
+           builtin_camera(scene, "object",
+                          vec3_of(along + 1.1f, o->height - 0.2f, 0.5f * o->width - 0.2f),
+                          vec3_of(along - 0.15f, 0.2f, -0.2f * o->width), glm_rad(75.0f));
+}
+
 static bool build_corridor(struct scene *scene, const void *options)
 {
     const struct corridor_options *o = options;
@@ -153,7 +171,8 @@ static bool build_corridor(struct scene *scene, const void *options)
     return build_rooms(scene, o) && build_ribs(scene, o) && build_crates(scene, o) &&
            builtin_sphere_light(scene, middle, o->light == 1, o->lumens) &&
            builtin_camera(scene, "main", camera, vec3_of(0, 1.4f, -0.1f * o->width),
-                          glm_rad(60.0f));
+                          glm_rad(60.0f)) &&
+           (!o->object || build_object(scene, o));
 }
 
 const struct builtin_scene builtin_corridor = {

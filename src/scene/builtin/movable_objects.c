@@ -1,20 +1,11 @@
-#include "scene/builtin/cornell_objects.h"
+#include "scene/builtin/movable_objects.h"
 
 #include "scene/builtin/parts.h"
 
 #include <math.h>
 
-// Solids of revolution with the profile sin(πt) (1 + wave sin(2π cycles t)), and closed pipes along
-// a knot: about 1500 triangles each. The first six stand apart on the floor, the others float.
-struct cornell_object {
-    vec3s centre; // m
-    float radius; // of a solid, and of a knot's path with the pipe
-    float height; // of a solid; 0: a knot
-    float wave, cycles;
-    vec3s reflectance;
-};
-
-static const struct cornell_object OBJECTS[] = {
+// The first six stand apart on the floor of @cornell, the others float.
+static const struct movable_object CORNELL[] = {
     { { { -0.2f, 0.95f, 0.4f } }, 0.7f, 1.9f, 0.35f, 2, { { 0.2f, 0.35f, 0.8f } } },
     { { { -1.8f, 0.6f, 1.3f } }, 0.6f, 1.2f, 0, 0, { { 0.8f, 0.6f, 0.15f } } },
     { { { 1.7f, 0.85f, -0.7f } }, 0.55f, 1.7f, -0.5f, 1.5f, { { 0.7f, 0.7f, 0.7f } } },
@@ -29,7 +20,7 @@ static const struct cornell_object OBJECTS[] = {
 
 enum { RINGS = 27, SEGMENTS = 29, KNOT_RINGS = 62, KNOT_SEGMENTS = 12 };
 
-static void add_solid(struct shape_builder *builder, const struct cornell_object *object)
+static void add_solid(struct shape_builder *builder, const struct movable_object *object)
 {
     vec2s profile[RINGS + 1];
     for (int i = 0; i <= RINGS; i++) {
@@ -53,7 +44,7 @@ static vec3s knot(float t)
         1.0f / 3.0f);
 }
 
-static mat4s knot_frame(const struct cornell_object *object, float t, float path)
+static mat4s knot_frame(const struct movable_object *object, float t, float path)
 {
     const vec3s along = glms_vec3_normalize(glms_vec3_sub(knot(t + 1e-3f), knot(t - 1e-3f)));
     const vec3s up = fabsf(along.y) < 0.9f ? vec3_of(0, 1, 0) : vec3_of(1, 0, 0);
@@ -66,7 +57,7 @@ static mat4s knot_frame(const struct cornell_object *object, float t, float path
     return frame;
 }
 
-static void add_knot(struct shape_builder *builder, const struct cornell_object *object)
+static void add_knot(struct shape_builder *builder, const struct movable_object *object)
 {
     const float pipe = 0.2f * object->radius, path = object->radius - pipe;
     mat4s frames[KNOT_RINGS + 1];
@@ -78,21 +69,24 @@ static void add_knot(struct shape_builder *builder, const struct cornell_object 
                                                .segments = KNOT_SEGMENTS });
 }
 
+bool movable_object_add(struct scene *scene, const struct movable_object *object)
+{
+    const int material = builtin_diffuse(scene, "object", object->reflectance);
+    struct shape_builder builder;
+    if (material < 0) return false;
+    shape_begin(&builder, scene);
+    if (object->height > 0.0f)
+        add_solid(&builder, object);
+    else
+        add_knot(&builder, object);
+    const int instance = shape_emit(&builder, "object", material);
+    if (instance >= 0) scene->instances[instance].movable = true;
+    return instance >= 0;
+}
+
 bool cornell_add_objects(struct scene *scene, int count)
 {
-    for (int i = 0; i < count; i++) {
-        const struct cornell_object *object = &OBJECTS[i];
-        const int material = builtin_diffuse(scene, "object", object->reflectance);
-        struct shape_builder builder;
-        if (material < 0) return false;
-        shape_begin(&builder, scene);
-        if (object->height > 0.0f)
-            add_solid(&builder, object);
-        else
-            add_knot(&builder, object);
-        const int instance = shape_emit(&builder, "object", material);
-        if (instance < 0) return false;
-        scene->instances[instance].movable = true;
-    }
+    for (int i = 0; i < count; i++)
+        if (!movable_object_add(scene, &CORNELL[i])) return false;
     return true;
 }
