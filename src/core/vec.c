@@ -61,6 +61,13 @@ bool box3_is_empty(struct box3 box)
     return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
 }
 
+bool box3_intersects(struct box3 a, struct box3 b)
+{
+    for (int i = 0; i < 3; i++)
+        if (!(a.min.raw[i] <= b.max.raw[i] && b.min.raw[i] <= a.max.raw[i])) return false;
+    return true;
+}
+
 vec3s box3_centre(struct box3 box)
 {
     return glms_vec3_scale(glms_vec3_add(box.min, box.max), 0.5f);

@@ -58,6 +58,7 @@ struct box3 box3_add_point(struct box3 box, vec3s p);
 struct box3 box3_union(struct box3 a, struct box3 b);
 struct box3 box3_transform(mat4s to_from, struct box3 box);
 bool box3_is_empty(struct box3 box);
+bool box3_intersects(struct box3 a, struct box3 b); // also where they only touch
 vec3s box3_centre(struct box3 box);
 vec3s box3_size(struct box3 box);
 int box3_longest_axis(struct box3 box); // of equal ones the first

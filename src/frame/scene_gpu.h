@@ -101,6 +101,9 @@ void scene_gpu_update(struct scene_gpu *scene, struct gpu_cmd *cmd, const struct
 // Whether nothing that moved or was removed in the last update is or was inside this clip volume;
 // with `materials`, nor anything whose material changed.
 bool scene_gpu_unchanged_in(const struct scene_gpu *scene, mat4s clip_from_world, bool materials);
+// The same of the shadows that instances cast inside a box, but for the `count` from `first` on.
+bool scene_gpu_unchanged_around(const struct scene_gpu *scene, struct box3 box, uint32_t first,
+                                uint32_t count);
 
 // Part of a draw's triangles, whose indices fit into one binding of every device.
 struct scene_triangle_range {

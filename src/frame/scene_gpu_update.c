@@ -188,6 +188,19 @@ bool scene_gpu_unchanged_in(const struct scene_gpu *s, mat4s clip_from_world, bo
     return true;
 }
 
+bool scene_gpu_unchanged_around(const struct scene_gpu *s, struct box3 box, uint32_t first,
+                                uint32_t count)
+{
+    for (int i = 0; i < s->removed_count && s->removed_at == s->updates; i++)
+        if (box3_intersects(box, s->removed[i])) return false;
+    for (int i = 0; i < s->draw_count && (s->moved || s->recolored); i++) {
+        const struct scene_draw *draw = &s->draws[i];
+        if ((uint32_t)draw->instance - first < count) continue;
+        if (has_changed(draw, false) && box3_intersects(box, draw->swept)) return false;
+    }
+    return true;
+}
+
 // Maximum of a single dispatch: work group counts and index bytes stay within every device's
 // limits.
 static const uint32_t RANGE_TRIANGLES = 1u << 21;

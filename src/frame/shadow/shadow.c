@@ -1,46 +1,13 @@
-// Shadow maps: cascades for suns, one perspective map for spots, six for points. Both sides of a
-// triangle cast shadows.
+// Shadow maps: cascades for suns, one perspective map for spots, six for points.
 #include "frame/shadow/shadow.h"
 
 #include "frame/light_projection.h"
-#include "frame/projection.h"
-
 #include "frame_shaders.h"
 
 #include <math.h>
 #include <string.h>
 
 static const float CONSTANT_BIAS = 0.1f; // texels
-
-struct push {
-    struct scene_push draw;
-    mat4s clip_from_world;
-};
-
-static bool make_pipelines(struct shadow *s)
-{
-    struct gpu_graphics_desc desc = {
-        .name = "frame.shadow",
-        .vertex = &shader_shadow_vert,
-        .depth_format = GPU_D32F,
-        .depth_compare = GPU_GREATER,
-        .depth_write = true,
-        .depth_clamp = true,
-    };
-    if (!gpu_graphics_pipeline_create(s->gpu, &desc, &s->opaque)) return false;
-    desc.name = "frame.shadow_masked";
-    desc.vertex = &shader_shadow_masked_vert;
-    desc.fragment = &shader_shadow_masked_frag;
-    for (uint32_t map = 0; map < 2; map++) {
-        struct gpu_constant constants[] = { { SCENE_CONSTANT_BASE_COLOR_MAP, map },
-                                            { SCENE_CONSTANT_MASKED, true } };
-        desc.constants = constants;
-        desc.constant_count = 2;
-        if (!gpu_graphics_pipeline_create(s->gpu, &desc, &s->masked[map])) return false;
-    }
-    return gpu_compute_pipeline_create(s->gpu, "frame.shadow_blocks", &shader_shadow_blocks_comp,
-                                       NULL, 0, &s->block_pipeline);
-}
 
 bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t sun_size,
                  uint32_t cascades)
@@ -64,7 +31,9 @@ bool shadow_init(struct shadow *s, struct host *host, struct gpu *gpu, uint32_t 
         .name = "frame.nearest", .wrap_u = GPU_CLAMP, .wrap_v = GPU_CLAMP, .wrap_w = GPU_CLAMP
     };
     return gpu_sampler_get(gpu, &sampler, &s->sampler) &&
-           gpu_sampler_get(gpu, &nearest, &s->nearest) && make_pipelines(s) &&
+           gpu_sampler_get(gpu, &nearest, &s->nearest) && shadow_casters_init(&s->casters, gpu) &&
+           gpu_compute_pipeline_create(gpu, "frame.shadow_blocks", &shader_shadow_blocks_comp, NULL,
+                                       0, &s->block_pipeline) &&
            shadow_prepare(s, 0, 0);
 }
 
@@ -85,9 +54,8 @@ static void destroy_maps(struct shadow *s)
 void shadow_finish(struct shadow *s)
 {
     if (!s->gpu) return;
-    gpu_pipeline_destroy(s->gpu, &s->opaque);
+    shadow_casters_finish(&s->casters);
     gpu_pipeline_destroy(s->gpu, &s->block_pipeline);
-    for (int i = 0; i < 2; i++) gpu_pipeline_destroy(s->gpu, &s->masked[i]);
     destroy_maps(s);
     *s = (struct shadow){ 0 };
 }
@@ -199,32 +167,14 @@ void shadow_place(struct shadow *s, struct frame_light *lights, int light_count,
 static void record_face(const struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,
                         const struct shadow_face *face, bool sun)
 {
-    struct push push = { .clip_from_world = face->clip_from_world };
-    const uint32_t size = sun ? s->sun_size : s->size;
-    gpu_render_begin(
-        cmd, &(struct gpu_render_desc){
-                 .depth = { .image = sun ? s->sun_maps : s->maps, .layer = (uint32_t)face->layer },
-                 .width = size,
-                 .height = size,
-                 .reads = scene->reads,
-                 .read_count = scene->read_count,
-             });
-    for (int i = 0; i < scene->draw_count; i++) {
-        const struct scene_draw *draw = &scene->draws[i];
-        if (!projection_may_see(push.clip_from_world, draw->bounds)) continue;
-        gpu_pipeline pipeline = draw->variant & VARIANT_MASKED
-                                    ? s->masked[draw->variant & VARIANT_BASE_COLOR_MAP]
-                                    : s->opaque;
-        scene_gpu_draw(scene, cmd,
-                       &(struct scene_draw_call){
-                           .pipeline = pipeline,
-                           .draw = draw,
-                           .push = &push,
-                           .push_bytes = sizeof push,
-                           .cull = GPU_CULL_NONE,
-                       });
-    }
-    gpu_render_end(cmd);
+    const struct shadow_map_target target = {
+        .maps = sun ? s->sun_maps : s->maps,
+        .layer = (uint32_t)face->layer,
+        .size = sun ? s->sun_size : s->size,
+        .clip_from_world = face->clip_from_world,
+        .bounds = box3_empty(),
+    };
+    shadow_casters_record(&s->casters, cmd, scene, &target);
 }
 
 void shadow_record(struct shadow *s, struct gpu_cmd *cmd, const struct scene_gpu *scene,

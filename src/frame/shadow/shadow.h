@@ -4,21 +4,21 @@
 
 #include "frame/frame_shared.h"
 #include "frame/cached_map.h"
-#include "frame/scene_gpu.h"
+#include "frame/shadow/shadow_casters.h"
 #include "frame/shadow/shadow_shared.h"
 #include "frame/shadow/shadow_sun_shared.h"
 
 struct shadow {
     struct host *host;
     struct gpu *gpu;
-    uint32_t sun_size, size;        // texels: maps of suns, of other lights
-    uint32_t cascades;              // per sun
-    gpu_pipeline opaque, masked[2]; // [with a base-colour map]
-    gpu_image sun_maps, maps;       // D32F arrays; 8×8×1 if empty
-    int sun_capacity, capacity;     // layers
-    gpu_sampler sampler;            // comparison sampler
-    struct shadow_face *faces;      // [sun_capacity + capacity]
-    struct cached_map *cache;       // [sun_capacity + capacity]
+    uint32_t sun_size, size; // texels: maps of suns, of other lights
+    uint32_t cascades;       // per sun
+    struct shadow_casters casters;
+    gpu_image sun_maps, maps;   // D32F arrays; 8×8×1 if empty
+    int sun_capacity, capacity; // layers
+    gpu_sampler sampler;        // comparison sampler
+    struct shadow_face *faces;  // [sun_capacity + capacity]
+    struct cached_map *cache;   // [sun_capacity + capacity]
     gpu_pipeline block_pipeline;
     gpu_image sun_blocks; // bounds of sun_maps, shadow_blocks.comp
     bool *has_blocks;     // [sun_capacity + capacity]: of the map last drawn

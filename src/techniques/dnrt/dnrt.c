@@ -31,7 +31,7 @@ static bool resize(void *state, int view, uint32_t width, uint32_t height)
 {
     struct dnrt *s = state;
     const size_t tiles = (size_t)gpu_groups(width, DNRT_TILE) * gpu_groups(height, DNRT_TILE);
-    (void)view;
+    if (width > 0 && view >= s->views) s->views = view + 1;
     if (tiles > s->most_tiles) s->most_tiles = tiles;
     return dnrt_make_tiles(s);
 }
@@ -52,6 +52,20 @@ static bool create(void *state, const struct technique_create *how)
     return s->volumes && resize(s, 0, how->width, how->height) && dnrt_find_objects(s, how->pose);
 }
 
+static bool make_apply_pipelines(struct dnrt *s, const struct gpu_constant constants[2])
+{
+    const struct gpu_shader *const shaders[2][2] = {
+        { &shader_dnrt_apply_plain_comp, &shader_dnrt_apply_plain_maps_comp },
+        { &shader_dnrt_apply_id_comp, &shader_dnrt_apply_id_maps_comp },
+    };
+    const int maps = s->options.intrusion == DNRT_INTRUSION_SHADOW;
+    for (int id = 0; id < 2; id++)
+        if (!gpu_compute_pipeline_create(s->gpu, "apply", shaders[id][maps], constants, 2,
+                                         &s->apply_pipeline[id][maps]))
+            return false;
+    return !maps || shadow_casters_init(&s->casters, s->gpu);
+}
+
 static bool make_pipelines(struct dnrt *s)
 {
     const struct gpu_constant constants[] = {
@@ -66,10 +80,7 @@ static bool make_pipelines(struct dnrt *s)
                                        &s->bounce_pipeline) &&
            gpu_compute_pipeline_create(s->gpu, "volumes", &shader_dnrt_volumes_comp, constants + 1,
                                        3, &s->volumes_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_id_comp, constants, 2,
-                                       &s->apply_pipeline) &&
-           gpu_compute_pipeline_create(s->gpu, "apply", &shader_dnrt_apply_plain_comp, constants, 2,
-                                       &s->apply_without_id);
+           make_apply_pipelines(s, constants);
 }
 
 static bool load(void *state, const struct tensors *bake)
@@ -196,6 +207,7 @@ static void update(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
     struct dnrt *s = state;
     if (s->objects.count == 0 || s->image.id == 0) return;
     for (int i = 0; i < s->objects.count; i++) place_object(s, view->pose, i);
+    if (s->map_count > 0) dnrt_record_maps(s, cmd, view);
     const struct gpu_binding objects = objects_binding(s, cmd);
     record_light(s, cmd, objects);
     record_volumes(s, cmd, objects, record_bounces(s, cmd, objects));
@@ -208,14 +220,17 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
                                     .words = gpu_groups((uint32_t)s->objects.count, 32),
                                     .tiles_x = gpu_groups(view->width, DNRT_TILE),
                                     .size = (uint32_t)dnrt_size(&s->options),
-                                    .fade = s->options.fade };
+                                    .fade = s->options.fade,
+                                    .map_size = (uint32_t)s->options.map_size,
+                                    .map_count = (uint32_t)s->map_count,
+                                    .reach = s->options.reach };
     const bool has_id = view->layers[FRAME_ID].id != 0;
     if (push.objects == 0 || s->image.id == 0) return;
     const uint32_t tiles = dnrt_find_tiles(s, view, push.words, s->tiles);
     if (tiles == 0) return;
     gpu_scope_begin(cmd, "apply");
     gpu_dispatch(
-        cmd, has_id ? s->apply_pipeline : s->apply_without_id,
+        cmd, s->apply_pipeline[has_id][s->map_count > 0],
         GPU_BIND(view->constants_binding, { .name = "depth", .image = view->layers[FRAME_DEPTH] },
                  { .name = "normal", .image = view->layers[FRAME_NORMAL] },
                  { .name = "id", .image = view->layers[FRAME_ID] },
@@ -224,6 +239,7 @@ static void record(void *state, struct gpu_cmd *cmd, const struct frame_view *vi
                  gpu_transient(cmd, "dnrt_tiles", s->tiles,
                                (size_t)tiles * (DNRT_TILE_BITS + push.words) * sizeof *s->tiles),
                  { .name = "volumes", .image = s->image, .sampler = s->linear },
+                 { .name = "depth_maps", .image = s->map_image },
                  { .name = "irradiance", .image = view->layers[FRAME_IRRADIANCE] }),
         &push, sizeof push, tiles, 1, 1);
     gpu_scope_end(cmd);
@@ -233,15 +249,19 @@ static void destroy(void *state)
 {
     struct dnrt *s = state;
     if (!s->host) return;
-    gpu_pipeline *const pipelines[] = { &s->light_pipeline, &s->bounce_pipeline,
-                                        &s->volumes_pipeline, &s->apply_pipeline,
-                                        &s->apply_without_id };
+    gpu_pipeline *const pipelines[] = { &s->light_pipeline,       &s->bounce_pipeline,
+                                        &s->volumes_pipeline,     &s->apply_pipeline[0][0],
+                                        &s->apply_pipeline[0][1], &s->apply_pipeline[1][0],
+                                        &s->apply_pipeline[1][1] };
     gpu_buffer *const buffers[] = { &s->shapes, &s->samples, &s->light, &s->changed };
     for (size_t i = 0; i < sizeof pipelines / sizeof *pipelines; i++)
         gpu_pipeline_destroy(s->gpu, pipelines[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gpu_buffer_destroy(s->gpu, buffers[i]);
     gpu_image_destroy(s->gpu, &s->image);
+    gpu_image_destroy(s->gpu, &s->map_image);
+    shadow_casters_finish(&s->casters);
+    host_free(s->host, s->maps);
     host_free(s->host, s->gpu_objects);
     host_free(s->host, s->volumes);
     host_free(s->host, s->tiles);
@@ -256,8 +276,10 @@ static uint64_t memory_estimate(const void *options, uint32_t width, uint32_t he
     const uint64_t n = (uint64_t)dnrt_size(o), samples = n * n * n;
     (void)width;
     (void)height;
+    const uint64_t maps = o->intrusion == DNRT_INTRUSION_SHADOW ? 6 : 0;
     return samples * (uint64_t)dnrt_normals(o) *
-           (3 * (uint64_t)dnrt_coefficients(o) * (o->bits == DNRT_BITS_16 ? 2 : 1) + 8);
+               (3 * (uint64_t)dnrt_coefficients(o) * (o->bits == DNRT_BITS_16 ? 2 : 1) + 8) +
+           maps * (uint64_t)o->map_size * (uint64_t)o->map_size * 4;
 }
 
 const struct technique technique_dnrt = {

@@ -41,6 +41,10 @@ layout(set = 0, binding = 5, scalar) readonly buffer dnrt_tiles
 layout(set = 0, binding = 6) uniform sampler3D volumes;
 layout(set = 0, binding = 7, rgba16f) uniform image2D irradiance;
 
+#ifdef DNRT_MAPS
+#include "techniques/dnrt/dnrt_intrusion.glsl"
+#endif
+
 bool is_own(dnrt_gpu_object object, uint instance)
 {
     return instance - object.first_instance < object.instance_count;
@@ -87,8 +91,9 @@ void read_quad(ivec2 first, vec4 z, out pixel_quad q)
 
 // To the pixels `of` the quad: their lookups are at one position. With six volumes the normal of
 // the pixel, of which there is one, chooses among them.
-void add_object(dnrt_gpu_object object, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
+void add_object(uint index, vec3 position, vec3 n, bvec4 of, inout pixel_quad q)
 {
+    dnrt_gpu_object object = object_table[index];
     vec3 to_centre = object.centre - position;
     dnrt_receiver at = dnrt_receiver(dnrt_object_from_world(object, -to_centre), vec3(0.0));
     if (NORMALS == 6u) at.normal = dnrt_object_from_world(object, n);
@@ -102,6 +107,7 @@ void add_object(dnrt_gpu_object object, vec3 position, vec3 n, bvec4 of, inout p
         change[k] = reach == 0.0 ? vec3(0.0) : reach * change[k];
     }
     to_centre /= max(length(to_centre), 1e-12);
+    vec3 added[4];
     [[unroll]] for (int i = 0; i < 4; i++)
     {
         vec3 weights = vec3(max(dot(to_centre, q.normal[i]), 0.0), 0.0, 0.0);
@@ -110,8 +116,16 @@ void add_object(dnrt_gpu_object object, vec3 position, vec3 n, bvec4 of, inout p
             weights = dnrt_weights(object, at);
         }
         if (!of[i] || reach == 0.0 || is_own(object, q.instance[i])) weights = vec3(0.0);
-        [[unroll]] for (uint k = 0; k < LOOKUPS; k++) q.change[i] += weights[k] * change[k];
+        added[i] = vec3(0.0);
+        [[unroll]] for (uint k = 0; k < LOOKUPS; k++) added[i] += weights[k] * change[k];
+#ifndef DNRT_MAPS
+        q.change[i] += added[i];
+#endif
     }
+#ifdef DNRT_MAPS
+    [[dont_unroll]] for (int i = 0; i < 4; i++) if (added[i] != vec3(0.0)) q.change[i] +=
+        seen_of(index, object, q.position[i], q.normal[i]) * added[i];
+#endif
 }
 
 // Pixels on one surface share a lookup, of which there is one more where a quad has an edge.
@@ -144,7 +158,7 @@ void add_objects(uint group, float share_m, inout pixel_quad q)
                 uint index = 32u * w + uint(max(findLSB(bits), 0));
                 bvec4 now = near;
                 if (bits == 0u) now = bvec4(false);
-                add_object(object_table[index], position, n, now, q);
+                add_object(index, position, n, now, q);
                 bits &= bits - 1u;
             } while (bits != 0u);
         } while (++w < push.words);

@@ -76,7 +76,7 @@ static bool make_room(struct dnrt *s)
     host_free(s->host, s->gpu_objects);
     s->gpu_objects = host_alloc(s->host, DNRT_MAX_OBJECTS, sizeof *s->gpu_objects);
     if (s->gpu_objects && dnrt_make_tiles(s) &&
-        (s->baked.count == 0 || s->objects.count == 0 || make_image(s)))
+        (s->baked.count == 0 || s->objects.count == 0 || (make_image(s) && dnrt_make_maps(s))))
         return true;
     s->objects.count = 0;
     return false;

@@ -13,6 +13,8 @@
 #define DNRT_TILE_BITS    2   // words of a tile before its bits
 #define DNRT_MAX_OBJECTS  192 // a tile has a bit for each
 #define DNRT_COEFFICIENTS 9   // of irradiance at an object
+// Near plane of depth maps, over the radius of the bounding sphere.
+#define DNRT_NEAR (1.0 / 64.0)
 
 // Few words: a loop over objects in a shader loads them for each invocation.
 struct dnrt_gpu_object {
@@ -64,7 +66,10 @@ struct dnrt_apply_push {
     uint32_t words;   // of a tile's bits
     uint32_t tiles_x; // across the image
     uint32_t size;
-    float fade; // where the outer volume ends, in halves of the inner one's edge
+    float fade;         // where the outer volume ends, in halves of the inner one's edge
+    uint32_t map_size;  // texels along an edge of a depth map
+    uint32_t map_count; // of the first objects
+    float reach;        // of the inner volume, radii of the bounding sphere
 };
 
 #ifndef AG_GLSL
@@ -74,7 +79,7 @@ _Static_assert(sizeof(struct dnrt_gpu_object) * DNRT_MAX_OBJECTS <= 16384,
 _Static_assert(sizeof(struct dnrt_gpu_shape) == 28 * 4, "layout is shared with GLSL");
 _Static_assert(sizeof(struct dnrt_changed) == (3 + 2 * DNRT_MAX_OBJECTS) * 4,
                "layout is shared with GLSL");
-_Static_assert(sizeof(struct dnrt_apply_push) == 5 * 4, "layout is shared with GLSL");
+_Static_assert(sizeof(struct dnrt_apply_push) == 8 * 4, "layout is shared with GLSL");
 #endif
 
 #endif

@@ -7,6 +7,7 @@
 #include "techniques/dnrt/dnrt_options.h"
 
 #include "frame/frame_shared.h"
+#include "frame/shadow/shadow_casters.h"
 #include "techniques/dnrt/dnrt_shared.h"
 
 // The bounding sphere of a baked shape and its bounding box, in the object's frame.
@@ -18,6 +19,14 @@ struct dnrt_volume {
 
 // Entries of `light`: of the probes, and two that bounces fill by turns.
 enum { DNRT_LIGHT_PARTS = 3 };
+
+// The depth maps of an object: six layers, of the directions around its centre.
+struct dnrt_map {
+    vec3s centre;
+    float radius, reach; // m
+    uint32_t first_instance, instance_count;
+    uint64_t updates; // scene_gpu.updates when they were last valid; 0: never
+};
 
 struct dnrt {
     struct host *host;
@@ -34,7 +43,12 @@ struct dnrt {
     gpu_image image; // volumes of all objects in their light
     gpu_sampler linear;
     gpu_pipeline light_pipeline, bounce_pipeline, volumes_pipeline;
-    gpu_pipeline apply_pipeline, apply_without_id;
+    gpu_pipeline apply_pipeline[2][2]; // [with FRAME_ID][with depth maps]
+    struct shadow_casters casters;
+    gpu_image map_image;                 // D32F array; empty: intrusion=off
+    struct dnrt_map *maps;               // [map_count]
+    int map_count;                       // of the first objects
+    int views;                           // one more than the largest number of a view
     struct probe_volume source;          // of the newest `take_probes`
     struct dnrt_gpu_object *gpu_objects; // [DNRT_MAX_OBJECTS] of the frame
     uint32_t *tiles;                     // room for the tiles of a view
@@ -53,7 +67,17 @@ bool dnrt_find_objects(struct dnrt *s, const struct scene_pose *pose);
 bool dnrt_make_tiles(struct dnrt *s);
 void dnrt_follow(void *state, const struct scene_pose *pose, bool wait);
 
+// ---- dnrt_intrusion.c
+
+// Room for the depth maps of all objects, of which none is valid.
+bool dnrt_make_maps(struct dnrt *s);
+// Draws those that are not valid.
+void dnrt_record_maps(struct dnrt *s, struct gpu_cmd *cmd, const struct frame_view *view);
+
 // ---- dnrt_tiles.c
+
+// Whether its outer volume is inside of the view.
+bool dnrt_in_view(const struct dnrt *s, const struct frame_view *view, int object);
 
 // Writes [tile][DNRT_TILE_BITS + words] for tiles that an object reaches and returns their number.
 uint32_t dnrt_find_tiles(const struct dnrt *s, const struct frame_view *view, uint32_t words,

@@ -92,6 +92,13 @@ static uint32_t keep_marked(uint32_t *tiles, uint32_t count, uint32_t words)
     return kept;
 }
 
+bool dnrt_in_view(const struct dnrt *s, const struct frame_view *view, int object)
+{
+    const struct dnrt_gpu_object *of = &s->gpu_objects[object];
+    const struct rectangle r = rectangle_of(view, of, of->half_m * s->options.fade);
+    return r.first[0] < r.end[0] && r.first[1] < r.end[1];
+}
+
 // Of the distance of two samples.
 static const float SHARE = 0.5f;
 

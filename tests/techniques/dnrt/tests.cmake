@@ -3,3 +3,4 @@ target_link_libraries(ag_test_dnrt PUBLIC ag_test_framework ag_techniques PRIVAT
 ag_test(techniques/dnrt/transfer USES techniques LIBRARIES ag_test_dnrt)
 ag_test(techniques/dnrt/frame USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)
 ag_test(techniques/dnrt/bake USES techniques LIBRARIES ag_test_dnrt)
+ag_test(techniques/dnrt/intrusion USES techniques LIBRARIES ag_test_dnrt ag_test_techniques ag_test_frame_fixture)
